@@ -10,8 +10,8 @@ import { FLAGS, PATIENCE, executablePath } from "./browser.js";
 const ROUNDING = 2 * 2 ** -24;
 /** Smallest 32-bit number with full precision. */
 const LEAST = 2 ** -126;
-/** Rounding to the digits shown. */
-const SHOWN = 0.5e-5;
+/** Rounding to the four digits shown. */
+const SHOWN = 0.51e-3;
 /** Maximum size of a page, bytes, so that it can be mailed. */
 const MOST_BYTES = 6e6;
 
@@ -219,6 +219,27 @@ async function strength(page) {
   assert.equal(await painted(), 0);
 }
 
+/** Cylinders are drawn as long as the run says, with rocker and link of their lengths, at some times. */
+async function cylinders(page) {
+  for (const share of [0, 0.37, 1]) {
+    const row = await page.evaluate((share) => Math.round(share * (globalThis.report.data.crane.run.rows - 1)), share);
+    await seek(page, await page.evaluate((row) => globalThis.report.data.crane.run.t[row], row));
+    const drawn = await page.evaluate((row) => {
+      const { viewer, data: { crane } } = globalThis.report;
+      viewer.set({ factor: 1 });
+      // Lengths of meshes of length 1.
+      return viewer.figure.cylinders.map(({ rod, bars, data: { name, linkage } }) => {
+        const exact = [crane.run.column(`${name}_length`).values[row], ...(linkage ? [linkage.rocker, linkage.link] : [])];
+        return { name, exact, drawn: [rod, ...bars].map(({ scale }) => scale.y) };
+      });
+    }, row);
+    for (const { name, exact, drawn: own } of drawn) {
+      // Coordinates of 32 bits: some 1e-6 m.
+      exact.forEach((length, i) => assert(Math.abs(own[i] - length) < 5e-6, `${name}: drawn ${own} m long, is ${exact} m`));
+    }
+  }
+}
+
 /** Each path has a dot at its point, in its colour; the tipping line is on the ground between two feet; pictures and films are files. */
 async function marks(page) {
   const { paths, lines, feet, duration } = await page.evaluate(() => {
@@ -294,10 +315,11 @@ const said = await open(browser, { viewport: { width: 1440, height: 900 }, color
   await moves(page);
   await plots(page);
   await strength(page);
+  await cylinders(page);
   await marks(page);
   await paper(page);
   assert((await page.$$eval("#tables table", (tables) => tables.filter((table) => table.rows.length > 1).length)) >= 3);
-  assert((await page.locator("#repeat").textContent()).includes("spec hash"));
+  assert((await page.locator("#repeat").textContent()).includes("hash of the spec"));
   await page.click("#theme");
   assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), "dark");
 });

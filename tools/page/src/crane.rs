@@ -1,19 +1,24 @@
 //! One crane of the page: what it is, how it is drawn, its run and its modes.
 
+use std::borrow::Cow;
+
 use crane_codegen::chain::{Beam, Outline, Value as Number};
 use crane_live::LiveCrane;
 use crane_model::{
-    CoordinateRole,
+    CoordinateRole, Description,
     dyn_crane::DynCrane,
     dynamics::Sample,
     force_states::ForceStates,
-    modes::{NoModes, undamped},
+    modes::{ComplexShape, Mode, NoModes, damped_with_shapes, undamped},
     results::{Recording, Table},
 };
+use nalgebra::{Complex, DVector};
 use serde_json::{Value, json};
 
 use crate::{
-    Program, Subject, record,
+    Program, Subject,
+    history::{Instant, instants},
+    record::{entries, record},
     scene::scene,
     strength::{self, packed},
 };
@@ -21,49 +26,85 @@ use crate::{
 /// Most rows of a run that a page holds; a longer one is thinned, so that the page stays small enough to mail.
 const MOST_ROWS: usize = 4000;
 
-/// All data of one crane.
-pub fn data(subject: &Subject<'_>, program: Program) -> Result<Value, NoModes> {
-    let &Subject { label, crane, live, equilibrium, run } = subject;
-    // Without an equilibrium there is at least a pose to look at.
-    let found = equilibrium.q.iter().all(|q| q.is_finite());
-    let pose = if found { equilibrium.q.clone() } else { crane.guess() };
-    let at_rest;
-    let table = if let Some((_, recorded)) = run {
-        &recorded.table
-    } else {
-        at_rest = rest(crane, &pose);
-        &at_rest
-    };
-    let description = crane.description();
-    let coordinates: Vec<Value> = description
-        .coordinates
-        .iter()
-        .map(|coordinate| {
-            // A joint is drawn the same whether its drive is compliant or rigid.
-            let role = match coordinate.role {
-                CoordinateRole::Prescribed => CoordinateRole::Driven,
-                role => role,
-            };
-            json!({
-                "name": coordinate.name.as_str(), "role": role.name(),
-                "unit": coordinate.kind.unit(), "force_unit": coordinate.kind.force_unit(),
+/// A crane with everything that a page shows of it.
+pub(crate) struct Shown<'a> {
+    pub subject: &'a Subject<'a>,
+    /// Pose at rest.
+    pose: Vec<f64>,
+    /// Its run, or its single result at rest.
+    pub table: Cow<'a, Table>,
+    /// What it carries at each result.
+    pub history: Vec<Instant>,
+    /// Modes at rest, lowest first; none unless the pose is a stable equilibrium.
+    pub modes: Vec<Vibration>,
+}
+
+/// A mode at rest.
+pub(crate) struct Vibration {
+    pub mode: Mode,
+    /// Damping ratio, of the damped mode that moves in the same way.
+    pub damping: Option<f64>,
+}
+
+impl<'a> Shown<'a> {
+    pub fn new(subject: &'a Subject<'a>) -> Result<Self, NoModes> {
+        let &Subject { crane, equilibrium, run, .. } = subject;
+        // Without an equilibrium there is at least a pose to look at.
+        let found = equilibrium.q.iter().all(|q| q.is_finite());
+        let pose = if found { equilibrium.q.clone() } else { crane.guess() };
+        let (table, history) = match run {
+            Some((_, recorded)) => (Cow::Borrowed(&recorded.table), instants(crane, recorded.table.rows.iter())),
+            None => (Cow::Owned(rest(crane, &pose)), vec![Instant::at_rest(crane, &pose)]),
+        };
+        Ok(Self { subject, pose, table, history, modes: modes(subject)? })
+    }
+
+    /// Whether it moves.
+    pub fn moves(&self) -> bool {
+        self.subject.run.is_some()
+    }
+
+    /// A time of the run in words.
+    pub fn when(&self, time: f64) -> String {
+        if self.moves() { format!("at {time:.2} s") } else { "at rest".to_owned() }
+    }
+
+    /// All its data.
+    pub fn data(&self, program: Program) -> Value {
+        let &Subject { label, crane, live, run, .. } = self.subject;
+        let description = crane.description();
+        let coordinates: Vec<Value> = description
+            .coordinates
+            .iter()
+            .map(|coordinate| {
+                // A joint is drawn the same whether its drive is compliant or rigid.
+                let role = match coordinate.role {
+                    CoordinateRole::Prescribed => CoordinateRole::Driven,
+                    role => role,
+                };
+                json!({
+                    "name": coordinate.name.as_str(), "role": role.name(),
+                    "unit": coordinate.kind.unit(), "force_unit": coordinate.kind.force_unit(),
+                })
             })
+            .collect();
+        let every = self.table.rows.len().div_ceil(MOST_ROWS).max(1);
+        let modes: Vec<Value> = self.modes.iter().map(|mode| mode.data(description)).collect();
+        json!({
+            "name": description.name.as_str(),
+            "title": description.title.as_str(),
+            "label": label,
+            "coordinates": coordinates,
+            "drives": description.drives.iter().map(|drive| drive.coordinate).collect::<Vec<_>>(),
+            "scene": scene(live, &self.pose),
+            "outlines": outlines(live),
+            "modes": modes,
+            "run": columns(&self.table, every),
+            "record": run.map(|(settings, recorded)| record(crane, settings, recorded, program)),
+            "repeat": run.map(|(settings, recorded)| entries(crane, settings, recorded, program)),
+            "strength": strength::data(crane, &self.history, every),
         })
-        .collect();
-    let every = table.rows.len().div_ceil(MOST_ROWS).max(1);
-    Ok(json!({
-        "name": description.name.as_str(),
-        "title": description.title.as_str(),
-        "label": label,
-        "coordinates": coordinates,
-        "drives": description.drives.iter().map(|drive| drive.coordinate).collect::<Vec<_>>(),
-        "scene": scene(live, &pose),
-        "outlines": outlines(live),
-        "modes": modes(subject)?,
-        "run": columns(table, every),
-        "record": run.map(|(settings, recorded)| record(crane, settings, recorded, program)),
-        "strength": strength::data(crane, table, every),
-    }))
+    }
 }
 
 /// The single result of a crane at rest, with its drives at their start positions.
@@ -90,18 +131,36 @@ fn outlines(live: &LiveCrane) -> Value {
     live.chain().beams.iter().filter_map(of).collect()
 }
 
-/// Frequencies, Hz, and shapes in generalized coordinates, lowest first; none unless the pose is a stable equilibrium.
-fn modes(subject: &Subject<'_>) -> Result<Vec<Value>, NoModes> {
+/// Modes of a stable equilibrium, each with the damping of the damped mode that moves in the same way.
+fn modes(subject: &Subject<'_>) -> Result<Vec<Vibration>, NoModes> {
     if !subject.equilibrium.is_stable() {
         return Ok(Vec::new());
     }
-    let coordinates = &subject.crane.description().coordinates;
-    let modes = undamped(&subject.crane.small_motions_at(&subject.equilibrium.q))?;
-    let mode = |mode: &crane_model::modes::Mode| {
-        let names: Vec<&str> = mode.dominating.iter().map(|&index| coordinates[index].name.as_str()).collect();
-        json!({"frequency": mode.frequency(), "shape": mode.shape.as_slice(), "moves": names})
+    let motions = subject.crane.small_motions_at(&subject.equilibrium.q);
+    // A mode whose damping is not found is shown without.
+    let damped = damped_with_shapes(&motions).unwrap_or_default();
+    let damping = |mode: &Mode| {
+        /// Share of a mode's motion that another one must have to count as the same.
+        const SAME: f64 = 0.7;
+        let own: Vec<f64> = motions.unknowns.iter().map(|&unknown| mode.shape[unknown]).collect();
+        let weighted = (&motions.mass * DVector::from_vec(own)).map(Complex::from);
+        // Both are normalised by the mass matrix.
+        let share = |shape: &ComplexShape| weighted.dotc(shape).norm_sqr();
+        let alike = damped.iter().map(|(mode, shape)| (share(shape), mode));
+        let (share, damped) = alike.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        (share > SAME).then(|| damped.damping_ratio())
     };
-    Ok(modes.iter().map(mode).collect())
+    Ok(undamped(&motions)?.into_iter().map(|mode| Vibration { damping: damping(&mode), mode }).collect())
+}
+
+impl Vibration {
+    /// Frequency, Hz, damping ratio, shape in generalized coordinates.
+    fn data(&self, description: &Description) -> Value {
+        let Self { mode, damping } = self;
+        let names: Vec<&str> =
+            mode.dominating.iter().map(|&index| description.coordinates[index].name.as_str()).collect();
+        json!({"frequency": mode.frequency(), "damping": damping, "shape": mode.shape.as_slice(), "moves": names})
+    }
 }
 
 /// Names, units and values of every `every`-th row, column by column.

@@ -7,12 +7,14 @@
 //! |---|---|
 //! | `crane` | what a crane is, how it is drawn, its run and its modes |
 //! | `scene` | what moves: frames of the bodies, and a screw for each coordinate |
+//! | `figures` | key figures: tiles, and the summary to sign |
 //! | `strength` | utilisation of sections and tipping margins over a run |
 //! | `history` | internal forces and tipping lines over a run |
 //! | `record` | the record of a run: enough to repeat it |
 //! | [`tables`] | tables of results: those of the page, and what the command prints |
 
 mod crane;
+mod figures;
 pub mod history;
 mod record;
 mod scene;
@@ -23,6 +25,7 @@ use crane_live::LiveCrane;
 use crane_model::{dyn_crane::DynCrane, dynamics::Settings, modes::NoModes, runs::Recorded, statics::Equilibrium};
 use serde_json::{Value, json};
 
+use crane::Shown;
 pub use record::{Program, record};
 use tables::Report;
 
@@ -64,11 +67,28 @@ pub struct Texts<'a> {
 /// # Errors
 /// The modes of a crane could not be computed.
 pub fn page(subjects: &[Subject<'_>], texts: Texts<'_>, program: Program) -> Result<String, NoModes> {
-    let cranes = subjects.iter().map(|subject| crane::data(subject, program)).collect::<Result<Vec<_>, _>>()?;
+    let shown = subjects.iter().map(Shown::new).collect::<Result<Vec<_>, _>>()?;
     let Texts { tables, chart, command, spec } = texts;
     let tables = tables.map(|report| report.page());
-    let data =
-        json!({"cranes": cranes, "tables": tables, "chart": chart, "command": command, "spec": spec}).to_string();
+    let (main, rigid) = match shown.as_slice() {
+        [] => (None, None),
+        [main] => (Some(main), None),
+        [rigid, .., main] => (Some(main), Some(rigid)),
+    };
+    let figures = main.map_or_else(Vec::new, |main| figures::figures(main, rigid));
+    let summary = main.map(|main| figures::sign::summary(main, &figures, command.as_deref(), program));
+    let (verdict, sentence) = figures::verdict(&figures);
+    let data = json!({
+        "cranes": shown.iter().map(|crane| crane.data(program)).collect::<Vec<_>>(),
+        "figures": figures::json(&figures),
+        "verdict": {"verdict": verdict.name(), "text": sentence},
+        "summary": summary,
+        "tables": tables,
+        "chart": chart,
+        "command": command,
+        "spec": spec,
+    })
+    .to_string();
     // No text of a spec may end the script element that contains the data.
     Ok(PAGE.replacen(PLACE, &data.replace('<', "\\u003c"), 1))
 }

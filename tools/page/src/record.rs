@@ -3,6 +3,8 @@
 use crane_model::{dyn_crane::DynCrane, dynamics::Settings, results::Verification, runs::Recorded};
 use serde_json::{Map, Value, json};
 
+use crate::tables::readable;
+
 /// The program that computed a run.
 #[derive(Clone, Copy)]
 pub struct Program {
@@ -51,4 +53,40 @@ pub fn record(crane: &dyn DynCrane, settings: &Settings, recorded: &Recorded, pr
         "wall_time_s": recorded.wall.as_secs_f64(),
         "real_time_factor": recorded.real_time_factor(),
     })
+}
+
+/// The record for readers: names and values with their units. Errors and cautions are in the tables of results.
+pub(crate) fn entries(
+    crane: &dyn DynCrane,
+    settings: &Settings,
+    recorded: &Recorded,
+    program: Program,
+) -> Vec<[String; 2]> {
+    let description = crane.description();
+    let statistics = &recorded.run.statistics;
+    let mut entries: Vec<[String; 2]> = Vec::new();
+    let mut add = |name: &str, value: String| entries.push([name.to_owned(), value]);
+    add("crane", format!("{} ({})", description.title, description.name));
+    add("hash of the spec", description.spec_hash.to_string());
+    add("program", format!("{} {}", program.name, program.version));
+    add("method", settings.method.title().to_owned());
+    add("start", recorded.start.clone());
+    add("step", format!("{} s", readable(recorded.run.step)));
+    if settings.method.is_adaptive() {
+        add("tolerance", settings.tolerance.to_string());
+    }
+    add("steps", format!("{}, {} of them rejected", statistics.steps, statistics.rejections));
+    add("evaluations", statistics.evaluations.to_string());
+    add("factorisations", statistics.factorisations.to_string());
+    add("duration", format!("{} s", settings.duration));
+    add("interval of results", format!("{} s", settings.output));
+    for (index, info) in description.parameters.iter().enumerate() {
+        let value = crane.parameter(index);
+        let degrees = if info.unit == "rad" { format!(" ({}°)", readable(value.to_degrees())) } else { String::new() };
+        // Exact, to repeat the run.
+        add(&info.name, format!("{value} {}", info.unit).trim_end().to_owned() + &degrees);
+    }
+    add("wall time", format!("{} s", readable(recorded.wall.as_secs_f64())));
+    add("real-time factor", readable(recorded.real_time_factor()));
+    entries
 }

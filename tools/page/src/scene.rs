@@ -5,9 +5,10 @@
 //! so that the page can draw any pose, exaggerated and modal ones too. Three coordinates that turn by a rotation vector ρ
 //! share one factor, `exp(ξ_i ρ_1 + ξ_j ρ_2 + ξ_k ρ_3)`, with screws at ρ = 0: q⁰ is the pose with these at zero.
 
+use crane_codegen::chain::{CoordinateId, Cylinder, Linkage, Pin, Value as Number};
 use crane_live::LiveCrane;
 use crane_model::{
-    CoordinateRole,
+    BodyInfo, CoordinateRole, Description,
     dyn_crane::{DynCrane, DynDerivatives, DynModel},
 };
 use nalgebra::{Matrix4, Vector3};
@@ -28,7 +29,7 @@ pub fn scene(live: &LiveCrane, q: &[f64]) -> Value {
         .map(|(body, frame)| {
             json!({
                 "name": body.name.as_str(), "link": body.link.as_str(), "mass": body.mass, "length": body.length,
-                "moved_by": body.degrees_of_freedom, "frame": rows(frame),
+                "moved_by": body.degrees_of_freedom, "frame": rows(frame), "rope": is_rope(description, body),
             })
         })
         .collect();
@@ -45,10 +46,47 @@ pub fn scene(live: &LiveCrane, q: &[f64]) -> Value {
             Some(json!({"rope": connector.is_rope, "ends": ends}))
         })
         .collect();
+    let screws = screws(live, &reference, &frames);
+    let cylinders = cylinders(live, (&screws, &frames));
     json!({
         "pose": q, "reference": reference, "vectors": is_vector, "bodies": bodies,
-        "screws": screws(live, &reference, &frames), "supports": supports, "connectors": connectors, "points": points(crane, q),
+        "screws": screws, "supports": supports, "connectors": connectors, "points": points(crane, q),
+        "cylinders": cylinders,
     })
+}
+
+/// Whether a body is a link of a rope or chain: such links have lengths, as elements of beams do, and do not deform.
+fn is_rope(description: &Description, body: &BodyInfo) -> bool {
+    let of_link = description.bodies.iter().filter(|other| other.link == body.link);
+    let last = of_link.map(|other| other.degrees_of_freedom).max().unwrap_or(0);
+    let deforms = description.coordinates[..last].iter().rev().take(1).any(|coordinate| coordinate.role.is_element());
+    body.length > 0.0 && !deforms
+}
+
+/// Cylinders with their pins in the frames of the bodies that carry them; with the joint's axis, if it turns.
+fn cylinders(live: &LiveCrane, moving: (&[[f64; 6]], &[Matrix4<f64>])) -> Vec<Value> {
+    let chain = live.chain();
+    let number = |number: &Number| number.at(live.parameters());
+    let pin = |pin: &Pin| json!({"body": pin.body.0, "at": pin.position.each_ref().map(number)});
+    let data = |cylinder: &Cylinder| {
+        let linkage = cylinder.linkage.as_ref().map(|Linkage { pivot, rocker, link, left }| {
+            json!({"pivot": pin(pivot), "rocker": number(rocker), "link": number(link), "left": left})
+        });
+        json!({
+            "name": cylinder.name, "foot": pin(&cylinder.foot), "head": pin(&cylinder.head), "linkage": linkage,
+            "bore": cylinder.bore, "rod": cylinder.rod, "retracted": cylinder.retracted,
+            "axis": axis(live, cylinder.coordinate, moving),
+        })
+    };
+    chain.cylinders.iter().map(data).collect()
+}
+
+/// The axis about which a coordinate turns, in the frame of the first body that it moves; none if it slides.
+fn axis(live: &LiveCrane, coordinate: CoordinateId, (screws, frames): (&[[f64; 6]], &[Matrix4<f64>])) -> Option<Value> {
+    let body = live.chain().coordinates[coordinate.0].body.0;
+    let [x, y, z, ..] = screws[coordinate.0];
+    let local = frames[body].fixed_view::<3, 3>(0, 0).transpose() * Vector3::new(x, y, z);
+    (local.norm() > 0.0).then(|| json!({"body": body, "along": <[f64; 3]>::from(local)}))
 }
 
 /// The upper three rows.

@@ -1,35 +1,37 @@
 //! How heavily a run loads the beams, and how far the crane is from tipping over.
 
 use base64::{Engine, prelude::BASE64_STANDARD};
-use crane_model::{Description, SectionModuli, dyn_crane::DynCrane, results::Table, sections::stressed_sections};
+use crane_model::{Description, SectionModuli, dyn_crane::DynCrane, sections::stressed_sections};
 use serde_json::{Value, json};
 
-use crate::history::{Instant, instants};
+use crate::history::Instant;
 
 /// Pascals in a newton per square millimetre.
 const MEGA: f64 = 1e6;
 
 /// Utilisation of all sections whose moduli are known (stresses in megapascals if no beam has a yield stress), and margins about all tipping lines,
 /// of every `every`-th result.
-pub fn data(crane: &dyn DynCrane, run: &Table, every: usize) -> Value {
+pub fn data(crane: &dyn DynCrane, history: &[Instant], every: usize) -> Value {
     let description = crane.description();
     let moduli = crane.section_moduli_at();
     if description.supports.is_empty() && moduli.iter().all(|moduli| moduli.area <= 0.0) {
         return Value::Null;
     }
-    let history = instants(crane, run.rows.iter().step_by(every));
+    let history: Vec<&Instant> = history.iter().step_by(every).collect();
     json!({"sections": sections(description, &moduli, &history), "stability": stability(description, &history)})
 }
 
-fn sections(description: &Description, moduli: &[SectionModuli], history: &[Instant]) -> Value {
+fn sections(description: &Description, moduli: &[SectionModuli], history: &[&Instant]) -> Value {
     let at = |instant: &Instant| stressed_sections(description, moduli, &instant.wrenches);
-    let Some(first) = history.first().map(at).filter(|sections| !sections.is_empty()) else { return Value::Null };
+    let Some(first) = history.first().copied().map(at).filter(|sections| !sections.is_empty()) else {
+        return Value::Null;
+    };
     let used = first.iter().any(|section| section.utilisation.is_some());
     let places: Vec<Value> = first
         .iter()
         .map(|section| json!({"beam": section.beam(description), "body": section.body, "x": section.x}))
         .collect();
-    let values = history.iter().flat_map(|instant| {
+    let values = history.iter().copied().flat_map(|instant| {
         at(instant).into_iter().map(move |section| {
             if used { section.utilisation.unwrap_or(f64::NAN) } else { section.stress.equivalent / MEGA }
         })
@@ -37,11 +39,11 @@ fn sections(description: &Description, moduli: &[SectionModuli], history: &[Inst
     json!({"places": places, "unit": if used { "1" } else { "MPa" }, "data": packed(values)})
 }
 
-fn stability(description: &Description, history: &[Instant]) -> Value {
+fn stability(description: &Description, history: &[&Instant]) -> Value {
     let Some(first) = history.first().filter(|instant| !instant.lines.is_empty()) else { return Value::Null };
     // A polygon whose corners change has no lines to follow over time.
     let same =
-        |instant: &Instant| instant.lines.iter().map(|line| line.feet).eq(first.lines.iter().map(|line| line.feet));
+        |instant: &&Instant| instant.lines.iter().map(|line| line.feet).eq(first.lines.iter().map(|line| line.feet));
     if !history.iter().all(same) {
         return Value::Null;
     }

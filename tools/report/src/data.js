@@ -45,21 +45,24 @@ export function range(values) {
   return [low, high];
 }
 
-/** Six digits, as the command prints them. */
-export function readable(value) {
+/** Some significant digits; digits before the point are never dropped. */
+export function significant(value, digits) {
   if (value == null || !Number.isFinite(value)) return "–";
   const size = Math.abs(value);
   if (size < 1e-10) return "0";
-  const text = size >= 1e-3 && size < 1e7 ? value.toPrecision(6) : value.toExponential(4);
-  return text.includes("e") || !text.includes(".") ? text : text.replace(/\.?0+$/, "");
+  if (size < 1e-3 || size >= 1e7) return value.toExponential(digits - 1);
+  return value.toFixed(Math.max(digits - 1 - Math.floor(Math.log10(size)), 0));
 }
+
+/** Four digits, as the command prints them. */
+export const readable = (value) => significant(value, 4);
 
 /** Larger units for larger numbers: N to kN, J to kJ, m to mm. */
 export function scaled(unit, values) {
   const [low, high] = range(values);
   const size = Math.max(Math.abs(low), Math.abs(high));
   if (["N", "N m", "J", "W"].includes(unit) && size >= 1e4) return { unit: `k${unit}`, factor: 1e-3 };
-  if (unit === "Pa") return { unit: "MPa", factor: 1e-6 };
+  if (unit === "Pa") return { unit: "bar", factor: 1e-5 };
   if (unit === "m³/s") return { unit: "l/min", factor: 6e4 };
   if (unit === "m" && size > 0 && size < 0.5) return { unit: "mm", factor: 1e3 };
   return { unit, factor: 1 };

@@ -1,8 +1,9 @@
 // A crane in three dimensions, drawn from its chain: links from frame to frame, with a thickness estimated from
 // their mass, flexible links bent, with the outline of their section if the spec gives one, pins at revolute joints, legs at the supports,
-// and springs and ropes between their points.
-import { BoxGeometry, CylinderGeometry, Group, Matrix4, Mesh, MeshStandardMaterial, Quaternion, Vector3 } from "three";
+// hydraulic cylinders, and springs and ropes between their points.
+import { BoxGeometry, CylinderGeometry, Group, Matrix4, Mesh, MeshStandardMaterial, Quaternion, TorusGeometry, Vector3 } from "three";
 import { BeamGeometry, sizeAt } from "./beam.js";
+import { Cylinder, stretch } from "./cylinders.js";
 import { Kinematics, links } from "./kinematics.js";
 
 /** Mass per volume within the outline of a link, kg/m³: about a third of steel's. */
@@ -12,15 +13,21 @@ const THICKNESS = [0.012, 0.06];
 /** A length below this fraction of the crane's size counts as zero. */
 const NOTHING = 1e-3;
 
-/** Radius of a spring and of a rope as drawn, relative to the crane's size. */
-const RADIUS = { spring: 0.004, rope: 0.0015 };
+/** Radius of a spring and of a rope as drawn, and size of a hook, relative to the crane's size. */
+const RADIUS = { spring: 0.004, rope: 0.0015, hook: 0.008 };
+/** Feet less far below the base's frame than this fraction of the crane's size are on its level. */
+const LEVEL = 0.02;
+/** Largest height of the frame of a truck above its feet if its spec does not tell, relative to the crane's size. */
+const HEIGHT = 0.09;
+/** Largest thickness of a leg, relative to the crane's size. */
+const LEG = 0.014;
 
 /** Room around the axes of the links, relative to the crane's size. */
 const MARGIN = 0.03;
 
 export const COLOURS = {
   base: 0x4a5560, link: 0xe2a32b, flexible: 0x1f7fc0, slide: 0xb9c2cb, load: 0xa5784f, pin: 0x2b3138, passive: 0x8d979f,
-  ghost: 0xd55e00,
+  barrel: 0x59636e, rod: 0xdfe4e8, linkage: 0xc98a1c, rope: 0x2b3138, ghost: 0xd55e00,
 };
 
 export class Figure {
@@ -82,17 +89,31 @@ export class Figure {
 
   build() {
     const { bodies, frames } = this.kinematics;
+    this.chassis = this.chassisOf();
     for (const link of links(this.kinematics)) this.beam(link);
     bodies.forEach((body, p) => {
       const next = bodies[p + 1];
-      if (!next || body.link === next.link && body.flexible) return;
+      if (body.rope || !next || body.link === next.link && body.flexible) return;
       if (body.flexible) this.inner(p, frames);
       else this.link(p, frames);
     });
+    this.ropes();
     this.pins();
     this.end();
     this.stand();
     this.connect();
+    const paint = { barrel: COLOURS.barrel, rod: COLOURS.rod, linkage: COLOURS.linkage, pin: COLOURS.pin };
+    this.cylinders = this.crane.scene.cylinders.map((data) => new Cylinder(data, this.size, (geometry, colour) => this.mesh(geometry, colour), paint));
+  }
+
+  /** The links of ropes and chains, thin and straight. */
+  ropes() {
+    const radius = RADIUS.rope * this.size;
+    this.kinematics.bodies.forEach(({ rope, length }, p) => {
+      if (!rope) return;
+      const local = new Matrix4().makeRotationZ(-Math.PI / 2).setPosition(length / 2, 0, 0);
+      this.part(p, this.mesh(new CylinderGeometry(radius, radius, length, 12), COLOURS.rope), local);
+    });
   }
 
   beam({ name, bodies: elements }) {
@@ -136,8 +157,10 @@ export class Figure {
     const outline = this.thickness(body.mass, far.length());
     if (body.mass > 0 && far.length() > NOTHING * this.size && coordinates[body.moved_by - 1]?.role !== "base") this.usual ??= outline;
     if (slides.length !== 1) {
-      const colour = p === 0 && coordinates[0]?.role === "base" ? COLOURS.base : COLOURS.link;
-      this.box(p, origin, far, outline, colour);
+      const isBase = p === 0 && coordinates[0]?.role === "base";
+      // On a truck, from its frame up.
+      const from = isBase && this.chassis ? far.clone().setZ(Math.min(this.chassis.level, far.z)) : origin;
+      this.box(p, from, far, outline, isBase ? COLOURS.base : COLOURS.link);
       return;
     }
     const [j] = slides;
@@ -147,6 +170,8 @@ export class Figure {
     const sleeve = home.length() > NOTHING * this.size ? home : home.addScaledVector(axis, travel[0]);
     const side = this.thickness(body.mass, Math.max(sleeve.length(), far.length() / 2));
     this.box(p, origin, sleeve, side, COLOURS.link);
+    // A beam shows itself.
+    if (next.flexible) return;
     // Long enough to stay in its sleeve at the far end of its travel.
     const inside = new Vector3().setFromMatrixPosition(frames[p]).applyMatrix4(frames[p + 1].clone().invert());
     const back = axis.transformDirection(frames[p]).transformDirection(frames[p + 1].clone().invert()).negate();
@@ -158,6 +183,8 @@ export class Figure {
   inner(p, frames) {
     const { bodies, coordinates, screws, reference } = this.kinematics;
     const [body, next] = [bodies[p], bodies[p + 1]];
+    // A beam shows itself.
+    if (next.flexible) return;
     const slides = [];
     for (let j = body.moved_by; j < next.moved_by; j += 1) if (coordinates[j].unit === "m") slides.push(j);
     if (slides.length !== 1) return;
@@ -182,6 +209,7 @@ export class Figure {
     coordinates.forEach(({ role, unit }, j) => {
       if (unit !== "rad" || !["driven", "passive"].includes(role)) return;
       const p = bodies.findIndex((body) => body.moved_by > j);
+      if (bodies[p].rope || bodies[p - 1]?.rope) return;
       const axis = new Vector3(...screws[j].slice(0, 3)).transformDirection(frames[p].clone().invert());
       const upright = Math.abs(screws[j][2]) > 0.9;
       const side = this.thickness(bodies[p].mass, 0);
@@ -204,8 +232,10 @@ export class Figure {
     const middle = places.reduce((sum, place) => sum.add(place), new Vector3()).divideScalar(Math.max(places.length, 1));
     let [from, to] = [middle, middle];
     for (const a of places) for (const b of places) if (a.distanceTo(b) > from.distanceTo(to)) [from, to] = [a, b];
-    const stem = this.thickness(0, 0) * 0.5;
-    this.box(p, new Vector3(), middle, stem, COLOURS.link);
+    const hangs = bodies[p - 1]?.rope;
+    const stem = hangs ? 2 * RADIUS.rope * this.size : this.thickness(0, 0) * 0.5;
+    this.box(p, new Vector3(), middle, stem, hangs ? COLOURS.rope : COLOURS.link);
+    if (hangs) this.hook(p, middle);
     if (from.distanceTo(to) > NOTHING * this.size) {
       const rod = this.thickness(mass, from.distanceTo(to)) / 2;
       const turn = new Quaternion().setFromUnitVectors(new Vector3(0, 1, 0), to.clone().sub(from).normalize());
@@ -213,8 +243,23 @@ export class Figure {
       this.part(p, this.mesh(new CylinderGeometry(rod, rod, from.distanceTo(to), 32), COLOURS.load), local);
     } else if (mass > 0) {
       const side = Math.min(Math.cbrt(mass / FILLING), 0.15 * this.size);
-      this.part(p, this.mesh(new BoxGeometry(side, side, side), COLOURS.load), new Matrix4().setPosition(middle));
+      // Below what it hangs from.
+      const height = hangs ? Math.min(side, Math.max(1.4 * middle.length(), 0.3 * side)) : side;
+      const width = Math.sqrt(side ** 3 / height);
+      const turn = new Quaternion();
+      if (middle.length() > NOTHING * this.size) turn.setFromUnitVectors(new Vector3(1, 0, 0), middle.clone().normalize());
+      const local = new Matrix4().compose(middle, turn, new Vector3(1, 1, 1));
+      this.part(p, this.mesh(new BoxGeometry(height, width, width), COLOURS.load), local);
     }
+  }
+
+  /** A hook at the end of a rope, open towards what hangs from it. */
+  hook(p, middle) {
+    const size = RADIUS.hook * this.size;
+    const down = middle.length() > NOTHING * this.size ? middle.clone().normalize() : new Vector3(1, 0, 0);
+    const turn = new Quaternion().setFromUnitVectors(new Vector3(0, -1, 0), down);
+    const local = new Matrix4().compose(new Vector3(), turn, new Vector3(1, 1, 1));
+    this.part(p, this.mesh(new TorusGeometry(size, 0.3 * size, 10, 28, 1.6 * Math.PI), COLOURS.rope), local);
   }
 
   stand() {
@@ -243,23 +288,43 @@ export class Figure {
     pillar.position.copy(first).divideScalar(2);
   }
 
+  /**
+   * The frame of a truck above its feet: its level, its depth down to them, its own height, and where the crane begins. A spec whose frame is on the ground does not tell how
+   * high it is: it is drawn where the crane begins.
+   */
+  chassisOf() {
+    const feet = this.crane.scene.supports.map(({ at }) => at[2]);
+    if (!feet.length) return null;
+    const least = LEVEL * this.size;
+    const [low, high] = [Math.min(...feet), Math.max(...feet, 0)];
+    const { frames } = this.kinematics;
+    const begin = new Vector3();
+    if (frames.length > 1) begin.setFromMatrixPosition(frames[1]).applyMatrix4(frames[0].clone().invert());
+    const top = high - low < least ? low + Math.min(Math.max(begin.z, least), HEIGHT * this.size) : high;
+    const depth = Math.max(top - low, least);
+    const height = Math.min(0.55 * depth, 2 * LEG * this.size);
+    return { level: top - 0.35 * depth, depth, height, begin };
+  }
+
   /** A frame over the supports with a leg to each. */
   feet(supports) {
     const spread = (axis) => Math.max(...supports.map((s) => s[axis])) - Math.min(...supports.map((s) => s[axis]));
     const middle = (axis) => (Math.max(...supports.map((s) => s[axis])) + Math.min(...supports.map((s) => s[axis]))) / 2;
-    const [long, wide] = spread("x") > spread("y") ? ["x", "y"] : ["y", "x"];
-    const top = Math.max(...supports.map((s) => s.z), 0);
-    const depth = Math.max(top - Math.min(...supports.map((s) => s.z)), 0.02 * this.size);
-    const level = top - 0.35 * depth;
+    const { level, depth, height, begin } = this.chassis;
+    // As long as the feet are apart, or wide, so that the crane stands on it.
+    const stands = (axis) => Math.abs(begin[axis] - middle(axis)) <= 0.19 * spread(axis);
+    const across = spread("x") > spread("y") ? "y" : "x";
+    const wide = stands(across) ? across : ["x", "y"].find(stands) ?? across;
+    const long = wide === "x" ? "y" : "x";
     const beam = new Vector3();
-    beam[long] = spread(long) + 0.6 * depth;
+    beam[long] = spread(long) + 0.6 * Math.min(depth, 2 * height);
     beam[wide] = 0.38 * spread(wide);
-    beam.z = 0.55 * depth;
+    beam.z = height;
     const centre = new Vector3(0, 0, level);
     centre[long] = middle(long);
     centre[wide] = middle(wide);
     this.part(0, this.mesh(new BoxGeometry(beam.x, beam.y, beam.z), COLOURS.base), new Matrix4().setPosition(centre));
-    const side = 0.3 * depth;
+    const side = Math.min(0.3 * depth, LEG * this.size);
     this.legs = supports.map((support) => {
       const root = centre.clone();
       root[long] = support[long];
@@ -298,11 +363,9 @@ export class Figure {
     for (const { geometry, elements } of this.beams) geometry.follow(elements.map((p) => frames[p]));
     for (const { mesh, ends } of this.connectors) {
       const [from, to] = ends.map(({ body, at }) => (body === null ? at.clone() : at.clone().applyMatrix4(frames[body])));
-      const way = to.clone().sub(from);
-      mesh.position.addVectors(from, to).divideScalar(2);
-      mesh.scale.set(1, Math.max(way.length(), 1e-9), 1);
-      mesh.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), way.normalize());
+      stretch(mesh, from, to);
     }
+    for (const cylinder of this.cylinders) cylinder.follow(frames);
   }
 
   /** Colours the beams along their lengths: `colours(name)` is a function of the position, m, or nothing; `null`: plain. */

@@ -84,7 +84,7 @@ const tip = (body, motion) => new Vector3(body.length, 0, 0).applyMatrix4(body.r
 export function links(kinematics) {
   const found = [];
   kinematics.bodies.forEach((body, p) => {
-    if (!body.flexible) return;
+    if (!body.flexible || body.rope) return;
     const last = found.at(-1);
     if (last && last.name === body.link) last.bodies.push(p);
     else found.push({ name: body.link, bodies: [p] });

@@ -12,8 +12,8 @@ import { modeText, tables } from "./tables.js";
 import { tiles } from "./tiles.js";
 import { Viewer } from "./viewer.js";
 
-/** Width of a plot on paper: that of A4 without its margins, CSS pixels. */
-const PAPER = 660;
+/** Width of a plot on paper, two of which fit on A4 side by side, CSS pixels; that of a path, which has a line to itself. */
+const PAPER = { plot: 312, path: 520 };
 /** Time in which a crane at rest shows a mode, s. */
 const REST = 10;
 /** Time step of the arrow keys, s. */
@@ -219,7 +219,8 @@ function now() {
   if (point) for (const axis of ["x", "y", "z"]) value(`${spoken(point.name)} ${axis}`, `${point.name}_${axis}`);
   for (const j of crane.drives) {
     const { name, force_unit: unit } = crane.coordinates[j];
-    value(spoken(name), `${name}_drive_${unit === "N" ? "force" : "torque"}`);
+    const effort = unit === "N" ? "force" : "torque";
+    value(`${spoken(name)}, ${effort}`, `${name}_drive_${effort}`);
   }
   if (!atRest) value("kinetic energy", "kinetic_energy");
 }
@@ -251,7 +252,7 @@ function printing() {
   addEventListener("beforeprint", () => {
     unfolded = [...document.querySelectorAll("details.table:not([open])")];
     for (const details of unfolded) details.open = true;
-    for (const plot of plots) plot.resize(PAPER);
+    for (const plot of plots) plot.resize(plot.kind === "path" ? PAPER.path : PAPER.plot);
     viewer?.paint();
   });
   addEventListener("afterprint", () => {

@@ -1,14 +1,12 @@
 // Tables of the page.
-import { spoken } from "./data.js";
-
-const element = (name, attributes = {}, ...children) => {
-  const made = Object.assign(document.createElement(name), attributes);
-  made.append(...children);
-  return made;
-};
+import { significant, spoken } from "./data.js";
+import { element } from "./element.js";
 
 /** Tables of this many rows and more are folded. */
 const LONG = 14;
+
+/** Rows of a table that are printed (`style.css`). */
+const PRINTED = 24;
 
 /** Tables of this many columns and more span two columns of the layout. */
 const WIDE = 6;
@@ -30,6 +28,7 @@ function grid({ key, title, headers, numeric, rows, exact }) {
     : element("div", { className: "table" }, element("h3", { textContent: heading }), scroll);
   made.id = `table_${key}`;
   made.classList.toggle("wide", headers.length >= WIDE);
+  made.classList.toggle("long", rows.length > PRINTED);
   return made;
 }
 
@@ -38,23 +37,11 @@ function pairs(title, entries, id) {
   return grid({ key: id, title, headers: ["", ""], numeric: [false, false], rows: entries });
 }
 
-/** What a record says, in words: names with units, nested values flattened. */
-function entries(record) {
-  return Object.entries(record).flatMap(([name, value]) => {
-    if (value !== null && typeof value === "object") {
-      return Object.entries(value).map(([inner, { value: number, unit }]) => [inner, `${number} ${unit}`]);
-    }
-    const unit = name.match(/_(s)$/)?.[1];
-    const text = typeof value === "number" ? String(+value.toPrecision(9)) : String(value);
-    return [[spoken(unit ? name.slice(0, -2) : name), unit ? `${text} ${unit}` : text]];
-  });
-}
-
 /** Fills the tables. */
 export function tables(data) {
   if (data.tables) results(data.tables);
   const again = document.querySelector("#repeat .tables");
-  for (const { name, record } of data.cranes) if (record) again.append(pairs(spoken(name), entries(record), `record_${name}`));
+  for (const { name, repeat } of data.cranes) if (repeat) again.append(pairs(spoken(name), repeat, `record_${name}`));
   const command = document.querySelector("#command");
   if (data.command) command.textContent = data.command;
   else command.closest(".card").remove();
@@ -72,5 +59,7 @@ function results({ facts, grids }) {
 }
 
 /** A mode in words. */
-export const modeText = ({ frequency, moves }, index) =>
-  `${index + 1}: ${frequency === null ? "unstable" : `${frequency.toPrecision(3)} Hz`}, ${moves.slice(0, 3).map(spoken).join(", ")}`;
+export const modeText = ({ frequency, damping, moves }, index) => {
+  const damped = damping === null ? "" : `, damping ${significant(damping, 2)}`;
+  return `${index + 1}: ${frequency === null ? "unstable" : `${significant(frequency, 3)} Hz`}${damped}, ${moves.slice(0, 3).map(spoken).join(", ")}`;
+};

@@ -67,7 +67,7 @@ export class Viewer {
     this.traces();
     this.forces();
     this.tippingLines();
-    new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
+    new ResizeObserver(() => this.resize()).observe(canvas);
     this.resize();
     this.look("corner");
     this.theme();
@@ -196,7 +196,7 @@ export class Viewer {
   }
 
   resize() {
-    const { clientWidth, clientHeight } = this.canvas.parentElement;
+    const { clientWidth, clientHeight } = this.canvas;
     if (!clientWidth || !clientHeight) return;
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setSize(clientWidth, clientHeight, false);

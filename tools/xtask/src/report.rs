@@ -1,6 +1,7 @@
 //! The report page, in `tools/report`: whether the command includes the newest, and how a browser shows it.
 
 use std::fs;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::python::CHECKS;
@@ -60,17 +61,35 @@ fn browser() -> Result<(), String> {
     Err(format!("{chromium} is missing (Debian: apt-get install chromium; elsewhere set CHROMIUM)"))
 }
 
-/// Pages of several cranes in headless Chromium; that of the default run is compared with its CSV files.
+/// Pages of several cranes in headless Chromium; that of the default run is compared with its CSV files. Of all shipped cranes, what the
+/// pages say is compared with what the command wrote.
 pub fn in_browser() -> Result<(), String> {
     browser()?;
     let out = workspace::root().join("out");
     let files = ["report.html", "eight_link_flexible.csv", "eight_link_rigid.csv"].map(|name| out.join(name));
     step::finish(in_folder("node").arg("test.js").args(files))?;
     for (crane, options) in OTHERS {
-        let page = out.join(format!("{crane}.html"));
-        let mut command = Command::new(workspace::target().join("release/crane"));
-        step::finish(command.args(["report", crane]).args(options).arg("-o").arg(&page))?;
-        step::finish(in_folder("node").arg("test.js").arg(page))?;
+        step::finish(in_folder("node").arg("test.js").arg(page(&out, crane, options)?))?;
     }
-    Ok(())
+    let pages =
+        shipped()?.into_iter().map(|crane| page(&out.join("pages"), &crane, &[])).collect::<Result<Vec<_>, _>>()?;
+    step::finish(in_folder("node").arg("text.js").args(pages))
+}
+
+/// Writes the page of a crane.
+fn page(folder: &Path, crane: &str, options: &[&str]) -> Result<PathBuf, String> {
+    let page = folder.join(format!("{crane}.html"));
+    let mut command = Command::new(workspace::target().join("release/crane"));
+    step::finish(command.args(["report", crane]).args(options).arg("-o").arg(&page))?;
+    Ok(page)
+}
+
+/// Names of the shipped cranes.
+fn shipped() -> Result<Vec<String>, String> {
+    let specs = workspace::root().join("specs");
+    let files = fs::read_dir(&specs).map_err(|error| format!("{}: {error}", specs.display()))?;
+    let names = files.filter_map(|file| Some(file.ok()?.file_name().to_str()?.strip_suffix(".yaml")?.to_owned()));
+    let mut names: Vec<String> = names.collect();
+    names.sort();
+    Ok(names)
 }

@@ -76,8 +76,8 @@ impl Cell {
     pub(super) fn with_digits(&self, digits: i32) -> String {
         match self {
             Cell::Text(text) => text.clone(),
-            Cell::Number(number) => readable(*number, digits),
-            Cell::Angle(radians) => readable(radians.to_degrees(), digits),
+            Cell::Number(number) => with_digits(*number, digits),
+            Cell::Angle(radians) => with_digits(radians.to_degrees(), digits),
             Cell::AngleUnit => "°".to_owned(),
             Cell::Error(error) => format!("{error:.1e}"),
             Cell::Uncertainty(error) => uncertain(*error),
@@ -88,13 +88,14 @@ impl Cell {
         }
     }
 
-    /// All digits, and angles in degrees as on the screen; empty where the text has everything already.
+    /// All digits, angles in degrees as on the screen, all names; empty where the text has everything already.
     pub(super) fn exact(&self) -> String {
         match self {
             Cell::Number(number) | Cell::Error(number) | Cell::Uncertainty(number) | Cell::Change(number) => {
                 number_text(*number)
             }
             Cell::Angle(radians) => number_text(radians.to_degrees()),
+            Cell::Names(_) => self.text(),
             _ => String::new(),
         }
     }
@@ -121,7 +122,7 @@ pub fn number_text(number: f64) -> String {
 }
 
 /// A number with two significant digits, in powers of ten where it is very large or small.
-fn uncertain(number: f64) -> String {
+pub(crate) fn uncertain(number: f64) -> String {
     let short = format!("{number:.1e}");
     match short.parse::<f64>() {
         Ok(rounded) if (1e-3..1e6).contains(&rounded) => rounded.to_string(),
@@ -134,9 +135,14 @@ const DIGITS: i32 = 4;
 /// Significant digits in documents.
 pub(super) const DIGITS_OF_DOCUMENTS: i32 = 6;
 
+/// A number for readers: four digits.
+pub(crate) fn readable(number: f64) -> String {
+    with_digits(number, DIGITS)
+}
+
 /// A number with some significant digits, in powers of ten where it is very large or small; digits before the point are never
 /// dropped. Anything below 1e-10 of a unit counts as a rounded zero.
-fn readable(number: f64, digits: i32) -> String {
+fn with_digits(number: f64, digits: i32) -> String {
     let size = number.abs();
     let plain = number.to_string();
     let short = usize::try_from(digits).unwrap_or(0) + 1;

@@ -123,10 +123,10 @@ impl Grid {
             && !self.rows.is_empty()
     }
 
-    /// Its texts as printed, for a page.
+    /// Its texts as printed, for a page, and what they leave out.
     pub(super) fn page(&self) -> Value {
         let numeric: Vec<bool> = (0..self.headings.len()).map(|column| self.numeric(column)).collect();
-        let rows: Vec<Vec<String>> = self.rows.iter().map(|row| row.iter().map(Cell::text).collect()).collect();
+        let rows: Vec<Vec<String>> = self.rows.iter().map(|row| row.iter().map(Cell::short).collect()).collect();
         let exact: Vec<Vec<String>> = self.rows.iter().map(|row| row.iter().map(Cell::exact).collect()).collect();
         json!({
             "key": self.key, "title": self.title, "headers": self.headers(), "numeric": numeric, "rows": rows, "exact": exact,

@@ -17,6 +17,7 @@ mod runs;
 mod statics;
 
 pub use cell::{Cell, number_text};
+pub(crate) use cell::{readable, uncertain};
 pub use grid::{Grid, Heading, VALUE};
 pub use modes::{damped_mode, damped_modes, names, stable_steps, undamped_modes};
 pub use page::of_page;

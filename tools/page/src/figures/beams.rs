@@ -1,0 +1,66 @@
+//! What bending beams do: utilisation, deflection, vibration.
+
+use crane_model::sections::{StressedSection, stressed_sections};
+use nalgebra::Vector3;
+
+use super::{Figure, quantity, spoken};
+use crate::{
+    crane::Shown,
+    tables::{readable, uncertain},
+};
+
+/// The greatest utilisation of a section, or the greatest stress if no beam has a yield stress.
+pub(super) fn utilisation(crane: &Shown<'_>) -> Option<Figure> {
+    let live = crane.subject.crane;
+    let (description, moduli) = (live.description(), live.section_moduli_at());
+    let sections = crane.history.iter().flat_map(|instant| {
+        let sections = stressed_sections(description, &moduli, &instant.wrenches);
+        sections.into_iter().map(|section| (instant.t, section))
+    });
+    let (time, section) = sections.max_by(|(_, a), (_, b)| StressedSection::by_use(a, b))?;
+    let place = format!("{}, {} m from its start", spoken(section.beam(description)), readable(section.x));
+    let stress = format!("{} MPa", readable(section.stress.equivalent / 1e6));
+    let when = crane.when(time);
+    let Some(used) = section.utilisation else {
+        let note = format!("{place}, {when}; no yield stress is given");
+        return Some(Figure::new("equivalent_stress", "largest equivalent stress", stress, note));
+    };
+    let value = format!("{} %", readable(100.0 * used));
+    let beyond = (used > 1.0)
+        .then(|| format!("stress of {} is {value} of the allowable one", spoken(section.beam(description))));
+    let note = format!("{place}, {when}; {stress}");
+    Some(Figure::new("utilisation", "largest utilisation", value, note).judged(beyond))
+}
+
+/// How far the points are from those of the rigid crane.
+pub(super) fn deflection(crane: &Shown<'_>, rigid: &Shown<'_>) -> Option<Figure> {
+    let places = |shown: &Shown<'_>, point: &str| -> Option<Vec<Vector3<f64>>> {
+        let names = ["x", "y", "z"].map(|axis| format!("{point}_{axis}"));
+        let [x, y, z] = names.each_ref().map(|name| shown.table.values(name));
+        Some(x?.zip(y?).zip(z?).map(|((x, y), z)| Vector3::new(x, y, z)).collect())
+    };
+    let ways = crane.subject.crane.description().points.iter().filter_map(|point| {
+        let (own, other) = (places(crane, point)?, places(rigid, point)?);
+        Some((point, own.iter().zip(&other).map(|(own, other)| (own - other).norm()).collect::<Vec<f64>>()))
+    });
+    let ways: Vec<_> = ways.collect();
+    let rest = ways.iter().filter_map(|(_, way)| way.first().copied()).max_by(f64::total_cmp)?;
+    let all = ways
+        .iter()
+        .flat_map(|(point, way)| way.iter().zip(&crane.table.rows).map(move |(way, row)| (point, *way, row[0])));
+    let (point, most, time) = all.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let motion = format!("; up to {} in motion ({}, {})", quantity(most, "m"), spoken(point), crane.when(time));
+    let note = format!("compared with the rigid crane{}", if crane.moves() { motion } else { String::new() });
+    Some(Figure::new("deflection", "deflection at rest", quantity(rest, "m"), note))
+}
+
+/// The lowest frequency, with its damping.
+pub(super) fn vibration(crane: &Shown<'_>) -> Option<Figure> {
+    let lowest = crane.modes.first()?;
+    let description = crane.subject.crane.description();
+    let names = lowest.mode.dominating.iter().take(2).map(|&index| spoken(&description.coordinates[index].name));
+    let names = names.collect::<Vec<_>>().join(", ");
+    let damping = lowest.damping.map_or_else(String::new, |ratio| format!("; damping ratio {}", uncertain(ratio)));
+    let value = format!("{} Hz", readable(lowest.mode.frequency()?));
+    Some(Figure::new("lowest_frequency", "lowest frequency at rest", value, names + &damping))
+}
