@@ -1,9 +1,13 @@
-//! A chain as a picture (SVG): bodies, frames, joints, elements, supports, drives, points, and a table of coordinates.
+//! A chain as a picture (SVG): bodies, frames, joints, elements, supports, drives, cylinders, points, and a table of coordinates.
 //!
 //! Drawn at the guess and with default parameters, in cabinet projection: x to the right, z up, y away from the reader at
 //! half its length. Colours: M. Okabe, K. Ito, Color Universal Design, 2008.
 
+mod cylinders;
+
 use std::fmt::Write;
+
+use cylinders::Pins;
 
 use crate::chain::{Body, BodyId, Chain, CoordinateId, CoordinateKind, Frame, Vector};
 
@@ -23,19 +27,24 @@ const FRAME: f64 = 26.0;
 const JOINT: f64 = 6.0;
 const ROW: f64 = 19.0;
 
-/// A joint's coordinate and where it acts.
+/// A joint's coordinate, where it acts, and along or about which direction.
 struct Joint {
     coordinate: CoordinateId,
     at: Vector,
+    axis: Vector,
 }
 
 /// The picture of a chain.
 #[must_use]
 pub fn picture(chain: &Chain) -> String {
     let (frames, joints) = poses(chain);
-    let mut sheet = Sheet::new(places(chain, &frames));
+    let pins: Vec<Pins> = chain.cylinders.iter().map(|cylinder| Pins::of(chain, cylinder, &frames, &joints)).collect();
+    let mut places = places(chain, &frames);
+    places.extend(pins.iter().flat_map(|pins| pins.places()));
+    let mut sheet = Sheet::new(places);
     links(&mut sheet, chain, &frames);
     supports(&mut sheet, chain, &frames);
+    cylinders::cylinders(&mut sheet, chain, &pins);
     for (body, frame) in chain.bodies.iter().zip(&frames) {
         if body.length.is_zero() || !is_inner(chain, body) {
             sheet.axes(frame);
@@ -76,7 +85,8 @@ fn poses(chain: &Chain) -> (Vec<Frame>, Vec<Joint>) {
     let frames = chain.bodies.iter().map(|body| {
         for step in &body.path {
             for id in step.coordinates() {
-                joints.push(Joint { coordinate: *id, at: frame.origin });
+                let axis = frame.axes[chain.coordinates[id.0].axis.index()];
+                joints.push(Joint { coordinate: *id, at: frame.origin, axis });
             }
             frame = frame.after(step, chain, &chain.guess, &defaults);
         }
@@ -263,6 +273,12 @@ impl Sheet {
         );
     }
 
+    /// A small filled circle.
+    fn dot(&mut self, place: Vector, radius: f64) {
+        let (x, y) = self.project(place);
+        let _ = writeln!(self.svg, "<circle cx='{x:.1}' cy='{y:.1}' r='{radius}' fill='{INK}'/>");
+    }
+
     /// The axes of a frame: x, y, z in three colours.
     fn axes(&mut self, frame: &Frame) {
         for (axis, colour) in frame.axes.iter().zip([VERMILLION, GREEN, BLUE]) {
@@ -319,7 +335,7 @@ impl Sheet {
              font-family='sans-serif' font-size='13' fill='{INK}'>\n<title>{0}</title>\n<rect width='100%' height='100%' \
              fill='#fff'/>\n<text x='20' y='30' font-size='16'>{0}</text>\n{1}<g stroke='#fff' stroke-width='3' \
              paint-order='stroke'>\n{3}</g>\n<text x='20' y='{2}' fill='{GREY}'>\
-             ○ turns  □ slides  ● driven  |  axes: x orange, y green, z blue  |  grey: centres of mass  |  spring: support\
+             ○ turns  □ slides  ● driven  |  axes: x orange, y green, z blue  |  grey: centres of mass, cylinders  |  spring: support\
              </text>\n</svg>\n",
             escaped(&chain.title),
             self.svg,
