@@ -12,7 +12,7 @@ const PRINTED = 24;
 const WIDE = 6;
 
 /** A table of the command as it prints it. */
-function grid({ key, title, headers, numeric, rows, exact }) {
+export function grid({ key, title, headers, numeric, rows, exact }) {
   const cell = (tag, all) => (text, column) => element(tag, { textContent: text, className: numeric[column] ? "number" : "", title: all?.[column] ?? "" });
   const table = element(
     "table", {},
