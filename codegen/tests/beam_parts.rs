@@ -84,11 +84,11 @@ fn a_cone_has_its_integrals() {
         assert_close(springs[0].stiffness.at(&[]), 1.0 / compliance, "bending");
         assert_close(springs[2].stiffness.at(&[]), G * 2.0 / (E * compliance), "torsion");
     }
-    // Moduli where the elements begin, W = π r³/4.
-    let starts = [0.0, 0.3, 0.9, 1.5, 2.1, 2.7];
-    assert_eq!(chain.beams[0].moduli.len(), starts.len());
-    for (x, moduli) in starts.into_iter().zip(&chain.beams[0].moduli) {
-        let bending = moduli.as_ref().expect("known").bending[0].at(&[]);
+    // Moduli where the elements begin, and at the end, W = π r³/4.
+    let places = [0.0, 0.3, 0.9, 1.5, 2.1, 2.7, 3.0];
+    assert_eq!(chain.beams[0].sections.len(), places.len());
+    for (x, section) in places.into_iter().zip(&chain.beams[0].sections) {
+        let bending = section.moduli.as_ref().expect("known").bending[0].at(&[]);
         assert_close(bending, area * radius(x).powi(3) / 4.0, "modulus");
     }
 }

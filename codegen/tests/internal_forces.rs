@@ -1,6 +1,6 @@
 //! Forces and moments that joints, sections and the ground transmit, compared with exact laws.
 
-use crane_codegen::chain::{Analyses, Chain, Cut};
+use crane_codegen::chain::{Analyses, Chain, Cut, Side};
 use crane_codegen::program::{Argument, FunctionId, Inputs};
 use crane_codegen::{SourceFile, compile, mechanics, read, validate};
 
@@ -66,18 +66,18 @@ fn wrenches_at(t: f64, chain: &Chain, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wr
     slots.as_chunks::<3>().0.as_chunks::<2>().0.to_vec()
 }
 
-/// Positions of the sections of a beam, and the wrenches that they transmit.
-fn sections(chain: &Chain, wrenches: &[Wrench]) -> Vec<(f64, Wrench)> {
-    let mut x = 0.0;
-    let mut sections = Vec::new();
-    for (cut, wrench) in chain.cuts().into_iter().zip(wrenches) {
-        if let Cut::Body(body) = cut {
-            let body = &chain.bodies[body.0];
-            sections.extend((body.link != "load").then_some((x, *wrench)));
-            x += body.length.at(&[]);
-        }
-    }
-    sections
+/// Positions and sides of the sections of all beams, and the wrenches that they transmit.
+fn sections(chain: &Chain, wrenches: &[Wrench]) -> Vec<(f64, Side, Wrench)> {
+    let of = |(cut, wrench): (Cut, &Wrench)| {
+        let all = || chain.beams.iter().flat_map(|beam| &beam.sections);
+        let section = match cut {
+            Cut::Body(body) => all().find(|section| section.body == body && section.inside.is_none())?,
+            Cut::Inside(beam, section) => &chain.beams[beam].sections[section],
+            Cut::Ground | Cut::Joint(_) => return None,
+        };
+        Some((section.x.at(&[]), section.side, *wrench))
+    };
+    chain.cuts().into_iter().zip(wrenches).filter_map(of).collect()
 }
 
 fn assert_close(what: &str, actual: Wrench, expected: Wrench) {
@@ -97,8 +97,9 @@ fn a_cantilever_bends_by_its_weight_and_its_load() {
         let rest = vec![0.0; chain.coordinates.len()];
         let wrenches = wrenches(&chain, &rest, &rest, &rest);
         let sections = sections(&chain, &wrenches);
-        assert_eq!(sections.len(), SECTIONS + 1);
-        for (x, wrench) in sections {
+        // Where the elements begin, and at the end.
+        assert_eq!(sections.len(), SECTIONS + 2);
+        for (x, _, wrench) in sections {
             let out = LENGTH - x;
             let q = -9.81 * (LOAD + DENSITY * AREA * out);
             let m = -9.81 * (LOAD * out + DENSITY * AREA * out * out / 2.0);
@@ -124,8 +125,9 @@ fn a_cantilever_carries_a_force_and_a_moment_at_its_tip() {
         let rest = q.clone();
         q.iter_mut().take(1).zip(angle).for_each(|(q, angle)| *q = angle);
         let sections = sections(&chain, &wrenches_at(t, &chain, &q, &rest, &rest));
-        assert_eq!(sections.len(), SECTIONS + 1);
-        for (x, wrench) in sections {
+        // Where the elements begin, and at the end.
+        assert_eq!(sections.len(), SECTIONS + 2);
+        for (x, _, wrench) in sections {
             let lever = LENGTH + 0.5 - x;
             let bending = [moment[0], moment[1] - lever * force[2], moment[2] + lever * force[1]];
             assert_close(&format!("{joint}, x = {x}"), wrench, [force, bending].map(|of| of.map(|x| scale * x)));
@@ -144,8 +146,13 @@ fn a_load_is_carried_from_where_it_acts() {
     );
     let rest = vec![0.0; chain.coordinates.len()];
     let wrenches = wrenches(&chain, &rest, &rest, &rest);
-    for (x, wrench) in sections(&chain, &wrenches) {
-        let inside = x < 1.2;
+    let sections = sections(&chain, &wrenches);
+    assert_eq!(
+        sections.iter().filter(|(x, ..)| *x == 1.2).map(|(_, side, _)| *side).collect::<Vec<_>>(),
+        [Side::Before, Side::After]
+    );
+    for (x, side, wrench) in sections {
+        let inside = x < 1.2 || side == Side::Before;
         let expected = if inside { [[0.0, 100.0, 0.0], [0.0, 0.0, 100.0 * (1.2 - x)]] } else { [[0.0; 3]; 2] };
         assert_close(&format!("x = {x}"), wrench, expected);
     }
@@ -161,7 +168,7 @@ fn a_turning_beam_pulls_by_its_centrifugal_force() {
     let mut q = vec![0.0; chain.coordinates.len()];
     let (mut v, mut a) = (q.clone(), q.clone());
     (q[0], v[0], a[0]) = (0.4, rate, speeding);
-    for (x, wrench) in sections(&chain, &wrenches(&chain, &q, &v, &a)) {
+    for (x, _, wrench) in sections(&chain, &wrenches(&chain, &q, &v, &a)) {
         let integral = |power: i32| (LENGTH.powi(power) - x.powi(power)) / f64::from(power);
         let line = DENSITY * AREA;
         let first = line * integral(2) + LOAD * LENGTH;
@@ -188,7 +195,7 @@ fn an_eccentric_load_twists() {
 ",
     );
     let wrenches = wrenches(&chain, &[0.0], &[0.0], &[0.0]);
-    let [(_, section)] = sections(&chain, &wrenches)[..] else { panic!("one element") };
+    let [(_, _, section), _] = sections(&chain, &wrenches)[..] else { panic!("one element") };
     let weight = -9.81 * 100.0;
     let own = -9.81 * 2e-4;
     assert_close("arm", section, [[0.0, 0.0, weight + own], [0.5 * weight, -2.0 * weight - own, 0.0]]);

@@ -60,8 +60,8 @@ pub mod tipping;
 
 pub use description::{
     AttachmentInfo, BodyInfo, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole, CylinderInfo,
-    Description, DriveInfo, InputInfo, LARGE_TILT, List, LoadInfo, NEAR_SINGULAR, ParameterInfo, PumpInfo, SupportInfo,
-    TIPPED, Text, ValveInfo,
+    Description, DriveInfo, InputInfo, LARGE_TILT, List, LoadInfo, NEAR_SINGULAR, ParameterInfo, PumpInfo, SectionInfo,
+    Side, SupportInfo, TIPPED, Text, ValveInfo,
 };
 pub use model::{
     CraneModel, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise, OneByOne,

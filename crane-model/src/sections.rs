@@ -2,15 +2,13 @@
 
 use std::cmp::Ordering;
 
-use crate::{Cut, Description, SectionModuli, Stress, Wrench};
+use crate::{Cut, Description, SectionInfo, SectionModuli, Stress, Wrench};
 
 /// A section where stresses are known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StressedSection {
-    /// Index of the body that begins at the section.
-    pub body: usize,
-    /// Distance from the beam's beginning, m.
-    pub x: f64,
+    /// Its index among [`Description::sections`].
+    pub section: usize,
     /// Its stresses.
     pub stress: Stress,
     /// Equivalent stress over the allowable one, if there is one.
@@ -18,9 +16,21 @@ pub struct StressedSection {
 }
 
 impl StressedSection {
+    /// Where it is.
+    pub fn info<'a>(&self, description: &'a Description) -> &'a SectionInfo {
+        &description.sections[self.section]
+    }
+
     /// Name of the beam's link.
     pub fn beam<'a>(&self, description: &'a Description) -> &'a str {
-        description.bodies[self.body].link.as_str()
+        description.bodies[self.info(description).body].link.as_str()
+    }
+
+    /// Where it is, in words: the beam, the distance from its start, and what is there.
+    pub fn place(&self, description: &Description) -> String {
+        let info = self.info(description);
+        let place = format!("{}, {:.3} m from its start", self.beam(description), info.x);
+        if info.at.is_empty() { place } else { format!("{place}, {}", info.place()) }
     }
 
     /// Orders sections by utilisation; where no beam has a yield stress, by equivalent stress.
@@ -36,13 +46,11 @@ pub fn stressed_sections(
     moduli: &[SectionModuli],
     wrenches: &[Wrench],
 ) -> Vec<StressedSection> {
-    let of_sections = description.cuts().into_iter().zip(wrenches).filter_map(|(cut, wrench)| match cut {
-        Cut::Body { body, x: Some(x) } => Some((body, x, wrench)),
-        _ => None,
-    });
-    let at = |((body, x, wrench), moduli): ((usize, f64, &Wrench), &SectionModuli)| {
+    let at = |(cut, wrench): (Cut, &Wrench)| {
+        let section = cut.section()?;
+        let moduli = moduli.get(section)?;
         let stress = moduli.stress(wrench)?;
-        Some(StressedSection { body, x, stress, utilisation: moduli.utilisation(&stress) })
+        Some(StressedSection { section, stress, utilisation: moduli.utilisation(&stress) })
     };
-    of_sections.zip(moduli).filter_map(at).collect()
+    description.cuts().into_iter().zip(wrenches).filter_map(at).collect()
 }

@@ -53,9 +53,25 @@ pub enum Cut {
     Body {
         /// Index of the body.
         body: usize,
-        /// For an element of a beam, the distance from the beam's beginning with default parameters, m.
-        x: Option<f64>,
+        /// For an element of a beam, the index of the section among [`Description::sections`](crate::Description::sections).
+        section: Option<usize>,
     },
+    /// Within an element of a beam, in the element's frame, about the centre of the section.
+    Inside {
+        /// Index of the section among [`Description::sections`](crate::Description::sections).
+        section: usize,
+    },
+}
+
+impl Cut {
+    /// Index of the section that is cut, if it is one of a beam or rope.
+    pub const fn section(&self) -> Option<usize> {
+        match *self {
+            Cut::Body { section, .. } => section,
+            Cut::Inside { section } => Some(section),
+            Cut::Ground | Cut::Joint { .. } => None,
+        }
+    }
 }
 
 /// Adds `force` times some wrenches to others, one by one.
@@ -74,28 +90,23 @@ pub(crate) fn add(sums: &mut [Wrench], force: f64, wrenches: &[Wrench]) {
 #[cfg(feature = "std")]
 impl crate::Description {
     /// Cuts of the crane, in the order of [`InternalForces::internal_forces`](crate::InternalForces::internal_forces): the
-    /// ground, then from base to tip the joint of every link and the bodies of that link.
+    /// ground, then from base to tip the joint of every link and the bodies of that link, each element of a beam followed by the sections
+    /// within it.
     pub fn cuts(&self) -> Vec<Cut> {
         let mut cuts = vec![Cut::Ground];
-        let (mut link, mut x) = (None, 0.0);
+        let mut link = None;
+        let mut sections = self.sections.iter().enumerate().peekable();
         for (body, info) in self.bodies.iter().enumerate() {
             if link != Some(&info.link) {
                 cuts.push(Cut::Joint { body });
-                (link, x) = (Some(&info.link), 0.0);
+                link = Some(&info.link);
             }
-            // Only elements of beams and links of ropes have a length.
-            cuts.push(Cut::Body { body, x: (info.length > 0.0).then_some(x) });
-            x += info.length;
+            let mut next = || sections.next_if(|(_, section)| section.body == body).map(|(index, _)| index);
+            cuts.push(Cut::Body { body, section: next() });
+            while let Some(section) = next() {
+                cuts.push(Cut::Inside { section });
+            }
         }
         cuts
-    }
-    /// The sections of beams where their elements begin, and of ropes where their links begin, from the base to the tip: the body that begins there, and the distance from the
-    /// beam's beginning with default parameters, m.
-    pub fn sections(&self) -> Vec<(usize, f64)> {
-        let of = |cut| match cut {
-            Cut::Body { body, x: Some(x) } => Some((body, x)),
-            _ => None,
-        };
-        self.cuts().into_iter().filter_map(of).collect()
     }
 }

@@ -81,7 +81,7 @@ pub fn quantities(crane: &Description) -> Vec<Quantity> {
         ("nonlinear_stiffness_and_damping", vec![n, 2]),
         ("internal_forces", vec![crane.cuts().len(), 6]),
         ("support_positions", vec![supports, 3]),
-        ("section_moduli", vec![crane.sections().len(), 8]),
+        ("section_moduli", vec![crane.sections.len(), 8]),
         ("load_power", vec![1]),
         ("connector_forces", vec![n]),
         ("connector_forces_at_rest", vec![n]),
@@ -200,7 +200,7 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
     // The rates also serve as accelerations.
     crane.internal_forces(t, q, v, v, &mut wrenches);
     crane.support_positions(q, &mut reactions);
-    let mut moduli = vec![SectionModuli::ZERO; info.sections().len()];
+    let mut moduli = vec![SectionModuli::ZERO; info.sections.len()];
     crane.section_moduli(&mut moduli);
     let mut tangents = vec![[0.0; 2]; info.coordinates.len()];
     crane.nonlinear_stiffness_and_damping(t, q, v, &mut tangents);

@@ -97,7 +97,7 @@ impl Places {
             pieces: vec![[0.0; 2]; description.drives.iter().map(|drive| drive.pieces).sum()],
             stiffness_and_damping: vec![[0.0; 2]; N],
             wrenches: vec![Wrench::ZERO; description.cuts().len()],
-            moduli: vec![SectionModuli::ZERO; description.sections().len()],
+            moduli: vec![SectionModuli::ZERO; description.sections.len()],
         }
     }
 }

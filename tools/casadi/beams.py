@@ -62,16 +62,21 @@ def section_moduli(shape, size, section):
 class Beam:
     """n + 1 rigid elements along x; spring k joins elements k and k + 1, each with its three directions.
 
-    moduli: those of the section where each element begins, or None. bend: angles between neighbours at rest, about z and y.
+    sections: moduli of all sections where forces are known, or None; those where the elements begin, until others are added. bend: angles
+    between neighbours at rest, about z and y. `portion(a, b)`: H of the beam between two places, about the first, and `moduli_beside(x)`:
+    those just before and just after a place, with `steps` where they jump; None if elements are given one by one.
     """
 
     lengths: list
     pseudo_inertias: list
     stiffness: list
     damping: list
-    moduli: list
+    sections: list
     allowable_stress: object = 0
     bend: tuple = (0, 0)
+    portion: object = None
+    moduli_beside: object = None
+    steps: tuple = ()
 
 
 def rectangle_torsion(one_side, other_side):
@@ -149,18 +154,26 @@ def read_beam(spec, beam):
         masses = [parts.inertia(begin, begin + l, density, extra) for begin, l in zip(begins, lengths)]
         stiffness = [parts.stiffness(k * part, (k + 1) * part, E, G) for k in range(sections)]
         moduli = [parts.section(begin).moduli for begin in begins]
+        portion = lambda begin, end: parts.inertia(spec.default(begin), spec.default(end), density, extra)
+        beside = lambda x: [parts.section(x, part).moduli for part in (parts.part_before(x), parts.part(x))]
+        steps = tuple(end for _, end, _, _ in parts.parts[:-1])
     else:
         section = read_section(spec, beam["section"])
         masses = [prism((density * section.area + extra) * l, l, section) for l in lengths]
         stiffness = [dict(zip(DIRECTIONS, (E * section.Jz / part, E * section.Jy / part, G * section.Jo / part)))] * sections
         moduli = [section.moduli] * (sections + 1)
+        portion = lambda begin, end: prism((density * section.area + extra) * (end - begin), end - begin, section)
+        beside, steps = (lambda x: [section.moduli] * 2), ()
     bend = beam.get("bend") or {}
     return Beam(
         lengths=lengths,
         pseudo_inertias=masses,
         stiffness=stiffness,
         damping=[read_damping(spec, beam.get("damping") or {}, each) for each in stiffness],
-        moduli=moduli,
+        sections=moduli,
+        portion=portion,
+        moduli_beside=beside,
+        steps=steps,
         allowable_stress=spec.number(material.get("yield_stress", 0)) / spec.number(beam.get("safety_factor", 1.5)),
         bend=tuple(spec.angle(bend.get(key, 0)) / max(sections, 1) for key in ("psi", "theta")),
     )
@@ -178,6 +191,10 @@ class Parts:
     def part(self, x):
         """The part that begins at x or contains it; the last one at the tip."""
         return next((part for part in self.parts if x < part[1] - 1e-9), self.parts[-1])
+
+    def part_before(self, x):
+        """The part that ends at x or contains it; the first one at the beginning."""
+        return next((part for part in self.parts if x <= part[1] + 1e-9), self.parts[-1])
 
     def section(self, x, part=None):
         """The section at x."""
@@ -251,5 +268,5 @@ def read_elements(spec, beam):
         pseudo_inertias=[read_pseudo_inertia(spec, element) for element in beam["elements"]],
         stiffness=[read_directions(spec, spring["stiffness"]) for spring in beam["springs"]],
         damping=[read_directions(spec, spring.get("damping")) for spring in beam["springs"]],
-        moduli=[None] * len(beam["elements"]),
+        sections=[None] * len(beam["elements"]),
     )

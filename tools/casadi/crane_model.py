@@ -1,14 +1,17 @@
 """A crane as CasADi expressions: links become bodies with T(p) = T(p-1) T̃(p) [Urbaś 2016, Eq. (3)]."""
 
+import math
 from dataclasses import dataclass, field
 
 import casadi as ca
 
 from beams import DIRECTIONS, Beam, read_beam
 from crane_spec import CraneSpec
+from cuts import Cut
 from cylinders import Cylinder, pin_of_rocker, turning_axis
 from inertias import read_pseudo_inertia
 from profiles import read_profile
+from sections import add_sections
 from transforms import classic_dh, modified_dh, place, rotate, rotate_by_vector, translate, translate_along
 
 ROTATIONS = {"psi": "z", "theta": "y", "phi": "x"}
@@ -40,14 +43,6 @@ class Body:
     transform: ca.SX
     degrees_of_freedom: int
     pseudo_inertia: ca.SX
-
-
-@dataclass
-class Cut:
-    """A cut through the chain: the pose of its frame in the world, and the index of the first body beyond it."""
-
-    frame: ca.SX
-    beyond: int
 
 
 @dataclass
@@ -94,9 +89,11 @@ class Friction:
 
 @dataclass
 class Load:
-    """An applied load: index of its body, point of action, that body's rotation; force and moment along the world's axes."""
+    """An applied load: index of its body, distance along it (as written, and with default parameters), point of action, that body's rotation; force and moment along the world's axes."""
 
     body: int
+    at: object
+    along: float
     position: ca.SX
     rotation: ca.SX
     force: ca.SX
@@ -105,10 +102,13 @@ class Load:
 
 @dataclass
 class Connector:
-    """An element whose force follows from its length; if it is between points, the indices of the bodies that it pulls, and the points."""
+    """An element whose force follows from its length; if it is between points, the indices of the bodies that it pulls, the points, and their
+    distances along the bodies (as written, and with default parameters)."""
 
     bodies: list
     points: list
+    at: list
+    along: list
     strain: ca.SX
     is_rope: bool
     stiffness: object
@@ -246,6 +246,7 @@ def read_crane(path):
         crane.connectors.append(read_coupling(crane, written))
     for written in spec.get("points", []):
         crane.points[written["name"]] = read_point(spec, written, spans[written["link"]])
+    add_sections(crane, [spans[link["name"]] for link in spec.keys["links"] if "beam" in link or "rope" in link])
     crane.guess = read_guess(crane)
     return crane
 
@@ -326,7 +327,7 @@ def read_rope_bodies(crane, name, transform, written):
     pseudo_inertia[0, 0] = mass * length**2 / 3
     pseudo_inertia[0, 3] = pseudo_inertia[3, 0] = mass * length / 2
     pseudo_inertia[3, 3] = mass
-    crane.beams.append(Beam([length] * count, [pseudo_inertia] * count, [], [], moduli=[None] * count))
+    crane.beams.append(Beam([length] * count, [pseudo_inertia] * count, [], [], sections=[None] * count))
     span = Span([], [])
     for number in range(1, count + 1):
         if number > 1:
@@ -453,7 +454,7 @@ def read_load(crane, written, span):
     scale = read_profile(spec, written["scale"], False, crane.time)[0] if "scale" in written else 1
     axes = rotation if written.get("axes", "world") == "link" else ca.SX.eye(3)
     index = next(i for i, other in enumerate(crane.bodies) if other is body)
-    return Load(index, place(body.transform, local), rotation, scale * (axes @ force), scale * (axes @ moment))
+    return Load(index, local[0], spec.default(local[0]), place(body.transform, local), rotation, scale * (axes @ force), scale * (axes @ moment))
 
 
 def read_cylinder(crane, written, spans):
@@ -463,7 +464,8 @@ def read_cylinder(crane, written, spans):
     foot, head = (carrier(spec, spec.vector(written[key]["at"]), spans[written[key]["link"]]) for key in ("foot", "head"))
     start, end = place(foot[0].transform, foot[1]), place(head[0].transform, head[1])
     of_foot, of_head = (next(i for i, other in enumerate(crane.bodies) if other is pin[0]) for pin in (foot, head))
-    carried = [(start, of_foot, False), (end, of_head, False)]
+    carried = [(start, of_foot, spec.default(foot[1][0]), False), (end, of_head, spec.default(head[1][0]), False)]
+    pins = [(of_foot, foot[1][0]), (of_head, head[1][0])] if "valve" in written else []
     linkage = written.get("linkage")
     if linkage is None:
         length_of = lambda start, end: ca.norm_2(end - start)
@@ -476,19 +478,20 @@ def read_cylinder(crane, written, spans):
         axis = turning_axis(beyond.transform[:3, :3], coordinate.q)
         # Beside the joint, on the side of the foot.
         moved = next(i for i, body in enumerate(crane.bodies) if body.degrees_of_freedom > crane.coordinates.index(coordinate))
-        carrier_of_axis = moved - 1 if of_head > of_foot else moved
-        carried += [(pivot, of_pivot, False), (axis, carrier_of_axis, True)]
+        carrier_of_axis, along = (moved - 1, math.inf) if of_head > of_foot else (moved, 0.0)
+        carried += [(pivot, of_pivot, spec.default(pin_of_pivot[1][0]), False), (axis, carrier_of_axis, along, True)]
+        pins += [(of_pivot, pin_of_pivot[1][0])] if "valve" in written else []
         lengths = [spec.number(linkage[key]) for key in ("rocker", "link")]
         length_of = lambda start, end, pivot, axis: ca.norm_2(
             pin_of_rocker(pivot, end, axis, lengths, linkage["side"]) - start
         )
-    return Cylinder(coordinate, length_of(*(vector for vector, _, _ in carried)), carried, length_of)
+    return Cylinder(coordinate, length_of(*(vector for vector, *_ in carried)), carried, length_of, pins)
 
 
 def read_connector(crane, written, spans):
     """An element between two points: a spring, a gas spring, which pushes, or a rope, which pulls."""
     spec = crane.spec
-    bodies, points = [], []
+    bodies, points, along = [], [], []
     for end in (written["from"], written["to"]):
         at = spec.vector(end["at"])
         if "link" in end:
@@ -498,12 +501,13 @@ def read_connector(crane, written, spans):
         else:
             bodies.append(None)
             points.append(at)
+        along.append(at[0])
     ((kind, law),) = written["law"].items()
     motion = law.get("motion", {"hold": law.get("length")})
     length = read_profile(spec, motion, False, crane.time)[0]
     stiffness, damping, push = (spec.number(law.get(key, 0)) for key in ("stiffness", "damping", "force"))
     strain = ca.norm_2(points[1] - points[0])
-    return Connector(bodies, points, strain, kind == "rope", stiffness, damping, length, push)
+    return Connector(bodies, points, along, [spec.default(at) for at in along], strain, kind == "rope", stiffness, damping, length, push)
 
 
 def read_coupling(crane, written):
@@ -513,7 +517,7 @@ def read_coupling(crane, written):
     stiffness, damping = (spec.number(written.get(key, 0)) for key in ("stiffness", "damping"))
     strain = own.q - spec.number(written["ratio"]) * leader.q
     offset = spec.position(written.get("offset", 0), own.is_rotation)
-    return Connector([], [], strain, False, stiffness, damping, offset, 0)
+    return Connector([], [], [], [], strain, False, stiffness, damping, offset, 0)
 
 
 def read_point(spec, written, span):

@@ -9,24 +9,26 @@ import casadi as ca
 class Cylinder:
     """A cylinder: the coordinate of its joint, its length, and what that depends on.
 
-    `carried` holds the points and the axis of its joint, each with the index of the body that carries it, and `length_of` the length as a
-    function of them.
+    `carried` holds the points and the axis of its joint, each with the index of the body that carries it and the distance along that body, and
+    `length_of` the length as a function of them. `pins`: bodies on which a cylinder
+    with a valve pushes, and the distances along them.
     """
 
     coordinate: object
     length: ca.SX
     carried: list
     length_of: object
+    pins: list
 
 
-def on_part_beyond(cylinder, first):
-    """Force and moment about the world's origin on all bodies from `first` on, while the cylinder pushes with 1 N: its power as they
-    are displaced against the others."""
+def on_part_beyond(cylinder, cut):
+    """Force and moment about the world's origin on everything beyond a cut, while the cylinder pushes with 1 N: its power as that is
+    displaced against the rest."""
     along, about = ca.SX.sym("along", 3), ca.SX.sym("about", 3)
     displaced = []
-    for vector, body, is_axis in cylinder.carried:
+    for vector, body, distance, is_axis in cylinder.carried:
         shift = ca.cross(about, vector) if is_axis else along + ca.cross(about, vector)
-        displaced.append(vector + shift if body >= first else vector)
+        displaced.append(vector + shift if cut.has_beyond(body, distance) else vector)
     length = cylinder.length_of(*displaced)
     zeros = ca.DM.zeros(3)
     return [ca.substitute(ca.gradient(length, by), ca.vertcat(along, about), ca.vertcat(zeros, zeros)) for by in (along, about)]

@@ -77,33 +77,22 @@ class Derivations:
         With H the pseudo-inertia, `∫ ẍ dm` is the last column of `T̈ H`, and `∫ x × ẍ dm` the axial vector of `T̈ H Tᵀ`. The
         rates are used as accelerations, too.
         """
-        q, v, gravity = self.crane.q, self.crane.v, self.crane.gravity
-        force, moment, sums = ca.SX(3, 1), ca.SX(3, 1), {}
+        force, moment, sums = ca.SX(3, 1), ca.SX(3, 1), {len(self.crane.bodies): (ca.SX(3, 1), ca.SX(3, 1))}
         for place, body in reversed(list(enumerate(self.crane.bodies))):
-            first = ca.jtimes(body.transform, q, v)
-            second = ca.jtimes(first, q, v) + first
-            linear = second @ body.pseudo_inertia[:, 3]
-            rate = second @ body.pseudo_inertia @ body.transform.T
-            angular = ca.vertcat(rate[2, 1] - rate[1, 2], rate[0, 2] - rate[2, 0], rate[1, 0] - rate[0, 1])
-            moments = (body.transform @ body.pseudo_inertia[:, 3])[:3]
-            force = force + linear[:3] - body.pseudo_inertia[3, 3] * gravity
-            moment = moment + angular - ca.cross(moments, gravity)
-            for load in self.crane.loads:
-                if load.body == place:
-                    force = force - load.force
-                    moment = moment - load.moment - ca.cross(load.position, load.force)
-            for connector in self.crane.connectors:
-                if not connector.points:
-                    continue
-                length, _, tension, _ = self.connector(connector)
-                pull = tension * (connector.points[1] - connector.points[0]) / length
-                for end, point, sign in zip(connector.bodies, connector.points, (1, -1)):
-                    if end == place:
-                        force, moment = force - sign * pull, moment - ca.cross(point, sign * pull)
+            own = self.momenta_rate(body.transform, body.pseudo_inertia)
+            force, moment = force + own[0], moment + own[1]
+            for _, pull, turn in self.actions(place):
+                force, moment = force - pull, moment - turn
             sums[place] = force, moment
         wrenches = []
         for cut in self.crane.cuts:
             force, moment = sums[cut.beyond]
+            if cut.portion is not None:
+                own = self.momenta_rate(self.crane.bodies[cut.beyond - 1].transform, cut.portion)
+                force, moment = force + own[0], moment + own[1]
+                for along, pull, turn in self.actions(cut.beyond - 1):
+                    if cut.has_beyond(cut.beyond - 1, along):
+                        force, moment = force - pull, moment - turn
             wrenches += in_cut(cut, -force, -moment)
         positions = [support.position for support in self.crane.supports]
         return {
@@ -113,12 +102,37 @@ class Derivations:
             **self.transmitted(),
         }
 
+    def momenta_rate(self, transform, pseudo_inertia):
+        """What a mass that moves with a body requires, and its moment about the world's origin: inertia forces and weight."""
+        q, v, gravity = self.crane.q, self.crane.v, self.crane.gravity
+        first = ca.jtimes(transform, q, v)
+        second = ca.jtimes(first, q, v) + first
+        linear = second @ pseudo_inertia[:, 3]
+        rate = second @ pseudo_inertia @ transform.T
+        angular = ca.vertcat(rate[2, 1] - rate[1, 2], rate[0, 2] - rate[2, 0], rate[1, 0] - rate[0, 1])
+        moments = (transform @ pseudo_inertia[:, 3])[:3]
+        return linear[:3] - pseudo_inertia[3, 3] * gravity, angular - ca.cross(moments, gravity)
+
+    def actions(self, place):
+        """Loads on a body and pulls of connectors: distance along the body, force, moment about the world's origin."""
+        for load in self.crane.loads:
+            if load.body == place:
+                yield load.along, load.force, load.moment + ca.cross(load.position, load.force)
+        for connector in self.crane.connectors:
+            if not connector.points:
+                continue
+            length, _, tension, _ = self.connector(connector)
+            pull = tension * (connector.points[1] - connector.points[0]) / length
+            for end, point, along, sign in zip(connector.bodies, connector.points, connector.along, (1, -1)):
+                if end == place:
+                    yield along, sign * pull, ca.cross(point, sign * pull)
+
     def transmitted(self):
         """What each cylinder and each connector between two bodies adds to the wrench at each cut, with a force of 1 N."""
         of_cylinders, of_connectors = [ca.SX(0, 1)], [ca.SX(0, 1)]
         for cylinder in self.crane.cylinders:
             for cut in self.crane.cuts:
-                force, moment = cylinders.on_part_beyond(cylinder, cut.beyond) if self.by_oil else (ca.SX(3, 1), ca.SX(3, 1))
+                force, moment = cylinders.on_part_beyond(cylinder, cut) if self.by_oil else (ca.SX(3, 1), ca.SX(3, 1))
                 of_cylinders += in_cut(cut, force, moment)
         for connector in self.crane.connectors:
             joins = connector.points and None not in connector.bodies
@@ -126,8 +140,8 @@ class Derivations:
                 force, moment = ca.SX(3, 1), ca.SX(3, 1)
                 if joins:
                     pull = (connector.points[1] - connector.points[0]) / ca.norm_2(connector.points[1] - connector.points[0])
-                    for body, point, sign in zip(connector.bodies, connector.points, (1, -1)):
-                        if body >= cut.beyond:
+                    for body, point, along, sign in zip(connector.bodies, connector.points, connector.along, (1, -1)):
+                        if cut.has_beyond(body, along):
                             force, moment = force + sign * pull, moment + ca.cross(point, sign * pull)
                 of_connectors += in_cut(cut, force, moment)
         return {"cylinder_wrenches": ca.vertcat(*of_cylinders), "connector_wrenches": ca.vertcat(*of_connectors)}
@@ -137,7 +151,7 @@ class Derivations:
         rows = [
             ca.vertcat(*moduli, beam.allowable_stress) if moduli else ca.SX.zeros(8)
             for beam in self.crane.beams
-            for moduli in beam.moduli
+            for moduli in beam.sections
         ]
         return {"section_moduli": ca.vertcat(ca.SX(0, 1), *rows)}
 

@@ -110,7 +110,7 @@ def compare_wrenches(crane, generated, states):
         (place, cut.frame, crane.bodies[cut.beyond].degrees_of_freedom - 1)
         for place, cut in enumerate(crane.cuts)
         # The joint before a cut carries what is beyond the cut, and nothing else.
-        if place > 0 and first_moved[crane.bodies[cut.beyond].degrees_of_freedom] == cut.beyond
+        if place > 0 and cut.portion is None and first_moved[crane.bodies[cut.beyond].degrees_of_freedom] == cut.beyond
     ]
     cuts = [cut for cut in cuts if cut[2] >= 0]
     # The joint wrenches of a chain do not include loads and connectors.

@@ -1,6 +1,6 @@
 //! Flexible links: springs between their elements, and data for stresses and pictures.
 
-use super::{CoordinateId, Value};
+use super::{BodyId, CoordinateId, Inertia, Value};
 
 /// Spring and damper of a rigid element on one coordinate, Eqs. (14)–(15).
 #[derive(Clone, Debug, PartialEq)]
@@ -21,10 +21,47 @@ pub struct Beam {
     /// Outlines of its cross-section along it: they change linearly between two places; at a step, two places coincide. One
     /// place if the section is the same everywhere, none if the spec does not give a shape.
     pub outlines: Vec<(Value, Outline)>,
-    /// Moduli of the section where each of its elements begins; `None` if the spec does not give them.
-    pub moduli: Vec<Option<Moduli>>,
+    /// Sections at which its forces and stresses are known, from its beginning to its end: at least that where each of its elements begins.
+    pub sections: Vec<Section>,
     /// Yield stress over the safety factor, Pa; `None` without a yield stress.
     pub allowable_stress: Option<Value>,
+}
+
+/// A section of a beam or a rope at which forces and moments are known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Section {
+    /// The element.
+    pub body: BodyId,
+    /// Distance from the beginning of the beam, m.
+    pub x: Value,
+    /// On which side of what is there.
+    pub side: Side,
+    /// What is there, in the user's words: a pin, a load, a step; empty if nothing is.
+    pub at: String,
+    /// Where it is within its element; `None` where the element begins.
+    pub inside: Option<Inside>,
+    /// Its moduli; `None` if the spec does not give them.
+    pub moduli: Option<Moduli>,
+}
+
+/// The place of a section within an element.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Inside {
+    /// Distance from the beginning of the element, m.
+    pub distance: Value,
+    /// Pseudo-inertia of the part of the element beyond it, about the origin of the element's frame.
+    pub beyond: Inertia,
+}
+
+/// The side of a section from which forces and shape are those given: both may jump.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Just before: what acts at the section acts on the part beyond.
+    Before,
+    /// Neither jumps.
+    Both,
+    /// Just after: what acts at the section acts on the part before.
+    After,
 }
 
 /// Outline of a cross-section. Pictures need it; mechanics needs only areas and moments.

@@ -99,7 +99,7 @@ impl Cylinder {
     }
 
     /// Foot, head and, with a linkage, the pivot of its rocker.
-    fn pins(&self) -> impl Iterator<Item = &Pin> {
+    pub fn pins(&self) -> impl Iterator<Item = &Pin> {
         [&self.foot, &self.head].into_iter().chain(self.linkage.as_ref().map(|linkage| &linkage.pivot))
     }
 }

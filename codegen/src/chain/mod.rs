@@ -20,7 +20,7 @@ mod start;
 mod support;
 mod value;
 
-pub use beam::{Beam, BeamSpring, Moduli, Outline};
+pub use beam::{Beam, BeamSpring, Inside, Moduli, Outline, Section, Side};
 pub use body::{Axis, Body, Coordinate, CoordinateKind, Inertia, Part, Step};
 pub use connector::{Attachment, Connector, ConnectorLaw, Strain};
 pub use cut::Cut;

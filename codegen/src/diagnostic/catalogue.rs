@@ -421,9 +421,6 @@ catalogue! {
     /// Bristles of a joint that sticks slide after a deflection of 1e-8 to 0.1 m or rad.
     W026 odd_bristles(coordinate, deflection, unit) "the bristles of `{coordinate}` slide after a deflection of {deflection} {unit}", "breakaway friction over stiffness; usual: 1e-8 to 0.1 {unit}",
         "check the unit of `stiffness`: bristles that are too stiff force very small steps, and bristles that are too soft act as a spring";
-    /// Each part of a beam contains the spring of a section, where stresses are computed.
-    W027 part_without_spring(number, link, sections) "part {number} of beam `{link}` contains no section spring, so its stress is not computed", "shorter than one of the beam's equal sections",
-        "use {sections} sections or more, or join the part with its neighbour";
     /// The greatest rate of a drive is at least a hundredth of what its motion asks for.
     W028 slow_drive(coordinate, limit, speed, unit) "the drive of `{coordinate}` moves at most at {limit} {unit}", "its motion is {speed} {unit} fast on average",
         "check the unit of `max_rate`: a drive this slow stands still, and forces very small steps";

@@ -8,7 +8,7 @@ use super::arithmetic::{integer, literal};
 use super::print::constant;
 use crate::chain::{
     Attachment, BodyId, Bristle, Chain, Connector, ConnectorLaw, CoordinateId, CoordinateKind, Cylinder, Drive,
-    Profile, Strain, SupportKinematics, Value, Valve,
+    Profile, Side, Strain, SupportKinematics, Value, Valve,
 };
 
 /// The sizes and the `DESCRIPTION`.
@@ -102,6 +102,15 @@ fn description_constant(chain: &Chain) -> Item {
         let degrees = integer(chain.degrees_of_freedom(BodyId(p)));
         quote!(BodyInfo { name: #name, link: #link, mass: #mass, length: #length, degrees_of_freedom: #degrees })
     });
+    let sections = chain.beams.iter().flat_map(|beam| &beam.sections).map(|section| {
+        let (body, x, at) = (integer(section.body.0), at_defaults(&section.x), text(&section.at));
+        let side = match section.side {
+            Side::Before => quote!(Before),
+            Side::Both => quote!(Both),
+            Side::After => quote!(After),
+        };
+        quote!(SectionInfo { body: #body, x: #x, side: Side::#side, at: #at })
+    });
     let supports = chain.supports.iter().map(|support| {
         let name = text(&support.name);
         let position = support.position.iter().map(at_defaults);
@@ -136,7 +145,7 @@ fn description_constant(chain: &Chain) -> Item {
     let parameters = if chain.parameters.is_empty() { quote!(&[]) } else { quote!(&PARAMETERS) };
     let statics = chain.analyses.statics;
     let guess = chain.guess.iter().map(|&x| literal(x));
-    let [coordinates, bodies] = [list(coordinates), list(bodies)];
+    let [coordinates, bodies, sections] = [list(coordinates), list(bodies), list(sections)];
     let [stops, frictions, loads, inputs] = [list(stops), list(frictions), list(loads), list(inputs)];
     let connectors = list(connectors);
     let [supports, drives, points, guess] = [list(supports), list(drives), list(points), list(guess)];
@@ -152,6 +161,7 @@ fn description_constant(chain: &Chain) -> Item {
             parameters: List::Static(#parameters),
             coordinates: #coordinates,
             bodies: #bodies,
+            sections: #sections,
             supports: #supports,
             drives: #drives,
             stops: #stops,

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::chain::{BodyId, Chain, Connector, Cut, Drive, Load};
+use crate::chain::{BodyId, Chain, Connector, Cut, Drive, Load, Section, Side};
 use crate::lower::LoweredProgram;
 use crate::program::{Function, FunctionId, Shape, Struct};
 use crate::symbolic::ExprId;
@@ -91,9 +91,8 @@ impl<'a> Labels<'a> {
             Shape::Rows { n, .. } => Some(chain.connectors[slot / n].name.clone()),
             Shape::Structs(Struct::Tension, _) => Some(chain.connectors[slot / Struct::Tension.len()].name.clone()),
             Shape::Structs(Struct::SectionModuli, _) => {
-                let mut elements =
-                    chain.bodies.iter().filter(|body| chain.beams.iter().any(|beam| beam.link == body.link));
-                elements.nth(slot / Struct::SectionModuli.len()).map(|body| format!("Before {}", body.name))
+                let mut sections = chain.beams.iter().flat_map(|beam| &beam.sections);
+                sections.nth(slot / Struct::SectionModuli.len()).map(|section| self.section(section))
             }
             Shape::Structs(Struct::Wrench, _) => {
                 let (cuts, place) = (chain.cuts(), slot / Struct::Wrench.len());
@@ -101,6 +100,7 @@ impl<'a> Labels<'a> {
                     Cut::Ground => "Ground".to_owned(),
                     Cut::Joint(body) => format!("Joint of {}", chain.bodies[body.0].link),
                     Cut::Body(body) => format!("Before {}", chain.bodies[body.0].name),
+                    Cut::Inside(beam, section) => self.section(&chain.beams[*beam].sections[*section]),
                 };
                 Some(match function.id {
                     FunctionId::CylinderWrenches => format!("{} – {cut}", chain.cylinders[place / cuts.len()].name),
@@ -127,6 +127,16 @@ impl<'a> Labels<'a> {
                 Some(format!("{}, row of {row}", capitalised(name)))
             }
         }
+    }
+
+    fn section(&self, section: &Section) -> String {
+        let body = &self.chain.bodies[section.body.0].name;
+        let side = match section.side {
+            Side::Before => "before",
+            Side::Both => "at",
+            Side::After => "after",
+        };
+        if section.inside.is_none() { format!("Before {body}") } else { format!("{body}, {side} {}", section.at) }
     }
 
     fn transform(&self, function: FunctionId, counts: &[usize], mut matrix: usize) -> String {

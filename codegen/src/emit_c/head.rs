@@ -235,7 +235,7 @@ fn result(chain: &Chain, Function { id, shape, .. }: &Function) -> String {
         Shape::Structs(Struct::SectionModuli, count) => {
             format!(
                 "out: area, moduli of bending about y and z and of torsion, shear areas along y and z, whether there are corners, \
-                 allowable stress, of each of {count} beams"
+                 allowable stress, of each of {count} sections of beams"
             )
         }
         Shape::Transforms { counts, .. } => {

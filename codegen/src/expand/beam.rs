@@ -2,7 +2,7 @@
 
 use super::inertia::{about_com, sum};
 use super::section::{CrossSection, Shape};
-use crate::chain::{Axis, Inertia, Outline, Step, Value};
+use crate::chain::{Axis, Inertia, Moduli, Outline, Step, Value};
 
 /// An angle that changes no rotation, and whose square is not 0 even in single precision, rad.
 const NO_ANGLE: f64 = 1e-18;
@@ -175,10 +175,69 @@ fn pieces(parts: &[Part], [from, to]: [f64; 2]) -> Vec<Piece<'_>> {
     pieces
 }
 
-/// The section of a beam of parts at a place; at a step, that of the part that begins there.
-pub(crate) fn section_at(parts: &[Part], x: f64) -> Option<CrossSection> {
-    // The last place of a beam belongs to its last part.
-    pieces(parts, [x, x + 2.0 * SAME]).first().map(|piece| piece.section(x))
+/// The sections of a beam of parts just before and just after a place; at its ends, both are the same.
+fn sections_at(parts: &[Part], x: f64) -> [Option<CrossSection>; 2] {
+    let length: f64 = parts.iter().map(|part| part.length).sum();
+    let beside = |ends: [f64; 2]| pieces(parts, ends).first().map(|piece| piece.section(x));
+    let (before, after) = (beside([x - 2.0 * SAME, x]), beside([x, x + 2.0 * SAME]));
+    if x > length - SAME { [before.clone(), before] } else { [before.or(after.clone()), after] }
+}
+
+/// What a beam of equal sections consists of along its length.
+#[derive(Clone, Debug)]
+pub(crate) enum Distribution {
+    /// The same everywhere.
+    Prismatic {
+        /// kg/m
+        line_density: Value,
+        /// Its section.
+        section: Box<CrossSection>,
+    },
+    /// Parts end to end.
+    Parts {
+        /// From the beginning to the end.
+        parts: Vec<Part>,
+        /// kg/m³
+        density: Value,
+        /// Mass besides that of the material, kg/m.
+        extra: Value,
+    },
+}
+
+impl Distribution {
+    /// Places at which the section or its taper changes, m from the beginning of the beam, without the ends.
+    pub(crate) fn steps(&self) -> Vec<f64> {
+        let Distribution::Parts { parts, .. } = self else { return Vec::new() };
+        let mut end = 0.0;
+        let ends = parts.iter().map(|part| {
+            end += part.length;
+            end
+        });
+        ends.take(parts.len() - 1).collect()
+    }
+
+    /// Moduli of the sections just before and just after a place.
+    pub(crate) fn moduli(&self, x: f64) -> [Option<Moduli>; 2] {
+        match self {
+            Distribution::Prismatic { section, .. } => [section.moduli.clone(), section.moduli.clone()],
+            Distribution::Parts { parts, .. } => sections_at(parts, x).map(|section| section?.moduli),
+        }
+    }
+
+    /// Pseudo-inertia, about the beginning of an element, of its part beyond a distance from there. `start` is the beginning of the
+    /// element in the beam; `now` gives the lengths of a beam of parts.
+    pub(crate) fn beyond(&self, [start, length, distance]: [&Value; 3], now: impl Fn(&Value) -> f64) -> Inertia {
+        let rest = match self {
+            Distribution::Prismatic { line_density, section } => {
+                prismatic(length.clone() - distance.clone(), line_density, section)
+            }
+            Distribution::Parts { parts, density, extra } => {
+                let start = now(start);
+                element_of_parts(parts, [start + now(distance), start + now(length)], density, extra)
+            }
+        };
+        moved(rest.inertia, distance)
+    }
 }
 
 /// The element of a beam of parts between two places: mass `∫ μ dx`, and moments of inertia likewise.
@@ -195,7 +254,7 @@ pub(crate) fn element_of_parts(parts: &[Part], ends: [f64; 2], density: &Value, 
                 disc(line_density * length.into(), &section)
             };
             let at = if piece.part.to.is_none() { piece.ends[0] } else { x } - ends[0];
-            let own = moved(own, at);
+            let own = moved(own, &at.into());
             inertia = Some(match inertia {
                 None => own,
                 Some(inertia) => sum(inertia, own),
@@ -216,13 +275,13 @@ fn disc(mass: Value, section: &CrossSection) -> Inertia {
 }
 
 /// Pseudo-inertia of a body that is moved by `a` along x: `∫ (x + a)² dm` and so on.
-fn moved(inertia: Inertia, a: f64) -> Inertia {
-    if a == 0.0 {
+fn moved(inertia: Inertia, a: &Value) -> Inertia {
+    if a.is_zero() {
         return inertia;
     }
     let Inertia { mass, first: [x, y, z], second: [xx, yy, zz, xy, xz, yz] } = inertia;
-    let by = |moment: &Value| a * moment.clone();
-    let second = [xx + 2.0 * by(&x) + a * by(&mass), yy, zz, xy + by(&y), xz + by(&z), yz];
+    let by = |moment: &Value| a.clone() * moment.clone();
+    let second = [xx + 2.0 * by(&x) + a.clone() * by(&mass), yy, zz, xy + by(&y), xz + by(&z), yz];
     Inertia { first: [x + by(&mass), y, z], mass, second }
 }
 

@@ -8,6 +8,7 @@
 //! F is the force that resists the growth of ℓ, so `f = −Jᵀ F`.
 
 use super::kinematics::{Kinematics, Pose};
+use super::loads::Place;
 use super::model::Model;
 use super::profile;
 use super::vector::{SymmetricMatrix, Vec3};
@@ -59,15 +60,16 @@ impl<'g> Stretched<'g> {
         }
     }
 
-    /// The bodies that it pulls with 1 N, in the world: body, point, force.
-    fn pulls(&self, connector: &Connector) -> impl Iterator<Item = (BodyId, Vec3<'g>, Vec3<'g>)> {
+    /// The bodies that it pulls with 1 N, in the world: place, point, force.
+    fn pulls(&self, connector: &Connector) -> impl Iterator<Item = (Place, Vec3<'g>, Vec3<'g>)> {
+        let place = |end: &Attachment| end.body.map(|body| Place { body, along: end.position[0].clone() });
         let of_line = match (&connector.strain, self.line) {
             (Strain::Distance(ends), Some((points, direction))) => {
-                vec![(ends[0].body, points[0], direction), (ends[1].body, points[1], -direction)]
+                vec![(place(&ends[0]), points[0], direction), (place(&ends[1]), points[1], -direction)]
             }
             _ => Vec::new(),
         };
-        of_line.into_iter().filter_map(|(body, point, pull)| Some((body?, point, pull)))
+        of_line.into_iter().filter_map(|(place, point, pull)| Some((place?, point, pull)))
     }
 
     /// ℓ̇
@@ -266,13 +268,13 @@ pub fn damping<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut 
     }
 }
 
-/// Forces on the bodies at both ends, in the world: body, point, force. Couplings have none: they act on their
+/// Forces on the bodies at both ends, in the world: place, point, force. Couplings have none: they act on their
 /// joints, like drives.
-pub fn pulls<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<(BodyId, Vec3<'g>, Vec3<'g>)> {
+pub fn pulls<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<(Place, Vec3<'g>, Vec3<'g>)> {
     let all = stretched(model, kinematics, (model.t, Some(&model.v)));
     all.flat_map(|(connector, stretched, state)| {
         let force = force(model, &connector.law, &state);
-        stretched.pulls(connector).map(|(body, point, pull)| (body, point, force * pull)).collect::<Vec<_>>()
+        stretched.pulls(connector).map(|(place, point, pull)| (place, point, force * pull)).collect::<Vec<_>>()
     })
     .collect()
 }
@@ -282,7 +284,7 @@ pub fn between_bodies<'g>(
     model: &Model<'g>,
     kinematics: &Kinematics<'g>,
     connector: &Connector,
-) -> Vec<(BodyId, Vec3<'g>, Vec3<'g>)> {
+) -> Vec<(Place, Vec3<'g>, Vec3<'g>)> {
     if !connector.joins_bodies() {
         return Vec::new();
     }

@@ -30,6 +30,7 @@
 //! which the linkage cannot be assembled, the square root is of a negative number, and the result is NaN.
 
 use super::kinematics::Kinematics;
+use super::loads::Place;
 use super::model::Model;
 use super::profile;
 use super::vector::{SymmetricMatrix, Vec3};
@@ -37,8 +38,8 @@ use crate::chain::{BodyId, Cylinder, Linkage, Pin, Value};
 use crate::symbolic::Expr;
 
 /// A point on which the length of a cylinder depends.
-struct Place<'g> {
-    body: BodyId,
+struct Point<'g> {
+    place: Place,
     position: Vec3<'g>,
     /// g of this point.
     gradient: Vec3<'g>,
@@ -49,7 +50,7 @@ struct Line<'g> {
     /// ℓ
     length: Expr<'g>,
     /// H, A and, if there is a linkage, P
-    places: Vec<Place<'g>>,
+    points: Vec<Point<'g>>,
     /// n and `g_n`, if there is a linkage
     axis: Option<[Vec3<'g>; 2]>,
 }
@@ -118,24 +119,27 @@ impl<'g> Line<'g> {
         let linkage = cylinder.linkage.as_ref().map(|Linkage { pivot, rocker, link, left }| {
             let position = pin_position(model, kinematics, pivot);
             let lengths = [rocker, link].map(|length| model.number(length));
-            (pivot.body, position, Assembled::new(axis, head - position, lengths, *left))
+            (pivot, position, Assembled::new(axis, head - position, lengths, *left))
         });
         let pin = linkage.as_ref().map_or(head, |(_, pivot, linkage)| *pivot + linkage.pin());
         let way = pin - foot;
         let length = way.dot(way).sqrt();
         let direction = (1.0 / length) * way;
-        let place = |body, position, gradient| Place { body, position, gradient };
-        let of_foot = place(cylinder.foot.body, foot, -direction);
+        let point = |pin: &Pin, position, gradient| {
+            let place = Place { body: pin.body, along: pin.position[0].clone() };
+            Point { place, position, gradient }
+        };
+        let of_foot = point(&cylinder.foot, foot, -direction);
         match linkage {
-            Some((body, pivot, linkage)) => {
+            Some((pin, pivot, linkage)) => {
                 let [by_head, by_axis] = linkage.gradients(direction);
-                let of_head = place(cylinder.head.body, head, by_head);
-                let of_pivot = place(body, pivot, direction - by_head);
-                Line { length, places: vec![of_head, of_foot, of_pivot], axis: Some([axis, by_axis]) }
+                let of_head = point(&cylinder.head, head, by_head);
+                let of_pivot = point(pin, pivot, direction - by_head);
+                Line { length, points: vec![of_head, of_foot, of_pivot], axis: Some([axis, by_axis]) }
             }
             None => {
-                let of_head = place(cylinder.head.body, head, direction);
-                Line { length, places: vec![of_head, of_foot], axis: None }
+                let of_head = point(&cylinder.head, head, direction);
+                Line { length, points: vec![of_head, of_foot], axis: None }
             }
         }
     }
@@ -147,8 +151,8 @@ impl<'g> Line<'g> {
         let entry = |j: usize| {
             let generator = &kinematics.generators[j];
             let moves = |body: BodyId| body.0 >= generator.body;
-            let with_head = self.places.iter().filter(|place| moves(place.body) == moves(cylinder.head.body));
-            let of_points = with_head.map(|place| place.gradient.dot(generator.velocity(place.position)));
+            let with_head = self.points.iter().filter(|point| moves(point.place.body) == moves(cylinder.head.body));
+            let of_points = with_head.map(|point| point.gradient.dot(generator.velocity(point.position)));
             let turns_axis = if head_beyond { j < joint } else { j > joint };
             let of_axis = self.axis.filter(|_| turns_axis).map(|[axis, by_axis]| by_axis.dot(generator.rotate(axis)));
             let rate = of_points.chain(of_axis).fold(model.zero(), |sum, rate| sum + rate);
@@ -203,15 +207,19 @@ pub fn jacobians<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     lines(model).flat_map(row).collect()
 }
 
-/// Force and moment about the world's origin, in the world frame, that a cylinder that pushes with 1 N exerts on each body.
-pub fn pushes<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, cylinder: &Cylinder) -> Vec<(BodyId, [Vec3<'g>; 2])> {
+/// Force and moment about the world's origin, in the world frame, that a cylinder that pushes with 1 N exerts on bodies.
+pub fn pushes<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, cylinder: &Cylinder) -> Vec<(Place, [Vec3<'g>; 2])> {
     let line = Line::new(model, kinematics, cylinder);
-    let at = |place: &Place<'g>| (place.body, [place.gradient, place.position.cross(place.gradient)]);
-    // The joint leaves its axis in place, seen from both of its sides: that on which the head is not.
+    let at = |point: &Point<'g>| (point.place.clone(), [point.gradient, point.position.cross(point.gradient)]);
+    // The joint leaves its axis in place, seen from both of its sides: that on which the head is not. On the body before it, it is at the end.
     let beyond = kinematics.generators[cylinder.coordinate.0].body;
-    let carrier = BodyId(if cylinder.head.body > cylinder.foot.body { beyond - 1 } else { beyond });
+    let carrier = if cylinder.head.body > cylinder.foot.body {
+        Place { body: BodyId(beyond - 1), along: model.chain.bodies[beyond - 1].length.clone() }
+    } else {
+        Place { body: BodyId(beyond), along: Value::ZERO }
+    };
     let on_carrier = line.axis.map(|[axis, by_axis]| (carrier, [Vec3::zero(model.graph), axis.cross(by_axis)]));
-    line.places.iter().map(at).chain(on_carrier).collect()
+    line.points.iter().map(at).chain(on_carrier).collect()
 }
 
 /// The stiffness at rest of the drive whose joint oil moves; `None` for a cylinder without a valve.

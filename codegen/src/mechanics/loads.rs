@@ -54,9 +54,24 @@ pub fn forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, t: Expr<'g>) -
     forces
 }
 
-/// The force that loads and connectors exert on each body and its moment about the body's origin, in the body's axes.
-pub fn on_bodies<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Option<[Vec3<'g>; 2]>> {
-    let mut wrenches: Vec<Option<[Vec3<'g>; 2]>> = vec![None; model.chain.bodies.len()];
+/// A force on a body and its moment about the body's origin, in the body's axes.
+#[derive(Clone, Debug)]
+pub struct Action<'g> {
+    /// Where it acts along the body, m.
+    pub along: Value,
+    /// Force and moment.
+    pub wrench: [Vec3<'g>; 2],
+}
+
+/// The sum of actions on a body; `None` if there are none.
+pub fn sum<'a, 'g: 'a>(actions: impl Iterator<Item = &'a Action<'g>>) -> Option<[Vec3<'g>; 2]> {
+    let wrenches = actions.map(|action| action.wrench);
+    wrenches.reduce(|[others, moments], [force, moment]| [others + force, moments + moment])
+}
+
+/// What loads and connectors exert on each body.
+pub fn on_bodies<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Vec<Action<'g>>> {
+    let mut actions: Vec<Vec<Action<'g>>> = vec![Vec::new(); model.chain.bodies.len()];
     for load in &model.chain.loads {
         let BodyId(body) = load.body;
         let scale = scale(model, load, model.t);
@@ -70,23 +85,24 @@ pub fn on_bodies<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Opti
         };
         let force = along_own_axes(&load.force);
         let moment = along_own_axes(&load.moment) + model.vector(&load.position).cross(force);
-        add(&mut wrenches[body], [force, moment]);
+        actions[body].push(Action { along: load.position[0].clone(), wrench: [force, moment] });
     }
-    for (BodyId(body), point, pull) in connectors::pulls(model, kinematics) {
+    for (Place { body: BodyId(body), along }, point, pull) in connectors::pulls(model, kinematics) {
         let pose = &kinematics.poses[body];
         let force = pose.rotation.apply_transposed(pull);
         let lever = pose.rotation.apply_transposed(point - pose.origin);
-        add(&mut wrenches[body], [force, lever.cross(force)]);
+        actions[body].push(Action { along, wrench: [force, lever.cross(force)] });
     }
-    wrenches
+    actions
 }
 
-/// Adds a force and a moment to those of a body.
-pub fn add<'g>(sum: &mut Option<[Vec3<'g>; 2]>, [force, moment]: [Vec3<'g>; 2]) {
-    *sum = Some(match *sum {
-        Some([others, moments]) => [others + force, moments + moment],
-        None => [force, moment],
-    });
+/// Where a force acts on a body.
+#[derive(Clone, Debug)]
+pub struct Place {
+    /// The body.
+    pub body: BodyId,
+    /// Position along it, m.
+    pub along: Value,
 }
 
 /// Start and end of the smooth intervals of every load's factor.

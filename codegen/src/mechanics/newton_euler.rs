@@ -5,12 +5,15 @@
 
 use super::factors::Factor;
 use super::kinematics::Kinematics;
-use super::loads;
+use super::loads::{self, Action, Place};
 use super::model::Model;
 use super::outward::{Velocities, along};
 use super::vector::Vec3;
-use crate::chain::{BodyId, Cut};
+use crate::chain::{Axis, BodyId, Cut, Inertia, Section, Side};
 use crate::symbolic::Expr;
+
+/// What acts on a body closer to a section than this fraction of the body's length acts at the section.
+const SAME_PLACE: f64 = 1e-8;
 
 /// `e = −(h + g)` [Urbaś 2016, Eqs. (5), (7), (9), by recursion]; gravity is an upward acceleration of the base.
 pub fn bias<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
@@ -23,7 +26,7 @@ pub fn bias<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
 pub fn internal_forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
     let motions = outward(model, factors, (&model.v, Some(&model.a)), -model.vector(&model.chain.gravity));
     let applied = loads::on_bodies(model, kinematics);
-    inward(model, factors, &motions, &applied, |force, moment| Some([-force, -moment])).at_cuts(model)
+    at_cuts(model, factors, &motions, &applied)
 }
 
 /// What forces and moments on bodies add to the internal forces at every cut: the sum of those beyond. They are in the world frame,
@@ -32,16 +35,85 @@ pub fn transmitted<'g>(
     model: &Model<'g>,
     kinematics: &Kinematics<'g>,
     factors: &[Factor<'g>],
-    on_bodies: Vec<(BodyId, Wrench<'g>)>,
+    on_bodies: Vec<(Place, Wrench<'g>)>,
 ) -> Vec<Expr<'g>> {
     let motions = outward(model, factors, (&model.zeros(), None), Vec3::zero(model.graph));
-    let mut applied = vec![None; model.chain.bodies.len()];
-    for (BodyId(body), [force, moment]) in on_bodies {
+    let mut applied = vec![Vec::new(); model.chain.bodies.len()];
+    for (Place { body: BodyId(body), along }, [force, moment]) in on_bodies {
         let pose = &kinematics.poses[body];
-        let own = [force, moment - pose.origin.cross(force)].map(|vector| pose.rotation.apply_transposed(vector));
-        loads::add(&mut applied[body], own);
+        let wrench = [force, moment - pose.origin.cross(force)].map(|vector| pose.rotation.apply_transposed(vector));
+        applied[body].push(Action { along, wrench });
     }
-    inward(model, factors, &motions, &applied, |force, moment| Some([-force, -moment])).at_cuts(model)
+    at_cuts(model, factors, &motions, &applied)
+}
+
+/// The wrenches that all cuts transmit.
+fn at_cuts<'g>(
+    model: &Model<'g>,
+    factors: &[Factor<'g>],
+    motions: &[Motion<'g>],
+    applied: &[Vec<Action<'g>>],
+) -> Vec<Expr<'g>> {
+    let swept = inward(model, factors, motions, applied, |force, moment| Some([-force, -moment]));
+    let wrenches = model.chain.cuts().into_iter().filter_map(|cut| match cut {
+        Cut::Ground => swept.ground,
+        Cut::Joint(BodyId(body)) => swept.joints[body].or(swept.bodies[body]),
+        Cut::Body(BodyId(body)) => swept.bodies[body],
+        Cut::Inside(beam, section) => {
+            let section = &model.chain.beams[beam].sections[section];
+            let BodyId(body) = section.body;
+            let reached = |factor: &Factor<'g>| matches!(factor, Factor::Body(index) if *index == body);
+            let motion = factors.iter().zip(motions).find(|(factor, _)| reached(factor)).map(|(_, motion)| motion);
+            within(model, section, (swept.beyond[body], motion?), &applied[body])
+        }
+    });
+    wrenches.flatten().flat_map(|vector| vector.0).collect()
+}
+
+/// The wrench that a section within a body transmits, about its centre: what is beyond the body, the inertia and weight of the part of the
+/// body beyond the section, and what acts on that part.
+fn within<'g>(
+    model: &Model<'g>,
+    section: &Section,
+    (beyond, motion): (Option<Wrench<'g>>, &Motion<'g>),
+    applied: &[Action<'g>],
+) -> Option<Wrench<'g>> {
+    let ([mut force, mut moment], inside) = (beyond?, section.inside.as_ref()?);
+    let Velocities::Body { omega } = &motion.velocities else { return None };
+    [force, moment] = with_inertia(model, [force, moment], &inside.beyond, *omega, (motion.alpha, motion.a));
+    if let Some([load, moment_of_load]) =
+        loads::sum(applied.iter().filter(|action| acts_beyond(model, section, action)))
+    {
+        (force, moment) = (force - load, moment - moment_of_load);
+    }
+    let lever = Vec3::along(Axis::X, model.number(&inside.distance));
+    Some([-force, -(moment - lever.cross(force))])
+}
+
+/// Whether what acts on a body acts beyond a section, with default parameters. What is beside the body acts on its end.
+fn acts_beyond(model: &Model<'_>, section: &Section, action: &Action<'_>) -> bool {
+    let Some(inside) = &section.inside else { return true };
+    let defaults = model.chain.parameter_defaults();
+    let [length, distance, along] =
+        [&model.chain.bodies[section.body.0].length, &inside.distance, &action.along].map(|value| value.at(&defaults));
+    let along = along.clamp(0.0, length);
+    if (along - distance).abs() <= SAME_PLACE * length { section.side != Side::After } else { along > distance }
+}
+
+/// A wrench about a body's origin, plus what the motion of an inertia of the body requires.
+fn with_inertia<'g>(
+    model: &Model<'g>,
+    [force, moment]: Wrench<'g>,
+    inertia: &Inertia,
+    omega: Vec3<'g>,
+    (alpha, a): (Vec3<'g>, Vec3<'g>),
+) -> Wrench<'g> {
+    let (mass, first) = (model.number(&inertia.mass), model.vector(&inertia.first));
+    let tensor = model.second_moments(inertia).tensor();
+    [
+        force + mass * a + alpha.cross(first) + omega.cross(omega.cross(first)),
+        moment + tensor.apply(alpha) + omega.cross(tensor.apply(omega)) + first.cross(a),
+    ]
 }
 
 /// The motion of the frame after one factor.
@@ -114,20 +186,10 @@ struct Inward<'g> {
     joints: Vec<Option<Wrench<'g>>>,
     /// The wrench recorded for each body in its own frame.
     bodies: Vec<Option<Wrench<'g>>>,
+    /// What everything beyond a body requires, in the body's frame.
+    beyond: Vec<Option<Wrench<'g>>>,
     /// The wrench recorded in the world frame.
     ground: Option<Wrench<'g>>,
-}
-
-impl<'g> Inward<'g> {
-    /// The wrenches recorded at all cuts.
-    fn at_cuts(&self, model: &Model<'g>) -> Vec<Expr<'g>> {
-        let wrenches = model.chain.cuts().into_iter().filter_map(|cut| match cut {
-            Cut::Ground => self.ground,
-            Cut::Joint(BodyId(body)) => self.joints[body].or(self.bodies[body]),
-            Cut::Body(BodyId(body)) => self.bodies[body],
-        });
-        wrenches.flatten().flat_map(|vector| vector.0).collect()
-    }
 }
 
 /// From tip to base: the force and moment that each frame requires, minus the loads `applied` to the bodies. `note` converts them to
@@ -136,14 +198,14 @@ fn inward<'g>(
     model: &Model<'g>,
     factors: &[Factor<'g>],
     motions: &[Motion<'g>],
-    applied: &[Option<Wrench<'g>>],
+    applied: &[Vec<Action<'g>>],
     note: impl Fn(Vec3<'g>, Vec3<'g>) -> Option<Wrench<'g>>,
 ) -> Inward<'g> {
     let zero = Vec3::zero(model.graph);
     let (mut force, mut moment) = (zero, zero);
     let mut bias = model.zeros();
     let mut joints = vec![None; model.chain.bodies.len()];
-    let mut bodies = joints.clone();
+    let (mut bodies, mut beyond) = (joints.clone(), joints.clone());
     // The body whose path the sweep follows.
     let mut on = 0;
     let sweep = model.graph.sweep();
@@ -155,16 +217,15 @@ fn inward<'g>(
             (Factor::Body(index), Velocities::Body { omega }) => {
                 let body = &model.chain.bodies[*index];
                 sweep.visit(&body.name);
+                beyond[*index] = Some([force, moment]);
                 if let Some(inertia) = &body.inertia {
-                    let (mass, first) = (model.number(&inertia.mass), model.vector(&inertia.first));
-                    let tensor = model.second_moments(inertia).tensor();
-                    force = force + mass * *a + alpha.cross(first) + omega.cross(omega.cross(first));
-                    moment = moment + tensor.apply(*alpha) + omega.cross(tensor.apply(*omega)) + first.cross(*a);
+                    [force, moment] = with_inertia(model, [force, moment], inertia, *omega, (*alpha, *a));
                     force.named(&format!("force_{}", body.name));
                     moment.named(&format!("moment_{}", body.name));
                 }
-                if let Some(Some([load, moment_of_load])) = applied.get(*index) {
-                    (force, moment) = (force - *load, moment - *moment_of_load);
+                if let Some([load, moment_of_load]) = applied.get(*index).and_then(|actions| loads::sum(actions.iter()))
+                {
+                    (force, moment) = (force - load, moment - moment_of_load);
                 }
                 on = *index;
                 bodies[on] = note(force, moment);
@@ -195,5 +256,5 @@ fn inward<'g>(
             _ => {}
         }
     }
-    Inward { bias, joints, bodies, ground: note(force, moment) }
+    Inward { bias, joints, bodies, beyond, ground: note(force, moment) }
 }

@@ -4,9 +4,9 @@ use super::elements::WRITTEN;
 use super::limits::Limit;
 use super::section::Elastic;
 use super::{Check, Owner};
-use crate::chain::{self, Axis, BeamSpring, CoordinateKind, Moduli, Outline, Step, Value};
+use crate::chain::{self, Axis, BeamSpring, CoordinateKind, Outline, Step, Value};
 use crate::diagnostic::{Span, rule};
-use crate::expand::beam::{self, Elements, Joint, Part, RigidElement};
+use crate::expand::beam::{self, Distribution, Elements, Joint, Part, RigidElement};
 use crate::expand::placement::translate;
 use crate::spec::{Beam, BeamDamping, BeamPart, Bend, Directions, Either, Number, SectionJoint, Sections, Spanned};
 
@@ -35,13 +35,7 @@ impl<'a> Check<'a> {
             let length = self.number(&inside.length, "`length`", "m", Limit::Positive);
             match &inside.elements {
                 Some(elements) => {
-                    let count = elements.value.as_ref().map_or(0, Vec::len);
-                    self.beams.push(chain::Beam {
-                        link: link.to_owned(),
-                        outlines: Vec::new(),
-                        moduli: vec![None; count],
-                        allowable_stress: None,
-                    });
+                    self.push_beam(link, Vec::new(), None, None);
                     self.one_by_one(inside, &length, elements)
                 }
                 None => self.equal_sections(inside, (link, given.span), &length),
@@ -147,9 +141,9 @@ impl<'a> Check<'a> {
                 let d = length.clone() / (sections.max(1) as f64).into();
                 Divided {
                     outlines: section.outline.iter().map(|outline| (Value::ZERO, outline.clone())).collect(),
-                    moduli: vec![section.moduli.clone(); sections + 1],
                     elements: beam::element_lengths(length, sections).into_iter().map(element).collect(),
                     stiffness: vec![beam::stiffness(&youngs, &shear, &section, &d); sections],
+                    distribution: Distribution::Prismatic { line_density, section: Box::new(section) },
                 }
             }
             (None, Some(parts)) => {
@@ -164,24 +158,19 @@ impl<'a> Check<'a> {
                     })
                     .collect();
                 let element = |ends: &[f64; 2]| beam::element_of_parts(&parts, *ends, &density, &extra);
-                let moduli = |ends: &[f64; 2]| beam::section_at(&parts, ends[0])?.moduli;
                 let section = |k: usize| [k as f64 * d, (k + 1) as f64 * d];
                 let spring = |k: usize| beam::stiffness_of_parts(&parts, section(k), &youngs, &shear);
                 Divided {
                     outlines: beam::outlines_of_parts(&parts),
-                    moduli: ends.iter().map(moduli).collect(),
                     elements: ends.iter().map(element).collect(),
                     stiffness: (0..sections).map(spring).collect(),
+                    distribution: Distribution::Parts { parts, density, extra },
                 }
             }
             _ => return None,
         };
-        self.beams.push(chain::Beam {
-            link: link.to_owned(),
-            outlines: divided.outlines,
-            moduli: divided.moduli,
-            allowable_stress: yield_stress.map(|stress| stress / safety),
-        });
+        let allowable = yield_stress.map(|stress| stress / safety);
+        self.push_beam(link, divided.outlines, allowable, Some(divided.distribution));
         let joint =
             |stiffness: [Value; 3]| Joint { damping: damping.of(&stiffness), stiffness, half_bend: half_bend.clone() };
         Some(Elements { elements: divided.elements, joints: divided.stiffness.into_iter().map(joint).collect() })
@@ -290,11 +279,11 @@ impl<'a> Check<'a> {
 struct Divided {
     /// Outlines along the beam.
     outlines: Vec<(Value, Outline)>,
-    /// Section moduli at the beginning of each element.
-    moduli: Vec<Option<Moduli>>,
     elements: Vec<RigidElement>,
     /// Stiffness of the springs, N m/rad.
     stiffness: Vec<[Value; 3]>,
+    /// What it consists of.
+    distribution: Distribution,
 }
 
 /// Damping of a beam's springs.

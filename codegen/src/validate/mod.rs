@@ -22,6 +22,7 @@ mod regular;
 mod rope;
 mod run;
 mod section;
+mod sections;
 
 use std::collections::BTreeMap;
 
@@ -30,6 +31,7 @@ use crate::chain::{
     Relation, Value,
 };
 use crate::diagnostic::{Diagnostics, Mistake, SourceFile, rule};
+use crate::expand::beam::Distribution;
 use crate::spec::{self, Analysis, Crane, CraneSpec, Lookalike, Spanned};
 use limits::Limit;
 use names::Names;
@@ -148,6 +150,8 @@ struct Check<'a> {
     /// Damping of the joints of ropes.
     rope_damping: Vec<(CoordinateId, Value)>,
     beams: Vec<chain::Beam>,
+    /// What each of the beams consists of; `None` if its elements are given one by one, and for ropes.
+    distributions: Vec<Option<Distribution>>,
     base: [Option<CoordinateId>; 6],
     links: BTreeMap<&'a str, LinkBodies>,
     /// Names of bodies and coordinates after expansion.
@@ -191,6 +195,7 @@ impl<'a> Check<'a> {
         self.make_drives_hydraulic(crane, &cylinders, pump.as_ref(), &mut drives);
         let connectors = self.connectors(crane, &cylinders);
         rotors.extend(self.rotors(crane, &drives));
+        self.beam_sections(&loads, &cylinders, &connectors);
         let points = self.points(crane, &supports);
         let guess = self.guess(crane, &drives, &connectors);
         let run = self.run(crane.run.as_ref());

@@ -31,13 +31,7 @@ impl<'a> Check<'a> {
         let line_density = self.number(&rope.mass_per_length, "`mass_per_length`", "kg/m", Limit::Positive);
         let damping = self.number_or(rope.damping.as_ref(), 0.0, "`damping`", "N m s/rad", Limit::NotNegative);
         let length = length / Value::Constant(f64::from(count));
-        // Forces are known at the beginning of every link, stresses are not.
-        self.beams.push(chain::Beam {
-            link: link.to_owned(),
-            outlines: Vec::new(),
-            moduli: vec![None; count as usize],
-            allowable_stress: None,
-        });
+        self.push_beam(link, Vec::new(), None, None);
         let inertia = slender(&length, &line_density);
         let (mut starts, mut start, mut tip) = (Vec::new(), Value::ZERO, Value::ZERO);
         for number in 1..=count {

@@ -23,6 +23,8 @@ pub struct Description {
     pub coordinates: List<CoordinateInfo>,
     /// Bodies from base to tip.
     pub bodies: List<BodyInfo>,
+    /// Sections of beams and ropes, from the base to the tip.
+    pub sections: List<SectionInfo>,
     /// Supports.
     pub supports: List<SupportInfo>,
     /// Drives.
@@ -173,6 +175,49 @@ pub struct BodyInfo {
     pub length: f64,
     /// Number of coordinates that move it: the first `degrees_of_freedom` of `q`, Eq. (2).
     pub degrees_of_freedom: usize,
+}
+
+/// A section of a beam at which forces, moments and stresses are known, or the beginning of a link of a rope.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SectionInfo {
+    /// Index of its body, a rigid element.
+    pub body: usize,
+    /// Distance from the beginning of the beam with default parameters, m.
+    pub x: f64,
+    /// On which side of what is there.
+    pub side: Side,
+    /// What is there, such as `head of lift` or `end`; empty where only an element begins.
+    pub at: Text,
+}
+
+/// The side of a section at which forces and stresses are those given: where a force acts or the shape has a step, they jump.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Just before.
+    Before,
+    /// They do not jump.
+    Both,
+    /// Just after.
+    After,
+}
+
+impl Side {
+    /// The side as a preposition.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Side::Before => "before",
+            Side::Both => "at",
+            Side::After => "after",
+        }
+    }
+}
+
+#[cfg(feature = "std")]
+impl SectionInfo {
+    /// The side and what is there, such as `before the head of lift`; empty where only an element begins.
+    pub fn place(&self) -> String {
+        if self.at.is_empty() { String::new() } else { format!("{} the {}", self.side.name(), self.at.as_str()) }
+    }
 }
 
 /// A support.

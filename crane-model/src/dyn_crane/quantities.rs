@@ -296,7 +296,7 @@ impl dyn DynCrane + '_ {
 
     /// Section moduli for stresses of beams, as [`Description::sections`](crate::Description::sections) lists the sections.
     pub fn section_moduli_at(&self) -> Vec<SectionModuli> {
-        let mut out = vec![SectionModuli::ZERO; self.description().sections().len()];
+        let mut out = vec![SectionModuli::ZERO; self.description().sections.len()];
         self.section_moduli(&mut out);
         out
     }

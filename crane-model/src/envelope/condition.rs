@@ -68,7 +68,7 @@ impl Condition {
         }
         if let Some(greatest) = limits.utilisation {
             let slack = |section: &StressedSection| {
-                Some((Limit::Utilisation { body: section.body }, 1.0 - section.utilisation? / greatest))
+                Some((Limit::Utilisation { section: section.section }, 1.0 - section.utilisation? / greatest))
             };
             slacks.extend(self.sections.iter().filter_map(slack));
         }

@@ -39,8 +39,8 @@ pub enum Limit {
     },
     /// The utilisation of a section of a beam.
     Utilisation {
-        /// Index of the body that begins at the section.
-        body: usize,
+        /// Index of the section among [`Description::sections`].
+        section: usize,
     },
     /// The effort of a drive.
     Effort {
@@ -74,7 +74,11 @@ impl Limit {
                 let [from, to] = feet.map(|foot| description.supports[foot].name.as_str());
                 format!("{from} – {to}")
             }
-            Limit::Utilisation { body } => description.bodies[body].name.to_string(),
+            Limit::Utilisation { section } => {
+                let section = &description.sections[section];
+                let body = description.bodies[section.body].name.as_str();
+                if section.at.is_empty() { body.to_owned() } else { format!("{body} {}", section.place()) }
+            }
             Limit::Effort { drive } => description.coordinates[description.drives[drive].coordinate].name.to_string(),
             Limit::Deflection { point } => description.points[point].to_string(),
         }

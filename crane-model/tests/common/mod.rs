@@ -30,6 +30,7 @@ pub const fn description(
         parameters: List::Static(&[]),
         coordinates: List::Static(coordinates),
         bodies: List::Static(&[]),
+        sections: List::Static(&[]),
         supports: List::Static(&[]),
         drives: List::Static(&[]),
         stops: List::Static(&[]),

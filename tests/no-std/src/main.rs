@@ -18,8 +18,9 @@ macro_rules! call_all {
         let mut matrices = vec![Matrix4::zeros(); black_box(pairs)];
         let mut vectors = vec![Vector3::zeros(); black_box(DESCRIPTION.supports.len().max(DESCRIPTION.points.len()))];
         let elements = 1 + DESCRIPTION.connectors.len() + DESCRIPTION.cylinders.len();
-        let mut wrenches = vec![Wrench::ZERO; black_box(elements * (2 * DESCRIPTION.bodies.len() + 1))];
-        let mut moduli = vec![SectionModuli::ZERO; black_box(DESCRIPTION.bodies.len())];
+        let mut wrenches =
+            vec![Wrench::ZERO; black_box(elements * (2 * DESCRIPTION.bodies.len() + DESCRIPTION.sections.len() + 1))];
+        let mut moduli = vec![SectionModuli::ZERO; black_box(DESCRIPTION.sections.len())];
         let mut motions = vec![[0.0; 2]; black_box(DESCRIPTION.drives.len())];
         let pieces = DESCRIPTION.drives.iter().map(|drive| drive.pieces).sum();
         let mut pieces = vec![[0.0; 2]; black_box(pieces)];

@@ -1,21 +1,27 @@
-//! The same crane with other numbers of sections, and how much its frequencies change with twice as many.
+//! The same crane with other numbers of sections, and how much its frequencies and stresses change with twice as many.
 
 use crane_codegen::{
     SourceFile, read,
     spec::{Analysis, Link, Sections, Spanned},
 };
 use crane_live::LiveCrane;
-use crane_model::{dyn_crane::DynCrane, modes::undamped};
-use crane_page::tables::Case;
+use crane_model::{
+    dyn_crane::DynCrane,
+    modes::undamped,
+    sections::{StressedSection, stressed_sections},
+};
+use crane_page::{history::Instant, tables::Case};
 
 use crate::{Registry, problem::Outcome};
 
-/// Maximum number of coordinates of a crane whose frequencies are also computed with twice the sections: more take seconds.
+/// Maximum number of coordinates of a crane that is also computed with twice the sections: more take seconds.
 const MOST_COORDINATES: usize = 60;
 /// Number of lowest modes that the sections should resolve; higher ones are modes of the elements.
 const LOWEST: usize = 6;
 /// Change of a frequency that is worth a caution.
 const CAUTION: f64 = 0.01;
+/// Change of a stress that is worth a caution.
+const CAUTION_OF_STRESS: f64 = 0.03;
 
 /// Relative changes of the frequencies with twice the sections, lowest first; `None` for a crane without sections, with too many,
 /// or without a stable pose.
@@ -23,16 +29,7 @@ const CAUTION: f64 = 0.01;
 /// # Errors
 /// The modes of one of the cranes cannot be computed.
 pub fn changes(case: &Case<'_>, registry: &Registry) -> Outcome<Option<Vec<f64>>> {
-    let description = case.crane.description();
-    let text = registry.spec(&description.name).filter(|_| description.coordinates.len() <= MOST_COORDINATES);
-    let Some(text) = text.and_then(|text| with(&description.name, text, |count| 2.0 * count)) else { return Ok(None) };
-    let Ok(mut finer) = LiveCrane::from_spec(&SourceFile::new(description.name.to_string(), text)) else {
-        return Ok(None);
-    };
-    let values: Vec<f64> = (0..description.parameters.len()).map(|index| case.crane.parameter(index)).collect();
-    if DynCrane::set_parameters(&mut finer, &values).is_err() {
-        return Ok(None);
-    }
+    let Some(finer) = finer(case.crane, registry) else { return Ok(None) };
     let finer = Case::new(case.label, &finer);
     if !finer.equilibrium.is_stable() {
         return Ok(None);
@@ -43,6 +40,45 @@ pub fn changes(case: &Case<'_>, registry: &Registry) -> Outcome<Option<Vec<f64>>
     };
     let pairs = frequencies(case)?.into_iter().zip(frequencies(&finer)?);
     Ok(Some(pairs.map_while(|(coarse, fine)| Some(fine? / coarse? - 1.0)).collect()))
+}
+
+/// Relative change of the maximum stress of beams at rest with twice the sections, by utilisation where there is a yield stress; `None` for
+/// a crane without stresses or sections, with too many, or without a stable pose.
+pub fn change_of_stress(case: &Case<'_>, registry: &Registry) -> Option<f64> {
+    let greatest = |case: &Case<'_>| {
+        let wrenches = Instant::at_rest(case.crane, &case.equilibrium.q).wrenches;
+        let sections = stressed_sections(case.crane.description(), &case.crane.section_moduli_at(), &wrenches);
+        let section = sections.into_iter().max_by(StressedSection::by_use)?;
+        Some(section.utilisation.unwrap_or(section.stress.equivalent))
+    };
+    let coarse = greatest(case).filter(|stress| *stress > 0.0)?;
+    let finer = finer(case.crane, registry)?;
+    let finer = Case::new(case.label, &finer);
+    if !finer.equilibrium.is_stable() {
+        return None;
+    }
+    Some(greatest(&finer)? / coarse - 1.0)
+}
+
+/// Says that the sections do not resolve the maximum stress.
+pub fn caution_of_stress(change: f64) -> Option<String> {
+    (change.abs() > CAUTION_OF_STRESS).then(|| {
+        format!(
+            "the maximum stress changes by {:+.1} % when the number of sections doubles: give the beams more `sections`",
+            100.0 * change
+        )
+    })
+}
+
+/// The crane with twice the sections and the same parameters, if it has sections and not too many.
+fn finer(crane: &dyn DynCrane, registry: &Registry) -> Option<LiveCrane> {
+    let description = crane.description();
+    let text = registry.spec(&description.name).filter(|_| description.coordinates.len() <= MOST_COORDINATES)?;
+    let text = with(&description.name, text, |count| 2.0 * count)?;
+    let mut finer = LiveCrane::from_spec(&SourceFile::new(description.name.to_string(), text)).ok()?;
+    let values: Vec<f64> = (0..description.parameters.len()).map(|index| crane.parameter(index)).collect();
+    DynCrane::set_parameters(&mut finer, &values).ok()?;
+    Some(finer)
 }
 
 /// Names the lowest mode whose frequency the sections do not resolve.

@@ -5,8 +5,8 @@ use crane_codegen::chain::{
 };
 use crane_model::{
     AttachmentInfo, BodyInfo, Bound, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole,
-    CylinderInfo, Description, DriveInfo, InputInfo, LoadInfo, ParameterInfo, PumpInfo, Refusal, SupportInfo,
-    ValveInfo,
+    CylinderInfo, Description, DriveInfo, InputInfo, LoadInfo, ParameterInfo, PumpInfo, Refusal, SectionInfo, Side,
+    SupportInfo, ValveInfo,
 };
 
 /// The description of a chain, as the compiler writes it.
@@ -32,6 +32,16 @@ pub fn describe(chain: &Chain) -> Description {
         mass: body.inertia.as_ref().map_or(0.0, |inertia| at_defaults(&inertia.mass)),
         length: at_defaults(&body.length),
         degrees_of_freedom: chain.degrees_of_freedom(BodyId(index)),
+    });
+    let sections = chain.beams.iter().flat_map(|beam| &beam.sections).map(|section| SectionInfo {
+        body: section.body.0,
+        x: at_defaults(&section.x),
+        side: match section.side {
+            chain::Side::Before => Side::Before,
+            chain::Side::Both => Side::Both,
+            chain::Side::After => Side::After,
+        },
+        at: section.at.clone().into(),
     });
     let supports = chain.supports.iter().map(|support| SupportInfo {
         name: support.name.clone().into(),
@@ -81,6 +91,7 @@ pub fn describe(chain: &Chain) -> Description {
         parameters: parameters.collect(),
         coordinates: coordinates.collect(),
         bodies: bodies.collect(),
+        sections: sections.collect(),
         supports: supports.collect(),
         drives: drives.collect(),
         stops: chain.stopped().into_iter().map(|id| id.0).collect(),

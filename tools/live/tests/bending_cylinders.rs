@@ -102,7 +102,7 @@ fn a_boom_bends_under_its_cylinder() {
     let mut springs: Vec<(String, f64)> = elements.by_ref().filter(|(name, _)| name.ends_with("psi")).collect();
     springs.reverse();
     for (cut, wrench) in crane.description().cuts().into_iter().zip(&wrenches) {
-        let Cut::Body { body, x: Some(_) } = cut else { continue };
+        let Cut::Body { body, section: Some(_) } = cut else { continue };
         let origin = place(body, [0.0; 3]);
         let beyond = weights.iter().filter(|(index, ..)| *index >= body);
         let mut force: Vector3<f64> = beyond.clone().map(|(_, _, mass)| down(*mass)).sum();

@@ -29,7 +29,10 @@ fn sections(description: &Description, moduli: &[SectionModuli], history: &[&Ins
     let used = first.iter().any(|section| section.utilisation.is_some());
     let places: Vec<Value> = first
         .iter()
-        .map(|section| json!({"beam": section.beam(description), "body": section.body, "x": section.x}))
+        .map(|section| {
+            let info = section.info(description);
+            json!({"beam": section.beam(description), "body": info.body, "x": info.x, "place": info.place()})
+        })
         .collect();
     let values = history.iter().copied().flat_map(|instant| {
         at(instant).into_iter().map(move |section| {

@@ -77,18 +77,20 @@ class Input(TypedDict):
 
 
 class Cut(TypedDict):
-    """A cut of `internal_forces`: "ground", "joint", "link" or "section", of a link, at x along a beam, m."""
+    """A cut of `internal_forces`: "ground", "joint", "link" or "section", of a link, at x along a beam, m; `place` as of a section."""
 
     kind: str
     link: str | None
     x: float | None
+    place: str | None
 
 
 class Section(TypedDict):
-    """A section of a beam at x, m."""
+    """A section of a beam at x, m; `place`: its side and what is there, such as `before the head of lift`, or nothing."""
 
     beam: str
     x: float
+    place: str
 
 
 class Info(TypedDict):

@@ -1,7 +1,7 @@
 //! What a crane consists of: names, units and numbers that do not change.
 
 use crane_model::dyn_crane::DynModel;
-use crane_model::{ConnectorInfo, Cut, Description};
+use crane_model::{ConnectorInfo, Cut, Description, SectionInfo};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
@@ -85,23 +85,26 @@ impl Crane {
         }
         all.set_item("inputs", list(std::mem::take(&mut rows))?)?;
         for cut in description.cuts() {
-            let (kind, body, x) = match cut {
-                Cut::Ground => ("ground", None, None),
-                Cut::Joint { body } => ("joint", Some(body), None),
-                Cut::Body { body, x: None } => ("link", Some(body), None),
-                Cut::Body { body, x } => ("section", Some(body), x),
+            let section = cut.section().map(|section| &description.sections[section]);
+            let (kind, body) = match cut {
+                Cut::Ground => ("ground", None),
+                Cut::Joint { body } => ("joint", Some(body)),
+                Cut::Body { body, section: None } => ("link", Some(body)),
+                Cut::Body { .. } | Cut::Inside { .. } => ("section", section.map(|section| section.body)),
             };
             let row = PyDict::new(py);
             row.set_item("kind", kind)?;
             row.set_item("link", body.map(|body| &*description.bodies[body].link))?;
-            row.set_item("x", x)?;
+            row.set_item("x", section.map(|section| section.x))?;
+            row.set_item("place", section.map(SectionInfo::place))?;
             rows.push(row);
         }
         all.set_item("cuts", list(std::mem::take(&mut rows))?)?;
-        for (body, x) in description.sections() {
+        for section in &*description.sections {
             let row = PyDict::new(py);
-            row.set_item("beam", &*description.bodies[body].link)?;
-            row.set_item("x", x)?;
+            row.set_item("beam", &*description.bodies[section.body].link)?;
+            row.set_item("x", section.x)?;
+            row.set_item("place", section.place())?;
             rows.push(row);
         }
         all.set_item("sections", list(rows)?)?;

@@ -54,7 +54,7 @@ impl Crane {
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let rest = self.rest(py);
         let state = State { t, q: Some(q), v: Some(v.unwrap_or(&rest)), a: Some(a.unwrap_or(&rest)) };
-        let width = OF_SECTION * self.live.description().sections().len() + OF_LINE;
+        let width = OF_SECTION * self.live.description().sections.len() + OF_LINE;
         self.one_by_one(py, state, &[width], invalid, write)
     }
 }
@@ -83,11 +83,10 @@ fn write(crane: &LiveCrane, Moment { t, q, v, a }: &Moment, out: &mut [f64]) {
     out.fill(f64::NAN);
     let wrenches = crane.internal_forces_at(*t, q, v, a);
     let known = stressed_sections(description, &crane.section_moduli_at(), &wrenches);
-    for ((body, _), out) in description.sections().into_iter().zip(out.chunks_mut(OF_SECTION)) {
-        if let Some(section) = known.iter().find(|section| section.body == body) {
-            let Stress { normal, shear, torsion, equivalent } = section.stress;
-            out.copy_from_slice(&[normal, shear, torsion, equivalent, section.utilisation.unwrap_or(f64::NAN)]);
-        }
+    for section in known {
+        let Stress { normal, shear, torsion, equivalent } = section.stress;
+        let of_section = [normal, shear, torsion, equivalent, section.utilisation.unwrap_or(f64::NAN)];
+        out[OF_SECTION * section.section..][..OF_SECTION].copy_from_slice(&of_section);
     }
     let lines = tipping::lines(crane, *t, q, v, a);
     if let (Some(line), Some(out)) = (tipping::governing(&lines), out.last_chunk_mut::<OF_LINE>()) {

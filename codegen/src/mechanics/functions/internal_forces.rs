@@ -45,7 +45,7 @@ impl Derivation<'_> {
                 supports::positions(model, &self.kinematics),
             ));
         }
-        let sections: usize = model.chain.beams.iter().map(|beam| beam.moduli.len()).sum();
+        let sections: usize = model.chain.beams.iter().map(|beam| beam.sections.len()).sum();
         if sections > 0 {
             functions.push(function(
                 FunctionId::SectionModuli,
@@ -81,7 +81,7 @@ impl Derivation<'_> {
         let (model, kinematics) = (&self.model, &self.kinematics);
         let of_connector = |connector| {
             let pulls = connectors::between_bodies(model, kinematics, connector);
-            let on_bodies = pulls.into_iter().map(|(body, point, pull)| (body, [pull, point.cross(pull)]));
+            let on_bodies = pulls.into_iter().map(|(place, point, pull)| (place, [pull, point.cross(pull)]));
             newton_euler::transmitted(model, kinematics, &self.factors, on_bodies.collect())
         };
         let wrenches = model.chain.connectors.iter().flat_map(of_connector).collect();
@@ -107,5 +107,5 @@ fn section_moduli<'g>(model: &Model<'g>, beam: &Beam) -> Vec<Expr<'g>> {
         let corners = model.graph.constant(if *has_corners { 1.0 } else { 0.0 });
         [model.number(area), wy, wz, model.number(torsion), ay, az, corners, allowable]
     };
-    beam.moduli.iter().flat_map(of_section).collect()
+    beam.sections.iter().flat_map(|section| of_section(&section.moduli)).collect()
 }

@@ -3,7 +3,7 @@
 use super::{Plausibility, items, rounded};
 use crate::chain::CoordinateKind;
 use crate::diagnostic::{Span, rule};
-use crate::spec::{Beam, Either, Link, Material, Number, Section, Sections, Spanned};
+use crate::spec::{Beam, Either, Link, Material, Number, Section, Spanned};
 
 /// Moduli of beam materials, from plastics (2e9 Pa) to tungsten (4e11 Pa), with a margin, Pa.
 const YOUNGS_MODULUS: std::ops::RangeInclusive<f64> = 1e9..=1e12;
@@ -62,28 +62,6 @@ impl Plausibility<'_> {
         let sections = std::iter::once(beam.section.as_ref()).chain(of_parts).flatten();
         for section in sections.filter_map(|section| section.value.as_ref()) {
             self.section(section, &place, self.number(&beam.length).0);
-        }
-    }
-
-    /// Parts of a beam that contain no spring of a section: their stresses are not computed.
-    pub(super) fn parts(&mut self) {
-        for link in items(Some(&self.crane.links)) {
-            let Some(beam) = link.beam.as_ref().and_then(|beam| beam.value.as_ref()) else { continue };
-            let sections = beam.sections.as_ref().and_then(|sections| sections.value);
-            let (Some(Sections::Count(count)), Some(parts)) = (sections, &beam.parts) else { continue };
-            let name = link.name.value.as_deref().unwrap_or_default();
-            let section = self.number(&beam.length).0 / count;
-            let mut begin = 0.0;
-            for (number, part) in items(Some(parts)).enumerate() {
-                let (length, at) = self.number(&part.length);
-                // Springs are at the middle of sections; this is the next one after the beginning of the part.
-                let next = ((begin / section - 0.5).ceil().max(0.0) + 0.5) * section;
-                if next > begin + length {
-                    let sections = (count * section / length).ceil();
-                    self.warn(rule::part_without_spring(at, number + 1, name, sections));
-                }
-                begin += length;
-            }
         }
     }
 

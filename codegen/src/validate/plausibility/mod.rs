@@ -27,7 +27,6 @@ pub(super) fn warnings(crane: &Crane, chain: &Chain, values: Vec<f64>) -> Vec<Mi
     plausibility.slow_drives();
     // Consequences of such numbers, such as frequencies and masses, would be reported as well.
     if plausibility.warnings.is_empty() {
-        plausibility.parts();
         plausibility.damping();
         plausibility.masses();
         plausibility.feet();

@@ -1,7 +1,7 @@
 //! Loads and moments about tipping lines over a run.
 
 use crane_model::{
-    Cut, Description, Wrench,
+    Cut, Description, SectionInfo, Wrench,
     results::Table,
     tipping::{TippingLine, governing},
 };
@@ -25,13 +25,20 @@ pub fn prefix(description: &Description, cut: Cut) -> Option<(String, [&'static 
     match cut {
         Cut::Ground => Some(("ground".to_owned(), OF_JOINTS)),
         Cut::Joint { body } => Some((format!("{}_joint", description.bodies[body].link), OF_JOINTS)),
-        Cut::Body { body, x: Some(_) } => Some((format!("{}_section", description.bodies[body].name), OF_SECTIONS)),
-        Cut::Body { x: None, .. } => None,
+        Cut::Body { body, section: Some(_) } => {
+            Some((format!("{}_section", description.bodies[body].name), OF_SECTIONS))
+        }
+        Cut::Body { section: None, .. } => None,
+        Cut::Inside { section } => {
+            let SectionInfo { body, side, at, .. } = &description.sections[section];
+            let what = at.replace(' ', "_");
+            Some((format!("{}_{}_{what}", description.bodies[*body].name, side.name()), OF_SECTIONS))
+        }
     }
 }
 
 /// The history in columns: `t`; for a tipping line `<from>_<to>_stabilising` and `_overturning`; for the ground, joints and
-/// sections the six components.
+/// sections the six components. A section within an element is named after the element and what is there.
 pub fn table(description: &Description, history: &[Instant]) -> Table {
     let mut table = Table::default();
     table.add("t", "s");

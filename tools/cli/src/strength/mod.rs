@@ -19,6 +19,7 @@ use crate::{
     files,
     integration::{progress, record_checked},
     problem::{Outcome, Problem},
+    refinement,
 };
 
 use history::least_margin;
@@ -40,6 +41,11 @@ pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) ->
     verdict(&mut report, crane.as_ref(), &rest, "");
     let moduli = crane.section_moduli_at();
     stresses::verdict(&mut report, crane.description(), &moduli, std::slice::from_ref(&rest), "");
+    if let Some(change) = refinement::change_of_stress(&case, registry) {
+        report.line("change of the maximum stress with twice the sections", 100.0 * change, "%");
+        report.value("change_of_the_greatest_stress_with_twice_the_sections", change);
+        report.caution(refinement::caution_of_stress(change).as_deref());
+    }
     let history = if options.run { Some(along(options, crane.as_ref(), &mut report)?) } else { None };
     for caution in cautions::of_pose(crane.as_ref(), &q, options.analysis.crane.limits.bend) {
         report.caution(Some(caution));

@@ -24,8 +24,8 @@ pub fn verdict(
     });
     let greatest = sections.max_by(|(_, a), (_, b)| StressedSection::by_use(a, b));
     let Some((t, section)) = greatest else { return };
-    let StressedSection { x, stress, utilisation, .. } = section;
-    let place = format!("{}, {x:.3} m from its start", section.beam(description));
+    let StressedSection { stress, utilisation, .. } = section;
+    let place = section.place(description);
     let key = |name: &str| format!("{name}{of_what}").replace(' ', "_");
     if let Some(utilisation) = utilisation {
         report.fact_as(&key("greatest utilisation"), format!("maximum utilisation{of_what}"), utilisation, "");
@@ -49,14 +49,16 @@ pub fn verdict(
 pub fn table(description: &Description, moduli: &[SectionModuli], wrenches: &[Wrench]) -> Grid {
     let title = "Stresses of beams at rest: maximum of normal force and bending, of shear forces, of torsion; von Mises' equivalent of \
                  all three, and its ratio to yield stress over safety factor";
-    let headers = ["beam", "x [m]", "normal [MPa]", "shear [MPa]", "torsion [MPa]", "equivalent [MPa]", "utilisation"];
+    let headers =
+        ["beam", "x [m]", "place", "normal [MPa]", "shear [MPa]", "torsion [MPa]", "equivalent [MPa]", "utilisation"];
     let mut grid = Grid::new("stresses", title, &headers);
     for section in stressed_sections(description, moduli, wrenches) {
-        let StressedSection { x, stress, utilisation, .. } = section;
+        let StressedSection { stress, utilisation, .. } = section;
+        let info = section.info(description);
         let Stress { normal, shear, torsion, equivalent } = stress;
         let stresses = [normal, shear, torsion, equivalent].map(|pascal| Cell::from(pascal / MEGA));
-        let row =
-            [Cell::from(section.beam(description)), x.into()].into_iter().chain(stresses).chain([utilisation.into()]);
+        let place = [Cell::from(section.beam(description)), info.x.into(), info.place().into()];
+        let row = place.into_iter().chain(stresses).chain([utilisation.into()]);
         grid.row(row.collect::<Vec<_>>());
     }
     grid

@@ -46,7 +46,7 @@ pub fn joints(description: &Description, wrenches: &[Wrench]) -> Grid {
         let name = match cut {
             Cut::Ground => "ground",
             Cut::Joint { body } => description.bodies[body].link.as_str(),
-            Cut::Body { .. } => continue,
+            Cut::Body { .. } | Cut::Inside { .. } => continue,
         };
         grid.row([Cell::from(name)].into_iter().chain(numbers(wrench).map(Cell::from)).collect::<Vec<_>>());
     }
@@ -57,11 +57,13 @@ pub fn joints(description: &Description, wrenches: &[Wrench]) -> Grid {
 pub fn sections(description: &Description, wrenches: &[Wrench]) -> Grid {
     let title = "Section forces of beams at rest, in the section's frame, x along the beam: N is positive in tension, Mx twists, My \
                  and Mz bend as theta and psi do";
-    let mut grid = Grid::new("sections", title, &borrowed(&headings(&["beam", "x [m]"], OF_SECTIONS)));
+    let mut grid = Grid::new("sections", title, &borrowed(&headings(&["beam", "x [m]", "place"], OF_SECTIONS)));
     for (cut, wrench) in description.cuts().into_iter().zip(wrenches) {
-        if let Cut::Body { body, x: Some(x) } = cut {
-            let beam = description.bodies[body].link.as_str();
-            let row = [Cell::from(beam), x.into()].into_iter().chain(numbers(wrench).map(Cell::from));
+        if let Some(section) = cut.section() {
+            let section = &description.sections[section];
+            let beam = description.bodies[section.body].link.as_str();
+            let place = [Cell::from(beam), section.x.into(), section.place().into()];
+            let row = place.into_iter().chain(numbers(wrench).map(Cell::from));
             grid.row(row.collect::<Vec<_>>());
         }
     }
@@ -77,7 +79,7 @@ pub fn extremes_of_joints(description: &Description, table: &Table) -> Grid {
         let name = match cut {
             Cut::Ground => "ground",
             Cut::Joint { body } => description.bodies[body].link.as_str(),
-            Cut::Body { .. } => continue,
+            Cut::Body { .. } | Cut::Inside { .. } => continue,
         };
         for (component, unit, found) in extremes(description, cut, table) {
             grid.row([
@@ -111,11 +113,12 @@ pub fn extremes_of_sections(description: &Description, table: &Table) -> Grid {
     let mut grid = Grid::new("extremes_of_sections", title, &headers);
     let mut beams: Vec<(&str, Vec<(f64, Cut)>)> = Vec::new();
     for cut in description.cuts() {
-        if let Cut::Body { body, x: Some(x) } = cut {
-            let link = description.bodies[body].link.as_str();
+        if let Some(section) = cut.section() {
+            let section = &description.sections[section];
+            let link = description.bodies[section.body].link.as_str();
             match beams.last_mut().filter(|(beam, _)| *beam == link) {
-                Some((_, sections)) => sections.push((x, cut)),
-                None => beams.push((link, vec![(x, cut)])),
+                Some((_, sections)) => sections.push((section.x, cut)),
+                None => beams.push((link, vec![(section.x, cut)])),
             }
         }
     }

@@ -18,7 +18,11 @@ pub(super) fn utilisation(crane: &Shown<'_>) -> Option<Figure> {
         sections.into_iter().map(|section| (instant.t, section))
     });
     let (time, section) = sections.max_by(|(_, a), (_, b)| StressedSection::by_use(a, b))?;
-    let place = format!("{}, {} m from its start", spoken(section.beam(description)), readable(section.x));
+    let info = section.info(description);
+    let mut place = format!("{}, {} m from its start", spoken(section.beam(description)), readable(info.x));
+    if !info.at.is_empty() {
+        place = format!("{place}, {}", info.place());
+    }
     let stress = format!("{} MPa", readable(section.stress.equivalent / 1e6));
     let when = crane.when(time);
     let Some(used) = section.utilisation else {

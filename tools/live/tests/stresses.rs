@@ -1,0 +1,171 @@
+//! Stresses at pins, loads, steps and ends of beams, against the statics of beams.
+
+use crane_codegen::SourceFile;
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::DynCrane;
+use crane_model::sections::{StressedSection, stressed_sections};
+use crane_model::{SectionInfo, Side, Wrench, statics};
+
+const GRAVITY: f64 = 9.81;
+const DENSITY: f64 = 7850.0;
+
+fn crane(text: &str) -> LiveCrane {
+    let text =
+        format!("format: 1\nname: test\nmaterials: {{steel: {{E: 2.1e11, G: 8.1e10, density: {DENSITY}}}}}\n{text}");
+    LiveCrane::from_spec(&SourceFile::new("test.yaml", text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
+}
+
+/// What the sections carry and how they are stressed, at rest.
+fn at_rest(crane: &LiveCrane) -> (Vec<(SectionInfo, Wrench)>, Vec<(SectionInfo, StressedSection)>) {
+    let crane: &dyn DynCrane = crane;
+    let found = crane.equilibrium(&statics::Settings::default());
+    assert!(found.is_stable(), "{found}");
+    let still = vec![0.0; found.q.len()];
+    let wrenches = crane.internal_forces_at(0.0, &found.q, &still, &still);
+    let description = crane.description();
+    let cuts = description.cuts().into_iter().zip(&wrenches);
+    let carried = cuts.filter_map(|(cut, wrench)| Some((description.sections[cut.section()?].clone(), *wrench)));
+    let stressed = stressed_sections(description, &crane.section_moduli_at(), &wrenches);
+    (carried.collect(), stressed.into_iter().map(|section| (section.info(description).clone(), section)).collect())
+}
+
+fn at(sections: &[(SectionInfo, Wrench)], x: f64, side: Side) -> Wrench {
+    let here = |(info, _): &&(SectionInfo, Wrench)| (info.x - x).abs() < 1e-9 && info.side == side;
+    sections.iter().find(here).unwrap_or_else(|| panic!("no section at {x} {side:?}")).1
+}
+
+/// Thick enough that it sags by tenths of a millimetre.
+const STURDY: &str = "section: {box: {height: 0.5, width: 0.4, thickness: 0.02}}";
+const AREA: f64 = 0.5 * 0.4 - 0.46 * 0.36;
+
+/// On a hinge at its beginning and a stiff strut at its end, with a force of 50 kN between: `M = A x − w x²/2` up to the force, and the shear force
+/// jumps there.
+#[test]
+fn a_simply_supported_beam_is_bent_most_under_its_force() {
+    let (length, place, force) = (4.0, 1.3, 50e3);
+    let line = DENSITY * AREA * GRAVITY;
+    let reaction = force * (length - place) / length + line * length / 2.0;
+    for sections in [1, 2, 4] {
+        let beam = crane(&format!(
+            "
+gravity: [0, -{GRAVITY}, 0]
+links:
+  - name: beam
+    joint: revolute
+    beam: {{length: {length}, sections: {sections}, material: steel, {STURDY}}}
+loads: [{{name: press, link: beam, at: [{place}, 0, 0], force: [0, -{force}, 0]}}]
+connectors:
+  - {{name: strut, from: {{at: [{length}, -10, 0]}}, to: {{link: beam, at: [{length}, 0, 0]}}, law: {{spring: {{stiffness: 1e12, length: 10}}}}}}
+"
+        ));
+        let (carried, _) = at_rest(&beam);
+        for (info, wrench) in &carried {
+            let x = info.x;
+            let pushed = x > place || (x == place && info.side == Side::After);
+            let bending = reaction * x - line * x * x / 2.0 - if pushed { force * (x - place) } else { 0.0 };
+            let shear = -reaction + line * x + if pushed { force } else { 0.0 };
+            // After the strut, at the very end, nothing is left.
+            let end = x == length && info.side == Side::After;
+            let (bending, shear) = if end { (0.0, 0.0) } else { (bending, shear) };
+            // Sagging by 1 mm over metres changes levers by 1e-6.
+            assert!((wrench.moment.z - bending).abs() < 1e-5 * reaction, "{x}: {} for {bending}", wrench.moment.z);
+            assert!((wrench.force.y - shear).abs() < 1e-5 * reaction, "{x}: {} for {shear}", wrench.force.y);
+        }
+        let jump = at(&carried, place, Side::After).force.y - at(&carried, place, Side::Before).force.y;
+        assert!((jump / force - 1.0).abs() < 1e-6, "{jump}");
+    }
+}
+
+/// A tapered part, then a thinner one, clamped at its beginning: `σ = M h/2J` with the height on either side of the step.
+#[test]
+fn a_step_is_stressed_on_both_sides() {
+    let clamped = crane(&format!(
+        "
+gravity: [0, 0, 0]
+links:
+  - {{name: base, joint: {{prismatic: {{axis: x}}}}, mass: 1, com: [0, 0, 0]}}
+  - name: beam
+    beam:
+      length: 3
+      sections: 4
+      material: steel
+      parts:
+        - {{length: 1.7, section: {{box: {{height: 0.5, width: 0.4, thickness: 0.02}}}}, to: {{box: {{height: 0.4, width: 0.3, thickness: 0.02}}}}}}
+        - {{length: 1.3, section: {{box: {{height: 0.3, width: 0.25, thickness: 0.01}}}}}}
+drives: [{{coordinate: base_x, rigid: true, motion: {{hold: 0}}}}]
+loads: [{{name: press, link: beam, at: [3, 0, 0], force: [0, -20e3, 0]}}]
+"
+    ));
+    let (_, stressed) = at_rest(&clamped);
+    let stress = |h: f64, b: f64, t: f64| {
+        let second = (b * h.powi(3) - (b - 2.0 * t) * (h - 2.0 * t).powi(3)) / 12.0;
+        20e3 * 1.3 * h / 2.0 / second
+    };
+    let found = |side: Side| {
+        let here = |(info, _): &&(SectionInfo, StressedSection)| info.x == 1.7 && info.side == side;
+        stressed.iter().find(here).expect("a section at the step").1.stress.normal
+    };
+    // Levers shorten by 1e-6, and the normal force of the tilt adds as much.
+    for (side, expected) in [(Side::Before, stress(0.4, 0.3, 0.02)), (Side::After, stress(0.3, 0.25, 0.01))] {
+        assert!((found(side) / expected - 1.0).abs() < 2e-4, "{side:?}: {} for {expected}", found(side));
+    }
+    let (most, _) = stressed.iter().max_by(|(_, a), (_, b)| StressedSection::by_use(a, b)).expect("sections");
+    assert_eq!((most.x, most.place().as_str()), (1.7, "after the beginning of part 2"));
+}
+
+/// The boom of a loader: a hinge, a cylinder at 0.7 m, the load at the end.
+fn loader(sections: usize) -> LiveCrane {
+    crane(&format!(
+        "
+links:
+  - {{name: column, joint: {{prismatic: {{axis: x}}}}, mass: 50, com: [0, 0, 0]}}
+  - name: inner
+    placement: {{transform: {{rotation: {{x: 90 deg}}}}}}
+    joint: {{revolute: {{axis: z}}}}
+    beam: {{length: 3.4, sections: {sections}, material: steel, section: {{box: {{height: 0.28, width: 0.2, thickness: 0.006}}}}}}
+  - {{name: tip, joint: fixed, mass: 2500, com: [0, 0, 0], inertia: {{Ixx: 20, Iyy: 20, Izz: 20}}}}
+drives:
+  - {{coordinate: column_x, rigid: true, motion: {{hold: 0}}}}
+  - {{coordinate: inner_psi, stiffness: 1e8, motion: {{hold: 15 deg}}}}
+cylinders:
+  - name: lift
+    coordinate: inner_psi
+    foot: {{link: column, at: [0.2, 0, -1]}}
+    head: {{link: inner, at: [0.7, -0.12, 0]}}
+    bore: 0.125
+    rod: 0.06
+    retracted: 0.9
+    stroke: 0.68
+    max_pressure: 320e5
+    back_pressure: 5e5
+    bulk_modulus: 1.2e9
+    hose_volumes: [1e-3, 1e-3]
+    valve: {{flow: 6e-4, pressure_drop: 1e6, lag: 0.03, gain: 0, feed_forward: 0}}
+pump: {{max_flow: 8.4e-4, pressure: 300e5}}
+"
+    ))
+}
+
+/// The largest stress, at the pin of the cylinder, is known with few sections: its error falls with the square of their number.
+#[test]
+fn the_peak_at_a_pin_converges_with_the_square_of_the_sections() {
+    let greatest = |sections: usize| {
+        let (_, stressed) = at_rest(&loader(sections));
+        let (info, most) =
+            stressed.into_iter().max_by(|(_, a), (_, b)| StressedSection::by_use(a, b)).expect("sections");
+        assert!((info.x - 0.7).abs() < 1e-12, "{info:?}");
+        assert!(info.place().ends_with("the head of lift"), "{info:?}");
+        most.stress.equivalent
+    };
+    let exact = {
+        // The next term of the error is of the fourth order.
+        let (coarse, fine) = (greatest(16), greatest(32));
+        fine + (fine - coarse) / 3.0
+    };
+    let errors = [2, 4, 8].map(|sections| (greatest(sections) - exact).abs() / exact);
+    assert!(errors[1] < 0.03, "{errors:?}");
+    for pair in errors.windows(2) {
+        let order = (pair[0] / pair[1]).log2();
+        assert!(order > 1.6, "{order}: {errors:?}");
+    }
+}
