@@ -89,6 +89,7 @@ pub const DESCRIPTION: Description = Description {
             },
         ],
     ),
+    sections: List::Static(&[]),
     supports: List::Static(&[]),
     drives: List::Static(&[]),
     stops: List::Static(&[]),

@@ -127,6 +127,7 @@ pub const DESCRIPTION: Description = Description {
             },
         ],
     ),
+    sections: List::Static(&[]),
     supports: List::Static(&[]),
     drives: List::Static(
         &[
