@@ -130,17 +130,14 @@ impl<'g> Line<'g> {
             Point { place, position, gradient }
         };
         let of_foot = point(&cylinder.foot, foot, -direction);
-        match linkage {
-            Some((pin, pivot, linkage)) => {
-                let [by_head, by_axis] = linkage.gradients(direction);
-                let of_head = point(&cylinder.head, head, by_head);
-                let of_pivot = point(pin, pivot, direction - by_head);
-                Line { length, points: vec![of_head, of_foot, of_pivot], axis: Some([axis, by_axis]) }
-            }
-            None => {
-                let of_head = point(&cylinder.head, head, direction);
-                Line { length, points: vec![of_head, of_foot], axis: None }
-            }
+        if let Some((pin, pivot, linkage)) = linkage {
+            let [by_head, by_axis] = linkage.gradients(direction);
+            let of_head = point(&cylinder.head, head, by_head);
+            let of_pivot = point(pin, pivot, direction - by_head);
+            Line { length, points: vec![of_head, of_foot, of_pivot], axis: Some([axis, by_axis]) }
+        } else {
+            let of_head = point(&cylinder.head, head, direction);
+            Line { length, points: vec![of_head, of_foot], axis: None }
         }
     }
 
