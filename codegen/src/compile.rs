@@ -67,7 +67,8 @@ pub fn generate(chain: &Chain, analyses: Analyses, spec_file: &str) -> Generated
     emit(chain, analyses, &lowered, report_on(&lowered, chain, analyses), spec_file)
 }
 
-/// Compiles the named functions of a chain to C; `parameters` are the initial values of the live parameters.
+/// Compiles the named functions of a chain to C; `parameters` are the initial values of the live parameters, `header` is the name of the
+/// header's file, which the source includes.
 ///
 /// # Errors
 /// A function that the crane does not have.
@@ -76,6 +77,7 @@ pub fn generate_c(
     functions: &[impl AsRef<str>],
     parameters: &[f64],
     precision: Precision,
+    header: &str,
 ) -> Result<CCode, NoFunction> {
     let is_chosen = |id: FunctionId| functions.iter().any(|chosen| chosen.as_ref() == id.name());
     let analyses = Analyses {
@@ -99,7 +101,7 @@ pub fn generate_c(
     // `solve` is of no use without `factorise`.
     let is_wanted = |id: FunctionId| is_chosen(id) || id == FunctionId::Factorise && is_chosen(FunctionId::Solve);
     program.functions.retain(|function| is_wanted(function.id));
-    Ok(emit_c(&chain, &lower(&program, None), parameters, precision))
+    Ok(emit_c(&chain, &lower(&program, None), parameters, precision, header))
 }
 
 /// A function that a crane does not have.

@@ -208,7 +208,8 @@ fn differences(name: &str, chain: &Chain, precision: Precision, inputs: &[Option
     let program = derive(&straight, EVERYTHING);
     let functions: Vec<&Function> = program.functions.iter().collect();
     let names: Vec<&str> = functions.iter().map(|function| function.id.name()).collect();
-    let code = generate_c(chain, &names, &chain.parameter_defaults(), precision).unwrap();
+    let header = format!("{}.h", chain.name);
+    let code = generate_c(chain, &names, &chain.parameter_defaults(), precision, &header).unwrap();
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("c_{name}_{precision:?}"));
     let number = if precision == Precision::Double { "double" } else { "float" };
     let printed = run(&folder, &code, &caller(&code, chain, &functions, number, inputs));
@@ -272,17 +273,43 @@ fn inputs_are_arguments() {
             assert!(off < 1e-12, "{name}: {function} is off by {off:e}");
         }
     }
-    let code = generate_c(&steered, &["mass_matrix", "forward_dynamics"], &[80.0], Precision::Double).unwrap();
+    let code =
+        generate_c(&steered, &["mass_matrix", "forward_dynamics"], &[80.0], Precision::Double, "steered.h").unwrap();
     // A function that does not depend on inputs does not have this argument.
     assert!(code.header.contains("steered_mass_matrix(const steered_constants *c, const double q[2], double out[4])"));
     assert!(code.header.contains("steered_forward_dynamics(const steered_constants *c, const steered_inputs *u,"));
     assert!(code.header.contains("STEERED_INPUT_GUST = 2, /* N, wind at the tip */"));
 }
 
+/// As [`STEERED`], with names and words that mean something in C.
+fn hostile() -> String {
+    let words = "\"*/ int x = 1; /*\"";
+    STEERED
+        .replace("payload", "double")
+        .replace("lever", "restrict")
+        .replace("trim", "cos")
+        .replace("gust", "unix")
+        .replace("unit: kg", &format!("unit: {words}, about: {words}"))
+        .replace("unit: N, about: wind at the tip", &format!("unit: {words}, about: {words}"))
+        .replace("name: steered", &format!("name: steered\ntitle: {words}"))
+}
+
+#[test]
+fn keywords_and_comments_of_c_in_a_spec_are_harmless() {
+    let chain = load(&SourceFile::new("hostile.yaml", hostile())).unwrap();
+    // The strict compilation refuses text outside a comment, a keyword as a name, and a variable that hides `cos`.
+    for (function, off) in differences("hostile", &chain, Precision::Double, &[Some(0.4), None, Some(-300.0)]) {
+        assert!(off < 1e-12, "{function} is off by {off:e}");
+    }
+    let code = generate_c(&chain, &["mass_matrix"], &[80.0], Precision::Double, "other.h").unwrap();
+    assert!(code.header.contains("    double double_; /* * / int x = 1; / *"), "{}", code.header);
+    assert!(code.source.contains("#include \"other.h\"\n"));
+}
+
 #[test]
 fn a_function_that_the_crane_does_not_have_is_named_with_those_that_it_has() {
     let refused =
-        generate_c(&shipped("knuckle_boom"), &["bias", "levitation"], &[800.0], Precision::Double).unwrap_err();
+        generate_c(&shipped("knuckle_boom"), &["bias", "levitation"], &[800.0], Precision::Double, "x.h").unwrap_err();
     assert_eq!(refused.name, "levitation");
     assert!(refused.known.contains(&"forward_dynamics"));
 }

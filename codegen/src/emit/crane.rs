@@ -6,6 +6,7 @@ use syn::{Item, parse_quote};
 
 use super::arguments::argument_name;
 use super::arithmetic::{integer, literal};
+use super::names::field_name;
 use super::number::Number;
 use super::print::plain;
 use super::shape::{Storage, struct_name};
@@ -111,7 +112,7 @@ pub(super) fn fields(chain: &Chain) -> TokenStream {
 
 /// Description and parameters.
 fn common_methods(chain: &Chain) -> TokenStream {
-    let names: Vec<_> = chain.parameters.iter().map(|p| format_ident!("{}", p.name)).collect();
+    let names: Vec<_> = chain.parameters.iter().map(|p| format_ident!("{}", field_name(&p.name))).collect();
     let indices: Vec<_> = (0..names.len()).map(integer).collect();
     let again = if chain.inputs.is_empty() {
         quote!(Crane::new(params)?)

@@ -4,7 +4,7 @@ use syn::{Expr, parse_quote};
 
 use super::arguments::argument_name;
 use super::arithmetic::{call, difference, element, field, method, negative, product, quotient, sum, variable};
-use super::names::Names;
+use super::names::{Names, field_name};
 use super::number::Number;
 use super::writer::{Used, Writer};
 use crate::program::Argument;
@@ -22,7 +22,7 @@ impl Writer<'_> {
             Op::Constant(c) => self.number.literal(c.value()),
             Op::Symbol(symbol) if program.symbol(symbol).argument == Argument::Parameters => {
                 used.insert(Argument::Parameters);
-                field(field(variable("c"), "params"), &program.symbol(symbol).name)
+                field(field(variable("c"), "params"), &field_name(&program.symbol(symbol).name))
             }
             _ if self.code.inlined[id.index()] => self.operation(id, names, used),
             _ => variable(&names.of(id)),

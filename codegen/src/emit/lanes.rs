@@ -8,6 +8,7 @@ use super::crane::fields;
 use super::function;
 use super::identifiers;
 use super::labels::Labels;
+use super::names::field_name;
 use super::number::Number;
 use super::parameters;
 use crate::chain::{Chain, Input};
@@ -89,7 +90,7 @@ pub fn lanes(chain: &Chain, lowered: &LoweredProgram, labels: &Labels) -> Vec<It
         [quote!(), quote!(), quote!()]
     };
     let own = if live {
-        let names: Vec<_> = chain.parameters.iter().map(|p| format_ident!("{}", p.name)).collect();
+        let names: Vec<_> = chain.parameters.iter().map(|p| format_ident!("{}", field_name(&p.name))).collect();
         items.push(parse_quote! {
             impl Cranes {
                 #[doc = " Eight cranes with these values of their live parameters, which each crane has checked."]

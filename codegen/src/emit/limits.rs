@@ -6,6 +6,7 @@ use syn::{Expr, Item, parse_quote};
 
 use super::arithmetic::{call, difference, field, integer, literal, negative, product, quotient, sum, variable};
 use super::description::text;
+use super::names::field_name;
 use crate::chain::{Bound, Chain, ParameterId, Refusal, Relation, Value};
 
 /// `PARAMETERS` with their ranges, and the check of all values together; nothing if all numbers are compiled in.
@@ -25,7 +26,7 @@ pub fn limits(chain: &Chain) -> Vec<Item> {
     });
     let count = integer(chain.parameters.len());
     let ranges = chain.parameters.iter().enumerate().map(|(index, p)| {
-        let (index, name) = (integer(index), format_ident!("{}", p.name));
+        let (index, name) = (integer(index), format_ident!("{}", field_name(&p.name)));
         quote!(PARAMETERS[#index].check(self.#name)?;)
     });
     let relations = chain.relations.iter().map(|Relation { margin, refusal: broken }| {
@@ -73,7 +74,7 @@ fn expression(value: &Value, chain: &Chain) -> Expr {
     let of = |value: &Value| expression(value, chain);
     match value {
         Value::Constant(c) => literal(*c),
-        Value::Parameter(ParameterId(index)) => field(variable("self"), &chain.parameters[*index].name),
+        Value::Parameter(ParameterId(index)) => field(variable("self"), &field_name(&chain.parameters[*index].name)),
         Value::Neg(a) => negative(of(a)),
         Value::Add(a, b) => match &**b {
             Value::Neg(b) => difference(of(a), of(b)),

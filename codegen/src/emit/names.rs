@@ -39,6 +39,16 @@ const TAKEN: &[&str] = &[
     "N",
 ];
 
+/// Whether Rust does not take a word as an ordinary identifier; `gen` is a keyword since edition 2024.
+fn is_keyword(word: &str) -> bool {
+    word == "gen" || syn::parse_str::<syn::Ident>(word).is_err()
+}
+
+/// The field for a parameter: `payload`, `r#type`.
+pub fn field_name(parameter: &str) -> String {
+    if is_keyword(parameter) { format!("r#{parameter}") } else { parameter.to_owned() }
+}
+
 /// Variables of a loop.
 pub const OF_LOOPS: [&str; 4] = ["numbers", "gathered", "carried", "saved"];
 
@@ -106,7 +116,7 @@ impl<'p> Names<'p> {
     fn unique(&mut self, wanted: &str) -> String {
         let mut candidates = std::iter::once(wanted.to_owned()).chain((2..).map(|k| format!("{wanted}_{k}")));
         // A keyword such as `type` cannot be a variable; `type_2` can.
-        let free = |name: &String| syn::parse_str::<syn::Ident>(name).is_ok() && !self.taken.contains(name);
+        let free = |name: &String| !is_keyword(name) && !self.taken.contains(name);
         let name = candidates.find(free).unwrap_or_default();
         self.taken.insert(name.clone());
         name

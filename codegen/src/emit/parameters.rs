@@ -6,6 +6,7 @@ use syn::{Item, Stmt, parse_quote};
 use super::arithmetic::{field, variable};
 use super::expression::operation;
 use super::labels::Labels;
+use super::names::field_name;
 use super::number::Number;
 use super::print::plain;
 use super::writer::local;
@@ -19,7 +20,7 @@ pub fn parameters(chain: &Chain, lowered: &LoweredProgram, labels: &Labels, numb
     if chain.parameters.is_empty() {
         return vec![];
     }
-    let names: Vec<_> = chain.parameters.iter().map(|p| format_ident!("{}", p.name)).collect();
+    let names: Vec<_> = chain.parameters.iter().map(|p| format_ident!("{}", field_name(&p.name))).collect();
     let docs: Vec<String> = chain.parameters.iter().map(documentation).collect();
     let defaults = chain.parameters.iter().map(|p| number.literal(p.default));
     let stored: Vec<_> = lowered.constants.stored.iter().map(|id| format_ident!("{}", labels.constant(*id))).collect();
@@ -77,7 +78,7 @@ fn constants_body(lowered: &LoweredProgram, labels: &Labels, number: Number) -> 
         Op::Constant(c) => number.literal(c.value()),
         Op::Symbol(symbol) => {
             debug_assert_eq!(program.symbol(symbol).argument, Argument::Parameters);
-            field(variable("params"), &program.symbol(symbol).name)
+            field(variable("params"), &field_name(&program.symbol(symbol).name))
         }
         _ => variable(&name(id)),
     };

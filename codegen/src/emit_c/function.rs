@@ -5,18 +5,12 @@ use std::fmt::Write;
 
 use super::Precision;
 use super::arithmetic::Expression;
+use super::words::{comment, field, not_for_variables};
 use crate::chain::{Chain, Input};
 use crate::emit::{Labels, Names, field_of, row_of_triangle};
 use crate::lower::{LoweredFunction, LoweredProgram, Statement};
 use crate::program::{Argument, Function, Shape};
 use crate::symbolic::{ExprId, Op};
-
-/// Names that a C variable cannot have, in addition to those that Rust also forbids or that generated functions use.
-const TAKEN: [&str; 24] = [
-    "auto", "case", "char", "default", "double", "float", "goto", "inline", "int", "long", "register", "short",
-    "signed", "sizeof", "switch", "typedef", "union", "unsigned", "void", "volatile", "smaller", "larger", "choose",
-    "a",
-];
 
 /// Writes functions.
 pub struct Writer<'a> {
@@ -125,7 +119,7 @@ impl Writer<'_> {
 
     /// Statements of a piece, and what they read.
     fn piece(&self, code: &LoweredFunction, piece: &[Statement]) -> (String, Used) {
-        let names = Names::new(&self.lowered.program, 0).avoiding(&TAKEN);
+        let names = Names::new(&self.lowered.program, 0).avoiding(&not_for_variables());
         let mut body = Body { writer: self, code, names, used: Used::new(), text: String::new() };
         for statement in piece {
             body.statement(statement);
@@ -181,7 +175,7 @@ impl Writer<'_> {
         for id in program.ids().filter(|id| needed[id.index()] && !program.op(*id).is_leaf()) {
             let value = operation(program.op(id), self.precision, &mut |operand| match program.op(operand) {
                 Op::Constant(constant) => Expression::number(constant.value(), self.precision),
-                Op::Symbol(symbol) => Expression::atom(format!("params->{}", program.symbol(symbol).name)),
+                Op::Symbol(symbol) => Expression::atom(format!("params->{}", field(&program.symbol(symbol).name))),
                 _ => Expression::atom(place(operand)),
             });
             let declared = if kept.contains(&id) { String::new() } else { format!("const {number} ") };
@@ -239,7 +233,7 @@ impl Body<'_> {
             Statement::At(place) => {
                 if let Some(place) = place {
                     let way = if place.outward { "Outward" } else { "Inward" };
-                    self.line(&format!("/* {way}: {} */", place.body));
+                    self.line(&format!("/* {way}: {} */", comment(&place.body)));
                 }
             }
             &Statement::Let(id) => {
@@ -285,7 +279,7 @@ impl Body<'_> {
             Op::Constant(constant) => Expression::number(constant.value(), self.writer.precision),
             Op::Symbol(symbol) if program.symbol(symbol).argument == Argument::Parameters => {
                 self.used.insert(Argument::Parameters);
-                Expression::atom(format!("c->params.{}", program.symbol(symbol).name))
+                Expression::atom(format!("c->params.{}", field(&program.symbol(symbol).name)))
             }
             _ if self.code.inlined[id.index()] => self.operation(id),
             _ => Expression::atom(self.names.of(id)),

@@ -4,18 +4,18 @@ use std::fmt::Write;
 
 use super::Precision;
 use super::function::{Writer, numbers};
+use super::words::{comment, field};
 use crate::chain::{Chain, CoordinateKind, Input};
 use crate::program::{Argument, Function, FunctionId, Shape, Struct};
 
 /// The beginning of the source.
-pub fn source(chain: &Chain) -> String {
-    format!("/* {} */\n\n#include \"{}.h\"\n\n#include <math.h>\n\n", origin(chain), chain.name)
+pub fn source(chain: &Chain, header: &str) -> String {
+    format!("/* {} */\n\n#include \"{header}\"\n\n#include <math.h>\n\n", origin(chain))
 }
 
 /// Where the files come from.
 fn origin(chain: &Chain) -> String {
-    // A title may contain anything; a comment ends at the first `*/`.
-    let title = chain.title.replace("*/", "* /").replace("/*", "/ *").replace(['\n', '\r'], " ");
+    let title = comment(&chain.title);
     format!("{title}. Made by crane-codegen from the spec with hash {}; do not edit.", chain.spec_hash)
 }
 
@@ -79,13 +79,12 @@ fn parameters(writer: &Writer) -> String {
     let [params, constants] = ["params", "constants"].map(|name| writer.name(name));
     let mut text = "/* Values that stay live. */\ntypedef struct {\n".to_owned();
     for (parameter, value) in chain.parameters.iter().zip(writer.parameters) {
-        let about = parameter.about.replace("*/", "* /").replace("/*", "/ *").replace(['\n', '\r'], " ");
-        let words = [about.as_str(), &parameter.unit, &format!("{value:?} in {}", macro_name(chain))]
+        let words = [parameter.about.as_str(), &parameter.unit, &format!("{value:?} in {}", macro_name(chain))]
             .into_iter()
             .filter(|words| !words.is_empty())
             .collect::<Vec<_>>()
             .join(", ");
-        let _ = writeln!(text, "    {number} {}; /* {words} */", parameter.name);
+        let _ = writeln!(text, "    {number} {}; /* {} */", field(&parameter.name), comment(&words));
     }
     let values: Vec<String> =
         writer.parameters.iter().map(|value| format!("{value:?}{}", precision.suffix())).collect();
@@ -116,10 +115,12 @@ fn inputs(writer: &Writer) -> String {
     let prefix = chain.name.to_uppercase();
     let mut text = "/* Inputs. */\nenum {\n".to_owned();
     for (index, input) in chain.inputs.iter().enumerate() {
-        let about = input.about.replace("*/", "* /").replace("/*", "/ *").replace(['\n', '\r'], " ");
-        let words =
-            [input.unit.as_str(), &about].into_iter().filter(|words| !words.is_empty()).collect::<Vec<_>>().join(", ");
-        let comment = if words.is_empty() { String::new() } else { format!(" /* {words} */") };
+        let words = [input.unit.as_str(), &input.about]
+            .into_iter()
+            .filter(|words| !words.is_empty())
+            .collect::<Vec<_>>()
+            .join(", ");
+        let comment = if words.is_empty() { String::new() } else { format!(" /* {} */", comment(&words)) };
         let _ = writeln!(text, "    {prefix}_INPUT_{} = {index},{comment}", input.name.to_uppercase());
     }
     let not_set = chain.inputs.iter().flat_map(|_| Input::NOT_SET);
@@ -147,8 +148,7 @@ fn macro_name(chain: &Chain) -> String {
 
 /// What a function computes, from which arguments, and the shape of its result.
 fn documentation(writer: &Writer, function: &Function, operations: usize) -> String {
-    let clean = |text: &str| text.replace("*/", "* /");
-    let mut text = format!("/* {}\n   {}\n", clean(function.doc), clean(function.equation));
+    let mut text = format!("/* {}\n   {}\n", comment(function.doc), comment(function.equation));
     for argument in function.arguments {
         let _ = writeln!(text, "   {}", of_argument(*argument));
     }

@@ -7,6 +7,7 @@ mod arithmetic;
 mod function;
 mod head;
 mod rt;
+mod words;
 
 use crate::chain::Chain;
 use crate::emit::Labels;
@@ -44,25 +45,32 @@ impl Precision {
 /// A crane in C.
 #[derive(Clone, Debug)]
 pub struct CCode {
-    /// Name of the crane: name of both files and prefix of every name in them.
+    /// Name of the crane: prefix of every name in both files.
     pub name: String,
-    /// The header, `<name>.h`.
+    /// The header, which the source includes by its name.
     pub header: String,
-    /// The source, `<name>.c`.
+    /// The source.
     pub source: String,
 }
 
-/// Writes all functions of the lowered program of a crane; `parameters` are the initial values of the live parameters.
+/// Writes all functions of the lowered program of a crane; `parameters` are the initial values of the live parameters, `header` is the
+/// name of the header's file.
 ///
 /// # Panics
 /// If a function has loops, or a result that is left as factors: chains with [`Loops::Never`](crate::chain::Loops) have neither.
 #[must_use]
-pub fn emit_c(chain: &Chain, lowered: &LoweredProgram, parameters: &[f64], precision: Precision) -> CCode {
+pub fn emit_c(
+    chain: &Chain,
+    lowered: &LoweredProgram,
+    parameters: &[f64],
+    precision: Precision,
+    header: &str,
+) -> CCode {
     let labels = Labels::new(chain, lowered);
     let writer = Writer { chain, lowered, labels: &labels, parameters, precision };
     let functions: String = lowered.functions.iter().map(|code| writer.function(code)).collect();
     let (constants, inputs) = (writer.constants(), writer.inputs());
     let body = format!("{constants}{inputs}{functions}");
-    let source = format!("{}{}{body}", head::source(chain), rt::used(&body, precision));
+    let source = format!("{}{}{body}", head::source(chain, header), rt::used(&body, precision));
     CCode { name: chain.name.clone(), header: head::header(&writer), source }
 }

@@ -23,6 +23,9 @@ const CRATES: [&str; 10] = [
     "crane_live",
 ];
 
+/// Keywords of Rust that cannot be raw identifiers either.
+const NEVER_NAMES: [&str; 3] = ["crate", "self", "super"];
+
 /// Names used so far, by kind and name, with their owners.
 #[derive(Debug, Default)]
 pub(super) struct Names(BTreeMap<(&'static str, String), String>);
@@ -41,7 +44,7 @@ impl Names {
 }
 
 impl Check<'_> {
-    /// A name that is a `snake_case` identifier and not a keyword.
+    /// A name that is a `snake_case` identifier. Keywords of Rust become raw identifiers there, except those that cannot.
     pub(super) fn name<'n>(&mut self, given: &'n Spanned<String>) -> Option<&'n str> {
         let name = given.value.as_deref()?;
         let letters = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
@@ -51,9 +54,8 @@ impl Check<'_> {
             self.report(rule::not_an_identifier(given.span, name.chars().take(40).collect::<String>(), why));
             return None;
         }
-        // `gen` is a keyword since edition 2024.
-        if name == "gen" || syn::parse_str::<syn::Ident>(name).is_err() {
-            self.report(rule::keyword(given.span, name, "a keyword of Rust"));
+        if NEVER_NAMES.contains(&name) {
+            self.report(rule::keyword(given.span, name, "Rust reserves this word"));
             return None;
         }
         Some(name)
@@ -62,6 +64,11 @@ impl Check<'_> {
     /// The name of the crane, which becomes a module at the root of a program.
     pub(super) fn crane_name<'n>(&mut self, given: &'n Spanned<String>) -> Option<&'n str> {
         let name = self.name(given)?;
+        // `gen` is a keyword since edition 2024.
+        if name == "gen" || syn::parse_str::<syn::Ident>(name).is_err() {
+            self.report(rule::keyword(given.span, name, "a keyword of Rust, where the crane is a module"));
+            return None;
+        }
         if CRATES.contains(&name) {
             self.report(rule::keyword(given.span, name, "the crane's program uses a crate of this name"));
             return None;
