@@ -1,15 +1,16 @@
 //! Entry point for build scripts: compiles a spec while a user's crate is built.
 //!
-//! This is the only module that reads the environment, accesses files and ends the process.
+//! This is the only module that reads the environment and ends the process; it accesses files through [`files`].
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::{env, fmt, fs, io, process};
+use std::{env, fmt, io, process};
 
 use crate::GeneratedCode;
 use crate::chain::Analyses;
 use crate::compile::{self, Compiled};
 use crate::diagnostic::{Diagnostics, MAX_BYTES, SourceFile, rule};
+use crate::files;
 use crate::read::{base, data_files};
 
 /// Compiles `spec` into `$OUT_DIR/<name of the crane>.rs`, to be included into a module:
@@ -81,8 +82,8 @@ pub fn read_with(
     Ok(with_bases(name.to_owned(), read_single(name, stream)?, PathBuf::new(), shipped)?.0)
 }
 
-/// Maximum number of specs that extend each other in a chain: more are taken for a cycle.
-const MOST_BASES: usize = 16;
+/// Maximum number of specs that one extends, directly and through others.
+const MOST_BASES: usize = 64;
 
 /// A spec combined with the specs that it extends, and the files of the latter.
 fn load_with_bases(
@@ -114,11 +115,14 @@ fn with_bases(
             let source = &extends_chain[extends_chain.len() - 1].1;
             Failure::Mistakes(Diagnostics::new(source, vec![rule::no_base(span, &name, problem)]))
         };
-        if extends_chain.len() > MOST_BASES {
+        let file = from.join(&name);
+        if files.iter().any(|known| files::is_same(known, &file)) {
             return Err(refused("specs extend each other in a circle"));
         }
-        let file = from.join(&name);
-        let source = if file.is_file() {
+        if extends_chain.len() > MOST_BASES {
+            return Err(refused(&format!("more than {MOST_BASES} specs extend one another: join some of them")));
+        }
+        let source = if file.exists() && !file.is_dir() {
             open_single(&file).map_err(|failure| refused(&failure.to_string()))?
         } else {
             SourceFile::new(&name, shipped(&name).ok_or_else(|| refused("there is no such file"))?)
@@ -144,7 +148,7 @@ fn with_data(source: SourceFile, named: &str, from: &Path, files: &mut Vec<PathB
         }
         let file = from.join(&name);
         let opened =
-            if file.is_file() { open_single(&file) } else { Err(Failure::File("there is no such file".into())) };
+            if file.exists() { open_single(&file) } else { Err(Failure::File("there is no such file".into())) };
         let refused =
             |problem: String| Failure::Mistakes(Diagnostics::new(&source, vec![rule::no_data(span, &name, problem)]));
         let text = opened.map_err(|failure| {
@@ -165,7 +169,7 @@ fn with_data(source: SourceFile, named: &str, from: &Path, files: &mut Vec<PathB
 /// Reads one file.
 fn open_single(spec: &Path) -> Result<SourceFile, Failure> {
     let name = spec.display().to_string();
-    let file = fs::File::open(spec).map_err(|error| Failure::File(format!("{name}: {error}")))?;
+    let file = files::open(spec).map_err(|error| Failure::File(format!("{name}: {error}")))?;
     read_single(&name, file)
 }
 
@@ -217,11 +221,7 @@ pub fn out_dir() -> PathBuf {
 /// # Errors
 /// Errors of the file system.
 pub fn write(target: &Path, text: &str) -> io::Result<()> {
-    let mut name = target.file_name().unwrap_or_default().to_owned();
-    name.push(format!(".{}.unfinished", process::id()));
-    let unfinished = target.with_file_name(name);
-    fs::write(&unfinished, text)?;
-    fs::rename(&unfinished, target)
+    files::write(target, |file| file.write_all(text.as_bytes()))
 }
 
 /// Cargo shows one line of an error, so the headline goes there and the full report to standard error.

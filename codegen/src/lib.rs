@@ -19,6 +19,7 @@ pub mod emit_c;
 pub mod exchange;
 mod expand;
 pub mod explain;
+pub mod files;
 pub mod lower;
 pub mod mechanics;
 pub mod picture;

@@ -151,6 +151,25 @@ fn mistakes_name_the_file_and_the_line_that_they_are_in() {
 }
 
 #[test]
+fn many_specs_that_extend_one_another_are_no_circle() {
+    let files: Vec<(String, String)> = (0..70)
+        .map(|index| match index {
+            0 => {
+                "format: 1\nname: base\nlinks:\n  - {name: arm, joint: revolute, mass: 1, com: [1, 0, 0]}\n".to_owned()
+            }
+            _ => format!("extends: s{}.yaml\nname: mine_{index}\n", index - 1),
+        })
+        .enumerate()
+        .map(|(index, text)| (format!("s{index}.yaml"), text))
+        .collect();
+    let files: Vec<(&str, &str)> = files.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect();
+    let folder = folder("extends_long", &files);
+    assert_eq!(compile::load(&build::open(&folder.join("s17.yaml")).unwrap()).unwrap().name, "mine_17");
+    let long = mistakes(&folder.join("s69.yaml"));
+    assert!(long.headline().contains("more than 64 specs extend one another"), "{}", long.headline());
+}
+
+#[test]
 fn a_base_that_cannot_be_read_and_a_circle_are_mistakes() {
     let files = [
         ("lost.yaml", "name: mine\nextends: nowhere.yaml\n"),

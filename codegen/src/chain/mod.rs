@@ -114,6 +114,9 @@ pub struct Point {
 }
 
 impl Chain {
+    /// Maximum number of coordinates: far more than make sense, and few enough for the registers of live cranes.
+    pub const MOST_COORDINATES: usize = 3000;
+
     /// Number of coordinates of the chain up to and including a body: `n_dof(p)`, Eq. (2).
     #[must_use]
     pub fn degrees_of_freedom(&self, body: BodyId) -> usize {

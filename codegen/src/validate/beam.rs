@@ -4,7 +4,7 @@ use super::elements::WRITTEN;
 use super::limits::Limit;
 use super::section::Elastic;
 use super::{Check, Owner};
-use crate::chain::{self, Axis, BeamSpring, CoordinateKind, Outline, Step, Value};
+use crate::chain::{self, Axis, BeamSpring, Chain, CoordinateKind, Outline, Step, Value};
 use crate::diagnostic::{Span, rule};
 use crate::expand::beam::{self, Distribution, Elements, Joint, Part, RigidElement};
 use crate::expand::placement::translate;
@@ -12,8 +12,6 @@ use crate::spec::{Beam, BeamDamping, BeamPart, Bend, Directions, Either, Number,
 
 /// Maximum number of sections of a beam.
 const MOST_SECTIONS: f64 = 1000.0;
-/// Maximum number of coordinates of a crane: far more than make sense, but few enough for an immediate response.
-pub(super) const MOST_COORDINATES: usize = 10_000;
 /// Default factor between the yield stress and the allowable stress.
 const SAFETY_FACTOR: f64 = 1.5;
 /// Advice for a beam with too many sections.
@@ -43,11 +41,17 @@ impl<'a> Check<'a> {
         });
         let count = |elements: &Elements| self.coordinates.len() + ROTATIONS.len() * elements.joints.len();
         let total = elements.as_ref().map_or(0, count);
-        if total > MOST_COORDINATES {
-            self.report(rule::too_many(given.span, format!("beam `{link}`"), total, MOST_COORDINATES, FEWER_SECTIONS));
+        if total > Chain::MOST_COORDINATES {
+            self.report(rule::too_many(
+                given.span,
+                format!("beam `{link}`"),
+                total,
+                Chain::MOST_COORDINATES,
+                FEWER_SECTIONS,
+            ));
         }
         let section_joint = given.value.as_ref().and_then(|inside| inside.section_joint.as_ref()?.value);
-        let Some(Elements { elements, joints }) = elements.filter(|_| total <= MOST_COORDINATES) else {
+        let Some(Elements { elements, joints }) = elements.filter(|_| total <= Chain::MOST_COORDINATES) else {
             // The beam's coordinates are not known.
             self.unknown.links = true;
             return (vec![Value::ZERO], Value::ZERO);

@@ -1,9 +1,8 @@
 //! Links, their placements and joints.
 
-use super::beam::MOST_COORDINATES;
 use super::limits::Limit;
 use super::{Check, LinkBodies, Owner};
-use crate::chain::{Axis, Body, BodyId, Coordinate, CoordinateId, CoordinateKind, Step, Value};
+use crate::chain::{Axis, Body, BodyId, Chain, Coordinate, CoordinateId, CoordinateKind, Step, Value};
 use crate::diagnostic::{Span, rule};
 use crate::expand::placement;
 use crate::spec::{Angle, AxisName, BaseCoordinate, Joint, JointAxis, Link, Number, Placement, Spanned, Turn};
@@ -53,10 +52,16 @@ impl<'a> Check<'a> {
                 None => self.unknown.links = true,
             }
             let count = self.coordinates.len();
-            if count > MOST_COORDINATES {
+            if count > Chain::MOST_COORDINATES {
                 let help =
                     "give each drive and each hinge one joint, and leave out parts that cannot move independently";
-                self.report(rule::too_many(link.span, format!("link {}", index + 1), count, MOST_COORDINATES, help));
+                self.report(rule::too_many(
+                    link.span,
+                    format!("link {}", index + 1),
+                    count,
+                    Chain::MOST_COORDINATES,
+                    help,
+                ));
                 self.unknown.links = true;
                 return;
             }

@@ -41,8 +41,8 @@ impl Plausibility<'_> {
         let base = chain.base.iter().any(Option::is_some);
         let carried = chain.bodies.iter().skip(usize::from(base)).filter_map(|body| body.inertia.as_ref());
         let crane: f64 = carried.map(|inertia| inertia.mass.at(&self.values)).sum::<f64>() - mass;
-        // Zero means that there is no payload.
-        if mass == 0.0 || crane <= 0.0 {
+        // Zero means that there is no payload; a rule refuses less.
+        if mass <= 0.0 || crane <= 0.0 {
             return;
         }
         if mass < lightest * crane {
