@@ -2,6 +2,73 @@
 
 use serde_json::Value;
 
+/// A unit in which people read numbers that are in SI for programs and in files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// °, for rad.
+    Degree,
+    /// Of pressures, for Pa.
+    Bar,
+    /// Of stresses, for Pa.
+    Megapascal,
+    /// For m.
+    Millimetre,
+    /// Of a ratio.
+    Percent,
+}
+
+impl Scale {
+    const ALL: [Scale; 5] = [Scale::Degree, Scale::Bar, Scale::Megapascal, Scale::Millimetre, Scale::Percent];
+
+    /// The scale of a unit; `None` for units that everybody reads.
+    #[must_use]
+    pub fn of(unit: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|scale| scale.unit() == unit)
+    }
+
+    /// Its unit.
+    #[must_use]
+    pub fn unit(self) -> &'static str {
+        match self {
+            Scale::Degree => "°",
+            Scale::Bar => "bar",
+            Scale::Megapascal => "MPa",
+            Scale::Millimetre => "mm",
+            Scale::Percent => "%",
+        }
+    }
+
+    /// The unit in SI.
+    #[must_use]
+    pub fn si(self) -> &'static str {
+        match self {
+            Scale::Degree => "rad",
+            Scale::Bar | Scale::Megapascal => "Pa",
+            Scale::Millimetre => "m",
+            Scale::Percent => "1",
+        }
+    }
+
+    /// A number in SI as people read it.
+    fn shown(self, number: f64) -> f64 {
+        match self {
+            Scale::Degree => number.to_degrees(),
+            Scale::Bar => number / 1e5,
+            Scale::Megapascal => number / 1e6,
+            Scale::Millimetre => number * 1e3,
+            Scale::Percent => number * 100.0,
+        }
+    }
+}
+
+/// The unit of a column in SI.
+pub(super) fn si(unit: &str) -> &str {
+    match Scale::of(unit) {
+        Some(scale) => scale.si(),
+        None => unit,
+    }
+}
+
 /// One field of a table.
 #[derive(Clone, Debug)]
 pub enum Cell {
@@ -17,7 +84,11 @@ pub enum Cell {
     Angle(f64),
     /// The unit of angles in its row, rad: degrees for people.
     AngleUnit,
-    /// A relative change, %, with its sign.
+    /// A number in SI that people read in another unit.
+    Shown(f64, Scale),
+    /// The unit of such numbers in its row.
+    ShownUnit(Scale),
+    /// A relative change, with its sign; % for people.
     Change(f64),
     /// Several names.
     Names(Vec<String>),
@@ -58,6 +129,26 @@ impl From<Option<f64>> for Cell {
 }
 
 impl Cell {
+    /// A number in SI that people read in a unit; `unit` may be one of SI.
+    #[must_use]
+    pub fn shown(number: f64, unit: &str) -> Self {
+        Scale::of(unit).map_or(Cell::Number(number), |scale| Cell::Shown(number, scale))
+    }
+
+    /// Its number as people read it.
+    #[must_use]
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Cell::Number(number) | Cell::Error(number) | Cell::Uncertainty(number) => Some(*number),
+            Cell::Angle(radians) => Some(radians.to_degrees()),
+            Cell::Shown(number, scale) => Some(scale.shown(*number)),
+            Cell::Change(change) => Some(100.0 * change),
+            Cell::Text(_) | Cell::AngleUnit | Cell::ShownUnit(_) | Cell::Names(_) | Cell::Count(_) | Cell::Empty => {
+                None
+            }
+        }
+    }
+
     /// What people read: four digits, degrees.
     pub(super) fn text(&self) -> String {
         self.with_digits(DIGITS)
@@ -79,9 +170,11 @@ impl Cell {
             Cell::Number(number) => with_digits(*number, digits),
             Cell::Angle(radians) => with_digits(radians.to_degrees(), digits),
             Cell::AngleUnit => "°".to_owned(),
+            Cell::Shown(number, scale) => with_digits(scale.shown(*number), digits),
+            Cell::ShownUnit(scale) => scale.unit().to_owned(),
             Cell::Error(error) => format!("{error:.1e}"),
             Cell::Uncertainty(error) => uncertain(*error),
-            Cell::Change(change) => format!("{change:+.2}"),
+            Cell::Change(change) => format!("{:+.2}", 100.0 * change),
             Cell::Names(names) => names.join(", "),
             Cell::Count(count) => count.to_string(),
             Cell::Empty => "–".to_owned(),
@@ -91,12 +184,8 @@ impl Cell {
     /// All digits, angles in degrees as on the screen, all names; empty where the text has everything already.
     pub(super) fn exact(&self) -> String {
         match self {
-            Cell::Number(number) | Cell::Error(number) | Cell::Uncertainty(number) | Cell::Change(number) => {
-                number_text(*number)
-            }
-            Cell::Angle(radians) => number_text(radians.to_degrees()),
             Cell::Names(_) => self.text(),
-            _ => String::new(),
+            other => other.number().map_or_else(String::new, number_text),
         }
     }
 
@@ -107,7 +196,9 @@ impl Cell {
             | Cell::Error(number)
             | Cell::Uncertainty(number)
             | Cell::Angle(number)
+            | Cell::Shown(number, _)
             | Cell::Change(number) => (*number).into(),
+            Cell::ShownUnit(scale) => scale.si().into(),
             Cell::Names(names) => names.as_slice().into(),
             Cell::AngleUnit => "rad".into(),
             Cell::Count(count) => (*count).into(),
@@ -180,6 +271,13 @@ mod tests {
         }
         let angle = Cell::Angle(std::f64::consts::FRAC_PI_3);
         assert_eq!((angle.text().as_str(), angle.json()), ("60.00", std::f64::consts::FRAC_PI_3.into()));
+        let pressure = Cell::shown(2.35e7, "bar");
+        assert_eq!((pressure.text().as_str(), pressure.json()), ("235", Value::from(2.35e7)));
+        let unit = Cell::ShownUnit(Scale::Bar);
+        assert_eq!((unit.text().as_str(), unit.json()), ("bar", Value::from("Pa")));
+        let change = Cell::Change(0.0123);
+        assert_eq!((change.text().as_str(), change.json()), ("+1.23", Value::from(0.0123)));
+        assert_eq!(Cell::shown(2.5, "Hz").json(), Value::from(2.5));
         assert_eq!(Cell::Number(14270.44).with_digits(DIGITS_OF_DOCUMENTS), "14270.4");
     }
 }

@@ -7,7 +7,7 @@ use std::{
 
 use serde_json::{Map, Value, json};
 
-use super::cell::{Cell, DIGITS_OF_DOCUMENTS, number_text};
+use super::cell::{Cell, DIGITS_OF_DOCUMENTS, number_text, si};
 
 /// The heading of a column.
 #[derive(Clone, Debug)]
@@ -114,13 +114,14 @@ impl Grid {
     /// Units of the columns that have one.
     pub(super) fn units(&self) -> Map<String, Value> {
         let with_unit = self.headings.iter().filter(|heading| !heading.unit.is_empty());
-        with_unit.map(|heading| (heading.key(), heading.unit.as_str().into())).collect()
+        with_unit.map(|heading| (heading.key(), si(&heading.unit).into())).collect()
     }
 
     /// Whether a column contains only numbers.
     fn numeric(&self, column: usize) -> bool {
-        self.rows.iter().all(|row| !matches!(row.get(column), Some(Cell::Text(_) | Cell::Names(_) | Cell::AngleUnit)))
-            && !self.rows.is_empty()
+        self.rows.iter().all(|row| {
+            !matches!(row.get(column), Some(Cell::Text(_) | Cell::Names(_) | Cell::AngleUnit | Cell::ShownUnit(_)))
+        }) && !self.rows.is_empty()
     }
 
     /// Its texts as printed, for a page, and what they leave out.
@@ -133,19 +134,23 @@ impl Grid {
         })
     }
 
-    /// Names of the columns, and rows of fields with all digits, for a CSV file.
+    /// Names of the columns, and rows of fields with all digits, for a CSV file, in SI.
     pub fn fields(&self) -> (impl Iterator<Item = String>, impl Iterator<Item = Vec<String>>) {
         let field = |cell: &Cell| match cell {
             Cell::Number(number)
             | Cell::Error(number)
             | Cell::Uncertainty(number)
             | Cell::Angle(number)
+            | Cell::Shown(number, _)
             | Cell::Change(number) => number_text(*number),
             Cell::AngleUnit => "rad".to_owned(),
+            Cell::ShownUnit(scale) => scale.si().to_owned(),
             Cell::Empty => String::new(),
             other => other.text(),
         };
-        (self.headers().into_iter(), self.rows.iter().map(move |row| row.iter().map(field).collect()))
+        let in_si = |heading: &Heading| Heading { unit: si(&heading.unit).to_owned(), ..heading.clone() }.to_string();
+        let headers: Vec<String> = self.headings.iter().map(in_si).collect();
+        (headers.into_iter(), self.rows.iter().map(move |row| row.iter().map(field).collect()))
     }
 
     /// The table in Markdown.

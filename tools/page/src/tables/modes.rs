@@ -25,7 +25,7 @@ pub fn undamped_modes(case: &Case<'_>, changes: Option<&[f64]>) -> Result<Grid, 
         let names = names(case.crane.description(), &mode.dominating);
         let mut row = vec![(index + 1).into(), mode.frequency().into(), omega.into(), names];
         if let Some(changes) = changes {
-            row.insert(2, changes.get(index).map_or(Cell::Empty, |change| Cell::Change(100.0 * change)));
+            row.insert(2, changes.get(index).map_or(Cell::Empty, |change| Cell::Change(*change)));
         }
         grid.row(row);
     }

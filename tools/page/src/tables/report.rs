@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use serde_json::{Map, Value, json};
 
-use super::{Cell, Grid};
+use super::{Cell, Grid, cell::si};
 
 /// A named value.
 #[derive(Clone, Debug)]
@@ -53,6 +53,12 @@ impl Report {
     /// Adds a warning, if there is one.
     pub fn caution(&mut self, words: Option<impl Into<String>>) {
         self.cautions.extend(words.map(Into::into));
+    }
+
+    /// Whether there are warnings.
+    #[must_use]
+    pub fn has_cautions(&self) -> bool {
+        !self.cautions.is_empty()
     }
 
     /// Adds a table. People do not see it if it has no rows.
@@ -138,7 +144,7 @@ impl Report {
         for Fact { key, value, unit, .. } in &self.facts {
             let Some(key) = key else { continue };
             if !unit.is_empty() {
-                units.insert(key.clone(), unit.as_str().into());
+                units.insert(key.clone(), si(unit).into());
             }
             object.insert(key.clone(), value.json());
         }
@@ -157,7 +163,7 @@ impl Report {
 }
 
 /// Version of the form of JSON: it increases when a key changes its meaning or is removed.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
 
 #[cfg(test)]
 mod tests {
@@ -178,7 +184,7 @@ mod tests {
         report.grid(grid);
         report.grid(Grid::new("feet", "Feet", &["foot"]));
         let expected = json!({
-            "format": 1,
+            "format": 2,
             "mean_step": 0.01,
             "stable": true,
             "modes": [{"mode": 1, "frequency": {"rigid": 2.5, "flexible": null}}],

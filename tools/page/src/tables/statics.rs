@@ -10,7 +10,7 @@ use crane_model::{
 use nalgebra::Vector3;
 use serde_json::json;
 
-use super::{Cell, Grid, Heading, Report, VALUE};
+use super::{Cell, Grid, Heading, Report, Scale, VALUE};
 
 /// Label of a crane that is compared with itself with rigid beams.
 pub const FLEXIBLE: &str = "flexible";
@@ -124,8 +124,9 @@ pub fn deflection(first: &Case<'_>, second: &Case<'_>) -> Grid {
         let Some(from) = names.iter().zip(&from).find_map(|(other, from)| (other == name).then_some(from)) else {
             continue;
         };
-        let way = (to - from) * 1e3;
-        grid.row([name.as_str().into(), way.x.into(), way.y.into(), way.z.into(), way.norm().into(), "mm".into()]);
+        let way = to - from;
+        let [x, y, z, distance] = [way.x, way.y, way.z, way.norm()].map(|way| Cell::Shown(way, Scale::Millimetre));
+        grid.row([name.as_str().into(), x, y, z, distance, Cell::ShownUnit(Scale::Millimetre)]);
     }
     grid
 }
@@ -187,15 +188,17 @@ fn cylinders(cases: &[Case<'_>]) -> Option<Grid> {
         let kind = first.coordinates()[first.crane.description().drives[info.drive].coordinate].kind;
         let oil = format!("{}/{}", kind.force_unit(), kind.unit());
         let mut row = |quantity: &str, unit: &str, value: &dyn Fn(&CylinderState) -> Option<f64>| {
-            let values = states.iter().map(|states| Cell::from(states.get(index).and_then(value)));
+            let values = states.iter().map(|states| states.get(index).and_then(value));
+            let values = values.map(|value| value.map_or(Cell::Empty, |value| Cell::shown(value, unit)));
             let named: [Cell; 2] = [info.name.as_str().into(), quantity.into()];
-            grid.row(named.into_iter().chain(values).chain([unit.into()]).collect::<Vec<Cell>>());
+            let unit = Scale::of(unit).map_or(unit.into(), Cell::ShownUnit);
+            grid.row(named.into_iter().chain(values).chain([unit]).collect::<Vec<Cell>>());
         };
         row("length", "m", &|state| Some(state.length));
-        row("extended", "%", &|state| Some(100.0 * state.extension(info) / info.stroke));
+        row("extended", "%", &|state| Some(state.extension(info) / info.stroke));
         row("force", "N", &|state| Some(state.force));
-        row("pressure, piston's side", "bar", &|state| Some(1e-5 * state.pressures[0]));
-        row("pressure, rod's side", "bar", &|state| Some(1e-5 * state.pressures[1]));
+        row("pressure, piston's side", "bar", &|state| Some(state.pressures[0]));
+        row("pressure, rod's side", "bar", &|state| Some(state.pressures[1]));
         if info.bulk_modulus.is_some() {
             row("stiffness of its oil", &oil, &|state| state.oil_stiffness(info));
         }
