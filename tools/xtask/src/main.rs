@@ -3,6 +3,7 @@
 //! `cargo xtask test` runs all checks; other tasks run parts of it, for use during development.
 
 mod book;
+mod commands;
 mod cycles;
 mod equations;
 mod fused;
@@ -160,6 +161,7 @@ fn tests() -> Vec<Step> {
         Step::program("the example of your own crane", "own-crane"),
         Step::check("a new crane", new_crane::check),
         Step::check("commands of the manual", manual::check),
+        Step::check("commands of the README and of CONTRIBUTING", || commands::check(USAGE)),
         Step::check("the manual as a site", book::site),
         Step::check("the Python package", package::check),
         Step::check("pages of the Python package in a browser", report::in_notebook),
