@@ -29,7 +29,7 @@ pub fn stages(source: &SourceFile, analyses: Option<Analyses>) -> Result<Vec<Sta
     let code = compile::compile(source, Some(analyses))?.code;
     Ok(vec![
         ("1_spec.txt", format!("{spec:#?}\n")),
-        ("2_chain.txt", format!("{}\n{chain:#?}\n", explain(&chain, &code.report))),
+        ("2_chain.txt", format!("{}\n{chain:#?}\n", explain(&chain, Some(&code.report)))),
         ("3_program.txt", expressions(&program)),
         ("4_lines.txt", lines(&lowered)),
         ("5_module.rs", code.text),

@@ -3,13 +3,14 @@
 use std::fmt::Write;
 
 use crate::chain::{Axis, BodyId, Chain, CoordinateKind, Step};
+use crate::mechanics::left_out;
 use crate::report::Report;
 
-/// Everything about a chain and its functions, as text for a terminal.
+/// Everything about a chain as text for a terminal; with a report also what each function costs.
 #[must_use]
-pub fn explain(chain: &Chain, report: &Report) -> String {
+pub fn explain(chain: &Chain, report: Option<&Report>) -> String {
     let mut text = format!("{}: {}\nspec hash {}\n", chain.name, chain.title, chain.spec_hash);
-    for section in [bodies(chain), coordinates(chain), left_out(report), costs(report)] {
+    for section in [bodies(chain), coordinates(chain), without(chain, report)].into_iter().chain(report.map(costs)) {
         text.push('\n');
         text.push_str(&section);
     }
@@ -66,12 +67,14 @@ fn coordinates(chain: &Chain) -> String {
     text
 }
 
-fn left_out(report: &Report) -> String {
+/// What is left out, and why.
+fn without(chain: &Chain, report: Option<&Report>) -> String {
     let mut text = String::from("left out\n");
-    if report.left_out.is_empty() {
+    let left_out = report.map_or_else(|| left_out(chain, chain.analyses), |report| report.left_out.clone());
+    if left_out.is_empty() {
         text.push_str("  nothing: the crane needs everything\n");
     }
-    for (what, why) in &report.left_out {
+    for (what, why) in &left_out {
         let _ = writeln!(text, "  {what}: {why}");
     }
     text

@@ -7,6 +7,9 @@ mod manual;
 
 include!(concat!(env!("OUT_DIR"), "/cranes.rs"));
 
+/// Names and specs (YAML) of commented examples, to copy and change; they are not among the shipped cranes.
+pub const EXAMPLES: &[(&str, &str)] = &[("loader_crane", include_str!("../examples/loader_crane.yaml"))];
+
 /// The spec of a shipped crane (YAML), by its name.
 #[must_use]
 pub fn spec(name: &str) -> Option<&'static str> {

@@ -11,7 +11,7 @@ catalogue! {
     E002 not_utf8(at) "the file is not text", "byte {at} is not UTF-8", "save the file as UTF-8 text";
     /// A file is not empty.
     E003 empty() "the file is empty", "expected a crane here",
-        "start with `format: 1`, `name:` and `links:`; specs/double_pendulum.yaml is a short example";
+        "start with `format: 1`, `name:` and `links:`; `crane example` prints commented ones";
     /// A file is one YAML document.
     E004 not_yaml(problem) "the file is not YAML: {problem}", "reading stopped here",
         "check the indentation (spaces, not tabs), brackets and quotes of this line and the previous one";
@@ -59,7 +59,7 @@ catalogue! {
     /// Names are `snake_case` identifiers of at most 64 characters: they become names in Rust.
     E020 not_an_identifier(name, why) "`{name}` is not a valid name", "{why}",
         "use up to 64 lower-case letters, digits and `_`, starting with a letter, such as `outer_boom`";
-    /// Names are not keywords of Rust; a crane does not have the name of a crate that its program uses.
+    /// Names are not `crate`, `self` or `super`; a crane's name is not a keyword of Rust, nor that of a crate that its program uses.
     E021 keyword(name, why) "`{name}` is not a valid name", "{why}", "choose another word, such as `{name}_1`";
     /// Names are unique within their kind, including those of rigid elements and coordinates.
     E022 duplicate_name(kinds, name, other) "two {kinds} are called `{name}`", "already used by {other}", "rename one of the two";
@@ -113,7 +113,7 @@ catalogue! {
     /// Every joint moves a mass of its own; otherwise the mass matrix is singular.
     E046 moves_nothing(coordinate) "coordinate `{coordinate}` moves no mass of its own", "the mass matrix is singular",
         "give the links after this joint mass and inertia, or fix the joint";
-    /// A crane has at most 10000 coordinates.
+    /// A crane has at most 3000 coordinates.
     E047 too_many(what, count, most, help) "with {what} the crane has {count} coordinates", "the limit is {most}", "{help}";
     /// A crane has a joint that moves, or a beam with sections.
     E048 nothing_moves() "nothing in the crane can move", "no link has a joint that moves or a beam with sections",

@@ -11,9 +11,10 @@ const MAX_DRAWN: usize = 100;
 /// A line longer than this is cut around the mistake, bytes.
 const MAX_LINE: usize = 400;
 
-/// Writes every mistake with file, line, column, the offending line, label and help, then their number.
-pub(super) fn draw(source: &SourceFile, mistakes: &[Mistake], f: &mut fmt::Formatter<'_>) -> fmt::Result {
-    let renderer = Renderer::plain();
+/// Writes every mistake with file, line, column, the offending line, label and help, then their number; with the colours of a terminal
+/// on request.
+pub(super) fn draw(source: &SourceFile, mistakes: &[Mistake], coloured: bool, f: &mut impl fmt::Write) -> fmt::Result {
+    let renderer = if coloured { Renderer::styled() } else { Renderer::plain() };
     for mistake in mistakes.iter().take(MAX_DRAWN) {
         draw_one(&renderer, source, mistake, f)?;
         f.write_str("\n\n")?;
@@ -26,7 +27,7 @@ pub(super) fn draw(source: &SourceFile, mistakes: &[Mistake], f: &mut fmt::Forma
     }
 }
 
-fn draw_one(renderer: &Renderer, source: &SourceFile, mistake: &Mistake, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+fn draw_one(renderer: &Renderer, source: &SourceFile, mistake: &Mistake, f: &mut impl fmt::Write) -> fmt::Result {
     let start = source.boundary(mistake.span.start);
     let line = source.line(start);
     let first = source.boundary(line.start.max(start.saturating_sub(MAX_LINE / 2)));

@@ -105,6 +105,15 @@ impl Diagnostics {
         })
     }
 
+    /// All of them as printed, with the colours of a terminal.
+    #[must_use]
+    pub fn coloured(&self) -> String {
+        let mut text = String::new();
+        // Writing into a string does not fail.
+        let _ = draw::draw(&self.source, &self.mistakes, true, &mut text);
+        text
+    }
+
     /// All of them in one line, for short displays: `crane.yaml:3:5: unknown key `masss` [E010] (and 2 more)`.
     #[must_use]
     pub fn headline(&self) -> String {
@@ -118,7 +127,7 @@ impl Diagnostics {
 
 impl fmt::Display for Diagnostics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        draw::draw(&self.source, &self.mistakes, f)
+        draw::draw(&self.source, &self.mistakes, false, f)
     }
 }
 

@@ -56,10 +56,10 @@ pub fn picture(chain: &Chain) -> String {
     let base = numbered.iter().take_while(|joint| role(chain, joint.coordinate) == "base").count();
     if let (Some(first), 1..) = (numbered.first(), base) {
         let at = sheet.project(first.at);
-        sheet.label(at, &if base > 1 { format!("1–{base}") } else { "1".to_owned() });
+        sheet.label(at, &if base > 1 { format!("0–{}", base - 1) } else { "0".to_owned() });
     }
-    for (index, joint) in numbered.iter().enumerate().skip(base) {
-        sheet.joint(chain, joint, index + 1);
+    for joint in numbered.iter().skip(base) {
+        sheet.joint(chain, joint);
     }
     for point in &chain.points {
         let defaults = chain.parameter_defaults();
@@ -200,7 +200,7 @@ fn masses(sheet: &mut Sheet, chain: &Chain, frames: &[Frame]) {
     }
 }
 
-/// Coordinates of base and joints with their numbers, and flexible links in one line each.
+/// Coordinates of base and joints with their places in q, and flexible links in one line each.
 fn table(sheet: &mut Sheet, chain: &Chain, joints: &[&Joint]) {
     let left = DRAWING.0 + 10.0;
     let mut y = 62.0;
@@ -212,11 +212,11 @@ fn table(sheet: &mut Sheet, chain: &Chain, joints: &[&Joint]) {
         y += ROW;
     };
     row(["", "coordinate", "role", "start"], GREY);
-    for (index, joint) in joints.iter().enumerate() {
+    for joint in joints {
         let coordinate = &chain.coordinates[joint.coordinate.0];
         let unit = if coordinate.kind == CoordinateKind::Rotation { "rad" } else { "m" };
         let start = format!("{:.4} {unit}", chain.guess[joint.coordinate.0]);
-        row([&(index + 1).to_string(), &coordinate.name, role(chain, joint.coordinate), &start], INK);
+        row([&joint.coordinate.0.to_string(), &coordinate.name, role(chain, joint.coordinate), &start], INK);
     }
     for (index, body) in chain.bodies.iter().enumerate().filter(|(_, body)| !body.length.is_zero()) {
         if !is_inner(chain, body) {
@@ -287,8 +287,8 @@ impl Sheet {
         }
     }
 
-    /// A circle for a rotation, a square for a translation, filled if a drive moves it; with its number.
-    fn joint(&mut self, chain: &Chain, joint: &Joint, number: usize) {
+    /// A circle for a rotation, a square for a translation, filled if a drive moves it; with its place in q.
+    fn joint(&mut self, chain: &Chain, joint: &Joint) {
         let (x, y) = self.project(joint.at);
         let fill = if matches!(role(chain, joint.coordinate), "driven" | "prescribed") { INK } else { "#fff" };
         let style = format!("fill='{fill}' stroke='{INK}' stroke-width='1.6'");
@@ -303,7 +303,7 @@ impl Sheet {
             ),
         };
         self.labels.push((x - JOINT, y + JOINT, 2.0 * JOINT));
-        self.label((x, y), &number.to_string());
+        self.label((x, y), &joint.coordinate.0.to_string());
     }
 
     /// A label near a position, at a place that is still free.

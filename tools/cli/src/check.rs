@@ -1,8 +1,8 @@
 //! `crane check`: every mistake of a spec and everything implausible, for people or for programs.
 
-use std::io::Write;
+use std::{io::Write, mem};
 
-use crane_codegen::{Checked, Diagnostics, Located, chain::Chain, compile};
+use crane_codegen::{Checked, Diagnostics, chain::Chain, compile};
 use crane_page::tables::FORMAT;
 use serde_json::{Value, json};
 
@@ -11,31 +11,55 @@ use crate::{
     arguments::{Check, Format},
     own,
     problem::{FAILED, Outcome, Problem},
+    screen,
 };
 
-/// Checks a spec: confirms that it is valid, or reports what is wrong.
+/// Checks specs: confirms that they are valid, or reports what is wrong with each.
 pub fn check(options: &Check, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
-    let Check { spec, strict, format } = options;
-    match format {
-        Format::Table => {
-            let Chain { name, bodies, coordinates, spec_hash, .. } = own::load_named(spec, *strict, registry)?.0;
-            let (bodies, coordinates) = (bodies.len(), coordinates.len());
-            Ok(writeln!(out, "{name}: valid; {bodies} bodies, {coordinates} coordinates, spec hash {spec_hash}")?)
-        }
-        Format::Json => {
-            let checked =
-                own::source(spec, registry).and_then(|source| compile::check(&source).map_err(Problem::mistakes));
-            let (chain, found) = match checked {
-                Ok(Checked { chain, warnings }) => (Some(chain), warnings),
-                Err(Problem::Mistakes(mistakes)) => (None, *mistakes),
-                Err(other) => return Err(other),
-            };
-            let valid = chain.is_some() && (found.is_empty() || !*strict);
-            writeln!(out, "{:#}", json(valid, chain.as_ref(), &found))?;
-            // The JSON already contains what is wrong.
-            if valid { Ok(()) } else { Err(Problem::Elsewhere(FAILED)) }
+    match options.format {
+        Format::Table => as_text(options, registry, out),
+        Format::Json => as_json(options, registry, out),
+    }
+}
+
+fn as_text(Check { specs, strict, .. }: &Check, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    let mut worst = Ok(());
+    for spec in specs {
+        match own::load_named(spec, *strict, registry) {
+            Ok((Chain { name, bodies, coordinates, spec_hash, .. }, _)) => {
+                let (bodies, coordinates) = (bodies.len(), coordinates.len());
+                writeln!(out, "{name}: valid; {bodies} bodies, {coordinates} coordinates, spec hash {spec_hash}")?;
+            }
+            // The last problem is reported at the end, those before it now.
+            Err(problem) => {
+                if let Err(before) = mem::replace(&mut worst, Err(problem)) {
+                    screen::report(&before);
+                }
+            }
         }
     }
+    worst
+}
+
+/// One object for one spec, an array for several.
+fn as_json(Check { specs, strict, .. }: &Check, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    let mut found = Vec::new();
+    for spec in specs {
+        let checked = own::source(spec, registry).and_then(|source| compile::check(&source).map_err(Problem::mistakes));
+        let (chain, diagnostics) = match checked {
+            Ok(Checked { chain, warnings }) => (Some(chain), warnings),
+            Err(Problem::Mistakes(mistakes)) => (None, *mistakes),
+            Err(other) => return Err(other),
+        };
+        let valid = chain.is_some() && (diagnostics.is_empty() || !*strict);
+        found.push((valid, json(valid, chain.as_ref(), &diagnostics)));
+    }
+    let all_valid = found.iter().all(|(valid, _)| *valid);
+    let mut objects: Vec<Value> = found.into_iter().map(|(_, object)| object).collect();
+    let whole = if let [_] = objects[..] { objects.remove(0) } else { objects.into() };
+    writeln!(out, "{whole:#}")?;
+    // The JSON already contains what is wrong.
+    if all_valid { Ok(()) } else { Err(Problem::Elsewhere(FAILED)) }
 }
 
 fn json(valid: bool, chain: Option<&Chain>, found: &Diagnostics) -> Value {
@@ -46,22 +70,6 @@ fn json(valid: bool, chain: Option<&Chain>, found: &Diagnostics) -> Value {
         "bodies": chain.map(|chain| chain.bodies.len()),
         "coordinates": chain.map(|chain| chain.coordinates.len()),
         "spec_hash": chain.map(|chain| &chain.spec_hash),
-        "diagnostics": found.located().map(|located| diagnostic(&located)).collect::<Vec<_>>(),
-    })
-}
-
-fn diagnostic(located: &Located<'_>) -> Value {
-    let Located { mistake, file, start, end } = located;
-    json!({
-        "code": mistake.code,
-        "severity": if mistake.is_warning() { "warning" } else { "error" },
-        "file": file,
-        "line": start.0,
-        "column": start.1,
-        "end_line": end.0,
-        "end_column": end.1,
-        "message": mistake.title,
-        "label": mistake.label,
-        "help": mistake.help,
+        "diagnostics": screen::diagnostics(found),
     })
 }

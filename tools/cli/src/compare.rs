@@ -14,6 +14,7 @@ use crate::{
     integration::runs,
     own, page,
     problem::{Outcome, Problem},
+    selection::set_inputs,
     simulate::{Trace, file_list, points, spoken, write_figure, write_figures, write_run},
     variants::renamed,
 };
@@ -32,7 +33,7 @@ pub fn load(options: &mut ComparePair, registry: &mut Registry) -> Outcome<()> {
     let ComparePair { first, second, strict, .. } = options;
     if let Some(file) = spec_file(first) {
         let (chain, text) = own::load(file, *strict)?;
-        *first = registry.add_read(chain, text)?;
+        *first = registry.add_read(chain, text);
     }
     let Some(name) = second else {
         // The first becomes the rigid crane, as in the comparison of the eight-link cranes.
@@ -48,7 +49,12 @@ pub fn load(options: &mut ComparePair, registry: &mut Registry) -> Outcome<()> {
             *name = format!("{first}_other");
             registry.add(name, renamed(name, &text));
         } else {
-            *name = registry.add_read(chain, text)?;
+            *name = registry.add_read(chain, text);
+        }
+    }
+    if options.rigid {
+        for name in [&mut options.first].into_iter().chain(&mut options.second) {
+            *name = registry.add_rigid(name, "leave `--rigid` out")?;
         }
     }
     Ok(())
@@ -56,7 +62,7 @@ pub fn load(options: &mut ComparePair, registry: &mut Registry) -> Outcome<()> {
 
 /// Statics and motion of two cranes, figures and data.
 pub fn compare_pair(options: &ComparePair, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
-    let ComparePair { first, second, strict, compare } = options;
+    let ComparePair { first, second, strict, inputs, compare, .. } = options;
     let Some(second) = second else {
         return Err(Problem::failed("the second crane is missing", "please report this as a bug"));
     };
@@ -71,7 +77,18 @@ pub fn compare_pair(options: &ComparePair, registry: &Registry, out: &mut dyn Wr
         // A parameter that neither crane has is a mistake, which the first one reports.
         one = Parameters { settings: compare.parameters.settings.clone() };
     }
-    let cranes = [one.crane(first, *strict, registry)?, other.crane(second, *strict, registry)?];
+    let mut cranes = [one.crane(first, *strict, registry)?, other.crane(second, *strict, registry)?];
+    let has = |crane: &dyn DynCrane, setting: &String| {
+        let name = setting.split('=').next().unwrap_or_default();
+        crane.description().inputs.iter().any(|input| *input.name == *name)
+    };
+    let nobody = inputs.iter().find(|setting| !cranes.iter().any(|crane| has(crane.as_ref(), setting)));
+    for crane in &mut cranes {
+        // An input that neither crane has is a mistake, which the first one reports.
+        let own = inputs.iter().filter(|setting| has(crane.as_ref(), setting)).chain(nobody).cloned();
+        let own: Vec<String> = own.collect();
+        set_inputs(crane.as_mut(), &own)?;
+    }
     let twins = *first == format!("{second}_rigid");
     let labels = if twins { [RIGID, FLEXIBLE] } else { [first.as_str(), second.as_str()] };
     let [one, other] = cranes;
@@ -136,8 +153,15 @@ fn side_by_side(
     report.grid(summary(&labelled));
     report.grid(file_list(folder, &written));
     if format == Format::Table {
-        let (duration, method, step) = (settings[1].duration, settings[1].method.title(), other_run.run.step);
-        writeln!(out, "\nMotion over {duration} s from the {}, {method}, step {step} s\n", other_run.start)?;
+        let (duration, method, step) = (settings[1].duration, settings[1].method, other_run.run.step);
+        let which = if method.is_adaptive() { "mean step" } else { "step" };
+        let step = format!("{:.3}", 1e3 * step);
+        writeln!(
+            out,
+            "\nMotion over {duration} s from the {}, {}, {which} {step} ms\n",
+            other_run.start,
+            method.title()
+        )?;
     }
     format.print(&report, out)?;
     if format == Format::Table {

@@ -38,21 +38,28 @@ use crate::{
 const DONE: &str = "done";
 
 /// Runs all cranes of the table and writes a row for each.
-pub fn simulate(options: &Simulate, table: &Path, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
-    if options.timing.from.is_some() || !options.timing.start.is_empty() {
+pub fn simulate(options: &Simulate, given: &Path, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    if options.run.timing.from.is_some() || !options.run.timing.start.is_empty() {
         return Err(Problem::usage(
             "`--from` and `--start` do not apply to `--ensemble`: each row starts where its crane rests",
             "leave them out, or simulate the rows one by one",
         ));
     }
-    let crane = options.analysis.crane.open(registry)?;
+    let crane = options.run.analysis.crane.open(registry)?;
     let crane = crane.as_ref();
     let description = crane.description();
-    let table = ParameterTable::read(table, description)?;
-    let (settings, step) = settings(&options.timing, crane, &table)?;
+    let table = ParameterTable::read(given, description)?;
+    let (settings, step) = settings(&options.run.timing, crane, &table)?;
     let Ensemble { threads, results, restart, .. } = &options.ensemble;
     let threads = threads.map_or_else(thread::available_parallelism, Ok).map_or(1, NonZeroUsize::get);
-    let path = results.clone().unwrap_or_else(|| options.folder.out.join(format!("{}_ensemble.csv", description.name)));
+    let path =
+        results.clone().unwrap_or_else(|| options.run.folder.out.join(format!("{}_ensemble.csv", description.name)));
+    if files::is_same(given, &path) {
+        return Err(Problem::usage(
+            format!("`--file {}` would overwrite its own table", path.display()),
+            "choose another file for the results",
+        ));
+    }
     files::folder(path.parent().unwrap_or(&path))?;
 
     let begin = Instant::now();
@@ -106,7 +113,7 @@ pub fn simulate(options: &Simulate, table: &Path, registry: &Registry, out: &mut
     report.fact("cranes per second", fresh.len() as f64 / wall, "");
     report.fact("real-time factor", simulated / wall, "");
     report.fact("written to", path.display().to_string(), "");
-    options.analysis.format.print(&report, out)?;
+    options.run.analysis.format.print(&report, out)?;
     if reached == rows.len() {
         return Ok(());
     }

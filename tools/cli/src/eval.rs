@@ -1,6 +1,9 @@
 //! `crane eval`: quantities of a crane at one state or at many.
 
-use std::{fs, io::Write};
+use std::{
+    io::{self, Write},
+    path::Path,
+};
 
 use crane_live::LiveCrane;
 use crane_model::{
@@ -90,7 +93,8 @@ fn given(name: &str, given: Option<&str>, description: &Description) -> Outcome<
 }
 
 fn parse_file(name: &str, path: &str) -> Outcome<Vec<f64>> {
-    let text = fs::read_to_string(path).map_err(|error| {
+    let text = files::read(Path::new(path)).and_then(|bytes| String::from_utf8(bytes).map_err(io::Error::other));
+    let text = text.map_err(|error| {
         Problem::usage(
             format!("`--{name} {path}` is neither a list of numbers nor a file: {error}"),
             "write finite numbers separated by commas, such as 0,0.1,-2e-3, or give a file of them",

@@ -1,8 +1,8 @@
 //! `crane export` and `crane import`: cranes for other programs, and from them.
 
 use std::{
-    io::{self, Write},
-    path::PathBuf,
+    io::Write,
+    path::{Path, PathBuf},
 };
 
 use crane_codegen::{
@@ -18,6 +18,7 @@ use crate::{
     arguments::{CNumber, Export, Import, Language},
     files, fmu, own,
     problem::{Outcome, Problem},
+    screen,
     selection::Registry,
 };
 
@@ -74,8 +75,9 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
                     "export `bias` and `solve_mass`, and add those forces there; or remove `valve` from the cylinders and `bristle` from the friction",
                 ));
             }
-            let code = in_c(options, &chain, &parameters)?;
-            vec![(file.with_file_name(format!("{}.h", code.name)), code.header), (file, code.source)]
+            let header = beside(&file)?;
+            let code = own::working(&chain, || in_c(options, &chain, &parameters, &header))?;
+            vec![(file.with_file_name(header), code.header), (file, code.source)]
         }
         Language::Fmu => return fmu::write(options, &file, chain, &spec, &parameters, out),
     };
@@ -90,15 +92,32 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
     Ok(())
 }
 
+/// Name of the header of a source in C: that of the source with `.h`.
+fn beside(source: &Path) -> Outcome<String> {
+    let name = source.with_extension("h").file_name().and_then(|name| name.to_str()).map(str::to_owned);
+    // What may stand between quotation marks after `#include`.
+    let can_include = |name: &String| !name.contains(|c: char| c == '"' || c == '\\' || c.is_control());
+    let is_header = source.extension().is_some_and(|end| end == "h");
+    name.filter(|name| !is_header && can_include(name)).ok_or_else(|| {
+        Problem::usage(
+            format!("`{}` cannot be the name of a source in C", source.display()),
+            "give it a name such as `crane.c`; the header is written beside it, with `.h`",
+        )
+    })
+}
+
 /// The chosen functions in C.
-fn in_c(options: &Export, chain: &Chain, parameters: &[f64]) -> Outcome<CCode> {
+fn in_c(options: &Export, chain: &Chain, parameters: &[f64], header: &str) -> Outcome<CCode> {
     let precision = match options.precision {
         CNumber::Double => Precision::Double,
         CNumber::Single => Precision::Single,
     };
-    compile::generate_c(chain, &options.functions, parameters, precision).map_err(|NoFunction { name, known }| {
-        Problem::usage(format!("{} has no function `{name}` in C", chain.name), format!("it has {}", known.join(", ")))
-    })
+    compile::generate_c(chain, &options.functions, parameters, precision, header).map_err(
+        |NoFunction { name, known }| {
+            let help = format!("it has {}", known.join(", "));
+            Problem::usage(format!("{} has no function `{name}` in C", chain.name), help)
+        },
+    )
 }
 
 /// Writes a spec made from URDF or MJCF, and checks it.
@@ -113,9 +132,9 @@ pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
     let Imported { spec, left_out } = exchange::import(&source, &options.fixed).map_err(Problem::mistakes)?;
     let Some(file) = &options.spec else {
         out.write_all(spec.as_bytes())?;
-        // To standard error, not into the spec; if that is closed, the messages are lost.
+        // To standard error, not into the spec.
         for said in &left_out {
-            let _ = writeln!(io::stderr(), "{said}");
+            screen::remark(said);
         }
         return Ok(());
     };

@@ -1,13 +1,9 @@
 //! Files, written completely or not at all.
 
-use std::{
-    fs, io,
-    io::Write,
-    path::{Path, PathBuf},
-    process,
-    time::Duration,
-};
+use std::{fs, io, io::Write, path::Path};
 
+use crane_codegen::files;
+pub use crane_codegen::files::is_same;
 use crane_model::results::Table;
 use crane_page::{Program, tables::number_text};
 
@@ -24,55 +20,33 @@ pub fn folder(path: &Path) -> Outcome<()> {
     fs::create_dir_all(path).map_err(|error| Problem::file(path, &error))
 }
 
-/// Writes a file under another name and renames it when it is complete, so that no half-written file is ever visible.
+/// Writes a file completely or not at all; creates its folder if it is missing.
 ///
 /// # Errors
 /// The file system refuses.
 pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Outcome<()> {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(format!(".{}.part", process::id()));
-    let part: PathBuf = path.with_file_name(name);
-    let written = (|| {
-        remove_stale_parts(path);
-        let file = fs::File::create(&part)?;
-        // Locked while this process lives. A file system without locks does without.
-        let _ = file.try_lock();
-        let mut file = io::BufWriter::new(file);
-        content(&mut file)?;
-        file.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()?;
-        fs::rename(&part, path)
-    })();
-    written.map_err(|error| {
-        // Remove the incomplete file; the first error is reported.
-        let _ = fs::remove_file(&part);
-        Problem::file(path, &error)
-    })
+    if let Some(parent) = path.parent().filter(|parent| !parent.as_os_str().is_empty()) {
+        folder(parent)?;
+    }
+    files::write(path, content).map_err(|error| Problem::file(path, &error))
 }
 
-/// Removes incomplete files that killed commands left: those that no living process has locked.
-fn remove_stale_parts(path: &Path) {
-    /// The owner of a younger file may be about to lock it.
-    const AGE: Duration = Duration::from_secs(60);
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let begin = format!("{}.", path.file_name().unwrap_or_default().to_string_lossy());
-    let is_stale = |part: &Path| {
-        let name = part.file_name().unwrap_or_default().to_string_lossy();
-        let number = name.strip_prefix(&begin).and_then(|rest| rest.strip_suffix(".part"));
-        let is_part = number.is_some_and(|number| number.chars().all(|c| c.is_ascii_digit()));
-        is_part
-            && fs::File::open(part).is_ok_and(|file| {
-                let old = file
-                    .metadata()
-                    .and_then(|of| of.modified())
-                    .is_ok_and(|at| at.elapsed().is_ok_and(|age| age > AGE));
-                old && file.try_lock().is_ok()
-            })
-    };
-    for part in fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
-        if is_stale(&part) {
-            let _ = fs::remove_file(part);
-        }
-    }
+/// Reads a file, unless it is too large or not a file.
+///
+/// # Errors
+/// The file system refuses, or the file is too large.
+pub fn read(path: &Path) -> io::Result<Vec<u8>> {
+    /// Many times the results of a long run.
+    const MOST_BYTES: usize = 512 << 20;
+    files::read(path, MOST_BYTES)
+}
+
+/// A CSV file with a header.
+///
+/// # Errors
+/// Those of [`read`].
+pub fn csv(path: &Path) -> Result<csv::Reader<io::Cursor<Vec<u8>>>, csv::Error> {
+    Ok(csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(io::Cursor::new(read(path)?)))
 }
 
 /// Writes text.
@@ -106,38 +80,17 @@ pub fn write_fields(
     header: impl Iterator<Item = String>,
     rows: impl Iterator<Item = Vec<String>>,
 ) -> Outcome<()> {
+    // The reason of the file system, such as a full disk, is inside the error.
+    let reason = |error: csv::Error| match error.into_kind() {
+        csv::ErrorKind::Io(reason) => reason,
+        other => io::Error::other(format!("{other:?}")),
+    };
     write(path, |file| {
         let mut csv = csv::Writer::from_writer(file);
-        csv.write_record(header)?;
+        csv.write_record(header).map_err(reason)?;
         for row in rows {
-            csv.write_record(row)?;
+            csv.write_record(row).map_err(reason)?;
         }
         csv.flush()
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use std::{env, fs, time::SystemTime};
-
-    use super::*;
-
-    #[test]
-    fn stale_parts_go_and_others_stay() {
-        let folder = env::temp_dir().join(format!("crane-parts-{}", process::id()));
-        fs::create_dir_all(&folder).unwrap();
-        let parts = ["table.csv.4194999.part", "table.csv.4194998.part", "table.csv.notes.part", "other.csv.1.part"];
-        let [stale, held, notes, other] = parts.map(|name| folder.join(name));
-        for part in [&stale, &held, &notes, &other] {
-            fs::write(part, "half").unwrap();
-            let file = fs::File::options().write(true).open(part).unwrap();
-            file.set_modified(SystemTime::now() - Duration::from_secs(3600)).unwrap();
-        }
-        let owner = fs::File::open(&held).unwrap();
-        owner.try_lock().unwrap();
-        write_text(&folder.join("table.csv"), "whole").unwrap();
-        assert_eq!(fs::read_to_string(folder.join("table.csv")).unwrap(), "whole");
-        assert_eq!([&stale, &held, &notes, &other].map(|part| part.exists()), [false, true, true, true]);
-        fs::remove_dir_all(folder).unwrap();
-    }
 }

@@ -2,7 +2,6 @@
 
 use std::{
     env::{consts, current_exe},
-    fs,
     io::{Cursor, Write},
     path::{Path, PathBuf},
 };
@@ -119,7 +118,7 @@ fn read(path: &Path) -> Outcome<Library> {
     let system = SYSTEMS.iter().find(|system| ending == system.suffix).ok_or_else(|| {
         Problem::usage(format!("{} is not a shared library", path.display()), "give a .so, .dll or .dylib file")
     })?;
-    let content = fs::read(path).map_err(|error| Problem::file(path, &error))?;
+    let content = files::read(path).map_err(|error| Problem::file(path, &error))?;
     Ok(Library { system, content })
 }
 

@@ -14,6 +14,7 @@ use crate::{
     files,
     own::{self, load},
     problem::{Outcome, Problem},
+    screen,
 };
 
 /// Writes the Rust module of a crane.
@@ -26,14 +27,14 @@ pub fn generate(options: &Generate, registry: &Registry, out: &mut dyn Write) ->
             files::write_text(&folder.join(name), &text)?;
         }
     }
-    let Compiled { code, warnings } = compile::compile(&source, analyses).map_err(Problem::mistakes)?;
+    let chain = compile::load(&source).map_err(Problem::mistakes)?;
+    let compiled = own::working(&chain, || compile::compile(&source, analyses));
+    let Compiled { code, warnings } = compiled.map_err(Problem::mistakes)?;
     if !warnings.is_empty() {
-        // If standard error is closed, the warnings are lost.
-        let _ = writeln!(std::io::stderr(), "{}", warnings.to_string().trim_end());
+        screen::warn(&warnings);
     }
     if let Some(warning) = code.report.warning(&code.name) {
-        // If standard error is closed, the warning is lost.
-        let _ = writeln!(std::io::stderr(), "warning: {warning}");
+        screen::remark(&format!("warning: {warning}"));
     }
     let Some(file) = &options.file else { return Ok(out.write_all(code.text.as_bytes())?) };
     files::write_text(file, &code.text)?;
@@ -76,6 +77,7 @@ impl Output {
             Output::Run => include_str!("../schemas/run.json"),
             Output::Info => include_str!("../schemas/info.json"),
             Output::List => include_str!("../schemas/list.json"),
+            Output::Poses => include_str!("../schemas/poses.json"),
         }
     }
 }

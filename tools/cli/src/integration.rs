@@ -14,6 +14,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::{
     arguments::{Limits, Step, Timing},
     problem::{Outcome, Problem},
+    screen,
 };
 
 impl Timing {
@@ -41,7 +42,7 @@ impl Timing {
         for (name, given, value, what) in [
             ("step", step, &mut settings.step, "length of time"),
             ("duration", self.duration, &mut settings.duration, "length of time"),
-            ("output", self.output, &mut settings.output, "length of time"),
+            ("interval", self.interval, &mut settings.output, "length of time"),
             ("tolerance", self.tolerance, &mut settings.tolerance, "tolerance"),
         ] {
             *value = given.unwrap_or(*value);
@@ -54,9 +55,9 @@ impl Timing {
                 ));
             }
         }
-        if self.output.is_some() && settings.output > settings.duration {
+        if self.interval.is_some() && settings.output > settings.duration {
             let title = format!("results every {} s in a run of {} s", settings.output, settings.duration);
-            return Err(Problem::usage(title, "write an `--output` that is not longer than `--duration`"));
+            return Err(Problem::usage(title, "write an `--interval` that is not longer than `--duration`"));
         }
         let (least, greatest) = dynamics::Settings::TOLERANCES;
         if settings.tolerance < least {
@@ -67,7 +68,7 @@ impl Timing {
             let title = format!("a tolerance of {:e} is too large to be meaningful", settings.tolerance);
             return Err(Problem::usage(title, format!("write {greatest} or less, such as 1e-4")));
         }
-        for (name, value) in [("duration", settings.duration), ("output", settings.output)] {
+        for (name, value) in [("duration", settings.duration), ("interval", settings.output)] {
             let (least, greatest) = dynamics::Settings::TIMES;
             if !(least..=greatest).contains(&value) {
                 return Err(Problem::usage(
@@ -82,7 +83,7 @@ impl Timing {
                     "one result every {} s for {} s makes more than a million results",
                     settings.output, settings.duration
                 ),
-                "write a longer interval for `--output`, in s",
+                "write a longer `--interval`, in s",
             ));
         }
         if !method.is_adaptive() && settings.duration / settings.step > dynamics::Settings::MOST_STEPS {
@@ -139,6 +140,9 @@ pub fn batches(count: usize) -> ProgressBar {
 
 /// A progress bar with times.
 pub fn styled(bar: ProgressBar) -> ProgressBar {
+    if screen::is_quiet() {
+        return ProgressBar::hidden();
+    }
     let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %  {elapsed} (left {eta})");
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
     bar

@@ -18,6 +18,7 @@ mod completions;
 mod ensemble;
 mod envelope;
 mod eval;
+mod example;
 mod exchange;
 mod figures;
 pub mod files;
@@ -35,9 +36,11 @@ mod npz;
 mod own;
 mod page;
 mod parameter_table;
+mod poses;
 mod problem;
 pub mod refinement;
 mod run;
+mod screen;
 mod selection;
 mod simulate;
 mod stability;
@@ -51,7 +54,7 @@ use std::{env, io, io::Write, process::ExitCode};
 use clap::{Command, CommandFactory, FromArgMatches};
 
 use arguments::{Action, Arguments};
-use problem::Outcome;
+use problem::{Outcome, Problem};
 pub use selection::Registry;
 
 /// Parts for other commands that work with cranes, with [`files`] and [`refinement`].
@@ -68,7 +71,11 @@ pub mod toolbox {
 /// Does what the arguments of the process ask for, with the cranes of a registry or of a YAML file that the arguments name.
 pub fn main(registry: Registry) -> ExitCode {
     completions::answer(registry.shipped());
-    with_arguments(help::grouped(Arguments::command()), |arguments, out| act(arguments, registry, out))
+    with_arguments(help::grouped(Arguments::command()), |arguments: Arguments, out| {
+        screen::choose(&arguments.manner);
+        act(arguments, registry, out)?;
+        screen::unaccepted().map_or(Ok(()), Err)
+    })
 }
 
 /// Reads the arguments of the process, as `command` describes them, and acts on them; returns the exit code.
@@ -83,13 +90,16 @@ pub fn with_arguments<A: FromArgMatches>(
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and version arrive here too. If printing fails, there is no one to inform.
+            if error.use_stderr() && screen::is_json() {
+                return ExitCode::from(screen::report(&Problem::arguments(&error)));
+            }
             let _ = error.print();
             return if error.use_stderr() { ExitCode::from(problem::USAGE) } else { ExitCode::SUCCESS };
         }
     };
     match act(arguments, &mut io::stdout().lock()) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(problem) => problem.report(),
+        Err(problem) => ExitCode::from(screen::report(&problem)),
     }
 }
 
@@ -100,25 +110,40 @@ fn act(mut arguments: Arguments, mut registry: Registry, out: &mut dyn Write) ->
         }
         if let Some(file) = choice.file() {
             let (chain, spec) = own::load(file, choice.strict)?;
-            choice.name = registry.add_read(chain, spec)?;
+            choice.name = registry.add_read(chain, spec);
         }
         if choice.rigid {
             choice.name = registry.add_rigid(&choice.name, "leave `--rigid` out")?;
+        }
+        let name = choice.name.clone();
+        if let Some(poses) = arguments.action.as_ref().and_then(Action::poses) {
+            poses::hold(poses, &name, &mut registry)?;
         }
     }
     if let Some(Action::Compare(options)) = &mut arguments.action {
         compare::load(options, &mut registry)?;
     }
     let registry = &registry;
+    if let Some(asked) = arguments.action.as_ref().and_then(poses::asked) {
+        return poses::rows(&asked, registry, out);
+    }
     match &arguments.action {
-        None if registry.has(compare::CRANES) => compare::compare(&arguments.compare, registry, out),
+        None if registry.has(compare::CRANES) => {
+            screen::remark(&format!(
+                "crane without a command compares {} with {} and writes to {}; `crane --help` lists the commands",
+                compare::CRANES[0],
+                compare::CRANES[1],
+                arguments.compare.folder.out.display()
+            ));
+            compare::compare(&arguments.compare, registry, out)
+        }
         None => Ok(help::grouped(Arguments::command()).print_help()?),
         Some(Action::Compare(options)) => compare::compare_pair(options, registry, out),
         Some(Action::Run(options)) => run::run(options, registry, out),
-        Some(Action::Statics(options)) => statics::statics(options, registry, out),
+        Some(Action::Statics(options)) => statics::statics(&options.analysis, registry, out),
         Some(Action::Simulate(options)) => match &options.ensemble.table {
             Some(table) => ensemble::simulate(options, table, registry, out),
-            None => simulate::simulate(options, registry, out),
+            None => simulate::simulate(&options.run, registry, out),
         },
         Some(Action::Modes(options)) => modes::modes(options, registry, out),
         Some(Action::Linearise(options)) => linearise::linearise(options, registry, out),
@@ -130,7 +155,8 @@ fn act(mut arguments: Arguments, mut registry: Registry, out: &mut dyn Write) ->
         Some(Action::Eval(options)) => eval::eval(options, registry, out),
         Some(Action::New(options)) => new::new(options, registry, out),
         Some(Action::Check(options)) => check::check(options, registry, out),
-        Some(Action::Explain { spec, svg }) => own::explain(spec, svg.as_deref(), registry, out),
+        Some(Action::Explain(options)) => own::explain(options, registry, out),
+        Some(Action::Example(options)) => example::example(options, registry, out),
         Some(Action::Generate(options)) => generate::generate(options, registry, out),
         Some(Action::Operations { specs }) => generate::operations(specs, out),
         Some(Action::Schema { of }) => generate::schema(*of, out),

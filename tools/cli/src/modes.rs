@@ -1,6 +1,6 @@
 //! `crane modes`: small vibrations about the static pose.
 
-use std::io::Write;
+use std::{io::Write, num::NonZeroUsize};
 
 use crane_model::{dynamics::Method, modes::damped, results::cautions, runs::limiting_modes, stability::limit};
 use crane_page::tables::{Case, Cell, Report, damped_modes, undamped_modes};
@@ -12,7 +12,8 @@ const LOWEST: usize = 10;
 
 /// Prints undamped and damped modes and the largest stable step.
 pub fn modes(options: &Modes, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
-    let Modes { analysis: options, matrices } = options;
+    let Modes { analysis: options, count, matrices, .. } = options;
+    let lowest = count.map_or(LOWEST, NonZeroUsize::get);
     let crane = options.crane.open(registry)?;
     let description = crane.description();
     let case = Case::new(&description.name, crane.as_ref());
@@ -33,7 +34,7 @@ pub fn modes(options: &Modes, registry: &Registry, out: &mut dyn Write) -> Outco
     for caution in cautions::of_telescopes(crane.as_ref(), &case.equilibrium.q) {
         report.caution(Some(caution));
     }
-    report.excerpt(undamped_modes(&case, changes.as_deref())?, LOWEST);
+    report.excerpt(undamped_modes(&case, changes.as_deref())?, lowest);
     report.excerpt(damped_modes(description, &modes), 0);
     report.show_all(options.all);
     options.format.print(&report, out)

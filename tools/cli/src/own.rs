@@ -7,15 +7,19 @@ use std::{
     ffi::{OsStr, OsString},
     io::{self, Write},
     path::{Path, PathBuf},
+    time::Duration,
 };
 
-use crane_codegen::{Checked, Diagnostics, SourceFile, build, chain::Chain, compile, explain, picture::picture};
+use crane_codegen::{Checked, SourceFile, build, chain::Chain, compile, explain, picture::picture};
+
+use indicatif::ProgressBar;
 
 use crate::{
     Registry,
-    arguments::{Choice, STANDARD_INPUT},
+    arguments::{Choice, Explain, STANDARD_INPUT},
     files,
     problem::{FAILED, Outcome, Problem},
+    screen,
 };
 use package::{Package, Product};
 
@@ -69,13 +73,29 @@ pub(super) fn load_named(given: &str, strict: bool, registry: &Registry) -> Outc
 }
 
 /// Prints the chain of a spec, and draws it on request.
-pub fn explain(spec: &str, svg: Option<&Path>, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
-    let (chain, _) = load_named(spec, false, registry)?;
-    if let Some(file) = svg {
+pub fn explain(options: &Explain, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    let (chain, _) = load_named(&options.spec, false, registry)?;
+    if let Some(file) = &options.svg {
         files::write_text(file, &picture(&chain))?;
     }
-    let report = compile::report(&chain, chain.analyses);
-    Ok(out.write_all(explain::explain(&chain, &report).as_bytes())?)
+    let report = options.operations.then(|| working(&chain, || compile::report(&chain, chain.analyses)));
+    Ok(out.write_all(explain::explain(&chain, report.as_ref()).as_bytes())?)
+}
+
+/// Does what may take long for a large crane, and says so.
+pub(super) fn working<T>(chain: &Chain, work: impl FnOnce() -> T) -> T {
+    /// From here on it takes more than some seconds.
+    const LARGE: usize = 300;
+    let count = chain.coordinates.len();
+    if count < LARGE {
+        return work();
+    }
+    screen::remark(&format!("{} has {count} coordinates: this may take minutes; Ctrl-C ends it", chain.name));
+    let bar = ProgressBar::new_spinner().with_message("deriving");
+    bar.enable_steady_tick(Duration::from_millis(200));
+    let done = work();
+    bar.finish_and_clear();
+    done
 }
 
 /// Does what the arguments of this process ask for, with the chosen crane as machine code.
@@ -138,9 +158,9 @@ pub fn load(spec: &Path, strict: bool) -> Outcome<(Chain, String)> {
 fn parse(source: SourceFile, strict: bool) -> Outcome<(Chain, String)> {
     let Checked { chain, warnings } = compile::check(&source).map_err(Problem::mistakes)?;
     if !warnings.is_empty() {
-        let problem = drawn(&warnings);
+        screen::warn(&warnings);
         if strict {
-            return Err(problem);
+            return Err(Problem::Elsewhere(FAILED));
         }
     }
     Ok((chain, source.text))
@@ -151,7 +171,10 @@ pub(super) fn warn_of(source: &SourceFile, set: &[(String, f64)]) -> Option<Prob
     let set: Vec<(&str, f64)> = set.iter().map(|(name, value)| (name.as_str(), *value)).collect();
     let known = compile::check(source).ok()?.warnings;
     let added = compile::check_with(source, &set).ok()?.warnings.without(&known);
-    (!added.is_empty()).then(|| drawn(&added))
+    (!added.is_empty()).then(|| {
+        screen::warn(&added);
+        Problem::Elsewhere(FAILED)
+    })
 }
 
 /// A file of text, or the standard input; `help`: what kind of file to name.
@@ -165,11 +188,4 @@ pub(super) fn open(file: &Path, help: &str) -> Outcome<SourceFile> {
         build::Failure::File(message) => Problem::failed(message, help),
         build::Failure::Mistakes(mistakes) => Problem::mistakes(mistakes),
     })
-}
-
-/// Prints warnings to standard error.
-fn drawn(warnings: &Diagnostics) -> Problem {
-    // If standard error is closed, the warnings are lost.
-    let _ = writeln!(io::stderr(), "{}", warnings.to_string().trim_end());
-    Problem::Elsewhere(FAILED)
 }

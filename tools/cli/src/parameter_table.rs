@@ -5,6 +5,7 @@ use std::path::Path;
 use crane_model::{Description, dyn_crane::DynCrane};
 
 use crate::{
+    files,
     problem::{Outcome, Problem},
     selection::{parameter, set, told},
 };
@@ -20,7 +21,7 @@ pub struct ParameterTable {
 impl ParameterTable {
     /// Reads a CSV file whose header names live parameters, with or without their units: `load_mass` or `load_mass [kg]`.
     pub fn read(path: &Path, description: &Description) -> Outcome<Self> {
-        let csv = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path);
+        let csv = files::csv(path);
         let unreadable = |error: csv::Error| {
             let title = match error.kind() {
                 csv::ErrorKind::UnequalLengths { pos: Some(pos), expected_len, len } => {

@@ -1,11 +1,6 @@
 //! What can go wrong, as a person reads it.
 
-use std::{
-    fmt::Write as _,
-    io::{self, Write as _},
-    path::Path,
-    process::ExitCode,
-};
+use std::{io, path::Path};
 
 use crane_codegen::Diagnostics;
 use crane_model::{
@@ -18,6 +13,9 @@ use crane_model::{
 pub const FAILED: u8 = 1;
 /// Exit code where the arguments are wrong.
 pub const USAGE: u8 = 2;
+
+/// Exit code where something was noticed that `--fail-on` names.
+pub const NOTICED: u8 = 3;
 
 /// A result or a problem for the user.
 pub type Outcome<T> = Result<T, Problem>;
@@ -60,17 +58,15 @@ impl Problem {
 
     /// A file or folder could not be used.
     pub fn file(path: &Path, error: &io::Error) -> Self {
-        let help = match error.kind() {
-            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded | io::ErrorKind::FileTooLarge => {
-                "free some space, or name a place on another disk"
-            }
-            io::ErrorKind::IsADirectory | io::ErrorKind::ResourceBusy => "name a file, not a folder",
-            io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists => "name a folder, not a file",
-            io::ErrorKind::NotFound => "check the path: a folder in it does not exist",
-            io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => "name a place where you may write",
-            _ => "check that the path exists and that you may write there",
-        };
-        Self::failed(format!("cannot use {}: {error}", path.display()), help)
+        Self::failed(format!("cannot use {}: {error}", path.display()), remedy(error.kind()))
+    }
+
+    /// Arguments that cannot be read.
+    pub fn arguments(error: &clap::Error) -> Self {
+        let text = error.to_string();
+        let mut words = text.trim_start_matches("error:").trim().splitn(2, "\n\n");
+        let [title, help] = [words.next(), words.next()].map(|words| words.unwrap_or_default().trim().to_owned());
+        Self::usage(title, help)
     }
 
     /// What is wrong.
@@ -89,27 +85,19 @@ impl Problem {
             _ => self.title().to_owned(),
         }
     }
+}
 
-    /// Prints the problem; returns the exit code.
-    pub fn report(&self) -> ExitCode {
-        match self {
-            Problem::NobodyListens => ExitCode::SUCCESS,
-            Problem::Elsewhere(code) => ExitCode::from(*code),
-            Problem::Mistakes(mistakes) => {
-                // If standard error is closed, they are lost.
-                let _ = writeln!(io::stderr(), "{}", mistakes.to_string().trim_end());
-                ExitCode::from(FAILED)
-            }
-            Problem::Told { title, help, code } => {
-                let mut text = format!("error: {title}\n");
-                if !help.is_empty() {
-                    let _ = writeln!(text, "  help: {help}");
-                }
-                // Not eprint: it panics where standard error is closed.
-                let _ = io::Write::write_all(&mut io::stderr(), text.as_bytes());
-                ExitCode::from(*code)
-            }
+/// What to do about an error of the file system.
+fn remedy(kind: io::ErrorKind) -> &'static str {
+    match kind {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded | io::ErrorKind::FileTooLarge => {
+            "free some space, or name a place on another disk"
         }
+        io::ErrorKind::IsADirectory | io::ErrorKind::ResourceBusy => "name a file, not a folder",
+        io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists => "name a folder, not a file",
+        io::ErrorKind::NotFound => "check the path: a folder in it does not exist",
+        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => "name a place where you may write",
+        _ => "check that the path exists and that you may write there",
     }
 }
 
@@ -117,7 +105,7 @@ impl From<io::Error> for Problem {
     fn from(error: io::Error) -> Self {
         match error.kind() {
             io::ErrorKind::BrokenPipe => Problem::NobodyListens,
-            _ => Problem::failed(format!("cannot write the output: {error}"), ""),
+            kind => Problem::failed(format!("cannot write the output: {error}"), remedy(kind)),
         }
     }
 }

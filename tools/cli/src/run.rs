@@ -7,19 +7,16 @@ use crane_page::tables::{caution_of_runs, deflection, equilibria, extremes, summ
 
 use crate::{
     Registry,
-    arguments::Simulate,
+    arguments::Run,
     files,
     integration::runs,
     page::{cases, twin, write},
-    problem::{Outcome, Problem},
+    problem::Outcome,
     simulate::{Trace, file_list, write_figures, write_run},
 };
 
 /// Statics and motion of a crane, compared with its rigid twin if there is one; results, figures and the report.
-pub fn run(options: &Simulate, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
-    if options.ensemble.table.is_some() {
-        return Err(Problem::usage("`crane run` does not support `--ensemble`", "use `crane simulate` instead"));
-    }
+pub fn run(options: &Run, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let crane = options.analysis.crane.open(registry)?;
     let (crane, twin) = (crane.as_ref(), twin::rigid(crane.as_ref(), registry));
     let cases = cases(crane, twin.as_deref());

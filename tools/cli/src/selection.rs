@@ -2,12 +2,9 @@
 
 use std::{borrow::Cow, path::Path, sync::OnceLock};
 
-use crane_codegen::{SourceFile, chain::Chain};
+use crane_codegen::{SourceFile, chain::Chain, spec::parse_angle};
 use crane_live::LiveCrane;
-use crane_model::{
-    Description, ParameterError, Refusal,
-    dyn_crane::{DynCrane, DynModel},
-};
+use crane_model::{Description, ParameterError, Refusal, dyn_crane::DynCrane};
 
 use crate::{
     arguments::{Choice, Parameters},
@@ -54,18 +51,8 @@ impl Entry {
             return Ok(live);
         }
         let source = SourceFile::new(format!("{}.yaml", self.name), self.spec.clone());
-        let crane = self.checked(LiveCrane::from_spec(&source).map_err(Problem::mistakes)?)?;
+        let crane = LiveCrane::from_spec(&source).map_err(Problem::mistakes)?;
         Ok(self.live.get_or_init(|| crane))
-    }
-
-    /// The crane, unless it is too large.
-    fn checked(&self, crane: LiveCrane) -> Outcome<LiveCrane> {
-        let (count, most) = (crane.description().coordinates.len(), LiveCrane::MOST_COORDINATES);
-        if count > most {
-            let title = format!("{} has {count} coordinates; the command supports at most {most}", self.name);
-            return Err(Problem::failed(title, "give flexible links fewer `sections`"));
-        }
-        Ok(crane)
     }
 }
 
@@ -86,15 +73,11 @@ impl Registry {
     }
 
     /// As [`Self::add`], for a spec that has been read; returns the crane's name.
-    ///
-    /// # Errors
-    /// The crane is too large.
-    pub fn add_read(&mut self, chain: Chain, spec: String) -> Outcome<String> {
+    pub fn add_read(&mut self, chain: Chain, spec: String) -> String {
         let name = chain.name.clone();
         let entry = Entry::new(&name, Cow::Owned(spec));
-        let live = entry.checked(LiveCrane::new(chain))?;
-        self.replace(Entry { live: live.into(), ..entry });
-        Ok(name)
+        self.replace(Entry { live: LiveCrane::new(chain).into(), ..entry });
+        name
     }
 
     fn replace(&mut self, entry: Entry) {
@@ -182,6 +165,15 @@ impl Registry {
     }
 }
 
+/// Sets inputs `name=value`.
+pub fn set_inputs(crane: &mut dyn DynCrane, settings: &[String]) -> Outcome<()> {
+    for setting in settings {
+        let (index, value) = input(setting, crane.description())?;
+        crane.set_input(index, Some(value));
+    }
+    Ok(())
+}
+
 impl Choice {
     /// The crane with its parameters and inputs.
     ///
@@ -189,10 +181,7 @@ impl Choice {
     /// There is no such crane or input, or its parameters cannot have these values.
     pub fn open(&self, registry: &Registry) -> Outcome<Box<dyn DynCrane>> {
         let mut crane = self.parameters.crane(&self.name, self.strict, registry)?;
-        for setting in &self.inputs {
-            let (index, value) = input(setting, crane.description())?;
-            crane.set_input(index, Some(value));
-        }
+        set_inputs(crane.as_mut(), &self.inputs)?;
         Ok(crane)
     }
 }
@@ -214,8 +203,8 @@ fn input(setting: &str, description: &Description) -> Outcome<(usize, f64)> {
         };
         Problem::usage(format!("{} has no input `{name}`", description.name), help)
     })?;
-    let number = value.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
-        let unit = description.inputs[index].unit.as_str();
+    let unit = description.inputs[index].unit.as_str();
+    let number = value_in(unit, value).ok_or_else(|| {
         let help = if unit.is_empty() {
             "write a finite number".to_owned()
         } else {
@@ -274,16 +263,23 @@ impl Parameters {
             })?;
             let index = place(name, crane, known).map_err(|(title, help)| Problem::usage(title, help))?;
             let unit = known[index].1;
-            let number = value.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
+            let number = value_in(unit, value).ok_or_else(|| {
+                let angle = if unit == "rad" { ", or an angle such as `30deg`" } else { "" };
                 Problem::usage(
                     format!("`{value}` is not a valid value for {name}"),
-                    format!("write a finite number in {unit}"),
+                    format!("write a finite number in {unit}{angle}"),
                 )
             })?;
             Ok((index, number))
         };
         self.settings.iter().map(read).collect()
     }
+}
+
+/// A finite number in a unit; where that is rad, also an angle such as `30deg`.
+fn value_in(unit: &str, text: &str) -> Option<f64> {
+    let angle = || parse_angle(text).filter(|_| unit == "rad");
+    text.parse().ok().or_else(angle).filter(|number: &f64| number.is_finite())
 }
 
 /// Sets live parameters, by their indices in the description, all at once.

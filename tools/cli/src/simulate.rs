@@ -18,7 +18,7 @@ use serde_json::Value;
 
 use crate::{
     Registry,
-    arguments::Simulate,
+    arguments::Run,
     figures::{Curve, Mark, PALETTE, Panel, svg},
     files,
     integration::{progress, record_checked},
@@ -36,7 +36,7 @@ pub struct Trace<'a> {
 }
 
 /// Runs a crane and writes its results.
-pub fn simulate(options: &Simulate, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+pub fn simulate(options: &Run, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let crane = options.analysis.crane.open(registry)?;
     let crane = crane.as_ref();
     let name = &crane.description().name;

@@ -11,6 +11,7 @@ use crane_model::{
 
 use crate::{
     arguments::Timing,
+    files,
     problem::{Outcome, Problem, nearest},
 };
 
@@ -163,7 +164,7 @@ const SAME_TIME: f64 = 1e-9;
 pub fn row(file: &Path, description: &Description, at: Option<f64>) -> Outcome<Row> {
     let help = "give a CSV file of results written by `crane simulate` or `crane run`";
     let unreadable = |error: csv::Error| Problem::usage(format!("cannot use {}: {error}", file.display()), help);
-    let mut csv = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(file).map_err(unreadable)?;
+    let mut csv = files::csv(file).map_err(unreadable)?;
     let headers = csv.headers().map_err(unreadable)?.clone();
     let name_of = |header: &str| header.split(" [").next().unwrap_or(header).to_owned();
     let clock = headers.iter().position(|header| name_of(header) == TIME);

@@ -194,7 +194,7 @@ fn the_module_of_a_spec_is_the_same_from_any_folder() {
 #[test]
 fn explain_shows_chain_coordinates_omissions_and_costs() {
     let root = env!("CARGO_MANIFEST_DIR");
-    let shown = crane(&["explain", &format!("{root}/../../specs/eight_link_flexible.yaml")]);
+    let shown = crane(&["explain", &format!("{root}/../../specs/eight_link_flexible.yaml"), "--operations"]);
     let shown = text(&shown.stdout);
     for expected in [
         "boom_4                     51.013     20  T(0.8750, 0.0000, 0.0000) Rz(boom_4_psi) Ry(boom_4_theta) Rx(boom_4_phi)",

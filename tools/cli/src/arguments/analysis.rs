@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum, ValueHint};
 use super::{
     crane::{Analysis, Choice},
     number::{above_zero, count, margin, seconds},
+    poses::Poses,
     run::{Folder, Timing},
 };
 
@@ -16,16 +17,18 @@ pub struct Strength {
     #[command(flatten)]
     pub analysis: Analysis,
     #[command(flatten)]
+    pub poses: Poses,
+    #[command(flatten)]
     pub timing: Timing,
     /// Also evaluate the manoeuvre: smallest tipping margin, extremes of all loads and their times
-    #[arg(long)]
+    #[arg(long, conflicts_with = "ranges")]
     pub run: bool,
     /// Live parameter to use as the load: find the values at which the first foot lifts and the crane tips [default: the only
     /// parameter in kg]
     #[arg(long, value_name = "PARAMETER")]
     pub load: Option<String>,
-    /// CSV file for the moments about the tipping lines and all loads during the run
-    #[arg(short = 'o', long = "file", value_name = "FILE", value_hint = ValueHint::FilePath, requires = "run")]
+    /// CSV file for the moments about the tipping lines and all loads during the run, or for the table of `--range`
+    #[arg(short = 'o', long = "file", value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub results: Option<PathBuf>,
 }
 
@@ -74,8 +77,16 @@ pub struct Envelope {
 pub struct Modes {
     #[command(flatten)]
     pub analysis: Analysis,
+    #[command(flatten)]
+    pub poses: Poses,
+    /// Number of lowest modes to print [default: 10; with `--range` 3]
+    #[arg(long, value_name = "COUNT", value_parser = count)]
+    pub count: Option<NonZeroUsize>,
+    /// CSV file for the table of `--range`
+    #[arg(short = 'o', long, value_name = "FILE.csv", value_hint = ValueHint::FilePath, requires = "ranges")]
+    pub file: Option<PathBuf>,
     /// Write pose, mass, stiffness and damping matrices, eigenvalues and mode shapes to a file, `.json` or `.npz`
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "ranges")]
     pub matrices: Option<PathBuf>,
 }
 

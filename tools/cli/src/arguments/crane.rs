@@ -10,7 +10,7 @@ use clap::{Args, ValueEnum, ValueHint};
 use crane_model::results::cautions::BEND;
 use crane_page::tables::Report;
 
-use crate::problem::Outcome;
+use crate::{problem::Outcome, screen};
 
 /// Output format.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -28,19 +28,20 @@ impl Format {
     /// # Errors
     /// The output is closed.
     pub fn print(self, report: &Report, out: &mut dyn Write) -> Outcome<()> {
+        screen::note(report);
         match self {
-            Format::Table => Ok(report.print(out)?),
+            Format::Table => Ok(screen::print(report, out)?),
             Format::Json => Ok(writeln!(out, "{:#}", report.json())?),
         }
     }
 }
 
-/// A spec to check.
+/// Specs to check.
 #[derive(Debug, Args)]
 pub struct Check {
-    /// Shipped crane, YAML file, or `-` for the standard input
-    #[arg(value_name = "CRANE", value_hint = ValueHint::FilePath)]
-    pub spec: String,
+    /// Shipped cranes, YAML files, or `-` for the standard input
+    #[arg(required = true, value_name = "CRANE", value_hint = ValueHint::FilePath)]
+    pub specs: Vec<String>,
     /// Treat warnings as mistakes
     #[arg(long)]
     pub strict: bool,
@@ -98,7 +99,7 @@ pub fn spec_file(name: &str) -> Option<&Path> {
 /// Values of live parameters.
 #[derive(Debug, Args)]
 pub struct Parameters {
-    /// Set a live parameter, in the unit that `crane info` shows; repeatable
+    /// Set a live parameter, in the unit that `crane info` shows, angles also as `30deg`; may be given several times
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub settings: Vec<String>,
 }
@@ -123,6 +124,28 @@ pub struct Analysis {
     /// Print all tables in full: the pose, all modes, all sections
     #[arg(long)]
     pub all: bool,
+}
+
+/// A crane in words.
+#[derive(Debug, Args)]
+pub struct Explain {
+    /// Shipped crane, YAML file, or `-` for the standard input
+    #[arg(value_name = "CRANE", value_hint = ValueHint::FilePath)]
+    pub spec: String,
+    /// Also draw the chain into this file
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub svg: Option<PathBuf>,
+    /// Also count the operations of every generated function
+    #[arg(long)]
+    pub operations: bool,
+}
+
+/// A spec to start from.
+#[derive(Debug, Args)]
+pub struct Example {
+    /// Shipped crane [default: list them]
+    #[arg(value_name = "NAME")]
+    pub name: Option<String>,
 }
 
 /// A crate for your own crane.

@@ -4,19 +4,24 @@ mod analysis;
 mod crane;
 mod exchange;
 mod number;
+mod poses;
 mod run;
 
 use std::path::PathBuf;
 
 use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 
+use crate::screen::Manner;
+
 pub use analysis::{Envelope, Eval, EvalFormat, Linearise, Modes, Quantity, Stability, Strength};
 pub use crane::{
-    Analysis, Check, Choice, DEFAULT_CRANE, Format, Generate, Limits, List, New, Parameters, STANDARD_INPUT, spec_file,
+    Analysis, Check, Choice, DEFAULT_CRANE, Example, Explain, Format, Generate, Limits, List, New, Parameters,
+    STANDARD_INPUT, spec_file,
 };
 pub use exchange::{CNumber, Export, Fmi, Import, Language};
 pub use number::seconds;
-pub use run::{Compare, ComparePair, Ensemble, Page, Simulate, Step, Timing};
+pub use poses::{Poses, Statics};
+pub use run::{Compare, ComparePair, Ensemble, Page, Run, Simulate, Step, Timing};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -24,6 +29,9 @@ Examples:
   crane statics                        pose, drive torques, support reactions
   crane statics cantilever --format json
                                        the same for another crane, as JSON
+  crane statics --hold boom_psi=40deg --range telescope_x=0:2:9
+                                       deflection, pressures and reactions over reach, in one table
+  crane example loader_crane > my.yaml a commented spec to start your own crane from
   crane simulate --set load_mass=0 --out empty
                                        the manoeuvre without the log
   crane simulate --method rk4 --step 1e-4
@@ -52,7 +60,8 @@ Examples:
 Exit codes:
   0  done
   1  no stable equilibrium, a run that grew without bound, a file that cannot be used
-  2  wrong arguments";
+  2  wrong arguments
+  3  done, but something was noticed that --fail-on names";
 
 /// Statics, motion and vibration of cranes described in YAML.
 ///
@@ -67,17 +76,20 @@ pub struct Arguments {
     /// Options of the comparison.
     #[command(flatten)]
     pub compare: Compare,
+    /// What the command says besides results.
+    #[command(flatten)]
+    pub manner: Manner,
 }
 
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub enum Action {
     /// Compute statics, motion, figures and the report, written to a folder
-    Run(Simulate),
+    Run(Run),
     /// Compare two cranes, or a crane with itself with rigid beams: statics, motion, figures and the report
     Compare(ComparePair),
     /// Find the static equilibrium: pose, drive torques, support reactions
-    Statics(Analysis),
+    Statics(Statics),
     /// Compute tipping margin, stresses, loads on joints and ground, and the tipping load
     Strength(Strength),
     /// Find the largest load within limits over ranges of poses: load chart, diagrams, data
@@ -100,15 +112,10 @@ pub enum Action {
     New(New),
     /// Check a spec: report every mistake and everything implausible
     Check(Check),
-    /// Explain a spec: bodies, coordinates, omissions and operation counts; draw a picture
-    Explain {
-        /// Shipped crane or YAML file
-        #[arg(value_name = "CRANE", value_hint = ValueHint::FilePath)]
-        spec: String,
-        /// Also draw the chain into this file
-        #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-        svg: Option<PathBuf>,
-    },
+    /// Explain a spec: bodies, coordinates, what is left out; draw a picture
+    Explain(Explain),
+    /// Print the commented spec of a shipped crane, to start your own from
+    Example(Example),
     /// Write a crane's Rust module, for your own program
     Generate(Generate),
     /// Print a Markdown table of operation counts: functions by cranes
@@ -140,8 +147,10 @@ impl Action {
     /// The crane, chosen by its name or by a YAML file.
     pub fn choice(&mut self) -> Option<&mut Choice> {
         match self {
-            Action::Run(options) | Action::Simulate(options) => Some(&mut options.analysis.crane),
-            Action::Statics(options) | Action::Info(options) => Some(&mut options.crane),
+            Action::Run(options) => Some(&mut options.analysis.crane),
+            Action::Simulate(options) => Some(&mut options.run.analysis.crane),
+            Action::Statics(options) => Some(&mut options.analysis.crane),
+            Action::Info(options) => Some(&mut options.crane),
             Action::Modes(options) => Some(&mut options.analysis.crane),
             Action::Linearise(options) => Some(&mut options.analysis.crane),
             Action::Strength(options) => Some(&mut options.analysis.crane),
@@ -152,7 +161,8 @@ impl Action {
             Action::Compare(_)
             | Action::New(_)
             | Action::Check(_)
-            | Action::Explain { .. }
+            | Action::Explain(_)
+            | Action::Example(_)
             | Action::Generate(_)
             | Action::Operations { .. }
             | Action::Schema { .. }
@@ -160,6 +170,18 @@ impl Action {
             | Action::Import(_)
             | Action::List(_)
             | Action::Completions { .. } => None,
+        }
+    }
+}
+
+impl Action {
+    /// The drives that hold a position, and what is varied.
+    pub fn poses(&self) -> Option<&Poses> {
+        match self {
+            Action::Statics(options) => Some(&options.poses),
+            Action::Strength(options) => Some(&options.poses),
+            Action::Modes(options) => Some(&options.poses),
+            _ => None,
         }
     }
 }
@@ -193,4 +215,6 @@ pub enum Output {
     Info,
     /// The shipped cranes.
     List,
+    /// `statics`, `strength` or `modes` with `--range`: one row per pose.
+    Poses,
 }

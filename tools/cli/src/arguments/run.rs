@@ -35,7 +35,7 @@ impl FromStr for Step {
 #[derive(Clone, Debug, Args)]
 pub struct Timing {
     /// Integrator: `bdf` and `rosw4` are implicit and adaptive, for stiff cranes; `dopri5` is explicit and adaptive; `rk4` has a
-    /// constant step, as in the paper [default: rk4 with --step and for the comparison, otherwise bdf]
+    /// constant step, as in the paper [default: rk4 with --step and for `crane` without a command, otherwise bdf]
     #[arg(long, value_name = "NAME")]
     pub method: Option<Method>,
     /// Error per step that an adaptive method accepts, m and rad [default: 2e-5]
@@ -54,13 +54,13 @@ pub struct Timing {
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
     pub duration: Option<f64>,
     /// Interval between recorded results, s [default: from the spec]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
-    pub output: Option<f64>,
+    #[arg(long, alias = "output", value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
+    pub interval: Option<f64>,
     /// Start from the last row of a CSV file of results, including velocities; drive motions start again at t = 0
     #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
     pub from: Option<PathBuf>,
     /// Start from another value of a coordinate in m or rad, or of its rate, such as `boom_psi=0.3` or `boom_psi_rate=-0.1`; the
-    /// others start at rest; repeatable
+    /// others start at rest; may be given several times
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub start: Vec<String>,
 }
@@ -104,19 +104,33 @@ pub struct ComparePair {
     /// Fail if a YAML file has warnings
     #[arg(long)]
     pub strict: bool,
+    /// Value of an input instead of that of the spec, in the unit that `crane info` shows, for the cranes that have it; may be given
+    /// several times
+    #[arg(long = "input", value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub inputs: Vec<String>,
+    /// Replace beams that bend with rigid ones, in both cranes
+    #[arg(long, requires = "second")]
+    pub rigid: bool,
     #[command(flatten)]
     pub compare: Compare,
 }
 
 /// A run of one crane.
 #[derive(Debug, Args)]
-pub struct Simulate {
+pub struct Run {
     #[command(flatten)]
     pub analysis: Analysis,
     #[command(flatten)]
     pub timing: Timing,
     #[command(flatten)]
     pub folder: Folder,
+}
+
+/// A run of one crane, or of many.
+#[derive(Debug, Args)]
+pub struct Simulate {
+    #[command(flatten)]
+    pub run: Run,
     #[command(flatten)]
     pub ensemble: Ensemble,
 }

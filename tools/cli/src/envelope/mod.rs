@@ -34,7 +34,7 @@ use crate::{
     strength::load_parameter,
 };
 
-pub use ranges::number;
+pub use ranges::{number, point, read as read_ranges, varied};
 use rows::{Layout, Row};
 
 /// Maximum number of poses: they take some hours.

@@ -38,7 +38,7 @@ pub fn varies(axes: &Axes, parameter: usize) -> bool {
 }
 
 /// A drive by its coordinate, or by its link if that has only one drive, or a live parameter.
-fn varied(name: &str, description: &Description) -> Outcome<Varied> {
+pub fn varied(name: &str, description: &Description) -> Outcome<Varied> {
     if let Some(varied) = Varied::named(name, description) {
         return Ok(varied);
     }

@@ -25,7 +25,7 @@ use crate::{
     integration::runs,
     own,
     problem::Outcome,
-    refinement,
+    refinement, screen,
 };
 
 /// Computes a crane, and its rigid twin if there is one, and writes the page.
@@ -88,9 +88,6 @@ fn write_with(
         command: Some(own::typed()),
         spec: cases.last().and_then(|case| registry.spec(&case.crane.description().name)),
     };
-    if let Some(folder) = file.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        files::folder(folder)?;
-    }
     files::write_text(file, &page(&subjects, texts, files::PROGRAM)?)
 }
 
@@ -101,5 +98,6 @@ fn all_tables(registry: &Registry, cases: &[Case<'_>], limits: Limits, runs: &[R
     };
     let mut report = of_page(cases, &runs.iter().collect::<Vec<_>>(), limits.bend, changes.as_deref())?;
     report.caution(changes.as_deref().and_then(refinement::caution).as_deref());
+    screen::note(&report);
     Ok(report)
 }

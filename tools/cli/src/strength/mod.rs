@@ -27,6 +27,9 @@ pub use loads::parameter as load_parameter;
 
 /// Prints loads and stability at rest, and along the manoeuvre if asked for.
 pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    if options.results.is_some() && !options.run {
+        return Err(Problem::usage("`--file` needs `--run` or `--range`", "add one of them, or leave `--file` out"));
+    }
     let mut crane = options.analysis.crane.open(registry)?;
     let load = loads::parameter(crane.as_ref(), options.load.as_deref())?;
     let case = Case::new(VALUE, crane.as_ref());

@@ -5,7 +5,7 @@ use crane_model::{
     sections::{StressedSection, stressed_sections},
 };
 use crane_page::history::Instant;
-use crane_page::tables::{Cell, Grid, Report};
+use crane_page::tables::{Cell, Grid, Report, Scale};
 
 /// Pascals in a newton per square millimetre.
 const MEGA: f64 = 1e6;
@@ -38,7 +38,12 @@ pub fn verdict(
         }
     }
     let equivalent = format!("maximum equivalent stress{of_what}");
-    report.fact_as(&key("greatest equivalent stress"), equivalent, stress.equivalent / MEGA, "MPa");
+    report.fact_as(
+        &key("greatest equivalent stress"),
+        equivalent,
+        Cell::Shown(stress.equivalent, Scale::Megapascal),
+        "MPa",
+    );
     report.fact_as(&key("place of the greatest stress"), format!("place of the maximum stress{of_what}"), place, "");
     if !of_what.is_empty() {
         report.fact_as("time_of_the_greatest_stress", "time of the maximum stress", t, "s");
@@ -56,7 +61,7 @@ pub fn table(description: &Description, moduli: &[SectionModuli], wrenches: &[Wr
         let StressedSection { stress, utilisation, .. } = section;
         let info = section.info(description);
         let Stress { normal, shear, torsion, equivalent } = stress;
-        let stresses = [normal, shear, torsion, equivalent].map(|pascal| Cell::from(pascal / MEGA));
+        let stresses = [normal, shear, torsion, equivalent].map(|pascal| Cell::Shown(pascal, Scale::Megapascal));
         let place = [Cell::from(section.beam(description)), info.x.into(), info.place().into()];
         let row = place.into_iter().chain(stresses).chain([utilisation.into()]);
         grid.row(row.collect::<Vec<_>>());

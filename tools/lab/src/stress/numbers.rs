@@ -55,7 +55,7 @@ const OPTIONS: [(&str, Set); 4] = [
     }),
     ("tolerance", |timing, value| timing.tolerance = Some(value)),
     ("duration", |timing, value| timing.duration = Some(value)),
-    ("output", |timing, value| timing.output = Some(value)),
+    ("interval", |timing, value| timing.interval = Some(value)),
 ];
 
 /// A run option with a meaningless value: refused at once, or harmless.

@@ -1,0 +1,181 @@
+//! Poses that `--hold` and `--range` ask for: drives that hold, and one row of quantities per pose.
+
+mod quantities;
+
+use std::{io::Write, num::NonZeroUsize, path::Path};
+
+use crane_codegen::SourceFile;
+use crane_model::{
+    Description,
+    dyn_crane::DynCrane,
+    envelope::{Axes, Varied},
+};
+use crane_page::tables::Report;
+
+use crate::{
+    arguments::{Action, Analysis, Poses},
+    envelope::{self, number, read_ranges},
+    files,
+    integration::batches,
+    problem::{Outcome, Problem},
+    selection::{Registry, set},
+    simulate::write_figure,
+};
+use quantities::{Quantities, Row, figure, table};
+
+/// Puts the crane whose drives hold their positions in place of the crane. Positions that `--range` varies become live parameters, so
+/// that the crane is derived once.
+pub fn hold(poses: &Poses, name: &str, registry: &mut Registry) -> Outcome<()> {
+    let held = &poses.held.held;
+    if held.is_empty() && poses.ranges.is_empty() {
+        return Ok(());
+    }
+    let crane = registry.crane(name)?;
+    let description = crane.description();
+    let mut changes = Changes::default();
+    for text in held {
+        let (drive, value) = text.split_once('=').ok_or_else(|| {
+            let help = "write `--hold drive=position`, such as `--hold boom_psi=30deg`";
+            Problem::usage(format!("`--hold {text}` has no value"), help)
+        })?;
+        let Varied::Drive(drive) = envelope::varied(drive.trim(), description)? else {
+            return Err(Problem::usage(
+                format!("{drive} is a live parameter, not a drive"),
+                format!("write `--set {text}`"),
+            ));
+        };
+        let value = number(value).ok_or_else(|| {
+            let help = "write a finite number in m or rad, or an angle such as `30deg`";
+            Problem::usage(format!("`{value}` is not a position"), help)
+        })?;
+        changes.drives.push(held_at(description, drive, &format!("{value:?}")));
+    }
+    for axis in &read_ranges(&poses.ranges, description)?.0 {
+        if let Varied::Drive(drive) = axis.varied {
+            let info = &description.coordinates[description.drives[drive].coordinate];
+            let parameter = parameter_of(description, drive);
+            let entry = format!("  {parameter}: {{value: {:?}, unit: {}}}\n", axis.values[0], info.kind.unit());
+            changes.parameters.push(entry);
+            changes.drives.push(held_at(description, drive, &parameter));
+        }
+    }
+    let text = registry.spec(name).ok_or_else(|| Problem::failed(format!("{name} has no spec"), ""))?;
+    let text = SourceFile::new(name, text).changed(&changes.text(name)).text;
+    registry.add(name, text);
+    Ok(())
+}
+
+/// What is laid over a spec.
+#[derive(Default)]
+struct Changes {
+    parameters: Vec<String>,
+    drives: Vec<String>,
+}
+
+impl Changes {
+    fn text(&self, name: &str) -> String {
+        let under = |key: &str, lines: &[String]| match lines {
+            [] => String::new(),
+            lines => format!("{key}:\n{}", lines.concat()),
+        };
+        format!("name: {name}\n{}{}", under("parameters", &self.parameters), under("drives", &self.drives))
+    }
+}
+
+fn held_at(description: &Description, drive: usize, position: &str) -> String {
+    let coordinate = &description.coordinates[description.drives[drive].coordinate].name;
+    format!("  - {{coordinate: {coordinate}, motion: {{hold: {position}}}}}\n")
+}
+
+/// Name of the live parameter at whose value a drive holds.
+fn parameter_of(description: &Description, drive: usize) -> String {
+    let coordinate = &description.coordinates[description.drives[drive].coordinate].name;
+    // An underscore at the end, which no unit or word of a user needs, keeps it apart.
+    format!("hold_{coordinate}_")
+}
+
+/// Rows that `--range` asks for.
+pub struct Asked<'a> {
+    poses: &'a Poses,
+    wanted: Quantities,
+    analysis: &'a Analysis,
+    /// Where the table goes, too.
+    file: Option<&'a Path>,
+}
+
+/// What an action asks for by `--range`, if it does.
+pub fn asked(action: &Action) -> Option<Asked<'_>> {
+    /// Number of lowest modes for each pose.
+    const LOWEST: usize = 3;
+    let (wanted, analysis, file) = match action {
+        Action::Statics(options) => (Quantities::Statics, &options.analysis, &options.file),
+        Action::Strength(options) => (Quantities::Strength, &options.analysis, &options.results),
+        Action::Modes(options) => {
+            (Quantities::Modes(options.count.map_or(LOWEST, NonZeroUsize::get)), &options.analysis, &options.file)
+        }
+        _ => return None,
+    };
+    let poses = action.poses().filter(|poses| !poses.ranges.is_empty())?;
+    Some(Asked { poses, wanted, analysis, file: file.as_deref() })
+}
+
+/// Computes the rows of `--range` and writes them.
+pub fn rows(asked: &Asked<'_>, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    let Asked { poses, wanted, analysis, file } = asked;
+    let crane = analysis.crane.open(registry)?;
+    let description = crane.description();
+    let axes = read_ranges(&poses.ranges, description)?;
+    let point = envelope::point(poses.point.as_deref(), description)?;
+    let subject = quantities::Subject::new(crane.as_ref(), &axes, point, *wanted, registry)?;
+    let bar = batches(axes.poses());
+    let mut rows: Vec<Row> = Vec::new();
+    for pose in 0..axes.poses() {
+        rows.push(subject.row(&settings(&axes, pose, description)?)?);
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    let mut report = Report::default();
+    report.fact("crane", description.name.as_str(), "");
+    report.fact_as("count", "poses", rows.len(), "");
+    let standing = rows.iter().filter(|row| row.stands()).count();
+    report.fact_as("stable_poses", "of which stable", standing, "");
+    for caution in subject.cautions(&rows) {
+        report.caution(Some(caution));
+    }
+    let grid = table(&subject, &rows);
+    if let Some(file) = file {
+        let (header, fields) = grid.fields();
+        files::write_fields(file, header, fields)?;
+        let panels = figure(&subject, &rows);
+        if !panels.is_empty() {
+            write_figure(&file.with_extension("svg"), &panels, 2)?;
+        }
+    }
+    report.grid(grid);
+    analysis.format.print(&report, out)?;
+    if standing == 0 {
+        return Err(Problem::failed("the crane has no stable equilibrium in any of the poses", "choose other ranges"));
+    }
+    Ok(())
+}
+
+/// Parameters of a pose, by their indices.
+fn settings(axes: &Axes, pose: usize, description: &Description) -> Outcome<Vec<(usize, f64)>> {
+    let place = |varied| match varied {
+        Varied::Parameter(index) => Some(index),
+        Varied::Drive(drive) => {
+            let name = parameter_of(description, drive);
+            description.parameters.iter().position(|parameter| *parameter.name == *name)
+        }
+    };
+    let pairs = axes.0.iter().zip(axes.values(pose));
+    let found: Option<Vec<(usize, f64)>> = pairs.map(|(axis, value)| Some((place(axis.varied)?, value))).collect();
+    found.ok_or_else(|| Problem::failed("a drive does not hold", "please report this as a bug"))
+}
+
+/// The crane in a pose.
+fn posed(crane: &dyn DynCrane, settings: &[(usize, f64)]) -> Outcome<Box<dyn DynCrane>> {
+    let mut crane = crane.boxed_clone();
+    set(crane.as_mut(), settings)?;
+    Ok(crane)
+}

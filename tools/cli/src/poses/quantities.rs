@@ -1,0 +1,288 @@
+//! Quantities of a crane at rest in one pose: a row of the table.
+
+use crane_codegen::SourceFile;
+use crane_live::LiveCrane;
+use crane_model::{
+    CoordinateKind, Description,
+    dyn_crane::{DynCrane, DynModel},
+    envelope::{Axes, Condition, SlewAxis, Varied, only_mass, range_of_loads},
+    modes::{damped, undamped},
+    nalgebra::Vector3,
+    results::cylinders_at,
+    statics,
+};
+use crane_page::tables::{Cell, Grid};
+
+use super::posed;
+use crate::{
+    figures::{Curve, Mark, PALETTE, Panel},
+    problem::{Outcome, Problem},
+    selection::{Registry, set},
+    variants,
+};
+
+/// Which quantities a row has.
+#[derive(Clone, Copy)]
+pub enum Quantities {
+    /// Deflections, pressures, and what the feet carry.
+    Statics,
+    /// Stresses and tipping.
+    Strength,
+    /// This many of the lowest frequencies.
+    Modes(usize),
+}
+
+/// A column: its name, and its unit as people read it.
+struct Column {
+    name: String,
+    unit: &'static str,
+}
+
+/// What all rows have in common.
+pub struct Subject<'a> {
+    crane: &'a dyn DynCrane,
+    /// The crane with rigid beams and no other difference, if there is one.
+    rigid: Option<LiveCrane>,
+    /// Index of the load and its smallest value.
+    load: Option<(usize, f64)>,
+    axes: &'a Axes,
+    point: Option<usize>,
+    slew: SlewAxis,
+    wanted: Quantities,
+}
+
+/// A pose: values of the axes, of the quantities in SI, and how statics ended.
+pub struct Row {
+    settings: Vec<f64>,
+    values: Vec<Option<f64>>,
+    status: String,
+    stable: bool,
+}
+
+impl Row {
+    /// Whether the crane rests in a stable equilibrium.
+    pub fn stands(&self) -> bool {
+        self.stable
+    }
+}
+
+impl<'a> Subject<'a> {
+    /// The crane with its rigid twin.
+    pub fn new(
+        crane: &'a dyn DynCrane,
+        axes: &'a Axes,
+        point: Option<usize>,
+        wanted: Quantities,
+        registry: &Registry,
+    ) -> Outcome<Self> {
+        let description = crane.description();
+        let rigid = match registry.spec(&description.name).map(|text| variants::rigid(&description.name, text)) {
+            Some(Ok(Some((name, text)))) if matches!(wanted, Quantities::Statics) => {
+                let twin = LiveCrane::from_spec(&SourceFile::new(name, text)).map_err(Problem::mistakes)?;
+                (twin.description().parameters.len() == description.parameters.len()).then_some(twin)
+            }
+            _ => None,
+        };
+        let varies = |index| axes.0.iter().any(|axis| axis.varied == Varied::Parameter(index));
+        let load = only_mass(description).filter(|load| !varies(*load) && matches!(wanted, Quantities::Statics));
+        let load = load.map(|load| (load, range_of_loads(description, load, None)[0]));
+        Ok(Self { crane, rigid, load, axes, point, slew: SlewAxis::of(crane), wanted })
+    }
+
+    fn columns(&self) -> Vec<Column> {
+        let description = self.crane.description();
+        let column = |name: &str, unit| Column { name: name.to_owned(), unit };
+        let mut columns = vec![column("radius", "m"), column("height", "m")];
+        match self.wanted {
+            Quantities::Statics => {
+                columns.extend(self.rigid.as_ref().map(|_| column("deflection by flexibility", "m")));
+                columns.extend(self.load.map(|_| column("deflection by the load", "m")));
+                if !description.supports.is_empty() {
+                    columns.push(column("smallest force of a foot", "N"));
+                }
+                let pressure = |name: &str| column(&format!("pressure of {name}"), "bar");
+                columns.extend(description.cylinders.iter().map(|info| pressure(info.name.as_str())));
+            }
+            Quantities::Strength => {
+                columns.extend([column("utilisation", ""), column("equivalent stress", "MPa")]);
+                if !description.supports.is_empty() {
+                    columns.push(column("tipping margin", ""));
+                }
+            }
+            Quantities::Modes(count) => columns.extend((1..=count).flat_map(|mode| {
+                [column(&format!("frequency {mode}"), "Hz"), column(&format!("damping ratio {mode}"), "")]
+            })),
+        }
+        columns
+    }
+
+    /// The row of a pose.
+    pub fn row(&self, settings: &[(usize, f64)]) -> Outcome<Row> {
+        let crane = posed(self.crane, settings)?;
+        let crane = crane.as_ref();
+        let equilibrium = crane.equilibrium(&statics::Settings::default());
+        let (stable, status) = (equilibrium.is_stable(), equilibrium.status.name().to_owned());
+        let settings: Vec<f64> = settings.iter().map(|(_, value)| *value).collect();
+        if !stable {
+            return Ok(Row { settings, values: vec![None; self.columns().len()], status, stable });
+        }
+        let q = equilibrium.q;
+        let place = self.place(crane, &q);
+        let mut values = vec![Some(self.slew.radius(&place)), Some(place.z)];
+        match self.wanted {
+            Quantities::Statics => values.extend(self.of_statics(crane, &q, &place)?),
+            Quantities::Strength => values.extend(of_strength(crane, q)),
+            Quantities::Modes(count) => values.extend(of_modes(crane, &q, count)?),
+        }
+        Ok(Row { settings, values, status, stable })
+    }
+
+    /// Where the point is that is shown.
+    fn place(&self, crane: &dyn DynCrane, q: &[f64]) -> Vector3<f64> {
+        match self.point {
+            Some(point) => crane.points_at(q)[point],
+            None => {
+                crane.transforms_at(q).last().map_or_else(Vector3::zeros, |last| last.fixed_view::<3, 1>(0, 3).into())
+            }
+        }
+    }
+
+    fn of_statics(&self, crane: &dyn DynCrane, q: &[f64], place: &Vector3<f64>) -> Outcome<Vec<Option<f64>>> {
+        let moved = |other: &dyn DynCrane| {
+            let rest = other.equilibrium(&statics::Settings::default());
+            rest.is_stable().then(|| (place - self.place(other, &rest.q)).norm())
+        };
+        let mut values = Vec::new();
+        if let Some(rigid) = &self.rigid {
+            let mut rigid = rigid.boxed_clone();
+            let all: Vec<(usize, f64)> =
+                (0..crane.description().parameters.len()).map(|index| (index, crane.parameter(index))).collect();
+            set(rigid.as_mut(), &all)?;
+            values.push(moved(rigid.as_ref()));
+        }
+        if let Some(unloaded) = self.load {
+            values.push(moved(posed(crane, &[unloaded])?.as_ref()));
+        }
+        let rest = vec![0.0; q.len()];
+        if !crane.description().supports.is_empty() {
+            let forces = crane.support_reactions_at(q, &rest);
+            values.push(forces.iter().map(|force| force.z).min_by(f64::total_cmp));
+        }
+        let cylinders = cylinders_at(crane, q, &rest, &crane.drive_efforts_at_rest(q));
+        values.extend(cylinders.iter().map(|state| state.pressures.into_iter().max_by(f64::total_cmp)));
+        Ok(values)
+    }
+
+    /// What must not be overlooked.
+    pub fn cautions(&self, rows: &[Row]) -> Vec<String> {
+        let mut cautions = Vec::new();
+        let fallen = rows.iter().filter(|row| !row.stable).count();
+        if fallen > 0 {
+            cautions
+                .push(format!("{fallen} of {} poses have no stable equilibrium: see the column status", rows.len()));
+        }
+        let over = |name: &str, is_over: fn(f64) -> bool| {
+            let place = self.columns().iter().position(|column| column.name == name)?;
+            let count = rows.iter().filter(|row| row.values[place].is_some_and(is_over)).count();
+            (count > 0).then_some(count)
+        };
+        let of = |count: usize| format!("in {count} of {} poses", rows.len());
+        let stressed = over("utilisation", |value| value > 1.0);
+        cautions.extend(stressed.map(|count| format!("{} the stress exceeds what is allowed", of(count))));
+        let tips = over("tipping margin", |value| value <= 0.0);
+        cautions.extend(tips.map(|count| format!("{} the crane tips over", of(count))));
+        let lifts = over("smallest force of a foot", |value| value <= 0.0);
+        cautions.extend(lifts.map(|count| format!("{} a foot lifts or pulls", of(count))));
+        cautions
+    }
+
+    /// Names and units of the axes, and whether they are angles.
+    fn headings(&self) -> Vec<(String, String, bool)> {
+        let Description { coordinates, drives, parameters, .. } = self.crane.description();
+        let of = |varied| match varied {
+            Varied::Drive(drive) => {
+                let info = &coordinates[drives[drive].coordinate];
+                let angle = info.kind == CoordinateKind::Rotation;
+                (info.name.to_string(), if angle { "°" } else { info.kind.unit() }.to_owned(), angle)
+            }
+            Varied::Parameter(index) => {
+                let info = &parameters[index];
+                (info.name.to_string(), info.unit.to_string(), false)
+            }
+        };
+        self.axes.0.iter().map(|axis| of(axis.varied)).collect()
+    }
+}
+
+/// Utilisation, equivalent stress and tipping margin.
+fn of_strength(crane: &dyn DynCrane, q: Vec<f64>) -> Vec<Option<f64>> {
+    let positions: Vec<f64> = crane.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
+    let condition = Condition::at(crane, q, &positions);
+    let stress = condition.sections.iter().map(|section| section.stress.equivalent).max_by(f64::total_cmp);
+    let mut values = vec![condition.utilisation(), stress];
+    if !crane.description().supports.is_empty() {
+        values.push(condition.margin());
+    }
+    values
+}
+
+/// The lowest frequencies of undamped modes, and damping ratios of the damped modes of about these frequencies.
+fn of_modes(crane: &dyn DynCrane, q: &[f64], count: usize) -> Outcome<Vec<Option<f64>>> {
+    let motions = crane.small_motions_at(q);
+    let with_damping = damped(&motions)?;
+    let undamped = undamped(&motions)?;
+    let pair = |mode: usize| {
+        let frequency = undamped.get(mode).and_then(crane_model::modes::Mode::frequency);
+        let ratio = frequency.and_then(|frequency| {
+            let off = |mode: &crane_model::modes::DampedMode| (mode.frequency() - frequency).abs();
+            with_damping
+                .iter()
+                .min_by(|a, b| off(a).total_cmp(&off(b)))
+                .map(crane_model::modes::DampedMode::damping_ratio)
+        });
+        [frequency, ratio]
+    };
+    Ok((0..count).flat_map(pair).collect())
+}
+
+/// The rows as a table.
+pub fn table(subject: &Subject<'_>, rows: &[Row]) -> Grid {
+    let axes = subject.headings();
+    let columns = subject.columns();
+    let named = |name: &str, unit: &str| if unit.is_empty() { name.to_owned() } else { format!("{name} [{unit}]") };
+    let headings: Vec<String> = (axes.iter().map(|(name, unit, _)| named(name, unit)))
+        .chain(columns.iter().map(|column| named(&column.name, column.unit)))
+        .chain(["status".to_owned()])
+        .collect();
+    let headings: Vec<&str> = headings.iter().map(String::as_str).collect();
+    let mut grid = Grid::new("poses", "Poses at rest", &headings);
+    for row in rows {
+        let settings = row.settings.iter().zip(&axes);
+        let settings =
+            settings.map(|(value, (.., angle))| if *angle { Cell::Angle(*value) } else { Cell::Number(*value) });
+        let values = row.values.iter().zip(&columns);
+        let values = values.map(|(value, column)| value.map_or(Cell::Empty, |value| Cell::shown(value, column.unit)));
+        grid.row(settings.chain(values).chain([row.status.as_str().into()]).collect::<Vec<_>>());
+    }
+    grid
+}
+
+/// A panel for every quantity over the only axis; nothing for several axes.
+pub fn figure(subject: &Subject<'_>, rows: &[Row]) -> Vec<Panel> {
+    let headings = subject.headings();
+    let [(name, unit, angle)] = headings.as_slice() else { return Vec::new() };
+    let across = |value: f64| if *angle { value.to_degrees() } else { value };
+    let panel = |(place, column): (usize, Column)| {
+        let point = |row: &Row| {
+            let value = row.values[place]?;
+            Some((across(row.settings[0]), Cell::shown(value, column.unit).number()?))
+        };
+        let points: Vec<_> = rows.iter().filter_map(point).collect();
+        let y = if column.unit.is_empty() { column.name } else { format!("{} [{}]", column.name, column.unit) };
+        let curve = Curve { label: String::new(), colour: PALETTE[0], mark: Mark::Solid, points };
+        Panel { x: format!("{name} [{unit}]"), y, equal: false, logarithmic: false, curves: vec![curve] }
+    };
+    let mut panels: Vec<Panel> = subject.columns().into_iter().enumerate().map(panel).collect();
+    panels.retain(|panel| !panel.curves[0].points.is_empty());
+    panels
+}

@@ -1,0 +1,132 @@
+//! What the command says besides results: colours, JSON, severity, quiet.
+
+use std::{fs, process::Command};
+
+use serde_json::Value;
+
+use super::{crane, folder, json, refused, text};
+
+/// A spec with a warning: a length in mm.
+const WARNED: &str = "../../codegen/tests/implausible/W005_length_in_mm.yaml";
+/// A spec with a mistake.
+const BAD: &str = "../../codegen/tests/bad/E010_misspelt_key.yaml";
+
+#[test]
+fn errors_are_json_where_json_is_asked_for() {
+    for (arguments, code, words) in [
+        (&["statics", "no_crane", "--format", "json"][..], 2, "no crane `no_crane`"),
+        (&["statics", "--format=json", "--colour"], 2, "--colour"),
+        (&["statics", BAD, "--format", "json"], 1, "[E010]"),
+    ] {
+        let output = crane(arguments);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}");
+        let error: Value =
+            serde_json::from_slice(&output.stderr).unwrap_or_else(|_| panic!("{}", text(&output.stderr)));
+        assert!(error["error"]["message"].as_str().is_some_and(|message| message.contains(words)), "{error}");
+        assert_eq!(error["error"]["code"], code);
+    }
+    let output = crane(&["statics", BAD, "--format", "json"]);
+    let error: Value = serde_json::from_slice(&output.stderr).expect("JSON");
+    assert_eq!(error["error"]["diagnostics"][0]["code"], "E010");
+}
+
+#[test]
+fn scripts_fail_on_what_they_name() {
+    let code = |arguments: &[&str]| crane(arguments).status.code();
+    assert_eq!(code(&["check", WARNED]), Some(0));
+    assert_eq!(code(&["check", WARNED, "--fail-on", "warning"]), Some(3));
+    assert_eq!(code(&["check", WARNED, "--fail-on", "caution"]), Some(0));
+    // A load beyond what the crane carries.
+    let heavy = ["strength", "eight_link_flexible", "--set", "load_mass=4000", "--bend-limit", "0.01"];
+    assert_eq!(code(&heavy), Some(0));
+    assert_eq!(code(&[&heavy[..], &["--fail-on", "warning,caution"]].concat()), Some(3));
+    let output = crane(&["check", WARNED, "--quiet"]);
+    assert!(output.stderr.is_empty() && output.status.success());
+}
+
+#[test]
+fn colours_are_for_terminals_and_those_who_force_them() {
+    let run = |variables: &[(&str, &str)]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));
+        command.args(["check", BAD]).env_remove("NO_COLOR").env_remove("CLICOLOR_FORCE");
+        text(&command.envs(variables.iter().copied()).output().expect("the command starts").stderr)
+    };
+    assert!(!run(&[]).contains('\x1b'));
+    assert!(run(&[("CLICOLOR_FORCE", "1")]).contains("\x1b["));
+    assert!(!run(&[("CLICOLOR_FORCE", "1"), ("NO_COLOR", "1")]).contains('\x1b'));
+}
+
+#[test]
+fn several_specs_are_checked_at_once() {
+    let output = crane(&["check", "knuckle_boom", BAD, "cantilever"]);
+    assert_eq!(output.status.code(), Some(1));
+    let said = text(&output.stdout);
+    assert!(said.contains("knuckle_boom: valid") && said.contains("cantilever: valid"), "{said}");
+    assert!(text(&output.stderr).contains("error[E010]"));
+    let output = crane(&["check", "knuckle_boom", BAD, "--format", "json"]);
+    let all: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!([&all[0]["valid"], &all[1]["valid"]], [true, false]);
+}
+
+#[test]
+fn help_offers_only_what_a_command_does() {
+    let help = |command: &str| text(&crane(&[command, "--help"]).stdout);
+    assert!(!help("run").contains("--ensemble") && help("simulate").contains("--ensemble"));
+    assert!(help("compare").contains("otherwise bdf"));
+    assert!(help("compare").contains("--input"));
+    assert!(help("run").contains("--interval") && !help("run").contains("--output"));
+    refused(&["run", "knuckle_boom", "--ensemble", "t.csv"], &["--ensemble"]);
+}
+
+#[test]
+fn angles_are_set_in_degrees_too() {
+    let out = folder("angles");
+    fs::create_dir_all(&out).expect("a folder");
+    let spec = out.join("arm.yaml");
+    let text = "format: 1\nname: arm\nparameters: {lift: {value: 0.1, unit: rad}}\nlinks:\n  - {name: arm, joint: revolute, mass: 10, \
+                com: [1, 0, 0]}\ndrives: [{coordinate: arm_psi, stiffness: 1e5, motion: {hold: lift}}]\n";
+    fs::write(&spec, text).expect("a spec");
+    let pose = |setting: &str| {
+        let found = json(&["statics", spec.to_str().expect("a path"), "--set", setting, "--format", "json"]);
+        found["pose"].clone()
+    };
+    assert_eq!(pose("lift=30deg"), pose("lift=0.5235987755982988"));
+}
+
+#[test]
+fn examples_are_printed_and_valid() {
+    let list = text(&crane(&["example"]).stdout);
+    assert!(list.contains("loader_crane") && list.contains("knuckle_boom"), "{list}");
+    refused(&["example", "loader_cran"], &["did you mean `loader_crane`?"]);
+    let out = folder("example");
+    fs::create_dir_all(&out).expect("a folder");
+    for name in ["loader_crane", "knuckle_boom", "eight_link_hydraulic"] {
+        let printed = crane(&["example", name]);
+        let spec = out.join(format!("{name}.yaml"));
+        fs::write(&spec, &printed.stdout).expect("a spec");
+        let spec = spec.to_str().expect("a path");
+        let checked = crane(&["check", spec, "--fail-on", "warning"]);
+        assert!(checked.status.success(), "{name}: {}", text(&checked.stderr));
+        if name == "loader_crane" {
+            let found = json(&["statics", spec, "--format", "json"]);
+            let steps = found["cranes"][0]["newton_steps"].as_u64().expect("a count");
+            assert!(found["stable"] == true && steps <= 5, "{steps} Newton steps");
+        }
+    }
+}
+
+#[test]
+fn explain_and_its_picture_number_coordinates_alike() {
+    let out = folder("numbers");
+    let svg = out.join("chain.svg");
+    let output = crane(&["explain", "eight_link_flexible", "--svg", svg.to_str().expect("a path")]);
+    let said = text(&output.stdout);
+    let line = said.lines().find(|line| line.contains(" boom_psi ")).expect("a coordinate").trim_start();
+    let number = line.split_whitespace().next().expect("a number");
+    let picture = fs::read_to_string(&svg).expect("a picture");
+    let cells: Vec<&str> = picture.split("</text>").map(|text| text.rsplit('>').next().unwrap_or_default()).collect();
+    let place = cells.iter().position(|cell| *cell == "boom_psi").expect("a row");
+    assert_eq!(cells[place - 1], number);
+    assert!(!said.contains("unsimplified"));
+    assert!(text(&crane(&["explain", "double_pendulum", "--operations"]).stdout).contains("unsimplified"));
+}

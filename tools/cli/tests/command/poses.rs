@@ -1,0 +1,97 @@
+//! Poses of `--hold` and `--range`.
+
+use std::fs;
+
+use serde_json::Value;
+
+use super::{crane, folder, json, refused, text};
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is not a number"))
+}
+
+/// A beam clamped at a drive that turns it, with a load at its tip: a cantilever at any angle.
+const ARM: &str = "format: 1
+name: arm
+parameters: {payload: {value: 200, unit: kg}}
+links:
+  - name: arm
+    placement: {transform: {rotation: {x: 90 deg}}}
+    joint: revolute
+    beam:
+      length: 4
+      sections: 8
+      material: {E: 2.1e11, G: 8.1e10, density: 1, yield_stress: 355e6}
+      section: {box: {height: 0.2, width: 0.15, thickness: 0.006}}
+  - {name: load, mass: payload, com: [0, 0, 0], inertia: {gyration: [0.1, 0.1, 0.1]}}
+drives: [{coordinate: arm_psi, stiffness: 1e12, motion: {quintic: {from: 0, to: 1, duration: 3}}}]
+points: [{name: tip, link: load, at: [0, 0, 0]}]
+";
+
+fn arm() -> String {
+    let out = folder("arm");
+    fs::create_dir_all(&out).expect("a folder");
+    let file = out.join("arm.yaml");
+    fs::write(&file, ARM).expect("a file");
+    file.to_str().expect("a path").to_owned()
+}
+
+#[test]
+fn deflection_over_angle_is_that_of_a_cantilever() {
+    let file = arm();
+    let csv = folder("poses").join("new/arm.csv");
+    let csv_name = csv.to_str().expect("a path");
+    let range = ["--range", "arm=0:60deg:3", "-o", csv_name, "--format", "json"];
+    let found = json(&[&["statics", &file][..], &range].concat());
+    let rows = found["poses"].as_array().expect("rows");
+    assert_eq!(rows.len(), 3);
+    // F L³/(3 E I) across the beam; sections of order 2 leave 1/(2 n²) of it at n = 8, the small second-order effects add 1e-4.
+    let inertia = (0.15 * 0.2_f64.powi(3) - 0.138 * 0.188_f64.powi(3)) / 12.0;
+    for (row, degrees) in rows.iter().zip([0.0, 30.0, 60.0_f64]) {
+        assert!((number(&row["arm_psi"]) - degrees.to_radians()).abs() < 1e-12);
+        let expected = 200.0 * 9.81 * degrees.to_radians().cos() * 64.0 / (3.0 * 2.1e11 * inertia);
+        for key in ["deflection_by_flexibility", "deflection_by_the_load"] {
+            let off = number(&row[key]) / expected - 1.0;
+            assert!(off.abs() < 0.012, "{key} at {degrees}°: {off}");
+        }
+        assert!((number(&row["radius"]) - 4.0 * degrees.to_radians().cos()).abs() < 0.03);
+        assert_eq!(row["status"], "stable");
+    }
+    assert_eq!(found["units"]["poses"]["arm_psi"], "rad");
+    let table = fs::read_to_string(&csv).expect("a table");
+    assert!(table.starts_with("arm_psi [rad],radius [m],height [m],deflection by flexibility [m]"), "{table}");
+    assert!(csv.with_extension("svg").exists());
+    // The only row of a pose that is held is the same as that of a range.
+    let held = json(&["statics", &file, "--hold", "arm_psi=30deg", "--format", "json"]);
+    let tip = held["points"].as_array().and_then(|rows| rows.iter().find(|row| row["point"] == "tip")).expect("a row");
+    assert!((number(&tip["x"]) - number(&rows[1]["radius"])).abs() < 1e-9, "{tip}");
+}
+
+#[test]
+fn strength_and_modes_over_poses() {
+    let file = arm();
+    let found = json(&["strength", &file, "--range", "arm=0:60deg:2", "--format", "json"]);
+    let stress = |row: usize| number(&found["poses"][row]["equivalent_stress"]);
+    // M/W at the root: within 7 % with 8 sections, as the outermost spring is half a section away. In Pa.
+    let modulus = (0.15 * 0.2_f64.powi(3) - 0.138 * 0.188_f64.powi(3)) / 12.0 / 0.1;
+    let expected = 200.0 * 9.81 * 4.0 / modulus;
+    assert!((stress(0) / expected - 1.0).abs() < 0.07, "{} {expected}", stress(0));
+    assert!((stress(1) / stress(0) - 0.5).abs() < 0.02, "{}", stress(1) / stress(0));
+    assert_eq!(found["units"]["poses"]["equivalent_stress"], "Pa");
+    let found = json(&["modes", &file, "--range", "payload=100:400:2", "--count", "1", "--format", "json"]);
+    let frequency = |row: usize| number(&found["poses"][row]["frequency_1"]);
+    // The beam has no mass: the frequency falls with the root of the load.
+    assert!((frequency(0) / frequency(1) - 2.0).abs() < 0.02, "{}", frequency(0) / frequency(1));
+    assert!(found["poses"][0].get("frequency_2").is_none());
+}
+
+#[test]
+fn poses_that_mean_nothing_are_refused() {
+    refused(&["statics", "knuckle_boom", "--hold", "hook_theta=0"], &["has no drive", "driven are"]);
+    refused(&["statics", "knuckle_boom", "--hold", "payload=3"], &["live parameter, not a drive", "--set payload=3"]);
+    refused(&["statics", "knuckle_boom", "--hold", "main_boom_theta=up"], &["`up` is not a position", "30deg"]);
+    refused(&["modes", "knuckle_boom", "--range", "mainboom=0:1:2"], &["no drive and no live parameter"]);
+    refused(&["strength", "knuckle_boom", "-o", "x.csv"], &["`--file` needs `--run` or `--range`"]);
+    let output = crane(&["modes", "knuckle_boom", "--count", "2"]);
+    assert!(text(&output.stdout).contains("2 more rows with `--all`"), "{}", text(&output.stdout));
+}
