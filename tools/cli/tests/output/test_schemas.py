@@ -108,6 +108,13 @@ def test_cylinders(output):
     assert ("slew", "stiffness of its oil") not in rows
 
 
+@pytest.mark.parametrize("command", ["statics", "strength", "modes"])
+def test_poses(output, command):
+    found = output("poses", command, "knuckle_boom", "--hold", "main_boom=-30deg", "--range", "payload=100:800:3")
+    assert found["count"] == found["stable_poses"] == len(found["poses"]) == 3
+    assert [row["payload"] for row in found["poses"]] == [100, 450, 800] and found["units"]["poses"]["radius"] == "m"
+
+
 @pytest.mark.parametrize("pair", [["eight_link_flexible"], ["double_pendulum", "knuckle_boom"]])
 def test_compare(output, tmp_path, pair):
     found = output("compare", "compare", *pair, *SHORT, "--out", tmp_path)
