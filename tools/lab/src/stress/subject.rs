@@ -87,7 +87,7 @@ pub fn timing(method: Method, accuracy: f64, duration: f64) -> Timing {
         no_verify: true,
         force: false,
         duration: Some(duration),
-        output: Some(duration / 100.0),
+        interval: Some(duration / 100.0),
         from: None,
         start: Vec::new(),
     }
