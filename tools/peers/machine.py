@@ -52,7 +52,7 @@ def peak(programs):
 
 def operations(builds, coordinates):
     """Floating-point operations of each generated function, as the compiler counts them."""
-    command = ["cargo", "run", "--release", "--quiet", "--package", "crane-codegen", "--features", "cli", "--"]
+    command = ["cargo", "run", "--release", "--quiet", "--package", "crane-cli", "--"]
     spec = builds.folder / f"crane_{coordinates}.yaml"
     lines = [line for line in output_of(*command, "operations", spec).splitlines() if line.startswith("| `")]
     rows = [[cell.strip(" `") for cell in line.split("|")[1:-1]] for line in lines]

@@ -232,18 +232,32 @@ def kernels(times):
     return table(["kernel", *map(str, times.coordinates)], rows)
 
 
-def operations(results, times):
-    """Operations per call and their share of the peak: of the vector peak for eight cranes at once, else of the scalar one."""
-    rows = []
+def shares(results, times):
+    """Operations per call of each of our kernels, and their share of the peak, by number of coordinates.
+
+    The share is of the vector peak for eight cranes at once, else of the scalar one.
+    """
     for kernel in dict.fromkeys(c["variant"] for c in times.contestants if c["library"] == OURS):
         peak = results["peak"]["vector" if kernel.endswith(LANES_SUFFIX) else "scalar"]
-        cells = []
         for n in times.coordinates:
             count = results["operations"][str(n)].get(kernel.removesuffix(LANES_SUFFIX))
             time = times.ours(n, kernel)
-            cells.append(f"{count}: {100 * count / time / peak:.0f} %" if count and time else "")
-        if any(cells):
-            rows.append([f"`{kernel}`", *cells])
+            if count and time:
+                yield kernel, n, count, count / time / peak
+
+
+def impossible(results):
+    """Kernels that seem to compute more than the peak: the peak, an operation count or a time is wrong."""
+    found = shares(results, Times(results))
+    return [f"{kernel}, {n} coordinates: {100 * share:.0f} %" for kernel, n, _, share in found if share > 1]
+
+
+def operations(results, times):
+    """Operations per call and their share of the peak."""
+    rows = {}
+    for kernel, n, count, share in shares(results, times):
+        rows.setdefault(kernel, {})[n] = f"{count}: {100 * share:.0f} %"
+    rows = [[f"`{kernel}`", *(cells.get(n, "") for n in times.coordinates)] for kernel, cells in rows.items()]
     return table(["operations: share of the peak", *map(str, times.coordinates)], rows)
 
 

@@ -18,6 +18,7 @@ mod prose;
 mod python;
 mod report;
 mod step;
+mod units;
 mod workspace;
 
 use std::fmt::Write as _;
@@ -131,6 +132,7 @@ fn lint() -> Vec<Step> {
         Step::check("plain English", prose::check),
         Step::check("pages and links of the manual", book::check),
         Step::check("docs/EQUATIONS.md is current", equations::check),
+        Step::check("units built twice", units::check),
         Step::cargo("clippy", &["clippy", "--release", "--workspace", "--all-targets", "--", "-D", "warnings"])
             .with(SECTIONS, "0"),
         // A separate workspace, which no other step checks.

@@ -1,0 +1,124 @@
+//! All checks of one crane.
+
+use fastrand::Rng;
+
+use crate::crane::{Case, with_features};
+use crate::feature::Features;
+use crate::observe::{differences, observe};
+use crate::tree::{Tree, source, text};
+use crate::{descriptions, laws, meshes};
+
+/// A check that failed.
+#[derive(Clone, Debug)]
+pub struct Failure {
+    /// Its name.
+    pub check: &'static str,
+    /// What is wrong, line by line.
+    pub what: Vec<String>,
+    /// The smallest spec found for which it fails, ready to be run.
+    pub spec: String,
+    /// The features of that spec.
+    pub features: Features,
+}
+
+/// What was found out about a crane.
+#[derive(Clone, Debug, Default)]
+pub struct Outcome {
+    /// Checks that applied.
+    pub checks: usize,
+    /// Checks that failed.
+    pub failures: Vec<Failure>,
+    /// Why the crane could not be checked: it does not stand, for example.
+    pub refused: Option<String>,
+}
+
+/// Names of all checks.
+#[must_use]
+pub fn names() -> Vec<&'static str> {
+    let described = descriptions::ALL.iter().map(|(name, _)| *name);
+    described.chain(laws::ALL.iter().map(|(name, _)| *name)).chain([meshes::NAME]).collect()
+}
+
+/// What a check says of a spec: `None` where it does not apply, else what is wrong.
+fn apply(check: &str, tree: &Tree, seed: u64, run: bool) -> Option<Vec<String>> {
+    if let Some((_, description)) = descriptions::ALL.iter().find(|(name, _)| *name == check) {
+        let second = description(tree, &mut Rng::with_seed(seed))?;
+        let moves = run && second.moves;
+        let first = observe(&source(second.first.as_ref().unwrap_or(tree)), moves).ok()?;
+        return Some(match observe(&second.source, moves) {
+            Ok(numbers) => differences([&first, &numbers], &second.name, &second.factor),
+            Err(refused) => refused.lines().map(str::to_owned).collect(),
+        });
+    }
+    if check == meshes::NAME {
+        return meshes::check(tree);
+    }
+    let (_, law) = laws::ALL.iter().find(|(name, _)| *name == check)?;
+    match laws::check(*law, tree, seed).ok()?? {
+        Ok(()) => Some(vec![]),
+        Err(what) => Some(vec![what]),
+    }
+}
+
+/// Checks a crane, with `most` checks chosen at random; failures are shrunk.
+#[must_use]
+pub fn check(case: &Case, only: Option<&str>, most: usize, shrink: bool) -> Outcome {
+    if let Err(refused) = observe(&source(&case.tree), false) {
+        return Outcome { refused: Some(refused), ..Outcome::default() };
+    }
+    let mut chosen: Vec<&'static str> = names().into_iter().filter(|name| only.is_none_or(|only| name.contains(only))).collect();
+    let mut rng = Rng::with_seed(case.seed);
+    rng.shuffle(&mut chosen);
+    let mut outcome = Outcome::default();
+    for name in chosen {
+        if outcome.checks == most {
+            break;
+        }
+        // Runs take most of the time: a third of the cranes runs.
+        let run = case.seed.is_multiple_of(3);
+        let Some(what) = apply(name, &case.tree, case.seed, run) else { continue };
+        outcome.checks += 1;
+        if !what.is_empty() {
+            let failure = Failure { check: name, what, spec: text(&case.tree), features: case.features.clone() };
+            outcome.failures.push(if shrink { shrunk(case, failure, run) } else { failure });
+        }
+    }
+    outcome
+}
+
+/// Leaves out features, then entries, as long as the check fails.
+fn shrunk(case: &Case, mut failure: Failure, run: bool) -> Failure {
+    let mut tree = case.tree.clone();
+    let fails = |tree: &Tree, failure: &mut Failure| {
+        let what = apply(failure.check, tree, case.seed, run).filter(|what| !what.is_empty());
+        what.map(|what| (failure.what, failure.spec) = (what, text(tree))).is_some()
+    };
+    for feature in case.features.iter().rev() {
+        let mut fewer = failure.features.clone();
+        fewer.retain(|other| other != feature && !other.needs().contains(feature));
+        let smaller = with_features(case.seed, &fewer);
+        if fewer.len() < failure.features.len() && fails(&smaller, &mut failure) {
+            (tree, failure.features) = (smaller, fewer);
+        }
+    }
+    let lists = ["points", "loads", "connectors", "cylinders", "couplings", "supports"];
+    for list in lists {
+        for index in (0..tree[list].as_array().map_or(0, Vec::len)).rev() {
+            let mut smaller = tree.clone();
+            if let Some(entries) = smaller[list].as_array_mut() {
+                entries.remove(index);
+            }
+            if fails(&smaller, &mut failure) {
+                tree = smaller;
+            }
+        }
+    }
+    for key in ["gravity", "friction", "stops", "damping", "guess"] {
+        let mut smaller = tree.clone();
+        let removed = smaller.as_object_mut().and_then(|entries| entries.remove(key));
+        if removed.is_some() && fails(&smaller, &mut failure) {
+            tree = smaller;
+        }
+    }
+    failure
+}

@@ -1,0 +1,574 @@
+//! Two descriptions of one crane: a second spec that must do the same.
+
+use crane_codegen::SourceFile;
+use fastrand::Rng;
+use serde_json::{Value, json};
+
+use crate::crane::BOOM;
+use crate::tree::{Tree, entry, entry_mut, for_each_key, for_each_place, numbers, source};
+
+/// A second description of a crane.
+pub struct Second {
+    /// The first one, if it is not the crane as it was made.
+    pub first: Option<Tree>,
+    /// The second one.
+    pub source: SourceFile,
+    /// The name in the second of a number of the first; `None` for numbers that differ.
+    pub name: Box<dyn Fn(&str) -> Option<String>>,
+    /// By which numbers of a unit are larger in the second.
+    pub factor: Box<dyn Fn(&str) -> f64>,
+    /// Whether it also moves as the first does.
+    pub moves: bool,
+}
+
+impl Second {
+    fn of(tree: &Tree) -> Self {
+        Second {
+            first: None,
+            source: source(tree),
+            name: Box::new(|name| Some(name.to_owned())),
+            factor: Box::new(|_| 1.0),
+            moves: true,
+        }
+    }
+
+    fn named(self, name: impl Fn(&str) -> Option<String> + 'static) -> Self {
+        Second { name: Box::new(name), ..self }
+    }
+}
+
+/// A way to describe a crane again; `None` where it does not apply.
+pub type Description = fn(&Tree, &mut Rng) -> Option<Second>;
+
+/// All of them, with their names.
+pub const ALL: [(&str, Description); 16] = [
+    ("beam split by a fixed joint", split_boom),
+    ("beam given element by element", boom_one_by_one),
+    ("rigid beam as a body", rigid_boom_as_body),
+    ("other names", other_names),
+    ("the whole turned", turned),
+    ("planes of a beam exchanged", planes_exchanged),
+    ("as an overlay", overlay),
+    ("parameters written in", parameters_written_in),
+    ("numbers as parameters", numbers_as_parameters),
+    ("angles in degrees", degrees),
+    ("lists in another order", other_order),
+    ("weight as a force", weight_as_force),
+    ("rope link by link", rope_link_by_link),
+    ("massless frames between links", massless_frames),
+    ("another unit of mass", mass_unit),
+    ("loops of generated code", loops),
+];
+
+/// Whether a column or body belongs to an element of the boom, `boom_2…`.
+fn of_boom_element(name: &str) -> bool {
+    name.strip_prefix("boom_").is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
+}
+
+fn without_boom_elements(name: &str) -> Option<String> {
+    (!of_boom_element(name)).then(|| name.to_owned())
+}
+
+/// The boom in two beams with the same sections, joined by a fixed joint between two of them.
+fn split_boom(tree: &Tree, rng: &mut Rng) -> Option<Second> {
+    let mut second = tree.clone();
+    let links = second["links"].as_array_mut()?;
+    let at = links.iter().position(|link| link["name"] == "boom")?;
+    let beam = links[at]["beam"].clone();
+    let sections = beam["sections"].as_u64().filter(|sections| *sections > 1)?;
+    let first = rng.u64(1..sections);
+    let share = first as f64 / sections as f64;
+    let cut = share * BOOM;
+    let mut halves = [beam.clone(), beam];
+    for (half, (count, length)) in halves.iter_mut().zip([(first, cut), (sections - first, BOOM - cut)]) {
+        half["sections"] = json!(count);
+        half["length"] = json!(length);
+    }
+    if halves[0]["parts"].is_array() {
+        let parts = split_parts(&halves[0]["parts"], cut);
+        for (half, parts) in halves.iter_mut().zip(parts) {
+            half["parts"] = parts;
+        }
+    }
+    if halves[0]["bend"].is_object() {
+        for (half, share) in halves.iter_mut().zip([share, 1.0 - share]) {
+            for_each_key(&mut half["bend"], &mut |_, angle| *angle = json!(share * angle.as_f64().unwrap_or(0.0)));
+        }
+    }
+    let [inner, outer] = halves;
+    links[at]["beam"] = inner;
+    links.insert(at + 1, json!({"name": "front", "beam": outer}));
+    let moved = |place: &mut Tree| {
+        let x = place["at"][0].as_f64().unwrap_or(0.0);
+        if place["link"] == "boom" && x >= cut {
+            place["link"] = json!("front");
+            place["at"][0] = json!(x - cut);
+        }
+    };
+    for list in ["loads", "connectors", "cylinders", "points"] {
+        if let Some(entries) = second.get_mut(list) {
+            for_each_place(entries, &mut { moved });
+        }
+    }
+    // The pivot of a linkage is on the link of the foot, and has to be split with it.
+    let pivot = second["cylinders"].as_array().into_iter().flatten().any(|cylinder| cylinder["linkage"].is_object());
+    if pivot {
+        return None;
+    }
+    Some(Second::of(&second).named(without_boom_elements))
+}
+
+/// Parts of a beam before and behind a place.
+fn split_parts(parts: &Tree, cut: f64) -> [Tree; 2] {
+    let mut halves = [Vec::new(), Vec::new()];
+    let mut begin = 0.0;
+    for part in parts.as_array().into_iter().flatten() {
+        let length = part["length"].as_f64().unwrap_or(0.0);
+        let share = ((cut - begin) / length).clamp(0.0, 1.0);
+        let section = |share: f64| {
+            let mut section = part["section"].clone();
+            if part["to"].is_object() {
+                for (shape, to) in part["to"].as_object().into_iter().flatten() {
+                    for (key, to) in to.as_object().into_iter().flatten() {
+                        let from = section[shape][key].as_f64().unwrap_or(0.0);
+                        section[shape][key] = json!((1.0 - share) * from + share * to.as_f64().unwrap_or(0.0));
+                    }
+                }
+            }
+            section
+        };
+        for (half, [from, to]) in halves.iter_mut().zip([[0.0, share], [share, 1.0]]) {
+            if to > from {
+                let mut piece = json!({"length": (to - from) * length, "section": section(from)});
+                if part["to"].is_object() {
+                    piece["to"] = section(to);
+                }
+                half.push(piece);
+            }
+        }
+        begin += length;
+    }
+    halves.map(Value::Array)
+}
+
+/// Area, `J_y`, `J_z` and torsion constant of a box, by hand.
+fn box_section(section: &Tree) -> Option<[f64; 4]> {
+    let side = |key: &str| section["box"][key].as_f64();
+    let (h, b, t) = (side("height")?, side("width")?, side("thickness")?);
+    let (hi, bi) = (h - 2.0 * t, b - 2.0 * t);
+    let torsion = 2.0 * t * (b - t).powi(2) * (h - t).powi(2) / (b + h - 2.0 * t);
+    Some([b * h - bi * hi, (h * b.powi(3) - hi * bi.powi(3)) / 12.0, (b * h.powi(3) - bi * hi.powi(3)) / 12.0, torsion])
+}
+
+/// Mass, and moments of inertia about the centre of mass, of a length of the boom.
+fn piece_of_boom(beam: &Tree, length: f64) -> Option<(f64, [f64; 3])> {
+    let [area, jy, jz, _] = box_section(&beam["section"])?;
+    let mass = (7850.0 * area + beam["extra_mass"].as_f64().unwrap_or(0.0)) * length;
+    let slender = length * length / 12.0;
+    Some((mass, [mass * (jy + jz) / area, mass * (slender + jy / area), mass * (slender + jz / area)]))
+}
+
+/// The boom's elements and springs worked out by hand.
+fn boom_one_by_one(tree: &Tree, _: &mut Rng) -> Option<Second> {
+    let mut second = tree.clone();
+    let link = entry_mut(&mut second, "links", "name", "boom")?;
+    let beam = link["beam"].clone();
+    if beam["bend"].is_object() {
+        return None;
+    }
+    let sections = beam["sections"].as_u64()?;
+    let d = BOOM / sections as f64;
+    let [_, jy, jz, jo] = box_section(&beam["section"])?;
+    let element = |k: u64| {
+        let length = if k == 0 || k == sections { 0.5 * d } else { d };
+        let (mass, [xx, yy, zz]) = piece_of_boom(&beam, length)?;
+        Some(json!({"length": length, "mass": mass, "com": [0.5 * length, 0, 0], "inertia": {"Ixx": xx, "Iyy": yy, "Izz": zz}}))
+    };
+    let elements: Vec<Tree> = (0..=sections).map(element).collect::<Option<_>>()?;
+    let stiffness = [2.1e11 * jz / d, 2.1e11 * jy / d, 8.1e10 * jo / d];
+    let each = |factor: f64| json!({"psi": factor * stiffness[0], "theta": factor * stiffness[1], "phi": factor * stiffness[2]});
+    let beta = beam["damping"]["beta"].as_f64().unwrap_or(0.0);
+    let spring = json!({"stiffness": each(1.0), "damping": each(beta)});
+    link["beam"] = json!({"length": BOOM, "elements": elements, "springs": vec![spring; usize::try_from(sections).ok()?]});
+    if beam["section_joint"].is_string() {
+        link["beam"]["section_joint"] = beam["section_joint"].clone();
+    }
+    Some(Second::of(&second))
+}
+
+/// A beam without springs, and the body that it is.
+fn rigid_boom_as_body(tree: &Tree, _: &mut Rng) -> Option<Second> {
+    let mut first = tree.clone();
+    let link = entry_mut(&mut first, "links", "name", "boom")?;
+    let beam = link["beam"].as_object_mut()?;
+    beam.insert("sections".into(), json!("rigid"));
+    ["bend", "section_joint"].map(|key| beam.remove(key));
+    let (mass, [xx, yy, zz]) = piece_of_boom(&link["beam"], BOOM)?;
+    let mut second = first.clone();
+    let link = entry_mut(&mut second, "links", "name", "boom")?;
+    link.as_object_mut()?.remove("beam");
+    link["mass"] = json!(mass);
+    link["com"] = json!([0.5 * BOOM, 0, 0]);
+    link["inertia"] = json!({"Ixx": xx, "Iyy": yy, "Izz": zz});
+    let arm = entry_mut(&mut second, "links", "name", "arm")?;
+    if arm["placement"].is_object() {
+        return None;
+    }
+    arm["placement"] = json!({"transform": {"translation": [BOOM, 0, 0]}});
+    let second = Second { first: Some(first), ..Second::of(&second) };
+    // The body of a rigid beam is called after its element.
+    Some(second.named(|name| Some(name.replace("boom_0", "boom"))))
+}
+
+/// Every link has another name.
+fn other_names(tree: &Tree, _: &mut Rng) -> Option<Second> {
+    let links: Vec<String> = tree["links"].as_array()?.iter().filter_map(|link| Some(link["name"].as_str()?.to_owned())).collect();
+    let renamed = move |name: &str| {
+        let known = links.iter().any(|link| name == link || name.starts_with(&format!("{link}_")) || name.starts_with(&format!("{link} ")));
+        if known { format!("zz_{name}") } else { name.to_owned() }
+    };
+    let mut second = tree.clone();
+    for link in second["links"].as_array_mut()? {
+        link["name"] = json!(renamed(link["name"].as_str()?));
+    }
+    for_each_key(&mut second, &mut |key, value| {
+        if let (true, Some(name)) = (matches!(key, "link" | "coordinate" | "follows"), value.as_str()) {
+            *value = json!(renamed(name));
+        }
+    });
+    for list in ["damping", "stops", "friction", "guess"] {
+        if let Some(entries) = second.get(list).and_then(Value::as_object) {
+            let entries: serde_json::Map<_, _> = entries.iter().map(|(name, value)| (renamed(name), value.clone())).collect();
+            second[list] = Value::Object(entries);
+        }
+    }
+    // A point may be called as a link is.
+    Some(Second::of(&second).named(move |name| Some(renamed(name))))
+}
+
+/// A rotation about a skew axis, by angles about z, then y.
+const TURN: [f64; 2] = [0.7, 0.4];
+
+/// A vector turned by `Rz Ry`.
+fn turn(vector: &[f64]) -> [f64; 3] {
+    let [(sz, cz), (sy, cy)] = TURN.map(f64::sin_cos);
+    let (x, z) = (cy * vector[0] + sy * vector[2], -sy * vector[0] + cy * vector[2]);
+    [cz * x - sz * vector[1], sz * x + cz * vector[1], z]
+}
+
+/// A crane on a fixed base, turned together with gravity and everything in the world.
+fn turned(tree: &Tree, _: &mut Rng) -> Option<Second> {
+    let mut second = tree.clone();
+    let base = entry_mut(&mut second, "links", "name", "truck")?;
+    if base["joint"] != "fixed" {
+        return None;
+    }
+    base["placement"] = json!({"transform": {"rotation": [{"z": TURN[0]}, {"y": TURN[1]}]}});
+    let gravity = second.get("gravity").map_or(vec![0.0, 0.0, -9.81], numbers);
+    second["gravity"] = json!(turn(&gravity));
+    for load in second.get_mut("loads").and_then(Value::as_array_mut).into_iter().flatten() {
+        for key in ["force", "moment"] {
+            if load["axes"] != "link" && load[key].is_array() {
+                load[key] = json!(turn(&numbers(&load[key])));
+            }
+        }
+    }
+    for connector in second.get_mut("connectors").and_then(Value::as_array_mut).into_iter().flatten() {
+        for end in ["from", "to"] {
+            if connector[end]["link"].is_null() {
+                connector[end]["at"] = json!(turn(&numbers(&connector[end]["at"])));
+            }
+        }
+    }
+    let points = ["tip_", "middle_", "load_"];
+    Some(Second::of(&second).named(move |name| (!points.iter().any(|point| name.starts_with(point))).then(|| name.to_owned())))
+}
+
+/// Positions in a frame that is turned by 90° about x.
+fn quarter(at: &[f64]) -> [f64; 3] {
+    [at[0], at[2], -at[1]]
+}
+
+/// The boom's frame turned by 90° about x: ψ becomes θ, the section lies on its side.
+fn planes_exchanged(tree: &Tree, _: &mut Rng) -> Option<Second> {
+    let mut second = tree.clone();
+    let boom = entry_mut(&mut second, "links", "name", "boom")?;
+    let beam = boom["beam"].as_object_mut()?;
+    // One after the other, rotations of the paper's joint depend on what is called ψ.
+    if beam.contains_key("section_joint") || beam.contains_key("elements") {
+        return None;
+    }
+    if let Some(bend) = beam.get_mut("bend") {
+        // About the new y is what was about z; about the new z what was about −y.
+        *bend = json!({"theta": bend["psi"], "psi": -bend["theta"].as_f64()?});
+    }
+    for_each_key(&mut boom["beam"], &mut |key, value| {
+        if key == "box" {
+            *value = json!({"height": value["width"], "width": value["height"], "thickness": value["thickness"]});
+        }
+    });
+    let placement = &mut boom["placement"]["transform"];
+    placement["rotation"] = json!([placement.get("rotation")?.clone(), {"x": "90 deg"}]);
+    boom["joint"] = json!({"revolute": {"axis": "y"}});
+    let arm = entry_mut(&mut second, "links", "name", "arm")?;
+    if arm["placement"].is_object() {
+        return None;
+    }
+    arm["placement"] = json!({"transform": {"rotation": {"x": "-90 deg"}}});
+    for list in ["loads", "connectors", "cylinders", "points"] {
+        let Some(entries) = second.get_mut(list) else { continue };
+        for_each_place(entries, &mut |place| {
+            if place["link"] == "boom" {
+                place["at"] = json!(quarter(&numbers(&place["at"])));
+            }
+        });
+    }
+    for cylinder in second.get_mut("cylinders").and_then(Value::as_array_mut).into_iter().flatten() {
+        if cylinder["linkage"].is_object() && cylinder["foot"]["link"] == "boom" {
+            cylinder["linkage"]["pivot"] = json!(quarter(&numbers(&cylinder["linkage"]["pivot"])));
+        }
+    }
+    for_each_key(&mut second, &mut |key, value| {
+        if key == "coordinate" && value == "boom_psi" {
+            *value = json!("boom_theta");
+        }
+    });
+    Some(Second::of(&second).named(|name| without_boom_elements(&name.replace("boom_psi", "boom_theta"))))
+}
+
+/// A spec that extends one with other numbers.
+fn overlay(tree: &Tree, _: &mut Rng) -> Option<Second> {
+    let mut base = tree.clone();
+    let mut changes = json!({"name": tree["name"], "links": [], "drives": [], "run": tree["run"]});
+    for link in base["links"].as_array_mut()? {
+        if let Some(mass) = link["mass"].as_f64() {
+            changes["links"].as_array_mut()?.push(json!({"name": link["name"], "mass": mass}));
+            link["mass"] = json!(2.0 * mass);
+        }
+    }
+    for drive in base["drives"].as_array_mut()? {
+        if drive["stiffness"].is_f64() {
+            changes["drives"].as_array_mut()?.push(json!({"coordinate": drive["coordinate"], "stiffness": drive["stiffness"]}));
+            drive["stiffness"] = json!(1e5);
+        }
+    }
+    for list in ["links", "drives"] {
+        if changes[list].as_array()?.is_empty() {
+            changes.as_object_mut()?.remove(list);
+        }
+    }
+    base["name"] = json!("base");
+    let text = changes.to_string();
+    Some(Second { source: source(&base).changed(&text), ..Second::of(tree) })
+}
+
+fn parameters_written_in(tree: &Tree, _: &mut Rng) -> Option<Second> {
+    let mut second = tree.clone();
+    let parameters = second.as_object_mut()?.remove("parameters")?;
+    let parameters = parameters.as_object().filter(|parameters| !parameters.is_empty())?.clone();
+    for_each_key(&mut second, &mut |key, value| {
+        if let Some(parameter) = value.as_str().filter(|_| key != "name").and_then(|name| parameters.get(name)) {
+            *value = parameter["value"].clone();
+        }
+    });
+    Some(Second::of(&second))
+}
+
+/// Masses, stiffnesses and an angle become live parameters.
+fn numbers_as_parameters(tree: &Tree, _: &mut Rng) -> Option<Second> {
+    let mut second = tree.clone();
+    let mut made = serde_json::Map::new();
+    let mut live = |name: &str, value: &mut Tree| {
+        if value.is_number() {
+            made.insert(name.to_owned(), json!({"value": value}));
+            *value = json!(name);
+        }
+    };
+    for (k, link) in second["links"].as_array_mut()?.iter_mut().enumerate() {
+        live(&format!("mass_{k}"), &mut link["mass"]);
+        live(&format!("extra_{k}"), &mut link["beam"]["extra_mass"]);
+        live(&format!("beta_{k}"), &mut link["beam"]["damping"]["beta"]);
+        strip(link);
+    }
+    for (k, drive) in second["drives"].as_array_mut()?.iter_mut().enumerate() {
+        live(&format!("drive_{k}"), &mut drive["stiffness"]);
+        live(&format!("position_{k}"), &mut drive["motion"]["hold"]);
+        strip(drive);
+    }
+    for (k, foot) in second.get_mut("supports").and_then(Value::as_array_mut).into_iter().flatten().enumerate() {
+        live(&format!("ground_{k}"), &mut foot["stiffness"][2]);
+        live(&format!("place_{k}"), &mut foot["at"][1]);
+    }
+    for (k, connector) in second.get_mut("connectors").and_then(Value::as_array_mut).into_iter().flatten().enumerate() {
+        live(&format!("end_{k}"), &mut connector["to"]["at"][1]);
+    }
+    for (name, entry) in made {
+        second["parameters"][name] = entry;
+    }
+    Some(Second::of(&second))
+}
+
+/// Removes keys without a value, which looking for them made.
+fn strip(tree: &mut Tree) {
+    if let Value::Object(entries) = tree {
+        entries.values_mut().for_each(strip);
+        entries.retain(|_, value| !value.is_null() && value.as_object().is_none_or(|entries| !entries.is_empty()));
+    }
+}
+
+fn degrees(tree: &Tree, _: &mut Rng) -> Option<Second> {
+    let mut second = tree.clone();
+    for drive in second["drives"].as_array_mut()? {
+        if drive["coordinate"].as_str().is_some_and(|name| name.ends_with("psi")) {
+            for_each_key(&mut drive["motion"], &mut |key, value| {
+                if let (true, Some(angle)) = (matches!(key, "from" | "to" | "hold"), value.as_f64()) {
+                    *value = json!(format!("{:?} deg", angle.to_degrees()));
+                }
+            });
+        }
+    }
+    Some(Second::of(&second))
+}
+
+fn other_order(tree: &Tree, rng: &mut Rng) -> Option<Second> {
+    let mut second = tree.clone();
+    for list in ["supports", "drives", "loads", "connectors", "cylinders", "points"] {
+        if let Some(entries) = second.get_mut(list).and_then(Value::as_array_mut) {
+            rng.shuffle(entries);
+        }
+    }
+    Some(Second::of(&second))
+}
+
+/// Half of the weight of the hook's load as a force at its centre of mass: the same at rest.
+fn weight_as_force(tree: &Tree, _: &mut Rng) -> Option<Second> {
+    let mut second = tree.clone();
+    let gravity = tree.get("gravity").map_or(vec![0.0, 0.0, -9.81], numbers);
+    let hook = entry_mut(&mut second, "links", "name", "hook")?;
+    let at = hook["com"].clone();
+    let half = if hook["mass"] == "payload" {
+        let value = second["parameters"]["payload"]["value"].as_f64()?;
+        second["parameters"]["payload"]["value"] = json!(0.5 * value);
+        0.5 * value
+    } else {
+        let mass = hook["mass"].as_f64()?;
+        hook["mass"] = json!(0.5 * mass);
+        0.5 * mass
+    };
+    let force: Vec<f64> = gravity.iter().map(|g| half * g).collect();
+    crate::tree::push(&mut second, "loads", json!({"name": "weight", "link": "hook", "at": at, "force": force}));
+    let same = |name: &str| {
+        let inertia = name.ends_with("energy") || name.starts_with("omega");
+        (!inertia).then(|| name.to_owned())
+    };
+    Some(Second { moves: false, ..Second::of(&second).named(same) })
+}
+
+/// Every link of the rope as two links with a joint each, its mass in three points by Simpson's rule, which is exact for a rod.
+fn rope_link_by_link(tree: &Tree, _: &mut Rng) -> Option<Second> {
+    let mut second = tree.clone();
+    let links = second["links"].as_array_mut()?;
+    let at = links.iter().position(|link| link["name"] == "rope")?;
+    let rope = links.remove(at);
+    let (count, own) = (rope["rope"]["links"].as_u64()?, &rope["rope"]);
+    let length = own["length"].as_f64()? / count as f64;
+    let mass = own["mass_per_length"].as_f64()? * length;
+    let mut made = Vec::new();
+    for k in 1..=count {
+        let along = json!({"transform": {"translation": [length, 0, 0]}});
+        let placement = if k == 1 { rope["placement"].clone() } else { along };
+        made.push(json!({"name": format!("rope_{k}"), "placement": placement, "joint": "revolute"}));
+        let point = |name: &str, share: f64, x: f64| json!({"name": format!("{name}_{k}"), "mass": share * mass, "com": [x, 0, 0]});
+        made.push(json!({"name": format!("rope_{k}_y"), "joint": {"revolute": {"axis": "y"}},
+            "bodies": [point("start", 1.0 / 6.0, 0.0), point("middle", 4.0 / 6.0, 0.5 * length), point("end", 1.0 / 6.0, length)]}));
+    }
+    links.splice(at..at, made);
+    let hook = links.iter_mut().find(|link| link["name"] == "hook")?;
+    hook["placement"] = json!({"transform": {"translation": [length, 0, 0]}});
+    if let Some(damping) = own["damping"].as_f64() {
+        for k in 1..=count {
+            second["damping"][format!("rope_{k}_psi")] = json!(damping);
+            second["damping"][format!("rope_{k}_y_theta")] = json!(damping);
+        }
+    }
+    // Bodies of the rope are bodies of links with other names.
+    Some(Second::of(&second).named(|name| {
+        let is_body = name.starts_with("rope_") && name.contains(' ');
+        if is_body { None } else if name.starts_with("rope_") { Some(name.replace("_theta", "_y_theta")) } else { Some(name.to_owned()) }
+    }))
+}
+
+/// The placement of every other link belongs to a massless link before it.
+fn massless_frames(tree: &Tree, _: &mut Rng) -> Option<Second> {
+    let mut second = tree.clone();
+    let mut links = Vec::new();
+    for (k, mut link) in second["links"].as_array()?.iter().cloned().enumerate() {
+        if link["placement"]["transform"].is_object() && k > 0 {
+            let placement = link.as_object_mut()?.remove("placement");
+            links.push(json!({"name": format!("frame_{k}"), "placement": placement}));
+        }
+        links.push(link);
+    }
+    second["links"] = Value::Array(links);
+    Some(Second::of(&second))
+}
+
+/// Keys whose numbers are proportional to the unit of mass.
+const WITH_MASS: &[&str] = &[
+    "mass", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz", "E", "G", "density", "yield_stress", "stiffness", "damping", "max_effort",
+    "max_power", "armature", "force", "moment", "coulomb", "breakaway", "viscous", "full_hold", "extra_mass", "mass_per_length",
+    "max_pressure", "back_pressure", "bulk_modulus", "pressure", "swing_psi", "hook_theta", "payload", "pressure_drop",
+];
+/// Their factor.
+const HEAVIER: f64 = 2.0;
+
+/// Everything in a unit of half a kilogram: numbers with the unit of mass double, nothing moves differently.
+fn mass_unit(tree: &Tree, _: &mut Rng) -> Option<Second> {
+    // The law of a valve's edges has a pressure of its own, at which they become laminar.
+    if tree["cylinders"].as_array().into_iter().flatten().any(|cylinder| cylinder["valve"].is_object()) {
+        return None;
+    }
+    let mut second = tree.clone();
+    heavier(&mut second, "");
+    if let Some(value) = second["parameters"]["payload"]["value"].as_f64() {
+        second["parameters"]["payload"]["value"] = json!(HEAVIER * value);
+    }
+    let factor = |unit: &str| if ["N", "N m", "J", "W", "Pa"].contains(&unit) { HEAVIER } else { 1.0 };
+    Some(Second { factor: Box::new(factor), ..Second::of(&second) })
+}
+
+fn heavier(tree: &mut Tree, within: &str) {
+    match tree {
+        Value::Object(entries) => {
+            for (key, value) in entries.iter_mut() {
+                // Where damping is a time over a length or a time, not a force over a rate.
+                let per_length = matches!(within, "rope_law" | "stops");
+                if WITH_MASS.contains(&key.as_str()) && !(key == "damping" && per_length) && !matches!(within, "guess" | "parameters") {
+                    double(value);
+                } else {
+                    let law = if within == "law" && key == "rope" { "rope_law" } else { key };
+                    heavier(value, if within == "stops" { "stops" } else { law });
+                }
+            }
+        }
+        Value::Array(entries) => entries.iter_mut().for_each(|entry| heavier(entry, within)),
+        _ => {}
+    }
+}
+
+/// Doubles all numbers, except Kelvin–Voigt times.
+fn double(tree: &mut Tree) {
+    match tree {
+        Value::Object(entries) => entries.iter_mut().filter(|(key, _)| *key != "beta").for_each(|(_, value)| double(value)),
+        Value::Array(entries) => entries.iter_mut().for_each(double),
+        Value::Number(number) => *tree = json!(HEAVIER * number.as_f64().unwrap_or(0.0)),
+        _ => {}
+    }
+}
+
+fn loops(tree: &Tree, _: &mut Rng) -> Option<Second> {
+    let mut second = tree.clone();
+    second["loops"] = json!("always");
+    entry(tree, "links", "name", "boom")?;
+    Some(Second::of(&second))
+}

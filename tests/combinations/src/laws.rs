@@ -1,0 +1,207 @@
+//! Laws of mechanics that hold for any crane.
+
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::{DynCrane, DynDynamics, DynModel};
+use crane_model::dynamics::Settings;
+use crane_model::nalgebra::DVector;
+use crane_model::runs::{Start, record};
+use fastrand::Rng;
+use std::ops::ControlFlow;
+
+use crate::observe::{equilibrium, live};
+use crate::tree::{Tree, source};
+
+/// A law: `None` where it does not apply, else what breaks it.
+pub type Law = fn(&LiveCrane, &[f64], &mut Rng) -> Option<Result<(), String>>;
+
+/// All of them, with their names.
+pub const ALL: [(&str, Law); 6] = [
+    ("accelerations solve A a = e + f", accelerations_solve),
+    ("power of all forces", power),
+    ("rate of the kinetic energy", kinetic_energy),
+    ("ground carries weight and loads", ground_carries),
+    ("a crane at rest stays at rest", rest_stays),
+    ("eight cranes as one", lanes),
+];
+
+/// Checks a law on the crane of a spec.
+///
+/// # Errors
+/// The crane has mistakes or does not stand.
+pub fn check(law: Law, tree: &Tree, seed: u64) -> Result<Option<Result<(), String>>, String> {
+    let crane = live(&source(tree))?;
+    let q = equilibrium(&crane)?;
+    Ok(law(&crane, &q, &mut Rng::with_seed(seed)))
+}
+
+/// A time and a state near a pose.
+fn state(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> (f64, Vec<f64>, Vec<f64>) {
+    let mut random = |scale: f64| scale * (2.0 * rng.f64() - 1.0);
+    let t = 0.3 + random(0.1);
+    let mut q: Vec<f64> = pose.iter().map(|q| q + random(2e-3)).collect();
+    let mut v: Vec<f64> = pose.iter().map(|_| random(0.1)).collect();
+    crane.prescribe(t, &mut q, &mut v);
+    (t, q, v)
+}
+
+/// Whether forces have states of their own, which a state of pose and rates does not contain.
+fn has_states(crane: &LiveCrane) -> bool {
+    crane.description().has_force_states()
+}
+
+/// Compares two numbers, relative to the sum of what they are made of.
+fn close(what: &str, a: f64, b: f64, size: f64, tolerance: f64) -> Result<(), String> {
+    if (a - b).abs() <= tolerance * size { Ok(()) } else { Err(format!("{what}: {a:.9e} against {b:.9e}, of {size:.3e}")) }
+}
+
+/// `A q̈ = e + f`, in the rows of unknowns.
+fn accelerations_solve(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Result<(), String>> {
+    let (t, q, v) = state(crane, pose, rng);
+    let whole: &dyn DynCrane = crane;
+    let a = whole.accelerations_at(t, &q, &v);
+    let mut f = vec![0.0; q.len()];
+    whole.forces(t, &q, &v, &mut f);
+    let right = whole.bias_at(&q, &v) + DVector::from_vec(f);
+    let matrix = whole.mass_matrix_at(&q);
+    let size = matrix.abs() * a.abs() + right.abs();
+    let left = matrix * a;
+    let prescribed = crane.description().prescribed();
+    for (j, coordinate) in crane.description().coordinates.iter().enumerate().filter(|(j, _)| !prescribed.contains(j)) {
+        // A solve leaves a residual of rounding times the size of its terms, over all rows that it eliminates.
+        if let Err(error) = close(&coordinate.name, left[j], right[j], size[j].max(1e-6 * size.amax()), 1e-9) {
+            return Some(Err(error));
+        }
+    }
+    Some(Ok(()))
+}
+
+/// Step of differences over time, s: the error of a central difference is its square.
+const STEP: f64 = 1e-5;
+
+/// `d/dt E_p = −v f − dissipation + power of motions, winches and loads` along any v, with f without gravity's part.
+fn power(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Result<(), String>> {
+    if has_states(crane) {
+        return None;
+    }
+    let (t, q, v) = state(crane, pose, rng);
+    let energies = |sign: f64| {
+        let q: Vec<f64> = q.iter().zip(&v).map(|(q, v)| q + sign * STEP * v).collect();
+        let whole: &dyn DynCrane = crane;
+        let e = whole.energies_at(t + sign * STEP, &q, &vec![0.0; q.len()]);
+        [e.supports, e.elements, e.drives, e.stops, e.connectors]
+    };
+    let (before, after) = (energies(-1.0), energies(1.0));
+    let rate: f64 = before.iter().zip(after).map(|(a, b)| (b - a) / (2.0 * STEP)).sum();
+    let mut f = vec![0.0; q.len()];
+    crane.forces(t, &q, &v, &mut f);
+    let prescribed = crane.description().prescribed();
+    let works = f.iter().zip(&v).enumerate().filter(|(j, _)| !prescribed.contains(j)).map(|(_, (f, v))| f * v);
+    let (work, size) = works.fold((0.0, 0.0), |(sum, size), work| (sum + work, size + f64::abs(work)));
+    // What rigid drives supply is not among the forces.
+    let supplied = if prescribed.is_empty() { crane.drive_power(t, &q, &v) } else { return None };
+    let supplied = supplied + crane.winch_power(t, &q, &v) + crane.load_power(t, &q, &v);
+    let lost = crane.dissipation(t, &q, &v);
+    let rounding = before.iter().fold(0.0, |sum: f64, e| sum + e.abs()) * 1e-15 / STEP;
+    Some(close("power", work, supplied - lost - rate, size + lost.abs() + rounding * 1e7, 1e-6))
+}
+
+/// `d/dt E_k = v (e + f)` along the motion, with everything that rigid drives exert as what is missing.
+fn kinetic_energy(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Result<(), String>> {
+    let (t, q, v) = state(crane, pose, rng);
+    let whole: &dyn DynCrane = crane;
+    let a = whole.accelerations_at(t, &q, &v);
+    let energy = |sign: f64| {
+        let q: Vec<f64> = q.iter().zip(&v).map(|(q, v)| q + sign * STEP * v).collect();
+        let v: Vec<f64> = v.iter().zip(a.iter()).map(|(v, a)| v + sign * STEP * a).collect();
+        crane.kinetic_energy(&q, &v)
+    };
+    let rate = (energy(1.0) - energy(-1.0)) / (2.0 * STEP);
+    let matrix = whole.mass_matrix_at(&q);
+    let inertia = matrix * &a;
+    let v = DVector::from_vec(v.clone());
+    // v e at rest is the power of weight; the rest of e changes the kinetic energy together with A.
+    let rest = DVector::zeros(q.len());
+    let velocity_forces = whole.bias_at(&q, v.as_slice()) - whole.bias_at(&q, rest.as_slice());
+    let terms: Vec<f64> = v.iter().zip(&inertia).chain(v.iter().zip(&velocity_forces)).map(|(v, f)| v * f).collect();
+    let size: f64 = terms.iter().map(|x| x.abs()).sum();
+    // ½ vᵀ Ȧ v = −vᵀ h, so d/dt E_k = vᵀ (A a − h) with e = −h + weight.
+    let expected = v.dot(&inertia) - v.dot(&velocity_forces);
+    Some(close("rate", rate, expected, size.max(1e-3 * energy(0.0).abs()), 1e-5))
+}
+
+/// The supports carry weight, loads and what holds to the world.
+fn ground_carries(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Result<(), String>> {
+    let whole: &dyn DynCrane = crane;
+    if crane.description().supports.is_empty() {
+        return None;
+    }
+    let reactions = whole.support_reactions_at(q, &vec![0.0; q.len()]);
+    let (weight, applied) = (whole.weight_at(q), whole.applied_force_at(0.0, q));
+    for axis in 0..3 {
+        let (Some(weight), Some(applied)) = (weight[axis], applied[axis]) else { continue };
+        let sum: f64 = reactions.iter().map(|force| force[axis]).sum();
+        let size = reactions.iter().map(|force| force.norm()).sum();
+        if let Err(error) = close("reactions", sum, -weight - applied, size, 1e-8) {
+            return Some(Err(error));
+        }
+    }
+    Some(Ok(()))
+}
+
+/// From its equilibrium, with drives that do not move, a run goes nowhere.
+fn rest_stays(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Result<(), String>> {
+    let description = crane.description();
+    let still = |pieces: usize| pieces == 0;
+    if !description.drives.iter().all(|drive| still(drive.pieces)) || description.connectors.iter().any(|c| !still(c.pieces)) {
+        return None;
+    }
+    // A joint with friction creeps, and so does a valve with leakage.
+    if description.loads.iter().any(|load| load.pieces > 0) || description.has_valves() {
+        return None;
+    }
+    let start = Start { v: vec![0.0; q.len()], q: q.to_vec(), x: Vec::new(), what: String::new(), rests: true };
+    let settings = Settings { duration: 2.0, output: 0.5, tolerance: 1e-7, audit: false, ..Settings::of(description) };
+    let table = match record(crane, &start, &settings, &mut |_| ControlFlow::Continue(())) {
+        Ok(recorded) => recorded.table,
+        Err(failed) => return Some(Err(failed.to_string())),
+    };
+    let end = table.rows.last()?;
+    for (j, coordinate) in description.coordinates.iter().enumerate() {
+        let (from, to) = (q[j], end[1 + j]);
+        if (to - from).abs() > 1e-5 {
+            return Some(Err(format!("{} drifts from {from:.9} to {to:.9} in 2 s", coordinate.name)));
+        }
+    }
+    Some(Ok(()))
+}
+
+/// Accelerations of a block of eight are those of each one alone, to the bit.
+fn lanes(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Result<(), String>> {
+    use crane_model::dyn_crane::DynEnsemble;
+    use crane_model::rt::lanes::f64x8;
+    let n = pose.len();
+    let states: Vec<_> = (0..8).map(|_| state(crane, pose, rng)).collect();
+    let t = states[0].0;
+    let parameters = crane.parameters().to_vec();
+    let own: Vec<&[f64]> = (0..crane.lanes()).map(|_| parameters.as_slice()).collect();
+    let mut block = crane.block(&own).ok()?;
+    let width = crane.lanes() / 8;
+    let pack = |of: fn(&(f64, Vec<f64>, Vec<f64>)) -> &Vec<f64>| {
+        let vector = |i: usize| f64x8::from(std::array::from_fn::<f64, 8, _>(|lane| of(&states[lane])[i]));
+        (0..n).flat_map(|i| vec![vector(i); width]).collect::<Vec<_>>()
+    };
+    let (q, v) = (pack(|state| &state.1), pack(|state| &state.2));
+    let mut out = vec![f64x8::from([0.0; 8]); n * width];
+    block.forward_dynamics(t, &q, &v, &mut out);
+    for (lane, (_, q, v)) in states.iter().enumerate() {
+        let mut alone = vec![0.0; n];
+        crane.forward_dynamics(t, q, v, &mut alone);
+        for (i, alone) in alone.iter().enumerate() {
+            let together = out[i * width].to_array()[lane];
+            if together.to_bits() != alone.to_bits() && together != *alone {
+                return Some(Err(format!("coordinate {i}, lane {lane}: {together:e} against {alone:e}")));
+            }
+        }
+    }
+    Some(Ok(()))
+}

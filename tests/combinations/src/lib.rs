@@ -1,0 +1,13 @@
+//! Random cranes that combine all features of the language, each checked where features meet: by a second description of the same crane, by
+//! laws of mechanics, and by finer meshes.
+//!
+//! A failure is shrunk, and printed as a spec that is ready to be run.
+
+pub mod check;
+pub mod crane;
+pub mod descriptions;
+pub mod feature;
+pub mod laws;
+pub mod meshes;
+pub mod observe;
+pub mod tree;

@@ -1,0 +1,144 @@
+//! What a crane does, as named numbers that do not depend on how its spec describes it.
+
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+
+use crane_codegen::SourceFile;
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::DynCrane;
+use crane_model::dynamics::Settings;
+use crane_model::runs::{Start, record};
+use crane_model::{Cut, modes, statics};
+
+/// A number with its unit, and how far it may be off, relative to the largest number of this unit in the same group.
+#[derive(Clone, Debug)]
+pub struct Number {
+    /// Its group: at rest, at the end of a run, …
+    pub group: &'static str,
+    /// Its unit.
+    pub unit: String,
+    /// Its value.
+    pub value: f64,
+}
+
+/// Named numbers.
+pub type Numbers = BTreeMap<String, Number>;
+
+/// At rest: rounding, and Newton's tolerance times the condition of the tangent stiffness.
+const REST: (&str, f64) = ("rest", 1e-7);
+/// At the end of a run: ten thousand times its tolerance, since its steps differ.
+const RUN: (&str, f64) = ("run", 2e-5);
+/// Frequencies: those of the lowest modes are differences of large numbers.
+const MODES: (&str, f64) = ("modes", 1e-6);
+/// Forces that joints transmit.
+const CUTS: (&str, f64) = ("cuts", 1e-7);
+
+/// How far the numbers of a group may differ.
+#[must_use]
+pub fn tolerance(group: &str) -> f64 {
+    [REST, RUN, MODES, CUTS].into_iter().find(|(name, _)| *name == group).map_or(0.0, |(_, tolerance)| tolerance)
+}
+
+/// Tolerance of runs, m and rad.
+const STEP: f64 = 1e-8;
+/// Steps of a run of half a second: with more it is not worth the time.
+const MOST_STEPS: usize = 60_000;
+/// How many of the lowest frequencies are compared.
+const FREQUENCIES: usize = 8;
+
+/// The live crane of a source; the message of its mistakes.
+///
+/// # Errors
+/// The spec has mistakes.
+pub fn live(source: &SourceFile) -> Result<LiveCrane, String> {
+    LiveCrane::from_spec(source).map_err(|mistakes| mistakes.to_string())
+}
+
+/// The stable equilibrium of a crane.
+///
+/// # Errors
+/// There is none: its status in words.
+pub fn equilibrium(crane: &dyn DynCrane) -> Result<Vec<f64>, String> {
+    let found = crane.equilibrium(&statics::Settings::default());
+    if found.is_stable() { Ok(found.q) } else { Err(found.to_string()) }
+}
+
+/// Everything at rest, and with `run` at the end of the spec's run.
+///
+/// # Errors
+/// The crane has mistakes, does not stand, or does not run.
+pub fn observe(source: &SourceFile, run: bool) -> Result<Numbers, String> {
+    let crane = live(source)?;
+    let crane: &dyn DynCrane = &crane;
+    let q = equilibrium(crane)?;
+    let mut numbers = Numbers::new();
+    let mut add = |group: &'static str, name: String, unit: &str, value: f64| {
+        numbers.insert(format!("{group} {name}"), Number { group, unit: unit.to_owned(), value });
+    };
+    let motions = crane.small_motions_at(&q);
+    let modes = modes::undamped(&motions).map_err(|error| error.to_string())?;
+    for (k, mode) in modes.iter().take(FREQUENCIES).enumerate() {
+        // ω² is what the eigenproblem has to rounding.
+        add(MODES.0, format!("omega_squared_{k}"), "1/s²", mode.omega_squared);
+    }
+    let rest = vec![0.0; q.len()];
+    let description = crane.description();
+    for (cut, wrench) in description.cuts().iter().zip(crane.internal_forces_at(0.0, &q, &rest, &rest)) {
+        if let Cut::Body { body, .. } = cut {
+            let body = description.bodies[*body].name.as_str();
+            add(CUTS.0, format!("{body} force"), "N", wrench.force.norm());
+            add(CUTS.0, format!("{body} moment"), "N m", wrench.moment.norm());
+        }
+    }
+    let start = Start { v: rest, q, x: Vec::new(), what: String::new(), rests: true };
+    let base = Settings { tolerance: STEP, most_steps: MOST_STEPS, audit: false, ..Settings::of(description) };
+    // The first result of a run is the crane at rest, with the states of its oil and bristles.
+    let settings = if run { base } else { Settings { duration: 1e-6, output: 1e-6, ..base } };
+    let recorded = record(crane, &start, &settings, &mut |_| ControlFlow::Continue(()));
+    let table = recorded.map_err(|failed| failed.to_string())?.table;
+    let ends = [(REST.0, table.rows.first()), (RUN.0, table.rows.last().filter(|_| run))];
+    for (group, row) in ends {
+        for (column, value) in table.columns.iter().zip(row.into_iter().flatten()) {
+            if !AUDIT.contains(&column.name.as_str()) {
+                add(group, column.name.clone(), &column.unit, *value);
+            }
+        }
+    }
+    Ok(numbers)
+}
+
+/// Columns of an audit, which is off.
+const AUDIT: [&str; 5] = ["t", "drive_work", "dissipated_energy", "load_work", "energy_balance"];
+
+/// What differs between two cranes: a line for each number of the first whose counterpart, named by `name`, is missing or another one.
+/// `factor` is that of the second crane's numbers by unit.
+pub fn differences(
+    [first, second]: [&Numbers; 2],
+    name: &dyn Fn(&str) -> Option<String>,
+    factor: &dyn Fn(&str) -> f64,
+) -> Vec<String> {
+    let mut scales: BTreeMap<(&str, &str), f64> = BTreeMap::new();
+    for number in first.values() {
+        let scale = scales.entry((number.group, &number.unit)).or_insert(0.0);
+        *scale = scale.max(number.value.abs());
+    }
+    let mut lines = Vec::new();
+    for (key, a) in first {
+        let (group, own) = key.split_once(' ').unwrap_or(("", key));
+        let Some(wanted) = name(own) else { continue };
+        let Some(b) = second.get(&format!("{group} {wanted}")) else {
+            lines.push(format!("{key} has no counterpart {wanted}"));
+            continue;
+        };
+        let (value, scale) = (b.value / factor(&a.unit), scales[&(a.group, a.unit.as_str())]);
+        let off = (a.value - value).abs();
+        // Absolute floor: a micrometre at rest, a millionth of a newton.
+        if !(off <= tolerance(a.group) * scale.max(FLOOR)) {
+            lines.push(format!("{key}: {:.9e} {} against {value:.9e}", a.value, a.unit));
+        }
+    }
+    lines
+}
+
+/// Where all numbers of a unit are smaller than this, they are rounding.
+const FLOOR: f64 = 1e-3;

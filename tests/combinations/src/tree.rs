@@ -1,0 +1,99 @@
+//! A spec as a tree of keys and values.
+
+use crane_codegen::SourceFile;
+use serde_json::{Value, json};
+
+/// The tree of a spec.
+pub type Tree = Value;
+
+/// The entry of a list whose `key` has this value.
+#[must_use]
+pub fn entry<'t>(tree: &'t Tree, list: &str, key: &str, value: &str) -> Option<&'t Tree> {
+    tree[list].as_array()?.iter().find(|entry| entry[key] == value)
+}
+
+/// The same, to be changed.
+pub fn entry_mut<'t>(tree: &'t mut Tree, list: &str, key: &str, value: &str) -> Option<&'t mut Tree> {
+    tree.get_mut(list)?.as_array_mut()?.iter_mut().find(|entry| entry[key] == value)
+}
+
+/// Appends to a list, which is created if there is none.
+pub fn push(tree: &mut Tree, list: &str, new: Tree) {
+    if tree[list].is_null() {
+        tree[list] = json!([]);
+    }
+    if let Some(entries) = tree[list].as_array_mut() {
+        entries.push(new);
+    }
+}
+
+/// The numbers of a list.
+#[must_use]
+pub fn numbers(tree: &Tree) -> Vec<f64> {
+    tree.as_array().into_iter().flatten().filter_map(Value::as_f64).collect()
+}
+
+/// Calls a function for every place of a link, `{link, at}` or a support's `at`: with the name of its link, if it has one.
+pub fn for_each_place(tree: &mut Tree, act: &mut impl FnMut(&mut Tree)) {
+    if tree.get("link").is_some() && tree.get("at").is_some() {
+        act(tree);
+    }
+    match tree {
+        Value::Object(entries) => entries.values_mut().for_each(|value| for_each_place(value, act)),
+        Value::Array(entries) => entries.iter_mut().for_each(|value| for_each_place(value, act)),
+        _ => {}
+    }
+}
+
+/// Calls a function for every key and its value, at any depth.
+pub fn for_each_key(tree: &mut Tree, act: &mut impl FnMut(&str, &mut Tree)) {
+    match tree {
+        Value::Object(entries) => {
+            for (key, value) in entries.iter_mut() {
+                act(key, value);
+                for_each_key(value, act);
+            }
+        }
+        Value::Array(entries) => entries.iter_mut().for_each(|value| for_each_key(value, act)),
+        _ => {}
+    }
+}
+
+/// Keys in the order in which a person writes them.
+const ORDER: [&str; 24] = [
+    "format", "name", "title", "gravity", "loops", "parameters", "inputs", "materials", "links", "supports", "drives",
+    "couplings", "cylinders", "pump", "damping", "stops", "friction", "armature", "loads", "connectors", "points", "guess",
+    "run", "analyses",
+];
+
+/// The text of a spec, ready to be run: one line per entry.
+#[must_use]
+pub fn text(tree: &Tree) -> String {
+    let mut text = String::new();
+    for key in ORDER {
+        match tree.get(key) {
+            Some(Value::Array(entries)) if entries.iter().any(Value::is_object) => {
+                text += &format!("{key}:\n");
+                for entry in entries {
+                    text += &format!("  - {entry}\n");
+                }
+            }
+            Some(Value::Object(entries)) if entries.is_empty() => {}
+            Some(Value::Object(entries)) => {
+                text += &format!("{key}:\n");
+                for (name, entry) in entries {
+                    text += &format!("  {name}: {entry}\n");
+                }
+            }
+            Some(value) if !value.is_null() => text += &format!("{key}: {value}\n"),
+            _ => {}
+        }
+    }
+    text
+}
+
+/// A spec as a file in memory.
+#[must_use]
+pub fn source(tree: &Tree) -> SourceFile {
+    SourceFile::new("random.yaml", text(tree))
+}

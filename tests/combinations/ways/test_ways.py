@@ -1,0 +1,96 @@
+"""One random crane by every way to compute it: Python, the command's tables, functional mock-up units, C."""
+
+import csv
+import ctypes
+import json
+import subprocess
+
+import crane as package
+import numpy as np
+import pytest
+from fmpy import simulate_fmu
+
+# Functions of C that are compared, with the arguments that they take besides constants and inputs.
+FUNCTIONS = {"mass_matrix": "q", "bias": "qv", "forward_dynamics": "tqv", "static_residual": "q", "tangent_stiffness": "q"}
+DURATION, OUTPUT = 0.4, 0.1
+
+
+@pytest.fixture
+def loaded(specs, seed):
+    """The crane in Python, and a pose at which it stands; cranes that do not stand are not compared."""
+    crane = package.load(str(specs(seed)))
+    equilibrium = crane.statics(invalid="nan")
+    if not equilibrium.stable:
+        pytest.skip("does not stand")
+    return crane, np.asarray(equilibrium.q)
+
+
+def states(q, count=3):
+    random = np.random.default_rng(5)
+    return q + 1e-3 * random.standard_normal((count, q.size)), 0.1 * random.standard_normal((count, q.size))
+
+
+def test_the_command_writes_what_python_computes(specs, seed, loaded, command, tmp_path):
+    """The same runs by the same library: equal to the digits that the table has."""
+    crane, _ = loaded
+    run = crane.simulate(duration=DURATION, output=OUTPUT, verify=False)
+    command("simulate", specs(seed), "--duration", DURATION, "--output", OUTPUT, "--no-verify", "--out", tmp_path)
+    with open(tmp_path / f"random_{seed}.csv", newline="") as file:
+        header, *rows = csv.reader(file)
+    table = np.array(rows, dtype=float)
+    for column, title in enumerate(header):
+        name = title.split(" [")[0]
+        assert np.allclose(table[:, column], run[name], rtol=1e-9, atol=1e-12), name
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+def test_units_move_as_the_command_does(specs, seed, loaded, command, tmp_path, version):
+    """Steps of co-simulation continue the history, so they are the steps of a run."""
+    crane, _ = loaded
+    unit = tmp_path / "unit.fmu"
+    command("export", specs(seed), "--format", "fmu", "--fmi", version, "-o", unit)
+    run = crane.simulate(duration=DURATION, output=OUTPUT, verify=False)
+    names = [name for name in run.units if name not in ("t", "drive_work", "dissipated_energy", "load_work", "energy_balance")]
+    result = simulate_fmu(str(unit), stop_time=DURATION, step_size=OUTPUT, output_interval=OUTPUT, output=names)
+    for name in names:
+        size = max(1.0, np.abs(run[name]).max())
+        assert np.abs(result[name] - run[name]).max() < 1e-9 * size, name
+
+
+def test_c_computes_what_python_computes(specs, seed, loaded, command, tmp_path):
+    """The same operations in another compiler: rounding, which a solve magnifies."""
+    crane, q = loaded
+    if json.loads(command("info", specs(seed), "--format", "json")).get("inputs"):
+        pytest.skip("functions of cranes with inputs take these, too")
+    source, library = tmp_path / "crane.c", tmp_path / "crane.so"
+    command("export", specs(seed), "--format", "c", "--functions", ",".join(FUNCTIONS), "-o", source)
+    subprocess.run(["cc", "-std=c99", "-O1", "-shared", "-fPIC", source, "-o", library, "-lm"], check=True, cwd=tmp_path)
+    functions = ctypes.CDLL(str(library))
+    name = f"random_{seed}"
+    # Constants are numbers that depend on parameters alone; no crane here has as many.
+    constants = ctypes.create_string_buffer(8 * 100_000)
+    header = next(tmp_path.glob("*.h")).read_text()
+    defaults = [parameter["value"] for parameter in crane.info["parameters"]] if crane.info["parameters"] else []
+    if f"{name}_set_params" in header:
+        given = (ctypes.c_double * max(1, len(defaults)))(*defaults)
+        getattr(functions, f"{name}_set_params")(given, constants)
+    n = q.size
+    for pose, rates in zip(*states(q)):
+        own = {"q": pose, "v": rates, "t": 0.3}
+        for function, arguments in FUNCTIONS.items():
+            out = np.zeros((n, n) if function in ("mass_matrix", "tangent_stiffness") else n)
+            values = [ctypes.c_double(own[a]) if a == "t" else own[a].ctypes.data_as(ctypes.c_void_p) for a in arguments]
+            prefix = [constants] if f"{name}_{function}(const {name}_constants" in header.replace("\n", " ") else []
+            getattr(functions, f"{name}_{function}")(*prefix, *values, out.ctypes.data_as(ctypes.c_void_p))
+            expected = getattr(crane, function)(*[own[a] for a in arguments.replace("t", "")], **({"t": own["t"]} if "t" in arguments else {}))
+            assert np.abs(out - expected).max() < 1e-8 * np.abs(expected).max(), function
+
+
+def test_arrays_of_any_order_are_the_same_numbers(loaded):
+    crane, q = loaded
+    poses, rates = states(q, 6)
+    for pose, rate in [(np.asfortranarray(poses), rates), (poses, np.asfortranarray(rates)), (poses[::-1][::-1], rates.tolist())]:
+        for function in ("mass_matrix", "bias", "forward_dynamics"):
+            arguments = (pose,) if function == "mass_matrix" else (pose, rate)
+            usual = (poses,) if function == "mass_matrix" else (poses, rates)
+            assert (getattr(crane, function)(*arguments) == getattr(crane, function)(*usual)).all(), function
