@@ -77,6 +77,9 @@ pub struct ForceStates {
     rows: Vec<Row>,
     /// Their generalized forces, and the accelerations that these add.
     efforts: [Vec<f64>; 2],
+    /// The coordinates of rigid drives, and the mass matrix if there are any.
+    prescribed: Vec<usize>,
+    mass: DMatrix<f64>,
 }
 
 impl ForceStates {
@@ -84,7 +87,11 @@ impl ForceStates {
     pub fn new(description: &Description) -> Self {
         let (oil, n) = (Hydraulics::new(description), description.coordinates.len());
         let bristles = Bristles::new(description, oil.len());
+        let prescribed = description.prescribed();
+        let size = if prescribed.is_empty() { 0 } else { n };
         Self {
+            prescribed,
+            mass: DMatrix::zeros(size, size),
             forces: vec![StatefulForce::default(); oil.count() + bristles.len()],
             rows: oil.rows().chain(bristles.rows()).collect(),
             efforts: [vec![0.0; n], vec![0.0; n]],
@@ -163,13 +170,39 @@ impl ForceStates {
         accelerations: &mut [f64],
     ) {
         self.evaluate(crane, moment, rates, None);
+        self.add_accelerations(crane, moment.q);
+        accelerations.iter_mut().zip(&self.efforts[1]).for_each(|(acceleration, added)| *acceleration += *added);
+    }
+
+    /// What the forces, as last evaluated, add to the effort of each rigid drive: its coordinate, and N m or N.
+    ///
+    /// ```text
+    /// Δτ = A Δq̈ − f,     Δq̈ the accelerations that their generalized forces f add
+    /// ```
+    pub(crate) fn on_rigid_drives(
+        &mut self,
+        crane: &dyn DynDynamics,
+        q: &[f64],
+    ) -> impl Iterator<Item = (usize, f64)> + '_ {
+        if !self.prescribed.is_empty() && !self.forces.is_empty() {
+            self.add_accelerations(crane, q);
+            crane.mass_matrix(q, self.mass.as_mut_slice());
+        }
+        let Self { mass, efforts: [efforts, added], prescribed, .. } = self;
+        prescribed.iter().map(move |&j| {
+            let inertia: f64 = mass.row(j).iter().zip(added.iter()).map(|(entry, a)| entry * a).sum();
+            (j, inertia - efforts[j])
+        })
+    }
+
+    /// Generalized forces of the forces as last evaluated, and the accelerations that they add.
+    fn add_accelerations(&mut self, crane: &dyn DynDynamics, q: &[f64]) {
         let [efforts, added] = &mut self.efforts;
         efforts.fill(0.0);
         for (force, row) in self.forces.iter().zip(&self.rows) {
             row.add_to(efforts, force.force);
         }
-        crane.solve_mass(moment.q, efforts, added);
-        accelerations.iter_mut().zip(added).for_each(|(acceleration, added)| *acceleration += *added);
+        crane.solve_mass(q, efforts, added);
     }
 
     /// Appends which branch of its law each force is on.
@@ -183,6 +216,21 @@ impl ForceStates {
         let (of_oil, of_bristles) = self.forces.split_at(self.oil.count());
         let power = |all: &[StatefulForce]| all.iter().map(|force| force.force * force.speed).sum::<f64>();
         [power(of_oil), -power(of_bristles)]
+    }
+}
+
+/// Adds what forces with states contribute to the efforts of rigid drives, which generated code computes without them, N m and N.
+pub(crate) fn add_to_rigid_drives(crane: &dyn DynDynamics, moment: &StateAt<'_>, efforts: &mut [f64]) {
+    let description = crane.description();
+    let mut states = ForceStates::new(description);
+    if states.is_empty() || moment.x.len() < states.len() {
+        return;
+    }
+    states.evaluate(crane, moment, &mut vec![0.0; moment.x.len()], None);
+    for (coordinate, added) in states.on_rigid_drives(crane, moment.q) {
+        if let Some(drive) = description.drives.iter().position(|drive| drive.coordinate == coordinate) {
+            efforts[drive] += added;
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use crate::{
     CoordinateKind, CoordinateRole, CylinderInfo, Description, DriveInfo, ParameterError, SectionModuli, Tension,
     Wrench, bristles, dynamics,
     dynamics::{InitialState, Run, Sample, Stopped},
-    force_states::StateAt,
+    force_states::{self, StateAt},
     hydraulics::{self, Oil},
     modes::SmallMotions,
     statics,
@@ -121,8 +121,14 @@ impl dyn DynCrane + '_ {
     /// Torques and forces of the drives at a sample of a run, those of cylinders with a valve from their pressures: N m and N.
     pub fn drive_efforts_of(&self, sample: &Sample<'_>) -> Vec<f64> {
         let &Sample { t, q, v, x, .. } = sample;
-        let mut efforts = self.drive_efforts_at(t, q, v);
-        if let Some(oil) = Oil::at(self, &StateAt { t, q, v, x }) {
+        self.drive_efforts_with(&StateAt { t, q, v, x })
+    }
+
+    /// The same at a state of the crane and its forces.
+    pub(crate) fn drive_efforts_with(&self, moment: &StateAt<'_>) -> Vec<f64> {
+        let mut efforts = self.drive_efforts_at(moment.t, moment.q, moment.v);
+        force_states::add_to_rigid_drives(self, moment, &mut efforts);
+        if let Some(oil) = Oil::at(self, moment) {
             oil.give_efforts(self.description(), &mut efforts);
         }
         efforts

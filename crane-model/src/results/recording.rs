@@ -93,11 +93,9 @@ fn push_quantities(
     row.push(t);
     row.extend_from_slice(q);
     row.extend_from_slice(v);
-    let mut efforts = crane.drive_efforts_at(t, q, v);
-    let oil = Oil::at(crane, &StateAt { t, q, v, x });
-    if let Some(oil) = &oil {
-        oil.give_efforts(crane.description(), &mut efforts);
-    }
+    let moment = StateAt { t, q, v, x };
+    let efforts = crane.drive_efforts_with(&moment);
+    let oil = Oil::at(crane, &moment);
     for ([position, _], effort) in crane.drive_motions_at(t).into_iter().zip(&efforts) {
         row.extend([position, *effort]);
     }

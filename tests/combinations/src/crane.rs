@@ -21,8 +21,9 @@ pub struct Case {
 
 /// Share of the features that a crane has.
 const SHARE: f64 = 0.35;
-/// Length of the boom and of the arm, m.
+/// Length of the boom, m.
 pub const BOOM: f64 = 3.4;
+/// Length of the arm, m.
 pub const ARM: f64 = 3.0;
 /// Height of the boom's joint above the base, m, and its distance from the slewing axis.
 const SHOULDER: [f64; 2] = [-0.1, 2.4];

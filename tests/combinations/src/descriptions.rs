@@ -202,7 +202,7 @@ fn rigid_boom_as_body(tree: &Tree, _: &mut Rng) -> Option<Second> {
     let link = entry_mut(&mut first, "links", "name", "boom")?;
     let beam = link["beam"].as_object_mut()?;
     beam.insert("sections".into(), json!("rigid"));
-    ["bend", "section_joint"].map(|key| beam.remove(key));
+    beam.retain(|key, _| !matches!(key.as_str(), "bend" | "section_joint"));
     let (mass, [xx, yy, zz]) = piece_of_boom(&link["beam"], BOOM)?;
     let mut second = first.clone();
     let link = entry_mut(&mut second, "links", "name", "boom")?;

@@ -15,12 +15,13 @@ use crate::tree::{Tree, source};
 pub type Law = fn(&LiveCrane, &[f64], &mut Rng) -> Option<Result<(), String>>;
 
 /// All of them, with their names.
-pub const ALL: [(&str, Law); 6] = [
+pub const ALL: [(&str, Law); 7] = [
     ("accelerations solve A a = e + f", accelerations_solve),
     ("power of all forces", power),
     ("rate of the kinetic energy", kinetic_energy),
     ("ground carries weight and loads", ground_carries),
     ("a crane at rest stays at rest", rest_stays),
+    ("drives at rest as at the start of a run", efforts_at_rest),
     ("eight cranes as one", lanes),
 ];
 
@@ -170,6 +171,27 @@ fn rest_stays(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Result<(), St
         let (from, to) = (q[j], end[1 + j]);
         if (to - from).abs() > 1e-5 {
             return Some(Err(format!("{} drifts from {from:.9} to {to:.9} in 2 s", coordinate.name)));
+        }
+    }
+    Some(Ok(()))
+}
+
+/// The efforts with which statics hold the crane are those of the first result of a run.
+fn efforts_at_rest(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Result<(), String>> {
+    let description = crane.description();
+    let whole: &dyn DynCrane = crane;
+    let held = whole.drive_efforts_at_rest(q);
+    let start = Start { v: vec![0.0; q.len()], q: q.to_vec(), x: Vec::new(), what: String::new(), rests: true };
+    let settings = Settings { duration: 1e-6, output: 1e-6, audit: false, ..Settings::of(description) };
+    let table = record(crane, &start, &settings, &mut |_| ControlFlow::Continue(())).ok()?.table;
+    let size = held.iter().fold(0.0, |size: f64, effort| size.max(effort.abs()));
+    for (drive, held) in description.drives.iter().zip(held) {
+        let coordinate = &description.coordinates[drive.coordinate];
+        let begins = |column: &&crane_model::results::Column| column.name.starts_with(&format!("{}_drive_", coordinate.name));
+        let column = table.columns.iter().find(begins)?.name.clone();
+        let first = table.values(&column)?.next()?;
+        if let Err(error) = close(&column, first, held, size, 1e-6) {
+            return Some(Err(error));
         }
     }
     Some(Ok(()))
