@@ -54,7 +54,7 @@ fn a_slewing_load_is_limited_by_the_nearest_tipping_line() {
     let margin = 0.25;
     let limits = Limits { tipping: Some(margin), ..Limits::none(truck.description()) };
     let axes = Axes(vec![axis(Varied::Drive(0), 0.0, 6.0, 61)]);
-    let envelope = Envelope { axes, load: 0, loads: [0.0, 1e5], limits };
+    let envelope = Envelope { axes, load: 0, loads: [0.0, 1e5], limits, factor: 1.0 };
     for (pose, rating) in rate(&envelope, &truck, 1).iter().enumerate() {
         let angle = envelope.axes.values(pose)[0];
         let (x, y) = (0.25 + 5.0 * angle.cos(), 5.0 * angle.sin());
@@ -95,7 +95,7 @@ fn an_effort_limits_by_its_lever() {
     let mut limits = Limits::none(rigid.description());
     limits.efforts[0] = 2e4;
     let axes = Axes(vec![axis(Varied::Drive(0), -1.4, 1.4, 57)]);
-    let envelope = Envelope { axes, load: 0, loads: [1.0, 1e6], limits };
+    let envelope = Envelope { axes, load: 0, loads: [1.0, 1e6], limits, factor: 1.0 };
     for (pose, rating) in rate(&envelope, &rigid, 1).iter().enumerate() {
         let angle: f64 = envelope.axes.values(pose)[0];
         let expected = 2e4 / (9.81 * 4.0 * angle.cos());
@@ -116,7 +116,7 @@ fn a_deflection_limits_by_the_way_of_the_point() {
     let mut limits = Limits::none(soft.description());
     limits.deflections[0] = 0.05;
     let axes = Axes(vec![axis(Varied::Drive(0), 0.2, 1.0, 5)]);
-    let envelope = Envelope { axes, load: 0, loads: [1e-3, 1e6], limits };
+    let envelope = Envelope { axes, load: 0, loads: [1e-3, 1e6], limits, factor: 1.0 };
     for (pose, rating) in rate(&envelope, &soft, 1).iter().enumerate() {
         let position: f64 = envelope.axes.values(pose)[0];
         let given_way = 2.0 * (0.05_f64 / 2.0 / 4.0).asin();
@@ -134,7 +134,7 @@ fn a_load_without_limits_is_the_greatest_and_one_without_rest_is_none() {
     let soft = crane(&BOOM.replace("DRIVE", soft));
     let axes = Axes(vec![axis(Varied::Drive(0), 0.2, 0.4, 2)]);
     let limits = Limits::none(soft.description());
-    let envelope = Envelope { axes, load: 0, loads: [1.0, 5000.0], limits };
+    let envelope = Envelope { axes, load: 0, loads: [1.0, 5000.0], limits, factor: 1.0 };
     for rating in rate(&envelope, &soft, 1) {
         assert_eq!((rating.load, rating.governing), (Some(5000.0), None));
     }
@@ -164,7 +164,7 @@ fn every_pose_is_as_a_crane_alone() {
         axis(Varied::Drive(1), -0.3, 1.2, 3),
         axis(Varied::Drive(3), 0.5, 2.5, 2),
     ]);
-    let envelope = Envelope { axes, load: 0, loads: [1.0, 1e5], limits: limits.clone() };
+    let envelope = Envelope { axes, load: 0, loads: [1.0, 1e5], limits: limits.clone(), factor: 1.0 };
     let ratings = rate(&envelope, &whole, 2);
     let mut governing = Vec::new();
     for (pose, rating) in ratings.iter().enumerate() {
@@ -226,7 +226,7 @@ fn ratings_do_not_depend_on_threads() {
     let truck = crane(TRUCK);
     let limits = Limits { tipping: Some(0.0), ..Limits::none(truck.description()) };
     let axes = Axes(vec![axis(Varied::Parameter(0), 50.0, 60.0, 2), axis(Varied::Drive(0), 0.0, 6.0, 61)]);
-    let envelope = Envelope { axes, load: 0, loads: [0.0, 1e5], limits };
+    let envelope = Envelope { axes, load: 0, loads: [0.0, 1e5], limits, factor: 1.0 };
     assert_eq!(envelope.pieces(), 6);
     assert_eq!(rate(&envelope, &truck, 1), rate(&envelope, &truck, 3));
 }

@@ -1,6 +1,6 @@
 //! The quantities that an envelope varies.
 
-use crate::{Description, dyn_crane::DynCrane};
+use crate::{CoordinateKind, Description, dyn_crane::DynCrane};
 
 /// A quantity that is varied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,6 +34,21 @@ pub struct Axis {
     pub varied: Varied,
     /// Its values, at least one.
     pub values: Vec<f64>,
+}
+
+impl Axis {
+    /// A value of an angle that is more than a turn: most likely it was meant in degrees.
+    pub fn implausible_angle(&self, description: &Description) -> Option<f64> {
+        const TURN: f64 = 2.0 * std::f64::consts::PI + 1e-6;
+        let is_angle = match self.varied {
+            Varied::Drive(drive) => {
+                description.coordinates[description.drives[drive].coordinate].kind == CoordinateKind::Rotation
+            }
+            Varied::Parameter(index) => description.parameters[index].unit == "rad",
+        };
+        let greatest = self.values.iter().copied().max_by(|a, b| a.abs().total_cmp(&b.abs()));
+        greatest.filter(|angle| is_angle && angle.abs() > TURN)
+    }
 }
 
 /// All combinations of the values of some axes; the last axis runs fastest.

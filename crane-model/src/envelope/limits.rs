@@ -1,6 +1,6 @@
 //! Limits of the load.
 
-use crate::Description;
+use crate::{Description, dyn_crane::DynCrane};
 
 /// Limits that a load must not exceed.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +13,53 @@ pub struct Limits {
     pub efforts: Vec<f64>,
     /// Maximum displacement of each point of interest from its position with the minimum load, m; infinite where it is not limited.
     pub deflections: Vec<f64>,
+    /// Limits whose numbers the crane's own parts have.
+    pub of_parts: Vec<PartLimit>,
+}
+
+/// A kind of limit whose numbers the crane's own parts have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PartLimit {
+    /// The pressure at which relief valves open: `max_pressure` of each cylinder.
+    Pressure,
+    /// The pressure of the pump, which a cylinder needs to move against its load.
+    Pump,
+    /// The shortest and the longest length of each cylinder.
+    Stroke,
+    /// End stops of driven joints.
+    Stops,
+    /// The maximum efforts of drives, `max_effort`.
+    MaxEffort,
+    /// Supports that carry nothing.
+    LiftOff,
+    /// Ropes without tension.
+    SlackRopes,
+}
+
+impl PartLimit {
+    /// Every kind.
+    pub const ALL: [Self; 7] =
+        [Self::Pressure, Self::Pump, Self::Stroke, Self::Stops, Self::MaxEffort, Self::LiftOff, Self::SlackRopes];
+    /// What no crane can exceed. A foot may lift and a rope may be slack in normal work.
+    pub const DEFAULT: [Self; 5] = [Self::Pressure, Self::Pump, Self::Stroke, Self::Stops, Self::MaxEffort];
+
+    /// Its name in options.
+    pub fn name(self) -> &'static str {
+        match self {
+            PartLimit::Pressure => "pressure",
+            PartLimit::Pump => "pump",
+            PartLimit::Stroke => "stroke",
+            PartLimit::Stops => "stops",
+            PartLimit::MaxEffort => "max-effort",
+            PartLimit::LiftOff => "lift-off",
+            PartLimit::SlackRopes => "slack-ropes",
+        }
+    }
+
+    /// The kind with this name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
 }
 
 impl Limits {
@@ -23,7 +70,26 @@ impl Limits {
             utilisation: None,
             efforts: vec![f64::INFINITY; description.drives.len()],
             deflections: vec![f64::INFINITY; description.points.len()],
+            of_parts: Vec::new(),
         }
+    }
+
+    /// Whether a kind is among the limits.
+    pub fn has(&self, kind: PartLimit) -> bool {
+        self.of_parts.contains(&kind)
+    }
+
+    /// With the maximum efforts of the crane's own drives, if they are among the limits.
+    pub(super) fn with_max_efforts(&self, crane: &dyn DynCrane) -> Self {
+        /// Fraction of its maximum effort at which a drive gives way: the rest is the end of the rounded corner of its law.
+        const GIVES_WAY: f64 = 0.999;
+        let mut limits = self.clone();
+        if self.has(PartLimit::MaxEffort) {
+            for (limit, own) in limits.efforts.iter_mut().zip(crane.drive_limits_at()) {
+                *limit = limit.min(own.map_or(f64::INFINITY, |own| GIVES_WAY * own));
+            }
+        }
+        limits
     }
 }
 
@@ -52,6 +118,40 @@ pub enum Limit {
         /// Index of the point.
         point: usize,
     },
+    /// The relief valve of a cylinder.
+    Pressure {
+        /// Index of the cylinder.
+        cylinder: usize,
+        /// Whether it is on the side of the rod, not on that of the piston.
+        rod: bool,
+    },
+    /// The pressure of the pump at a cylinder.
+    Pump {
+        /// Index of the cylinder.
+        cylinder: usize,
+        /// Whether it is on the side of the rod, not on that of the piston.
+        rod: bool,
+    },
+    /// The stroke of a cylinder.
+    Stroke {
+        /// Index of the cylinder.
+        cylinder: usize,
+    },
+    /// The end stop of a driven coordinate.
+    Stop {
+        /// Index of the coordinate.
+        coordinate: usize,
+    },
+    /// A support that carries nothing.
+    LiftOff {
+        /// Index of the support.
+        foot: usize,
+    },
+    /// A rope without tension.
+    Slack {
+        /// Index of the connector.
+        rope: usize,
+    },
 }
 
 impl Limit {
@@ -63,11 +163,20 @@ impl Limit {
             Limit::Utilisation { .. } => "utilisation",
             Limit::Effort { .. } => "effort",
             Limit::Deflection { .. } => "deflection",
+            Limit::Pressure { .. } => "pressure",
+            Limit::Pump { .. } => "pump",
+            Limit::Stroke { .. } => "stroke",
+            Limit::Stop { .. } => "stop",
+            Limit::LiftOff { .. } => "lift-off",
+            Limit::Slack { .. } => "slack",
         }
     }
 
     /// The name of the part at which the limit is reached.
     pub fn place(self, description: &Description) -> String {
+        let side = |cylinder: usize, rod: bool| {
+            format!("{}, side of its {}", description.cylinders[cylinder].name, if rod { "rod" } else { "piston" })
+        };
         match self {
             Limit::Equilibrium => String::new(),
             Limit::Tipping { feet } => {
@@ -81,6 +190,16 @@ impl Limit {
             }
             Limit::Effort { drive } => description.coordinates[description.drives[drive].coordinate].name.to_string(),
             Limit::Deflection { point } => description.points[point].to_string(),
+            Limit::Pressure { cylinder, rod } | Limit::Pump { cylinder, rod } => side(cylinder, rod),
+            Limit::Stroke { cylinder } => description.cylinders[cylinder].name.to_string(),
+            Limit::Stop { coordinate } => description.coordinates[coordinate].name.to_string(),
+            Limit::LiftOff { foot } => description.supports[foot].name.to_string(),
+            Limit::Slack { rope } => description.connectors[rope].name.to_string(),
         }
+    }
+
+    /// Whether a crane near this limit may lose its equilibrium because of it.
+    pub(super) fn ends_equilibrium(self) -> bool {
+        matches!(self, Limit::Tipping { .. } | Limit::Effort { .. } | Limit::LiftOff { .. })
     }
 }

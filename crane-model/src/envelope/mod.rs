@@ -7,11 +7,15 @@
 //! Where moments, stresses and efforts grow with the load, that is the maximum load overall. A crane that needs a load to be within its
 //! limits, such as one that its counterweight tips over, has no rating.
 //!
+//! [`critical_load`] uses the same search for the load that lifts the first foot and the load that tips the crane, at one pose.
+//!
 //! Poses are rated in pieces: a piece is a row of neighbouring poses, each starting from the equilibrium of the previous one. Its result
 //! depends neither on what else is rated nor on the number of threads.
 
 mod axes;
 mod condition;
+mod coverage;
+mod critical;
 mod limits;
 mod radius;
 mod rating;
@@ -20,7 +24,9 @@ mod sweep;
 
 pub use axes::{Axes, Axis, Varied};
 pub use condition::Condition;
-pub use limits::{Limit, Limits};
+pub use coverage::Coverage;
+pub use critical::{Critical, CriticalLoad, NoCriticalLoad, critical_load};
+pub use limits::{Limit, Limits, PartLimit};
 pub use radius::SlewAxis;
 pub use rating::Rating;
-pub use sweep::{Envelope, Execution, PIECE, only_mass, range_of_loads};
+pub use sweep::{Envelope, Execution, PIECE, is_load, only_mass, range_of_loads};

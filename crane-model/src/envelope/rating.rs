@@ -2,7 +2,7 @@
 
 use super::{
     Condition, Limit, Limits,
-    search::{Range, Trial, largest},
+    search::{CHART, Range, Trial, largest},
 };
 use crate::{dyn_crane::DynCrane, statics::Settings};
 
@@ -37,36 +37,44 @@ pub(super) struct Wanted<'a> {
     pub limits: &'a Limits,
     /// Minimum and maximum load.
     pub loads: [f64; 2],
+    /// Within the limits the crane must rest with this many times the load.
+    pub factor: f64,
     /// Another load for which the condition is computed.
     pub own: f64,
 }
 
 /// Newton's method alone: if it fails from the pose of a slightly smaller load, there is no pose nearby.
-const NEWTON: Settings = Settings { tolerance: 1e-10, iterations: 30, load_steps: 0 };
+pub(super) const NEWTON: Settings = Settings { tolerance: 1e-10, iterations: 30, load_steps: 0 };
 
 impl Posed<'_> {
-    /// The crane at rest with a load, from a pose nearby.
-    fn rest(&mut self, load: f64, q: &[f64], settings: &Settings) -> Option<Condition> {
-        self.crane.set_parameter(self.load, load).ok()?;
+    /// The crane at rest with a value of the load's parameter, from a pose nearby.
+    pub(super) fn rest(&mut self, value: f64, q: &[f64], settings: &Settings) -> Option<Condition> {
+        self.crane.set_parameter(self.load, value).ok()?;
         let found = self.crane.equilibrium_holding(self.positions, q, settings);
-        found.is_stable().then(|| Condition::at(self.crane, found.q, self.positions))
+        let stands = found.is_stable() && !self.crane.description().has_tipped(q, &found.q);
+        stands.then(|| Condition::at(self.crane, found.q, self.positions))
     }
 
     /// Its rating, with the search starting from the nearby pose `q` and, if given, the load `guess`; also the pose with the minimum load.
     pub fn rate(&mut self, wanted: &Wanted<'_>, guess: Option<f64>, q: Vec<f64>) -> (Rating, Vec<f64>) {
-        let Wanted { limits, loads: [least, greatest], own } = *wanted;
+        let Wanted { limits, loads: [least, greatest], factor, own } = *wanted;
+        let limits = &limits.with_max_efforts(self.crane);
         let Some(empty) = self.rest(least, &q, &Settings::default()) else {
             let governing = Some(Limit::Equilibrium);
             return (Rating { load: None, governing, loaded: None, own: None, deflections: Vec::new() }, q);
         };
         let with_own = if own == least { Some(empty.clone()) } else { self.rest(own, &empty.q, &NEWTON) };
         let deflections = with_own.as_ref().map_or_else(Vec::new, |own| own.deflections(&empty));
-        let mass: f64 = self.crane.description().bodies.iter().map(|body| body.mass).sum();
-        let range = Range { greatest, guess: guess.unwrap_or(own), scale: mass.max(f64::MIN_POSITIVE) };
-        let first = Trial { load: least, slacks: empty.slacks(limits, &empty.points), at: empty.clone() };
+        let description = self.crane.description();
+        let mass: f64 = description.bodies.iter().map(|body| body.mass).sum();
+        let greatest = greatest.min(description.parameters[self.load].upper_bound.value / factor);
+        let scale = mass.max(f64::MIN_POSITIVE);
+        let range = Range { greatest, guess: guess.unwrap_or(own), scale, accuracy: CHART };
+        let slacks = empty.slacks(description, limits, &empty.points);
+        let first = Trial { load: least / factor, slacks, at: empty.clone() };
         let mut trial = |load: f64, near: &Condition| {
-            let at = self.rest(load, &near.q, &NEWTON)?;
-            Some(Trial { load, slacks: at.slacks(limits, &empty.points), at })
+            let at = self.rest(factor * load, &near.q, &NEWTON)?;
+            Some(Trial { load, slacks: at.slacks(self.crane.description(), limits, &empty.points), at })
         };
         let (best, governing) = largest(first, &range, &mut trial);
         let q = empty.q.clone();

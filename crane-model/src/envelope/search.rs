@@ -19,8 +19,14 @@ impl Trial {
         self.slacks.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    fn is_within(&self) -> bool {
+    pub(super) fn is_within(&self) -> bool {
         self.slacks.iter().all(|(_, slack)| *slack >= 0.0)
+    }
+
+    /// Why the crane does not rest with a little more load.
+    fn cause_of_falling(&self) -> Limit {
+        let causes = self.slacks.iter().filter(|(limit, slack)| limit.ends_equilibrium() && *slack < NEAR);
+        causes.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(Limit::Equilibrium, |(limit, _)| *limit)
     }
 }
 
@@ -32,14 +38,21 @@ pub(super) struct Range {
     pub guess: f64,
     /// The typical size of loads, positive.
     pub scale: f64,
+    /// Relative accuracy of the largest load.
+    pub accuracy: f64,
 }
 
-/// Relative accuracy of the largest load: charts round to three digits.
-const ACCURACY: f64 = 1e-6;
+/// Relative accuracy of the loads of charts, which round to three digits.
+pub(super) const CHART: f64 = 1e-6;
 /// Loads that differ by less than this fraction of the scale are equal.
 const LEAST: f64 = 1e-9;
-/// Maximum number of trial loads: the secant method takes about five, bisection to the accuracy about thirty.
-const MOST_TRIALS: usize = 60;
+/// Maximum number of trial loads: the secant method takes about five, bisection about thirty to forty.
+const MOST_TRIALS: usize = 100;
+/// Part of the range at which a load with which the crane did not rest is tried once more, from the pose of a load nearby.
+const NEARBY: f64 = 0.02;
+/// Remaining margin up to which tipping, a drive or a foot counts as the reason why a crane does not rest with more load: the margin
+/// falls faster as the crane gives way.
+const NEAR: f64 = 0.1;
 /// First step up if there is no guess, as a fraction of the scale.
 const FIRST_STEP: f64 = 0.1;
 /// Maximum ratio of a step up to the distance between the minimum load and the last one within the limits.
@@ -60,6 +73,8 @@ pub(super) fn largest(
     // The previous trial within the limits, for the secant; and the smallest load beyond a limit, with its trial if the crane rests.
     let mut before: Option<Trial> = None;
     let mut beyond: Option<(f64, Option<Trial>)> = None;
+    // Whether the crane did not rest with a load beyond from the pose of a load nearby either.
+    let mut confirmed = false;
     for turn in 0..MOST_TRIALS {
         let secant = before.as_ref().and_then(|before| crossing(before, &within));
         let high = beyond.as_ref().map_or(range.greatest, |(load, _)| *load);
@@ -76,9 +91,12 @@ pub(super) fn largest(
                 let next = if turn == 0 && range.guess > within.load { range.guess } else { next };
                 next.clamp(within.load, within.load + step.max(range.guess - within.load)).min(range.greatest)
             }
-            Some((high, None)) => 0.5 * (within.load + high),
-            Some((high, Some(trial))) => {
-                let chord = crossing(&within, trial).map(|(at, _)| at);
+            Some((high, None)) if !confirmed && high - within.load <= NEARBY * (high - least) => {
+                confirmed = true;
+                *high
+            }
+            Some((high, tried)) => {
+                let chord = tried.as_ref().and_then(|trial| crossing(&within, trial)).map(|(at, _)| at);
                 let inside = |at: &f64| *at > within.load && *at < *high;
                 let found = secant.map(|(at, _)| at).filter(inside).or(chord).filter(inside);
                 let middle = 0.5 * (within.load + high);
@@ -91,6 +109,9 @@ pub(super) fn largest(
                 if found.load >= range.greatest {
                     return (Some(found), None);
                 }
+                if beyond.as_ref().is_some_and(|(load, _)| found.load >= *load) {
+                    (beyond, confirmed) = (None, false);
+                }
                 before = Some(std::mem::replace(&mut within, found));
             }
             other => beyond = Some((next, other)),
@@ -98,7 +119,7 @@ pub(super) fn largest(
     }
     let governing = match &beyond {
         Some((_, Some(trial))) => trial.least().map(|(limit, _)| limit),
-        Some((_, None)) => Some(Limit::Equilibrium),
+        Some((_, None)) => Some(within.cause_of_falling()),
         None => None,
     };
     (Some(within), governing)
@@ -106,7 +127,7 @@ pub(super) fn largest(
 
 /// The difference up to which loads count as equal.
 fn accuracy(load: f64, range: &Range) -> f64 {
-    (ACCURACY * load.abs()).max(LEAST * range.scale)
+    (range.accuracy * load.abs()).max(LEAST * range.scale)
 }
 
 /// A little below a crossing, so that it is within the limit.
@@ -129,13 +150,14 @@ mod tests {
     use super::*;
 
     fn trial(load: f64, slacks: &[f64]) -> Trial {
-        let end = nalgebra::Vector3::zeros();
-        let at = Condition { q: vec![], lines: vec![], sections: vec![], efforts: vec![], points: vec![], end };
+        // The load as a pose, so that a trial knows from where it starts.
+        let at = Condition { q: vec![load], ..Condition::default() };
         let slacks = slacks.iter().enumerate().map(|(drive, slack)| (Limit::Effort { drive }, *slack));
         Trial { load, slacks: slacks.collect(), at }
     }
 
-    const RANGE: Range = Range { greatest: 1e6, guess: 0.0, scale: 1000.0 };
+    const ACCURACY: f64 = CHART;
+    const RANGE: Range = Range { greatest: 1e6, guess: 0.0, scale: 1000.0, accuracy: ACCURACY };
 
     /// Finds the largest load from zero on, for slacks that are functions of the load, and counts trials.
     fn find(slacks: &dyn Fn(f64) -> Option<Vec<f64>>, range: &Range) -> (Option<f64>, Option<Limit>, usize) {
@@ -187,5 +209,27 @@ mod tests {
     fn a_crane_beyond_its_limits_without_load_has_none() {
         let (load, governing, trials) = find(&|load| Some(vec![load - 1.0, -2.0 + load]), &RANGE);
         assert_eq!((load, governing, trials), (None, Some(Limit::Effort { drive: 1 }), 0));
+    }
+
+    /// Newton's method fails where a step is too long, although the crane would rest.
+    #[test]
+    fn a_step_that_was_too_long_is_no_limit() {
+        let first = trial(0.0, &[1.0]);
+        let (best, governing) = largest(first, &RANGE, &mut |load, near| {
+            (load - near.q[0] < 300.0)
+                .then(|| trial(load, &[if load < 250.0 { 1.0 } else { 1.0 - (load - 250.0) / 450.0 }]))
+        });
+        let load = best.unwrap().load;
+        assert!(load <= 700.0 && load > 700.0 * (1.0 - 2.0 * ACCURACY), "{load}");
+        assert_eq!(governing, Some(Limit::Effort { drive: 0 }));
+    }
+
+    /// What is left of a margin that decides equilibrium names the reason.
+    #[test]
+    fn a_crane_that_gives_way_near_a_limit_is_limited_by_it() {
+        let (load, governing, _) = find(&|load| (load < 690.0).then(|| vec![1.0 - load / 700.0]), &RANGE);
+        let load = load.unwrap();
+        assert!(load < 690.0 && load > 690.0 * (1.0 - 2.0 * ACCURACY), "{load}");
+        assert_eq!(governing, Some(Limit::Effort { drive: 0 }));
     }
 }

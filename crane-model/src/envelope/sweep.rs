@@ -10,7 +10,7 @@ use super::{
     Axes, Limits, Rating,
     rating::{Posed, Wanted},
 };
-use crate::{Description, ParameterError, dyn_crane::DynCrane, statics::Settings};
+use crate::{Description, ParameterError, ParameterInfo, dyn_crane::DynCrane, statics::Settings};
 
 /// Maximum number of poses in a piece.
 pub const PIECE: usize = 25;
@@ -28,6 +28,8 @@ pub struct Envelope {
     pub loads: [f64; 2],
     /// What limits it.
     pub limits: Limits,
+    /// With the largest load the crane is within its limits even if the load is this many times as heavy.
+    pub factor: f64,
 }
 
 /// How an envelope is computed.
@@ -44,6 +46,14 @@ pub struct Execution<'a> {
 const LEAST_LOAD: f64 = 1e-3;
 /// Maximum load considered, in multiples of the crane's mass.
 const GREATEST_LOAD: f64 = 100.0;
+
+/// Units of loads: of masses, of forces and moments, and of a factor.
+const UNITS_OF_LOADS: [&str; 12] = ["kg", "t", "g", "lb", "N", "kN", "MN", "N m", "kN m", "1", "-", ""];
+
+/// Whether a live parameter may be a load, by its unit: a mass, a force, a moment, or a factor of one of them.
+pub fn is_load(parameter: &ParameterInfo) -> bool {
+    UNITS_OF_LOADS.contains(&parameter.unit.as_str())
+}
 
 /// Index of the live parameter that is the load unless another is named: the only one in kg.
 pub fn only_mass(description: &Description) -> Option<usize> {
@@ -127,7 +137,7 @@ impl Envelope {
             let Some(q) = walk(own, near.take().unwrap_or_else(|| begin(own)), &positions, cancelled) else {
                 return Ok(None);
             };
-            let wanted = Wanted { limits: &self.limits, loads: self.loads, own: load };
+            let wanted = Wanted { limits: &self.limits, loads: self.loads, factor: self.factor, own: load };
             let guess = ratings.last().and_then(|rating| rating.load);
             let (rating, q) = Posed { crane: own, load: self.load, positions: &positions }.rate(&wanted, guess, q);
             near = Some((positions, q));

@@ -46,6 +46,12 @@ const HEIGHT: u32 = 270 * PIXEL;
 const LEGEND: u32 = 26 * PIXEL;
 /// Font size.
 pub const FONT: f64 = 15.0 * PIXEL as f64;
+/// Font size of the first line of a title.
+const TITLE: f64 = 1.2 * FONT;
+/// Font size of its other lines.
+const SMALL: f64 = 0.8 * FONT;
+/// Height of one of them.
+const LINE: u32 = 18 * PIXEL;
 /// Width of a curve.
 const STROKE: u32 = 2 * PIXEL;
 /// Radius of a dot.
@@ -102,6 +108,11 @@ pub struct Panel {
 
 /// An SVG with the panels in rows of `columns`, below the legend of the first.
 pub fn svg(panels: &[Panel], columns: usize) -> Result<String, String> {
+    titled(&[], panels, columns)
+}
+
+/// As [`svg`], below lines of a title, the first of which is larger.
+pub fn titled(title: &[String], panels: &[Panel], columns: usize) -> Result<String, String> {
     let columns = columns.clamp(1, panels.len().max(1));
     let rows = panels.len().div_ceil(columns);
     let scale = if panels.iter().any(|panel| panel.equal) { 2 } else { 1 };
@@ -116,14 +127,18 @@ pub fn svg(panels: &[Panel], columns: usize) -> Result<String, String> {
     }
     let legend = legend.as_slice();
     let legend_height = LEGEND * count(legend.len().div_ceil(entries_a_row(legend, width))) + SPACE / 2;
-    let height = HEIGHT * scale * count(rows) + legend_height;
+    let title = folded(title, width - 2 * SPACE);
+    let title_height = title_height(&title);
+    let height = HEIGHT * scale * count(rows) + legend_height + title_height;
 
     let mut text = String::new();
     {
         let area = SVGBackend::with_string(&mut text, (width, height)).into_drawing_area();
         let drawn = (|| {
             area.fill(&WHITE)?;
-            let (top, rest) = area.split_vertically(legend_height);
+            let (top, rest) = area.split_vertically(title_height);
+            draw_title(&top, &title)?;
+            let (top, rest) = rest.split_vertically(legend_height);
             draw_legend(&top, legend)?;
             for (panel, part) in panels.iter().zip(rest.split_evenly((rows, columns))) {
                 draw_panel(&part, panel)?;
@@ -137,12 +152,57 @@ pub fn svg(panels: &[Panel], columns: usize) -> Result<String, String> {
     Ok(text.replacen(&size(width, height), &size(width / PIXEL, height / PIXEL), 1))
 }
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-type Drawn<'a> = Result<(), DrawingAreaErrorKind<<SVGBackend<'a> as DrawingBackend>::ErrorType>>;
+pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub type Drawn<'a> = Result<(), DrawingAreaErrorKind<<SVGBackend<'a> as DrawingBackend>::ErrorType>>;
 
 /// Black text of a size.
 pub fn font(size: f64) -> TextStyle<'static> {
     ("sans-serif", size).into_font().color(&BLACK)
+}
+
+/// Lines of a title, none longer than a width.
+pub fn folded(title: &[String], width: u32) -> Vec<String> {
+    let mut lines = Vec::new();
+    for (place, text) in title.iter().enumerate() {
+        let letter = LETTER * if place == 0 { TITLE } else { SMALL };
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive number")]
+        let most = (f64::from(width) / letter) as usize;
+        lines.extend(wrapped(text, most.max(1)));
+    }
+    lines
+}
+
+/// Text in lines of at most `most` characters, if its words allow.
+pub fn wrapped(text: &str, most: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match lines.last_mut().filter(|line| line.chars().count() + 1 + word.chars().count() <= most) {
+            Some(line) => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            None => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// Height of the lines of a title.
+pub fn title_height(lines: &[String]) -> u32 {
+    let more = u32::try_from(lines.len().saturating_sub(1)).unwrap_or(0);
+    if lines.is_empty() { 0 } else { LEGEND + LINE * more + SPACE / 2 }
+}
+
+/// Writes the lines of a title.
+pub fn draw_title<'a>(area: &Area<'a>, lines: &[String]) -> Drawn<'a> {
+    let below = i32::try_from(LINE).unwrap_or(0);
+    let (x, mut y) = (i32::try_from(SPACE).unwrap_or(0), i32::try_from(LEGEND * 3 / 5).unwrap_or(0));
+    for (index, line) in lines.iter().enumerate() {
+        let style = font(if index == 0 { TITLE } else { SMALL }).pos(Pos::new(HPos::Left, VPos::Center));
+        area.draw(&Text::new(line.clone(), (x, y), style))?;
+        y += below;
+    }
+    Ok(())
 }
 
 /// Width of an entry of the legend.

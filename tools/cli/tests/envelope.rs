@@ -13,13 +13,13 @@ use serde_json::Value;
 /// A truck of 4 t, centred between four feet 3 m and 2 m apart, with a load on a massless arm that slews and telescopes.
 const TRUCK: &str = "format: 1
 name: truck
-parameters: {payload: {value: 100, unit: kg}}
+parameters: {payload: {value: 100, unit: kg}, track: {value: 1, unit: m}}
 links:
   - {name: truck, joint: free, mass: 4000, com: [0, 0, 0.5], inertia: {Ixx: 3000, Iyy: 3000, Izz: 3000}}
   - {name: column, placement: {transform: {translation: [0, 0, 1]}}, joint: revolute, mass: 1, com: [0, 0, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}}
   - {name: arm, joint: {prismatic: {axis: x}}, mass: payload, com: [0, 0, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}}
 supports:
-  - {name: front_left, at: [1.5, 1, 0], stiffness: [1e10, 1e10, 1e10]}
+  - {name: front_left, at: [1.5, track, 0], stiffness: [1e10, 1e10, 1e10]}
   - {name: front_right, at: [1.5, -1, 0], stiffness: [1e10, 1e10, 1e10]}
   - {name: rear_left, at: [-1.5, 1, 0], stiffness: [1e10, 1e10, 1e10]}
   - {name: rear_right, at: [-1.5, -1, 0], stiffness: [1e10, 1e10, 1e10]}
@@ -177,10 +177,117 @@ fn mistakes_are_told() {
         (&["--range", "arm=0:1:3", "--tipping", "1"], "from 0 to below 1"),
         (&["--range", "arm=0:1:90000", "--range", "column=0:1:90000"], "are more than"),
         (&["--range", "arm=0:1:3", "--point", "hok"], "did you mean `hook`"),
+        (&["--range", "column=0:70:3"], "`--range column=0:70deg:3`"),
+        (&["--range", "arm=0:1:3", "--load", "track"], "`track` is in m: it is not a load"),
+        (&["--range", "arm=0:1:3", "--without", "presure"], "pressure"),
+        (&["--range", "arm=0:1:3", "--load-factor", "0"], "above 0"),
     ] {
         let said = run(&folder, arguments);
         assert_eq!(said.status.code(), Some(2), "{arguments:?}");
         let message = String::from_utf8_lossy(&said.stderr);
         assert!(message.contains(told), "{arguments:?}: {message}");
+    }
+}
+
+/// Limits that were and were not considered, crane and spec stand beside the chart, in every form of it.
+#[test]
+fn a_chart_says_what_it_is_and_fits_a_screen() {
+    let folder = folder("says");
+    let ranges =
+        ["--range", "column=0:180deg:7", "--range", "arm_x=2:6:9", "--without", "utilisation", "--load-factor", "1.25"];
+    let said = run(&folder, &ranges);
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    let text = String::from_utf8(said.stdout).expect("text");
+    let widest = text.lines().filter(|line| !line.starts_with("caution")).map(|line| line.chars().count()).max();
+    assert!(widest.is_some_and(|widest| widest <= 100), "{widest:?}\n{text}");
+    for words in [
+        "loads multiplied by",
+        "a tipping margin of at least 0",
+        "not considered",
+        "the first support that pulls",
+        "yield_stress",
+    ] {
+        assert!(text.contains(words), "{words}\n{text}");
+    }
+    let facts = fs::read_to_string(folder.join("truck_envelope.json")).expect("facts");
+    let facts: Value = serde_json::from_str(&facts).expect("JSON");
+    assert_eq!((&facts["crane"], &facts["limits"]["load_factor"]), (&"truck".into(), &1.25.into()));
+    assert!(facts["limits"]["utilisation"].is_null() && facts["parameters"]["track"] == 1.0);
+    let hash = facts["spec_hash"].as_str().expect("a hash");
+    for picture in ["load_chart", "slew_diagram", "largest_load_map"] {
+        let picture = fs::read_to_string(folder.join(format!("truck_envelope_{picture}.svg"))).expect("a picture");
+        for words in ["truck, spec", &hash[..12], "1.25 times the load", "Not considered"] {
+            assert!(picture.contains(words), "{words}");
+        }
+    }
+    // A load that counts 1.25 times: m · 1.25 · (distance beyond) = 4001 kg · (distance within), beside the truck.
+    let (header, rows) = table(&folder);
+    let column = |name: &str| header.iter().position(|known| known == name).expect("a column");
+    let number = |row: &[String], name: &str| row[column(name)].parse::<f64>().expect("a number");
+    let beside = rows.iter().find(|row| (number(row, "column_psi [rad]") - 1.570_796).abs() < 1e-3 && row[1] == "6.0");
+    let load = number(beside.expect("the pose"), "largest_load [kg]");
+    assert!((load / (4001.0 / 5.0 / 1.25) - 1.0).abs() < 1e-4, "{load}");
+    // The chart over the radius names the limit of each load.
+    let chart = facts["load_chart"].as_array().expect("rows");
+    assert!(
+        chart
+            .iter()
+            .all(|row| row["limit_of_largest_load"].as_str().is_some_and(|limit| limit.starts_with("tipping: ")))
+    );
+}
+
+/// Two drives reach an area: each cell of the chart has the load that all poses around it bear, and a letter.
+#[test]
+fn a_chart_over_radius_and_height_has_limits_in_its_cells() {
+    let folder = folder("area");
+    let lift =
+        "  - {name: mast, joint: {prismatic: {axis: z}}, mass: 1, com: [0, 0, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}}\n";
+    let text = TRUCK
+        .replace("  - {name: arm,", &format!("{lift}  - {{name: arm,"))
+        .replace("points:", "  - {coordinate: mast_z, rigid: true, motion: {hold: 1}}\npoints:");
+    fs::write(folder.join("truck.yaml"), text).expect("a file");
+    let ranges = ["--range", "arm_x=2:6:9", "--range", "mast_z=0.5:3:6", "--set", "payload=100"];
+    let said = run(&folder, &[&ranges[..], &["--format", "json"]].concat());
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    let said: Value = serde_json::from_slice(&said.stdout).expect("JSON");
+    let places = said["loads_by_place"].as_array().expect("rows");
+    assert!(places.len() > 20, "{places:?}");
+    for place in places {
+        let (radius, load) = (place["radius"].as_f64().unwrap(), place["load"].as_f64().unwrap());
+        // In front of the truck, towards x: its line is 1.5 m away. The nearest poses are up to 0.5 m further out.
+        let bears = |radius: f64| 4002.0 * 1.5 / (radius - 1.5);
+        assert!(load <= bears(radius) * 1.001 && load >= 0.99 * bears(radius + 0.5), "{place}");
+        assert_eq!(place["limit"], "tipping");
+    }
+    let text = String::from_utf8(run(&folder, &ranges).stdout).expect("text");
+    assert!(text.contains("over radius and height") && text.contains("T tipping") && text.contains(" T"), "{text}");
+    let map = fs::read_to_string(folder.join("truck_envelope_largest_load_map.svg")).expect("a picture");
+    assert_eq!(map.matches(" T\n").count(), 9 * 6);
+}
+
+/// A page shows only charts of its own crane, with its own spec and parameters.
+#[test]
+fn a_chart_of_another_crane_is_refused() {
+    let folder = folder("other");
+    assert!(run(&folder, &["--range", "arm_x=2:6:5"]).status.success());
+    let report = |spec: &str, more: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));
+        command.current_dir(&folder).args(["report", spec, "--duration", "0.02", "--no-verify", "-o", "page.html"]);
+        command.args(["--envelope", "truck_envelope.csv"]).args(more).output().expect("it starts")
+    };
+    let said = report("truck.yaml", &[]);
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    assert!(fs::read_to_string(folder.join("page.html")).expect("a page").contains("\"loads_by_place\""));
+    fs::write(folder.join("bus.yaml"), TRUCK.replace("name: truck\n", "name: bus\n")).expect("a file");
+    fs::write(folder.join("newer.yaml"), TRUCK.replace("mass: 4000", "mass: 4001")).expect("a file");
+    for (spec, more, words) in [
+        ("bus.yaml", &[][..], "is a chart of truck, not of bus"),
+        ("newer.yaml", &[], "another version of the spec"),
+        ("truck.yaml", &["--set", "track=1.2"], "with track = 1.0 m; here it is 1.2"),
+    ] {
+        let said = report(spec, more);
+        assert_eq!(said.status.code(), Some(2), "{spec}");
+        let message = String::from_utf8_lossy(&said.stderr);
+        assert!(message.contains(words) && message.contains("crane envelope"), "{message}");
     }
 }

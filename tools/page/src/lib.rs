@@ -56,6 +56,8 @@ pub struct Texts<'a> {
     pub tables: Option<Report>,
     /// Figures of load charts; none if null.
     pub chart: Value,
+    /// Facts and tables of these load charts; none if null.
+    pub load_chart: Value,
     /// The command that wrote the page.
     pub command: Option<String>,
     /// Spec of the last crane.
@@ -68,7 +70,7 @@ pub struct Texts<'a> {
 /// The modes of a crane could not be computed.
 pub fn page(subjects: &[Subject<'_>], texts: Texts<'_>, program: Program) -> Result<String, NoModes> {
     let shown = subjects.iter().map(Shown::new).collect::<Result<Vec<_>, _>>()?;
-    let Texts { tables, chart, command, spec } = texts;
+    let Texts { tables, chart, load_chart, command, spec } = texts;
     let tables = tables.map(|report| report.page());
     let (main, rigid) = match shown.as_slice() {
         [] => (None, None),
@@ -85,6 +87,7 @@ pub fn page(subjects: &[Subject<'_>], texts: Texts<'_>, program: Program) -> Res
         "summary": summary,
         "tables": tables,
         "chart": chart,
+        "load_chart": load_chart,
         "command": command,
         "spec": spec,
     })

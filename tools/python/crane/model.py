@@ -3,7 +3,7 @@
 import html
 import os
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Self
 
 import numpy as np
@@ -258,16 +258,26 @@ class Crane(_native.Crane):
         utilisation: float | None = 1.0,
         efforts: Mapping[str, float] | None = None,
         deflections: Mapping[str, float] | None = None,
+        without: Sequence[str] = (),
+        lift_off: bool = False,
+        slack_ropes: bool = False,
+        load_factor: float = 1.0,
         point: str | None = None,
         progress: Any = None,
     ) -> Envelope:
         """The largest load within limits, at rest, for all combinations of positions of drives, m and rad, and live parameters.
+
+        The limits that the spec gives are always considered: pressures of relief valves and pump, strokes, end stops of driven joints and
+        `max_effort`, except those named in `without`: "pressure", "pump", "stroke", "stops", "max-effort". `considered` and
+        `not_considered` of the result list all limits.
 
         ranges: values by the name of a coordinate, of its link if that has only one drive, or of a live parameter; each is an axis of the
         result. What is not named keeps its initial value.
         load: live parameter that is the load, the only one in kg unless given. greatest_load: the maximum considered.
         tipping: minimum tipping margin; utilisation: maximum utilisation of beams with a yield stress; None: no such limit.
         efforts: maximum torque or force of drives, N m and N. deflections: how far the load may move points of interest, m.
+        lift_off: every support carries something; slack_ropes: all ropes are taut.
+        load_factor: the load is multiplied by it before it is compared with the limits, as for a test load or a dynamic factor.
         point: the one whose radius and height are given; the only one, or the origin of the last link unless given.
         `progress(done, all)` is called from time to time.
         """
@@ -283,6 +293,10 @@ class Crane(_native.Crane):
             "utilisation": utilisation,
             "efforts": list((efforts or {}).items()),
             "deflections": list((deflections or {}).items()),
+            "without": list(without),
+            "lift_off": lift_off,
+            "slack_ropes": slack_ropes,
+            "load_factor": load_factor,
             "point": point,
         }
         found = self._envelope(asked, progress)

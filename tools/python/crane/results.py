@@ -162,8 +162,10 @@ class Envelope:
     axes: values of each axis, by name; all arrays have these axes first.
     load: (...), the largest load, in `unit`, up to which every smaller one is within all limits; NaN where not even the minimum load is.
     parameter, unit: the live parameter that is the load, and its unit.
-    governing: (...), the limit that governs: "tipping", "utilisation", "effort", "deflection", "equilibrium", or "" up to the maximum load
-    considered. governing_of: (...), the tipping line, section, drive or point.
+    governing: (...), the limit that governs: "tipping", "utilisation", "pressure", "pump", "stroke", "stop", "effort", "lift-off", "slack",
+    "deflection", "equilibrium", or "" up to the maximum load considered. governing_of: (...), the tipping line, section, cylinder, drive,
+    support, rope or point.
+    considered, not_considered: limits that were, and those that were not or that lack a number, in words.
     radius, height: (...), m, of the point, from the slewing axis and above the world's origin, with the largest load; with the minimum load
     where there is no largest one.
     q: (..., n), pose with the same load, m and rad.
@@ -184,6 +186,8 @@ class Envelope:
     utilisation: Array
     drive_efforts: Array
     deflections: Array
+    considered: list[str]
+    not_considered: list[str]
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,8 @@ use std::sync::{Mutex, PoisonError};
 use crane_model::Description;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::envelope::{
-    Axes, Axis, Condition, Envelope, Execution, Limit, Limits, Rating, SlewAxis, Varied, only_mass, range_of_loads,
+    Axes, Axis, Condition, Coverage, Envelope, Execution, Limit, Limits, PartLimit, Rating, SlewAxis, Varied, is_load,
+    only_mass, range_of_loads,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -37,6 +38,14 @@ pub struct Asked {
     efforts: Vec<(String, f64)>,
     #[pyo3(item)]
     deflections: Vec<(String, f64)>,
+    #[pyo3(item)]
+    without: Vec<String>,
+    #[pyo3(item)]
+    lift_off: bool,
+    #[pyo3(item)]
+    slack_ropes: bool,
+    #[pyo3(item)]
+    load_factor: f64,
     #[pyo3(item)]
     point: Option<String>,
 }
@@ -79,8 +88,12 @@ impl Crane {
         run.map_err(|refused| PyValueError::new_err(refused.to_string()))?;
         let ratings = ratings.into_inner().unwrap_or_else(PoisonError::into_inner);
         let ratings: Vec<Rating> = ratings.into_iter().flatten().collect();
-        Named { description, slew: SlewAxis::of(crane), point, shape: axes_shape(&envelope) }
-            .all(py, &envelope, &ratings)
+        let all = Named { description, slew: SlewAxis::of(crane), point, shape: axes_shape(&envelope) }
+            .all(py, &envelope, &ratings)?;
+        let coverage = Coverage::of(crane, &envelope.limits);
+        all.set_item("considered", coverage.considered)?;
+        all.set_item("not_considered", coverage.not_considered)?;
+        Ok(all)
     }
 }
 
@@ -108,14 +121,28 @@ impl Asked {
                     "ranges['{name}']: {far:e} is beyond ±{FURTHEST}, in m or rad, where no crane reaches"
                 )));
             }
-            axes.push(Axis { varied, values: values.clone() });
+            let axis = Axis { varied, values: values.clone() };
+            if let Some(angle) = axis.implausible_angle(description) {
+                let degrees = angle.to_degrees();
+                return Err(PyValueError::new_err(format!(
+                    "ranges['{name}'] goes to {angle} rad, {degrees:.0}°: angles are in rad, as in np.radians({angle})"
+                )));
+            }
+            axes.push(axis);
         }
         let axes = Axes(axes);
         if axes.0.is_empty() || axes.poses() > MOST_POSES {
             return Err(PyValueError::new_err(format!("ranges: give from 1 to {MOST_POSES} poses")));
         }
         let load = match &self.load {
-            Some(name) => place(name, "live parameter", &parameters(description))?,
+            Some(name) => {
+                let load = place(name, "live parameter", &parameters(description))?;
+                let unit = &description.parameters[load].unit;
+                if !is_load(&description.parameters[load]) {
+                    return Err(PyValueError::new_err(format!("`{name}` is in {unit}: it is not a load")));
+                }
+                load
+            }
             None => only_mass(description).ok_or_else(|| {
                 let name = &description.name;
                 PyValueError::new_err(format!(
@@ -138,18 +165,33 @@ impl Asked {
         for (name, value, is_allowed) in [
             ("tipping", self.tipping, (|margin| (0.0..1.0).contains(&margin)) as fn(f64) -> bool),
             ("utilisation", self.utilisation, |part| part > 0.0 && part.is_finite()),
+            ("load_factor", Some(self.load_factor), |factor| factor > 0.0 && factor.is_finite()),
         ] {
             if let Some(wrong) = value.filter(|value| !is_allowed(*value)) {
                 return Err(PyValueError::new_err(format!("{name}={wrong} is out of range")));
             }
         }
+        let mut of_parts = PartLimit::DEFAULT.to_vec();
+        for name in &self.without {
+            let known = PartLimit::DEFAULT.map(PartLimit::name);
+            let kind = PartLimit::named(name).filter(|_| known.contains(&name.as_str())).ok_or_else(|| {
+                PyValueError::new_err(format!(
+                    "without: there is no limit `{name}` to leave out; limits: {}",
+                    known.join(", ")
+                ))
+            })?;
+            of_parts.retain(|own| *own != kind);
+        }
+        of_parts.extend(self.lift_off.then_some(PartLimit::LiftOff));
+        of_parts.extend(self.slack_ropes.then_some(PartLimit::SlackRopes));
         let limits = Limits {
             tipping: self.tipping,
             utilisation: self.utilisation,
+            of_parts,
             efforts: limits(&self.efforts, "drive", &drives(description))?,
             deflections: limits(&self.deflections, "point", &points(description))?,
         };
-        Ok(Envelope { axes, load, loads, limits })
+        Ok(Envelope { axes, load, loads, limits, factor: self.load_factor })
     }
 }
 

@@ -169,3 +169,48 @@ def test_limits_of_a_load_chart(truck, knuckle):
     # As in the command: without a support polygon and yield stresses, only the drives limit the load.
     free = knuckle.envelope({"main_boom_theta": [-0.5, 0.0]}, greatest_load=1000.0)
     assert np.isnan(free.tipping_margin).all() and (free.load == 1000.0).all()
+
+
+LIFTER = """format: 1
+name: lifter
+parameters: {payload: {value: 200, unit: kg}}
+links:
+  - {name: post, joint: {prismatic: {axis: x}}, mass: 50, com: [0, 0, 0]}
+  - {name: arm, joint: {revolute: {axis: y}}, mass: payload, com: [2, 0, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}}
+drives:
+  - {coordinate: post_x, rigid: true, motion: {hold: 0}}
+  - {coordinate: arm_theta, rigid: true, motion: {hold: 0}}
+cylinders:
+  - name: lift
+    coordinate: arm_theta
+    foot: {link: post, at: [0, 0, -0.8]}
+    head: {link: arm, at: [0.6, 0, 0]}
+    bore: 0.1
+    rod: 0.06
+    retracted: 0.85
+    stroke: 0.45
+    max_pressure: 100e5
+"""
+
+
+def test_cylinders_limit_a_load_chart():
+    """p A · lever = m g R cos θ with the law of cosines; beyond the stroke there is no load."""
+    arm = crane.load("lifter.yaml", text=LIFTER)
+    angles = np.array([-0.6, -0.2, 0.1, 0.5])
+    chart = arm.envelope({"arm": angles}, utilisation=None)
+    length = np.sqrt(1.0 - 0.96 * np.sin(angles))
+    load = 100e5 * np.pi / 4.0 * 0.1**2 * 0.48 / length / (9.81 * 2.0)
+    inside = (length >= 0.85) & (length <= 1.3)
+    np.testing.assert_allclose(chart.load[inside], load[inside], rtol=2e-6)
+    assert inside.sum() == 3 and np.isnan(chart.load[~inside]).all()
+    assert chart.governing.tolist() == ["pressure", "pressure", "pressure", "stroke"]
+    assert any("100 bar" in words for words in chart.considered)
+    free = arm.envelope({"arm": angles}, without=["pressure", "stroke"], greatest_load=1e4, load_factor=1.25)
+    assert (free.load == 1e4).all() and any("100 bar" in words for words in free.not_considered)
+    for wrong, said in [
+        ({"without": ["presure"]}, "no limit `presure`"),
+        ({"load_factor": 0.0}, "load_factor=0 is out of range"),
+        ({"ranges": {"arm": [0.0, 70.0]}}, "np.radians"),
+    ]:
+        with pytest.raises(ValueError, match=said):
+            arm.envelope(**({"ranges": {"arm": [0.0]}} | wrong))

@@ -59,6 +59,19 @@ pub struct Envelope {
     /// Maximum displacement of a point of interest by the load, m, as in `hook=0.1`; may be given several times
     #[arg(long = "deflection", value_name = "POINT=METRES")]
     pub deflections: Vec<String>,
+    /// Leave out limits that are considered otherwise, separated by commas
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "LIMITS")]
+    pub without: Vec<Considered>,
+    /// Also limit the load to that with which every support carries something
+    #[arg(long)]
+    pub lift_off: bool,
+    /// Also limit the load to that with which all ropes are taut
+    #[arg(long)]
+    pub slack_ropes: bool,
+    /// Multiply the load by this number before it is compared with the limits, as for a test load or a dynamic factor; the chart
+    /// then has the loads without it
+    #[arg(long, value_name = "NUMBER", default_value_t = 1.0, value_parser = above_zero)]
+    pub load_factor: f64,
     /// Point whose radius and height are shown [default: the only point of interest, otherwise the origin of the last link]
     #[arg(long, value_name = "POINT")]
     pub point: Option<String>,
@@ -70,6 +83,32 @@ pub struct Envelope {
     pub restart: bool,
     #[command(flatten)]
     pub folder: Folder,
+}
+
+/// Limits that an envelope considers unless they are left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Considered {
+    /// Tipping margin
+    Tipping,
+    /// Utilisation of beams
+    Utilisation,
+    /// Relief valves of cylinders
+    Pressure,
+    /// Pressure of the pump
+    Pump,
+    /// Strokes of cylinders
+    Stroke,
+    /// End stops of driven joints
+    Stops,
+    /// Maximum efforts of drives in the spec
+    MaxEffort,
+}
+
+impl Considered {
+    /// Its name, as in the options and in the limits.
+    pub fn name(self) -> String {
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+    }
 }
 
 /// Small vibrations.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crane_model::envelope::Envelope;
+use crane_model::envelope::{Coverage, Envelope};
 
 use crate::{
     figures::{Curve, Mark, PALETTE, Panel, shade},
@@ -11,6 +11,8 @@ use crate::{
 };
 
 use super::{
+    chart::rounded_down,
+    letters::{legend, letter},
     map::{Map, svg},
     ranges::shown,
     rows::{Layout, Row},
@@ -22,6 +24,29 @@ const MOST_CURVES: usize = 6;
 /// Maximum number of curves of equal load.
 const MOST_LEVELS: usize = 8;
 
+/// What stands above every figure: of which crane and spec it is, and within which limits.
+pub struct Heading(Vec<String>);
+
+impl Heading {
+    /// Of a chart.
+    pub fn new(asked: &Envelope, layout: &Layout, coverage: &Coverage) -> Self {
+        /// Digits of the hash that distinguish specs.
+        const DIGITS: usize = 12;
+        let hash: String = layout.description.spec_hash.as_str().chars().take(DIGITS).collect();
+        let factor = if asked.factor > 1.0 { format!(" of {} times the load", asked.factor) } else { String::new() };
+        Self(vec![
+            format!("{}, spec {hash}", layout.description.name),
+            format!("Limits{factor}: {}", coverage.considered.join("; ")),
+            format!("Not considered: {}", coverage.not_considered.join("; ")),
+        ])
+    }
+
+    /// Below what a figure shows.
+    fn of(&self, what: &str) -> Vec<String> {
+        [what.to_owned()].into_iter().chain(self.0.iter().cloned()).collect()
+    }
+}
+
 /// Writes the figures that apply; returns their names.
 pub fn write(
     folder: &Path,
@@ -29,8 +54,10 @@ pub fn write(
     asked: &Envelope,
     layout: &Layout,
     rows: &[Row],
-    surface: Option<&Surface>,
+    (surface, heading): (Option<&Surface>, &Heading),
 ) -> Outcome<Vec<String>> {
+    let load = &layout.columns[layout.load()];
+    let parameter = &layout.description.parameters[asked.load].name;
     let mut written = Vec::new();
     let mut save = |what: &str, picture: Result<String, String>| -> Outcome<()> {
         let file = format!("{name}_{what}.svg");
@@ -41,20 +68,23 @@ pub fn write(
     };
     if let Some(surface) = surface {
         let panels = load_chart(surface);
-        save("load_chart", crate::figures::svg(&panels, panels.len().min(2)))?;
+        let title = heading.of(&format!("Load chart: largest {parameter} [{}]", load.unit));
+        save("load_chart", crate::figures::titled(&title, &panels, panels.len().min(2)))?;
     }
     if let Some(slewing) = layout.slewing(asked) {
-        save("slew_diagram", crate::figures::svg(&[slew_diagram(asked, layout, rows, slewing)], 1))?;
+        let title = heading.of(&format!("Largest {parameter} over the slewing angle [{}]", load.unit));
+        save("slew_diagram", crate::figures::titled(&title, &[slew_diagram(asked, layout, rows, slewing)], 1))?;
     }
     let varying: Vec<usize> = (0..asked.axes.0.len()).filter(|place| asked.axes.0[*place].values.len() > 1).collect();
     if let [.., y, x] = varying[..] {
-        let load = &layout.columns[layout.load()];
-        let title = format!("Largest load [{}], the minimum over everything else that varies", load.unit);
-        save("largest_load_map", svg(&map(asked, layout, rows, [x, y], &title, |row| layout.load_of(row), f64::min)))?;
+        let title = heading.of(&format!("Largest {parameter} [{}], the least over all else that varies", load.unit));
+        let governed = map(asked, layout, rows, ([x, y], title), |row| layout.load_of(row), f64::min);
+        save("largest_load_map", svg(&governed))?;
         let used = |row: &Row| row.numbers[layout.utilisation()];
         if rows.iter().any(|row| used(row).is_finite()) {
             let title = "Utilisation with the crane's own load, the maximum over everything else that varies";
-            save("utilisation_map", svg(&map(asked, layout, rows, [x, y], title, used, f64::max)))?;
+            let used = map(asked, layout, rows, ([x, y], heading.of(title)), used, f64::max);
+            save("utilisation_map", svg(&Map { words: Vec::new(), ..used }))?;
         }
     }
     Ok(written)
@@ -64,7 +94,7 @@ pub fn write(
 fn load_chart(surface: &Surface) -> Vec<Panel> {
     let unit = &surface.unit;
     let of = |sheet: &Sheet| if sheet.label.is_empty() { String::new() } else { format!(", {}", sheet.label) };
-    if surface.sheets.iter().all(|sheet| sheet.knots.len().min(sheet.knots[0].len()) == 1) {
+    if !surface.sheets.iter().any(Sheet::is_area) {
         let curves = surface.sheets.iter().zip(PALETTE).map(|(sheet, colour)| Curve {
             label: if sheet.label.is_empty() { format!("largest load [{unit}]") } else { sheet.label.clone() },
             colour,
@@ -129,17 +159,11 @@ fn contour(sheet: &Sheet, level: f64) -> Vec<Vec<(f64, f64)>> {
         inside.then_some((a.radius + part * (b.radius - a.radius), a.height + part * (b.height - a.height)))
     };
     let mut pieces = Vec::new();
-    for rows in sheet.knots.windows(2) {
-        for column in 1..rows[0].len() {
-            let [a, b, c, d] = [rows[0][column - 1], rows[0][column], rows[1][column], rows[1][column - 1]];
-            for corners in [[a, b, c], [a, c, d]] {
-                let sides = [[0, 1], [1, 2], [2, 0]];
-                let met: Vec<_> =
-                    sides.iter().filter_map(|[from, to]| crossing(&corners[*from], &corners[*to])).collect();
-                if let [from, to] = met[..] {
-                    pieces.push(vec![from, to]);
-                }
-            }
+    for corners in sheet.triangles() {
+        let sides = [[0, 1], [1, 2], [2, 0]];
+        let met: Vec<_> = sides.iter().filter_map(|[from, to]| crossing(&corners[*from], &corners[*to])).collect();
+        if let [from, to] = met[..] {
+            pieces.push(vec![from, to]);
         }
     }
     pieces
@@ -187,13 +211,12 @@ fn slew_diagram(asked: &Envelope, layout: &Layout, rows: &[Row], slewing: usize)
     }
 }
 
-/// A quantity over two axes, reduced over the others by `worst`.
+/// A quantity over two axes, reduced over the others by `worst`, with the letters of the limits that govern there.
 fn map(
     asked: &Envelope,
     layout: &Layout,
     rows: &[Row],
-    [x, y]: [usize; 2],
-    title: &str,
+    ([x, y], mut title): ([usize; 2], Vec<String>),
     quantity: impl Fn(&Row) -> f64,
     worst: fn(f64, f64) -> f64,
 ) -> Map {
@@ -203,12 +226,19 @@ fn map(
         let values: Vec<f64> = axes[place].values.iter().map(|value| value * factor).collect();
         (format!("{name} [{unit}]"), values)
     };
-    let mut cells = vec![vec![f64::NAN; axes[x].values.len()]; axes[y].values.len()];
+    let (width, height) = (axes[x].values.len(), axes[y].values.len());
+    let mut cells = vec![vec![f64::NAN; width]; height];
+    let mut words = vec![vec![String::new(); width]; height];
     for (pose, row) in rows.iter().enumerate() {
         let places = asked.axes.places(pose);
-        let cell = &mut cells[places[y]][places[x]];
-        let value = quantity(row);
-        *cell = if cell.is_nan() { value } else { worst(*cell, value) };
+        let (column, line) = (places[x], places[y]);
+        let (cell, value) = (&mut cells[line][column], quantity(row));
+        let next = if cell.is_nan() { value } else { worst(*cell, value) };
+        if cell.is_nan() || next != *cell {
+            words[line][column] = format!("{} {}", short(rounded_down(next)), letter(&row.governing[0]));
+        }
+        *cell = next;
     }
-    Map { title: title.to_owned(), x: side(x), y: side(y), cells }
+    title.push(legend(rows.iter().map(|row| row.governing[0].as_str())).join(", "));
+    Map { title, x: side(x), y: side(y), cells, words }
 }

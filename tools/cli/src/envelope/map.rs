@@ -2,22 +2,28 @@
 
 use plotters::prelude::*;
 
-use crate::figures::{FONT, PIXEL, SPACE, font, shade, tick};
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use crate::figures::{FONT, PIXEL, SPACE, draw_title, folded, font, shade, tick, title_height};
 
 /// Coloured cells.
 pub struct Map {
-    /// What the colours show, with unit.
-    pub title: String,
+    /// Lines: what the colours show, with unit, and more about it.
+    pub title: Vec<String>,
     /// Title and values of the horizontal axis, ascending or descending.
     pub x: (String, Vec<f64>),
     /// Title and values of the vertical axis.
     pub y: (String, Vec<f64>),
     /// Rows along x, one per value of y; NaN is left blank.
     pub cells: Vec<Vec<f64>>,
+    /// What is written into the cells, in the same order.
+    pub words: Vec<Vec<String>>,
 }
 
-/// Size of the picture.
+/// Size of the picture without its title.
 const SIZE: (u32, u32) = (640 * PIXEL, 460 * PIXEL);
+/// Width of a letter and height of a line in a cell.
+const ROOM: (f64, f64) = (0.55 * FONT, 1.1 * FONT);
 /// Width of the scale with its numbers.
 const SCALE: u32 = 90 * PIXEL;
 /// Steps of the scale.
@@ -26,20 +32,24 @@ const STEPS: i32 = 60;
 /// The map as SVG.
 pub fn svg(map: &Map) -> Result<String, String> {
     let mut text = String::new();
-    draw(map, &mut text).map_err(|error| error.to_string())?;
-    let size = |(width, height): (u32, u32)| format!("width=\"{width}\" height=\"{height}\"");
-    Ok(text.replacen(&size(SIZE), &size((SIZE.0 / PIXEL, SIZE.1 / PIXEL)), 1))
+    let title = folded(&map.title, SIZE.0 - 2 * SPACE);
+    let above = title_height(&title);
+    let (width, height) = (SIZE.0, SIZE.1 + above);
+    draw(map, &mut text, (&title, above)).map_err(|error| error.to_string())?;
+    let size = |width: u32, height: u32| format!("width=\"{width}\" height=\"{height}\"");
+    Ok(text.replacen(&size(width, height), &size(width / PIXEL, height / PIXEL), 1))
 }
 
-fn draw(map: &Map, text: &mut String) -> Result<(), Box<dyn std::error::Error>> {
+fn draw(map: &Map, text: &mut String, title: (&[String], u32)) -> Result<(), Box<dyn std::error::Error>> {
     let numbers = || map.cells.iter().flatten().copied().filter(|number| number.is_finite());
     let (least, greatest) = (numbers().fold(f64::INFINITY, f64::min), numbers().fold(f64::NEG_INFINITY, f64::max));
     let (least, greatest) = if least < greatest { (least, greatest) } else { (least - 0.5, least + 0.5) };
     let colour = |number: f64| shade((number - least) / (greatest - least));
-    let area = SVGBackend::with_string(text, SIZE).into_drawing_area();
+    let area = SVGBackend::with_string(text, (SIZE.0, SIZE.1 + title.1)).into_drawing_area();
     area.fill(&WHITE)?;
-    let titled = area.margin(SPACE, 0, 0, 0).titled(&map.title, font(FONT))?;
-    let (left, right) = titled.split_horizontally(SIZE.0 - SCALE);
+    let (top, rest) = area.split_vertically(title.1);
+    draw_title(&top, title.0)?;
+    let (left, right) = rest.split_horizontally(SIZE.0 - SCALE);
 
     let (x, y) = (borders(&map.x.1), borders(&map.y.1));
     let range = |borders: &[f64]| {
@@ -67,6 +77,21 @@ fn draw(map: &Map, text: &mut String) -> Result<(), Box<dyn std::error::Error>> 
         for (number, ends) in row.iter().zip(x.windows(2)).filter(|(number, _)| number.is_finite()) {
             let cell = [(ends[0], sides[0]), (ends[1], sides[1])];
             chart.draw_series([Rectangle::new(cell, colour(*number).filled())])?;
+        }
+    }
+    let room = |count: usize, length: u32| f64::from(length) / count.max(1) as f64;
+    let (width, height) = (SIZE.0 - SCALE - 70 * PIXEL, SIZE.1 - 46 * PIXEL);
+    let letters = map.words.iter().flatten().map(|word| word.chars().count()).max().unwrap_or(0);
+    if room(map.x.1.len(), width) >= letters as f64 * ROOM.0 && room(map.y.1.len(), height) >= ROOM.1 {
+        for (words, (row, sides)) in map.words.iter().zip(map.cells.iter().zip(y.windows(2))) {
+            for (word, (number, ends)) in words.iter().zip(row.iter().zip(x.windows(2))) {
+                // Dark cells have white letters.
+                let part = (number - least) / (greatest - least);
+                let style = font(0.87 * FONT).color(if part < 0.6 { &WHITE } else { &BLACK });
+                let middle = (0.5 * (ends[0] + ends[1]), 0.5 * (sides[0] + sides[1]));
+                let style = style.pos(Pos::new(HPos::Center, VPos::Center));
+                chart.draw_series([Text::new(word.clone(), middle, style)])?;
+            }
         }
     }
 
@@ -117,13 +142,15 @@ mod tests {
     #[test]
     fn a_map_has_a_cell_per_number_and_a_scale() {
         let map = Map {
-            title: "load [kg]".to_owned(),
+            title: vec!["load [kg]".to_owned()],
             x: ("slew [°]".to_owned(), vec![0.0, 90.0, 180.0]),
             y: ("boom [°]".to_owned(), vec![0.0, 30.0]),
             cells: vec![vec![1.0, 2.0, 3.0], vec![4.0, f64::NAN, 6.0]],
+            words: vec![vec!["T".to_owned(); 3], vec!["U".to_owned(); 3]],
         };
         let picture = svg(&map).unwrap();
         assert!(picture.contains("load [kg]") && picture.contains("slew [°]"));
+        assert_eq!((picture.matches("\nT\n").count(), picture.matches("\nU\n").count()), (3, 3));
         // Background, five cells and the scale.
         assert!(picture.matches("<rect").count() >= 5 + 60, "{}", picture.matches("<rect").count());
     }

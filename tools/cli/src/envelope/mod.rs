@@ -2,6 +2,8 @@
 
 mod chart;
 mod figures;
+mod identity;
+mod letters;
 mod map;
 mod ranges;
 mod rows;
@@ -19,13 +21,14 @@ use std::{
 use crane_model::{
     Description,
     dyn_crane::DynCrane,
-    envelope::{Execution, Limits, Rating, range_of_loads},
+    envelope::{Coverage, Execution, Limits, PartLimit, Rating, range_of_loads},
 };
 use crane_page::tables::Report;
 
 use crate::{
     Registry,
     arguments::{Envelope, Format},
+    figures::wrapped,
     files,
     integration::styled,
     journal::{self, Journal, Request},
@@ -34,6 +37,8 @@ use crate::{
     strength::load_parameter,
 };
 
+use chart::Chart;
+pub use identity::facts as facts_of_chart;
 pub use ranges::{number, point, read as read_ranges, varied};
 use rows::{Layout, Row};
 
@@ -60,25 +65,36 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
     let seconds = begin.elapsed().as_secs_f64();
 
     let mut report = Report::default();
-    summary::facts(&mut report, &asked, &layout, description, &rows);
+    let coverage = Coverage::of(crane.as_ref(), &asked.limits);
+    summary::facts(&mut report, &asked, &layout, &coverage, &rows);
     report.fact("wall time", seconds, "s");
-    let surface = surface::Surface::of(&asked, &layout, &rows);
-    let chart = surface.as_ref().map(chart::table);
-    report.grid(chart.clone().unwrap_or_else(chart::empty));
-    report.grid(summary::governing(&asked, &layout, &rows));
+    report.value("parameters", identity::parameters(crane.as_ref(), &asked));
     let mut written = rows::write(&options.folder.out, &name, &asked, &layout, &rows)?;
+    let surface = surface::Surface::of(&asked, &layout, &rows);
+    let chart = surface.as_ref().map(|surface| Chart { surface, rows: &rows });
+    let [by_radius, by_place] = chart.as_ref().map_or_else(chart::empty, |chart| [chart.table(), chart.by_place()]);
     if let Some(chart) = &chart {
-        let file = format!("{name}_load_chart.csv");
-        let (header, rows) = chart.fields();
-        files::write_fields(&options.folder.out.join(&file), header, rows)?;
-        written.push(file);
+        for (end, grid) in [("load_chart", &by_radius), ("loads_by_place", &by_place)] {
+            let file = format!("{name}_{end}.csv");
+            let (header, rows) = grid.fields();
+            files::write_fields(&options.folder.out.join(&file), header, rows)?;
+            written.push(file);
+        }
+        chart.by_radius().into_iter().chain(chart.plates()).for_each(|grid| report.shown(grid));
     }
-    written.extend(figures::write(&options.folder.out, &name, &asked, &layout, &rows, surface.as_ref())?);
+    report.data(by_radius);
+    report.data(by_place);
+    report.grid(summary::governing(&asked, &layout, &rows));
+    let heading = figures::Heading::new(&asked, &layout, &coverage);
+    written.extend(figures::write(&options.folder.out, &name, &asked, &layout, &rows, (surface.as_ref(), &heading))?);
+    let companion = format!("{name}.json");
+    written.push(companion.clone());
     journal.remove()?;
     report.grid(crate::simulate::file_list(&options.folder.out, &written));
+    files::write_text(&options.folder.out.join(&companion), &format!("{:#}\n", report.json()))?;
     options.analysis.format.print(&report, out)?;
     if options.analysis.format == Format::Table {
-        writeln!(out, "\n{}", chart::NOTE)?;
+        writeln!(out, "\n{}", wrapped(chart::NOTE, chart::SCREEN).join("\n"))?;
     }
     Ok(())
 }
@@ -113,14 +129,19 @@ fn ask(options: &Envelope, crane: &dyn DynCrane) -> Outcome<(crane_model::envelo
             format!("write a number above {least}, in {}", info.unit),
         ));
     }
+    let without = |name: &str| options.without.iter().any(|own| own.name() == name);
+    let more = [(options.lift_off, PartLimit::LiftOff), (options.slack_ropes, PartLimit::SlackRopes)];
+    let of_parts = PartLimit::DEFAULT.into_iter().filter(|kind| !without(kind.name()));
     let limits = Limits {
-        tipping: Some(options.tipping),
-        utilisation: Some(options.utilisation),
+        tipping: Some(options.tipping).filter(|_| !without("tipping")),
+        utilisation: Some(options.utilisation).filter(|_| !without("utilisation")),
+        of_parts: of_parts.chain(more.into_iter().filter(|(asked, _)| *asked).map(|(_, kind)| kind)).collect(),
         efforts: ranges::limits(&options.efforts, "effort", "drive", &drives(description))?,
         deflections: ranges::limits(&options.deflections, "deflection", "point", &points(description))?,
     };
     let point = ranges::point(options.point.as_deref(), description)?;
-    let asked = crane_model::envelope::Envelope { axes, load, loads: [least, greatest], limits };
+    let factor = options.load_factor;
+    let asked = crane_model::envelope::Envelope { axes, load, loads: [least, greatest], limits, factor };
     let layout = Layout::new(&asked, crane, point);
     Ok((asked, layout))
 }

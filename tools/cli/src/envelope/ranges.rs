@@ -27,7 +27,14 @@ pub fn read(ranges: &[String], description: &Description) -> Outcome<Axes> {
         if axes.iter().any(|axis| axis.varied == varied) {
             return Err(Problem::usage(format!("`{name}` has two ranges"), "give each drive and parameter one range"));
         }
-        axes.push(Axis { varied, values: values_of(name, values)? });
+        let axis = Axis { varied, values: values_of(name, values)? };
+        if let Some(angle) = axis.implausible_angle(description).filter(|_| !values.contains("deg")) {
+            return Err(Problem::usage(
+                format!("`--range {range}` goes to {angle} rad, {:.0}°", angle.to_degrees()),
+                format!("write degrees with their unit, `--range {name}={}`", in_degrees(values)),
+            ));
+        }
+        axes.push(axis);
     }
     Ok(Axes(axes))
 }
@@ -82,6 +89,15 @@ fn values_of(name: &str, text: &str) -> Outcome<Vec<f64>> {
             Ok((0..count).map(|place| from + (to - from) * (place as f64 / steps)).collect())
         }
         _ => Err(wrong("it does not have one or three parts")),
+    }
+}
+
+/// A range of numbers as one of degrees.
+fn in_degrees(values: &str) -> String {
+    let parts: Vec<&str> = values.split(':').map(str::trim).collect();
+    match parts[..] {
+        [from, to, count] => format!("{from}:{to}deg:{count}"),
+        _ => format!("{}deg", values.trim()),
     }
 }
 

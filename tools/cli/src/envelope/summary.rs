@@ -2,34 +2,39 @@
 
 use crane_model::{
     Description, DriveInfo,
-    envelope::{Envelope, Limits},
+    envelope::{Coverage, Envelope},
 };
 use crane_page::tables::{Cell, Grid, Report};
 use serde_json::{Value, json};
 
+use crate::figures::wrapped;
+
 use super::{
+    chart::SCREEN,
     ranges::shown,
     rows::{Layout, Row},
     surface::short,
 };
 
+/// Width of the column of values, characters: a screen without the names of the facts.
+const ROOM: usize = SCREEN - 30;
+
 /// The crane, the limits, and the poses that bear the most and the least.
-pub fn facts(report: &mut Report, asked: &Envelope, layout: &Layout, description: &Description, rows: &[Row]) {
+pub fn facts(report: &mut Report, asked: &Envelope, layout: &Layout, coverage: &Coverage, rows: &[Row]) {
+    let description = &layout.description;
     report.fact("crane", description.name.as_str(), "");
+    report.fact_as("spec_hash", "hash of the spec", description.spec_hash.as_str(), "");
     report.fact("load", description.parameters[asked.load].name.as_str(), "");
     let limits = &asked.limits;
-    let mut said = Vec::new();
-    said.extend(limits.tipping.map(|margin| format!("tipping margin at least {margin}")));
-    said.extend(limits.utilisation.map(|utilisation| format!("utilisation at most {utilisation}")));
-    for (drive, effort) in description.drives.iter().zip(&limits.efforts).filter(|(_, effort)| effort.is_finite()) {
-        let coordinate = &description.coordinates[drive.coordinate];
-        said.push(format!("{} at most {effort} {}", coordinate.name, coordinate.kind.force_unit()));
+    if asked.factor > 1.0 {
+        report.line("loads multiplied by", asked.factor, "");
     }
-    for (point, way) in description.points.iter().zip(&limits.deflections).filter(|(_, way)| way.is_finite()) {
-        said.push(format!("the load moves {point} by at most {way} m"));
+    for (name, all) in [("limits", &coverage.considered), ("not considered", &coverage.not_considered)] {
+        for (place, words) in all.iter().flat_map(|words| wrapped(words, ROOM)).enumerate() {
+            report.line(if place == 0 { name } else { "" }, words, "");
+        }
     }
-    report.line("limits", said.join("; "), "");
-    report.value("limits", limits_of(limits, description));
+    report.value("limits", limits_of(asked, description, coverage));
     report.fact("poses", rows.len(), "");
     let by_load = |a: &&Row, b: &&Row| layout.load_of(a).total_cmp(&layout.load_of(b));
     let rated = || rows.iter().filter(|row| row.numbers[layout.load()].is_finite());
@@ -37,7 +42,9 @@ pub fn facts(report: &mut Report, asked: &Envelope, layout: &Layout, description
         for (key, name, row) in
             [("least", "minimum of the largest loads", least), ("greatest", "maximum of the largest loads", greatest)]
         {
-            report.line(name, told(row, asked, layout), "");
+            for (place, words) in told(row, asked, layout).into_iter().enumerate() {
+                report.line(if place == 0 { name } else { "" }, words, "");
+            }
             report.value(key, rating_of(row, asked, layout));
         }
     }
@@ -61,7 +68,8 @@ pub fn facts(report: &mut Report, asked: &Envelope, layout: &Layout, description
 }
 
 /// Limits, for programs.
-fn limits_of(limits: &Limits, description: &Description) -> Value {
+fn limits_of(asked: &Envelope, description: &Description, coverage: &Coverage) -> Value {
+    let limits = &asked.limits;
     let drive = |info: &DriveInfo| &description.coordinates[info.coordinate];
     let efforts = description.drives.iter().zip(&limits.efforts).filter(|(_, effort)| effort.is_finite());
     let efforts = efforts.map(|(info, effort)| {
@@ -74,6 +82,10 @@ fn limits_of(limits: &Limits, description: &Description) -> Value {
         "utilisation": limits.utilisation,
         "efforts": efforts.collect::<Vec<_>>(),
         "deflections": deflections.collect::<Vec<_>>(),
+        "of_parts": limits.of_parts.iter().map(|kind| kind.name()).collect::<Vec<_>>(),
+        "load_factor": asked.factor,
+        "considered": coverage.considered,
+        "not_considered": coverage.not_considered,
     })
 }
 
@@ -93,8 +105,8 @@ fn rating_of(row: &Row, asked: &Envelope, layout: &Layout) -> Value {
     })
 }
 
-/// Load, place, pose and governing limit of a row.
-fn told(row: &Row, asked: &Envelope, layout: &Layout) -> String {
+/// Load and place of a row; its pose; its governing limit.
+fn told(row: &Row, asked: &Envelope, layout: &Layout) -> [String; 3] {
     let pose = asked.axes.0.iter().zip(&row.numbers).map(|(axis, value)| {
         let (name, unit, factor) = shown(axis, &layout.description);
         let blank = if unit == "°" { "" } else { " " };
@@ -102,17 +114,17 @@ fn told(row: &Row, asked: &Envelope, layout: &Layout) -> String {
     });
     let limit = match row.governing.each_ref().map(String::as_str) {
         ["", _] => "up to the maximum load considered".to_owned(),
-        ["equilibrium", _] => "limited by equilibrium: there is none beyond".to_owned(),
+        ["equilibrium", _] => "limited by equilibrium".to_owned(),
         [kind, of] => format!("limited by {kind}, {of}"),
     };
-    format!(
-        "{:.1} {} at a radius of {:.2} m and a height of {:.2} m ({}), {limit}",
+    let load = format!(
+        "{:.1} {} at a radius of {:.2} m and a height of {:.2} m",
         layout.load_of(row),
         layout.columns[layout.load()].unit,
         row.numbers[layout.radius()],
-        row.numbers[layout.height()],
-        pose.collect::<Vec<_>>().join(", ")
-    )
+        row.numbers[layout.height()]
+    );
+    [load, format!("with {}", pose.collect::<Vec<_>>().join(", ")), limit]
 }
 
 /// Which limits govern in how many poses.

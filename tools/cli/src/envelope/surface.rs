@@ -19,6 +19,8 @@ pub struct Knot {
     pub height: f64,
     /// The largest load, in the unit of its parameter.
     pub load: f64,
+    /// Which of all poses it is.
+    pub pose: usize,
 }
 
 /// Poses of one or two drives.
@@ -57,7 +59,7 @@ impl Surface {
             .collect();
         let count = |place: Option<usize>| place.map_or(1, |place| axes[place].values.len());
         let combinations: usize = others.iter().map(|place| axes[*place].values.len()).product();
-        let none = Knot { radius: f64::NAN, height: f64::NAN, load: f64::INFINITY };
+        let none = Knot { radius: f64::NAN, height: f64::NAN, load: f64::INFINITY, pose: usize::MAX };
         let mut sheets = vec![vec![vec![none; count(second)]; count(Some(first))]; combinations];
         for (pose, row) in rows.iter().enumerate() {
             let places = asked.axes.places(pose);
@@ -65,7 +67,7 @@ impl Surface {
             let knot = &mut sheets[sheet][places[first]][second.map_or(0, |second| places[second])];
             let load = layout.load_of(row);
             if load < knot.load {
-                *knot = Knot { radius: row.numbers[layout.radius()], height: row.numbers[layout.height()], load };
+                *knot = Knot { radius: row.numbers[layout.radius()], height: row.numbers[layout.height()], load, pose };
             }
         }
         let label = |sheet: usize| {
@@ -98,6 +100,21 @@ impl Sheet {
         let along = self.knots.iter().flat_map(|row| row.windows(2).map(|pair| [pair[0], pair[1]]));
         let across = self.knots.windows(2).flat_map(|rows| rows[0].iter().zip(&rows[1]).map(|(a, b)| [*a, *b]));
         along.chain(across)
+    }
+
+    /// Whether poses of two drives vary, which reach an area and not only a curve.
+    pub fn is_area(&self) -> bool {
+        self.knots.len().min(self.knots.first().map_or(0, Vec::len)) > 1
+    }
+
+    /// Triangles of neighbours, two for each cell between four poses.
+    pub fn triangles(&self) -> impl Iterator<Item = [Knot; 3]> {
+        self.knots.windows(2).flat_map(|rows| {
+            (1..rows[0].len()).flat_map(|column| {
+                let [a, b, c, d] = [rows[0][column - 1], rows[0][column], rows[1][column], rows[1][column - 1]];
+                [[a, b, c], [a, c, d]]
+            })
+        })
     }
 }
 

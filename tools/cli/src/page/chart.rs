@@ -3,9 +3,13 @@
 use std::{fs, path::Path};
 
 use base64::{Engine, prelude::BASE64_STANDARD};
+use crane_model::dyn_crane::DynCrane;
 use serde_json::{Value, json};
 
-use crate::problem::{Outcome, Problem};
+use crate::{
+    envelope::facts_of_chart,
+    problem::{Outcome, Problem},
+};
 
 /// Ends of the names of the figures, and what they show.
 const FIGURES: [(&str, &str); 4] = [
@@ -15,8 +19,23 @@ const FIGURES: [(&str, &str); 4] = [
     ("utilisation_map", "Utilisation with the crane's own load"),
 ];
 
-/// The figures beside the table of an envelope, `…_envelope.csv`.
-pub fn figures(table: &Path) -> Outcome<Value> {
+/// The load charts of a crane for its page.
+#[derive(Default)]
+pub struct LoadCharts {
+    /// Names and pictures.
+    pub figures: Value,
+    /// Facts and tables: what `crane envelope --format json` prints.
+    pub facts: Value,
+}
+
+/// The figures and facts beside the table of an envelope, `…_envelope.csv`, if it is one of this crane.
+pub fn read(table: &Path, crane: &dyn DynCrane) -> Outcome<LoadCharts> {
+    let figures = figures(table)?;
+    Ok(LoadCharts { figures, facts: facts_of_chart(table, crane)? })
+}
+
+/// The figures beside the table of an envelope.
+fn figures(table: &Path) -> Outcome<Value> {
     let help = "name the file `…_envelope.csv` that `crane envelope` wrote, with its figures beside it";
     let stem = table.file_stem().filter(|_| table.extension().is_some_and(|end| end == "csv"));
     let stem = stem.map(|stem| stem.to_string_lossy().into_owned());

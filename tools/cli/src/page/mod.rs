@@ -7,6 +7,7 @@ pub mod twin;
 
 use std::{io::Write, path::Path};
 
+use chart::LoadCharts;
 use crane_model::{
     dyn_crane::DynCrane,
     dynamics::{Method, Settings},
@@ -16,7 +17,6 @@ use crane_page::{
     Subject, Texts, page,
     tables::{Case, FLEXIBLE, RIGID, Report, of_page},
 };
-use serde_json::Value;
 
 use crate::{
     Registry,
@@ -33,8 +33,8 @@ pub fn report(options: &Page, registry: &Registry, out: &mut dyn Write) -> Outco
     let crane = options.crane.open(registry)?;
     let twin = twin::rigid(crane.as_ref(), registry);
     let cases = cases(crane.as_ref(), twin.as_deref());
+    let chart = options.envelope.as_deref().map(|table| chart::read(table, crane.as_ref())).transpose()?;
     let (settings, runs) = runs(&cases, &options.timing, options.crane.limits, Method::RECOMMENDED)?;
-    let chart = options.envelope.as_deref().map(chart::figures).transpose()?;
     write_with(&options.file, registry, (&cases, options.crane.limits), &settings, &runs, chart)?;
     writeln!(out, "{} written: open it in a browser", options.file.display())?;
     Ok(())
@@ -66,7 +66,7 @@ fn write_with(
     cases: (&[Case<'_>], Limits),
     settings: &[Settings],
     runs: &[Recorded],
-    chart: Option<Value>,
+    chart: Option<LoadCharts>,
 ) -> Outcome<()> {
     let (cases, limits) = cases;
     let lives = cases.iter().map(|case| registry.live(case.crane)).collect::<Outcome<Vec<_>>>()?;
@@ -82,9 +82,11 @@ fn write_with(
             run: Some(run),
         })
         .collect();
+    let LoadCharts { figures, facts } = chart.unwrap_or_default();
     let texts = Texts {
         tables: Some(all_tables(registry, cases, limits, runs)?),
-        chart: chart.unwrap_or_default(),
+        chart: figures,
+        load_chart: facts,
         command: Some(own::typed()),
         spec: cases.last().and_then(|case| registry.spec(&case.crane.description().name)),
     };

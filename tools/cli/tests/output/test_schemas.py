@@ -98,6 +98,7 @@ def test_envelope(output, tmp_path, more):
     ranges = ["--range", "main_boom_theta=0:60deg:3"]
     found = output("envelope", "envelope", "knuckle_boom", *ranges, *more, "--greatest-load", 5000, "--out", tmp_path)
     assert found["load"] == "payload" and found["poses"] >= 3 and found["units"]["load_chart"]["radius"] == "m"
+    assert found["limits"]["considered"] and found["limits"]["not_considered"]
 
 
 def test_cylinders(output):

@@ -16,6 +16,9 @@ struct Fact {
     key: Option<String>,
 }
 
+/// Key of tables that programs do not get.
+const FOR_PEOPLE: &str = "";
+
 /// Facts and tables in order.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
@@ -25,6 +28,8 @@ pub struct Report {
     cautions: Vec<String>,
     /// Tables, and how many of their rows people see unless they ask for all.
     grids: Vec<(Grid, usize)>,
+    /// Tables for programs alone.
+    data: Vec<Grid>,
     all: bool,
 }
 
@@ -69,6 +74,17 @@ impl Report {
     /// Adds a table before all others.
     pub fn grid_first(&mut self, grid: Grid) {
         self.grids.insert(0, (grid, usize::MAX));
+    }
+
+    /// Adds a table for people; programs get the same by [`Report::data`].
+    pub fn shown(&mut self, mut grid: Grid) {
+        grid.key = FOR_PEOPLE;
+        self.grid(grid);
+    }
+
+    /// Adds a table for programs alone.
+    pub fn data(&mut self, grid: Grid) {
+        self.data.push(grid);
     }
 
     /// Adds a table of which people see some rows, or none, unless they ask for all.
@@ -148,7 +164,8 @@ impl Report {
             }
             object.insert(key.clone(), value.json());
         }
-        for (grid, _) in &self.grids {
+        let for_programs = self.grids.iter().map(|(grid, _)| grid).filter(|grid| grid.key != FOR_PEOPLE);
+        for grid in for_programs.chain(&self.data) {
             let of_columns = grid.units();
             if !of_columns.is_empty() {
                 units.insert(grid.key.to_owned(), of_columns.into());

@@ -1,0 +1,146 @@
+//! What a load chart takes into account, in words that stand beside it.
+
+use super::{Limits, PartLimit};
+use crate::{CylinderInfo, Description, dyn_crane::DynCrane};
+
+/// What a load chart takes into account, and what it does not, for people.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Coverage {
+    /// Limits that were considered.
+    pub considered: Vec<String>,
+    /// Limits that were not considered, or that lack a number.
+    pub not_considered: Vec<String>,
+}
+
+/// What no limit of a load at rest covers.
+const NEVER: [&str; 3] =
+    ["motion, wind and a slope of the ground", "buckling and fatigue", "hook, slings and the strength of ropes"];
+
+impl Coverage {
+    /// Of some limits of a crane.
+    pub fn of(crane: &dyn DynCrane, limits: &Limits) -> Self {
+        let description = crane.description();
+        let mut found = Self { considered: vec!["a stable equilibrium".to_owned()], not_considered: Vec::new() };
+        found.ground(description, limits);
+        found.beams(crane, limits);
+        found.cylinders(description, limits);
+        found.drives(crane, limits);
+        found.ropes(description, limits);
+        for (point, way) in description.points.iter().zip(&limits.deflections).filter(|(_, way)| way.is_finite()) {
+            found.add(true, format!("the load moves {point} by at most {way} m"));
+        }
+        found.not_considered.extend(NEVER.map(str::to_owned));
+        found
+    }
+
+    fn add(&mut self, considered: bool, words: String) {
+        if considered { &mut self.considered } else { &mut self.not_considered }.push(words);
+    }
+
+    fn ground(&mut self, description: &Description, limits: &Limits) {
+        if description.supports.is_empty() {
+            self.add(false, "tipping: the crane has no supports".to_owned());
+            return;
+        }
+        match limits.tipping {
+            Some(margin) => self.add(true, format!("a tipping margin of at least {margin}")),
+            None => self.add(false, "tipping".to_owned()),
+        }
+        let what = if description.supports.iter().all(|support| support.one_sided) {
+            "the first foot that lifts off"
+        } else {
+            "the first support that pulls"
+        };
+        self.add(limits.has(PartLimit::LiftOff), what.to_owned());
+    }
+
+    fn beams(&mut self, crane: &dyn DynCrane, limits: &Limits) {
+        let description = crane.description();
+        let with_yield_stress: Vec<&str> = description
+            .sections
+            .iter()
+            .zip(crane.section_moduli_at())
+            .filter(|(_, moduli)| moduli.area > 0.0 && moduli.allowable_stress > 0.0)
+            .map(|(section, _)| description.bodies[section.body].link.as_str())
+            .collect();
+        let known = |link: &str| with_yield_stress.contains(&link);
+        let mut links: Vec<&str> = description.bodies.iter().map(|body| body.link.as_str()).collect();
+        links.dedup();
+        let (strong, other): (Vec<&str>, Vec<&str>) = links.into_iter().partition(|link| known(link));
+        if !strong.is_empty() {
+            let beams = strong.join(", ");
+            match limits.utilisation {
+                Some(greatest) => self.add(true, format!("a utilisation of {beams} of at most {greatest}")),
+                None => self.add(false, format!("the strength of {beams}")),
+            }
+        }
+        if !other.is_empty() {
+            self.add(false, format!("the strength of {}: no section with a `yield_stress`", other.join(", ")));
+        }
+    }
+
+    fn cylinders(&mut self, description: &Description, limits: &Limits) {
+        const BAR: f64 = 1e5;
+        if description.cylinders.is_empty() {
+            return;
+        }
+        let names = |which: &dyn Fn(&CylinderInfo) -> bool| -> Vec<&str> {
+            description.cylinders.iter().filter(|info| which(info)).map(|info| info.name.as_str()).collect()
+        };
+        let considered = limits.has(PartLimit::Pressure);
+        for info in &description.cylinders {
+            match info.max_pressure {
+                Some(pressure) => {
+                    self.add(considered, format!("the relief valves of {} at {} bar", info.name, pressure / BAR));
+                }
+                None => self.add(false, format!("the pressure in {}: it has no `max_pressure`", info.name)),
+            }
+        }
+        let all = names(&|_| true).join(", ");
+        match description.pump.and_then(|pump| pump.pressure) {
+            Some(pressure) => {
+                let bar = pressure / BAR;
+                self.add(limits.has(PartLimit::Pump), format!("the {bar} bar of the pump at {all}"));
+            }
+            None => self.add(false, "the pressure of the pump: the spec does not give it".to_owned()),
+        }
+        self.add(limits.has(PartLimit::Stroke), format!("the stroke of {all}"));
+    }
+
+    fn drives(&mut self, crane: &dyn DynCrane, limits: &Limits) {
+        let Description { coordinates, drives, stops, cylinders, .. } = crane.description();
+        let own = crane.drive_limits_at();
+        let applied = limits.with_max_efforts(crane).efforts;
+        let mut free = Vec::new();
+        for (index, info) in drives.iter().enumerate() {
+            let coordinate = &coordinates[info.coordinate];
+            let words = |effort: f64| {
+                format!("the effort of {} at most {effort} {}", coordinate.name, coordinate.kind.force_unit())
+            };
+            let given = limits.efforts[index];
+            if applied[index].is_finite() {
+                self.add(true, words(own[index].filter(|_| applied[index] < given).unwrap_or(given)));
+            } else if let Some(limit) = own[index] {
+                self.add(false, words(limit));
+            } else if !cylinders.iter().any(|cylinder| cylinder.drive == index) {
+                free.push(coordinate.name.as_str());
+            }
+        }
+        if !free.is_empty() {
+            self.add(false, format!("the effort of {}: no limit is given", free.join(", ")));
+        }
+        let stopped = stops.iter().filter(|stop| drives.iter().any(|drive| drive.coordinate == **stop));
+        let stopped: Vec<&str> = stopped.map(|stop| coordinates[*stop].name.as_str()).collect();
+        if !stopped.is_empty() {
+            self.add(limits.has(PartLimit::Stops), format!("the end stops of {}", stopped.join(", ")));
+        }
+    }
+
+    fn ropes(&mut self, description: &Description, limits: &Limits) {
+        let ropes: Vec<&str> =
+            description.connectors.iter().filter(|own| own.is_rope).map(|own| own.name.as_str()).collect();
+        if !ropes.is_empty() {
+            self.add(limits.has(PartLimit::SlackRopes), format!("slack of {}", ropes.join(", ")));
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! The load that lifts the first foot, and the load that tips the crane.
+
+use super::{
+    Condition, Limit, Limits, PartLimit, range_of_loads,
+    rating::{NEWTON, Posed},
+    search::{Range, Trial, largest},
+};
+use crate::{
+    dyn_crane::DynCrane,
+    statics::{Settings, Status},
+};
+
+/// Relative accuracy of a critical load.
+const ACCURACY: f64 = 1e-8;
+/// Relative distance from a load with which the crane stands, beyond which a load is also tried from the guess.
+const FAR: f64 = 1e-3;
+/// Part of a load by which another one is a little larger.
+const A_LITTLE: f64 = 1e-6;
+/// Powers of two by which the mass of the crane is multiplied to find a load with which it stands, if it does not stand without one.
+const SEARCHED: std::ops::RangeInclusive<i32> = -8..=3;
+
+/// What a load may do to a crane on feet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Critical {
+    /// A foot carries nothing.
+    FirstFoot,
+    /// The crane tips.
+    Tipping,
+}
+
+/// A critical load: with less the crane stands, with more it does not.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CriticalLoad {
+    /// The load, in the unit of its parameter.
+    pub load: f64,
+    /// The foot that lifts, or the feet about which the crane tips.
+    pub place: String,
+}
+
+/// Why there is no critical load.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NoCriticalLoad {
+    /// The crane has no supports.
+    NoSupports,
+    /// With none of the loads tried does every foot carry something, or is the crane in balance.
+    Never {
+        /// What it is that never holds.
+        critical: Critical,
+    },
+    /// It is not reached up to a load.
+    Beyond {
+        /// The largest load considered.
+        load: f64,
+    },
+    /// Something else ends the equilibrium first.
+    Otherwise {
+        /// The largest load with which the crane rests.
+        load: f64,
+        /// How statics ends with a little more.
+        status: Status,
+    },
+}
+
+impl NoCriticalLoad {
+    /// The reason in words; loads are in `unit`.
+    pub fn reason(&self, unit: &str) -> String {
+        match self {
+            Self::NoSupports => "the crane has no supports".to_owned(),
+            Self::Never { critical: Critical::FirstFoot } => {
+                "no load was found with which every foot carries something".to_owned()
+            }
+            Self::Never { critical: Critical::Tipping } => "no load was found with which the crane stands".to_owned(),
+            Self::Beyond { load } => format!("not with up to {load} {unit}"),
+            Self::Otherwise { load, status } => {
+                format!("with more than {load:.1} {unit} the crane does not rest, for another reason: {status}")
+            }
+        }
+    }
+}
+
+/// A critical load of a crane, with its drives at the beginning of their motions: the largest with which the crane stands, and with every
+/// smaller one down to the smallest load with which it does. The load does not depend on the present value of the parameter, which is
+/// left at another one.
+///
+/// # Errors
+/// There is none.
+pub fn critical_load(
+    crane: &mut dyn DynCrane,
+    parameter: usize,
+    critical: Critical,
+) -> Result<CriticalLoad, NoCriticalLoad> {
+    let description = crane.description().clone();
+    if description.supports.is_empty() {
+        return Err(NoCriticalLoad::NoSupports);
+    }
+    let own = crane.parameter(parameter);
+    let mass: f64 = description.bodies.iter().map(|body| body.mass).sum();
+    let [least, greatest] = range_of_loads(&description, parameter, None);
+    let limits = match critical {
+        Critical::FirstFoot => Limits { of_parts: vec![PartLimit::LiftOff], ..Limits::none(&description) },
+        Critical::Tipping => Limits { tipping: Some(0.0), ..Limits::none(&description) },
+    };
+    let positions: Vec<f64> = crane.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
+    let mut stand = Stand { crane, parameter, positions: &positions, limits: &limits };
+    let multiples = SEARCHED.map(|power| mass * 2.0_f64.powi(power));
+    let loads = [least].into_iter().chain(multiples).chain([own]).filter(|load| *load <= greatest);
+    let first = loads.filter_map(|load| stand.rest_from_guess(load)).find(Trial::is_within);
+    let first = first.ok_or(NoCriticalLoad::Never { critical })?;
+    let range = Range { greatest, guess: 0.0, scale: mass.max(f64::MIN_POSITIVE), accuracy: ACCURACY };
+    // Newton's method may fail with a load from the guess, and with a much larger one from another pose: only if both fail is it beyond.
+    let mut highest = first.load;
+    let (best, governing) = largest(first, &range, &mut |load, near| {
+        let far = load - highest > FAR * load;
+        let found = stand.rest_near(load, &near.q).or_else(|| if far { stand.rest_from_guess(load) } else { None });
+        highest = highest.max(found.as_ref().filter(|trial| trial.is_within()).map_or(highest, |trial| trial.load));
+        found
+    });
+    let load = best.ok_or(NoCriticalLoad::Never { critical })?.load;
+    match governing {
+        None => Err(NoCriticalLoad::Beyond { load }),
+        Some(Limit::Equilibrium) => {
+            let status = stand.status_beyond(load);
+            match status {
+                Status::TipsOver { feet } if critical == Critical::Tipping => {
+                    Ok(CriticalLoad { load, place: feet.join(" – ") })
+                }
+                status => Err(NoCriticalLoad::Otherwise { load, status }),
+            }
+        }
+        Some(limit) => Ok(CriticalLoad { load, place: limit.place(&description) }),
+    }
+}
+
+/// A crane that is asked whether it stands.
+struct Stand<'a> {
+    crane: &'a mut dyn DynCrane,
+    parameter: usize,
+    positions: &'a [f64],
+    limits: &'a Limits,
+}
+
+impl Stand<'_> {
+    fn trial(&self, load: f64, at: Condition) -> Trial {
+        Trial { load, slacks: at.slacks(self.crane.description(), self.limits, &at.points), at }
+    }
+
+    /// The crane at rest with a load, as `crane statics` finds it.
+    fn rest_from_guess(&mut self, load: f64) -> Option<Trial> {
+        self.crane.set_parameter(self.parameter, load).ok()?;
+        let found = self.crane.equilibrium(&Settings::default());
+        let at = found.is_stable().then(|| Condition::at(self.crane, found.q, self.positions))?;
+        Some(self.trial(load, at))
+    }
+
+    /// The crane at rest with a load, near the pose with a smaller one: as a load that is added slowly moves it.
+    fn rest_near(&mut self, load: f64, near: &[f64]) -> Option<Trial> {
+        let (parameter, positions) = (self.parameter, self.positions);
+        let at = Posed { crane: &mut *self.crane, load: parameter, positions }.rest(load, near, &NEWTON)?;
+        Some(self.trial(load, at))
+    }
+
+    /// How statics ends with a little more than a load.
+    fn status_beyond(&mut self, load: f64) -> Status {
+        match self.crane.set_parameter(self.parameter, load * (1.0 + A_LITTLE)) {
+            Ok(()) => self.crane.equilibrium(&Settings::default()).status,
+            Err(_) => Status::NotConverged,
+        }
+    }
+}

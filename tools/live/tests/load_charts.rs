@@ -1,0 +1,286 @@
+//! Load charts of cranes with cylinders, stops, ropes and limited drives: against hand calculations, and against statics at the chart's loads.
+
+use std::f64::consts::PI;
+
+use crane_codegen::SourceFile;
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::envelope::{
+    Axes, Axis, Coverage, Critical, Envelope, Execution, Limit, Limits, PartLimit, Rating, Varied, critical_load,
+};
+use crane_model::results::cylinders_at;
+use crane_model::statics;
+
+const GRAVITY: f64 = 9.81;
+const BORE: f64 = 0.1;
+const ROD: f64 = 0.06;
+/// Distance of the load from the joint, m.
+const REACH: f64 = 2.0;
+/// Distance of the cylinder's foot, which is below the joint, m.
+const FOOT: f64 = 0.8;
+/// Distance of its head, on the arm, m.
+const HEAD: f64 = 0.6;
+/// Pressure on the side that does not carry the load, Pa.
+const BACK: f64 = 2e5;
+
+fn crane(text: &str) -> LiveCrane {
+    LiveCrane::from_spec(&SourceFile::new("chart.yaml", text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
+}
+
+/// A massless arm about the world's y axis that carries a load; angles are positive downwards.
+fn arm(drive: &str, more: &str) -> LiveCrane {
+    crane(&format!(
+        "format: 1
+name: arm
+parameters: {{payload: {{value: 200, unit: kg}}}}
+links:
+  - {{name: post, joint: {{prismatic: {{axis: x}}}}, mass: 50, com: [0, 0, 0]}}
+  - {{name: arm, joint: {{revolute: {{axis: y}}}}, mass: payload, com: [{REACH}, 0, 0], inertia: {{Ixx: 1, Iyy: 1, Izz: 1}}}}
+drives:
+  - {{coordinate: post_x, rigid: true, motion: {{hold: 0}}}}
+  - {{coordinate: arm_theta, {drive}, motion: {{hold: 0}}}}
+{more}
+"
+    ))
+}
+
+fn cylinder(max_pressure: f64, stroke: [f64; 2]) -> String {
+    let [retracted, stroke] = stroke;
+    format!(
+        "cylinders:
+  - name: lift
+    coordinate: arm_theta
+    foot: {{link: post, at: [0, 0, -{FOOT}]}}
+    head: {{link: arm, at: [{HEAD}, 0, 0]}}
+    bore: {BORE}
+    rod: {ROD}
+    retracted: {retracted}
+    stroke: {stroke}
+    back_pressure: {BACK:e}
+    max_pressure: {max_pressure:e}
+"
+    )
+}
+
+const WIDE: [f64; 2] = [0.3, 1.0];
+
+/// Length of the cylinder at an angle of the arm, and its lever: the law of cosines and its derivative.
+fn geometry(theta: f64) -> [f64; 2] {
+    let between = PI / 2.0 - theta;
+    let length = (FOOT * FOOT + HEAD * HEAD - 2.0 * FOOT * HEAD * between.cos()).sqrt();
+    [length, FOOT * HEAD * between.sin() / length]
+}
+
+/// The limits that the parts of the crane have.
+fn own(crane: &dyn DynCrane) -> Limits {
+    Limits { of_parts: PartLimit::DEFAULT.to_vec(), ..Limits::none(crane.description()) }
+}
+
+/// Ratings with the drive of this index at several positions.
+fn chart(crane: &LiveCrane, drive: usize, positions: &[f64], limits: Limits, factor: f64) -> Vec<Rating> {
+    let axes = Axes(vec![Axis { varied: Varied::Drive(drive), values: positions.to_vec() }]);
+    let asked = Envelope { axes, load: 0, loads: [1e-3, 1e6], limits, factor };
+    let found = std::sync::Mutex::new(Vec::new());
+    let done = |_: usize, ratings: &[Rating]| found.lock().unwrap().extend(ratings.to_vec());
+    let pieces: Vec<usize> = (0..asked.pieces()).collect();
+    asked.run(crane, &pieces, &Execution { threads: 1, done: &done, cancelled: &|| false }).unwrap();
+    found.into_inner().unwrap()
+}
+
+/// The accuracy of charts.
+const ACCURACY: f64 = 2e-6;
+
+fn assert_close(what: &str, found: f64, expected: f64, tolerance: f64) {
+    assert!((found / expected - 1.0).abs() < tolerance, "{what}: {found} instead of {expected}");
+}
+
+/// The force of a cylinder at its pressure has the moment of the load: `(p A − p₀ A′) · lever = m g R cos θ`.
+#[test]
+fn a_relief_valve_limits_the_load() {
+    let areas = [PI / 4.0 * BORE * BORE, PI / 4.0 * (BORE * BORE - ROD * ROD)];
+    let angles = [-0.7, -0.2, 0.0, 0.4];
+    let mut loads = Vec::new();
+    for pressure in [100e5, 320e5] {
+        let crane = arm("rigid: true", &cylinder(pressure, WIDE));
+        let ratings = chart(&crane, 1, &angles, own(&crane), 1.0);
+        for (theta, rating) in angles.iter().zip(&ratings) {
+            let [_, lever] = geometry(*theta);
+            let expected = (pressure * areas[0] - BACK * areas[1]) * lever / (GRAVITY * REACH * theta.cos());
+            assert_close(&format!("{pressure:e} Pa, {theta}"), rating.load.unwrap(), expected, ACCURACY);
+            assert_eq!(rating.governing, Some(Limit::Pressure { cylinder: 0, rod: false }));
+        }
+        loads.push(ratings[2].load.unwrap());
+        // A dynamic factor divides the load.
+        let divided = chart(&crane, 1, &angles, own(&crane), 1.25);
+        for (whole, divided) in ratings.iter().zip(&divided) {
+            assert_close("a factor", 1.25 * divided.load.unwrap(), whole.load.unwrap(), 2.0 * ACCURACY);
+        }
+    }
+    assert!(loads[1] > 3.0 * loads[0], "{loads:?}");
+    // With its foot above the joint the cylinder pulls: the side of the rod carries the load. ℓ² = F² + H² + 2 F H sin θ
+    let theta = 0.2f64;
+    let above = cylinder(100e5, WIDE).replace(&format!("-{FOOT}"), &FOOT.to_string());
+    let crane = arm("rigid: true", &above);
+    let rating = &chart(&crane, 1, &[theta], own(&crane), 1.0)[0];
+    assert_eq!(rating.governing, Some(Limit::Pressure { cylinder: 0, rod: true }));
+    let lever = FOOT * HEAD * theta.cos() / (FOOT * FOOT + HEAD * HEAD + 2.0 * FOOT * HEAD * theta.sin()).sqrt();
+    let expected = (100e5 * areas[1] - BACK * areas[0]) * lever / (GRAVITY * REACH * theta.cos());
+    assert_close("the side of the rod", rating.load.unwrap(), expected, ACCURACY);
+}
+
+/// A flexible boom that a cylinder with a valve lifts, at a position of its drive.
+fn boom(position: f64, max_pressure: f64, pump: f64) -> LiveCrane {
+    crane(&format!(
+        "format: 1
+name: boom
+parameters: {{payload: {{value: 500, unit: kg}}}}
+links:
+  - {{name: post, joint: {{prismatic: {{axis: x}}}}, mass: 50, com: [0, 0, 0]}}
+  - name: boom
+    placement: {{transform: {{rotation: {{x: 90 deg}}}}}}
+    joint: {{revolute: {{axis: z}}}}
+    beam:
+      length: 4
+      sections: 4
+      material: {{E: 2.1e11, G: 8.1e10, density: 7850}}
+      section: {{box: {{height: 0.2, width: 0.15, thickness: 0.008}}}}
+  - {{name: tip, joint: fixed, mass: payload, com: [0, 0, 0], inertia: {{Ixx: 20, Iyy: 20, Izz: 20}}}}
+drives:
+  - {{coordinate: post_x, rigid: true, motion: {{hold: 0}}}}
+  - {{coordinate: boom_psi, stiffness: 1e8, motion: {{hold: {position}}}}}
+cylinders:
+  - name: lift
+    coordinate: boom_psi
+    foot: {{link: post, at: [0.1, 0, -1.2]}}
+    head: {{link: boom, at: [1.7, -0.1, 0]}}
+    bore: 0.1
+    rod: 0.06
+    retracted: 1.3
+    stroke: 1.2
+    back_pressure: 3e5
+    max_pressure: {max_pressure:e}
+    bulk_modulus: 1.2e9
+    hose_volumes: [1e-3, 1e-3]
+    valve: {{flow: 1e-3, pressure_drop: 1e6, lag: 0.03, gain: 0, feed_forward: 0}}
+pump: {{max_flow: 2e-3, pressure: {pump:e}}}
+"
+    ))
+}
+
+/// At the chart's load, statics of a crane whose drive is there finds the pressure that limits it, with a bent boom, too.
+#[test]
+fn at_the_loads_of_a_chart_statics_finds_the_pressure() {
+    let angles = [0.0, 0.3, 0.6];
+    for (max_pressure, pump) in [(100e5, 250e5), (320e5, 250e5), (320e5, 90e5)] {
+        let greatest = f64::min(max_pressure, pump);
+        let crane = boom(0.2, max_pressure, pump);
+        for (angle, rating) in angles.iter().zip(chart(&crane, 1, &angles, own(&crane), 1.0)) {
+            let there = &mut boom(*angle, max_pressure, pump);
+            let there: &mut dyn DynCrane = there;
+            there.set_parameter(0, rating.load.unwrap()).unwrap();
+            let found = there.equilibrium(&statics::Settings::default());
+            assert!(found.is_stable(), "{found}");
+            let efforts = there.drive_efforts_at_rest(&found.q);
+            let state = cylinders_at(there, &found.q, &vec![0.0; found.q.len()], &efforts)[0];
+            assert_close(&format!("{greatest:e} Pa at {angle}"), state.pressures[0], greatest, ACCURACY);
+            let expected = if pump < max_pressure {
+                Limit::Pump { cylinder: 0, rod: false }
+            } else {
+                Limit::Pressure { cylinder: 0, rod: false }
+            };
+            assert_eq!(rating.governing, Some(expected));
+        }
+    }
+}
+
+#[test]
+fn a_stroke_ends_a_chart() {
+    let [shortest, stroke] = [0.85, 0.25];
+    let crane = arm("rigid: true", &cylinder(320e5, [shortest, stroke]));
+    let angles: Vec<f64> = (0..15).map(|place| -0.9 + 0.1 * f64::from(place)).collect();
+    let ratings = chart(&crane, 1, &angles, own(&crane), 1.0);
+    let mut inside = 0;
+    for (theta, rating) in angles.iter().zip(&ratings) {
+        let [length, _] = geometry(*theta);
+        let reaches = (shortest..=shortest + stroke).contains(&length);
+        assert_eq!(rating.load.is_some(), reaches, "{theta}: {length} m");
+        assert!(reaches || rating.governing == Some(Limit::Stroke { cylinder: 0 }));
+        inside += usize::from(reaches);
+    }
+    assert!(inside > 2 && inside < 13, "{inside}");
+    // A soft drive gives way until the piston meets its end: k · (0 − θ) = m g R cos θ, up to the angle of the shortest cylinder.
+    let crane = arm("stiffness: 2e4", &cylinder(320e5, [shortest, stroke]));
+    let rating = &chart(&crane, 1, &[0.0], own(&crane), 1.0)[0];
+    // From the law of cosines: sin θ = (FOOT² + HEAD² − ℓ²)/(2 FOOT HEAD).
+    let theta = ((FOOT * FOOT + HEAD * HEAD - shortest * shortest) / (2.0 * FOOT * HEAD)).asin();
+    let expected = 2e4 * theta / (GRAVITY * REACH * theta.cos());
+    assert_close("the end of the stroke", rating.load.unwrap(), expected, 1e-5);
+    assert_eq!(rating.governing, Some(Limit::Stroke { cylinder: 0 }));
+}
+
+/// `max_effort` of the spec: the moment of the load is at most that of the drive.
+#[test]
+fn a_drive_of_the_spec_limits_the_load() {
+    let crane = arm("stiffness: 1e7, max_effort: 8e3", "");
+    let ratings = chart(&crane, 1, &[-0.5, 0.0], own(&crane), 1.0);
+    for (theta, rating) in [-0.5f64, 0.0].iter().zip(&ratings) {
+        // The drive yields by a milliradian, which changes the lever by some 5e-4 of it, and gives way within a thousandth of its limit.
+        let expected = 8e3 / (GRAVITY * REACH * theta.cos());
+        assert_close("max_effort", rating.load.unwrap(), expected, 3e-3);
+        assert_eq!(rating.governing, Some(Limit::Effort { drive: 1 }));
+    }
+    let mut limits = own(&crane);
+    limits.of_parts.clear();
+    let free = &chart(&crane, 1, &[0.0], limits.clone(), 1.0)[0];
+    // The arm sinks until its lever is as short as its drive is weak.
+    assert!(free.load > ratings[1].load.map(|load| 2.0 * load), "{:?}", free.load);
+    // What is left out is said.
+    let words = "the effort of arm_theta at most 8000 N m";
+    assert!(Coverage::of(&crane, &limits).not_considered.iter().any(|own| own == words));
+    assert!(Coverage::of(&crane, &own(&crane)).considered.iter().any(|own| own == words));
+}
+
+/// A joint that gives way until it meets its stop at 0.02 rad: k · 0.02 = m g R cos 0.02.
+#[test]
+fn a_stop_of_a_driven_joint_ends_a_chart() {
+    let crane = arm("stiffness: 2e5", "stops: {arm_theta: {max: 0.02, stiffness: 1e7}}");
+    let rating = &chart(&crane, 1, &[0.0], own(&crane), 1.0)[0];
+    assert_close("the stop", rating.load.unwrap(), 2e5 * 0.02 / (GRAVITY * REACH * 0.02f64.cos()), ACCURACY);
+    assert_eq!(rating.governing, Some(Limit::Stop { coordinate: 1 }));
+}
+
+/// Feet and tipping lines: a chart with the limit that no foot lifts has the critical load.
+#[test]
+fn the_first_lift_off_is_a_limit_when_asked_for() {
+    let text = "format: 1
+name: truck
+parameters: {payload: {value: 100, unit: kg}}
+links:
+  - {name: truck, joint: free, mass: 4000, com: [0, 0, 0.5], inertia: {Ixx: 3000, Iyy: 3000, Izz: 3000}}
+  - {name: column, placement: {transform: {translation: [0, 0, 1]}}, joint: revolute, mass: 1, com: [0, 0, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}}
+  - {name: load, placement: {transform: {translation: [4, 0, 0]}}, mass: payload, com: [0, 0, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}}
+supports:
+  - {name: front_left, one_sided: true, at: [1.5, 1, 0], stiffness: [1e10, 1e10, 1e10]}
+  - {name: front_right, one_sided: true, at: [1.5, -1, 0], stiffness: [1e10, 1e10, 1e10]}
+  - {name: rear_left, one_sided: true, at: [-1.5, 1, 0], stiffness: [1e10, 1e10, 1e10]}
+  - {name: rear_right, one_sided: true, at: [-1.5, -1, 0], stiffness: [1e10, 1e10, 1e10]}
+drives:
+  - {coordinate: column_psi, rigid: true, motion: {hold: 50 deg}}
+";
+    let mut crane = crane(text);
+    let lift = Limits { of_parts: vec![PartLimit::LiftOff], ..Limits::none(crane.description()) };
+    let tipping = Limits { tipping: Some(0.0), ..Limits::none(crane.description()) };
+    let angle = 50.0f64.to_radians();
+    for (limits, critical) in [(lift, Critical::FirstFoot), (tipping, Critical::Tipping)] {
+        let found = critical_load(&mut crane, 0, critical).unwrap();
+        let rating = &chart(&crane, 0, &[angle], limits, 1.0)[0];
+        assert_close("the critical load", rating.load.unwrap(), found.load, ACCURACY);
+        let expected = match critical {
+            // On equal springs: (4001 + m)/4 − m x · 1.5/(4 · 1.5²) − m y · 1/(4 · 1²) = 0.
+            Critical::FirstFoot => 4001.0 / (4.0 * angle.cos() / 1.5 + 4.0 * angle.sin() - 1.0),
+            Critical::Tipping => 4001.0 / (4.0 * angle.sin() - 1.0),
+        };
+        // The feet yield by micrometres.
+        assert_close("moments", found.load, expected, 1e-5);
+    }
+}
