@@ -128,7 +128,8 @@ impl<'a> Equations<'a> {
                 let [put_in, taken_out] = self.force_states.powers();
                 powers[0] += put_in;
                 powers[1] += taken_out;
-                powers[0] += self.force_states.on_rigid_drives(self.crane, q).map(|(j, effort)| effort * v[j]).sum::<f64>();
+                powers[0] +=
+                    self.force_states.on_rigid_drives(self.crane, q).map(|(j, effort)| effort * v[j]).sum::<f64>();
             }
             slope[begin..].copy_from_slice(&powers);
         }

@@ -66,7 +66,8 @@ pub fn check(case: &Case, only: Option<&str>, most: usize, shrink: bool) -> Outc
     if let Err(refused) = observe(&source(&case.tree), false) {
         return Outcome { refused: Some(refused), ..Outcome::default() };
     }
-    let mut chosen: Vec<&'static str> = names().into_iter().filter(|name| only.is_none_or(|only| name.contains(only))).collect();
+    let mut chosen: Vec<&'static str> =
+        names().into_iter().filter(|name| only.is_none_or(|only| name.contains(only))).collect();
     let mut rng = Rng::with_seed(case.seed);
     rng.shuffle(&mut chosen);
     let mut outcome = Outcome::default();

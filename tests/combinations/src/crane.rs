@@ -124,7 +124,12 @@ impl Writer<'_> {
         if !free {
             return;
         }
-        let feet = [("front_left", 0.0, 2.4), ("front_right", 0.0, -2.4), ("rear_left", -4.6, 1.9), ("rear_right", -4.6, -1.9)];
+        let feet = [
+            ("front_left", 0.0, 2.4),
+            ("front_right", 0.0, -2.4),
+            ("rear_left", -4.6, 1.9),
+            ("rear_right", -4.6, -1.9),
+        ];
         for (name, x, y) in feet {
             let at = [x, round(y + self.between(-0.1, 0.1)), self.between(-0.1, 0.1)];
             let stiffness = [self.between(2e6, 4e6), self.between(2e6, 4e6), self.between(5e6, 9e6)];
@@ -153,9 +158,12 @@ impl Writer<'_> {
             json!({"transform": {"translation": [0, 0, height]}})
         };
         let com = [0.02, 0.0, round(1.75 - height)];
-        self.link(json!({"name": "column", "placement": placement, "joint": "revolute", "mass": self.between(250.0, 350.0),
-            "com": com, "inertia": {"Ixx": 70, "Iyy": 70, "Izz": 9}}));
-        let drive = if self.has(F::RigidDrive) { json!({"rigid": true}) } else { json!({"stiffness": 3e6, "damping": 3e4}) };
+        self.link(
+            json!({"name": "column", "placement": placement, "joint": "revolute", "mass": self.between(250.0, 350.0),
+            "com": com, "inertia": {"Ixx": 70, "Iyy": 70, "Izz": 9}}),
+        );
+        let drive =
+            if self.has(F::RigidDrive) { json!({"rigid": true}) } else { json!({"stiffness": 3e6, "damping": 3e4}) };
         self.drive("column_psi", drive, self.angles[0], 0.3);
         if self.has(F::Bristles) {
             self.tree["friction"]["column_psi"] =
@@ -226,11 +234,16 @@ impl Writer<'_> {
         let mut link = json!({"name": "arm", "joint": "revolute"});
         if self.has(F::OneByOne) {
             let lengths = [0.6, 1.3, 1.1];
-            let element = |length: f64| json!({"length": length, "mass": round(36.0 * length), "com": [round(0.48 * length), 0.003, -0.004],
-                "inertia": {"Ixx": 0.3, "Iyy": round(0.3 + 3.0 * length * length), "Izz": round(0.2 + 3.0 * length * length)}});
-            let spring = |k: f64| json!({"stiffness": {"psi": k, "theta": round(0.7 * k), "phi": round(0.5 * k)},
-                "damping": {"psi": 4e3, "theta": 3e3, "phi": 2e3}});
-            link["beam"] = json!({"length": ARM, "elements": lengths.map(element), "springs": [spring(5e6), spring(4e6)]});
+            let element = |length: f64| {
+                json!({"length": length, "mass": round(36.0 * length), "com": [round(0.48 * length), 0.003, -0.004],
+                "inertia": {"Ixx": 0.3, "Iyy": round(0.3 + 3.0 * length * length), "Izz": round(0.2 + 3.0 * length * length)}})
+            };
+            let spring = |k: f64| {
+                json!({"stiffness": {"psi": k, "theta": round(0.7 * k), "phi": round(0.5 * k)},
+                "damping": {"psi": 4e3, "theta": 3e3, "phi": 2e3}})
+            };
+            link["beam"] =
+                json!({"length": ARM, "elements": lengths.map(element), "springs": [spring(5e6), spring(4e6)]});
         } else if self.has(F::FlexibleArm) {
             link["beam"] = json!({"length": ARM, "sections": self.rng.borrow_mut().u8(1..3), "material": "steel",
                 "section": {"box": {"height": 0.21, "width": self.between(0.12, 0.18), "thickness": 0.005}}, "extra_mass": 14,
@@ -243,7 +256,11 @@ impl Writer<'_> {
         // After a beam, a link is on its tip.
         if !self.has(F::FlexibleBoom) {
             let by_row = self.has(F::DenavitHartenberg);
-            let placement = if by_row { json!({"modified_dh": {"a": BOOM}}) } else { json!({"transform": {"translation": [BOOM, 0, 0]}}) };
+            let placement = if by_row {
+                json!({"modified_dh": {"a": BOOM}})
+            } else {
+                json!({"transform": {"translation": [BOOM, 0, 0]}})
+            };
             link["placement"] = placement;
         }
         self.link(link);
@@ -253,7 +270,8 @@ impl Writer<'_> {
         }
         self.drive("arm_psi", drive, self.angles[2], -0.1);
         if self.has(F::Stop) && !self.has(F::Telescope) {
-            self.tree["stops"]["arm_psi"] = json!({"max": round(self.angles[2] - 0.0005), "stiffness": 4e6, "damping": 0.3});
+            self.tree["stops"]["arm_psi"] =
+                json!({"max": round(self.angles[2] - 0.0005), "stiffness": 4e6, "damping": 0.3});
         }
         if self.has(F::Friction) {
             self.tree["friction"]["arm_psi"] = json!({"coulomb": 300, "breakaway": 400, "viscous": 50});
@@ -282,8 +300,11 @@ impl Writer<'_> {
             self.link(json!({"name": "stage_two", "placement": {"transform": {"translation": [0.1, 0, 0]}},
                 "joint": {"prismatic": {"axis": "x"}}, "mass": self.between(30.0, 40.0), "com": [1.1, 0, 0],
                 "inertia": {"Ixx": 0.3, "Iyy": 12, "Izz": 12}}));
-            self.push("couplings", json!({"name": "chains", "coordinate": "stage_two_x", "follows": "stage_one_x",
-                "ratio": 0.9, "offset": 0.05, "stiffness": 5e6, "damping": 3e4}));
+            self.push(
+                "couplings",
+                json!({"name": "chains", "coordinate": "stage_two_x", "follows": "stage_one_x",
+                "ratio": 0.9, "offset": 0.05, "stiffness": 5e6, "damping": 3e4}),
+            );
         }
     }
 
@@ -298,7 +319,8 @@ impl Writer<'_> {
         } else {
             json!(self.between(150.0, 400.0))
         };
-        let mut hook = json!({"name": "hook", "mass": mass, "com": [0.4, 0, 0], "inertia": {"gyration": [0.3, 0.35, 0.4]}});
+        let mut hook =
+            json!({"name": "hook", "mass": mass, "com": [0.4, 0, 0], "inertia": {"gyration": [0.3, 0.35, 0.4]}});
         if self.has(F::Rope) {
             self.link(json!({"name": "rope", "placement": hangs,
                 "rope": {"length": 2, "links": self.rng.borrow_mut().u8(1..3), "mass_per_length": 3, "damping": 20}}));
@@ -338,14 +360,20 @@ impl Writer<'_> {
         }
         if self.has(F::LinkMoment) {
             let at = self.place(ARM);
-            self.push("loads", json!({"name": "twist", "link": "arm", "at": at, "axes": "link",
+            self.push(
+                "loads",
+                json!({"name": "twist", "link": "arm", "at": at, "axes": "link",
                 "force": [self.between(-200.0, 200.0), 150, self.between(-200.0, 200.0)],
-                "moment": [300, self.between(-300.0, 300.0), self.between(-400.0, 400.0)]}));
+                "moment": [300, self.between(-300.0, 300.0), self.between(-400.0, 400.0)]}),
+            );
         }
         if self.has(F::Input) {
             self.tree["inputs"] = json!({"trim": {"value": 0.01, "unit": "rad"}, "gust": {"value": 0.7}});
-            self.push("loads", json!({"name": "gusts", "link": "arm", "at": [1.0, 0, 0], "force": [100, 400, -100],
-                "scale": {"input": "gust"}}));
+            self.push(
+                "loads",
+                json!({"name": "gusts", "link": "arm", "at": [1.0, 0, 0], "force": [100, 400, -100],
+                "scale": {"input": "gust"}}),
+            );
         }
     }
 
@@ -360,15 +388,21 @@ impl Writer<'_> {
         let down = 1.05 - self.column_height();
         if self.has(F::Spring) {
             let at = self.place(2.0);
-            self.push("connectors", json!({"name": "spring", "from": {"link": "column", "at": [0.5, 0.3, round(0.4 + down)]},
+            self.push(
+                "connectors",
+                json!({"name": "spring", "from": {"link": "column", "at": [0.5, 0.3, round(0.4 + down)]},
                 "to": {"link": "boom", "at": [round(at[0] + 0.5), at[1], at[2]]},
-                "law": {"spring": {"stiffness": 2e4, "length": 1.4, "damping": 500}}}));
+                "law": {"spring": {"stiffness": 2e4, "length": 1.4, "damping": 500}}}),
+            );
         }
         if self.has(F::GasSpring) {
             let (from, to) = (self.place(1.5), self.place(1.5));
-            self.push("connectors", json!({"name": "gas", "from": {"link": "boom", "at": [round(from[0] + 1.0), -0.3, 0.1]},
+            self.push(
+                "connectors",
+                json!({"name": "gas", "from": {"link": "boom", "at": [round(from[0] + 1.0), -0.3, 0.1]},
                 "to": {"link": "arm", "at": [round(to[0] + 1.0), -0.25, -0.1]},
-                "law": {"gas_spring": {"force": 3e3, "length": 2.5, "stiffness": 4e3, "damping": 300}}}));
+                "law": {"gas_spring": {"force": 3e3, "length": 2.5, "stiffness": 4e3, "damping": 300}}}),
+            );
         }
         if self.has(F::Guy) {
             let x = *self.rng.borrow_mut().choice(&[BOOM, 2.5, 1.7]).unwrap_or(&BOOM);
@@ -382,14 +416,18 @@ impl Writer<'_> {
             } else {
                 rope["length"] = json!(length);
             }
-            self.push("connectors", json!({"name": "guy", "from": {"at": from}, "to": {"link": "boom", "at": [x, 0, 0]},
-                "law": {"rope": rope}}));
+            self.push(
+                "connectors",
+                json!({"name": "guy", "from": {"at": from}, "to": {"link": "boom", "at": [x, 0, 0]},
+                "law": {"rope": rope}}),
+            );
         }
     }
 
     fn cylinders(&mut self) {
         let down = 1.05 - self.column_height();
-        let oil = json!({"max_pressure": 320e5, "back_pressure": 5e5, "bulk_modulus": 1.2e9, "hose_volumes": [1e-3, 1e-3]});
+        let oil =
+            json!({"max_pressure": 320e5, "back_pressure": 5e5, "bulk_modulus": 1.2e9, "hose_volumes": [1e-3, 1e-3]});
         let with_oil = |mut cylinder: Tree| {
             for key in ["max_pressure", "back_pressure", "bulk_modulus", "hose_volumes"] {
                 cylinder[key] = oil[key].clone();
@@ -398,8 +436,10 @@ impl Writer<'_> {
         };
         if self.has(F::Cylinder) {
             let head = [self.between(0.5, 2.6), -0.12, self.between(-0.05, 0.05)];
-            let mut lift = with_oil(json!({"name": "lift", "coordinate": "boom_psi", "foot": {"link": "column", "at": [0.1, 0.02, round(0.35 + down)]},
-                "head": {"link": "boom", "at": head}, "bore": 0.16, "rod": 0.08, "retracted": 0.8, "stroke": 3}));
+            let mut lift = with_oil(
+                json!({"name": "lift", "coordinate": "boom_psi", "foot": {"link": "column", "at": [0.1, 0.02, round(0.35 + down)]},
+                "head": {"link": "boom", "at": head}, "bore": 0.16, "rod": 0.08, "retracted": 0.8, "stroke": 3}),
+            );
             if self.has(F::Valve) {
                 lift["valve"] = json!({"flow": 6e-4, "pressure_drop": 1e6, "lag": 0.03, "gain": 2, "overlap": 0.03, "leakage": 1e-13});
             }

@@ -182,14 +182,17 @@ fn boom_one_by_one(tree: &Tree, _: &mut Rng) -> Option<Second> {
     let element = |k: u64| {
         let length = if k == 0 || k == sections { 0.5 * d } else { d };
         let (mass, [xx, yy, zz]) = piece_of_boom(&beam, length)?;
-        Some(json!({"length": length, "mass": mass, "com": [0.5 * length, 0, 0], "inertia": {"Ixx": xx, "Iyy": yy, "Izz": zz}}))
+        Some(
+            json!({"length": length, "mass": mass, "com": [0.5 * length, 0, 0], "inertia": {"Ixx": xx, "Iyy": yy, "Izz": zz}}),
+        )
     };
     let elements: Vec<Tree> = (0..=sections).map(element).collect::<Option<_>>()?;
     let stiffness = [2.1e11 * jz / d, 2.1e11 * jy / d, 8.1e10 * jo / d];
     let each = |factor: f64| json!({"psi": factor * stiffness[0], "theta": factor * stiffness[1], "phi": factor * stiffness[2]});
     let beta = beam["damping"]["beta"].as_f64().unwrap_or(0.0);
     let spring = json!({"stiffness": each(1.0), "damping": each(beta)});
-    link["beam"] = json!({"length": BOOM, "elements": elements, "springs": vec![spring; usize::try_from(sections).ok()?]});
+    link["beam"] =
+        json!({"length": BOOM, "elements": elements, "springs": vec![spring; usize::try_from(sections).ok()?]});
     if beam["section_joint"].is_string() {
         link["beam"]["section_joint"] = beam["section_joint"].clone();
     }
@@ -222,9 +225,12 @@ fn rigid_boom_as_body(tree: &Tree, _: &mut Rng) -> Option<Second> {
 
 /// Every link has another name.
 fn other_names(tree: &Tree, _: &mut Rng) -> Option<Second> {
-    let links: Vec<String> = tree["links"].as_array()?.iter().filter_map(|link| Some(link["name"].as_str()?.to_owned())).collect();
+    let links: Vec<String> =
+        tree["links"].as_array()?.iter().filter_map(|link| Some(link["name"].as_str()?.to_owned())).collect();
     let renamed = move |name: &str| {
-        let known = links.iter().any(|link| name == link || name.starts_with(&format!("{link}_")) || name.starts_with(&format!("{link} ")));
+        let known = links
+            .iter()
+            .any(|link| name == link || name.starts_with(&format!("{link}_")) || name.starts_with(&format!("{link} ")));
         if known { format!("zz_{name}") } else { name.to_owned() }
     };
     let mut second = tree.clone();
@@ -238,7 +244,8 @@ fn other_names(tree: &Tree, _: &mut Rng) -> Option<Second> {
     });
     for list in ["damping", "stops", "friction", "guess"] {
         if let Some(entries) = second.get(list).and_then(Value::as_object) {
-            let entries: serde_json::Map<_, _> = entries.iter().map(|(name, value)| (renamed(name), value.clone())).collect();
+            let entries: serde_json::Map<_, _> =
+                entries.iter().map(|(name, value)| (renamed(name), value.clone())).collect();
             second[list] = Value::Object(entries);
         }
     }
@@ -281,7 +288,10 @@ fn turned(tree: &Tree, _: &mut Rng) -> Option<Second> {
         }
     }
     let points = ["tip_", "middle_", "load_"];
-    Some(Second::of(&second).named(move |name| (!points.iter().any(|point| name.starts_with(point))).then(|| name.to_owned())))
+    Some(
+        Second::of(&second)
+            .named(move |name| (!points.iter().any(|point| name.starts_with(point))).then(|| name.to_owned())),
+    )
 }
 
 /// Positions in a frame that is turned by 90° about x.
@@ -348,7 +358,9 @@ fn overlay(tree: &Tree, _: &mut Rng) -> Option<Second> {
     }
     for drive in base["drives"].as_array_mut()? {
         if drive["stiffness"].is_f64() {
-            changes["drives"].as_array_mut()?.push(json!({"coordinate": drive["coordinate"], "stiffness": drive["stiffness"]}));
+            changes["drives"]
+                .as_array_mut()?
+                .push(json!({"coordinate": drive["coordinate"], "stiffness": drive["stiffness"]}));
             drive["stiffness"] = json!(1e5);
         }
     }
@@ -494,7 +506,13 @@ fn rope_link_by_link(tree: &Tree, _: &mut Rng) -> Option<Second> {
     // Bodies of the rope are bodies of links with other names.
     Some(Second::of(&second).named(|name| {
         let is_body = name.starts_with("rope_") && name.contains(' ');
-        if is_body { None } else if name.starts_with("rope_") { Some(name.replace("_theta", "_y_theta")) } else { Some(name.to_owned()) }
+        if is_body {
+            None
+        } else if name.starts_with("rope_") {
+            Some(name.replace("_theta", "_y_theta"))
+        } else {
+            Some(name.to_owned())
+        }
     }))
 }
 
@@ -515,9 +533,38 @@ fn massless_frames(tree: &Tree, _: &mut Rng) -> Option<Second> {
 
 /// Keys whose numbers are proportional to the unit of mass.
 const WITH_MASS: &[&str] = &[
-    "mass", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz", "E", "G", "density", "yield_stress", "stiffness", "damping", "max_effort",
-    "max_power", "armature", "force", "moment", "coulomb", "breakaway", "viscous", "full_hold", "extra_mass", "mass_per_length",
-    "max_pressure", "back_pressure", "bulk_modulus", "pressure", "swing_psi", "hook_theta", "payload", "pressure_drop",
+    "mass",
+    "Ixx",
+    "Iyy",
+    "Izz",
+    "Ixy",
+    "Ixz",
+    "Iyz",
+    "E",
+    "G",
+    "density",
+    "yield_stress",
+    "stiffness",
+    "damping",
+    "max_effort",
+    "max_power",
+    "armature",
+    "force",
+    "moment",
+    "coulomb",
+    "breakaway",
+    "viscous",
+    "full_hold",
+    "extra_mass",
+    "mass_per_length",
+    "max_pressure",
+    "back_pressure",
+    "bulk_modulus",
+    "pressure",
+    "swing_psi",
+    "hook_theta",
+    "payload",
+    "pressure_drop",
 ];
 /// Their factor.
 const HEAVIER: f64 = 2.0;
@@ -543,7 +590,10 @@ fn heavier(tree: &mut Tree, within: &str) {
             for (key, value) in entries.iter_mut() {
                 // Where damping is a time over a length or a time, not a force over a rate.
                 let per_length = matches!(within, "rope_law" | "stops");
-                if WITH_MASS.contains(&key.as_str()) && !(key == "damping" && per_length) && !matches!(within, "guess" | "parameters") {
+                if WITH_MASS.contains(&key.as_str())
+                    && !(key == "damping" && per_length)
+                    && !matches!(within, "guess" | "parameters")
+                {
                     double(value);
                 } else {
                     let law = if within == "law" && key == "rope" { "rope_law" } else { key };
@@ -559,7 +609,9 @@ fn heavier(tree: &mut Tree, within: &str) {
 /// Doubles all numbers, except Kelvin–Voigt times.
 fn double(tree: &mut Tree) {
     match tree {
-        Value::Object(entries) => entries.iter_mut().filter(|(key, _)| *key != "beta").for_each(|(_, value)| double(value)),
+        Value::Object(entries) => {
+            entries.iter_mut().filter(|(key, _)| *key != "beta").for_each(|(_, value)| double(value))
+        }
         Value::Array(entries) => entries.iter_mut().for_each(double),
         Value::Number(number) => *tree = json!(HEAVIER * number.as_f64().unwrap_or(0.0)),
         _ => {}

@@ -52,7 +52,11 @@ fn has_states(crane: &LiveCrane) -> bool {
 
 /// Compares two numbers, relative to the sum of what they are made of.
 fn close(what: &str, a: f64, b: f64, size: f64, tolerance: f64) -> Result<(), String> {
-    if (a - b).abs() <= tolerance * size { Ok(()) } else { Err(format!("{what}: {a:.9e} against {b:.9e}, of {size:.3e}")) }
+    if (a - b).abs() <= tolerance * size {
+        Ok(())
+    } else {
+        Err(format!("{what}: {a:.9e} against {b:.9e}, of {size:.3e}"))
+    }
 }
 
 /// `A q̈ = e + f`, in the rows of unknowns.
@@ -153,7 +157,9 @@ fn ground_carries(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Result<()
 fn rest_stays(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Result<(), String>> {
     let description = crane.description();
     let still = |pieces: usize| pieces == 0;
-    if !description.drives.iter().all(|drive| still(drive.pieces)) || description.connectors.iter().any(|c| !still(c.pieces)) {
+    if !description.drives.iter().all(|drive| still(drive.pieces))
+        || description.connectors.iter().any(|c| !still(c.pieces))
+    {
         return None;
     }
     // A joint with friction creeps, and so does a valve with leakage.
@@ -187,7 +193,8 @@ fn efforts_at_rest(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Result<(
     let size = held.iter().fold(0.0, |size: f64, effort| size.max(effort.abs()));
     for (drive, held) in description.drives.iter().zip(held) {
         let coordinate = &description.coordinates[drive.coordinate];
-        let begins = |column: &&crane_model::results::Column| column.name.starts_with(&format!("{}_drive_", coordinate.name));
+        let begins =
+            |column: &&crane_model::results::Column| column.name.starts_with(&format!("{}_drive_", coordinate.name));
         let column = table.columns.iter().find(begins)?.name.clone();
         let first = table.values(&column)?.next()?;
         if let Err(error) = close(&column, first, held, size, 1e-6) {

@@ -27,7 +27,9 @@ pub fn check(tree: &Tree) -> Option<Vec<String>> {
     let with = |sections: u32| {
         let mut tree = tree.clone();
         for link in tree["links"].as_array_mut().into_iter().flatten() {
-            if let Some(beam) = link.get_mut("beam").and_then(Value::as_object_mut).filter(|beam| beam.contains_key("sections")) {
+            if let Some(beam) =
+                link.get_mut("beam").and_then(Value::as_object_mut).filter(|beam| beam.contains_key("sections"))
+            {
                 beam.insert("sections".into(), json!(sections));
             }
         }
@@ -64,5 +66,7 @@ const LOWEST: [&str; 3] = ["squared_0", "squared_1", "squared_2"];
 
 /// Whether a number belongs to an element of a beam: `rest boom_2_psi`.
 fn of_element(name: &str) -> bool {
-    ["boom_", "arm_"].iter().any(|beam| name.split(beam).nth(1).is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit())))
+    ["boom_", "arm_"]
+        .iter()
+        .any(|beam| name.split(beam).nth(1).is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit())))
 }

@@ -61,9 +61,30 @@ pub fn for_each_key(tree: &mut Tree, act: &mut impl FnMut(&str, &mut Tree)) {
 
 /// Keys in the order in which a person writes them.
 const ORDER: [&str; 24] = [
-    "format", "name", "title", "gravity", "loops", "parameters", "inputs", "materials", "links", "supports", "drives",
-    "couplings", "cylinders", "pump", "damping", "stops", "friction", "armature", "loads", "connectors", "points", "guess",
-    "run", "analyses",
+    "format",
+    "name",
+    "title",
+    "gravity",
+    "loops",
+    "parameters",
+    "inputs",
+    "materials",
+    "links",
+    "supports",
+    "drives",
+    "couplings",
+    "cylinders",
+    "pump",
+    "damping",
+    "stops",
+    "friction",
+    "armature",
+    "loads",
+    "connectors",
+    "points",
+    "guess",
+    "run",
+    "analyses",
 ];
 
 /// The text of a spec, ready to be run: one line per entry.
