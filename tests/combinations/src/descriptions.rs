@@ -7,6 +7,9 @@ use serde_json::{Value, json};
 use crate::crane::BOOM;
 use crate::tree::{Tree, entry, entry_mut, for_each_key, for_each_place, numbers, source};
 
+/// The name in a second description of a number of the first.
+pub type Rename = Box<dyn Fn(&str) -> Option<String>>;
+
 /// A second description of a crane.
 pub struct Second {
     /// The first one, if it is not the crane as it was made.
@@ -14,7 +17,7 @@ pub struct Second {
     /// The second one.
     pub source: SourceFile,
     /// The name in the second of a number of the first; `None` for numbers that differ.
-    pub name: Box<dyn Fn(&str) -> Option<String>>,
+    pub name: Rename,
     /// By which numbers of a unit are larger in the second.
     pub factor: Box<dyn Fn(&str) -> f64>,
     /// Whether it also moves as the first does.
@@ -610,7 +613,9 @@ fn heavier(tree: &mut Tree, within: &str) {
 fn double(tree: &mut Tree) {
     match tree {
         Value::Object(entries) => {
-            entries.iter_mut().filter(|(key, _)| *key != "beta").for_each(|(_, value)| double(value))
+            for (_, value) in entries.iter_mut().filter(|(key, _)| *key != "beta") {
+                double(value);
+            }
         }
         Value::Array(entries) => entries.iter_mut().for_each(double),
         Value::Number(number) => *tree = json!(HEAVIER * number.as_f64().unwrap_or(0.0)),

@@ -145,7 +145,7 @@ fn ground_carries(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Result<()
     for axis in 0..3 {
         let (Some(weight), Some(applied)) = (weight[axis], applied[axis]) else { continue };
         let sum: f64 = reactions.iter().map(|force| force[axis]).sum();
-        let size = reactions.iter().map(|force| force.norm()).sum();
+        let size = reactions.iter().map(crane_model::nalgebra::Matrix::norm).sum();
         if let Err(error) = close("reactions", sum, -weight - applied, size, 1e-8) {
             return Some(Err(error));
         }
@@ -204,6 +204,9 @@ fn efforts_at_rest(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Result<(
     Some(Ok(()))
 }
 
+/// A time, a pose and rates.
+type State = (f64, Vec<f64>, Vec<f64>);
+
 /// Accelerations of a block of eight are those of each one alone, to the bit.
 fn lanes(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Result<(), String>> {
     use crane_model::dyn_crane::DynEnsemble;
@@ -215,7 +218,7 @@ fn lanes(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Result<(), St
     let own: Vec<&[f64]> = (0..crane.lanes()).map(|_| parameters.as_slice()).collect();
     let mut block = crane.block(&own).ok()?;
     let width = crane.lanes() / 8;
-    let pack = |of: fn(&(f64, Vec<f64>, Vec<f64>)) -> &Vec<f64>| {
+    let pack = |of: fn(&State) -> &Vec<f64>| {
         let vector = |i: usize| f64x8::from(std::array::from_fn::<f64, 8, _>(|lane| of(&states[lane])[i]));
         (0..n).flat_map(|i| vec![vector(i); width]).collect::<Vec<_>>()
     };

@@ -133,7 +133,7 @@ pub fn differences(
         let (value, scale) = (b.value / factor(&a.unit), scales[&(a.group, a.unit.as_str())]);
         let off = (a.value - value).abs();
         // Absolute floor: a micrometre at rest, a millionth of a newton.
-        if !(off <= tolerance(a.group) * scale.max(FLOOR)) {
+        if off.is_nan() || off > tolerance(a.group) * scale.max(FLOOR) {
             lines.push(format!("{key}: {:.9e} {} against {value:.9e}", a.value, a.unit));
         }
     }

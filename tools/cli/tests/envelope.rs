@@ -224,7 +224,9 @@ fn a_chart_says_what_it_is_and_fits_a_screen() {
     let (header, rows) = table(&folder);
     let column = |name: &str| header.iter().position(|known| known == name).expect("a column");
     let number = |row: &[String], name: &str| row[column(name)].parse::<f64>().expect("a number");
-    let beside = rows.iter().find(|row| (number(row, "column_psi [rad]") - 1.570_796).abs() < 1e-3 && row[1] == "6.0");
+    let beside = rows
+        .iter()
+        .find(|row| (number(row, "column_psi [rad]") - std::f64::consts::FRAC_PI_2).abs() < 1e-3 && row[1] == "6.0");
     let load = number(beside.expect("the pose"), "largest_load [kg]");
     assert!((load / (4001.0 / 5.0 / 1.25) - 1.0).abs() < 1e-4, "{load}");
     // The chart over the radius names the limit of each load.

@@ -104,7 +104,8 @@ fn stands(crane: &mut dyn DynCrane, from: f64, load: f64) -> bool {
         let part = if step == 24 { 1.0 } else { 1.0 - 0.5f64.powi(step) };
         crane.set_parameter(0, from + part * (load - from)).unwrap();
         let next = crane.equilibrium_at(0.0, &found.q, &Settings::default());
-        let margin = governing(&lines(crane, 0.0, &next.q, &rest, &rest)).map_or(1.0, |line| line.margin());
+        let margin =
+            governing(&lines(crane, 0.0, &next.q, &rest, &rest)).map_or(1.0, crane_model::tipping::TippingLine::margin);
         if !next.is_stable() || crane.description().has_tipped(&start, &next.q) || margin < 0.0 {
             return false;
         }

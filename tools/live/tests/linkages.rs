@@ -203,7 +203,8 @@ fn a_boom_carries_the_weight_and_the_rod() {
         let density = 7850.0 * (0.24 * 0.18 - 0.228 * 0.168);
         let (mut between, mut beyond) = (0, 0);
         for (cut, wrench) in wrenches(crane, &q) {
-            let Cut::Body { body, x: Some(x) } = cut else { continue };
+            let Cut::Body { body, section: Some(section) } = cut else { continue };
+            let x = crane.description().sections[section].x;
             let origin = place(crane, &q, body, [0.0; 3]);
             let bodies = crane.description().bodies.iter().enumerate().skip(body);
             let own: f64 = bodies
@@ -309,7 +310,8 @@ fn a_linkage_does_the_work_of_its_cylinder() {
         crane.cylinder_wrenches(&q, &mut wrenches);
         let mut compared = 0;
         for (cut, wrench) in cuts.iter().zip(&wrenches) {
-            let Cut::Body { body, x: Some(x) } = *cut else { continue };
+            let Cut::Body { body, section: Some(section) } = *cut else { continue };
+            let x = description.sections[section].x;
             let name = &description.bodies[body].name;
             let axes = [("psi", wrench.moment.z), ("theta", wrench.moment.y), ("phi", wrench.moment.x)];
             for (symbol, moment) in axes.into_iter().filter(|_| x > 0.0) {

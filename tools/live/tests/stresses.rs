@@ -15,8 +15,11 @@ fn crane(text: &str) -> LiveCrane {
     LiveCrane::from_spec(&SourceFile::new("test.yaml", text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
 }
 
+/// Something known of each section.
+type Sections<T> = Vec<(SectionInfo, T)>;
+
 /// What the sections carry and how they are stressed, at rest.
-fn at_rest(crane: &LiveCrane) -> (Vec<(SectionInfo, Wrench)>, Vec<(SectionInfo, StressedSection)>) {
+fn at_rest(crane: &LiveCrane) -> (Sections<Wrench>, Sections<StressedSection>) {
     let crane: &dyn DynCrane = crane;
     let found = crane.equilibrium(&statics::Settings::default());
     assert!(found.is_stable(), "{found}");
@@ -79,23 +82,23 @@ connectors:
 /// A tapered part, then a thinner one, clamped at its beginning: `σ = M h/2J` with the height on either side of the step.
 #[test]
 fn a_step_is_stressed_on_both_sides() {
-    let clamped = crane(&format!(
+    let clamped = crane(
         "
 gravity: [0, 0, 0]
 links:
-  - {{name: base, joint: {{prismatic: {{axis: x}}}}, mass: 1, com: [0, 0, 0]}}
+  - {name: base, joint: {prismatic: {axis: x}}, mass: 1, com: [0, 0, 0]}
   - name: beam
     beam:
       length: 3
       sections: 4
       material: steel
       parts:
-        - {{length: 1.7, section: {{box: {{height: 0.5, width: 0.4, thickness: 0.02}}}}, to: {{box: {{height: 0.4, width: 0.3, thickness: 0.02}}}}}}
-        - {{length: 1.3, section: {{box: {{height: 0.3, width: 0.25, thickness: 0.01}}}}}}
-drives: [{{coordinate: base_x, rigid: true, motion: {{hold: 0}}}}]
-loads: [{{name: press, link: beam, at: [3, 0, 0], force: [0, -20e3, 0]}}]
-"
-    ));
+        - {length: 1.7, section: {box: {height: 0.5, width: 0.4, thickness: 0.02}}, to: {box: {height: 0.4, width: 0.3, thickness: 0.02}}}
+        - {length: 1.3, section: {box: {height: 0.3, width: 0.25, thickness: 0.01}}}
+drives: [{coordinate: base_x, rigid: true, motion: {hold: 0}}]
+loads: [{name: press, link: beam, at: [3, 0, 0], force: [0, -20e3, 0]}]
+",
+    );
     let (_, stressed) = at_rest(&clamped);
     let stress = |h: f64, b: f64, t: f64| {
         let second = (b * h.powi(3) - (b - 2.0 * t) * (h - 2.0 * t).powi(3)) / 12.0;

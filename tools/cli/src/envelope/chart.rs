@@ -201,11 +201,8 @@ fn best_and_worst(sheet: &Sheet, radius: f64) -> Option<[Knot; 2]> {
     let meets = |[a, b]: [Knot; 2]| {
         let part = (radius - a.radius) / (b.radius - a.radius);
         // Not on edges of constant radius, nor next to poses without an equilibrium.
-        (0.0..=1.0).contains(&part).then(|| Knot {
-            radius,
-            height: a.height + part * (b.height - a.height),
-            ..if b.load < a.load { b } else { a }
-        })
+        let lower = if b.load < a.load { b } else { a };
+        (0.0..=1.0).contains(&part).then_some(Knot { radius, height: a.height + part * (b.height - a.height), ..lower })
     };
     let all = || sheet.edges().filter_map(meets);
     let best = all().max_by(|a, b| a.load.total_cmp(&b.load))?;
