@@ -14,8 +14,9 @@ const SECTIONS: [u32; 3] = [4, 8, 16];
 /// The difference between the finer two over that between the coarser two: 1/4 for order 2; more, since the terms behind the leading one
 /// count at four sections.
 const RATIO: f64 = 0.45;
-/// Differences below this share of the largest number of a unit are not looked at.
-const SMALL: f64 = 2e-6;
+/// Differences below this share of the largest number of a unit are not looked at: a place within a section is off by up to an eighth of
+/// the square of the section's length times the curvature, or not at all, depending on where it is.
+const SMALL: f64 = 2e-5;
 
 /// What does not converge with order 2; `None` for a crane without divided beams, or with beams that cannot be divided again.
 pub fn check(tree: &Tree) -> Option<Vec<String>> {
