@@ -155,7 +155,12 @@ fn a_rocker_about_the_joint_is_a_direct_cylinder() {
             {
                 assert!((a - b).abs() < 1e-9 * size.abs(), "{sections}: {a} for {b}");
             }
-            for ((cut, a), (_, b)) in wrenches(one, &q).into_iter().zip(wrenches(other, &q)) {
+            // Only the crane with a linkage has sections at its pivot.
+            let of_bodies = |crane| {
+                let all: Vec<(Cut, Wrench)> = wrenches(crane, &q);
+                all.into_iter().filter(|(cut, _)| !matches!(cut, Cut::Inside { .. }))
+            };
+            for ((cut, a), (_, b)) in of_bodies(one).zip(of_bodies(other)) {
                 // The jib does not feel the force of the pivot, and the boom, not the jib, holds the rocker upright.
                 let of_jib = matches!(cut, Cut::Joint { body } | Cut::Body { body, .. } if body == named(one, "jib"));
                 if of_jib {
