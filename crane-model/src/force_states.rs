@@ -8,7 +8,7 @@ use nalgebra::DMatrix;
 use crate::{
     Description,
     bristles::{self, Bristles},
-    dyn_crane::{DynDynamics, DynModel},
+    dyn_crane::{DynCrane, DynDynamics, DynModel},
     hydraulics::{self, Hydraulics},
 };
 
@@ -53,6 +53,11 @@ pub(crate) struct Row {
 }
 
 impl Row {
+    /// The entry of a coordinate.
+    pub fn entry(&self, coordinate: usize) -> f64 {
+        coordinate.checked_sub(self.first).and_then(|place| self.entries.get(place)).copied().unwrap_or(0.0)
+    }
+
     /// J x
     pub fn along(&self, x: &[f64]) -> f64 {
         self.entries.iter().zip(&x[self.first..]).map(|(entry, x)| entry * x).sum()
@@ -122,6 +127,15 @@ impl ForceStates {
         let mut states = self.oil.holding(crane, t, q);
         states.resize(self.len(), 0.0);
         states
+    }
+
+    /// As [`holding`](Self::holding), with valves that a servo has opened slightly, in either direction.
+    pub(crate) fn slightly_open(&mut self, crane: &dyn DynCrane, t: f64, q: &[f64]) -> [Vec<f64>; 2] {
+        let len = self.len();
+        self.oil.slightly_open(crane, t, q).map(|mut states| {
+            states.resize(len, 0.0);
+            states
+        })
     }
 
     /// Number of forces with states.

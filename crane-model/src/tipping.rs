@@ -6,7 +6,7 @@
 
 use nalgebra::Vector3;
 
-use crate::{Wrench, dyn_crane::DynCrane};
+use crate::{Text, Wrench, dyn_crane::DynCrane};
 
 /// Moments about a tipping line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,8 +42,8 @@ impl TippingLine {
 pub fn lines(crane: &dyn DynCrane, t: f64, q: &[f64], v: &[f64], a: &[f64]) -> Vec<TippingLine> {
     let feet = crane.support_positions_at(q);
     let corners = polygon(&feet);
-    let wrenches = || crane.external_forces_at(t, q, v, a);
-    let loads = if corners.is_empty() { Vec::new() } else { loads_of_links(crane, q, &wrenches()) };
+    let loads = || loads_of_links(crane, t, [q, v, a]).into_iter().map(|(_, load)| load).collect();
+    let loads: Vec<Wrench> = if corners.is_empty() { Vec::new() } else { loads() };
     let sides = corners.iter().zip(corners.iter().cycle().skip(1));
     sides.map(|(&from, &to)| line([from, to], [feet[from], feet[to]], &loads)).collect()
 }
@@ -53,13 +53,35 @@ pub fn governing(lines: &[TippingLine]) -> Option<&TippingLine> {
     lines.iter().min_by(|a, b| a.margin().total_cmp(&b.margin()))
 }
 
+/// A link's weight, inertia and loads about a tipping line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinkMoment {
+    /// The link.
+    pub link: Text,
+    /// Force downwards, N.
+    pub weight: f64,
+    /// Moment about the line, N m: positive if it holds the crane down, negative if it overturns it.
+    pub moment: f64,
+}
+
+/// What each link contributes to the moments about the line between two feet, at time `t`, for pose, rates and accelerations.
+pub fn moments(crane: &dyn DynCrane, t: f64, motion: [&[f64]; 3], feet: [usize; 2]) -> Vec<LinkMoment> {
+    let places = crane.support_positions_at(motion[0]);
+    let line = feet.map(|foot| places[foot]);
+    let of_link = |(link, load): (Text, Wrench)| LinkMoment { link, weight: -load.force.z, moment: held(line, &load) };
+    loads_of_links(crane, t, motion).into_iter().map(of_link).collect()
+}
+
+/// Moment of a load about the line through two points, positive if it holds the crane down: a load within the polygon turns the crane clockwise about
+/// the line, and so against the ground.
+fn held([from, to]: [Vector3<f64>; 2], load: &Wrench) -> f64 {
+    -(to - from).normalize().dot(&(load.moment - from.cross(&load.force)))
+}
+
 /// Moments of loads about the line through two points.
-fn line(feet: [usize; 2], [from, to]: [Vector3<f64>; 2], loads: &[Wrench]) -> TippingLine {
-    let direction = (to - from).normalize();
-    // A load within the polygon turns the crane clockwise about the line, and so against the ground.
-    let held = loads.iter().map(|load| -direction.dot(&(load.moment - from.cross(&load.force))));
+fn line(feet: [usize; 2], places: [Vector3<f64>; 2], loads: &[Wrench]) -> TippingLine {
     let (mut stabilising, mut overturning) = (0.0, 0.0);
-    for moment in held {
+    for moment in loads.iter().map(|load| held(places, load)) {
         if moment > 0.0 {
             stabilising += moment;
         } else {
@@ -70,21 +92,23 @@ fn line(feet: [usize; 2], [from, to]: [Vector3<f64>; 2], loads: &[Wrench]) -> Ti
 }
 
 /// Wrench of the weight, the inertia and the applied loads of every link, in the world frame about the world's origin.
-fn loads_of_links(crane: &dyn DynCrane, q: &[f64], wrenches: &[Wrench]) -> Vec<Wrench> {
+fn loads_of_links(crane: &dyn DynCrane, t: f64, [q, v, a]: [&[f64]; 3]) -> Vec<(Text, Wrench)> {
     let description = crane.description();
+    let wrenches = crane.external_forces_at(t, q, v, a);
     let transforms = crane.transforms_at(q);
-    let beginnings = description.cuts().into_iter().zip(wrenches).filter_map(|(cut, wrench)| match cut {
+    let beginnings = description.cuts().into_iter().zip(&wrenches).filter_map(|(cut, wrench)| match cut {
         crate::Cut::Body { body, .. } => Some((body, wrench)),
         _ => None,
     });
     // The wrench of each link and everything beyond it.
-    let mut beyond: Vec<Wrench> = Vec::new();
+    let (mut beyond, mut links): (Vec<Wrench>, Vec<Text>) = (Vec::new(), Vec::new());
     for (body, wrench) in beginnings {
         let link = &description.bodies[body].link;
         if body == 0 || description.bodies[body - 1].link != *link {
             let (turn, place) = (transforms[body].fixed_view::<3, 3>(0, 0), transforms[body].fixed_view::<3, 1>(0, 3));
             let force = turn * wrench.force;
             beyond.push(Wrench { force, moment: turn * wrench.moment + place.cross(&force) });
+            links.push(description.bodies[body].link.clone());
         }
     }
     let next = beyond.clone().into_iter().skip(1).chain([Wrench::ZERO]);
@@ -92,7 +116,7 @@ fn loads_of_links(crane: &dyn DynCrane, q: &[f64], wrenches: &[Wrench]) -> Vec<W
         .iter()
         .zip(next)
         .map(|(all, rest)| Wrench { force: all.force - rest.force, moment: all.moment - rest.moment });
-    own.collect()
+    links.into_iter().zip(own).collect()
 }
 
 /// Fraction of the polygon's size below which a foot counts as on the line between two others.

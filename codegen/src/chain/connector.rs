@@ -114,12 +114,7 @@ impl Chain {
     /// The distance between two points at a pose, m.
     #[must_use]
     pub fn distance(&self, ends: &[Attachment; 2], q: &[f64], parameters: &[f64]) -> f64 {
-        let mut frame = Frame::WORLD;
-        let mut frames = Vec::with_capacity(self.bodies.len());
-        for body in &self.bodies {
-            frame = body.path.iter().fold(frame, |frame, step| frame.after(step, self, q, parameters));
-            frames.push(frame);
-        }
+        let frames = self.frames(q, parameters);
         let place = |end: &Attachment| {
             let frame = end.body.map_or(Frame::WORLD, |BodyId(body)| frames[body]);
             frame.transform_point(end.position.each_ref().map(|x| x.at(parameters)))

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::ops::Range;
 
-use super::{BodyId, Chain, CoordinateId, Value};
+use super::{BodyId, Chain, CoordinateId, Value, frame::Vector};
 
 /// The hydraulic cylinder of a driven joint.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,6 +105,32 @@ impl Cylinder {
 }
 
 impl Chain {
+    /// The length of a cylinder at a pose, m; NaN if its linkage cannot be assembled. Then the distance from the linkage's pivot to its head, m.
+    #[must_use]
+    pub fn cylinder_length(&self, cylinder: &Cylinder, q: &[f64], parameters: &[f64]) -> [f64; 2] {
+        let frames = self.frames(q, parameters);
+        let place = |Pin { body, position }: &Pin| {
+            frames[body.0].transform_point(position.each_ref().map(|x| x.at(parameters)))
+        };
+        let [foot, head] = [&cylinder.foot, &cylinder.head].map(place);
+        let Some(linkage) = &cylinder.linkage else {
+            let length = norm(difference(head, foot));
+            return [length, length];
+        };
+        let [_, axis] = self.axis(cylinder.coordinate, q, parameters);
+        let pivot = place(&linkage.pivot);
+        let [rocker, link] = [&linkage.rocker, &linkage.link].map(|length| length.at(parameters));
+        let across = difference(head, pivot);
+        let distance = norm(across);
+        // The pin between rocker and link is this far along the line from the pivot to the head, and this far to its left.
+        let along = (distance * distance + rocker * rocker - link * link) / (2.0 * distance);
+        let height = (rocker * rocker - along * along).sqrt() * if linkage.left { 1.0 } else { -1.0 };
+        let normal = cross(axis, across);
+        let aside = height / norm(normal);
+        let pin = [0, 1, 2].map(|i| pivot[i] + along / distance * across[i] + aside * normal[i]);
+        [norm(difference(pin, foot)), distance]
+    }
+
     /// The coordinates that move only some of a cylinder's pins, and so change its length: that of its joint and those of beams.
     #[must_use]
     pub fn spanned_by(&self, cylinder: &Cylinder) -> Range<usize> {
@@ -118,4 +144,16 @@ impl Chain {
     pub fn drive_of(&self, cylinder: &Cylinder) -> usize {
         self.drives.iter().position(|drive| drive.coordinate == cylinder.coordinate).unwrap_or_default()
     }
+}
+
+fn difference(to: Vector, from: Vector) -> Vector {
+    [0, 1, 2].map(|i| to[i] - from[i])
+}
+
+fn norm(vector: Vector) -> f64 {
+    vector.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+fn cross(a: Vector, b: Vector) -> Vector {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

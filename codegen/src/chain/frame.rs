@@ -1,6 +1,6 @@
 //! Numeric frames: poses of bodies at given coordinates.
 
-use super::{Axis, Chain, CoordinateKind, Step};
+use super::{Axis, Body, Chain, CoordinateId, CoordinateKind, Step};
 
 /// A point or a direction: x, y, z.
 pub type Vector = [f64; 3];
@@ -107,6 +107,33 @@ impl Frame {
             [v * x * z + sin * y, v * y * z - sin * x, cos + v * z * z],
         ];
         Frame { axes: columns.map(|column| self.direction(column)), ..self }
+    }
+}
+
+impl Chain {
+    /// Frames of all bodies in the world at a pose.
+    #[must_use]
+    pub fn frames(&self, q: &[f64], parameters: &[f64]) -> Vec<Frame> {
+        let mut frame = Frame::WORLD;
+        let body = |body: &Body| {
+            frame = body.path.iter().fold(frame, |frame, step| frame.after(step, self, q, parameters));
+            frame
+        };
+        self.bodies.iter().map(body).collect()
+    }
+
+    /// The axis of a coordinate in the world at a pose: a point on it, and its direction.
+    #[must_use]
+    pub fn axis(&self, coordinate: CoordinateId, q: &[f64], parameters: &[f64]) -> [Vector; 2] {
+        let mut frame = Frame::WORLD;
+        for step in self.bodies.iter().flat_map(|body| &body.path) {
+            // A rotation about the axis and a translation along it leave its direction in place.
+            frame = frame.after(step, self, q, parameters);
+            if step.coordinates().contains(&coordinate) {
+                break;
+            }
+        }
+        [frame.origin, frame.axes[self.coordinates[coordinate.0].axis.index()]]
     }
 }
 

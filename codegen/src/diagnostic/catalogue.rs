@@ -416,8 +416,8 @@ catalogue! {
     W024 opening_beyond(cylinder, opening) "the valve of cylinder `{cylinder}` has an opening of {opening}", "−1 and 1 are fully open; beyond them nothing changes",
         "write a fraction: 50 % is 0.5";
     /// When its drive starts, the distance between the pins of a cylinder is within its stroke.
-    W025 out_of_stroke(cylinder, length, least, most) "cylinder `{cylinder}` is {length} m long at the start of its drive's motion", "its stroke is from {least} m to {most} m",
-        "check `retracted`, `stroke`, the pins and the motion of the drive";
+    W025 out_of_stroke(cylinder, length, least, most, help) "cylinder `{cylinder}` is {length} m long at the start of its drive's motion", "its stroke is from {least} m to {most} m",
+        "{help}";
     /// Bristles of a joint that sticks slide after a deflection of 1e-8 to 0.1 m or rad.
     W026 odd_bristles(coordinate, deflection, unit) "the bristles of `{coordinate}` slide after a deflection of {deflection} {unit}", "breakaway friction over stiffness; usual: 1e-8 to 0.1 {unit}",
         "check the unit of `stiffness`: bristles that are too stiff force very small steps, and bristles that are too soft act as a spring";
@@ -427,4 +427,40 @@ catalogue! {
     /// Where its drive starts, a cylinder has a lever arm of at least 0.01 m.
     W029 no_lever(cylinder, lever) "cylinder `{cylinder}` has a lever arm of {lever} m where its drive starts", "its force is the effort of the drive over this lever arm",
         "check the pins and the motion of the drive: pins in line with the joint carry no moment";
+    /// The safety factor of a beam is at least 1.
+    W030 unsafe_factor(link, factor) "the safety factor of beam `{link}` is {factor}", "below 1 it allows stresses beyond the yield stress",
+        "write the yield stress over the allowable stress, such as 1.5";
+    /// The radius of gyration of a link is not larger than the crane.
+    W031 spread_mass(place, radius, size) "the inertia of {place} is that of a mass {radius} m away from its centre", "all joints and feet of the crane are within {size} m",
+        "check exponents and units: moments of inertia are in kg m², radii of `gyration` in m";
+    /// A centre of mass is not farther away than the crane is large.
+    W032 far_mass(place, distance, size) "the centre of mass of {place} is {distance} m away from its frame", "all joints and feet of the crane are within {size} m",
+        "write `com` in m, from the origin of the link's frame; check the decimal point";
+    /// A boom does not turn about the vertical directly after a joint that does.
+    W033 swept(link, before) "boom `{link}` sweeps in the horizontal plane", "its joint turns about the vertical, as that of `{before}` does",
+        "a boom that is raised has a horizontal axis: add `rotation: {{x: 90 deg}}` to its `placement`, or set the `axis` of its joint";
+    /// The feet of a crane are at similar heights.
+    W034 raised_foot(support, height, usual) "support `{support}` is {height} m high", "the other supports are at a height of {usual} m",
+        "check the third number of `at`, in m: a foot in the air lifts off at once or tilts the crane";
+    /// Supports are apart.
+    W035 same_foot(support, other) "support `{support}` is in the same place as `{other}`", "two supports in one place act as one",
+        "give each its own position, `at: [x, y, z]` in m: usually the signs of y differ";
+    /// Springs are at most 1e13 N/m or N m/rad stiff.
+    W036 too_stiff(what, given, unit, help) "{what} is {given} {unit}", "no crane is that stiff; rounding errors then hide small forces", "{help}";
+    /// The base of a crane on feet that lift is not far lighter than what it carries.
+    W037 light_base(link, mass, carried) "the base `{link}` has a mass of {mass} kg", "it carries {carried} kg, on feet that can lift",
+        "write masses in kg: 8.6 t = 8600 kg, without a comma or a point for thousands";
+    /// The free play of a support is at most 0.2 m.
+    W038 long_free_play(support, play) "the free play of support `{support}` is {play} m", "the crane moves this far before the support acts",
+        "write it in m: 2 mm = 2e-3 m";
+    /// A coupling of two joints of one kind has a ratio of at most 20.
+    W039 high_ratio(coupling, ratio, coordinate, leader) "coupling `{coupling}` has a ratio of {ratio}", "`{coordinate}` moves {ratio} times as far as `{leader}`",
+        "`ratio` is the travel of `coordinate` over that of `follows`: two stages on a chain have 1";
+    /// The linkage of a cylinder can be assembled where its drive starts.
+    W040 unassembled(cylinder, rocker, link, distance) "the linkage of cylinder `{cylinder}` cannot be assembled at the start of its drive's motion",
+        "rocker {rocker} m and link {link} m, but pivot and head are {distance} m apart",
+        "their sum must exceed this distance, and their difference must be less: check `rocker`, `link`, `pivot` and `head`, in m";
+    /// The weight that a drive holds turns its joint by less than 0.5 rad, or moves it by less than 0.5 m.
+    W041 soft_drive(coordinate, sag, unit, stiffness, stiffness_unit) "the drive of `{coordinate}` is too soft for the weight that it holds",
+        "with {stiffness} {stiffness_unit} the weight moves it by about {sag} {unit}", "check the exponent of `stiffness`; drives of cranes have 1e5 to 1e8 {stiffness_unit}";
 }

@@ -7,7 +7,7 @@ use crate::{
     CylinderInfo,
     dyn_crane::DynCrane,
     modes::{DampedMode, SmallMotions},
-    results::cylinders_at,
+    results::{CylinderState, cylinders_at},
 };
 
 /// An upper bound on the decay rate of the pressures of each cylinder with a valve at a pose, as a mode of its joint: the one with open
@@ -28,9 +28,20 @@ pub fn decays(crane: &dyn DynCrane, q: &[f64]) -> Vec<DampedMode> {
     cylinders.iter().zip(&lengths).filter_map(decay).collect()
 }
 
-/// Adds the stiffness of the oil that shut valves trap, `k Jᵀ J − F ∂J/∂q` with `J = ∂ℓ/∂q`, to that of small motions about a pose at
-/// rest.
+/// Adds the stiffness of the oil that shut valves trap to that of small motions about a pose at rest, and the change of the direction of its
+/// forces.
 pub(crate) fn stiffen(crane: &dyn DynCrane, q: &[f64], motions: &mut SmallMotions) {
+    hold(crane, q, motions, |info, state| state.stiffness_along(info).unwrap_or(f64::NAN));
+}
+
+/// Adds what cylinders with the forces F contribute, `k Jᵀ J − F ∂J/∂q` with `J = ∂ℓ/∂q` to the stiffness of small motions about a pose at rest, for each cylinder with a valve; `along`: its
+/// stiffness k, N/m.
+pub(super) fn hold(
+    crane: &dyn DynCrane,
+    q: &[f64],
+    motions: &mut SmallMotions,
+    along: impl Fn(&CylinderInfo, &CylinderState) -> f64,
+) {
     /// Step of the central difference of J, m or rad: the relative error of the second term is 1e-8.
     const DIFFERENCE: f64 = 1e-4;
     let (cylinders, n) = (&crane.description().cylinders, q.len());
@@ -52,7 +63,7 @@ pub(crate) fn stiffen(crane: &dyn DynCrane, q: &[f64], motions: &mut SmallMotion
             if info.valve.is_none() || !(first..end).contains(&by) {
                 continue;
             }
-            let stiffness = state.stiffness_along(info).unwrap_or(f64::NAN);
+            let stiffness = along(info, state);
             for (row, &of) in motions.unknowns.iter().enumerate() {
                 let [place, other] = [of, by].map(|coordinate| index * n + coordinate);
                 let curvature = (after[place] - before[place]) / (2.0 * DIFFERENCE);

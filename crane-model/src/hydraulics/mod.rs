@@ -29,6 +29,7 @@
 mod about_rest;
 mod cylinder;
 mod oil;
+mod servo;
 mod valve;
 
 use nalgebra::{DMatrix, Vector3};
@@ -43,6 +44,7 @@ pub use about_rest::decays;
 pub(crate) use about_rest::stiffen;
 use cylinder::{Command, Pump, ValveCylinder};
 pub(crate) use oil::Oil;
+pub use servo::{UnstableServo, unstable_servos, with_servos};
 use valve::flows;
 
 /// The oil of a crane.

@@ -55,23 +55,16 @@ pub fn damped_with_shapes(motions: &SmallMotions) -> Result<Vec<(DampedMode, Com
     if motions.mass.is_empty() {
         return Ok(Vec::new());
     }
-    let mut state = motions.state_matrix()?;
-    if !state.iter().all(|x| x.is_finite()) {
-        return Err(NoModes::Eigenvalues);
-    }
-    let scales = balancing::balance_parlett_reinsch(&mut state);
-    let iterations = ITERATIONS * state.nrows();
-    let (vectors, t) = Schur::try_new(state, PRECISION, iterations).ok_or(NoModes::Eigenvalues)?.unpack();
-    let (blocks, least) = (Block::all(&t), rounding(&t));
+    let n = motions.mass.nrows();
     let mass = motions.mass.map(Complex::from);
-    let mut modes: Vec<_> = blocks
-        .iter()
-        .map(|block| {
-            let shape = shape(&vectors, &scales, &block.eigenvector(&t, &blocks, least));
+    let mut modes: Vec<_> = eigenpairs(motions.state_matrix()?)?
+        .into_iter()
+        .map(|(eigenvalue, vector)| {
+            let shape = vector.rows(0, n).into_owned();
             let dominating = motions.dominating(&shape);
             let first = motions.unknowns.iter().position(|unknown| Some(unknown) == dominating.first());
             let shape = normalised(shape, &mass, first);
-            (DampedMode { eigenvalue: block.eigenvalue(&t), dominating }, shape)
+            (DampedMode { eigenvalue, dominating }, shape)
         })
         .collect();
     modes.sort_by(|(a, _), (b, _)| a.eigenvalue.norm().total_cmp(&b.eigenvalue.norm()));
@@ -85,14 +78,32 @@ fn normalised(shape: ComplexShape, mass: &DMatrix<Complex<f64>>, at: Option<usiz
     if norm > 0.0 { shape * Complex::from_polar(1.0 / norm, -phase) } else { shape }
 }
 
-/// Displacements of a mode, the upper half of its state, from its eigenvector `y` in the basis of the Schur form.
-fn shape(vectors: &DMatrix<f64>, scales: &DVector<f64>, y: &DVector<Complex<f64>>) -> DVector<Complex<f64>> {
-    let n = scales.len() / 2;
-    let mut shape: DVector<Complex<f64>> = DVector::zeros(n);
+/// The eigenvalues of a state matrix with Im λ ≥ 0, and their eigenvectors, from the Schur form of the balanced matrix.
+///
+/// # Errors
+/// The matrix has numbers that are not finite, or the QR algorithm does not converge.
+pub(super) fn eigenpairs(mut state: DMatrix<f64>) -> Result<Vec<(Complex<f64>, DVector<Complex<f64>>)>, NoModes> {
+    if !state.iter().all(|x| x.is_finite()) {
+        return Err(NoModes::Eigenvalues);
+    }
+    let scales = balancing::balance_parlett_reinsch(&mut state);
+    let iterations = ITERATIONS * state.nrows();
+    let (vectors, t) = Schur::try_new(state, PRECISION, iterations).ok_or(NoModes::Eigenvalues)?.unpack();
+    let (blocks, least) = (Block::all(&t), rounding(&t));
+    let pair = |block: &Block| {
+        let vector = original(&vectors, &scales, &block.eigenvector(&t, &blocks, least));
+        (block.eigenvalue(&t), vector)
+    };
+    Ok(blocks.iter().map(pair).collect())
+}
+
+/// The eigenvector of a matrix whose balanced form has the eigenvector `y` in the basis of its Schur form.
+fn original(vectors: &DMatrix<f64>, scales: &DVector<f64>, y: &DVector<Complex<f64>>) -> DVector<Complex<f64>> {
+    let mut vector: DVector<Complex<f64>> = DVector::zeros(scales.len());
     for (column, y) in vectors.column_iter().zip(y) {
-        for (x, (entry, scale)) in shape.iter_mut().zip(column.iter().zip(scales)) {
+        for (x, (entry, scale)) in vector.iter_mut().zip(column.iter().zip(scales)) {
             *x += *y * (*entry * *scale);
         }
     }
-    shape
+    vector
 }

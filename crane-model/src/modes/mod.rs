@@ -3,11 +3,13 @@
 mod damped;
 mod eigenvectors;
 mod small_motions;
+mod state_space;
 mod steady;
 mod undamped;
 
 pub use damped::{ComplexShape, DampedMode, damped, damped_with_shapes};
 pub use small_motions::SmallMotions;
+pub use state_space::StateSpace;
 pub use steady::{Held, NotSteady, Steady, steady};
 pub use undamped::{Mode, undamped};
 

@@ -1,13 +1,15 @@
 //! Cautions about poses and runs for which the model is not valid.
 
-use super::{Extremes, Table, connectors, cylinders, feet, limits, stop_effort, telescopes};
+use super::{Extremes, Table, connectors, cylinders, feet, limits, loads, servos, stop_effort, telescopes};
 use crate::{CylinderInfo, Description, dyn_crane::DynCrane};
 
 /// Default rotation of one section of a beam above which there is a caution, degrees: linear springs and straight elements then
 /// have an error of about 1 %.
 pub const BEND: f64 = 20.0;
 
-/// Feet that pull the crane down or have lifted, joints on their stops, slack ropes, stages of telescopes that overlap, and elements bent beyond `bend` degrees, at a pose at rest.
+/// Cautions about a pose at rest, the most important first: moments that tip the crane over, sections beyond their allowable stress, feet that
+/// pull the crane down or have lifted, drives and cylinders at their limits, joints on their stops, slack ropes, stages of telescopes that overlap, elements bent beyond `bend`
+/// degrees, and angles for which the equations lose accuracy.
 pub fn of_pose(crane: &dyn DynCrane, q: &[f64], bend: f64) -> Vec<String> {
     let description = crane.description();
     let angles = description.coordinates.iter().zip(q).filter(|(coordinate, _)| coordinate.role.is_element());
@@ -17,13 +19,17 @@ pub fn of_pose(crane: &dyn DynCrane, q: &[f64], bend: f64) -> Vec<String> {
         let coordinate = &description.coordinates[coordinate];
         format!("{} rests on its stop with {:.1} {}", coordinate.name, effort.abs(), coordinate.kind.force_unit())
     });
-    feet::of_pose(crane, q)
+    loads::of_pose(crane, q)
+        .into_iter()
+        .chain(feet::of_pose(crane, q))
         .chain(limits::of_pose(crane, q))
         .chain(cylinders::of_pose(crane, q))
         .chain(stopped)
         .chain(connectors::of_pose(crane, q))
         .chain(of_telescopes(crane, q))
         .chain(bent_beyond(bent, bend))
+        .chain(description.near_singular(q))
+        .chain(description.large_tilt(q))
         .collect()
 }
 
@@ -32,7 +38,18 @@ pub fn of_telescopes(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
     telescopes::of_pose(crane, q)
 }
 
-/// What [`of_pose`] reports, over a run.
+/// Servos whose loops with the crane are unstable about a pose at rest at time `t`, s, with the gains that would make them stable.
+pub fn of_servos(crane: &dyn DynCrane, t: f64, q: &[f64]) -> Vec<String> {
+    servos::of_pose(crane, t, q)
+}
+
+/// What a run shows only on inspection of every result, the most important first: moments that tip the crane over, sections beyond their
+/// allowable stress, and servos whose loops with the crane are unstable. It takes about as long as a part of the run itself.
+pub fn of_loads(crane: &dyn DynCrane, table: &Table) -> [Vec<String>; 2] {
+    [loads::of_run(crane, table), servos::of_run(crane, table)]
+}
+
+/// Cautions over a run, the most important first: those of a pose, without loads.
 pub fn of_run(crane: &dyn DynCrane, table: &Table, bend: f64) -> Vec<String> {
     let description = crane.description();
     let elements = description.coordinates.iter().filter(|coordinate| coordinate.role.is_element());
@@ -48,6 +65,8 @@ pub fn of_run(crane: &dyn DynCrane, table: &Table, bend: f64) -> Vec<String> {
         .chain(connectors::of_run(description, table))
         .chain(telescopes::of_run(crane, table))
         .chain(bent_beyond(bent, bend))
+        .chain(near_singular(description, table))
+        .chain(large_tilt(description, table))
         .collect()
 }
 

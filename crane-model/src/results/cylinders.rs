@@ -101,6 +101,14 @@ pub(crate) fn unassembled(description: &Description, table: &Table) -> Option<(T
     })
 }
 
+/// The first cylinder whose linkage cannot be assembled in a pose.
+pub(crate) fn unassembled_at(crane: &dyn DynCrane, q: &[f64]) -> Option<Text> {
+    let cylinders = &crane.description().cylinders;
+    let mut states = vec![Vector3::zeros(); cylinders.len()];
+    crane.cylinder_states(q, &vec![0.0; q.len()], &mut states);
+    cylinders.iter().zip(&states).find_map(|(info, state)| state.x.is_nan().then(|| info.name.clone()))
+}
+
 /// Names and units of the columns of a cylinder.
 pub(super) fn columns(name: &str) -> [(String, &'static str); 6] {
     [

@@ -23,9 +23,9 @@ pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> impl Iterator<Item = S
     pulled(&pulls).into_iter().chain(lifted)
 }
 
-/// Feet over a run: as for a pose, and whether the crane tips over.
+/// Feet over a run: whether the crane tips over, and as for a pose.
 pub(super) fn of_run(description: &Description, table: &Table) -> impl Iterator<Item = String> {
-    of_reactions(description, table).into_iter().chain(tipping(description, table))
+    tipping(description, table).into_iter().chain(of_reactions(description, table))
 }
 
 /// A foot that lifts off the ground in a run.

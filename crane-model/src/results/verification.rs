@@ -71,33 +71,28 @@ impl Verification {
         self.differences.get(index).copied()
     }
 
-    /// Reports quantities whose error may exceed one percent of their size.
+    /// Reports quantities whose error may exceed one percent of their size, the worst by name.
     pub fn cautions(&self, description: &Description, table: &Table) -> Vec<String> {
+        let doubtful = self.doubtful(description, table);
         let mut cautions = Vec::new();
-        for kind in headlines(description) {
-            let sizes: Vec<f64> = kind.names.iter().map(|name| kind.size(&Extremes::of(table, name))).collect();
-            let greatest = sizes.iter().copied().fold(0.0, f64::max);
-            for (name, size) in kind.names.iter().zip(sizes) {
-                let Some(difference) = self.difference(table, name) else { continue };
-                if difference > CAUTION * size.max(NEGLIGIBLE * greatest) && difference > kind.noise(table, name) {
-                    let percent = 100.0 * difference / size.max(f64::MIN_POSITIVE);
-                    let unit = kind.unit;
-                    let between = table
-                        .columns
-                        .iter()
-                        .zip(&self.between)
-                        .any(|(column, between)| column.name == *name && *between);
-                    let remedy = if between {
-                        "it has a peak between two results; use a shorter interval of results"
-                    } else {
-                        "a finer run differs by that much; use a smaller tolerance or step"
-                    };
-                    cautions.push(format!(
-                        "{name} may be off by {difference:.2e} {unit}, {percent:.1} % of its {}: {remedy}",
-                        kind.measure
-                    ));
-                }
-            }
+        for between in [false, true] {
+            let of_kind: Vec<&Doubtful> = doubtful.iter().filter(|quantity| quantity.between == between).collect();
+            let Some(worst) = of_kind.iter().max_by(|a, b| a.share.total_cmp(&b.share)) else { continue };
+            let Doubtful { name, difference, unit, share, measure, .. } = worst;
+            let others = match of_kind.len() - 1 {
+                0 => String::new(),
+                1 => ", and one other quantity by less".to_owned(),
+                count => format!(", and {count} other quantities by less"),
+            };
+            let remedy = if between {
+                "there are peaks between two results; use a shorter interval of results"
+            } else {
+                "a finer run differs by that much; use a smaller tolerance or step"
+            };
+            cautions.push(format!(
+                "{name} may be off by {difference:.2e} {unit}, {:.1} % of its {measure}{others}: {remedy}",
+                100.0 * share
+            ));
         }
         if let (Some(time), false) = (self.divergence, cautions.is_empty()) {
             cautions.push(format!(
@@ -107,6 +102,42 @@ impl Verification {
         }
         cautions
     }
+
+    /// Quantities whose error may exceed one percent of their size.
+    fn doubtful(&self, description: &Description, table: &Table) -> Vec<Doubtful> {
+        let mut found = Vec::new();
+        for kind in headlines(description) {
+            let sizes: Vec<f64> = kind.names.iter().map(|name| kind.size(&Extremes::of(table, name))).collect();
+            let greatest = sizes.iter().copied().fold(0.0, f64::max);
+            for (name, size) in kind.names.iter().zip(sizes) {
+                let place = table.columns.iter().position(|column| column.name == *name);
+                let Some((difference, between)) =
+                    place.and_then(|place| Some((*self.differences.get(place)?, *self.between.get(place)?)))
+                else {
+                    continue;
+                };
+                if difference > CAUTION * size.max(NEGLIGIBLE * greatest) && difference > kind.noise(table, name) {
+                    let share = difference / size.max(f64::MIN_POSITIVE);
+                    let (unit, measure) = (kind.unit, kind.measure);
+                    found.push(Doubtful { name: name.clone(), difference, unit, share, measure, between });
+                }
+            }
+        }
+        found
+    }
+}
+
+/// A quantity whose error may exceed one percent of its size.
+struct Doubtful {
+    name: String,
+    difference: f64,
+    unit: &'static str,
+    /// The error relative to its size.
+    share: f64,
+    /// The measure of its size, in words.
+    measure: &'static str,
+    /// Whether the error is that of a peak between two results.
+    between: bool,
 }
 
 /// Time in which the difference of two runs grows by a factor e, if it grows by [`CHAOS`] powers and along a straight line:

@@ -192,8 +192,7 @@ impl<'a> Gathering<'a> {
         match failed {
             Ok(run) => {
                 let of_run = cautions::of_run(self.crane, &table, cautions::BEND);
-                let cautions = near_singular.into_iter().chain(tilted).chain(of_run).collect();
-                Outcome { peaks: Some(Peaks::of(description, &table)), end: self.end, cautions, run: Ok(run) }
+                Outcome { peaks: Some(Peaks::of(description, &table)), end: self.end, cautions: of_run, run: Ok(run) }
             }
             Err(reason) => {
                 let run = Err(Reason::Failed(reason.of(&description.name)));

@@ -7,8 +7,7 @@ use crate::{
     dyn_crane::DynCrane,
     dynamics::{Cause, Stopped},
     modes::NoModes,
-    results::overloaded,
-    statics::Equilibrium,
+    statics::{Diagnosis, Equilibrium},
 };
 
 /// A crane without a complete run.
@@ -27,8 +26,8 @@ pub enum Reason {
     Equilibrium {
         /// What it found.
         equilibrium: Equilibrium,
-        /// Coordinates whose drives are at the limits of their efforts there.
-        overloaded: Vec<Text>,
+        /// Why.
+        diagnosis: Diagnosis,
     },
     /// The mass matrix at the start is not positive definite.
     MassMatrix,
@@ -62,8 +61,7 @@ impl Failed {
 impl Reason {
     /// The reason for a crane for which statics found no stable equilibrium.
     pub fn no_equilibrium(crane: &dyn DynCrane, equilibrium: &Equilibrium) -> Self {
-        let overloaded = overloaded(crane, &equilibrium.q);
-        Self::Equilibrium { equilibrium: equilibrium.clone(), overloaded }
+        Self::Equilibrium { equilibrium: equilibrium.clone(), diagnosis: Diagnosis::of(crane, equilibrium) }
     }
 
     /// This reason for the crane with the given name.
@@ -74,12 +72,7 @@ impl Reason {
     /// What to do about it.
     pub fn advice(&self) -> String {
         match self {
-            Reason::Equilibrium { overloaded, .. } if !overloaded.is_empty() => {
-                "raise `max_effort` of these drives, or change `guess:` and the motions to a pose that they can hold".to_owned()
-            }
-            Reason::Equilibrium { .. } => {
-                "change `guess:` in its spec to a pose near a stable equilibrium, or add a drive or spring to the coordinates named".to_owned()
-            }
+            Reason::Equilibrium { diagnosis, .. } => diagnosis.advice(),
             Reason::MassMatrix => {
                 "give every link a mass in kg and an inertia in kg m² that are not negligible compared with those of the others".to_owned()
             }
@@ -111,15 +104,10 @@ impl fmt::Display for Failed {
 impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Reason::Equilibrium { equilibrium, overloaded } => {
+            Reason::Equilibrium { equilibrium, diagnosis } => {
                 let residual = equilibrium.residual();
                 let left = if residual.is_finite() { format!(", residual {residual:.1e}") } else { String::new() };
-                write!(f, "statics did not find a stable equilibrium ({equilibrium}{left})")?;
-                match overloaded.as_slice() {
-                    [] => Ok(()),
-                    [one] => write!(f, "; the drive of {one} is at its limit"),
-                    several => write!(f, "; the drives of {} are at their limits", several.join(", ")),
-                }
+                write!(f, "statics did not find a stable equilibrium ({equilibrium}{left}){diagnosis}")
             }
             Reason::MassMatrix => {
                 f.write_str("the mass matrix is not positive definite, so accelerations are not defined")

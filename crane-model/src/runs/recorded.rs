@@ -122,13 +122,12 @@ pub fn record(
             100.0 * off
         )
     });
-    let tilted = cautions::large_tilt(crane.description(), &table);
-    let cautions = singular.into_iter().chain(tilted).chain(unbalanced).collect();
+    let cautions = unbalanced.into_iter().collect();
     Ok(Recorded { start: start.what.clone(), run, table, wall: begin.elapsed(), verification: None, cautions })
 }
 
-/// As [`record`], with further cautions, and with a second run to estimate the error if `verify`; `bend`: degrees by which one section of a
-/// beam may rotate.
+/// As [`record`], with all cautions, the most important first, and with a second run to estimate the error if `verify`; `bend`: degrees by
+/// which one section of a beam may rotate.
 ///
 /// # Errors
 /// [`Reason::Stopped`].
@@ -141,7 +140,11 @@ pub fn record_checked(
 ) -> Result<Recorded, Failed> {
     let mut recorded = record(crane, start, settings, proceed)?;
     let description = crane.description();
-    recorded.cautions.extend(cautions::of_run(crane, &recorded.table, bend));
+    let [loads, servos] = cautions::of_loads(crane, &recorded.table);
+    let grows = !servos.is_empty();
+    let of_run = cautions::of_run(crane, &recorded.table, bend);
+    let of_energy = std::mem::take(&mut recorded.cautions);
+    recorded.cautions.extend([loads, servos, of_run, of_energy].concat());
     if !settings.method.is_adaptive() {
         let limit = step_limit(crane, start).map_or(f64::INFINITY, |bound| bound.limit.step);
         recorded.cautions.extend(cautions::of_step(settings.step_taken(), limit));
@@ -151,7 +154,11 @@ pub fn record_checked(
         // The wall time of the finer run is not reported.
         match record(crane, start, &finer, &mut |_| proceed(settings.duration)) {
             Ok(finer) => {
-                let found = Verification::new(&recorded.table, &finer.table, description.coordinates.len());
+                let mut found = Verification::new(&recorded.table, &finer.table, description.coordinates.len());
+                if grows {
+                    // An unstable loop makes small differences grow; this is not chaos.
+                    found.divergence = None;
+                }
                 recorded.cautions.extend(found.cautions(description, &recorded.table));
                 recorded.verification = Some(found);
             }

@@ -37,6 +37,15 @@ impl Equilibrium {
         self.status == Status::Converged
     }
 
+    /// Whether the crane is at rest at `q`, stable or not, so that forces there mean something.
+    pub fn rests(&self) -> bool {
+        match self.status {
+            Status::Converged | Status::Unstable { .. } => true,
+            Status::Singular { .. } => self.at_rest(&Settings::default()),
+            Status::TipsOver { .. } | Status::Floats | Status::Overflow | Status::NotConverged => false,
+        }
+    }
+
     /// Whether `q` is an equilibrium.
     pub(super) fn at_rest(&self, settings: &Settings) -> bool {
         self.residual() <= settings.tolerance

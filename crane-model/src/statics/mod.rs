@@ -1,6 +1,7 @@
 //! Static equilibrium by damped Newton–Raphson with the analytic tangent stiffness, and by continuation where that fails.
 
 mod continuation;
+mod diagnosis;
 mod equations;
 mod equilibrium;
 mod guess;
@@ -12,6 +13,7 @@ mod status;
 mod tangent;
 mod tipped;
 
+pub use diagnosis::Diagnosis;
 pub use equilibrium::{Equilibrium, Iteration};
 pub use guess::{guess, guess_dyn};
 pub use settings::Settings;

@@ -117,7 +117,7 @@ fn missed(equations: &dyn Equations, start: &DVector<f64>, settings: &Settings, 
             .is_some_and(|tangent| tangent.status(description) == Status::Converged)
     };
     match found.status {
-        Status::Converged | Status::TipsOver { .. } | Status::Overflow => false,
+        Status::Converged | Status::TipsOver { .. } | Status::Floats | Status::Overflow => false,
         // Also reported for poses where no step helps; at an equilibrium it is exact.
         Status::Singular { .. } => !found.at_rest(settings),
         Status::NotConverged => true,

@@ -25,6 +25,8 @@ pub enum Status {
         /// Feet at the ends of the line that it tips over, or those that still press on the ground; may be empty.
         feet: Vec<Text>,
     },
+    /// Weight and loads pull a crane on feet that do not hold it down upwards.
+    Floats,
     /// Forces or stiffnesses at the guess are not finite numbers.
     Overflow,
     /// No equilibrium found within the allowed iterations, or no step reduced the residual.
@@ -32,11 +34,12 @@ pub enum Status {
 }
 
 impl Status {
-    /// A word for it: `stable`, `tips over`, `unstable`, `singular`, `overflow` or `not converged`.
+    /// A word for it: `stable`, `tips over`, `floats`, `unstable`, `singular`, `overflow` or `not converged`.
     pub fn name(&self) -> &'static str {
         match self {
             Status::Converged => "stable",
             Status::TipsOver { .. } => "tips over",
+            Status::Floats => "floats",
             Status::Unstable { .. } => "unstable",
             Status::Singular { .. } => "singular",
             Status::Overflow => "overflow",
@@ -57,6 +60,7 @@ impl fmt::Display for Status {
             }
             Status::TipsOver { feet } if feet.is_empty() => f.write_str("tips over: no stable pose is left"),
             Status::TipsOver { feet } => write!(f, "tips over about {}: no stable pose is left", feet.join(" – ")),
+            Status::Floats => f.write_str("floats: weight and loads do not press the crane onto its feet"),
             Status::Overflow => f.write_str("forces overflow: a mass, a stiffness or a position is out of range"),
             Status::NotConverged => f.write_str("not converged: no equilibrium found from this guess"),
         }

@@ -1,6 +1,6 @@
-//! Cranes on feet that lift: the line over which they tip if there is no stable upright pose.
+//! Cranes on feet that lift: the line over which they tip if there is no stable upright pose, or that they float.
 
-use super::{Equilibrium, Status};
+use super::{Equilibrium, Status, diagnosis::upwards};
 use crate::{
     Text,
     dyn_crane::DynCrane,
@@ -14,8 +14,8 @@ const LITTLE: f64 = 0.1;
 /// Scaled residual below which a pose is at rest except for rounding, even if Newton's method did not converge.
 const AT_REST: f64 = 1e-6;
 
-/// The equilibrium at time `t`, s, that was found from the pose `from`; its status becomes that the crane tips over if it has feet that
-/// lift and the pose found is not stable or its base is not upright.
+/// The equilibrium at time `t`, s, that was found from the pose `from`; its status becomes that the crane tips over, or that it floats, if it has
+/// feet that lift and the pose found is not stable or its base is not upright.
 pub(crate) fn named(crane: &dyn DynCrane, t: f64, from: &[f64], found: Equilibrium) -> Equilibrium {
     let description = crane.description();
     let feet = || description.supports.iter().filter(|support| support.one_sided);
@@ -23,6 +23,9 @@ pub(crate) fn named(crane: &dyn DynCrane, t: f64, from: &[f64], found: Equilibri
     let stands = found.is_stable() || found.status == Status::NotConverged && found.residual() < AT_REST;
     if feet().next().is_none() || stands && !fell {
         return found;
+    }
+    if upwards(crane, t, from).is_some_and(|force| force > 0.0) {
+        return Equilibrium { status: Status::Floats, ..found };
     }
     let rest = vec![0.0; from.len()];
     let lines = lines(crane, t, from, &rest, &rest);

@@ -29,6 +29,9 @@ pub fn modes(options: &Modes, registry: &Registry, out: &mut dyn Write) -> Outco
     let step = limit(&limiting, &Method::Rk4.stability()).map(|limit| limit.step);
     report.value("stable", true);
     report.fact("largest stable step", Cell::from(step), "s");
+    for caution in cautions::of_servos(crane.as_ref(), 0.0, &case.equilibrium.q) {
+        report.caution(Some(caution));
+    }
     let changes = refinement::changes(&case, registry)?;
     report.caution(changes.as_deref().and_then(refinement::caution).as_deref());
     for caution in cautions::of_telescopes(crane.as_ref(), &case.equilibrium.q) {

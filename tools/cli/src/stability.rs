@@ -6,6 +6,7 @@ use crane_model::{
     Description,
     dynamics::Method,
     modes::DampedMode,
+    results::cautions,
     runs::{Pose, Start, manoeuvre},
     stability::{cause, limit},
 };
@@ -32,6 +33,11 @@ pub fn stability(options: &Stability, registry: &Registry, out: &mut dyn Write) 
     let mut report = Report::default();
     report.fact("crane", description.name.as_str(), "");
     report.fact("start", start.what.as_str(), "");
+    if start.rests {
+        for caution in cautions::of_servos(crane, 0.0, &start.q) {
+            report.caution(Some(caution));
+        }
+    }
     report.grid(stable_steps(description, &poses));
     if poses.len() > 1 {
         report.grid(along(description, &poses));

@@ -2,7 +2,7 @@
 
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynModel};
-use crane_model::statics::{Equilibrium, Settings, Status};
+use crane_model::statics::{Diagnosis, Equilibrium, Settings, Status};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -18,6 +18,8 @@ const INVALID: &str = "invalid";
 /// The result of statics for a row.
 pub struct Found {
     equilibrium: Equilibrium,
+    /// Why it is not stable, if it is not.
+    diagnosis: Option<Diagnosis>,
     efforts: Vec<f64>,
     reactions: Vec<f64>,
     points: Vec<f64>,
@@ -32,6 +34,7 @@ impl Found {
             (at, Some(from)) => crane.equilibrium_at(at.unwrap_or(0.0), from, settings),
             (Some(t), None) => crane.equilibrium_at(t, &crane.guess(), settings),
         };
+        let diagnosis = (!equilibrium.is_stable()).then(|| Diagnosis::of(crane, &equilibrium));
         let q = &equilibrium.q;
         let efforts = match at {
             None => crane.drive_efforts_at_rest(q),
@@ -53,7 +56,7 @@ impl Found {
         let flat = |vectors: Vec<crane_model::nalgebra::Vector3<f64>>| vectors.iter().flatten().copied().collect();
         let reactions = flat(crane.support_reactions_at(q, &vec![0.0; q.len()]));
         let points = flat(crane.points_at(q));
-        Self { equilibrium, efforts, reactions, points }
+        Self { equilibrium, diagnosis, efforts, reactions, points }
     }
 
     /// Whether the pose is an equilibrium of some kind.
@@ -117,7 +120,9 @@ impl Crane {
             Some(Found::new(&self.of_joined_row(&joined, row), at, from, &settings))
         })?;
         let message = |(row, found): (usize, &Option<Found>)| match found {
-            Some(found) => found.equilibrium.to_string(),
+            Some(Found { equilibrium, diagnosis, .. }) => {
+                format!("{equilibrium}{}", diagnosis.as_ref().map_or_else(String::new, Diagnosis::to_string))
+            }
             None => refused(row).map_or_else(String::new, |bad| bad.reason.clone()),
         };
         let reason = |row: usize, found: &Option<Found>| {
@@ -130,7 +135,7 @@ impl Crane {
             .filter_map(|(row, found)| Some(BadRow { row, reason: reason(row, found)? }))
             .collect();
         if let (Some(first), Invalid::Raise) = (bad.first(), invalid) {
-            let hint = "change `guess:` in its spec to a pose near a stable equilibrium, or add a drive or spring to the coordinates named";
+            let hint = found[first.row].as_ref().and_then(|found| found.diagnosis.as_ref()).unwrap_or(&Diagnosis::Unknown).advice();
             let said = describe(first, &joined.shape);
             return Err(NoEquilibrium::new_err(format!(
                 "{}: statics did not find a stable equilibrium ({said}); {hint}",

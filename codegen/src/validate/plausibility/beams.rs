@@ -58,6 +58,12 @@ impl Plausibility<'_> {
         if let Some(Either::Full(material)) = beam.material.as_ref().and_then(|material| material.value.as_ref()) {
             self.material(material, &place);
         }
+        if let Some(given) = &beam.safety_factor {
+            let (factor, at) = self.number(given);
+            if factor < 1.0 {
+                self.warn(rule::unsafe_factor(at, name, factor));
+            }
+        }
         let of_parts = items(beam.parts.as_ref()).flat_map(|part| [Some(&part.section), part.to.as_ref()]);
         let sections = std::iter::once(beam.section.as_ref()).chain(of_parts).flatten();
         for section in sections.filter_map(|section| section.value.as_ref()) {

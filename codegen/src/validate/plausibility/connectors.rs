@@ -1,7 +1,7 @@
-//! Lengths of connectors compared with the distance between their points.
+//! Lengths of connectors compared with the distance between their points, and ratios of couplings.
 
 use super::{Plausibility, items, rounded};
-use crate::chain::{ConnectorLaw, Strain};
+use crate::chain::{Connector, ConnectorLaw, Strain};
 use crate::diagnostic::rule;
 
 /// Usual lengths without force, as fractions of the distance between the points at the guess.
@@ -9,7 +9,26 @@ const USUAL: [f64; 2] = [0.1, 10.0];
 /// Maximum ratio of the length of a rope at the guess to its length without force: steel breaks long before.
 const STRETCHED: f64 = 1.2;
 
+/// Maximum ratio of a coupling between joints of one kind.
+const RATIO: f64 = 20.0;
+
 impl Plausibility<'_> {
+    /// Couplings whose joint moves far more than the one that it follows.
+    pub(super) fn couplings(&mut self) {
+        let (crane, chain) = (self.crane, self.chain);
+        for given in items(crane.couplings.as_ref()) {
+            let named = |connector: &&Connector| Some(&connector.name) == given.name.value.as_ref();
+            let Some(connector) = chain.connectors.iter().find(named) else { continue };
+            let Strain::Coupling { coordinate, leader, ratio } = &connector.strain else { continue };
+            let [own, other] = [coordinate, leader].map(|id| &chain.coordinates[id.0]);
+            let ratio = ratio.at(&self.values);
+            if own.kind == other.kind && ratio.abs() > RATIO {
+                let names = [&own.name, &other.name];
+                self.warn(rule::high_ratio(given.ratio.span, &connector.name, rounded(ratio), names[0], names[1]));
+            }
+        }
+    }
+
     /// A spring or rope whose length does not fit its points.
     pub(super) fn connectors(&mut self) {
         let (crane, chain) = (self.crane, self.chain);

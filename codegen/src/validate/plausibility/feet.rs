@@ -1,9 +1,40 @@
-//! One-sided supports compared with the weight that they carry.
+//! Supports compared with each other and with the weight that they carry.
 
 use super::{Plausibility, items, rounded};
 use crate::diagnostic::rule;
 
+/// Height by which a foot may differ from the others, m: more than any slope or outrigger box.
+const HEIGHT: f64 = 1.0;
+/// Distance below which two supports are in one place, m.
+const ONE_PLACE: f64 = 1e-6;
+/// Maximum free play, m.
+const FREE_PLAY: f64 = 0.2;
+
 impl Plausibility<'_> {
+    /// Supports that are far above or below the others or in the place of another one, or act only after a long way.
+    pub(super) fn places_of_feet(&mut self) {
+        let (crane, chain) = (self.crane, self.chain);
+        let places: Vec<[f64; 3]> =
+            chain.supports.iter().map(|support| support.position.each_ref().map(|x| x.at(&self.values))).collect();
+        let mut heights: Vec<f64> = places.iter().map(|place| place[2]).collect();
+        heights.sort_by(f64::total_cmp);
+        for (index, (given, support)) in items(crane.supports.as_ref()).zip(&chain.supports).enumerate() {
+            let (name, place) = (&support.name, places[index]);
+            let usual = heights[(heights.len() - 1) / 2];
+            if places.len() > 2 && (place[2] - usual).abs() > HEIGHT {
+                self.warn(rule::raised_foot(given.at.span, name, rounded(place[2]), rounded(usual)));
+            }
+            let near = |other: &[f64; 3]| (0..3).all(|i| (other[i] - place[i]).abs() < ONE_PLACE);
+            if let Some(other) = places[..index].iter().position(near) {
+                self.warn(rule::same_foot(given.at.span, name, &chain.supports[other].name));
+            }
+            let play = support.free_play.iter().map(|play| play.at(&self.values)).fold(0.0, |a: f64, b| a.max(b.abs()));
+            if let Some(span) = given.free_play.as_ref().map(|given| given.span).filter(|_| play > FREE_PLAY) {
+                self.warn(rule::long_free_play(span, name, rounded(play)));
+            }
+        }
+    }
+
     /// Supports whose full hold exceeds their share of the crane's weight: they hold the crane only in part.
     pub(super) fn feet(&mut self) {
         let (crane, chain) = (self.crane, self.chain);

@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use super::{Plausibility, angles::positions, beams::in_metres, items, rounded};
-use crate::chain::{Attachment, Pin};
+use crate::chain::{Chain, Cylinder as ChainCylinder, Linkage};
 use crate::diagnostic::rule;
 use crate::spec::{Constant, Cylinder, Motion, Pump, Spanned, Valve};
 
@@ -21,6 +21,8 @@ const DIAMETER: Usual = Usual { unit: "m", range: 2e-3..=2.0, said: "0.002 to 2 
 const LENGTH: Usual = Usual { unit: "m", range: 1e-3..=50.0, said: "0.001 to 50 m", help: in_metres };
 /// Pressures of pumps and relief valves, and pressure drops.
 const PRESSURE: Usual = Usual { unit: "Pa", range: 1e4..=5e8, said: "1e4 to 5e8 Pa", help: in_pascal };
+/// Back pressures, of tank lines.
+const BACK_PRESSURE: Usual = Usual { unit: "Pa", range: 1e3..=1e7, said: "0 to 1e7 Pa", help: in_pascal };
 /// Nominal flows of valves and pumps.
 const FLOW: Usual = Usual {
     unit: "m³/s",
@@ -80,6 +82,8 @@ impl Plausibility<'_> {
         let [most, modulus, hoses] = [of("maximum pressure"), of("bulk modulus"), of("hose volume")];
         self.usual([Some((&bore, &cylinder.bore, &DIAMETER)), Some((&rod, &cylinder.rod, &DIAMETER))]);
         self.usual([Some((&retracted, &cylinder.retracted, &LENGTH)), Some((&stroke, &cylinder.stroke, &LENGTH))]);
+        let back = of("back pressure");
+        self.usual([cylinder.back_pressure.as_ref().map(|given| (back.as_str(), given, &BACK_PRESSURE))]);
         self.usual([cylinder.max_pressure.as_ref().map(|given| (most.as_str(), given, &PRESSURE))]);
         self.usual([cylinder.bulk_modulus.as_ref().map(|given| (modulus.as_str(), given, &BULK_MODULUS))]);
         let volumes = cylinder.hose_volumes.as_ref().and_then(|volumes| volumes.value.as_ref());
@@ -151,8 +155,7 @@ impl Plausibility<'_> {
         }
     }
 
-    /// Cylinders that are too short or too long, or have no lever arm, where their drives start. Cylinders that act through a linkage are
-    /// left to statics.
+    /// Cylinders that are too short or too long, cannot be assembled or have no lever arm, where their drives start.
     fn strokes(&mut self) {
         /// Least lever arm of a cylinder, m, or its rate of extension with a slide.
         const LEAST_LEVER: f64 = 0.01;
@@ -164,13 +167,10 @@ impl Plausibility<'_> {
             q[drive.coordinate.0] = drive.profile.start(&self.values);
         }
         for (given, cylinder) in items(self.crane.cylinders.as_ref()).zip(&chain.cylinders) {
-            let at = |pin: &Pin| Attachment { body: Some(pin.body), position: pin.position.clone() };
-            let ends = [at(&cylinder.foot), at(&cylinder.head)];
-            let length = chain.distance(&ends, &q, &self.values);
             if cylinder.linkage.is_none() {
                 let mut moved = |by: f64| {
                     q[cylinder.coordinate.0] += by;
-                    let length = chain.distance(&ends, &q, &self.values);
+                    let [length, _] = chain.cylinder_length(cylinder, &q, &self.values);
                     q[cylinder.coordinate.0] -= by;
                     length
                 };
@@ -180,15 +180,41 @@ impl Plausibility<'_> {
                 }
             }
             let (least, most) = (cylinder.retracted, cylinder.retracted + cylinder.stroke);
-            if cylinder.linkage.is_none() && !(least..=most).contains(&length) {
+            let [length, distance] = chain.cylinder_length(cylinder, &q, &self.values);
+            if let (Some(linkage), true) = (&cylinder.linkage, length.is_nan()) {
+                let [rocker, link] = [&linkage.rocker, &linkage.link].map(|length| rounded(length.at(&self.values)));
+                self.warn(rule::unassembled(given.name.span, &cylinder.name, rocker, link, rounded(distance)));
+            } else if !(least..=most).contains(&length) {
                 self.warn(rule::out_of_stroke(
                     given.name.span,
                     &cylinder.name,
                     rounded(length),
                     rounded(least),
                     rounded(most),
+                    other_side(chain, cylinder, &q, &self.values, least..=most),
                 ));
             }
         }
+    }
+}
+
+/// What to do about a cylinder that is out of its stroke: its linkage may be on the other side.
+fn other_side(
+    chain: &Chain,
+    cylinder: &ChainCylinder,
+    q: &[f64],
+    values: &[f64],
+    stroke: RangeInclusive<f64>,
+) -> String {
+    let check = "check `retracted`, `stroke`, the pins and the motion of the drive";
+    let Some(linkage) = &cylinder.linkage else { return check.to_owned() };
+    let turned = Linkage { left: !linkage.left, ..linkage.clone() };
+    let other = ChainCylinder { linkage: Some(turned), ..cylinder.clone() };
+    let [length, _] = chain.cylinder_length(&other, q, values);
+    let side = if linkage.left { "right" } else { "left" };
+    if stroke.contains(&length) {
+        format!("did you mean `side: {side}`? Then it is {} m long", rounded(length))
+    } else {
+        format!("{check}; with `side: {side}` it would be {} m long", rounded(length))
     }
 }

@@ -1,4 +1,4 @@
-//! The payload compared with the crane's own mass.
+//! Masses and inertias compared with the crane.
 
 use super::{Plausibility, items, rounded};
 use crate::diagnostic::{Span, rule};
@@ -11,7 +11,70 @@ const LIGHTEST: f64 = 1.0 / 1000.0;
 /// Beyond this ratio of the payload to the mass that carries it, the crane is in tonnes or the payload in g.
 const HEAVIEST: f64 = 100.0;
 
+/// A base on feet that lift is usually heavier than this fraction of what it carries.
+const LIGHTEST_BASE: f64 = 0.02;
+/// Size below which no inertia and no centre of mass is out of proportion, m: the halves of long booms that are given as one body.
+const SMALL: f64 = 20.0;
+/// How far beyond the crane's size they may be, as a multiple of it.
+const BEYOND: f64 = 2.0;
+
 impl Plausibility<'_> {
+    /// Inertias and centres of mass that are out of proportion to the crane.
+    pub(super) fn spread(&mut self) {
+        let (crane, chain) = (self.crane, self.chain);
+        let size = self.size();
+        let most = SMALL.max(BEYOND * size);
+        for link in items(Some(&crane.links)) {
+            let name = link.name.value.as_deref().unwrap_or_default();
+            let place = format!("link `{name}`");
+            let own = chain.bodies.iter().find(|body| body.link == name).and_then(|body| body.inertia.as_ref());
+            let (Some(inertia), Some(com)) = (own, &link.com) else { continue };
+            let mass = inertia.mass.at(&self.values);
+            let centre = inertia.first.each_ref().map(|first| first.at(&self.values) / mass);
+            let distance = centre.iter().map(|x| x * x).sum::<f64>().sqrt();
+            if distance > most {
+                self.warn(rule::far_mass(com.span, &place, rounded(distance), rounded(size)));
+                continue;
+            }
+            let [xx, yy, zz] = [0, 1, 2].map(|i| inertia.second[i].at(&self.values) / mass - centre[i] * centre[i]);
+            let radius = (xx + yy).max(yy + zz).max(zz + xx).sqrt();
+            if let Some(given) = link.inertia.as_ref().filter(|_| radius > most) {
+                self.warn(rule::spread_mass(given.span, &place, rounded(radius), rounded(size)));
+            }
+        }
+    }
+
+    /// Diagonal of the box around all frames and supports at the guess, m.
+    fn size(&self) -> f64 {
+        let chain = self.chain;
+        let frames = chain.frames(&chain.guess, &self.values);
+        let feet = chain.supports.iter().filter_map(|support| {
+            Some(frames.first()?.transform_point(support.position.each_ref().map(|x| x.at(&self.values))))
+        });
+        let points: Vec<[f64; 3]> = frames.iter().map(|frame| frame.origin).chain(feet).collect();
+        let side = |axis: usize| {
+            let along = || points.iter().map(|point| point[axis]);
+            along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
+        };
+        (0..3).map(|axis| side(axis).powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// A base that is far lighter than what it carries on feet that lift.
+    pub(super) fn base(&mut self) {
+        let (crane, chain) = (self.crane, self.chain);
+        let Some(link) = items(Some(&crane.links)).next() else { return };
+        let (Some(given), true) = (&link.mass, chain.supports.iter().any(|support| support.full_hold.is_some())) else {
+            return;
+        };
+        let (mass, at) = self.number(given);
+        let carried = chain.bodies.iter().skip(1).filter_map(|body| body.inertia.as_ref());
+        let carried: f64 = carried.map(|inertia| inertia.mass.at(&self.values)).sum();
+        if mass < LIGHTEST_BASE * carried {
+            let name = link.name.value.as_deref().unwrap_or_default();
+            self.warn(rule::light_base(at, name, mass, rounded(carried)));
+        }
+    }
+
     pub(super) fn masses(&mut self) {
         let crane = self.crane;
         let mut masses: Vec<(String, &Spanned<Number>)> = Vec::new();

@@ -10,6 +10,7 @@ mod drives;
 mod feet;
 mod friction;
 mod hydraulics;
+mod joints;
 mod lengths;
 mod masses;
 
@@ -25,10 +26,21 @@ pub(super) fn warnings(crane: &Crane, chain: &Chain, values: Vec<f64>) -> Vec<Mi
     plausibility.hydraulics();
     plausibility.bristles();
     plausibility.slow_drives();
+    plausibility.places_of_feet();
+    plausibility.couplings();
+    plausibility.stiff_springs();
     // Consequences of such numbers, such as frequencies and masses, would be reported as well.
     if plausibility.warnings.is_empty() {
         plausibility.damping();
         plausibility.masses();
+        let before = plausibility.warnings.len();
+        plausibility.base();
+        // With a wrong mass, an inertia is out of proportion as well.
+        if plausibility.warnings.len() == before {
+            plausibility.spread();
+        }
+        plausibility.swept_booms();
+        plausibility.soft_drives();
         plausibility.feet();
         plausibility.connectors();
     }

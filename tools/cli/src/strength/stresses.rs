@@ -29,13 +29,6 @@ pub fn verdict(
     let key = |name: &str| format!("{name}{of_what}").replace(' ', "_");
     if let Some(utilisation) = utilisation {
         report.fact_as(&key("greatest utilisation"), format!("maximum utilisation{of_what}"), utilisation, "");
-        if utilisation > 1.0 {
-            report.caution(Some(format!(
-                "{place}{of_what}: the equivalent stress of {:.0} MPa is {:.2} times the allowable stress",
-                stress.equivalent / MEGA,
-                utilisation
-            )));
-        }
     }
     let equivalent = format!("maximum equivalent stress{of_what}");
     report.fact_as(

@@ -86,16 +86,15 @@ pub fn equilibria(cases: &[Case<'_>], bend: f64) -> Report {
     let mut report = Report::default();
     verdicts(&mut report, cases);
     for case in cases {
-        let Case { equilibrium, .. } = case;
-        let description = case.crane.description();
-        for caution in [description.near_singular(&equilibrium.q), description.large_tilt(&equilibrium.q)] {
-            report.caution(caution);
-        }
-        for caution in cautions::of_pose(case.crane, &equilibrium.q, bend) {
-            let label = if cases.len() > 1 { format!("{}: ", case.label) } else { String::new() };
-            report.caution(Some(label + &caution));
+        let (equilibrium, guess) = (&case.equilibrium, case.crane.guess());
+        // Where a search ended without an equilibrium, forces and positions mean nothing.
+        let (q, place) = if equilibrium.rests() { (&equilibrium.q, "") } else { (&guess, "at the guess, ") };
+        let label = if cases.len() > 1 { format!("{}: ", case.label) } else { String::new() };
+        for caution in cautions::of_pose(case.crane, q, bend) {
+            report.caution(Some(format!("{label}{place}{caution}")));
         }
     }
+    let cases = if cases.iter().all(|case| case.equilibrium.rests()) { cases } else { &[] };
     report.grid(drives(cases));
     if let Some(grid) = cylinders(cases) {
         report.grid(grid);

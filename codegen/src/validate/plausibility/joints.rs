@@ -1,0 +1,146 @@
+//! Booms that no drive can raise, and drives that the weight of the crane overcomes.
+
+use super::{Plausibility, items, rounded};
+use crate::chain::{CoordinateId, CoordinateKind, Drive};
+use crate::diagnostic::{Span, rule};
+use crate::spec::{Joint, Link};
+
+/// Cosine of the angle to the vertical below which an axis is not vertical: 2°.
+const VERTICAL: f64 = 0.9994;
+/// Displacement of a joint under the weight that its drive holds, rad or m, from which the drive is too soft.
+const SAG: f64 = 0.5;
+/// Stiffness of a spring beyond which it is a slip, N/m or N m/rad.
+const STIFFEST: f64 = 1e13;
+
+impl Plausibility<'_> {
+    /// A beam whose joint turns about the vertical directly after another such joint.
+    pub(super) fn swept_booms(&mut self) {
+        let links: Vec<&Link> = items(Some(&self.crane.links)).collect();
+        for pair in links.windows(2) {
+            let [before, boom] = pair else { continue };
+            let [Some(first), Some(second)] = [before, boom].map(|link| self.turns(link)) else { continue };
+            if boom.beam.is_some() && [first, second].into_iter().all(|id| self.is_vertical(id)) {
+                let [name, other] = [boom, before].map(|link| link.name.value.as_deref().unwrap_or_default());
+                let at = boom.placement.as_ref().map_or(boom.name.span, |placement| placement.span);
+                self.warn(rule::swept(at, name, other));
+            }
+        }
+    }
+
+    /// The coordinate of the revolute joint of a link.
+    fn turns(&self, link: &Link) -> Option<CoordinateId> {
+        let is_revolute = matches!(link.joint.as_ref()?.value.as_ref()?, Joint::Revolute(_));
+        let name = link.name.value.as_deref().filter(|_| is_revolute)?;
+        let body = self.chain.bodies.iter().find(|body| body.link == name)?;
+        body.path.iter().find_map(|step| step.coordinates().first().copied())
+    }
+
+    fn is_vertical(&self, coordinate: CoordinateId) -> bool {
+        let gravity = self.chain.gravity.each_ref().map(|g| g.at(&self.values));
+        let size = gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+        let [_, axis] = self.chain.axis(coordinate, &self.pose_at_start(), &self.values);
+        let along: f64 = axis.iter().zip(gravity).map(|(a, g)| a * g).sum();
+        along.abs() > VERTICAL * size && size > 0.0
+    }
+
+    /// The guess, with the drives where their motions begin.
+    fn pose_at_start(&self) -> Vec<f64> {
+        let mut q = self.chain.guess.clone();
+        for drive in &self.chain.drives {
+            q[drive.coordinate.0] = drive.profile.start(&self.values);
+        }
+        q
+    }
+
+    /// Drives whose joints the weight of the crane moves far from the drive's position.
+    pub(super) fn soft_drives(&mut self) {
+        let (crane, chain) = (self.crane, self.chain);
+        for given in items(crane.drives.as_ref()) {
+            let Some(span) = given.stiffness.as_ref().map(|given| given.span) else { continue };
+            let named =
+                |drive: &&Drive| Some(&chain.coordinates[drive.coordinate.0].name) == given.coordinate.value.as_ref();
+            let Some(drive) = chain.drives.iter().find(named) else { continue };
+            let stiffness = drive.oil().or_else(|| drive.spring().map(|(stiffness, _)| stiffness));
+            let Some(stiffness) = stiffness.map(|stiffness| stiffness.at(&self.values)) else { continue };
+            // Other springs, ropes and stops may hold the joint instead.
+            let held = chain.connectors.iter().any(|connector| {
+                let [first, end] = chain.spanned(connector);
+                (first..end).contains(&drive.coordinate.0)
+            });
+            let sag = self.effort_of_weight(drive.coordinate).abs() / stiffness;
+            if stiffness > 0.0 && sag > SAG && !held && drive.max_effort().is_none() {
+                self.soft(span, drive.coordinate, sag, stiffness);
+            }
+        }
+    }
+
+    fn soft(&mut self, span: Span, id: CoordinateId, sag: f64, stiffness: f64) {
+        let coordinate = &self.chain.coordinates[id.0];
+        let [unit, of_stiffness] = match coordinate.kind {
+            CoordinateKind::Translation => ["m", "N/m"],
+            CoordinateKind::Rotation => ["rad", "N m/rad"],
+        };
+        self.warn(rule::soft_drive(span, &coordinate.name, rounded(sag), unit, stiffness, of_stiffness));
+    }
+
+    /// Torque or force of the weight of everything that a coordinate moves, at the start, N m or N.
+    fn effort_of_weight(&self, coordinate: CoordinateId) -> f64 {
+        let (chain, q) = (self.chain, self.pose_at_start());
+        let gravity = chain.gravity.each_ref().map(|g| g.at(&self.values));
+        let [origin, axis] = chain.axis(coordinate, &q, &self.values);
+        let info = &chain.coordinates[coordinate.0];
+        let mut effort = 0.0;
+        for (body, frame) in chain.bodies.iter().zip(chain.frames(&q, &self.values)).skip(info.body.0) {
+            let Some(inertia) = &body.inertia else { continue };
+            let mass = inertia.mass.at(&self.values);
+            let first = frame.direction(inertia.first.each_ref().map(|first| first.at(&self.values)));
+            let way = [0, 1, 2].map(|i| first[i] + mass * (frame.origin[i] - origin[i]));
+            let moment = [
+                way[1] * gravity[2] - way[2] * gravity[1],
+                way[2] * gravity[0] - way[0] * gravity[2],
+                way[0] * gravity[1] - way[1] * gravity[0],
+            ];
+            effort += match info.kind {
+                CoordinateKind::Rotation => (0..3).map(|i| axis[i] * moment[i]).sum::<f64>(),
+                CoordinateKind::Translation => (0..3).map(|i| axis[i] * mass * gravity[i]).sum(),
+            };
+        }
+        effort
+    }
+
+    /// Springs that are stiffer than anything.
+    pub(super) fn stiff_springs(&mut self) {
+        let crane = self.crane;
+        let units = |name: &str| {
+            let own = self.chain.coordinates.iter().find(|coordinate| coordinate.name == name);
+            let slides = own.is_some_and(|coordinate| coordinate.kind == CoordinateKind::Translation);
+            if slides { "N/m" } else { "N m/rad" }
+        };
+        let mut found = Vec::new();
+        for support in items(crane.supports.as_ref()) {
+            let name = support.name.value.as_deref().unwrap_or_default();
+            let numbers = support.stiffness.value.iter().flatten().map(|given| self.number(given));
+            let help = "check the exponent: ground and feet have 1e6 to 1e9 N/m";
+            found.extend(numbers.map(|number| (number, format!("the stiffness of support `{name}`"), "N/m", help)));
+        }
+        for drive in items(crane.drives.as_ref()) {
+            let name = drive.coordinate.value.as_deref().unwrap_or_default();
+            let number = drive.stiffness.as_ref().map(|given| self.number(given));
+            let help = "check the exponent, or write `rigid: true`";
+            found.extend(
+                number.map(|number| (number, format!("the stiffness of the drive of `{name}`"), units(name), help)),
+            );
+        }
+        for coupling in items(crane.couplings.as_ref()) {
+            let name = coupling.name.value.as_deref().unwrap_or_default();
+            let unit = units(coupling.coordinate.value.as_deref().unwrap_or_default());
+            let number = self.number(&coupling.stiffness);
+            found.push((number, format!("the stiffness of coupling `{name}`"), unit, "check the exponent"));
+        }
+        for ((number, span), what, unit, help) in found {
+            if number > STIFFEST {
+                self.warn(rule::too_stiff(span, what, format!("{number:e}"), unit, help));
+            }
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! Internal forces and tipping lines over a run.
+
+use crate::{
+    Wrench,
+    dyn_crane::DynCrane,
+    force_states,
+    results::quantities,
+    tipping::{TippingLine, lines},
+};
+
+/// What a crane carries at an instant.
+#[derive(Clone, Debug)]
+pub struct Instant {
+    /// Time, s.
+    pub t: f64,
+    /// Tipping lines.
+    pub lines: Vec<TippingLine>,
+    /// Internal forces at every cut.
+    pub wrenches: Vec<Wrench>,
+}
+
+impl Instant {
+    /// At rest.
+    pub fn at_rest(crane: &dyn DynCrane, q: &[f64]) -> Self {
+        let rest = vec![0.0; q.len()];
+        Self {
+            t: 0.0,
+            lines: lines(crane, 0.0, q, &rest, &rest),
+            wrenches: crane.internal_forces_at(0.0, q, &rest, &rest),
+        }
+    }
+
+    /// In motion.
+    fn moving(crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> Self {
+        let (a, _) = force_states::accelerations(crane, t, (q, v), x);
+        Self { t, lines: lines(crane, t, q, v, &a), wrenches: crane.internal_forces_of(t, [q, v, &a], x) }
+    }
+}
+
+/// At results of a run, rows of a recorded table.
+pub fn instants<'a>(crane: &dyn DynCrane, rows: impl Iterator<Item = &'a Vec<f64>>) -> Vec<Instant> {
+    let n = crane.size();
+    // Time, coordinates and rates come first.
+    let columns = quantities(crane.description());
+    let place = |name: String| columns.iter().position(|column| column.name == name);
+    let oil: Vec<usize> = force_states::columns(crane.description()).into_iter().filter_map(place).collect();
+    rows.map(|row| {
+        let x: Vec<f64> = oil.iter().map(|&place| row[place]).collect();
+        Instant::moving(crane, row[0], (&row[1..=n], &row[n + 1..=2 * n]), &x)
+    })
+    .collect()
+}

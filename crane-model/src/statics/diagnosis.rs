@@ -1,0 +1,203 @@
+//! Why statics found no stable equilibrium, and what to do about it.
+
+use std::fmt;
+
+use super::{Equilibrium, Status};
+use crate::{
+    CoordinateKind, CoordinateRole, Text,
+    dyn_crane::DynCrane,
+    results::{overloaded, unassembled_at},
+    tipping::{LinkMoment, TippingLine, lines, moments},
+};
+
+/// Tipping margin from which a crane stands on rigid feet: its own must yield too far.
+const STANDS: f64 = 0.1;
+/// Distance below which feet are in one place, m.
+const ONE_PLACE: f64 = 1e-3;
+
+/// Why there is no stable equilibrium, as far as the crane shows it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Diagnosis {
+    /// The linkage of a cylinder cannot be assembled at the guess.
+    Unassembled {
+        /// The cylinder.
+        cylinder: Text,
+    },
+    /// Drives are at the limits of their efforts.
+    Overloaded {
+        /// Their coordinates.
+        coordinates: Vec<Text>,
+    },
+    /// Weight and loads pull the crane off its feet.
+    Floats {
+        /// Their sum, upwards, N.
+        upwards: f64,
+    },
+    /// The feet form no polygon that the crane can stand on.
+    NoPolygon {
+        /// Whether they are all in one place, instead of on one line.
+        one_place: bool,
+    },
+    /// The moments about a tipping line overturn the crane.
+    Overturned {
+        /// The feet of the line.
+        feet: [Text; 2],
+        /// Moments about the line, N m.
+        line: TippingLine,
+        /// The link that contributes most to the overturning moment, and the one that contributes most to the stabilising one.
+        most: [Option<LinkMoment>; 2],
+    },
+    /// The crane would stand on rigid feet; its own yield until it falls.
+    Yields {
+        /// The tipping margin with rigid feet.
+        margin: f64,
+    },
+    /// Numbers overflow.
+    Overflow,
+    /// Nothing more is known.
+    Unknown,
+}
+
+impl Diagnosis {
+    /// Of an equilibrium that is not stable.
+    pub fn of(crane: &dyn DynCrane, equilibrium: &Equilibrium) -> Self {
+        let guess = crane.guess();
+        if let Some(cylinder) = unassembled_at(crane, &guess) {
+            return Self::Unassembled { cylinder };
+        }
+        let coordinates = overloaded(crane, &equilibrium.q);
+        if !coordinates.is_empty() {
+            return Self::Overloaded { coordinates };
+        }
+        match &equilibrium.status {
+            Status::Floats => Self::Floats { upwards: upwards(crane, 0.0, &guess).unwrap_or(f64::NAN) },
+            Status::Overflow => Self::Overflow,
+            Status::TipsOver { .. } | Status::Singular { .. } | Status::Unstable { .. }
+                if has_no_polygon(crane, &guess) =>
+            {
+                let feet = crane.support_positions_at(&guess);
+                let one_place = feet.iter().all(|foot| (foot - feet[0]).xy().norm() < ONE_PLACE);
+                Self::NoPolygon { one_place }
+            }
+            Status::TipsOver { feet } => tipping(crane, &guess, feet),
+            _ => Self::Unknown,
+        }
+    }
+
+    /// What to do about it.
+    pub fn advice(&self) -> String {
+        match self {
+            Self::Unassembled { .. } => {
+                "lengthen its `rocker` or `link`, check the positions of its pins, or start from a pose where they reach each other".to_owned()
+            }
+            Self::Overloaded { .. } => {
+                "raise `max_effort` of these drives, or change `guess:` and the motions to a pose that they can hold".to_owned()
+            }
+            Self::Floats { .. } => {
+                "z points upwards: write `gravity: [0, 0, -9.81]`, and check the loads that pull upwards".to_owned()
+            }
+            Self::NoPolygon { .. } => {
+                "give each foot its own place, `at: [x, y, z]` in m, so that they form a polygon around the crane".to_owned()
+            }
+            Self::Overturned { most, .. } => {
+                let names: Vec<String> =
+                    most.iter().flatten().map(|of_link| format!("`{}`", of_link.link)).collect();
+                let check = match names.as_slice() {
+                    [] => String::new(),
+                    names => format!("; check the masses, in kg, and positions, in m, of {}", names.join(" and ")),
+                };
+                format!("use a smaller load, a shorter reach, a wider stance or more ballast{check}")
+            }
+            Self::Yields { .. } => {
+                "check `stiffness`, in N/m, and `free_play`, in m, of the supports, and start from a `guess:` near the pose at rest".to_owned()
+            }
+            Self::Overflow => {
+                "check the exponents and units of masses, stiffnesses and positions; `crane check` warns about unusual ones".to_owned()
+            }
+            Self::Unknown => {
+                "change `guess:` in its spec to a pose near a stable equilibrium, or add a drive or spring to the coordinates named".to_owned()
+            }
+        }
+    }
+}
+
+/// Sum of weight and loads along z, N, if the crane can move that way.
+pub(super) fn upwards(crane: &dyn DynCrane, t: f64, q: &[f64]) -> Option<f64> {
+    Some(crane.weight_at(q)[2]? + crane.applied_force_at(t, q)[2]?)
+}
+
+/// Whether a base that can rotate about both horizontal axes has feet that form no polygon.
+fn has_no_polygon(crane: &dyn DynCrane, q: &[f64]) -> bool {
+    let description = crane.description();
+    let tilts = description.coordinates.iter().filter(|info| {
+        (info.role, info.kind) == (CoordinateRole::Base, CoordinateKind::Rotation) && !info.name.ends_with("_psi")
+    });
+    let rest = vec![0.0; q.len()];
+    !description.supports.is_empty() && tilts.count() == 2 && lines(crane, 0.0, q, &rest, &rest).is_empty()
+}
+
+/// Why a crane tips over the line between two feet.
+fn tipping(crane: &dyn DynCrane, q: &[f64], feet: &[Text]) -> Diagnosis {
+    let description = crane.description();
+    let rest = vec![0.0; q.len()];
+    let name = |foot: usize| &description.supports[foot].name;
+    let lines = lines(crane, 0.0, q, &rest, &rest);
+    let Some(line) = lines.into_iter().find(|line| feet.iter().eq(line.feet.iter().map(|&foot| name(foot)))) else {
+        return Diagnosis::Unknown;
+    };
+    if line.margin() >= STANDS {
+        return Diagnosis::Yields { margin: line.margin() };
+    }
+    let links = moments(crane, 0.0, [q, &rest, &rest], line.feet);
+    let greatest = |sign: f64| {
+        let all = links.iter().filter(|of_link| sign * of_link.moment > 0.0);
+        all.max_by(|a, b| (sign * a.moment).total_cmp(&(sign * b.moment))).cloned()
+    };
+    Diagnosis::Overturned {
+        feet: line.feet.map(|foot| name(foot).clone()),
+        line,
+        most: [greatest(-1.0), greatest(1.0)],
+    }
+}
+
+impl fmt::Display for Diagnosis {
+    /// What is known beyond the status, as the end of a sentence; may be empty.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unassembled { cylinder } => {
+                write!(
+                    f,
+                    "; the linkage of {cylinder} cannot be assembled at the guess: its rocker and link do not reach each other"
+                )
+            }
+            Self::Overloaded { coordinates } => match coordinates.as_slice() {
+                [one] => write!(f, "; the drive of {one} is at its limit"),
+                several => write!(f, "; the drives of {} are at their limits", several.join(", ")),
+            },
+            Self::Floats { upwards } => {
+                write!(f, "; together they pull upwards with {:.2} kN", upwards / 1e3)
+            }
+            Self::NoPolygon { one_place: true } => f.write_str("; seen from above, all its feet are in one place"),
+            Self::NoPolygon { one_place: false } => f.write_str("; seen from above, all its feet are on one line"),
+            Self::Overturned { feet: [from, to], line, most: [worst, best] } => {
+                write!(
+                    f,
+                    "; about the line {from} – {to} the overturning moment is {:.1} kN m, the stabilising one {:.1} kN m",
+                    line.overturning / 1e3,
+                    line.stabilising / 1e3
+                )?;
+                for (of_link, does, side) in [(worst, "overturns", "outside"), (best, "holds", "inside")] {
+                    if let Some(LinkMoment { link, weight, moment }) = of_link {
+                        let (newton, lever) = (weight / 1e3, (moment / weight).abs());
+                        write!(f, "; {link} {does} it most, with {newton:.2} kN {lever:.2} m {side} the line")?;
+                    }
+                }
+                Ok(())
+            }
+            Self::Yields { margin } => {
+                write!(f, "; its feet yield until it falls: on rigid feet the tipping margin would be {margin:.2}")
+            }
+            Self::Overflow | Self::Unknown => Ok(()),
+        }
+    }
+}
