@@ -71,7 +71,7 @@ fn overstress(description: &Description, moduli: &[SectionModuli], history: &[In
         format!(
             "{}, {:.3} m from its start{when}: {:.0} MPa, {used:.2} times the allowable stress",
             section.beam(description),
-            section.x,
+            section.info(description).x,
             section.stress.equivalent / 1e6
         )
     });

@@ -6,7 +6,8 @@ use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::{InitialState, Method, Sample, Settings};
-use crane_model::statics::{Settings as Statics, Status};
+use crane_model::runs::{Failed, Reason};
+use crane_model::statics::{Diagnosis, Settings as Statics, Status};
 
 fn crane(text: &str) -> LiveCrane {
     LiveCrane::from_spec(&SourceFile::new("feet.yaml", text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
@@ -208,4 +209,54 @@ fn free_play_is_a_gap() {
         });
         assert!(last.abs() < 1e-5, "{method:?}: {last} m");
     }
+}
+
+/// At twice the tipping load: about the near feet the truck holds with `M g a`, the load overturns with `m g (R − a)`, and the message says so.
+#[test]
+fn a_truck_that_tips_names_the_moments_and_the_links() {
+    let mut truck = truck("exact", 1e7, ", one_sided: true");
+    let crane: &mut dyn DynCrane = &mut truck;
+    let load = 2.0 * TIPPING;
+    crane.set_parameter(0, load).unwrap();
+    let found = crane.equilibrium(&Statics::default());
+    let Diagnosis::Overturned { feet, line, most: [Some(worst), Some(best)] } = Diagnosis::of(crane, &found) else {
+        panic!("{found}");
+    };
+    assert_eq!(feet.each_ref().map(crane_model::Text::as_str), ["near_rear", "near_front"]);
+    // Rounding alone: the guess is level.
+    let off = |found: f64, expected: f64| (found / expected - 1.0).abs();
+    let held = TRUCK * 9.81 * TRACK;
+    assert!(off(line.stabilising, held) < 1e-12 && off(line.overturning, 2.0 * held) < 1e-12, "{line:?}");
+    assert_eq!([worst.link.as_str(), best.link.as_str()], ["load", "truck"]);
+    assert!(off(worst.weight, load * 9.81) < 1e-12 && off(-worst.moment / worst.weight, RADIUS - TRACK) < 1e-12);
+    let reason = Reason::no_equilibrium(crane, &found);
+    let (said, advice) =
+        (Failed { crane: "truck".into(), reason: Box::new(reason.clone()) }.to_string(), reason.advice());
+    assert!(said.contains("load overturns it most") && said.contains("6.00 m outside the line"), "{said}");
+    assert!(advice.contains("wider stance") && !advice.contains("guess"), "{advice}");
+}
+
+#[test]
+fn gravity_upwards_and_feet_in_one_place_are_named() {
+    let text = |gravity: f64, y: f64| {
+        let foot = |name: &str, x: f64, y: f64| {
+            format!("  - {{name: {name}, at: [{x}, {y}, 0], stiffness: [1e6, 1e6, 1e6], one_sided: true}}\n")
+        };
+        let feet = [foot("a", y, y), foot("b", -y, y), foot("c", 0.0, -y)].concat();
+        format!(
+            "format: 1\nname: block\ngravity: [0, 0, {gravity}]\nlinks:\n\
+             - {{name: block, joint: free, mass: 1000, com: [0.01, 0, 0.5], inertia: {{Ixx: 100, Iyy: 100, Izz: 100}}}}\n\
+             supports:\n{feet}"
+        )
+    };
+    let floating = crane(&text(9.81, 1.0));
+    let floating: &dyn DynCrane = &floating;
+    let found = floating.equilibrium(&Statics::default());
+    assert_eq!(found.status, Status::Floats, "{found}");
+    let Diagnosis::Floats { upwards } = Diagnosis::of(floating, &found) else { panic!("{found}") };
+    assert!((upwards - 9810.0).abs() < 1e-9, "{upwards}");
+    let stacked = crane(&text(-9.81, 0.0));
+    let stacked: &dyn DynCrane = &stacked;
+    let found = stacked.equilibrium(&Statics::default());
+    assert_eq!(Diagnosis::of(stacked, &found), Diagnosis::NoPolygon { one_place: true }, "{found}");
 }

@@ -135,7 +135,11 @@ impl Crane {
             .filter_map(|(row, found)| Some(BadRow { row, reason: reason(row, found)? }))
             .collect();
         if let (Some(first), Invalid::Raise) = (bad.first(), invalid) {
-            let hint = found[first.row].as_ref().and_then(|found| found.diagnosis.as_ref()).unwrap_or(&Diagnosis::Unknown).advice();
+            let hint = found[first.row]
+                .as_ref()
+                .and_then(|found| found.diagnosis.as_ref())
+                .unwrap_or(&Diagnosis::Unknown)
+                .advice();
             let said = describe(first, &joined.shape);
             return Err(NoEquilibrium::new_err(format!(
                 "{}: statics did not find a stable equilibrium ({said}); {hint}",
