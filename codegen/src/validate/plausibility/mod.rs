@@ -33,14 +33,13 @@ pub(super) fn warnings(crane: &Crane, chain: &Chain, values: Vec<f64>) -> Vec<Mi
     if plausibility.warnings.is_empty() {
         plausibility.damping();
         plausibility.masses();
-        let before = plausibility.warnings.len();
         plausibility.base();
-        // With a wrong mass, an inertia is out of proportion as well.
-        if plausibility.warnings.len() == before {
-            plausibility.spread();
-        }
         plausibility.swept_booms();
-        plausibility.soft_drives();
+        // With a wrong mass, an inertia is out of proportion and its weight overcomes drives as well.
+        if plausibility.warnings.is_empty() {
+            plausibility.spread();
+            plausibility.soft_drives();
+        }
         plausibility.feet();
         plausibility.connectors();
     }
