@@ -7,9 +7,6 @@ use crane_model::{
 use crane_page::history::Instant;
 use crane_page::tables::{Cell, Grid, Report, Scale};
 
-/// Pascals in a newton per square millimetre.
-const MEGA: f64 = 1e6;
-
 /// Reports the section with the highest utilisation, at rest or over a run.
 pub fn verdict(
     report: &mut Report,
