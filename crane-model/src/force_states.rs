@@ -1,7 +1,7 @@
 //! States of forces, in addition to the pose and rates of a motion: pressures and spools of cylinders with a valve, bristles of joints that
 //! stick.
 //!
-//! A motion is `[q, v, x, integrals]`; x has the states of the oil, then one for each joint with bristles.
+//! A motion is `[q, v, x]`; x has the states of the oil, then one for each joint with bristles.
 
 use nalgebra::DMatrix;
 

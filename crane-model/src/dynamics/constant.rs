@@ -1,7 +1,5 @@
 //! The classical Runge–Kutta method with constant steps that end at every result.
 
-use nalgebra::Vector3;
-
 use super::{
     Ahead, Cause, Method, Settings, Statistics, Stepper, Stopped,
     equations::Equations,
@@ -21,8 +19,12 @@ pub struct Rk4<'a> {
     settings: Settings,
     roughness: Roughness,
     motion: Vec<f64>,
-    /// Rates at the start of a step.
+    /// Motion and slope at the start of the last step.
     before: Vec<f64>,
+    slope: Vec<f64>,
+    /// Slope at its end, and whether it is known: only a motion within the step needs it.
+    last_slope: Vec<f64>,
+    last_known: bool,
     room: Vec<f64>,
     first_order: FirstOrder,
     steps: EqualSteps,
@@ -43,8 +45,13 @@ struct EqualSteps {
 impl EqualSteps {
     /// Start and length of the next, s.
     fn next(&self) -> (f64, f64) {
-        let h = (self.end - self.begin) / self.count as f64;
+        let h = self.length();
         (self.begin + h * self.done as f64, h)
+    }
+
+    /// Length of a step, s.
+    fn length(&self) -> f64 {
+        (self.end - self.begin) / self.count.max(1) as f64
     }
 
     /// The time reached, s.
@@ -56,11 +63,14 @@ impl EqualSteps {
 impl<'a> Rk4<'a> {
     /// Creates the motion, with the step of the settings.
     pub fn new(crane: &'a dyn DynDynamics, settings: &Settings) -> Self {
-        let equations = Equations::new(crane, References::rigid(crane), settings.audit);
+        let equations = Equations::new(crane, References::none(crane));
         let n = equations.n;
         Self {
             motion: vec![0.0; equations.len()],
-            before: vec![0.0; n],
+            before: vec![0.0; equations.len()],
+            slope: vec![0.0; equations.len()],
+            last_slope: vec![0.0; equations.len()],
+            last_known: false,
             room: vec![0.0; rk4::ROOM * n],
             first_order: FirstOrder::new(if equations.states() > 0 { equations.len() } else { 0 }),
             equations,
@@ -83,7 +93,7 @@ impl<'a> Rk4<'a> {
     }
 }
 
-/// A step of pose, rates and integrals.
+/// A step of pose and rates.
 fn advance(
     equations: &mut Equations<'_>,
     t: f64,
@@ -91,20 +101,8 @@ fn advance(
     motion: &mut [f64],
     room: &mut [f64],
 ) -> Result<(), NotFinite> {
-    let mut powers = [Vector3::zeros(); rk4::STAGES];
-    let (pose, rest) = motion.split_at_mut(equations.n);
-    let (rates, integrals) = rest.split_at_mut(equations.n);
-    let audit = !integrals.is_empty();
-    let advanced = rk4::advance(t, h, [pose, rates], room, |stage, t, q, v, out| {
-        if audit {
-            powers[stage] = equations.powers_at(t, q, v).into();
-        }
-        equations.accelerate(t, q, v, out)
-    });
-    for (integral, increment) in integrals.iter_mut().zip(&rk4::increments(&powers, h)) {
-        *integral += increment;
-    }
-    advanced
+    let (pose, rates) = motion.split_at_mut(equations.n);
+    rk4::advance(t, h, [pose, rates], room, |_, t, q, v, out| equations.accelerate(t, q, v, out))
 }
 
 /// The method applied to all components of a motion in the same way, for cranes with forces that have states.
@@ -120,7 +118,7 @@ impl FirstOrder {
         Self { slopes: std::array::from_fn(|_| vec![0.0; len]), place: vec![0.0; len] }
     }
 
-    /// A step; `first` receives the accelerations at its start.
+    /// A step; `first` receives the slope at its start.
     fn advance(
         &mut self,
         equations: &mut Equations<'_>,
@@ -137,7 +135,7 @@ impl FirstOrder {
             }
             equations.slope(t + fraction * h, &self.place, &mut self.slopes[stage])?;
         }
-        first.copy_from_slice(&self.slopes[0][equations.n..2 * equations.n]);
+        first.copy_from_slice(&self.slopes[0]);
         add_all(motion, h / 6.0, &[1.0, 2.0, 2.0, 1.0], &self.slopes);
         Ok(())
     }
@@ -158,7 +156,7 @@ impl Stepper for Rk4<'_> {
     }
 
     fn step(&mut self, ahead: &Ahead) -> Result<f64, Stopped> {
-        let Self { equations, motion, before, room, steps, .. } = self;
+        let Self { equations, motion, before, slope, room, steps, .. } = self;
         if steps.done == steps.count {
             let (begin, end) = (steps.end, ahead.result.min(ahead.stop));
             let short = end == ahead.stop && end - begin < self.settings.step;
@@ -167,11 +165,14 @@ impl Stepper for Rk4<'_> {
         }
         let (t, h) = steps.next();
         let n = equations.n;
-        before.copy_from_slice(&motion[n..2 * n]);
+        before.copy_from_slice(motion);
         let advanced = if equations.states() > 0 {
-            self.first_order.advance(equations, t, h, motion, &mut room[..n])
+            self.first_order.advance(equations, t, h, motion, slope)
         } else {
-            advance(equations, t, h, motion, room)
+            let advanced = advance(equations, t, h, motion, room);
+            slope[..n].copy_from_slice(&before[n..]);
+            slope[n..].copy_from_slice(&room[..n]);
+            advanced
         };
         if advanced.is_ok() {
             let (pose, rest) = motion.split_at_mut(n);
@@ -181,13 +182,15 @@ impl Stepper for Rk4<'_> {
             let context = self.context(t, h);
             return Err(self.rough(&context, |context| context.failed(Cause::Growth, self.equations.crane)));
         }
-        let grows = self.roughness.grows(h, before, &room[..n], &motion[n..2 * n]);
+        let rates = n..2 * n;
+        let grows = self.roughness.grows(h, &before[rates.clone()], &slope[rates.clone()], &motion[rates]);
         if grows || !equations.crane.description().bounded(&motion[..n], self.settings.bound) {
             let context = self.context(t, h);
             return Err(self.rough(&context, |context| context.furthest(Cause::Growth)));
         }
         self.steps.done += 1;
         self.done += 1;
+        self.last_known = false;
         Ok(self.steps.reached())
     }
 
@@ -195,9 +198,26 @@ impl Stepper for Rk4<'_> {
         &self.motion
     }
 
-    /// Every result is at the end of a step.
-    fn interpolate(&mut self, _: f64, motion: &mut [f64]) {
+    /// Every result is at the end of a step. Within it: Hermite's cubic through values and slopes at both ends.
+    fn interpolate(&mut self, t: f64, motion: &mut [f64]) {
         motion.copy_from_slice(&self.motion);
+        let (end, h) = (self.steps.reached(), self.steps.length());
+        if t >= end {
+            return;
+        }
+        if !self.last_known {
+            // Where it is not finite, the next step ends the run.
+            let _ = self.equations.slope(end, &self.motion, &mut self.last_slope);
+            self.last_known = true;
+        }
+        let (theta, rest) = (1.0 - (end - t) / h, (end - t) / h);
+        let of_end = theta * theta * (1.0 + 2.0 * rest);
+        let slopes = self.slope.iter().zip(&self.last_slope);
+        for ((number, start), (first, last)) in motion.iter_mut().zip(&self.before).zip(slopes) {
+            *number = start + of_end * (*number - start) + theta * rest * h * (rest * first - theta * last);
+        }
+        let (pose, rates) = motion.split_at_mut(self.equations.n);
+        self.equations.crane.prescribe(t, pose, &mut rates[..self.equations.n]);
     }
 
     fn statistics(&self) -> Statistics {

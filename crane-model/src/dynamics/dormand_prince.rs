@@ -73,7 +73,7 @@ pub fn step<const N: usize, C: Dynamics<N>>(
     state: &State<N>,
 ) -> Result<(State<N>, State<N>), NotFinite> {
     let crane = Instance::<N, _>(crane);
-    let mut equations = Equations::new(&crane, References::rigid(&crane), false);
+    let mut equations = Equations::new(&crane, References::rigid(&crane));
     typed::step(&mut equations, t, h, state, &mut Tableau::new(2 * N))
 }
 
@@ -83,7 +83,7 @@ pub struct DormandPrince<'a>(Adaptive<'a, Tableau>);
 impl<'a> DormandPrince<'a> {
     /// Creates the motion, with the tolerance of the settings.
     pub fn new(crane: &'a dyn DynDynamics, settings: &Settings) -> Self {
-        let equations = Equations::new(crane, References::rigid(crane), settings.audit);
+        let equations = Equations::new(crane, References::rigid(crane));
         let norm = Norm::with_states(crane, settings.tolerance);
         Self(Adaptive::new(Tableau::new(equations.len()), equations, norm))
     }

@@ -9,7 +9,7 @@ use super::{
     bdf::Bdf,
     constant::Rk4,
     dormand_prince::DormandPrince,
-    equations::INTEGRALS,
+    energy_integrals::{EnergyIntegrals, INTEGRALS},
     rosenbrock::Rosenbrock,
     stopped::{StepContext, without_inertia},
     stops::Stops,
@@ -19,22 +19,28 @@ use crate::{
     force_states::ForceStates,
 };
 
+/// Steps and rejections after which an adaptive method's pace is measured: a fraction of a second of computing, and many times as many steps
+/// as an impact takes.
+const PACE: usize = 20_000;
+
 /// A run that is advanced from result to result. It keeps its step size and its history from one result to the next.
 pub struct Integration<'a> {
     crane: &'a dyn DynDynamics,
     stepper: Box<dyn Stepper + 'a>,
     settings: Settings,
-    /// Number of states of forces.
-    states: usize,
     stops: Stops,
     /// Beginning and end of the run, s.
     begin: f64,
     end: f64,
     /// Time that the steps have reached, s: at or beyond `time`.
     reached: f64,
+    /// Steps and rejections when the pace was last measured, and the time reached then, s.
+    paced: (usize, f64),
     /// Time and motion of the last result.
     time: f64,
     motion: Vec<f64>,
+    /// Work and dissipation up to there, in an audited run.
+    energy: Option<EnergyIntegrals<'a>>,
 }
 
 impl<'a> Integration<'a> {
@@ -78,15 +84,27 @@ impl<'a> Integration<'a> {
         let mut force_states = ForceStates::new(crane.description());
         let states = if start.x.is_empty() { force_states.holding(crane, begin, &start.q) } else { start.x.clone() };
         assert_eq!(states.len(), force_states.len(), "one number for each state of a force");
-        let integrals: &[f64] = if settings.audit { &[0.0; INTEGRALS] } else { &[] };
-        let mut motion = [start.q.as_slice(), &start.v, &states, integrals].concat();
+        let mut motion = [start.q.as_slice(), &start.v, &states].concat();
         let (pose, rates) = motion[..2 * n].split_at_mut(n);
         crane.prescribe(begin, pose, rates);
         stepper.start(begin, &motion)?;
         let end = begin + settings.duration;
         let stops = Stops::between([crane as &dyn DynModel], begin, end);
-        let states = force_states.len();
-        Ok(Self { crane, states, stepper, settings: *settings, stops, begin, end, reached: begin, time: begin, motion })
+        let energy = settings.audit.then(|| EnergyIntegrals::new(crane, begin, settings.tolerance));
+        let settings = *settings;
+        Ok(Self {
+            crane,
+            stepper,
+            settings,
+            stops,
+            begin,
+            end,
+            reached: begin,
+            paced: (0, begin),
+            time: begin,
+            motion,
+            energy,
+        })
     }
 
     /// Advances to a later time, s. `step` receives the time after every step and may stop the motion: the last result then stays.
@@ -101,32 +119,56 @@ impl<'a> Integration<'a> {
         let (n, description) = (self.crane.size(), self.crane.description());
         while self.reached < result {
             let before = self.reached;
+            self.integrate_powers(before);
             self.reached = self.stepper.step(&Ahead { result, stop: self.stops.after(before) })?;
-            let steps = self.stepper.statistics().steps;
+            let too_many = self.stepper.statistics().steps >= self.settings.most_steps || self.is_too_slow();
             let q = &self.stepper.motion()[..n];
             let (t, h) = (self.reached, self.reached - before);
             let context = StepContext { method: self.settings.method, t, h, q, description };
             if !description.bounded(q, self.settings.bound) {
                 return Err(context.furthest(Cause::Growth));
             }
-            if steps >= self.settings.most_steps && self.reached < self.end {
+            if too_many && self.reached < self.end {
                 return Err(context.furthest(Cause::Steps));
             }
             if step(self.reached).is_break() {
                 return Ok(ControlFlow::Break(()));
             }
         }
+        self.integrate_powers(result);
         self.stepper.interpolate(result, &mut self.motion);
         self.time = result;
         Ok(ControlFlow::Continue(()))
     }
 
+    /// Whether an adaptive method would need more than the maximum number of steps if it went on like this. A wrong unit makes forces that
+    /// change within microseconds: the run would take hours to find that out.
+    fn is_too_slow(&mut self) -> bool {
+        let statistics = self.stepper.statistics();
+        let done = statistics.steps + statistics.rejections;
+        let (before, since) = self.paced;
+        if done < before + PACE || !self.settings.method.is_adaptive() {
+            return false;
+        }
+        self.paced = (done, self.reached);
+        let left = (self.end - self.reached) / (self.reached - since) * (done - before) as f64;
+        // A motion without an end has no number of steps left.
+        left.is_finite() && left > self.settings.most_steps as f64
+    }
+
+    /// Integrates work and dissipation up to a time in the last step.
+    fn integrate_powers(&mut self, to: f64) {
+        let Self { energy, stepper, .. } = self;
+        if let Some(energy) = energy {
+            energy.advance(to, &mut |t, motion| stepper.interpolate(t, motion));
+        }
+    }
+
     /// The last result.
     pub fn sample(&self) -> Sample<'_> {
         let (q, rest) = self.motion.split_at(self.crane.size());
-        let (v, rest) = rest.split_at(q.len());
-        let (x, integrals) = rest.split_at(self.states);
-        let [work, dissipated, load_work] = *integrals.first_chunk().unwrap_or(&[0.0; INTEGRALS]);
+        let (v, x) = rest.split_at(q.len());
+        let [work, dissipated, load_work] = self.energy.as_ref().map_or([0.0; INTEGRALS], |energy| energy.values);
         Sample { t: self.time, q, v, x, work, dissipated, load_work }
     }
 

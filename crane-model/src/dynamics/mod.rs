@@ -13,6 +13,8 @@ mod contacts;
 #[cfg(feature = "std")]
 pub mod dormand_prince;
 #[cfg(feature = "std")]
+mod energy_integrals;
+#[cfg(feature = "std")]
 pub mod ensemble;
 #[cfg(feature = "std")]
 mod equations;

@@ -39,6 +39,11 @@ impl References {
         Self::new(crane, |drive, rigid| rigid || !jumps[drive])
     }
 
+    /// No coordinate.
+    pub fn none(crane: &dyn DynModel) -> Self {
+        Self::new(crane, |_, _| false)
+    }
+
     /// Only the coordinates of rigid drives.
     pub fn rigid(crane: &dyn DynModel) -> Self {
         Self::new(crane, |_, rigid| rigid)

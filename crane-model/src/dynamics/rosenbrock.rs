@@ -110,7 +110,7 @@ pub fn step<const N: usize, C: Implicit<N>>(
 ) -> Result<(State<N>, State<N>), NotFinite> {
     let crane = Instance::<N, _>(crane);
     let references = References::of(&crane);
-    let mut equations = Equations::new(&crane, references, false);
+    let mut equations = Equations::new(&crane, references);
     typed::step(&mut equations, t, h, state, &mut Stages::new(&crane, 2 * N))
 }
 
@@ -120,7 +120,7 @@ pub struct Rosenbrock<'a>(Adaptive<'a, Stages<'a>>);
 impl<'a> Rosenbrock<'a> {
     /// Creates the motion, with the tolerance of the settings.
     pub fn new(crane: &'a dyn DynImplicit, settings: &Settings) -> Self {
-        let equations = Equations::new(crane, References::of(crane), settings.audit);
+        let equations = Equations::new(crane, References::of(crane));
         let norm = Norm::with_efforts(crane, settings.tolerance);
         Self(Adaptive::new(Stages::new(crane, equations.len()), equations, norm))
     }
@@ -149,7 +149,6 @@ impl<'a> Stages<'a> {
 impl Formula for Stages<'_> {
     const METHOD: Method = Method::Rosenbrock;
 
-    /// Integrals are included; J is zero for them.
     fn attempt(&mut self, equations: &mut Equations<'_>, step: &mut Step) -> Result<(), NotFinite> {
         let h = step.length;
         let x = equations.force_states(&step.start);

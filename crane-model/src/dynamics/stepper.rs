@@ -4,8 +4,7 @@ use super::{EffortAccuracy, Statistics, Stopped};
 
 /// A motion that proceeds step by step. It holds its crane, its state and its workspace: no step allocates.
 ///
-/// A motion is one slice: coordinates, rates, states of forces and, in an audited run, the work of the drives, the energy dissipated
-/// by the dampers and the work of the loads.
+/// A motion is one slice: coordinates, rates and states of forces.
 pub trait Stepper: Send {
     /// Starts from a motion at time `t`, s.
     ///

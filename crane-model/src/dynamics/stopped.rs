@@ -16,7 +16,7 @@ pub enum Cause {
     Step,
     /// No step, however short, meets the tolerance of an adaptive method.
     Tolerance,
-    /// The run took as many steps as the settings allow.
+    /// The run took as many steps as the settings allow, or would take more at its pace.
     Steps,
     /// The mass matrix is not positive definite: a coordinate moves nothing that has inertia.
     MassMatrix,
@@ -104,8 +104,9 @@ impl Stopped {
                     .to_owned()
             }
             Cause::Steps if self.method.is_adaptive() => format!(
-                "the steps are {:.1e} s here: use a larger tolerance (1e-4 is typical) or a shorter duration, or find out what \
-                 vibrates that fast; the setting `most_steps` is the limit",
+                "the steps are {:.1e} s here: look for a number in a wrong unit, such as a pressure in bar or a mass in t, and for what \
+                 vibrates that fast; or use a larger tolerance (1e-4 is typical) or a shorter duration; the setting `most_steps` is \
+                 the limit",
                 self.step
             ),
             Cause::Steps => "use a longer step or a shorter duration; the setting `most_steps` is the limit".to_owned(),
@@ -129,7 +130,9 @@ impl fmt::Display for Stopped {
             Cause::Tolerance => {
                 write!(f, "no step from t = {time:.6} s meets the tolerance; {coordinate} is {value:.3e} {unit}")
             }
-            Cause::Steps => write!(f, "the run reached its maximum number of steps at t = {time:.6} s"),
+            Cause::Steps => {
+                write!(f, "the run takes more than its maximum number of steps; it stopped at t = {time:.6} s")
+            }
             Cause::MassMatrix => write!(
                 f,
                 "the mass matrix is not positive definite at t = {time:.6} s: {coordinate} ({value:.3e} {unit}) moves nothing \

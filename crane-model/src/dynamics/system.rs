@@ -18,7 +18,7 @@ use super::{connector_update::ConnectorUpdate, force_state_update::ForceStateUpd
 use crate::{
     Description,
     dyn_crane::{DynImplicit, DynSystem},
-    force_states::{ForceStates, StateAt},
+    force_states::StateAt,
 };
 
 /// `A + cD̂ + c²K̂` of a crane, factorised.
@@ -36,9 +36,8 @@ pub(super) struct System<'a> {
     switches: bool,
     /// Stiffness and damping of connectors.
     connectors: ConnectorUpdate,
-    /// Forces with states, and the number of these states.
+    /// Forces with states.
     force_states: ForceStateUpdate,
-    states: usize,
     /// c, s.
     c: f64,
     added_inertia: Vec<f64>,
@@ -68,7 +67,6 @@ impl<'a> System<'a> {
             base: [Matrix6::zeros(); 2],
             connectors: ConnectorUpdate::new(crane),
             force_states: ForceStateUpdate::new(crane),
-            states: ForceStates::new(crane.description()).len(),
             c: f64::NAN,
             added_inertia: zeros(),
             right: zeros(),
@@ -118,7 +116,7 @@ impl<'a> System<'a> {
             || self.connectors.switched(self.crane, t, (q, v))
     }
 
-    /// u for a right-hand side `(P, G, R, ·)`.
+    /// u for a right-hand side `(P, G, R)`.
     pub fn solve(&mut self, rhs: &[f64], u: &mut [f64]) {
         let (c, n) = (self.c, self.joints.len());
         let (p, g) = rhs[..2 * n].split_at(n);
@@ -133,7 +131,7 @@ impl<'a> System<'a> {
             }
         }
         self.connectors.add_to((g, p), c, &mut self.right);
-        let (r, of_integrals) = rhs[2 * n..].split_at(self.states);
+        let r = &rhs[2 * n..];
         self.force_states.add_to((g, p), r, c, &mut self.right);
         for right in &mut self.right {
             *right *= -c * c;
@@ -142,16 +140,12 @@ impl<'a> System<'a> {
         self.connectors.correct(&mut self.solution);
         self.force_states.correct(&mut self.solution);
         let (of_q, rest) = u.split_at_mut(n);
-        let (of_v, rest) = rest.split_at_mut(n);
-        let (of_x, rest) = rest.split_at_mut(self.states);
+        let (of_v, of_x) = rest.split_at_mut(n);
         for i in 0..n {
             of_v[i] = c * g[i] + self.solution[i];
             of_q[i] = c * (of_v[i] + p[i]);
         }
         self.force_states.states((of_q, of_v), r, of_x);
-        for (u, rhs) in rest.iter_mut().zip(of_integrals) {
-            *u = c * rhs;
-        }
     }
 }
 

@@ -20,7 +20,7 @@ pub(super) fn state_of<const N: usize>(motion: &[f64]) -> State<N> {
     State { q, v }
 }
 
-/// State and estimated error after a step from `t` to `t + h`, without integrals.
+/// State and estimated error after a step from `t` to `t + h`.
 pub(super) fn step<const N: usize>(
     equations: &mut Equations<'_>,
     t: f64,

@@ -234,11 +234,24 @@ fn a_run_ends_at_its_limit_of_steps() {
         assert!(stopped.time > 0.0 && stopped.time < 10.0, "{stopped:?}");
         let (message, advice) = (stopped.to_string(), stopped.advice());
         assert!(
-            message.contains("reached its maximum number of steps") && advice.contains("most_steps"),
+            message.contains("more than its maximum number of steps") && advice.contains("most_steps"),
             "{message}; {advice}"
         );
         assert_eq!(advice.contains("tolerance"), method.is_adaptive(), "{advice}");
     }
+}
+
+/// Explicit steps at 1e8 rad/s, as after a mistake in a unit: ten seconds would take more than 1e8 of them, and the run says so after 2e4.
+#[test]
+fn a_run_that_would_take_too_many_steps_ends_early() {
+    let lift = Lift { stiffness: 1e16 * Lift::default().mass, ..Lift::default() };
+    let settings = Settings { method: Method::DormandPrince, duration: 10.0, ..Settings::of(lift.description) };
+    let start = State { q: Vector1::new(lift.sag()), v: Vector1::new(1.0) };
+    let stopped = simulate(&lift, start, &settings, |_| ControlFlow::Continue(())).expect_err("too many steps");
+    assert_eq!(stopped.cause, Cause::Steps);
+    // 2e4 steps of less than 1e-7 s.
+    assert!(stopped.time < 2e-3 && stopped.step < 1e-7, "{stopped:?}");
+    assert!(stopped.advice().contains("wrong unit"), "{}", stopped.advice());
 }
 
 #[test]

@@ -52,27 +52,16 @@ impl<'a> Correction<'a> {
         self.system.factorise(self.t, equations.state(self.t, &self.end), x, self.c);
     }
 
-    /// One step of the iteration, without the integrals: [`integrate`](Self::integrate) follows at its end.
+    /// One step of the iteration.
     pub fn improve(&mut self, equations: &mut Equations<'_>) -> Result<(), NotFinite> {
         let Self { past, end, d, rhs, improvement, .. } = self;
-        let integrals = equations.integrals();
-        equations.derivative(self.t, end, rhs)?;
-        // f − (ψ + d)/c; zero for integrals.
-        add(&mut rhs[..integrals], -1.0, past);
-        add(&mut rhs[..integrals], -self.c.recip(), d);
-        rhs[integrals..].fill(0.0);
+        equations.slope(self.t, end, rhs)?;
+        // f − (ψ + d)/c
+        add(rhs, -1.0, past);
+        add(rhs, -self.c.recip(), d);
         self.system.solve(rhs, improvement);
         add(end, 1.0, improvement);
         add(d, 1.0, improvement);
         Ok(())
-    }
-
-    /// Computes the integrals over the step from the converged state: at the prediction, stiff springs are far from equilibrium.
-    pub fn integrate(&mut self, equations: &mut Equations<'_>) {
-        equations.powers(self.t, &self.end, &mut self.rhs);
-        for i in equations.integrals()..self.end.len() {
-            self.d[i] = (self.rhs[i] - self.past[i]) * self.c;
-            self.end[i] += self.d[i];
-        }
     }
 }

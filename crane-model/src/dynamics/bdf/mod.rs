@@ -72,7 +72,7 @@ pub fn step<const N: usize, C: Implicit<N>>(
     /// Allowed last increment, relative to 1 m or rad plus the size of the new state.
     const EXACT: f64 = 1e-14;
     let crane = Instance::<N, _>(crane);
-    let mut equations = Equations::new(&crane, References::of(&crane), false);
+    let mut equations = Equations::new(&crane, References::of(&crane));
     if equations.states() > 0 {
         return Err(NotFinite);
     }
@@ -165,7 +165,7 @@ struct Control {
 impl<'a> Bdf<'a> {
     /// Creates the motion, with the tolerance of the settings.
     pub fn new(crane: &'a dyn DynImplicit, settings: &Settings) -> Self {
-        let equations = Equations::new(crane, References::of(crane), settings.audit);
+        let equations = Equations::new(crane, References::of(crane));
         let norm = Norm::with_efforts(crane, SHARE * settings.tolerance);
         let len = equations.len();
         let contraction = Contraction { ratio: 1.0, h: 1.0, age: Contraction::LIFETIME };
@@ -232,7 +232,6 @@ impl<'a> Bdf<'a> {
         let order = history.order;
         correction.predict(equations, history);
         let error = if control.converges(equations, history.h, correction) {
-            correction.integrate(equations);
             control.error(&correction.end, &correction.d, order)
         } else {
             f64::INFINITY

@@ -1,0 +1,88 @@
+//! The energy audit of runs where drives saturate and where everything is prescribed: `E − E(0) − W + D` is zero for the exact motion.
+
+use std::ops::ControlFlow;
+
+use crane_codegen::SourceFile;
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::DynCrane;
+use crane_model::dynamics::{InitialState, Method, Sample, Settings};
+
+fn crane(text: &str) -> LiveCrane {
+    LiveCrane::from_spec(&SourceFile::new("crane.yaml", text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
+}
+
+/// A slide of 100 kg whose motion asks for more than its drive can deliver.
+fn limited(limits: &str) -> LiveCrane {
+    crane(&format!(
+        "format: 1\nname: slide\nlinks: [{{name: slide, joint: {{prismatic: {{axis: x}}}}, mass: 100, com: [0, 0, 0]}}]\n\
+         drives: [{{coordinate: slide_x, stiffness: 2e4, damping: 2e3, {limits}, motion: {{quintic: {{from: 0, to: 3, duration: 1.5}}}}}}]\n\
+         run: {{duration: 4, output: 0.01}}\n"
+    ))
+}
+
+/// Four links, all prescribed.
+const RIGID: &str = "format: 1\nname: arm\nlinks:\n\
+    - {name: column, joint: revolute, mass: 50, com: [0.1, 0, 0.5], inertia: {gyration: [0.3, 0.3, 0.2]}}\n\
+    - {name: boom, placement: {transform: {translation: [0, 0, 1], rotation: {x: 90 deg}}}, joint: revolute, mass: 60, com: [1, 0, 0], inertia: {gyration: [0.1, 0.6, 0.6]}}\n\
+    - {name: outer, placement: {transform: {translation: [2, 0, 0]}}, joint: revolute, mass: 40, com: [0.7, 0, 0], inertia: {gyration: [0.1, 0.4, 0.4]}}\n\
+    - {name: stage, placement: {transform: {translation: [1, 0, 0]}}, joint: {prismatic: {axis: x}}, mass: 20, com: [0.3, 0, 0], inertia: {gyration: [0.1, 0.2, 0.2]}}\n\
+    drives:\n\
+    - {coordinate: column_psi, rigid: true, motion: {quintic: {from: 0, to: 1.5, duration: 3}}}\n\
+    - {coordinate: boom_psi, rigid: true, motion: {quintic: {from: 0, to: 1, duration: 2}}}\n\
+    - {coordinate: outer_psi, rigid: true, motion: {cubic: {from: -1, to: 0.3, begin: 0.5, duration: 2}}}\n\
+    - {coordinate: stage_x, rigid: true, motion: {quintic: {from: 0.2, to: 1, duration: 3}}}\n\
+    run: {duration: 4, output: 0.05}\n";
+
+/// Largest work of the drives, dissipated energy at the end, and largest error of the balance, J.
+fn audit(crane: &LiveCrane, method: Method, tolerance: f64) -> [f64; 3] {
+    let crane: &dyn DynCrane = crane;
+    let settings = Settings { method, tolerance, audit: true, ..Settings::of(crane.description()) };
+    let start = InitialState::at_rest(crane.guess());
+    let (mut first, mut work, mut lost, mut off) = (None, 0.0_f64, 0.0, 0.0_f64);
+    let mut observe = |sample: &Sample<'_>| {
+        let energy = crane.energies_at(sample.t, sample.q, sample.v).total();
+        let begin = *first.get_or_insert(energy);
+        work = work.max(sample.work.abs());
+        lost = sample.dissipated;
+        off = off.max((energy - begin - sample.work - sample.load_work + sample.dissipated).abs());
+        ControlFlow::Continue(())
+    };
+    crane.simulate(&start, &settings, &mut observe).unwrap_or_else(|stopped| panic!("{stopped}"));
+    [work, lost, off]
+}
+
+#[test]
+fn drives_at_their_limits_balance() {
+    for limits in ["max_effort: 200", "max_effort: 200, max_power: 150, max_rate: 1.5"] {
+        let slide = limited(limits);
+        let exact = audit(&slide, Method::DormandPrince, 1e-11);
+        for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince] {
+            let errors = [2e-5, 1e-7, 1e-9].map(|tolerance| {
+                let [work, lost, off] = audit(&slide, method, tolerance);
+                // One-step methods may pass over the moment in which a drive leaves one limit for the other: at a limit the motion is a
+                // parabola, and the steps are long.
+                let allowed = if method == Method::Bdf { 1e-3 } else { 1e-2 };
+                assert!(off < allowed * work, "{limits}, {method}, {tolerance:e}: off by {off:e} of {work} J");
+                // The motion, and with it the work, is that of the most accurate run up to the error of the balance and of the motion.
+                let difference = (work - exact[0]).abs().max((lost - exact[1]).abs());
+                assert!(difference < allowed * work, "{limits}, {method}, {tolerance:e}: {work}, {lost} for {exact:?}");
+                off / work
+            });
+            let falls = errors[2] < 1e-2 * errors[0] + 1e-8;
+            assert!(falls || method != Method::Bdf, "{limits}, {method}: {errors:?}");
+        }
+    }
+}
+
+/// The motion has no error, whatever the tolerance: the balance is that of the quadrature.
+#[test]
+fn prescribed_motions_balance() {
+    let arm = crane(RIGID);
+    for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince, Method::Rk4] {
+        for tolerance in [2e-5, 1e-7] {
+            let [work, lost, off] = audit(&arm, method, tolerance);
+            assert!(work > 1000.0 && lost == 0.0, "{work}, {lost}");
+            assert!(off < tolerance * work, "{method}, {tolerance:e}: off by {off:e} of {work} J");
+        }
+    }
+}
