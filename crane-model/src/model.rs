@@ -100,11 +100,6 @@ pub trait CraneModel<const N: usize>: Send + Sync {
         SVector::zeros()
     }
 
-    /// Generalized forces of connectors while nothing moves, not even a winch.
-    fn connector_forces_at_rest(&self, _t: f64, _q: &SVector<f64, N>) -> SVector<f64, N> {
-        SVector::zeros()
-    }
-
     /// Length (m) of every connector, and its rate (m/s). `out`: one pair per connector.
     fn connector_lengths(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [[f64; 2]]) {}
 
@@ -331,45 +326,32 @@ pub trait Implicit<const N: usize>: Dynamics<N> {
     }
 }
 
-/// Static equilibrium at t = 0.
+/// The crane at rest, with loads and winches as at time t and the drives at given positions, each at the index of its coordinate.
 pub trait Statics<const N: usize>: CraneModel<N> {
-    /// `∂E_p/∂q` at t = 0; zero in equilibrium. N and N m.
-    fn static_residual(&self, q: &SVector<f64, N>) -> SVector<f64, N>;
+    /// `∂E_p/∂q`; zero in equilibrium. N and N m.
+    fn static_residual(&self, t: f64, q: &SVector<f64, N>, positions: &SVector<f64, N>) -> SVector<f64, N>;
 
     /// `∂²E_p/∂q²`, symmetric; positive definite if the equilibrium is stable. A prescribed coordinate, whose residual is 0,
     /// has 1 on the diagonal and zeros elsewhere in its row and column.
-    fn tangent_stiffness(&self, q: &SVector<f64, N>) -> SMatrix<f64, N, N>;
+    fn tangent_stiffness(&self, t: f64, q: &SVector<f64, N>, positions: &SVector<f64, N>) -> SMatrix<f64, N, N>;
 
-    /// The part of connectors in the tangent stiffness, with winches where they are at time t.
-    fn connector_stiffness(&self, _t: f64, _q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
-        SMatrix::zeros()
-    }
-
-    /// Generalized forces of cylinders with a valve that hold the crane at rest with the drives at given positions, each at the place of its
-    /// coordinate: springs along the cylinders, `k (ℓ₀ − ℓ) ∂ℓ/∂q`. ℓ₀ is the length with the joint at the position of its drive and straight
-    /// beams, and k the stiffness of the drive over the squared lever arm there. N and N m.
-    fn holding_forces(&self, _q: &SVector<f64, N>, _positions: &SVector<f64, N>) -> SVector<f64, N> {
+    /// Generalized forces of the drives that hold the crane: those of their springs, for rigid drives the forces needed for equilibrium, and
+    /// those of springs along cylinders with a valve, `k (ℓ₀ − ℓ) ∂ℓ/∂q`. ℓ₀ is the length with the joint at the position of its drive and
+    /// straight beams, and k the stiffness of the drive over the squared lever arm there. N and N m.
+    fn drive_forces_at_rest(&self, _t: f64, _q: &SVector<f64, N>, _positions: &SVector<f64, N>) -> SVector<f64, N> {
         SVector::zeros()
     }
 
-    /// The part of these cylinders in the tangent stiffness.
-    fn holding_stiffness(&self, _q: &SVector<f64, N>, _positions: &SVector<f64, N>) -> SMatrix<f64, N, N> {
-        SMatrix::zeros()
-    }
-
-    /// Generalized forces of the drives that hold the crane at rest at t = 0: the forces of their springs, for rigid drives the forces
-    /// needed for equilibrium, and those of cylinders with a valve. N and N m.
-    fn drive_forces_at_rest(&self, q: &SVector<f64, N>) -> SVector<f64, N> {
-        let mut motions = [[0.0; 2]; N];
-        self.drive_motions(0.0, &mut motions);
-        // The dampers are unloaded at the rates of the motions.
-        let mut v = SVector::<f64, N>::zeros();
-        for (drive, [_, rate]) in self.description().drives.iter().zip(motions) {
-            if let Some(v) = v.get_mut(drive.coordinate) {
-                *v = rate;
+    /// Positions of the drives' motions at time t, each at the index of its coordinate; 0 at all others.
+    fn drive_positions(&self, t: f64) -> SVector<f64, N> {
+        let (mut motions, mut positions) = ([[0.0; 2]; N], SVector::<f64, N>::zeros());
+        self.drive_motions(t, &mut motions);
+        for (drive, [position, _]) in self.description().drives.iter().zip(motions) {
+            if let Some(number) = positions.get_mut(drive.coordinate) {
+                *number = position;
             }
         }
-        self.drive_forces(0.0, q, &v)
+        positions
     }
 }
 

@@ -215,7 +215,7 @@ fn positions_held_are_motions_that_hold() {
         let one = moving.equilibrium_holding(&[0.9], &[0.3], &settings);
         let other = held.equilibrium(&settings);
         assert!(one.is_stable() && (one.q[0] - other.q[0]).abs() < 1e-12, "{} {}", one.q[0], other.q[0]);
-        let efforts = [moving.drive_efforts_holding(&[0.9], &one.q)[0], held.drive_efforts_at_rest(&other.q)[0]];
+        let efforts = [moving.drive_efforts_holding(0.0, &[0.9], &one.q)[0], held.drive_efforts_at_rest(&other.q)[0]];
         assert!((efforts[0] / efforts[1] - 1.0).abs() < 1e-9, "{efforts:?}");
     }
 }

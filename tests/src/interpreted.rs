@@ -2,7 +2,7 @@
 
 use crane_codegen::chain::{Analyses, Chain, Cylinder};
 use crane_codegen::mechanics;
-use crane_codegen::program::{FunctionId, Inputs, Program, Shape};
+use crane_codegen::program::{Argument, FunctionId, Inputs, Program, Shape};
 use crane_codegen::symbolic::Scalar;
 use crane_model::nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -55,13 +55,30 @@ impl Interpreted {
         Inputs::state(state.t, state.q.clone(), state.v.clone(), self.chain.parameter_defaults())
     }
 
-    /// A function's result; `otherwise` zeros if the program does not have the function.
+    /// A function's result; `otherwise` zeros if the program does not have the function. Drives are where their motions are unless `inputs`
+    /// has their positions.
     pub fn get<S: Scalar>(&self, function: &str, inputs: &Inputs<S>, otherwise: usize) -> Vec<S> {
         let id = FunctionId::named(function).unwrap_or_else(|| panic!("there is no function `{function}`"));
         match self.program.function(id) {
+            Some(function) if function.arguments.contains(&Argument::DrivePositions) => {
+                let given = inputs.get(Argument::DrivePositions);
+                let positions = if given.is_empty() { self.drive_positions(inputs) } else { given };
+                let inputs = inputs.clone().with(Argument::DrivePositions, positions);
+                expand(&function.shape, self.program.evaluate(function, &inputs))
+            }
             Some(function) => expand(&function.shape, self.program.evaluate(function, inputs)),
             None => vec![S::from_f64(0.0); otherwise],
         }
+    }
+
+    /// Positions of the drives' motions, by coordinate.
+    fn drive_positions<S: Scalar>(&self, inputs: &Inputs<S>) -> Vec<S> {
+        let mut positions = vec![S::from_f64(0.0); self.size()];
+        let motions = self.get("drive_motions", inputs, 0);
+        for (drive, motion) in self.chain.drives.iter().zip(motions.chunks_exact(2)) {
+            positions[drive.coordinate.0] = motion[0].clone();
+        }
+        positions
     }
 
     /// A vector with one entry per coordinate.

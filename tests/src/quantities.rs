@@ -84,18 +84,14 @@ pub fn quantities(crane: &Description) -> Vec<Quantity> {
         ("section_moduli", vec![crane.sections.len(), 8]),
         ("load_power", vec![1]),
         ("connector_forces", vec![n]),
-        ("connector_forces_at_rest", vec![n]),
         ("connector_lengths", vec![crane.connectors.len(), 2]),
         ("connector_tensions", vec![crane.connectors.len(), 3]),
         ("connector_jacobians", vec![crane.connectors.len(), n]),
-        ("connector_stiffness", vec![n, n]),
         ("connector_energy", vec![1]),
         ("winch_power", vec![1]),
         ("connector_wrenches", vec![crane.connectors.len(), crane.cuts().len(), 6]),
         ("cylinder_jacobians", vec![crane.cylinders.len(), n]),
         ("cylinder_wrenches", vec![crane.cylinders.len(), crane.cuts().len(), 6]),
-        ("holding_forces", vec![n]),
-        ("holding_stiffness", vec![n, n]),
     ];
     rows.into_iter().map(|(name, shape)| Quantity { name, shape }).collect()
 }
@@ -123,6 +119,7 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
         (state.t, &SVector::<f64, N>::from_column_slice(&state.q), &SVector::<f64, N>::from_column_slice(&state.v));
     let info = crane.description();
     let (first, second) = derivative_counts(info);
+    let held = &crane.drive_positions(t);
     let mut out = Vec::new();
 
     let mut transforms = vec![Matrix4::zeros(); info.bodies.len()];
@@ -151,7 +148,7 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
         crane.stop_forces(q, v),
         crane.friction_forces(v),
         crane.load_forces(t, q),
-        crane.drive_forces_at_rest(q),
+        crane.drive_forces_at_rest(t, q, held),
         crane.forward_dynamics(t, q, v),
         crane.solve_mass(q, v),
         implicit_solution(crane, q, v),
@@ -167,8 +164,8 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
         crane.drive_energy(t, q),
         crane.stop_energy(q),
     ]);
-    out.extend(crane.static_residual(q).iter());
-    push_matrix(&mut out, &crane.tangent_stiffness(q));
+    out.extend(crane.static_residual(t, q, held).iter());
+    push_matrix(&mut out, &crane.tangent_stiffness(t, q, held));
     let Linearisation { mass, stiffness, damping } = crane.linearise(q);
     for matrix in [mass, stiffness, damping] {
         push_matrix(&mut out, &matrix);
@@ -237,20 +234,15 @@ fn of_connectors<const N: usize, C: Crane<N>>(crane: &C, t: f64, q: &SVector<f64
     crane.connector_jacobians(q, &mut jacobians);
     let mut out = Vec::new();
     out.extend(&crane.connector_forces(t, q, v));
-    out.extend(&crane.connector_forces_at_rest(t, q));
     out.extend(lengths.iter().flatten());
     out.extend(tensions.iter().flat_map(|tension| [tension.force, tension.stiffness, tension.damping]));
     out.extend(jacobians.iter().flatten());
-    out.extend(&crane.connector_stiffness(t, q));
     out.extend([crane.connector_energy(t, q), crane.winch_power(t, q, v)]);
     let mut wrenches = vec![Wrench::ZERO; count * crane.description().cuts().len()];
     crane.connector_wrenches(q, &mut wrenches);
     out.extend(flat(&wrenches));
     out
 }
-
-/// Fraction of the coordinates of a pose at which drives are held among the quantities.
-pub const HELD: f64 = 0.95;
 
 /// What cylinders do in directions besides that of their joint.
 fn of_cylinders<const N: usize, C: Crane<N>>(crane: &C, q: &SVector<f64, N>) -> Vec<f64> {
@@ -259,11 +251,8 @@ fn of_cylinders<const N: usize, C: Crane<N>>(crane: &C, q: &SVector<f64, N>) -> 
     let mut wrenches = vec![Wrench::ZERO; count * crane.description().cuts().len()];
     crane.cylinder_jacobians(q, &mut jacobians);
     crane.cylinder_wrenches(q, &mut wrenches);
-    let held = q * HELD;
     let mut out: Vec<f64> = jacobians.into_iter().flatten().collect();
     out.extend(flat(&wrenches));
-    out.extend(&crane.holding_forces(q, &held));
-    out.extend(&crane.holding_stiffness(q, &held));
     out
 }
 

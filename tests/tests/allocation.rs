@@ -30,7 +30,6 @@ fn every_function<const N: usize>(crane: &mut (impl Crane<N> + TransformDerivati
     crane.cylinder_jacobians(q, &mut [[0.0; N]; 6]);
     crane.cylinder_wrenches(q, &mut places.wrenches);
     crane.connector_wrenches(q, &mut places.wrenches);
-    black_box((crane.holding_forces(q, v), crane.holding_stiffness(q, v)));
     crane.drive_limits(t, q, v, &mut places.motions);
     crane.drive_motions(t, &mut places.motions);
     crane.valve_openings(t, &mut places.motions);
@@ -38,10 +37,9 @@ fn every_function<const N: usize>(crane: &mut (impl Crane<N> + TransformDerivati
     crane.load_pieces(&mut places.pieces);
     crane.connector_lengths(q, v, &mut places.motions);
     crane.connector_tensions(t, q, v, &mut [Tension::ZERO; 6]);
-    black_box(crane.connector_stiffness(t, q));
     crane.connector_jacobians(q, &mut [[0.0; N]; 6]);
     crane.winch_pieces(&mut places.pieces);
-    black_box((crane.connector_forces(t, q, v), crane.connector_forces_at_rest(t, q)));
+    black_box(crane.connector_forces(t, q, v));
     black_box((crane.connector_energy(t, q), crane.winch_power(t, q, v)));
     crane.joint_stiffness_and_damping(&mut places.stiffness_and_damping);
     let (mut prescribed_q, mut prescribed_v, mut mass) = (*q, *v, SMatrix::zeros());
@@ -49,7 +47,11 @@ fn every_function<const N: usize>(crane: &mut (impl Crane<N> + TransformDerivati
     black_box(crane.mass_matrix_and_bias(q, v, &mut mass));
     let factors = crane.factorise(q, v, &Matrix6::identity());
     black_box((crane.solve(&factors, v), crane.solve_mass(q, v), crane.forward_dynamics(t, q, v)));
-    black_box((crane.base_stiffness(q, v), crane.base_damping(q, v), crane.drive_forces_at_rest(q)));
+    black_box((
+        crane.base_stiffness(q, v),
+        crane.base_damping(q, v),
+        crane.drive_forces_at_rest(t, q, &crane.drive_positions(t)),
+    ));
     let alike: &_ = crane;
     let lanes = Ensemble::lanes([alike; 8]);
     black_box(lanes.forward_dynamics(splat(t), &q.map(splat), &v.map(splat)));
@@ -64,7 +66,7 @@ fn every_function<const N: usize>(crane: &mut (impl Crane<N> + TransformDerivati
         crane.load_forces(t, q),
     ));
     black_box((crane.forces(t, q, v), crane.mass_matrix(q), crane.bias(q, v), crane.linearise(q)));
-    black_box((crane.static_residual(q), crane.tangent_stiffness(q)));
+    black_box((crane.static_residual(t, q, v), crane.tangent_stiffness(t, q, v)));
     black_box((crane.gravity_energy(q), crane.support_energy(q), crane.element_energy(q), crane.drive_energy(t, q)));
     black_box((crane.stop_energy(q), crane.load_power(t, q, v)));
     crane.nonlinear_stiffness_and_damping(t, q, v, &mut places.motions);

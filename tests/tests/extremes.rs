@@ -171,10 +171,10 @@ proptest! {
         let n = crane.interpreted.size();
         let mut direction = crane.state.v.clone();
         crane.interpreted.prescribed().into_iter().for_each(|j| direction[j] = 0.0);
-        let state = State { t: 0.0, v: vec![0.0; n], ..crane.state };
+        let state = State { v: vec![0.0; n], ..crane.state };
         let pairs = |x: &[f64], d: &[f64]| x.iter().zip(d).map(|(x, d)| Dual::new(*x, *d)).collect();
         let parameters = crane.interpreted.chain.parameter_defaults().into_iter().map(|p| Dual::new(p, 0.0)).collect();
-        let inputs = Inputs::state(Dual::new(0.0, 0.0), pairs(&state.q, &direction), pairs(&state.v, &state.v), parameters);
+        let inputs = Inputs::state(Dual::new(state.t, 0.0), pairs(&state.q, &direction), pairs(&state.v, &state.v), parameters);
         let along = DVector::from_vec(direction);
 
         let residual = crane.interpreted.vector("static_residual", &state);

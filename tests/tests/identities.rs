@@ -1,6 +1,6 @@
 //! Physical identities on random cranes with fixed seeds, by the interpreter.
 
-use crane_codegen::chain::{Chain, CoordinateKind, Cut, Step, Strain};
+use crane_codegen::chain::{Chain, Connector, CoordinateKind, Cut, Step, Strain};
 use crane_codegen::program::{Argument, Inputs};
 use crane_model::nalgebra::{DMatrix, DVector, Rotation2, Vector2};
 use crane_tests::dual::Dual;
@@ -371,13 +371,13 @@ fn prescribed_coordinates_are_no_unknowns() {
     assert!(tested >= 24, "{tested} rigid drives");
 }
 
-/// The residual is the gradient of the potential energy and the tangent is its Hessian, by dual numbers.
+/// The residual is the gradient of the potential energy at any time and the tangent is its Hessian, by dual numbers.
 #[test]
 fn residual_and_tangent_are_derivatives_of_the_energy() {
     for (seed, crane) in cranes() {
         let n = crane.size();
         for state in states::far(&crane.chain, 2, seed) {
-            let state = State { t: 0.0, v: vec![0.0; n], ..state };
+            let state = State { v: vec![0.0; n], ..state };
             let residual = crane.vector("static_residual", &state);
             let tangent = crane.matrix("tangent_stiffness", &state);
             let holding = crane.get("drive_forces_at_rest", &crane.inputs(&state), n);
@@ -410,6 +410,35 @@ fn residual_and_tangent_are_derivatives_of_the_energy() {
             assert!((symmetric - &tangent).amax() < 1e-12 * tangent.amax(), "seed {seed}: tangent");
         }
     }
+}
+
+/// The tangent is the derivative of the residual wherever the drives hold the crane: along a random direction, by dual numbers, with loads
+/// and winches that move.
+#[test]
+fn the_tangent_is_the_derivative_of_the_residual_at_any_time_and_positions() {
+    let (mut loads, mut winches) = (0, 0);
+    for (seed, crane) in cranes() {
+        let n = crane.size();
+        let is_fixed = |j: usize| crane.prescribed().contains(&j);
+        for state in states::far(&crane.chain, 2, seed) {
+            assert!(state.t > 0.0, "seed {seed}");
+            // Positions that no motion has, and a direction in which no prescribed coordinate moves.
+            let positions: Vec<f64> = state.q.iter().zip(&state.v).map(|(q, v)| q + 0.02 * v.sin()).collect();
+            let direction: Vec<f64> = (0..n).map(|j| if is_fixed(j) { 0.0 } else { state.v[j].sin() }).collect();
+            let held = positions.iter().map(|position| Dual::new(*position, 0.0)).collect();
+            let inputs = moving(&crane, &state, (0.0, &direction, &vec![0.0; n])).with(Argument::DrivePositions, held);
+            let along: Vec<f64> = crane.get("static_residual", &inputs, n).into_iter().map(Dual::derivative).collect();
+            let inputs = crane.inputs(&state).with(Argument::DrivePositions, positions);
+            let tangent = DMatrix::from_row_slice(n, n, &crane.get("tangent_stiffness", &inputs, n * n));
+            let direction = DVector::from_vec(direction);
+            // Of loads that turn with their link, the tangent has the symmetric part.
+            let work = (DVector::from_vec(along) - &tangent * &direction).dot(&direction).abs();
+            assert!(work < 1e-12 * tangent.amax() * direction.norm_squared(), "seed {seed}: {work:e}");
+        }
+        loads += crane.chain.loads.iter().filter(|load| load.scale.is_some()).count();
+        winches += crane.chain.connectors.iter().filter_map(Connector::winch).count();
+    }
+    assert!(loads >= 3 && winches >= 3, "{loads} loads and {winches} winches that change");
 }
 
 /// ∂T/∂q and ∂²T/∂q∂q against dual numbers through T and ∂T/∂q.

@@ -5,7 +5,7 @@ use crane_codegen::compile;
 use crane_codegen::mechanics;
 use crane_codegen::program::{Argument, FunctionId, Inputs, Program};
 use crane_tests::interpreted::Interpreted;
-use crane_tests::quantities::{HELD, IMPLICIT_STEP, Quantity, State, quantities};
+use crane_tests::quantities::{IMPLICIT_STEP, Quantity, State, quantities};
 use crane_tests::registry::{self, Entry};
 use crane_tests::runtime::Runtime;
 use crane_tests::{random, states, workspace};
@@ -36,21 +36,9 @@ fn interpret(crane: &Interpreted, quantity: &Quantity, inputs: &Inputs<Runtime>)
             let accelerated = inputs.clone().with(Argument::Acceleration, inputs.get(Argument::Velocity));
             crane.get("internal_forces", &accelerated, quantity.len())
         }
-        "holding_forces" | "holding_stiffness" => {
-            let held = inputs.get(Argument::Position).into_iter().map(|q| q * Runtime(HELD)).collect();
-            crane.get(quantity.name, &inputs.clone().with(Argument::DrivePositions, held), quantity.len())
-        }
         "lane_forward_dynamics" => crane.get("forward_dynamics", inputs, n),
         "implicit_solution" => implicit_solution(crane, inputs),
         "prescribed" => prescribed(crane, inputs),
-        "drive_forces_at_rest" if crane.prescribed().is_empty() && !crane.chain.has_valves() => {
-            let start = inputs.clone().with(Argument::Time, vec![Runtime(0.0)]);
-            let mut rates = vec![Runtime(0.0); n];
-            for (drive, motion) in crane.chain.drives.iter().zip(crane.get("drive_motions", &start, 0).chunks(2)) {
-                rates[drive.coordinate.0] = motion[1];
-            }
-            crane.get("drive_forces", &start.with(Argument::Velocity, rates), n)
-        }
         name => crane.get(name, inputs, quantity.len()),
     }
 }

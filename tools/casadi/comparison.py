@@ -37,8 +37,6 @@ OF_PAIRS = [
     "cylinder_jacobians",
     "cylinder_wrenches",
     "drive_forces_at_rest",
-    "holding_forces",
-    "holding_stiffness",
 ]
 
 

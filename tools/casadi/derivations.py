@@ -270,7 +270,7 @@ class Derivations:
     def connector_forces(self):
         """Generalized forces of elements between two points by virtual work, power of winches, energies and damping at rest."""
         q, v = self.crane.q, self.crane.v
-        forces, at_rest = ca.SX.zeros(q.shape), ca.SX.zeros(q.shape)
+        forces = ca.SX.zeros(q.shape)
         energy, power, lost, damping = ca.SX(0), ca.SX(0), ca.SX(0), ca.SX(q.numel(), q.numel())
         lengths, tensions, rows = [ca.SX(0, 1)], [ca.SX(0, 1)], [ca.SX(0, q.numel())]
         for connector in self.crane.connectors:
@@ -278,7 +278,6 @@ class Derivations:
             still = self.connector(connector, moving=False)[2]
             row = ca.jacobian(length, q)
             forces -= row.T * force
-            at_rest -= row.T * still
             energy += stored
             wound = -force * self.rate(ca.SX(connector.length)) if connector.is_rope else 0
             power += wound
@@ -301,11 +300,8 @@ class Derivations:
             tensions += [force, slopes]
             resting = connector.damping * (still if connector.is_rope else 1)
             damping += row.T @ row * ca.substitute(ca.SX(resting), self.crane.time, 0)
-        stiffness = ca.hessian(energy, q)[0]
         return {
-            "connector_stiffness": self.unknowns(stiffness, 0),
             "connector_forces": forces,
-            "connector_forces_at_rest": at_rest,
             "connector_energy": energy,
             "winch_power": power,
             "connector_lengths": ca.vertcat(*lengths),
@@ -410,34 +406,33 @@ class Derivations:
         )
 
     def statics(self):
-        """Gradient and Hessian of the whole potential energy at t = 0."""
-        potential = self.gravity_energy() + sum(energy for energy, _ in self.potentials().values())
-        potential += self.joint_forces()[2] + self.contact_forces()[1] + self.limited_drives()[1]
-        potential += self.connector_forces()[0]["connector_energy"]
-        stiffness, gradient = ca.hessian(ca.substitute(potential, self.crane.time, 0), self.crane.q)
-        oil, of_oil = ca.hessian(ca.substitute(self.holding_energy(), self.crane.time, 0), self.crane.q)
-        gradient += of_oil
-        loads = ca.substitute(self.load_forces(), self.crane.time, 0)
-        slope = ca.jacobian(loads, self.crane.q)
+        """Gradient and Hessian of the whole potential energy, with loads, winches and drives where they are at the time of the state; the
+        Hessian also at t = 0 without oil, for small motions."""
+        q = self.crane.q
+        springs, oil = self.potentials()["drive"][0] + self.limited_drives()[1], self.holding_energy()
+        others = self.gravity_energy() + sum(energy for part, (energy, _) in self.potentials().items() if part != "drive")
+        others += self.joint_forces()[2] + self.contact_forces()[1] + self.connector_forces()[0]["connector_energy"]
+        loads = self.load_forces()
+        slope = ca.jacobian(loads, q)
+        stiffness, gradient = ca.hessian(others + springs, q)
         stiffness, gradient = stiffness - (slope + slope.T) / 2, gradient - loads
-        tangent, stiffness = self.unknowns(stiffness + oil, 1), self.unknowns(stiffness, 1)
-        residual, holding = ca.densify(gradient), self.springs_at_rest()
+        of_oil, push = ca.hessian(oil, q)
+        residual, holding = ca.densify(gradient + push), ca.densify(-ca.gradient(springs, q) - push)
         for place in self.crane.rigid_drives:
-            holding[place], residual[place] = gradient[place], 0
-        springs = ca.hessian(sum(energy for energy, _ in self.potentials().values()), self.crane.q)[0]
-        springs = sum((c.step_stiffness for c in self.contacts.values()), springs)
+            holding[place], residual[place] = residual[place], 0
+        linear = ca.hessian(sum(energy for energy, _ in self.potentials().values()), q)[0]
+        linear = sum((c.step_stiffness for c in self.contacts.values()), linear)
         return {
             "static_residual": residual,
             "drive_forces_at_rest": holding,
-            "tangent_stiffness": tangent,
-            "linearised_stiffness": stiffness,
-            **self.holding(),
-            SPRINGS: row_major(ca.densify(springs)),
+            "tangent_stiffness": self.unknowns(stiffness + of_oil, 1),
+            "linearised_stiffness": self.unknowns(ca.substitute(stiffness, self.crane.time, 0), 1),
+            SPRINGS: row_major(ca.densify(linear)),
         }
 
-    def holding_energy(self, positions=None):
-        """Energy of the springs that stand for cylinders with oil at rest: along the cylinder, with the joint at the given position or at that
-        of its drive and straight beams as the pose without force."""
+    def holding_energy(self):
+        """Energy of the springs that stand for cylinders with oil at rest: along the cylinder, with the joint at the position of its drive and
+        straight beams as the pose without force."""
         energy = ca.SX(0)
         for drive in self.crane.drives:
             if not drive.by_oil:
@@ -445,22 +440,10 @@ class Derivations:
             place = self.crane.coordinates.index(drive.coordinate)
             length = next(c.length for c in self.crane.cylinders if c.coordinate is drive.coordinate)
             straight = ca.SX.zeros(self.crane.q.shape)
-            straight[place] = drive.motion if positions is None else positions[place]
+            straight[place] = drive.motion
             arm, meant = (ca.substitute(of, self.crane.q, straight) for of in (ca.jacobian(length, drive.coordinate.q), length))
             energy += drive.stiffness * ((meant - length) / arm) ** 2 / 2
         return energy
-
-    def holding(self):
-        """Forces and stiffness of these springs with the drives held at a fraction of the coordinates."""
-        q, positions = self.crane.q, ca.SX.sym("positions", self.crane.q.numel())
-        stiffness, gradient = ca.hessian(self.holding_energy(positions), q)
-        stiffness, gradient = (ca.substitute(of, positions, HELD * q) for of in (ca.densify(stiffness), ca.densify(gradient)))
-        return {"holding_forces": -gradient, "holding_stiffness": self.unknowns(stiffness, 0)}
-
-    def springs_at_rest(self):
-        """Generalized forces of the drives' springs at t = 0."""
-        energy = self.potentials()["drive"][0] + self.limited_drives()[1] + self.holding_energy()
-        return ca.densify(ca.substitute(-ca.gradient(energy, self.crane.q), self.crane.time, 0))
 
     def motions(self):
         """Points and their velocities, reactions of the supports, cylinders, and the drives' motions, limits and power."""
@@ -525,8 +508,6 @@ class Derivations:
         return values | solutions(values, states.v, list(self.crane.rigid_drives))
 
 
-# Fraction of the coordinates at which drives are held in `holding_forces`; that of the program `evaluate`.
-HELD = 0.95
 # Step size of `implicit_solution`, s; that of the program `evaluate`.
 IMPLICIT_STEP = 0.01
 # Computed from the other quantities at each state.

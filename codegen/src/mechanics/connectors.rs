@@ -256,9 +256,9 @@ pub fn stiffness<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, t: Expr<'g>
     model.add_tangent(&forces, &(0..reach).collect(), matrix);
 }
 
-/// Adds `Σ Jᵀ ∂F/∂ℓ̇ J` at rest and t = 0.
-pub fn damping<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
-    for (connector, stretched, state) in stretched(model, kinematics, (model.zero(), None)) {
+/// Adds `Σ Jᵀ ∂F/∂ℓ̇ J` at rest at time t.
+pub fn damping<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, t: Expr<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    for (connector, stretched, state) in stretched(model, kinematics, (t, None)) {
         let [_, by_rate] = slopes(model, &connector.law, &state);
         for (place, &(j, one)) in stretched.jacobian.iter().enumerate() {
             for &(i, other) in &stretched.jacobian[..=place] {

@@ -32,7 +32,6 @@
 use super::kinematics::Kinematics;
 use super::loads::Place;
 use super::model::Model;
-use super::profile;
 use super::vector::{SymmetricMatrix, Vec3};
 use crate::chain::{BodyId, Cylinder, Linkage, Pin, Value};
 use crate::symbolic::Expr;
@@ -222,15 +221,6 @@ pub fn pushes<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, cylinder: &Cyl
 /// The stiffness at rest of the drive whose joint oil moves; `None` for a cylinder without a valve.
 fn holding<'a>(model: &'a Model<'_>, cylinder: &Cylinder) -> Option<&'a Value> {
     model.chain.drives[model.chain.drive_of(cylinder)].oil()
-}
-
-/// Positions of the drives at t = 0, by coordinate.
-pub fn positions_at_start<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
-    let mut positions = model.zeros();
-    for drive in &model.chain.drives {
-        positions[drive.coordinate.0] = profile::position(model, &drive.profile, model.zero());
-    }
-    positions
 }
 
 /// Generalized forces of cylinders with a valve that hold the crane at rest, with the drives at given positions, by coordinate: springs

@@ -22,8 +22,9 @@ fn unlimited<'g>(
     t: Expr<'g>,
     v: &[Expr<'g>],
 ) -> Expr<'g> {
-    let stretch = stretch(model, drive, t);
-    let rate = profile::rate(model, &drive.profile, t) - v[drive.coordinate.0];
+    let j = drive.coordinate.0;
+    let stretch = profile::position(model, &drive.profile, t) - model.q[j];
+    let rate = profile::rate(model, &drive.profile, t) - v[j];
     model.number(stiffness) * stretch + model.number(damping) * rate
 }
 
@@ -38,20 +39,30 @@ fn limited<'g>(model: &Model<'g>, drive: &Drive, effort: Expr<'g>) -> Expr<'g> {
     drive.max_effort().map_or(effort, |limit| Saturation::new(effort, model.number(limit)).effort())
 }
 
-/// Drives with a limit, and the saturation of the efforts of their springs at time t.
+/// Drives with a limit, and the saturation of the efforts of their springs with the drives at given positions.
 fn saturations<'a, 'g>(
     model: &'a Model<'g>,
-    t: Expr<'g>,
+    positions: &'a [Expr<'g>],
 ) -> impl Iterator<Item = ((&'a Drive, &'a Value, &'a Value), Saturation<'g>)> {
     flexible(model).filter_map(move |drive| {
         let limit = model.number(drive.0.max_effort()?);
-        Some((drive, Saturation::new(model.number(drive.1) * stretch(model, drive.0, t), limit)))
+        Some((drive, Saturation::new(model.number(drive.1) * stretch(model, drive.0, positions), limit)))
     })
 }
 
+/// Positions of the drives at time t, by coordinate.
+pub fn positions<'g>(model: &Model<'g>, t: Expr<'g>) -> Vec<Expr<'g>> {
+    let mut positions = model.zeros();
+    for drive in &model.chain.drives {
+        positions[drive.coordinate.0] = profile::position(model, &drive.profile, t);
+    }
+    positions
+}
+
 /// `q_dr − q`
-fn stretch<'g>(model: &Model<'g>, drive: &Drive, t: Expr<'g>) -> Expr<'g> {
-    profile::position(model, &drive.profile, t) - model.q[drive.coordinate.0]
+fn stretch<'g>(model: &Model<'g>, drive: &Drive, positions: &[Expr<'g>]) -> Expr<'g> {
+    let j = drive.coordinate.0;
+    positions[j] - model.q[j]
 }
 
 fn named<'g>(model: &Model<'g>, drive: &Drive, effort: Expr<'g>) -> Expr<'g> {
@@ -68,12 +79,12 @@ pub fn forces<'g>(model: &Model<'g>, t: Expr<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g
     forces
 }
 
-/// Generalized forces of the flexible drives' springs at t = 0 with the crane at rest: dampers do not act, even if a motion
-/// is in progress.
-pub fn forces_at_rest<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+/// Generalized forces of the flexible drives' springs with the crane at rest and the drives at given positions: dampers do not act, even if
+/// a motion is in progress.
+pub fn forces_at_rest<'g>(model: &Model<'g>, positions: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let mut forces = model.zeros();
     for (drive, stiffness, _) in flexible(model) {
-        let stretch = stretch(model, drive, model.zero());
+        let stretch = stretch(model, drive, positions);
         forces[drive.coordinate.0] = named(model, drive, limited(model, drive, model.number(stiffness) * stretch));
     }
     forces
@@ -99,11 +110,11 @@ fn prescribed<'g>(model: &Model<'g>, of: impl Fn(&Drive) -> Expr<'g>) -> Vec<Opt
 
 /// `E_dr = ½ Σ s (q_dr − q)²` [Urbaś 2016, Eq. (19)]; for a drive with a limit `∫ sat(s e) de`.
 pub fn energy<'g>(model: &Model<'g>) -> Expr<'g> {
+    let positions = positions(model, model.t);
     let twice = linear(model).fold(model.zero(), |sum, (drive, stiffness, _)| {
-        let stretch = profile::position(model, &drive.profile, model.t) - model.q[drive.coordinate.0];
-        sum + model.number(stiffness) * stretch.squared()
+        sum + model.number(stiffness) * stretch(model, drive, &positions).squared()
     });
-    let limited = saturations(model, model.t).map(|((_, s, _), spring)| spring.integral() / model.number(s));
+    let limited = saturations(model, &positions).map(|((_, s, _), spring)| spring.integral() / model.number(s));
     limited.fold(0.5 * twice, |sum, energy| sum + energy)
 }
 
@@ -141,20 +152,20 @@ pub fn linear_damping<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
     matrix.add_diagonal(linear(model).map(|(drive, _, d)| (drive.coordinate.0, model.number(d))));
 }
 
-/// Stiffness of drives with a limit at rest and t = 0, on the diagonal.
-pub fn limited_stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
+/// Stiffness of drives with a limit at rest at given positions, on the diagonal.
+pub fn limited_stiffness<'g>(model: &Model<'g>, positions: &[Expr<'g>], matrix: &mut SymmetricMatrix<'g>) {
     let stiffness = |((drive, s, _), spring): ((&Drive, &Value, &Value), Saturation<'g>)| {
         (drive.coordinate.0, spring.slope() * model.number(s))
     };
-    matrix.add_diagonal(saturations(model, model.zero()).map(stiffness));
+    matrix.add_diagonal(saturations(model, positions).map(stiffness));
 }
 
-/// Damping of drives with a limit at rest and t = 0, on the diagonal.
-pub fn limited_damping<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
+/// Damping of drives with a limit at rest at given positions, on the diagonal.
+pub fn limited_damping<'g>(model: &Model<'g>, positions: &[Expr<'g>], matrix: &mut SymmetricMatrix<'g>) {
     let damping = |((drive, _, d), spring): ((&Drive, &Value, &Value), Saturation<'g>)| {
         (drive.coordinate.0, spring.slope() * model.number(d))
     };
-    matrix.add_diagonal(saturations(model, model.zero()).map(damping));
+    matrix.add_diagonal(saturations(model, positions).map(damping));
 }
 
 /// Maximum effort of every drive, 0 if it has no limit, and its stiffness at the state, `−∂t_dr/∂q`.
@@ -219,7 +230,7 @@ pub fn dissipation<'g>(model: &Model<'g>) -> Expr<'g> {
     let rate = |drive: &Drive| profile::rate(model, &drive.profile, model.t) - model.v[drive.coordinate.0];
     let linear = linear(model)
         .fold(model.zero(), |sum, (drive, _, damping)| sum + model.number(damping) * rate(drive).squared());
-    saturations(model, model.t).fold(linear, |sum, (drive, spring)| {
+    saturations(model, &positions(model, model.t)).fold(linear, |sum, (drive, spring)| {
         let damper = limited(model, drive.0, unlimited(model, drive, model.t, &model.v)) - spring.effort();
         sum + damper * rate(drive.0)
     })

@@ -45,6 +45,26 @@ impl Kind {
     ];
 }
 
+/// What is given at rest besides the pose.
+pub struct Rest<'g> {
+    /// Time of loads and winches, s.
+    pub t: Expr<'g>,
+    /// Positions at which the drives hold the crane, by coordinate.
+    pub positions: Vec<Expr<'g>>,
+}
+
+impl<'g> Rest<'g> {
+    /// At any time, with the drives at any positions.
+    pub fn given(model: &Model<'g>) -> Self {
+        Rest { t: model.t, positions: model.drive_positions.clone() }
+    }
+
+    /// At t = 0, with the drives where their motions start.
+    pub fn at_start(model: &Model<'g>) -> Self {
+        Rest { t: model.zero(), positions: drives::positions(model, model.zero()) }
+    }
+}
+
 /// The forces of a chain, except those of rigid drives, which have no law: they follow from the motion.
 pub struct Forces<'a, 'g> {
     model: &'a Model<'g>,
@@ -87,28 +107,28 @@ impl<'a, 'g> Forces<'a, 'g> {
         }
     }
 
-    /// Generalized forces of a kind at rest and t = 0, `−∂E/∂q`: oil holds its joints, and no winch moves.
-    fn at_rest(&self, kind: Kind) -> Vec<Expr<'g>> {
+    /// Generalized forces of a kind at rest, `−∂E/∂q`: oil holds its joints, and no winch moves.
+    fn at_rest(&self, kind: Kind, rest: &Rest<'g>) -> Vec<Expr<'g>> {
         let &Forces { model, kinematics } = self;
-        let (start, zeros) = (model.zero(), model.zeros());
+        let zeros = model.zeros();
         match kind {
             Kind::Supports => supports::forces(model, kinematics, &zeros),
             Kind::BeamSprings => springs::element_forces(model, &model.q, &zeros),
-            Kind::Drives => self.drives_at_rest(),
+            Kind::Drives => self.drives_at_rest(rest),
             Kind::JointDampers | Kind::Friction => zeros,
             Kind::Stops => joints::stop_forces(model, &zeros),
-            Kind::Loads => loads::forces(model, kinematics, start),
-            Kind::Connectors => connectors::forces(model, kinematics, start, None),
+            Kind::Loads => loads::forces(model, kinematics, rest.t),
+            Kind::Connectors => connectors::forces(model, kinematics, rest.t, None),
         }
     }
 
-    /// Generalized forces of flexible drives and cylinders with a valve at rest and t = 0.
-    pub fn drives_at_rest(&self) -> Vec<Expr<'g>> {
-        let springs = drives::forces_at_rest(self.model);
+    /// Generalized forces of flexible drives and cylinders with a valve at rest.
+    pub fn drives_at_rest(&self, rest: &Rest<'g>) -> Vec<Expr<'g>> {
+        let springs = drives::forces_at_rest(self.model, &rest.positions);
         if !self.model.chain.has_valves() {
             return springs;
         }
-        add(&springs, &cylinders::holding_forces(self.model, &cylinders::positions_at_start(self.model)))
+        add(&springs, &cylinders::holding_forces(self.model, &rest.positions))
     }
 
     /// Energy of a kind, if it stores any.
@@ -141,38 +161,38 @@ impl<'a, 'g> Forces<'a, 'g> {
         }
     }
 
-    /// Adds the tangent stiffness of a kind at rest and t = 0, `∂²E/∂q∂q`, without that of oil, which follows from its volumes.
-    fn add_stiffness(&self, kind: Kind, matrix: &mut SymmetricMatrix<'g>) {
+    /// Adds the tangent stiffness of a kind at rest, `∂²E/∂q∂q`, without that of oil, which follows from its volumes.
+    fn add_stiffness(&self, kind: Kind, rest: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>) {
         let &Forces { model, kinematics } = self;
         match kind {
             Kind::Supports => supports::stiffness(model, kinematics, matrix),
             Kind::BeamSprings => springs::stiffness(model, matrix),
             Kind::Drives => {
                 drives::linear_stiffness(model, matrix);
-                drives::limited_stiffness(model, matrix);
+                drives::limited_stiffness(model, &rest.positions, matrix);
             }
             Kind::Stops => joints::stop_stiffness(model, matrix),
-            Kind::Loads => loads::stiffness(model, kinematics, matrix),
-            Kind::Connectors => connectors::stiffness(model, kinematics, model.zero(), matrix),
+            Kind::Loads => loads::stiffness(model, kinematics, rest.t, matrix),
+            Kind::Connectors => connectors::stiffness(model, kinematics, rest.t, matrix),
             Kind::JointDampers | Kind::Friction => {}
         }
     }
 
-    /// Adds the damping of a kind at rest and t = 0, `−∂f/∂q̇`.
-    fn add_damping(&self, kind: Kind, matrix: &mut SymmetricMatrix<'g>) {
+    /// Adds the damping of a kind at rest, `−∂f/∂q̇`.
+    fn add_damping(&self, kind: Kind, rest: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>) {
         let &Forces { model, kinematics } = self;
         match kind {
             Kind::Supports => supports::damping(model, kinematics, matrix),
             Kind::BeamSprings => springs::element_damping(model, matrix),
             Kind::Drives => {
                 drives::linear_damping(model, matrix);
-                drives::limited_damping(model, matrix);
+                drives::limited_damping(model, &rest.positions, matrix);
             }
             Kind::JointDampers => springs::joint_damping(model, matrix),
             Kind::Stops => joints::stop_damping(model, matrix),
             Kind::Friction => joints::viscous_damping(model, matrix),
             Kind::Loads => {}
-            Kind::Connectors => connectors::damping(model, kinematics, matrix),
+            Kind::Connectors => connectors::damping(model, kinematics, rest.t, matrix),
         }
     }
 
@@ -204,9 +224,9 @@ impl<'a, 'g> Forces<'a, 'g> {
         self.sum(|kind| self.in_motion(kind))
     }
 
-    /// Generalized forces of all kinds at rest and t = 0.
-    pub fn all_at_rest(&self) -> Vec<Expr<'g>> {
-        self.sum(|kind| self.at_rest(kind))
+    /// Generalized forces of all kinds at rest.
+    pub fn all_at_rest(&self, rest: &Rest<'g>) -> Vec<Expr<'g>> {
+        self.sum(|kind| self.at_rest(kind, rest))
     }
 
     fn sum(&self, of: impl Fn(Kind) -> Vec<Expr<'g>>) -> Vec<Expr<'g>> {
@@ -218,17 +238,17 @@ impl<'a, 'g> Forces<'a, 'g> {
         self.kinds().fold(self.model.zero(), |sum, kind| sum + self.dissipation_of(kind))
     }
 
-    /// Tangent stiffness of all kinds at rest and t = 0, without that of oil.
-    pub fn stiffness(&self) -> SymmetricMatrix<'g> {
+    /// Tangent stiffness of all kinds at rest, without that of oil.
+    pub fn stiffness(&self, rest: &Rest<'g>) -> SymmetricMatrix<'g> {
         let mut matrix = SymmetricMatrix::zero(self.model.graph, self.model.size());
-        self.kinds().for_each(|kind| self.add_stiffness(kind, &mut matrix));
+        self.kinds().for_each(|kind| self.add_stiffness(kind, rest, &mut matrix));
         matrix
     }
 
-    /// Damping of all kinds at rest and t = 0.
-    pub fn damping(&self) -> SymmetricMatrix<'g> {
+    /// Damping of all kinds at rest.
+    pub fn damping(&self, rest: &Rest<'g>) -> SymmetricMatrix<'g> {
         let mut matrix = SymmetricMatrix::zero(self.model.graph, self.model.size());
-        self.kinds().for_each(|kind| self.add_damping(kind, &mut matrix));
+        self.kinds().for_each(|kind| self.add_damping(kind, rest, &mut matrix));
         matrix
     }
 

@@ -120,13 +120,13 @@ pub fn power<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, twists: &[Twist
     })
 }
 
-/// The symmetric part of `−∂f/∂q` of the loads at t = 0. For a force along fixed axes `∂f/∂q` is symmetric; for a moment, and for a
+/// Adds the symmetric part of `−∂f/∂q` of the loads at time t. For a force along fixed axes `∂f/∂q` is symmetric; for a moment, and for a
 /// force that turns with its link, it is not, and there is no potential.
-pub fn stiffness<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
+pub fn stiffness<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, t: Expr<'g>, matrix: &mut SymmetricMatrix<'g>) {
     if model.chain.loads.is_empty() {
         return;
     }
-    let forces = forces(model, kinematics, model.zero());
+    let forces = forces(model, kinematics, t);
     let columns: Vec<Vec<Expr<'g>>> = model.q.iter().map(|q| model.graph.derivatives(&forces, *q)).collect();
     for j in 0..columns.len() {
         matrix.add(j, j, -columns[j][j]);

@@ -74,7 +74,6 @@ functions! {
         LoadForces = "load_forces",
         LoadPieces = "load_pieces",
         ConnectorForces = "connector_forces",
-        ConnectorForcesAtRest = "connector_forces_at_rest",
         ConnectorLengths = "connector_lengths",
         ConnectorTensions = "connector_tensions",
         ConnectorJacobians = "connector_jacobians",
@@ -119,9 +118,6 @@ functions! {
         StaticResidual = "static_residual",
         TangentStiffness = "tangent_stiffness",
         DriveForcesAtRest = "drive_forces_at_rest",
-        ConnectorStiffness = "connector_stiffness",
-        HoldingForces = "holding_forces",
-        HoldingStiffness = "holding_stiffness",
     }
     Linearise {
         Linearise = "linearise",

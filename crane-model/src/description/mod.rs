@@ -69,6 +69,15 @@ impl Description {
     pub fn has_force_states(&self) -> bool {
         self.has_valves() || !self.bristles.is_empty()
     }
+
+    /// Numbers of the drives, each at the index of the drive's coordinate; 0 at all others.
+    pub fn by_coordinate(&self, of_drives: &[f64]) -> Vec<f64> {
+        let mut by_coordinate = vec![0.0; self.coordinates.len()];
+        for (drive, number) in self.drives.iter().zip(of_drives) {
+            by_coordinate[drive.coordinate] = *number;
+        }
+        by_coordinate
+    }
 }
 
 /// A live parameter.

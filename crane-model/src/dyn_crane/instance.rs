@@ -93,10 +93,6 @@ impl<const N: usize, H: Deref<Target: CraneModel<N>> + Send + Sync> DynModel for
         out.copy_from_slice(self.0.connector_forces(t, &vector(q), &vector(v)).as_slice());
     }
 
-    fn connector_forces_at_rest(&self, t: f64, q: &[f64], out: &mut [f64]) {
-        out.copy_from_slice(self.0.connector_forces_at_rest(t, &vector(q)).as_slice());
-    }
-
     fn connector_lengths(&self, q: &[f64], v: &[f64], out: &mut [[f64; 2]]) {
         self.0.connector_lengths(&vector(q), &vector(v), out);
     }
@@ -202,28 +198,16 @@ impl<const N: usize, H: Deref<Target: CraneModel<N>> + Send + Sync> DynModel for
 }
 
 impl<const N: usize, H: Deref<Target: Statics<N>> + Send + Sync> DynStatics for Instance<N, H> {
-    fn static_residual(&self, q: &[f64], out: &mut [f64]) {
-        out.copy_from_slice(self.0.static_residual(&vector(q)).as_slice());
+    fn static_residual(&self, t: f64, q: &[f64], positions: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(self.0.static_residual(t, &vector(q), &vector(positions)).as_slice());
     }
 
-    fn tangent_stiffness(&self, q: &[f64], out: &mut [f64]) {
-        out.copy_from_slice(self.0.tangent_stiffness(&vector(q)).as_slice());
+    fn tangent_stiffness(&self, t: f64, q: &[f64], positions: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(self.0.tangent_stiffness(t, &vector(q), &vector(positions)).as_slice());
     }
 
-    fn connector_stiffness(&self, t: f64, q: &[f64], out: &mut [f64]) {
-        out.copy_from_slice(self.0.connector_stiffness(t, &vector(q)).as_slice());
-    }
-
-    fn holding_forces(&self, q: &[f64], positions: &[f64], out: &mut [f64]) {
-        out.copy_from_slice(self.0.holding_forces(&vector(q), &vector(positions)).as_slice());
-    }
-
-    fn holding_stiffness(&self, q: &[f64], positions: &[f64], out: &mut [f64]) {
-        out.copy_from_slice(self.0.holding_stiffness(&vector(q), &vector(positions)).as_slice());
-    }
-
-    fn drive_forces_at_rest(&self, q: &[f64], out: &mut [f64]) {
-        out.copy_from_slice(self.0.drive_forces_at_rest(&vector(q)).as_slice());
+    fn drive_forces_at_rest(&self, t: f64, q: &[f64], positions: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(self.0.drive_forces_at_rest(t, &vector(q), &vector(positions)).as_slice());
     }
 }
 

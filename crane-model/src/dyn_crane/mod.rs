@@ -6,7 +6,7 @@
 //! | here | counterpart | used by |
 //! |---|---|---|
 //! | [`DynModel`] | [`CraneModel`](crate::CraneModel) | everything |
-//! | [`DynStatics`] | [`Statics`](crate::Statics) | equilibria |
+//! | [`DynStatics`] | [`Statics`](crate::Statics) | the crane at rest |
 //! | [`DynDynamics`] | [`Dynamics`](crate::Dynamics) | explicit methods |
 //! | [`DynImplicit`] | [`Implicit`](crate::Implicit) | implicit methods |
 //! | [`DynLinearise`] | [`Linearise`](crate::Linearise) | modes, stability |
@@ -74,9 +74,6 @@ pub trait DynModel: Send + Sync {
 
     /// Generalized forces of connectors.
     fn connector_forces(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]);
-
-    /// Generalized forces of connectors while nothing moves, not even a winch.
-    fn connector_forces_at_rest(&self, t: f64, q: &[f64], out: &mut [f64]);
 
     /// Length of every connector, m, and its rate, m/s.
     fn connector_lengths(&self, q: &[f64], v: &[f64], out: &mut [[f64; 2]]);
@@ -154,27 +151,27 @@ pub trait DynModel: Send + Sync {
     fn size(&self) -> usize {
         self.description().coordinates.len()
     }
+
+    /// Positions of the drives' motions at time t, by coordinate.
+    fn drive_positions_at(&self, t: f64) -> Vec<f64> {
+        let mut motions = vec![[0.0; 2]; self.description().drives.len()];
+        self.drive_motions(t, &mut motions);
+        let positions: Vec<f64> = motions.iter().map(|[position, _]| *position).collect();
+        self.description().by_coordinate(&positions)
+    }
 }
 
-/// Equilibrium at t = 0: [`Statics`](crate::Statics) on slices.
+/// The crane at rest, with loads and winches as at time t and the drives at given positions, by coordinate: [`Statics`](crate::Statics) on
+/// slices.
 pub trait DynStatics: DynModel {
-    /// `∂E_p/∂q` at t = 0.
-    fn static_residual(&self, q: &[f64], out: &mut [f64]);
+    /// `∂E_p/∂q`
+    fn static_residual(&self, t: f64, q: &[f64], positions: &[f64], out: &mut [f64]);
 
-    /// `∂²E_p/∂q²` at t = 0, n × n.
-    fn tangent_stiffness(&self, q: &[f64], out: &mut [f64]);
+    /// `∂²E_p/∂q²`, n × n.
+    fn tangent_stiffness(&self, t: f64, q: &[f64], positions: &[f64], out: &mut [f64]);
 
-    /// The contribution of connectors to the tangent stiffness, with winches at their positions at time t, n × n.
-    fn connector_stiffness(&self, t: f64, q: &[f64], out: &mut [f64]);
-
-    /// Generalized forces of cylinders with a valve that hold the crane at rest with the drives at given positions, by coordinate.
-    fn holding_forces(&self, q: &[f64], positions: &[f64], out: &mut [f64]);
-
-    /// Their contribution to the tangent stiffness, n × n.
-    fn holding_stiffness(&self, q: &[f64], positions: &[f64], out: &mut [f64]);
-
-    /// Generalized forces of the drives that hold the crane at rest at t = 0, including rigid drives and cylinders with a valve.
-    fn drive_forces_at_rest(&self, q: &[f64], out: &mut [f64]);
+    /// Generalized forces of the drives that hold the crane, including rigid drives and cylinders with a valve.
+    fn drive_forces_at_rest(&self, t: f64, q: &[f64], positions: &[f64], out: &mut [f64]);
 }
 
 /// Equations of motion: [`Dynamics`](crate::Dynamics) on slices.

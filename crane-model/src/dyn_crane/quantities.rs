@@ -6,8 +6,8 @@ use nalgebra::{DMatrix, DVector, Matrix4, Vector3};
 
 use super::{DynCrane, DynDerivatives, DynImplicit, DynModel};
 use crate::{
-    CoordinateKind, CoordinateRole, CylinderInfo, Description, DriveInfo, ParameterError, SectionModuli, Tension,
-    Wrench, bristles, dynamics,
+    CoordinateKind, CoordinateRole, CylinderInfo, Description, ParameterError, SectionModuli, Tension, Wrench,
+    bristles, dynamics,
     dynamics::{InitialState, Run, Sample, Stopped},
     force_states::{self, StateAt},
     hydraulics::{self, Oil},
@@ -136,40 +136,19 @@ impl dyn DynCrane + '_ {
 
     /// Torques and forces of the drives that hold the crane at rest at t = 0, including rigid drives: N m and N.
     pub fn drive_efforts_at_rest(&self, q: &[f64]) -> Vec<f64> {
-        let forces = numbers(self, |out| self.drive_forces_at_rest(q, out));
-        self.description().drives.iter().map(|drive| forces[drive.coordinate]).collect()
+        self.efforts_at_rest(0.0, &self.drive_positions_at(0.0), q)
     }
 
-    /// Torques and forces of the drives that hold the crane at rest with the drives at given positions: N m and N.
-    pub fn drive_efforts_holding(&self, positions: &[f64], q: &[f64]) -> Vec<f64> {
-        let Description { drives, coordinates, cylinders, .. } = self.description();
-        let motions = self.drive_motions_at(0.0);
-        // The effort of a flexible drive depends only on the deviation from its position; that of a rigid one follows from the pose.
-        let mut moved = q.to_vec();
-        for (drive, (position, [start, _])) in drives.iter().zip(positions.iter().zip(motions)) {
-            moved[drive.coordinate] -= position - start;
-        }
-        let springs = numbers(self, |out| self.drive_forces_at_rest(&moved, out));
-        let is_rigid = |drive: &DriveInfo| coordinates[drive.coordinate].role == CoordinateRole::Prescribed;
-        let held = if drives.iter().any(is_rigid) {
-            numbers(self, |out| self.drive_forces_at_rest(q, out))
-        } else {
-            Vec::new()
-        };
-        let effort =
-            |drive: &DriveInfo| if is_rigid(drive) { held[drive.coordinate] } else { springs[drive.coordinate] };
-        let mut efforts: Vec<f64> = drives.iter().map(effort).collect();
-        if self.description().has_valves() {
-            let mut held = vec![0.0; q.len()];
-            for (drive, position) in drives.iter().zip(positions) {
-                held[drive.coordinate] = *position;
-            }
-            let by_oil = numbers(self, |out| self.holding_forces(q, &held, out));
-            for cylinder in cylinders.iter().filter(|cylinder| cylinder.valve.is_some()) {
-                efforts[cylinder.drive] = by_oil[drives[cylinder.drive].coordinate];
-            }
-        }
-        efforts
+    /// Torques and forces of the drives that hold the crane at rest with the drives at given positions, one per drive, and loads and winches
+    /// as at time `t`: N m and N.
+    pub fn drive_efforts_holding(&self, t: f64, positions: &[f64], q: &[f64]) -> Vec<f64> {
+        self.efforts_at_rest(t, &self.description().by_coordinate(positions), q)
+    }
+
+    /// With positions by coordinate.
+    fn efforts_at_rest(&self, t: f64, positions: &[f64], q: &[f64]) -> Vec<f64> {
+        let forces = numbers(self, |out| self.drive_forces_at_rest(t, q, positions, out));
+        self.description().drives.iter().map(|drive| forces[drive.coordinate]).collect()
     }
 
     /// Maximum efforts of the drives, N m and N; `None` where there is no limit.
@@ -315,10 +294,15 @@ impl dyn DynCrane + '_ {
     /// Sum of the forces of loads, and of connectors attached to the world, on the crane at rest at time `t`, world frame, N; unknown
     /// along an axis that the base cannot move along.
     pub fn applied_force_at(&self, t: f64, q: &[f64]) -> [Option<f64>; 3] {
-        let loads = numbers(self, |out| self.load_forces(t, q, out));
-        let mut forces = numbers(self, |out| self.connector_forces_at_rest(t, q, out));
-        forces.iter_mut().zip(loads).for_each(|(sum, load)| *sum += load);
-        self.force_on_the_whole(q, &forces)
+        // What the residual contains besides weight, drives and supports; beams and stops act between parts of the crane.
+        let (positions, rest) = (self.drive_positions_at(t), vec![0.0; q.len()]);
+        let vector = |write: &dyn Fn(&mut [f64])| DVector::from(numbers(self, write));
+        let known = self.bias_at(q, &rest)
+            + vector(&|out| self.drive_forces_at_rest(t, q, &positions, out))
+            + vector(&|out| self.static_residual(t, q, &positions, out));
+        let reactions: Vector3<f64> = self.support_reactions_at(q, &rest).iter().sum();
+        let with_supports = self.force_on_the_whole(q, (-known).as_slice());
+        [0, 1, 2].map(|axis| with_supports[axis].map(|force| force - reactions[axis]))
     }
 
     /// The force whose generalized forces are given: a translation of the base moves everything equally, so its generalized force is

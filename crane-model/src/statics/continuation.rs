@@ -21,7 +21,7 @@ pub(super) type Arrive<'a, T> = dyn FnMut(DVector<f64>, usize) -> Option<T> + 'a
 /// Follows `H(q, λ) = λ r(q) + (1 − λ) S (q − q₀) = 0` from `(q₀, 0)` on. At λ = 1 `arrive` gets the pose and the number of
 /// steps, and may end the search.
 pub(super) fn follow<T>(
-    equations: &dyn Equations,
+    equations: &Equations<'_>,
     start: &DVector<f64>,
     steps: usize,
     scale: &ResidualScale,
@@ -63,7 +63,7 @@ pub(super) fn follow<T>(
 
 /// The equations of the path.
 struct Path<'a> {
-    equations: &'a dyn Equations,
+    equations: &'a Equations<'a>,
     start: &'a DVector<f64>,
     /// S, N/m and N m/rad.
     springs: DVector<f64>,

@@ -14,7 +14,7 @@ const GREATEST_ROTATION: f64 = 1.0;
 
 /// The iteration from the pose `q`.
 pub(super) fn iterate(
-    equations: &dyn Equations,
+    equations: &Equations<'_>,
     mut q: DVector<f64>,
     settings: &Settings,
     scale: &ResidualScale,
@@ -25,7 +25,7 @@ pub(super) fn iterate(
         let history = vec![Iteration { residual: 0.0, fraction: 0.0 }];
         return Equilibrium { status: Status::Converged, q: Vec::new(), history, load_steps };
     }
-    let description = equations.crane().description();
+    let description = equations.crane.description();
     let mut residual = equations.residual(&q);
     let mut norm = scale.norm(&residual);
     let mut history = vec![Iteration { residual: norm, fraction: 0.0 }];
@@ -35,7 +35,7 @@ pub(super) fn iterate(
         let Some(tangent) = Tangent::new(&stiffness, description).filter(|_| norm.is_finite()) else {
             break Status::Overflow;
         };
-        if norm <= settings.tolerance.max(scale.rounding(equations.crane(), &stiffness, &q)) {
+        if norm <= settings.tolerance.max(scale.rounding(equations, &stiffness, &q)) {
             break tangent.status(description);
         }
         if history.len() > settings.iterations {

@@ -2,7 +2,8 @@
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use crate::{CoordinateKind, CoordinateRole, Description, Tension, dyn_crane::DynStatics};
+use super::equations::Equations;
+use crate::{CoordinateKind, CoordinateRole, Description, Tension};
 
 /// Minimum ratio of the scale of forces to that of moments, 1/m, and vice versa, m: where all moments cancel, forces with lever arms of
 /// several metres leave their rounding errors.
@@ -21,13 +22,22 @@ pub(super) struct ResidualScale {
 
 impl ResidualScale {
     /// Scales from the terms of the balance at pose `q`.
-    pub(super) fn at(crane: &dyn DynStatics, q: &DVector<f64>) -> Self {
+    pub(super) fn at(equations: &Equations<'_>, q: &DVector<f64>) -> Self {
+        let crane = equations.crane;
         let coordinates = &crane.description().coordinates;
         let n = q.len();
-        let (mut springs, mut gravity) = (DVector::zeros(n), DVector::zeros(n));
-        crane.forces(0.0, q.as_slice(), &vec![0.0; n], springs.as_mut_slice());
-        crane.static_residual(q.as_slice(), gravity.as_mut_slice());
-        gravity += &springs;
+        let [mut springs, mut driving, mut holding] = [(); 3].map(|()| DVector::zeros(n));
+        let (t, rest) = (equations.t, vec![0.0; n]);
+        crane.forces(t, q.as_slice(), &rest, springs.as_mut_slice());
+        crane.drive_forces(t, q.as_slice(), &rest, driving.as_mut_slice());
+        crane.drive_forces_at_rest(t, q.as_slice(), &equations.positions, holding.as_mut_slice());
+        // The drives may hold other positions than those of their motions; forces of rigid ones are not among the springs.
+        for (driving, coordinate) in driving.iter_mut().zip(coordinates) {
+            if coordinate.role == CoordinateRole::Prescribed {
+                *driving = 0.0;
+            }
+        }
+        let gravity = equations.residual(q) + &springs - driving + holding;
         let greatest = |kind: CoordinateKind| {
             (0..n)
                 .filter(|&i| coordinates[i].kind == kind)
@@ -69,11 +79,11 @@ impl ResidualScale {
 
     /// The smallest scaled residual that poses in double precision can reach: stiff springs turn the rounding errors of coordinates into
     /// forces.
-    pub(super) fn rounding(&self, crane: &dyn DynStatics, stiffness: &DMatrix<f64>, q: &DVector<f64>) -> f64 {
+    pub(super) fn rounding(&self, equations: &Equations<'_>, stiffness: &DMatrix<f64>, q: &DVector<f64>) -> f64 {
         /// Number of rounding errors of a coordinate and of the sums that contain it.
         const ROUNDINGS: f64 = 4.0;
         let of_coordinates = stiffness.abs() * (q.abs() + &self.reach);
-        ROUNDINGS * f64::EPSILON * self.norm(&(of_coordinates + of_lengths(crane, q) + of_cylinders(crane, q)))
+        ROUNDINGS * f64::EPSILON * self.norm(&(of_coordinates + of_lengths(equations, q) + of_cylinders(equations, q)))
     }
 
     /// Springs that hold the crane against all forces here within about 1 rad and 1 m, and each coordinate by at least its own
@@ -85,7 +95,7 @@ impl ResidualScale {
 
 /// Size of the forces that connectors would have if stretched by as much as the numbers from which their lengths are computed: a length is
 /// the difference of two positions.
-fn of_lengths(crane: &dyn DynStatics, q: &DVector<f64>) -> DVector<f64> {
+fn of_lengths(&Equations { crane, t, .. }: &Equations<'_>, q: &DVector<f64>) -> DVector<f64> {
     let connectors = &crane.description().connectors;
     let mut sum = DVector::zeros(q.len());
     if connectors.is_empty() {
@@ -96,7 +106,7 @@ fn of_lengths(crane: &dyn DynStatics, q: &DVector<f64>) -> DVector<f64> {
     let (mut lengths, mut tensions) = (vec![[0.0; 2]; connectors.len()], vec![Tension::ZERO; connectors.len()]);
     crane.connector_jacobians(q.as_slice(), &mut jacobians);
     crane.connector_lengths(q.as_slice(), &rest, &mut lengths);
-    crane.connector_tensions(0.0, q.as_slice(), &rest, &mut tensions);
+    crane.connector_tensions(t, q.as_slice(), &rest, &mut tensions);
     let rows = jacobians.chunks_exact(q.len()).zip(connectors.iter().zip(lengths.iter().zip(&tensions)));
     for (row, (connector, ([length, _], tension))) in rows {
         let places = connector.ends.iter().flatten().flat_map(|end| end.position);
@@ -109,27 +119,25 @@ fn of_lengths(crane: &dyn DynStatics, q: &DVector<f64>) -> DVector<f64> {
 }
 
 /// The same for the springs that stand for cylinders with a valve at rest.
-fn of_cylinders(crane: &dyn DynStatics, q: &DVector<f64>) -> DVector<f64> {
+fn of_cylinders(&Equations { crane, t, ref positions }: &Equations<'_>, q: &DVector<f64>) -> DVector<f64> {
+    /// Change of the drives' positions by which their stiffness is measured, m or rad.
+    const MOVED: f64 = 1e-4;
     let Description { cylinders, drives, .. } = crane.description();
     let (n, mut sum) = (q.len(), DVector::zeros(q.len()));
     if !crane.description().has_valves() {
         return sum;
     }
-    // The pose without force: the tangent on the joint is the stiffness of the drive there.
-    let (mut straight, mut motions) = (vec![0.0; n], vec![[0.0; 2]; drives.len()]);
-    crane.drive_motions(0.0, &mut motions);
-    for (drive, [position, _]) in drives.iter().zip(motions) {
-        straight[drive.coordinate] = position;
-    }
-    let (rest, mut stiffness, mut jacobians) = (vec![0.0; n], DMatrix::zeros(n, n), vec![0.0; cylinders.len() * n]);
+    // The pose without force: straight beams, and joints at the positions of their drives.
+    let moved: Vec<f64> = positions.iter().map(|position| position + MOVED).collect();
+    let (rest, mut forces, mut jacobians) = (vec![0.0; n], vec![0.0; n], vec![0.0; cylinders.len() * n]);
     let mut lengths = vec![Vector3::zeros(); cylinders.len()];
-    crane.holding_stiffness(&straight, &straight, stiffness.as_mut_slice());
-    crane.cylinder_states(&straight, &rest, &mut lengths);
+    crane.drive_forces_at_rest(t, positions, &moved, &mut forces);
+    crane.cylinder_states(positions, &rest, &mut lengths);
     crane.cylinder_jacobians(q.as_slice(), &mut jacobians);
     let rows = jacobians.chunks_exact(n).zip(cylinders.iter().zip(&lengths));
     for (row, (cylinder, length)) in rows.filter(|(_, (cylinder, _))| cylinder.valve.is_some()) {
         let joint = drives[cylinder.drive].coordinate;
-        let along = stiffness[(joint, joint)] / (length.z * length.z);
+        let along = forces[joint] / (MOVED * length.z * length.z);
         for (sum, slope) in sum.iter_mut().zip(row) {
             *sum += along * slope.abs() * length.x;
         }

@@ -3,11 +3,8 @@
 use nalgebra::{DVector, SVector};
 
 use super::{
-    Equilibrium, Settings, Status, continuation,
-    equations::{AtStart, Equations, Held},
-    guess_dyn, newton,
-    residual_scale::ResidualScale,
-    tangent::Tangent,
+    Equilibrium, Settings, Status, continuation, equations::Equations, guess_dyn, newton,
+    residual_scale::ResidualScale, tangent::Tangent,
 };
 use crate::{
     CoordinateKind, Statics,
@@ -38,11 +35,10 @@ pub fn solve<const N: usize, C: Statics<N>>(crane: &C, settings: &Settings) -> E
 
 /// As [`solve`], for a crane of any size.
 pub fn solve_dyn(crane: &dyn DynStatics, settings: &Settings) -> Equilibrium {
-    let found = search(&AtStart(crane), &guess_dyn(crane).into(), settings);
-    prescribed(crane, found)
+    search(&Equations::at(crane, 0.0), &guess_dyn(crane), settings)
 }
 
-/// As [`solve`], with the drives at the positions of their motions at time `t`, s, and starting from the pose `q`: where the crane would
+/// As [`solve`], with the drives, loads and winches where they are at time `t`, s, and starting from the pose `q`: where the crane would
 /// rest if its motion stopped. This gives poses during a manoeuvre, each starting from the previous one.
 pub fn solve_at<const N: usize, C: Statics<N>>(
     crane: &C,
@@ -55,37 +51,26 @@ pub fn solve_at<const N: usize, C: Statics<N>>(
 
 /// As [`solve_at`], for a crane of any size.
 pub fn solve_at_dyn(crane: &dyn DynStatics, t: f64, q: &[f64], settings: &Settings) -> Equilibrium {
-    let mut motions = vec![[0.0; 2]; crane.description().drives.len()];
-    crane.drive_motions(t, &mut motions);
-    let positions: Vec<f64> = motions.iter().map(|[position, _]| *position).collect();
-    solve_held(crane, t, &positions, q, settings)
+    search(&Equations::at(crane, t), q, settings)
 }
 
 /// As [`solve_at_dyn`] at t = 0, with the drives at given positions, one per drive, instead of those of their motions.
 pub fn solve_holding_dyn(crane: &dyn DynStatics, positions: &[f64], q: &[f64], settings: &Settings) -> Equilibrium {
-    solve_held(crane, 0.0, positions, q, settings)
+    search(&Equations::holding(crane, 0.0, positions), q, settings)
 }
 
-/// The equilibrium with the drives at given positions and the loads as at time `t`.
-fn solve_held(crane: &dyn DynStatics, t: f64, positions: &[f64], q: &[f64], settings: &Settings) -> Equilibrium {
-    let held = Held::new(crane, t, positions);
+/// The solution from the pose `q`, with the exact positions of rigid drives: the steps change them only by rounding.
+fn search(equations: &Equations<'_>, q: &[f64], settings: &Settings) -> Equilibrium {
     let mut start = DVector::from_column_slice(q);
-    held.prescribe(start.as_mut_slice());
-    let mut found = search(&held, &start, settings);
-    held.prescribe(&mut found.q);
-    found
-}
-
-/// The pose found, with the exact positions of rigid drives: the steps change them only by rounding.
-fn prescribed(crane: &dyn DynStatics, mut found: Equilibrium) -> Equilibrium {
-    let mut rates = vec![0.0; found.q.len()];
-    crane.prescribe(0.0, &mut found.q, &mut rates);
+    equations.prescribe(start.as_mut_slice());
+    let mut found = search_from(equations, &start, settings);
+    equations.prescribe(&mut found.q);
     found
 }
 
 /// Newton's method, then continuation.
-fn search(equations: &dyn Equations, start: &DVector<f64>, settings: &Settings) -> Equilibrium {
-    let scale = ResidualScale::at(equations.crane(), start);
+fn search_from(equations: &Equations<'_>, start: &DVector<f64>, settings: &Settings) -> Equilibrium {
+    let scale = ResidualScale::at(equations, start);
     let first = newton::iterate(equations, start.clone(), settings, &scale);
     if settings.load_steps == 0 || !missed(equations, start, settings, &first) {
         return first;
@@ -105,8 +90,8 @@ const MEANT: f64 = 0.5;
 
 /// Whether there may be a stable equilibrium that Newton's method did not find: no equilibrium was found, or an unstable one
 /// far from the guess or from a guess that is stable itself.
-fn missed(equations: &dyn Equations, start: &DVector<f64>, settings: &Settings, found: &Equilibrium) -> bool {
-    let description = equations.crane().description();
+fn missed(equations: &Equations<'_>, start: &DVector<f64>, settings: &Settings, found: &Equilibrium) -> bool {
+    let description = equations.crane.description();
     let meant = || {
         let kinds = description.coordinates.iter().map(|coordinate| coordinate.kind);
         let turned = kinds.zip(start.iter().zip(&found.q)).filter(|(kind, _)| *kind == CoordinateKind::Rotation);

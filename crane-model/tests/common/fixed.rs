@@ -48,11 +48,11 @@ impl Dynamics<0> for Fixed {
 }
 
 impl Statics<0> for Fixed {
-    fn static_residual(&self, _: &SVector<f64, 0>) -> SVector<f64, 0> {
+    fn static_residual(&self, _: f64, _: &SVector<f64, 0>, _: &SVector<f64, 0>) -> SVector<f64, 0> {
         SVector::zeros()
     }
 
-    fn tangent_stiffness(&self, _: &SVector<f64, 0>) -> SMatrix<f64, 0, 0> {
+    fn tangent_stiffness(&self, _: f64, _: &SVector<f64, 0>, _: &SVector<f64, 0>) -> SMatrix<f64, 0, 0> {
         SMatrix::zeros()
     }
 }

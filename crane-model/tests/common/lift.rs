@@ -171,13 +171,16 @@ impl Dynamics<1> for Lift {
 }
 
 impl Statics<1> for Lift {
-    fn static_residual(&self, q: &Vector1<f64>) -> Vector1<f64> {
-        -self.bias(q, &Vector1::zeros()) - self.forces(0.0, q, &Vector1::zeros())
-            + Vector1::new(self.damping * self.support(0.0)[1])
+    fn static_residual(&self, t: f64, q: &Vector1<f64>, positions: &Vector1<f64>) -> Vector1<f64> {
+        -self.bias(q, &Vector1::zeros()) - self.drive_forces_at_rest(t, q, positions)
     }
 
-    fn tangent_stiffness(&self, _: &Vector1<f64>) -> Matrix1<f64> {
+    fn tangent_stiffness(&self, _: f64, _: &Vector1<f64>, _: &Vector1<f64>) -> Matrix1<f64> {
         Matrix1::new(self.stiffness)
+    }
+
+    fn drive_forces_at_rest(&self, _: f64, q: &Vector1<f64>, positions: &Vector1<f64>) -> Vector1<f64> {
+        (positions - q) * self.stiffness
     }
 }
 
@@ -185,7 +188,7 @@ impl Linearise<1> for Lift {
     fn linearise(&self, q: &Vector1<f64>) -> Linearisation<1> {
         Linearisation {
             mass: self.mass_matrix(q),
-            stiffness: self.tangent_stiffness(q),
+            stiffness: self.tangent_stiffness(0.0, q, q),
             damping: Matrix1::new(self.damping),
         }
     }

@@ -125,13 +125,13 @@ impl Dynamics<2> for DoublePendulum {
 }
 
 impl Statics<2> for DoublePendulum {
-    fn static_residual(&self, q: &Vector2<f64>) -> Vector2<f64> {
+    fn static_residual(&self, _: f64, q: &Vector2<f64>, _: &Vector2<f64>) -> Vector2<f64> {
         let [upper, lower] = self.static_moments();
         Vector2::new(self.gravity * upper * q.x.sin(), self.gravity * lower * q.y.sin())
             - self.forces(0.0, q, &Vector2::zeros())
     }
 
-    fn tangent_stiffness(&self, q: &Vector2<f64>) -> Matrix2<f64> {
+    fn tangent_stiffness(&self, _: f64, q: &Vector2<f64>, _: &Vector2<f64>) -> Matrix2<f64> {
         let [upper, lower] = self.static_moments();
         Matrix2::from_diagonal(&Vector2::new(
             self.gravity * upper * q.x.cos() + self.stiffness,
@@ -142,6 +142,10 @@ impl Statics<2> for DoublePendulum {
 
 impl Linearise<2> for DoublePendulum {
     fn linearise(&self, q: &Vector2<f64>) -> Linearisation<2> {
-        Linearisation { mass: self.mass_matrix(q), stiffness: self.tangent_stiffness(q), damping: Matrix2::zeros() }
+        Linearisation {
+            mass: self.mass_matrix(q),
+            stiffness: self.tangent_stiffness(0.0, q, q),
+            damping: Matrix2::zeros(),
+        }
     }
 }

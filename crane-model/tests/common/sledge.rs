@@ -107,18 +107,22 @@ impl Dynamics<2> for Sledge {
 }
 
 impl Statics<2> for Sledge {
-    fn static_residual(&self, q: &Vector2<f64>) -> Vector2<f64> {
+    fn static_residual(&self, _: f64, q: &Vector2<f64>, _: &Vector2<f64>) -> Vector2<f64> {
         STIFFNESS * q - self.bias(q, &Vector2::zeros())
     }
 
-    fn tangent_stiffness(&self, _: &Vector2<f64>) -> Matrix2<f64> {
+    fn tangent_stiffness(&self, _: f64, _: &Vector2<f64>, _: &Vector2<f64>) -> Matrix2<f64> {
         Matrix2::identity() * STIFFNESS
     }
 }
 
 impl Linearise<2> for Sledge {
     fn linearise(&self, q: &Vector2<f64>) -> Linearisation<2> {
-        Linearisation { mass: self.mass_matrix(q), stiffness: self.tangent_stiffness(q), damping: Matrix2::zeros() }
+        Linearisation {
+            mass: self.mass_matrix(q),
+            stiffness: self.tangent_stiffness(0.0, q, q),
+            damping: Matrix2::zeros(),
+        }
     }
 }
 

@@ -63,7 +63,6 @@ macro_rules! crane {
                 load_forces(t: f64, q: &Vector) -> Vector;
                 load_pieces(out: &mut [[f64; 2]]);
                 connector_forces(t: f64, q: &Vector, v: &Vector) -> Vector;
-                connector_forces_at_rest(t: f64, q: &Vector) -> Vector;
                 connector_lengths(q: &Vector, v: &Vector, out: &mut [[f64; 2]]);
                 connector_tensions(t: f64, q: &Vector, v: &Vector, out: &mut [Tension]);
                 connector_jacobians(q: &Vector, out: &mut [[f64; N]]);
@@ -100,12 +99,10 @@ macro_rules! crane {
                 nonlinear_stiffness_and_damping(t: f64, q: &Vector, v: &Vector, out: &mut [[f64; 2]]);
                 base_stiffness(q: &Vector, v: &Vector) -> BaseMatrix;
                 base_damping(q: &Vector, v: &Vector) -> BaseMatrix;
-                static_residual(q: &Vector) -> Vector;
-                tangent_stiffness(q: &Vector) -> Matrix;
-                connector_stiffness(t: f64, q: &Vector) -> Matrix;
-                drive_forces_at_rest(q: &Vector) -> Vector;
-                holding_forces(q: &Vector, positions: &Vector) -> Vector;
-                holding_stiffness(q: &Vector, positions: &Vector) -> Matrix;
+                static_residual(t: f64, q: &Vector, positions: &Vector) -> Vector;
+                tangent_stiffness(t: f64, q: &Vector, positions: &Vector) -> Matrix;
+                drive_forces_at_rest(t: f64, q: &Vector, positions: &Vector) -> Vector;
+                drive_positions(t: f64) -> Vector;
                 linearise(q: &Vector) -> Linearisation<N>;
                 internal_forces(t: f64, q: &Vector, v: &Vector, a: &Vector, out: &mut [Wrench]);
                 cylinder_wrenches(q: &Vector, out: &mut [Wrench]);

@@ -182,12 +182,12 @@ fn evaluate(quantity: Quantity, live: &LiveCrane, t: f64, q: &[f64], v: &[f64]) 
         Quantity::Accelerations => list(crane.accelerations_at(t, q, v).as_slice()),
         Quantity::StaticResidual => {
             let mut residual = vec![0.0; n];
-            crane.static_residual(q, &mut residual);
+            crane.static_residual(t, q, &crane.drive_positions_at(t), &mut residual);
             list(&residual)
         }
         Quantity::TangentStiffness => {
             let mut stiffness = vec![0.0; n * n];
-            crane.tangent_stiffness(q, &mut stiffness);
+            crane.tangent_stiffness(t, q, &crane.drive_positions_at(t), &mut stiffness);
             (vec![n, n], stiffness)
         }
         Quantity::Energies => {

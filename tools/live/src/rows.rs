@@ -55,6 +55,8 @@ pub struct Evaluation<T> {
     calls: [Option<Call<T>>; 2],
     /// The states that are evaluated.
     lanes: Lanes<T>,
+    /// The coordinates of the drives.
+    driven: Vec<usize>,
     /// The crane's inputs.
     inputs: Vec<T>,
     /// The results of the states.
@@ -68,6 +70,8 @@ struct Lanes<T> {
     q: Vec<T>,
     v: Vec<T>,
     a: Vec<T>,
+    /// Positions of the drives, by coordinate, for functions at rest.
+    positions: Vec<T>,
     parameters: Vec<T>,
 }
 
@@ -86,6 +90,10 @@ impl<T: Number> Evaluation<T> {
     #[must_use]
     pub fn new(crane: &LiveCrane, quantity: Quantity) -> Self {
         let ids = match quantity {
+            // The drives are where they are at the state's time.
+            Quantity::Of(
+                id @ (FunctionId::StaticResidual | FunctionId::TangentStiffness | FunctionId::DriveForcesAtRest),
+            ) => [Some(id), Some(FunctionId::DriveMotions)],
             Quantity::Of(id) => [Some(id), None],
             Quantity::PointJacobians => [Some(FunctionId::PointVelocities), None],
             Quantity::InverseDynamics => [Some(FunctionId::MassMatrix), Some(FunctionId::Bias)],
@@ -97,7 +105,8 @@ impl<T: Number> Evaluation<T> {
             width,
             sizes: [crane.size(), crane.parameters().len()],
             calls: ids.map(|id| Call::new(crane, id?)),
-            lanes: Lanes { t: vec![], q: vec![], v: vec![], a: vec![], parameters: vec![] },
+            lanes: Lanes { t: vec![], q: vec![], v: vec![], a: vec![], positions: vec![], parameters: vec![] },
+            driven: crane.description().drives.iter().map(|drive| drive.coordinate).collect(),
             inputs: crane.inputs().iter().copied().map(T::splat).collect(),
             results: vec![T::splat(0.0); width],
         }
@@ -122,10 +131,19 @@ impl<T: Number> Evaluation<T> {
 
     /// Computes the results of the states taken.
     fn evaluate(&mut self) {
-        let Self { calls, lanes, inputs, results, library, .. } = self;
+        let Self { calls, lanes, driven, inputs, results, library, .. } = self;
         let n = lanes.q.len();
         match (self.quantity, calls) {
-            (Quantity::Of(_), [Some(call), _]) => call.run(library, lanes, inputs, results),
+            (Quantity::Of(_), [Some(call), motions]) => {
+                lanes.positions.clear();
+                lanes.positions.resize(n, T::splat(0.0));
+                if let Some(motions) = motions {
+                    let mut pairs = vec![T::splat(0.0); 2 * driven.len()];
+                    motions.run(library, lanes, inputs, &mut pairs);
+                    driven.iter().zip(pairs.chunks_exact(2)).for_each(|(j, pair)| lanes.positions[*j] = pair[0]);
+                }
+                call.run(library, lanes, inputs, results);
+            }
             (Quantity::PointJacobians, [Some(call), _]) => {
                 // Velocities are linear in the rates: column j is the contribution of the rate of coordinate j.
                 let mut column = vec![T::splat(0.0); results.len() / n.max(1)];
@@ -211,7 +229,8 @@ impl<T: Number> Call<T> {
     fn run(&mut self, library: &Library, lanes: &Lanes<T>, inputs: &[T], out: &mut [T]) {
         let Some(routine) = library.routine(self.id) else { return };
         let t = lanes.t.first().copied().unwrap_or(T::splat(0.0));
-        let arguments = Arguments { t, q: &lanes.q, v: &lanes.v, a: &lanes.a, inputs, ..Arguments::none() };
+        let Lanes { q, v, a, positions, .. } = lanes;
+        let arguments = Arguments { t, q, v, a, positions, inputs, ..Arguments::none() };
         match (routine.shape(), &self.places) {
             (Shape::Columns { points, .. }, _) => {
                 routine.run(&mut self.machine, &arguments, &mut self.factors);
@@ -257,10 +276,7 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
             | FunctionId::WinchPower
             | FunctionId::LoadPower
             | FunctionId::Dissipation => 1,
-            FunctionId::MassMatrix
-            | FunctionId::TangentStiffness
-            | FunctionId::ConnectorStiffness
-            | FunctionId::HoldingStiffness => n * n,
+            FunctionId::MassMatrix | FunctionId::TangentStiffness => n * n,
             FunctionId::Linearise => 3 * n * n,
             FunctionId::Forces
             | FunctionId::SupportForces
@@ -268,13 +284,11 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
             | FunctionId::ElementForces
             | FunctionId::DriveForces
             | FunctionId::ConnectorForces
-            | FunctionId::ConnectorForcesAtRest
             | FunctionId::StopForces
             | FunctionId::FrictionForces
             | FunctionId::LoadForces
             | FunctionId::StaticResidual
             | FunctionId::DriveForcesAtRest
-            | FunctionId::HoldingForces
             | FunctionId::Bias
             | FunctionId::ForwardDynamics
             | FunctionId::SolveMass => n,

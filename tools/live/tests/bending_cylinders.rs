@@ -174,7 +174,7 @@ fn statics_hold_cylinders_at_given_positions() {
     for (found, expected) in found.q.iter().zip(&expected) {
         assert!((found - expected).abs() < 1e-10, "{found} for {expected}");
     }
-    let efforts = crane.drive_efforts_holding(&[0.0, 0.7], &found.q);
+    let efforts = crane.drive_efforts_holding(0.0, &[0.0, 0.7], &found.q);
     let meant = other.drive_efforts_at_rest(&expected);
     assert!((efforts[1] / meant[1] - 1.0).abs() < 1e-8, "{efforts:?} for {meant:?}");
 }

@@ -62,6 +62,31 @@ fn a_drive_holds_a_load_that_turns_with_its_link() {
     assert!((later.q[0] - 0.5 - moment / 1e3).abs() < 1e-12, "{later}");
 }
 
+/// A load that presses on an upright arm from t = 1 s on takes from its stiffness what the load's lever arm gains: `K = s − P`. Beyond
+/// `P = s` the arm buckles, and stands where `s ψ = P sin ψ`.
+#[test]
+fn a_load_that_begins_later_buckles_what_it_presses_on() {
+    let arm = crane(
+        "format: 1\nname: arm\ngravity: [0, 0, 0]\nlinks: [{name: arm, joint: revolute, mass: 10, com: [1, 0, 0], inertia: {gyration: [0.1, 0.5, 0.5]}}]\n\
+         drives: [{coordinate: arm_psi, stiffness: 100, motion: {hold: 0}}]\n\
+         loads: [{name: press, link: arm, at: [1, 0, 0], force: [-1, 0, 0], scale: {cubic: {from: 0, to: 150, duration: 2, begin: 1}}}]\n",
+    );
+    let arm: &dyn DynCrane = &arm;
+    let settings = statics::Settings::default();
+    // Half of the load at half of its time.
+    for (t, load, stable) in [(0.0, 0.0, true), (2.0, 75.0, true), (5.0, 150.0, false)] {
+        let mut stiffness = [f64::NAN];
+        arm.tangent_stiffness(t, &[0.0], &arm.drive_positions_at(t), &mut stiffness);
+        assert!((stiffness[0] - (100.0 - load)).abs() < 1e-12, "{t}: {stiffness:?}");
+        assert_eq!(arm.equilibrium_at(t, &[0.0], &settings).is_stable(), stable, "{t}");
+    }
+    let buckled = arm.equilibrium_at(5.0, &[1.0], &settings);
+    let psi = buckled.q[0];
+    assert!(buckled.is_stable() && psi > 1.0 && (100.0 * psi - 150.0 * psi.sin()).abs() < 1e-8, "{buckled}: {psi}");
+    // Newton's method with the right tangent: quadratic.
+    assert!(buckled.steps() <= 7 && buckled.load_steps.is_none(), "{buckled}");
+}
+
 /// A constant force moves a slide by `F t²/2m`, and its work is the kinetic energy.
 #[test]
 fn the_work_of_a_load_is_kinetic_energy() {

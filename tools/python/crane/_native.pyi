@@ -194,8 +194,9 @@ class Crane:
     def connector_tensions(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
         """(..., connectors, 3): forces of the connectors, N, positive in tension, and their derivatives with respect to length, N/m, and
         rate, N s/m."""
-    def drive_forces_at_rest(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., n): generalized forces of the drives, including rigid ones, that hold the crane at rest at t = 0, N and N m."""
+    def drive_forces_at_rest(self, q: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(..., n): generalized forces of the drives, including rigid ones, that hold the crane at rest where they are at times t, N and N m.
+        t: s, 0 unless given."""
     def support_reactions(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., supports, 3): forces of the supports on the crane, world frame, N."""
     def support_gaps(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
@@ -217,10 +218,10 @@ class Crane:
         """(..., n): accelerations q̈ of `A q̈ = e + f`, m/s² and rad/s²."""
     def inverse_dynamics(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., n): generalized forces that a motion requires in total, `A a − e`, N and N m."""
-    def static_residual(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., n): `∂E_p/∂q` at t = 0, zero in equilibrium, N and N m."""
-    def tangent_stiffness(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., n, n): `∂²E_p/∂q²` at t = 0, N/m, N and N m."""
+    def static_residual(self, q: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(..., n): `∂E_p/∂q` with the drives where they are at times t, zero in equilibrium, N and N m. t: s, 0 unless given."""
+    def tangent_stiffness(self, q: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(..., n, n): `∂²E_p/∂q²` with the drives where they are at times t, N/m, N and N m. t: s, 0 unless given."""
     def _small_motions(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., 3, n, n): A, K and D of small motions about poses at rest; `linearise` names them."""
     def _small_motions_about(

@@ -36,23 +36,9 @@ impl Found {
         };
         let diagnosis = (!equilibrium.is_stable()).then(|| Diagnosis::of(crane, &equilibrium));
         let q = &equilibrium.q;
-        let efforts = match at {
-            None => crane.drive_efforts_at_rest(q),
-            Some(t) => {
-                let mut rates = vec![0.0; q.len()];
-                for (drive, [_, rate]) in crane.description().drives.iter().zip(crane.drive_motions_at(t)) {
-                    rates[drive.coordinate] = rate;
-                }
-                let mut efforts = crane.drive_efforts_at(t, q, &rates);
-                let positions: Vec<f64> = crane.drive_motions_at(t).iter().map(|[position, _]| *position).collect();
-                let holding = crane.drive_efforts_holding(&positions, q);
-                let cylinders = crane.description().cylinders.iter();
-                for cylinder in cylinders.filter(|cylinder| cylinder.valve.is_some()) {
-                    efforts[cylinder.drive] = holding[cylinder.drive];
-                }
-                efforts
-            }
-        };
+        let t = at.unwrap_or(0.0);
+        let positions: Vec<f64> = crane.drive_motions_at(t).iter().map(|[position, _]| *position).collect();
+        let efforts = crane.drive_efforts_holding(t, &positions, q);
         let flat = |vectors: Vec<crane_model::nalgebra::Vector3<f64>>| vectors.iter().flatten().copied().collect();
         let reactions = flat(crane.support_reactions_at(q, &vec![0.0; q.len()]));
         let points = flat(crane.points_at(q));

@@ -197,13 +197,17 @@ impl Crane {
         self.function(py, FunctionId::ConnectorTensions, State::moving(q, v).at(t), &own, invalid)
     }
 
-    /// (..., n): generalized forces of the drives, including rigid ones, that hold the crane at rest at t = 0, N and N m.
-    #[pyo3(signature = (q, *, invalid="raise"))]
-    fn drive_forces_at_rest<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
-        let state = State::pose(q);
-        self.one_by_one(py, state, &[self.live.size()], invalid, |crane, Moment { q, .. }, out| {
-            crane.drive_forces_at_rest(q, out);
-        })
+    /// (..., n): generalized forces of the drives, including rigid ones, that hold the crane at rest where they are at times t, N and N m.
+    #[pyo3(signature = (q, t=None, *, invalid="raise"))]
+    fn drive_forces_at_rest<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        t: Given<'_, 'py>,
+        invalid: &str,
+    ) -> Array<'py> {
+        let own = [self.live.size()];
+        self.function(py, FunctionId::DriveForcesAtRest, State::pose(q).at(t), &own, invalid)
     }
 
     /// (..., supports, 3): forces of the supports on the crane, world frame, N.
@@ -311,18 +315,30 @@ impl Crane {
         self.compute(py, Quantity::InverseDynamics, State { a: Some(a), ..State::moving(q, v) }, &own, invalid)
     }
 
-    /// (..., n): `∂E_p/∂q` at t = 0, zero in equilibrium, N and N m.
-    #[pyo3(signature = (q, *, invalid="raise"))]
-    fn static_residual<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
+    /// (..., n): `∂E_p/∂q` with the drives where they are at times t, zero in equilibrium, N and N m.
+    #[pyo3(signature = (q, t=None, *, invalid="raise"))]
+    fn static_residual<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        t: Given<'_, 'py>,
+        invalid: &str,
+    ) -> Array<'py> {
         let own = [self.live.size()];
-        self.function(py, FunctionId::StaticResidual, State::pose(q), &own, invalid)
+        self.function(py, FunctionId::StaticResidual, State::pose(q).at(t), &own, invalid)
     }
 
-    /// (..., n, n): `∂²E_p/∂q²` at t = 0, N/m, N and N m.
-    #[pyo3(signature = (q, *, invalid="raise"))]
-    fn tangent_stiffness<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
+    /// (..., n, n): `∂²E_p/∂q²` with the drives where they are at times t, N/m, N and N m.
+    #[pyo3(signature = (q, t=None, *, invalid="raise"))]
+    fn tangent_stiffness<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        t: Given<'_, 'py>,
+        invalid: &str,
+    ) -> Array<'py> {
         let own = [self.live.size(), self.live.size()];
-        self.function(py, FunctionId::TangentStiffness, State::pose(q), &own, invalid)
+        self.function(py, FunctionId::TangentStiffness, State::pose(q).at(t), &own, invalid)
     }
 
     /// (..., 3, n, n): A, K and D of small motions about poses at rest; `linearise` names them.

@@ -148,19 +148,11 @@ impl<'g> Derivation<'g> {
         )]
     }
 
-    /// Forces at rest, lengths and tangents of connectors.
+    /// Lengths and tangents of connectors.
     fn connectors(&self) -> Vec<Function> {
         let (model, kinematics) = (&self.model, &self.kinematics);
         let count = model.chain.connectors.len();
         let mut functions = vec![
-            function(
-                FunctionId::ConnectorForcesAtRest,
-                "Generalized forces of connectors while nothing moves, not even a winch, N and N m.",
-                "−Jᵀ F(ℓ, 0)",
-                &[Time, Position],
-                Shape::Vector(model.size()),
-                connectors::forces(model, kinematics, model.t, None),
-            ),
             function(
                 FunctionId::ConnectorLengths,
                 "Length ℓ (m) of every connector, and its rate ℓ̇ (m/s).",

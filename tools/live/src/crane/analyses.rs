@@ -1,7 +1,7 @@
 //! Accelerations, statics, small motions, internal forces and derivatives of a live crane.
 
 use crane_codegen::program::{FunctionId, Shape};
-use crane_model::dyn_crane::{DynDerivatives, DynDynamics, DynInternalForces, DynLinearise, DynModel, DynStatics};
+use crane_model::dyn_crane::{DynDerivatives, DynDynamics, DynInternalForces, DynLinearise, DynStatics};
 use crane_model::nalgebra::{Matrix4, Vector3};
 use crane_model::{SectionModuli, Wrench};
 
@@ -10,37 +10,22 @@ use crate::expansion::{mass_matrix, second_derivatives};
 use crate::machine::Arguments;
 
 impl DynStatics for LiveCrane {
-    fn static_residual(&self, q: &[f64], out: &mut [f64]) {
-        self.numbers(FunctionId::StaticResidual, &at(q), out);
+    fn static_residual(&self, t: f64, q: &[f64], positions: &[f64], out: &mut [f64]) {
+        self.numbers(FunctionId::StaticResidual, &at_rest(t, q, positions), out);
     }
 
-    fn tangent_stiffness(&self, q: &[f64], out: &mut [f64]) {
-        self.numbers(FunctionId::TangentStiffness, &at(q), out);
+    fn tangent_stiffness(&self, t: f64, q: &[f64], positions: &[f64], out: &mut [f64]) {
+        self.numbers(FunctionId::TangentStiffness, &at_rest(t, q, positions), out);
     }
 
-    fn connector_stiffness(&self, t: f64, q: &[f64], out: &mut [f64]) {
-        self.numbers(FunctionId::ConnectorStiffness, &state(t, q, &[]), out);
+    fn drive_forces_at_rest(&self, t: f64, q: &[f64], positions: &[f64], out: &mut [f64]) {
+        self.numbers(FunctionId::DriveForcesAtRest, &at_rest(t, q, positions), out);
     }
+}
 
-    fn holding_forces(&self, q: &[f64], positions: &[f64], out: &mut [f64]) {
-        self.numbers(FunctionId::HoldingForces, &Arguments { positions, ..at(q) }, out);
-    }
-
-    fn holding_stiffness(&self, q: &[f64], positions: &[f64], out: &mut [f64]) {
-        self.numbers(FunctionId::HoldingStiffness, &Arguments { positions, ..at(q) }, out);
-    }
-
-    fn drive_forces_at_rest(&self, q: &[f64], out: &mut [f64]) {
-        if self.call(FunctionId::DriveForcesAtRest, &at(q), |_, results| copy(results, out)).is_none() {
-            // At the rates of the motions the dampers are unloaded.
-            let (mut v, mut motions) = (vec![0.0; q.len()], vec![[0.0; 2]; self.description.drives.len()]);
-            self.drive_motions(0.0, &mut motions);
-            for (drive, [_, rate]) in self.description.drives.iter().zip(motions) {
-                v[drive.coordinate] = rate;
-            }
-            self.drive_forces(0.0, q, &v, out);
-        }
-    }
+/// The arguments of functions at rest.
+fn at_rest<'a>(t: f64, q: &'a [f64], positions: &'a [f64]) -> Arguments<'a, f64> {
+    Arguments { positions, ..state(t, q, &[]) }
 }
 
 impl DynDynamics for LiveCrane {

@@ -63,10 +63,6 @@ impl DynModel for LiveCrane {
         self.numbers(FunctionId::ConnectorForces, &state(t, q, v), out);
     }
 
-    fn connector_forces_at_rest(&self, t: f64, q: &[f64], out: &mut [f64]) {
-        self.numbers(FunctionId::ConnectorForcesAtRest, &state(t, q, &[]), out);
-    }
-
     fn connector_lengths(&self, q: &[f64], v: &[f64], out: &mut [[f64; 2]]) {
         self.pairs(FunctionId::ConnectorLengths, &state(0.0, q, v), out);
     }
