@@ -2,7 +2,7 @@
 
 use crane_live::FunctionId;
 use crane_live::rows::Quantity;
-use crane_model::dyn_crane::{DynDerivatives, DynModel, DynStatics};
+use crane_model::dyn_crane::{DynDerivatives, DynModel};
 use pyo3::prelude::*;
 
 use crate::crane::Crane;
