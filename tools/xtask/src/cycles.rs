@@ -43,7 +43,7 @@ fn is_root(file: &str, root: &str) -> bool {
 }
 
 /// Files that a text names in paths from `crate`, `super` or `self`. A folder's `mod.rs` that declares a file does not import it.
-fn imported(text: &str, file: &str, root: &str, known: &BTreeSet<&str>) -> BTreeSet<String> {
+pub fn imported(text: &str, file: &str, root: &str, known: &BTreeSet<&str>) -> BTreeSet<String> {
     // Tests at the end may use everything.
     let code = text.split("\n#[cfg(test)]").next().unwrap_or_default();
     let code: String = code.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
@@ -76,7 +76,7 @@ fn parent(file: &str) -> String {
 }
 
 /// Paths at the beginning of a text, those in braces expanded: `a::{b, c::d}` is `a::b` and `a::c::d`.
-fn paths(text: &str) -> Vec<Vec<String>> {
+pub fn paths(text: &str) -> Vec<Vec<String>> {
     let mut found = Vec::new();
     expand(text.trim_start(), &mut Vec::new(), &mut found);
     found

@@ -1,8 +1,11 @@
-//! docs/EQUATIONS.md names functions and tests; all of them must exist, and no generated function may be missing.
+//! docs/EQUATIONS.md names functions and tests, ARCHITECTURE.md the tests that hold its invariants: all of them must exist, and no generated
+//! function may be missing in the first.
 
 use crate::workspace;
 
 const DOCUMENT: &str = "docs/EQUATIONS.md";
+/// Its invariants end with the names of their tests.
+const INVARIANTS: &str = "ARCHITECTURE.md";
 /// The file that lists the generated functions.
 const FUNCTIONS: &str = "codegen/src/program/id.rs";
 
@@ -37,6 +40,12 @@ pub fn check() -> Result<(), String> {
             .filter(|function| !documented.contains(function))
             .map(|function| format!("{DOCUMENT}: the generated function `{function}` has no row")),
     );
+    let invariants = workspace::read(INVARIANTS)?;
+    for name in tests_named(&invariants) {
+        if !exists(name)? {
+            stale.push(format!("{INVARIANTS}: `{name}` does not exist"));
+        }
+    }
     if stale.is_empty() { Ok(()) } else { Err(format!("\n{}", stale.join("\n"))) }
 }
 
@@ -63,8 +72,27 @@ fn exists(name: &str) -> Result<bool, String> {
     Ok(false)
 }
 
+/// Names of tests in a text, `path/file.rs::name`.
+fn tests_named(text: &str) -> impl Iterator<Item = &str> {
+    text.split('`').skip(1).step_by(2).filter(|name| [".rs::", ".py::"].iter().any(|file| name.contains(file)))
+}
+
 /// Names in lines `Id = "name",`.
 fn generated_functions(text: &str) -> Vec<String> {
     let names = text.lines().filter_map(|line| line.split_once(" = \"")?.1.strip_suffix("\","));
     names.map(str::to_owned).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tests_of_invariants_are_found_and_exist() {
+        let text = "* held by `a/b.rs::c`, by `T`, `m::f` and by `d.py::e`";
+        assert_eq!(tests_named(text).collect::<Vec<_>>(), ["a/b.rs::c", "d.py::e"]);
+        assert!(exists("tools/xtask/src/equations.rs::tests_of_invariants_are_found_and_exist").unwrap());
+        assert!(!exists("tools/xtask/src/equations.rs::another").unwrap());
+        assert!(tests_named(&workspace::read(INVARIANTS).unwrap()).count() > 15);
+    }
 }

@@ -1,27 +1,19 @@
-//! The permitted imports; ARCHITECTURE.md gives the reasons.
+//! The permitted dependencies: the tables of ARCHITECTURE.md are read here, and the code must keep to them.
+
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::{cycles, workspace};
 
-/// A folder of the compiler, and the modules of the compiler that it may name besides itself.
-const MAY_IMPORT: [(&str, &[&str]); 13] = [
-    ("symbolic", &[]),
-    ("chain", &[]),
-    ("diagnostic", &[]),
-    ("spec", &["diagnostic"]),
-    ("read", &["diagnostic", "spec"]),
-    ("validate", &["chain", "diagnostic", "expand", "spec"]),
-    ("expand", &["chain"]),
-    ("exchange", &["chain", "diagnostic"]),
-    ("program", &["symbolic"]),
-    ("mechanics", &["chain", "program", "symbolic"]),
-    ("lower", &["program", "symbolic"]),
-    ("emit", &["chain", "lower", "program", "report", "symbolic"]),
-    ("emit_c", &["chain", "emit", "lower", "program", "symbolic"]),
-];
+const PAGE: &str = "ARCHITECTURE.md";
+const COMPILER: &str = "codegen/src";
+/// Headings of both tables.
+const MODULES: &str = "Modules of the compiler";
+const CRATES: &str = "Crates of the project";
+/// A cell that permits every module.
+const ALL: &str = "all";
 
 /// Words that a folder may not contain, and why.
-const MAY_NOT_NAME: [(&str, &str, &[&str], &str); 9] = [
-    ("crane-model/src", "rs", &["crane_codegen"], "the runtime does not depend on the compiler"),
+const MAY_NOT_NAME: [(&str, &str, &[&str], &str); 8] = [
     (
         "tests/golden",
         "rs",
@@ -34,48 +26,43 @@ const MAY_NOT_NAME: [(&str, &str, &[&str], &str); 9] = [
     (
         "tools/live/src",
         "rs",
-        &["crane_codegen::emit", "crane_codegen::build", "std::fs", "std::env", "std::process", "leak("],
-        "a live crane is made of text in memory and gone when it is dropped: no Rust is written, no file touched, nothing leaks",
+        &["std::fs", "std::env", "std::process", "leak("],
+        "a live crane is made of text in memory and gone when it is dropped: no file is touched, nothing leaks",
     ),
     (
         "tools/page/src",
         "rs",
-        &["crane_cli", "crane_codegen::emit", "crane_codegen::mechanics", "std::fs", "std::env", "std::process"],
+        &["std::fs", "std::env", "std::process"],
         "a page is text; files and notebooks are for others",
     ),
     (
         "tools/python/src",
         "rs",
-        &["unsafe ", "crane_cli", "crane_codegen::emit", "crane_codegen::mechanics", "std::fs", "std::process"],
-        "the package computes with live cranes, and leaves what they are made of, files and processes to others",
+        &["unsafe ", "std::fs", "std::process"],
+        "the package leaves files and processes to others",
     ),
     (
         "tools/fmu/src",
         "rs",
-        &["crane_cli", "crane_codegen::emit", "crane_codegen::mechanics", "std::process", "std::thread", "std::env"],
-        "a unit computes with live cranes inside of another program, and leaves that program alone",
+        &["std::process", "std::thread", "std::env"],
+        "a unit computes inside of another program, and leaves that program alone",
     ),
 ];
 
-/// The only modules of the compiler that may access files, the environment or the process.
-const MAY_TOUCH_THE_WORLD: [&str; 2] = ["codegen/src/build.rs", "codegen/src/files.rs"];
+/// Words that only some files of the compiler may contain, and what they are.
+const ONLY_IN: [(&[&str], &[&str], &str); 5] = [
+    (&["fs::", "env::", "process::", "std::{"], &["build.rs", "files.rs"], "files, environment and process"),
+    (&["quote!", "prettyplease"], &["emit/"], "Rust as text"),
+    (&["syn::"], &["emit/", "validate/names.rs", "exchange/import/links.rs"], "Rust's syntax"),
+    (&["serde_yaml"], &["read/tree.rs"], "the YAML library"),
+    (&["annotate_snippets"], &["diagnostic/draw.rs"], "the library that draws mistakes"),
+];
 
 /// Every breach of the rules.
 pub fn check() -> Result<(), String> {
-    let mut breaches = Vec::new();
-    for (folder, allowed) in MAY_IMPORT {
-        let files = workspace::files(&format!("codegen/src/{folder}"), "rs")?;
-        // Tests of a module may use more.
-        for file in files.into_iter().filter(|file| !file.ends_with("/tests.rs")) {
-            for (number, line) in code_lines(&workspace::read(&file)?) {
-                for module in named_modules(&line) {
-                    if module != folder && !allowed.contains(&module.as_str()) {
-                        breaches.push(format!("{file}:{number}: `{folder}` may not import `{module}`"));
-                    }
-                }
-            }
-        }
-    }
+    let page = workspace::read(PAGE)?;
+    let mut breaches = modules(&page)?;
+    breaches.extend(crates(&page)?);
     for (folder, extension, words, reason) in MAY_NOT_NAME {
         for file in &workspace::files(folder, extension)? {
             for (number, line) in code_lines(&workspace::read(file)?) {
@@ -85,20 +72,132 @@ pub fn check() -> Result<(), String> {
             }
         }
     }
-    for file in workspace::files("codegen/src", "rs")? {
-        if !MAY_TOUCH_THE_WORLD.contains(&file.as_str()) {
-            for (number, line) in code_lines(&workspace::read(&file)?) {
-                let words = ["fs::", "env::", "process::", "std::{"];
-                if words.iter().any(|word| line.contains(word)) && !line.contains("env!(") {
-                    breaches.push(format!(
-                        "{file}:{number}: `build` and `files` alone touch files, environment and process"
-                    ));
-                }
-            }
+    for file in workspace::files(COMPILER, "rs")? {
+        let place = &file[COMPILER.len() + 1..];
+        let lines = code_lines(&workspace::read(&file)?);
+        for (words, places, what) in ONLY_IN {
+            let permitted = places.iter().any(|permitted| place.starts_with(permitted));
+            let named = |line: &str| words.iter().any(|word| line.replace("env!(", "").contains(word));
+            let found = lines.iter().filter(|(_, line)| !permitted && named(line));
+            breaches.extend(found.map(|(number, _)| format!("{file}:{number}: only {} use {what}", places.join(", "))));
         }
     }
     breaches.extend(cycles::cycles()?);
     if breaches.is_empty() { Ok(()) } else { Err(format!("\n{}", breaches.join("\n"))) }
+}
+
+/// Differences between the first table and what the modules of the compiler import.
+fn modules(page: &str) -> Result<Vec<String>, String> {
+    let rows = table(page, MODULES);
+    let files = workspace::files(COMPILER, "rs")?;
+    let present: BTreeSet<&str> = files.iter().map(|file| module(file)).filter(|name| *name != "lib").collect();
+    let mut breaches = unlisted(MODULES, &present, &rows);
+    let known: BTreeSet<&str> = files.iter().map(String::as_str).collect();
+    let reexports = reexports()?;
+    // Of each module the modules that it names, each with a file that does.
+    let mut used: BTreeMap<&str, BTreeMap<String, &str>> = BTreeMap::new();
+    for file in files.iter().filter(|file| !is_test(file)) {
+        let text = workspace::read(file)?;
+        let named = cycles::imported(&text, file, COMPILER, &known);
+        let mut named: BTreeSet<String> = named.iter().map(|file| module(file).to_owned()).collect();
+        named.extend(named_modules(&text, "crate::", &reexports));
+        named.retain(|name| name != module(file) && name != "lib");
+        used.entry(module(file)).or_default().extend(named.into_iter().map(|name| (name, file.as_str())));
+    }
+    for (row, name) in rows.iter().flat_map(|row| row[0].iter().map(move |name| (row, name))) {
+        let Some(used) = used.get(name.as_str()) else { continue };
+        let wrong = used.iter().filter(|(other, _)| !row[1].contains(*other));
+        breaches.extend(wrong.map(|(other, file)| format!("{file}: `{name}` may not import `{other}`")));
+        let unused = row[1].iter().filter(|other| !used.contains_key(*other));
+        breaches.extend(unused.map(|other| format!("{PAGE}, {MODULES}: `{name}` does not import `{other}`")));
+    }
+    Ok(breaches)
+}
+
+/// Crates that depend on a crate, or name a module of the compiler, that the second table does not permit.
+fn crates(page: &str) -> Result<Vec<String>, String> {
+    let rows = table(page, CRATES);
+    let manifest = workspace::read("Cargo.toml")?;
+    let members = manifest.split("members = [").nth(1).and_then(|rest| rest.split(']').next()).unwrap_or_default();
+    let members: BTreeSet<&str> = members.split('"').skip(1).step_by(2).collect();
+    let mut breaches = unlisted(CRATES, &members, &rows);
+    let reexports = reexports()?;
+    for (row, member) in rows.iter().flat_map(|row| row[0].iter().map(move |member| (row, member))) {
+        if !members.contains(member.as_str()) {
+            continue;
+        }
+        let manifest = format!("{member}/Cargo.toml");
+        let wrong = dependencies(&workspace::read(&manifest)?).into_iter().filter(|name| !row[1].contains(name));
+        breaches.extend(wrong.map(|name| format!("{manifest}: may not depend on crane-{name}")));
+        if row[2].contains(ALL) {
+            continue;
+        }
+        for file in workspace::files(&format!("{member}/src"), "rs")?.iter().filter(|file| !is_test(file)) {
+            let named = named_modules(&workspace::read(file)?, "crane_codegen::", &reexports);
+            let wrong = named.iter().filter(|name| !row[2].contains(*name));
+            breaches.extend(wrong.map(|name| format!("{file}: may not import `{name}` of the compiler")));
+        }
+    }
+    Ok(breaches)
+}
+
+/// Crates of the project on which a manifest depends, except for its tests.
+fn dependencies(manifest: &str) -> BTreeSet<String> {
+    let sections = manifest
+        .split("\n[")
+        .filter(|section| ["dependencies]", "build-dependencies]"].iter().any(|title| section.starts_with(title)));
+    let names = sections.flat_map(str::lines).filter_map(|line| line.strip_prefix("crane-"));
+    names.filter_map(|line| line.split([' ', '.', '=']).next()).map(str::to_owned).collect()
+}
+
+/// Rows of the table under a heading: the words in backticks of each cell.
+fn table(page: &str, heading: &str) -> Vec<Vec<BTreeSet<String>>> {
+    let part = page.split("\n#").find(|part| part.lines().next().is_some_and(|line| line.ends_with(heading)));
+    let rows = part.unwrap_or_default().lines().filter(|line| line.starts_with("| `"));
+    let words = |cell: &str| cell.split('`').skip(1).step_by(2).map(str::to_owned).collect();
+    rows.map(|row| row.trim_matches('|').split('|').map(words).collect()).collect()
+}
+
+/// Names that have no row, or more than one, and rows of what does not exist.
+fn unlisted(heading: &str, present: &BTreeSet<&str>, rows: &[Vec<BTreeSet<String>>]) -> Vec<String> {
+    let listed: Vec<&str> = rows.iter().flat_map(|row| &row[0]).map(String::as_str).collect();
+    let once = |name: &str| listed.iter().filter(|listed| **listed == name).count() == 1;
+    let lacking = present.iter().filter(|name| !once(name)).map(|name| format!("`{name}` needs one row"));
+    let gone = listed.iter().filter(|name| !present.contains(**name)).map(|name| format!("there is no `{name}`"));
+    lacking.chain(gone).map(|problem| format!("{PAGE}, {heading}: {problem}")).collect()
+}
+
+/// The module of the compiler that a file belongs to.
+fn module(file: &str) -> &str {
+    let place = file.trim_start_matches(COMPILER).trim_start_matches('/');
+    place.split('/').next().unwrap_or_default().trim_end_matches(".rs")
+}
+
+/// Names that the compiler's root exports from its modules: `Diagnostics` from `diagnostic`.
+fn reexports() -> Result<BTreeMap<String, String>, String> {
+    let text = workspace::read(&format!("{COMPILER}/lib.rs"))?;
+    let lines = text.split("\npub use ").skip(1).flat_map(cycles::paths);
+    Ok(lines.filter_map(|path| Some((path.last()?.clone(), path.first()?.clone()))).collect())
+}
+
+/// Modules of the compiler that a text names in paths with a beginning; what the root exports belongs to its module.
+fn named_modules(text: &str, start: &str, reexports: &BTreeMap<String, String>) -> BTreeSet<String> {
+    let code: Vec<String> = code_lines(text).into_iter().map(|(_, line)| line).collect();
+    let code = code.join("\n");
+    let macros = code.replace(&format!("${start}"), "");
+    let paths = macros.split(start).skip(1).flat_map(cycles::paths);
+    let names = paths.filter_map(|path| path.into_iter().next());
+    names
+        .filter_map(|name| match reexports.get(&name) {
+            Some(module) => Some(module.clone()),
+            None => name.starts_with(char::is_lowercase).then_some(name),
+        })
+        .collect()
+}
+
+/// Tests of a module may use more.
+fn is_test(file: &str) -> bool {
+    file.ends_with("/tests.rs")
 }
 
 /// Lines that are code, without the tests at the end of a file, with their numbers.
@@ -111,31 +210,40 @@ fn code_lines(text: &str) -> Vec<(usize, String)> {
         .collect()
 }
 
-/// Modules after `crate::` in a line; a type re-exported at the root counts as none.
-fn named_modules(line: &str) -> Vec<String> {
-    line.split("crate::")
-        .skip(1)
-        .filter(|_| !line.contains("macro_rules"))
-        .flat_map(|rest| match rest.strip_prefix('{') {
-            Some(list) => list.split(',').map(first_word).collect(),
-            None => vec![first_word(rest)],
-        })
-        .filter(|word| word.chars().next().is_some_and(char::is_lowercase))
-        .collect()
-}
-
-fn first_word(text: &str) -> String {
-    text.trim().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn modules_are_found() {
-        assert_eq!(named_modules("use crate::chain::Chain;"), ["chain"]);
-        assert_eq!(named_modules("use crate::{SourceFile, compile, emit::Report};"), ["compile", "emit"]);
-        assert_eq!(named_modules("    crate::lower::lower(p)"), ["lower"]);
+        let reexports = [("SourceFile".to_owned(), "diagnostic".to_owned())].into();
+        let named = |text: &str| named_modules(text, "crate::", &reexports).into_iter().collect::<Vec<_>>();
+        assert_eq!(named("use crate::chain::Chain;"), ["chain"]);
+        assert_eq!(
+            named("use crate::{\n    SourceFile, compile,\n    emit::{self, Report},\n};"),
+            ["compile", "diagnostic", "emit"]
+        );
+        assert_eq!(named("    crate::lower::lower(p)\n// crate::read\n#[cfg(test)]\nuse crate::spec;"), ["lower"]);
+        assert_eq!(module("codegen/src/emit/mod.rs"), "emit");
+        assert_eq!(module("codegen/src/build.rs"), "build");
+    }
+
+    #[test]
+    fn tables_are_read_and_compared() {
+        let page = "# A\n## Tables\n### Modules of the compiler\n| Module | May use |\n|---|---|\n| `a`, `b` | `c` |\n| `c` | nothing |\n## B\n| `d` | |\n";
+        let rows = table(page, MODULES);
+        assert_eq!(rows.len(), 2);
+        assert_eq!(rows[0][0], ["a", "b"].map(str::to_owned).into());
+        assert_eq!(rows[0][1], ["c".to_owned()].into());
+        let problems = unlisted(MODULES, &["a", "c", "x"].into(), &rows);
+        assert_eq!(problems.len(), 2, "{problems:?}");
+        assert!(problems[0].ends_with("`x` needs one row") && problems[1].ends_with("there is no `b`"), "{problems:?}");
+    }
+
+    #[test]
+    fn dependencies_are_found() {
+        let manifest = "[package]\nname = \"crane-x\"\n\n[dependencies]\ncrane-model = { path = \"..\" }\nserde = \"1\"\n\n\
+                        [dev-dependencies]\ncrane-live.workspace = true\n\n[build-dependencies]\ncrane-codegen.workspace = true\n";
+        assert_eq!(dependencies(manifest), ["codegen", "model"].map(str::to_owned).into());
     }
 }

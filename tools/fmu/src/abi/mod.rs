@@ -67,3 +67,15 @@ unsafe fn words<'a>(text: *const c_char) -> &'a str {
     // SAFETY: as the caller promises.
     unsafe { CStr::from_ptr(text) }.to_str().unwrap_or_default()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_becomes_an_error() {
+        let outcome: Result<(), Fault> = guarded(|| panic!("no column {}", 7));
+        let Err(Fault::Error(words)) = outcome else { panic!("an error is expected") };
+        assert!(words.ends_with("no column 7"), "{words}");
+    }
+}
