@@ -75,7 +75,8 @@ fn the_example_is_a_crane() {
     let source = SourceFile::new("docs/SPEC.md", example);
     let chain =
         read(&source).and_then(|spec| validate(&spec, &source)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"));
-    assert_eq!(chain.coordinates.len(), 2);
+    // Six of the base, two of joints, three of each of three sections, two of the chain.
+    assert_eq!(chain.coordinates.len(), 6 + 2 + 3 * 3 + 2);
 }
 
 #[test]
