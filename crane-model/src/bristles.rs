@@ -68,11 +68,33 @@ impl Bristles {
         }
     }
 
+    /// Replaces the slopes of joints that stick, whose bristles hardly slide within `c`, s, by the steeper of those on either side of rest:
+    ///
+    /// ```text
+    /// ∂ż/∂q̇ = 1 + |σ₀ z/g|
+    /// ```
+    ///
+    /// A rate that changes its sign within a step is damped on both sides by this slope. With the slope of one side, a linearly implicit
+    /// method lets the rate alternate as far as the tolerance allows, and the joint creeps.
+    pub fn steepen(&self, moment: &StateAt<'_>, c: f64, forces: &mut [StatefulForce]) {
+        for (place, (joint, force)) in self.joints.iter().zip(forces).enumerate() {
+            let (z, rate) = (moment.x[self.first + place], moment.v[joint.coordinate]);
+            let slip = joint.stiffness / joint.level(rate);
+            if c * slip * rate.abs() < STICKING {
+                force.rates_by_speed[0] = 1.0 + (slip * z).abs();
+                force.by_speed = -joint.damping * force.rates_by_speed[0];
+            }
+        }
+    }
+
     /// Appends the direction in which each joint moves.
     pub fn branches(&self, moment: &StateAt<'_>, out: &mut Vec<bool>) {
         out.extend(self.joints.iter().map(|joint| moment.v[joint.coordinate] > 0.0));
     }
 }
+
+/// A joint sticks if its bristles slide by less than this share of their deflection within the implicit part of a step.
+const STICKING: f64 = 0.1;
 
 /// ż and its derivative with respect to z.
 struct Slope {
@@ -81,11 +103,16 @@ struct Slope {
 }
 
 impl BristleInfo {
+    /// Friction of steady sliding without its viscous part, `g(q̇)`, N m or N.
+    fn level(&self, rate: f64) -> f64 {
+        self.coulomb + (self.breakaway - self.coulomb) * (-(rate / self.stribeck).powi(2)).exp()
+    }
+
     /// The friction at a deflection and a rate of the joint.
     fn evaluate(&self, first: usize, z: f64, rate: f64, force: &mut StatefulForce) -> Slope {
-        let &Self { coordinate: _, coulomb, breakaway, stribeck, stiffness, damping } = self;
-        let decline = (breakaway - coulomb) * (-(rate / stribeck).powi(2)).exp();
-        let (level, level_by_rate) = (coulomb + decline, -2.0 * rate / (stribeck * stribeck) * decline);
+        let &Self { coordinate: _, coulomb, breakaway: _, stribeck, stiffness, damping } = self;
+        let level = self.level(rate);
+        let level_by_rate = -2.0 * rate / (stribeck * stribeck) * (level - coulomb);
         let by_deflection = -stiffness * rate.abs() / level;
         let by_rate = 1.0 - stiffness * z / level * (rate.signum() - rate.abs() * level_by_rate / level);
         let slope = rate + by_deflection * z;

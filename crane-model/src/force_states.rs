@@ -175,6 +175,11 @@ impl ForceStates {
         self.bristles.evaluate(moment, rates, of_bristles, by_states);
     }
 
+    /// Replaces the slopes of bristles that stick by the steeper ones on either side of rest; `c` is the implicit part of a step, s.
+    pub(crate) fn steepen_bristles(&mut self, moment: &StateAt<'_>, c: f64) {
+        self.bristles.steepen(moment, c, &mut self.forces[self.oil.count()..]);
+    }
+
     /// Adds what the forces contribute to the accelerations, and writes the rates of the states.
     pub(crate) fn accelerate(
         &mut self,

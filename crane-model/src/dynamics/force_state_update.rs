@@ -21,6 +21,8 @@ use crate::{
 /// The crane's forces that have states, evaluated at a state of the crane, and their contribution to the system there.
 pub(crate) struct ForceStateUpdate {
     force_states: ForceStates,
+    /// Whether bristles that stick have the steeper of their slopes on either side of rest.
+    pub steeper_bristles: bool,
     rates: Vec<f64>,
     by_states: DMatrix<f64>,
     /// W of the oil, as factors of its inverse, and of each bristle.
@@ -65,6 +67,7 @@ impl ForceStateUpdate {
             of_states: vec![0.0; len],
             shares: vec![0.0; cylinders],
             along: vec![[0.0; 2]; cylinders],
+            steeper_bristles: false,
             force_states,
         }
     }
@@ -75,6 +78,9 @@ impl ForceStateUpdate {
             return;
         }
         self.force_states.evaluate(crane, moment, &mut self.rates, Some(&mut self.by_states));
+        if self.steeper_bristles {
+            self.force_states.steepen_bristles(moment, c);
+        }
         for (inverse, (force, row)) in self.of_bristles.iter_mut().zip(bristles(&self.force_states)) {
             *inverse = 1.0 / (1.0 / c - self.by_states[(force.first, force.first)]);
             let pull = force.by_states[0] * *inverse;

@@ -9,7 +9,8 @@
 //! The order does not depend on J: an inexact Jacobian costs accuracy only in the stiff parts. It does not depend on ∂f/∂t either, which is
 //! neglected: driven coordinates are relative to their drives' motions, so that no stiff spring is forced (`references`). Six stages, γ = 1/4, order 4,
 //! R(∞) = 0, and with `J = ∂f/∂y` A(α)-stable with α = 89.8°: only modes with less than 0.35 % of critical damping can grow, by
-//! less than 0.65 % per step, in steps that do not resolve them.
+//! less than 0.65 % per step, in steps that do not resolve them. Bristles of joints that stick have the steeper of their slopes on either
+//! side of rest in J: with the slope of one side the joint would creep.
 //! A. Rahunanthan, D. Stanescu, High-order W-methods, J. Comput. Appl. Math. 233 (2010) 1798; the form
 //! of the stages: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, section IV.7.
 //!
@@ -142,7 +143,7 @@ impl<'a> Stages<'a> {
     pub fn new(crane: &'a dyn DynImplicit, len: usize) -> Self {
         let zeros = || vec![0.0; len];
         let u = std::array::from_fn(|_| zeros());
-        Self { system: System::new(crane), u, place: zeros(), rhs: zeros() }
+        Self { system: System::new(crane).with_steeper_bristles(), u, place: zeros(), rhs: zeros() }
     }
 }
 

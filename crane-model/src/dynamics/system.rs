@@ -75,6 +75,12 @@ impl<'a> System<'a> {
         }
     }
 
+    /// Takes the steeper slopes of bristles on either side of rest, for methods that do not iterate.
+    pub fn with_steeper_bristles(mut self) -> Self {
+        self.force_states.steeper_bristles = true;
+        self
+    }
+
     /// Factorises at a state of the crane and its forces.
     pub fn factorise(&mut self, t: f64, (q, v): (&[f64], &[f64]), x: &[f64], c: f64) {
         self.c = c;
