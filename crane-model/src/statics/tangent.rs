@@ -9,7 +9,7 @@ use crate::{CoordinateKind, Description, Text};
 /// cranes span about 1e9 (a chassis against a hinge), those with nearly rigid drives 1e12; rounding leaves about 1e-16.
 const LEAST_STIFFNESS: f64 = 1e-13;
 /// A direction is free below this fraction of the largest scaled stiffness. Scaling brings joints and springs to about 1.
-const FREE: f64 = 1e-7;
+const FREE: f64 = 1e-10;
 /// A coordinate belongs to a direction if its component is at least this fraction of the largest one.
 const SHARE: f64 = 0.3;
 

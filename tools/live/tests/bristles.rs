@@ -127,7 +127,8 @@ loads: [{{name: push, link: arm, at: [1, 0, 0], force: [0, 0, -19], scale: {{cub
 run: {{duration: 20, step: 2e-5, output: 1}}
 "
         );
-        let crane = LiveCrane::from_spec(&SourceFile::new("arm.yaml", text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"));
+        let crane =
+            LiveCrane::from_spec(&SourceFile::new("arm.yaml", text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"));
         let at = |method, tolerance| {
             let settings = Settings { method, tolerance, ..Settings::of(crane.description()) };
             let recorded = runs::record(&crane, &Start::guess(&crane), &settings, &mut |_| ControlFlow::Continue(()));
