@@ -43,8 +43,9 @@
 //   factorise                           95       711
 //   solve                               61       138
 //   joint_stiffness_and_damping          0         7
-//   static_residual                     53       367
+//   static_residual                     53       306
 //   tangent_stiffness                   51       338
+//   drive_forces_at_rest                 6         6
 //   linearise                          165       793
 
 use ::crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
@@ -2363,14 +2364,20 @@ pub fn joint_stiffness_and_damping() -> [[f64; 2]; 4] {
     out
 }
 
-/// Gradient of the potential energy at t = 0, zero in equilibrium; N and N m.
+/// Gradient of the potential energy with the drives at given positions, zero in equilibrium; N and N m.
 ///
 /// `∂E_p/∂q`
 /// [Urbaś 2016, Eqs. (7), (15), (18), (20)]
 ///
 /// 53 operations: 23 add, 27 mul, 0 div, 3 sin_cos.
-pub fn static_residual(q: &SVector<f64, N>, c: &Constants) -> SVector<f64, N> {
+pub fn static_residual(
+    _t: f64,
+    q: &SVector<f64, N>,
+    positions: &SVector<f64, N>,
+    c: &Constants,
+) -> SVector<f64, N> {
     let q = &q.data.0[0];
+    let positions = &positions.data.0[0];
     let mut out: [f64; N] = [0.0; N];
     let main_boom_theta = q[0];
     let knuckle_theta = q[1];
@@ -2421,30 +2428,42 @@ pub fn static_residual(q: &SVector<f64, N>, c: &Constants) -> SVector<f64, N> {
     let first_from_extension_x = first_extension_x + first_hook_x;
     let first_from_knuckle_x = first_knuckle_x + first_from_extension_x;
     let first_from_main_boom_x = first_main_boom_x + first_from_knuckle_x;
+    let main_boom_theta_held = positions[0];
     out[0] = -fma(
         4000000.0,
-        -0.7853981633974483 - main_boom_theta,
+        main_boom_theta_held - main_boom_theta,
         9.81 * first_from_main_boom_x,
     );
     // knuckle_theta
+    let knuckle_theta_held = positions[1];
     out[1] = fma(
         -2000000.0,
-        1.3089969389957472 - knuckle_theta,
+        knuckle_theta_held - knuckle_theta,
         9.81 * fma(upsilon_knuckle_theta_z, c.c007, -first_from_knuckle_x),
     );
     // extension_x
-    out[2] = -fma(8000000.0, 0.2 - extension_x, 9.81 * (knuckle_axis_z_x * c.c006));
+    let extension_x_held = positions[2];
+    out[2] = -fma(
+        8000000.0,
+        extension_x_held - extension_x,
+        9.81 * (knuckle_axis_z_x * c.c006),
+    );
     // hook_theta
     out[3] = 9.81 * (t001 - first_hook_x);
     SVector::from(out)
 }
 
-/// Tangent stiffness K: second derivatives of the potential energy; N/m, N and N m.
+/// Tangent stiffness K: derivative of the residual, its symmetric part; N/m, N and N m.
 ///
 /// `∂²E_p/∂q∂q`
 ///
 /// 51 operations: 23 add, 25 mul, 0 div, 3 sin_cos.
-pub fn tangent_stiffness(q: &SVector<f64, N>, c: &Constants) -> SMatrix<f64, N, N> {
+pub fn tangent_stiffness(
+    _t: f64,
+    q: &SVector<f64, N>,
+    _positions: &SVector<f64, N>,
+    c: &Constants,
+) -> SMatrix<f64, N, N> {
     let q = &q.data.0[0];
     let mut out: [[f64; N]; N] = [[0.0; N]; N];
     let main_boom_theta = q[0];
@@ -2513,7 +2532,39 @@ pub fn tangent_stiffness(q: &SVector<f64, N>, c: &Constants) -> SMatrix<f64, N, 
     symmetric(out)
 }
 
-/// Mass matrix A, tangent stiffness K and damping matrix D of small motions about a pose at rest.
+/// Generalized forces of the drives that hold the crane at rest at given positions, N and N m.
+///
+/// `s (q_dr − q)`
+/// [Urbaś 2016, Eq. (20)]; of rigid drives ∂E_p/∂q_j; of cylinders with a valve k (ℓ₀ − ℓ) ∂ℓ/∂q
+///
+/// 6 operations: 3 add, 3 mul, 0 div, 0 sin_cos.
+pub fn drive_forces_at_rest(
+    _t: f64,
+    q: &SVector<f64, N>,
+    positions: &SVector<f64, N>,
+) -> SVector<f64, N> {
+    let q = &q.data.0[0];
+    let positions = &positions.data.0[0];
+    let mut out: [f64; N] = [0.0; N];
+    // main_boom_theta
+    let main_boom_theta_held = positions[0];
+    let main_boom_theta = q[0];
+    let effort_main_boom_theta = 4000000.0 * (main_boom_theta_held - main_boom_theta);
+    out[0] = effort_main_boom_theta;
+    // knuckle_theta
+    let knuckle_theta_held = positions[1];
+    let knuckle_theta = q[1];
+    let effort_knuckle_theta = 2000000.0 * (knuckle_theta_held - knuckle_theta);
+    out[1] = effort_knuckle_theta;
+    // extension_x
+    let extension_x_held = positions[2];
+    let extension_x = q[2];
+    let effort_extension_x = 8000000.0 * (extension_x_held - extension_x);
+    out[2] = effort_extension_x;
+    SVector::from(out)
+}
+
+/// Mass matrix A, tangent stiffness K and damping matrix D of small motions about a pose at rest at t = 0.
 ///
 /// `A δq̈ + D δq̇ + K δq = 0`
 ///
@@ -2853,11 +2904,29 @@ impl Implicit<N> for Crane {
 }
 
 impl Statics<N> for Crane {
-    fn static_residual(&self, q: &SVector<f64, N>) -> SVector<f64, N> {
-        static_residual(q, &self.constants)
+    fn static_residual(
+        &self,
+        t: f64,
+        q: &SVector<f64, N>,
+        positions: &SVector<f64, N>,
+    ) -> SVector<f64, N> {
+        static_residual(t, q, positions, &self.constants)
     }
-    fn tangent_stiffness(&self, q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
-        tangent_stiffness(q, &self.constants)
+    fn tangent_stiffness(
+        &self,
+        t: f64,
+        q: &SVector<f64, N>,
+        positions: &SVector<f64, N>,
+    ) -> SMatrix<f64, N, N> {
+        tangent_stiffness(t, q, positions, &self.constants)
+    }
+    fn drive_forces_at_rest(
+        &self,
+        t: f64,
+        q: &SVector<f64, N>,
+        positions: &SVector<f64, N>,
+    ) -> SVector<f64, N> {
+        drive_forces_at_rest(t, q, positions)
     }
 }
 
