@@ -13,8 +13,7 @@ catalogue! {
     E003 empty() "the file is empty", "expected a crane here",
         "start with `format: 1`, `name:` and `links:`; `crane example` prints commented ones";
     /// A file is one YAML document.
-    E004 not_yaml(problem) "the file is not YAML: {problem}", "reading stopped here",
-        "check the indentation (spaces, not tabs), brackets and quotes of this line and the previous one";
+    E004 not_yaml(problem, help) "the file is not YAML: {problem}", "reading stopped here", "{help}";
     /// The top level is a mapping of keys to values.
     E005 not_a_mapping(found) "the file does not describe a crane: its top level is {found}", "expected keys here",
         "write `key: value` lines, starting with `format: 1`";
@@ -44,8 +43,8 @@ catalogue! {
     E015 not_one_choice(place, count, choices) "{place} needs exactly one choice, but {count} are given", "one of {choices}",
         "write exactly one of {choices}";
     /// A list has as many items as its key requires.
-    E016 wrong_length(place, expected, found) "{place} has {found} items instead of {expected}",
-        "expected {expected} items", "write {expected} items";
+    E016 wrong_length(place, expected, found, help) "{place} has {found} items instead of {expected}",
+        "expected {expected} items", "{help}";
     /// Text is one line without control characters.
     E017 not_one_line(place) "{place} is not one line of plain text", "contains a line break or a character that cannot be printed",
         "write it on one line; `>-` folds a long text into one";
@@ -77,6 +76,9 @@ catalogue! {
     /// The result columns of a point, `<point>_x`, `_y`, `_z`, differ from all other columns.
     E028 shared_column(point, column) "point `{point}` uses a result column that is taken", "column `{column}` already exists",
         "rename the point, for example to `{point}_point`";
+    /// Every entry of a list begins with `-`.
+    E029 missing_dash(key, list) "a `-` is missing before `{key}`", "a new entry of `{list}` begins here",
+        "write `- {key}:`, with the `-` below those of the other entries; or remove the second `{key}`";
 
     // Numbers.
     /// Numbers are finite.
@@ -357,11 +359,10 @@ catalogue! {
     E135 data_column(file, column, known) "`{file}` has no column `{column}`", "its columns: {known}",
         "the first row names the columns; a unit in brackets is not part of the name";
     /// The columns of a data file are in SI units.
-    E136 data_unit(file, column, unit) "column `{column}` of `{file}` is in {unit}", "tables are in SI units: s, m, rad, N, N m",
-        "convert the column, and write its unit in brackets or leave it out";
+    E136 data_unit(file, column, unit, help) "column `{column}` of `{file}` is in {unit}", "tables are in SI units: s, m, rad, N, N m",
+        "{help}; put the SI unit of the column in brackets, or leave it out";
     /// The rows of a data file contain numbers.
-    E137 data_number(cell, place) "{cell} in column {place} is not a number", "a row of the table",
-        "write numbers with a decimal point, and commas between columns";
+    E137 data_number(cell, place, help) "{cell} in column {place} is not a number", "a row of the table", "{help}";
     /// A data file has at most 1000 rows.
     E138 long_table(file, rows, most, every) "`{file}` has {rows} rows", "at most {most}, because every row costs time in every step",
         "keep one row in {every}: a smooth curve passes through the rows";
@@ -372,6 +373,9 @@ catalogue! {
     E140 column_without_file() "`column` belongs to a `file`", "this table has none", "remove it, or give the `file`";
     /// A table has times and values or a file, not both.
     E141 table_twice() "the table has times and values as well as a `file`", "one of them suffices", "remove the other one";
+    /// The columns of a data file are separated by commas, and its numbers have decimal points.
+    E142 data_separators(file, with) "`{file}` has {with}", "expected lines such as `0.5,1.2`",
+        "save it as CSV with commas between columns and decimal points; in a spreadsheet, choose English (USA) as its language first";
 
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.
@@ -392,7 +396,7 @@ catalogue! {
     W007 torsion_constant(place, given, polar) "the torsion constant `Jo` of {place} exceeds Jy + Jz", "{given} m⁴ exceeds {polar} m⁴",
         "write the torsion constant: Jy + Jz for circles and tubes, less for boxes, far less for open sections";
     /// Angles without `deg` or `pi` are at most one turn, speeds one turn per second.
-    W008 degrees(what, given, unit, turns) "{what} is {given} {unit}", "{turns}", "did you mean `{given} deg`? Write several turns as a multiple of `pi`";
+    W008 degrees(what, given, unit, turns, help) "{what} is {given} {unit}", "{turns}", "{help}";
     /// The damping of a beam does not suppress its lowest bending vibration: β ω is at most 10 for the beam alone, clamped at one end.
     W009 overdamped(link, beta, frequency, product) "the damping of beam `{link}` suppresses all vibration: β ω = {product}",
         "β = {beta} s, the lowest bending frequency is {frequency} rad/s", "check the unit: `beta` is in s, 1e-4 to 1e-2 s for steel structures";

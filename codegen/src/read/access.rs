@@ -6,8 +6,9 @@ use serde::de::value::StrDeserializer;
 use serde::de::{DeserializeSeed, EnumAccess, IntoDeserializer, MapAccess, SeqAccess, VariantAccess, Visitor};
 
 use super::deserializer::{Reader, Subject, Unread};
+use super::slips;
 use super::tree::{Content, Node};
-use crate::diagnostic::{Span, rule, suggest};
+use crate::diagnostic::{Span, nearest, rule, suggest};
 
 /// The location shown for a value: a scalar itself, a list or mapping at its key.
 fn shown(key: Span, value: &Node) -> Span {
@@ -139,21 +140,19 @@ pub(super) struct Fields<'a> {
 }
 
 impl<'a> Fields<'a> {
-    /// Reports and skips unknown and duplicate keys.
+    /// Reports unknown and duplicate keys.
     pub fn new(reader: Reader<'a>, entries: &'a [(Node, Node)], names: &'static [&'static str]) -> Self {
         let mut given = vec![None; names.len()];
-        // The preceding whole number: in `{mass: 50,5}` the decimal comma ends the number.
+        let mut unknown = Vec::new();
         let mut before = None;
         for (key, value) in entries {
             let name = key.key_text();
             match names.iter().position(|field| *field == name) {
                 None => {
-                    let help = match before {
-                        Some(whole) if matches!(value.content, Content::Null) && is_fraction(&key.content) => {
-                            format!("did you mean `{whole}.{name}`? Write a decimal point, not a comma")
-                        }
-                        _ => suggest(&name, names.iter().copied()),
-                    };
+                    let decimals = slips::decimals_as_key(before, key, value);
+                    let meant = nearest(&name, names.iter().copied()).filter(|_| decimals.is_none());
+                    unknown.extend(meant.map(|meant| (meant, key, value)));
+                    let help = decimals.unwrap_or_else(|| suggest(&name, names.iter().copied()));
                     reader.report(rule::unknown_key(key.span, name, help));
                 }
                 Some(field) if given[field].is_some() => {
@@ -161,18 +160,16 @@ impl<'a> Fields<'a> {
                 }
                 Some(field) => given[field] = Some((shown(key.span, value), value)),
             }
-            before = match value.content {
-                Content::Number(number) if number.fract() == 0.0 => Some(number),
-                _ => None,
-            };
+            before = Some(value);
+        }
+        // A misspelt key counts as the one that was meant, so that this does not appear to be missing.
+        for (meant, key, value) in unknown {
+            for (given, _) in given.iter_mut().zip(names).filter(|(given, name)| **name == meant && given.is_none()) {
+                *given = Some((shown(key.span, value), value));
+            }
         }
         Fields { reader, names, given, next: 0 }
     }
-}
-
-/// Whether a key can be the digits after a decimal comma.
-fn is_fraction(key: &Content) -> bool {
-    matches!(key, Content::Number(digits) if *digits >= 0.0 && digits.fract() == 0.0)
 }
 
 impl<'a> MapAccess<'a> for Fields<'a> {

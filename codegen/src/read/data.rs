@@ -9,6 +9,8 @@ use crate::diagnostic::{Mistake, Part, SourceFile, Span, rule};
 const MOST: usize = 1000;
 /// Key whose value may name a file.
 const TABLE: &str = "table";
+/// Units of angles that are not SI units.
+const DEGREES: [&str; 3] = ["deg", "degrees", "°"];
 /// Units of values: those of coordinates, of forces and moments, and of factors.
 const UNITS: [&str; 6] = ["m", "rad", "N", "N m", "1", ""];
 
@@ -105,6 +107,9 @@ fn columns(data: &Part<'_>, (file, at): (&str, Span), column: Option<(&str, Span
     // Spreadsheets mark UTF-8 by a first character that is not part of the table.
     let text = data.text.strip_prefix('\u{feff}').unwrap_or(data.text);
     let data = &Part { text, start: data.start + data.text.len() - text.len(), ..*data };
+    if let Some(with) = other_separators(text) {
+        return Err(rule::data_separators(at, file, with));
+    }
     let mut reader = ReaderBuilder::new().has_headers(false).trim(Trim::All).from_reader(text.as_bytes());
     let mut rows = Vec::new();
     for row in reader.records() {
@@ -135,7 +140,8 @@ fn columns(data: &Part<'_>, (file, at): (&str, Span), column: Option<(&str, Span
         if let Some((name, Some(unit))) =
             names.get(place).filter(|(_, unit)| unit.is_some_and(|unit| !known.contains(&unit)))
         {
-            return Err(rule::data_unit(at, file, *name, *unit));
+            let help = if DEGREES.contains(unit) { radians(1.0) } else { "convert it".into() };
+            return Err(rule::data_unit(at, file, *name, *unit, help));
         }
     }
     let rows = &rows[usize::from(has_header)..];
@@ -153,8 +159,35 @@ fn number(data: &Part<'_>, row: &StringRecord, place: usize) -> Result<Node, Mis
     let line = data.text.get(begin..).and_then(|rest| rest.lines().next()).unwrap_or_default();
     let span = Span { start: data.start + begin, end: data.start + begin + line.len() };
     let shown = if cell.is_empty() { "an empty cell".to_owned() } else { format!("`{cell}`") };
-    let number = cell.parse().map_err(|_| rule::data_number(span, shown, place + 1))?;
+    let degrees = DEGREES.iter().find_map(|unit| cell.strip_suffix(unit)?.trim_end().parse::<f64>().ok());
+    let help = || match degrees {
+        Some(degrees) => radians(degrees),
+        None => "write numbers with a decimal point, and commas between columns".into(),
+    };
+    let number = cell.parse().map_err(|_| rule::data_number(span, shown, place + 1, help()))?;
     Ok(Node { span, content: Content::Number(number) })
+}
+
+/// What separates columns, if it is not commas: spreadsheets whose numbers have decimal commas write semicolons.
+fn other_separators(text: &str) -> Option<&'static str> {
+    let line = text.lines().find(|line| !line.trim().is_empty())?;
+    let has_decimal_commas = || {
+        let commas = text.match_indices(',').map(|(at, _)| [&text[..at], &text[at + 1..]]);
+        commas.into_iter().any(|[before, after]| {
+            before.ends_with(|c: char| c.is_ascii_digit()) && after.starts_with(|c: char| c.is_ascii_digit())
+        })
+    };
+    match (line.contains(';'), line.contains('\t'), line.contains(',')) {
+        (true, ..) if has_decimal_commas() => Some("semicolons between columns, and decimal commas"),
+        (true, ..) => Some("semicolons between columns"),
+        (_, true, false) => Some("tabs between columns"),
+        _ => None,
+    }
+}
+
+/// Advice for an angle in degrees.
+fn radians(degrees: f64) -> String {
+    format!("write angles in radians: {degrees} deg = {:.6} rad", degrees.to_radians())
 }
 
 /// What is wrong with a file, in words.

@@ -7,8 +7,9 @@ use serde::de::{self, Deserializer, Expected, Unexpected, Visitor};
 use serde::forward_to_deserialize_any;
 
 use super::access::{Choice, Entries, Fields, Items, Parts};
+use super::slips;
 use super::tree::{Content, Node};
-use crate::diagnostic::{Mistake, Span, list, rule, suggest};
+use crate::diagnostic::{Mistake, Span, list, nearest, rule, suggest};
 use crate::spec::{EITHER, MANY, SPANNED};
 
 /// Why a value could not be read.
@@ -41,14 +42,6 @@ impl de::Error for Unread {
     fn invalid_value(_: Unexpected, expected: &dyn Expected) -> Self {
         Unread::Expected(expected.to_string())
     }
-}
-
-/// The number meant by a text with a decimal comma.
-fn with_decimal_point(content: &Content) -> Option<String> {
-    let Content::Text(text) = content else { return None };
-    let (whole, fraction) = text.split_once(',')?;
-    let digits = |text: &str| !text.is_empty() && text.len() < 20 && text.bytes().all(|b| b.is_ascii_digit());
-    (digits(whole.trim_start_matches('-')) && digits(fraction)).then(|| format!("{whole}.{fraction}"))
 }
 
 /// The description of a node in messages.
@@ -113,8 +106,8 @@ impl<'a> Reader<'a> {
     /// Notes that the value is not what was expected, unless that was reported already.
     pub fn report_unread(&self, unread: Unread) {
         if let (Unread::Expected(mut expected), Some(node)) = (unread, self.node) {
-            if let Some(number) = with_decimal_point(&node.content) {
-                expected = format!("`{number}`, with a decimal point");
+            if let Some(number) = slips::number_with_commas(&node.content) {
+                expected = number;
             }
             self.report(rule::wrong_value(
                 self.span,
@@ -134,12 +127,14 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The variant of that name.
+    /// The variant of that name; of a misspelt name, the variant that was meant, so that nothing else appears to be wrong.
     fn variant(&self, name: &str, span: Span, variants: &[&'static str]) -> Result<&'static str, Unread> {
-        variants.iter().copied().find(|variant| *variant == name).ok_or_else(|| {
-            let help = suggest(name, variants.iter().copied());
-            self.report(rule::unknown_choice(span, self.subject, name, help))
-        })
+        let offered = || variants.iter().copied();
+        if let Some(variant) = offered().find(|variant| *variant == name) {
+            return Ok(variant);
+        }
+        let unread = self.report(rule::unknown_choice(span, self.subject, name, suggest(name, offered())));
+        nearest(name, offered()).ok_or(unread)
     }
 
     /// The fields of a mapping.
@@ -193,7 +188,8 @@ impl<'de> Deserializer<'de> for Reader<'de> {
         match self.content()? {
             Content::Sequence(items) if items.len() == length => visitor.visit_seq(Items::new(self, items)),
             Content::Sequence(items) => {
-                Err(self.report(rule::wrong_length(self.span, self.subject, length, items.len())))
+                let help = slips::decimals_as_items(items, length).unwrap_or_else(|| format!("write {length} items"));
+                Err(self.report(rule::wrong_length(self.span, self.subject, length, items.len(), help)))
             }
             _ => Err(Unread::Expected(format!("a list of {length} numbers"))),
         }

@@ -7,6 +7,7 @@ mod access;
 mod data;
 mod deserializer;
 mod overlay;
+mod slips;
 mod tree;
 
 use std::cell::RefCell;
@@ -47,7 +48,11 @@ fn parts(source: &SourceFile, noticed: &mut Noticed) -> Result<Node, Mistake> {
             mistake.span = Span { start: mistake.span.start + part.start, end: mistake.span.end + part.start };
             mistake
         };
-        let tree = tree::parse(part.text).map_err(shifted)?.shifted(part.start);
+        let mut tree = tree::parse(part.text).map_err(shifted)?;
+        let mut undashed = Vec::new();
+        slips::split_entries(&mut tree, "", part.text, &mut undashed);
+        noticed.mistakes.extend(undashed.into_iter().map(shifted));
+        let tree = tree.shifted(part.start);
         whole = Some(match whole {
             Some(base) => overlay::merge(base, tree.without_base(), noticed),
             None => tree,

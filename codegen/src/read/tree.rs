@@ -5,6 +5,7 @@ use std::fmt;
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use serde_yaml::{Location, Spanned};
 
+use super::slips;
 use crate::diagnostic::{Mistake, Span, rule};
 
 /// A node of the tree.
@@ -73,7 +74,7 @@ pub(super) fn parse(text: &str) -> Result<Node, Mistake> {
         match text.trim_matches(|c: char| c.is_whitespace() || c == '\u{feff}') {
             "" => rule::empty(Span::START),
             _ if too_many(&error) => rule::too_many_values(span, MAX_NODES),
-            _ => rule::not_yaml(span, problem(&error)),
+            _ => slips::not_yaml(text, span, &problem(&error)),
         }
     })?;
     let root = Node::from(root);

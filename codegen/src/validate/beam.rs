@@ -197,7 +197,7 @@ impl<'a> Check<'a> {
         let sum: f64 = parts.iter().map(|part| part.length).sum();
         let whole = whole?;
         if (sum - whole).abs() > WRITTEN * whole || parts.is_empty() {
-            self.report(rule::parts_length(given.span, sum, whole));
+            self.report(rule::parts_length(given.span, (sum * 1e9).round() / 1e9, whole));
             return None;
         }
         Some(parts)

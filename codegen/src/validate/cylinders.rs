@@ -164,8 +164,8 @@ impl<'a> Check<'a> {
         let foot = self.pin(given.foot.value.as_ref(), &place("foot"));
         let head = self.pin(given.head.value.as_ref(), &place("head"));
         let joint = given.coordinate.value.as_deref().unwrap_or_default();
-        let coordinate = self.coordinate(&given.coordinate)?;
-        if !drives.iter().any(|drive| drive.coordinate == coordinate) {
+        let coordinate = self.joint_coordinate(&given.coordinate)?;
+        if !self.unknown_drives && !drives.iter().any(|drive| drive.coordinate == coordinate) {
             self.report(rule::undriven(given.coordinate.span, &name, joint));
         }
         let kind = self.coordinates[coordinate.0].kind;
@@ -219,6 +219,10 @@ impl<'a> Check<'a> {
 
     /// Reports a cylinder whose joint is not between its pins, or that has another joint between them.
     fn spans(&mut self, given: &spec::Cylinder, name: &str, joint: CoordinateId, [foot, head]: [BodyId; 2]) {
+        // The bodies of a link with a mistake are missing between the pins.
+        if self.unknown.links {
+            return;
+        }
         let (near, far) = if foot < head { (foot, head) } else { (head, foot) };
         let paths = self.bodies.iter().take(far.0 + 1).skip(near.0 + 1).flat_map(|body| &body.path);
         let between: Vec<CoordinateId> = paths.flat_map(Step::coordinates).copied().collect();

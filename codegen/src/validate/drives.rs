@@ -26,10 +26,19 @@ impl<'a> Check<'a> {
     pub(super) fn drives(&mut self, crane: &'a Crane) -> (Vec<Drive>, Vec<Rotor>) {
         let mut drives: Vec<Drive> = Vec::new();
         let mut rotors = Vec::new();
-        let given = crane.drives.as_ref().and_then(|drives| drives.value.as_deref()).unwrap_or_default();
+        let given = match &crane.drives {
+            Some(Spanned { value: Some(drives), .. }) => drives.as_slice(),
+            drives => {
+                self.unknown_drives = drives.is_some();
+                &[]
+            }
+        };
         for given in given {
-            let Some(drive) = &given.value else { continue };
-            let coordinate = self.coordinate(&drive.coordinate);
+            let Some(drive) = &given.value else {
+                self.unknown_drives = true;
+                continue;
+            };
+            let coordinate = self.joint_coordinate(&drive.coordinate);
             let kind = coordinate.map(|CoordinateId(index)| self.coordinates[index].kind);
             let name = drive.coordinate.value.as_deref().unwrap_or_default();
             let transmission = self.transmission(drive, given.span, name, kind);
@@ -38,7 +47,10 @@ impl<'a> Check<'a> {
             let armature = self.number_or(armature, 0.0, &place, units(kind).armature, Limit::NotNegative);
             let profile = drive.motion.value.as_ref().and_then(|motion| self.motion(motion, kind, drive.motion.span));
             let offset = drive.offset.as_ref().map(|offset| self.input(offset));
-            let Some(id) = coordinate else { continue };
+            let Some(id) = coordinate else {
+                self.unknown_drives = true;
+                continue;
+            };
             if let Some(owner) = self.not_a_joint(id) {
                 self.report(rule::cannot_drive(drive.coordinate.span, name, owner));
             } else if drives.iter().any(|before| before.coordinate == id) {
@@ -128,7 +140,7 @@ impl<'a> Check<'a> {
         let mut joint_dampers = Vec::new();
         let entries = crane.damping.as_ref().and_then(|damping| damping.value.as_ref());
         for (name, damping) in entries.into_iter().flat_map(|entries| &entries.0) {
-            let coordinate = self.coordinate(name);
+            let coordinate = self.joint_coordinate(name);
             let kind = coordinate.map(|CoordinateId(index)| self.coordinates[index].kind);
             let place = format!("the damping of `{}`", name.value.as_deref().unwrap_or_default());
             let damping = self.number(damping, &place, units(kind).damping, Limit::NotNegative);
@@ -158,7 +170,7 @@ impl<'a> Check<'a> {
         let mut rotors = Vec::new();
         let Some(entries) = crane.armature.as_ref().and_then(|armature| armature.value.as_ref()) else { return rotors };
         for (name, armature) in &entries.0 {
-            let coordinate = self.coordinate(name);
+            let coordinate = self.joint_coordinate(name);
             let kind = coordinate.map(|CoordinateId(index)| self.coordinates[index].kind);
             let place = format!("the armature of `{}`", name.value.as_deref().unwrap_or_default());
             let armature = self.number(armature, &place, units(kind).armature, Limit::NotNegative);

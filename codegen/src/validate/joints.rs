@@ -46,7 +46,7 @@ impl<'a> Check<'a> {
 
     /// The coordinate of a joint by its name.
     pub(super) fn joint_of(&mut self, name: &Spanned<String>, what: &str) -> Option<CoordinateId> {
-        let id = self.coordinate(name)?;
+        let id = self.joint_coordinate(name)?;
         if let Some(owner) = self.not_a_joint(id) {
             let coordinate = self.coordinates[id.0].name.clone();
             self.report(rule::not_a_joint(name.span, coordinate, what, owner));

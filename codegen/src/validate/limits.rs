@@ -23,23 +23,25 @@ fn refusal(mistake: &Mistake) -> Refusal {
 }
 
 impl Check<'_> {
-    /// Reports a number beyond its limit; for a live parameter, records the limit as a bound.
-    pub(super) fn keep_limit(&mut self, value: &Value, span: Span, place: &str, unit: &str, limit: Limit) {
-        let live = match value {
+    /// The number, or NaN after reporting that it is beyond its limit; for a live parameter, records the limit as a bound.
+    pub(super) fn within(&mut self, value: Value, span: Span, (place, unit, limit): (&str, &str, Limit)) -> Value {
+        let live = match &value {
             Value::Parameter(id) => Some(*id),
             _ => None,
         };
-        let number = self.now(value);
+        let number = self.now(&value);
         match (limit, live) {
             (Limit::Positive, _) | (Limit::Mass, None) if number <= 0.0 => {
                 self.report(rule::not_positive(span, place, number, unit));
+                return f64::NAN.into();
             }
             (Limit::NotNegative, _) | (Limit::Mass, Some(_)) if number < 0.0 => {
                 self.report(rule::negative(span, place, number, unit));
+                return f64::NAN.into();
             }
             _ => {}
         }
-        let Some(id) = live else { return };
+        let Some(id) = live else { return value };
         let above = Bound { value: 0.0, allowed: false, refusal: refusal(&rule::not_positive(span, place, "", unit)) };
         let not_below = Bound { value: 0.0, allowed: true, refusal: refusal(&rule::negative(span, place, "", unit)) };
         match limit {
@@ -51,6 +53,7 @@ impl Check<'_> {
                 self.live_masses.push((id, above));
             }
         }
+        value
     }
 
     /// Records the rule that `smaller` is below `larger`. Default values are checked elsewhere; with live numbers, the rule must

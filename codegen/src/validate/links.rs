@@ -140,7 +140,9 @@ impl<'a> Check<'a> {
         span: Span,
     ) -> Vec<Step> {
         let given = axis.and_then(|axis| axis.axis.as_ref());
-        let axis = given.map_or(Some(AxisName::Z), |given| given.value).map_or(Axis::Z, Axis::from);
+        let axis = given.map_or(Some(AxisName::Z), |given| given.value);
+        self.unknown.links |= axis.is_none();
+        let axis = axis.map_or(Axis::Z, Axis::from);
         let row = link.placement.as_ref().and_then(|placement| placement.value.as_ref());
         if axis != Axis::Z && matches!(row, Some(Placement::ModifiedDh(_) | Placement::ClassicDh(_))) {
             self.report(rule::dh_axis(given.map_or(span, |given| given.span), name));

@@ -141,6 +141,8 @@ struct Check<'a> {
     used_inputs: Vec<bool>,
     /// Whether some inputs could not be read.
     unknown_inputs: bool,
+    /// Whether some drives could not be read.
+    unknown_drives: bool,
     materials: BTreeMap<&'a str, Elastic>,
     coordinates: Vec<Coordinate>,
     /// The owner of each coordinate.

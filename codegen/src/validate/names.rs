@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::Check;
+use super::{Check, Owner};
 use crate::chain::CoordinateId;
 use crate::diagnostic::{Span, rule, suggest};
 use crate::spec::Spanned;
@@ -41,6 +41,16 @@ impl Names {
             std::collections::btree_map::Entry::Occupied(taken) => Err(taken.get().clone()),
         }
     }
+}
+
+/// The only coordinate of the link that the name of a coordinate begins with: `inner_psi` for `inner_theta` or `inner_boom_psi`.
+fn of_one_link<'n>(name: &str, known: &[&'n str]) -> Option<&'n str> {
+    let link = |known: &'n str| known.rsplit_once('_').map(|(link, _)| link);
+    let begins = |known: &&&'n str| {
+        link(known).and_then(|link| name.strip_prefix(link)).is_some_and(|rest| rest.starts_with('_'))
+    };
+    let mut of_links = known.iter().filter(begins);
+    of_links.next().copied().filter(|_| of_links.next().is_none())
 }
 
 impl Check<'_> {
@@ -103,10 +113,24 @@ impl Check<'_> {
 
     /// The coordinate with that name.
     pub(super) fn coordinate(&mut self, given: &Spanned<String>) -> Option<CoordinateId> {
+        self.find_coordinate(given, |_| true)
+    }
+
+    /// The coordinate with that name, where those of joints are expected: only these are suggested for a name that is unknown.
+    pub(super) fn joint_coordinate(&mut self, given: &Spanned<String>) -> Option<CoordinateId> {
+        self.find_coordinate(given, |owner| *owner == Owner::Joint)
+    }
+
+    fn find_coordinate(&mut self, given: &Spanned<String>, is_offered: fn(&Owner) -> bool) -> Option<CoordinateId> {
         let name = given.value.as_deref()?;
         let found = self.coordinates.iter().position(|coordinate| coordinate.name == name);
         if found.is_none() && !self.unknown.links {
-            let help = suggest(name, self.coordinates.iter().map(|coordinate| coordinate.name.as_str()));
+            let known = self.coordinates.iter().zip(&self.owners).filter(|(_, owner)| is_offered(owner));
+            let known: Vec<&str> = known.map(|(coordinate, _)| coordinate.name.as_str()).collect();
+            let help = match of_one_link(name, &known) {
+                Some(meant) => format!("did you mean `{meant}`?"),
+                None => suggest(name, known),
+            };
             self.report(rule::unknown_coordinate(given.span, name, help));
         }
         found.map(CoordinateId)

@@ -62,11 +62,10 @@ impl<'a> Check<'a> {
         value.at(&self.defaults)
     }
 
-    /// A number, checked against its limit.
+    /// A number, checked against its limit; NaN if the mistake has been reported.
     pub(super) fn number(&mut self, given: &Spanned<Number>, place: &str, unit: &str, limit: Limit) -> Value {
         let value = self.resolve(given.value.as_ref().map(|number| &number.0), given.span, place, false);
-        self.keep_limit(&value, given.span, place, unit, limit);
-        value
+        self.within(value, given.span, (place, unit, limit))
     }
 
     /// An optional number.
@@ -121,8 +120,7 @@ impl<'a> Check<'a> {
     /// A number that cannot be a parameter.
     pub(super) fn constant(&mut self, given: &Spanned<Constant>, place: &str, unit: &str, limit: Limit) -> f64 {
         let value = self.resolve(given.value.as_ref().map(|constant| &constant.0), given.span, place, false);
-        self.keep_limit(&value, given.span, place, unit, limit);
-        value.as_constant().unwrap_or(f64::NAN)
+        self.within(value, given.span, (place, unit, limit)).as_constant().unwrap_or(f64::NAN)
     }
 
     /// Constant or parameter; NaN if the mistake has been reported.

@@ -63,11 +63,26 @@ impl<'a> Plausibility<'a> {
         if let Motion::Speed(speed) = motion {
             self.speed(&speed.rate, coordinate);
         }
+        if let Motion::Table(table) = motion
+            && table.file.is_some()
+            && self.is_angle(coordinate)
+        {
+            return self.angles_of_file(motion, &what);
+        }
         for (scalar, at) in positions(motion) {
             self.position(scalar, at, coordinate, &what);
             if self.warnings.len() > before {
                 return;
             }
+        }
+    }
+
+    /// Angles from a file, where only radians can be written.
+    fn angles_of_file(&mut self, table: &Motion, what: &str) {
+        let mut angles = positions(table).into_iter().filter_map(|(scalar, at)| Some((self.bare(scalar)?, at)));
+        if let Some((angle, at)) = angles.find(|(angle, _)| angle.abs() > FULL_TURN) {
+            let help = format!("write angles in files in rad: 90 deg = {:.6}", std::f64::consts::FRAC_PI_2);
+            self.warn(rule::degrees(at, what, angle, "rad", format!("{} turns", rounded(angle / TAU)), help));
         }
     }
 
@@ -89,11 +104,16 @@ impl<'a> Plausibility<'a> {
         entries.iter().find(|(known, _)| known.value == name.value)?.1.value.as_ref()
     }
 
+    /// Whether a coordinate is an angle.
+    fn is_angle(&self, coordinate: &str) -> bool {
+        let turns = |known: &Coordinate| known.name == coordinate && known.kind == CoordinateKind::Rotation;
+        self.chain.coordinates.iter().any(turns)
+    }
+
     /// A speed of rotation.
     fn speed(&mut self, rate: &Spanned<Angle>, coordinate: &str) {
-        let turns = |known: &&Coordinate| known.name == coordinate && known.kind == CoordinateKind::Rotation;
         let (scalar, at) = written(rate);
-        if let (Some(_), Some(rate)) = (self.chain.coordinates.iter().find(turns), self.bare(scalar))
+        if let Some(rate) = self.bare(scalar).filter(|_| self.is_angle(coordinate))
             && rate.abs() > FULL_TURN
         {
             self.warn(rule::degrees(
@@ -102,6 +122,7 @@ impl<'a> Plausibility<'a> {
                 rate,
                 "rad/s",
                 format!("{} turns per second", rounded(rate / TAU)),
+                in_degrees(rate),
             ));
         }
     }
@@ -126,7 +147,14 @@ impl<'a> Plausibility<'a> {
         if let Some(angle) = self.bare(scalar)
             && angle.abs() > FULL_TURN
         {
-            self.warn(rule::degrees(at, what, angle, "rad", format!("{} turns", rounded(angle / TAU))));
+            self.warn(rule::degrees(
+                at,
+                what,
+                angle,
+                "rad",
+                format!("{} turns", rounded(angle / TAU)),
+                in_degrees(angle),
+            ));
         }
     }
 
@@ -142,6 +170,11 @@ impl<'a> Plausibility<'a> {
             },
         }
     }
+}
+
+/// What to write instead of a number that looks like degrees.
+fn in_degrees(angle: f64) -> String {
+    format!("did you mean `{angle} deg`? Write several turns as a multiple of `pi`")
 }
 
 /// The positions in a motion, and their locations in the text; an input has none.
