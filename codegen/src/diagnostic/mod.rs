@@ -66,6 +66,8 @@ impl Diagnostics {
             mistake.span = source.start();
         }
         mistakes.sort_by_key(|m| (m.span.start, m.code));
+        // A number that is used twice is reported once.
+        mistakes.dedup();
         Diagnostics { source: source.clone(), mistakes }
     }
 
