@@ -98,7 +98,7 @@ pub fn generate_c(
     if let Some(name) = functions.iter().map(AsRef::as_ref).find(unknown) {
         return Err(NoFunction { name: name.to_owned(), known: known.into_iter().map(FunctionId::name).collect() });
     }
-    // `solve` is of no use without `factorise`.
+    // `solve` needs the factors from `factorise`.
     let is_wanted = |id: FunctionId| is_chosen(id) || id == FunctionId::Factorise && is_chosen(FunctionId::Solve);
     program.functions.retain(|function| is_wanted(function.id));
     Ok(emit_c(&chain, &lower(&program, None), parameters, precision, header))

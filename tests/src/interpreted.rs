@@ -55,7 +55,7 @@ impl Interpreted {
         Inputs::state(state.t, state.q.clone(), state.v.clone(), self.chain.parameter_defaults())
     }
 
-    /// A function's result; `otherwise` zeros if the program does not have the function. Drives are where their motions are unless `inputs`
+    /// A function's result, or as many zeros as `otherwise` says if the program lacks the function. Drives are where their motions are unless `inputs`
     /// has their positions.
     pub fn get<S: Scalar>(&self, function: &str, inputs: &Inputs<S>, otherwise: usize) -> Vec<S> {
         let id = FunctionId::named(function).unwrap_or_else(|| panic!("there is no function `{function}`"));

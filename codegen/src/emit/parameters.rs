@@ -67,7 +67,7 @@ fn documentation(parameter: &Parameter) -> String {
     if said.is_empty() { format!(" `{}`.", parameter.name) } else { format!(" {}.", said.join(", ")) }
 }
 
-/// One `let` for each value on the way to the stored constants.
+/// One `let` for each intermediate value of the stored constants.
 fn constants_body(lowered: &LoweredProgram, labels: &Labels, number: Number) -> Vec<Stmt> {
     let program = &lowered.program;
     let needed = program.needed(lowered.constants.stored.iter().copied());

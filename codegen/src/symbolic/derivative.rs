@@ -24,7 +24,7 @@ impl Graph {
                 self.op(id).operands().for_each(|operand| needed[operand.index()] = true);
             }
         }
-        // Nothing constructed before x depends on it.
+        // Expressions with a smaller id than x cannot depend on x.
         let mut derivatives: Vec<Option<Expr<'g>>> = vec![None; last as usize + 1];
         for id in (by.id().0..=last).map(ExprId).filter(|id| needed[id.index()]) {
             let of = |operand: ExprId| derivatives[operand.index()];
@@ -55,6 +55,7 @@ impl Graph {
             Op::Stumpff(k, a) => of(a) * 0.5 * (f64::from(k) * x(a).stumpff(k + 2) - x(a).stumpff(k + 1)),
             Op::Min(a, b) => (x(b) - x(a)).select(of(a), of(b)),
             Op::Max(a, b) => (x(a) - x(b)).select(of(a), of(b)),
+            // Infinite where a is 0: laws with a root keep its argument above 0.
             Op::Sqrt(a) => of(a) * 0.5 / own,
             Op::Exp(a) => of(a) * own,
             Op::Select(a, b, c) => x(a).select(of(b), of(c)),

@@ -87,7 +87,7 @@ pub fn check_with(spec: &CraneSpec, source: &SourceFile, set: &[(&str, f64)]) ->
     Ok(Checked { chain, warnings: Diagnostics::new(source, warnings) })
 }
 
-/// In place of all mistakes of a new entry that lacks keys and whose name resembles that of an entry of the extended spec, that it does.
+/// If a new entry lacks keys and its name is almost that of an entry of the extended spec, replaces its mistakes by one: the misspelt name.
 fn misspelt(mut mistakes: Vec<Mistake>, lookalikes: &[Lookalike]) -> Vec<Mistake> {
     /// The code of `rule::missing_key`.
     const MISSING_KEY: &str = "E012";

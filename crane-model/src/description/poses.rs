@@ -1,4 +1,4 @@
-//! Poses for which the model is not valid, or which a user must know about.
+//! Poses outside the validity of the model, and the warnings about them.
 
 #[cfg(feature = "std")]
 use super::{CoordinateInfo, CoordinateKind, CoordinateRole, Description};
@@ -32,7 +32,7 @@ impl Description {
         let turns = |name: &str, role| {
             self.coordinates.iter().any(|coordinate| coordinate.name == name && coordinate.role == role)
         };
-        // The angle first: the poses of a long run are asked one by one.
+        // The cheap test first: this runs for every row of a result.
         let near = |(_, angle): &(&CoordinateInfo, &f64)| angle.cos().abs() < NEAR_SINGULAR.sin();
         self.coordinates.iter().zip(q).filter(near).find_map(|(coordinate, angle)| {
             let CoordinateInfo { name, role, .. } = coordinate;

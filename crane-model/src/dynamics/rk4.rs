@@ -87,8 +87,8 @@ pub(super) fn increments<const M: usize>([i1, i2, i3, i4]: &[SVector<f64, M>; ST
     (i1 + (i2 + i3) * 2.0 + i4) * (h / 6.0)
 }
 
-/// Moves pose and rates from `t` to `t + h`, with `room` as workspace of [`ROOM`] slices of their length. `accelerate` writes the accelerations
-/// of a stage, 0 to 3; those of the first are at the start of `room` afterwards.
+/// Moves pose and rates from `t` to `t + h`. `room` is the workspace, [`ROOM`] slices as long as the pose; afterwards it begins with the
+/// accelerations of stage 0. `accelerate` writes the accelerations of a stage, 0 to 3.
 ///
 /// Each number of a pose is updated by the same operations in the same order, independently of its neighbours.
 ///

@@ -1,4 +1,4 @@
-//! What can go wrong, as a person reads it.
+//! Failures of the command, and their messages.
 
 use std::{io, path::Path};
 
@@ -23,13 +23,13 @@ pub type Outcome<T> = Result<T, Problem>;
 /// What is wrong, and what to do about it.
 #[derive(Debug)]
 pub enum Problem {
-    /// The reader of our output has gone: there is nobody to tell.
+    /// The reader of the output has closed it, so no message reaches anyone.
     NobodyListens,
     /// The spec has mistakes.
     Mistakes(Box<Diagnostics>),
-    /// A problem that has been reported already, here or by another program; its exit code.
+    /// A failure that was already reported, here or by another program, with its exit code.
     Elsewhere(u8),
-    /// Something for the user to read.
+    /// A message.
     Told {
         /// What is wrong.
         title: String,

@@ -23,7 +23,7 @@ use crate::{
     strength::{self, packed},
 };
 
-/// Most rows of a run that a page holds; a longer one is thinned, so that the page stays small enough to mail.
+/// Maximum number of rows of a run in a page; a longer run is thinned, so that the page stays small enough to mail.
 const MOST_ROWS: usize = 4000;
 
 /// A crane with everything that a page shows of it.

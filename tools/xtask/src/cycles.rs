@@ -120,7 +120,7 @@ fn expand<'t>(text: &'t str, before: &mut Vec<String>, found: &mut Vec<Vec<Strin
     }
 }
 
-/// The file that a path from a folder names: the deepest module on the way, which has what the rest of the path names.
+/// The file that a path from a folder names: that of the longest beginning of the path that is a module.
 fn resolve(base: &str, path: &[String], known: &BTreeSet<&str>) -> Option<String> {
     let mut folder = base.to_owned();
     let mut place = None;

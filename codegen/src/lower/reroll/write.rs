@@ -62,7 +62,10 @@ impl Rerolling<'_> {
             }
         }
         for (iteration, m) in matches.iter().enumerate() {
-            #[expect(clippy::iter_over_hash_type, reason = "each goes to a place of its own, in any order")]
+            #[expect(
+                clippy::iter_over_hash_type,
+                reason = "each entry writes another key, so the order does not matter"
+            )]
             for (template, id) in &m.nodes {
                 self.places.insert(*id, (number, *template, iteration));
             }

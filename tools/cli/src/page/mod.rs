@@ -48,7 +48,7 @@ pub fn cases<'a>(crane: &'a dyn DynCrane, twin: Option<&'a dyn DynCrane>) -> Vec
     }
 }
 
-/// Writes the page of cranes side by side; the last is the one it is about.
+/// Writes the page of cranes side by side. The last crane is the subject; the others are shown for comparison.
 pub fn write(
     file: &Path,
     registry: &Registry,

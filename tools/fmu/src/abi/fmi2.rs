@@ -82,7 +82,7 @@ unsafe extern "C" fn fmi2SetDebugLogging(
 /// `fmi2Instantiate`, which [`units!`](crate::units) exports.
 ///
 /// # Safety
-/// As the standard has it.
+/// The caller keeps the contract of this function in the FMI standard: which pointers are valid, and for how many values.
 pub unsafe fn instantiate(
     make: Make,
     name: *const c_char,

@@ -61,7 +61,7 @@ fn folder(path: &str) -> Result<PathBuf, String> {
 /// `fmi3InstantiateModelExchange` and `fmi3InstantiateCoSimulation`, which [`units!`](crate::units) exports.
 ///
 /// # Safety
-/// As the standard has it.
+/// The caller keeps the contract of this function in the FMI standard: which pointers are valid, and for how many values.
 pub unsafe fn instantiate(
     make: Make,
     token: *const c_char,

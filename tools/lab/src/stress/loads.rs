@@ -135,7 +135,7 @@ fn swing(upper: f64, lower: f64) -> Case {
     })
 }
 
-/// A crank of hardly any mass between the ground and a load: the load hangs and swings as if from a massless one.
+/// A crank of `mass` kg carries a load of 100 kg, which must hang and swing as on a massless crank.
 fn nearly_massless(mass: f64) -> Case {
     let expected = "stable; slowest ω within 1e-4 of the massless link's √(g/l), l = 2 m";
     Case::new("nearly massless links", format!("link of {mass:e} kg over 100 kg"), expected, move || {
