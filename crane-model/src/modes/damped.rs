@@ -78,11 +78,14 @@ fn normalised(shape: ComplexShape, mass: &DMatrix<Complex<f64>>, at: Option<usiz
     if norm > 0.0 { shape * Complex::from_polar(1.0 / norm, -phase) } else { shape }
 }
 
+/// An eigenvalue and its eigenvector.
+pub(super) type Eigenpair = (Complex<f64>, ComplexShape);
+
 /// The eigenvalues of a state matrix with Im λ ≥ 0, and their eigenvectors, from the Schur form of the balanced matrix.
 ///
 /// # Errors
 /// The matrix has numbers that are not finite, or the QR algorithm does not converge.
-pub(super) fn eigenpairs(mut state: DMatrix<f64>) -> Result<Vec<(Complex<f64>, DVector<Complex<f64>>)>, NoModes> {
+pub(super) fn eigenpairs(mut state: DMatrix<f64>) -> Result<Vec<Eigenpair>, NoModes> {
     if !state.iter().all(|x| x.is_finite()) {
         return Err(NoModes::Eigenvalues);
     }
