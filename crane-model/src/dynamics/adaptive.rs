@@ -19,7 +19,7 @@ pub(super) const SAFETY: f64 = 0.9;
 /// Smallest and largest ratio of a step to the previous one.
 const RATIO: (f64, f64) = (0.2, 3.0);
 /// A step as short as this, relative to the time of the next result, makes no progress.
-pub(super) const LEAST: f64 = 1e-13;
+pub(super) const LEAST: f64 = 1e-14;
 /// A step that would end this close to a stop, relative to its length, ends there.
 pub(super) const SLIVER: f64 = 0.01;
 

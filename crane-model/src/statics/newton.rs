@@ -3,7 +3,10 @@
 use nalgebra::DVector;
 
 use super::{
-    Equilibrium, Iteration, Settings, Status, equations::Equations, residual_scale::ResidualScale, tangent::Tangent,
+    Equilibrium, Iteration, Settings, Status,
+    equations::Equations,
+    residual_scale::ResidualScale,
+    tangent::{Limit, Tangent},
 };
 use crate::CoordinateKind;
 
@@ -41,24 +44,27 @@ pub(super) fn iterate(
         if history.len() > settings.iterations {
             break Status::NotConverged;
         }
-        let newton = tangent.step(&residual);
-        // A stiff connector makes a curved valley: its force grows along a straight step, even if the step leads towards the
-        // equilibrium. There a residual is measured by the Newton step from it, in which soft and stiff directions count equally:
-        // the natural monotonicity test, P. Deuflhard, Newton Methods for Nonlinear Problems, Springer 2004.
-        let way = newton.norm();
-        let is_nearer =
-            |residual: &DVector<f64>| !description.connectors.is_empty() && tangent.step(residual).norm() < way;
-        let step = limited(newton, |i| description.coordinates[i].kind);
-        let improved = (0..=HALVINGS).map(|k| 0.5_f64.powi(k.cast_signed())).find_map(|fraction| {
-            let pose = &q + &step * fraction;
-            let residual = equations.residual(&pose);
-            let trial = scale.norm(&residual);
-            (trial < norm || is_nearer(&residual)).then_some((pose, residual, trial, fraction))
+        let improved = [Limit::Free, Limit::Soft].into_iter().find_map(|limit| {
+            let newton = tangent.step(&residual, limit);
+            // A stiff connector makes a curved valley: its force grows along a straight step, even if the step leads towards the
+            // equilibrium. There a residual is measured by the Newton step from it, in which soft and stiff directions count equally:
+            // the natural monotonicity test, P. Deuflhard, Newton Methods for Nonlinear Problems, Springer 2004.
+            let way = newton.norm();
+            let is_nearer = |residual: &DVector<f64>| {
+                !description.connectors.is_empty() && tangent.step(residual, limit).norm() < way
+            };
+            let step = limited(newton, |i| description.coordinates[i].kind);
+            (0..=HALVINGS).map(|k| 0.5_f64.powi(k.cast_signed())).find_map(|fraction| {
+                let pose = &q + &step * fraction;
+                let residual = equations.residual(&pose);
+                let trial = scale.norm(&residual);
+                (trial < norm || is_nearer(&residual)).then_some((pose, residual, trial, fraction))
+            })
         });
         let Some((pose, next, trial, fraction)) = improved else {
             // A free direction explains why no step helps.
             break tangent
-                .free_directions(description)
+                .free_directions(description, Limit::Soft)
                 .map_or(Status::NotConverged, |coordinates| Status::Singular { coordinates });
         };
         (q, residual, norm) = (pose, next, trial);

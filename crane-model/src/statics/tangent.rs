@@ -8,8 +8,11 @@ use crate::{CoordinateKind, Description, Text};
 /// A diagonal entry below this fraction of the largest of its kind (N/m or N m/rad) counts as zero stiffness. Real
 /// cranes span about 1e9 (a chassis against a hinge), those with nearly rigid drives 1e12; rounding leaves about 1e-16.
 const LEAST_STIFFNESS: f64 = 1e-13;
-/// A direction is free below this fraction of the largest scaled stiffness. Scaling brings joints and springs to about 1.
+/// A direction is free below this fraction of the largest scaled stiffness, which scaling brings to about 1: a chain of 96 bars hung
+/// between stiff points has 1e-9, rounding leaves 1e-14.
 const FREE: f64 = 1e-10;
+/// A direction is soft below this fraction: where a Newton step does not help, one that limits the motion in soft directions may.
+const SOFT: f64 = 1e-7;
 /// A coordinate belongs to a direction if its component is at least this fraction of the largest one.
 const SHARE: f64 = 0.3;
 
@@ -20,7 +23,26 @@ pub(super) struct Tangent {
     scale: DVector<f64>,
     values: DVector<f64>,
     vectors: DMatrix<f64>,
-    free: f64,
+    greatest: f64,
+}
+
+/// Which directions a Newton step leaves alone.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Limit {
+    /// Those that nothing constrains.
+    Free,
+    /// Also those that hardly anything constrains.
+    Soft,
+}
+
+impl Limit {
+    /// The fraction of the largest scaled stiffness below which a direction counts as such.
+    const fn fraction(self) -> f64 {
+        match self {
+            Self::Free => FREE,
+            Self::Soft => SOFT,
+        }
+    }
 }
 
 impl Tangent {
@@ -45,15 +67,16 @@ impl Tangent {
         });
         let scaled = DMatrix::from_fn(n, n, |i, j| stiffness[(i, j)] * scale[i] * scale[j]);
         let SymmetricEigen { eigenvalues: values, eigenvectors: vectors } = scaled.symmetric_eigen();
-        let free = FREE * values.amax().max(f64::MIN_POSITIVE);
-        Some(Self { scale, values, vectors, free })
+        let greatest = values.amax().max(f64::MIN_POSITIVE);
+        Some(Self { scale, values, vectors, greatest })
     }
 
-    /// Newton step `−K⁻¹ r`; nearly free directions get the smallest stiffness that is not free.
-    pub(super) fn step(&self, residual: &DVector<f64>) -> DVector<f64> {
+    /// Newton step `−K⁻¹ r`; directions within the limit get the smallest stiffness beyond it.
+    pub(super) fn step(&self, residual: &DVector<f64>, limit: Limit) -> DVector<f64> {
+        let least = limit.fraction() * self.greatest;
         let mut along = self.vectors.tr_mul(&residual.component_mul(&self.scale));
         for (component, &value) in along.iter_mut().zip(&self.values) {
-            *component /= if value.abs() < self.free { self.free.copysign(value) } else { value };
+            *component /= if value.abs() < least { least.copysign(value) } else { value };
         }
         -(&self.vectors * along).component_mul(&self.scale)
     }
@@ -62,13 +85,14 @@ impl Tangent {
     pub(super) fn status(&self, names: &Description) -> Status {
         let unstable = self.negative_direction(names).map(|coordinates| Status::Unstable { coordinates });
         unstable
-            .or_else(|| self.free_directions(names).map(|coordinates| Status::Singular { coordinates }))
+            .or_else(|| self.free_directions(names, Limit::Free).map(|coordinates| Status::Singular { coordinates }))
             .unwrap_or(Status::Converged)
     }
 
     /// Coordinates of unconstrained directions, if there are any.
-    pub(super) fn free_directions(&self, names: &Description) -> Option<Vec<Text>> {
-        let free = (0..self.values.len()).filter(|&k| self.values[k].abs() < self.free);
+    pub(super) fn free_directions(&self, names: &Description, limit: Limit) -> Option<Vec<Text>> {
+        let least = limit.fraction() * self.greatest;
+        let free = (0..self.values.len()).filter(|&k| self.values[k].abs() < least);
         let mut coordinates: Vec<_> = free.flat_map(|k| self.names_of(k, names)).collect();
         coordinates.sort_unstable();
         coordinates.dedup();
@@ -78,7 +102,7 @@ impl Tangent {
     /// Coordinates of the direction of the most negative stiffness, if there is one.
     fn negative_direction(&self, names: &Description) -> Option<Vec<Text>> {
         let k = self.values.imin();
-        (self.values[k] < -self.free).then(|| self.names_of(k, names))
+        (self.values[k] < -FREE * self.greatest).then(|| self.names_of(k, names))
     }
 
     fn names_of(&self, k: usize, names: &Description) -> Vec<Text> {

@@ -4,9 +4,9 @@ use std::ops::ControlFlow;
 
 use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::{InitialState, Method, Sample, Settings};
-use crane_model::runs::{Failed, Reason};
+use crane_model::runs::{Failed, Reason, Start, record};
 use crane_model::statics::{Diagnosis, Settings as Statics, Status};
 
 fn crane(text: &str) -> LiveCrane {
@@ -259,4 +259,32 @@ fn gravity_upwards_and_feet_in_one_place_are_named() {
     let stacked: &dyn DynCrane = &stacked;
     let found = stacked.equilibrium(&Statics::default());
     assert_eq!(Diagnosis::of(stacked, &found), Diagnosis::NoPolygon { one_place: true }, "{found}");
+}
+
+/// A block that rocks without damping on stiff ground keeps its energy. Its feet land beside where they stood, where a law changes within
+/// 1e-11 s: steps must be able to follow it.
+#[test]
+fn a_block_that_rocks_on_stiff_ground_keeps_its_energy() {
+    let foot = |name: &str, x: f64, y: f64| {
+        format!("  - {{name: {name}, at: [{x}, {y}, 0], stiffness: [1e9, 1e9, 1e9], one_sided: true}}\n")
+    };
+    let feet = [foot("a", 0.3, 0.3), foot("b", 0.3, -0.3), foot("c", -0.3, 0.3), foot("d", -0.3, -0.3)].concat();
+    let block = crane(&format!(
+        "format: 1\nname: block\nlinks:\n\
+         - {{name: block, joint: free, mass: 1000, com: [0, 0, 0.5], inertia: {{Ixx: 170, Iyy: 170, Izz: 170}}}}\n\
+         supports:\n{feet}\
+         loads:\n  - {{name: push, link: block, at: [0, 0, 1], force: [3500, 300, 0], scale: {{table: {{\
+         times: [0, 0.02, 0.1, 0.12, 0.14, 0.16, 0.2, 0.3, 0.5, 1, 9], values: [0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0]}}}}}}\n\
+         run: {{duration: 3, output: 0.05}}\n"
+    ));
+    for (method, tolerance) in [(Method::Bdf, 1e-7), (Method::Bdf, 1e-8), (Method::Rosenbrock, 1e-8)] {
+        let settings = Settings { method, tolerance, audit: true, ..Settings::of(block.description()) };
+        let start = Start::of(&block).expect("it stands");
+        let recorded = record(&block, &start, &settings, &mut |_| ControlFlow::Continue(()));
+        let table = recorded.unwrap_or_else(|failed| panic!("{method:?} {tolerance:e}: {failed:?}")).table;
+        let column = |name: &str| table.values(name).expect("a column").fold(0.0_f64, |most, x| most.max(x.abs()));
+        // The push does about 200 J of work.
+        assert!(column("kinetic_energy") > 100.0);
+        assert!(column("energy_balance") < 0.05, "{method:?} {tolerance:e}: {} J", column("energy_balance"));
+    }
 }

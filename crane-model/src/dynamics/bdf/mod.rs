@@ -308,7 +308,7 @@ impl Stepper for Bdf<'_> {
             }
         }
         self.steps += 1;
-        if (ahead.stop - self.history.t).abs() < LEAST * ahead.stop {
+        if (ahead.stop - self.history.t).abs() < 10.0 * LEAST * ahead.stop {
             self.history.t = ahead.stop;
         }
         self.accept();
