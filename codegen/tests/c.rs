@@ -245,7 +245,7 @@ fn springs_and_ropes_are_the_interpreters() {
     let path = format!("{}/../specs/knuckle_boom.yaml", env!("CARGO_MANIFEST_DIR"));
     let chain = load(&build::open(path.as_ref()).unwrap().changed(CONNECTORS)).unwrap();
     let found = differences("connected", &chain, Precision::Double, &[]);
-    assert_eq!(found.iter().filter(|(function, _)| function.starts_with("connector_")).count(), 8);
+    assert_eq!(found.iter().filter(|(function, _)| function.starts_with("connector_")).count(), 6);
     for (function, off) in found {
         assert!(off < 1e-12, "{function} is off by {off:e}");
     }
