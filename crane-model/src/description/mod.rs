@@ -71,6 +71,7 @@ impl Description {
     }
 
     /// Numbers of the drives, each at the index of the drive's coordinate; 0 at all others.
+    #[cfg(feature = "std")]
     pub fn by_coordinate(&self, of_drives: &[f64]) -> Vec<f64> {
         let mut by_coordinate = vec![0.0; self.coordinates.len()];
         for (drive, number) in self.drives.iter().zip(of_drives) {

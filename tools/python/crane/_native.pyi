@@ -195,8 +195,7 @@ class Crane:
         """(..., connectors, 3): forces of the connectors, N, positive in tension, and their derivatives with respect to length, N/m, and
         rate, N s/m."""
     def drive_forces_at_rest(self, q: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
-        """(..., n): generalized forces of the drives, including rigid ones, that hold the crane at rest where they are at times t, N and N m.
-        t: s, 0 unless given."""
+        """(..., n): generalized forces of the drives, including rigid ones, that hold the crane at rest where they are at times t, N and N m."""
     def support_reactions(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., supports, 3): forces of the supports on the crane, world frame, N."""
     def support_gaps(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:

@@ -112,7 +112,7 @@ print(c.mass_matrix(c.guess).shape, flush=True)
 @pytest.mark.parametrize(
     "call",
     [
-        "c.simulate(duration=1e5, output=1e3)",
+        "c.simulate(duration=1e4, output=1e3)",
         "c.replace(load_mass=np.linspace(0, 500, 2000)).simulate_ensemble()",
         "c.simulation().step(1e5)",
         "[c._small_motions(np.repeat(c.guess[None], 20000, axis=0)) for _ in range(1000)]",
