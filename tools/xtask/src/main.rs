@@ -166,6 +166,7 @@ fn tests() -> Vec<Step> {
         Step::check("commands of the README and of CONTRIBUTING", || commands::check(USAGE)),
         Step::check("the manual as a site", book::site),
         Step::check("the Python package", package::check),
+        Step::check("random cranes by every way to compute them", outside::ways),
         Step::check("pages of the Python package in a browser", report::in_notebook),
         Step::check("functional mock-up units", outside::units),
         Step::check("what the command prints as JSON", outside::output),

@@ -1,4 +1,5 @@
-//! Checks of the command from outside, in Python: functional mock-up units run by `FMPy`, and JSON against its schemas.
+//! Checks of the command from outside, in Python: functional mock-up units run by `FMPy`, random cranes computed in several
+//! ways, and JSON against its schemas.
 
 use std::process::Command;
 
@@ -7,21 +8,29 @@ use crate::{step, workspace};
 
 /// Runs the tests of functional mock-up units.
 pub fn units() -> Result<(), String> {
-    run("tools/fmu/tests")
+    run("tools/fmu/tests", &[])
 }
 
 /// Runs the tests of what the command prints as JSON.
 pub fn output() -> Result<(), String> {
-    run("tools/cli/tests/output")
+    run("tools/cli/tests/output", &[])
 }
 
-/// Runs the tests of a folder with the built command.
-fn run(tests: &str) -> Result<(), String> {
+/// Compares what random cranes compute in the Python package with what the command writes, and with functional mock-up units and C that
+/// it makes. The package must be installed.
+pub fn ways() -> Result<(), String> {
+    let combinations = workspace::target().join("release/combinations");
+    run("tests/combinations/ways", &["--combinations", &combinations.to_string_lossy()])
+}
+
+/// Runs the tests of a folder with the built command and other arguments.
+fn run(tests: &str, arguments: &[&str]) -> Result<(), String> {
     let mut command = Command::new(CHECKS.python());
     command
         .args(["-m", "pytest", "-q", "-p", "no:cacheprovider", "--rootdir", tests, "--durations", "5", tests])
         .arg("--command")
         .arg(workspace::target().join("release/crane"))
+        .args(arguments)
         .env("PYTHONDONTWRITEBYTECODE", "1")
         .current_dir(workspace::root());
     step::finish(&mut command)
