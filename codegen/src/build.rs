@@ -69,6 +69,19 @@ pub fn open_with(spec: &Path, shipped: &dyn Fn(&str) -> Option<&'static str>) ->
     Ok(load_with_bases(spec, shipped)?.0)
 }
 
+/// Like [`open_with`]; returns also the files that it was read from: the spec, the specs that it extends, and their data.
+///
+/// # Errors
+/// Those of [`open`].
+pub fn open_with_files(
+    spec: &Path,
+    shipped: &dyn Fn(&str) -> Option<&'static str>,
+) -> Result<(SourceFile, Vec<PathBuf>), Failure> {
+    let (source, mut files) = load_with_bases(spec, shipped)?;
+    files.push(spec.to_owned());
+    Ok((source, files))
+}
+
 /// Reads a spec from a stream, such as the standard input, called `name` in messages; specs that it extends are looked up
 /// from the working folder or among those that are `shipped`.
 ///

@@ -99,14 +99,17 @@ impl Diagnosis {
             Self::NoPolygon { .. } => {
                 "give each foot its own place, `at: [x, y, z]` in m, so that they form a polygon around the crane".to_owned()
             }
-            Self::Overturned { most, .. } => {
+            Self::Overturned { line, most, .. } => {
                 let names: Vec<String> =
                     most.iter().flatten().map(|of_link| format!("`{}`", of_link.link)).collect();
                 let check = match names.as_slice() {
                     [] => String::new(),
                     names => format!("; check the masses, in kg, and positions, in m, of {}", names.join(" and ")),
                 };
-                format!("use a smaller load, a shorter reach, a wider stance or more ballast{check}")
+                let newtons = most[0].as_ref().filter(|worst| is_weight(worst, line)).map_or_else(String::new, |worst| {
+                    format!("; if the mass of `{}` is a weight in N, divide it by 9.81", worst.link)
+                });
+                format!("use a smaller load, a shorter reach, a wider stance or more ballast{check}{newtons}")
             }
             Self::Yields { .. } => {
                 "check `stiffness`, in N/m, and `free_play`, in m, of the supports, and start from a `guess:` near the pose at rest".to_owned()
@@ -119,6 +122,14 @@ impl Diagnosis {
             }
         }
     }
+}
+
+/// Whether a crane that is far from standing would stand if the mass of this link were a weight, in N instead of kg.
+fn is_weight(worst: &LinkMoment, line: &TippingLine) -> bool {
+    /// Beyond this ratio of moments, an ordinary overload is unlikely.
+    const FAR: f64 = 2.5;
+    let less = worst.moment.abs() * (1.0 - 1.0 / 9.81);
+    line.overturning > FAR * line.stabilising && line.overturning - less < line.stabilising
 }
 
 /// Sum of weight and loads along z, N, if the crane can move that way.

@@ -32,8 +32,7 @@ pub fn compare(options: &Compare, registry: &Registry, out: &mut dyn Write) -> O
 pub fn load(options: &mut ComparePair, registry: &mut Registry) -> Outcome<()> {
     let ComparePair { first, second, strict, .. } = options;
     if let Some(file) = spec_file(first) {
-        let (chain, text) = own::load(file, *strict)?;
-        *first = registry.add_read(chain, text);
+        *first = registry.add_file(file, *strict)?;
     }
     let Some(name) = second else {
         // The first becomes the rigid crane, as in the comparison of the eight-link cranes.

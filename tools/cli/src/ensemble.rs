@@ -54,12 +54,7 @@ pub fn simulate(options: &Simulate, given: &Path, registry: &Registry, out: &mut
     let threads = threads.map_or_else(thread::available_parallelism, Ok).map_or(1, NonZeroUsize::get);
     let path =
         results.clone().unwrap_or_else(|| options.run.folder.out.join(format!("{}_ensemble.csv", description.name)));
-    if files::is_same(given, &path) {
-        return Err(Problem::usage(
-            format!("`--file {}` would overwrite its own table", path.display()),
-            "choose another file for the results",
-        ));
-    }
+    files::check_place(&path)?;
     files::folder(path.parent().unwrap_or(&path))?;
 
     let begin = Instant::now();

@@ -81,6 +81,9 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
         }
         Language::Fmu => return fmu::write(options, &file, chain, &spec, &parameters, out),
     };
+    for (file, _) in &texts {
+        files::check_place(file)?;
+    }
     for (file, text) in &texts {
         files::write_text(file, text)?;
         writeln!(out, "{} written", file.display())?;

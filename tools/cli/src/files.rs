@@ -1,9 +1,13 @@
 //! Files, written completely or not at all.
 
-use std::{fs, io, io::Write, path::Path};
+use std::{
+    env, fs, io,
+    io::Write,
+    path::{Path, PathBuf},
+    sync::{Mutex, PoisonError},
+};
 
 use crane_codegen::files;
-pub use crane_codegen::files::is_same;
 use crane_model::results::Table;
 use crane_page::{Program, tables::number_text};
 
@@ -11,6 +15,44 @@ use crate::problem::{Outcome, Problem};
 
 /// This program, in records of runs.
 pub const PROGRAM: Program = Program { name: env!("CARGO_PKG_NAME"), version: env!("CARGO_PKG_VERSION") };
+
+/// Files that this command has read: it does not write to them.
+static INPUTS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Environment variable with the files that the command has read for a crane's own program.
+pub const READ_BEFORE: &str = "CRANE_FILES_READ";
+
+/// Remembers that a file was read, unless it is a device or a pipe.
+pub fn remember(path: &Path) {
+    if path.is_file() {
+        INPUTS.lock().unwrap_or_else(PoisonError::into_inner).push(path.to_owned());
+    }
+}
+
+/// The files that were read, for [`READ_BEFORE`].
+pub fn read_before() -> std::ffi::OsString {
+    env::join_paths(inputs()).unwrap_or_default()
+}
+
+fn inputs() -> Vec<PathBuf> {
+    let mut inputs = INPUTS.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    inputs.extend(env::var_os(READ_BEFORE).iter().flat_map(env::split_paths));
+    inputs
+}
+
+/// Whether a result may be written to this place.
+///
+/// # Errors
+/// The command has read the file.
+pub fn check_place(path: &Path) -> Outcome<()> {
+    if inputs().iter().any(|input| files::is_same(input, path)) {
+        return Err(Problem::usage(
+            format!("{} is an input of this command, which its result would overwrite", path.display()),
+            "choose another file or folder for the result",
+        ));
+    }
+    Ok(())
+}
 
 /// Creates a folder if it is missing.
 ///
@@ -23,8 +65,9 @@ pub fn folder(path: &Path) -> Outcome<()> {
 /// Writes a file completely or not at all; creates its folder if it is missing.
 ///
 /// # Errors
-/// The file system refuses.
+/// The file system refuses, or the command has read the file.
 pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Outcome<()> {
+    check_place(path)?;
     if let Some(parent) = path.parent().filter(|parent| !parent.as_os_str().is_empty()) {
         folder(parent)?;
     }
@@ -38,6 +81,7 @@ pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>
 pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     /// Many times the results of a long run.
     const MOST_BYTES: usize = 512 << 20;
+    remember(path);
     files::read(path, MOST_BYTES)
 }
 

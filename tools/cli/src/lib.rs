@@ -109,8 +109,7 @@ fn act(mut arguments: Arguments, mut registry: Registry, out: &mut dyn Write) ->
             return own::compiled(choice, &registry);
         }
         if let Some(file) = choice.file() {
-            let (chain, spec) = own::load(file, choice.strict)?;
-            choice.name = registry.add_read(chain, spec);
+            choice.name = registry.add_file(file, choice.strict)?;
         }
         if choice.rigid {
             choice.name = registry.add_rigid(&choice.name, "leave `--rigid` out")?;

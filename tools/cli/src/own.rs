@@ -125,7 +125,7 @@ pub fn run_with(library: &Library, package: &str, named: &OsStr, cranes: &[(Stri
         .collect();
     let package = Package { product: Product::Program, library, name: package, cranes };
     package::run(&package, |command| {
-        command.args(&arguments).env(AS_TYPED, typed());
+        command.args(&arguments).env(AS_TYPED, typed()).env(files::READ_BEFORE, files::read_before());
     })
 }
 
@@ -180,12 +180,14 @@ pub(super) fn warn_of(source: &SourceFile, set: &[(String, f64)]) -> Option<Prob
 /// A file of text, or the standard input; `help`: what kind of file to name.
 pub(super) fn open(file: &Path, help: &str) -> Outcome<SourceFile> {
     let read = if file == Path::new(STANDARD_INPUT) {
-        build::read_with("standard input", io::stdin(), &crane_specs::spec)
+        build::read_with("standard input", io::stdin(), &crane_specs::spec).map(|source| (source, Vec::new()))
     } else {
-        build::open_with(file, &crane_specs::spec)
+        build::open_with_files(file, &crane_specs::spec)
     };
-    read.map_err(|failure| match failure {
+    let (source, read) = read.map_err(|failure| match failure {
         build::Failure::File(message) => Problem::failed(message, help),
         build::Failure::Mistakes(mistakes) => Problem::mistakes(mistakes),
-    })
+    })?;
+    read.iter().for_each(|file| files::remember(file));
+    Ok(source)
 }

@@ -37,7 +37,14 @@ impl ParameterTable {
         };
         let mut csv = csv.map_err(unreadable)?;
         let mut columns = Vec::new();
-        for (place, header) in csv.headers().map_err(unreadable)?.iter().enumerate() {
+        let headers = csv.headers().map_err(unreadable)?;
+        if headers.iter().any(|header| header.contains(';')) {
+            return Err(Problem::usage(
+                format!("{} has semicolons between columns", path.display()),
+                "save it as CSV with commas between columns and decimal points, `900,0.006`",
+            ));
+        }
+        for (place, header) in headers.iter().enumerate() {
             let at = Cell { path, line: 1, column: place + 1 };
             let index = at.parameter(header, description)?;
             if columns.contains(&index) {

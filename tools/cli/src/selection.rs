@@ -2,7 +2,7 @@
 
 use std::{borrow::Cow, path::Path, sync::OnceLock};
 
-use crane_codegen::{SourceFile, chain::Chain, spec::parse_angle};
+use crane_codegen::{SourceFile, chain::Chain, compile, spec::parse_angle};
 use crane_live::LiveCrane;
 use crane_model::{Description, ParameterError, Refusal, dyn_crane::DynCrane};
 
@@ -26,6 +26,8 @@ pub struct Registry {
 /// A crane of the registry.
 struct Entry {
     name: String,
+    /// Its file, for messages.
+    file: String,
     /// Its spec, YAML.
     spec: Cow<'static, str>,
     /// The crane as machine code; otherwise a live crane is made from the spec.
@@ -36,7 +38,7 @@ struct Entry {
 
 impl Entry {
     fn new(name: &str, spec: Cow<'static, str>) -> Self {
-        Self { name: name.to_owned(), spec, compiled: None, live: OnceLock::new() }
+        Self { name: name.to_owned(), file: format!("{name}.yaml"), spec, compiled: None, live: OnceLock::new() }
     }
 
     fn open(&self) -> Outcome<Box<dyn DynCrane>> {
@@ -46,12 +48,15 @@ impl Entry {
         }
     }
 
+    fn source(&self) -> SourceFile {
+        SourceFile::new(&self.file, self.spec.clone())
+    }
+
     fn live(&self) -> Outcome<&LiveCrane> {
         if let Some(live) = self.live.get() {
             return Ok(live);
         }
-        let source = SourceFile::new(format!("{}.yaml", self.name), self.spec.clone());
-        let crane = LiveCrane::from_spec(&source).map_err(Problem::mistakes)?;
+        let crane = LiveCrane::from_spec(&self.source()).map_err(Problem::mistakes)?;
         Ok(self.live.get_or_init(|| crane))
     }
 }
@@ -70,6 +75,19 @@ impl Registry {
     /// Adds a crane by its spec, in place of one of the same name.
     pub fn add(&mut self, name: &str, spec: String) {
         self.replace(Entry::new(name, Cow::Owned(spec)));
+    }
+
+    /// Adds the crane of a YAML file in place of one of the same name; returns its name.
+    ///
+    /// # Errors
+    /// The file cannot be read, or the spec has mistakes; or warnings, if `strict`.
+    pub(super) fn add_file(&mut self, file: &Path, strict: bool) -> Outcome<String> {
+        let (chain, spec) = own::load(file, strict)?;
+        let name = self.add_read(chain, spec);
+        if let Some(entry) = self.entries.last_mut() {
+            entry.file = file.display().to_string();
+        }
+        Ok(name)
     }
 
     /// As [`Self::add`], for a spec that has been read; returns the crane's name.
@@ -101,8 +119,16 @@ impl Registry {
         })?;
         let (rigid, text) = found
             .ok_or_else(|| Problem::usage(format!("{name} has no beams that bend: it is rigid already"), otherwise))?;
-        self.add(&rigid, text);
-        Ok(rigid)
+        let chain = compile::load(&SourceFile::new(format!("{rigid}.yaml"), text.as_str())).map_err(|mistakes| {
+            /// The code of `rule::nothing_moves`.
+            const NOTHING_MOVES: &str = "E048";
+            if mistakes.mistakes().iter().any(|mistake| mistake.code == NOTHING_MOVES) {
+                Problem::usage(format!("with rigid beams, nothing in {name} can move: only its beams do"), otherwise)
+            } else {
+                Problem::failed(format!("{name} has no form with rigid beams: {}", mistakes.headline()), otherwise)
+            }
+        })?;
+        Ok(self.add_read(chain, text))
     }
 
     /// Names of all cranes.
@@ -230,8 +256,8 @@ impl Parameters {
         let values: Vec<(String, f64)> =
             settings.iter().map(|&(index, value)| (description.parameters[index].name.to_string(), value)).collect();
         set(crane.as_mut(), &settings)?;
-        if let Some(spec) = registry.spec(name) {
-            let warned = own::warn_of(&SourceFile::new(format!("{name}.yaml"), spec), &values);
+        if let Some(entry) = registry.entries.iter().find(|entry| entry.name == name) {
+            let warned = own::warn_of(&entry.source(), &values);
             if let (true, Some(problem)) = (strict, warned) {
                 return Err(problem);
             }

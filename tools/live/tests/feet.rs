@@ -234,6 +234,14 @@ fn a_truck_that_tips_names_the_moments_and_the_links() {
         (Failed { crane: "truck".into(), reason: Box::new(reason.clone()) }.to_string(), reason.advice());
     assert!(said.contains("load overturns it most") && said.contains("6.00 m outside the line"), "{said}");
     assert!(advice.contains("wider stance") && !advice.contains("guess"), "{advice}");
+    // Seven times the tipping load, divided by 9.81, is less than it; twenty times is not; twice is an ordinary overload.
+    for (times, suspected) in [(2.0, false), (7.0, true), (20.0, false)] {
+        crane.set_parameter(0, times * TIPPING).unwrap();
+        let found = crane.equilibrium(&Statics::default());
+        let advice = Diagnosis::of(crane, &found).advice();
+        assert!(advice.contains("wider stance"), "{advice}");
+        assert_eq!(advice.contains("the mass of `load` is a weight in N"), suspected, "{times}: {advice}");
+    }
 }
 
 #[test]

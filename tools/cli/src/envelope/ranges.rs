@@ -152,7 +152,10 @@ pub fn shown(axis: &Axis, description: &Description) -> (String, String, f64) {
         }
         Varied::Parameter(index) => {
             let parameter = &description.parameters[index];
-            (parameter.name.to_string(), parameter.unit.to_string(), 1.0)
+            match parameter.unit.as_str() {
+                "rad" => (parameter.name.to_string(), "°".to_owned(), 180.0 / PI),
+                unit => (parameter.name.to_string(), unit.to_owned(), 1.0),
+            }
         }
     }
 }

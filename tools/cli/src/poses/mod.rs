@@ -4,11 +4,11 @@ mod quantities;
 
 use std::{io::Write, num::NonZeroUsize, path::Path};
 
-use crane_codegen::SourceFile;
+use crane_codegen::{Diagnostics, SourceFile, compile};
 use crane_model::{
     Description,
     dyn_crane::DynCrane,
-    envelope::{Axes, Varied},
+    envelope::{Axes, Axis, Varied},
 };
 use crane_page::tables::Report;
 
@@ -48,6 +48,13 @@ pub fn hold(poses: &Poses, name: &str, registry: &mut Registry) -> Outcome<()> {
             let help = "write a finite number in m or rad, or an angle such as `30deg`";
             Problem::usage(format!("`{value}` is not a position"), help)
         })?;
+        let axis = Axis { varied: Varied::Drive(drive), values: vec![value] };
+        if let Some(angle) = axis.implausible_angle(description).filter(|_| !text.contains("deg")) {
+            return Err(Problem::usage(
+                format!("`--hold {text}` is {angle} rad, {:.0}°", angle.to_degrees()),
+                format!("write degrees with their unit, `--hold {}deg`", text.trim()),
+            ));
+        }
         changes.drives.push(held_at(description, drive, &format!("{value:?}")));
     }
     for axis in &read_ranges(&poses.ranges, description)?.0 {
@@ -60,9 +67,22 @@ pub fn hold(poses: &Poses, name: &str, registry: &mut Registry) -> Outcome<()> {
         }
     }
     let text = registry.spec(name).ok_or_else(|| Problem::failed(format!("{name} has no spec"), ""))?;
-    let text = SourceFile::new(name, text).changed(&changes.text(name)).text;
+    let posed = |changes: &Changes| SourceFile::new(name, text).changed(&changes.text(name));
+    // Parameters of motions that no longer take place would be reported as unused.
+    let unused = unused_parameters(&posed(&changes));
+    changes.parameters.extend(unused.iter().map(|parameter| format!("  {parameter}: ~\n")));
+    let text = posed(&changes).text;
     registry.add(name, text);
     Ok(())
+}
+
+/// Names of the parameters to which nothing refers, if there is no other mistake.
+fn unused_parameters(source: &SourceFile) -> Vec<String> {
+    /// The code of `rule::unused_parameter`.
+    const UNUSED: &str = "E027";
+    let mistakes = compile::load(source).err();
+    let mistakes = mistakes.iter().flat_map(Diagnostics::mistakes).filter(|mistake| mistake.code == UNUSED);
+    mistakes.filter_map(|mistake| source.text.get(mistake.span.start..mistake.span.end).map(str::to_owned)).collect()
 }
 
 /// What is laid over a spec.

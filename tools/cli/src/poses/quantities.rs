@@ -207,7 +207,8 @@ impl<'a> Subject<'a> {
             }
             Varied::Parameter(index) => {
                 let info = &parameters[index];
-                (info.name.to_string(), info.unit.to_string(), false)
+                let angle = info.unit == "rad";
+                (info.name.to_string(), if angle { "°" } else { info.unit.as_str() }.to_owned(), angle)
             }
         };
         self.axes.0.iter().map(|axis| of(axis.varied)).collect()

@@ -14,6 +14,7 @@ fn table(name: &str, text: &str) -> String {
 #[test]
 fn a_table_with_mistakes_is_refused_with_its_place() {
     for (text, said) in [
+        ("payload;length\n900;0,006\n", &["semicolons between columns", "commas between columns"][..]),
         ("payload,paylod\n1,2\n", &["line 1, column 2", "no live parameter `paylod`", "did you mean `payload`?"][..]),
         ("payload,payload\n1,2\n", &["line 1, column 2", "occurs twice"]),
         ("payload [t]\n1\n", &["line 1, column 1", "in kg, not in t", "`payload [kg]`"]),
