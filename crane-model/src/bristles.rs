@@ -17,8 +17,8 @@ use nalgebra::{Complex, DMatrix};
 use crate::{
     BristleInfo, Description,
     dyn_crane::DynCrane,
-    force_states::{Row, StateAt, StatefulForce},
     modes::{DampedMode, SmallMotions},
+    stateful_force::{Row, StateAt, StatefulForce},
 };
 
 /// The joints of a crane that stick.

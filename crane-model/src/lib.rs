@@ -27,7 +27,6 @@ extern crate self as crane_model;
 
 mod description;
 mod model;
-mod parameter;
 mod stress;
 mod wrench;
 
@@ -54,14 +53,16 @@ pub mod sections;
 #[cfg(feature = "std")]
 pub mod stability;
 #[cfg(feature = "std")]
+mod stateful_force;
+#[cfg(feature = "std")]
 pub mod statics;
 #[cfg(feature = "std")]
 pub mod tipping;
 
 pub use description::{
-    AttachmentInfo, BodyInfo, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole, CylinderInfo,
-    Description, DriveInfo, InputInfo, LARGE_TILT, List, LoadInfo, NEAR_SINGULAR, ParameterInfo, PumpInfo, SectionInfo,
-    Side, SupportInfo, TIPPED, Text, ValveInfo,
+    AttachmentInfo, BodyInfo, Bound, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole,
+    CylinderInfo, Description, DriveInfo, InputInfo, LARGE_TILT, List, LoadInfo, NEAR_SINGULAR, ParameterError,
+    ParameterInfo, PumpInfo, Refusal, SectionInfo, Side, SupportInfo, TIPPED, Text, ValveInfo,
 };
 pub use model::{
     CraneModel, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise, OneByOne,
@@ -69,7 +70,6 @@ pub use model::{
 };
 /// The linear algebra of every signature, so that generated code needs only this crate.
 pub use nalgebra;
-pub use parameter::{Bound, ParameterError, Refusal};
 pub use stress::SectionModuli;
 #[cfg(feature = "std")]
 pub use stress::Stress;

@@ -1,12 +1,12 @@
 //! Metadata of a crane.
 
+mod parameter;
 mod poses;
 mod shared;
 
+pub use parameter::{Bound, ParameterError, ParameterInfo, Refusal};
 pub use poses::{LARGE_TILT, NEAR_SINGULAR, TIPPED};
 pub use shared::{List, Text};
-
-use crate::Bound;
 
 /// Names, units and settings of a crane: constants of a generated module, or owned by a crane made at run time.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,23 +79,6 @@ impl Description {
         }
         by_coordinate
     }
-}
-
-/// A live parameter.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ParameterInfo {
-    /// Name.
-    pub name: Text,
-    /// Unit.
-    pub unit: Text,
-    /// Description.
-    pub about: Text,
-    /// Default value.
-    pub default: f64,
-    /// The smallest value that every use of the parameter allows.
-    pub lower_bound: Bound,
-    /// The largest value that every use of the parameter allows.
-    pub upper_bound: Bound,
 }
 
 /// A generalized coordinate.

@@ -5,10 +5,7 @@
 //! agree; where already the midpoint agrees with Gauss's rule, that is enough. A. S. Kronrod, Nodes and Weights of Quadrature Formulas,
 //! Consultants Bureau 1965.
 
-use crate::{
-    dyn_crane::DynDynamics,
-    force_states::{ForceStates, StateAt},
-};
+use crate::{dyn_crane::DynDynamics, force_states::ForceStates, stateful_force::StateAt};
 
 /// Integrals along an audited motion: work of the drives and winches, energy that the dampers dissipated, work of the loads.
 pub(super) const INTEGRALS: usize = 3;

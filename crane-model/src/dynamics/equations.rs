@@ -4,10 +4,7 @@ use super::{
     references::References,
     state::{NotFinite, finite},
 };
-use crate::{
-    dyn_crane::DynDynamics,
-    force_states::{ForceStates, StateAt},
-};
+use crate::{dyn_crane::DynDynamics, force_states::ForceStates, stateful_force::StateAt};
 
 /// A crane, the references of its motions, and the number of evaluations of its accelerations.
 pub(super) struct Equations<'a> {

@@ -15,7 +15,8 @@ use nalgebra::DMatrix;
 
 use crate::{
     dyn_crane::DynModel,
-    force_states::{ForceStates, Row, StateAt, StatefulForce},
+    force_states::ForceStates,
+    stateful_force::{Row, StateAt, StatefulForce},
 };
 
 /// The crane's forces that have states, evaluated at a state of the crane, and their contribution to the system there.

@@ -5,10 +5,7 @@
 //! where any law does.
 
 use super::{contacts::Contacts, equations::Equations};
-use crate::{
-    dyn_crane::DynModel,
-    force_states::{ForceStates, StateAt},
-};
+use crate::{dyn_crane::DynModel, force_states::ForceStates, stateful_force::StateAt};
 
 /// Which laws are watched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -18,7 +18,7 @@ use super::{connector_update::ConnectorUpdate, force_state_update::ForceStateUpd
 use crate::{
     Description,
     dyn_crane::{DynImplicit, DynSystem},
-    force_states::StateAt,
+    stateful_force::StateAt,
 };
 
 /// `A + cD̂ + c²K̂` of a crane, factorised.

@@ -6,7 +6,7 @@ use super::{Limit, Limits, PartLimit};
 use crate::{
     Description,
     dyn_crane::DynCrane,
-    results::{CylinderState, cylinders_at},
+    hydraulics::{CylinderState, cylinders_at},
     sections::{StressedSection, stressed_sections},
     tipping::{self, TippingLine},
 };

@@ -2,12 +2,11 @@
 
 use nalgebra::{Complex, Vector3};
 
-use super::{cylinder::SUCTION, valve::root};
+use super::{CylinderState, cylinder::SUCTION, cylinders_at, valve::root};
 use crate::{
     CylinderInfo,
     dyn_crane::DynCrane,
     modes::{DampedMode, SmallMotions},
-    results::{CylinderState, cylinders_at},
 };
 
 /// An upper bound on the decay rate of the pressures of each cylinder with a valve at a pose, as a mode of its joint: the one with open

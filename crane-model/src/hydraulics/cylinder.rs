@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::valve::root;
-use crate::{CylinderInfo, PumpInfo, ValveInfo, force_states::StatefulForce};
+use crate::{CylinderInfo, PumpInfo, ValveInfo, stateful_force::StatefulForce};
 
 /// Relative band of pressures: a relief valve passes the nominal flow of the valve at `1 + BAND` of its set pressure; the pump delivers its
 /// maximum flow below `1 − BAND` of its set pressure.

@@ -30,6 +30,7 @@ mod about_rest;
 mod cylinder;
 mod oil;
 mod servo;
+mod state;
 mod valve;
 
 use nalgebra::{DMatrix, Vector3};
@@ -37,14 +38,15 @@ use nalgebra::{DMatrix, Vector3};
 use crate::{
     CylinderInfo, Description,
     dyn_crane::{DynDynamics, DynModel},
-    force_states::{Row, STATES, StateAt, StatefulForce},
-    results::CylinderState,
+    stateful_force::{Row, STATES, StateAt, StatefulForce},
 };
 pub use about_rest::decays;
 pub(crate) use about_rest::stiffen;
 use cylinder::{Command, Pump, ValveCylinder};
 pub(crate) use oil::Oil;
 pub use servo::{UnstableServo, unstable_servos, with_servos};
+pub(crate) use state::unassembled_at;
+pub use state::{CylinderState, cylinders_at};
 use valve::flows;
 
 /// The oil of a crane.

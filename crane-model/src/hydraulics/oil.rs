@@ -1,11 +1,10 @@
 //! The oil of a crane at a state.
 
-use super::Hydraulics;
+use super::{CylinderState, Hydraulics};
 use crate::{
     Description,
     dyn_crane::DynModel,
-    force_states::{STATES, StateAt, StatefulForce},
-    results::CylinderState,
+    stateful_force::{STATES, StateAt, StatefulForce},
 };
 
 /// The cylinders with a valve: index among all cylinders, state, and position of the spool; flow (m³/s), power (W) and pressure (Pa) of the

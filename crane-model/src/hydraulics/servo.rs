@@ -8,8 +8,9 @@
 use super::{Hydraulics, STATES, ValveCylinder, about_rest::hold, valve::flows};
 use crate::{
     dyn_crane::DynCrane,
-    force_states::{ForceStates, StateAt},
+    force_states::ForceStates,
     modes::{DampedMode, NoModes, SmallMotions, StateSpace},
+    stateful_force::StateAt,
 };
 
 /// Growth of a disturbance, 1/s, below which it is rounding or takes longer than any manoeuvre.

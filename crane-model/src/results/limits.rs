@@ -1,10 +1,10 @@
 //! Drives at the limit of their effort.
 
 use super::{Table, drive_effort};
-use crate::{Text, dyn_crane::DynCrane};
-
-/// Fraction of its limit from which a drive is reported to be at it: the rest is the rounded corner of its law.
-const REACHED: f64 = 0.985;
+use crate::{
+    dyn_crane::DynCrane,
+    statics::{REACHED, Reached, reached},
+};
 
 /// Drives at their limits in a pose at rest, and how far the joints are from the drives' positions.
 pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> impl Iterator<Item = String> {
@@ -23,32 +23,6 @@ pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> impl Iterator<Item = S
             coordinate.kind.unit()
         )
     })
-}
-
-/// A drive at the limit of its effort.
-struct Reached {
-    drive: usize,
-    /// N m or N.
-    effort: f64,
-    limit: f64,
-}
-
-/// Drives at their limits in a pose at rest.
-fn reached(crane: &dyn DynCrane, q: &[f64]) -> Vec<Reached> {
-    let drives = crane.drive_limits_at().into_iter().zip(crane.drive_efforts_at_rest(q)).enumerate();
-    drives
-        .filter_map(|(drive, (limit, effort))| {
-            let limit = limit?;
-            (effort.abs() >= REACHED * limit).then_some(Reached { drive, effort, limit })
-        })
-        .collect()
-}
-
-/// Names of the coordinates whose drives are at their limits in a pose at rest.
-pub(crate) fn overloaded(crane: &dyn DynCrane, q: &[f64]) -> Vec<Text> {
-    let description = crane.description();
-    let name = |reached: Reached| description.coordinates[description.drives[reached.drive].coordinate].name.clone();
-    reached(crane, q).into_iter().map(name).collect()
 }
 
 /// Fraction of its maximum rate from which the effort of a drive is reported to fade: it has fallen by a tenth.

@@ -16,14 +16,15 @@ mod table;
 mod telescopes;
 pub mod verification;
 
-pub use cylinders::{CylinderState, HighestPressure, cylinders_at, highest_pressure, pump};
-pub(crate) use cylinders::{unassembled, unassembled_at};
+pub(crate) use cylinders::unassembled;
+pub use cylinders::{HighestPressure, highest_pressure, pump};
 pub use extremes::Extremes;
 pub use feet::{Lift, Pull, TipsOver, lifts, pulls, tips_over};
 pub use headlines::{Kind, headlines};
 pub use history::{Instant, instants};
-pub(crate) use limits::overloaded;
 pub use peaks::Peaks;
 pub use recording::{Recording, connector_force, drive_effort, quantities, quantities_at, stop_effort, support_gap};
 pub use table::{Column, Table};
 pub use verification::Verification;
+
+pub use crate::hydraulics::{CylinderState, cylinders_at};

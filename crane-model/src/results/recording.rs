@@ -4,9 +4,9 @@ use crate::{
     ConnectorInfo, CoordinateKind, Description, bristles,
     dyn_crane::{DynCrane, Energies},
     dynamics::Sample,
-    force_states::StateAt,
     hydraulics::Oil,
     results::{Column, Table, cylinders},
+    stateful_force::StateAt,
 };
 
 /// Records the samples of a run of a crane.

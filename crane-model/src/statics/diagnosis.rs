@@ -2,11 +2,11 @@
 
 use std::fmt;
 
-use super::{Equilibrium, Status};
+use super::{Equilibrium, Status, guess_dyn, overloaded::overloaded};
 use crate::{
     CoordinateKind, CoordinateRole, Text,
     dyn_crane::DynCrane,
-    results::{overloaded, unassembled_at},
+    hydraulics::unassembled_at,
     tipping::{LinkMoment, TippingLine, lines, moments},
 };
 
@@ -61,7 +61,7 @@ pub enum Diagnosis {
 impl Diagnosis {
     /// Of an equilibrium that is not stable.
     pub fn of(crane: &dyn DynCrane, equilibrium: &Equilibrium) -> Self {
-        let guess = crane.guess();
+        let guess = guess_dyn(crane);
         if let Some(cylinder) = unassembled_at(crane, &guess) {
             return Self::Unassembled { cylinder };
         }

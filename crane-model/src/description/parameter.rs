@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::{ParameterInfo, Text};
+use super::Text;
 
 /// The smallest magnitude of a number other than 0 (rule E033).
 const SMALLEST: f64 = 1e-30;
@@ -47,6 +47,23 @@ impl Bound {
     pub const LOWEST: Bound = Bound { value: -LARGEST, allowed: true, refusal: OUT_OF_RANGE };
     /// The largest number of the spec language.
     pub const HIGHEST: Bound = Bound { value: LARGEST, allowed: true, refusal: OUT_OF_RANGE };
+}
+
+/// A live parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParameterInfo {
+    /// Name.
+    pub name: Text,
+    /// Unit.
+    pub unit: Text,
+    /// Description.
+    pub about: Text,
+    /// Default value.
+    pub default: f64,
+    /// The smallest value that every use of the parameter allows.
+    pub lower_bound: Bound,
+    /// The largest value that every use of the parameter allows.
+    pub upper_bound: Bound,
 }
 
 impl ParameterInfo {
