@@ -4,7 +4,7 @@ use crate::{
     ConnectorInfo, CoordinateKind, Description, bristles,
     dyn_crane::{DynCrane, Energies},
     dynamics::Sample,
-    hydraulics::Oil,
+    hydraulics::{self, Oil},
     results::{Column, Table, cylinders},
     stateful_force::StateAt,
 };
@@ -99,7 +99,7 @@ fn push_quantities(
     for ([position, _], effort) in crane.drive_motions_at(t).into_iter().zip(&efforts) {
         row.extend([position, *effort]);
     }
-    let mut cylinders = cylinders::cylinders_at(crane, q, v, &efforts);
+    let mut cylinders = hydraulics::cylinders_at(crane, q, v, &efforts);
     if let Some(oil) = &oil {
         oil.give_states(&mut cylinders);
     }
