@@ -12,12 +12,10 @@
 //! C. Canudas de Wit, H. Olsson, K. J. Åström, P. Lischinsky: A new model for control of systems with
 //! friction, IEEE Transactions on Automatic Control 40 (1995).
 
-use nalgebra::{Complex, DMatrix};
+use nalgebra::DMatrix;
 
 use crate::{
     BristleInfo, Description,
-    dyn_crane::DynCrane,
-    modes::{DampedMode, SmallMotions},
     stateful_force::{Row, StateAt, StatefulForce},
 };
 
@@ -130,18 +128,9 @@ impl BristleInfo {
     }
 }
 
-/// Decay rates σ₀ |q̇|/g of the bristles of sliding joints, as modes of the joints: q̇ is the rate of the drive's motion at time t, or the
-/// Stribeck velocity for a joint without a drive. They limit the step size of explicit methods.
-pub(crate) fn decays(crane: &dyn DynCrane, t: f64) -> Vec<DampedMode> {
-    let description = crane.description();
-    let motions = crane.drive_motions_at(t);
-    let decay = |joint: &BristleInfo| {
-        let drive = description.drives.iter().position(|drive| drive.coordinate == joint.coordinate);
-        let rate = drive.map_or(joint.stribeck, |drive| motions[drive][1]);
-        let by_deflection = joint.evaluate(0, 0.0, rate, &mut StatefulForce::default()).by_deflection;
-        DampedMode { eigenvalue: Complex::new(by_deflection, 0.0), dominating: vec![joint.coordinate] }
-    };
-    description.bristles.iter().map(decay).filter(|mode| mode.eigenvalue.re != 0.0).collect()
+/// Derivative of the rate of a bristle at rest with respect to its deflection, 1/s, in a joint that slides at `rate`.
+pub(crate) fn decay(joint: &BristleInfo, rate: f64) -> f64 {
+    joint.evaluate(0, 0.0, rate, &mut StatefulForce::default()).by_deflection
 }
 
 /// Torques and forces of the bristles on their joints, by coordinate, N m and N.
@@ -159,15 +148,6 @@ pub(crate) fn efforts(description: &Description, v: &[f64], x: &[f64]) -> Vec<(u
 pub(crate) fn columns(description: &Description) -> Vec<String> {
     let name = |joint: &BristleInfo| format!("{}_bristle", description.coordinates[joint.coordinate].name);
     description.bristles.iter().map(name).collect()
-}
-
-/// Adds the stiffness and damping of sticking bristles to those of small motions about a pose at rest.
-pub(crate) fn stiffen(description: &Description, motions: &mut SmallMotions) {
-    for joint in &description.bristles {
-        let Some(place) = motions.unknowns.iter().position(|unknown| *unknown == joint.coordinate) else { continue };
-        motions.stiffness[(place, place)] += joint.stiffness;
-        motions.damping[(place, place)] += joint.damping;
-    }
 }
 
 #[cfg(test)]

@@ -33,6 +33,8 @@ mod wrench;
 #[cfg(feature = "std")]
 mod bristles;
 #[cfg(feature = "std")]
+mod crane;
+#[cfg(feature = "std")]
 pub mod dyn_crane;
 pub mod dynamics;
 #[cfg(feature = "std")]

@@ -9,8 +9,12 @@ use nalgebra::{
     Cholesky, Const, DefaultAllocator, Dim, Matrix4, OMatrix, SMatrix, SVector, Vector3, allocator::Allocator,
 };
 
-use crate::rt::lanes::f64x8;
-use crate::{Description, ParameterError, SectionModuli, Tension, Wrench};
+use crate::{
+    description::{Description, ParameterError},
+    rt::lanes::f64x8,
+    stress::SectionModuli,
+    wrench::{Tension, Wrench},
+};
 
 /// Poses, forces and potential energy of a crane.
 pub trait CraneModel<const N: usize>: Send + Sync {

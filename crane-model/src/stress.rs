@@ -4,7 +4,7 @@
 //! holes, load introduction or fatigue, and are not a verification by a design code.
 
 #[cfg(feature = "std")]
-use crate::Wrench;
+use crate::wrench::Wrench;
 
 /// Properties that relate forces and moments of a section to its largest stresses; all zero if the spec does not give them.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -88,7 +88,7 @@ pub(crate) fn add(sums: &mut [Wrench], force: f64, wrenches: &[Wrench]) {
 }
 
 #[cfg(feature = "std")]
-impl crate::Description {
+impl crate::description::Description {
     /// Cuts of the crane, in the order of [`InternalForces::internal_forces`](crate::InternalForces::internal_forces): the
     /// ground, then from base to tip the joint of every link and the bodies of that link, each element of a beam followed by the sections
     /// within it.

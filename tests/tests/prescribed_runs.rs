@@ -2,7 +2,8 @@
 
 use std::ops::ControlFlow;
 
-use crane_model::dyn_crane::{DynCrane, Member};
+use crane_model::dyn_crane::DynCrane;
+use crane_model::dynamics::ensemble::Member;
 use crane_model::dynamics::{InitialState, Method, Settings};
 use crane_model::modes::SmallMotions;
 use crane_tests::registry;

@@ -30,7 +30,7 @@ use nalgebra::{Matrix4, Matrix6, Vector3};
 
 pub(crate) use instance::Block;
 pub use instance::{Crane, Instance, boxed};
-pub use quantities::{Energies, Member};
+pub use quantities::Energies;
 
 use crate::{Description, ParameterError, SectionModuli, Tension, Wrench, rt::lanes::f64x8};
 

@@ -1,22 +1,9 @@
 //! Quantities of a crane as owned lists and matrices, for cranes chosen at run time.
 
-use std::ops::ControlFlow;
-
 use nalgebra::{DMatrix, DVector, Matrix4, Vector3};
 
 use super::{DynCrane, DynDerivatives, DynImplicit, DynModel};
-use crate::{
-    CoordinateKind, CoordinateRole, CylinderInfo, Description, ParameterError, SectionModuli, Tension, Wrench,
-    bristles, dynamics,
-    dynamics::{InitialState, Run, Sample, Stopped},
-    force_states,
-    hydraulics::{self, Oil},
-    modes::SmallMotions,
-    stateful_force::StateAt,
-    statics,
-    statics::Equilibrium,
-    wrench,
-};
+use crate::{CoordinateKind, CoordinateRole, CylinderInfo, Description, SectionModuli, Tension, Wrench, wrench};
 
 /// Energies of a crane, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -42,15 +29,6 @@ impl Energies {
     pub fn total(&self) -> f64 {
         self.kinetic + self.gravity + self.supports + self.elements + self.drives + self.stops + self.connectors
     }
-}
-
-/// A crane of an ensemble.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Member {
-    /// Values of its live parameters, in the order of the description.
-    pub parameters: Vec<f64>,
-    /// Pose and rates at t = 0.
-    pub start: InitialState,
 }
 
 /// Numbers per coordinate, written by `write`.
@@ -117,22 +95,6 @@ impl dyn DynCrane + '_ {
     pub fn drive_efforts_at(&self, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
         let forces = numbers(self, |out| self.drive_forces(t, q, v, out));
         self.description().drives.iter().map(|drive| forces[drive.coordinate]).collect()
-    }
-
-    /// Torques and forces of the drives at a sample of a run, those of cylinders with a valve from their pressures: N m and N.
-    pub fn drive_efforts_of(&self, sample: &Sample<'_>) -> Vec<f64> {
-        let &Sample { t, q, v, x, .. } = sample;
-        self.drive_efforts_with(&StateAt { t, q, v, x })
-    }
-
-    /// The same at a state of the crane and its forces.
-    pub(crate) fn drive_efforts_with(&self, moment: &StateAt<'_>) -> Vec<f64> {
-        let mut efforts = self.drive_efforts_at(moment.t, moment.q, moment.v);
-        force_states::add_to_rigid_drives(self, moment, &mut efforts);
-        if let Some(oil) = Oil::at(self, moment) {
-            oil.give_efforts(self.description(), &mut efforts);
-        }
-        efforts
     }
 
     /// Torques and forces of the drives that hold the crane at rest at t = 0, including rigid drives: N m and N.
@@ -222,20 +184,8 @@ impl dyn DynCrane + '_ {
         self.internal_forces_with(t, [q, v, a], &pushes)
     }
 
-    /// As `internal_forces_at`, with cylinders that push with the force of their pressures, which are among the states `x` of forces.
-    pub fn internal_forces_of(&self, t: f64, motion: [&[f64]; 3], x: &[f64]) -> Vec<Wrench> {
-        let [q, v, _] = motion;
-        let mut pushes = vec![0.0; self.description().cylinders.len()];
-        if let Some(oil) = Oil::at(self, &StateAt { t, q, v, x }) {
-            for (index, state, _) in &oil.cylinders {
-                pushes[*index] = state.force;
-            }
-        }
-        self.internal_forces_with(t, motion, &pushes)
-    }
-
     /// With cylinders that push with given forces, N; `pushes` is empty if they exert none.
-    fn internal_forces_with(&self, t: f64, [q, v, a]: [&[f64]; 3], pushes: &[f64]) -> Vec<Wrench> {
+    pub(crate) fn internal_forces_with(&self, t: f64, [q, v, a]: [&[f64]; 3], pushes: &[f64]) -> Vec<Wrench> {
         let mut out = vec![Wrench::ZERO; self.description().cuts().len()];
         self.internal_forces(t, q, v, a, &mut out);
         let mut of_cylinders = vec![Wrench::ZERO; pushes.len() * out.len()];
@@ -337,62 +287,6 @@ impl dyn DynCrane + '_ {
             stops: self.stop_energy(q),
             connectors: self.connector_energy(t, q),
         }
-    }
-
-    /// The guess for the present parameters: [`statics::guess`].
-    pub fn guess(&self) -> Vec<f64> {
-        statics::guess_dyn(self)
-    }
-
-    /// Static equilibrium from the guess: [`statics::solve`]. If feet lift and no pose is
-    /// stable, it names the supports over which the crane tips.
-    pub fn equilibrium(&self, settings: &statics::Settings) -> Equilibrium {
-        statics::named(self, 0.0, &self.guess(), statics::solve_dyn(self, settings))
-    }
-
-    /// Equilibrium with the drives at their positions at time `t`, from pose `q`: [`statics::solve_at`], with the supports
-    /// over which the crane tips, if it does.
-    pub fn equilibrium_at(&self, t: f64, q: &[f64], settings: &statics::Settings) -> Equilibrium {
-        statics::named(self, t, q, statics::solve_at_dyn(self, t, q, settings))
-    }
-
-    /// Equilibrium with the drives at given positions, from pose `q`: [`statics::solve_holding_dyn`].
-    pub fn equilibrium_holding(&self, positions: &[f64], q: &[f64], settings: &statics::Settings) -> Equilibrium {
-        statics::solve_holding_dyn(self, positions, q, settings)
-    }
-
-    /// Coefficients of small motions about a pose at rest, with shut valves and joints that stick.
-    pub fn small_motions_at(&self, q: &[f64]) -> SmallMotions {
-        let mut motions = SmallMotions::of(self, q);
-        hydraulics::stiffen(self, q, &mut motions);
-        bristles::stiffen(self.description(), &mut motions);
-        motions
-    }
-
-    /// A run: [`dynamics::simulate`].
-    ///
-    /// # Errors
-    /// [`Stopped`] if the run ends early.
-    pub fn simulate(
-        &self,
-        start: &InitialState,
-        settings: &dynamics::Settings,
-        observe: &mut dyn FnMut(&Sample<'_>) -> ControlFlow<()>,
-    ) -> Result<Run, Stopped> {
-        dynamics::simulate_dyn(self, start, settings, observe)
-    }
-
-    /// Runs of cranes that differ in their parameters, several at a time: [`dynamics::ensemble::simulate`].
-    ///
-    /// # Errors
-    /// The parameters of a member break a rule of the spec language.
-    pub fn simulate_ensemble(
-        &self,
-        members: &[Member],
-        settings: &dynamics::Settings,
-        observe: &mut dyn FnMut(usize, &Sample<'_>),
-    ) -> Result<Vec<Result<Run, Stopped>>, ParameterError> {
-        dynamics::ensemble::simulate_dyn(self, members, settings, observe)
     }
 }
 

@@ -12,7 +12,6 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use super::system::differs;
 use crate::{
     Tension,
     dyn_crane::{DynImplicit, DynSystem},
@@ -154,4 +153,9 @@ impl Row {
     fn along(&self, x: &[f64]) -> f64 {
         self.jacobian.iter().zip(&x[self.spanned[0]..]).map(|(column, x)| column * x).sum()
     }
+}
+
+/// Whether a stiffness or a damping is less than half or more than twice what it was.
+pub(super) fn differs(before: f64, now: f64) -> bool {
+    (now - before).abs() > 0.5 * before.abs().max(now.abs())
 }

@@ -13,12 +13,21 @@ use super::{
 };
 use crate::{
     CoordinateRole, Description, Ensemble, LaneDynamics, ParameterError,
-    dyn_crane::{Block, DynBlock, DynCrane, DynModel, Instance, Member},
+    dyn_crane::{Block, DynBlock, DynCrane, DynModel, Instance},
     rt::lanes::f64x8,
 };
 
 /// Cranes per vector.
 pub const LANES: usize = 8;
+
+/// A crane of an ensemble.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Member {
+    /// Values of its live parameters, in the order of the description.
+    pub parameters: Vec<f64>,
+    /// Pose and rates at t = 0.
+    pub start: InitialState,
+}
 
 /// Poses and velocities of eight cranes.
 #[derive(Clone, Copy, Debug, PartialEq)]

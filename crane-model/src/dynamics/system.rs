@@ -14,7 +14,10 @@
 
 use nalgebra::Matrix6;
 
-use super::{connector_update::ConnectorUpdate, force_state_update::ForceStateUpdate};
+use super::{
+    connector_update::{ConnectorUpdate, differs},
+    force_state_update::ForceStateUpdate,
+};
 use crate::{
     Description,
     dyn_crane::{DynImplicit, DynSystem},
@@ -153,9 +156,4 @@ impl<'a> System<'a> {
         }
         self.force_states.states((of_q, of_v), r, of_x);
     }
-}
-
-/// Whether a stiffness or a damping is less than half or more than twice what it was.
-pub(super) fn differs(before: f64, now: f64) -> bool {
-    (now - before).abs() > 0.5 * before.abs().max(now.abs())
 }

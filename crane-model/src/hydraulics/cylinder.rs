@@ -2,14 +2,12 @@
 
 use nalgebra::Vector3;
 
-use super::valve::root;
+use super::valve::{SUCTION, root};
 use crate::{CylinderInfo, PumpInfo, ValveInfo, stateful_force::StatefulForce};
 
 /// Relative band of pressures: a relief valve passes the nominal flow of the valve at `1 + BAND` of its set pressure; the pump delivers its
 /// maximum flow below `1 − BAND` of its set pressure.
 const BAND: f64 = 0.05;
-/// Pressure below the tank's at which a suction valve passes the nominal flow, Pa.
-pub(super) const SUCTION: f64 = 1e5;
 /// Minimum pressure drop for which the servo computes an opening, as a fraction of the nominal one.
 const LEAST_DROP: f64 = 0.1;
 /// Penetration of an end stop at which it carries the cylinder's maximum force, m.

@@ -26,7 +26,6 @@
 //!
 //! The states are, cylinder by cylinder, p, p′ and u, followed by `p_s`. H. E. Merritt, Hydraulic Control Systems, Wiley 1967.
 
-mod about_rest;
 mod cylinder;
 mod oil;
 mod servo;
@@ -40,14 +39,13 @@ use crate::{
     dyn_crane::{DynDynamics, DynModel},
     stateful_force::{Row, STATES, StateAt, StatefulForce},
 };
-pub use about_rest::decays;
-pub(crate) use about_rest::stiffen;
 use cylinder::{Command, Pump, ValveCylinder};
 pub(crate) use oil::Oil;
-pub use servo::{UnstableServo, unstable_servos, with_servos};
+pub(crate) use servo::{Servo, servos};
 pub(crate) use state::unassembled_at;
 pub use state::{CylinderState, cylinders_at};
 use valve::flows;
+pub(crate) use valve::steepest_flow;
 
 /// The oil of a crane.
 #[derive(Clone, Debug, Default)]

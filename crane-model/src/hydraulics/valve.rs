@@ -5,6 +5,9 @@ use crate::ValveInfo;
 /// Pressure difference below which the flow through an edge is laminar, Pa.
 const LAMINAR: f64 = 1e5;
 
+/// Pressure below the tank's at which a suction valve passes the nominal flow, Pa.
+pub(super) const SUCTION: f64 = 1e5;
+
 /// A number and its derivative.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct WithSlope {
@@ -59,4 +62,10 @@ pub(super) fn flows(valve: &ValveInfo, u: f64, sides: [f64; 2], pump: f64, tank:
     flows.by_own[drained] = -open * outflow.slope;
     flows.by_spool[drained] = -by_spool * outflow.value;
     flows
+}
+
+/// The steepest slope of the flow into a side, m³/(s Pa): its suction valve open, and nearly equal pressures on both sides of an edge of
+/// the open valve.
+pub(crate) fn steepest_flow(valve: &ValveInfo) -> f64 {
+    valve.flow * (1.0 / SUCTION + root(0.0).slope / root(valve.pressure_drop).value)
 }

@@ -1,13 +1,19 @@
 //! Small vibrations about a pose at rest or a steady motion: `A δq̈ + D δq̇ + K δq = 0`.
 
 mod damped;
+mod decays;
 mod eigenvectors;
+mod held;
+mod servos;
 mod small_motions;
 mod state_space;
 mod steady;
 mod undamped;
 
 pub use damped::{ComplexShape, DampedMode, damped, damped_with_shapes};
+pub use decays::decays;
+pub(crate) use held::{stiffen_by_bristles, stiffen_by_oil};
+pub use servos::{UnstableServo, unstable_servos, with_servos};
 pub use small_motions::SmallMotions;
 pub use state_space::StateSpace;
 pub use steady::{Held, NotSteady, Steady, steady};

@@ -4,7 +4,7 @@ use super::Table;
 use crate::{
     Description,
     dyn_crane::DynCrane,
-    hydraulics::{UnstableServo, unstable_servos},
+    modes::{UnstableServo, unstable_servos},
     statics::Settings,
 };
 

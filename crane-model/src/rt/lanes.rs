@@ -3,6 +3,7 @@
 use nalgebra::ComplexField;
 pub use wide::f64x8;
 
+pub use super::fused::{Fused, fma};
 pub use super::sin_cos::sin_cos_lanes as sin_cos;
 pub use super::stumpff::stumpff_lanes as stumpff;
 
@@ -10,37 +11,6 @@ pub use super::stumpff::stumpff_lanes as stumpff;
 #[inline]
 pub const fn splat(x: f64) -> f64x8 {
     f64x8::splat(x)
-}
-
-/// Numbers with a fused multiply-add if the target has one.
-///
-/// Without the target feature `fma`, `mul_add` would be a slow library call: a product and a sum are used instead.
-pub trait Fused: Copy {
-    /// `a b + c`
-    #[must_use]
-    fn fma(a: Self, b: Self, c: Self) -> Self;
-}
-
-impl Fused for f64 {
-    #[inline]
-    fn fma(a: f64, b: f64, c: f64) -> f64 {
-        // Without `std` there is no intrinsic available in stable Rust.
-        #[cfg(all(feature = "std", any(target_feature = "fma", target_arch = "aarch64")))]
-        {
-            a.mul_add(b, c)
-        }
-        #[cfg(not(all(feature = "std", any(target_feature = "fma", target_arch = "aarch64"))))]
-        {
-            a * b + c
-        }
-    }
-}
-
-impl Fused for f64x8 {
-    #[inline]
-    fn fma(a: f64x8, b: f64x8, c: f64x8) -> f64x8 {
-        a.mul_add(b, c)
-    }
 }
 
 /// Functions of one number, or of eight: each number separately, so that a lane is bit-identical to a single number.
@@ -106,10 +76,4 @@ pub fn exp<T: Function>(x: T) -> T {
 #[inline]
 pub fn select<T: Function>(x: T, positive: T, other: T) -> T {
     Function::select(x, positive, other)
-}
-
-/// `a b + c`, rounded once if the target supports it.
-#[inline]
-pub fn fma<T: Fused>(a: T, b: T, c: T) -> T {
-    T::fma(a, b, c)
 }

@@ -7,7 +7,7 @@
 
 use wide::{bytemuck::cast, f64x8, i64x8};
 
-use super::lanes::fma;
+use super::fused::fma;
 
 /// Parts of π/2: three of 33 bits, whose products with n are exact, and the rest.
 const HALF_PI: [f64; 4] =

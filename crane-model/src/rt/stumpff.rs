@@ -10,7 +10,7 @@
 use nalgebra::ComplexField;
 use wide::f64x8;
 
-use super::lanes::fma;
+use super::fused::fma;
 
 /// Up to this argument the polynomials are valid.
 const LARGEST: f64 = 10.0;

@@ -12,8 +12,8 @@ use std::{
 use super::{self as runs, Failed, Start};
 use crate::{
     ParameterError,
-    dyn_crane::{DynCrane, Member},
-    dynamics::{self, InitialState, Method, Run, Sample, Settings, Watch},
+    dyn_crane::DynCrane,
+    dynamics::{self, InitialState, Method, Run, Sample, Settings, Watch, ensemble::Member},
     results::{self, Peaks, Recording, cautions},
 };
 

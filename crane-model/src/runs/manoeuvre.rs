@@ -2,10 +2,8 @@
 
 use super::{Failed, Reason, Start};
 use crate::{
-    bristles,
     dyn_crane::DynCrane,
     dynamics::Method,
-    hydraulics,
     modes::{self, DampedMode},
     stability::{Limit, limit},
     statics::Settings,
@@ -76,7 +74,7 @@ fn modes_at(crane: &dyn DynCrane, t: f64, q: &[f64]) -> Result<Vec<DampedMode>, 
 /// Modes about a pose that may limit a step: the damped ones and, not among these, the decays of oil and of bristles that slide as fast as
 /// the drives move at time `t`.
 pub fn limiting_modes(crane: &dyn DynCrane, t: f64, q: &[f64], damped: &[DampedMode]) -> Vec<DampedMode> {
-    [damped, &hydraulics::decays(crane, q), &bristles::decays(crane, t)].concat()
+    [damped, &modes::decays(crane, t, q)].concat()
 }
 
 /// The limit of the step of [`Method::Rk4`] during the manoeuvre; `None` if there is none or there are no modes.

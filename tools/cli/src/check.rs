@@ -7,11 +7,10 @@ use crane_page::tables::FORMAT;
 use serde_json::{Value, json};
 
 use crate::{
-    Registry,
     arguments::{Check, Format},
-    own,
     problem::{FAILED, Outcome, Problem},
     screen,
+    selection::Registry,
 };
 
 /// Checks specs: confirms that they are valid, or reports what is wrong with each.
@@ -25,7 +24,7 @@ pub fn check(options: &Check, registry: &Registry, out: &mut dyn Write) -> Outco
 fn as_text(Check { specs, strict, .. }: &Check, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let mut worst = Ok(());
     for spec in specs {
-        match own::load_named(spec, *strict, registry) {
+        match registry.load(spec, *strict) {
             Ok((Chain { name, bodies, coordinates, spec_hash, .. }, _)) => {
                 let (bodies, coordinates) = (bodies.len(), coordinates.len());
                 writeln!(out, "{name}: valid; {bodies} bodies, {coordinates} coordinates, spec hash {spec_hash}")?;
@@ -45,7 +44,7 @@ fn as_text(Check { specs, strict, .. }: &Check, registry: &Registry, out: &mut d
 fn as_json(Check { specs, strict, .. }: &Check, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let mut found = Vec::new();
     for spec in specs {
-        let checked = own::source(spec, registry).and_then(|source| compile::check(&source).map_err(Problem::mistakes));
+        let checked = registry.source(spec).and_then(|source| compile::check(&source).map_err(Problem::mistakes));
         let (chain, diagnostics) = match checked {
             Ok(Checked { chain, warnings }) => (Some(chain), warnings),
             Err(Problem::Mistakes(mistakes)) => (None, *mistakes),

@@ -7,15 +7,15 @@ use crane_model::{Description, dyn_crane::DynCrane, dynamics::Method, results::T
 use crane_page::tables::{Case, FLEXIBLE, RIGID, caution_of_runs, deflection, equilibria, extremes, summary};
 
 use crate::{
-    Registry,
     arguments::{Compare, ComparePair, Format, Parameters, spec_file},
     figures::{Curve, Mark, PALETTE, Panel},
     files,
     integration::runs,
-    own, page,
+    page,
     problem::{Outcome, Problem},
-    selection::set_inputs,
+    selection::{Registry, set_inputs},
     simulate::{Trace, file_list, points, spoken, write_figure, write_figures, write_run},
+    spec_file,
     variants::renamed,
 };
 
@@ -42,7 +42,7 @@ pub fn load(options: &mut ComparePair, registry: &mut Registry) -> Outcome<()> {
         return Ok(());
     };
     if let Some(file) = spec_file(name) {
-        let (chain, text) = own::load(file, *strict)?;
+        let (chain, text) = spec_file::load(file, *strict)?;
         if chain.name == *first {
             // Two versions of a crane share one name.
             *name = format!("{first}_other");

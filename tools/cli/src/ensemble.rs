@@ -24,13 +24,13 @@ use crane_page::tables::{Report, number_text};
 use serde_json::Value;
 
 use crate::{
-    Registry,
     arguments::{Ensemble, Simulate, Step, Timing},
     files,
     integration::batches,
     journal::{self, Journal, Request},
     parameter_table::ParameterTable,
     problem::{Outcome, Problem},
+    selection::Registry,
     simulate::method,
 };
 

@@ -14,11 +14,11 @@ use nalgebra::{Matrix4, Vector3};
 use serde_json::{Map, Value};
 
 use crate::{
-    Registry,
     arguments::{Eval, EvalFormat, Quantity},
     files,
     npz::{Array, npz},
     problem::{Outcome, Problem},
+    selection::Registry,
 };
 
 /// Evaluates and prints or writes.

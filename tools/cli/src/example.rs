@@ -3,9 +3,9 @@
 use std::io::Write;
 
 use crate::{
-    Registry,
     arguments::Example,
     problem::{Outcome, Problem, nearest},
+    selection::Registry,
 };
 
 /// Prints the spec of an example, or lists all.

@@ -16,10 +16,11 @@ use crane_codegen::{
 
 use crate::{
     arguments::{CNumber, Export, Import, Language},
-    files, fmu, own,
+    files, fmu,
     problem::{Outcome, Problem},
     screen,
     selection::Registry,
+    spec_file,
 };
 
 /// Writes a crane as URDF, with its springs beside it, as MJCF, in C, or as a functional mock-up unit.
@@ -39,7 +40,7 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
     if options.crane.compile && options.format != Language::Fmu {
         return Err(Problem::usage("`--compile` is for `--format fmu` alone", "leave `--compile` out"));
     }
-    let (chain, spec) = own::load_named(&options.crane.name, options.crane.strict, registry)?;
+    let (chain, spec) = registry.load(&options.crane.name, options.crane.strict)?;
     let mut parameters = chain.parameter_defaults();
     let known: Vec<(&str, &str)> = chain.parameters.iter().map(|p| (p.name.as_str(), p.unit.as_str())).collect();
     for (index, value) in options.crane.parameters.read(&chain.name, &known)? {
@@ -76,7 +77,7 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
                 ));
             }
             let header = beside(&file)?;
-            let code = own::working(&chain, || in_c(options, &chain, &parameters, &header))?;
+            let code = screen::working(&chain, || in_c(options, &chain, &parameters, &header))?;
             vec![(file.with_file_name(header), code.header), (file, code.source)]
         }
         Language::Fmu => return fmu::write(options, &file, chain, &spec, &parameters, out),
@@ -125,7 +126,7 @@ fn in_c(options: &Export, chain: &Chain, parameters: &[f64], header: &str) -> Ou
 
 /// Writes a spec made from URDF or MJCF, and checks it.
 pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
-    let source = own::open(&options.robot, "give a URDF or MJCF file")?;
+    let source = spec_file::open(&options.robot, "give a URDF or MJCF file")?;
     if let Some(file) = options.spec.as_ref().filter(|file| file.exists() && !options.force) {
         return Err(Problem::usage(
             format!("{} exists", file.display()),
@@ -144,7 +145,7 @@ pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
     files::write_text(file, &spec)?;
     writeln!(out, "{} written", file.display())?;
     // Mistakes in the robot's own numbers are to be corrected in the written spec.
-    let (Chain { name, bodies, coordinates, .. }, _) = own::load(file, false)?;
+    let (Chain { name, bodies, coordinates, .. }, _) = spec_file::load(file, false)?;
     let (file, bodies, coordinates) = (file.display(), bodies.len(), coordinates.len());
     writeln!(out, "{name}: valid; {bodies} bodies, {coordinates} coordinates; next: `crane run {file}`")?;
     for said in &left_out {

@@ -14,7 +14,7 @@ use zip::{CompressionMethod, ZipWriter, result::ZipError, write::SimpleFileOptio
 
 use crate::{
     arguments::{Export, Fmi},
-    files, own,
+    compiled, files,
     problem::{Outcome, Problem},
 };
 
@@ -60,7 +60,7 @@ pub fn write(
 ) -> Outcome<()> {
     let is_compiled = options.crane.compile;
     let libraries = match options.libraries.as_slice() {
-        [] if is_compiled => vec![read(&own::unit(&chain, spec)?)?],
+        [] if is_compiled => vec![read(&compiled::unit(&chain, spec)?)?],
         [] => vec![read(&beside_the_command()?)?],
         [..] if is_compiled => {
             return Err(Problem::usage(

@@ -9,17 +9,17 @@ use crane_codegen::{
 };
 
 use crate::{
-    Registry,
     arguments::{Generate, Output},
     files,
-    own::{self, load},
     problem::{Outcome, Problem},
     screen,
+    selection::Registry,
+    spec_file::load,
 };
 
 /// Writes the Rust module of a crane.
 pub fn generate(options: &Generate, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
-    let source = own::source(&options.spec, registry)?;
+    let source = registry.source(&options.spec)?;
     let analyses = options.all.then_some(Analyses::ALL);
     if let Some(folder) = &options.dump {
         files::folder(folder)?;
@@ -28,7 +28,7 @@ pub fn generate(options: &Generate, registry: &Registry, out: &mut dyn Write) ->
         }
     }
     let chain = compile::load(&source).map_err(Problem::mistakes)?;
-    let compiled = own::working(&chain, || compile::compile(&source, analyses));
+    let compiled = screen::working(&chain, || compile::compile(&source, analyses));
     let Compiled { code, warnings } = compiled.map_err(Problem::mistakes)?;
     if !warnings.is_empty() {
         screen::warn(&warnings);

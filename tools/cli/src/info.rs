@@ -6,9 +6,9 @@ use crane_model::runs::{EQUILIBRIUM, GUESS};
 use crane_page::tables::{Cell, Grid, Report};
 
 use crate::{
-    Registry,
     arguments::{Analysis, Format},
     problem::Outcome,
+    selection::Registry,
 };
 
 /// Prints the available cranes.

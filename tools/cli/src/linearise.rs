@@ -14,12 +14,12 @@ use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
 
 use crate::{
-    Registry,
     arguments::Linearise,
     envelope::number,
     files,
     npz::{Array, npz},
     problem::{Outcome, Problem},
+    selection::Registry,
     start::{Variable, row},
 };
 

@@ -5,7 +5,7 @@ use std::{io::Write, num::NonZeroUsize};
 use crane_model::{dynamics::Method, modes::damped, results::cautions, runs::limiting_modes, stability::limit};
 use crane_page::tables::{Case, Cell, Report, damped_modes, undamped_modes};
 
-use crate::{Registry, arguments::Modes, linearisation, problem::Outcome, refinement};
+use crate::{arguments::Modes, linearisation, problem::Outcome, refinement, selection::Registry};
 
 /// Number of lowest modes that are printed by default.
 const LOWEST: usize = 10;

@@ -11,10 +11,10 @@ use std::{
 use crane_codegen::{SourceFile, compile};
 
 use crate::{
-    Registry,
     arguments::New,
-    files, own,
+    compiled, files,
     problem::{Outcome, Problem},
+    selection::Registry,
 };
 
 /// Files of a new crate: where they go, and what they are made from.
@@ -36,7 +36,7 @@ pub fn new(options: &New, registry: &Registry, out: &mut dyn Write) -> Outcome<(
     // The name of a shipped crane may be written like that of a crate.
     let shipped = options.from.replace('-', "_");
     let from = if registry.spec(&shipped).is_some() { &shipped } else { &options.from };
-    let (from, text) = own::load_named(from, false, registry)?;
+    let (from, text) = registry.load(from, false)?;
     let spec = renamed(&text, &from.name, &name).ok_or_else(|| {
         Problem::failed(
             format!("cannot rename the crane {} in its spec", from.name),
@@ -57,13 +57,16 @@ pub fn new(options: &New, registry: &Registry, out: &mut dyn Write) -> Outcome<(
             "name a folder that does not exist yet",
         ));
     }
-    if !own::root().join("crane-model").exists() {
+    if !compiled::root().join("crane-model").exists() {
         return Err(Problem::failed(
-            format!("the source of `crane`, which the new crate depends on, is no longer at {}", own::root().display()),
+            format!(
+                "the source of `crane`, which the new crate depends on, is no longer at {}",
+                compiled::root().display()
+            ),
             "build `crane` again from its new location",
         ));
     }
-    let from_tree = |folder: &str| own::root().join(folder).to_string_lossy().into_owned();
+    let from_tree = |folder: &str| compiled::root().join(folder).to_string_lossy().into_owned();
     let copied = |folder: &str| format!("{}/{folder}", vendored::FOLDER);
     let [model, codegen] =
         vendored::CRATES.map(|folder| if options.vendor { copied(folder) } else { from_tree(folder) });
@@ -81,7 +84,7 @@ pub fn new(options: &New, registry: &Registry, out: &mut dyn Write) -> Outcome<(
         FILES.iter().map(|(file, template)| (PathBuf::from(file), filled(template))).collect();
     texts.push((SPEC.into(), spec));
     texts.push((SCHEMA.0.into(), SCHEMA.1.to_owned()));
-    texts.push(("Cargo.lock".into(), own::LOCK.to_owned()));
+    texts.push(("Cargo.lock".into(), compiled::LOCK.to_owned()));
     if options.vendor {
         let inherited = vendored::inherited()?;
         for (_, manifest) in texts.iter_mut().filter(|(file, _)| file == Path::new("Cargo.toml")) {
@@ -121,7 +124,7 @@ fn write(folder: &Path, texts: &[(PathBuf, String)]) -> Outcome<()> {
 fn package(folder: &Path) -> Outcome<String> {
     let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
-    if own::LOCK.contains(&format!("\nname = \"{name}\"\n")) {
+    if compiled::LOCK.contains(&format!("\nname = \"{name}\"\n")) {
         let title = format!("`{name}` is the name of a crate that the new crate depends on");
         return Err(Problem::usage(title, format!("choose another name, such as my-{name}")));
     }

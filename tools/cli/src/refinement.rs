@@ -12,7 +12,7 @@ use crane_model::{
 };
 use crane_page::{history::Instant, tables::Case};
 
-use crate::{Registry, problem::Outcome};
+use crate::{problem::Outcome, selection::Registry};
 
 /// Maximum number of coordinates of a crane that is also computed with twice the sections: more take seconds.
 const MOST_COORDINATES: usize = 60;

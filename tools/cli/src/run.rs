@@ -6,12 +6,12 @@ use crane_model::dynamics::Method;
 use crane_page::tables::{caution_of_runs, deflection, equilibria, extremes, summary};
 
 use crate::{
-    Registry,
     arguments::Run,
     files,
     integration::runs,
     page::{cases, twin, write},
     problem::Outcome,
+    selection::Registry,
     simulate::{Trace, file_list, write_figures, write_run},
 };
 

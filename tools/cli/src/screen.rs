@@ -7,11 +7,13 @@ use std::{
         OnceLock,
         atomic::{AtomicBool, Ordering},
     },
+    time::Duration,
 };
 
 use clap::{Args, ValueEnum};
-use crane_codegen::{Diagnostics, Located};
+use crane_codegen::{Diagnostics, Located, chain::Chain};
 use crane_page::tables::Report;
+use indicatif::ProgressBar;
 use serde_json::{Value, json};
 
 use crate::problem::{FAILED, NOTICED, Problem};
@@ -179,4 +181,20 @@ pub fn unaccepted() -> Option<Problem> {
         Severity::Caution => CAUTIONED.load(Ordering::Relaxed),
     };
     MANNER.get()?.fail_on.iter().any(noticed).then_some(Problem::Elsewhere(NOTICED))
+}
+
+/// Does what may take long for a large crane, and says so.
+pub fn working<T>(chain: &Chain, work: impl FnOnce() -> T) -> T {
+    /// From here on it takes more than some seconds.
+    const LARGE: usize = 300;
+    let count = chain.coordinates.len();
+    if count < LARGE {
+        return work();
+    }
+    remark(&format!("{} has {count} coordinates: this may take minutes; Ctrl-C ends it", chain.name));
+    let bar = ProgressBar::new_spinner().with_message("deriving");
+    bar.enable_steady_tick(Duration::from_millis(200));
+    let done = work();
+    bar.finish_and_clear();
+    done
 }

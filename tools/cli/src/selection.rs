@@ -7,10 +7,9 @@ use crane_live::LiveCrane;
 use crane_model::{Description, ParameterError, Refusal, dyn_crane::DynCrane};
 
 use crate::{
-    arguments::{Choice, Parameters},
-    own,
+    arguments::{Choice, Parameters, STANDARD_INPUT},
     problem::{Outcome, Problem, nearest},
-    variants,
+    spec_file, variants,
 };
 
 /// Names and specs (YAML) of shipped cranes.
@@ -77,12 +76,31 @@ impl Registry {
         self.replace(Entry::new(name, Cow::Owned(spec)));
     }
 
+    /// The spec of a shipped crane, or of a YAML file.
+    pub(super) fn source(&self, given: &str) -> Outcome<SourceFile> {
+        let file = Path::new(given);
+        match self.spec(given) {
+            Some(text) => Ok(SourceFile::new(format!("{given}.yaml"), text)),
+            None if file == Path::new(STANDARD_INPUT) => spec_file::open(file, spec_file::SPEC),
+            None if file.extension().is_some() || file.exists() => spec_file::open(file, spec_file::SPEC),
+            // Neither: the message names the most similar crane.
+            None => self
+                .crane(given)
+                .and_then(|_| Err(Problem::failed(format!("the spec of {given} is not available"), ""))),
+        }
+    }
+
+    /// The chain of a shipped crane or of a YAML file, and its text; warnings are shown, and are mistakes if `strict`.
+    pub(super) fn load(&self, given: &str, strict: bool) -> Outcome<(Chain, String)> {
+        spec_file::parse(self.source(given)?, strict)
+    }
+
     /// Adds the crane of a YAML file in place of one of the same name; returns its name.
     ///
     /// # Errors
     /// The file cannot be read, or the spec has mistakes; or warnings, if `strict`.
     pub(super) fn add_file(&mut self, file: &Path, strict: bool) -> Outcome<String> {
-        let (chain, spec) = own::load(file, strict)?;
+        let (chain, spec) = spec_file::load(file, strict)?;
         let name = self.add_read(chain, spec);
         if let Some(entry) = self.entries.last_mut() {
             entry.file = file.display().to_string();
@@ -257,7 +275,7 @@ impl Parameters {
             settings.iter().map(|&(index, value)| (description.parameters[index].name.to_string(), value)).collect();
         set(crane.as_mut(), &settings)?;
         if let Some(entry) = registry.entries.iter().find(|entry| entry.name == name) {
-            let warned = own::warn_of(&entry.source(), &values);
+            let warned = spec_file::warn_of(&entry.source(), &values);
             if let (true, Some(problem)) = (strict, warned) {
                 return Err(problem);
             }

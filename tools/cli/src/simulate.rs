@@ -17,12 +17,12 @@ use crane_page::{
 use serde_json::Value;
 
 use crate::{
-    Registry,
     arguments::Run,
     figures::{Curve, Mark, PALETTE, Panel, svg},
     files,
     integration::{progress, record_checked},
     problem::{Outcome, Problem},
+    selection::Registry,
 };
 
 /// A recorded run as a curve of the figures.

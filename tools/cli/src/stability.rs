@@ -13,11 +13,11 @@ use crane_model::{
 use crane_page::tables::{Grid, Report, damped_modes, stable_steps};
 
 use crate::{
-    Registry,
     arguments::Stability,
     figures::{BLUE, Curve, Mark, Panel, VERMILLION},
     files,
     problem::Outcome,
+    selection::Registry,
     simulate::{file_list, write_figure},
 };
 

@@ -6,9 +6,9 @@ use crane_model::statics::Equilibrium;
 use crane_page::tables::{Case, Grid, VALUE, equilibria};
 
 use crate::{
-    Registry,
     arguments::{Analysis, Format},
     problem::Outcome,
+    selection::Registry,
 };
 
 /// Prints the equilibrium of a crane.

@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 
 use crane_codegen::build;
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::{DynCrane, DynDerivatives, DynModel, Instance, Member};
-use crane_model::dynamics::{InitialState, Settings};
+use crane_model::dyn_crane::{DynCrane, DynDerivatives, DynModel, Instance};
+use crane_model::dynamics::{InitialState, Settings, ensemble::Member};
 use crane_model::nalgebra::{Matrix4, Matrix6, Vector3};
 use crane_model::{ParameterError, SectionModuli};
 use crane_model::{modes, statics};

@@ -7,7 +7,7 @@ use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::{InitialState, Method, Settings};
-use crane_model::hydraulics::{UnstableServo, unstable_servos};
+use crane_model::modes::{UnstableServo, unstable_servos};
 use crane_model::results::cautions;
 
 const MASS: f64 = 800.0;

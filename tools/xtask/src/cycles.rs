@@ -4,46 +4,88 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::workspace;
 
-/// Folders whose files must not import each other in cycles, except for a file and its helper.
-const FOLDERS: [(&str, &str); 6] = [
-    ("codegen/src", "codegen/src/emit"),
-    ("codegen/src", "codegen/src/lower"),
-    ("codegen/src", "codegen/src/symbolic"),
-    ("crane-model/src", "crane-model/src/dynamics"),
-    ("crane-model/src", "crane-model/src/statics"),
-    ("tools/cli/src", "tools/cli/src"),
+/// Crates whose rooms, files and folders below the root, must not import each other in a circle; their files neither, except for a file
+/// and its helper.
+const CRATES: [&str; 9] = [
+    "codegen/src",
+    "crane-model/src",
+    "tools/cli/src",
+    "tools/fmu/src",
+    "tools/lab/src",
+    "tools/live/src",
+    "tools/page/src",
+    "tools/python/src",
+    "tools/xtask/src",
 ];
-/// Maximum size of a permitted cycle: a file and its helper.
+/// Maximum size of a permitted cycle of files: a file and its helper.
 const HELPED: usize = 2;
 
-/// A file and the files that it names.
+/// A file, or a room, and those that it names.
 type Imports = BTreeMap<String, BTreeSet<String>>;
 
-/// Every cycle, as a line that names its files.
+/// Every circle of rooms, and every cycle of files, as a line that names them.
 pub fn cycles() -> Result<Vec<String>, String> {
     let mut found = Vec::new();
-    for (root, folder) in FOLDERS {
-        // A crate's root names every module; tests may use everything.
-        let counts = |file: &String| !is_root(file, root) && !file.ends_with("/tests.rs");
-        let files: Vec<String> = workspace::files(folder, "rs")?.into_iter().filter(counts).collect();
-        let known: BTreeSet<&str> = files.iter().map(String::as_str).collect();
-        let mut imports = Imports::new();
-        for file in &files {
-            let named = imported(&workspace::read(file)?, file, root, &known);
-            imports.insert(file.clone(), named);
-        }
+    for root in CRATES {
+        let imports = imports_of(root)?;
+        let rooms = groups(&by_room(&imports, root)).into_iter().filter(|rooms| rooms.len() > 1);
+        found.extend(rooms.map(|rooms| format!("{} of {root} import each other in a circle", rooms.join(", "))));
         let cycles = groups(&imports).into_iter().filter(|files| files.len() > HELPED);
         found.extend(cycles.map(|files| format!("{} import each other in a cycle", files.join(", "))));
     }
     Ok(found)
 }
 
+/// What every file of a crate names, also through what the crate's root exports. The root itself names everything, and tests may.
+fn imports_of(root: &str) -> Result<Imports, String> {
+    let all = workspace::files(root, "rs")?;
+    let (roots, files): (Vec<String>, Vec<String>) =
+        all.into_iter().filter(|file| !file.ends_with("/tests.rs")).partition(|file| is_root(file, root));
+    let known: BTreeSet<&str> = files.iter().map(String::as_str).collect();
+    let mut exports = Exports::new();
+    for file in &roots {
+        exports.extend(exported(&workspace::read(file)?, root, &known));
+    }
+    let mut imports = Imports::new();
+    for file in &files {
+        let named = imported(&workspace::read(file)?, file, (root, &exports), &known);
+        imports.insert(file.clone(), named);
+    }
+    Ok(imports)
+}
+
+/// The same between rooms.
+fn by_room(imports: &Imports, root: &str) -> Imports {
+    let room = |file: &str| {
+        let inside = file.strip_prefix(root).unwrap_or(file).trim_start_matches('/');
+        inside.split('/').next().unwrap_or(inside).trim_end_matches(".rs").to_owned()
+    };
+    let mut rooms = Imports::new();
+    for (file, named) in imports {
+        let own = room(file);
+        let others = named.iter().map(|other| room(other)).filter(|other| *other != own);
+        rooms.entry(own.clone()).or_default().extend(others.collect::<Vec<_>>());
+    }
+    rooms
+}
+
 fn is_root(file: &str, root: &str) -> bool {
     ["lib.rs", "main.rs"].iter().any(|name| file == format!("{root}/{name}"))
 }
 
+/// Names that the root of a crate exports, and the files that they come from.
+pub type Exports = BTreeMap<String, String>;
+
+/// What a root exports with `pub use`.
+fn exported(text: &str, root: &str, known: &BTreeSet<&str>) -> Exports {
+    let uses = text.match_indices("pub use ").chain(text.match_indices("pub(crate) use "));
+    let paths = uses.flat_map(|(at, before)| paths(text[at + before.len()..].trim_start_matches("crate::")));
+    let named = |path: Vec<String>| Some((path.last()?.clone(), resolve(root, &path, known)?));
+    paths.filter_map(named).collect()
+}
+
 /// Files that a text names in paths from `crate`, `super` or `self`. A folder's `mod.rs` that declares a file does not import it.
-pub fn imported(text: &str, file: &str, root: &str, known: &BTreeSet<&str>) -> BTreeSet<String> {
+pub fn imported(text: &str, file: &str, (root, exports): (&str, &Exports), known: &BTreeSet<&str>) -> BTreeSet<String> {
     // Tests at the end may use everything.
     let code = text.split("\n#[cfg(test)]").next().unwrap_or_default();
     let code: String = code.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
@@ -56,7 +98,8 @@ pub fn imported(text: &str, file: &str, root: &str, known: &BTreeSet<&str>) -> B
                 continue;
             }
             for path in paths(&code[at + start.len()..]) {
-                let place = resolve(&base, &path, known);
+                let exported = path.first().filter(|_| base == root).and_then(|name| exports.get(name)).cloned();
+                let place = resolve(&base, &path, known).or(exported);
                 found.extend(place.filter(|place| place != file));
             }
         }
@@ -188,10 +231,11 @@ mod tests {
     #[test]
     fn cycles_of_three_are_found_and_pairs_are_not() {
         let known: BTreeSet<&str> = ["r/a.rs", "r/b/mod.rs", "r/b/c.rs", "r/d.rs"].into();
-        let of = |file: &str, text: &str| (file.to_owned(), imported(text, file, "r", &known));
+        let exports = exported("pub use d::{self, Deep};\n", "r", &known);
+        let of = |file: &str, text: &str| (file.to_owned(), imported(text, file, ("r", &exports), &known));
         let mut imports: Imports = [
             of("r/a.rs", "use crate::{b::c::Name, d};\n"),
-            of("r/b/mod.rs", "mod c;\n"),
+            of("r/b/mod.rs", "mod c;\nuse crate::Deep;\n"),
             of("r/b/c.rs", "use super::super::d::Other;\n// crate::a\n"),
             of("r/d.rs", "fn f() { super::a::g() }\n#[cfg(test)]\nuse crate::b;\n"),
         ]
@@ -200,5 +244,9 @@ mod tests {
         assert_eq!(groups(&imports), [cycle]);
         imports.extend([of("r/b/c.rs", "use std::fmt;\n")]);
         assert_eq!(groups(&imports), [["r/a.rs", "r/d.rs"].map(str::to_owned).to_vec()]);
+        assert!(imports["r/b/mod.rs"].contains("r/d.rs"));
+        let rooms = by_room(&imports, "r");
+        assert_eq!(rooms["b"], ["d".to_owned()].into());
+        assert_eq!(groups(&rooms), [["a", "b", "d"].map(str::to_owned).to_vec()]);
     }
 }

@@ -98,7 +98,7 @@ fn modules(page: &str) -> Result<Vec<String>, String> {
     let mut used: BTreeMap<&str, BTreeMap<String, &str>> = BTreeMap::new();
     for file in files.iter().filter(|file| !is_test(file)) {
         let text = workspace::read(file)?;
-        let named = cycles::imported(&text, file, COMPILER, &known);
+        let named = cycles::imported(&text, file, (COMPILER, &cycles::Exports::new()), &known);
         let mut named: BTreeSet<String> = named.iter().map(|file| module(file).to_owned()).collect();
         named.extend(named_modules(&text, "crate::", &reexports));
         named.retain(|name| name != module(file) && name != "lib");

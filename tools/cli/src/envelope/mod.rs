@@ -26,14 +26,13 @@ use crane_model::{
 use crane_page::tables::Report;
 
 use crate::{
-    Registry,
     arguments::{Envelope, Format},
     figures::wrapped,
     files,
     integration::styled,
     journal::{self, Journal, Request},
     problem::{Outcome, Problem},
-    selection::told,
+    selection::{Registry, told},
     strength::load_parameter,
 };
 

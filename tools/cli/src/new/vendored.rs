@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::{
-    own,
+    compiled,
     problem::{Outcome, Problem},
 };
 
@@ -20,7 +20,7 @@ const INHERITED: [&str; 4] =
 pub fn sources() -> Outcome<Vec<(PathBuf, String)>> {
     let mut texts = Vec::new();
     for name in CRATES {
-        let root = own::root().join(name);
+        let root = compiled::root().join(name);
         let manifest = tables(&read(&root.join("Cargo.toml"))?, |header| header != "[dev-dependencies]");
         texts.push((Path::new(FOLDER).join(name).join("Cargo.toml"), manifest));
         let mut folders = vec![root.join("src")];
@@ -32,14 +32,14 @@ pub fn sources() -> Outcome<Vec<(PathBuf, String)>> {
                     folders.push(path);
                 } else {
                     let text = read(&path)?;
-                    let place = path.strip_prefix(own::root()).unwrap_or(&path);
+                    let place = path.strip_prefix(compiled::root()).unwrap_or(&path);
                     texts.push((Path::new(FOLDER).join(place), text));
                 }
             }
         }
     }
     for licence in ["LICENSE-APACHE", "LICENSE-MIT"] {
-        texts.push((Path::new(FOLDER).join(licence), read(&own::root().join(licence))?));
+        texts.push((Path::new(FOLDER).join(licence), read(&compiled::root().join(licence))?));
     }
     texts.sort();
     Ok(texts)
@@ -47,7 +47,7 @@ pub fn sources() -> Outcome<Vec<(PathBuf, String)>> {
 
 /// The tables of the workspace's manifest that the copies inherit from.
 pub fn inherited() -> Outcome<String> {
-    let manifest = read(&own::root().join("Cargo.toml"))?;
+    let manifest = read(&compiled::root().join("Cargo.toml"))?;
     let text = tables(&manifest, |header| INHERITED.contains(&header));
     // Other crates of the source tree are not copied.
     let needed =

@@ -19,13 +19,12 @@ use crane_page::{
 };
 
 use crate::{
-    Registry,
     arguments::{Limits, Page},
-    files,
+    compiled, files,
     integration::runs,
-    own,
     problem::Outcome,
     refinement, screen,
+    selection::Registry,
 };
 
 /// Computes a crane, and its rigid twin if there is one, and writes the page.
@@ -87,7 +86,7 @@ fn write_with(
         tables: Some(all_tables(registry, cases, limits, runs)?),
         chart: figures,
         load_chart: facts,
-        command: Some(own::typed()),
+        command: Some(compiled::typed()),
         spec: cases.last().and_then(|case| registry.spec(&case.crane.description().name)),
     };
     files::write_text(file, &page(&subjects, texts, files::PROGRAM)?)

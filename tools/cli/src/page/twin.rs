@@ -2,7 +2,7 @@
 
 use crane_model::{ParameterInfo, dyn_crane::DynCrane};
 
-use crate::Registry;
+use crate::selection::Registry;
 
 /// The crane of the registry that equals `crane` except for its elements, with the same parameters.
 pub fn rigid(crane: &dyn DynCrane, registry: &Registry) -> Option<Box<dyn DynCrane>> {

@@ -14,12 +14,12 @@ use crane_page::history::{Instant, instants};
 use crane_page::tables::{Case, Report, VALUE, verdicts};
 
 use crate::{
-    Registry,
     arguments::Strength,
     files,
     integration::{progress, record_checked},
     problem::{Outcome, Problem},
     refinement,
+    selection::Registry,
 };
 
 use history::least_margin;

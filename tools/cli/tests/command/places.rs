@@ -123,7 +123,7 @@ fn angles_are_degrees_for_people_also_as_parameters() {
     fs::write(&spec, TURNED).expect("a file");
     let rows = crane(&["statics", &spec, "--range", "angle=0:30deg:2", "-o", &csv]);
     let table = text(&rows.stdout);
-    assert!(table.contains("angle [°]") && table.lines().any(|line| line.trim().starts_with("30 ")), "{table}");
+    assert!(table.contains("angle [°]") && table.lines().any(|line| line.trim().starts_with("30.00 ")), "{table}");
     let csv = fs::read_to_string(csv).expect("a table");
     assert!(
         csv.starts_with("angle [rad],") && csv.lines().nth(2).is_some_and(|row| row.starts_with("0.5235987755")),

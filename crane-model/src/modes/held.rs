@@ -1,41 +1,21 @@
-//! Oil about a pose at rest: the decay rates of its pressures, and the stiffness of the oil that shut valves trap.
+//! What holds a crane at rest besides its springs: oil that shut valves trap, and bristles that stick.
 
-use nalgebra::{Complex, Vector3};
-
-use super::{CylinderState, cylinder::SUCTION, cylinders_at, valve::root};
+use super::SmallMotions;
 use crate::{
-    CylinderInfo,
+    CylinderInfo, Description,
     dyn_crane::DynCrane,
-    modes::{DampedMode, SmallMotions},
+    hydraulics::{CylinderState, cylinders_at},
 };
-
-/// An upper bound on the decay rate of the pressures of each cylinder with a valve at a pose, as a mode of its joint: the one with open
-/// suction valves and nearly equal pressures on both sides of the valve's edges. It limits explicit methods.
-pub fn decays(crane: &dyn DynCrane, q: &[f64]) -> Vec<DampedMode> {
-    let cylinders = &crane.description().cylinders;
-    let mut lengths = vec![Vector3::zeros(); cylinders.len()];
-    crane.cylinder_states(q, &vec![0.0; q.len()], &mut lengths);
-    let decay = |(info, length): (&CylinderInfo, &Vector3<f64>)| {
-        let (valve, bulk_modulus) = (info.valve?, info.bulk_modulus?);
-        let y = (length.x - info.retracted).clamp(0.0, info.stroke);
-        let [of_piston, of_rod] = info.hose_volumes;
-        let volume = (of_piston + info.areas[0] * y).min(of_rod + info.areas[1] * (info.stroke - y));
-        let slope = 1.0 / SUCTION + root(0.0).slope / root(valve.pressure_drop).value;
-        let eigenvalue = Complex::new(-bulk_modulus / volume * valve.flow * slope, 0.0);
-        Some(DampedMode { eigenvalue, dominating: vec![crane.description().drives[info.drive].coordinate] })
-    };
-    cylinders.iter().zip(&lengths).filter_map(decay).collect()
-}
 
 /// Adds the stiffness of the oil that shut valves trap to that of small motions about a pose at rest, and the change of the direction of its
 /// forces.
-pub(crate) fn stiffen(crane: &dyn DynCrane, q: &[f64], motions: &mut SmallMotions) {
-    hold(crane, q, motions, |info, state| state.stiffness_along(info).unwrap_or(f64::NAN));
+pub(crate) fn stiffen_by_oil(crane: &dyn DynCrane, q: &[f64], motions: &mut SmallMotions) {
+    add_cylinders(crane, q, motions, |info, state| state.stiffness_along(info).unwrap_or(f64::NAN));
 }
 
 /// Adds what cylinders with the forces F contribute, `k Jᵀ J − F ∂J/∂q` with `J = ∂ℓ/∂q` to the stiffness of small motions about a pose at rest, for each cylinder with a valve; `along`: its
 /// stiffness k, N/m.
-pub(super) fn hold(
+pub(super) fn add_cylinders(
     crane: &dyn DynCrane,
     q: &[f64],
     motions: &mut SmallMotions,
@@ -69,5 +49,14 @@ pub(super) fn hold(
                 motions.stiffness[(row, column)] += stiffness * here[place] * here[other] - state.force * curvature;
             }
         }
+    }
+}
+
+/// Adds the stiffness and damping of sticking bristles to those of small motions about a pose at rest.
+pub(crate) fn stiffen_by_bristles(description: &Description, motions: &mut SmallMotions) {
+    for joint in &description.bristles {
+        let Some(place) = motions.unknowns.iter().position(|unknown| *unknown == joint.coordinate) else { continue };
+        motions.stiffness[(place, place)] += joint.stiffness;
+        motions.damping[(place, place)] += joint.damping;
     }
 }

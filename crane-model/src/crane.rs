@@ -1,0 +1,105 @@
+//! What can be computed with a crane in one call: its equilibrium, small motions, runs, and quantities with the states of its forces.
+
+use std::ops::ControlFlow;
+
+use crate::{
+    ParameterError, Wrench,
+    dyn_crane::DynCrane,
+    dynamics,
+    dynamics::{InitialState, Run, Sample, Stopped, ensemble::Member},
+    force_states,
+    hydraulics::Oil,
+    modes,
+    modes::SmallMotions,
+    stateful_force::StateAt,
+    statics,
+    statics::Equilibrium,
+};
+
+/// # Panics
+/// If `q`, `v` or a start does not have as many numbers as the crane has coordinates.
+impl dyn DynCrane + '_ {
+    /// Torques and forces of the drives at a sample of a run, those of cylinders with a valve from their pressures: N m and N.
+    pub fn drive_efforts_of(&self, sample: &Sample<'_>) -> Vec<f64> {
+        let &Sample { t, q, v, x, .. } = sample;
+        self.drive_efforts_with(&StateAt { t, q, v, x })
+    }
+
+    /// The same at a state of the crane and its forces.
+    pub(crate) fn drive_efforts_with(&self, moment: &StateAt<'_>) -> Vec<f64> {
+        let mut efforts = self.drive_efforts_at(moment.t, moment.q, moment.v);
+        force_states::add_to_rigid_drives(self, moment, &mut efforts);
+        if let Some(oil) = Oil::at(self, moment) {
+            oil.give_efforts(self.description(), &mut efforts);
+        }
+        efforts
+    }
+
+    /// As `internal_forces_at`, with cylinders that push with the force of their pressures, which are among the states `x` of forces.
+    pub fn internal_forces_of(&self, t: f64, motion: [&[f64]; 3], x: &[f64]) -> Vec<Wrench> {
+        let [q, v, _] = motion;
+        let mut pushes = vec![0.0; self.description().cylinders.len()];
+        if let Some(oil) = Oil::at(self, &StateAt { t, q, v, x }) {
+            for (index, state, _) in &oil.cylinders {
+                pushes[*index] = state.force;
+            }
+        }
+        self.internal_forces_with(t, motion, &pushes)
+    }
+
+    /// The guess for the present parameters: [`statics::guess`].
+    pub fn guess(&self) -> Vec<f64> {
+        statics::guess_dyn(self)
+    }
+
+    /// Static equilibrium from the guess: [`statics::solve`]. If feet lift and no pose is
+    /// stable, it names the supports over which the crane tips.
+    pub fn equilibrium(&self, settings: &statics::Settings) -> Equilibrium {
+        statics::named(self, 0.0, &self.guess(), statics::solve_dyn(self, settings))
+    }
+
+    /// Equilibrium with the drives at their positions at time `t`, from pose `q`: [`statics::solve_at`], with the supports
+    /// over which the crane tips, if it does.
+    pub fn equilibrium_at(&self, t: f64, q: &[f64], settings: &statics::Settings) -> Equilibrium {
+        statics::named(self, t, q, statics::solve_at_dyn(self, t, q, settings))
+    }
+
+    /// Equilibrium with the drives at given positions, from pose `q`: [`statics::solve_holding_dyn`].
+    pub fn equilibrium_holding(&self, positions: &[f64], q: &[f64], settings: &statics::Settings) -> Equilibrium {
+        statics::solve_holding_dyn(self, positions, q, settings)
+    }
+
+    /// Coefficients of small motions about a pose at rest, with shut valves and joints that stick.
+    pub fn small_motions_at(&self, q: &[f64]) -> SmallMotions {
+        let mut motions = SmallMotions::of(self, q);
+        modes::stiffen_by_oil(self, q, &mut motions);
+        modes::stiffen_by_bristles(self.description(), &mut motions);
+        motions
+    }
+
+    /// A run: [`dynamics::simulate`].
+    ///
+    /// # Errors
+    /// [`Stopped`] if the run ends early.
+    pub fn simulate(
+        &self,
+        start: &InitialState,
+        settings: &dynamics::Settings,
+        observe: &mut dyn FnMut(&Sample<'_>) -> ControlFlow<()>,
+    ) -> Result<Run, Stopped> {
+        dynamics::simulate_dyn(self, start, settings, observe)
+    }
+
+    /// Runs of cranes that differ in their parameters, several at a time: [`dynamics::ensemble::simulate`].
+    ///
+    /// # Errors
+    /// The parameters of a member break a rule of the spec language.
+    pub fn simulate_ensemble(
+        &self,
+        members: &[Member],
+        settings: &dynamics::Settings,
+        observe: &mut dyn FnMut(usize, &Sample<'_>),
+    ) -> Result<Vec<Result<Run, Stopped>>, ParameterError> {
+        dynamics::ensemble::simulate_dyn(self, members, settings, observe)
+    }
+}

@@ -1,0 +1,86 @@
+//! Which part of the program does what the arguments ask for.
+
+use std::io::Write;
+
+use clap::CommandFactory;
+
+use crate::{
+    arguments::{Action, Arguments},
+    check, compare, compiled, completions, ensemble, envelope, eval, example, exchange, explain, generate, help, info,
+    linearise, modes, new, page, poses,
+    problem::Outcome,
+    run, screen,
+    selection::Registry,
+    simulate, stability, statics, strength,
+};
+
+/// Does what the arguments ask for, with the cranes of a registry.
+///
+/// # Errors
+/// Those of the command.
+pub fn execute(mut arguments: Arguments, mut registry: Registry, out: &mut dyn Write) -> Outcome<()> {
+    if let Some(choice) = arguments.action.as_mut().and_then(Action::choice) {
+        if choice.compile {
+            return compiled::execute(choice, &registry);
+        }
+        if let Some(file) = choice.file() {
+            choice.name = registry.add_file(file, choice.strict)?;
+        }
+        if choice.rigid {
+            choice.name = registry.add_rigid(&choice.name, "leave `--rigid` out")?;
+        }
+        let name = choice.name.clone();
+        if let Some(poses) = arguments.action.as_ref().and_then(Action::poses) {
+            poses::hold(poses, &name, &mut registry)?;
+        }
+    }
+    if let Some(Action::Compare(options)) = &mut arguments.action {
+        compare::load(options, &mut registry)?;
+    }
+    let registry = &registry;
+    if let Some(asked) = arguments.action.as_ref().and_then(poses::asked) {
+        return poses::rows(&asked, registry, out);
+    }
+    match &arguments.action {
+        None if registry.has(compare::CRANES) => {
+            screen::remark(&format!(
+                "crane without a command compares {} with {} and writes to {}; `crane --help` lists the commands",
+                compare::CRANES[0],
+                compare::CRANES[1],
+                arguments.compare.folder.out.display()
+            ));
+            compare::compare(&arguments.compare, registry, out)
+        }
+        None => Ok(help::grouped(Arguments::command()).print_help()?),
+        Some(Action::Compare(options)) => compare::compare_pair(options, registry, out),
+        Some(Action::Run(options)) => run::run(options, registry, out),
+        Some(Action::Statics(options)) => statics::statics(&options.analysis, registry, out),
+        Some(Action::Simulate(options)) => match &options.ensemble.table {
+            Some(table) => ensemble::simulate(options, table, registry, out),
+            None => simulate::simulate(&options.run, registry, out),
+        },
+        Some(Action::Modes(options)) => modes::modes(options, registry, out),
+        Some(Action::Linearise(options)) => linearise::linearise(options, registry, out),
+        Some(Action::Stability(options)) => stability::stability(options, registry, out),
+        Some(Action::Strength(options)) => strength::strength(options, registry, out),
+        Some(Action::Envelope(options)) => envelope::envelope(options, registry, out),
+        Some(Action::Report(options)) => page::report(options, registry, out),
+        Some(Action::Info(options)) => info::info(options, registry, out),
+        Some(Action::Eval(options)) => eval::eval(options, registry, out),
+        Some(Action::New(options)) => new::new(options, registry, out),
+        Some(Action::Check(options)) => check::check(options, registry, out),
+        Some(Action::Explain(options)) => explain::explain(options, registry, out),
+        Some(Action::Example(options)) => example::example(options, registry, out),
+        Some(Action::Generate(options)) => generate::generate(options, registry, out),
+        Some(Action::Operations { specs }) => generate::operations(specs, out),
+        Some(Action::Schema { of }) => generate::schema(*of, out),
+        Some(Action::Export(options)) => exchange::export(options, registry, out),
+        Some(Action::Import(options)) => exchange::import(options, out),
+        Some(Action::List(options)) => info::list(options.format, registry, out),
+        Some(Action::Completions { shell }) => {
+            // Into memory first: a partial script is of no use.
+            let script = completions::script(*shell)?;
+            Ok(out.write_all(&script)?)
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! Cranes as machine code: a program of its own for a crane, compiled on request and kept.
+
+mod package;
+
+use std::{
+    env,
+    ffi::{OsStr, OsString},
+    path::{Path, PathBuf},
+};
+
+use crane_codegen::{SourceFile, chain::Chain};
+
+use crate::{
+    arguments::Choice,
+    files,
+    problem::Outcome,
+    selection::Registry,
+    spec_file::{load, parse},
+};
+use package::{Package, Product};
+
+/// The crate of the command, from which this program was built and on which the program of a crane depends.
+const CLI: &str = env!("CARGO_MANIFEST_DIR");
+/// The versions of everything that this program was built with.
+pub const LOCK: &str = include_str!("../../../Cargo.lock");
+/// The library of a program of compiled cranes: a crate with a function `main` over a registry; or that of units.
+pub struct Library {
+    /// The crate's name.
+    pub name: &'static str,
+    /// Where its source is.
+    pub folder: &'static str,
+    /// Its features that are on.
+    pub features: &'static [&'static str],
+}
+
+/// The command itself.
+const COMMAND: Library = Library { name: env!("CARGO_PKG_NAME"), folder: CLI, features: &[] };
+/// Functional mock-up units.
+const UNITS: Library =
+    Library { name: "crane-fmu", folder: concat!(env!("CARGO_MANIFEST_DIR"), "/../fmu"), features: &[] };
+/// Environment variable with the command line as typed, for a crane's own program.
+const AS_TYPED: &str = "CRANE_AS_TYPED";
+
+/// Root of the workspace that this program was built from.
+pub fn root() -> &'static Path {
+    Path::new(CLI).ancestors().nth(2).unwrap_or(Path::new(CLI))
+}
+
+/// Does what the arguments of this process ask for, with the chosen crane as machine code.
+pub fn execute(choice: &Choice, registry: &Registry) -> Outcome<()> {
+    let (Chain { name, spec_hash, .. }, text) = match (choice.file(), registry.spec(&choice.name)) {
+        (None, Some(spec)) => parse(SourceFile::new(format!("{}.yaml", choice.name), spec.to_owned()), choice.strict)?,
+        (None, None) => return registry.crane(&choice.name).map(|_| ()),
+        (Some(file), _) => load(file, choice.strict)?,
+    };
+    let package = format!("crane-{name}-{spec_hash}");
+    run_with(&COMMAND, &package, OsStr::new(&choice.name), &[(name, text)])
+}
+
+/// Runs a library in the program of several cranes, given by names and specs; the first one replaces `named`.
+///
+/// # Errors
+/// Cargo is missing or fails, or files cannot be written; the program reports its own errors.
+pub fn run_with(library: &Library, package: &str, named: &OsStr, cranes: &[(String, String)]) -> Outcome<()> {
+    let mut place = cranes.first().map(|(name, _)| OsString::from(name));
+    let arguments: Vec<OsString> = env::args_os()
+        .skip(1)
+        .filter(|argument| argument != "--compile")
+        .map(|argument| match place.take_if(|_| argument == *named) {
+            Some(name) => name,
+            None => argument,
+        })
+        .collect();
+    let package = Package { product: Product::Program, library, name: package, cranes };
+    package::run(&package, |command| {
+        command.args(&arguments).env(AS_TYPED, typed()).env(files::READ_BEFORE, files::read_before());
+    })
+}
+
+/// The shared library of functional mock-up units of a crane as machine code: the kept one, or one that is compiled now.
+pub fn unit(chain: &Chain, spec: &str) -> Outcome<PathBuf> {
+    let Chain { name, spec_hash, .. } = chain;
+    let cranes = [(name.clone(), spec.to_owned())];
+    let package = format!("crane-fmu-{name}-{spec_hash}");
+    let package = Package { product: Product::Unit, library: &UNITS, name: &package, cranes: &cranes };
+    package.kept()?.map_or_else(|| package.compiled(), Ok)
+}
+
+/// The command as it was typed.
+pub fn typed() -> String {
+    env::var(AS_TYPED).unwrap_or_else(|_| {
+        let arguments: Vec<String> = env::args().skip(1).collect();
+        format!("crane {}", arguments.join(" "))
+    })
+}

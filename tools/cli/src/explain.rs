@@ -1,0 +1,17 @@
+//! `crane explain`: how a spec was understood, in words and as a picture.
+
+use std::io::Write;
+
+use crane_codegen::{compile, explain, picture::picture};
+
+use crate::{arguments::Explain, files, problem::Outcome, screen::working, selection::Registry};
+
+/// Prints the chain of a spec, and draws it on request.
+pub fn explain(options: &Explain, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    let (chain, _) = registry.load(&options.spec, false)?;
+    if let Some(file) = &options.svg {
+        files::write_text(file, &picture(&chain))?;
+    }
+    let report = options.operations.then(|| working(&chain, || compile::report(&chain, chain.analyses)));
+    Ok(out.write_all(explain::explain(&chain, report.as_ref()).as_bytes())?)
+}

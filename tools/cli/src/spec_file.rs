@@ -1,0 +1,67 @@
+//! Specs in YAML files: opened, checked, and their warnings shown.
+
+use std::{io, path::Path};
+
+use crane_codegen::{Checked, SourceFile, build, chain::Chain, compile};
+
+use crate::{
+    arguments::STANDARD_INPUT,
+    files,
+    problem::{FAILED, Outcome, Problem},
+    screen,
+};
+
+/// What to do about a file that cannot be read as a spec.
+pub const SPEC: &str = "give a YAML file that describes a crane, or the name of a shipped crane";
+
+/// A valid chain and its text, or every mistake. Warnings are printed, and are mistakes if `strict`.
+///
+/// # Errors
+/// The file cannot be read, or the spec has mistakes.
+pub fn load(spec: &Path, strict: bool) -> Outcome<(Chain, String)> {
+    parse(open(spec, SPEC)?, strict)
+}
+
+/// A valid chain and its text, or every mistake; warnings are printed, and are mistakes if `strict`.
+///
+/// # Errors
+/// Those mistakes.
+pub fn parse(source: SourceFile, strict: bool) -> Outcome<(Chain, String)> {
+    let Checked { chain, warnings } = compile::check(&source).map_err(Problem::mistakes)?;
+    if !warnings.is_empty() {
+        screen::warn(&warnings);
+        if strict {
+            return Err(Problem::Elsewhere(FAILED));
+        }
+    }
+    Ok((chain, source.text))
+}
+
+/// Shows warnings about a crane that appear only with these values of its parameters; returns them as a problem if there are any.
+pub fn warn_of(source: &SourceFile, set: &[(String, f64)]) -> Option<Problem> {
+    let set: Vec<(&str, f64)> = set.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+    let known = compile::check(source).ok()?.warnings;
+    let added = compile::check_with(source, &set).ok()?.warnings.without(&known);
+    (!added.is_empty()).then(|| {
+        screen::warn(&added);
+        Problem::Elsewhere(FAILED)
+    })
+}
+
+/// A file of text, or the standard input; `help`: what kind of file to name.
+///
+/// # Errors
+/// The file cannot be read.
+pub fn open(file: &Path, help: &str) -> Outcome<SourceFile> {
+    let read = if file == Path::new(STANDARD_INPUT) {
+        build::read_with("standard input", io::stdin(), &crane_specs::spec).map(|source| (source, Vec::new()))
+    } else {
+        build::open_with_files(file, &crane_specs::spec)
+    };
+    let (source, read) = read.map_err(|failure| match failure {
+        build::Failure::File(message) => Problem::failed(message, help),
+        build::Failure::Mistakes(mistakes) => Problem::mistakes(mistakes),
+    })?;
+    read.iter().for_each(|file| files::remember(file));
+    Ok(source)
+}
