@@ -1,5 +1,7 @@
 //! The Newton–Raphson iteration.
 
+use std::ops::RangeInclusive;
+
 use nalgebra::DVector;
 
 use super::{
@@ -12,6 +14,11 @@ use crate::CoordinateKind;
 
 /// Halvings of a step before it is given up: 1e-6 of a Newton step no longer makes progress.
 const HALVINGS: u32 = 20;
+/// Halvings before a step with other limits is tried.
+const FIRST: u32 = 4;
+/// Steps in the order in which they are tried: limited only in free directions, if that soon helps; in soft ones; and at last however short.
+const STEPS: [(Limit, RangeInclusive<u32>); 3] =
+    [(Limit::Free, 0..=FIRST), (Limit::Soft, 0..=HALVINGS), (Limit::Free, FIRST + 1..=HALVINGS)];
 /// Maximum rotation in a step, rad: far from equilibrium the tangent says nothing about poses further away.
 const GREATEST_ROTATION: f64 = 1.0;
 
@@ -44,7 +51,7 @@ pub(super) fn iterate(
         if history.len() > settings.iterations {
             break Status::NotConverged;
         }
-        let improved = [Limit::Free, Limit::Soft].into_iter().find_map(|limit| {
+        let improved = STEPS.into_iter().find_map(|(limit, halvings)| {
             let newton = tangent.step(&residual, limit);
             // A stiff connector makes a curved valley: its force grows along a straight step, even if the step leads towards the
             // equilibrium. There a residual is measured by the Newton step from it, in which soft and stiff directions count equally:
@@ -54,7 +61,7 @@ pub(super) fn iterate(
                 !description.connectors.is_empty() && tangent.step(residual, limit).norm() < way
             };
             let step = limited(newton, |i| description.coordinates[i].kind);
-            (0..=HALVINGS).map(|k| 0.5_f64.powi(k.cast_signed())).find_map(|fraction| {
+            halvings.map(|k| 0.5_f64.powi(k.cast_signed())).find_map(|fraction| {
                 let pose = &q + &step * fraction;
                 let residual = equations.residual(&pose);
                 let trial = scale.norm(&residual);

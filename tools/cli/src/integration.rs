@@ -160,19 +160,6 @@ fn show(bar: &ProgressBar) -> impl FnMut(f64) -> ControlFlow<()> {
     }
 }
 
-/// Runs from `start` and records every result: [`runs::record`].
-///
-/// # Errors
-/// The run cannot be started as asked for.
-pub fn record(
-    crane: &dyn DynCrane,
-    start: &Start,
-    settings: &dynamics::Settings,
-    bar: &ProgressBar,
-) -> Outcome<Recorded> {
-    Ok(runs::record(crane, start, settings, &mut show(bar))?)
-}
-
 /// Runs from `start`, once more to estimate the error if `verify`: [`runs::record_checked`].
 pub fn record_checked(
     crane: &dyn DynCrane,

@@ -65,7 +65,7 @@ pub mod toolbox {
     pub use crate::arguments::{Analysis, Choice, Format, Limits, Parameters, Step, Timing, seconds};
     pub use crate::compiled::{Library, run_with};
     pub use crate::figures::{Curve, Mark, PALETTE, Panel};
-    pub use crate::integration::{progress, record, styled};
+    pub use crate::integration::{progress, styled};
     pub use crate::problem::{Outcome, Problem};
     pub use crate::simulate::{file_list, write_figure};
     pub use crate::spec_file::load;

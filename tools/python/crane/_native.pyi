@@ -218,9 +218,9 @@ class Crane:
     def inverse_dynamics(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., n): generalized forces that a motion requires in total, `A a − e`, N and N m."""
     def static_residual(self, q: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
-        """(..., n): `∂E_p/∂q` with the drives where they are at times t, zero in equilibrium, N and N m. t: s, 0 unless given."""
+        """(..., n): `∂E_p/∂q` with the drives where they are at times t, zero in equilibrium, N and N m."""
     def tangent_stiffness(self, q: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
-        """(..., n, n): `∂²E_p/∂q²` with the drives where they are at times t, N/m, N and N m. t: s, 0 unless given."""
+        """(..., n, n): `∂²E_p/∂q²` with the drives where they are at times t, N/m, N and N m."""
     def _small_motions(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., 3, n, n): A, K and D of small motions about poses at rest; `linearise` names them."""
     def _small_motions_about(

@@ -1,7 +1,8 @@
 //! A crane under test, used as the command uses it.
 
+use std::ops::ControlFlow;
+
 use crane_live::LiveCrane;
-use indicatif::ProgressBar;
 
 use super::{
     case::{Finding, expect},
@@ -10,11 +11,12 @@ use super::{
 use crane_model::{
     dyn_crane::DynCrane,
     dynamics::Method,
+    results,
     runs::{self, Recorded},
     statics::{Equilibrium, Settings},
 };
 
-use crane_cli::toolbox::{Problem, Timing, record};
+use crane_cli::toolbox::{Problem, Timing};
 
 /// A crane under test.
 pub struct Subject {
@@ -66,7 +68,9 @@ impl Subject {
         let told = |problem: Problem| problem.message();
         let start = timing.start(crane, false).map_err(told)?;
         let settings = timing.settings(crane, &start, Method::RECOMMENDED).map_err(told)?;
-        let recorded = record(crane, &start, &settings, &ProgressBar::hidden()).map_err(told)?;
+        let checks = (false, results::cautions::BEND);
+        let recorded = runs::record_checked(crane, &start, &settings, checks, &mut |_| ControlFlow::Continue(()))
+            .map_err(|failed| told(failed.into()))?;
         let table = &recorded.table;
         match table.not_finite() {
             Some((row, column)) => {
