@@ -86,3 +86,30 @@ fn prescribed_motions_balance() {
         }
     }
 }
+
+/// A post on a rail, moved by a rigid drive, with an arm on a cylinder with a valve: the rigid drive works also against what the oil pushes.
+const CARRIED: &str = "format: 1\nname: carried\nlinks:\n\
+    - {name: post, joint: {prismatic: {axis: x}}, mass: 50, com: [0, 0, 0]}\n\
+    - {name: arm, placement: {transform: {rotation: {x: 90 deg}}}, joint: {revolute: {axis: z}}, mass: 100, com: [2, 0, 0], inertia: {gyration: [0.2, 1, 1]}}\n\
+    drives:\n\
+    - {coordinate: post_x, rigid: true, motion: {quintic: {from: 0, to: 1.5, duration: 1}}}\n\
+    - {coordinate: arm_psi, stiffness: 1e8, motion: {quintic: {from: 0, to: 0.3, duration: 1}}}\n\
+    cylinders:\n\
+    - {name: lift, coordinate: arm_psi, foot: {link: post, at: [0.1, 0, -1.2]}, head: {link: arm, at: [1.2, -0.1, 0]}, bore: 0.1, rod: 0.06,\n\
+    \u{20}  retracted: 1.3, stroke: 1.2, back_pressure: 3e5, max_pressure: 3e7, bulk_modulus: 1.2e9, hose_volumes: [1e-3, 1e-3],\n\
+    \u{20}  valve: {flow: 1e-3, pressure_drop: 1e6, lag: 0.03, gain: 20}}\n\
+    pump: {max_flow: 2e-3, pressure: 2.5e7}\n\
+    run: {duration: 1.5, output: 0.01}\n";
+
+#[test]
+fn rigid_drives_beside_oil_balance() {
+    let carried = crane(CARRIED);
+    for method in [Method::Bdf, Method::Rosenbrock] {
+        let errors = [1e-5, 1e-7].map(|tolerance| {
+            let [work, _, off] = audit(&carried, method, tolerance);
+            assert!(off < 1e-3 * work, "{method}, {tolerance:e}: off by {off:e} of {work} J");
+            off / work
+        });
+        assert!(errors[1] < 0.2 * errors[0] + 1e-9, "{method}: {errors:?}");
+    }
+}
