@@ -1,11 +1,10 @@
 // Pages inside a notebook, as a browser shows them: `node notebook.js FILE`, with the FILE from notebook.py. A picture goes next to it.
 import assert from "node:assert/strict";
 import { resolve } from "node:path";
-import { chromium } from "playwright-core";
-import { FLAGS, PATIENCE, executablePath } from "./browser.js";
+import { PATIENCE, launch } from "./browser.js";
 
 const file = resolve(process.argv[2]);
-const browser = await chromium.launch({ executablePath, args: FLAGS });
+const browser = await launch();
 const context = await browser.newContext({ offline: true, reducedMotion: "reduce", viewport: { width: 1100, height: 1700 } });
 const page = await context.newPage();
 page.setDefaultTimeout(PATIENCE);

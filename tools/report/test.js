@@ -3,8 +3,7 @@
 import assert from "node:assert/strict";
 import { readFile, stat } from "node:fs/promises";
 import { basename, resolve } from "node:path";
-import { chromium } from "playwright-core";
-import { FLAGS, PATIENCE, executablePath } from "./browser.js";
+import { PATIENCE, launch } from "./browser.js";
 
 /** Rounding to 32 bits, and once more to the shortest text that reads back as the same. */
 const ROUNDING = 2 * 2 ** -24;
@@ -288,7 +287,7 @@ const begin = Date.now();
 assert((await stat(file)).size < MOST_BYTES);
 const text = await readFile(file, "utf8");
 assert.match(text, /http-equiv="Content-Security-Policy" content="default-src 'none'/);
-const browser = await chromium.launch({ executablePath, args: FLAGS });
+const browser = await launch();
 let count = 0;
 const said = await open(browser, { viewport: { width: 1440, height: 900 }, colorScheme: "light" }, async (page) => {
   await seek(page, (await page.evaluate(() => globalThis.report.player.duration)) * 0.32);
@@ -339,7 +338,7 @@ assert.deepEqual(said, [], "the page says or asks for something");
 await browser.close();
 
 // Without 3-D, everything else is there.
-const flat = await chromium.launch({ executablePath, args: [...FLAGS.filter((flag) => !/gl|swift/.test(flag)), "--disable-3d-apis"] });
+const flat = await launch({ flat: true });
 const complaints = await open(flat, { viewport: { width: 1000, height: 700 } }, async (page) => {
   assert.match(await page.locator("#view").textContent(), /3-D is not available/);
   assert.equal((await panels(page)).length, count);

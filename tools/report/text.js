@@ -2,11 +2,9 @@
 // beyond its limit stands out, and no value is missing. Without 3-D, so that it takes a second per page.
 import assert from "node:assert/strict";
 import { basename, resolve } from "node:path";
-import { chromium } from "playwright-core";
-import { FLAGS, PATIENCE, executablePath } from "./browser.js";
+import { PATIENCE, launch } from "./browser.js";
 
-const flags = [...FLAGS.filter((flag) => !/gl|swift/.test(flag)), "--disable-3d-apis"];
-const browser = await chromium.launch({ executablePath, args: flags });
+const browser = await launch({ flat: true });
 const context = await browser.newContext({ offline: true, reducedMotion: "reduce", viewport: { width: 1000, height: 700 } });
 /** Colour of what is beyond its limit, on light paper. */
 const RED = "rgb(179, 38, 30)";

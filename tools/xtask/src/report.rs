@@ -43,7 +43,6 @@ pub fn is_current() -> Result<(), String> {
 
 /// What a notebook shows of a crane and of a run, in headless Chromium.
 pub fn in_notebook() -> Result<(), String> {
-    browser()?;
     let file = workspace::root().join("out/notebook.html");
     fs::create_dir_all(workspace::root().join("out")).map_err(|error| format!("out: {error}"))?;
     step::finish(
@@ -52,19 +51,9 @@ pub fn in_notebook() -> Result<(), String> {
     step::finish(in_folder("node").arg("notebook.js").arg(file))
 }
 
-/// Whether there is a browser.
-fn browser() -> Result<(), String> {
-    let chromium = std::env::var("CHROMIUM").unwrap_or_else(|_| "/usr/bin/chromium".to_owned());
-    if std::path::Path::new(&chromium).exists() {
-        return Ok(());
-    }
-    Err(format!("{chromium} is missing (Debian: apt-get install chromium; elsewhere set CHROMIUM)"))
-}
-
 /// Pages of several cranes in headless Chromium; that of the default run is compared with its CSV files. Of all shipped cranes, what the
 /// pages say is compared with what the command wrote.
 pub fn in_browser() -> Result<(), String> {
-    browser()?;
     let out = workspace::root().join("out");
     let files = ["report.html", "eight_link_flexible.csv", "eight_link_rigid.csv"].map(|name| out.join(name));
     step::finish(in_folder("node").arg("test.js").args(files))?;
