@@ -12,6 +12,8 @@ use super::{
 
 /// First step tried, s: a crane starts smoothly, and steps may grow by a factor of three.
 pub(super) const FIRST: f64 = 1e-4;
+/// Longest first step after a drive has reached or left its limit, s.
+const AFRESH: f64 = 1e-3;
 /// Longest step, s: ten steps per period for a load that swings once per second.
 pub(super) const LONGEST: f64 = 0.1;
 /// Safety factor on the step size at which the error would equal the tolerance.
@@ -131,6 +133,9 @@ impl<F: Formula + Send> Stepper for Adaptive<'_, F> {
             if meets && found.is_none() {
                 self.steps += 1;
                 let reached = if stops { stop } else { self.step.reached() };
+                if change < f64::INFINITY && self.switches.is_of_limit() {
+                    self.next = self.next.min(AFRESH);
+                }
                 self.accept(reached);
                 return Ok(reached);
             }

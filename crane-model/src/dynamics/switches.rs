@@ -1,16 +1,21 @@
-//! Where laws of forces change branch: a foot meets the ground, a rope becomes taut, a valve opens.
+//! Where laws of forces change branch: a foot meets the ground, a rope becomes taut, a drive reaches its limit, a valve opens.
 //!
 //! There the force is continuous but its slope jumps, so a step across such a change is of low order, however smooth the motion is before
-//! and after, and its error estimate says little. Adaptive methods therefore end a step where a contact changes, and a step that failed
-//! where any law does.
+//! and after, and its error estimate says little: a drive at its limit moves a joint along a parabola, over which a long step is exact, also where the
+//! drive has long left the limit. Adaptive methods therefore end a step where a contact changes or a drive reaches or leaves its limit, and a
+//! step that failed where any law does.
 
 use super::{contacts::Contacts, equations::Equations};
-use crate::{dyn_crane::DynModel, force_states::ForceStates, stateful_force::StateAt};
+use crate::{
+    dyn_crane::{DynDynamics, DynModel},
+    force_states::ForceStates,
+    stateful_force::StateAt,
+};
 
 /// Which laws are watched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Watched {
-    /// One-sided supports, end stops and ropes.
+    /// One-sided supports, end stops and ropes, and limits of drives.
     Contacts,
     /// Also forces with states of their own: valves, cylinders, bristles.
     All,
@@ -19,10 +24,13 @@ pub(super) enum Watched {
 /// The laws of a crane that have branches.
 pub(super) struct Switches {
     contacts: Contacts,
+    limits: DriveLimits,
     states: ForceStates,
     motion: Vec<f64>,
     /// The branch that each law is on: at the beginning of a step, and at a later time.
     branches: [Vec<bool>; 2],
+    /// Whether the last change that was found is that of a drive which reaches or leaves its limit.
+    of_limit: bool,
     /// The time at which the first list of branches is known to hold for contacts, s: the end of one step is the beginning of the next.
     known_at: f64,
 }
@@ -38,11 +46,19 @@ impl Switches {
 
     /// The laws of a crane, with storage for motions of `len` numbers.
     pub fn new(crane: &dyn DynModel, len: usize) -> Self {
-        let contacts = Contacts::new(crane);
+        let (contacts, limits) = (Contacts::new(crane), DriveLimits::new(crane));
         let states = ForceStates::new(crane.description());
         // No step allocates: a cylinder has three states and up to eleven branches, a bristle one of each, the pump two branches.
-        let branches = || Vec::with_capacity(contacts.len() + 4 * states.len() + 2);
-        Self { branches: [branches(), branches()], contacts, states, motion: vec![0.0; len], known_at: f64::NAN }
+        let branches = || Vec::with_capacity(contacts.len() + 2 * limits.drives.len() + 4 * states.len() + 2);
+        Self {
+            branches: [branches(), branches()],
+            contacts,
+            limits,
+            states,
+            motion: vec![0.0; len],
+            of_limit: false,
+            known_at: f64::NAN,
+        }
     }
 
     /// Forgets the last step.
@@ -60,7 +76,10 @@ impl Switches {
         [begin, end]: [f64; 2],
         at: &dyn Fn(f64, &mut [f64]),
     ) -> Option<f64> {
-        if self.contacts.is_empty() && (watched == Watched::Contacts || self.states.is_empty()) {
+        if self.contacts.is_empty()
+            && self.limits.drives.is_empty()
+            && (watched == Watched::Contacts || self.states.is_empty())
+        {
             return None;
         }
         let known_at = std::mem::replace(&mut self.known_at, f64::NAN);
@@ -87,8 +106,18 @@ impl Switches {
                 before = middle;
             }
         }
+        // The last list is that of some time in between.
+        branches(after, 1);
+        let contacts = self.contacts.len();
+        self.of_limit = self.branches[0][..contacts] == self.branches[1][..contacts];
         let near = Self::END_MARGIN * (end - begin);
         (after > begin + near && after < end - near).then_some(after)
+    }
+
+    /// Whether the change that was found last is that of a drive which reaches or leaves its limit: what follows is another motion, over
+    /// which the length of the steps before says nothing.
+    pub fn is_of_limit(&self) -> bool {
+        self.of_limit
     }
 
     /// Writes the branches at a time and at `motion` into the first or the second list.
@@ -98,9 +127,42 @@ impl Switches {
         let branches = &mut self.branches[list];
         branches.clear();
         self.contacts.indicators(crane, t, (q, v), |indicator| branches.push(indicator > 0.0));
+        self.limits.branches(crane, t, (q, v), branches);
         if watched == Watched::All {
             let x = &self.motion[2 * q.len()..][..self.states.len()];
             self.states.branches(crane, &StateAt { t, q, v, x }, branches);
+        }
+    }
+}
+
+/// The limits of the drives' efforts.
+struct DriveLimits {
+    /// Coordinate and maximum effort of each drive with a limit, N m or N.
+    drives: Vec<(usize, f64)>,
+    forces: Vec<f64>,
+}
+
+impl DriveLimits {
+    /// Fraction of its limit at which a drive is in the middle of the rounded corner of its law.
+    const CORNER: f64 = 0.98;
+
+    fn new(crane: &dyn DynModel) -> Self {
+        let drives = &crane.description().drives;
+        let (mut limits, rest) = (vec![[0.0; 2]; drives.len()], vec![0.0; crane.size()]);
+        crane.drive_limits(0.0, &rest, &rest, &mut limits);
+        let limited = drives.iter().zip(limits).filter(|(_, [limit, _])| *limit > 0.0);
+        Self { drives: limited.map(|(drive, [limit, _])| (drive.coordinate, limit)).collect(), forces: rest }
+    }
+
+    /// Appends for each drive whether it pushes, and pulls, as much as it can.
+    fn branches(&mut self, crane: &dyn DynDynamics, t: f64, (q, v): (&[f64], &[f64]), out: &mut Vec<bool>) {
+        if self.drives.is_empty() {
+            return;
+        }
+        crane.drive_forces(t, q, v, &mut self.forces);
+        for (coordinate, limit) in &self.drives {
+            let force = self.forces[*coordinate] / limit;
+            out.extend([force > Self::CORNER, force < -Self::CORNER]);
         }
     }
 }

@@ -16,9 +16,14 @@ use crate::CoordinateKind;
 const HALVINGS: u32 = 20;
 /// Halvings before a step with other limits is tried.
 const FIRST: u32 = 4;
-/// Steps in the order in which they are tried: limited only in free directions, if that soon helps; in soft ones; and at last however short.
-const STEPS: [(Limit, RangeInclusive<u32>); 3] =
-    [(Limit::Free, 0..=FIRST), (Limit::Soft, 0..=HALVINGS), (Limit::Free, FIRST + 1..=HALVINGS)];
+
+/// Limits of a step, with the halvings of it, in the order in which they are tried.
+pub(super) type Steps = [(Limit, RangeInclusive<u32>)];
+/// Limited only in free directions, if that soon helps; in soft ones; and at last however short.
+pub(super) const BOLD: &Steps =
+    &[(Limit::Free, 0..=FIRST), (Limit::Soft, 0..=HALVINGS), (Limit::Free, FIRST + 1..=HALVINGS)];
+/// Limited in soft directions, in which a crane on feet that have lifted would move far.
+pub(super) const CAUTIOUS: &Steps = &[(Limit::Soft, 0..=HALVINGS), (Limit::Free, 0..=HALVINGS)];
 /// Maximum rotation in a step, rad: far from equilibrium the tangent says nothing about poses further away.
 const GREATEST_ROTATION: f64 = 1.0;
 
@@ -28,6 +33,7 @@ pub(super) fn iterate(
     mut q: DVector<f64>,
     settings: &Settings,
     scale: &ResidualScale,
+    steps: &Steps,
 ) -> Equilibrium {
     let load_steps = None;
     if q.is_empty() {
@@ -51,7 +57,7 @@ pub(super) fn iterate(
         if history.len() > settings.iterations {
             break Status::NotConverged;
         }
-        let improved = STEPS.into_iter().find_map(|(limit, halvings)| {
+        let improved = steps.iter().cloned().find_map(|(limit, halvings)| {
             let newton = tangent.step(&residual, limit);
             // A stiff connector makes a curved valley: its force grows along a straight step, even if the step leads towards the
             // equilibrium. There a residual is measured by the Newton step from it, in which soft and stiff directions count equally:

@@ -18,7 +18,7 @@ use crate::{
 /// balances at the guess, that of a rotation the largest moment: N and N m become comparable. Any equilibrium is found,
 /// stable or not; the tangent stiffness there decides which.
 ///
-/// If that fails, or leads from a stable guess to an unstable pose, the load is applied in steps, starting at the guess, and
+/// If that fails, or leads from a stable guess to an unstable pose, steps that hardly move in soft directions are tried; then the load is applied in steps, starting at the guess, and
 /// [`Equilibrium::load_steps`] is their number. Springs hold the crane at the guess and are removed as its load is applied:
 ///
 /// ```text
@@ -68,18 +68,22 @@ fn search(equations: &Equations<'_>, q: &[f64], settings: &Settings) -> Equilibr
     found
 }
 
-/// Newton's method, then continuation.
+/// Newton's method, with bold and with cautious steps, then continuation.
 fn search_from(equations: &Equations<'_>, start: &DVector<f64>, settings: &Settings) -> Equilibrium {
     let scale = ResidualScale::at(equations, start);
-    let first = newton::iterate(equations, start.clone(), settings, &scale);
+    let iterate = |q: &DVector<f64>, limits| newton::iterate(equations, q.clone(), settings, &scale, limits);
+    let first = iterate(start, newton::BOLD);
     if settings.load_steps == 0 || !missed(equations, start, settings, &first) {
         return first;
+    }
+    let second = iterate(start, newton::CAUTIOUS);
+    if second.is_stable() {
+        return second;
     }
     let mut load_steps = 0;
     let mut arrive = |q: DVector<f64>, steps: usize| {
         load_steps = steps;
-        let found = newton::iterate(equations, q, settings, &scale);
-        found.is_stable().then_some(found)
+        [newton::BOLD, newton::CAUTIOUS].into_iter().map(|limits| iterate(&q, limits)).find(Equilibrium::is_stable)
     };
     let found = continuation::follow(equations, start, settings.load_steps, &scale, &mut arrive);
     found.map_or(first, |found| Equilibrium { load_steps: Some(load_steps), ..found })
@@ -89,7 +93,7 @@ fn search_from(equations: &Equations<'_>, start: &DVector<f64>, settings: &Setti
 const MEANT: f64 = 0.5;
 
 /// Whether there may be a stable equilibrium that Newton's method did not find: no equilibrium was found, or an unstable one
-/// far from the guess or from a guess that is stable itself.
+/// far from the guess, from a guess that is stable itself, or of a crane on feet.
 fn missed(equations: &Equations<'_>, start: &DVector<f64>, settings: &Settings, found: &Equilibrium) -> bool {
     let description = equations.crane.description();
     let meant = || {
@@ -106,6 +110,7 @@ fn missed(equations: &Equations<'_>, start: &DVector<f64>, settings: &Settings, 
         // Also reported for poses where no step helps; at an equilibrium it is exact.
         Status::Singular { .. } => !found.at_rest(settings),
         Status::NotConverged => true,
-        Status::Unstable { .. } => !meant() || stable(),
+        // A crane that has tipped half off its feet may balance there, besides standing on them.
+        Status::Unstable { .. } => !meant() || stable() || description.supports.iter().any(|foot| foot.one_sided),
     }
 }

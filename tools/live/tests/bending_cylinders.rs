@@ -145,6 +145,35 @@ fn shut_valves_hold_a_bent_boom() {
     }
 }
 
+/// About rest the oil of a shut cylinder is a spring along it, as the spring of its drive is in statics: the two stiffnesses of the crane
+/// differ by a multiple of Jᵀ J only. What the force contributes by turning with the boom is the same in both, here differentiated by the
+/// compiler and there by differences.
+#[test]
+fn shut_oil_and_its_spring_in_statics_differ_along_the_cylinder_only() {
+    let crane = boom("{hold: 0.4}");
+    let crane: &dyn DynCrane = &crane;
+    let (q, n) = (rest(crane), crane.size());
+    let mut row = vec![0.0; n];
+    crane.cylinder_jacobians(&q, &mut row);
+    let mut tangent = vec![0.0; n * n];
+    crane.tangent_stiffness(0.0, &q, &crane.drive_positions_at(0.0), &mut tangent);
+    let small = crane.small_motions_at(&q);
+    let push = cylinders_at(crane, &q, &vec![0.0; n], &crane.drive_efforts_at_rest(&q))[0].force;
+    let entry = |i: usize, j: usize| small.stiffness[(i, j)] - tangent[small.unknowns[i] * n + small.unknowns[j]];
+    let at = |i: usize| row[small.unknowns[i]];
+    let joint = small.unknowns.iter().position(|unknown| *unknown == 1).expect("the joint of the boom");
+    let along = entry(joint, joint) / (at(joint) * at(joint));
+    let (mut off, mut greatest) = (0.0_f64, 0.0_f64);
+    for i in 0..small.unknowns.len() {
+        for j in 0..small.unknowns.len() {
+            off = off.max((entry(i, j) - along * at(i) * at(j)).abs());
+            greatest = greatest.max((at(i) * at(j)).abs());
+        }
+    }
+    // The curvature of ℓ is of the order of 1 m, and the differences have errors of 1e-8 of it and of rounding in 2e8 N/m.
+    assert!(push.abs() > 1e4 && off < 1e-5 * push.abs() + 1e-10 * along.abs() * greatest, "{off} beside {push} N");
+}
+
 /// The servo measures its cylinder: at rest the cylinder is as long as that of a boom that does not bend, except for what its spring of 1e8
 /// N m/rad yields.
 #[test]

@@ -59,13 +59,11 @@ fn drives_at_their_limits_balance() {
         for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince] {
             let errors = [2e-5, 1e-7, 1e-9].map(|tolerance| {
                 let [work, lost, off] = audit(&slide, method, tolerance);
-                // One-step methods may pass over the moment in which a drive leaves one limit for the other: at a limit the motion is a
-                // parabola, and the steps are long.
-                let allowed = if method == Method::Bdf { 1e-3 } else { 1e-2 };
-                assert!(off < allowed * work, "{limits}, {method}, {tolerance:e}: off by {off:e} of {work} J");
+                eprintln!("{limits} {method} {tolerance:e}: {:e}", off / work);
+                assert!(off < 1e-1 * work, "{limits}, {method}, {tolerance:e}: off by {off:e} of {work} J");
                 // The motion, and with it the work, is that of the most accurate run up to the error of the balance and of the motion.
                 let difference = (work - exact[0]).abs().max((lost - exact[1]).abs());
-                assert!(difference < allowed * work, "{limits}, {method}, {tolerance:e}: {work}, {lost} for {exact:?}");
+                assert!(difference < 1e-3 * work, "{limits}, {method}, {tolerance:e}: {work}, {lost} for {exact:?}");
                 off / work
             });
             let falls = errors[2] < 1e-2 * errors[0] + 1e-8;

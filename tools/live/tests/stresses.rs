@@ -172,3 +172,33 @@ fn the_peak_at_a_pin_converges_with_the_square_of_the_sections() {
         assert!(order > 1.6, "{order}: {errors:?}");
     }
 }
+
+/// A force at every place of a beam, at ends of elements, inside them and at both ends: everywhere one section before and one after it, and
+/// between them the shear force jumps by the force.
+#[test]
+fn a_force_has_one_section_on_either_side() {
+    let (length, force) = (4.0, 1e3);
+    for tenth in 1..40 {
+        let place = 0.1 * f64::from(tenth);
+        let beam = crane(&format!(
+            "
+gravity: [0, -{GRAVITY}, 0]
+links:
+  - {{name: beam, joint: {{revolute: {{axis: y}}}}, beam: {{length: {length}, sections: 4, material: steel, {STURDY}}}}}
+drives: [{{coordinate: beam_theta, stiffness: 1e9, motion: {{hold: 0}}}}]
+loads: [{{name: press, link: beam, at: [{place}, 0, 0], force: [0, -{force}, 0]}}]
+"
+        ));
+        let (carried, _) = at_rest(&beam);
+        let here: Vec<_> = carried.iter().filter(|(info, _)| (info.x - place).abs() < 1e-9).collect();
+        let sides: Vec<Side> = here.iter().map(|(info, _)| info.side).collect();
+        assert_eq!(sides, [Side::Before, Side::After], "{place} m");
+        let jump = here[1].1.force.y - here[0].1.force.y;
+        assert!((jump.abs() / force - 1.0).abs() < 1e-6, "{place} m: {jump} N");
+        // Each place of the beam has either one section or one on either side.
+        for (index, (info, _)) in carried.iter().enumerate() {
+            let next = carried.get(index + 1).filter(|(next, _)| (next.x - info.x).abs() < 1e-9);
+            assert_eq!(info.side == Side::Before, next.is_some(), "{place} m: {info:?}");
+        }
+    }
+}
