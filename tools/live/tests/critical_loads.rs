@@ -1,5 +1,7 @@
 //! The load that lifts the first foot and the load that tips the crane, against bisection on statics alone.
 
+use std::f64::consts::PI;
+
 use crane_codegen::{SourceFile, build};
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
@@ -161,6 +163,37 @@ fn the_shipped_loader_has_critical_loads() {
     for (share, expected) in [(1.0 - 1e-6, true), (1.0 + 1e-6, false)] {
         assert_eq!(stands(crane, 0.9 * tips.load, share * tips.load), expected, "{share} of {tips:?}");
     }
+}
+
+/// From the guess statics finds what it finds from the pose with a slightly smaller load, at every slewing angle and with every load up to the
+/// one that tips the crane.
+#[test]
+fn the_shipped_loader_stands_wherever_smaller_loads_lead() {
+    let mut crane = shipped("loader_tipping");
+    let crane: &mut dyn DynCrane = &mut crane;
+    let mut found = 0;
+    for slew in 0..12 {
+        let mut positions: Vec<f64> = crane.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
+        positions[0] = f64::from(slew) * PI / 6.0;
+        let mut led: Option<Vec<f64>> = None;
+        for hundreds in 1..60 {
+            crane.set_parameter(0, 100.0 * f64::from(hundreds)).unwrap();
+            let guess = crane.guess();
+            let hold = |q: &[f64]| crane.equilibrium_holding(&positions, q, &Settings::default());
+            let here = hold(led.as_deref().unwrap_or(&guess));
+            if !here.is_stable() {
+                break;
+            }
+            let from_guess = hold(&guess);
+            assert!(from_guess.is_stable(), "slew {slew}, {hundreds}00 kg: {from_guess}");
+            for (one, other) in from_guess.q.iter().zip(&here.q) {
+                assert!((one - other).abs() < 1e-6, "slew {slew}, {hundreds}00 kg: {one} for {other}");
+            }
+            led = Some(here.q);
+            found += 1;
+        }
+    }
+    assert!(found > 500, "{found}");
 }
 
 #[test]

@@ -48,6 +48,11 @@ const LAG: Usual = Usual {
 };
 
 fn in_pascal(pressure: f64) -> String {
+    /// No pressure in bar or MPa is as large.
+    const LARGEST: f64 = 1e5;
+    if pressure > LARGEST {
+        return format!("it is {:e} bar: write a smaller pressure, in Pa", rounded(1e-5 * pressure));
+    }
     let (bar, mega) = (rounded(1e5 * pressure), rounded(1e6 * pressure));
     format!("write it in Pa: {pressure} bar = {bar:e} Pa, {pressure} MPa = {mega:e} Pa")
 }

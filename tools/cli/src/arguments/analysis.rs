@@ -45,7 +45,7 @@ pub struct Envelope {
     #[arg(long, value_name = "PARAMETER")]
     pub load: Option<String>,
     /// Upper limit of the search for the load, in the unit of its parameter [default: a hundred times the crane's mass]
-    #[arg(long, value_name = "NUMBER")]
+    #[arg(long, value_name = "NUMBER", value_parser = above_zero)]
     pub greatest_load: Option<f64>,
     /// Minimum tipping margin, 1 − overturning / stabilising moment about each tipping line
     #[arg(long, value_name = "NUMBER", default_value_t = 0.0, value_parser = margin)]
@@ -224,7 +224,7 @@ pub struct Eval {
     #[arg(long, value_name = "NUMBERS|FILE", allow_hyphen_values = true)]
     pub v: Option<String>,
     /// Time at which the drive motions are evaluated, s
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = seconds)]
     pub time: f64,
     /// Output format
     #[arg(long, value_enum, default_value_t)]

@@ -10,6 +10,7 @@ use clap::{Args, ValueEnum, ValueHint};
 use crane_model::results::cautions::BEND;
 use crane_page::tables::Report;
 
+use super::number::above_zero;
 use crate::{problem::Outcome, screen};
 
 /// Output format.
@@ -108,7 +109,7 @@ pub struct Parameters {
 #[derive(Clone, Copy, Debug, Args)]
 pub struct Limits {
     /// Bending or torsion of one beam section beyond which a caution is printed, degrees
-    #[arg(long = "bend-limit", value_name = "DEGREES", default_value_t = BEND)]
+    #[arg(long = "bend-limit", value_name = "DEGREES", default_value_t = BEND, value_parser = above_zero)]
     pub bend: f64,
 }
 

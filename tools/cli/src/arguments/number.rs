@@ -2,17 +2,21 @@
 
 use std::num::NonZeroUsize;
 
+fn finite(text: &str) -> Option<f64> {
+    text.parse().ok().filter(|number: &f64| number.is_finite())
+}
+
 /// A length of time.
 ///
 /// # Errors
 /// It is not a number; the message says what to write instead.
 pub fn seconds(text: &str) -> Result<f64, String> {
-    text.parse().map_err(|_| "write a number of seconds, such as 0.5".to_owned())
+    finite(text).ok_or_else(|| "write a number of seconds, such as 0.5".to_owned())
 }
 
 /// An error tolerance.
 pub fn tolerance(text: &str) -> Result<f64, String> {
-    text.parse().map_err(|_| "write a number, such as 1e-4".to_owned())
+    finite(text).ok_or_else(|| "write a number, such as 1e-4".to_owned())
 }
 
 /// A tipping margin.
