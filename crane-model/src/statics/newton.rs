@@ -15,7 +15,7 @@ use crate::CoordinateKind;
 /// Halvings of a step before it is given up: 1e-6 of a Newton step no longer makes progress.
 const HALVINGS: u32 = 20;
 /// Halvings before a step with other limits is tried.
-const FIRST: u32 = 4;
+const FIRST: u32 = 1;
 
 /// Limits of a step, with the halvings of it, in the order in which they are tried.
 pub(super) type Steps = [(Limit, RangeInclusive<u32>)];

@@ -67,7 +67,7 @@ fn wrong_arguments_are_refused_with_the_nearest_right_one() {
     refused(&["simulate", "--tolerance", "abc"], &["'abc'", "such as 1e-4"]);
     refused(&["simulate", "--step", "0"], &["`--step 0`", "positive"]);
     refused(&["simulate", "--duration", "-1"], &["`--duration -1`", "positive"]);
-    refused(&["simulate", "--interval", "nan"], &["`--interval NaN`", "positive"]);
+    refused(&["simulate", "--interval", "nan"], &["'nan'", "--interval", "write a number of seconds"]);
     // The name that it had before.
     refused(&["simulate", "--output", "1e-9"], &["more than a million"]);
     refused(&["simulate", "--step", "1e-300"], &["more than ten billion", "longer `--step`"]);
