@@ -48,7 +48,7 @@ const LAG: Usual = Usual {
 };
 
 fn in_pascal(pressure: f64) -> String {
-    /// No pressure in bar or MPa is as large.
+    /// No pressure in bar or megapascal is as large.
     const LARGEST: f64 = 1e5;
     if pressure > LARGEST {
         return format!("it is {:e} bar: write a smaller pressure, in Pa", rounded(1e-5 * pressure));
