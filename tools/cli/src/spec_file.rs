@@ -62,6 +62,8 @@ pub fn open(file: &Path, help: &str) -> Outcome<SourceFile> {
         build::Failure::File(message) => Problem::failed(message, help),
         build::Failure::Mistakes(mistakes) => Problem::mistakes(mistakes),
     })?;
-    read.iter().for_each(|file| files::remember(file));
+    for file in &read {
+        files::remember(file);
+    }
     Ok(source)
 }
