@@ -6,7 +6,8 @@ use std::{env, fs};
 
 use crate::{step, workspace};
 
-const PAGES: [&str; 2] = ["README.md", "CONTRIBUTING.md"];
+/// The pages.
+pub const PAGES: [&str; 2] = ["README.md", "CONTRIBUTING.md"];
 /// Beginnings of a command of `crane`.
 const CRANE: [&str; 3] = ["cargo run --release -- ", "target/release/crane ", "crane "];
 /// The spec that README.md describes before it uses it.
@@ -64,7 +65,7 @@ fn run(arguments: &str, folder: &std::path::Path) -> Result<(), String> {
 }
 
 /// Checks that the task, the package and the test that a command names exist.
-fn exists(command: &str, tasks: &str) -> Result<(), String> {
+pub fn exists(command: &str, tasks: &str) -> Result<(), String> {
     let words: Vec<&str> = command.split_whitespace().collect();
     let after =
         |flag: &str| words.iter().position(|word| *word == flag).and_then(|place| words.get(place + 1).copied());

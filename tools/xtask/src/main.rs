@@ -9,6 +9,7 @@ mod equations;
 mod fused;
 mod imports;
 mod manual;
+mod named;
 mod new_crane;
 mod no_panic;
 mod oracles;
@@ -164,6 +165,7 @@ fn tests() -> Vec<Step> {
         Step::check("a new crane", new_crane::check),
         Step::check("commands of the manual", manual::check),
         Step::check("commands of the README and of CONTRIBUTING", || commands::check(USAGE)),
+        Step::check("commands that pages name", || named::check(USAGE)),
         Step::check("the manual as a site", book::site),
         Step::check("the Python package", package::check),
         Step::check("random cranes by every way to compute them", outside::ways),

@@ -9,7 +9,7 @@ use std::{env, fs, io};
 use crate::{step, workspace};
 
 /// The list of chapters, in order.
-const SUMMARY: &str = "docs/SUMMARY.md";
+pub const SUMMARY: &str = "docs/SUMMARY.md";
 
 /// Runs all commands of all chapters.
 pub fn check() -> Result<(), String> {
@@ -41,22 +41,24 @@ pub fn check() -> Result<(), String> {
 }
 
 /// Chapters of the manual that a list links to.
-fn chapters(summary: &str) -> Vec<String> {
+pub fn chapters(summary: &str) -> Vec<String> {
     let links = summary.split("](").skip(1).filter_map(|rest| rest.split(')').next());
     links.filter(|link| link.starts_with("manual/")).map(|link| format!("docs/{link}")).collect()
 }
 
 /// A block of code.
 #[derive(Debug, Default, PartialEq)]
-struct Block {
-    language: String,
-    text: String,
+pub struct Block {
+    /// What follows the fence.
+    pub language: String,
+    /// Its lines.
+    pub text: String,
     /// Name of the file that it is.
-    file: Option<String>,
+    pub file: Option<String>,
 }
 
 /// Blocks of code of a page, in order.
-fn blocks(page: &str) -> Vec<Block> {
+pub fn blocks(page: &str) -> Vec<Block> {
     let (mut blocks, mut open, mut file) = (Vec::new(), None::<Block>, None);
     for line in page.lines() {
         match (&mut open, line.strip_prefix("```")) {
