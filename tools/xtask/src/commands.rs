@@ -9,7 +9,7 @@ use crate::{step, workspace};
 /// The pages.
 pub const PAGES: [&str; 2] = ["README.md", "CONTRIBUTING.md"];
 /// Beginnings of a command of `crane`.
-const CRANE: [&str; 3] = ["cargo run --release -- ", "target/release/crane ", "crane "];
+pub const CRANE: [&str; 3] = ["cargo run --release -- ", "target/release/crane ", "crane "];
 /// The spec that README.md describes before it uses it.
 const SPEC: &str = "my_crane.yaml";
 

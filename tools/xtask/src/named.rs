@@ -17,10 +17,10 @@ pub fn check(tasks: &str) -> Result<(), String> {
         commands::PAGES.iter().map(ToString::to_string).chain(manual::chapters(&workspace::read(manual::SUMMARY)?))
     {
         for command in named(&workspace::read(&page)?) {
-            let told = |problem: String| format!("{page}: `{command}`: {problem}");
-            match command.strip_prefix("crane ").or_else(|| command.strip_prefix("cargo run --release -- ")) {
-                Some(arguments) => has(arguments, &mut helps).map_err(told)?,
-                None => commands::exists(&command, tasks).map_err(told)?,
+            let locate = |problem: String| format!("{page}: `{command}`: {problem}");
+            match commands::CRANE.iter().find_map(|start| command.strip_prefix(start)) {
+                Some(arguments) => has(arguments, &mut helps).map_err(locate)?,
+                None => commands::exists(&command, tasks).map_err(locate)?,
             }
             checked += 1;
         }
@@ -54,7 +54,8 @@ fn named(page: &str) -> Vec<String> {
 /// Whether `crane` has a command and its options. What is written in capitals stands for something else.
 fn has(arguments: &str, helps: &mut BTreeMap<String, String>) -> Result<(), String> {
     let mut words = arguments.split([' ', '[', ']', '|']).filter(|word| !word.is_empty());
-    let Some(command) = words.next().filter(|word| *word == word.to_lowercase()) else { return Ok(()) };
+    let is_command = |word: &&str| *word == word.to_lowercase() && !word.starts_with('-');
+    let Some(command) = words.next().filter(is_command) else { return Ok(()) };
     let mut help = |arguments: &[&str]| -> Result<String, String> {
         let key = arguments.join(" ");
         if let Some(known) = helps.get(&key) {
@@ -66,9 +67,6 @@ fn has(arguments: &str, helps: &mut BTreeMap<String, String>) -> Result<(), Stri
         helps.insert(key, text.clone());
         Ok(text)
     };
-    if command.starts_with('-') {
-        return Ok(());
-    }
     if !lists(&help(&[])?, command) {
         return Err(format!("there is no command `{command}`"));
     }
