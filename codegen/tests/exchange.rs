@@ -100,7 +100,7 @@ fn a_joint_that_mimics_another_is_coupled_to_it() {
     let urdf = urdf.replace("sholder\" multiplier=\"2\"", "shoulder\" multiplier=\"2\" offset=\"0.3\"");
     let spec = spec("arm.urdf", &urdf);
     let crane = chain(&SourceFile::new("arm", spec));
-    let [connector] = crane.connectors.as_slice() else { panic!("one coupling") };
+    let [connector] = crane.connectors() else { panic!("one coupling") };
     let Strain::Coupling { coordinate, leader, ratio } = &connector.strain else { panic!("{connector:?}") };
     assert_eq!([coordinate.0, leader.0], [1, 0]);
     assert_eq!(ratio.at(&[]), 2.0);
@@ -196,7 +196,7 @@ fn an_arm_in_mjcf_is_a_crane() {
     };
     assert_eq!(friction, 1.5);
     // The rod is coupled to the elbow.
-    let [connector] = crane.connectors.as_slice() else { panic!("one coupling") };
+    let [connector] = crane.connectors() else { panic!("one coupling") };
     let Strain::Coupling { coordinate, leader, ratio } = &connector.strain else { panic!("{connector:?}") };
     assert_eq!(([coordinate.0, leader.0], ratio.at(&[])), ([3, 2], -0.25));
     assert_eq!(crane.rigid_drives().count(), 1);

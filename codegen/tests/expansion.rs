@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use crane_codegen::chain::{Chain, Inertia, Step, Value};
+use crane_codegen::chain::{Chain, Inertia, Spring, Step, Value};
 use crane_codegen::{SourceFile, compile, read, validate};
 
 /// The chain of a spec with the given links and further keys.
@@ -46,12 +46,12 @@ fn elements_one_by_one_make_the_beam_of_equal_sections() {
             )
         })
         .collect();
-    let springs: Vec<String> = equal
-        .beam_springs
+    let springs: Vec<&Spring> = equal.element_springs().collect();
+    let springs: Vec<String> = springs
         .chunks(3)
         .map(|spring| {
-            let directions = |get: fn(&crane_codegen::chain::BeamSpring) -> &Value| {
-                let [psi, theta, phi] = [0, 1, 2].map(|k| get(&spring[k]).at(&[]));
+            let directions = |get: fn(&Spring) -> &Value| {
+                let [psi, theta, phi] = [0, 1, 2].map(|k| get(spring[k]).at(&[]));
                 format!("{{psi: {psi:?}, theta: {theta:?}, phi: {phi:?}}}")
             };
             format!("{{stiffness: {}, damping: {}}}", directions(|s| &s.stiffness), directions(|s| &s.damping))
@@ -59,7 +59,7 @@ fn elements_one_by_one_make_the_beam_of_equal_sections() {
         .collect();
     let given = beam(&format!("elements: [{}], springs: [{}]", elements.join(", "), springs.join(", ")));
     assert_eq!(given.coordinates, equal.coordinates);
-    assert_eq!(given.beam_springs, equal.beam_springs);
+    assert_eq!(given.forces, equal.forces);
     for (a, b) in given.bodies.iter().zip(&equal.bodies) {
         assert_eq!(a.path, b.path);
         let (a, b) = (numbers(a.inertia.as_ref().expect("mass")), numbers(b.inertia.as_ref().expect("mass")));
@@ -72,7 +72,7 @@ fn elements_one_by_one_make_the_beam_of_equal_sections() {
 fn a_rigid_beam_is_one_body_of_the_same_mass() {
     let (rigid, flexible) = (beam(&format!("sections: rigid, {STEEL}")), beam(&format!("sections: 5, {STEEL}")));
     assert_eq!(rigid.coordinates.len(), 1);
-    assert!(rigid.beam_springs.is_empty());
+    assert!(rigid.forces.is_empty());
     assert_eq!((rigid.bodies[0].name.as_str(), rigid.bodies[1].path.len()), ("boom", 1));
     assert_eq!(rigid.bodies[1].path[0], Step::Translate([2.0.into(), Value::ZERO, Value::ZERO]));
     let mass = |chain: &Chain| -> f64 { chain.bodies.iter().flat_map(|b| &b.inertia).map(|i| i.mass.at(&[])).sum() };
@@ -99,7 +99,7 @@ fn lengths_and_sections_can_be_live() {
          beam: {length: reach, sections: 2, material: {E: 2.1e11, G: 8.1e10, density: 7850}, section: {tube: {diameter: 0.1, thickness: wall}}}\n",
     );
     let fixed = beam(&format!("sections: 2, {STEEL}"));
-    for (a, b) in live.beam_springs.iter().zip(&fixed.beam_springs) {
+    for (a, b) in live.element_springs().zip(fixed.element_springs()) {
         assert!((a.stiffness.at(&[2.0, 0.005]) / b.stiffness.at(&[]) - 1.0).abs() < 1e-14);
         // s = E J/d: half the length, twice the stiffness.
         assert!((a.stiffness.at(&[1.0, 0.005]) / b.stiffness.at(&[]) - 2.0).abs() < 1e-14);

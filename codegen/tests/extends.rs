@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crane_codegen::chain::{Chain, Profile};
+use crane_codegen::chain::{Chain, Group, Profile};
 use crane_codegen::{Diagnostics, SourceFile, build, compile};
 
 /// A folder of this test with files in it.
@@ -129,7 +129,7 @@ links:
     let middle = load("sub/middle.yaml");
     assert_eq!(names(&middle), ["arm_theta", "hand_x"]);
     assert_eq!((middle.run.duration, middle.run.output), (4.0, 0.1));
-    assert_eq!((middle.drives.len(), middle.joint_dampers.len()), (1, 0));
+    assert_eq!((middle.drives.len(), middle.of(Group::JointDampers).len()), (1, 0));
     let last = load("last.yaml");
     assert_eq!(
         (last.name.as_str(), names(&last)),

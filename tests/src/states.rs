@@ -1,6 +1,6 @@
 //! Random states with fixed seeds.
 
-use crane_codegen::chain::{Chain, CoordinateKind};
+use crane_codegen::chain::{Chain, CoordinateId, CoordinateKind};
 use fastrand::Rng;
 
 use crate::quantities::State;
@@ -17,8 +17,7 @@ pub fn far(chain: &Chain, count: usize, seed: u64) -> Vec<State> {
                 .iter()
                 .enumerate()
                 .map(|(i, coordinate)| {
-                    let soft = chain.beam_springs.iter().any(|e| e.coordinate.0 == i)
-                        || chain.base.iter().flatten().any(|b| b.0 == i);
+                    let soft = chain.is_of_element(CoordinateId(i)) || chain.base.iter().flatten().any(|b| b.0 == i);
                     match coordinate.kind {
                         CoordinateKind::Rotation if soft => symmetric(0.5),
                         CoordinateKind::Rotation => symmetric(std::f64::consts::PI),

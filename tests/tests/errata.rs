@@ -1,7 +1,7 @@
 //! The effect of the errors in the printed formulas [Urbaś 2016], each on a crane where it is visible. docs/EQUATIONS.md
 //! explains them.
 
-use crane_codegen::chain::Inertia;
+use crane_codegen::chain::{Force, Group, Inertia};
 use crane_model::nalgebra::{DVector, Matrix3, Matrix4, Matrix6, SMatrix, Vector3, Vector6};
 use crane_tests::interpreted::Interpreted;
 use crane_tests::{states, workspace};
@@ -154,7 +154,7 @@ fn cantilever() -> (Vec<f64>, f64) {
         Some(*end)
     });
     // Three springs at the beginning of every element but the first.
-    let joints = chain.beam_springs.len() / 3;
+    let joints = chain.element_springs().count() / 3;
     (ends.take(joints).collect(), 1.0 / joints as f64)
 }
 
@@ -185,8 +185,9 @@ fn eqs_11_14_15_with_one_spring_too_many_are_too_soft() {
 fn eq_14_with_positions_in_the_dissipation_dissipates_at_rest() {
     let crane = Interpreted::new(workspace::chain("eight_link_flexible"));
     let state = crane_tests::quantities::State { t: 100.0, ..crane.equilibrium() };
-    let printed: f64 =
-        crane.chain.beam_springs.iter().map(|e| e.damping.at(&[]) * state.q[e.coordinate.0].powi(2)).sum();
+    let elements = crane.chain.of(Group::Elements).iter();
+    let damper = |force: &Force| Some((force.coordinate()?.0, force.spring()?.damping.at(&[])));
+    let printed: f64 = elements.filter_map(damper).map(|(j, damping)| damping * state.q[j].powi(2)).sum();
     let mut at_rest = state.clone();
     at_rest.v.fill(0.0);
     assert_eq!(crane.scalar("dissipation", &at_rest), 0.0);

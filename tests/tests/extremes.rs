@@ -1,6 +1,6 @@
 //! Identities on random cranes whose stiffnesses and masses span many powers of ten, by the interpreter.
 
-use crane_codegen::chain::{Chain, Transmission, Value};
+use crane_codegen::chain::{Chain, Group, Law, Transmission, Value};
 use crane_codegen::program::{Argument, Inputs};
 use crane_model::nalgebra::{DMatrix, DVector};
 use crane_tests::dual::Dual;
@@ -49,7 +49,10 @@ impl Extreme {
                 scaled(stiffness, drives);
             }
         }
-        chain.beam_springs.iter_mut().for_each(|element| scaled(&mut element.stiffness, elements));
+        for force in chain.forces.iter_mut().filter(|force| force.group == Group::Elements) {
+            let Law::Spring(spring) = &mut force.law else { unreachable!("elements have springs") };
+            scaled(&mut spring.stiffness, elements);
+        }
         for stiffness in chain.supports.iter_mut().flat_map(|support| &mut support.stiffness) {
             scaled(stiffness, supports);
         }

@@ -1,6 +1,6 @@
 //! Physical identities on random cranes with fixed seeds, by the interpreter.
 
-use crane_codegen::chain::{Chain, Connector, CoordinateKind, Cut, Step, Strain};
+use crane_codegen::chain::{Chain, CoordinateKind, Cut, Force, Step};
 use crane_codegen::program::{Argument, Inputs};
 use crane_model::nalgebra::{DMatrix, DVector, Rotation2, Vector2};
 use crane_tests::dual::Dual;
@@ -154,8 +154,8 @@ fn wrenches(crane: &Interpreted, state: &State, a: &DVector<f64>) -> Vec<[f64; 6
 fn forces_between_points(crane: &Interpreted, state: &State) -> DVector<f64> {
     let inputs = crane.inputs(state);
     let (tensions, rows) = (crane.get("connector_tensions", &inputs, 0), crane.get("connector_jacobians", &inputs, 0));
-    let elements = tensions.chunks_exact(3).zip(rows.chunks_exact(crane.size())).zip(&crane.chain.connectors);
-    let between = elements.filter(|(_, connector)| matches!(connector.strain, Strain::Distance(_)));
+    let elements = tensions.chunks_exact(3).zip(rows.chunks_exact(crane.size())).zip(crane.chain.connectors());
+    let between = elements.filter(|(_, connector)| connector.strain.ends().is_some());
     between.fold(DVector::zeros(crane.size()), |sum, ((tension, row), _)| {
         sum - DVector::from_column_slice(row) * tension[0]
     })
@@ -221,7 +221,7 @@ fn cylinders_and_connectors_transmit_what_their_lengths_feel() {
                 let [rows, wrenches] = [rows, wrenches].map(|name| crane.get(name, &crane.inputs(&state), 0));
                 let elements = rows.chunks_exact(crane.size()).zip(wrenches.chunks_exact(6 * cuts.len()));
                 for (index, (row, wrenches)) in elements.enumerate() {
-                    let between = sign > 0.0 || chain.connectors[index].joins_bodies();
+                    let between = sign > 0.0 || chain.connectors()[index].strain.joins_bodies();
                     // A linkage that does not close.
                     if !between || row.iter().any(|entry| entry.is_nan()) {
                         continue;
@@ -436,7 +436,7 @@ fn the_tangent_is_the_derivative_of_the_residual_at_any_time_and_positions() {
             assert!(work < 1e-12 * tangent.amax() * direction.norm_squared(), "seed {seed}: {work:e}");
         }
         loads += crane.chain.loads.iter().filter(|load| load.scale.is_some()).count();
-        winches += crane.chain.connectors.iter().filter_map(Connector::winch).count();
+        winches += crane.chain.connectors().iter().filter_map(Force::winch).count();
     }
     assert!(loads >= 3 && winches >= 3, "{loads} loads and {winches} winches that change");
 }

@@ -1,17 +1,6 @@
-//! Flexible links: springs between their elements, and data for stresses and pictures.
+//! Flexible links: data for stresses and pictures.
 
-use super::{BodyId, CoordinateId, Inertia, Value};
-
-/// Spring and damper of a rigid element on one coordinate, Eqs. (14)–(15).
-#[derive(Clone, Debug, PartialEq)]
-pub struct BeamSpring {
-    /// The coordinate.
-    pub coordinate: CoordinateId,
-    /// Stiffness, N m/rad.
-    pub stiffness: Value,
-    /// Damping, N m s/rad.
-    pub damping: Value,
-}
+use super::{BodyId, Inertia, Value};
 
 /// Data of a beam for pictures and for its stresses.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,4 +1,4 @@
-//! Drives of joints, and elements that act on a joint in proportion to its rate or acceleration.
+//! Drives of joints, and their rotors.
 
 use super::{CoordinateId, Profile, Value};
 
@@ -100,15 +100,6 @@ impl Drive {
             Transmission::Rigid | Transmission::Oil { .. } => None,
         }
     }
-}
-
-/// Viscous damping of a coordinate.
-#[derive(Clone, Debug, PartialEq)]
-pub struct JointDamper {
-    /// The coordinate.
-    pub coordinate: CoordinateId,
-    /// Damping, N m s/rad or N s/m.
-    pub damping: Value,
 }
 
 /// A rotor that a joint drives through a gear, given by its inertia reflected to the joint: `i² J`, i the gear ratio.

@@ -1,23 +1,70 @@
-//! Force elements on single coordinates with nonlinear laws.
+//! Forces: laws of strains.
 
-use super::{CoordinateId, Value};
+use super::{Chain, CoordinateId, Profile, Strain, Value};
 
-/// A force element: a law that acts on one coordinate of a joint.
+/// A force that resists the growth of a strain s: `F(s, ṡ)`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ForceElement {
-    /// The coordinate.
-    pub coordinate: CoordinateId,
-    /// Its law.
+pub struct Force {
+    /// The group to which it belongs.
+    pub group: Group,
+    /// Name: that of its coordinate, or a unique one of its own.
+    pub name: String,
+    /// How s is measured.
+    pub strain: Strain,
+    /// How F depends on s and its rate.
     pub law: Law,
 }
 
-/// The law of a force element.
+/// A group of forces whose sum, energy and columns of results have a name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Group {
+    /// Springs and dampers between the rigid elements of flexible links, Eqs. (14)–(15).
+    Elements,
+    /// Viscous damping of passive joints.
+    JointDampers,
+    /// End stops of joints.
+    Stops,
+    /// Friction of joints.
+    Friction,
+    /// Elements between two points, and couplings of coordinates.
+    Connectors,
+}
+
+/// How a force depends on its strain s.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Law {
+    /// A spring and a damper.
+    Spring(Spring),
+    /// A rope, which pulls and never pushes.
+    Rope(Rope),
     /// An end stop.
     Stop(Stop),
     /// Friction of a joint.
     Friction(Friction),
+}
+
+/// A spring and a damper, `F = k (s − s₀) + d ṡ − P`; a gas spring pushes with P at s₀, and with more when it is shorter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spring {
+    /// k, N/m or N m/rad.
+    pub stiffness: Value,
+    /// d, N s/m or N m s/rad.
+    pub damping: Value,
+    /// s₀, m or rad.
+    pub length: Value,
+    /// P, N or N m.
+    pub push: Value,
+}
+
+/// A rope, `F = k σ max(0, 1 + a σ̇)` with `σ = max(0, s − ℓ₀(t))`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rope {
+    /// k, N/m.
+    pub stiffness: Value,
+    /// a, s/m.
+    pub damping: Value,
+    /// ℓ₀(t), m: its length without force; a winch changes it.
+    pub length: Profile,
 }
 
 /// An end stop, which pushes when the coordinate is beyond it and never pulls: with the penetration `δ`,
@@ -74,4 +121,107 @@ pub struct Bristle {
     pub stiffness: f64,
     /// σ₁, N m s/rad or N s/m.
     pub damping: f64,
+}
+
+impl Spring {
+    /// A spring without force at 0.
+    #[must_use]
+    pub fn new(stiffness: Value, damping: Value) -> Self {
+        Spring { stiffness, damping, length: Value::ZERO, push: Value::ZERO }
+    }
+}
+
+impl Force {
+    /// A force on a coordinate.
+    #[must_use]
+    pub fn on(chain: &[super::Coordinate], group: Group, id: CoordinateId, law: Law) -> Self {
+        Force { group, name: chain[id.0].name.clone(), strain: Strain::Coordinate(id), law }
+    }
+
+    /// Whether it acts on one coordinate, and on which.
+    #[must_use]
+    pub fn coordinate(&self) -> Option<CoordinateId> {
+        match self.strain {
+            Strain::Coordinate(id) => Some(id),
+            Strain::Distance(_) | Strain::Coupling { .. } => None,
+        }
+    }
+
+    /// Its spring and damper, if it is one.
+    #[must_use]
+    pub fn spring(&self) -> Option<&Spring> {
+        match &self.law {
+            Law::Spring(spring) => Some(spring),
+            Law::Rope(_) | Law::Stop(_) | Law::Friction(_) => None,
+        }
+    }
+
+    /// Whether it is a rope.
+    #[must_use]
+    pub fn is_rope(&self) -> bool {
+        matches!(self.law, Law::Rope(_))
+    }
+
+    /// The motion of its winch.
+    #[must_use]
+    pub fn winch(&self) -> Option<&Profile> {
+        match &self.law {
+            Law::Rope(Rope { length, .. }) if !matches!(length, Profile::Hold(_)) => Some(length),
+            _ => None,
+        }
+    }
+
+    /// Number of intervals in which its winch moves smoothly.
+    #[must_use]
+    pub fn pieces(&self) -> usize {
+        self.winch().map_or(0, |length| length.pieces().len())
+    }
+}
+
+impl Chain {
+    /// The forces of a group.
+    #[must_use]
+    pub fn of(&self, group: Group) -> &[Force] {
+        let first = self.forces.partition_point(|force| force.group < group);
+        let end = self.forces.partition_point(|force| force.group <= group);
+        &self.forces[first..end]
+    }
+
+    /// Elements between two points, and couplings of coordinates.
+    #[must_use]
+    pub fn connectors(&self) -> &[Force] {
+        self.of(Group::Connectors)
+    }
+
+    /// Springs and dampers between the elements of flexible links.
+    pub fn element_springs(&self) -> impl Iterator<Item = &Spring> {
+        self.of(Group::Elements).iter().filter_map(Force::spring)
+    }
+
+    /// Whether a coordinate is one of an element of a flexible link.
+    #[must_use]
+    pub fn is_of_element(&self, id: CoordinateId) -> bool {
+        self.of(Group::Elements).iter().any(|spring| spring.coordinate() == Some(id))
+    }
+
+    /// Joints with friction.
+    pub fn frictions(&self) -> impl Iterator<Item = (CoordinateId, &Friction)> {
+        self.of(Group::Friction).iter().filter_map(|force| match &force.law {
+            Law::Friction(friction) => Some((force.coordinate()?, friction)),
+            Law::Spring(_) | Law::Rope(_) | Law::Stop(_) => None,
+        })
+    }
+
+    /// Joints that stick.
+    pub fn bristles(&self) -> impl Iterator<Item = (CoordinateId, Bristle)> {
+        self.frictions().filter_map(|(coordinate, friction)| Some((coordinate, friction.bristle?)))
+    }
+
+    /// Coordinates with end stops, each once.
+    #[must_use]
+    pub fn stopped(&self) -> Vec<CoordinateId> {
+        let mut stopped: Vec<CoordinateId> = self.of(Group::Stops).iter().filter_map(Force::coordinate).collect();
+        stopped.dedup();
+        stopped
+    }
 }

@@ -4,7 +4,6 @@
 
 mod beam;
 mod body;
-mod connector;
 mod cut;
 mod cylinder;
 mod drive;
@@ -17,16 +16,16 @@ mod parameter;
 mod profile;
 mod run;
 mod start;
+mod strain;
 mod support;
 mod value;
 
-pub use beam::{Beam, BeamSpring, Inside, Moduli, Outline, Section, Side};
+pub use beam::{Beam, Inside, Moduli, Outline, Section, Side};
 pub use body::{Axis, Body, Coordinate, CoordinateKind, Inertia, Part, Step};
-pub use connector::{Attachment, Connector, ConnectorLaw, Strain};
 pub use cut::Cut;
 pub use cylinder::{Cylinder, Linkage, Pin, Pump, Valve};
-pub use drive::{Drive, JointDamper, Rotor, Transmission};
-pub use force::{Bristle, End, ForceElement, Friction, Law, Stop};
+pub use drive::{Drive, Rotor, Transmission};
+pub use force::{Bristle, End, Force, Friction, Group, Law, Rope, Spring, Stop};
 pub use frame::{Frame, Vector};
 pub use input::{Input, InputId};
 pub use load::{Load, LoadAxes};
@@ -34,6 +33,7 @@ pub use loops::Loops;
 pub use parameter::{Bound, Parameter, Refusal, Relation};
 pub use profile::{Profile, Ramp, Segment};
 pub use run::{Analyses, Run};
+pub use strain::{Attachment, Strain};
 pub use support::{Support, SupportKinematics};
 pub use value::{ParameterId, Value};
 
@@ -70,22 +70,16 @@ pub struct Chain {
     pub supports: Vec<Support>,
     /// Data for the stresses of beams, beam by beam from the base to the tip.
     pub beams: Vec<Beam>,
-    /// Springs and dampers between the rigid elements of flexible links, Eqs. (14)–(15).
-    pub beam_springs: Vec<BeamSpring>,
     /// Drives, Eqs. (19)–(21).
     pub drives: Vec<Drive>,
-    /// Viscous damping of passive joints.
-    pub joint_dampers: Vec<JointDamper>,
-    /// End stops and friction of joints.
-    pub forces: Vec<ForceElement>,
+    /// Laws of strains, in the order of their groups.
+    pub forces: Vec<Force>,
     /// External forces and moments.
     pub loads: Vec<Load>,
     /// Hydraulic cylinders of driven joints.
     pub cylinders: Vec<Cylinder>,
     /// The pump that supplies the cylinders.
     pub pump: Option<Pump>,
-    /// Elements between two points, and couplings of coordinates.
-    pub connectors: Vec<Connector>,
     /// Inputs that are set between steps.
     pub inputs: Vec<Input>,
     /// Rotors that joints drive through gears.
@@ -130,39 +124,10 @@ impl Chain {
         steps.any(|step| matches!(step, Step::RotationVector(ids) if ids.contains(&id)))
     }
 
-    /// The end stops.
-    pub fn stops(&self) -> impl Iterator<Item = (CoordinateId, &Stop)> {
-        self.forces.iter().filter_map(|element| match &element.law {
-            Law::Stop(stop) => Some((element.coordinate, stop)),
-            Law::Friction(_) => None,
-        })
-    }
-
-    /// Joints with friction.
-    pub fn frictions(&self) -> impl Iterator<Item = (CoordinateId, &Friction)> {
-        self.forces.iter().filter_map(|element| match &element.law {
-            Law::Friction(friction) => Some((element.coordinate, friction)),
-            Law::Stop(_) => None,
-        })
-    }
-
-    /// Joints that stick.
-    pub fn bristles(&self) -> impl Iterator<Item = (CoordinateId, Bristle)> {
-        self.frictions().filter_map(|(coordinate, friction)| Some((coordinate, friction.bristle?)))
-    }
-
     /// Whether forces have states in addition to pose and rates: oil, and bristles of joints that stick.
     #[must_use]
     pub fn has_force_states(&self) -> bool {
         self.has_valves() || self.bristles().next().is_some()
-    }
-
-    /// Coordinates with end stops, each once.
-    #[must_use]
-    pub fn stopped(&self) -> Vec<CoordinateId> {
-        let mut stopped: Vec<CoordinateId> = self.stops().map(|(coordinate, _)| coordinate).collect();
-        stopped.dedup();
-        stopped
     }
 
     /// Whether any support is one-sided: it presses and never pulls.

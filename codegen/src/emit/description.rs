@@ -7,8 +7,8 @@ use syn::{Item, parse_quote};
 use super::arithmetic::{integer, literal};
 use super::print::constant;
 use crate::chain::{
-    Attachment, BodyId, Bristle, Chain, Connector, ConnectorLaw, CoordinateId, CoordinateKind, Cylinder, Drive,
-    Profile, Side, Strain, SupportKinematics, Value, Valve,
+    Attachment, BodyId, Bristle, Chain, CoordinateId, CoordinateKind, Cylinder, Drive, Force, Profile, Side,
+    SupportKinematics, Value, Valve,
 };
 
 /// The sizes and the `DESCRIPTION`.
@@ -126,7 +126,7 @@ fn description_constant(chain: &Chain) -> Item {
         let (name, pieces) = (text(&load.name), integer(load.pieces()));
         quote!(LoadInfo { name: #name, pieces: #pieces })
     });
-    let connectors = chain.connectors.iter().map(|connector| connector_info(chain, connector));
+    let connectors = chain.connectors().iter().map(|connector| connector_info(chain, connector));
     let inputs = chain.inputs.iter().map(|input| {
         let [name, unit, about] = [&input.name, &input.unit, &input.about].map(|words| text(words));
         let default = literal(input.unless_set.start(&defaults));
@@ -214,7 +214,7 @@ fn role(chain: &Chain, coordinate: usize) -> TokenStream {
         "Driven"
     } else if chain.turns_by_vector(CoordinateId(coordinate)) {
         "ElementVector"
-    } else if chain.beam_springs.iter().any(|e| e.coordinate.0 == coordinate) {
+    } else if chain.is_of_element(CoordinateId(coordinate)) {
         "Element"
     } else {
         "Passive"
@@ -223,19 +223,16 @@ fn role(chain: &Chain, coordinate: usize) -> TokenStream {
     quote!(#role)
 }
 
-fn connector_info(chain: &Chain, connector: &Connector) -> TokenStream {
+fn connector_info(chain: &Chain, connector: &Force) -> TokenStream {
     let name = text(&connector.name);
-    let is_rope = matches!(connector.law, ConnectorLaw::Rope { .. });
-    let [first, end] = chain.spanned(connector).map(integer);
+    let is_rope = connector.is_rope();
+    let [first, end] = chain.spanned(&connector.strain).map(integer);
     let pieces = integer(connector.pieces());
-    let ends = match &connector.strain {
-        Strain::Distance(ends) => {
-            let ends = ends.iter().map(|end| attachment_info(chain, end));
-            quote!(Some([#(#ends),*]))
-        }
-        Strain::Coupling { .. } => quote!(None),
-    };
-    let kind = match chain.kind_of(connector) {
+    let ends = connector.strain.ends().map_or(quote!(None), |ends| {
+        let ends = ends.iter().map(|end| attachment_info(chain, end));
+        quote!(Some([#(#ends),*]))
+    });
+    let kind = match chain.kind_of(&connector.strain) {
         CoordinateKind::Translation => quote!(CoordinateKind::Translation),
         CoordinateKind::Rotation => quote!(CoordinateKind::Rotation),
     };

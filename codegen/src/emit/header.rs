@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::chain::Chain;
+use crate::chain::{Chain, Group};
 use crate::report::Report;
 
 /// The header, without any code.
@@ -17,7 +17,7 @@ pub fn header(chain: &Chain, report: &Report, spec_file: &str) -> String {
             chain.coordinates.len(),
             chain.bodies.len(),
             chain.supports.len(),
-            chain.beam_springs.len(),
+            chain.of(Group::Elements).len(),
             chain.drives.len(),
         ),
         "SI units, angles in rad; the world's z axis points up.".into(),

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::chain::{BodyId, Chain, Connector, Cut, Drive, Load, Section, Side};
+use crate::chain::{BodyId, Chain, Cut, Drive, Force, Load, Section, Side};
 use crate::lower::LoweredProgram;
 use crate::program::{Function, FunctionId, Shape, Struct};
 use crate::symbolic::ExprId;
@@ -78,18 +78,18 @@ impl<'a> Labels<'a> {
                 chain.loads.iter().flat_map(of).nth(slot / 2).cloned()
             }
             Shape::Pairs(_) if function.id == FunctionId::ConnectorLengths => {
-                Some(chain.connectors[slot / 2].name.clone())
+                Some(chain.connectors()[slot / 2].name.clone())
             }
             Shape::Pairs(_) if function.id == FunctionId::WinchPieces => {
-                let of = |connector: &'a Connector| std::iter::repeat_n(&connector.name, connector.pieces());
-                chain.connectors.iter().flat_map(of).nth(slot / 2).cloned()
+                let of = |connector: &'a Force| std::iter::repeat_n(&connector.name, connector.pieces());
+                chain.connectors().iter().flat_map(of).nth(slot / 2).cloned()
             }
             Shape::Pairs(_) => Some(coordinate(chain.drives[slot / 2].coordinate.0).to_owned()),
             Shape::Rows { n, .. } if function.id == FunctionId::CylinderJacobians => {
                 Some(chain.cylinders[slot / n].name.clone())
             }
-            Shape::Rows { n, .. } => Some(chain.connectors[slot / n].name.clone()),
-            Shape::Structs(Struct::Tension, _) => Some(chain.connectors[slot / Struct::Tension.len()].name.clone()),
+            Shape::Rows { n, .. } => Some(chain.connectors()[slot / n].name.clone()),
+            Shape::Structs(Struct::Tension, _) => Some(chain.connectors()[slot / Struct::Tension.len()].name.clone()),
             Shape::Structs(Struct::SectionModuli, _) => {
                 let mut sections = chain.beams.iter().flat_map(|beam| &beam.sections);
                 sections.nth(slot / Struct::SectionModuli.len()).map(|section| self.section(section))
@@ -104,7 +104,7 @@ impl<'a> Labels<'a> {
                 };
                 Some(match function.id {
                     FunctionId::CylinderWrenches => format!("{} – {cut}", chain.cylinders[place / cuts.len()].name),
-                    FunctionId::ConnectorWrenches => format!("{} – {cut}", chain.connectors[place / cuts.len()].name),
+                    FunctionId::ConnectorWrenches => format!("{} – {cut}", chain.connectors()[place / cuts.len()].name),
                     _ => cut,
                 })
             }

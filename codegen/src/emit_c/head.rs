@@ -176,7 +176,7 @@ fn of_argument(argument: Argument) -> &'static str {
 }
 
 fn connectors(chain: &Chain) -> Vec<&str> {
-    chain.connectors.iter().map(|connector| connector.name.as_str()).collect()
+    chain.connectors().iter().map(|connector| connector.name.as_str()).collect()
 }
 
 fn cylinders(chain: &Chain) -> Vec<&str> {

@@ -19,7 +19,7 @@ pub use urdf::urdf;
 
 use std::fmt::Write;
 
-use crate::chain::{Body, Chain, Frame, Step, Vector};
+use crate::chain::{Body, Chain, Frame, Group, Step, Vector};
 
 /// The origin of a crane, and the values of its parameters.
 fn origin(chain: &Chain, parameters: &[f64]) -> String {
@@ -51,9 +51,12 @@ pub fn approximations(chain: &Chain) -> Option<String> {
              products of their angles. Write `section_joint: paper` for a crane that is exported exactly."
         )
     });
-    let joints = (!chain.forces.is_empty()).then(|| "End stops and friction of joints are left out.".to_owned());
+    let joints = [Group::Stops, Group::Friction]
+        .iter()
+        .any(|group| !chain.of(*group).is_empty())
+        .then(|| "End stops and friction of joints are left out.".to_owned());
     let loads = (!chain.loads.is_empty()).then(|| "Loads applied from outside are left out.".to_owned());
-    let connectors = (!chain.connectors.is_empty())
+    let connectors = (!chain.connectors().is_empty())
         .then(|| "Springs and ropes between points and couplings of coordinates are left out.".to_owned());
     let oil = chain.has_valves().then(|| {
         "Cylinders with valves are left out: their joints have no drive and fall; add drives for them.".to_owned()

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::xml::{number_text, numbers};
-use crate::chain::{Chain, CoordinateId, SupportKinematics, Vector};
+use crate::chain::{Chain, CoordinateId, Force, SupportKinematics, Vector};
 
 /// A spring and a damper on a coordinate: its force is `stiffness (rest − q) − damping q̇`.
 #[derive(Default)]
@@ -21,16 +21,17 @@ pub(super) struct JointSpring {
 /// The language allows at most one of these per coordinate.
 pub(super) fn on(chain: &Chain, id: CoordinateId, parameters: &[f64]) -> JointSpring {
     let number = |value: &crate::chain::Value| value.at(parameters);
-    if let Some(spring) = chain.beam_springs.iter().find(|spring| spring.coordinate == id) {
-        JointSpring { stiffness: number(&spring.stiffness), damping: number(&spring.damping), rest: 0.0 }
-    } else if let Some(drive) = chain.drives.iter().find(|drive| drive.coordinate == id) {
+    let mut springs = chain.forces.iter().filter(|force| force.coordinate() == Some(id)).filter_map(Force::spring);
+    if let Some(drive) = chain.drives.iter().find(|drive| drive.coordinate == id) {
         let rest = drive.profile.start(parameters);
         let (stiffness, damping) = drive.spring().map_or((0.0, 0.0), |(s, d)| (number(s), number(d)));
         JointSpring { stiffness, damping, rest }
-    } else if let Some(damper) = chain.joint_dampers.iter().find(|damper| damper.coordinate == id) {
-        JointSpring { damping: number(&damper.damping), ..JointSpring::default() }
     } else {
-        JointSpring::default()
+        springs.next().map_or_else(JointSpring::default, |spring| JointSpring {
+            stiffness: number(&spring.stiffness),
+            damping: number(&spring.damping),
+            rest: 0.0,
+        })
     }
 }
 

@@ -2,6 +2,8 @@
 //! in motion, the force of its cylinder follows from pressures, which are states of the run; at rest it is that of a spring along the
 //! cylinder.
 
+use super::cylinders;
+use super::forces::{Acts, Rest, add};
 use super::model::Model;
 use super::power_limits::delivered;
 use super::profile;
@@ -9,6 +11,55 @@ use super::saturation::Saturation;
 use super::vector::SymmetricMatrix;
 use crate::chain::{Drive, Value};
 use crate::symbolic::Expr;
+
+/// The drives of a chain, without rigid ones.
+pub struct Drives<'a, 'g> {
+    pub model: &'a Model<'g>,
+}
+
+impl<'g> Acts<'g> for Drives<'_, 'g> {
+    fn in_motion(&self) -> Vec<Expr<'g>> {
+        forces(self.model, self.model.t, &self.model.v)
+    }
+
+    /// Those of flexible drives and of cylinders with a valve.
+    fn at_rest(&self, rest: &Rest<'g>) -> Vec<Expr<'g>> {
+        let springs = forces_at_rest(self.model, &rest.positions);
+        if !self.model.chain.has_valves() {
+            return springs;
+        }
+        add(&springs, &cylinders::holding_forces(self.model, &rest.positions))
+    }
+
+    fn energy(&self) -> Option<Expr<'g>> {
+        self.model.chain.drives.iter().any(|drive| drive.spring().is_some()).then(|| energy(self.model))
+    }
+
+    fn dissipation(&self) -> Expr<'g> {
+        dissipation(self.model)
+    }
+
+    fn add_stiffness(&self, rest: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>) {
+        linear_stiffness(self.model, matrix);
+        limited_stiffness(self.model, &rest.positions, matrix);
+    }
+
+    fn add_damping(&self, rest: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>) {
+        linear_damping(self.model, matrix);
+        limited_damping(self.model, &rest.positions, matrix);
+    }
+
+    fn add_step_matrices(&self, [stiffness, damping]: [&mut SymmetricMatrix<'g>; 2]) {
+        linear_stiffness(self.model, stiffness);
+        linear_damping(self.model, damping);
+    }
+
+    fn add_nonlinear(&self, diagonal: &mut [[Expr<'g>; 2]]) {
+        for (sum, own) in diagonal.iter_mut().zip(stiffness_and_damping(self.model)) {
+            *sum = [sum[0] + own[0], sum[1] + own[1]];
+        }
+    }
+}
 
 /// Drives with a spring, with its stiffness and damping.
 fn flexible<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (&'a Drive, &'a Value, &'a Value)> {
@@ -81,7 +132,7 @@ pub fn forces<'g>(model: &Model<'g>, t: Expr<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g
 
 /// Generalized forces of the flexible drives' springs with the crane at rest and the drives at given positions: dampers do not act, even if
 /// a motion is in progress.
-pub fn forces_at_rest<'g>(model: &Model<'g>, positions: &[Expr<'g>]) -> Vec<Expr<'g>> {
+fn forces_at_rest<'g>(model: &Model<'g>, positions: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let mut forces = model.zeros();
     for (drive, stiffness, _) in flexible(model) {
         let stretch = stretch(model, drive, positions);
@@ -109,7 +160,7 @@ fn prescribed<'g>(model: &Model<'g>, of: impl Fn(&Drive) -> Expr<'g>) -> Vec<Opt
 }
 
 /// `E_dr = ½ Σ s (q_dr − q)²` [Urbaś 2016, Eq. (19)]; for a drive with a limit `∫ sat(s e) de`.
-pub fn energy<'g>(model: &Model<'g>) -> Expr<'g> {
+fn energy<'g>(model: &Model<'g>) -> Expr<'g> {
     let positions = positions(model, model.t);
     let twice = linear(model).fold(model.zero(), |sum, (drive, stiffness, _)| {
         sum + model.number(stiffness) * stretch(model, drive, &positions).squared()
@@ -119,7 +170,7 @@ pub fn energy<'g>(model: &Model<'g>) -> Expr<'g> {
 }
 
 /// `−∂t_dr/∂q` and `−∂t_dr/∂q̇` of drives with a limit, coordinate by coordinate.
-pub fn stiffness_and_damping<'g>(model: &Model<'g>) -> Vec<[Expr<'g>; 2]> {
+fn stiffness_and_damping<'g>(model: &Model<'g>) -> Vec<[Expr<'g>; 2]> {
     let mut stiffness_and_damping = vec![[model.zero(); 2]; model.size()];
     for drive in flexible(model) {
         let Some(limit) = drive.0.max_effort() else { continue };
@@ -143,17 +194,17 @@ fn linear<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (&'a Drive, &'a Valu
 }
 
 /// Stiffness of drives without a limit, on the diagonal.
-pub fn linear_stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
+fn linear_stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
     matrix.add_diagonal(linear(model).map(|(drive, s, _)| (drive.coordinate.0, model.number(s))));
 }
 
 /// Damping of drives without a limit, on the diagonal.
-pub fn linear_damping<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
+fn linear_damping<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
     matrix.add_diagonal(linear(model).map(|(drive, _, d)| (drive.coordinate.0, model.number(d))));
 }
 
 /// Stiffness of drives with a limit at rest at given positions, on the diagonal.
-pub fn limited_stiffness<'g>(model: &Model<'g>, positions: &[Expr<'g>], matrix: &mut SymmetricMatrix<'g>) {
+fn limited_stiffness<'g>(model: &Model<'g>, positions: &[Expr<'g>], matrix: &mut SymmetricMatrix<'g>) {
     let stiffness = |((drive, s, _), spring): ((&Drive, &Value, &Value), Saturation<'g>)| {
         (drive.coordinate.0, spring.slope() * model.number(s))
     };
@@ -161,7 +212,7 @@ pub fn limited_stiffness<'g>(model: &Model<'g>, positions: &[Expr<'g>], matrix: 
 }
 
 /// Damping of drives with a limit at rest at given positions, on the diagonal.
-pub fn limited_damping<'g>(model: &Model<'g>, positions: &[Expr<'g>], matrix: &mut SymmetricMatrix<'g>) {
+fn limited_damping<'g>(model: &Model<'g>, positions: &[Expr<'g>], matrix: &mut SymmetricMatrix<'g>) {
     let damping = |((drive, _, d), spring): ((&Drive, &Value, &Value), Saturation<'g>)| {
         (drive.coordinate.0, spring.slope() * model.number(d))
     };
@@ -226,7 +277,7 @@ pub fn power<'g>(model: &Model<'g>, efforts: &[Expr<'g>]) -> Expr<'g> {
 
 /// Power that the drives' dampers dissipate, `Σ d (q̇_dr − q̇)²` (2R of [Urbaś 2016, Eq. (19)]); for a drive with a
 /// limit `(sat(u) − sat(s e)) ė ≥ 0`.
-pub fn dissipation<'g>(model: &Model<'g>) -> Expr<'g> {
+fn dissipation<'g>(model: &Model<'g>) -> Expr<'g> {
     let rate = |drive: &Drive| profile::rate(model, &drive.profile, model.t) - model.v[drive.coordinate.0];
     let linear = linear(model)
         .fold(model.zero(), |sum, (drive, _, damping)| sum + model.number(damping) * rate(drive).squared());

@@ -4,6 +4,7 @@
 //! rate of j.
 
 use super::connectors;
+use super::forces::{Acts, Rest};
 use super::kinematics::Kinematics;
 use super::model::Model;
 use super::profile;
@@ -11,6 +12,40 @@ use super::twist::Twist;
 use super::vector::{SymmetricMatrix, Vec3};
 use crate::chain::{BodyId, Load, LoadAxes, Profile, Value};
 use crate::symbolic::Expr;
+
+/// The loads of a chain.
+pub struct Loads<'a, 'g> {
+    pub model: &'a Model<'g>,
+    pub kinematics: &'a Kinematics<'g>,
+}
+
+impl<'g> Acts<'g> for Loads<'_, 'g> {
+    fn in_motion(&self) -> Vec<Expr<'g>> {
+        forces(self.model, self.kinematics, self.model.t)
+    }
+
+    fn at_rest(&self, rest: &Rest<'g>) -> Vec<Expr<'g>> {
+        forces(self.model, self.kinematics, rest.t)
+    }
+
+    fn energy(&self) -> Option<Expr<'g>> {
+        None
+    }
+
+    fn dissipation(&self) -> Expr<'g> {
+        self.model.zero()
+    }
+
+    fn add_stiffness(&self, rest: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>) {
+        stiffness(self.model, self.kinematics, rest.t, matrix);
+    }
+
+    fn add_damping(&self, _: &Rest<'g>, _: &mut SymmetricMatrix<'g>) {}
+
+    fn add_step_matrices(&self, _: [&mut SymmetricMatrix<'g>; 2]) {}
+
+    fn add_nonlinear(&self, _: &mut [[Expr<'g>; 2]]) {}
+}
 
 /// A load in the world.
 struct Applied<'g> {
@@ -42,7 +77,7 @@ fn applied<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, load: &Load, t: E
 }
 
 /// Generalized forces of the loads at time t.
-pub fn forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, t: Expr<'g>) -> Vec<Expr<'g>> {
+fn forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, t: Expr<'g>) -> Vec<Expr<'g>> {
     let mut forces = model.zeros();
     for load in &model.chain.loads {
         let Applied { at, force, moment } = applied(model, kinematics, load, t);
@@ -122,10 +157,7 @@ pub fn power<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, twists: &[Twist
 
 /// Adds the symmetric part of `−∂f/∂q` of the loads at time t. For a force along fixed axes `∂f/∂q` is symmetric; for a moment, and for a
 /// force that turns with its link, it is not, and there is no potential.
-pub fn stiffness<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, t: Expr<'g>, matrix: &mut SymmetricMatrix<'g>) {
-    if model.chain.loads.is_empty() {
-        return;
-    }
+fn stiffness<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, t: Expr<'g>, matrix: &mut SymmetricMatrix<'g>) {
     let forces = forces(model, kinematics, t);
     let columns: Vec<Vec<Expr<'g>>> = model.q.iter().map(|q| model.graph.derivatives(&forces, *q)).collect();
     for j in 0..columns.len() {

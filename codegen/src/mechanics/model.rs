@@ -86,6 +86,11 @@ impl<'g> Model<'g> {
         .concat()
     }
 
+    /// Two inputs on which no law of a force depends; they stand for its strain and rate while it is differentiated.
+    pub fn free_symbols(&self) -> [Expr<'g>; 2] {
+        [self.base_added_inertia[0], self.base_added_inertia[1]]
+    }
+
     /// The same chain at another pose.
     pub fn at(&self, q: Vec<Expr<'g>>) -> Self {
         Model { q, ..self.clone() }

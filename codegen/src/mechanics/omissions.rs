@@ -1,5 +1,6 @@
 //! Parts of the model that a crane does not need, which are therefore not derived.
 
+use super::forces::Kind;
 use super::kinematics::{Generator, Kinematics};
 use super::model::Model;
 use super::vector::Vec3;
@@ -18,14 +19,10 @@ pub fn left_out(chain: &Chain, analyses: Analyses) -> Vec<(&'static str, &'stati
     out(chain.base.iter().all(Option::is_none), "coordinates of the base", "the base is fixed");
     let absent = chain.base.iter().filter(|c| c.is_none()).count();
     out((1..6).contains(&absent), "some coordinates of the base", "the base moves only as the spec says");
-    out(chain.supports.is_empty(), "supports", "the spec has none");
-    out(chain.beam_springs.is_empty(), "springs and dampers of rigid elements", "no link is flexible");
-    out(chain.drives.is_empty(), "drives", "the spec has none");
-    out(chain.joint_dampers.is_empty(), "viscous damping of joints", "the spec has none");
-    out(chain.stops().next().is_none(), "end stops", "the spec has none");
-    out(chain.frictions().next().is_none(), "friction of joints", "the spec has none");
-    out(chain.loads.is_empty(), "loads applied from outside", "the spec has none");
-    out(chain.connectors.is_empty(), "springs and ropes between points, couplings of coordinates", "the spec has none");
+    for kind in Kind::ALL {
+        let (what, why) = kind.row().absent;
+        out(!kind.is_in(chain), what, why);
+    }
     out(chain.points.is_empty(), "points of interest", "the spec has none");
     out(chain.parameters.is_empty(), "live parameters", "the spec has none: all numbers are compiled in");
     out(

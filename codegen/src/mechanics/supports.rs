@@ -12,9 +12,49 @@ use crate::chain::{CoordinateId, Step, Support, SupportKinematics};
 use crate::symbolic::Expr;
 
 use super::contact::Contact;
+use super::forces::{Acts, Rest};
 use super::kinematics::Kinematics;
 use super::model::Model;
 use super::vector::{Rotation, Symmetric3, SymmetricMatrix, Vec3};
+
+/// The supports of the base.
+pub struct Supports<'a, 'g> {
+    pub model: &'a Model<'g>,
+    pub kinematics: &'a Kinematics<'g>,
+}
+
+impl<'g> Acts<'g> for Supports<'_, 'g> {
+    fn in_motion(&self) -> Vec<Expr<'g>> {
+        forces(self.model, self.kinematics, &self.model.v)
+    }
+
+    fn at_rest(&self, _: &Rest<'g>) -> Vec<Expr<'g>> {
+        forces(self.model, self.kinematics, &self.model.zeros())
+    }
+
+    fn energy(&self) -> Option<Expr<'g>> {
+        Some(energy(self.model, self.kinematics))
+    }
+
+    fn dissipation(&self) -> Expr<'g> {
+        dissipation(self.model, self.kinematics)
+    }
+
+    fn add_stiffness(&self, _: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>) {
+        stiffness(self.model, self.kinematics, matrix);
+    }
+
+    fn add_damping(&self, _: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>) {
+        damping(self.model, self.kinematics, matrix);
+    }
+
+    fn add_step_matrices(&self, [of_stiffness, of_damping]: [&mut SymmetricMatrix<'g>; 2]) {
+        step_stiffness(self.model, self.kinematics, of_stiffness);
+        step_damping(self.model, self.kinematics, of_damping);
+    }
+
+    fn add_nonlinear(&self, _: &mut [[Expr<'g>; 2]]) {}
+}
 
 /// The base coordinates that the crane has: place in `x y z ψ θ φ`, and place in q.
 fn base_coordinates<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (usize, usize)> + Clone + 'a {
@@ -194,7 +234,7 @@ fn pairs<T: Copy>(items: impl Iterator<Item = T> + Clone) -> impl Iterator<Item 
 }
 
 /// `f = −Jᵀ (s e + d ė)` of all supports [Urbaś 2016, Eq. (18), row by row and without the absolute value].
-pub fn forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
+fn forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let mut forces = model.zeros();
     for (a, i) in base_coordinates(model) {
         let preload = linear_preload(model, a);
@@ -242,12 +282,12 @@ pub fn gaps<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>>
 }
 
 /// `E_s = ½ Σ s e²` [Urbaś 2016, Eqs. (16)–(17)].
-pub fn energy<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'g> {
+fn energy<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'g> {
     0.5 * sum(model, kinematics, |s| (s.stretch, s.stiffness), Contact::twice_energy)
 }
 
 /// Power that the supports' dampers dissipate, `Σ d ė²` (2R of [Urbaś 2016, Eq. (17)]).
-pub fn dissipation<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'g> {
+fn dissipation<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'g> {
     sum(model, kinematics, |s| (s.rate, s.damping), Contact::dissipation)
 }
 
@@ -269,12 +309,12 @@ fn sum<'g>(
 }
 
 /// `∂²E_s/∂q_i∂q_j = J_iᵀ (∂²E/∂e∂e) J_j + ∂E/∂e · Ω_i Ω_j T r_E`; linear kinematics have no second term.
-pub fn stiffness<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
+fn stiffness<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
     add_stiffness(model, kinematics, &model.zeros(), Stretched::tangent, matrix);
 }
 
 /// The same for an implicit step at the present state: the law's stiffness along the axes, never negative.
-pub fn step_stiffness<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
+fn step_stiffness<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
     add_stiffness(model, kinematics, &model.v, |stretched| diagonal(stretched.stiffness_and_damping()[0]), matrix);
 }
 
@@ -300,14 +340,14 @@ fn add_stiffness<'g>(
 }
 
 /// `Jᵀ d J`, with one-sided supports at rest.
-pub fn damping<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
+fn damping<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
     let at_rest =
         |stretched: &Stretched<'g>| stretched.contact().map_or(stretched.damping, |contact| contact.damping_at_rest());
     add_damping(model, kinematics, &model.zeros(), at_rest, matrix);
 }
 
 /// The same for an implicit step at the present state.
-pub fn step_damping<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
+fn step_damping<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
     add_damping(model, kinematics, &model.v, |stretched| stretched.stiffness_and_damping()[1], matrix);
 }
 

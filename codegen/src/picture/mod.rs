@@ -103,7 +103,7 @@ fn role(chain: &Chain, id: CoordinateId) -> &'static str {
         "prescribed"
     } else if chain.drives.iter().any(|drive| drive.coordinate == id) {
         "driven"
-    } else if chain.beam_springs.iter().any(|element| element.coordinate == id) {
+    } else if chain.is_of_element(id) {
         "element"
     } else {
         "passive"

@@ -8,6 +8,7 @@ mod rules;
 mod scalar;
 mod stage;
 mod stumpff;
+mod substitute;
 #[cfg(test)]
 mod tests;
 mod trace;

@@ -4,7 +4,7 @@ use super::elements::WRITTEN;
 use super::limits::Limit;
 use super::section::Elastic;
 use super::{Check, Owner};
-use crate::chain::{self, Axis, BeamSpring, Chain, CoordinateKind, Outline, Step, Value};
+use crate::chain::{self, Axis, Chain, CoordinateKind, Force, Group, Law, Outline, Spring, Step, Value};
 use crate::diagnostic::{Span, rule};
 use crate::expand::beam::{self, Distribution, Elements, Joint, Part, RigidElement};
 use crate::expand::placement::translate;
@@ -94,7 +94,8 @@ impl<'a> Check<'a> {
                 }
                 path.extend(joint.half_bend);
                 for (id, (stiffness, damping)) in ids.into_iter().zip(joint.stiffness.into_iter().zip(joint.damping)) {
-                    self.beam_springs.push(BeamSpring { coordinate: id, stiffness, damping });
+                    let law = Law::Spring(Spring::new(stiffness, damping));
+                    self.element_springs.push(Force::on(&self.coordinates, Group::Elements, id, law));
                 }
             }
             let body = chain::Body {

@@ -4,13 +4,13 @@ use super::Check;
 use super::drives::{Units, units};
 use super::limits::Limit;
 use crate::chain::{
-    Attachment, BodyId, Chain, Connector, ConnectorLaw, CoordinateKind, Cylinder, Profile, Strain, Value,
+    Attachment, BodyId, Chain, CoordinateKind, Cylinder, Force, Group, Law, Profile, Rope, Spring, Strain, Value,
 };
 use crate::diagnostic::{Span, rule};
-use crate::spec::{self, Crane, Number, Rope, Spanned};
+use crate::spec::{self, Crane, Number, Spanned};
 
 impl<'a> Check<'a> {
-    pub(super) fn connectors(&mut self, crane: &'a Crane, cylinders: &[Cylinder]) -> Vec<Connector> {
+    pub(super) fn connectors(&mut self, crane: &'a Crane, cylinders: &[Cylinder]) -> Vec<Force> {
         let given = crane.connectors.as_ref().and_then(|connectors| connectors.value.as_deref()).unwrap_or_default();
         let mut connectors = Vec::new();
         for connector in given.iter().filter_map(|connector| connector.value.as_ref()) {
@@ -24,7 +24,8 @@ impl<'a> Check<'a> {
             if self.reach(&from) == self.reach(&to) {
                 self.report(rule::rigid_connector(connector.name.span, &name));
             }
-            connectors.push(Connector { name, strain: Strain::Distance([from, to]), law });
+            let strain = Strain::Distance([from, to]);
+            connectors.push(Force { group: Group::Connectors, name, strain, law });
         }
         connectors.extend(self.couplings(crane, cylinders));
         connectors
@@ -39,7 +40,7 @@ impl<'a> Check<'a> {
     }
 
     /// Couplings of two coordinates.
-    fn couplings(&mut self, crane: &'a Crane, cylinders: &[Cylinder]) -> Vec<Connector> {
+    fn couplings(&mut self, crane: &'a Crane, cylinders: &[Cylinder]) -> Vec<Force> {
         let given = crane.couplings.as_ref().and_then(|couplings| couplings.value.as_deref()).unwrap_or_default();
         let mut couplings = Vec::new();
         for coupling in given.iter().filter_map(|coupling| coupling.value.as_ref()) {
@@ -57,14 +58,15 @@ impl<'a> Check<'a> {
             let Units { stiffness, damping, .. } = units(kind);
             let ratio = self.number(&coupling.ratio, &place("ratio"), "", Limit::Any);
             let offset = coupling.offset.as_ref();
-            let law = ConnectorLaw::Linear {
+            let law = Law::Spring(Spring {
                 stiffness: self.number(&coupling.stiffness, &place("stiffness"), stiffness, Limit::NotNegative),
                 damping: self.number_or(coupling.damping.as_ref(), 0.0, &place("damping"), damping, Limit::NotNegative),
                 length: offset.map_or(Value::ZERO, |offset| self.position(offset, kind, "`offset`")),
                 push: Value::ZERO,
-            };
+            });
             if let (Some(coordinate), Some(leader)) = (coordinate, leader) {
-                couplings.push(Connector { name, strain: Strain::Coupling { coordinate, leader, ratio }, law });
+                let strain = Strain::Coupling { coordinate, leader, ratio };
+                couplings.push(Force { group: Group::Connectors, name, strain, law });
             }
         }
         couplings
@@ -76,8 +78,8 @@ impl<'a> Check<'a> {
         const NONE: f64 = 1e-9;
         let given = crane.connectors.as_ref().and_then(|connectors| connectors.value.as_deref()).unwrap_or_default();
         let given = given.iter().filter_map(|connector| connector.value.as_ref());
-        for (connector, given) in chain.connectors.iter().zip(given) {
-            let Strain::Distance(ends) = &connector.strain else { continue };
+        for (connector, given) in chain.connectors().iter().zip(given) {
+            let Some(ends) = connector.strain.ends() else { continue };
             if chain.distance(ends, &chain.guess, &self.defaults) < NONE {
                 self.report(rule::meeting_points(given.name.span, &connector.name));
             }
@@ -100,32 +102,32 @@ impl<'a> Check<'a> {
         })
     }
 
-    fn connector_law(&mut self, law: &spec::ConnectorLaw, span: Span, name: &str) -> ConnectorLaw {
+    fn connector_law(&mut self, law: &spec::ConnectorLaw, span: Span, name: &str) -> Law {
         let mut number = |given: &Spanned<Number>, what: &str, unit, limit| {
             self.number(given, &format!("the {what} of connector `{name}`"), unit, limit)
         };
         match law {
-            spec::ConnectorLaw::Spring(spring) => ConnectorLaw::Linear {
+            spec::ConnectorLaw::Spring(spring) => Law::Spring(Spring {
                 stiffness: number(&spring.stiffness, "stiffness", "N/m", Limit::NotNegative),
                 length: number(&spring.length, "length", "m", Limit::Positive),
                 damping: optional(&mut number, spring.damping.as_ref(), "damping", "N s/m"),
                 push: Value::ZERO,
-            },
-            spec::ConnectorLaw::GasSpring(spring) => ConnectorLaw::Linear {
+            }),
+            spec::ConnectorLaw::GasSpring(spring) => Law::Spring(Spring {
                 push: number(&spring.force, "force", "N", Limit::NotNegative),
                 length: number(&spring.length, "length", "m", Limit::Positive),
                 stiffness: optional(&mut number, spring.stiffness.as_ref(), "stiffness", "N/m"),
                 damping: optional(&mut number, spring.damping.as_ref(), "damping", "N s/m"),
-            },
+            }),
             spec::ConnectorLaw::Rope(rope) => {
                 let stiffness = number(&rope.stiffness, "stiffness", "N/m", Limit::Positive);
                 let damping = optional(&mut number, rope.damping.as_ref(), "damping", "s/m");
-                ConnectorLaw::Rope { stiffness, damping, length: self.rope_length(rope, span, name) }
+                Law::Rope(Rope { stiffness, damping, length: self.rope_length(rope, span, name) })
             }
         }
     }
 
-    fn rope_length(&mut self, rope: &Rope, span: Span, name: &str) -> Profile {
+    fn rope_length(&mut self, rope: &spec::Rope, span: Span, name: &str) -> Profile {
         let wrong = Profile::Hold(f64::NAN.into());
         match (&rope.length, &rope.motion) {
             (Some(length), None) => {

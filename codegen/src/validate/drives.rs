@@ -2,7 +2,9 @@
 
 use super::limits::Limit;
 use super::{Check, Owner};
-use crate::chain::{self, CoordinateId, CoordinateKind, Drive, JointDamper, Profile, Rotor, Transmission, Value};
+use crate::chain::{
+    self, CoordinateId, CoordinateKind, Drive, Force, Group, Law, Profile, Rotor, Spring, Transmission, Value,
+};
 use crate::diagnostic::{Span, rule};
 use crate::expand::spline;
 use crate::spec::{self, Angle, Crane, Motion, Number, Spanned, Table};
@@ -136,8 +138,8 @@ impl<'a> Check<'a> {
         Transmission::Flexible { stiffness, damping: damping.unwrap_or(Value::ZERO), max_effort, max_rate, max_power }
     }
 
-    pub(super) fn joint_dampers(&mut self, crane: &'a Crane, drives: &[Drive]) -> Vec<JointDamper> {
-        let mut joint_dampers = Vec::new();
+    pub(super) fn joint_dampers(&mut self, crane: &'a Crane, drives: &[Drive]) -> Vec<Force> {
+        let mut dampers: Vec<(CoordinateId, Value)> = Vec::new();
         let entries = crane.damping.as_ref().and_then(|damping| damping.value.as_ref());
         for (name, damping) in entries.into_iter().flat_map(|entries| &entries.0) {
             let coordinate = self.joint_coordinate(name);
@@ -153,16 +155,17 @@ impl<'a> Check<'a> {
             if let Some(owner) = owner {
                 self.report(rule::not_passive(name.span, &self.coordinates[id.0].name, owner));
             }
-            joint_dampers.push(JointDamper { coordinate: id, damping });
+            dampers.push((id, damping));
         }
         // Damping given for a single joint replaces the damping that its rope gives to all joints.
-        let own = joint_dampers.len();
-        for (coordinate, damping) in std::mem::take(&mut self.rope_damping) {
-            if joint_dampers[..own].iter().all(|damper| damper.coordinate != coordinate) {
-                joint_dampers.push(JointDamper { coordinate, damping });
-            }
-        }
-        joint_dampers
+        let own: Vec<CoordinateId> = dampers.iter().map(|(id, _)| *id).collect();
+        let of_ropes = std::mem::take(&mut self.rope_damping).into_iter();
+        dampers.extend(of_ropes.filter(|(id, _)| !own.contains(id)));
+        let force = |(id, damping)| {
+            let law = Law::Spring(Spring::new(Value::ZERO, damping));
+            Force::on(&self.coordinates, Group::JointDampers, id, law)
+        };
+        dampers.into_iter().map(force).collect()
     }
 
     /// Rotors of joints without a drive.

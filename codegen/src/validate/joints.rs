@@ -4,7 +4,7 @@ use super::Check;
 use super::drives::units;
 use super::limits::Limit;
 use crate::chain::{
-    Bristle, CoordinateId, CoordinateKind, Drive, End, ForceElement, Friction, Law, Stop, Transmission, Value,
+    Bristle, CoordinateId, CoordinateKind, Drive, End, Force, Friction, Group, Law, Stop, Transmission, Value,
 };
 use crate::diagnostic::rule;
 use crate::spec::{self, Crane, Spanned};
@@ -17,15 +17,16 @@ const STRIBECK: f64 = 1e-2;
 
 impl<'a> Check<'a> {
     /// The force elements of all joints: stops, then friction.
-    pub(super) fn joint_forces(&mut self, crane: &'a Crane, drives: &[Drive]) -> Vec<ForceElement> {
+    pub(super) fn joint_forces(&mut self, crane: &'a Crane, drives: &[Drive]) -> Vec<Force> {
         let mut forces = Vec::new();
         for (name, stops) in crane.stops.iter().filter_map(|given| given.value.as_ref()).flat_map(|given| &given.0) {
             let coordinate = self.joint_of(name, "stops");
             if let Some(own) = &stops.value {
                 let laws = self.stops(own, stops, name.value.as_deref().unwrap_or_default(), coordinate);
-                forces.extend(coordinate.into_iter().flat_map(|coordinate| {
-                    laws.clone().into_iter().map(move |stop| ForceElement { coordinate, law: Law::Stop(stop) })
-                }));
+                let force = |id, stop| Force::on(&self.coordinates, Group::Stops, id, Law::Stop(stop));
+                forces.extend(
+                    coordinate.into_iter().flat_map(|id| laws.clone().into_iter().map(move |stop| force(id, stop))),
+                );
             }
         }
         for (name, given) in crane.friction.iter().filter_map(|given| given.value.as_ref()).flat_map(|given| &given.0) {
@@ -38,7 +39,8 @@ impl<'a> Check<'a> {
                 if let (Some(bristle), Some(_)) = (&own.bristle, rigid) {
                     self.report(rule::prescribed_bristles(bristle.span, name.value.as_deref().unwrap_or_default()));
                 }
-                forces.extend(coordinate.map(|coordinate| ForceElement { coordinate, law: Law::Friction(friction) }));
+                let force = |id| Force::on(&self.coordinates, Group::Friction, id, Law::Friction(friction));
+                forces.extend(coordinate.map(force));
             }
         }
         forces

@@ -27,7 +27,7 @@ mod sections;
 use std::collections::BTreeMap;
 
 use crate::chain::{
-    self, Analyses, BeamSpring, Body, Bound, Chain, Coordinate, CoordinateId, Input, Loops, Parameter, ParameterId,
+    self, Analyses, Body, Bound, Chain, Coordinate, CoordinateId, Force, Input, Loops, Parameter, ParameterId,
     Relation, Value,
 };
 use crate::diagnostic::{Diagnostics, Mistake, SourceFile, rule};
@@ -148,7 +148,8 @@ struct Check<'a> {
     /// The owner of each coordinate.
     owners: Vec<Owner>,
     bodies: Vec<Body>,
-    beam_springs: Vec<BeamSpring>,
+    /// Springs between elements of flexible links.
+    element_springs: Vec<Force>,
     /// Damping of the joints of ropes.
     rope_damping: Vec<(CoordinateId, Value)>,
     beams: Vec<chain::Beam>,
@@ -189,8 +190,9 @@ impl<'a> Check<'a> {
         self.links(&crane.links);
         let supports = self.supports(crane);
         let (mut drives, mut rotors) = self.drives(crane);
-        let joint_dampers = self.joint_dampers(crane, &drives);
-        let forces = self.joint_forces(crane, &drives);
+        let mut forces = std::mem::take(&mut self.element_springs);
+        forces.extend(self.joint_dampers(crane, &drives));
+        forces.extend(self.joint_forces(crane, &drives));
         let loads = self.loads(crane);
         let cylinders = self.cylinders(crane, &drives);
         let pump = self.pump(crane);
@@ -217,14 +219,11 @@ impl<'a> Check<'a> {
             base: self.base,
             supports,
             beams: std::mem::take(&mut self.beams),
-            beam_springs: std::mem::take(&mut self.beam_springs),
             drives,
-            joint_dampers,
-            forces,
+            forces: [forces, connectors].concat(),
             loads,
             cylinders,
             pump,
-            connectors,
             inputs: std::mem::take(&mut self.inputs),
             rotors,
             points,

@@ -2,9 +2,7 @@
 
 use super::Check;
 use super::limits::Limit;
-use crate::chain::{
-    BodyId, Connector, ConnectorLaw, CoordinateId, Drive, Point, Run, Strain, Support, Transmission, Value,
-};
+use crate::chain::{BodyId, CoordinateId, Drive, Force, Point, Run, Spring, Strain, Support, Transmission, Value};
 use crate::diagnostic::{Span, rule, suggest};
 use crate::spec::{self, Constant, Crane, Spanned};
 
@@ -59,7 +57,7 @@ impl<'a> Check<'a> {
     }
 
     /// As written, where drives begin, or where the coordinates are that others follow; otherwise 0.
-    pub(super) fn guess(&mut self, crane: &'a Crane, drives: &[Drive], connectors: &[Connector]) -> Vec<f64> {
+    pub(super) fn guess(&mut self, crane: &'a Crane, drives: &[Drive], connectors: &[Force]) -> Vec<f64> {
         let mut guess = vec![None; self.coordinates.len()];
         for drive in drives {
             guess[drive.coordinate.0] = Some(drive.profile.start(&self.defaults));
@@ -78,9 +76,9 @@ impl<'a> Check<'a> {
         }
         // A coordinate that follows one that follows another is known one pass later.
         for _ in connectors {
-            for Connector { strain, law, .. } in connectors {
-                let Strain::Coupling { coordinate, leader, ratio } = strain else { continue };
-                let ConnectorLaw::Linear { length, .. } = law else { continue };
+            for connector in connectors {
+                let Strain::Coupling { coordinate, leader, ratio } = &connector.strain else { continue };
+                let Some(Spring { length, .. }) = connector.spring() else { continue };
                 if let (None, Some(leading)) = (guess[coordinate.0], guess[leader.0]) {
                     guess[coordinate.0] = Some(self.now(length) + self.now(ratio) * leading);
                 }

@@ -4,7 +4,7 @@
 //! at both ends of the beam and where each of its elements begins.
 
 use super::Check;
-use crate::chain::{Beam, BodyId, Connector, Cylinder, Inside, Load, Moduli, Outline, Section, Side, Strain, Value};
+use crate::chain::{Beam, BodyId, Cylinder, Force, Inside, Load, Moduli, Outline, Section, Side, Value};
 use crate::expand::beam::Distribution;
 
 /// Places of an element that are closer to each other than this fraction of its beam are one place.
@@ -36,7 +36,7 @@ impl Check<'_> {
     }
 
     /// Finds the sections of all beams.
-    pub(super) fn beam_sections(&mut self, loads: &[Load], cylinders: &[Cylinder], connectors: &[Connector]) {
+    pub(super) fn beam_sections(&mut self, loads: &[Load], cylinders: &[Cylinder], connectors: &[Force]) {
         if !self.mistakes.is_empty() {
             return;
         }
@@ -112,7 +112,7 @@ struct Pin {
 }
 
 /// All places where forces act on bodies.
-fn pins(loads: &[Load], cylinders: &[Cylinder], connectors: &[Connector]) -> Vec<Pin> {
+fn pins(loads: &[Load], cylinders: &[Cylinder], connectors: &[Force]) -> Vec<Pin> {
     let pin =
         |BodyId(body): BodyId, position: &[Value; 3], what: String| Pin { body, along: position[0].clone(), what };
     let mut pins: Vec<Pin> = Vec::new();
@@ -123,8 +123,7 @@ fn pins(loads: &[Load], cylinders: &[Cylinder], connectors: &[Connector]) -> Vec
         }
     }
     for connector in connectors {
-        let Strain::Distance(ends) = &connector.strain else { continue };
-        for end in ends {
+        for end in connector.strain.ends().into_iter().flatten() {
             pins.extend(end.body.map(|body| pin(body, &end.position, format!("attachment of {}", connector.name))));
         }
     }

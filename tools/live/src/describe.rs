@@ -1,7 +1,7 @@
 //! Metadata of a live crane.
 
 use crane_codegen::chain::{
-    self, BodyId, Chain, ConnectorLaw, CoordinateId, CoordinateKind as Kind, Profile, Strain, SupportKinematics, Value,
+    self, BodyId, Chain, CoordinateId, CoordinateKind as Kind, Profile, SupportKinematics, Value,
 };
 use crane_model::{
     AttachmentInfo, BodyInfo, Bound, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole,
@@ -57,18 +57,17 @@ pub fn describe(chain: &Chain) -> Description {
         max_power: drive.max_power(),
     });
     let loads = chain.loads.iter().map(|load| LoadInfo { name: load.name.clone().into(), pieces: load.pieces() });
-    let connectors = chain.connectors.iter().map(|connector| ConnectorInfo {
+    let connectors = chain.connectors().iter().map(|connector| ConnectorInfo {
         name: connector.name.clone().into(),
-        ends: match &connector.strain {
-            Strain::Distance(ends) => Some(ends.each_ref().map(|end| AttachmentInfo {
+        ends: connector.strain.ends().map(|ends| {
+            ends.each_ref().map(|end| AttachmentInfo {
                 body: end.body.map(|BodyId(body)| body),
                 position: end.position.each_ref().map(|x| x.at(&defaults)),
-            })),
-            Strain::Coupling { .. } => None,
-        },
-        kind: kind_of(chain.kind_of(connector)),
-        is_rope: matches!(connector.law, ConnectorLaw::Rope { .. }),
-        spanned: chain.spanned(connector),
+            })
+        }),
+        kind: kind_of(chain.kind_of(&connector.strain)),
+        is_rope: connector.is_rope(),
+        spanned: chain.spanned(&connector.strain),
         pieces: connector.pieces(),
     });
     let inputs = chain.inputs.iter().map(|input| InputInfo {
@@ -130,7 +129,7 @@ fn role(chain: &Chain, index: usize) -> CoordinateRole {
         CoordinateRole::Driven
     } else if chain.turns_by_vector(CoordinateId(index)) {
         CoordinateRole::ElementVector
-    } else if chain.beam_springs.iter().any(|element| element.coordinate.0 == index) {
+    } else if chain.is_of_element(CoordinateId(index)) {
         CoordinateRole::Element
     } else {
         CoordinateRole::Passive

@@ -1,6 +1,7 @@
 //! Energies by kind of force, and powers.
 
 use super::{Derivation, function};
+use crate::chain::Group;
 use crate::mechanics::forces::Kind;
 use crate::mechanics::{connectors, drives, gravity, loads};
 use crate::program::Argument::{self, Position, Time, Velocity};
@@ -36,36 +37,8 @@ impl Derivation<'_> {
 
     /// Energy of a kind of force, if it stores any.
     fn energy(&self, kind: Kind) -> Option<Function> {
-        let energy = self.forces().energy(kind)?;
-        let (id, doc, equation, arguments): (_, _, _, &'static [Argument]) = match kind {
-            Kind::Supports => (
-                FunctionId::SupportEnergy,
-                "Energy of the supports' springs, J.",
-                "½ Σ s e² [Urbaś 2016, Eqs. (16)–(17)]",
-                &[Position],
-            ),
-            Kind::BeamSprings => (
-                FunctionId::ElementEnergy,
-                "Energy of the springs between rigid elements, J.",
-                "½ q̃ᵀ S q̃ [Urbaś 2016, Eq. (14)]",
-                &[Position],
-            ),
-            Kind::Drives => (
-                FunctionId::DriveEnergy,
-                "Energy of the drives' springs, J.",
-                "½ Σ s (q_dr − q)² [Urbaś 2016, Eq. (19)]",
-                &[Time, Position],
-            ),
-            Kind::Stops => (FunctionId::StopEnergy, "Energy of the end stops, J.", "½ Σ k δ²", &[Position]),
-            Kind::Connectors => (
-                FunctionId::ConnectorEnergy,
-                "Energy of connectors, J.",
-                "½ Σ k (ℓ − ℓ₀)² − P (ℓ − ℓ₀)",
-                &[Time, Position],
-            ),
-            Kind::JointDampers | Kind::Friction | Kind::Loads => return None,
-        };
-        Some(scalar(id, doc, equation, arguments, energy))
+        let (id, doc, equation, arguments) = kind.row().energy?;
+        Some(scalar(id, doc, equation, arguments, self.forces().of(kind).energy()?))
     }
 
     /// Power that a kind of force puts in, if it can.
@@ -87,12 +60,12 @@ impl Derivation<'_> {
                 "Σ F · ẋ + M · ω",
                 loads::power(model, kinematics, &self.twists),
             )),
-            Kind::Connectors => {
-                let has_winches = model.chain.connectors.iter().any(|connector| connector.winch().is_some());
+            Kind::Of(Group::Connectors) => {
+                let has_winches = model.chain.connectors().iter().any(|connector| connector.winch().is_some());
                 let of_winches = has_winches.then(|| connectors::winch_power(model, kinematics))?;
                 Some(power(FunctionId::WinchPower, "Power that winches put in, W.", "−Σ F ℓ̇₀", of_winches))
             }
-            Kind::Supports | Kind::BeamSprings | Kind::JointDampers | Kind::Stops | Kind::Friction => None,
+            Kind::Supports | Kind::Of(_) => None,
         }
     }
 }

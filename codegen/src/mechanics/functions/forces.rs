@@ -1,11 +1,15 @@
 //! Forces by kind.
 
 use super::{Derivation, function};
+use crate::chain::Group;
 use crate::mechanics::forces::{Kind, add};
 use crate::mechanics::{connectors, loads, supports};
 use crate::program::Argument::{Position, Time, Velocity};
-use crate::program::{Argument, Function, FunctionId, Shape, Struct};
+use crate::program::{Function, FunctionId, Shape, Struct};
 use crate::symbolic::{Expr, SweepTrace};
+
+/// The equation of the drives' forces if some are rigid.
+const WITH_RIGID_DRIVES: &str = "s (q_dr − q) + d (q̇_dr − q̇) [Urbaś 2016, Eqs. (20)–(21)]; of rigid drives (A q̈ − e)_j";
 
 impl<'g> Derivation<'g> {
     /// The forces of each kind with what belongs to it, and their sum.
@@ -18,14 +22,15 @@ impl<'g> Derivation<'g> {
             let (forces, trace) = self.generalized(kind);
             let total = sum.take().unwrap_or_else(|| model.zeros());
             sum = Some(add(&total, &forces));
-            let (id, doc, equation, arguments) = self.signature(kind);
+            let (id, doc, equation, arguments) = kind.row().forces;
+            let equation = if kind == Kind::Drives && self.rigid { WITH_RIGID_DRIVES } else { equation };
             functions.push(function(id, doc, equation, arguments, vector(), forces).by(trace));
             functions.extend(match kind {
                 Kind::Supports => self.reactions_and_gaps(),
                 Kind::Drives => self.drives(),
                 Kind::Loads => self.load_pieces(),
-                Kind::Connectors => self.connectors(),
-                Kind::BeamSprings | Kind::JointDampers | Kind::Stops | Kind::Friction => Vec::new(),
+                Kind::Of(Group::Connectors) => self.connectors(),
+                Kind::Of(_) => Vec::new(),
             });
         }
         functions.extend(sum.map(|sum| {
@@ -46,65 +51,7 @@ impl<'g> Derivation<'g> {
     fn generalized(&self, kind: Kind) -> (Vec<Expr<'g>>, SweepTrace) {
         match kind {
             Kind::Drives => self.recorded_if_rigid(|| self.drive_forces()),
-            _ => (self.forces().in_motion(kind), SweepTrace::default()),
-        }
-    }
-
-    /// Documentation, equation and arguments of the function with the generalized forces of a kind.
-    fn signature(&self, kind: Kind) -> (FunctionId, &'static str, &'static str, &'static [Argument]) {
-        match kind {
-            Kind::Supports => (
-                FunctionId::SupportForces,
-                "Generalized forces of the supports, N and N m.",
-                "−Jᵀ (s e + d ė) [Urbaś 2016, Eq. (18)]",
-                &[Position, Velocity],
-            ),
-            Kind::BeamSprings => (
-                FunctionId::ElementForces,
-                "Generalized forces of the springs and dampers between rigid elements, N m.",
-                "−S q̃ − D q̃̇ [Urbaś 2016, Eq. (15)]",
-                &[Position, Velocity],
-            ),
-            Kind::Drives => (
-                FunctionId::DriveForces,
-                "Generalized forces of the drives, N and N m.",
-                if self.rigid {
-                    "s (q_dr − q) + d (q̇_dr − q̇) [Urbaś 2016, Eqs. (20)–(21)]; of rigid drives (A q̈ − e)_j"
-                } else {
-                    "s (q_dr − q) + d (q̇_dr − q̇) [Urbaś 2016, Eqs. (20)–(21)]"
-                },
-                &[Time, Position, Velocity],
-            ),
-            Kind::JointDampers => (
-                FunctionId::JointDamperForces,
-                "Generalized forces of viscous damping in passive joints, N and N m.",
-                "−d q̇",
-                &[Velocity],
-            ),
-            Kind::Stops => (
-                FunctionId::StopForces,
-                "Generalized forces of the end stops, N and N m.",
-                "−k δ max(0, 1 + a δ̇)",
-                &[Position, Velocity],
-            ),
-            Kind::Friction => (
-                FunctionId::FrictionForces,
-                "Generalized forces of joint friction, N and N m.",
-                "−(F_c + (F_b − F_c) exp(−(q̇/v_s)²)) tanh(q̇/v₀) − b q̇",
-                &[Velocity],
-            ),
-            Kind::Loads => (
-                FunctionId::LoadForces,
-                "Generalized forces of the loads applied from outside, N and N m.",
-                "F · Ω_j x + M · ω_j",
-                &[Time, Position],
-            ),
-            Kind::Connectors => (
-                FunctionId::ConnectorForces,
-                "Generalized forces of connectors, N and N m.",
-                "−Jᵀ F",
-                &[Time, Position, Velocity],
-            ),
+            _ => (self.forces().of(kind).in_motion(), SweepTrace::default()),
         }
     }
 
@@ -151,7 +98,7 @@ impl<'g> Derivation<'g> {
     /// Lengths and tangents of connectors.
     fn connectors(&self) -> Vec<Function> {
         let (model, kinematics) = (&self.model, &self.kinematics);
-        let count = model.chain.connectors.len();
+        let count = model.chain.connectors().len();
         let mut functions = vec![
             function(
                 FunctionId::ConnectorLengths,

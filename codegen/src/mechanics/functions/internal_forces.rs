@@ -1,7 +1,7 @@
 //! Forces and moments that joints, sections and the ground transmit, and the section moduli from which the stresses of beams follow.
 
 use super::{Derivation, function};
-use crate::chain::{Beam, Connector, Moduli};
+use crate::chain::{Beam, Force, Moduli};
 use crate::mechanics::model::Model;
 use crate::mechanics::{connectors, cylinders, newton_euler, supports};
 use crate::program::Argument::{Acceleration, Position, Time, Velocity};
@@ -32,7 +32,7 @@ impl Derivation<'_> {
         if model.chain.has_valves() {
             functions.push(self.cylinder_wrenches());
         }
-        if model.chain.connectors.iter().any(Connector::joins_bodies) {
+        if model.chain.connectors().iter().any(|connector| connector.strain.joins_bodies()) {
             functions.push(self.connector_wrenches());
         }
         if !model.chain.supports.is_empty() {
@@ -79,18 +79,18 @@ impl Derivation<'_> {
     /// What connectors between bodies contribute to the internal forces, each pulling with 1 N.
     fn connector_wrenches(&self) -> Function {
         let (model, kinematics) = (&self.model, &self.kinematics);
-        let of_connector = |connector| {
-            let pulls = connectors::between_bodies(model, kinematics, connector);
+        let of_connector = |connector: &Force| {
+            let pulls = connectors::between_bodies(model, kinematics, &connector.strain);
             let on_bodies = pulls.into_iter().map(|(place, point, pull)| (place, [pull, point.cross(pull)]));
             newton_euler::transmitted(model, kinematics, &self.factors, on_bodies.collect())
         };
-        let wrenches = model.chain.connectors.iter().flat_map(of_connector).collect();
+        let wrenches = model.chain.connectors().iter().flat_map(of_connector).collect();
         function(
             FunctionId::ConnectorWrenches,
             "Force (1) and moment (m) at every cut, cut by cut, due to each connector between two bodies while it pulls with 1 N.",
             "Σ e, Σ r × e over everything beyond",
             &[Position],
-            Shape::Structs(Struct::Wrench, model.chain.connectors.len() * model.chain.cuts().len()),
+            Shape::Structs(Struct::Wrench, model.chain.connectors().len() * model.chain.cuts().len()),
             wrenches,
         )
     }

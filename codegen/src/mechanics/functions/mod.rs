@@ -6,7 +6,7 @@ mod forces;
 mod internal_forces;
 mod statics;
 
-use crate::chain::{Analyses, BodyId, Chain};
+use crate::chain::{Analyses, BodyId, Chain, Group};
 use crate::program::Argument::{
     self, AddedInertia, BaseAddedInertia, Factors, Position, RightHandSide, Time, Velocity,
 };
@@ -16,14 +16,14 @@ use crate::symbolic::{Expr, Graph, Stages, SweepTrace, SymbolId};
 use super::articulated::Effort;
 use super::columns::columns;
 use super::factors::{Factor, factors};
-use super::forces::Forces;
+use super::forces::{Forces, Kind};
 use super::forward::{self, ForwardInputs, Motion};
 use super::inertia::Inertias;
 use super::kinematics::Kinematics;
 use super::model::Model;
 use super::twist::{Twist, twists};
 use super::vector::{SymmetricMatrix, Vec3};
-use super::{cylinders, drives, effective_mass, energy, joints, newton_euler, points, rotors, transforms};
+use super::{cylinders, drives, effective_mass, energy, newton_euler, points, rotors, transforms};
 
 /// Derives all functions over one graph.
 pub fn program(graph: Graph, chain: &Chain, analyses: Analyses) -> Program {
@@ -296,14 +296,16 @@ impl<'g> Derivation<'g> {
             Shape::Pairs(model.size()),
             (0..model.size()).flat_map(diagonal).collect(),
         ));
-        if !model.chain.forces.is_empty() || model.chain.has_limited_drives() {
+        if [Kind::Of(Group::Stops), Kind::Of(Group::Friction)].iter().any(|kind| kind.is_in(model.chain))
+            || model.chain.has_limited_drives()
+        {
             functions.push(function(
                 FunctionId::NonlinearStiffnessAndDamping,
                 "Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) of end stops and friction on single coordinates.",
                 "∂F/∂q, max(0, ∂F/∂q̇)",
                 &[Time, Position, Velocity],
                 Shape::Pairs(model.size()),
-                joints::stiffness_and_damping(model).into_iter().flatten().collect(),
+                self.forces().nonlinear().into_iter().flatten().collect(),
             ));
         }
         if !base.is_empty() {

@@ -3,7 +3,7 @@
 use super::{Derivation, function};
 use crate::chain::CoordinateId;
 use crate::mechanics::columns::columns;
-use crate::mechanics::forces::Rest;
+use crate::mechanics::forces::{Kind, Rest};
 use crate::mechanics::vector::SymmetricMatrix;
 use crate::mechanics::{cylinders, gravity};
 use crate::program::Argument::{DrivePositions, Position, Time};
@@ -15,7 +15,7 @@ impl<'g> Derivation<'g> {
     pub(super) fn statics(&self) -> Vec<Function> {
         let (model, rest) = (&self.model, Rest::given(&self.model));
         let gradient = self.gradient(&rest);
-        let (mut residual, mut holding) = (gradient.clone(), self.forces().drives_at_rest(&rest));
+        let (mut residual, mut holding) = (gradient.clone(), self.forces().of(Kind::Drives).at_rest(&rest));
         for CoordinateId(j) in model.chain.rigid_drives().map(|drive| drive.coordinate) {
             // A rigid drive balances the sum of all other forces.
             (residual[j], holding[j]) = (model.zero(), gradient[j]);

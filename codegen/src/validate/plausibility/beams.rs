@@ -1,7 +1,7 @@
 //! Materials, cross-sections and damping of beams.
 
 use super::{Plausibility, items, rounded};
-use crate::chain::CoordinateKind;
+use crate::chain::{CoordinateKind, Force, Group, Spring};
 use crate::diagnostic::{Span, rule};
 use crate::spec::{Beam, Either, Link, Material, Number, Section, Spanned};
 
@@ -158,20 +158,22 @@ impl Plausibility<'_> {
         let now = |value: &crate::chain::Value| value.at(&self.values);
         let length: f64 = bodies.iter().map(|body| now(&body.length)).sum();
         let mass: f64 = bodies.iter().filter_map(|body| body.inertia.as_ref()).map(|inertia| now(&inertia.mass)).sum();
-        let springs = self.chain.beam_springs.iter().filter(|spring| {
-            let coordinate = &self.chain.coordinates[spring.coordinate.0];
+        let springs = self.chain.of(Group::Elements).iter().filter(|spring| {
+            let Some(id) = spring.coordinate() else { return false };
+            let coordinate = &self.chain.coordinates[id.0];
             // Torsion is about x; its frequencies are higher.
             coordinate.kind == CoordinateKind::Rotation
                 && coordinate.axis != crate::chain::Axis::X
                 && self.chain.bodies[coordinate.body.0].link == link
         });
-        let of = |spring: &crate::chain::BeamSpring| {
+        let of = |spring: &Spring| {
             let (stiffness, damping) = (now(&spring.stiffness), now(&spring.damping));
             // n springs of stiffness s correspond to EJ = s l/n.
             let frequency = LOWEST_BENDING * (stiffness / (mass * (bodies.len() - 1) as f64)).sqrt() / length;
             (damping / stiffness, frequency)
         };
-        let worst = springs.map(of).filter(|(beta, frequency)| beta * frequency > MOST_DAMPED);
+        let worst =
+            springs.filter_map(Force::spring).map(of).filter(|(beta, frequency)| beta * frequency > MOST_DAMPED);
         let worst = worst.max_by(|(a, f), (b, g)| (a * f).total_cmp(&(b * g)));
         if let Some((beta, frequency)) = worst {
             self.warn(rule::overdamped(at, link, rounded(beta), rounded(frequency), rounded(beta * frequency)));

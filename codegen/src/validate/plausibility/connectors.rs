@@ -1,7 +1,7 @@
 //! Lengths of connectors compared with the distance between their points, and ratios of couplings.
 
 use super::{Plausibility, items, rounded};
-use crate::chain::{Connector, ConnectorLaw, Strain};
+use crate::chain::{Force, Law, Rope, Spring, Strain};
 use crate::diagnostic::rule;
 
 /// Usual lengths without force, as fractions of the distance between the points at the guess.
@@ -17,8 +17,8 @@ impl Plausibility<'_> {
     pub(super) fn couplings(&mut self) {
         let (crane, chain) = (self.crane, self.chain);
         for given in items(crane.couplings.as_ref()) {
-            let named = |connector: &&Connector| Some(&connector.name) == given.name.value.as_ref();
-            let Some(connector) = chain.connectors.iter().find(named) else { continue };
+            let named = |connector: &&Force| Some(&connector.name) == given.name.value.as_ref();
+            let Some(connector) = chain.connectors().iter().find(named) else { continue };
             let Strain::Coupling { coordinate, leader, ratio } = &connector.strain else { continue };
             let [own, other] = [coordinate, leader].map(|id| &chain.coordinates[id.0]);
             let ratio = ratio.at(&self.values);
@@ -32,12 +32,13 @@ impl Plausibility<'_> {
     /// A spring or rope whose length does not fit its points.
     pub(super) fn connectors(&mut self) {
         let (crane, chain) = (self.crane, self.chain);
-        for (given, connector) in items(crane.connectors.as_ref()).zip(&chain.connectors) {
-            let Strain::Distance(ends) = &connector.strain else { continue };
+        for (given, connector) in items(crane.connectors.as_ref()).zip(chain.connectors()) {
+            let Some(ends) = connector.strain.ends() else { continue };
             let distance = chain.distance(ends, &chain.guess, &self.values);
             let (length, least) = match &connector.law {
-                ConnectorLaw::Linear { length, .. } => (length.at(&self.values), USUAL[0]),
-                ConnectorLaw::Rope { length, .. } => (length.start(&self.values), 1.0 / STRETCHED),
+                Law::Spring(Spring { length, .. }) => (length.at(&self.values), USUAL[0]),
+                Law::Rope(Rope { length, .. }) => (length.start(&self.values), 1.0 / STRETCHED),
+                Law::Stop(_) | Law::Friction(_) => continue,
             };
             if length < least * distance || length > USUAL[1] * distance {
                 self.warn(rule::connector_length(given.law.span, &connector.name, rounded(length), rounded(distance)));

@@ -1,7 +1,7 @@
 //! Bristles of joints that stick.
 
 use super::{Plausibility, rounded};
-use crate::chain::{Coordinate, CoordinateKind, Law};
+use crate::chain::{Coordinate, CoordinateId, CoordinateKind};
 use crate::diagnostic::rule;
 
 /// Usual deflections at which bristles slide, rad or m: from stiff bearings to soft seals.
@@ -15,13 +15,8 @@ impl Plausibility<'_> {
             let Some(given) = given.value.as_ref().and_then(|own| own.bristle.as_ref()) else { continue };
             let named = |known: &&Coordinate| Some(known.name.as_str()) == name.value.as_deref();
             let Some(coordinate) = self.chain.coordinates.iter().find(named) else { continue };
-            let of_joint = self.chain.forces.iter().find_map(|force| match &force.law {
-                Law::Friction(friction) if self.chain.coordinates[force.coordinate.0].name == coordinate.name => {
-                    friction.bristle.as_ref()
-                }
-                _ => None,
-            });
-            let Some(bristle) = of_joint else { continue };
+            let of_joint = |(id, _): &(CoordinateId, _)| self.chain.coordinates[id.0].name == coordinate.name;
+            let Some((_, bristle)) = self.chain.bristles().find(of_joint) else { continue };
             let deflection = bristle.breakaway / bristle.stiffness;
             let unit = match coordinate.kind {
                 CoordinateKind::Translation => "m",

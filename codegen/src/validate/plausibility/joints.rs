@@ -63,8 +63,8 @@ impl Plausibility<'_> {
             let stiffness = drive.oil().or_else(|| drive.spring().map(|(stiffness, _)| stiffness));
             let Some(stiffness) = stiffness.map(|stiffness| stiffness.at(&self.values)) else { continue };
             // Other springs, ropes and stops may hold the joint instead.
-            let held = chain.connectors.iter().any(|connector| {
-                let [first, end] = chain.spanned(connector);
+            let held = chain.connectors().iter().any(|connector| {
+                let [first, end] = chain.spanned(&connector.strain);
                 (first..end).contains(&drive.coordinate.0)
             });
             let sag = self.effort_of_weight(drive.coordinate).abs() / stiffness;

@@ -1,0 +1,110 @@
+//! Laws of forces: one file per law.
+//!
+//! A law is given by the energy E(s) that it stores and by the force D(s, ṡ) with which it resists the rate of its strain. From these
+//! follow
+//!
+//! ```text
+//! F = ∂E/∂s + D        dissipated power D ṡ        stiffness ∂F/∂s        damping ∂F/∂ṡ
+//! ```
+//!
+//! A law may state them itself where that takes fewer operations; the tests compare them with these.
+
+mod friction;
+mod rope;
+mod spring;
+mod stop;
+#[cfg(test)]
+mod tests;
+
+use super::model::Model;
+use crate::chain;
+use crate::symbolic::Expr;
+
+/// When a law is evaluated.
+#[derive(Clone, Copy)]
+pub struct At<'a, 'g> {
+    pub model: &'a Model<'g>,
+    /// Time of motions on which a law depends, s.
+    pub t: Expr<'g>,
+    /// Whether such motions go on; at rest they do not.
+    pub moving: bool,
+}
+
+impl<'a, 'g> At<'a, 'g> {
+    /// In motion, at the present time.
+    pub fn now(model: &'a Model<'g>) -> Self {
+        At { model, t: model.t, moving: true }
+    }
+
+    /// At rest at a time.
+    pub fn rest(model: &'a Model<'g>, t: Expr<'g>) -> Self {
+        At { model, t, moving: false }
+    }
+
+    pub fn number(&self, value: &chain::Value) -> Expr<'g> {
+        self.model.number(value)
+    }
+
+    pub fn zero(&self) -> Expr<'g> {
+        self.model.zero()
+    }
+}
+
+/// The law of a force F that resists the growth of its strain s.
+pub trait Law {
+    /// `2E(s)`, twice the energy stored.
+    fn twice_energy<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>) -> Expr<'g>;
+
+    /// `D(s, ṡ)`, the part of the force that depends on the rate, 0 without one; `D ṡ ≥ 0`.
+    fn resistance<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> Expr<'g>;
+
+    /// F
+    fn force<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {
+        elastic_force(self, at, strain) + self.resistance(at, strain, rate)
+    }
+
+    /// Dissipated power.
+    fn dissipation<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {
+        self.resistance(at, strain, rate) * rate
+    }
+
+    /// `∂F/∂ṡ` at rest.
+    fn damping_at_rest<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>) -> Expr<'g> {
+        slopes(self, at, strain, at.zero())[1]
+    }
+
+    /// Whether F is linear in s and ṡ.
+    fn is_linear(&self) -> bool {
+        false
+    }
+
+    /// Whether `∂F/∂ṡ` may be negative.
+    fn declines(&self) -> bool {
+        false
+    }
+}
+
+/// The law of a force of the chain.
+pub fn law(law: &chain::Law) -> &dyn Law {
+    match law {
+        chain::Law::Spring(spring) => spring,
+        chain::Law::Rope(rope) => rope,
+        chain::Law::Stop(stop) => stop,
+        chain::Law::Friction(friction) => friction,
+    }
+}
+
+/// `∂E/∂s`
+fn elastic_force<'g>(law: &(impl Law + ?Sized), at: At<'_, 'g>, strain: Expr<'g>) -> Expr<'g> {
+    let [s, _] = at.model.free_symbols();
+    let twice = at.model.graph.derivatives(&[law.twice_energy(at, s)], s)[0];
+    at.model.graph.substitute(0.5 * twice, &[(s, strain)])
+}
+
+/// `∂F/∂s` and `∂F/∂ṡ`.
+pub fn slopes<'g>(law: &(impl Law + ?Sized), at: At<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> [Expr<'g>; 2] {
+    let (graph, symbols) = (at.model.graph, at.model.free_symbols());
+    let [s, s_dot] = symbols;
+    let force = law.force(at, s, s_dot);
+    symbols.map(|by| graph.substitute(graph.derivatives(&[force], by)[0], &[(s, strain), (s_dot, rate)]))
+}

@@ -1,0 +1,43 @@
+//! A rope: `E = ½ k σ²`, `D = k σ max(−1, a σ̇)`, with `σ = max(0, s − ℓ₀(t))`.
+
+use super::super::profile;
+use super::{At, Law};
+use crate::chain::Rope;
+use crate::symbolic::Expr;
+
+impl Rope {
+    /// σ. A rope that is just taut counts as taut, because Newton's method starts with ropes that are about to pull.
+    fn stretch<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>) -> Expr<'g> {
+        let length = profile::position(at.model, &self.length, at.t);
+        (length - strain).select(at.zero(), strain - length)
+    }
+
+    /// `a σ̇`
+    fn growth<'g>(&self, at: At<'_, 'g>, rate: Expr<'g>) -> Expr<'g> {
+        let winch = if at.moving { profile::rate(at.model, &self.length, at.t) } else { at.zero() };
+        at.number(&self.damping) * (rate - winch)
+    }
+}
+
+impl Law for Rope {
+    fn twice_energy<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>) -> Expr<'g> {
+        at.number(&self.stiffness) * self.stretch(at, strain).squared()
+    }
+
+    fn resistance<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {
+        let share = self.growth(at, rate).max(at.model.graph.constant(-1.0));
+        at.number(&self.stiffness) * self.stretch(at, strain) * share
+    }
+
+    /// `k σ max(0, 1 + a σ̇)`
+    fn force<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {
+        let growth = (1.0 + self.growth(at, rate)).max(at.zero());
+        at.number(&self.stiffness) * self.stretch(at, strain) * growth
+    }
+
+    /// `D σ̇`: the winch takes part in σ̇.
+    fn dissipation<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {
+        let winch = if at.moving { profile::rate(at.model, &self.length, at.t) } else { at.zero() };
+        self.resistance(at, strain, rate) * (rate - winch)
+    }
+}
