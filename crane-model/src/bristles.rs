@@ -12,55 +12,69 @@
 //! C. Canudas de Wit, H. Olsson, K. J. Åström, P. Lischinsky: A new model for control of systems with
 //! friction, IEEE Transactions on Automatic Control 40 (1995).
 
-use nalgebra::DMatrix;
+use nalgebra::DMatrixViewMut;
 
 use crate::{
     BristleInfo, Description,
-    stateful_force::{Row, StateAt, StatefulForce},
+    dyn_crane::{DynDynamics, DynModel},
+    stateful_force::{Evaluated, ForceState, Row, StateAt, StatefulForce, StatefulForces},
 };
 
-/// The joints of a crane that stick.
+/// The joints of a crane that stick, with the names of their coordinates.
 #[derive(Clone, Debug)]
-pub(crate) struct Bristles {
-    joints: Vec<BristleInfo>,
-    /// Index of their first state among all states.
-    first: usize,
-}
+pub(crate) struct Bristles(Vec<(BristleInfo, String)>);
 
 impl Bristles {
-    /// The joints of a description that stick; their states begin at index `first`.
-    pub fn new(description: &Description, first: usize) -> Self {
-        Self { joints: description.bristles.to_vec(), first }
+    /// The joints of a description that stick.
+    pub fn new(description: &Description) -> Self {
+        let named = |joint: &BristleInfo| (*joint, description.coordinates[joint.coordinate].name.to_string());
+        Self(description.bristles.iter().map(named).collect())
     }
 
-    /// Number of states, one per joint.
-    pub fn len(&self) -> usize {
-        self.joints.len()
+    fn joints(&self) -> impl Iterator<Item = &BristleInfo> {
+        self.0.iter().map(|(joint, _)| joint)
+    }
+}
+
+impl StatefulForces for Bristles {
+    /// Deflections; bristles slide at their scale.
+    fn states(&self) -> Vec<ForceState> {
+        let state = |(joint, name): &(BristleInfo, String)| ForceState {
+            name: column(name),
+            scale: joint.breakaway / joint.stiffness,
+            range: None,
+        };
+        self.0.iter().map(state).collect()
     }
 
-    /// Their rows: each acts on its coordinate alone.
-    pub fn rows(&self) -> impl Iterator<Item = Row> {
-        self.joints.iter().map(|joint| Row { first: joint.coordinate, entries: vec![1.0] })
+    fn rows(&self) -> Vec<Row> {
+        self.joints().map(|joint| Row { first: joint.coordinate, entries: vec![1.0] }).collect()
     }
 
-    /// Deflections at which bristles slide, m or rad.
-    pub fn scales(&self) -> impl Iterator<Item = f64> {
-        self.joints.iter().map(|joint| joint.breakaway / joint.stiffness)
+    fn is_local(&self) -> bool {
+        true
     }
 
-    /// Evaluates all joints, like [`ForceStates::evaluate`](crate::force_states::ForceStates).
-    pub fn evaluate(
-        &self,
+    fn supplies_power(&self) -> bool {
+        false
+    }
+
+    /// Bristles that carry nothing.
+    fn holding(&mut self, _: &dyn DynDynamics, _: f64, _: &[f64]) -> Vec<f64> {
+        vec![0.0; self.0.len()]
+    }
+
+    fn evaluate(
+        &mut self,
+        _: &dyn DynModel,
         moment: &StateAt<'_>,
-        rates: &mut [f64],
-        forces: &mut [StatefulForce],
-        mut by_states: Option<&mut DMatrix<f64>>,
+        Evaluated { rates, forces, .. }: Evaluated<'_>,
+        mut by_states: Option<DMatrixViewMut<'_, f64>>,
     ) {
-        for (place, (joint, force)) in self.joints.iter().zip(forces).enumerate() {
-            let state = self.first + place;
+        for (state, (joint, force)) in self.joints().zip(forces).enumerate() {
             let slope = joint.evaluate(state, moment.x[state], moment.v[joint.coordinate], force);
             rates[state] = slope.rate;
-            if let Some(matrix) = by_states.as_deref_mut() {
+            if let Some(matrix) = &mut by_states {
                 matrix[(state, state)] = slope.by_deflection;
             }
         }
@@ -74,9 +88,9 @@ impl Bristles {
     ///
     /// A rate that changes its sign within a step is damped on both sides by this slope. With the slope of one side, a linearly implicit
     /// method lets the rate alternate as far as the tolerance allows, and the joint creeps.
-    pub fn steepen(&self, moment: &StateAt<'_>, c: f64, forces: &mut [StatefulForce]) {
-        for (place, (joint, force)) in self.joints.iter().zip(forces).enumerate() {
-            let (z, rate) = (moment.x[self.first + place], moment.v[joint.coordinate]);
+    fn steepen(&self, moment: &StateAt<'_>, c: f64, forces: &mut [StatefulForce]) {
+        for (z, (joint, force)) in moment.x.iter().zip(self.joints().zip(forces)) {
+            let rate = moment.v[joint.coordinate];
             let slip = joint.stiffness / joint.level(rate);
             if c * slip * rate.abs() < STICKING {
                 force.rates_by_speed[0] = 1.0 + (slip * z).abs();
@@ -86,8 +100,8 @@ impl Bristles {
     }
 
     /// Appends the direction in which each joint moves.
-    pub fn branches(&self, moment: &StateAt<'_>, out: &mut Vec<bool>) {
-        out.extend(self.joints.iter().map(|joint| moment.v[joint.coordinate] > 0.0));
+    fn branches(&mut self, _: &dyn DynModel, moment: &StateAt<'_>, out: &mut Vec<bool>) {
+        out.extend(self.joints().map(|joint| moment.v[joint.coordinate] > 0.0));
     }
 }
 
@@ -144,10 +158,9 @@ pub(crate) fn efforts(description: &Description, v: &[f64], x: &[f64]) -> Vec<(u
     description.bristles.iter().zip(&x[first..]).map(effort).collect()
 }
 
-/// Names of the columns of results with the states, in their order.
-pub(crate) fn columns(description: &Description) -> Vec<String> {
-    let name = |joint: &BristleInfo| format!("{}_bristle", description.coordinates[joint.coordinate].name);
-    description.bristles.iter().map(name).collect()
+/// Name of the column of results with the deflection in a joint.
+pub(crate) fn column(coordinate: &str) -> String {
+    format!("{coordinate}_bristle")
 }
 
 #[cfg(test)]

@@ -1,24 +1,30 @@
 //! States of forces, in addition to the pose and rates of a motion: pressures and spools of cylinders with a valve, bristles of joints that
 //! stick.
 //!
-//! A motion is `[q, v, x]`; x has the states of the oil, then one for each joint with bristles.
+//! A motion is `[q, v, x]`; x has the states kind by kind, those of local forces last.
 
 use nalgebra::DMatrix;
 
 use crate::{
     Description,
-    bristles::{self, Bristles},
-    dyn_crane::{DynCrane, DynDynamics, DynModel},
-    hydraulics::{self, Hydraulics},
-    stateful_force::{Row, STATES, StateAt, StatefulForce},
+    bristles::Bristles,
+    dyn_crane::{DynDynamics, DynModel},
+    hydraulics::Hydraulics,
+    stateful_force::{Evaluated, ForceState, Row, StateAt, StatefulForce, StatefulForces},
 };
 
+/// The forces with states of a description, kind by kind: first those that span several coordinates or share states, then local ones.
+fn kinds(description: &Description) -> [Box<dyn StatefulForces>; 2] {
+    [Box::new(Hydraulics::new(description)), Box::new(Bristles::new(description))]
+}
+
 /// All forces of a crane that have states.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct ForceStates {
-    oil: Hydraulics,
-    bristles: Bristles,
-    /// The forces as last evaluated, those of the oil first.
+    /// Each kind, the end of its forces among all, and the end of its states.
+    kinds: Vec<(Box<dyn StatefulForces>, [usize; 2])>,
+    states: Vec<ForceState>,
+    /// The forces as last evaluated, kind by kind.
     forces: Vec<StatefulForce>,
     /// Their rows.
     rows: Vec<Row>,
@@ -32,24 +38,29 @@ pub struct ForceStates {
 impl ForceStates {
     /// From the description of a crane.
     pub fn new(description: &Description) -> Self {
-        let (oil, n) = (Hydraulics::new(description), description.coordinates.len());
-        let bristles = Bristles::new(description, oil.len());
+        let n = description.coordinates.len();
         let prescribed = description.prescribed();
         let size = if prescribed.is_empty() { 0 } else { n };
+        let (mut rows, mut states) = (Vec::new(), Vec::new());
+        let kinds = kinds(description).map(|kind| {
+            rows.extend(kind.rows());
+            states.extend(kind.states());
+            (kind, [rows.len(), states.len()])
+        });
         Self {
             prescribed,
             mass: DMatrix::zeros(size, size),
-            forces: vec![StatefulForce::default(); oil.count() + bristles.len()],
-            rows: oil.rows().chain(bristles.rows()).collect(),
+            forces: vec![StatefulForce::default(); rows.len()],
+            kinds: kinds.into(),
+            rows,
+            states,
             efforts: [vec![0.0; n], vec![0.0; n]],
-            oil,
-            bristles,
         }
     }
 
     /// Number of states.
     pub fn len(&self) -> usize {
-        self.oil.len() + self.bristles.len()
+        self.states.len()
     }
 
     /// Whether there are none.
@@ -57,27 +68,24 @@ impl ForceStates {
         self.forces.is_empty()
     }
 
-    /// Sizes by which errors of the states are measured: the pump's pressure, the travel of a spool from its centre, the deflection at
-    /// which bristles slide.
+    /// Sizes by which errors of the states are measured.
     pub fn scales(&self) -> Vec<f64> {
-        self.oil.scales().into_iter().chain(self.bristles.scales()).collect()
+        self.states.iter().map(|state| state.scale).collect()
     }
 
     /// The states that hold a pose at rest at a given time: shut valves, the unloaded side at tank pressure, and
     /// bristles that carry nothing.
     pub fn holding(&mut self, crane: &dyn DynDynamics, t: f64, q: &[f64]) -> Vec<f64> {
-        let mut states = self.oil.holding(crane, t, q);
-        states.resize(self.len(), 0.0);
-        states
+        self.kinds.iter_mut().flat_map(|(kind, _)| kind.holding(crane, t, q)).collect()
     }
 
     /// As [`holding`](Self::holding), with valves that a servo has opened slightly, in either direction.
-    pub(crate) fn slightly_open(&mut self, crane: &dyn DynCrane, t: f64, q: &[f64]) -> [Vec<f64>; 2] {
-        let len = self.len();
-        self.oil.slightly_open(crane, t, q).map(|mut states| {
-            states.resize(len, 0.0);
-            states
-        })
+    pub(crate) fn slightly_open(&mut self, crane: &dyn DynDynamics, t: f64, q: &[f64]) -> [Vec<f64>; 2] {
+        let mut both = [Vec::new(), Vec::new()];
+        for (kind, _) in &mut self.kinds {
+            both.iter_mut().zip(kind.slightly_open(crane, t, q)).for_each(|(all, own)| all.extend(own));
+        }
+        both
     }
 
     /// Number of forces with states.
@@ -85,9 +93,9 @@ impl ForceStates {
         self.forces.len()
     }
 
-    /// Number of forces of the oil, and of their states; both come first.
-    pub(crate) fn of_oil(&self) -> [usize; 2] {
-        [self.oil.count(), self.oil.len()]
+    /// Number of forces that span several coordinates or share states, and of their states; both come first.
+    pub(crate) fn coupled(&self) -> [usize; 2] {
+        self.kinds.iter().rev().find(|(kind, _)| !kind.is_local()).map_or([0; 2], |(_, ends)| *ends)
     }
 
     /// The forces as last evaluated.
@@ -111,15 +119,25 @@ impl ForceStates {
         if let Some(matrix) = by_states.as_deref_mut() {
             matrix.fill(0.0);
         }
-        let (of_oil, of_bristles) = self.forces.split_at_mut(self.oil.count());
-        self.oil.evaluate(crane, moment, rates, of_oil, by_states.as_deref_mut());
-        self.oil.update(&mut self.rows);
-        self.bristles.evaluate(moment, rates, of_bristles, by_states);
+        let [mut first_force, mut first] = [0; 2];
+        for (kind, [end_force, end]) in &mut self.kinds {
+            let (forces, rows) = (&mut self.forces[first_force..*end_force], &mut self.rows[first_force..*end_force]);
+            let block =
+                by_states.as_deref_mut().map(|matrix| matrix.view_mut((first, first), (*end - first, *end - first)));
+            let out = Evaluated { rates: &mut rates[first..*end], forces: &mut *forces, rows };
+            kind.evaluate(crane, &moment.with_states(first..*end), out, block);
+            forces.iter_mut().for_each(|force| force.first += first);
+            [first_force, first] = [*end_force, *end];
+        }
     }
 
-    /// Replaces the slopes of bristles that stick by the steeper ones on either side of rest; `c` is the implicit part of a step, s.
-    pub(crate) fn steepen_bristles(&mut self, moment: &StateAt<'_>, c: f64) {
-        self.bristles.steepen(moment, c, &mut self.forces[self.oil.count()..]);
+    /// Replaces the slopes of laws that stick by the steeper ones on either side of rest; `c` is the implicit part of a step, s.
+    pub(crate) fn steepen(&mut self, moment: &StateAt<'_>, c: f64) {
+        let [mut first_force, mut first] = [0; 2];
+        for (kind, [end_force, end]) in &self.kinds {
+            kind.steepen(&moment.with_states(first..*end), c, &mut self.forces[first_force..*end_force]);
+            [first_force, first] = [*end_force, *end];
+        }
     }
 
     /// Adds what the forces contribute to the accelerations, and writes the rates of the states.
@@ -168,15 +186,26 @@ impl ForceStates {
 
     /// Appends which branch of its law each force is on.
     pub(crate) fn branches(&mut self, crane: &dyn DynModel, moment: &StateAt<'_>, out: &mut Vec<bool>) {
-        self.oil.branches(crane, moment, out);
-        self.bristles.branches(moment, out);
+        let mut first = 0;
+        for (kind, [_, end]) in &mut self.kinds {
+            kind.branches(crane, &moment.with_states(first..*end), out);
+            first = *end;
+        }
     }
 
-    /// Power that cylinders supply, `Σ F ℓ̇`, and power that bristles dissipate, `−Σ F ℓ̇`, at the last evaluation, W.
+    /// Power that forces supply, `Σ F ℓ̇`, and power that others dissipate, `−Σ F ℓ̇`, at the last evaluation, W.
     pub(crate) fn powers(&self) -> [f64; 2] {
-        let (of_oil, of_bristles) = self.forces.split_at(self.oil.count());
-        let power = |all: &[StatefulForce]| all.iter().map(|force| force.force * force.speed).sum::<f64>();
-        [power(of_oil), -power(of_bristles)]
+        let (mut first, mut powers) = (0, [0.0; 2]);
+        for (kind, [end, _]) in &self.kinds {
+            let power = self.forces[first..*end].iter().map(|force| force.force * force.speed).sum::<f64>();
+            if kind.supplies_power() {
+                powers[0] += power;
+            } else {
+                powers[1] -= power;
+            }
+            first = *end;
+        }
+        powers
     }
 }
 
@@ -197,21 +226,20 @@ pub(crate) fn add_to_rigid_drives(crane: &dyn DynDynamics, moment: &StateAt<'_>,
 
 /// Names of the columns of results with the states, in their order.
 pub fn columns(description: &Description) -> Vec<String> {
-    [hydraulics::columns(description), bristles::columns(description)].concat()
+    ForceStates::new(description).states.into_iter().map(|state| state.name).collect()
 }
 
-/// How far integration errors may move a spool beyond its ends.
+/// How far integration errors may move a state beyond its range.
 const ROUNDING: f64 = 1e-3;
 
-/// Describes states that no valve can have: a spool beyond its ends.
+/// Describes states that no force can have: a spool beyond its ends.
 pub fn impossible(description: &Description, x: &[f64]) -> Option<String> {
-    let names = hydraulics::columns(description);
-    let beyond = |(place, name): (usize, &String)| {
-        let opening = *x.get(place)?;
-        (place % STATES == 2 && opening.abs() > 1.0 + ROUNDING)
-            .then(|| format!("`{name}` is {opening}: a valve is fully open at −1 and 1"))
-    };
-    names.iter().enumerate().find_map(beyond)
+    let states = ForceStates::new(description).states;
+    states.iter().zip(x).find_map(|(ForceState { name, range, .. }, x)| {
+        let ([least, most], meaning) = (*range)?;
+        let inside = (least - ROUNDING..=most + ROUNDING).contains(x);
+        (!inside).then(|| format!("`{name}` is {x}: {meaning}"))
+    })
 }
 
 /// Accelerations at a state of a crane and its forces, m/s² and rad/s², and the rates of the states.

@@ -1,4 +1,73 @@
-//! A force with states of its own: at which state it is evaluated, what it returns, and on which coordinates it acts.
+//! Forces with states of their own: what they have in common, at which state they are evaluated, what they return, and on which
+//! coordinates they act.
+
+use std::{fmt::Debug, ops::Range};
+
+use nalgebra::DMatrixViewMut;
+
+use crate::dyn_crane::{DynDynamics, DynModel};
+
+/// Forces of one kind that have states. Indices of states are those among the states of this kind, except in [`StateAt`] and
+/// [`StatefulForce`], whose users see all states.
+pub(crate) trait StatefulForces: Debug + Send + Sync {
+    /// Their states, in order.
+    fn states(&self) -> Vec<ForceState>;
+
+    /// Their rows, with the coordinates on which they act.
+    fn rows(&self) -> Vec<Row>;
+
+    /// Whether each of them has one state, which depends on no other, and acts on one coordinate: an implicit step eliminates it there.
+    fn is_local(&self) -> bool;
+
+    /// Whether they supply power, as a pump does; all others dissipate it.
+    fn supplies_power(&self) -> bool;
+
+    /// The states that hold a pose at rest at a given time.
+    fn holding(&mut self, crane: &dyn DynDynamics, t: f64, q: &[f64]) -> Vec<f64>;
+
+    /// As [`holding`](Self::holding), with valves that a servo has opened slightly, in either direction.
+    fn slightly_open(&mut self, crane: &dyn DynDynamics, t: f64, q: &[f64]) -> [Vec<f64>; 2] {
+        let states = self.holding(crane, t, q);
+        [states.clone(), states]
+    }
+
+    /// Evaluates all forces, their rows and the rates of their states; `by_states`, if given, receives the derivatives of the rates with
+    /// respect to the states and contains zeros before. In `moment`, `x` has only their states.
+    fn evaluate(
+        &mut self,
+        crane: &dyn DynModel,
+        moment: &StateAt<'_>,
+        out: Evaluated<'_>,
+        by_states: Option<DMatrixViewMut<'_, f64>>,
+    );
+
+    /// Replaces slopes where a law sticks by the steeper ones on either side of rest; `c` is the implicit part of a step, s.
+    fn steepen(&self, _moment: &StateAt<'_>, _c: f64, _forces: &mut [StatefulForce]) {}
+
+    /// Appends which branch of its law each force is on.
+    fn branches(&mut self, crane: &dyn DynModel, moment: &StateAt<'_>, out: &mut Vec<bool>);
+}
+
+/// A state of a force.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct ForceState {
+    /// Name of its column of results.
+    pub name: String,
+    /// The size by which its errors are measured.
+    pub scale: f64,
+    /// The range that it cannot leave, and what that means.
+    pub range: Option<([f64; 2], &'static str)>,
+}
+
+/// What an evaluation of forces returns.
+pub(crate) struct Evaluated<'a> {
+    /// The rates of their states.
+    pub rates: &'a mut [f64],
+    /// The forces.
+    pub forces: &'a mut [StatefulForce],
+    /// Their rows.
+    pub rows: &'a mut [Row],
+}
 
 /// A state of a crane, with the states of its forces.
 #[derive(Clone, Copy, Debug)]
@@ -7,6 +76,13 @@ pub(crate) struct StateAt<'a> {
     pub q: &'a [f64],
     pub v: &'a [f64],
     pub x: &'a [f64],
+}
+
+impl StateAt<'_> {
+    /// The same with only some states of forces.
+    pub fn with_states(&self, range: Range<usize>) -> Self {
+        Self { x: &self.x[range], ..*self }
+    }
 }
 
 /// Maximum number of states of a force.

@@ -25,6 +25,20 @@ pub struct Energies {
 }
 
 impl Energies {
+    /// Names and values of the parts that a crane has. The columns of results are called `<name>_energy`.
+    pub fn parts(&self, description: &Description) -> impl Iterator<Item = (&'static str, f64)> {
+        let parts = [
+            ("kinetic", self.kinetic, true),
+            ("gravity", self.gravity, true),
+            ("support", self.supports, true),
+            ("element", self.elements, true),
+            ("drive", self.drives, true),
+            ("stop", self.stops, !description.stops.is_empty()),
+            ("connector", self.connectors, !description.connectors.is_empty()),
+        ];
+        parts.into_iter().filter(|(.., has)| *has).map(|(name, value, _)| (name, value))
+    }
+
     /// Kinetic and potential energy together.
     pub fn total(&self) -> f64 {
         self.kinetic + self.gravity + self.supports + self.elements + self.drives + self.stops + self.connectors

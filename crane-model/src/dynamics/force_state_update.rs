@@ -8,8 +8,8 @@
 //! (M + Uᵀ S U) z = … + c² Uᵀ (δ U G + κ U (c G + P) + F_x W R/c)
 //! ```
 //!
-//! with the right-hand side R of the states. Bristles act on single coordinates: their κ and δ are a stiffness and a damping there. Cylinders
-//! span several coordinates and are coupled through the pump; by Woodbury's identity, each takes one solution with M.
+//! with the right-hand side R of the states. Local forces, as those of bristles, act on single coordinates: their κ and δ are a stiffness
+//! and a damping there. Others, as those of cylinders, span several coordinates or share states; by Woodbury's identity, each takes one solution with M.
 
 use nalgebra::DMatrix;
 
@@ -26,20 +26,20 @@ pub(crate) struct ForceStateUpdate {
     pub steeper_bristles: bool,
     rates: Vec<f64>,
     by_states: DMatrix<f64>,
-    /// W of the oil, as factors of its inverse, and of each bristle.
-    of_oil: Factors,
-    of_bristles: Vec<f64>,
-    /// Of the cylinders.
+    /// W of the coupled forces, as factors of its inverse, and of each local one.
+    of_coupled: Factors,
+    of_local: Vec<f64>,
+    /// Of the coupled forces.
     kappa: DMatrix<f64>,
     delta: DMatrix<f64>,
     added_inertia: DMatrix<f64>,
-    /// M⁻¹ Uᵀ, cylinder by cylinder.
+    /// M⁻¹ Uᵀ, force by force.
     inverse_columns: Vec<Vec<f64>>,
     /// U M⁻¹ Uᵀ.
     inverse: DMatrix<f64>,
     /// I + S U M⁻¹ Uᵀ.
     correction: Factors,
-    /// Workspace: one number per coordinate, one per state, one per cylinder, and `U g` and `U p` per cylinder.
+    /// Workspace: one number per coordinate, one per state, one per coupled force, and `U g` and `U p` per coupled force.
     column: Vec<f64>,
     of_states: Vec<f64>,
     shares: Vec<f64>,
@@ -51,38 +51,38 @@ impl ForceStateUpdate {
     pub fn new(crane: &dyn DynModel) -> Self {
         let force_states = ForceStates::new(crane.description());
         let n = crane.description().coordinates.len();
-        let ([cylinders, of_oil], len) = (force_states.of_oil(), force_states.len());
+        let ([coupled, of_coupled], len) = (force_states.coupled(), force_states.len());
         let square = |size| DMatrix::zeros(size, size);
         Self {
             rates: vec![0.0; len],
             by_states: square(len),
-            of_oil: Factors::new(of_oil),
-            of_bristles: vec![0.0; force_states.count() - cylinders],
-            kappa: square(cylinders),
-            delta: square(cylinders),
-            added_inertia: square(cylinders),
-            inverse_columns: vec![vec![0.0; n]; cylinders],
-            inverse: square(cylinders),
-            correction: Factors::new(cylinders),
+            of_coupled: Factors::new(of_coupled),
+            of_local: vec![0.0; force_states.count() - coupled],
+            kappa: square(coupled),
+            delta: square(coupled),
+            added_inertia: square(coupled),
+            inverse_columns: vec![vec![0.0; n]; coupled],
+            inverse: square(coupled),
+            correction: Factors::new(coupled),
             column: vec![0.0; n],
             of_states: vec![0.0; len],
-            shares: vec![0.0; cylinders],
-            along: vec![[0.0; 2]; cylinders],
+            shares: vec![0.0; coupled],
+            along: vec![[0.0; 2]; coupled],
             steeper_bristles: false,
             force_states,
         }
     }
 
-    /// Evaluates the forces at a state, and adds stiffness and damping of bristles to those of their coordinates.
+    /// Evaluates the forces at a state, and adds stiffness and damping of local forces to those of their coordinates.
     pub fn evaluate(&mut self, crane: &dyn DynModel, moment: &StateAt<'_>, c: f64, joints: &mut [[f64; 2]]) {
         if self.force_states.is_empty() {
             return;
         }
         self.force_states.evaluate(crane, moment, &mut self.rates, Some(&mut self.by_states));
         if self.steeper_bristles {
-            self.force_states.steepen_bristles(moment, c);
+            self.force_states.steepen(moment, c);
         }
-        for (inverse, (force, row)) in self.of_bristles.iter_mut().zip(bristles(&self.force_states)) {
+        for (inverse, (force, row)) in self.of_local.iter_mut().zip(local(&self.force_states)) {
             *inverse = 1.0 / (1.0 / c - self.by_states[(force.first, force.first)]);
             let pull = force.by_states[0] * *inverse;
             let stiffness = -(force.by_length + pull * force.rates_by_length[0]);
@@ -95,21 +95,22 @@ impl ForceStateUpdate {
         }
     }
 
-    /// Prepares solutions with cylinders at the state evaluated; `solve` solves the system without them.
+    /// Prepares solutions with coupled forces at the state evaluated; `solve` solves the system without them.
     pub fn factorise(&mut self, c: f64, solve: &mut dyn FnMut(&[f64], &mut [f64])) {
-        let Self { force_states, by_states, of_oil, kappa, delta, added_inertia, inverse, inverse_columns, .. } = self;
-        let [cylinders, states] = force_states.of_oil();
-        if cylinders == 0 {
+        let Self { force_states, by_states, of_coupled, kappa, delta, added_inertia, inverse, inverse_columns, .. } =
+            self;
+        let [coupled, states] = force_states.coupled();
+        if coupled == 0 {
             return;
         }
-        of_oil.factorise(|row, column| f64::from(row == column) / c - by_states[(row, column)]);
-        let forces = &force_states.forces()[..cylinders];
+        of_coupled.factorise(|row, column| f64::from(row == column) / c - by_states[(row, column)]);
+        let forces = &force_states.forces()[..coupled];
         for (column, force) in forces.iter().enumerate() {
             for (matrix, rates) in [(&mut *kappa, force.rates_by_length), (&mut *delta, force.rates_by_speed)] {
                 let of_states = &mut self.of_states[..states];
                 of_states.fill(0.0);
                 of_states[force.first..force.first + force.count].copy_from_slice(&rates[..force.count]);
-                of_oil.solve(of_states);
+                of_coupled.solve(of_states);
                 for (row, other) in forces.iter().enumerate() {
                     matrix[(row, column)] = other.pull(of_states);
                 }
@@ -120,7 +121,7 @@ impl ForceStateUpdate {
         for ((added_inertia, delta), kappa) in added_inertia.iter_mut().zip(delta.iter()).zip(kappa.iter()) {
             *added_inertia = -(delta * c + kappa * (c * c));
         }
-        let rows = &force_states.rows()[..cylinders];
+        let rows = &force_states.rows()[..coupled];
         for (column, (row, inverse_column)) in rows.iter().zip(inverse_columns).enumerate() {
             self.column.fill(0.0);
             row.add_to(&mut self.column, 1.0);
@@ -131,17 +132,17 @@ impl ForceStateUpdate {
         }
         self.correction.factorise(|row, column| {
             let share = |place: usize| added_inertia[(row, place)] * inverse[(place, column)];
-            f64::from(row == column) + (0..cylinders).map(share).sum::<f64>()
+            f64::from(row == column) + (0..coupled).map(share).sum::<f64>()
         });
     }
 
-    /// Adds `−δ U G − κ U (c G + P)` of the cylinders and `−F_x W R/c` of all forces; for bristles the first two are among those of the
+    /// Adds `−δ U G − κ U (c G + P)` of the coupled forces and `−F_x W R/c` of all forces; for local ones the first two are among those of the
     /// joints.
     pub fn add_to(&mut self, (g, p): (&[f64], &[f64]), r: &[f64], c: f64, right: &mut [f64]) {
-        let [cylinders, states] = self.force_states.of_oil();
-        let (forces, rows) = (&self.force_states.forces()[..cylinders], &self.force_states.rows()[..cylinders]);
+        let [coupled, states] = self.force_states.coupled();
+        let (forces, rows) = (&self.force_states.forces()[..coupled], &self.force_states.rows()[..coupled]);
         self.of_states.copy_from_slice(r);
-        self.of_oil.solve(&mut self.of_states[..states]);
+        self.of_coupled.solve(&mut self.of_states[..states]);
         for (along, row) in self.along.iter_mut().zip(rows) {
             *along = [row.along(g), row.along(p)];
         }
@@ -152,12 +153,12 @@ impl ForceStateUpdate {
             let sum = self.along.iter().enumerate().map(of_force).sum::<f64>() + force.pull(&self.of_states) / c;
             own.add_to(right, -sum);
         }
-        for (inverse, (force, row)) in self.of_bristles.iter().zip(bristles(&self.force_states)) {
+        for (inverse, (force, row)) in self.of_local.iter().zip(local(&self.force_states)) {
             right[row.first] -= force.by_states[0] * inverse * r[force.first] / c;
         }
     }
 
-    /// Turns the solution of the system without cylinders into that of the system with them.
+    /// Turns the solution of the system without coupled forces into that of the system with them.
     pub fn correct(&mut self, solution: &mut [f64]) {
         for ([along, _], row) in self.along.iter_mut().zip(self.force_states.rows()) {
             *along = row.along(solution);
@@ -184,18 +185,18 @@ impl ForceStateUpdate {
                 *x += force.rates_by_length[i] * p + force.rates_by_speed[i] * w;
             }
         }
-        let (of_oil, of_bristles) = out.split_at_mut(self.force_states.of_oil()[1]);
-        self.of_oil.solve(of_oil);
-        for (x, inverse) in of_bristles.iter_mut().zip(&self.of_bristles) {
+        let (of_coupled, of_local) = out.split_at_mut(self.force_states.coupled()[1]);
+        self.of_coupled.solve(of_coupled);
+        for (x, inverse) in of_local.iter_mut().zip(&self.of_local) {
             *x *= inverse;
         }
     }
 }
 
-/// Forces of bristles, which have one state each, and their rows.
-fn bristles(force_states: &ForceStates) -> impl Iterator<Item = (&StatefulForce, &Row)> {
-    let [cylinders, _] = force_states.of_oil();
-    force_states.forces().iter().zip(force_states.rows()).skip(cylinders)
+/// Local forces, which have one state each, and their rows.
+fn local(force_states: &ForceStates) -> impl Iterator<Item = (&StatefulForce, &Row)> {
+    let [coupled, _] = force_states.coupled();
+    force_states.forces().iter().zip(force_states.rows()).skip(coupled)
 }
 
 /// LU factors of a matrix, with row exchanges, in storage that is reused: nalgebra allocates its factors for each matrix.

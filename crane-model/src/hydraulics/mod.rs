@@ -32,12 +32,12 @@ mod servo;
 mod state;
 mod valve;
 
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::{DMatrixViewMut, Vector3};
 
 use crate::{
     CylinderInfo, Description,
     dyn_crane::{DynDynamics, DynModel},
-    stateful_force::{Row, STATES, StateAt, StatefulForce},
+    stateful_force::{Evaluated, ForceState, Row, STATES, StateAt, StatefulForces},
 };
 use cylinder::{Command, Pump, ValveCylinder};
 pub(crate) use oil::Oil;
@@ -99,7 +99,7 @@ impl Hydraulics {
     }
 
     /// Number of states.
-    pub fn len(&self) -> usize {
+    fn len(&self) -> usize {
         if self.cylinders.is_empty() { 0 } else { STATES * self.cylinders.len() + 1 }
     }
 
@@ -108,21 +108,8 @@ impl Hydraulics {
         self.cylinders.is_empty()
     }
 
-    /// Number of cylinders with a valve.
-    pub(crate) fn count(&self) -> usize {
-        self.cylinders.len()
-    }
-
-    /// Rows `∂ℓ/∂q` of the cylinders with a valve.
-    pub(crate) fn rows(&self) -> impl Iterator<Item = Row> {
-        self.cylinders.iter().map(|cylinder| {
-            let [first, end] = cylinder.info.spanned;
-            Row { first, entries: vec![0.0; end - first] }
-        })
-    }
-
     /// Sets the rows of the cylinders with a valve to those of the last evaluation.
-    pub(crate) fn update(&self, rows: &mut [Row]) {
+    fn update(&self, rows: &mut [Row]) {
         let n = self.place[0].len();
         for (row, cylinder) in rows.iter_mut().zip(&self.cylinders) {
             let [first, end] = cylinder.info.spanned.map(|coordinate| cylinder.index * n + coordinate);
@@ -130,16 +117,68 @@ impl Hydraulics {
         }
     }
 
-    /// Sizes by which errors of the states are measured: the pump's pressure, and the travel of a spool from its centre.
-    pub(crate) fn scales(&self) -> Vec<f64> {
-        let pressure = self.pump.map_or(1.0, |pump| pump.pressure);
-        let of_cylinder = [pressure, pressure, 1.0];
-        let all = self.cylinders.iter().flat_map(|_| of_cylinder);
-        all.chain((!self.is_empty()).then_some(pressure)).collect()
+    /// Updates the lengths of all cylinders at this state, and with the drives at the positions that their motions prescribe.
+    fn measure(&mut self, crane: &dyn DynModel, t: f64, q: &[f64], v: &[f64]) {
+        crane.cylinder_states(q, v, &mut self.here);
+        crane.cylinder_jacobians(q, &mut self.jacobians);
+        if self.t == Some(t) {
+            return;
+        }
+        self.t = Some(t);
+        crane.drive_motions(t, &mut self.motions);
+        crane.valve_openings(t, &mut self.openings);
+        // All other coordinates stay zero: they do not change these lengths, and beams are straight.
+        let [wanted_q, wanted_v] = &mut self.place;
+        for cylinder in &self.cylinders {
+            let [position, rate] = self.motions[cylinder.info.drive];
+            wanted_q[cylinder.coordinate] = position;
+            wanted_v[cylinder.coordinate] = rate;
+        }
+        crane.cylinder_states(wanted_q, wanted_v, &mut self.wanted);
     }
 
-    /// The states that hold a pose at rest at a given time: shut valves, and the unloaded side at tank pressure.
-    pub(crate) fn holding(&mut self, crane: &dyn DynDynamics, t: f64, q: &[f64]) -> Vec<f64> {
+    /// What the pump delivers at its present pressure: flow, m³/s, and power, W; then that pressure, Pa.
+    fn delivered(&self, x: &[f64]) -> [f64; 3] {
+        let (Some(pump), Some(pressure)) = (self.pump, self.len().checked_sub(1).map(|last| x[last])) else {
+            return [0.0; 3];
+        };
+        let (flow, _) = pump.flow(pressure);
+        [flow, flow * pressure, pressure]
+    }
+}
+
+impl StatefulForces for Hydraulics {
+    /// Pressures on both sides and the spool of each cylinder with a valve, then the pressure of the pump.
+    fn states(&self) -> Vec<ForceState> {
+        let pressure = self.pump.map_or(1.0, |pump| pump.pressure);
+        let of_pressure = |name: String| ForceState { name, scale: pressure, range: None };
+        let of_cylinder = |ValveCylinder { info, .. }: &ValveCylinder| {
+            let [piston, rod] = ["piston", "rod"].map(|side| of_pressure(format!("{}_{side}_pressure", info.name)));
+            let range = Some(([-1.0, 1.0], "a valve is fully open at −1 and 1"));
+            [piston, rod, ForceState { name: format!("{}_valve", info.name), scale: 1.0, range }]
+        };
+        let pump = (!self.is_empty()).then(|| of_pressure("pump_pressure".to_owned()));
+        self.cylinders.iter().flat_map(of_cylinder).chain(pump).collect()
+    }
+
+    fn rows(&self) -> Vec<Row> {
+        let row = |ValveCylinder { info: CylinderInfo { spanned: [first, end], .. }, .. }: &ValveCylinder| Row {
+            first: *first,
+            entries: vec![0.0; end - first],
+        };
+        self.cylinders.iter().map(row).collect()
+    }
+
+    fn is_local(&self) -> bool {
+        false
+    }
+
+    fn supplies_power(&self) -> bool {
+        true
+    }
+
+    /// Shut valves, and the unloaded side at tank pressure.
+    fn holding(&mut self, crane: &dyn DynDynamics, t: f64, q: &[f64]) -> Vec<f64> {
         if self.is_empty() {
             return Vec::new();
         }
@@ -158,19 +197,23 @@ impl Hydraulics {
         all.chain(self.pump.map(|pump| pump.pressure)).collect()
     }
 
-    /// Rates of the states, and the force of every cylinder with a valve, at a state of the crane; `by_states`, if given, receives the
-    /// derivatives of the rates with respect to the states.
-    pub(crate) fn evaluate(
+    /// As held, with valves that a servo has opened slightly, towards the pump and towards the tank.
+    fn slightly_open(&mut self, crane: &dyn DynDynamics, t: f64, q: &[f64]) -> [Vec<f64>; 2] {
+        let holding = self.holding(crane, t, q);
+        [1.0, -1.0].map(|towards| self.opened_slightly(&holding, towards))
+    }
+
+    fn evaluate(
         &mut self,
         crane: &dyn DynModel,
         &StateAt { t, q, v, x }: &StateAt<'_>,
-        rates: &mut [f64],
-        forces: &mut [StatefulForce],
-        mut by_states: Option<&mut DMatrix<f64>>,
+        Evaluated { rates, forces, rows }: Evaluated<'_>,
+        mut by_states: Option<DMatrixViewMut<'_, f64>>,
     ) {
         let Some(last) = self.len().checked_sub(1) else { return };
         let p_s = x[last];
         self.measure(crane, t, q, v);
+        self.update(rows);
         let (mut taken, mut taken_by_pump) = (0.0, 0.0);
         let pump = self.pump;
         let of_pump = pump.map_or(0.0, |pump| pump.bulk_modulus / pump.info.volume);
@@ -206,7 +249,7 @@ impl Hydraulics {
                 block[side][side] = stiffness * (flows.by_own[side] + guard_slope) - leakage;
                 block[side][1 - side] = leakage;
                 block[side][2] = stiffness * flows.by_spool[side];
-                if let Some(matrix) = by_states.as_deref_mut() {
+                if let Some(matrix) = &mut by_states {
                     matrix[(first + side, last)] = stiffness * flows.by_pump[side];
                     matrix[(last, first + side)] = if side == fed { -of_pump * flows.by_own[side] } else { 0.0 };
                 }
@@ -221,7 +264,7 @@ impl Hydraulics {
             rates[first + 2] = (command.opening - u) / lag;
             force.rates_by_length[2] = command.by_length / lag;
             block[2] = [command.by_sides[0] / lag, command.by_sides[1] / lag, -1.0 / lag];
-            if let Some(matrix) = by_states.as_deref_mut() {
+            if let Some(matrix) = &mut by_states {
                 for (row, numbers) in block.iter().enumerate() {
                     for (column, number) in numbers.iter().enumerate() {
                         matrix[(first + row, first + column)] = *number;
@@ -234,18 +277,13 @@ impl Hydraulics {
         }
         let (delivered, slope) = pump.map_or((0.0, 0.0), |pump| pump.flow(p_s));
         rates[last] = of_pump * (delivered - taken);
-        if let Some(matrix) = by_states {
+        if let Some(matrix) = &mut by_states {
             matrix[(last, last)] = of_pump * (slope - taken_by_pump);
         }
     }
 
-    /// Appends which branches of their laws cylinders, valves and pump are on.
-    pub(crate) fn branches(
-        &mut self,
-        crane: &dyn DynModel,
-        &StateAt { t, q, v, x }: &StateAt<'_>,
-        out: &mut Vec<bool>,
-    ) {
+    /// Those of cylinders, valves and pump.
+    fn branches(&mut self, crane: &dyn DynModel, &StateAt { t, q, v, x }: &StateAt<'_>, out: &mut Vec<bool>) {
         let Some(last) = self.len().checked_sub(1) else { return };
         let p_s = x[last];
         self.measure(crane, t, q, v);
@@ -257,47 +295,6 @@ impl Hydraulics {
             out.extend(pump.branches(p_s));
         }
     }
-
-    /// Updates the lengths of all cylinders at this state, and with the drives at the positions that their motions prescribe.
-    fn measure(&mut self, crane: &dyn DynModel, t: f64, q: &[f64], v: &[f64]) {
-        crane.cylinder_states(q, v, &mut self.here);
-        crane.cylinder_jacobians(q, &mut self.jacobians);
-        if self.t == Some(t) {
-            return;
-        }
-        self.t = Some(t);
-        crane.drive_motions(t, &mut self.motions);
-        crane.valve_openings(t, &mut self.openings);
-        // All other coordinates stay zero: they do not change these lengths, and beams are straight.
-        let [wanted_q, wanted_v] = &mut self.place;
-        for cylinder in &self.cylinders {
-            let [position, rate] = self.motions[cylinder.info.drive];
-            wanted_q[cylinder.coordinate] = position;
-            wanted_v[cylinder.coordinate] = rate;
-        }
-        crane.cylinder_states(wanted_q, wanted_v, &mut self.wanted);
-    }
-
-    /// What the pump delivers at its present pressure: flow, m³/s, and power, W; then that pressure, Pa.
-    fn delivered(&self, x: &[f64]) -> [f64; 3] {
-        let (Some(pump), Some(pressure)) = (self.pump, self.len().checked_sub(1).map(|last| x[last])) else {
-            return [0.0; 3];
-        };
-        let (flow, _) = pump.flow(pressure);
-        [flow, flow * pressure, pressure]
-    }
-}
-
-/// Names of the columns of results with the states, in their order.
-pub(crate) fn columns(description: &Description) -> Vec<String> {
-    let valves = description.cylinders.iter().filter(|cylinder| cylinder.valve.is_some());
-    let of_cylinder =
-        |info: &CylinderInfo| ["piston_pressure", "rod_pressure", "valve"].map(|what| format!("{}_{what}", info.name));
-    let mut names: Vec<String> = valves.flat_map(of_cylinder).collect();
-    if !names.is_empty() {
-        names.push("pump_pressure".to_owned());
-    }
-    names
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use super::{CylinderState, Hydraulics};
 use crate::{
     Description,
     dyn_crane::DynModel,
-    stateful_force::{STATES, StateAt, StatefulForce},
+    stateful_force::{Evaluated, STATES, StateAt, StatefulForce, StatefulForces},
 };
 
 /// The cylinders with a valve: index among all cylinders, state, and position of the spool; flow (m³/s), power (W) and pressure (Pa) of the
@@ -22,8 +22,9 @@ impl Oil {
         if hydraulics.is_empty() || x.len() < hydraulics.len() {
             return None;
         }
-        let mut forces = vec![StatefulForce::default(); hydraulics.count()];
-        hydraulics.evaluate(crane, moment, &mut vec![0.0; x.len()], &mut forces, None);
+        let (mut rates, mut rows) = (vec![0.0; x.len()], hydraulics.rows());
+        let mut forces = vec![StatefulForce::default(); rows.len()];
+        hydraulics.evaluate(crane, moment, Evaluated { rates: &mut rates, forces: &mut forces, rows: &mut rows }, None);
         let cylinders =
             hydraulics.cylinders.iter().zip(&forces).zip(x.chunks_exact(STATES)).map(|((cylinder, force), x)| {
                 let here = hydraulics.here[cylinder.index];

@@ -1,7 +1,7 @@
 //! Servos: which cylinders have one, and their valves slightly open at rest.
 
 use super::{Hydraulics, STATES, ValveCylinder, valve::flows};
-use crate::{Description, dyn_crane::DynCrane};
+use crate::Description;
 
 /// How far beyond its overlap a slightly opened valve is open, as a fraction of the spool's travel.
 const SLIGHTLY: f64 = 1e-9;
@@ -9,8 +9,8 @@ const SLIGHTLY: f64 = 1e-9;
 /// A valve with a servo.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Servo {
-    /// Its place among the cylinders with a valve.
-    pub place: usize,
+    /// Index of its spool among the states of the oil.
+    pub spool: usize,
     /// Index of its cylinder among all.
     pub cylinder: usize,
     /// Gain, 1/m.
@@ -22,25 +22,26 @@ pub(crate) fn servos(description: &Description) -> Vec<Servo> {
     let oil = Hydraulics::new(description);
     let servo = |(place, cylinder): (usize, &ValveCylinder)| {
         let (valve, cylinder) = (&cylinder.valve, cylinder.index);
-        (!valve.commanded && valve.gain > 0.0).then_some(Servo { place, cylinder, gain: valve.gain })
+        (!valve.commanded && valve.gain > 0.0).then_some(Servo {
+            spool: STATES * place + 2,
+            cylinder,
+            gain: valve.gain,
+        })
     };
     oil.cylinders.iter().enumerate().filter_map(servo).collect()
 }
 
 impl Hydraulics {
-    /// The states that hold a pose at rest with valves that a servo has opened slightly, towards the pump and towards the tank.
-    pub(crate) fn slightly_open(&mut self, crane: &dyn DynCrane, t: f64, q: &[f64]) -> [Vec<f64>; 2] {
-        let holding = self.holding(crane, t, q);
-        let Some(&pump) = holding.last() else { return [Vec::new(), Vec::new()] };
-        [1.0, -1.0].map(|towards| {
-            let mut x = holding.clone();
-            for (cylinder, own) in self.cylinders.iter().zip(x.chunks_exact_mut(STATES)) {
-                if !cylinder.valve.commanded {
-                    cylinder.open_slightly(pump, towards, own);
-                }
+    /// States at rest with the valves that have a servo opened slightly, in the direction of `towards`, 1 or −1.
+    pub(super) fn opened_slightly(&self, holding: &[f64], towards: f64) -> Vec<f64> {
+        let mut x = holding.to_vec();
+        let Some(&pump) = holding.last() else { return x };
+        for (cylinder, own) in self.cylinders.iter().zip(x.chunks_exact_mut(STATES)) {
+            if !cylinder.valve.commanded {
+                cylinder.open_slightly(pump, towards, own);
             }
-            x
-        })
+        }
+        x
     }
 }
 

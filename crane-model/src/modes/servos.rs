@@ -10,7 +10,7 @@ use crate::{
     dyn_crane::DynCrane,
     force_states::ForceStates,
     hydraulics::{Servo, servos},
-    stateful_force::{STATES, StateAt},
+    stateful_force::StateAt,
 };
 
 /// Growth of a disturbance, 1/s, below which it is rounding or takes longer than any manoeuvre.
@@ -62,7 +62,7 @@ pub fn unstable_servos(crane: &dyn DynCrane, t: f64, q: &[f64]) -> Result<Vec<Un
     }
     let space = with_servos(crane, t, q)?;
     let n = space.unknowns().len();
-    let rows: Vec<usize> = servos.iter().map(|servo| 2 * n + STATES * servo.place + 2).collect();
+    let rows: Vec<usize> = servos.iter().map(|servo| 2 * n + servo.spool).collect();
     let loops = Loops { space, rows };
     let all = vec![1.0; servos.len()];
     let Some(together) = loops.growing(&all)? else { return Ok(Vec::new()) };

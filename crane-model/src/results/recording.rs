@@ -141,13 +141,7 @@ fn push_quantities(
         return None;
     }
     let energies = crane.energies_at(t, q, v);
-    row.extend([energies.kinetic, energies.gravity, energies.supports, energies.elements, energies.drives]);
-    if !crane.description().stops.is_empty() {
-        row.push(energies.stops);
-    }
-    if !crane.description().connectors.is_empty() {
-        row.push(energies.connectors);
-    }
+    row.extend(energies.parts(crane.description()).map(|(_, energy)| energy));
     Some(energies)
 }
 
@@ -197,8 +191,9 @@ fn quantities_of(description: &Description, extent: Extent) -> Vec<Column> {
             table.add(effort(&coordinate.name, what, coordinate.kind), coordinate.kind.force_unit());
         }
     }
-    for (name, joint) in bristles::columns(description).into_iter().zip(&description.bristles) {
-        table.add(name, description.coordinates[joint.coordinate].kind.unit());
+    for joint in &description.bristles {
+        let coordinate = &description.coordinates[joint.coordinate];
+        table.add(bristles::column(&coordinate.name), coordinate.kind.unit());
     }
     for connector in &description.connectors {
         let (what, unit) = (length_of(connector), connector.kind.unit());
@@ -209,14 +204,8 @@ fn quantities_of(description: &Description, extent: Extent) -> Vec<Column> {
     if !all {
         return table.columns;
     }
-    for energy in ["kinetic", "gravity", "support", "element", "drive"] {
-        table.add(format!("{energy}_energy"), "J");
-    }
-    if !description.stops.is_empty() {
-        table.add("stop_energy", "J");
-    }
-    if !description.connectors.is_empty() {
-        table.add("connector_energy", "J");
+    for (name, _) in Energies::default().parts(description) {
+        table.add(format!("{name}_energy"), "J");
     }
     table.columns
 }

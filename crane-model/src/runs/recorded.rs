@@ -9,7 +9,7 @@ use super::{Bound, Failed, Reason, Start, step_limit};
 use crate::{
     dyn_crane::DynCrane,
     dynamics::{self, Run, Sample, Watch},
-    results::{self, Recording, Table, Verification, cautions, verification},
+    results::{self, Column, Recording, Table, Verification, cautions, verification},
     stability::cause,
 };
 
@@ -45,18 +45,22 @@ const LEAST_EXCHANGED: f64 = 1e-9;
 
 /// Largest error of the energy balance over the largest energy exchanged, or over `least`, J, if that is more.
 pub fn imbalance(table: &Table, least: f64) -> f64 {
-    let column = |name: &str| table.values(name).map_or_else(Vec::new, Iterator::collect::<Vec<f64>>);
-    // Only the kinetic energy has an absolute zero: a body that bounces may exchange all of it between two results.
-    let kinetic = column("kinetic_energy").into_iter().fold(0.0, f64::max);
-    let parts = ["gravity", "support", "element", "drive", "stop", "connector"].map(|part| format!("{part}_energy"));
-    let exchanged =
-        parts.iter().map(String::as_str).chain(["drive_work", "load_work", "dissipated_energy"]).map(|name| {
-            let values = column(name);
-            let first = values.first().copied().unwrap_or(0.0);
-            values.iter().map(|x| (x - first).abs().max(LEAST_EXCHANGED * x.abs())).fold(0.0, f64::max)
-        });
-    let error = column("energy_balance").iter().map(|x| x.abs()).fold(0.0, f64::max);
-    error / exchanged.fold(kinetic.max(least).max(f64::MIN_POSITIVE), f64::max)
+    let largest = |column: &Column, size: &dyn Fn(f64) -> f64| {
+        table.values(&column.name).into_iter().flatten().map(size).fold(0.0, f64::max)
+    };
+    let (mut kinetic, mut error, mut exchanged) = (0.0, 0.0, 0.0_f64);
+    for column in table.columns.iter().filter(|column| column.unit == "J") {
+        match column.name.as_str() {
+            // Only the kinetic energy has an absolute zero: a body that bounces may exchange all of it between two results.
+            "kinetic_energy" => kinetic = largest(column, &|x| x),
+            "energy_balance" => error = largest(column, &f64::abs),
+            name => {
+                let first = table.values(name).and_then(|mut values| values.next()).unwrap_or(0.0);
+                exchanged = exchanged.max(largest(column, &|x| (x - first).abs().max(LEAST_EXCHANGED * x.abs())));
+            }
+        }
+    }
+    error / exchanged.max(kinetic).max(least).max(f64::MIN_POSITIVE)
 }
 
 /// Energy that gravity exchanges while coordinates move by the tolerance of a method with one, J: with less, a crane is at rest.

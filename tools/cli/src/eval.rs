@@ -192,7 +192,7 @@ fn evaluate(quantity: Quantity, live: &LiveCrane, t: f64, q: &[f64], v: &[f64]) 
         }
         Quantity::Energies => {
             let energies = crane.energies_at(t, q, v);
-            list(&[energies.kinetic, energies.gravity, energies.supports, energies.elements, energies.drives])
+            list(&energies.parts(crane.description()).map(|(_, energy)| energy).collect::<Vec<_>>())
         }
         Quantity::DriveEfforts => list(&crane.drive_efforts_at(t, q, v)),
         Quantity::SupportReactions => vectors(&crane.support_reactions_at(q, v)),

@@ -199,7 +199,7 @@ pub enum Quantity {
     StaticResidual,
     /// Second derivative of the potential energy at t = 0, N/m and N m/rad
     TangentStiffness,
-    /// Energies: kinetic, of gravity, supports, elements and drives; J
+    /// Energies: kinetic, of gravity, supports, elements and drives, then of end stops and connectors if the crane has them; J
     Energies,
     /// Efforts of the drives, N and N m
     DriveEfforts,
