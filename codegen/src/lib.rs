@@ -9,6 +9,9 @@
 //! There are three entry points: [`build::compile_spec`] in a build script, the command `crane`, and [`compile::compile`].
 //! [`program::Program::evaluate`] runs a program without rustc.
 
+#[macro_use]
+mod point_laws;
+
 pub mod build;
 pub mod chain;
 pub mod compile;

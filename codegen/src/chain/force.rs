@@ -30,31 +30,43 @@ pub enum Group {
     Connectors,
 }
 
-/// How a force depends on its strain s.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Law {
-    /// A spring and a damper.
-    Spring(Spring),
-    /// A rope, which pulls and never pushes.
-    Rope(Rope),
-    /// An end stop.
-    Stop(Stop),
-    /// Friction of a joint.
-    Friction(Friction),
+macro_rules! laws {
+    ($($(#[$doc:meta])* $law:ident as $written:ident: $expecting:literal {
+        $($(#[$key_doc:meta])* $key:ident: $number:ty, $limit:ident $unit:literal;)*
+    })*) => {
+        /// How a force depends on its strain s.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum Law {
+            $($(#[$doc])* $law($law),)*
+            /// A rope, which pulls and never pushes.
+            Rope(Rope),
+            /// An end stop.
+            Stop(Stop),
+            /// Friction of a joint.
+            Friction(Friction),
+        }
+
+        $($(#[$doc])*
+        #[derive(Clone, Debug, PartialEq)]
+        pub struct $law {
+            $($(#[$key_doc])* pub $key: Value,)*
+        })*
+
+        impl Law {
+            /// The length at which a law between two points exerts no force; for a rope at the start.
+            #[must_use]
+            pub fn length(&self, parameters: &[f64]) -> Option<f64> {
+                match self {
+                    $(Law::$law(law) => Some(law.length.at(parameters)),)*
+                    Law::Rope(rope) => Some(rope.length.start(parameters)),
+                    Law::Stop(_) | Law::Friction(_) => None,
+                }
+            }
+        }
+    };
 }
 
-/// A spring and a damper, `F = k (s − s₀) + d ṡ − P`; a gas spring pushes with P at s₀, and with more when it is shorter.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Spring {
-    /// k, N/m or N m/rad.
-    pub stiffness: Value,
-    /// d, N s/m or N m s/rad.
-    pub damping: Value,
-    /// s₀, m or rad.
-    pub length: Value,
-    /// P, N or N m.
-    pub push: Value,
-}
+point_laws!(laws);
 
 /// A rope, `F = k σ max(0, 1 + a σ̇)` with `σ = max(0, s − ℓ₀(t))`.
 #[derive(Clone, Debug, PartialEq)]
@@ -127,7 +139,7 @@ impl Spring {
     /// A spring without force at 0.
     #[must_use]
     pub fn new(stiffness: Value, damping: Value) -> Self {
-        Spring { stiffness, damping, length: Value::ZERO, push: Value::ZERO }
+        Spring { stiffness, damping, length: Value::ZERO }
     }
 }
 
@@ -152,7 +164,7 @@ impl Force {
     pub fn spring(&self) -> Option<&Spring> {
         match &self.law {
             Law::Spring(spring) => Some(spring),
-            Law::Rope(_) | Law::Stop(_) | Law::Friction(_) => None,
+            _ => None,
         }
     }
 
@@ -208,7 +220,7 @@ impl Chain {
     pub fn frictions(&self) -> impl Iterator<Item = (CoordinateId, &Friction)> {
         self.of(Group::Friction).iter().filter_map(|force| match &force.law {
             Law::Friction(friction) => Some((force.coordinate()?, friction)),
-            Law::Spring(_) | Law::Rope(_) | Law::Stop(_) => None,
+            _ => None,
         })
     }
 

@@ -25,7 +25,7 @@ pub use body::{Axis, Body, Coordinate, CoordinateKind, Inertia, Part, Step};
 pub use cut::Cut;
 pub use cylinder::{Cylinder, Linkage, Pin, Pump, Valve};
 pub use drive::{Drive, Rotor, Transmission};
-pub use force::{Bristle, End, Force, Friction, Group, Law, Rope, Spring, Stop};
+pub use force::*;
 pub use frame::{Frame, Vector};
 pub use input::{Input, InputId};
 pub use load::{Load, LoadAxes};

@@ -2,7 +2,7 @@
 
 use super::elements::{Element, Elements};
 use super::kinematics::Kinematics;
-use super::laws::{At, slopes};
+use super::laws::At;
 use super::loads::Place;
 use super::model::Model;
 use super::profile;
@@ -48,7 +48,7 @@ pub fn jacobians<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr
 /// `F, ∂F/∂ℓ, ∂F/∂ℓ̇` of every connector.
 pub fn tensions<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
     let tension = |Pulled { element, rate, force }: Pulled<'_, 'g>| {
-        let [by_length, by_rate] = slopes(element.law, At::now(model), element.strained.length, rate);
+        let [by_length, by_rate] = element.law.slopes(At::now(model), element.strained.length, rate);
         [force, by_length, by_rate]
     };
     pulled(model, kinematics).flat_map(tension).collect()

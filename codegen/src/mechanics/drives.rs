@@ -31,33 +31,67 @@ impl<'g> Acts<'g> for Drives<'_, 'g> {
         add(&springs, &cylinders::holding_forces(self.model, &rest.positions))
     }
 
+    /// `E_dr = ½ Σ s (q_dr − q)²` [Urbaś 2016, Eq. (19)]; for a drive with a limit `∫ sat(s e) de`.
     fn energy(&self) -> Option<Expr<'g>> {
-        self.model.chain.drives.iter().any(|drive| drive.spring().is_some()).then(|| energy(self.model))
+        let model = self.model;
+        flexible(model).next()?;
+        let positions = positions(model, model.t);
+        let twice = linear(model).fold(model.zero(), |sum, (drive, stiffness, _)| {
+            sum + model.number(stiffness) * stretch(model, drive, &positions).squared()
+        });
+        let limited = saturations(model, &positions).map(|((_, s, _), spring)| spring.integral() / model.number(s));
+        Some(limited.fold(0.5 * twice, |sum, energy| sum + energy))
     }
 
-    fn dissipation(&self) -> Expr<'g> {
-        dissipation(self.model)
+    /// `Σ d (q̇_dr − q̇)²` (2R of [Urbaś 2016, Eq. (19)]); for a drive with a limit `(sat(u) − sat(s e)) ė ≥ 0`.
+    fn dissipation(&self) -> Option<Expr<'g>> {
+        let model = self.model;
+        let rate = |drive: &Drive| profile::rate(model, &drive.profile, model.t) - model.v[drive.coordinate.0];
+        let linear = linear(model)
+            .fold(model.zero(), |sum, (drive, _, damping)| sum + model.number(damping) * rate(drive).squared());
+        Some(saturations(model, &positions(model, model.t)).fold(linear, |sum, (drive, spring)| {
+            let damper = limited(model, drive.0, unlimited(model, drive, model.t, &model.v)) - spring.effort();
+            sum + damper * rate(drive.0)
+        }))
     }
 
     fn add_stiffness(&self, rest: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>) {
-        linear_stiffness(self.model, matrix);
-        limited_stiffness(self.model, &rest.positions, matrix);
+        matrix.add_diagonal(linear(self.model).map(|(drive, s, _)| (drive.coordinate.0, self.model.number(s))));
+        self.add_limited(rest, |drive| drive.1, matrix);
     }
 
     fn add_damping(&self, rest: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>) {
-        linear_damping(self.model, matrix);
-        limited_damping(self.model, &rest.positions, matrix);
+        matrix.add_diagonal(linear(self.model).map(|(drive, _, d)| (drive.coordinate.0, self.model.number(d))));
+        self.add_limited(rest, |drive| drive.2, matrix);
     }
 
     fn add_step_matrices(&self, [stiffness, damping]: [&mut SymmetricMatrix<'g>; 2]) {
-        linear_stiffness(self.model, stiffness);
-        linear_damping(self.model, damping);
+        for (drive, s, d) in linear(self.model) {
+            let j = drive.coordinate.0;
+            stiffness.add(j, j, self.model.number(s));
+            damping.add(j, j, self.model.number(d));
+        }
     }
 
     fn add_nonlinear(&self, diagonal: &mut [[Expr<'g>; 2]]) {
         for (sum, own) in diagonal.iter_mut().zip(stiffness_and_damping(self.model)) {
             *sum = [sum[0] + own[0], sum[1] + own[1]];
         }
+    }
+}
+
+impl<'g> Drives<'_, 'g> {
+    /// Adds the stiffness or the damping of drives with a limit at rest, on the diagonal.
+    fn add_limited(
+        &self,
+        rest: &Rest<'g>,
+        number: impl for<'d> Fn((&'d Drive, &'d Value, &'d Value)) -> &'d Value,
+        matrix: &mut SymmetricMatrix<'g>,
+    ) {
+        let entry = |(drive, spring): ((&Drive, &Value, &Value), Saturation<'g>)| {
+            (drive.0.coordinate.0, spring.slope() * self.model.number(number(drive)))
+        };
+        matrix.add_diagonal(saturations(self.model, &rest.positions).map(entry));
     }
 }
 
@@ -159,16 +193,6 @@ fn prescribed<'g>(model: &Model<'g>, of: impl Fn(&Drive) -> Expr<'g>) -> Vec<Opt
     prescribed
 }
 
-/// `E_dr = ½ Σ s (q_dr − q)²` [Urbaś 2016, Eq. (19)]; for a drive with a limit `∫ sat(s e) de`.
-fn energy<'g>(model: &Model<'g>) -> Expr<'g> {
-    let positions = positions(model, model.t);
-    let twice = linear(model).fold(model.zero(), |sum, (drive, stiffness, _)| {
-        sum + model.number(stiffness) * stretch(model, drive, &positions).squared()
-    });
-    let limited = saturations(model, &positions).map(|((_, s, _), spring)| spring.integral() / model.number(s));
-    limited.fold(0.5 * twice, |sum, energy| sum + energy)
-}
-
 /// `−∂t_dr/∂q` and `−∂t_dr/∂q̇` of drives with a limit, coordinate by coordinate.
 fn stiffness_and_damping<'g>(model: &Model<'g>) -> Vec<[Expr<'g>; 2]> {
     let mut stiffness_and_damping = vec![[model.zero(); 2]; model.size()];
@@ -191,32 +215,6 @@ fn stiffness_and_damping<'g>(model: &Model<'g>) -> Vec<[Expr<'g>; 2]> {
 /// Drives whose efforts have no limit.
 fn linear<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (&'a Drive, &'a Value, &'a Value)> {
     flexible(model).filter(|(drive, ..)| drive.max_effort().is_none())
-}
-
-/// Stiffness of drives without a limit, on the diagonal.
-fn linear_stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
-    matrix.add_diagonal(linear(model).map(|(drive, s, _)| (drive.coordinate.0, model.number(s))));
-}
-
-/// Damping of drives without a limit, on the diagonal.
-fn linear_damping<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
-    matrix.add_diagonal(linear(model).map(|(drive, _, d)| (drive.coordinate.0, model.number(d))));
-}
-
-/// Stiffness of drives with a limit at rest at given positions, on the diagonal.
-fn limited_stiffness<'g>(model: &Model<'g>, positions: &[Expr<'g>], matrix: &mut SymmetricMatrix<'g>) {
-    let stiffness = |((drive, s, _), spring): ((&Drive, &Value, &Value), Saturation<'g>)| {
-        (drive.coordinate.0, spring.slope() * model.number(s))
-    };
-    matrix.add_diagonal(saturations(model, positions).map(stiffness));
-}
-
-/// Damping of drives with a limit at rest at given positions, on the diagonal.
-fn limited_damping<'g>(model: &Model<'g>, positions: &[Expr<'g>], matrix: &mut SymmetricMatrix<'g>) {
-    let damping = |((drive, _, d), spring): ((&Drive, &Value, &Value), Saturation<'g>)| {
-        (drive.coordinate.0, spring.slope() * model.number(d))
-    };
-    matrix.add_diagonal(saturations(model, positions).map(damping));
 }
 
 /// Maximum effort of every drive, 0 if it has no limit, and its stiffness at the state, `−∂t_dr/∂q`.
@@ -273,16 +271,4 @@ pub fn power<'g>(model: &Model<'g>, efforts: &[Expr<'g>]) -> Expr<'g> {
         sum + (within * motion - slipping * rate)
     });
     model.chain.rigid_drives().map(|drive| drive.coordinate.0).fold(flexible, |sum, j| sum + efforts[j] * model.v[j])
-}
-
-/// Power that the drives' dampers dissipate, `Σ d (q̇_dr − q̇)²` (2R of [Urbaś 2016, Eq. (19)]); for a drive with a
-/// limit `(sat(u) − sat(s e)) ė ≥ 0`.
-fn dissipation<'g>(model: &Model<'g>) -> Expr<'g> {
-    let rate = |drive: &Drive| profile::rate(model, &drive.profile, model.t) - model.v[drive.coordinate.0];
-    let linear = linear(model)
-        .fold(model.zero(), |sum, (drive, _, damping)| sum + model.number(damping) * rate(drive).squared());
-    saturations(model, &positions(model, model.t)).fold(linear, |sum, (drive, spring)| {
-        let damper = limited(model, drive.0, unlimited(model, drive, model.t, &model.v)) - spring.effort();
-        sum + damper * rate(drive.0)
-    })
 }

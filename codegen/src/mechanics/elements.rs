@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::forces::{Acts, Rest};
 use super::kinematics::Kinematics;
-use super::laws::{At, Law, law, slopes};
+use super::laws::{At, Law, law};
 use super::model::Model;
 use super::strains::Strained;
 use super::vector::SymmetricMatrix;
@@ -67,11 +67,11 @@ impl<'g> Acts<'g> for Elements<'_, 'g> {
         Some(0.5 * self.all().fold(self.model.zero(), sum)).filter(|energy| !energy.is_zero())
     }
 
-    fn dissipation(&self) -> Expr<'g> {
+    fn dissipation(&self) -> Option<Expr<'g>> {
         let at = At::now(self.model);
-        self.all().fold(self.model.zero(), |sum, Element { law, strained, .. }| {
+        Some(self.all().fold(self.model.zero(), |sum, Element { law, strained, .. }| {
             sum + law.dissipation(at, strained.length, strained.rate(self.model, &self.model.v))
-        })
+        }))
     }
 
     /// On single coordinates `∂F/∂s`, otherwise `−∂f/∂q`, since J depends on the pose.
@@ -79,7 +79,7 @@ impl<'g> Acts<'g> for Elements<'_, 'g> {
         let (at, model) = (At::rest(self.model, rest.t), self.model);
         if self.forces.iter().all(|force| force.coordinate().is_some()) {
             for Element { law, strained, .. } in self.all() {
-                let [stiffness, _] = slopes(law, at, strained.length, model.zero());
+                let [stiffness, _] = law.slopes(at, strained.length, model.zero());
                 strained.add_square(stiffness, matrix);
             }
             return;
@@ -100,7 +100,7 @@ impl<'g> Acts<'g> for Elements<'_, 'g> {
         let at = At::now(self.model);
         let linear = self.all().filter(|Element { force, law, .. }| force.coordinate().is_some() && law.is_linear());
         for Element { law, strained, .. } in linear {
-            let [by_strain, by_rate] = slopes(law, at, strained.length, strained.rate(self.model, &self.model.v));
+            let [by_strain, by_rate] = law.slopes(at, strained.length, strained.rate(self.model, &self.model.v));
             strained.add_square(by_strain, stiffness);
             strained.add_square(by_rate, damping);
         }
@@ -111,7 +111,7 @@ impl<'g> Acts<'g> for Elements<'_, 'g> {
         let at = At::now(self.model);
         for Element { force, law, strained } in self.all() {
             let Some(coordinate) = force.coordinate().filter(|_| !law.is_linear()) else { continue };
-            let [stiffness, mut damping] = slopes(law, at, strained.length, strained.rate(self.model, &self.model.v));
+            let [stiffness, mut damping] = law.slopes(at, strained.length, strained.rate(self.model, &self.model.v));
             if law.declines() && !damping.is_zero() {
                 damping = damping.max(self.model.zero());
             }

@@ -79,24 +79,28 @@ pub trait Acts<'g> {
     fn at_rest(&self, rest: &Rest<'g>) -> Vec<Expr<'g>>;
 
     /// The energy that they store, if any.
-    fn energy(&self) -> Option<Expr<'g>>;
+    fn energy(&self) -> Option<Expr<'g>> {
+        None
+    }
 
-    /// The power that they dissipate.
-    fn dissipation(&self) -> Expr<'g>;
+    /// The power that they dissipate, if they can.
+    fn dissipation(&self) -> Option<Expr<'g>> {
+        None
+    }
 
     /// Adds the tangent stiffness at rest, `∂²E/∂q∂q`, without that of oil, which follows from its volumes.
     fn add_stiffness(&self, rest: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>);
 
     /// Adds the damping at rest, `−∂f/∂q̇`.
-    fn add_damping(&self, rest: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>);
+    fn add_damping(&self, _rest: &Rest<'g>, _matrix: &mut SymmetricMatrix<'g>) {}
 
     /// Adds stiffness and damping for an implicit step: constants for linear springs and dampers on single coordinates, and for the base's
     /// coordinates values at the present state, which are never negative.
-    fn add_step_matrices(&self, matrices: [&mut SymmetricMatrix<'g>; 2]);
+    fn add_step_matrices(&self, _matrices: [&mut SymmetricMatrix<'g>; 2]) {}
 
     /// Adds stiffness and damping for an implicit step of other laws on single coordinates, at the present state. The derivative of a law
     /// that declines is set to 0: a step does not need the exact one, but `A + D̂` must stay positive definite.
-    fn add_nonlinear(&self, diagonal: &mut [[Expr<'g>; 2]]);
+    fn add_nonlinear(&self, _diagonal: &mut [[Expr<'g>; 2]]) {}
 }
 
 /// The forces of a chain, except those of rigid drives, which have no law: they follow from the motion.
@@ -143,7 +147,7 @@ impl<'a, 'g> Forces<'a, 'g> {
 
     /// Power that all kinds dissipate.
     pub fn dissipation(&self) -> Expr<'g> {
-        self.each().fold(self.model.zero(), |sum, forces| sum + forces.dissipation())
+        self.each().filter_map(|forces| forces.dissipation()).fold(self.model.zero(), |sum, power| sum + power)
     }
 
     /// Tangent stiffness of all kinds at rest, without that of oil.

@@ -28,23 +28,18 @@ impl<'g> Acts<'g> for Loads<'_, 'g> {
         forces(self.model, self.kinematics, rest.t)
     }
 
-    fn energy(&self) -> Option<Expr<'g>> {
-        None
-    }
-
-    fn dissipation(&self) -> Expr<'g> {
-        self.model.zero()
-    }
-
+    /// The symmetric part of `−∂f/∂q`. For a force along fixed axes `∂f/∂q` is symmetric; for a moment, and for a force that turns with its
+    /// link, it is not, and there is no potential.
     fn add_stiffness(&self, rest: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>) {
-        stiffness(self.model, self.kinematics, rest.t, matrix);
+        let (forces, model) = (self.at_rest(rest), self.model);
+        let columns: Vec<Vec<Expr<'g>>> = model.q.iter().map(|q| model.graph.derivatives(&forces, *q)).collect();
+        for j in 0..columns.len() {
+            matrix.add(j, j, -columns[j][j]);
+            for i in 0..j {
+                matrix.add(i, j, -0.5 * (columns[j][i] + columns[i][j]));
+            }
+        }
     }
-
-    fn add_damping(&self, _: &Rest<'g>, _: &mut SymmetricMatrix<'g>) {}
-
-    fn add_step_matrices(&self, _: [&mut SymmetricMatrix<'g>; 2]) {}
-
-    fn add_nonlinear(&self, _: &mut [[Expr<'g>; 2]]) {}
 }
 
 /// A load in the world.
@@ -153,17 +148,4 @@ pub fn power<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, twists: &[Twist
         let twist = &twists[load.body.0];
         sum + (force.dot(twist.omega.cross(at) + twist.upsilon) + moment.dot(twist.omega))
     })
-}
-
-/// Adds the symmetric part of `−∂f/∂q` of the loads at time t. For a force along fixed axes `∂f/∂q` is symmetric; for a moment, and for a
-/// force that turns with its link, it is not, and there is no potential.
-fn stiffness<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, t: Expr<'g>, matrix: &mut SymmetricMatrix<'g>) {
-    let forces = forces(model, kinematics, t);
-    let columns: Vec<Vec<Expr<'g>>> = model.q.iter().map(|q| model.graph.derivatives(&forces, *q)).collect();
-    for j in 0..columns.len() {
-        matrix.add(j, j, -columns[j][j]);
-        for i in 0..j {
-            matrix.add(i, j, -0.5 * (columns[j][i] + columns[i][j]));
-        }
-    }
 }

@@ -32,28 +32,35 @@ impl<'g> Acts<'g> for Supports<'_, 'g> {
         forces(self.model, self.kinematics, &self.model.zeros())
     }
 
+    /// `E_s = ½ Σ s e²` [Urbaś 2016, Eqs. (16)–(17)].
     fn energy(&self) -> Option<Expr<'g>> {
-        Some(energy(self.model, self.kinematics))
+        Some(0.5 * sum(self.model, self.kinematics, |s| (s.stretch, s.stiffness), Contact::twice_energy))
     }
 
-    fn dissipation(&self) -> Expr<'g> {
-        dissipation(self.model, self.kinematics)
+    /// `Σ d ė²` (2R of [Urbaś 2016, Eq. (17)]).
+    fn dissipation(&self) -> Option<Expr<'g>> {
+        Some(sum(self.model, self.kinematics, |s| (s.rate, s.damping), Contact::dissipation))
     }
 
+    /// `∂²E_s/∂q_i∂q_j = J_iᵀ (∂²E/∂e∂e) J_j + ∂E/∂e · Ω_i Ω_j T r_E`; linear kinematics have no second term.
     fn add_stiffness(&self, _: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>) {
-        stiffness(self.model, self.kinematics, matrix);
+        add_stiffness(self.model, self.kinematics, &self.model.zeros(), Stretched::tangent, matrix);
     }
 
+    /// `Jᵀ d J`
     fn add_damping(&self, _: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>) {
-        damping(self.model, self.kinematics, matrix);
+        let at_rest = |stretched: &Stretched<'g>| {
+            stretched.contact().map_or(stretched.damping, |contact| contact.damping_at_rest())
+        };
+        add_damping(self.model, self.kinematics, &self.model.zeros(), at_rest, matrix);
     }
 
-    fn add_step_matrices(&self, [of_stiffness, of_damping]: [&mut SymmetricMatrix<'g>; 2]) {
-        step_stiffness(self.model, self.kinematics, of_stiffness);
-        step_damping(self.model, self.kinematics, of_damping);
+    fn add_step_matrices(&self, [stiffness, damping]: [&mut SymmetricMatrix<'g>; 2]) {
+        let &Supports { model, kinematics } = self;
+        let of = |stretched: &Stretched<'g>| stretched.stiffness_and_damping();
+        add_stiffness(model, kinematics, &model.v, |stretched| diagonal(of(stretched)[0]), stiffness);
+        add_damping(model, kinematics, &model.v, |stretched| of(stretched)[1], damping);
     }
-
-    fn add_nonlinear(&self, _: &mut [[Expr<'g>; 2]]) {}
 }
 
 /// The base coordinates that the crane has: place in `x y z ψ θ φ`, and place in q.
@@ -281,16 +288,6 @@ pub fn gaps<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>>
     model.chain.supports.iter().flat_map(gap).collect()
 }
 
-/// `E_s = ½ Σ s e²` [Urbaś 2016, Eqs. (16)–(17)].
-fn energy<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'g> {
-    0.5 * sum(model, kinematics, |s| (s.stretch, s.stiffness), Contact::twice_energy)
-}
-
-/// Power that the supports' dampers dissipate, `Σ d ė²` (2R of [Urbaś 2016, Eq. (17)]).
-fn dissipation<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'g> {
-    sum(model, kinematics, |s| (s.rate, s.damping), Contact::dissipation)
-}
-
 /// `Σ c x²` over supports and axes; for one-sided supports, the value that their law gives.
 fn sum<'g>(
     model: &Model<'g>,
@@ -306,16 +303,6 @@ fn sum<'g>(
         let (x, c) = of(&stretched);
         (0..3).fold(sum, |sum, axis| sum + c[axis] * x[axis].squared())
     })
-}
-
-/// `∂²E_s/∂q_i∂q_j = J_iᵀ (∂²E/∂e∂e) J_j + ∂E/∂e · Ω_i Ω_j T r_E`; linear kinematics have no second term.
-fn stiffness<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
-    add_stiffness(model, kinematics, &model.zeros(), Stretched::tangent, matrix);
-}
-
-/// The same for an implicit step at the present state: the law's stiffness along the axes, never negative.
-fn step_stiffness<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
-    add_stiffness(model, kinematics, &model.v, |stretched| diagonal(stretched.stiffness_and_damping()[0]), matrix);
 }
 
 fn add_stiffness<'g>(
@@ -337,18 +324,6 @@ fn add_stiffness<'g>(
             matrix.add(i, j, first_order + second_order);
         }
     }
-}
-
-/// `Jᵀ d J`, with one-sided supports at rest.
-fn damping<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
-    let at_rest =
-        |stretched: &Stretched<'g>| stretched.contact().map_or(stretched.damping, |contact| contact.damping_at_rest());
-    add_damping(model, kinematics, &model.zeros(), at_rest, matrix);
-}
-
-/// The same for an implicit step at the present state.
-fn step_damping<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
-    add_damping(model, kinematics, &model.v, |stretched| stretched.stiffness_and_damping()[1], matrix);
 }
 
 fn add_damping<'g>(

@@ -49,43 +49,29 @@ pub struct Coupling {
     pub damping: Option<Spanned<Number>>,
 }
 
-/// How the force of a connector depends on its length.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum ConnectorLaw {
-    /// A spring and a damper, which pull and push.
-    Spring(PointSpring),
-    /// A gas spring, which pushes.
-    GasSpring(GasSpring),
-    /// A rope, which pulls while it is taut.
-    Rope(Rope),
+macro_rules! laws {
+    ($($(#[$doc:meta])* $law:ident as $written:ident: $expecting:literal {
+        $($(#[$key_doc:meta])* $key:ident: $number:ty, $limit:ident $unit:literal;)*
+    })*) => {
+        /// How the force of a connector depends on its length.
+        #[derive(Clone, Debug, Deserialize, JsonSchema)]
+        #[serde(rename_all = "snake_case")]
+        pub enum ConnectorLaw {
+            $($(#[$doc])* $law($written),)*
+            /// A rope, which pulls while it is taut.
+            Rope(Rope),
+        }
+
+        $($(#[$doc])*
+        #[derive(Clone, Debug, Deserialize, JsonSchema)]
+        #[serde(deny_unknown_fields, expecting = $expecting)]
+        pub struct $written {
+            $($(#[$key_doc])* pub $key: $number,)*
+        })*
+    };
 }
 
-/// A spring and a damper between two points.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `stiffness`, `damping` and `length`")]
-pub struct PointSpring {
-    /// Stiffness, N/m.
-    pub stiffness: Spanned<Number>,
-    /// Damping, N s/m. Default 0.
-    pub damping: Option<Spanned<Number>>,
-    /// Length at which the spring exerts no force, m.
-    pub length: Spanned<Number>,
-}
-
-/// A gas spring between two points.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `force`, `length`, `stiffness` and `damping`")]
-pub struct GasSpring {
-    /// The force with which it pushes at `length`, N.
-    pub force: Spanned<Number>,
-    /// Length of the extended spring, m.
-    pub length: Spanned<Number>,
-    /// Increase of the force per metre of compression, N/m. Default 0.
-    pub stiffness: Option<Spanned<Number>>,
-    /// Damping, N s/m. Default 0.
-    pub damping: Option<Spanned<Number>>,
-}
+point_laws!(laws);
 
 /// A rope between two points.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]

@@ -20,7 +20,7 @@ mod support;
 pub use beam::{
     Beam, BeamDamping, BeamPart, Bend, Directions, Element, Material, Moduli, Section, SectionJoint, Sections, Spring,
 };
-pub use connector::{Attachment, Connector, ConnectorLaw, Coupling, GasSpring, PointSpring, Rope};
+pub use connector::*;
 pub use cylinder::{Cylinder, HoseVolumes, Linkage, Pin, Pump, Side, Valve};
 pub use drive::{Drive, Motion, Ramp, Speed, Table, Trapezoid};
 pub use inertia::{About, Inertia};

@@ -4,7 +4,7 @@ use super::Check;
 use super::drives::{Units, units};
 use super::limits::Limit;
 use crate::chain::{
-    Attachment, BodyId, Chain, CoordinateKind, Cylinder, Force, Group, Law, Profile, Rope, Spring, Strain, Value,
+    self, Attachment, BodyId, Chain, CoordinateKind, Cylinder, Force, Group, Law, Profile, Rope, Spring, Strain, Value,
 };
 use crate::diagnostic::{Span, rule};
 use crate::spec::{self, Crane, Number, Spanned};
@@ -62,7 +62,6 @@ impl<'a> Check<'a> {
                 stiffness: self.number(&coupling.stiffness, &place("stiffness"), stiffness, Limit::NotNegative),
                 damping: self.number_or(coupling.damping.as_ref(), 0.0, &place("damping"), damping, Limit::NotNegative),
                 length: offset.map_or(Value::ZERO, |offset| self.position(offset, kind, "`offset`")),
-                push: Value::ZERO,
             });
             if let (Some(coordinate), Some(leader)) = (coordinate, leader) {
                 let strain = Strain::Coupling { coordinate, leader, ratio };
@@ -102,29 +101,22 @@ impl<'a> Check<'a> {
         })
     }
 
-    fn connector_law(&mut self, law: &spec::ConnectorLaw, span: Span, name: &str) -> Law {
-        let mut number = |given: &Spanned<Number>, what: &str, unit, limit| {
-            self.number(given, &format!("the {what} of connector `{name}`"), unit, limit)
-        };
-        match law {
-            spec::ConnectorLaw::Spring(spring) => Law::Spring(Spring {
-                stiffness: number(&spring.stiffness, "stiffness", "N/m", Limit::NotNegative),
-                length: number(&spring.length, "length", "m", Limit::Positive),
-                damping: optional(&mut number, spring.damping.as_ref(), "damping", "N s/m"),
-                push: Value::ZERO,
-            }),
-            spec::ConnectorLaw::GasSpring(spring) => Law::Spring(Spring {
-                push: number(&spring.force, "force", "N", Limit::NotNegative),
-                length: number(&spring.length, "length", "m", Limit::Positive),
-                stiffness: optional(&mut number, spring.stiffness.as_ref(), "stiffness", "N/m"),
-                damping: optional(&mut number, spring.damping.as_ref(), "damping", "N s/m"),
-            }),
-            spec::ConnectorLaw::Rope(rope) => {
-                let stiffness = number(&rope.stiffness, "stiffness", "N/m", Limit::Positive);
-                let damping = optional(&mut number, rope.damping.as_ref(), "damping", "s/m");
-                Law::Rope(Rope { stiffness, damping, length: self.rope_length(rope, span, name) })
-            }
-        }
+    fn rope_law(&mut self, rope: &spec::Rope, span: Span, name: &str) -> Law {
+        let stiffness = self.point_number(Some(&rope.stiffness), (name, "stiffness"), "N/m", Limit::Positive);
+        let damping = self.point_number(rope.damping.as_ref(), (name, "damping"), "s/m", Limit::NotNegative);
+        Law::Rope(Rope { stiffness, damping, length: self.rope_length(rope, span, name) })
+    }
+
+    /// A number of a law; 0 if it is left out.
+    fn point_number(
+        &mut self,
+        given: Option<&Spanned<Number>>,
+        (name, key): (&str, &str),
+        unit: &'static str,
+        limit: Limit,
+    ) -> Value {
+        let place = format!("the {key} of connector `{name}`");
+        given.map_or(Value::ZERO, |given| self.number(given, &place, unit, limit))
     }
 
     fn rope_length(&mut self, rope: &spec::Rope, span: Span, name: &str) -> Profile {
@@ -147,12 +139,38 @@ impl<'a> Check<'a> {
     }
 }
 
-/// A number that may be left out, and is then zero.
-fn optional(
-    number: &mut impl FnMut(&Spanned<Number>, &str, &'static str, Limit) -> Value,
-    given: Option<&Spanned<Number>>,
-    what: &str,
-    unit: &'static str,
-) -> Value {
-    given.map_or(Value::ZERO, |given| number(given, what, unit, Limit::NotNegative))
+/// A number that is given always or perhaps.
+trait Given {
+    fn given(&self) -> Option<&Spanned<Number>>;
 }
+
+impl Given for Spanned<Number> {
+    fn given(&self) -> Option<&Spanned<Number>> {
+        Some(self)
+    }
+}
+
+impl Given for Option<Spanned<Number>> {
+    fn given(&self) -> Option<&Spanned<Number>> {
+        self.as_ref()
+    }
+}
+
+macro_rules! check_laws {
+    ($($(#[$doc:meta])* $law:ident as $written:ident: $expecting:literal {
+        $($(#[$key_doc:meta])* $key:ident: $number:ty, $limit:ident $unit:literal;)*
+    })*) => {
+        impl Check<'_> {
+            fn connector_law(&mut self, law: &spec::ConnectorLaw, span: Span, name: &str) -> Law {
+                match law {
+                    $(spec::ConnectorLaw::$law(law) => Law::$law(chain::$law {
+                        $($key: self.point_number(law.$key.given(), (name, stringify!($key)), $unit, Limit::$limit),)*
+                    }),)*
+                    spec::ConnectorLaw::Rope(rope) => self.rope_law(rope, span, name),
+                }
+            }
+        }
+    };
+}
+
+point_laws!(check_laws);

@@ -10,6 +10,7 @@
 //! A law may state them itself where that takes fewer operations; the tests compare them with these.
 
 mod friction;
+mod gas_spring;
 mod rope;
 mod spring;
 mod stop;
@@ -68,9 +69,14 @@ pub trait Law {
         self.resistance(at, strain, rate) * rate
     }
 
+    /// `∂F/∂s` and `∂F/∂ṡ`.
+    fn slopes<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> [Expr<'g>; 2] {
+        derived_slopes(self, at, strain, rate)
+    }
+
     /// `∂F/∂ṡ` at rest.
     fn damping_at_rest<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>) -> Expr<'g> {
-        slopes(self, at, strain, at.zero())[1]
+        self.slopes(at, strain, at.zero())[1]
     }
 
     /// Whether F is linear in s and ṡ.
@@ -84,15 +90,23 @@ pub trait Law {
     }
 }
 
-/// The law of a force of the chain.
-pub fn law(law: &chain::Law) -> &dyn Law {
-    match law {
-        chain::Law::Spring(spring) => spring,
-        chain::Law::Rope(rope) => rope,
-        chain::Law::Stop(stop) => stop,
-        chain::Law::Friction(friction) => friction,
-    }
+macro_rules! dispatch {
+    ($($(#[$doc:meta])* $law:ident as $written:ident: $expecting:literal {
+        $($(#[$key_doc:meta])* $key:ident: $number:ty, $limit:ident $unit:literal;)*
+    })*) => {
+        /// The law of a force of the chain.
+        pub fn law(law: &chain::Law) -> &dyn Law {
+            match law {
+                $(chain::Law::$law(law) => law,)*
+                chain::Law::Rope(law) => law,
+                chain::Law::Stop(law) => law,
+                chain::Law::Friction(law) => law,
+            }
+        }
+    };
 }
+
+point_laws!(dispatch);
 
 /// `∂E/∂s`
 fn elastic_force<'g>(law: &(impl Law + ?Sized), at: At<'_, 'g>, strain: Expr<'g>) -> Expr<'g> {
@@ -101,8 +115,8 @@ fn elastic_force<'g>(law: &(impl Law + ?Sized), at: At<'_, 'g>, strain: Expr<'g>
     at.model.graph.substitute(0.5 * twice, &[(s, strain)])
 }
 
-/// `∂F/∂s` and `∂F/∂ṡ`.
-pub fn slopes<'g>(law: &(impl Law + ?Sized), at: At<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> [Expr<'g>; 2] {
+/// `∂F/∂s` and `∂F/∂ṡ`, by differentiation.
+fn derived_slopes<'g>(law: &(impl Law + ?Sized), at: At<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> [Expr<'g>; 2] {
     let (graph, symbols) = (at.model.graph, at.model.free_symbols());
     let [s, s_dot] = symbols;
     let force = law.force(at, s, s_dot);

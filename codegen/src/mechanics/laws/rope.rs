@@ -35,6 +35,14 @@ impl Law for Rope {
         at.number(&self.stiffness) * self.stretch(at, strain) * growth
     }
 
+    fn slopes<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> [Expr<'g>; 2] {
+        let (stiffness, damping) = (at.number(&self.stiffness), at.number(&self.damping));
+        let slack = profile::position(at.model, &self.length, at.t) - strain;
+        let growth = 1.0 + self.growth(at, rate);
+        let by_strain = slack.select(at.zero(), stiffness * growth.max(at.zero()));
+        [by_strain, growth.select(stiffness * damping * self.stretch(at, strain), at.zero())]
+    }
+
     /// `D σ̇`: the winch takes part in σ̇.
     fn dissipation<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {
         let winch = if at.moving { profile::rate(at.model, &self.length, at.t) } else { at.zero() };

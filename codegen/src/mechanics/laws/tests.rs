@@ -1,7 +1,7 @@
 //! Properties of all laws, whatever they state themselves.
 
-use super::{At, Law, elastic_force, law, slopes};
-use crate::chain::{self, Bristle, End, Friction, Profile, Ramp, Rope, Spring, Stop, Value};
+use super::{At, Law, derived_slopes, elastic_force, law};
+use crate::chain::{self, Bristle, End, Friction, GasSpring, Profile, Ramp, Rope, Spring, Stop, Value};
 use crate::mechanics::model::Model;
 use crate::mechanics::tests::double_pendulum;
 use crate::symbolic::{Expr, Graph};
@@ -19,7 +19,7 @@ fn laws() -> Vec<(&'static str, chain::Law)> {
         ("spring", chain::Law::Spring(Spring::new(c(500.0), c(20.0)))),
         (
             "gas spring",
-            chain::Law::Spring(Spring { stiffness: c(50.0), damping: c(7.0), length: c(1.1), push: c(90.0) }),
+            chain::Law::GasSpring(GasSpring { stiffness: c(50.0), damping: c(7.0), length: c(1.1), force: c(90.0) }),
         ),
         ("rope", chain::Law::Rope(rope(Profile::Hold(c(0.8))))),
         ("winch", chain::Law::Rope(rope(Profile::Quintic(winch)))),
@@ -103,7 +103,10 @@ fn slopes_are_derivatives_of_the_force() {
     const H: f64 = 1e-6;
     at_all_states(|name, law, at, [strain, rate]| {
         let c = |x: f64| at.model.graph.constant(x);
-        let [by_strain, by_rate] = slopes(law, at, c(strain), c(rate)).map(number);
+        let [by_strain, by_rate] = law.slopes(at, c(strain), c(rate)).map(number);
+        for (stated, derived) in [by_strain, by_rate].into_iter().zip(derived_slopes(law, at, c(strain), c(rate))) {
+            assert_close(stated, number(derived), name);
+        }
         let force = |s: f64, v: f64| number(law.force(at, c(s), c(v)));
         let differences = [
             (by_strain, (force(strain + H, rate) - force(strain - H, rate)) / (2.0 * H)),

@@ -1,7 +1,7 @@
 //! Lengths of connectors compared with the distance between their points, and ratios of couplings.
 
 use super::{Plausibility, items, rounded};
-use crate::chain::{Force, Law, Rope, Spring, Strain};
+use crate::chain::{Force, Strain};
 use crate::diagnostic::rule;
 
 /// Usual lengths without force, as fractions of the distance between the points at the guess.
@@ -35,11 +35,8 @@ impl Plausibility<'_> {
         for (given, connector) in items(crane.connectors.as_ref()).zip(chain.connectors()) {
             let Some(ends) = connector.strain.ends() else { continue };
             let distance = chain.distance(ends, &chain.guess, &self.values);
-            let (length, least) = match &connector.law {
-                Law::Spring(Spring { length, .. }) => (length.at(&self.values), USUAL[0]),
-                Law::Rope(Rope { length, .. }) => (length.start(&self.values), 1.0 / STRETCHED),
-                Law::Stop(_) | Law::Friction(_) => continue,
-            };
+            let Some(length) = connector.law.length(&self.values) else { continue };
+            let least = if connector.is_rope() { 1.0 / STRETCHED } else { USUAL[0] };
             if length < least * distance || length > USUAL[1] * distance {
                 self.warn(rule::connector_length(given.law.span, &connector.name, rounded(length), rounded(distance)));
             }
