@@ -26,6 +26,17 @@ macro_rules! point_laws {
                 /// Damping, N s/m. Default 0.
                 damping: Option<Spanned<Number>>, NotNegative "N s/m";
             }
+            /// A progressive spring, which becomes stiffer the further it is stretched or compressed, and a damper.
+            ProgressiveSpring as ProgressiveSpring: "a mapping of `stiffness`, `progression`, `length` and `damping`" {
+                /// Stiffness at `length`, N/m.
+                stiffness: Spanned<Number>, NotNegative "N/m";
+                /// Force per cubed metre of stretch, in addition to that of `stiffness`, N/m³.
+                progression: Spanned<Number>, NotNegative "N/m³";
+                /// Length at which the spring exerts no force, m.
+                length: Spanned<Number>, Positive "m";
+                /// Damping, N s/m. Default 0.
+                damping: Option<Spanned<Number>>, NotNegative "N s/m";
+            }
         }
     };
 }

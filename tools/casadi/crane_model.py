@@ -115,6 +115,7 @@ class Connector:
     damping: object
     length: object
     push: object
+    progression: object = 0
 
 
 @dataclass
@@ -489,7 +490,7 @@ def read_cylinder(crane, written, spans):
 
 
 def read_connector(crane, written, spans):
-    """An element between two points: a spring, a gas spring, which pushes, or a rope, which pulls."""
+    """An element between two points: a spring, a gas spring, which pushes, a progressive spring, or a rope, which pulls."""
     spec = crane.spec
     bodies, points, along = [], [], []
     for end in (written["from"], written["to"]):
@@ -505,9 +506,9 @@ def read_connector(crane, written, spans):
     ((kind, law),) = written["law"].items()
     motion = law.get("motion", {"hold": law.get("length")})
     length = read_profile(spec, motion, False, crane.time)[0]
-    stiffness, damping, push = (spec.number(law.get(key, 0)) for key in ("stiffness", "damping", "force"))
+    stiffness, damping, push, progression = (spec.number(law.get(key, 0)) for key in ("stiffness", "damping", "force", "progression"))
     strain = ca.norm_2(points[1] - points[0])
-    return Connector(bodies, points, along, [spec.default(at) for at in along], strain, kind == "rope", stiffness, damping, length, push)
+    return Connector(bodies, points, along, [spec.default(at) for at in along], strain, kind == "rope", stiffness, damping, length, push, progression)
 
 
 def read_coupling(crane, written):

@@ -264,8 +264,10 @@ class Derivations:
             growth = 1 + connector.damping * (rate - (self.rate(ca.SX(connector.length)) if moving else 0))
             force = connector.stiffness * stretch * ca.if_else(growth > 0, growth, 0)
         else:
-            force = connector.stiffness * stretch - connector.push + connector.damping * rate
-        return length, rate, force, connector.stiffness * stretch**2 / 2 - connector.push * stretch
+            cubic = connector.progression * stretch**3
+            force = connector.stiffness * stretch + cubic - connector.push + connector.damping * rate
+        stored = connector.stiffness * stretch**2 / 2 + connector.progression * stretch**4 / 4 - connector.push * stretch
+        return length, rate, force, stored
 
     def connector_forces(self):
         """Generalized forces of elements between two points by virtual work, power of winches, energies and damping at rest."""
@@ -289,7 +291,8 @@ class Derivations:
                 growth = 1 + connector.damping * (running - self.rate(ca.SX(connector.length)))
                 law = ca.if_else(taut, connector.stiffness * (stretched - connector.length), 0) * ca.if_else(growth > 0, growth, 0)
             else:
-                law = connector.stiffness * (stretched - connector.length) + connector.damping * running
+                stretch = stretched - connector.length
+                law = connector.stiffness * stretch + connector.progression * stretch**3 + connector.damping * running
             slopes = ca.substitute(
                 ca.vertcat(ca.jacobian(law, stretched), ca.jacobian(law, running)),
                 ca.vertcat(stretched, running),

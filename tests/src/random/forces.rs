@@ -109,6 +109,12 @@ impl Writer {
                 "{gas_spring: {force: 40, length: 2, stiffness: 15, damping: 3}}",
             ),
             (
+                "buffer",
+                "{link: hand, at: [0.3, -0.2, 0.5]}",
+                "{link: plate, at: [-0.4, 0.2, 0.6]}",
+                "{progressive_spring: {stiffness: 12, progression: 7, length: 1.5, damping: 2}}",
+            ),
+            (
                 "hoist",
                 "{at: [1, 0.5, 9]}",
                 "{link: second, at: [0.2, 0, 0]}",

@@ -11,6 +11,7 @@
 
 mod friction;
 mod gas_spring;
+mod progressive_spring;
 mod rope;
 mod spring;
 mod stop;

@@ -1,7 +1,9 @@
 //! Properties of all laws, whatever they state themselves.
 
 use super::{At, Law, derived_slopes, elastic_force, law};
-use crate::chain::{self, Bristle, End, Friction, GasSpring, Profile, Ramp, Rope, Spring, Stop, Value};
+use crate::chain::{
+    self, Bristle, End, Friction, GasSpring, Profile, ProgressiveSpring, Ramp, Rope, Spring, Stop, Value,
+};
 use crate::mechanics::model::Model;
 use crate::mechanics::tests::double_pendulum;
 use crate::symbolic::{Expr, Graph};
@@ -20,6 +22,15 @@ fn laws() -> Vec<(&'static str, chain::Law)> {
         (
             "gas spring",
             chain::Law::GasSpring(GasSpring { stiffness: c(50.0), damping: c(7.0), length: c(1.1), force: c(90.0) }),
+        ),
+        (
+            "progressive spring",
+            chain::Law::ProgressiveSpring(ProgressiveSpring {
+                stiffness: c(50.0),
+                progression: c(300.0),
+                length: c(1.1),
+                damping: c(7.0),
+            }),
         ),
         ("rope", chain::Law::Rope(rope(Profile::Hold(c(0.8))))),
         ("winch", chain::Law::Rope(rope(Profile::Quintic(winch)))),
