@@ -49,7 +49,7 @@ pub fn compile_spec_for(spec: impl AsRef<Path>, analyses: Option<Analyses>) -> G
         println!("cargo::warning={warning}");
     }
     let target = out_dir().join(format!("{}.rs", code.name));
-    write(&target, &code.text).unwrap_or_else(|error| fail(&format!("{}: {error}", target.display()), ""));
+    write_text(&target, &code.text).unwrap_or_else(|error| fail(&format!("{}: {error}", target.display()), ""));
     code
 }
 
@@ -233,8 +233,8 @@ pub fn out_dir() -> PathBuf {
 ///
 /// # Errors
 /// Errors of the file system.
-pub fn write(target: &Path, text: &str) -> io::Result<()> {
-    files::write(target, |file| file.write_all(text.as_bytes()))
+pub fn write_text(target: &Path, text: &str) -> io::Result<()> {
+    files::write_file(target, |file| file.write_all(text.as_bytes()))
 }
 
 /// Cargo shows one line of an error, so the headline goes there and the full report to standard error.

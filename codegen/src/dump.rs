@@ -110,14 +110,14 @@ fn lines(lowered: &LoweredProgram<'_>) -> String {
 
 fn statement(text: &mut String, program: &Program, loops: &[Loop], line: &Statement, indent: &str) {
     let name = |id: &ExprId| operand(program, *id);
-    let said = match line {
+    let text_of_line = match line {
         Statement::Input(id) => format!("input {}", name(id)),
         Statement::Let(id) => definition(program, *id),
-        Statement::At(Some(place)) => format!("// {} {}", if place.outward { "outward" } else { "inward" }, place.body),
+        Statement::At(Some(visit)) => format!("// {} {}", if visit.outward { "outward" } else { "inward" }, visit.body),
         Statement::At(None) => "// end of the sweeps".to_owned(),
         Statement::Output { slot, value } => format!("out[{slot}] = {}", name(value)),
-        Statement::Keep { place, value } => format!("carry[{place}] = {}", name(value)),
-        Statement::Fetch { place, value } => format!("{} = carry[{place}]", name(value)),
+        Statement::Keep { slot, value } => format!("carry[{slot}] = {}", name(value)),
+        Statement::Fetch { slot, value } => format!("{} = carry[{slot}]", name(value)),
         Statement::Loop { of, body } => {
             let _ = writeln!(text, "{indent}loop {of}, {} iterations", loops[*of].iterations);
             for line in body {
@@ -134,7 +134,7 @@ fn statement(text: &mut String, program: &Program, loops: &[Loop], line: &Statem
             format!("Stumpff's functions of {}", arguments.join(", "))
         }
     };
-    let _ = writeln!(text, "{indent}{said}");
+    let _ = writeln!(text, "{indent}{text_of_line}");
 }
 
 #[cfg(test)]

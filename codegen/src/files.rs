@@ -28,7 +28,7 @@ pub fn open(path: &Path) -> io::Result<fs::File> {
 ///
 /// # Errors
 /// Those of [`open`], or the file is larger.
-pub fn read(path: &Path, most: usize) -> io::Result<Vec<u8>> {
+pub fn read_file(path: &Path, most: usize) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let limit = u64::try_from(most).unwrap_or(u64::MAX).saturating_add(1);
     open(path)?.take(limit).read_to_end(&mut bytes)?;
@@ -44,7 +44,7 @@ pub fn read(path: &Path, most: usize) -> io::Result<Vec<u8>> {
 ///
 /// # Errors
 /// The file system refuses, or the file is write-protected.
-pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+pub fn write_file(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let existing = fs::metadata(path).ok();
     if is_given(path) || existing.as_ref().is_some_and(|of| !of.is_file() && !of.is_dir()) {
         let mut file = io::BufWriter::new(fs::File::options().write(true).open(path)?);
@@ -91,19 +91,19 @@ pub fn is_same(one: &Path, other: &Path) -> bool {
 }
 
 fn is_given(path: &Path) -> bool {
-    GIVEN.iter().any(|place| path.starts_with(place))
+    GIVEN.iter().any(|folder| path.starts_with(folder))
 }
 
 /// The place to which links lead, whether something is there or not.
 fn linked(path: &Path) -> PathBuf {
     /// As many links follow each other on common systems.
     const MOST_LINKS: usize = 40;
-    let mut place = path.to_owned();
+    let mut target = path.to_owned();
     for _ in 0..MOST_LINKS {
-        let Ok(next) = fs::read_link(&place) else { break };
-        place = place.parent().map_or(next.clone(), |folder| folder.join(&next));
+        let Ok(next) = fs::read_link(&target) else { break };
+        target = target.parent().map_or(next.clone(), |folder| folder.join(&next));
     }
-    place
+    target
 }
 
 /// Removes incomplete versions of a file that killed commands left: those that no living process has locked.
@@ -146,7 +146,7 @@ mod tests {
     }
 
     fn write_text(path: &Path, text: &str) -> io::Result<()> {
-        write(path, |file| file.write_all(text.as_bytes()))
+        write_file(path, |file| file.write_all(text.as_bytes()))
     }
 
     #[test]
@@ -185,8 +185,8 @@ mod tests {
         assert_eq!(fs::read_to_string(&real).unwrap(), "new");
         assert_eq!(fs::read_to_string(&missing).unwrap(), "made");
         assert_eq!(fs::metadata(&real).unwrap().permissions().mode() & 0o777, 0o600);
-        for place in [&link, &second, &dangling] {
-            assert!(fs::symlink_metadata(place).unwrap().is_symlink(), "{}", place.display());
+        for path in [&link, &second, &dangling] {
+            assert!(fs::symlink_metadata(path).unwrap().is_symlink(), "{}", path.display());
         }
         fs::set_permissions(&real, fs::Permissions::from_mode(0o400)).unwrap();
         assert_eq!(write_text(&real, "again").unwrap_err().kind(), io::ErrorKind::PermissionDenied);
@@ -201,12 +201,12 @@ mod tests {
         assert_eq!(write_text(full, "x").unwrap_err().kind(), io::ErrorKind::StorageFull);
         assert!(!fs::metadata(full).unwrap().is_file());
         write_text(Path::new("/dev/null"), "x").unwrap();
-        assert!(read(Path::new("/dev/zero"), 1 << 20).unwrap_err().to_string().contains("device"));
+        assert!(read_file(Path::new("/dev/zero"), 1 << 20).unwrap_err().to_string().contains("device"));
         let folder = folder("large");
         let large = folder.join("large.csv");
         fs::File::create(&large).unwrap().set_len((3 << 20) + 1).unwrap();
-        assert!(read(&large, 3 << 20).unwrap_err().to_string().contains("larger than 3 MiB"));
-        assert_eq!(read(&large, (3 << 20) + 1).unwrap().len(), (3 << 20) + 1);
+        assert!(read_file(&large, 3 << 20).unwrap_err().to_string().contains("larger than 3 MiB"));
+        assert_eq!(read_file(&large, (3 << 20) + 1).unwrap().len(), (3 << 20) + 1);
         fs::remove_dir_all(folder).unwrap();
     }
 }

@@ -24,8 +24,8 @@ fn moments(chain: &Chain) -> [f64; 3] {
     for body in &chain.bodies {
         let inertia = body.inertia.as_ref().expect("an element");
         let [m, x, xx] = [&inertia.mass, &inertia.first[0], &inertia.second[0]].map(|value| value.at(&[]));
-        for (sum, own) in sum.iter_mut().zip([m, x + m * begin, xx + 2.0 * x * begin + m * begin * begin]) {
-            *sum += own;
+        for (sum, of_part) in sum.iter_mut().zip([m, x + m * begin, xx + 2.0 * x * begin + m * begin * begin]) {
+            *sum += of_part;
         }
         begin += body.length.at(&[]);
     }

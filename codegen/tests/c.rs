@@ -112,9 +112,9 @@ fn in_full(shape: &Shape, slots: &[f64]) -> Vec<f64> {
         Shape::Record(_, fields) => {
             let mut rest = slots;
             let parts = fields.iter().map(|(_, shape)| {
-                let (own, others) = rest.split_at(shape.len());
+                let (first, others) = rest.split_at(shape.len());
                 rest = others;
-                in_full(shape, own)
+                in_full(shape, first)
             });
             parts.collect::<Vec<_>>().concat()
         }
@@ -133,11 +133,11 @@ fn caller(code: &CCode, chain: &Chain, functions: &[&Function], number: &str, in
     if !inputs.is_empty() {
         let _ = writeln!(text, "    {name}_inputs u = {}_INPUTS;", name.to_uppercase());
         for (input, value) in chain.inputs.iter().zip(inputs) {
-            let place = format!("{}_INPUT_{}", name.to_uppercase(), input.name.to_uppercase());
+            let index = format!("{}_INPUT_{}", name.to_uppercase(), input.name.to_uppercase());
             // An input that is set and then unset behaves as if it had never been set.
-            let _ = writeln!(text, "    {name}_set_input(&u, {place}, {:?});", value.unwrap_or(17.0));
+            let _ = writeln!(text, "    {name}_set_input(&u, {index}, {:?});", value.unwrap_or(17.0));
             if value.is_none() {
-                let _ = writeln!(text, "    {name}_unset_input(&u, {place});");
+                let _ = writeln!(text, "    {name}_unset_input(&u, {index});");
             }
         }
     }
@@ -181,7 +181,7 @@ fn caller(code: &CCode, chain: &Chain, functions: &[&Function], number: &str, in
 }
 
 /// Compiles and runs a program; returns the numbers that it prints.
-fn run(folder: &Path, code: &CCode, main: &str) -> Vec<f64> {
+fn run_program(folder: &Path, code: &CCode, main: &str) -> Vec<f64> {
     fs::create_dir_all(folder).unwrap();
     for (file, text) in [(format!("{}.h", code.name), &code.header), (format!("{}.c", code.name), &code.source)] {
         fs::write(folder.join(file), text).unwrap();
@@ -212,18 +212,19 @@ fn differences(name: &str, chain: &Chain, precision: Precision, inputs: &[Option
     let code = generate_c(chain, &names, &chain.parameter_defaults(), precision, &header).unwrap();
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("c_{name}_{precision:?}"));
     let number = if precision == Precision::Double { "double" } else { "float" };
-    let printed = run(&folder, &code, &caller(&code, chain, &functions, number, inputs));
+    let printed = run_program(&folder, &code, &caller(&code, chain, &functions, number, inputs));
     let mut rest = printed.as_slice();
     let (mut found, mut factors) = (Vec::new(), Vec::new());
     for function in functions {
         let expected = expected(&program, function, chain, &factors, inputs);
-        let (own, others) = rest.split_at(expected.len());
+        let (computed, others) = rest.split_at(expected.len());
         rest = others;
         if matches!(function.shape, Shape::Factors(_)) {
             factors.clone_from(&expected);
         }
         let size = expected.iter().fold(f64::MIN_POSITIVE, |size, x| size.max(x.abs()));
-        let off = own.iter().zip(&expected).map(|(own, expected)| (own - expected).abs()).fold(0.0, f64::max);
+        let off =
+            computed.iter().zip(&expected).map(|(computed, expected)| (computed - expected).abs()).fold(0.0, f64::max);
         found.push((function.id.name(), off / size));
     }
     assert!(rest.is_empty());

@@ -44,7 +44,7 @@ fn snapshot(name: &str, text: &str) {
 }
 
 #[test]
-fn a_robot_that_is_no_crane_is_told_why() {
+fn unsupported_robots_are_refused_with_the_reason() {
     let mut shown = BTreeSet::new();
     for path in files("tests/bad_robots") {
         let name = stem(&path);
@@ -228,10 +228,10 @@ fn shapes_have_the_masses_of_solids() {
         let step = 0.025;
         let places = || (-34..34).map(|i| (f64::from(i) + 0.5) * step);
         let (mut mass, mut second) = (0.0, [0.0; 3]);
-        for place in places().flat_map(|x| places().flat_map(move |y| places().map(move |z| [x, y, z]))) {
-            if inside(place) {
+        for point in places().flat_map(|x| places().flat_map(move |y| places().map(move |z| [x, y, z]))) {
+            if inside(point) {
                 mass += 1000.0 * step * step * step;
-                for (sum, x) in second.iter_mut().zip(place) {
+                for (sum, x) in second.iter_mut().zip(point) {
                     *sum += 1000.0 * step * step * step * x * x;
                 }
             }

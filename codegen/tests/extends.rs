@@ -177,10 +177,10 @@ fn a_base_that_cannot_be_read_and_a_circle_are_mistakes() {
         ("other.yaml", "extends: one.yaml\n"),
     ];
     let folder = folder("extends_nothing", &files);
-    for (file, said) in [("lost.yaml", "lost.yaml:2:10: `extends: nowhere.yaml`"), ("one.yaml", "in a circle")] {
+    for (file, expected) in [("lost.yaml", "lost.yaml:2:10: `extends: nowhere.yaml`"), ("one.yaml", "in a circle")] {
         let found = mistakes(&folder.join(file));
         assert_eq!(found.mistakes()[0].code, "E008");
-        assert!(found.headline().contains(said), "{}", found.headline());
+        assert!(found.headline().contains(expected), "{}", found.headline());
     }
 }
 
@@ -192,10 +192,10 @@ fn what_is_given_twice_in_an_extending_spec_is_a_mistake() {
         ("extends: base.yaml\nname: mine\nname: yours\n", "[E011]"),
         ("extends: base.yaml\nname: mine\nlinks: [{name: arm, mass: 2}, {name: arm, mass: 3}]\n", "`arm`"),
     ];
-    for (index, (text, said)) in twice.iter().enumerate() {
+    for (index, (text, expected)) in twice.iter().enumerate() {
         let folder = folder(&format!("extends_twice_{index}"), &[("base.yaml", base), ("mine.yaml", text)]);
         let lines: Vec<String> = mistakes(&folder.join("mine.yaml")).lines().collect();
-        assert!(lines.iter().any(|line| line.contains(said)), "{lines:#?}");
+        assert!(lines.iter().any(|line| line.contains(expected)), "{lines:#?}");
     }
 }
 
@@ -231,12 +231,12 @@ loads: [{name: gust, link: jib, force: [0, 1, 0], scale: {table: {file: wind.csv
         &[("base.yaml", base), ("data.csv", "t [s],jib [rad],boom [rad]\r\n0,7,0\r\n1.5,7,0.3\r\n4,7,0.5\r\n")],
     );
     let wind = ("wind.csv", "0, 0\n1, 250\n2, 0\n");
-    let own = folder(
+    let dir = folder(
         "tables_over",
         &[("lift.yaml", over), ("inline.yaml", inline), ("data.csv", "\u{feff}0,0.1\n2,-0.2"), wind],
     );
-    let source = opened(&own.join("lift.yaml"));
-    let expected = compile::load(&opened(&own.join("inline.yaml"))).expect("a sound spec");
+    let source = opened(&dir.join("lift.yaml"));
+    let expected = compile::load(&opened(&dir.join("inline.yaml"))).expect("a sound spec");
     for source in [source.clone(), SourceFile::new("elsewhere.yaml", source.text)] {
         assert_eq!(
             anonymous(compile::load(&source).unwrap_or_else(|mistakes| panic!("{mistakes}"))),
@@ -262,23 +262,23 @@ loads: [{name: gust, link: jib, force: [0, 1, 0], scale: {table: {file: wind.csv
             "{name}: {from} to {end}"
         );
     }
-    fs::write(own.join("wind.csv"), "0,1,\n1,strong,\n").expect("a file");
+    fs::write(dir.join("wind.csv"), "0,1,\n1,strong,\n").expect("a file");
     assert_eq!(
-        mistakes(&own.join("lift.yaml")).headline(),
+        mistakes(&dir.join("lift.yaml")).headline(),
         "wind.csv:2:1: `strong` in column 2 is not a number [E137]"
     );
-    fs::write(own.join("wind.csv"), "0, 0\n1, strong\n").expect("a file");
+    fs::write(dir.join("wind.csv"), "0, 0\n1, strong\n").expect("a file");
     assert_eq!(
-        mistakes(&own.join("lift.yaml")).headline(),
+        mistakes(&dir.join("lift.yaml")).headline(),
         "wind.csv:2:1: `strong` in column 2 is not a number [E137]"
     );
-    fs::remove_file(own.join("wind.csv")).expect("the file");
-    let found = mistakes(&own.join("lift.yaml")).to_string();
+    fs::remove_file(dir.join("wind.csv")).expect("the file");
+    let found = mistakes(&dir.join("lift.yaml")).to_string();
     assert!(
         found.contains("`file: wind.csv` cannot be read: there is no such file") && found.contains("lift.yaml:5:"),
         "{found}"
     );
     fs::remove_file(of_base.join("data.csv")).expect("the file");
-    let found = mistakes(&own.join("lift.yaml")).to_string();
+    let found = mistakes(&dir.join("lift.yaml")).to_string();
     assert!(found.contains("`file: wind.csv`") || found.contains("base.yaml"), "{found}");
 }

@@ -197,8 +197,12 @@ fn an_eccentric_load_twists() {
     let wrenches = wrenches(&chain, &[0.0], &[0.0], &[0.0]);
     let [(_, _, section), _] = sections(&chain, &wrenches)[..] else { panic!("one element") };
     let weight = -9.81 * 100.0;
-    let own = -9.81 * 2e-4;
-    assert_close("arm", section, [[0.0, 0.0, weight + own], [0.5 * weight, -2.0 * weight - own, 0.0]]);
+    let weight_of_arm = -9.81 * 2e-4;
+    assert_close(
+        "arm",
+        section,
+        [[0.0, 0.0, weight + weight_of_arm], [0.5 * weight, -2.0 * weight - weight_of_arm, 0.0]],
+    );
 }
 
 /// The tension m (g + a) in a hoist that accelerates, and the guide's moment due to an offset load.

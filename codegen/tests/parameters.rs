@@ -76,21 +76,21 @@ fn refused(chain: &Chain, value: f64) -> Option<&'static str> {
 
 #[test]
 fn a_value_is_refused_at_run_time_where_the_spec_refuses_it() {
-    for (place, spec) in USES {
+    for (subject, spec) in USES {
         // A valid value in every place.
-        let sound = if place == "thickness" { 0.01 } else { 1.0 };
+        let sound = if subject == "thickness" { 0.01 } else { 1.0 };
         let live = |default: f64| {
             format!("format: 1\nname: test\nparameters: {{p: {{value: {default:?}}}}}\n{}", spec.replace('P', "p"))
         };
-        let compiled = chain(&live(sound)).unwrap_or_else(|codes| panic!("{place}: {codes:?}"));
+        let compiled = chain(&live(sound)).unwrap_or_else(|codes| panic!("{subject}: {codes:?}"));
         for value in [-1e3, -1.0, -1e-6, 0.0, 1e-6, 0.04, 0.06, 1.0, 2.0, 1e3] {
             let written = chain(&live(value));
             let refused = refused(&compiled, value);
-            assert_eq!(refused.is_some(), written.is_err(), "{place} = {value}: {refused:?}, {written:?}");
+            assert_eq!(refused.is_some(), written.is_err(), "{subject} = {value}: {refused:?}, {written:?}");
             if let (Some(code), Err(codes)) = (refused, written) {
                 // For a mass that cannot be zero, a spec reports that it is negative, or that the joint moves nothing (E046).
-                let mass = place == "mass of a link" && code == "E031" && matches!(codes[..], ["E032" | "E046"]);
-                assert!(mass || codes.contains(&code), "{place} = {value}: {code}, {codes:?}");
+                let mass = subject == "mass of a link" && code == "E031" && matches!(codes[..], ["E032" | "E046"]);
+                assert!(mass || codes.contains(&code), "{subject} = {value}: {code}, {codes:?}");
             }
         }
     }

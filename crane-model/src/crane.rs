@@ -55,13 +55,13 @@ impl dyn DynCrane + '_ {
     /// Static equilibrium from the guess: [`statics::solve`]. If feet lift and no pose is
     /// stable, it names the supports over which the crane tips.
     pub fn equilibrium(&self, settings: &statics::Settings) -> Equilibrium {
-        statics::named(self, 0.0, &self.guess(), statics::solve_dyn(self, settings))
+        statics::with_tipped_status(self, 0.0, &self.guess(), statics::solve_dyn(self, settings))
     }
 
     /// Equilibrium with the drives at their positions at time `t`, from pose `q`: [`statics::solve_at`], with the supports
     /// over which the crane tips, if it does.
     pub fn equilibrium_at(&self, t: f64, q: &[f64], settings: &statics::Settings) -> Equilibrium {
-        statics::named(self, t, q, statics::solve_at_dyn(self, t, q, settings))
+        statics::with_tipped_status(self, t, q, statics::solve_at_dyn(self, t, q, settings))
     }
 
     /// Equilibrium with the drives at given positions, from pose `q`: [`statics::solve_holding_dyn`].

@@ -27,10 +27,10 @@ impl StressedSection {
     }
 
     /// Where it is, in words: the beam, the distance from its start, and what is there.
-    pub fn place(&self, description: &Description) -> String {
+    pub fn location(&self, description: &Description) -> String {
         let info = self.info(description);
-        let place = format!("{}, {:.3} m from its start", self.beam(description), info.x);
-        if info.at.is_empty() { place } else { format!("{place}, {}", info.place()) }
+        let text = format!("{}, {:.3} m from its start", self.beam(description), info.x);
+        if info.at.is_empty() { text } else { format!("{text}, {}", info.location()) }
     }
 
     /// Orders sections by utilisation; where no beam has a yield stress, by equivalent stress.

@@ -119,7 +119,7 @@ pub(crate) struct Row {
 impl Row {
     /// The entry of a coordinate.
     pub fn entry(&self, coordinate: usize) -> f64 {
-        coordinate.checked_sub(self.first).and_then(|place| self.entries.get(place)).copied().unwrap_or(0.0)
+        coordinate.checked_sub(self.first).and_then(|index| self.entries.get(index)).copied().unwrap_or(0.0)
     }
 
     /// J x

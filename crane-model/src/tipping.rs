@@ -105,18 +105,19 @@ fn loads_of_links(crane: &dyn DynCrane, t: f64, [q, v, a]: [&[f64]; 3]) -> Vec<(
     for (body, wrench) in beginnings {
         let link = &description.bodies[body].link;
         if body == 0 || description.bodies[body - 1].link != *link {
-            let (turn, place) = (transforms[body].fixed_view::<3, 3>(0, 0), transforms[body].fixed_view::<3, 1>(0, 3));
+            let (turn, position) =
+                (transforms[body].fixed_view::<3, 3>(0, 0), transforms[body].fixed_view::<3, 1>(0, 3));
             let force = turn * wrench.force;
-            beyond.push(Wrench { force, moment: turn * wrench.moment + place.cross(&force) });
+            beyond.push(Wrench { force, moment: turn * wrench.moment + position.cross(&force) });
             links.push(description.bodies[body].link.clone());
         }
     }
     let next = beyond.clone().into_iter().skip(1).chain([Wrench::ZERO]);
-    let own = beyond
+    let of_links = beyond
         .iter()
         .zip(next)
         .map(|(all, rest)| Wrench { force: all.force - rest.force, moment: all.moment - rest.moment });
-    links.into_iter().zip(own).collect()
+    links.into_iter().zip(of_links).collect()
 }
 
 /// Fraction of the polygon's size below which a foot counts as on the line between two others.
@@ -130,7 +131,7 @@ fn polygon(places: &[Vector3<f64>]) -> Vec<usize> {
         (places[i].x, places[i].y).partial_cmp(&(places[j].x, places[j].y)).unwrap_or(std::cmp::Ordering::Equal)
     });
     let size = |axis: usize| {
-        let along = || places.iter().map(|place| place[axis]);
+        let along = || places.iter().map(|position| position[axis]);
         along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
     };
     let least = if places.is_empty() { 0.0 } else { ON_A_LINE * size(0).max(size(1)).powi(2) };
@@ -157,7 +158,7 @@ fn polygon(places: &[Vector3<f64>]) -> Vec<usize> {
         return Vec::new();
     }
     // Start at the foot with the lowest index: the leftmost corner changes as the crane moves.
-    let first = corners.iter().enumerate().min_by_key(|(_, foot)| **foot).map_or(0, |(place, _)| place);
+    let first = corners.iter().enumerate().min_by_key(|(_, foot)| **foot).map_or(0, |(position, _)| position);
     corners.rotate_left(first);
     corners
 }
@@ -188,9 +189,9 @@ mod tests {
     /// A weight of 10 N at 0.5 m from the line x = 1 within the square, and one of 4 N at 1 m beyond it.
     #[test]
     fn moments_about_a_line() {
-        let weight = |newton: f64, place: Vector3<f64>| {
+        let weight = |newton: f64, position: Vector3<f64>| {
             let force = Vector3::new(0.0, 0.0, -newton);
-            Wrench { force, moment: place.cross(&force) }
+            Wrench { force, moment: position.cross(&force) }
         };
         let loads = [weight(10.0, Vector3::new(0.5, 0.3, 2.0)), weight(4.0, Vector3::new(2.0, -5.0, 1.0))];
         let feet = [Vector3::new(1.0, -1.0, 0.0), Vector3::new(1.0, 1.0, 0.0)];

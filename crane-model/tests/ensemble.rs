@@ -81,7 +81,7 @@ fn eight_lanes_are_eight_single_runs() {
 }
 
 /// Last poses of all cranes, and how many samples each had.
-fn run(
+fn run_ensemble(
     cranes: &[(knuckle_boom::Crane, State<{ knuckle_boom::N }>)],
 ) -> (Vec<Vec<f64>>, Vec<usize>, Vec<Option<Stopped>>) {
     let (mut last, mut samples) = (vec![Vec::new(); cranes.len()], vec![0; cranes.len()]);
@@ -95,7 +95,7 @@ fn run(
 #[test]
 fn an_ensemble_of_any_size_ends_where_single_runs_end() {
     let cranes = knuckle_booms(11);
-    let (last, samples, stopped) = run(&cranes);
+    let (last, samples, stopped) = run_ensemble(&cranes);
     // 0.1 s in intervals of 0.01 s, both ends included; copies that fill the last batch are not reported.
     assert_eq!(samples, [11; 11]);
     assert!(stopped.iter().all(Option::is_none), "{stopped:?}");
@@ -115,11 +115,11 @@ fn an_ensemble_of_any_size_ends_where_single_runs_end() {
 #[test]
 fn a_crane_that_blows_up_does_not_harm_its_neighbours() {
     let sound = knuckle_booms(8);
-    let (expected, ..) = run(&sound);
+    let (expected, ..) = run_ensemble(&sound);
     for bad in [f64::NAN, 1e9] {
         let mut cranes = sound.clone();
         cranes[3].1.v[0] = bad;
-        let (last, _, stopped) = run(&cranes);
+        let (last, _, stopped) = run_ensemble(&cranes);
         for lane in 0..8 {
             if lane == 3 {
                 assert!(stopped[lane].as_ref().is_some_and(|stopped| stopped.time == 0.0), "{:?}", stopped[lane]);

@@ -102,8 +102,8 @@ fn an_effort_limits_by_its_lever() {
         let load = rating.load.unwrap();
         assert!(load <= expected * (1.0 + 1e-12) && load > expected * (1.0 - 1.1e-6), "{angle}: {load}, {expected}");
         assert_eq!(rating.governing, Some(Limit::Effort { drive: 0 }));
-        let own = rating.own.as_ref().unwrap();
-        assert!((own.efforts[0] - 100.0 * 9.81 * 4.0 * angle.cos()).abs() < 1e-9);
+        let of_load = rating.with_spec_load.as_ref().unwrap();
+        assert!((of_load.efforts[0] - 100.0 * 9.81 * 4.0 * angle.cos()).abs() < 1e-9);
     }
 }
 

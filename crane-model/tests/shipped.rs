@@ -30,9 +30,9 @@ fn every_crane_rests_in_a_stable_equilibrium_within_five_steps() {
 fn live_parameters_keep_the_rules_of_the_spec() {
     use cranes::knuckle_boom::{Crane, N, PARAMETERS, Params};
     let refused = Crane::new(Params { payload: -10.0 }).expect_err("a negative mass");
-    let said = "parameter `payload`: the mass of body `load` must not be negative, but is -10 [E032]; \
+    let message = "parameter `payload`: the mass of body `load` must not be negative, but is -10 [E032]; \
                 write 0 or a positive number, in kg";
-    assert_eq!(refused.to_string(), said);
+    assert_eq!(refused.to_string(), message);
     let mut crane = Crane::default();
     for payload in [-1e-6, f64::NAN, f64::INFINITY, 1e19, 1e-31] {
         assert!(CraneModel::<N>::set_parameter(&mut crane, 0, payload).is_err(), "{payload}");
@@ -116,8 +116,8 @@ fn implicit_methods_hold_their_tolerance_on_the_reference_crane() {
 /// Maximum effort of each drive over the run that the spec requests, N or N m.
 fn peaks(crane: &dyn DynCrane, method: Method, tolerance: f64) -> Vec<f64> {
     let start = InitialState::at_rest(crane.equilibrium(&statics::Settings::default()).q);
-    let own = Settings::of(crane.description());
-    let settings = Settings { method, tolerance, ..own };
+    let defaults = Settings::of(crane.description());
+    let settings = Settings { method, tolerance, ..defaults };
     let mut peaks = vec![0.0_f64; crane.description().drives.len()];
     crane
         .simulate(&start, &settings, &mut |sample| {

@@ -141,7 +141,7 @@ fn stiffness_that_rounding_fills_is_no_obstacle() {
 }
 
 #[test]
-fn forces_that_overflow_are_said_to() {
+fn overflowing_forces_give_status_overflow() {
     let lift = Lift { mass: f64::MAX, ..Lift::default() };
     let equilibrium = solve(&lift, &Settings::default());
     assert_eq!(equilibrium.status, Status::Overflow);

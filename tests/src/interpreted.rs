@@ -55,8 +55,8 @@ impl Interpreted {
         Inputs::state(state.t, state.q.clone(), state.v.clone(), self.chain.parameter_defaults())
     }
 
-    /// A function's result, or as many zeros as `otherwise` says if the program lacks the function. Drives are where their motions are unless `inputs`
-    /// has their positions.
+    /// A function's result, or `otherwise` zeros if the program lacks it. Unless `inputs` has the positions of drives, they are those of
+    /// their motions.
     pub fn get<S: Scalar>(&self, function: &str, inputs: &Inputs<S>, otherwise: usize) -> Vec<S> {
         let id = FunctionId::named(function).unwrap_or_else(|| panic!("there is no function `{function}`"));
         match self.program.function(id) {
@@ -165,8 +165,8 @@ fn expand<S: Scalar>(shape: &Shape, slots: Vec<S>) -> Vec<S> {
             let mut rest = slots.as_slice();
             let mut out = Vec::new();
             for (_, shape) in fields {
-                let (own, others) = rest.split_at(shape.len());
-                out.extend(expand(shape, own.to_vec()));
+                let (first, others) = rest.split_at(shape.len());
+                out.extend(expand(shape, first.to_vec()));
                 rest = others;
             }
             out

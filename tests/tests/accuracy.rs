@@ -126,11 +126,11 @@ fn check_forward_dynamics(crane: &Crane, count: usize, seed: u64) {
         // The error due to rounding of the forces alone; a crane with a nearly massless link multiplies it by thousands.
         let rounded: Vec<Precise> = forces.iter().map(|force| Precise::from_f64(force.round())).collect();
         let of_rounding = error(&solve(&rounded).iter().map(Precise::round).collect::<Vec<f64>>(), &exact);
-        let own = error(&crane.evaluate("forward_dynamics", &crane.inputs(&state)), &exact);
+        let total = error(&crane.evaluate("forward_dynamics", &crane.inputs(&state)), &exact);
         let name = &crane.chain.name;
         assert!(
-            own < TOLERANCE + ROUNDINGS * of_rounding,
-            "{name}, {} coordinates, seed {seed}: {own:.1e}, by rounding of forces {of_rounding:.1e}",
+            total < TOLERANCE + ROUNDINGS * of_rounding,
+            "{name}, {} coordinates, seed {seed}: {total:.1e}, by rounding of forces {of_rounding:.1e}",
             crane.size()
         );
     }
@@ -173,8 +173,8 @@ fn structured_solves() {
             let inputs = crane.inputs(&state).with(Argument::RightHandSide, state.v.clone());
             let right: Vec<Precise> = state.v.iter().map(|x| Precise::from_f64(*x)).collect();
             let exact = precise::solve(crane.mass_matrix(&state), right.clone());
-            let own = error(&crane.evaluate("solve_mass", &inputs), &exact);
-            assert!(own < TOLERANCE, "{}: A x = r to {own:.1e}", crane.chain.name);
+            let of_mass = error(&crane.evaluate("solve_mass", &inputs), &exact);
+            assert!(of_mass < TOLERANCE, "{}: A x = r to {of_mass:.1e}", crane.chain.name);
 
             let (added_inertia, base) = added_inertia(&crane, &inputs, h);
             let mut matrix = crane.mass_matrix(&state);
@@ -192,9 +192,9 @@ fn structured_solves() {
             let exact = precise::solve(matrix, right);
             let inputs = inputs.with(Argument::AddedInertia, added_inertia).with(Argument::BaseAddedInertia, base);
             let factors = crane.evaluate("factorise", &inputs);
-            let own = error(&crane.evaluate("solve", &inputs.with(Argument::Factors, factors)), &exact);
+            let of_sum = error(&crane.evaluate("solve", &inputs.with(Argument::Factors, factors)), &exact);
             // Springs stiffer than h⁻² times the inertias leave fewer digits for these in the sum.
-            assert!(own < 1e-12, "{}: (A + D̂) x = r to {own:.1e}", crane.chain.name);
+            assert!(of_sum < 1e-12, "{}: (A + D̂) x = r to {of_sum:.1e}", crane.chain.name);
         }
     }
 }

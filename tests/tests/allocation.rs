@@ -155,8 +155,8 @@ fn steps_allocate_nothing() {
         let start = InitialState::at_rest(crane.guess());
         for method in Method::ALL {
             let [short, long] = [0.05, 0.2].map(|duration| {
-                let own = Settings::of(crane.description());
-                let settings = Settings { method, duration, step: 2e-5, output: 0.01, audit: true, ..own };
+                let defaults = Settings::of(crane.description());
+                let settings = Settings { method, duration, step: 2e-5, output: 0.01, audit: true, ..defaults };
                 let run = || crane.simulate(&start, &settings, &mut |_| ControlFlow::Continue(()));
                 allocation_counter::measure(|| run().map(|_| ()).expect("a stable run")).count_total
             });

@@ -26,7 +26,7 @@ mod compiled {
 
 fn assert_golden(path: &Path, actual: &str) {
     if std::env::var_os("UPDATE_GOLDEN").is_some() {
-        build::write(path, actual).unwrap();
+        build::write_text(path, actual).unwrap();
     }
     let golden = std::fs::read_to_string(path).unwrap_or_default();
     let differs = golden.lines().zip(actual.lines()).position(|(a, b)| a != b);

@@ -125,7 +125,7 @@ fn a_rotor_adds_to_the_diagonal_and_to_nothing_else() {
 /// The support forces on the base's translations are the sum of the reactions, and the gravity forces are the weight:
 /// in equilibrium the reactions carry the weight, whatever the crane.
 #[test]
-fn reactions_and_weight_are_what_acts_on_the_base() {
+fn reactions_sum_to_the_support_forces_and_gravity_to_the_weight() {
     for (seed, crane) in cranes().filter(|(seed, _)| seed % 3 == 0) {
         let parameters = crane.chain.parameter_defaults();
         let inertias = crane.chain.bodies.iter().filter_map(|body| body.inertia.as_ref());
@@ -209,7 +209,7 @@ fn along_last_coordinate(crane: &Interpreted, cut: Cut) -> Option<(usize, usize)
 /// Along the axis of every coordinate, a cylinder that pushes with 1 N transmits `∂ℓ/∂q`, and nothing where it spans no cut; the same with
 /// the opposite sign for connectors, which pull.
 #[test]
-fn cylinders_and_connectors_transmit_what_their_lengths_feel() {
+fn wrenches_of_cylinders_and_connectors_follow_from_their_lengths() {
     let (mut of_cylinders, mut of_beams) = (0, 0);
     let shipped = Interpreted::new(workspace::chain("eight_link_hydraulic"));
     for (seed, crane) in cranes().filter(|(seed, _)| seed % 8 == 7).chain([(0, shipped)]) {
@@ -323,7 +323,7 @@ fn power_balances() {
 /// Rigid drives: their coordinates move as prescribed, `A q̈ = e + f` holds with the drive forces that this takes, and no linear
 /// system has them among its unknowns.
 #[test]
-fn prescribed_coordinates_are_no_unknowns() {
+fn prescribed_coordinates_are_left_out_of_every_function() {
     let mut tested = 0;
     for (seed, crane) in cranes() {
         let (n, prescribed) = (crane.size(), crane.prescribed());
@@ -354,9 +354,9 @@ fn prescribed_coordinates_are_no_unknowns() {
             let motions = moving(&crane, &state, (1.0, &vec![0.0; n], &vec![0.0; n]));
             let motions = crane.get("prescribed_motions", &motions, 0);
             for (j, motion) in prescribed.iter().zip(motions.chunks(2)) {
-                let (rate, own) = (motion[1].derivative(), acceleration[*j]);
+                let (rate, expected) = (motion[1].derivative(), acceleration[*j]);
                 assert_close(motion[0].derivative(), motion[1].value(), 1.0, 1e-13, &format!("seed {seed}, rate {j}"));
-                assert_close(rate, own, 1.0, 1e-12, &format!("seed {seed}, acceleration {j}"));
+                assert_close(rate, expected, 1.0, 1e-12, &format!("seed {seed}, acceleration {j}"));
             }
 
             let right = DVector::from_column_slice(&state.v);

@@ -83,12 +83,12 @@ fn generated_code_equals_the_interpreter_to_the_bit() {
             let inputs = Inputs::state(Runtime(state.t), all(&state.q), all(&state.v), all(&parameters));
             let mut rest = generated.as_slice();
             for quantity in quantities(entry.description) {
-                let (own, others) = rest.split_at(quantity.len());
+                let (first, others) = rest.split_at(quantity.len());
                 rest = others;
                 let expected = interpret(&crane, &quantity, &inputs);
-                assert_eq!(own.len(), expected.len(), "{} {}", entry.name, quantity.name);
+                assert_eq!(first.len(), expected.len(), "{} {}", entry.name, quantity.name);
                 let size = expected.iter().fold(0.0, |size: f64, x| size.max(x.0.abs()));
-                for (i, (a, Runtime(b))) in own.iter().zip(&expected).enumerate() {
+                for (i, (a, Runtime(b))) in first.iter().zip(&expected).enumerate() {
                     // Same operations in the same order; only the sign of a zero may differ.
                     let equal = a == b || FUSED.is_some_and(|tolerance| (a - b).abs() <= tolerance * size.max(1.0));
                     assert!(equal, "{} {}[{i}]: {a:?} against {b:?}", entry.name, quantity.name);
@@ -183,10 +183,10 @@ fn functions_that_a_scene_does_not_need_are_zero() {
     let values = (entry.evaluate)(&state, &[]);
     let mut rest = values.as_slice();
     for quantity in quantities(entry.description) {
-        let (own, others) = rest.split_at(quantity.len());
+        let (first, others) = rest.split_at(quantity.len());
         rest = others;
         if ["support_forces", "element_forces", "drive_forces", "drive_energy"].contains(&quantity.name) {
-            assert!(own.iter().all(|x| *x == 0.0), "{}", quantity.name);
+            assert!(first.iter().all(|x| *x == 0.0), "{}", quantity.name);
         }
     }
 }

@@ -51,8 +51,8 @@ fn it_rests_stably() {
     let moment = payload * length + weight * length.powi(2) / 2.0;
     // Three sections: tests/cantilever.rs.
     let tip = payload * length.powi(3) / (3.0 * bending) * (1.0 - 1.0 / 36.0);
-    let own = weight * length.powi(4) / (8.0 * bending) * (1.0 - 1.0 / 18.0);
-    let sag = moment / stiffness * length + tip + own;
+    let by_weight = weight * length.powi(4) / (8.0 * bending) * (1.0 - 1.0 / 18.0);
+    let sag = moment / stiffness * length + tip + by_weight;
 
     // The residual is rounding of that moment.
     assert!(crane.vector("static_residual", &rest).amax() < 1e-12 * moment);

@@ -41,7 +41,7 @@ fn settings(crane: &dyn DynCrane, method: Method) -> Settings {
     }
 }
 
-fn run(crane: &dyn DynCrane, settings: &Settings) -> Vec<Moment> {
+fn record_moments(crane: &dyn DynCrane, settings: &Settings) -> Vec<Moment> {
     let mut moments: Vec<Moment> = Vec::new();
     let mut at_start = None;
     let start = InitialState::at_rest(crane.guess());
@@ -69,8 +69,8 @@ fn every_method_follows_prescribed_motions() {
     for (crane, prescribed) in cranes() {
         let name = &crane.description().name;
         let exact = Settings { tolerance: 1e-10, ..settings(&*crane, Method::DormandPrince) };
-        let exact = run(&*crane, &exact).pop().expect("the end of the run");
-        let runs = Method::ALL.map(|method| (method, run(&*crane, &settings(&*crane, method))));
+        let exact = record_moments(&*crane, &exact).pop().expect("the end of the run");
+        let runs = Method::ALL.map(|method| (method, record_moments(&*crane, &settings(&*crane, method))));
         for (method, moments) in &runs {
             for moment in moments {
                 let (mut q, mut v) = (moment.q.clone(), moment.v.clone());

@@ -176,13 +176,13 @@ fn motions_in_one_plane_are_those_of_the_paper() {
             ["symmetric", "paper"].map(|joint| Beam::new(joint, sections, &ROUND, [0.3, 0.0, 0.0]).crane);
         for kind in ["_psi", "_theta", "_phi"] {
             let n = symmetric.size();
-            let own = |size: f64, seed: f64| -> Vec<f64> {
+            let numbers = |size: f64, seed: f64| -> Vec<f64> {
                 let of = |(j, c): (usize, &crane_codegen::chain::Coordinate)| {
                     if c.name.ends_with(kind) { size * (seed + 1.3 * j as f64).sin() } else { 0.0 }
                 };
                 symmetric.chain.coordinates.iter().enumerate().map(of).collect()
             };
-            let state = State { t: 0.0, q: own(1.1, 0.4), v: own(2.0, 1.7) };
+            let state = State { t: 0.0, q: numbers(1.1, 0.4), v: numbers(2.0, 1.7) };
             let (a, b) = (symmetric.acceleration(&state), paper.acceleration(&state));
             // Accelerations of both lie in the plane; about a hundred roundings.
             assert!((&a - &b).amax() < 1e-11 * b.amax(), "{sections} sections, {kind}: {a} against {b}");
@@ -271,9 +271,9 @@ fn large_bending_tends_to_the_elastica() {
         let errors = [4, 8, 16].map(|sections| {
             let beam = Beam::new("symmetric", sections, &ROUND, [0.0, -f64::sin(direction), -f64::cos(direction)]);
             let tip = beam.tip(&beam.equilibrium(load));
-            let place = |row: usize| tip[4 * row + 3];
-            let across = -place(1) * f64::sin(direction) - place(2) * f64::cos(direction);
-            [place(0) / LENGTH - exact[0], across / LENGTH - exact[1]]
+            let origin = |row: usize| tip[4 * row + 3];
+            let across = -origin(1) * f64::sin(direction) - origin(2) * f64::cos(direction);
+            [origin(0) / LENGTH - exact[0], across / LENGTH - exact[1]]
         });
         for axis in [0, 1] {
             let of: Vec<f64> = errors.iter().map(|error| error[axis].abs()).collect();

@@ -43,7 +43,7 @@ fn are_right_to_the_last_place() {
 }
 
 #[test]
-fn of_what_is_no_number_are_no_numbers() {
+fn results_of_nan_are_nan() {
     for angle in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let ([sin, beside], [cos, _]) = sin_cos([angle, 0.5]);
         assert!(sin.is_nan() && cos.is_nan());

@@ -22,7 +22,7 @@ const RECORDED: [(&str, Method, [usize; 2]); 10] = [
 const ALLOWED: f64 = 0.03;
 
 #[test]
-fn runs_cost_what_they_did() {
+fn statistics_of_runs_are_unchanged() {
     let cranes = crane_specs::all();
     for (name, method, recorded) in RECORDED {
         let crane = cranes.iter().find(|crane| crane.description().name == name).expect("a shipped crane");

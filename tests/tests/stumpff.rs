@@ -70,7 +70,7 @@ fn of_zero_are_reciprocal_factorials() {
 }
 
 #[test]
-fn of_what_is_not_a_number_are_not_numbers() {
+fn results_of_nan_are_nan() {
     for row in stumpff([f64::NAN, 0.5]) {
         assert!(row[0].is_nan() && row[1].is_finite());
     }

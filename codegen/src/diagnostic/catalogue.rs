@@ -34,19 +34,19 @@ catalogue! {
     /// A key occurs once in its mapping.
     E011 duplicate_key(key) "key `{key}` is given twice", "already given above", "keep one of the two";
     /// Keys without a default are given.
-    E012 missing_key(key, place) "{place} lacks `{key}`", "`{key}` is missing here", "add `{key}:`; docs/SPEC.md gives its meaning and unit";
+    E012 missing_key(key, subject) "{subject} lacks `{key}`", "`{key}` is missing here", "add `{key}:`; docs/SPEC.md gives its meaning and unit";
     /// A value has the form that its key requires.
-    E013 wrong_value(place, found, kind, expected) "{place} cannot be {found}", "this is {kind}", "write {expected}";
+    E013 wrong_value(subject, found, kind, expected) "{subject} cannot be {found}", "this is {kind}", "write {expected}";
     /// A choice is one of those available.
-    E014 unknown_choice(place, given, help) "{place} cannot be `{given}`", "not one of the choices", "{help}";
+    E014 unknown_choice(subject, given, help) "{subject} cannot be `{given}`", "not one of the choices", "{help}";
     /// Of several alternatives, exactly one is given.
-    E015 not_one_choice(place, count, choices) "{place} needs exactly one choice, but {count} are given", "one of {choices}",
+    E015 not_one_choice(subject, count, choices) "{subject} needs exactly one choice, but {count} are given", "one of {choices}",
         "write exactly one of {choices}";
     /// A list has as many items as its key requires.
-    E016 wrong_length(place, expected, found, help) "{place} has {found} items instead of {expected}",
+    E016 wrong_length(subject, expected, found, help) "{subject} has {found} items instead of {expected}",
         "expected {expected} items", "{help}";
     /// Text is one line without control characters.
-    E017 not_one_line(place) "{place} is not one line of plain text", "contains a line break or a character that cannot be printed",
+    E017 not_one_line(subject) "{subject} is not one line of plain text", "contains a line break or a character that cannot be printed",
         "write it on one line; `>-` folds a long text into one";
     /// An entry that changes one of the extended spec has the name of that entry.
     E018 misspelt_entry(name, known) "the extended spec has no `{name}`", "so this is a new entry, which is incomplete",
@@ -82,18 +82,18 @@ catalogue! {
 
     // Numbers.
     /// Numbers are finite.
-    E030 not_finite(place, given) "{place} is {given}", "not a finite number", "write a finite number, in SI units";
+    E030 not_finite(subject, given) "{subject} is {given}", "not a finite number", "write a finite number, in SI units";
     /// Masses, lengths, sections, moduli and durations are above zero.
-    E031 not_positive(place, given, unit) "{place} must be above zero, not {given}", "{given} {unit}",
+    E031 not_positive(subject, given, unit) "{subject} must be above zero, not {given}", "{given} {unit}",
         "write a number above 0, in {unit}";
     /// Stiffness, damping and other numbers that may be zero are not negative.
-    E032 negative(place, given, unit) "{place} must not be negative, but is {given}", "{given} {unit}",
+    E032 negative(subject, given, unit) "{subject} must not be negative, but is {given}", "{given} {unit}",
         "write 0 or a positive number, in {unit}";
     /// Numbers are 0 or have a magnitude from 1e-30 to 1e18.
-    E033 out_of_range(place, given) "{place} is outside the allowed range: {given}", "allowed: 0, or a magnitude from 1e-30 to 1e18",
+    E033 out_of_range(subject, given) "{subject} is outside the allowed range: {given}", "allowed: 0, or a magnitude from 1e-30 to 1e18",
         "check the exponent; every number is in SI units";
     /// Angles are written only where an angle is expected.
-    E034 misplaced_angle(place) "{place} is not an angle", "`deg` and `pi` are for angles only", "write a number, in SI units";
+    E034 misplaced_angle(subject) "{subject} is not an angle", "`deg` and `pi` are for angles only", "write a number, in SI units";
 
     // Links.
     /// A crane has at least one link.
@@ -126,14 +126,14 @@ catalogue! {
 
     // Inertias.
     /// An inertia is positive definite.
-    E050 not_positive_definite(place, smallest) "{place} is not positive definite",
+    E050 not_positive_definite(subject, smallest) "{subject} is not positive definite",
         "smallest principal moment about the centre of mass: {smallest} kg m²",
         "check signs, products and `about`; leave `inertia` out for a point mass";
     /// Principal moments satisfy the triangle inequality: none exceeds the sum of the other two by more than 25 %.
-    E051 triangle(place, largest, others) "{place} is not possible for a rigid body", "{largest} kg m² exceeds {others} kg m², the sum of the other two principal moments",
+    E051 triangle(subject, largest, others) "{subject} is not possible for a rigid body", "{largest} kg m² exceeds {others} kg m², the sum of the other two principal moments",
         "no principal moment about the centre of mass may exceed the sum of the other two";
     /// An inertia is given by its tensor or by radii of gyration.
-    E052 two_inertias(place) "{place} is given in two ways", "`gyration` is given too",
+    E052 two_inertias(subject) "{subject} is given in two ways", "`gyration` is given too",
         "give `gyration` alone, or `Ixx`, `Iyy`, `Izz`";
 
     // Ropes.
@@ -158,13 +158,13 @@ catalogue! {
     E064 beam_length(sum, length) "the elements do not add up to the beam", "{sum} m in all, the beam is {length} m long",
         "make the lengths of the elements add up to `length`, in m";
     /// The sides of a solid rectangle are constants, since its torsion constant is a series.
-    E065 live_side(place) "{place} cannot be a parameter", "the torsion constant of a solid rectangle needs constant sides",
+    E065 live_side(subject) "{subject} cannot be a parameter", "the torsion constant of a solid rectangle needs constant sides",
         "write a number, or give `numbers: {{area, Jy, Jz, Jo}}` with parameters";
     /// The parts of a beam add up to its length.
     E066 parts_length(sum, length) "the parts do not add up to the beam", "{sum} m in all, the beam is {length} m long",
         "make the lengths of the parts add up to `length`, in m";
     /// The lengths of a beam with parts, and of its parts, are constants: they decide which parts an element consists of.
-    E067 live_part(place) "{place} cannot be a parameter", "it decides which part of the beam an element belongs to",
+    E067 live_part(subject) "{subject} cannot be a parameter", "it decides which part of the beam an element belongs to",
         "write a number, in m; dimensions of sections may be parameters";
     /// The sections at both ends of a tapered part are dimensions of the same shape.
     E068 taper(from, to) "a part cannot taper from a `{from}` to a `{to}`", "its beginning is a `{from}`",
@@ -362,7 +362,7 @@ catalogue! {
     E136 data_unit(file, column, unit, help) "column `{column}` of `{file}` is in {unit}", "tables are in SI units: s, m, rad, N, N m",
         "{help}; put the SI unit of the column in brackets, or leave it out";
     /// The rows of a data file contain numbers.
-    E137 data_number(cell, place, help) "{cell} in column {place} is not a number", "a row of the table", "{help}";
+    E137 data_number(cell, column, help) "{cell} in column {column} is not a number", "a row of the table", "{help}";
     /// A data file has at most 1000 rows.
     E138 long_table(file, rows, most, every) "`{file}` has {rows} rows", "at most {most}, because every row costs time in every step",
         "keep one row in {every}: a smooth curve passes through the rows";
@@ -379,21 +379,21 @@ catalogue! {
 
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.
-    W001 modulus(what, place, given, usual, help) "{what} of {place} is {given} Pa", "usual: {usual} Pa", "{help}";
+    W001 modulus(what, subject, given, usual, help) "{what} of {subject} is {given} Pa", "usual: {usual} Pa", "{help}";
     /// The shear modulus is at most half of Young's modulus: Poisson's ratio is not below zero.
-    W002 poisson(place, ratio) "{place} has a Poisson's ratio of {ratio}", "`G` exceeds E/2",
+    W002 poisson(subject, ratio) "{subject} has a Poisson's ratio of {ratio}", "`G` exceeds E/2",
         "check that `E` and `G` are not swapped; steel has E = 2.1e11, G = 8.1e10";
     /// Densities are from 100 to 25000 kg/m³.
-    W003 density(place, given, help) "the density of {place} is {given} kg/m³", "usual: 100 to 25000 kg/m³", "{help}";
+    W003 density(subject, given, help) "the density of {subject} is {given} kg/m³", "usual: 100 to 25000 kg/m³", "{help}";
     /// Cross-sections are at most 5 m high and wide, their area at most 4 m², their moments at most 10 m⁴.
-    W004 section_size(place, what, help) "the section of {place} has {what}", "larger than in any crane", "{help}";
+    W004 section_size(subject, what, help) "the section of {subject} has {what}", "larger than in any crane", "{help}";
     /// Lengths and distances within a crane are at most 200 m.
     W005 far(what, given, help) "{what} is {given} m", "larger than any crane", "{help}";
     /// A beam is longer than its section is high or wide.
-    W006 stubby(place, key, side, length) "{place} is shorter than its section is high or wide", "`{key}` is {side} m, the beam {length} m long",
+    W006 stubby(subject, key, side, length) "{subject} is shorter than its section is high or wide", "`{key}` is {side} m, the beam {length} m long",
         "check both units; a body this short does not bend like a beam: use `sections: rigid`";
     /// The torsion constant of a section is at most the sum of its two second moments of area.
-    W007 torsion_constant(place, given, polar) "the torsion constant `Jo` of {place} exceeds Jy + Jz", "{given} m⁴ exceeds {polar} m⁴",
+    W007 torsion_constant(subject, given, polar) "the torsion constant `Jo` of {subject} exceeds Jy + Jz", "{given} m⁴ exceeds {polar} m⁴",
         "write the torsion constant: Jy + Jz for circles and tubes, less for boxes, far less for open sections";
     /// Angles without `deg` or `pi` are at most one turn, speeds one turn per second.
     W008 degrees(what, given, unit, turns, help) "{what} is {given} {unit}", "{turns}", "{help}";
@@ -401,9 +401,9 @@ catalogue! {
     W009 overdamped(link, beta, frequency, product) "the damping of beam `{link}` suppresses all vibration: β ω = {product}",
         "β = {beta} s, the lowest bending frequency is {frequency} rad/s", "check the unit: `beta` is in s, 1e-4 to 1e-2 s for steel structures";
     /// A payload is not out of proportion to the crane that carries it.
-    W010 payload(place, mass, crane, help) "the mass of {place} is {mass} kg", "the crane that carries it has a mass of {crane} kg", "{help}";
+    W010 payload(subject, mass, crane, help) "the mass of {subject} is {mass} kg", "the crane that carries it has a mass of {crane} kg", "{help}";
     /// Principal moments satisfy the triangle inequality; measured ones may exceed it by up to 25 % (beyond: E051).
-    W011 slight_triangle(place, largest, others) "{place} slightly violates the triangle inequality", "{largest} kg m² exceeds {others} kg m², the sum of the other two principal moments",
+    W011 slight_triangle(subject, largest, others) "{subject} slightly violates the triangle inequality", "{largest} kg m² exceeds {others} kg m², the sum of the other two principal moments",
         "no principal moment about the centre of mass exceeds the sum of the other two; rounded or identified data may violate this slightly";
     /// A one-sided support carries more than the pressing force above which it holds fully.
     W020 hold_beyond_weight(support, force, share) "`full_hold` of support `{support}` is {force} N",
@@ -435,10 +435,10 @@ catalogue! {
     W030 unsafe_factor(link, factor) "the safety factor of beam `{link}` is {factor}", "below 1 it allows stresses beyond the yield stress",
         "write the yield stress over the allowable stress, such as 1.5";
     /// The radius of gyration of a link is not larger than the crane.
-    W031 spread_mass(place, radius, size) "the inertia of {place} is that of a mass {radius} m away from its centre", "all joints and feet of the crane are within {size} m",
+    W031 spread_mass(subject, radius, size) "the inertia of {subject} is that of a mass {radius} m away from its centre", "all joints and feet of the crane are within {size} m",
         "check exponents and units: moments of inertia are in kg m², radii of `gyration` in m";
     /// A centre of mass is not farther away than the crane is large.
-    W032 far_mass(place, distance, size) "the centre of mass of {place} is {distance} m away from its frame", "all joints and feet of the crane are within {size} m",
+    W032 far_mass(subject, distance, size) "the centre of mass of {subject} is {distance} m away from its frame", "all joints and feet of the crane are within {size} m",
         "write `com` in m, from the origin of the link's frame; check the decimal point";
     /// A boom does not turn about the vertical directly after a joint that does.
     W033 swept(link, before) "boom `{link}` sweeps in the horizontal plane", "its joint turns about the vertical, as that of `{before}` does",

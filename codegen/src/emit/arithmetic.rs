@@ -147,12 +147,12 @@ fn parenthesised(expr: Expr) -> Expr {
 
 /// Parentheses wherever the order of operations would otherwise change: floating-point sums are not associative.
 fn binary(a: Expr, op: BinOp, b: Expr) -> Expr {
-    let own = match op {
+    let precedence_here = match op {
         BinOp::Add(_) | BinOp::Sub(_) => Precedence::Sum,
         _ => Precedence::Product,
     };
-    let left = if precedence(&a) < own { parenthesised(a) } else { a };
-    let right = if precedence(&b) <= own { parenthesised(b) } else { b };
+    let left = if precedence(&a) < precedence_here { parenthesised(a) } else { a };
+    let right = if precedence(&b) <= precedence_here { parenthesised(b) } else { b };
     Expr::Binary(ExprBinary { attrs: vec![], left: Box::new(left), op, right: Box::new(right) })
 }
 
@@ -165,15 +165,15 @@ pub fn place(array: Expr, index: &Expr) -> Expr {
 /// `8 + 3 * k`
 pub fn at(Progression { first, step }: Progression) -> Expr {
     let k = Ident::new("k", Span::call_site());
-    let way: Expr = match integer(step.unsigned_abs()) {
+    let offset: Expr = match integer(step.unsigned_abs()) {
         _ if step.unsigned_abs() == 1 => parse_quote!(#k),
         stride => parse_quote!(#stride * #k),
     };
     let start = integer(first);
     match (first, step) {
-        (0, 0..) => way,
-        (_, 0..) => parse_quote!(#start + #way),
-        _ => parse_quote!(#start - #way),
+        (0, 0..) => offset,
+        (_, 0..) => parse_quote!(#start + #offset),
+        _ => parse_quote!(#start - #offset),
     }
 }
 

@@ -216,11 +216,11 @@ impl Writer<'_> {
                     group = None;
                     statements.extend(self.loop_statements(*of, body, names, used));
                 }
-                Statement::At(place) => {
+                Statement::At(visit) => {
                     statements.append(&mut pending);
                     group = None;
-                    sweeping = place.is_some();
-                    statements.extend(place.as_ref().map(|place| comment(&loops::position_of(place))));
+                    sweeping = visit.is_some();
+                    statements.extend(visit.as_ref().map(|visit| comment(&loops::position_of(visit))));
                 }
                 &Statement::Let(id) => {
                     let value = self.operation(id, names, used);
@@ -238,20 +238,20 @@ impl Writer<'_> {
                     if alone {
                         pending.push(Stmt::Expr(value, None));
                     } else {
-                        let mut place = self.storage.place(slot);
+                        let mut target = self.storage.place(slot);
                         if self.is_scalar() {
-                            place = parse_quote!(*out);
+                            target = parse_quote!(*out);
                         }
-                        pending.push(parse_quote!(#place = #value;));
+                        pending.push(parse_quote!(#target = #value;));
                     }
                     statements.append(&mut pending);
                 }
-                &Statement::Keep { place, value } => {
-                    let (place, value) = (element(variable("kept"), place), variable(&names.of(value)));
-                    pending.push(parse_quote!(#place = #value;));
+                &Statement::Keep { slot, value } => {
+                    let (target, value) = (element(variable("kept"), slot), variable(&names.of(value)));
+                    pending.push(parse_quote!(#target = #value;));
                 }
-                &Statement::Fetch { place, value } => {
-                    pending.push(local(&names.of(value), &element(variable("kept"), place)));
+                &Statement::Fetch { slot, value } => {
+                    pending.push(local(&names.of(value), &element(variable("kept"), slot)));
                 }
             }
         }

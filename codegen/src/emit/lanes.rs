@@ -89,7 +89,7 @@ pub fn lanes(chain: &Chain, lowered: &LoweredProgram, labels: &Labels) -> Vec<It
     } else {
         [quote!(), quote!(), quote!()]
     };
-    let own = if live {
+    let make_lanes = if live {
         let names: Vec<_> = chain.parameters.iter().map(|p| format_ident!("{}", field_name(&p.name))).collect();
         items.push(parse_quote! {
             impl Cranes {
@@ -128,7 +128,7 @@ pub fn lanes(chain: &Chain, lowered: &LoweredProgram, labels: &Labels) -> Vec<It
                 type Lanes = lanes::Cranes;
 
                 fn lanes(#cranes: [&Self; 8]) -> lanes::Cranes {
-                    #own
+                    #make_lanes
                 }
             }
         },

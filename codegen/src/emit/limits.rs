@@ -59,9 +59,9 @@ pub fn limits(chain: &Chain) -> Vec<Item> {
     ]
 }
 
-fn bound(Bound { value, allowed, refusal: said }: &Bound) -> TokenStream {
-    let (value, said) = (literal(*value), refusal(said));
-    quote!(Bound { value: #value, allowed: #allowed, refusal: #said })
+fn bound(Bound { value, allowed, refusal: rule }: &Bound) -> TokenStream {
+    let (value, refusal_tokens) = (literal(*value), refusal(rule));
+    quote!(Bound { value: #value, allowed: #allowed, refusal: #refusal_tokens })
 }
 
 fn refusal(Refusal { code, title, help }: &Refusal) -> TokenStream {

@@ -21,43 +21,43 @@ impl Writer<'_> {
         names: &mut Names,
         used: &mut Used,
     ) -> Vec<Stmt> {
-        let own = &self.code.rerolled.loops[of];
+        let rolled = &self.code.rerolled.loops[of];
         let [numbers, gathered, loop_carried, saved] = OF_LOOPS.map(|name| owned(name, of));
-        let (number, iterations) = (self.number.of(), integer(own.iterations));
-        let [first, last] = &own.ends;
+        let (number, iterations) = (self.number.of(), integer(rolled.iterations));
+        let [first, last] = &rolled.ends;
         let mut statements = vec![comment(&format!("{} to {}", position_of(first), last.body))];
-        if !own.numbers.is_empty() {
-            let rows =
-                (0..own.iterations).map(|k| row(own.numbers.iter().map(|column| Number::Single.literal(column[k]))));
-            let width = integer(own.numbers.len());
+        if !rolled.numbers.is_empty() {
+            let rows = (0..rolled.iterations)
+                .map(|k| row(rolled.numbers.iter().map(|column| Number::Single.literal(column[k]))));
+            let width = integer(rolled.numbers.len());
             statements.push(parse_quote!(static #numbers: [[f64; #width]; #iterations] = [#(#rows),*];));
         }
-        if !own.gathered.is_empty() {
-            let rows: Vec<TokenStream> = (0..own.iterations)
-                .map(|k| row(own.gathered.iter().map(|column| self.expression(column[k], names, used))))
+        if !rolled.gathered.is_empty() {
+            let rows: Vec<TokenStream> = (0..rolled.iterations)
+                .map(|k| row(rolled.gathered.iter().map(|column| self.expression(column[k], names, used))))
                 .collect();
             statements.push(parse_quote!(let #gathered = [#(#rows),*];));
         }
-        if !own.loop_carried.is_empty() {
-            let initial = row(own.loop_carried.iter().map(|(initial, _)| self.expression(*initial, names, used)));
+        if !rolled.loop_carried.is_empty() {
+            let initial = row(rolled.loop_carried.iter().map(|(initial, _)| self.expression(*initial, names, used)));
             statements.push(parse_quote!(let mut #loop_carried = #initial;));
         }
-        if !own.saved.is_empty() {
-            let (width, zero) = (integer(own.saved.len()), self.number.literal(0.0));
+        if !rolled.saved.is_empty() {
+            let (width, zero) = (integer(rolled.saved.len()), self.number.literal(0.0));
             statements
                 .push(parse_quote!(let mut #saved: [[#number; #width]; #iterations] = [[#zero; #width]; #iterations];));
         }
         let mut iteration = self.statements(body, names, used);
-        for (slots, value) in &own.results {
-            let (place, value) = (self.storage.place_at(*slots), self.expression(*value, names, used));
-            iteration.push(parse_quote!(#place = #value;));
+        for (slots, value) in &rolled.results {
+            let (target, value) = (self.storage.place_at(*slots), self.expression(*value, names, used));
+            iteration.push(parse_quote!(#target = #value;));
         }
-        if !own.saved.is_empty() {
-            let values = row(own.saved.iter().map(|value| self.expression(*value, names, used)));
+        if !rolled.saved.is_empty() {
+            let values = row(rolled.saved.iter().map(|value| self.expression(*value, names, used)));
             iteration.push(parse_quote!(#saved[k] = #values;));
         }
-        if !own.loop_carried.is_empty() {
-            let values = row(own.loop_carried.iter().map(|(_, next)| self.expression(*next, names, used)));
+        if !rolled.loop_carried.is_empty() {
+            let values = row(rolled.loop_carried.iter().map(|(_, next)| self.expression(*next, names, used)));
             iteration.push(parse_quote!(#loop_carried = #values;));
         }
         statements.push(parse_quote!(for k in 0..#iterations { #(#iteration)* }));
@@ -79,7 +79,7 @@ impl Writer<'_> {
             Source::Sine(places) => place(variable("sines"), &at(*places)),
             Source::Cosine(places) => place(variable("cosines"), &at(*places)),
             Source::Stumpff(k, places) => place(element(variable("stumpff_of"), usize::from(*k)), &at(*places)),
-            Source::LoopCarried(place) => element(owned("carried", *of), *place),
+            Source::LoopCarried(slot) => element(owned("carried", *of), *slot),
             Source::Saved { of, slot, iteration } => element(place(owned("saved", *of), &at(*iteration)), *slot),
             Source::Gathered(column) => element(place(owned("gathered", *of), &variable("k")), *column),
         }
@@ -88,7 +88,7 @@ impl Writer<'_> {
     /// A value taken from a loop after its last iteration.
     pub(super) fn live_out(&self, index: usize) -> Expr {
         match self.code.rerolled.live_outs[index] {
-            LiveOut::LoopCarried { of, place } => element(owned("carried", of), place),
+            LiveOut::LoopCarried { of, slot } => element(owned("carried", of), slot),
             LiveOut::Saved { of, slot, iteration } => element(element(owned("saved", of), iteration), slot),
         }
     }

@@ -63,8 +63,8 @@ pub fn parameters(chain: &Chain, lowered: &LoweredProgram, labels: &Labels, numb
 /// Description and unit of a parameter, if the user gave them.
 fn documentation(parameter: &Parameter) -> String {
     let words = [&parameter.about, &parameter.unit].map(|text| plain(text));
-    let said: Vec<String> = words.into_iter().filter(|text| !text.is_empty()).collect();
-    if said.is_empty() { format!(" `{}`.", parameter.name) } else { format!(" {}.", said.join(", ")) }
+    let texts: Vec<String> = words.into_iter().filter(|text| !text.is_empty()).collect();
+    if texts.is_empty() { format!(" `{}`.", parameter.name) } else { format!(" {}.", texts.join(", ")) }
 }
 
 /// One `let` for each intermediate value of the stored constants.

@@ -163,7 +163,7 @@ impl Writer<'_> {
         let number = self.precision.name();
         let kept: HashSet<ExprId> = stored.iter().copied().collect();
         let needed = program.needed(stored.iter().copied());
-        let place = |id: ExprId| {
+        let text_of = |id: ExprId| {
             if kept.contains(&id) { format!("c->{}", self.labels.constant(id)) } else { format!("t{:03}", id.index()) }
         };
         let mut text = format!(
@@ -176,10 +176,10 @@ impl Writer<'_> {
             let value = operation(program.op(id), self.precision, &mut |operand| match program.op(operand) {
                 Op::Constant(constant) => Expression::number(constant.value(), self.precision),
                 Op::Symbol(symbol) => Expression::atom(format!("params->{}", field(&program.symbol(symbol).name))),
-                _ => Expression::atom(place(operand)),
+                _ => Expression::atom(text_of(operand)),
             });
             let declared = if kept.contains(&id) { String::new() } else { format!("const {number} ") };
-            let _ = writeln!(text, "    {declared}{} = {};", place(id), value.text());
+            let _ = writeln!(text, "    {declared}{} = {};", text_of(id), value.text());
         }
         text + "}\n\n"
     }
@@ -230,10 +230,10 @@ impl Body<'_> {
                     }
                 }
             }
-            Statement::At(place) => {
-                if let Some(place) = place {
-                    let way = if place.outward { "Outward" } else { "Inward" };
-                    self.line(&format!("/* {way}: {} */", comment(&place.body)));
+            Statement::At(visit) => {
+                if let Some(visit) = visit {
+                    let direction = if visit.outward { "Outward" } else { "Inward" };
+                    self.line(&format!("/* {direction}: {} */", comment(&visit.body)));
                 }
             }
             &Statement::Let(id) => {
@@ -244,16 +244,16 @@ impl Body<'_> {
             &Statement::Output { slot, value } => {
                 let value = self.expression(value);
                 let places = places(&self.code.function.shape, slot);
-                let written = places.iter().map(|place| format!("out[{place}] = ")).collect::<Vec<_>>().concat();
+                let written = places.iter().map(|target| format!("out[{target}] = ")).collect::<Vec<_>>().concat();
                 self.line(&format!("{written}{};", value.text()));
             }
-            &Statement::Keep { place, value } => {
+            &Statement::Keep { slot, value } => {
                 let name = self.names.of(value);
-                self.line(&format!("kept[{place}] = {name};"));
+                self.line(&format!("kept[{slot}] = {name};"));
             }
-            &Statement::Fetch { place, value } => {
+            &Statement::Fetch { slot, value } => {
                 let name = self.names.of(value);
-                self.local(&name, &format!("kept[{place}]"));
+                self.local(&name, &format!("kept[{slot}]"));
             }
             Statement::Loop { .. } => unreachable!("chains without loops have none"),
         }
@@ -384,7 +384,7 @@ fn places(shape: &Shape, slot: usize) -> Vec<usize> {
         Shape::Record(_, fields) => {
             let (index, rest) = field_of(fields, slot);
             let before: usize = fields[..index].iter().map(|(_, shape)| numbers(shape)).sum();
-            places(&fields[index].1, rest).into_iter().map(|place| before + place).collect()
+            places(&fields[index].1, rest).into_iter().map(|position| before + position).collect()
         }
         _ => vec![slot],
     }

@@ -154,7 +154,9 @@ impl Piece<'_> {
         if self.part.to.is_none() {
             return vec![(middle, self.length())];
         }
-        let both = |(place, weight): (f64, f64)| [-place, place].map(|place| (middle + half * place, half * weight));
+        let both = |(abscissa, weight): (f64, f64)| {
+            [-abscissa, abscissa].map(|abscissa| (middle + half * abscissa, half * weight))
+        };
         GAUSS.into_iter().flat_map(both).collect()
     }
 }
@@ -248,16 +250,16 @@ pub(crate) fn element_of_parts(parts: &[Part], ends: [f64; 2], density: &Value, 
             let section = piece.section(x);
             let line_density = density.clone() * section.area.clone() + extra.clone();
             // The slices of a tapered piece are thin; a prismatic piece keeps its full length.
-            let own = if piece.part.to.is_none() {
+            let of_sections = if piece.part.to.is_none() {
                 prismatic(length.into(), &line_density, &section).inertia
             } else {
                 disc(line_density * length.into(), &section)
             };
             let at = if piece.part.to.is_none() { piece.ends[0] } else { x } - ends[0];
-            let own = moved(own, &at.into());
+            let of_sections = moved(of_sections, &at.into());
             inertia = Some(match inertia {
-                None => own,
-                Some(inertia) => sum(inertia, own),
+                None => of_sections,
+                Some(inertia) => sum(inertia, of_sections),
             });
         }
     }

@@ -14,8 +14,8 @@ pub(crate) fn gyration(mass: &Value, radii: &[Value; 3]) -> Tensor {
 /// Pseudo-inertia of a body whose tensor is about its centre of mass, by the parallel axis theorem with `m c cᵀ`.
 pub(crate) fn about_com(mass: Value, com: &[Value; 3], tensor: &Tensor) -> Inertia {
     let shift = point(mass, com);
-    let own = planar_moments(tensor);
-    Inertia { second: std::array::from_fn(|k| own[k].clone() + shift.second[k].clone()), ..shift }
+    let central = planar_moments(tensor);
+    Inertia { second: std::array::from_fn(|k| central[k].clone() + shift.second[k].clone()), ..shift }
 }
 
 /// Pseudo-inertia of a body whose tensor is about the origin of its frame.
@@ -46,7 +46,7 @@ const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 
 
 /// `∫x² = ½(−Ixx + Iyy + Izz)` …, `∫xy = −Ixy` …
 fn planar_moments([xx, yy, zz, xy, xz, yz]: &Tensor) -> [Value; 6] {
-    let planar = |own: &Value, a: &Value, b: &Value| 0.5 * (a.clone() + b.clone() - own.clone());
+    let planar = |axial: &Value, a: &Value, b: &Value| 0.5 * (a.clone() + b.clone() - axial.clone());
     [planar(xx, yy, zz), planar(yy, xx, zz), planar(zz, xx, yy), -xy.clone(), -xz.clone(), -yz.clone()]
 }
 
@@ -84,8 +84,8 @@ pub(crate) fn triangle_margin(tensor: &Tensor, share: f64) -> Tensor {
 fn with_trace(tensor: &Tensor, a: f64, b: f64) -> Tensor {
     let trace = tensor[0].clone() + tensor[1].clone() + tensor[2].clone();
     std::array::from_fn(|k| {
-        let own = b * tensor[k].clone();
-        if k < 3 { a * trace.clone() + own } else { own }
+        let scaled = b * tensor[k].clone();
+        if k < 3 { a * trace.clone() + scaled } else { scaled }
     })
 }
 
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn minors_tell_what_principal_moments_tell() {
+    fn minors_agree_with_principal_moments() {
         for tensor in [
             [1.0, 2.0, 2.5, 0.0, 0.0, 0.0],
             [1.0, 2.0, 3.2, 0.0, 0.0, 0.0],

@@ -70,12 +70,12 @@ fn parameters_alone(program: &Program) -> Vec<bool> {
     }
     let mut depends: Vec<Depends> = Vec::with_capacity(program.operations.len());
     for op in &program.operations {
-        let own = match op {
+        let of_op = match op {
             Op::Symbol(id) if program.symbol(*id).argument == Argument::Parameters => Depends::Parameter,
             Op::Symbol(_) => Depends::State,
             _ => Depends::Number,
         };
-        let all = op.operands().map(|id| depends[id.index()]).fold(own, |a, b| if b > a { b } else { a });
+        let all = op.operands().map(|id| depends[id.index()]).fold(of_op, |a, b| if b > a { b } else { a });
         depends.push(all);
     }
     depends.iter().map(|d| *d == Depends::Parameter).collect()

@@ -51,7 +51,7 @@ pub enum LiveOut {
         /// The loop.
         of: usize,
         /// The index of the value.
-        place: usize,
+        slot: usize,
     },
     /// A value that was saved in an iteration.
     Saved {

@@ -27,16 +27,16 @@ impl Match {
 pub(super) fn matched(
     program: &Program,
     rank: &[usize],
-    (first, own): (usize, &[ExprId]),
+    (first, expected): (usize, &[ExprId]),
     (second, others): (usize, &[ExprId]),
 ) -> Option<Match> {
-    if own.len() != others.len() {
+    if expected.len() != others.len() {
         return None;
     }
     let mut found = Match::default();
     // The previous partner of an operand from outside the visit.
     let mut known: HashMap<ExprId, ExprId> = HashMap::new();
-    let mut stack: Vec<(ExprId, ExprId)> = own.iter().copied().zip(others.iter().copied()).rev().collect();
+    let mut stack: Vec<(ExprId, ExprId)> = expected.iter().copied().zip(others.iter().copied()).rev().collect();
     let asked: HashMap<ExprId, ExprId> = stack.iter().copied().collect();
     while let Some((a, b)) = stack.pop() {
         if let Some(paired) = found.nodes.get(&a) {
@@ -78,12 +78,12 @@ pub(super) fn matched(
             }
             _ => pairs,
         };
-        for (place, (x, y)) in order.into_iter().enumerate() {
+        for (operand, (x, y)) in order.into_iter().enumerate() {
             match (rank[x.index()] == first, rank[y.index()] == second) {
                 (true, true) => stack.push((x, y)),
                 (false, false) => {
                     known.entry(x).or_insert(y);
-                    found.outside.insert((a, place), y);
+                    found.outside.insert((a, operand), y);
                 }
                 _ => return None,
             }

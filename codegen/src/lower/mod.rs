@@ -107,14 +107,14 @@ pub enum Statement {
     /// Keeps a value for a later piece.
     Keep {
         /// Place among the kept values.
-        place: usize,
+        slot: usize,
         /// The value.
         value: ExprId,
     },
     /// Fetches a value from an earlier piece.
     Fetch {
         /// Place among the kept values.
-        place: usize,
+        slot: usize,
         /// The value.
         value: ExprId,
     },

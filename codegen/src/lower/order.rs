@@ -59,15 +59,15 @@ pub(super) fn angles(program: &Program, needed: &[bool]) -> Vec<Angle> {
 
 /// All arguments of Stumpff's functions that are needed, in order of construction.
 pub(super) fn stumpff_arguments(program: &Program, needed: &[bool]) -> Vec<StumpffArgument> {
-    let mut places: HashMap<ExprId, usize> = HashMap::new();
+    let mut slots: HashMap<ExprId, usize> = HashMap::new();
     let mut arguments: Vec<StumpffArgument> = Vec::new();
     for id in program.ids().take(needed.len()).filter(|id| needed[id.index()]) {
         if let Op::Stumpff(k, argument) = program.op(id) {
-            let place = *places.entry(argument).or_insert_with(|| {
+            let slot = *slots.entry(argument).or_insert_with(|| {
                 arguments.push(StumpffArgument { argument, values: [None; Op::STUMPFF_ORDERS] });
                 arguments.len() - 1
             });
-            arguments[place].values[usize::from(k)] = Some(id);
+            arguments[slot].values[usize::from(k)] = Some(id);
         }
     }
     arguments
@@ -162,13 +162,13 @@ impl Line<'_> {
                 self.run(*of);
             }
         }
-        let own = &rerolled.loops[of];
-        let initial = own.loop_carried.iter().map(|(initial, _)| initial);
-        for value in initial.chain(own.gathered.iter().flatten()).chain(&own.invariants) {
+        let rolled = &rerolled.loops[of];
+        let initial = rolled.loop_carried.iter().map(|(initial, _)| initial);
+        for value in initial.chain(rolled.gathered.iter().flatten()).chain(&rolled.invariants) {
             self.compute_variables(*value);
         }
         let before = std::mem::take(&mut self.statements);
-        own.roots().into_iter().for_each(|value| self.compute_variables(value));
+        rolled.roots().into_iter().for_each(|value| self.compute_variables(value));
         let body = std::mem::replace(&mut self.statements, before);
         self.statements.push(Statement::Loop { of, body });
     }

@@ -101,7 +101,7 @@ impl Lives {
     }
 
     fn pieces(&self, program: &Program, line: &[Statement], cuts: &[usize]) -> (Vec<Vec<Statement>>, usize) {
-        let mut places: BTreeMap<ExprId, usize> = BTreeMap::new();
+        let mut slots: BTreeMap<ExprId, usize> = BTreeMap::new();
         let mut heads = Vec::new();
         for window in cuts.windows(2) {
             let mut head = Vec::new();
@@ -113,8 +113,8 @@ impl Lives {
                 if matches!(program.op(*id), Op::Symbol(_)) {
                     head.push(Statement::Input(*id));
                 } else {
-                    let next = places.len();
-                    head.push(Statement::Fetch { place: *places.entry(*id).or_insert(next), value: *id });
+                    let next = slots.len();
+                    head.push(Statement::Fetch { slot: *slots.entry(*id).or_insert(next), value: *id });
                 }
             }
             heads.push(head);
@@ -131,15 +131,15 @@ impl Lives {
                     }
                     piece.push(statement.clone());
                     for id in defines(statement) {
-                        if let Some(&place) = places.get(&id) {
-                            piece.push(Statement::Keep { place, value: id });
+                        if let Some(&slot) = slots.get(&id) {
+                            piece.push(Statement::Keep { slot, value: id });
                         }
                     }
                 }
                 piece
             })
             .collect();
-        (pieces, places.len())
+        (pieces, slots.len())
     }
 }
 

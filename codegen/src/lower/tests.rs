@@ -142,7 +142,7 @@ fn angles_come_first_and_operands_before_their_users() {
 }
 
 #[test]
-fn a_long_line_is_cut_and_what_crosses_a_cut_is_carried() {
+fn pieces_of_a_long_line_carry_values_across_cuts() {
     // Each value is used by the next two, so it needs a variable.
     let program = program(|_, [a, b, ..]| {
         let (mut x, mut y) = (a, b);
@@ -199,7 +199,7 @@ fn swept(bodies: u8) -> Program {
 }
 
 #[test]
-fn what_repeats_from_body_to_body_becomes_a_loop_that_computes_the_same() {
+fn repeated_bodies_become_a_loop_with_the_same_results() {
     const BODIES: u8 = 60;
     let program = swept(BODIES);
     let iterations =

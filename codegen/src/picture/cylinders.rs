@@ -19,19 +19,19 @@ impl Pins {
     /// All of them that are known.
     pub fn places(self) -> impl Iterator<Item = Vector> {
         let all = [Some(self.foot), Some(self.rod), Some(self.head), self.pivot].into_iter().flatten();
-        all.filter(|place| place.iter().all(|x| x.is_finite()))
+        all.filter(|point| point.iter().all(|x| x.is_finite()))
     }
 
     /// At a pose; not numbers where rocker and link do not reach each other.
     pub fn of(chain: &Chain, cylinder: &Cylinder, frames: &[Frame], joints: &[Joint]) -> Self {
         let defaults = chain.parameter_defaults();
-        let place = |pin: &Pin| frames[pin.body.0].transform_point([0, 1, 2].map(|i| pin.position[i].at(&defaults)));
-        let [foot, head] = [&cylinder.foot, &cylinder.head].map(place);
+        let world = |pin: &Pin| frames[pin.body.0].transform_point([0, 1, 2].map(|i| pin.position[i].at(&defaults)));
+        let [foot, head] = [&cylinder.foot, &cylinder.head].map(world);
         let joint = joints.iter().find(|joint| joint.coordinate == cylinder.coordinate);
         let (Some(Linkage { pivot, rocker, link, left }), Some(joint)) = (&cylinder.linkage, joint) else {
             return Self { foot, rod: head, head, pivot: None };
         };
-        let pivot = place(pivot);
+        let pivot = world(pivot);
         let [rocker, link] = [rocker, link].map(|length| length.at(&defaults));
         let across = difference(head, pivot);
         let distance = dot(across, across).sqrt();
@@ -48,21 +48,21 @@ impl Pins {
 pub(super) fn cylinders(sheet: &mut Sheet, chain: &Chain, pins: &[Pins]) {
     for (cylinder, pins) in chain.cylinders.iter().zip(pins) {
         let &Pins { foot, rod, head, pivot } = pins;
-        let way = difference(rod, foot);
-        let length = dot(way, way).sqrt();
+        let axis = difference(rod, foot);
+        let length = dot(axis, axis).sqrt();
         if length.is_nan() || length == 0.0 {
             continue;
         }
         let share = (BARREL * cylinder.retracted / length).min(1.0);
-        let barrel = [0, 1, 2].map(|i| foot[i] + share * way[i]);
+        let barrel = [0, 1, 2].map(|i| foot[i] + share * axis[i]);
         if let Some(pivot) = pivot {
             sheet.line(pivot, rod, VERMILLION, 2.5);
             sheet.line(rod, head, VERMILLION, 2.5);
         }
         sheet.line(foot, rod, INK, 1.8);
         sheet.line(foot, barrel, GREY, 5.0);
-        for place in pins.places() {
-            sheet.dot(place, 2.4);
+        for point in pins.places() {
+            sheet.dot(point, 2.4);
         }
     }
 }

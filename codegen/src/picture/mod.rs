@@ -171,9 +171,9 @@ fn supports(sheet: &mut Sheet, chain: &Chain, frames: &[Frame]) {
     let defaults = chain.parameter_defaults();
     let Some(base) = frames.first() else { return };
     for support in &chain.supports {
-        let place = base.transform_point([0, 1, 2].map(|i| support.position[i].at(&defaults)));
-        sheet.line(base.transform_point([0.0, support.position[1].at(&defaults), 0.0]), place, GREY, 1.0);
-        let at = sheet.project(place);
+        let position = base.transform_point([0, 1, 2].map(|i| support.position[i].at(&defaults)));
+        sheet.line(base.transform_point([0.0, support.position[1].at(&defaults), 0.0]), position, GREY, 1.0);
+        let at = sheet.project(position);
         let _ = writeln!(
             sheet.svg,
             "<path d='M{:.1} {:.1}l4 3l-8 4l8 4l-8 4l4 3m-8 0h16' fill='none' stroke='{VERMILLION}' stroke-width='1.3'/>",
@@ -251,16 +251,16 @@ impl Sheet {
         let range = |of: fn(&(f64, f64)) -> f64| {
             flat.iter().map(of).fold((f64::MAX, f64::MIN), |(low, high), value| (low.min(value), high.max(value)))
         };
-        let (across, up) = (range(|place| place.0), range(|place| place.1));
-        let room = (DRAWING.0 - 2.0 * MARGIN, DRAWING.1 - 2.0 * MARGIN);
-        let scale = (room.0 / (across.1 - across.0).max(1e-6)).min(room.1 / (up.1 - up.0).max(1e-6));
+        let (across, up) = (range(|point| point.0), range(|point| point.1));
+        let drawing = (DRAWING.0 - 2.0 * MARGIN, DRAWING.1 - 2.0 * MARGIN);
+        let scale = (drawing.0 / (across.1 - across.0).max(1e-6)).min(drawing.1 / (up.1 - up.0).max(1e-6));
         let shift =
             (DRAWING.0 / 2.0 - scale * (across.0 + across.1) / 2.0, DRAWING.1 / 2.0 + scale * (up.0 + up.1) / 2.0);
         Self { svg: String::new(), scale, shift, labels: Vec::new(), texts: String::new() }
     }
 
-    fn project(&self, place: Vector) -> (f64, f64) {
-        let (across, up) = cabinet(place);
+    fn project(&self, point: Vector) -> (f64, f64) {
+        let (across, up) = cabinet(point);
         (self.shift.0 + self.scale * across, self.shift.1 - self.scale * up)
     }
 
@@ -274,8 +274,8 @@ impl Sheet {
     }
 
     /// A small filled circle.
-    fn dot(&mut self, place: Vector, radius: f64) {
-        let (x, y) = self.project(place);
+    fn dot(&mut self, point: Vector, radius: f64) {
+        let (x, y) = self.project(point);
         let _ = writeln!(self.svg, "<circle cx='{x:.1}' cy='{y:.1}' r='{radius}' fill='{INK}'/>");
     }
 

@@ -72,10 +72,10 @@ fn second_derivatives<S: Scalar>(degrees: &[usize], coordinates: usize, vectors:
                 if let Some(vector) = vector {
                     let first = vectors[vector];
                     let row = m - first;
-                    let place = 6 * vector + row * 3 - row * row.saturating_sub(1) / 2 + n - m;
-                    for (k, share) in shares[3 * place..3 * place + 3].iter().enumerate() {
-                        for (entry, own) in pair.iter_mut().zip(derivative(start + first + k)) {
-                            *entry = entry.clone() + share.clone() * own.clone();
+                    let term = 6 * vector + row * 3 - row * row.saturating_sub(1) / 2 + n - m;
+                    for (k, share) in shares[3 * term..3 * term + 3].iter().enumerate() {
+                        for (entry, slope) in pair.iter_mut().zip(derivative(start + first + k)) {
+                            *entry = entry.clone() + share.clone() * slope.clone();
                         }
                     }
                 }

@@ -19,9 +19,9 @@ pub(super) fn files(tree: &Node) -> Vec<(&str, Span)> {
     let of_children = || children(tree).flat_map(files);
     match &tree.content {
         Content::Mapping(entries) => {
-            let own =
+            let of_parts =
                 entries.iter().filter(|(key, _)| key.key_text() == TABLE).filter_map(|(_, table)| table.text("file"));
-            own.chain(of_children()).collect()
+            of_parts.chain(of_children()).collect()
         }
         _ => of_children().collect(),
     }
@@ -119,26 +119,26 @@ fn columns(data: &Part<'_>, (file, at): (&str, Span), column: Option<(&str, Span
     // An empty cell may end a row.
     let has_header = first.iter().all(|cell| cell.parse::<f64>().is_err());
     let names: Vec<_> = first.iter().map(name_and_unit).filter(|_| has_header).collect();
-    let place = match column {
+    let column = match column {
         Some((wanted, span)) => {
             let mut places =
-                names.iter().enumerate().skip(1).filter(|(_, (name, _))| *name == wanted).map(|(place, _)| place);
+                names.iter().enumerate().skip(1).filter(|(_, (name, _))| *name == wanted).map(|(column, _)| column);
             let known = || names.iter().skip(1).map(|(name, _)| format!("`{name}`")).collect::<Vec<_>>().join(", ");
             let known = || if has_header { known() } else { "no names".into() };
-            let place = places.next().ok_or_else(|| rule::data_column(span, file, wanted, known()))?;
+            let column = places.next().ok_or_else(|| rule::data_column(span, file, wanted, known()))?;
             if places.next().is_some() {
                 return Err(rule::no_data(at, file, format!("it has several columns `{wanted}`")));
             }
-            place
+            column
         }
         None => 1,
     };
     if first.len() < 2 {
         return Err(rule::no_data(at, file, "it has a single column; columns are separated by commas"));
     }
-    for (place, known) in [(0, ["s", ""].as_slice()), (place, &UNITS)] {
+    for (column, known) in [(0, ["s", ""].as_slice()), (column, &UNITS)] {
         if let Some((name, Some(unit))) =
-            names.get(place).filter(|(_, unit)| unit.is_some_and(|unit| !known.contains(&unit)))
+            names.get(column).filter(|(_, unit)| unit.is_some_and(|unit| !known.contains(&unit)))
         {
             let help = if DEGREES.contains(unit) { radians(1.0) } else { "convert it".into() };
             return Err(rule::data_unit(at, file, *name, *unit, help));
@@ -148,13 +148,13 @@ fn columns(data: &Part<'_>, (file, at): (&str, Span), column: Option<(&str, Span
     if rows.len() > MOST {
         return Err(rule::long_table(at, file, rows.len(), MOST, rows.len().div_ceil(MOST)));
     }
-    let numbers = |place: usize| rows.iter().map(|row| number(data, row, place)).collect::<Result<Vec<_>, _>>();
-    Ok([numbers(0)?, numbers(place)?])
+    let numbers = |column: usize| rows.iter().map(|row| number(data, row, column)).collect::<Result<Vec<_>, _>>();
+    Ok([numbers(0)?, numbers(column)?])
 }
 
 /// A cell as a number.
-fn number(data: &Part<'_>, row: &StringRecord, place: usize) -> Result<Node, Mistake> {
-    let cell = row.get(place).unwrap_or_default();
+fn number(data: &Part<'_>, row: &StringRecord, column: usize) -> Result<Node, Mistake> {
+    let cell = row.get(column).unwrap_or_default();
     let begin = row.position().map_or(0, |position| usize::try_from(position.byte()).unwrap_or(0));
     let line = data.text.get(begin..).and_then(|rest| rest.lines().next()).unwrap_or_default();
     let span = Span { start: data.start + begin, end: data.start + begin + line.len() };
@@ -164,7 +164,7 @@ fn number(data: &Part<'_>, row: &StringRecord, place: usize) -> Result<Node, Mis
         Some(degrees) => radians(degrees),
         None => "write numbers with a decimal point, and commas between columns".into(),
     };
-    let number = cell.parse().map_err(|_| rule::data_number(span, shown, place + 1, help()))?;
+    let number = cell.parse().map_err(|_| rule::data_number(span, shown, column + 1, help()))?;
     Ok(Node { span, content: Content::Number(number) })
 }
 

@@ -73,8 +73,8 @@ impl Node {
     /// Without the key `after`, and that key's value.
     fn without_place(mut self) -> (Self, Option<Node>) {
         let Content::Mapping(entries) = &mut self.content else { return (self, None) };
-        let place = entries.iter().position(|(key, _)| key.key_text() == AFTER);
-        let after = place.map(|place| entries.remove(place).1);
+        let index = entries.iter().position(|(key, _)| key.key_text() == AFTER);
+        let after = index.map(|index| entries.remove(index).1);
         (self, after)
     }
 
@@ -129,21 +129,21 @@ fn merge_entries(mut base: Vec<(Node, Node)>, over: Vec<(Node, Node)>, noticed: 
             base.push((key, value));
             continue;
         }
-        let place = base.iter().position(|(known, _)| known.key_text() == key.key_text());
-        match (place, &value.content) {
-            (Some(place), Content::Null) => {
-                base.remove(place);
+        let index = base.iter().position(|(known, _)| known.key_text() == key.key_text());
+        match (index, &value.content) {
+            (Some(index), Content::Null) => {
+                base.remove(index);
             }
             (None, Content::Null) => {
                 let known: Vec<String> = base.iter().map(|(key, _)| key.key_text()).collect();
                 let help = suggest(&key.key_text(), known.iter().map(String::as_str));
                 noticed.mistakes.push(rule::nothing_to_remove(key.span, key.key_text(), help));
             }
-            (Some(place), _) => {
-                let (_, known) = base.remove(place);
+            (Some(index), _) => {
+                let (_, known) = base.remove(index);
                 let replaces = KINDS.contains(&key.key_text().as_str()) && are_of_different_kinds(&known, &value);
                 let value = if replaces { value } else { merge(known, value, noticed) };
-                base.insert(place, (key, value));
+                base.insert(index, (key, value));
             }
             (None, _) => base.push((key, value)),
         }
@@ -164,17 +164,17 @@ fn merge_items(mut base: Vec<Node>, over: Vec<Node>, noticed: &mut Noticed) -> V
         }
         let place_of =
             |items: &[Node], name: &str| items.iter().position(|item| item.identity().as_deref() == Some(name));
-        let place = place_of(&base, &name);
+        let index = place_of(&base, &name);
         if item.is_removal() {
-            if let Some(place) = place {
-                base.remove(place);
+            if let Some(index) = index {
+                base.remove(index);
             } else {
                 let help = suggest(&name, extended());
                 noticed.mistakes.push(rule::nothing_to_remove(item.span, name, help));
             }
             continue;
         }
-        if place.is_none()
+        if index.is_none()
             && let Some(known) = nearest(&name, extended())
         {
             let at = item.identity_node().map_or(item.span, |node| node.span);
@@ -182,8 +182,8 @@ fn merge_items(mut base: Vec<Node>, over: Vec<Node>, noticed: &mut Noticed) -> V
             noticed.lookalikes.push(Lookalike { name: name.clone(), at, span, known: known.to_owned() });
         }
         let (item, after) = item.without_place();
-        let (place, item) = match place {
-            Some(place) => (place, merge(base.remove(place), item, noticed)),
+        let (index, item) = match index {
+            Some(index) => (index, merge(base.remove(index), item, noticed)),
             None => (base.len(), item),
         };
         let behind = after.map(|after| {
@@ -192,12 +192,12 @@ fn merge_items(mut base: Vec<Node>, over: Vec<Node>, noticed: &mut Noticed) -> V
                     let names: Vec<String> = base.iter().filter_map(Node::identity).collect();
                     let help = suggest(&after.key_text(), names.iter().map(String::as_str));
                     noticed.mistakes.push(rule::nothing_before(after.span, after.key_text(), help));
-                    place
+                    index
                 },
                 |other| other + 1,
             )
         });
-        base.insert(behind.unwrap_or(place), item);
+        base.insert(behind.unwrap_or(index), item);
     }
     base
 }

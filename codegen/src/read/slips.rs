@@ -113,11 +113,11 @@ fn split_entry(item: Node, list: &str, text: &str, mistakes: &mut Vec<Mistake>) 
     };
     let mut parts = Vec::new();
     loop {
-        let begins = |(place, (key, _)): &(usize, &(Node, Node))| {
-            *place > 1 && *place + 1 < entries.len() && key.key_text() == first && before(key).is_empty()
+        let begins = |(index, (key, _)): &(usize, &(Node, Node))| {
+            *index > 1 && *index + 1 < entries.len() && key.key_text() == first && before(key).is_empty()
         };
-        let Some(place) = entries.iter().enumerate().find(begins).map(|(place, _)| place) else { break };
-        let rest = entries.split_off(place);
+        let Some(index) = entries.iter().enumerate().find(begins).map(|(index, _)| index) else { break };
+        let rest = entries.split_off(index);
         mistakes.push(rule::missing_dash(rest[0].0.span, &first, list));
         parts.push(std::mem::replace(&mut entries, rest));
     }

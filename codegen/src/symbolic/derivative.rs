@@ -31,9 +31,9 @@ impl Graph {
             let depends = id == by.id() || self.op(id).operands().any(|operand| of(operand).is_some());
             if depends {
                 let one = || self.constant(1.0);
-                let own =
+                let slope =
                     if id == by.id() { one() } else { self.derivative(id, &|operand| of(operand).unwrap_or(zero)) };
-                derivatives[id.index()] = (!own.is_zero()).then_some(own);
+                derivatives[id.index()] = (!slope.is_zero()).then_some(slope);
             }
         }
         of.iter().map(|f| derivatives[f.id().index()].unwrap_or(zero)).collect()
@@ -42,22 +42,22 @@ impl Graph {
     /// The derivative of a node from those of its operands.
     fn derivative<'g>(&'g self, id: ExprId, of: &dyn Fn(ExprId) -> Expr<'g>) -> Expr<'g> {
         let x = |operand: ExprId| self.expr(operand);
-        let own = x(id);
+        let itself = x(id);
         match self.op(id) {
             Op::Constant(_) | Op::Symbol(_) => self.constant(0.0),
             Op::Neg(a) => -of(a),
             Op::Add(a, b) => of(a) + of(b),
             Op::Sub(a, b) => of(a) - of(b),
             Op::Mul(a, b) => of(a) * x(b) + x(a) * of(b),
-            Op::Div(a, b) => (of(a) - own * of(b)) / x(b),
+            Op::Div(a, b) => (of(a) - itself * of(b)) / x(b),
             Op::Sin(a) => of(a) * x(a).cos(),
             Op::Cos(a) => -(of(a) * x(a).sin()),
             Op::Stumpff(k, a) => of(a) * 0.5 * (f64::from(k) * x(a).stumpff(k + 2) - x(a).stumpff(k + 1)),
             Op::Min(a, b) => (x(b) - x(a)).select(of(a), of(b)),
             Op::Max(a, b) => (x(a) - x(b)).select(of(a), of(b)),
             // Infinite where a is 0: laws with a root keep its argument above 0.
-            Op::Sqrt(a) => of(a) * 0.5 / own,
-            Op::Exp(a) => of(a) * own,
+            Op::Sqrt(a) => of(a) * 0.5 / itself,
+            Op::Exp(a) => of(a) * itself,
             Op::Select(a, b, c) => x(a).select(of(b), of(c)),
         }
     }

@@ -193,14 +193,14 @@ fn derivatives_are_those_of_differences() {
     for (x, y) in [(0.7, -1.2), (-1.3, 0.4), (1.6, 1.1)] {
         let h = 1e-5;
         let all = values(&p, x, y);
-        for (place, (dx, dy)) in [(h, 0.0), (0.0, h)].into_iter().enumerate() {
+        for (variable, (dx, dy)) in [(h, 0.0), (0.0, h)].into_iter().enumerate() {
             let (after, before) = (values(&p, x + dx, y + dy), values(&p, x - dx, y - dy));
             for i in 0..count {
-                let (derivative, expected) = (all[(place + 1) * count + i], (after[i] - before[i]) / (2.0 * h));
+                let (derivative, expected) = (all[(variable + 1) * count + i], (after[i] - before[i]) / (2.0 * h));
                 let error = (derivative - expected).abs();
                 assert!(
                     error < 1e-8 * (1.0 + expected.abs()),
-                    "{i} by {place} at {x}, {y}: {derivative} for {expected}"
+                    "{i} by {variable} at {x}, {y}: {derivative} for {expected}"
                 );
             }
         }

@@ -17,7 +17,8 @@ impl<'a> Check<'a> {
         let base = self.bodies.first().map(|body| body.link.clone()).unwrap_or_default();
         if self.base.iter().all(Option::is_none) && !supports.is_empty() && !self.unknown.links {
             self.report(rule::base_fixed(given.span, &base));
-        } else if self.links.get(base.as_str()).is_some_and(|place| place.starts.len() > 1) && !supports.is_empty() {
+        } else if self.links.get(base.as_str()).is_some_and(|subject| subject.starts.len() > 1) && !supports.is_empty()
+        {
             self.report(rule::supports_on_beam(given.span, &base));
         }
         let path = self.bodies.first().map(|body| body.path.clone()).unwrap_or_default();
@@ -42,14 +43,19 @@ impl<'a> Check<'a> {
                 let span = support.kinematics.as_ref().map_or(support.name.span, |kinematics| kinematics.span);
                 self.report(rule::linear_placed(span, &name, how));
             }
-            let place = |what: &str| format!("the {what} of support `{name}`");
-            let stiffness = self.vector(&support.stiffness, &place("stiffness"), "N/m", Limit::NotNegative);
+            let subject = |what: &str| format!("the {what} of support `{name}`");
+            let stiffness = self.vector(&support.stiffness, &subject("stiffness"), "N/m", Limit::NotNegative);
             let full_hold = self.full_hold(support, &name, &stiffness[2]);
             sound.push(Support {
-                position: self.vector(&support.at, &place("position"), "m", Limit::Any),
+                position: self.vector(&support.at, &subject("position"), "m", Limit::Any),
                 stiffness,
-                damping: self.vector_or_zero(support.damping.as_ref(), &place("damping"), "N s/m", Limit::NotNegative),
-                free_play: self.vector_or_zero(support.free_play.as_ref(), &place("free play"), "m", Limit::Any),
+                damping: self.vector_or_zero(
+                    support.damping.as_ref(),
+                    &subject("damping"),
+                    "N s/m",
+                    Limit::NotNegative,
+                ),
+                free_play: self.vector_or_zero(support.free_play.as_ref(), &subject("free play"), "m", Limit::Any),
                 full_hold,
                 kinematics,
                 name,
@@ -60,8 +66,8 @@ impl<'a> Check<'a> {
 
     /// The pressing force from which a one-sided support has its full lateral stiffness and damping.
     fn full_hold(&mut self, support: &spec::Support, name: &str, stiffness: &Value) -> Option<Value> {
-        let place = format!("the full hold of support `{name}`");
-        let full_hold = self.number_or(support.full_hold.as_ref(), FULL_HOLD, &place, "N", Limit::Positive);
+        let subject = format!("the full hold of support `{name}`");
+        let full_hold = self.number_or(support.full_hold.as_ref(), FULL_HOLD, &subject, "N", Limit::Positive);
         let one_sided = support.one_sided.as_ref().filter(|given| given.value != Some(false));
         let Some(given) = one_sided else {
             if let Some(full_hold) = &support.full_hold {

@@ -234,8 +234,9 @@ impl<'a> Check<'a> {
             self.report(rule::bent_in_one_piece(given.span));
         }
         let halves = 2.0 * sections.unwrap_or(1).max(1) as f64;
-        let [theta, psi] = [(&bend.theta, "`theta`"), (&bend.psi, "`psi`")]
-            .map(|(angle, place)| angle.as_ref().map_or(Value::ZERO, |angle| self.angle(angle, place) / halves.into()));
+        let [theta, psi] = [(&bend.theta, "`theta`"), (&bend.psi, "`psi`")].map(|(angle, subject)| {
+            angle.as_ref().map_or(Value::ZERO, |angle| self.angle(angle, subject) / halves.into())
+        });
         beam::rotation_across(theta, psi)
     }
 
@@ -275,8 +276,8 @@ impl<'a> Check<'a> {
     }
 
     /// One number per direction.
-    pub(super) fn directions(&mut self, each: &Directions, place: &str, unit: &str, limit: Limit) -> [Value; 3] {
-        [&each.psi, &each.theta, &each.phi].map(|number| self.number(number, place, unit, limit))
+    pub(super) fn directions(&mut self, each: &Directions, subject: &str, unit: &str, limit: Limit) -> [Value; 3] {
+        [&each.psi, &each.theta, &each.phi].map(|number| self.number(number, subject, unit, limit))
     }
 }
 

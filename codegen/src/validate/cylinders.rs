@@ -112,11 +112,11 @@ impl<'a> Check<'a> {
     }
 
     fn valve(&mut self, given: &spec::Valve, name: &str) -> Valve {
-        let place = |what: &str| format!("the {what} of the valve of cylinder `{name}`");
-        let flow = self.constant(&given.flow, &place("flow"), "m³/s", Limit::Positive);
-        let drop = self.constant(&given.pressure_drop, &place("pressure drop"), "Pa", Limit::Positive);
+        let subject = |what: &str| format!("the {what} of the valve of cylinder `{name}`");
+        let flow = self.constant(&given.flow, &subject("flow"), "m³/s", Limit::Positive);
+        let drop = self.constant(&given.pressure_drop, &subject("pressure drop"), "Pa", Limit::Positive);
         let mut optional = |given: Option<&Spanned<Constant>>, what: &str, unit, limit, default| {
-            given.map_or(default, |given| self.constant(given, &place(what), unit, limit))
+            given.map_or(default, |given| self.constant(given, &subject(what), unit, limit))
         };
         let overlap = optional(given.overlap.as_ref(), "overlap", "", Limit::NotNegative, 0.0);
         let valve = Valve {
@@ -139,30 +139,30 @@ impl<'a> Check<'a> {
         if !name.is_empty() {
             self.register_name("cylinders", &name, "an earlier cylinder".into(), given.name.span);
         }
-        let place = |what: &str| format!("the {what} of cylinder `{name}`");
-        let bore = self.constant(&given.bore, &place("bore"), "m", Limit::Positive);
-        let rod = self.constant(&given.rod, &place("rod"), "m", Limit::Positive);
+        let subject = |what: &str| format!("the {what} of cylinder `{name}`");
+        let bore = self.constant(&given.bore, &subject("bore"), "m", Limit::Positive);
+        let rod = self.constant(&given.rod, &subject("rod"), "m", Limit::Positive);
         if rod >= bore {
             self.report(rule::thick_rod(given.rod.span, &name, rod, bore));
         }
-        let retracted = self.constant(&given.retracted, &place("retracted length"), "m", Limit::Positive);
-        let stroke = self.constant(&given.stroke, &place("stroke"), "m", Limit::Positive);
+        let retracted = self.constant(&given.retracted, &subject("retracted length"), "m", Limit::Positive);
+        let stroke = self.constant(&given.stroke, &subject("stroke"), "m", Limit::Positive);
         let mut pressure = |given: Option<&Spanned<Constant>>, what: &str, limit| {
-            given.map(|given| self.constant(given, &place(what), "Pa", limit))
+            given.map(|given| self.constant(given, &subject(what), "Pa", limit))
         };
         let max_pressure = pressure(given.max_pressure.as_ref(), "maximum pressure", Limit::Positive);
         let back_pressure = pressure(given.back_pressure.as_ref(), "back pressure", Limit::NotNegative).unwrap_or(0.0);
         let bulk_modulus = pressure(given.bulk_modulus.as_ref(), "bulk modulus", Limit::Positive);
         let hose_volumes = match given.hose_volumes.as_ref().map(|volumes| &volumes.value) {
-            Some(Some(volumes)) => {
-                volumes.each_ref().map(|volume| self.constant(volume, &place("hose volume"), "m³", Limit::NotNegative))
-            }
+            Some(Some(volumes)) => volumes
+                .each_ref()
+                .map(|volume| self.constant(volume, &subject("hose volume"), "m³", Limit::NotNegative)),
             Some(None) => [f64::NAN; 2],
             None => [0.0; 2],
         };
         let valve = given.valve.as_ref().and_then(|valve| valve.value.as_ref()).map(|valve| self.valve(valve, &name));
-        let foot = self.pin(given.foot.value.as_ref(), &place("foot"));
-        let head = self.pin(given.head.value.as_ref(), &place("head"));
+        let foot = self.pin(given.foot.value.as_ref(), &subject("foot"));
+        let head = self.pin(given.head.value.as_ref(), &subject("head"));
         let joint = given.coordinate.value.as_deref().unwrap_or_default();
         let coordinate = self.joint_coordinate(&given.coordinate)?;
         if !self.unknown_drives && !drives.iter().any(|drive| drive.coordinate == coordinate) {
@@ -197,22 +197,22 @@ impl<'a> Check<'a> {
         })
     }
 
-    fn pin(&mut self, given: Option<&spec::Pin>, place: &str) -> Option<Pin> {
+    fn pin(&mut self, given: Option<&spec::Pin>, subject: &str) -> Option<Pin> {
         let given = given?;
-        let at = self.vector(&given.at, place, "m", Limit::Any);
+        let at = self.vector(&given.at, subject, "m", Limit::Any);
         let (body, position) = self.attach(&given.link, at)?;
         Some(Pin { body, position })
     }
 
     /// A linkage, whose pivot is on the link of the foot.
     fn linkage(&mut self, given: &spec::Linkage, link: &Spanned<String>, name: &str) -> Option<Linkage> {
-        let place = |what: &str| format!("the {what} of the linkage of cylinder `{name}`");
-        let at = self.vector(&given.pivot, &place("pivot"), "m", Limit::Any);
+        let subject = |what: &str| format!("the {what} of the linkage of cylinder `{name}`");
+        let at = self.vector(&given.pivot, &subject("pivot"), "m", Limit::Any);
         let (body, position) = self.attach(link, at)?;
         Some(Linkage {
             pivot: Pin { body, position },
-            rocker: self.number(&given.rocker, &place("rocker"), "m", Limit::Positive),
-            link: self.number(&given.link, &place("link"), "m", Limit::Positive),
+            rocker: self.number(&given.rocker, &subject("rocker"), "m", Limit::Positive),
+            link: self.number(&given.link, &subject("link"), "m", Limit::Positive),
             left: given.side.value == Some(Side::Left),
         })
     }

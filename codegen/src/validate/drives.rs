@@ -45,8 +45,8 @@ impl<'a> Check<'a> {
             let name = drive.coordinate.value.as_deref().unwrap_or_default();
             let transmission = self.transmission(drive, given.span, name, kind);
             let armature = drive.armature.as_ref();
-            let place = format!("the armature of drive `{name}`");
-            let armature = self.number_or(armature, 0.0, &place, units(kind).armature, Limit::NotNegative);
+            let subject = format!("the armature of drive `{name}`");
+            let armature = self.number_or(armature, 0.0, &subject, units(kind).armature, Limit::NotNegative);
             let profile = drive.motion.value.as_ref().and_then(|motion| self.motion(motion, kind, drive.motion.span));
             let offset = drive.offset.as_ref().map(|offset| self.input(offset));
             let Some(id) = coordinate else {
@@ -113,9 +113,9 @@ impl<'a> Check<'a> {
             self.report(rule::no_transmission(span, name));
         }
         let max_effort = drive.max_effort.as_ref().map(|given| {
-            let place = format!("the maximum effort of drive `{name}`");
+            let subject = format!("the maximum effort of drive `{name}`");
             let unit = if kind == Some(CoordinateKind::Translation) { "N" } else { "N m" };
-            self.number(given, &place, unit, Limit::Positive)
+            self.number(given, &subject, unit, Limit::Positive)
         });
         let stiffness = stiffness.unwrap_or(f64::NAN.into());
         // The energy of a drive with an effort limit is the integral of its spring force: it needs a spring.
@@ -144,8 +144,8 @@ impl<'a> Check<'a> {
         for (name, damping) in entries.into_iter().flat_map(|entries| &entries.0) {
             let coordinate = self.joint_coordinate(name);
             let kind = coordinate.map(|CoordinateId(index)| self.coordinates[index].kind);
-            let place = format!("the damping of `{}`", name.value.as_deref().unwrap_or_default());
-            let damping = self.number(damping, &place, units(kind).damping, Limit::NotNegative);
+            let subject = format!("the damping of `{}`", name.value.as_deref().unwrap_or_default());
+            let damping = self.number(damping, &subject, units(kind).damping, Limit::NotNegative);
             let Some(id) = coordinate else { continue };
             let owner = match &self.owners[id.0] {
                 Owner::Beam(link) => Some(format!("the springs of beam `{link}`")),
@@ -158,9 +158,9 @@ impl<'a> Check<'a> {
             dampers.push((id, damping));
         }
         // Damping given for a single joint replaces the damping that its rope gives to all joints.
-        let own: Vec<CoordinateId> = dampers.iter().map(|(id, _)| *id).collect();
+        let given: Vec<CoordinateId> = dampers.iter().map(|(id, _)| *id).collect();
         let of_ropes = std::mem::take(&mut self.rope_damping).into_iter();
-        dampers.extend(of_ropes.filter(|(id, _)| !own.contains(id)));
+        dampers.extend(of_ropes.filter(|(id, _)| !given.contains(id)));
         let force = |(id, damping)| {
             let law = Law::Spring(Spring::new(Value::ZERO, damping));
             Force::on(&self.coordinates, Group::JointDampers, id, law)
@@ -175,8 +175,8 @@ impl<'a> Check<'a> {
         for (name, armature) in &entries.0 {
             let coordinate = self.joint_coordinate(name);
             let kind = coordinate.map(|CoordinateId(index)| self.coordinates[index].kind);
-            let place = format!("the armature of `{}`", name.value.as_deref().unwrap_or_default());
-            let armature = self.number(armature, &place, units(kind).armature, Limit::NotNegative);
+            let subject = format!("the armature of `{}`", name.value.as_deref().unwrap_or_default());
+            let armature = self.number(armature, &subject, units(kind).armature, Limit::NotNegative);
             let Some(id) = coordinate else { continue };
             let name_of = &self.coordinates[id.0].name;
             if let Some(owner) = self.not_a_joint(id) {

@@ -65,11 +65,11 @@ impl<'a> Check<'a> {
 
     /// A spring as given.
     fn spring(&mut self, spring: &Spring) -> Joint {
-        let mut each = |given: Option<&Spanned<Directions>>, place, unit| match given.map(|given| given.value.as_ref())
-        {
-            Some(Some(each)) => self.directions(each, place, unit, Limit::NotNegative),
-            _ => [Value::ZERO; 3],
-        };
+        let mut each =
+            |given: Option<&Spanned<Directions>>, subject, unit| match given.map(|given| given.value.as_ref()) {
+                Some(Some(each)) => self.directions(each, subject, unit, Limit::NotNegative),
+                _ => [Value::ZERO; 3],
+            };
         Joint {
             stiffness: each(Some(&spring.stiffness), "the stiffness", "N m/rad"),
             damping: each(spring.damping.as_ref(), "the damping", "N m s/rad"),

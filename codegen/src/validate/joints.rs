@@ -21,8 +21,8 @@ impl<'a> Check<'a> {
         let mut forces = Vec::new();
         for (name, stops) in crane.stops.iter().filter_map(|given| given.value.as_ref()).flat_map(|given| &given.0) {
             let coordinate = self.joint_of(name, "stops");
-            if let Some(own) = &stops.value {
-                let laws = self.stops(own, stops, name.value.as_deref().unwrap_or_default(), coordinate);
+            if let Some(written) = &stops.value {
+                let laws = self.stops(written, stops, name.value.as_deref().unwrap_or_default(), coordinate);
                 let force = |id, stop| Force::on(&self.coordinates, Group::Stops, id, Law::Stop(stop));
                 forces.extend(
                     coordinate.into_iter().flat_map(|id| laws.clone().into_iter().map(move |stop| force(id, stop))),
@@ -31,12 +31,12 @@ impl<'a> Check<'a> {
         }
         for (name, given) in crane.friction.iter().filter_map(|given| given.value.as_ref()).flat_map(|given| &given.0) {
             let coordinate = self.joint_of(name, "friction");
-            if let Some(own) = &given.value {
-                let friction = self.friction(own, name.value.as_deref().unwrap_or_default(), coordinate);
+            if let Some(written) = &given.value {
+                let friction = self.friction(written, name.value.as_deref().unwrap_or_default(), coordinate);
                 let rigid = drives
                     .iter()
                     .find(|drive| Some(drive.coordinate) == coordinate && drive.transmission == Transmission::Rigid);
-                if let (Some(bristle), Some(_)) = (&own.bristle, rigid) {
+                if let (Some(bristle), Some(_)) = (&written.bristle, rigid) {
                     self.report(rule::prescribed_bristles(bristle.span, name.value.as_deref().unwrap_or_default()));
                 }
                 let force = |id| Force::on(&self.coordinates, Group::Friction, id, Law::Friction(friction));
@@ -58,24 +58,24 @@ impl<'a> Check<'a> {
 
     fn stops(
         &mut self,
-        own: &spec::Stops,
+        written: &spec::Stops,
         given: &Spanned<spec::Stops>,
         name: &str,
         coordinate: Option<CoordinateId>,
     ) -> Vec<Stop> {
         let kind = self.kind_of(coordinate);
-        let place = |what: &str| format!("the {what} of the stops of `{name}`");
-        let stiffness = self.number(&own.stiffness, &place("stiffness"), units(kind).stiffness, Limit::Positive);
+        let subject = |what: &str| format!("the {what} of the stops of `{name}`");
+        let stiffness = self.number(&written.stiffness, &subject("stiffness"), units(kind).stiffness, Limit::Positive);
         let unit = if kind == Some(CoordinateKind::Translation) { "s/m" } else { "s/rad" };
-        let damping = self.number_or(own.damping.as_ref(), 0.0, &place("damping"), unit, Limit::NotNegative);
+        let damping = self.number_or(written.damping.as_ref(), 0.0, &subject("damping"), unit, Limit::NotNegative);
         let mut stops = Vec::new();
-        for (end, at, key) in [(End::Lower, &own.min, "`min`"), (End::Upper, &own.max, "`max`")] {
+        for (end, at, key) in [(End::Lower, &written.min, "`min`"), (End::Upper, &written.max, "`max`")] {
             if let Some(at) = at {
                 let at = self.position(at, kind, key);
                 stops.push(Stop { at, end, stiffness: stiffness.clone(), damping: damping.clone() });
             }
         }
-        match (stops.as_slice(), &own.max) {
+        match (stops.as_slice(), &written.max) {
             ([], _) => self.report(rule::no_stop(given.span, name)),
             ([lower, upper], Some(max)) => {
                 let (low, high) = (self.now(&lower.at), self.now(&upper.at));
@@ -90,17 +90,17 @@ impl<'a> Check<'a> {
         stops
     }
 
-    fn friction(&mut self, own: &spec::Friction, name: &str, coordinate: Option<CoordinateId>) -> Friction {
+    fn friction(&mut self, written: &spec::Friction, name: &str, coordinate: Option<CoordinateId>) -> Friction {
         let kind = self.kind_of(coordinate);
         let (force, rate) = match kind {
             Some(CoordinateKind::Translation) => ("N", "m/s"),
             _ => ("N m", "rad/s"),
         };
-        let place = |what: &str| format!("the {what} friction of `{name}`");
-        let coulomb = self.number(&own.coulomb, &place("Coulomb"), force, Limit::NotNegative);
-        let stribeck = self.number_or(own.stribeck.as_ref(), STRIBECK, "`stribeck`", rate, Limit::Positive);
-        let breakaway = own.breakaway.as_ref().map(|given| {
-            let breakaway = self.number(given, &place("breakaway"), force, Limit::NotNegative);
+        let subject = |what: &str| format!("the {what} friction of `{name}`");
+        let coulomb = self.number(&written.coulomb, &subject("Coulomb"), force, Limit::NotNegative);
+        let stribeck = self.number_or(written.stribeck.as_ref(), STRIBECK, "`stribeck`", rate, Limit::Positive);
+        let breakaway = written.breakaway.as_ref().map(|given| {
+            let breakaway = self.number(given, &subject("breakaway"), force, Limit::NotNegative);
             let (less, more) = (self.now(&coulomb), self.now(&breakaway));
             let broken = rule::breakaway(given.span, name, less, more);
             if more < less {
@@ -111,22 +111,22 @@ impl<'a> Check<'a> {
             self.keep_positive(margin, &broken);
             (breakaway, stribeck.clone())
         });
-        if let (Some(given), None) = (&own.stribeck, &own.breakaway) {
+        if let (Some(given), None) = (&written.stribeck, &written.breakaway) {
             self.report(rule::stribeck_alone(given.span, name));
         }
-        let bristle = own
+        let bristle = written
             .bristle
             .as_ref()
-            .and_then(|given| self.bristle(given, own, name, (&coulomb, breakaway.as_ref()), &stribeck));
+            .and_then(|given| self.bristle(given, written, name, (&coulomb, breakaway.as_ref()), &stribeck));
         Friction {
             bristle,
             coulomb,
             breakaway,
-            width: self.number_or(own.width.as_ref(), WIDTH, "`width`", rate, Limit::Positive),
+            width: self.number_or(written.width.as_ref(), WIDTH, "`width`", rate, Limit::Positive),
             viscous: self.number_or(
-                own.viscous.as_ref(),
+                written.viscous.as_ref(),
                 0.0,
-                &place("viscous"),
+                &subject("viscous"),
                 units(kind).damping,
                 Limit::NotNegative,
             ),
@@ -137,18 +137,18 @@ impl<'a> Check<'a> {
     fn bristle(
         &mut self,
         given: &Spanned<spec::Bristle>,
-        own: &spec::Friction,
+        friction: &spec::Friction,
         name: &str,
         (coulomb, breakaway): (&Value, Option<&(Value, Value)>),
         stribeck: &Value,
     ) -> Option<Bristle> {
-        if let Some(width) = &own.width {
+        if let Some(width) = &friction.width {
             self.report(rule::width_of_bristles(width.span, name));
         }
         let of = given.value.as_ref()?;
-        let place = |what: &str| format!("the {what} of the bristles of `{name}`");
-        let stiffness = self.constant(&of.stiffness, &place("stiffness"), "", Limit::Positive);
-        let damping = self.constant(&of.damping, &place("damping"), "", Limit::NotNegative);
+        let subject = |what: &str| format!("the {what} of the bristles of `{name}`");
+        let stiffness = self.constant(&of.stiffness, &subject("stiffness"), "", Limit::Positive);
+        let damping = self.constant(&of.damping, &subject("damping"), "", Limit::NotNegative);
         let breakaway = breakaway.map_or(coulomb, |(breakaway, _)| breakaway);
         let [Some(coulomb), Some(breakaway), Some(stribeck)] = [coulomb, breakaway, stribeck].map(Value::as_constant)
         else {

@@ -24,7 +24,7 @@ fn refusal(mistake: &Mistake) -> Refusal {
 
 impl Check<'_> {
     /// The number, or NaN after reporting that it is beyond its limit; for a live parameter, records the limit as a bound.
-    pub(super) fn within(&mut self, value: Value, span: Span, (place, unit, limit): (&str, &str, Limit)) -> Value {
+    pub(super) fn within(&mut self, value: Value, span: Span, (subject, unit, limit): (&str, &str, Limit)) -> Value {
         let live = match &value {
             Value::Parameter(id) => Some(*id),
             _ => None,
@@ -32,18 +32,19 @@ impl Check<'_> {
         let number = self.now(&value);
         match (limit, live) {
             (Limit::Positive, _) | (Limit::Mass, None) if number <= 0.0 => {
-                self.report(rule::not_positive(span, place, number, unit));
+                self.report(rule::not_positive(span, subject, number, unit));
                 return f64::NAN.into();
             }
             (Limit::NotNegative, _) | (Limit::Mass, Some(_)) if number < 0.0 => {
-                self.report(rule::negative(span, place, number, unit));
+                self.report(rule::negative(span, subject, number, unit));
                 return f64::NAN.into();
             }
             _ => {}
         }
         let Some(id) = live else { return value };
-        let above = Bound { value: 0.0, allowed: false, refusal: refusal(&rule::not_positive(span, place, "", unit)) };
-        let not_below = Bound { value: 0.0, allowed: true, refusal: refusal(&rule::negative(span, place, "", unit)) };
+        let above =
+            Bound { value: 0.0, allowed: false, refusal: refusal(&rule::not_positive(span, subject, "", unit)) };
+        let not_below = Bound { value: 0.0, allowed: true, refusal: refusal(&rule::negative(span, subject, "", unit)) };
         match limit {
             Limit::Any => {}
             Limit::Positive => self.parameters[id.0].raise(above),

@@ -15,10 +15,10 @@ impl<'a> Check<'a> {
             if !name.is_empty() {
                 self.register_name("loads", &name, "an earlier load".into(), load.name.span);
             }
-            let place = |what: &str| format!("the {what} of load `{name}`");
-            let at = self.vector_or_zero(load.at.as_ref(), &place("position"), "m", Limit::Any);
-            let force = self.vector_or_zero(load.force.as_ref(), &place("force"), "N", Limit::Any);
-            let moment = self.vector_or_zero(load.moment.as_ref(), &place("moment"), "N m", Limit::Any);
+            let subject = |what: &str| format!("the {what} of load `{name}`");
+            let at = self.vector_or_zero(load.at.as_ref(), &subject("position"), "m", Limit::Any);
+            let force = self.vector_or_zero(load.force.as_ref(), &subject("force"), "N", Limit::Any);
+            let moment = self.vector_or_zero(load.moment.as_ref(), &subject("moment"), "N m", Limit::Any);
             if load.force.is_none() && load.moment.is_none() {
                 self.report(rule::no_load(load.name.span, &name));
             }

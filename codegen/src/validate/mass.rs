@@ -39,9 +39,9 @@ impl<'a> Check<'a> {
         }
         let (inertia, parts) = match (&link.mass, &link.bodies) {
             (Some(mass), _) => {
-                let place = format!("link `{name}`");
-                let own = self.inertia(mass, link.com.as_ref(), link.inertia.as_ref(), &place);
-                (own.map(|(inertia, _)| inertia), Vec::new())
+                let subject = format!("link `{name}`");
+                let lump = self.inertia(mass, link.com.as_ref(), link.inertia.as_ref(), &subject);
+                (lump.map(|(inertia, _)| inertia), Vec::new())
             }
             (None, Some(bodies)) => self.lumped(bodies.value.as_deref().unwrap_or_default()),
             (None, None) => (None, Vec::new()),
@@ -79,11 +79,11 @@ impl<'a> Check<'a> {
                 self.report(rule::duplicate_name(span, "bodies", &name, "a body of this link"));
             }
             let inertia = self.inertia(&body.mass, Some(&body.com), body.inertia.as_ref(), &format!("body `{name}`"));
-            if let Some((own, com)) = inertia {
-                parts.push(Part { name, mass: own.mass.clone(), com });
+            if let Some((inertia, com)) = inertia {
+                parts.push(Part { name, mass: inertia.mass.clone(), com });
                 whole = Some(match whole {
-                    Some(others) => inertia::sum(others, own),
-                    None => own,
+                    Some(others) => inertia::sum(others, inertia),
+                    None => inertia,
                 });
             }
         }
@@ -96,21 +96,21 @@ impl<'a> Check<'a> {
         mass: &Spanned<Number>,
         com: Option<&Spanned<Vector>>,
         inertia: Option<&Spanned<Inertia>>,
-        place: &str,
+        subject: &str,
     ) -> Option<(chain::Inertia, [Value; 3])> {
-        let m = self.number(mass, &format!("the mass of {place}"), "kg", Limit::Mass);
-        let com = self.vector_or_zero(com, &format!("the centre of mass of {place}"), "m", Limit::Any);
-        let place = format!("the inertia of {place}");
+        let m = self.number(mass, &format!("the mass of {subject}"), "kg", Limit::Mass);
+        let com = self.vector_or_zero(com, &format!("the centre of mass of {subject}"), "m", Limit::Any);
+        let subject = format!("the inertia of {subject}");
         let Some(given) = inertia else { return Some((inertia::point(m, &com), com)) };
         let written = given.value.as_ref()?;
-        let (tensor, about) = self.tensor(written, given.span, &m, &place)?;
+        let (tensor, about) = self.tensor(written, given.span, &m, &subject)?;
         match &written.gyration {
             // Whether radii of gyration are possible does not depend on the mass, which may be zero.
             Some(_) => {
-                let (unit, _) = self.tensor(written, given.span, &Value::ONE, &place)?;
-                self.possible(&Value::ONE, &com, &unit, about, given.span, &place);
+                let (unit, _) = self.tensor(written, given.span, &Value::ONE, &subject)?;
+                self.possible(&Value::ONE, &com, &unit, about, given.span, &subject);
             }
-            None => self.possible(&m, &com, &tensor, about, given.span, &place),
+            None => self.possible(&m, &com, &tensor, about, given.span, &subject),
         }
         let inertia = match about {
             About::Com => inertia::about_com(m, &com, &tensor),
@@ -119,7 +119,7 @@ impl<'a> Check<'a> {
         Some((inertia, com))
     }
 
-    fn tensor(&mut self, inertia: &Inertia, span: Span, mass: &Value, place: &str) -> Option<(Tensor, About)> {
+    fn tensor(&mut self, inertia: &Inertia, span: Span, mass: &Value, subject: &str) -> Option<(Tensor, About)> {
         let keys = ["Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz"];
         let elements = [&inertia.xx, &inertia.yy, &inertia.zz, &inertia.xy, &inertia.xz, &inertia.yz];
         let about = inertia.about.as_ref().map_or(Some(About::Com), |about| about.value)?;
@@ -127,7 +127,7 @@ impl<'a> Check<'a> {
             let beside = elements.iter().filter_map(|element| element.as_ref()).map(|element| element.span);
             let beside = beside.chain(inertia.about.iter().map(|about| about.span)).next();
             if let Some(span) = beside {
-                self.report(rule::two_inertias(span, place));
+                self.report(rule::two_inertias(span, subject));
                 return None;
             }
             let radii = self.vector(radii, "`gyration`", "m", Limit::NotNegative);
@@ -138,7 +138,7 @@ impl<'a> Check<'a> {
             match element {
                 Some(element) => tensor[k] = self.number(element, &format!("`{key}`"), "kg m²", Limit::Any),
                 None if k < 3 => {
-                    self.report(rule::missing_key(span, key, place));
+                    self.report(rule::missing_key(span, key, subject));
                     tensor[k] = f64::NAN.into();
                 }
                 None => {}
@@ -148,7 +148,7 @@ impl<'a> Check<'a> {
     }
 
     /// Checks that an inertia is physically possible.
-    fn possible(&mut self, mass: &Value, com: &[Value; 3], tensor: &Tensor, about: About, span: Span, place: &str) {
+    fn possible(&mut self, mass: &Value, com: &[Value; 3], tensor: &Tensor, about: About, span: Span, subject: &str) {
         let tensor = match about {
             About::Com => tensor.clone(),
             About::Origin => inertia::tensor_at_com(mass, com, tensor),
@@ -158,8 +158,8 @@ impl<'a> Check<'a> {
             return;
         }
         let [smallest, middle, largest] = inertia::principal_moments(numbers);
-        let not_positive = rule::not_positive_definite(span, place, rounded(smallest));
-        let triangle = rule::triangle(span, place, rounded(largest), rounded(smallest + middle));
+        let not_positive = rule::not_positive_definite(span, subject, rounded(smallest));
+        let triangle = rule::triangle(span, subject, rounded(largest), rounded(smallest + middle));
         for (margins, broken) in [
             (inertia::leading_minors(inertia::definite_margin(&tensor, VANISHING)), &not_positive),
             (inertia::leading_minors(inertia::triangle_margin(&tensor, SLIGHT)), &triangle),
@@ -173,7 +173,7 @@ impl<'a> Check<'a> {
         } else if largest > (smallest + middle) * (1.0 + SLIGHT) {
             self.report(triangle);
         } else if largest > (smallest + middle) * (1.0 + WRITTEN) {
-            self.warnings.push(rule::slight_triangle(span, place, rounded(largest), rounded(smallest + middle)));
+            self.warnings.push(rule::slight_triangle(span, subject, rounded(largest), rounded(smallest + middle)));
         }
     }
 }

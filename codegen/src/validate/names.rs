@@ -87,12 +87,12 @@ impl Check<'_> {
     }
 
     /// A descriptive text that is copied into comments of the generated code: one line, without characters that break or reverse it.
-    pub(super) fn text(&mut self, given: Option<&Spanned<String>>, place: &str) -> Option<String> {
+    pub(super) fn text(&mut self, given: Option<&Spanned<String>>, subject: &str) -> Option<String> {
         let given = given?;
         let text = given.value.as_ref()?;
         let turns = |c| matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
         if text.chars().any(|c| c.is_control() || turns(c)) {
-            self.report(rule::not_one_line(given.span, place));
+            self.report(rule::not_one_line(given.span, subject));
         }
         Some(text.clone())
     }

@@ -63,9 +63,9 @@ impl<'a> Check<'a> {
     }
 
     /// A number, checked against its limit; NaN if the mistake has been reported.
-    pub(super) fn number(&mut self, given: &Spanned<Number>, place: &str, unit: &str, limit: Limit) -> Value {
-        let value = self.resolve(given.value.as_ref().map(|number| &number.0), given.span, place, false);
-        self.within(value, given.span, (place, unit, limit))
+    pub(super) fn number(&mut self, given: &Spanned<Number>, subject: &str, unit: &str, limit: Limit) -> Value {
+        let value = self.resolve(given.value.as_ref().map(|number| &number.0), given.span, subject, false);
+        self.within(value, given.span, (subject, unit, limit))
     }
 
     /// An optional number.
@@ -73,17 +73,17 @@ impl<'a> Check<'a> {
         &mut self,
         given: Option<&Spanned<Number>>,
         default: f64,
-        place: &str,
+        subject: &str,
         unit: &str,
         limit: Limit,
     ) -> Value {
-        given.map_or(Value::Constant(default), |given| self.number(given, place, unit, limit))
+        given.map_or(Value::Constant(default), |given| self.number(given, subject, unit, limit))
     }
 
     /// Three numbers along x, y, z.
-    pub(super) fn vector(&mut self, given: &Spanned<Vector>, place: &str, unit: &str, limit: Limit) -> [Value; 3] {
+    pub(super) fn vector(&mut self, given: &Spanned<Vector>, subject: &str, unit: &str, limit: Limit) -> [Value; 3] {
         match &given.value {
-            Some(vector) => vector.each_ref().map(|number| self.number(number, place, unit, limit)),
+            Some(vector) => vector.each_ref().map(|number| self.number(number, subject, unit, limit)),
             None => [f64::NAN; 3].map(Value::from),
         }
     }
@@ -92,55 +92,55 @@ impl<'a> Check<'a> {
     pub(super) fn vector_or_zero(
         &mut self,
         given: Option<&Spanned<Vector>>,
-        place: &str,
+        subject: &str,
         unit: &str,
         limit: Limit,
     ) -> [Value; 3] {
-        given.map_or([Value::ZERO; 3], |given| self.vector(given, place, unit, limit))
+        given.map_or([Value::ZERO; 3], |given| self.vector(given, subject, unit, limit))
     }
 
     /// An angle, rad.
-    pub(super) fn angle(&mut self, given: &Spanned<Angle>, place: &str) -> Value {
-        self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, place, true)
+    pub(super) fn angle(&mut self, given: &Spanned<Angle>, subject: &str) -> Value {
+        self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, subject, true)
     }
 
     /// A position of a coordinate, rad or m; either if the kind is unknown.
-    pub(super) fn position(&mut self, given: &Spanned<Angle>, kind: Option<CoordinateKind>, place: &str) -> Value {
+    pub(super) fn position(&mut self, given: &Spanned<Angle>, kind: Option<CoordinateKind>, subject: &str) -> Value {
         let turns = kind != Some(CoordinateKind::Translation);
-        self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, place, turns)
+        self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, subject, turns)
     }
 
     /// A position that cannot be a parameter.
-    pub(super) fn fixed(&mut self, given: &Spanned<FixedAngle>, place: &str, kind: Option<CoordinateKind>) -> f64 {
+    pub(super) fn fixed(&mut self, given: &Spanned<FixedAngle>, subject: &str, kind: Option<CoordinateKind>) -> f64 {
         let turns = kind != Some(CoordinateKind::Translation);
-        let value = self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, place, turns);
+        let value = self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, subject, turns);
         value.as_constant().unwrap_or(f64::NAN)
     }
 
     /// A number that cannot be a parameter.
-    pub(super) fn constant(&mut self, given: &Spanned<Constant>, place: &str, unit: &str, limit: Limit) -> f64 {
-        let value = self.resolve(given.value.as_ref().map(|constant| &constant.0), given.span, place, false);
-        self.within(value, given.span, (place, unit, limit)).as_constant().unwrap_or(f64::NAN)
+    pub(super) fn constant(&mut self, given: &Spanned<Constant>, subject: &str, unit: &str, limit: Limit) -> f64 {
+        let value = self.resolve(given.value.as_ref().map(|constant| &constant.0), given.span, subject, false);
+        self.within(value, given.span, (subject, unit, limit)).as_constant().unwrap_or(f64::NAN)
     }
 
     /// Constant or parameter; NaN if the mistake has been reported.
-    fn resolve(&mut self, scalar: Option<&Scalar>, span: Span, place: &str, angle: bool) -> Value {
+    fn resolve(&mut self, scalar: Option<&Scalar>, span: Span, subject: &str, angle: bool) -> Value {
         let reported = Value::Constant(f64::NAN);
         let number = match scalar {
             None => return reported,
             Some(Scalar::Name(name)) => return self.parameter(name, span).map_or(reported, Value::Parameter),
             Some(Scalar::Angle(_)) if !angle => {
-                self.report(rule::misplaced_angle(span, place));
+                self.report(rule::misplaced_angle(span, subject));
                 return reported;
             }
             Some(Scalar::Number(number) | Scalar::Angle(number)) => *number,
         };
         if !number.is_finite() {
-            self.report(rule::not_finite(span, place, number));
+            self.report(rule::not_finite(span, subject, number));
             return reported;
         }
         if number != 0.0 && !(SMALLEST..=LARGEST).contains(&number.abs()) {
-            self.report(rule::out_of_range(span, place, format!("{number:e}")));
+            self.report(rule::out_of_range(span, subject, format!("{number:e}")));
             return reported;
         }
         // The sign of zero has no meaning here, and would appear in the generated code.

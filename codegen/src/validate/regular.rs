@@ -114,10 +114,10 @@ impl Check<'_> {
         let (mut articulated, mut locked) = ([[0.0; 6]; 6], [[0.0; 6]; 6]);
         for (index, (body, frame)) in chain.bodies.iter().zip(&frames).enumerate().rev() {
             if let Some(inertia) = &body.inertia {
-                let own = inertia_in_world(frame, inertia, parameters);
+                let of_body = inertia_in_world(frame, inertia, parameters);
                 for (i, j) in (0..6).flat_map(|i| (0..6).map(move |j| (i, j))) {
-                    articulated[i][j] += own[i][j];
-                    locked[i][j] += own[i][j];
+                    articulated[i][j] += of_body[i][j];
+                    locked[i][j] += of_body[i][j];
                 }
             }
             for id in body.path.iter().rev().flat_map(|step| step.coordinates().iter().rev()) {

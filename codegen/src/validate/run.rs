@@ -42,7 +42,7 @@ impl<'a> Check<'a> {
     /// The body of a link that carries a point, and the position on it: for a beam, the element that contains the point's x.
     pub(super) fn attach(&mut self, link: &Spanned<String>, at: [Value; 3]) -> Option<(BodyId, [Value; 3])> {
         let name = link.value.as_deref()?;
-        let Some(place) = self.links.get(name) else {
+        let Some(body) = self.links.get(name) else {
             if !self.unknown.links {
                 let help = suggest(name, self.links.keys().copied());
                 self.report(rule::unknown_link(link.span, name, help));
@@ -50,10 +50,10 @@ impl<'a> Check<'a> {
             return None;
         };
         let [x, y, z] = at;
-        let reach = self.now(&x) + AT_THE_JOINT * place.starts.last().map_or(0.0, |start| self.now(start));
-        let element = place.starts.iter().rposition(|start| self.now(start) <= reach).unwrap_or(0);
-        let start = place.starts.get(element).cloned().unwrap_or(Value::ZERO);
-        Some((BodyId(place.first + element), [x - start, y, z]))
+        let reach = self.now(&x) + AT_THE_JOINT * body.starts.last().map_or(0.0, |start| self.now(start));
+        let element = body.starts.iter().rposition(|start| self.now(start) <= reach).unwrap_or(0);
+        let start = body.starts.get(element).cloned().unwrap_or(Value::ZERO);
+        Some((BodyId(body.first + element), [x - start, y, z]))
     }
 
     /// As written, where drives begin, or where the coordinates are that others follow; otherwise 0.
@@ -66,8 +66,8 @@ impl<'a> Check<'a> {
         for (name, position) in entries.into_iter().flat_map(|entries| &entries.0) {
             let coordinate = self.coordinate(name);
             let kind = coordinate.map(|CoordinateId(index)| self.coordinates[index].kind);
-            let place = format!("the guess of `{}`", name.value.as_deref().unwrap_or_default());
-            let position = self.fixed(position, &place, kind);
+            let subject = format!("the guess of `{}`", name.value.as_deref().unwrap_or_default());
+            let position = self.fixed(position, &subject, kind);
             let Some(id) = coordinate else { continue };
             if drives.iter().any(|drive| drive.coordinate == id && drive.transmission == Transmission::Rigid) {
                 self.report(rule::prescribed_guess(name.span, &self.coordinates[id.0].name));
@@ -89,14 +89,14 @@ impl<'a> Check<'a> {
 
     pub(super) fn run(&mut self, given: Option<&Spanned<spec::Run>>) -> Run {
         let run = given.and_then(|given| given.value.clone()).unwrap_or_default();
-        let mut seconds = |given: Option<&Spanned<Constant>>, default, place| {
-            given.map_or(default, |given| self.constant(given, place, "s", Limit::Positive))
+        let mut seconds = |given: Option<&Spanned<Constant>>, default, key| {
+            given.map_or(default, |given| self.constant(given, key, "s", Limit::Positive))
         };
         let duration = seconds(run.duration.as_ref(), 10.0, "`duration`");
         let step = seconds(run.step.as_ref(), 1e-4, "`step`");
         let output = seconds(run.output.as_ref(), 0.01, "`output`");
-        let span = |own: &Option<Spanned<Constant>>| {
-            own.as_ref().map_or(given.map(|given| given.span).unwrap_or_default(), |own| own.span)
+        let span = |written: &Option<Spanned<Constant>>| {
+            written.as_ref().map_or(given.map(|given| given.span).unwrap_or_default(), |written| written.span)
         };
         if step > output {
             self.report(rule::run_order(span(&run.step), "step", "output"));

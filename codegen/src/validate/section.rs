@@ -50,7 +50,7 @@ impl<'a> Check<'a> {
 
     /// A cross-section by its shape or its numbers.
     pub(super) fn shape(&mut self, given: &Spanned<Section>) -> Option<Shape> {
-        let mut positive = |number: &Spanned<Number>, place, unit| self.number(number, place, unit, Limit::Positive);
+        let mut positive = |number: &Spanned<Number>, key, unit| self.number(number, key, unit, Limit::Positive);
         Some(match given.value.as_ref()? {
             Section::Box { height, width, thickness } => {
                 let size = [positive(height, "`height`", "m"), positive(width, "`width`", "m")];
@@ -66,10 +66,10 @@ impl<'a> Check<'a> {
                 Shape::Tube([size, wall])
             }
             Section::Solid { height, width } => {
-                let sides = [(height, "`height`"), (width, "`width`")].map(|(side, place)| {
-                    let value = self.number(side, place, "m", Limit::Positive);
+                let sides = [(height, "`height`"), (width, "`width`")].map(|(side, key)| {
+                    let value = self.number(side, key, "m", Limit::Positive);
                     if value.as_constant().is_none() {
-                        self.report(rule::live_side(side.span, place));
+                        self.report(rule::live_side(side.span, key));
                     }
                     value.as_constant().unwrap_or(f64::NAN)
                 });

@@ -49,20 +49,20 @@ impl Check<'_> {
     }
 
     fn sections_of(&self, link: &str, distribution: Option<&Distribution>, pins: &[Pin]) -> Vec<Section> {
-        let Some(place) = self.links.get(link) else { return Vec::new() };
-        let elements = Elements { check: self, first: place.first, starts: &place.starts };
+        let Some(link_place) = self.links.get(link) else { return Vec::new() };
+        let elements = Elements { check: self, first: link_place.first, starts: &link_place.starts };
         let Some(distribution) = distribution else {
             let begins = |element| elements.beginning(element, Side::Both, String::new(), None);
-            return (0..place.starts.len()).map(begins).collect();
+            return (0..link_place.starts.len()).map(begins).collect();
         };
         let marks = elements.marks(distribution, pins);
         let mut sections = Vec::new();
         // What is at the end of the element before.
         let mut before = String::new();
-        for element in 0..place.starts.len() {
-            let own: Vec<&Mark> = marks.iter().filter(|mark| mark.element == element).collect();
+        for element in 0..link_place.starts.len() {
+            let in_element: Vec<&Mark> = marks.iter().filter(|mark| mark.element == element).collect();
             let same_place = |a: &&Mark, b: &&Mark| elements.same(&a.distance, &b.distance);
-            let mut groups: Vec<&[&Mark]> = own.chunk_by(same_place).collect();
+            let mut groups: Vec<&[&Mark]> = in_element.chunk_by(same_place).collect();
             let at_beginning = groups.first().is_some_and(|group| elements.same(&group[0].distance, &Value::ZERO));
             let at_its_beginning: &[&Mark] = if at_beginning { groups.remove(0) } else { &[] };
             let here = words(at_its_beginning);
@@ -92,7 +92,7 @@ impl Check<'_> {
                     continue;
                 }
                 add(Side::Before, one);
-                if element + 1 < place.starts.len() && elements.same(distance, elements.length(element)) {
+                if element + 1 < link_place.starts.len() && elements.same(distance, elements.length(element)) {
                     before.clone_from(&at);
                 } else {
                     add(Side::After, other);

@@ -208,7 +208,7 @@ impl Side {
 #[cfg(feature = "std")]
 impl SectionInfo {
     /// The side and what is there, such as `before the head of lift`; empty where only an element begins.
-    pub fn place(&self) -> String {
+    pub fn location(&self) -> String {
         if self.at.is_empty() { String::new() } else { format!("{} the {}", self.side.name(), self.at.as_str()) }
     }
 }

@@ -159,7 +159,7 @@ mod tests {
     #[cfg(feature = "std")]
     #[test]
     fn the_message_names_parameter_value_rule_and_remedy() {
-        let said = MASS.check(-10.0).unwrap_err().to_string();
-        assert_eq!(said, "parameter `load`: the mass must be above zero, not -10 [E031]; write a number above 0");
+        let message = MASS.check(-10.0).unwrap_err().to_string();
+        assert_eq!(message, "parameter `load`: the mass must be above zero, not -10 [E031]; write a number above 0");
     }
 }

@@ -74,9 +74,9 @@ impl Axes {
             .iter()
             .rev()
             .map(|axis| {
-                let place = rest % axis.values.len();
+                let index = rest % axis.values.len();
                 rest /= axis.values.len();
-                place
+                index
             })
             .collect();
         places.reverse();
@@ -85,7 +85,7 @@ impl Axes {
 
     /// Values of a combination, one per axis.
     pub fn values(&self, pose: usize) -> Vec<f64> {
-        self.0.iter().zip(self.places(pose)).map(|(axis, place)| axis.values[place]).collect()
+        self.0.iter().zip(self.places(pose)).map(|(axis, index)| axis.values[index]).collect()
     }
 
     /// Parameters of a crane for a combination, in the order of the description.

@@ -142,7 +142,8 @@ impl Condition {
             let mean = (sizes.sum::<f64>() / self.feet.len().max(1) as f64).max(f64::MIN_POSITIVE);
             // A gap has another unit than a force: only its sign counts.
             let slack = |[force, gap]: &[f64; 2]| if *gap > 0.0 { -gap } else { force / mean };
-            slacks.extend(self.feet.iter().enumerate().map(|(foot, own)| (Limit::LiftOff { foot }, slack(own))));
+            slacks
+                .extend(self.feet.iter().enumerate().map(|(foot, contact)| (Limit::LiftOff { foot }, slack(contact))));
         }
         if limits.has(PartLimit::SlackRopes) {
             let ropes = description.connectors.iter().zip(&self.connectors).enumerate();

@@ -26,8 +26,10 @@ impl Coverage {
         found.cylinders(description, limits);
         found.drives(crane, limits);
         found.ropes(description, limits);
-        for (point, way) in description.points.iter().zip(&limits.deflections).filter(|(_, way)| way.is_finite()) {
-            found.add(true, format!("the load moves {point} by at most {way} m"));
+        for (point, deflection) in
+            description.points.iter().zip(&limits.deflections).filter(|(_, deflection)| deflection.is_finite())
+        {
+            found.add(true, format!("the load moves {point} by at most {deflection} m"));
         }
         found.not_considered.extend(NEVER.map(str::to_owned));
         found
@@ -109,7 +111,7 @@ impl Coverage {
 
     fn drives(&mut self, crane: &dyn DynCrane, limits: &Limits) {
         let Description { coordinates, drives, stops, cylinders, .. } = crane.description();
-        let own = crane.drive_limits_at();
+        let own_limits = crane.drive_limits_at();
         let applied = limits.with_max_efforts(crane).efforts;
         let mut free = Vec::new();
         for (index, info) in drives.iter().enumerate() {
@@ -119,8 +121,8 @@ impl Coverage {
             };
             let given = limits.efforts[index];
             if applied[index].is_finite() {
-                self.add(true, words(own[index].filter(|_| applied[index] < given).unwrap_or(given)));
-            } else if let Some(limit) = own[index] {
+                self.add(true, words(own_limits[index].filter(|_| applied[index] < given).unwrap_or(given)));
+            } else if let Some(limit) = own_limits[index] {
                 self.add(false, words(limit));
             } else if !cylinders.iter().any(|cylinder| cylinder.drive == index) {
                 free.push(coordinate.name.as_str());
@@ -137,8 +139,12 @@ impl Coverage {
     }
 
     fn ropes(&mut self, description: &Description, limits: &Limits) {
-        let ropes: Vec<&str> =
-            description.connectors.iter().filter(|own| own.is_rope).map(|own| own.name.as_str()).collect();
+        let ropes: Vec<&str> = description
+            .connectors
+            .iter()
+            .filter(|connector| connector.is_rope)
+            .map(|connector| connector.name.as_str())
+            .collect();
         if !ropes.is_empty() {
             self.add(limits.has(PartLimit::SlackRopes), format!("slack of {}", ropes.join(", ")));
         }

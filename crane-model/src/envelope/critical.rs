@@ -34,7 +34,7 @@ pub struct CriticalLoad {
     /// The load, in the unit of its parameter.
     pub load: f64,
     /// The foot that lifts, or the feet about which the crane tips.
-    pub place: String,
+    pub location: String,
 }
 
 /// Why there is no critical load.
@@ -93,7 +93,7 @@ pub fn critical_load(
     if description.supports.is_empty() {
         return Err(NoCriticalLoad::NoSupports);
     }
-    let own = crane.parameter(parameter);
+    let spec_load = crane.parameter(parameter);
     let mass: f64 = description.bodies.iter().map(|body| body.mass).sum();
     let [least, greatest] = range_of_loads(&description, parameter, None);
     let limits = match critical {
@@ -103,7 +103,7 @@ pub fn critical_load(
     let positions: Vec<f64> = crane.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
     let mut stand = Stand { crane, parameter, positions: &positions, limits: &limits };
     let multiples = SEARCHED.map(|power| mass * 2.0_f64.powi(power));
-    let loads = [least].into_iter().chain(multiples).chain([own]).filter(|load| *load <= greatest);
+    let loads = [least].into_iter().chain(multiples).chain([spec_load]).filter(|load| *load <= greatest);
     let first = loads.filter_map(|load| stand.rest_from_guess(load)).find(Trial::is_within);
     let first = first.ok_or(NoCriticalLoad::Never { critical })?;
     let range = Range { greatest, guess: 0.0, scale: mass.max(f64::MIN_POSITIVE), accuracy: ACCURACY };
@@ -122,12 +122,12 @@ pub fn critical_load(
             let status = stand.status_beyond(load);
             match status {
                 Status::TipsOver { feet } if critical == Critical::Tipping => {
-                    Ok(CriticalLoad { load, place: feet.join(" – ") })
+                    Ok(CriticalLoad { load, location: feet.join(" – ") })
                 }
                 status => Err(NoCriticalLoad::Otherwise { load, status }),
             }
         }
-        Some(limit) => Ok(CriticalLoad { load, place: limit.place(&description) }),
+        Some(limit) => Ok(CriticalLoad { load, location: limit.location(&description) }),
     }
 }
 

@@ -85,8 +85,8 @@ impl Limits {
         const GIVES_WAY: f64 = 0.999;
         let mut limits = self.clone();
         if self.has(PartLimit::MaxEffort) {
-            for (limit, own) in limits.efforts.iter_mut().zip(crane.drive_limits_at()) {
-                *limit = limit.min(own.map_or(f64::INFINITY, |own| GIVES_WAY * own));
+            for (limit, drive_limit) in limits.efforts.iter_mut().zip(crane.drive_limits_at()) {
+                *limit = limit.min(drive_limit.map_or(f64::INFINITY, |drive_limit| GIVES_WAY * drive_limit));
             }
         }
         limits
@@ -173,7 +173,7 @@ impl Limit {
     }
 
     /// The name of the part at which the limit is reached.
-    pub fn place(self, description: &Description) -> String {
+    pub fn location(self, description: &Description) -> String {
         let side = |cylinder: usize, rod: bool| {
             format!("{}, side of its {}", description.cylinders[cylinder].name, if rod { "rod" } else { "piston" })
         };
@@ -186,7 +186,7 @@ impl Limit {
             Limit::Utilisation { section } => {
                 let section = &description.sections[section];
                 let body = description.bodies[section.body].name.as_str();
-                if section.at.is_empty() { body.to_owned() } else { format!("{body} {}", section.place()) }
+                if section.at.is_empty() { body.to_owned() } else { format!("{body} {}", section.location()) }
             }
             Limit::Effort { drive } => description.coordinates[description.drives[drive].coordinate].name.to_string(),
             Limit::Deflection { point } => description.points[point].to_string(),

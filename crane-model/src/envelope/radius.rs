@@ -48,7 +48,7 @@ impl SlewAxis {
     }
 
     /// Horizontal distance of a point from the axis, m.
-    pub fn radius(&self, place: &Vector3<f64>) -> f64 {
-        (place.x - self.at[0]).hypot(place.y - self.at[1])
+    pub fn radius(&self, position: &Vector3<f64>) -> f64 {
+        (position.x - self.at[0]).hypot(position.y - self.at[1])
     }
 }

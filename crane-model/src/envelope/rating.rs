@@ -16,7 +16,7 @@ pub struct Rating {
     /// The crane with that load, or with the minimum load if there is none; `None` if no equilibrium is found.
     pub loaded: Option<Condition>,
     /// The crane with the load of its parameters; `None` if no equilibrium is found.
-    pub own: Option<Condition>,
+    pub with_spec_load: Option<Condition>,
     /// How far that load moves the points of interest, m; empty if no equilibrium is found.
     pub deflections: Vec<f64>,
 }
@@ -32,15 +32,15 @@ pub(super) struct Posed<'a> {
 }
 
 /// What to compute for a pose.
-pub(super) struct Wanted<'a> {
+pub(super) struct RatingRequest<'a> {
     /// What limits the load.
     pub limits: &'a Limits,
     /// Minimum and maximum load.
-    pub loads: [f64; 2],
+    pub load_range: [f64; 2],
     /// Within the limits the crane must rest with this many times the load.
     pub factor: f64,
-    /// Another load for which the condition is computed.
-    pub own: f64,
+    /// Another load, for which the condition is computed too.
+    pub spec_load: f64,
 }
 
 /// Newton's method alone: if it fails from the pose of a slightly smaller load, there is no pose nearby.
@@ -56,20 +56,21 @@ impl Posed<'_> {
     }
 
     /// Its rating, with the search starting from the nearby pose `q` and, if given, the load `guess`; also the pose with the minimum load.
-    pub fn rate(&mut self, wanted: &Wanted<'_>, guess: Option<f64>, q: Vec<f64>) -> (Rating, Vec<f64>) {
-        let Wanted { limits, loads: [least, greatest], factor, own } = *wanted;
+    pub fn rate(&mut self, request: &RatingRequest<'_>, guess: Option<f64>, q: Vec<f64>) -> (Rating, Vec<f64>) {
+        let RatingRequest { limits, load_range: [least, greatest], factor, spec_load } = *request;
         let limits = &limits.with_max_efforts(self.crane);
         let Some(empty) = self.rest(least, &q, &Settings::default()) else {
             let governing = Some(Limit::Equilibrium);
-            return (Rating { load: None, governing, loaded: None, own: None, deflections: Vec::new() }, q);
+            return (Rating { load: None, governing, loaded: None, with_spec_load: None, deflections: Vec::new() }, q);
         };
-        let with_own = if own == least { Some(empty.clone()) } else { self.rest(own, &empty.q, &NEWTON) };
-        let deflections = with_own.as_ref().map_or_else(Vec::new, |own| own.deflections(&empty));
+        let with_spec_load =
+            if spec_load == least { Some(empty.clone()) } else { self.rest(spec_load, &empty.q, &NEWTON) };
+        let deflections = with_spec_load.as_ref().map_or_else(Vec::new, |condition| condition.deflections(&empty));
         let description = self.crane.description();
         let mass: f64 = description.bodies.iter().map(|body| body.mass).sum();
         let greatest = greatest.min(description.parameters[self.load].upper_bound.value / factor);
         let scale = mass.max(f64::MIN_POSITIVE);
-        let range = Range { greatest, guess: guess.unwrap_or(own), scale, accuracy: CHART };
+        let range = Range { greatest, guess: guess.unwrap_or(spec_load), scale, accuracy: CHART };
         let slacks = empty.slacks(description, limits, &empty.points);
         let first = Trial { load: least / factor, slacks, at: empty.clone() };
         let mut trial = |load: f64, near: &Condition| {
@@ -79,6 +80,6 @@ impl Posed<'_> {
         let (best, governing) = largest(first, &range, &mut trial);
         let q = empty.q.clone();
         let (load, loaded) = best.map_or((None, empty), |best| (Some(best.load), best.at));
-        (Rating { load, governing, loaded: Some(loaded), own: with_own, deflections }, q)
+        (Rating { load, governing, loaded: Some(loaded), with_spec_load, deflections }, q)
     }
 }

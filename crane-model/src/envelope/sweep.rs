@@ -8,7 +8,7 @@ use std::{
 
 use super::{
     Axes, Limits, Rating,
-    rating::{Posed, Wanted},
+    rating::{Posed, RatingRequest},
 };
 use crate::{Description, ParameterError, ParameterInfo, dyn_crane::DynCrane, statics::Settings};
 
@@ -94,11 +94,11 @@ impl Envelope {
         let waiting = Mutex::new(pieces.iter());
         let refused = Mutex::new(None);
         let work = || {
-            let mut own = crane.boxed_clone();
+            let mut own_crane = crane.boxed_clone();
             loop {
                 let next = waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
                 let (Some(&piece), false) = (next, (execution.cancelled)()) else { break };
-                match self.rate(crane, own.as_mut(), piece, execution.cancelled) {
+                match self.rate(crane, own_crane.as_mut(), piece, execution.cancelled) {
                     Ok(Some(ratings)) => (execution.done)(piece, &ratings),
                     Ok(None) => break,
                     Err(error) => {
@@ -121,7 +121,7 @@ impl Envelope {
     fn rate(
         &self,
         crane: &dyn DynCrane,
-        own: &mut dyn DynCrane,
+        own_crane: &mut dyn DynCrane,
         piece: usize,
         cancelled: &dyn Fn() -> bool,
     ) -> Result<Option<Vec<Rating>>, ParameterError> {
@@ -132,14 +132,17 @@ impl Envelope {
             let mut parameters = self.axes.parameters(crane, pose);
             let load = parameters[self.load];
             parameters[self.load] = self.loads[0];
-            own.set_parameters(&parameters)?;
-            let positions = self.axes.positions(own, pose);
-            let Some(q) = walk(own, near.take().unwrap_or_else(|| begin(own)), &positions, cancelled) else {
+            own_crane.set_parameters(&parameters)?;
+            let positions = self.axes.positions(own_crane, pose);
+            let Some(q) = walk(own_crane, near.take().unwrap_or_else(|| begin(own_crane)), &positions, cancelled)
+            else {
                 return Ok(None);
             };
-            let wanted = Wanted { limits: &self.limits, loads: self.loads, factor: self.factor, own: load };
+            let request =
+                RatingRequest { limits: &self.limits, load_range: self.loads, factor: self.factor, spec_load: load };
             let guess = ratings.last().and_then(|rating| rating.load);
-            let (rating, q) = Posed { crane: own, load: self.load, positions: &positions }.rate(&wanted, guess, q);
+            let (rating, q) =
+                Posed { crane: own_crane, load: self.load, positions: &positions }.rate(&request, guess, q);
             near = Some((positions, q));
             ratings.push(rating);
         }

@@ -74,7 +74,7 @@ pub fn damped_with_shapes(motions: &SmallMotions) -> Result<Vec<(DampedMode, Com
 /// The shape with `xᴴ A x = 1`, and real and positive at the index `at`.
 fn normalised(shape: ComplexShape, mass: &DMatrix<Complex<f64>>, at: Option<usize>) -> ComplexShape {
     let norm = shape.dotc(&(mass * &shape)).re.sqrt();
-    let phase = at.map_or(0.0, |place| shape[place].arg());
+    let phase = at.map_or(0.0, |largest| shape[largest].arg());
     if norm > 0.0 { shape * Complex::from_polar(1.0 / norm, -phase) } else { shape }
 }
 

@@ -23,11 +23,11 @@ impl Block {
     /// The blocks of a quasi-triangular matrix.
     pub fn all(t: &DMatrix<f64>) -> Vec<Self> {
         let mut blocks = Vec::new();
-        let mut place = 0;
-        while place < t.nrows() {
-            let pair = place + 1 < t.nrows() && t[(place + 1, place)] != 0.0;
-            blocks.push(if pair { Block::Pair(place) } else { Block::Real(place) });
-            place += if pair { 2 } else { 1 };
+        let mut row = 0;
+        while row < t.nrows() {
+            let pair = row + 1 < t.nrows() && t[(row + 1, row)] != 0.0;
+            blocks.push(if pair { Block::Pair(row) } else { Block::Real(row) });
+            row += if pair { 2 } else { 1 };
         }
         blocks
     }
@@ -49,23 +49,23 @@ impl Block {
     pub fn eigenvector(self, t: &DMatrix<f64>, blocks: &[Block], least: f64) -> DVector<Complex<f64>> {
         let lambda = self.eigenvalue(t);
         let apart = |difference: Complex<f64>| if difference.norm() < least { least.into() } else { difference };
-        let (place, size) = match self {
+        let (start, size) = match self {
             Block::Real(i) => (i, 1),
             Block::Pair(i) => (i, 2),
         };
         // `right` is −Σ T y over the known entries of y; solved rows contain y itself.
-        let mut right: DVector<Complex<f64>> = DVector::zeros(place + size);
+        let mut right: DVector<Complex<f64>> = DVector::zeros(start + size);
         let known = |right: &mut DVector<Complex<f64>>, column: usize, above: usize, y: Complex<f64>| {
             for row in 0..above {
                 right[row] -= y * t[(row, column)];
             }
             right[column] = y;
         };
-        known(&mut right, place + size - 1, place, Complex::from(1.0));
+        known(&mut right, start + size - 1, start, Complex::from(1.0));
         if let Block::Pair(i) = self {
             known(&mut right, i, i, -Complex::from(t[(i, i + 1)]) / apart(t[(i, i)] - lambda));
         }
-        let before = blocks.iter().rev().skip_while(|block| block.place() >= place);
+        let before = blocks.iter().rev().skip_while(|block| block.first_row() >= start);
         for block in before {
             match *block {
                 Block::Real(i) => {
@@ -90,7 +90,7 @@ impl Block {
         right
     }
 
-    fn place(self) -> usize {
+    fn first_row(self) -> usize {
         match self {
             Block::Real(i) | Block::Pair(i) => i,
         }

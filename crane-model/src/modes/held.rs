@@ -44,9 +44,9 @@ pub(super) fn add_cylinders(
             }
             let stiffness = along(info, state);
             for (row, &of) in motions.unknowns.iter().enumerate() {
-                let [place, other] = [of, by].map(|coordinate| index * n + coordinate);
-                let curvature = (after[place] - before[place]) / (2.0 * DIFFERENCE);
-                motions.stiffness[(row, column)] += stiffness * here[place] * here[other] - state.force * curvature;
+                let [entry, other] = [of, by].map(|coordinate| index * n + coordinate);
+                let curvature = (after[entry] - before[entry]) / (2.0 * DIFFERENCE);
+                motions.stiffness[(row, column)] += stiffness * here[entry] * here[other] - state.force * curvature;
             }
         }
     }
@@ -55,8 +55,8 @@ pub(super) fn add_cylinders(
 /// Adds the stiffness and damping of sticking bristles to those of small motions about a pose at rest.
 pub(crate) fn stiffen_by_bristles(description: &Description, motions: &mut SmallMotions) {
     for joint in &description.bristles {
-        let Some(place) = motions.unknowns.iter().position(|unknown| *unknown == joint.coordinate) else { continue };
-        motions.stiffness[(place, place)] += joint.stiffness;
-        motions.damping[(place, place)] += joint.damping;
+        let Some(unknown) = motions.unknowns.iter().position(|unknown| *unknown == joint.coordinate) else { continue };
+        motions.stiffness[(unknown, unknown)] += joint.stiffness;
+        motions.damping[(unknown, unknown)] += joint.damping;
     }
 }

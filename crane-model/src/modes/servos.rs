@@ -98,8 +98,8 @@ pub fn unstable_servos(crane: &dyn DynCrane, t: f64, q: &[f64]) -> Result<Vec<Un
         },
     };
     let servo = |(index, mode, gain): (usize, DampedMode, f64)| {
-        let Servo { cylinder, gain: own, .. } = servos[index];
-        UnstableServo { cylinder, mode, gain: factor * gain * own }
+        let Servo { cylinder, gain: full_gain, .. } = servos[index];
+        UnstableServo { cylinder, mode, gain: factor * gain * full_gain }
     };
     Ok(found.into_iter().map(servo).collect())
 }

@@ -87,8 +87,8 @@ impl SmallMotions {
     /// A shape over all coordinates; fixed ones have zeros.
     pub(super) fn shape(&self, of_unknowns: &DVector<f64>) -> DVector<f64> {
         let mut shape = DVector::zeros(self.size);
-        for (place, x) in self.unknowns.iter().zip(of_unknowns) {
-            shape[*place] = *x;
+        for (coordinate, x) in self.unknowns.iter().zip(of_unknowns) {
+            shape[*coordinate] = *x;
         }
         shape
     }

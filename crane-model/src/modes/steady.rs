@@ -186,13 +186,13 @@ impl<'a, C: DynLineariseMotion + ?Sized> Search<'a, C> {
         }
         // Rows and columns of one size, whatever their units.
         let size = DVector::from_fn(stiffness.nrows(), |i, _| stiffness.row(i).amax().max(stiffness.column(i).amax()));
-        if let Some(place) = size.iter().position(|size| *size == 0.0) {
-            return Some(self.free[place]);
+        if let Some(unknown) = size.iter().position(|size| *size == 0.0) {
+            return Some(self.free[unknown]);
         }
         let scaled = DMatrix::from_fn(size.len(), size.len(), |i, j| stiffness[(i, j)] / (size[i] * size[j]).sqrt());
         let found = scaled.svd(false, true);
-        let (place, least) = found.singular_values.argmin();
-        let direction = found.v_t?.row(place).abs();
+        let (unknown, least) = found.singular_values.argmin();
+        let direction = found.v_t?.row(unknown).abs();
         (least < SINGULAR).then(|| self.free[direction.transpose().argmax().0])
     }
 

@@ -94,14 +94,14 @@ pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
         found.extend(out_of_stroke(info, &still(state.length), false));
         found.extend(over_pressure(info, state.pressures.map(still), false));
         let DriveInfo { coordinate, .. } = description.drives[info.drive];
-        let (own, coordinate) = (stiffness[info.drive], &description.coordinates[coordinate]);
-        let oil = state.oil_stiffness(info).filter(|oil| info.valve.is_none() && own > STIFFER * oil);
+        let (stiffness, coordinate) = (stiffness[info.drive], &description.coordinates[coordinate]);
+        let oil = state.oil_stiffness(info).filter(|oil| info.valve.is_none() && stiffness > STIFFER * oil);
         found.extend(oil.map(|oil| {
             format!(
                 "the drive of {} is {:.1} times as stiff as the oil in {}, {oil:.3e} {}/{}: the real crane vibrates more slowly and \
                  deflects more; use the stiffness of the oil as the drive's `stiffness`",
                 coordinate.name,
-                own / oil,
+                stiffness / oil,
                 info.name,
                 coordinate.kind.force_unit(),
                 coordinate.kind.unit()
@@ -162,8 +162,9 @@ fn falls_behind(description: &Description, info: &CylinderInfo, table: &Table) -
     let coordinate = &description.coordinates[description.drives[info.drive].coordinate];
     let wanted = format!("{}_prescribed", coordinate.name);
     let range = Extremes::of(table, &wanted);
-    let way = range.maximum - range.minimum;
-    let behind = table.values(&wanted)?.zip(table.values(&coordinate.name)?).map(|(wanted, own)| (wanted - own).abs());
+    let travel = range.maximum - range.minimum;
+    let behind =
+        table.values(&wanted)?.zip(table.values(&coordinate.name)?).map(|(wanted, actual)| (wanted - actual).abs());
     let (most, row) = behind.zip(&table.rows).max_by(|a, b| a.0.total_cmp(&b.0))?;
     let open = table.time_of(table.values(&spool(&info.name))?.filter(|opening| opening.abs() >= OPEN).count());
     let valve = if open > 0.0 {
@@ -171,13 +172,13 @@ fn falls_behind(description: &Description, info: &CylinderInfo, table: &Table) -
     } else {
         "its valve is never fully open".to_owned()
     };
-    (way > 0.0 && most > FOLLOWS * way).then(|| {
+    (travel > 0.0 && most > FOLLOWS * travel).then(|| {
         format!(
             "{} falls behind: {} is up to {most:.4} {} from its prescribed position, {:.0} % of its travel, at {:.2} s; {valve}",
             info.name,
             coordinate.name,
             coordinate.kind.unit(),
-            100.0 * most / way,
+            100.0 * most / travel,
             row[0]
         )
     })
@@ -188,7 +189,7 @@ fn below_vacuum(info: &CylinderInfo, table: &Table) -> Option<String> {
     const VACUUM: f64 = -1e5;
     let [.., piston, rod, _] = columns(&info.name).map(|(column, _)| Extremes::of(table, &column));
     let sides = [("piston", piston), ("rod", rod)];
-    let (side, least) = sides.into_iter().find(|(_, own)| own.minimum < VACUUM)?;
+    let (side, least) = sides.into_iter().find(|(_, pressure)| pressure.minimum < VACUUM)?;
     Some(format!(
         "{} would need {:.2} bar on the side of its {side}, at {:.2} s, less than a vacuum: oil would cavitate there",
         info.name,

@@ -120,7 +120,7 @@ pub fn tips_over(description: &Description, table: &Table) -> Option<TipsOver> {
     let over = table.rows.iter().position(|row| lifts && description.has_tipped(&start, &pose(row)))?;
     let presses = |row: &[f64], name: &str| {
         let column = reaction(name);
-        table.columns.iter().position(|own| own.name == column).is_some_and(|place| row[place] > 0.0)
+        table.columns.iter().position(|known| known.name == column).is_some_and(|index| row[index] > 0.0)
     };
     let about = table.rows[..=over].iter().rev().find_map(|row| {
         let names = description.supports.iter().map(|support| support.name.as_str());

@@ -42,10 +42,10 @@ pub fn instants<'a>(crane: &dyn DynCrane, rows: impl Iterator<Item = &'a Vec<f64
     let n = crane.size();
     // Time, coordinates and rates come first.
     let columns = quantities(crane.description());
-    let place = |name: String| columns.iter().position(|column| column.name == name);
-    let oil: Vec<usize> = force_states::columns(crane.description()).into_iter().filter_map(place).collect();
+    let index_of = |name: String| columns.iter().position(|column| column.name == name);
+    let oil: Vec<usize> = force_states::columns(crane.description()).into_iter().filter_map(index_of).collect();
     rows.map(|row| {
-        let x: Vec<f64> = oil.iter().map(|&place| row[place]).collect();
+        let x: Vec<f64> = oil.iter().map(|&index_of| row[index_of]).collect();
         Instant::moving(crane, row[0], (&row[1..=n], &row[n + 1..=2 * n]), &x)
     })
     .collect()

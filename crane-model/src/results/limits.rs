@@ -11,15 +11,15 @@ pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> impl Iterator<Item = S
     let motions = crane.drive_motions_at(0.0);
     let description = crane.description();
     reached(crane, q).into_iter().map(move |Reached { drive, effort, limit }| {
-        let place = description.drives[drive].coordinate;
-        let coordinate = &description.coordinates[place];
+        let index = description.drives[drive].coordinate;
+        let coordinate = &description.coordinates[index];
         let [position, _] = motions[drive];
         let unit = coordinate.kind.force_unit();
         format!(
             "the drive of {} is at its limit, {:.1} of {limit:.1} {unit}: the joint rests {:.4} {} from where the drive would hold it",
             coordinate.name,
             effort.abs(),
-            (position - q[place]).abs(),
+            (position - q[index]).abs(),
             coordinate.kind.unit()
         )
     })
@@ -32,12 +32,12 @@ const FADED: f64 = 0.92;
 pub(super) fn of_run(crane: &dyn DynCrane, table: &Table) -> Vec<String> {
     let description = crane.description();
     let limits = description.drives.iter().zip(crane.drive_limits_at());
-    let said = limits.filter_map(|(drive, limit)| {
+    let cautions = limits.filter_map(|(drive, limit)| {
         let (limit, coordinate) = (limit?, &description.coordinates[drive.coordinate]);
-        let place = |name: &str| table.columns.iter().position(|column| column.name == name);
-        let effort = place(&drive_effort(&coordinate.name, coordinate.kind))?;
-        let (own, prescribed) = (place(&coordinate.name)?, place(&format!("{}_prescribed", coordinate.name))?);
-        let (rate, unit) = (place(&format!("{}_rate", coordinate.name))?, coordinate.kind.unit());
+        let index_of = |name: &str| table.columns.iter().position(|column| column.name == name);
+        let effort = index_of(&drive_effort(&coordinate.name, coordinate.kind))?;
+        let (actual, prescribed) = (index_of(&coordinate.name)?, index_of(&format!("{}_prescribed", coordinate.name))?);
+        let (rate, unit) = (index_of(&format!("{}_rate", coordinate.name))?, coordinate.kind.unit());
         // Effort, power and rate, as in the words below.
         let met = |row: &[f64]| {
             let power = row[effort] * row[rate];
@@ -58,7 +58,7 @@ pub(super) fn of_run(crane: &dyn DynCrane, table: &Table) -> Vec<String> {
         let reached = || table.rows.iter().filter(|row| met(row).contains(&true));
         let first = reached().next()?[0];
         let time = table.time_of(reached().count());
-        let behind = |row: &Vec<f64>| (row[prescribed] - row[own]).abs();
+        let behind = |row: &Vec<f64>| (row[prescribed] - row[actual]).abs();
         let worst = table.rows.iter().max_by(|a, b| behind(a).total_cmp(&behind(b)))?;
         Some(format!(
             "the drive of {} is at its limit of {limit} for {time:.2} s, first at {first:.2} s; the joint falls behind its motion by \
@@ -69,5 +69,5 @@ pub(super) fn of_run(crane: &dyn DynCrane, table: &Table) -> Vec<String> {
             worst[0]
         ))
     });
-    said.collect()
+    cautions.collect()
 }

@@ -25,7 +25,7 @@ impl Peaks {
                 table.add(format!("{name}_{what}"), unit);
             }
         }
-        places(description).for_each(|place| table.add(format!("{place}_end"), "m"));
+        places(description).for_each(|point| table.add(format!("{point}_end"), "m"));
         table.columns
     }
 
@@ -34,7 +34,7 @@ impl Peaks {
         let last = |name: &str| table.values(name).and_then(Iterator::last).unwrap_or(f64::NAN);
         Self {
             extremes: tracked(description).iter().map(|column| Extremes::of(table, &column.name)).collect(),
-            last: places(description).map(|place| last(&place)).collect(),
+            last: places(description).map(|point| last(&point)).collect(),
         }
     }
 
@@ -56,7 +56,7 @@ fn places(description: &Description) -> impl Iterator<Item = String> {
 /// The columns of a run whose extremes are kept.
 fn tracked(description: &Description) -> Vec<Column> {
     let mut table = Table::default();
-    places(description).for_each(|place| table.add(place, "m"));
+    places(description).for_each(|name| table.add(name, "m"));
     for drive in &description.drives {
         let coordinate = &description.coordinates[drive.coordinate];
         table.add(drive_effort(&coordinate.name, coordinate.kind), coordinate.kind.force_unit());

@@ -127,8 +127,8 @@ fn push_quantities(
     row.extend(crane.stop_efforts_at(q, v));
     let mut frictions = crane.friction_efforts_at(v);
     for (coordinate, effort) in bristles::efforts(crane.description(), v, x) {
-        for (place, own) in frictions.iter_mut().enumerate() {
-            *own += if crane.description().frictions[place] == coordinate { effort } else { 0.0 };
+        for (index, total) in frictions.iter_mut().enumerate() {
+            *total += if crane.description().frictions[index] == coordinate { effort } else { 0.0 };
         }
     }
     row.extend(frictions);

@@ -61,13 +61,13 @@ fn sentence(description: &Description, UnstableServo { cylinder, mode, gain }: &
             seen.len() <= NAMED
         }
     });
-    let (own, overlap) = info.valve.map_or((0.0, 0.0), |valve| (valve.gain, valve.overlap));
+    let (set_gain, overlap) = info.valve.map_or((0.0, 0.0), |valve| (valve.gain, valve.overlap));
     let rubs = !description.frictions.is_empty() || !description.bristles.is_empty();
     let without = if rubs { "; this is without the friction of joints, which may hold it" } else { "" };
     let beyond = if overlap > 0.0 { " once its spool leaves the overlap" } else { "" };
     format!(
         "servo of {} is unstable{beyond} with {} at {:.3} Hz: a disturbance grows by a factor e every {:.2} s; use a `gain` below {} \
-         instead of {own} 1/m{without}",
+         instead of {set_gain} 1/m{without}",
         info.name,
         links.join(" and "),
         mode.eigenvalue.im / std::f64::consts::TAU,

@@ -58,15 +58,15 @@ fn stages(description: &Description) -> Vec<Stage> {
     let bends = |link: &str| {
         let mut moved = 0;
         bodies.iter().any(|body| {
-            let own = moved..body.degrees_of_freedom;
+            let range = moved..body.degrees_of_freedom;
             moved = body.degrees_of_freedom;
             body.link.as_str() == link
-                && description.coordinates[own].iter().any(|coordinate| coordinate.role.is_element())
+                && description.coordinates[range].iter().any(|coordinate| coordinate.role.is_element())
         })
     };
     let slides = |[before, first]: [usize; 2]| {
-        let own = bodies[before].degrees_of_freedom..bodies[first].degrees_of_freedom;
-        description.coordinates[own].iter().any(|coordinate| coordinate.kind == CoordinateKind::Translation)
+        let range = bodies[before].degrees_of_freedom..bodies[first].degrees_of_freedom;
+        description.coordinates[range].iter().any(|coordinate| coordinate.kind == CoordinateKind::Translation)
     };
     let begin = (1..bodies.len()).map(|first| [first - 1, first]);
     let between = begin.filter(|[before, first]| bodies[*before].link != bodies[*first].link);
@@ -81,11 +81,11 @@ fn overlaps(crane: &dyn DynCrane, stages: &[Stage], q: &[f64]) -> Vec<f64> {
     }
     let transforms = crane.transforms_at(q);
     let overlap = |stage: &Stage| {
-        let [outer, own] = [stage.outer, stage.first].map(|body| &transforms[body]);
-        let axes = [outer, own].map(|frame| frame.fixed_view::<3, 1>(0, 0));
-        let way = own.fixed_view::<3, 1>(0, 3) - outer.fixed_view::<3, 1>(0, 3);
+        let [outer, inner] = [stage.outer, stage.first].map(|body| &transforms[body]);
+        let axes = [outer, inner].map(|frame| frame.fixed_view::<3, 1>(0, 0));
+        let offset = inner.fixed_view::<3, 1>(0, 3) - outer.fixed_view::<3, 1>(0, 3);
         let along = axes[0].dot(&axes[1]) > ALONG;
-        if along { (crane.description().bodies[stage.outer].length - axes[0].dot(&way)).max(0.0) } else { 0.0 }
+        if along { (crane.description().bodies[stage.outer].length - axes[0].dot(&offset)).max(0.0) } else { 0.0 }
     };
     stages.iter().map(overlap).collect()
 }

@@ -110,9 +110,9 @@ impl Verification {
             let sizes: Vec<f64> = kind.names.iter().map(|name| kind.size(&Extremes::of(table, name))).collect();
             let greatest = sizes.iter().copied().fold(0.0, f64::max);
             for (name, size) in kind.names.iter().zip(sizes) {
-                let place = table.columns.iter().position(|column| column.name == *name);
+                let index = table.columns.iter().position(|column| column.name == *name);
                 let Some((difference, between)) =
-                    place.and_then(|place| Some((*self.differences.get(place)?, *self.between.get(place)?)))
+                    index.and_then(|index| Some((*self.differences.get(index)?, *self.between.get(index)?)))
                 else {
                     continue;
                 };

@@ -94,11 +94,11 @@ impl<const N: usize> Rows<'_, N> {
         let lower = core::mem::take(&mut self.lower);
         let last =
             (self.axes.split_last_chunk::<K>(), self.offsets.split_last_chunk::<K>(), lower.split_last_chunk_mut());
-        let (Some((axes, own)), Some((offsets, after)), Some((lower, rows))) = last else { return };
+        let (Some((axes, of_body)), Some((offsets, after)), Some((lower, rows))) = last else { return };
         let offset = after.last().unwrap_or(&[0.0; 3]);
         let first = axes.len();
         (self.axes, self.offsets, self.lower) = (axes, offsets, lower);
-        let axes = own.map(|axis| axis.map(f64x8::splat));
+        let axes = of_body.map(|axis| axis.map(f64x8::splat));
         if rotate {
             fill(first, offset, rows, eights, |_, l| axes.map(|n| along(n, l)));
         } else {
@@ -133,8 +133,8 @@ fn fill<const K: usize, const N: usize>(
         for (row, entries) in rows.iter_mut().zip(entries(p, l)) {
             let (eights, rest) = row.as_chunks_mut::<8>();
             match eights.get_mut(eight) {
-                Some(place) => *place = entries.to_array(),
-                None => rest.iter_mut().zip(entries.to_array()).for_each(|(place, entry)| *place = entry),
+                Some(block) => *block = entries.to_array(),
+                None => rest.iter_mut().zip(entries.to_array()).for_each(|(block, entry)| *block = entry),
             }
         }
     }

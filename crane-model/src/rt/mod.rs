@@ -27,8 +27,8 @@ pub fn symmetric<const N: usize>(mut upper: [[f64; N]; N]) -> SMatrix<f64, N, N>
 /// Copies results into the caller's slice, as many as fit.
 #[inline]
 pub fn fill<T: Copy>(out: &mut [T], results: &[T]) {
-    for (place, result) in out.iter_mut().zip(results) {
-        *place = *result;
+    for (entry, result) in out.iter_mut().zip(results) {
+        *entry = *result;
     }
 }
 
@@ -63,17 +63,17 @@ impl<const N: usize, const D: usize, const V: usize> TransformFactors<N, D, V> {
         let mut first = self.first.as_slice();
         let mut out = out.iter_mut();
         for &count in degrees {
-            let (own, rest) = first.split_at(count.min(first.len()));
+            let (of_body, rest) = first.split_at(count.min(first.len()));
             first = rest;
             for (m, axis) in self.axes.iter().enumerate().take(count) {
                 let shares = self.shares_of(m);
-                for ((n, derivative), out) in own.iter().enumerate().skip(m).zip(&mut out) {
+                for ((n, derivative), out) in of_body.iter().enumerate().skip(m).zip(&mut out) {
                     *out = turned(axis, derivative);
                     let Some((first, pairs)) = shares.filter(|(first, _)| n < first + 3) else { continue };
                     let row = m - first;
                     let pair = row * 3 - row * row.saturating_sub(1) / 2 + n - m;
-                    for (share, own) in pairs.get(pair).into_iter().flatten().zip(own.iter().skip(first)) {
-                        *out += *share * own;
+                    for (share, of_body) in pairs.get(pair).into_iter().flatten().zip(of_body.iter().skip(first)) {
+                        *out += *share * of_body;
                     }
                 }
             }

@@ -60,10 +60,10 @@ pub fn sin_cos<const K: usize>(angles: [f64; K]) -> ([f64; K], [f64; K]) {
             eight(angles, sines, cosines);
         } else {
             let (mut padded, mut sin, mut cos) = ([0.0; 8], [0.0; 8], [0.0; 8]);
-            padded.iter_mut().zip(angles).for_each(|(place, angle)| *place = angle);
+            padded.iter_mut().zip(angles).for_each(|(entry, angle)| *entry = angle);
             eight(&padded, &mut sin, &mut cos);
-            sines.iter_mut().zip(sin).for_each(|(place, sin)| *place = sin);
-            cosines.iter_mut().zip(cos).for_each(|(place, cos)| *place = cos);
+            sines.iter_mut().zip(sin).for_each(|(entry, sin)| *entry = sin);
+            cosines.iter_mut().zip(cos).for_each(|(entry, cos)| *entry = cos);
         }
     }
     if !small {

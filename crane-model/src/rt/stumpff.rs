@@ -53,8 +53,8 @@ pub fn stumpff<const K: usize>(arguments: [f64; K]) -> [[f64; K]; 6] {
     };
     for (block, arguments) in arguments.as_chunks::<8>().0.iter().enumerate() {
         for (row, of_eight) in values.iter_mut().zip(eight(arguments)) {
-            if let Some(place) = row.as_chunks_mut().0.get_mut(block) {
-                *place = of_eight;
+            if let Some(entry) = row.as_chunks_mut().0.get_mut(block) {
+                *entry = of_eight;
             }
         }
     }
@@ -62,15 +62,15 @@ pub fn stumpff<const K: usize>(arguments: [f64; K]) -> [[f64; K]; 6] {
         if let Some(last) = arguments.last_chunk() {
             // The last eight, some of them a second time, which is cheaper than handling fewer.
             for (row, of_eight) in values.iter_mut().zip(eight(last)) {
-                if let Some(place) = row.last_chunk_mut() {
-                    *place = of_eight;
+                if let Some(entry) = row.last_chunk_mut() {
+                    *entry = of_eight;
                 }
             }
         } else {
             let mut padded = [0.0; 8];
-            padded.iter_mut().zip(arguments).for_each(|(place, x)| *place = x);
+            padded.iter_mut().zip(arguments).for_each(|(entry, x)| *entry = x);
             for (row, of_eight) in values.iter_mut().zip(eight(&padded)) {
-                row.iter_mut().zip(of_eight).for_each(|(place, value)| *place = value);
+                row.iter_mut().zip(of_eight).for_each(|(entry, value)| *entry = value);
             }
         }
     }
@@ -93,8 +93,8 @@ pub fn stumpff_lanes<const K: usize>(arguments: [f64x8; K]) -> [[f64x8; K]; 6] {
     let mut values = [[f64x8::splat(0.0); K]; 6];
     for (i, column) in columns.into_iter().enumerate() {
         for (row, value) in values.iter_mut().zip(column) {
-            if let Some(place) = row.get_mut(i) {
-                *place = value;
+            if let Some(entry) = row.get_mut(i) {
+                *entry = value;
             }
         }
     }
@@ -130,8 +130,8 @@ fn replace_large(arguments: &[f64], rows: [&mut [f64]; 6]) {
         let small = x <= LARGEST;
         let values = of_large(x);
         for (row, value) in rows.iter_mut().zip(values) {
-            if let Some(place) = row.next().filter(|_| !small) {
-                *place = value;
+            if let Some(entry) = row.next().filter(|_| !small) {
+                *entry = value;
             }
         }
     }

@@ -100,7 +100,12 @@ pub struct Execution<'a> {
 }
 
 /// Runs the crane of every row, each from its own start. One outcome per row, in order.
-pub fn run(crane: &dyn DynCrane, rows: &[Case], settings: &Settings, execution: &Execution<'_>) -> Vec<Outcome> {
+pub fn run_ensemble(
+    crane: &dyn DynCrane,
+    rows: &[Case],
+    settings: &Settings,
+    execution: &Execution<'_>,
+) -> Vec<Outcome> {
     // Lanes support neither states of forces nor different inputs.
     let same_inputs = rows.iter().all(|row| row.inputs.is_empty());
     let in_lanes = settings.method == Method::Rk4 && same_inputs && !crane.description().has_force_states();
@@ -116,8 +121,8 @@ pub fn run(crane: &dyn DynCrane, rows: &[Case], settings: &Settings, execution: 
                 [row] if !in_lanes => vec![alone(crane, row, settings, &off)],
                 rows => side_by_side(crane, rows, settings),
             };
-            for (place, outcome) in outcomes.into_iter().enumerate() {
-                let row = index * piece + place;
+            for (position, outcome) in outcomes.into_iter().enumerate() {
+                let row = index * piece + position;
                 if !matches!(outcome.run, Err(Reason::Cancelled)) {
                     (execution.done)(row, &outcome);
                 }
@@ -141,13 +146,13 @@ pub fn run(crane: &dyn DynCrane, rows: &[Case], settings: &Settings, execution: 
 /// # Errors
 /// Its parameters break a rule, or it has no start.
 pub fn ready(crane: &dyn DynCrane, row: &Case) -> Result<(Box<dyn DynCrane>, Start), Reason> {
-    let mut own = crane.boxed_clone();
-    own.set_parameters(&row.parameters).map_err(Reason::Refused)?;
+    let mut row_crane = crane.boxed_clone();
+    row_crane.set_parameters(&row.parameters).map_err(Reason::Refused)?;
     for (index, input) in row.inputs.iter().enumerate() {
-        own.set_input(index, *input);
+        row_crane.set_input(index, *input);
     }
-    let start = Start::with(own.as_ref(), row.q.as_deref(), row.v.as_deref()).map_err(Reason::Failed)?;
-    Ok((own, start))
+    let start = Start::with(row_crane.as_ref(), row.q.as_deref(), row.v.as_deref()).map_err(Reason::Failed)?;
+    Ok((row_crane, start))
 }
 
 /// The record of a run in progress.
@@ -216,12 +221,12 @@ impl Watch for Gathering<'_> {
 
 /// Runs the crane of one row.
 fn alone(crane: &dyn DynCrane, row: &Case, settings: &Settings, off: &dyn Fn() -> bool) -> Outcome {
-    let (own, start) = match ready(crane, row) {
+    let (row_crane, start) = match ready(crane, row) {
         Ok(ready) => ready,
         Err(reason) => return Outcome::without_run(reason),
     };
-    let mut gathering = Gathering::new(own.as_ref(), off);
-    let run = dynamics::simulate_watched(own.as_ref(), &start.state(), settings, &mut gathering);
+    let mut gathering = Gathering::new(row_crane.as_ref(), off);
+    let run = dynamics::simulate_watched(row_crane.as_ref(), &start.state(), settings, &mut gathering);
     gathering.finish(run)
 }
 
@@ -230,9 +235,10 @@ fn side_by_side(crane: &dyn DynCrane, rows: &[Case], settings: &Settings) -> Vec
     let ready: Vec<_> = rows.iter().map(|row| ready(crane, row)).collect();
     let mut members = Vec::new();
     let mut gatherings = Vec::new();
-    for ((own, start), row) in ready.iter().zip(rows).filter_map(|(ready, row)| Some((ready.as_ref().ok()?, row))) {
+    for ((row_crane, start), row) in ready.iter().zip(rows).filter_map(|(ready, row)| Some((ready.as_ref().ok()?, row)))
+    {
         members.push(Member { parameters: row.parameters.clone(), start: start.state() });
-        gatherings.push(Gathering::new(own.as_ref(), &|| false));
+        gatherings.push(Gathering::new(row_crane.as_ref(), &|| false));
     }
     let runs = crane.simulate_ensemble(&members, settings, &mut |member, sample| gatherings[member].take(sample));
     let mut outcomes = match runs {

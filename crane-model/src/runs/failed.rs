@@ -120,7 +120,7 @@ impl fmt::Display for Reason {
                 )
             }
             Reason::Stopped { stopped, near_singular, .. } => {
-                let near = near_singular.as_ref().map_or_else(String::new, |said| format!("; {said}"));
+                let near = near_singular.as_ref().map_or_else(String::new, |caution| format!("; {caution}"));
                 write!(f, "{stopped}{near}")
             }
         }

@@ -63,13 +63,13 @@ pub fn grouped(number: f64) -> String {
     };
     let digits: String = digits.chars().filter(char::is_ascii_digit).collect();
     let mut out = if number < 0.0 { "-".to_owned() } else { String::new() };
-    for place in 0..=power.max(digits.len() - 1) {
-        if place == power + 1 {
+    for digit in 0..=power.max(digits.len() - 1) {
+        if digit == power + 1 {
             out.push('.');
-        } else if place > 0 && place <= power && (power + 1 - place).is_multiple_of(3) {
+        } else if digit > 0 && digit <= power && (power + 1 - digit).is_multiple_of(3) {
             out.push(',');
         }
-        out.push(digits.chars().nth(place).unwrap_or('0'));
+        out.push(digits.chars().nth(digit).unwrap_or('0'));
     }
     out
 }

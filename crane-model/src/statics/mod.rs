@@ -21,4 +21,4 @@ pub(crate) use overloaded::{REACHED, Reached, reached};
 pub use settings::Settings;
 pub use solve::{solve, solve_at, solve_at_dyn, solve_dyn, solve_holding_dyn};
 pub use status::Status;
-pub(crate) use tipped::named;
+pub(crate) use tipped::with_tipped_status;

@@ -62,9 +62,9 @@ pub(super) fn iterate(
             // A stiff connector makes a curved valley: its force grows along a straight step, even if the step leads towards the
             // equilibrium. There a residual is measured by the Newton step from it, in which soft and stiff directions count equally:
             // the natural monotonicity test, P. Deuflhard, Newton Methods for Nonlinear Problems, Springer 2004.
-            let way = newton.norm();
+            let length = newton.norm();
             let is_nearer = |residual: &DVector<f64>| {
-                !description.connectors.is_empty() && tangent.step(residual, limit).norm() < way
+                !description.connectors.is_empty() && tangent.step(residual, limit).norm() < length
             };
             let step = limited(newton, |i| description.coordinates[i].kind);
             halvings.map(|k| 0.5_f64.powi(k.cast_signed())).find_map(|fraction| {

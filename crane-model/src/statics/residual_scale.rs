@@ -86,7 +86,7 @@ impl ResidualScale {
         ROUNDINGS * f64::EPSILON * self.norm(&(of_coordinates + of_lengths(equations, q) + of_cylinders(equations, q)))
     }
 
-    /// Stiffnesses of springs, one per coordinate, with which all forces here move no coordinate by more than about 1 rad or 1 m; each is at
+    /// Diagonal of a stiffness at which the forces here move no coordinate by more than about 1 rad or 1 m; each entry is at
     /// least the coordinate's own stiffness. N m/rad and N/m.
     pub(super) fn springs(&self, stiffness: &DMatrix<f64>) -> DVector<f64> {
         DVector::from_fn(self.scale.len(), |i, _| self.scale[i] + stiffness[(i, i)].abs())

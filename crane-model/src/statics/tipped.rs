@@ -16,7 +16,7 @@ const AT_REST: f64 = 1e-6;
 
 /// The equilibrium at time `t`, s, that was found from the pose `from`; its status becomes that the crane tips over, or that it floats, if it has
 /// feet that lift and the pose found is not stable or its base is not upright.
-pub(crate) fn named(crane: &dyn DynCrane, t: f64, from: &[f64], found: Equilibrium) -> Equilibrium {
+pub(crate) fn with_tipped_status(crane: &dyn DynCrane, t: f64, from: &[f64], found: Equilibrium) -> Equilibrium {
     let description = crane.description();
     let feet = || description.supports.iter().filter(|support| support.one_sided);
     let fell = description.has_tipped(from, &found.q);

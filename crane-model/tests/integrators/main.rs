@@ -27,7 +27,7 @@ fn swinging(ratio: f64) -> (Lift, Complex<f64>) {
 }
 
 /// State one second after `start`, in equal steps of a method or of its embedded formula, whose result then starts the next step.
-fn run<const N: usize>(
+fn state_after_a_second<const N: usize>(
     steps: i32,
     start: State<N>,
     step: impl Fn(f64, f64, &State<N>) -> (State<N>, State<N>),

@@ -10,7 +10,7 @@ use crate::common::{
     DoublePendulum, Lift,
     implicit::{Factors, factorise, solve},
 };
-use crate::{implicit, run, stiff_lift, swinging};
+use crate::{implicit, state_after_a_second, stiff_lift, swinging};
 
 /// A crane that gives the integrator a different Jacobian: stiffness and damping of every coordinate.
 #[derive(Clone)]
@@ -92,10 +92,18 @@ const ORDER: f64 = 0.25;
 fn orders_on_swinging_double_pendulums() {
     let pendulum = DoublePendulum::hanging();
     for (name, expected, measured) in [
-        ("dopri5", 5.0, order(160, &starts(), |n, start| run(n, start, explicit(&pendulum), false))),
-        ("dopri5, embedded", 4.0, order(160, &starts(), |n, start| run(n, start, explicit(&pendulum), true))),
-        ("rosw4", 4.0, order(320, &starts(), |n, start| run(n, start, implicit(&pendulum), false))),
-        ("rosw4, embedded", 3.0, order(320, &starts(), |n, start| run(n, start, implicit(&pendulum), true))),
+        ("dopri5", 5.0, order(160, &starts(), |n, start| state_after_a_second(n, start, explicit(&pendulum), false))),
+        (
+            "dopri5, embedded",
+            4.0,
+            order(160, &starts(), |n, start| state_after_a_second(n, start, explicit(&pendulum), true)),
+        ),
+        ("rosw4", 4.0, order(320, &starts(), |n, start| state_after_a_second(n, start, implicit(&pendulum), false))),
+        (
+            "rosw4, embedded",
+            3.0,
+            order(320, &starts(), |n, start| state_after_a_second(n, start, implicit(&pendulum), true)),
+        ),
     ] {
         println!("{name}: {measured:.3}");
         assert!((measured - expected).abs() < ORDER, "{name}: order {measured}");
@@ -107,14 +115,14 @@ fn the_implicit_method_keeps_its_orders_with_any_jacobian() {
     // No Jacobian at all, and others unrelated to the crane's; the lift's is [4000, 40].
     for stiffness_and_damping in [[0.0, 0.0], [20.0, 0.0], [3.0, 7.0]] {
         let pendulum = Misled { crane: DoublePendulum::hanging(), stiffness_and_damping };
-        let measured = order(320, &starts(), |n, start| run(n, start, implicit(&pendulum), false));
+        let measured = order(320, &starts(), |n, start| state_after_a_second(n, start, implicit(&pendulum), false));
         assert!((measured - 4.0).abs() < ORDER, "{stiffness_and_damping:?}: order {measured}");
-        let measured = order(320, &starts(), |n, start| run(n, start, implicit(&pendulum), true));
+        let measured = order(320, &starts(), |n, start| state_after_a_second(n, start, implicit(&pendulum), true));
         assert!((measured - 3.0).abs() < ORDER, "{stiffness_and_damping:?}, embedded: order {measured}");
         // A drive depends on time, too.
         let lift = Misled { crane: Lift::default(), stiffness_and_damping };
         let rest = [State::at_rest(Vector1::new(lift.crane.sag()))];
-        let measured = order(160, &rest, |n, start| run(n, start, implicit(&lift), false));
+        let measured = order(160, &rest, |n, start| state_after_a_second(n, start, implicit(&lift), false));
         assert!((measured - 4.0).abs() < ORDER, "{stiffness_and_damping:?}, driven: order {measured}");
     }
 }

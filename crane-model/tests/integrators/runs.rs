@@ -12,7 +12,7 @@ use crane_model::{
 use nalgebra::{Matrix4, SMatrix, SVector, Vector1, Vector2};
 
 use crate::common::{self, DoublePendulum, GRAVITY, Lift};
-use crate::{implicit, run, stiff_lift, swinging};
+use crate::{implicit, state_after_a_second, stiff_lift, swinging};
 
 #[test]
 fn unresolved_undamped_modes_do_not_grow_in_adaptive_runs() {
@@ -40,7 +40,7 @@ fn a_stiff_spring_is_not_forced_by_its_drive() {
     let lift = stiff_lift();
     let start = State { q: Vector1::new(lift.sag()), v: Vector1::new(lift.amplitude * lift.frequency) };
     let exact = (lift.sag() + lift.amplitude * lift.frequency.sin(), 0.7 * lift.frequency.cos());
-    let end = run(50, start, implicit(&lift), false);
+    let end = state_after_a_second(50, start, implicit(&lift), false);
     // Only the deviation from the drive's motion is integrated. The error of the rate is that of differencing the motion.
     assert!((end.q.x - exact.0).abs() < 1e-9 && (end.v.x - exact.1).abs() < 1e-6, "{end:?} {exact:?}");
 }
@@ -69,14 +69,14 @@ fn efforts_are_right_however_stiff_the_drive() {
             println!("{method} {stiffness:e}: {:.1e}, {:?}", worst / peak, run.statistics);
             // The tolerance allows a thousandth of the effort per step; rounding of a position of 0.1 m times the stiffness is 2e-5 N.
             assert!(worst < 2e-3 * peak + ringing, "{method} {stiffness:e}: {worst:e} of {peak} N");
-            let said = &run.efforts[0];
-            assert!((said.peak / peak - 1.0).abs() < 0.01 && said.error < 0.01 * peak, "{said:?}, {peak}");
+            let estimate = &run.efforts[0];
+            assert!((estimate.peak / peak - 1.0).abs() < 0.01 && estimate.error < 0.01 * peak, "{estimate:?}, {peak}");
         }
     }
 }
 
 #[test]
-fn what_rounding_leaves_of_an_effort_is_said() {
+fn effort_error_includes_rounding_of_positions() {
     // 1e18 N/m times the rounding of a position of 0.1 m are some 10 N: no step is short enough.
     let lift = Lift { stiffness: 1e18, damping: 1e15, ..Lift::default() };
     let start = State { q: Vector1::new(lift.sag()), v: Vector1::new(lift.amplitude * lift.frequency) };
@@ -207,7 +207,7 @@ impl<const N: usize, C: Implicit<N>> Implicit<N> for Counted<C> {
 }
 
 #[test]
-fn statistics_count_what_was_done() {
+fn statistics_equal_the_counted_evaluations() {
     for method in Method::ALL {
         // In the first seconds of the double pendulum, steps are rejected now and then.
         let none = AtomicUsize::new(0);

@@ -51,10 +51,10 @@ fn apply(check: &str, tree: &Tree, seed: u64, run: bool) -> Option<Vec<String>> 
         });
     }
     if check == meshes::NAME {
-        return meshes::check(tree);
+        return meshes::check_meshes(tree);
     }
     let (_, law) = laws::ALL.iter().find(|(name, _)| *name == check)?;
-    match laws::check(*law, tree, seed).ok()?? {
+    match laws::check_law(*law, tree, seed).ok()?? {
         Ok(()) => Some(vec![]),
         Err(what) => Some(vec![what]),
     }
@@ -62,7 +62,7 @@ fn apply(check: &str, tree: &Tree, seed: u64, run: bool) -> Option<Vec<String>> 
 
 /// Checks a crane, with `most` checks chosen at random; failures are shrunk.
 #[must_use]
-pub fn check(case: &Case, only: Option<&str>, most: usize, shrink: bool) -> Outcome {
+pub fn check_case(case: &Case, only: Option<&str>, most: usize, shrink: bool) -> Outcome {
     if let Err(refused) = observe(&source(&case.tree), false) {
         return Outcome { refused: Some(refused), ..Outcome::default() };
     }

@@ -102,8 +102,8 @@ impl Writer<'_> {
         self.connectors();
         self.cylinders();
         self.push("points", json!({"name": "tip", "link": "arm", "at": [ARM, 0, 0]}));
-        let place = self.place(BOOM);
-        self.push("points", json!({"name": "middle", "link": "boom", "at": place}));
+        let position = self.random_point(BOOM);
+        self.push("points", json!({"name": "middle", "link": "boom", "at": position}));
         self.push("points", json!({"name": "load", "link": "hook", "at": [0.4, 0, 0]}));
     }
 
@@ -338,7 +338,7 @@ impl Writer<'_> {
     }
 
     /// A place on a link of this length: at its beginning, its tip, or anywhere, mostly off the axis.
-    fn place(&self, length: f64) -> [f64; 3] {
+    fn random_point(&self, length: f64) -> [f64; 3] {
         let kind = self.rng.borrow_mut().u8(0..5);
         let x = match kind {
             0 => 0.0,
@@ -350,7 +350,7 @@ impl Writer<'_> {
 
     fn forces(&mut self) {
         if self.has(F::WorldForce) {
-            let at = self.place(BOOM);
+            let at = self.random_point(BOOM);
             let mut load = json!({"name": "wind", "link": "boom", "at": at,
                 "force": [self.between(-800.0, 800.0), self.between(-800.0, 800.0), self.between(-500.0, 500.0)]});
             if self.has(F::TimedLoad) {
@@ -359,7 +359,7 @@ impl Writer<'_> {
             self.push("loads", load);
         }
         if self.has(F::LinkMoment) {
-            let at = self.place(ARM);
+            let at = self.random_point(ARM);
             self.push(
                 "loads",
                 json!({"name": "twist", "link": "arm", "at": at, "axes": "link",
@@ -387,7 +387,7 @@ impl Writer<'_> {
     fn connectors(&mut self) {
         let down = 1.05 - self.column_height();
         if self.has(F::Spring) {
-            let at = self.place(2.0);
+            let at = self.random_point(2.0);
             self.push(
                 "connectors",
                 json!({"name": "spring", "from": {"link": "column", "at": [0.5, 0.3, round(0.4 + down)]},
@@ -396,7 +396,7 @@ impl Writer<'_> {
             );
         }
         if self.has(F::GasSpring) {
-            let (from, to) = (self.place(1.5), self.place(1.5));
+            let (from, to) = (self.random_point(1.5), self.random_point(1.5));
             self.push(
                 "connectors",
                 json!({"name": "gas", "from": {"link": "boom", "at": [round(from[0] + 1.0), -0.3, 0.1]},

@@ -101,11 +101,11 @@ fn split_boom(tree: &Tree, rng: &mut Rng) -> Option<Second> {
     let [inner, outer] = halves;
     links[at]["beam"] = inner;
     links.insert(at + 1, json!({"name": "front", "beam": outer}));
-    let moved = |place: &mut Tree| {
-        let x = place["at"][0].as_f64().unwrap_or(0.0);
-        if place["link"] == "boom" && x >= cut {
-            place["link"] = json!("front");
-            place["at"][0] = json!(x - cut);
+    let moved = |attached: &mut Tree| {
+        let x = attached["at"][0].as_f64().unwrap_or(0.0);
+        if attached["link"] == "boom" && x >= cut {
+            attached["link"] = json!("front");
+            attached["at"][0] = json!(x - cut);
         }
     };
     for list in ["loads", "connectors", "cylinders", "points"] {
@@ -330,9 +330,9 @@ fn planes_exchanged(tree: &Tree, _: &mut Rng) -> Option<Second> {
     arm["placement"] = json!({"transform": {"rotation": {"x": "-90 deg"}}});
     for list in ["loads", "connectors", "cylinders", "points"] {
         let Some(entries) = second.get_mut(list) else { continue };
-        for_each_place(entries, &mut |place| {
-            if place["link"] == "boom" {
-                place["at"] = json!(quarter(&numbers(&place["at"])));
+        for_each_place(entries, &mut |attached| {
+            if attached["link"] == "boom" {
+                attached["at"] = json!(quarter(&numbers(&attached["at"])));
             }
         });
     }
@@ -485,9 +485,9 @@ fn rope_link_by_link(tree: &Tree, _: &mut Rng) -> Option<Second> {
     let links = second["links"].as_array_mut()?;
     let at = links.iter().position(|link| link["name"] == "rope")?;
     let rope = links.remove(at);
-    let (count, own) = (rope["rope"]["links"].as_u64()?, &rope["rope"]);
-    let length = own["length"].as_f64()? / count as f64;
-    let mass = own["mass_per_length"].as_f64()? * length;
+    let (count, fields) = (rope["rope"]["links"].as_u64()?, &rope["rope"]);
+    let length = fields["length"].as_f64()? / count as f64;
+    let mass = fields["mass_per_length"].as_f64()? * length;
     let mut made = Vec::new();
     for k in 1..=count {
         let along = json!({"transform": {"translation": [length, 0, 0]}});
@@ -500,7 +500,7 @@ fn rope_link_by_link(tree: &Tree, _: &mut Rng) -> Option<Second> {
     links.splice(at..at, made);
     let hook = links.iter_mut().find(|link| link["name"] == "hook")?;
     hook["placement"] = json!({"transform": {"translation": [length, 0, 0]}});
-    if let Some(damping) = own["damping"].as_f64() {
+    if let Some(damping) = fields["damping"].as_f64() {
         for k in 1..=count {
             second["damping"][format!("rope_{k}_psi")] = json!(damping);
             second["damping"][format!("rope_{k}_y_theta")] = json!(damping);

@@ -29,7 +29,7 @@ pub const ALL: [(&str, Law); 7] = [
 ///
 /// # Errors
 /// The crane has mistakes or does not stand.
-pub fn check(law: Law, tree: &Tree, seed: u64) -> Result<Option<Result<(), String>>, String> {
+pub fn check_law(law: Law, tree: &Tree, seed: u64) -> Result<Option<Result<(), String>>, String> {
     let crane = live(&source(tree))?;
     let q = equilibrium(&crane)?;
     Ok(law(&crane, &q, &mut Rng::with_seed(seed)))
@@ -215,8 +215,8 @@ fn lanes(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Result<(), St
     let states: Vec<_> = (0..8).map(|_| state(crane, pose, rng)).collect();
     let t = states[0].0;
     let parameters = crane.parameters().to_vec();
-    let own: Vec<&[f64]> = (0..crane.lanes()).map(|_| parameters.as_slice()).collect();
-    let mut block = crane.block(&own).ok()?;
+    let of_lanes: Vec<&[f64]> = (0..crane.lanes()).map(|_| parameters.as_slice()).collect();
+    let mut block = crane.block(&of_lanes).ok()?;
     let width = crane.lanes() / 8;
     let pack = |of: fn(&State) -> &Vec<f64>| {
         let vector = |i: usize| f64x8::from(std::array::from_fn::<f64, 8, _>(|lane| of(&states[lane])[i]));

@@ -58,7 +58,7 @@ fn main() -> ExitCode {
                         break;
                     }
                     let case = crane::crane(seed);
-                    let outcome = check::check(&case, options.only.as_deref(), options.checks, !options.no_shrink);
+                    let outcome = check::check_case(&case, options.only.as_deref(), options.checks, !options.no_shrink);
                     for failure in &outcome.failures {
                         println!("\nseed {seed}: {}", failure.check);
                         for line in failure.what.iter().take(8) {

@@ -19,7 +19,7 @@ const RATIO: f64 = 0.45;
 const SMALL: [(&str, f64); 2] = [("rest", 1e-8), ("modes", 1e-4)];
 
 /// What does not converge with order 2; `None` for a crane without divided beams, or with beams that cannot be divided again.
-pub fn check(tree: &Tree) -> Option<Vec<String>> {
+pub fn check_meshes(tree: &Tree) -> Option<Vec<String>> {
     let beams = tree["links"].as_array()?.iter().filter(|link| link["beam"]["sections"].is_u64()).count();
     // The paper's joint is of order 1.
     if beams == 0 || tree["links"].as_array()?.iter().any(|link| link["beam"]["section_joint"] == "paper") {
@@ -90,9 +90,9 @@ fn move_to_borders(tree: &mut Tree) {
         let section = length / f64::from(SECTIONS[0]);
         *x = json!((x_now / section).round() * section);
     };
-    for_each_place(tree, &mut |place| {
-        let link = place["link"].clone();
-        moved(&link, &mut place["at"][0]);
+    for_each_place(tree, &mut |attached| {
+        let link = attached["link"].clone();
+        moved(&link, &mut attached["at"][0]);
     });
     for cylinder in tree["cylinders"].as_array_mut().into_iter().flatten() {
         let link = cylinder["foot"]["link"].clone();

@@ -124,8 +124,8 @@ pub fn differences(
     }
     let mut lines = Vec::new();
     for (key, a) in first {
-        let (group, own) = key.split_once(' ').unwrap_or(("", key));
-        let Some(wanted) = name(own) else { continue };
+        let (group, column) = key.split_once(' ').unwrap_or(("", key));
+        let Some(wanted) = name(column) else { continue };
         let Some(b) = second.get(&format!("{group} {wanted}")) else {
             lines.push(format!("{key} has no counterpart {wanted}"));
             continue;

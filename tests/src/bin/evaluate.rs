@@ -20,7 +20,7 @@ use serde_json::json;
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    match run(&words) {
+    match evaluate_words(&words) {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
             eprintln!("evaluate: {message}");
@@ -29,7 +29,7 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(words: &[&str]) -> Result<(), String> {
+fn evaluate_words(words: &[&str]) -> Result<(), String> {
     match words {
         ["list"] => {
             for entry in registry::all() {

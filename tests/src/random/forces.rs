@@ -138,8 +138,8 @@ impl Writer {
         self.line("couplings:");
         for (name, coordinate, follows) in [("gear", last, second), ("stage", first, second)] {
             let (ratio, offset) = (self.number(2.0), self.number(0.3));
-            let own = format!("coordinate: {coordinate}, follows: {follows}, ratio: {ratio}, offset: {offset}");
-            self.line(&format!("  - {{name: {name}, {own}, stiffness: 70, damping: 4}}"));
+            let law = format!("coordinate: {coordinate}, follows: {follows}, ratio: {ratio}, offset: {offset}");
+            self.line(&format!("  - {{name: {name}, {law}, stiffness: 70, damping: 4}}"));
         }
     }
 

@@ -68,8 +68,8 @@ where
     let states = &states::near_guess::<N>(crane.description());
     let mut kernels = all::<N, C>(spec);
     kernels.extend(TripleSum::read(spec).map(|sum| {
-        let room = sum.room::<N>();
-        Kernel::new("triple_sum", 1, states, room, move |s: &State<N>, out| sum.evaluate(&crane, &s.q, &s.v, out))
+        let sums = sum.workspace::<N>();
+        Kernel::new("triple_sum", 1, states, sums, move |s: &State<N>, out| sum.evaluate(&crane, &s.q, &s.v, out))
     }));
     kernels
 }

@@ -22,7 +22,7 @@ use crane_bench::kernels;
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    match run(&words) {
+    match run_command(&words) {
         Ok(bytes) => {
             // A reader that has seen enough may close the pipe.
             let _ = std::io::stdout().write_all(&bytes);
@@ -35,7 +35,7 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(words: &[&str]) -> Result<Vec<u8>, String> {
+fn run_command(words: &[&str]) -> Result<Vec<u8>, String> {
     match words {
         ["coordinates"] => Ok(lines(cranes::all().iter().map(|entry| entry.coordinates.to_string()))),
         ["step"] => Ok(lines([kernels::STEP.to_string()].into_iter())),

@@ -45,7 +45,7 @@ impl TripleSum {
 
     /// Zeros of the right size.
     #[must_use]
-    pub fn room<const N: usize>(&self) -> Sums<N> {
+    pub fn workspace<const N: usize>(&self) -> Sums<N> {
         let counts = self.bodies.iter().map(|body| body.degrees_of_freedom);
         Sums {
             mass_matrix: SMatrix::zeros(),

@@ -17,7 +17,7 @@ fn main() -> ExitCode {
         eprintln!("book DOCS SITE: name the folder of the manual and the one for the site");
         return ExitCode::from(2);
     };
-    match build(docs, &site) {
+    match build_site(docs, &site) {
         Ok(pages) => {
             println!("{pages} pages, every link leads to something");
             ExitCode::SUCCESS
@@ -30,7 +30,7 @@ fn main() -> ExitCode {
 }
 
 /// Builds the site; returns the number of its pages.
-fn build(docs: PathBuf, site: &Path) -> Result<usize, String> {
+fn build_site(docs: PathBuf, site: &Path) -> Result<usize, String> {
     // Files of an earlier build would hide a missing page.
     if site.exists() {
         fs::remove_dir_all(site).map_err(|error| format!("{}: {error}", site.display()))?;
@@ -38,5 +38,5 @@ fn build(docs: PathBuf, site: &Path) -> Result<usize, String> {
     let mut book = MDBook::load(docs).map_err(|error| format!("{error:?}"))?;
     site.clone_into(&mut book.config.build.build_dir);
     book.build().map_err(|error| format!("{error:?}"))?;
-    site::check(site)
+    site::check_site(site)
 }

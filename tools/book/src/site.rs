@@ -8,21 +8,21 @@ use std::path::{Component, Path, PathBuf};
 type Pages = BTreeMap<PathBuf, String>;
 
 /// Returns the number of pages, or all broken links as an error.
-pub fn check(site: &Path) -> Result<usize, String> {
+pub fn check_site(site: &Path) -> Result<usize, String> {
     let (mut pages, mut files) = (Pages::new(), BTreeSet::new());
-    collect(site, Path::new(""), &mut pages, &mut files)?;
-    let problems: Vec<String> = pages.iter().flat_map(|(page, text)| problems(page, text, &pages, &files)).collect();
+    collect_pages(site, Path::new(""), &mut pages, &mut files)?;
+    let problems: Vec<String> = pages.iter().flat_map(|(page, text)| problems_of_page(page, text, &pages, &files)).collect();
     if problems.is_empty() { Ok(pages.len()) } else { Err(problems.join("\n")) }
 }
 
 /// All files of a folder, and the text of those that are pages.
-fn collect(site: &Path, folder: &Path, pages: &mut Pages, files: &mut BTreeSet<PathBuf>) -> Result<(), String> {
+fn collect_pages(site: &Path, folder: &Path, pages: &mut Pages, files: &mut BTreeSet<PathBuf>) -> Result<(), String> {
     let failed = |error: std::io::Error| format!("{}: {error}", site.join(folder).display());
     for entry in fs::read_dir(site.join(folder)).map_err(failed)? {
         let entry = entry.map_err(failed)?;
         let path = folder.join(entry.file_name());
         if entry.path().is_dir() {
-            collect(site, &path, pages, files)?;
+            collect_pages(site, &path, pages, files)?;
         } else {
             if path.extension().is_some_and(|extension| extension == "html") {
                 pages.insert(path.clone(), fs::read_to_string(entry.path()).map_err(failed)?);
@@ -34,21 +34,21 @@ fn collect(site: &Path, folder: &Path, pages: &mut Pages, files: &mut BTreeSet<P
 }
 
 /// Broken links of a page.
-fn problems(page: &Path, text: &str, pages: &Pages, files: &BTreeSet<PathBuf>) -> Vec<String> {
+fn problems_of_page(page: &Path, text: &str, pages: &Pages, files: &BTreeSet<PathBuf>) -> Vec<String> {
     // Its links are relative to the address of the site, which is not known here.
     if page.file_name().is_some_and(|name| name == "404.html") {
         return Vec::new();
     }
-    let links = ["href", "src"].into_iter().flat_map(|attribute| values(text, attribute));
+    let links = ["href", "src"].into_iter().flat_map(|attribute| attribute_values(text, attribute));
     let nowhere = links.filter(|link| !is_outside(link)).filter_map(|link| {
         let (path, anchor) = link.split_once('#').map_or((link, None), |(path, anchor)| (path, Some(anchor)));
-        let target = if path.is_empty() { page.to_owned() } else { resolve(page, path) };
+        let target = if path.is_empty() { page.to_owned() } else { resolve_link(page, path) };
         if !files.contains(&target) {
             return Some(format!("{}: `{link}`: the site has no {}", page.display(), target.display()));
         }
         let anchor = anchor.filter(|anchor| !anchor.is_empty())?;
         let known = pages.get(&target)?;
-        let missing = !values(known, "id").any(|id| id == anchor);
+        let missing = !attribute_values(known, "id").any(|id| id == anchor);
         missing.then(|| format!("{}: `{link}`: {} has no such heading", page.display(), target.display()))
     });
     nowhere.collect()
@@ -60,7 +60,7 @@ fn is_outside(link: &str) -> bool {
 }
 
 /// The path within the site of a link on a page.
-fn resolve(page: &Path, link: &str) -> PathBuf {
+fn resolve_link(page: &Path, link: &str) -> PathBuf {
     let mut path = page.parent().unwrap_or(Path::new("")).to_owned();
     for component in Path::new(link).components() {
         match component {
@@ -73,7 +73,7 @@ fn resolve(page: &Path, link: &str) -> PathBuf {
 }
 
 /// Values of an attribute.
-fn values<'a>(text: &'a str, attribute: &str) -> impl Iterator<Item = &'a str> {
+fn attribute_values<'a>(text: &'a str, attribute: &str) -> impl Iterator<Item = &'a str> {
     let pattern = format!(" {attribute}=\"");
     let starts: Vec<usize> = text.match_indices(&pattern).map(|(at, found)| at + found.len()).collect();
     starts.into_iter().filter_map(|start| text[start..].split('"').next())
@@ -90,10 +90,10 @@ mod tests {
             .map(|(path, text)| (PathBuf::from(path), text.to_owned()))
             .into();
         let files = pages.keys().cloned().collect();
-        let found = problems(Path::new("m/a.html"), page, &pages, &files);
+        let found = problems_of_page(Path::new("m/a.html"), page, &pages, &files);
         let expected = ["`../b.html#two`: b.html has no such heading", "`c.svg`: the site has no m/c.svg"];
         assert_eq!(found, expected.map(|problem| format!("m/a.html: {problem}")));
         let outside = "<a href=\"https://example.org/x\"></a>";
-        assert_eq!(problems(Path::new("m/a.html"), outside, &pages, &files), Vec::<String>::new());
+        assert_eq!(problems_of_page(Path::new("m/a.html"), outside, &pages, &files), Vec::<String>::new());
     }
 }

@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// Checks specs: confirms that they are valid, or reports what is wrong with each.
-pub fn check(options: &Check, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+pub fn check_specs(options: &Check, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     match options.format {
         Format::Table => as_text(options, registry, out),
         Format::Json => as_json(options, registry, out),
@@ -58,7 +58,7 @@ fn as_json(Check { specs, strict, .. }: &Check, registry: &Registry, out: &mut d
     let whole = if let [_] = objects[..] { objects.remove(0) } else { objects.into() };
     writeln!(out, "{whole:#}")?;
     // The JSON already contains what is wrong.
-    if all_valid { Ok(()) } else { Err(Problem::Elsewhere(FAILED)) }
+    if all_valid { Ok(()) } else { Err(Problem::AlreadyReported { exit_code: FAILED }) }
 }
 
 fn json(valid: bool, chain: Option<&Chain>, found: &Diagnostics) -> Value {

@@ -53,7 +53,7 @@ pub fn execute(mut arguments: Arguments, mut registry: Registry, out: &mut dyn W
         }
         None => Ok(help::grouped(Arguments::command()).print_help()?),
         Some(Action::Compare(options)) => compare::compare_pair(options, registry, out),
-        Some(Action::Run(options)) => run::run(options, registry, out),
+        Some(Action::Run(options)) => run::run_crane(options, registry, out),
         Some(Action::Statics(options)) => statics::statics(&options.analysis, registry, out),
         Some(Action::Simulate(options)) => match &options.ensemble.table {
             Some(table) => ensemble::simulate(options, table, registry, out),
@@ -68,7 +68,7 @@ pub fn execute(mut arguments: Arguments, mut registry: Registry, out: &mut dyn W
         Some(Action::Info(options)) => info::info(options, registry, out),
         Some(Action::Eval(options)) => eval::eval(options, registry, out),
         Some(Action::New(options)) => new::new(options, registry, out),
-        Some(Action::Check(options)) => check::check(options, registry, out),
+        Some(Action::Check(options)) => check::check_specs(options, registry, out),
         Some(Action::Explain(options)) => explain::explain(options, registry, out),
         Some(Action::Example(options)) => example::example(options, registry, out),
         Some(Action::Generate(options)) => generate::generate(options, registry, out),

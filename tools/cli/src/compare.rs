@@ -84,9 +84,9 @@ pub fn compare_pair(options: &ComparePair, registry: &Registry, out: &mut dyn Wr
     let nobody = inputs.iter().find(|setting| !cranes.iter().any(|crane| has(crane.as_ref(), setting)));
     for crane in &mut cranes {
         // An input that neither crane has is a mistake, which the first one reports.
-        let own = inputs.iter().filter(|setting| has(crane.as_ref(), setting)).chain(nobody).cloned();
-        let own: Vec<String> = own.collect();
-        set_inputs(crane.as_mut(), &own)?;
+        let settings = inputs.iter().filter(|setting| has(crane.as_ref(), setting)).chain(nobody).cloned();
+        let settings: Vec<String> = settings.collect();
+        set_inputs(crane.as_mut(), &settings)?;
     }
     let twins = *first == format!("{second}_rigid");
     let labels = if twins { [RIGID, FLEXIBLE] } else { [first.as_str(), second.as_str()] };
@@ -143,7 +143,7 @@ fn side_by_side(
     }
 
     let page = "report.html";
-    page::write(&folder.join(page), registry, (&cases, options.limits), &settings, &runs)?;
+    page::write_page(&folder.join(page), registry, (&cases, options.limits), &settings, &runs)?;
     written.push(page.to_owned());
 
     let labelled = [(first, one_run), (second, other_run)];

@@ -62,17 +62,17 @@ pub fn execute(choice: &Choice, registry: &Registry) -> Outcome<()> {
 /// # Errors
 /// Cargo is missing or fails, or files cannot be written; the program reports its own errors.
 pub fn run_with(library: &Library, package: &str, named: &OsStr, cranes: &[(String, String)]) -> Outcome<()> {
-    let mut place = cranes.first().map(|(name, _)| OsString::from(name));
+    let mut compiled_name = cranes.first().map(|(name, _)| OsString::from(name));
     let arguments: Vec<OsString> = env::args_os()
         .skip(1)
         .filter(|argument| argument != "--compile")
-        .map(|argument| match place.take_if(|_| argument == *named) {
+        .map(|argument| match compiled_name.take_if(|_| argument == *named) {
             Some(name) => name,
             None => argument,
         })
         .collect();
     let package = Package { product: Product::Program, library, name: package, cranes };
-    package::run(&package, |command| {
+    package::run_package(&package, |command| {
         command.args(&arguments).env(AS_TYPED, typed()).env(files::READ_BEFORE, files::read_before());
     })
 }

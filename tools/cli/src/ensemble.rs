@@ -61,15 +61,15 @@ pub fn simulate(options: &Simulate, given: &Path, registry: &Registry, out: &mut
     let (journal, records) =
         Journal::open(&path.with_extension("part.csv"), &request(crane, &settings, &table), *restart)?;
     let header = header(description, &table);
-    let kept = kept(&records, table.rows.len(), header.len());
+    let kept = kept_rows(&records, table.rows.len(), header.len());
     let fresh: Vec<usize> = (0..kept.len()).filter(|row| kept[*row].is_none()).collect();
     let bar = batches(kept.len());
     bar.inc((kept.len() - fresh.len()) as u64);
     let state = Mutex::new((kept, Ok(())));
     let parameters = table.parameters(crane);
     let cases: Vec<Case> = fresh.iter().map(|row| Case::from(parameters[*row].clone())).collect();
-    let done = |place: usize, outcome: &Row| {
-        let row = fresh[place];
+    let done = |index: usize, outcome: &Row| {
+        let row = fresh[index];
         let fields = fields(description, &table.rows[row], outcome);
         let mut state = state.lock().unwrap_or_else(PoisonError::into_inner);
         if state.1.is_ok() {
@@ -80,7 +80,7 @@ pub fn simulate(options: &Simulate, given: &Path, registry: &Registry, out: &mut
     };
     let failed = |_| state.lock().unwrap_or_else(PoisonError::into_inner).1.is_err();
     let execution = Execution { threads, done: &done, cancelled: &failed };
-    let simulated: f64 = ensemble::run(crane, &cases, &settings, &execution).iter().map(Row::time).sum();
+    let simulated: f64 = ensemble::run_ensemble(crane, &cases, &settings, &execution).iter().map(Row::time).sum();
     bar.finish_and_clear();
     let wall = begin.elapsed().as_secs_f64();
     let (rows, written) = state.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -129,14 +129,14 @@ fn request(crane: &dyn DynCrane, settings: &dynamics::Settings, table: &Paramete
 }
 
 /// Fields of the rows that an interrupted command completed; `width`: how many a row has.
-fn kept(records: &[Vec<String>], rows: usize, width: usize) -> Vec<Option<Vec<String>>> {
+fn kept_rows(records: &[Vec<String>], rows: usize, width: usize) -> Vec<Option<Vec<String>>> {
     let mut kept = vec![None; rows];
     for record in records {
         if let [row, fields @ ..] = record.as_slice()
-            && let Some(place) = row.parse().ok().and_then(|row: usize| kept.get_mut(row))
+            && let Some(slot) = row.parse().ok().and_then(|row: usize| kept.get_mut(row))
             && fields.len() == width
         {
-            *place = Some(fields.to_vec());
+            *slot = Some(fields.to_vec());
         }
     }
     kept
@@ -169,10 +169,10 @@ fn settings(
     if let Some((crane, from)) = table.rows.iter().rev().find_map(rests) {
         settings.step = settings.step.min(safe_for(crane.as_ref(), &from)?.step);
     }
-    let own = base.description().step;
+    let crane_step = base.description().step;
     let (step, from) = match timing.step {
         Some(Step::Seconds(step)) => (step, "`--step`"),
-        None if own <= settings.step => (own, "the spec; safe for the first and last row"),
+        None if crane_step <= settings.step => (crane_step, "the spec; safe for the first and last row"),
         _ => (settings.step, "the largest step that is safe for the first and last row"),
     };
     Ok((dynamics::Settings { step, audit: false, ..settings }, from))

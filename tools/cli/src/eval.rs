@@ -47,7 +47,7 @@ pub fn eval(options: &Eval, registry: &Registry, out: &mut dyn Write) -> Outcome
         }
     };
     match &options.file {
-        Some(path) => files::write(path, |file| file.write_all(&bytes)),
+        Some(path) => files::write_file(path, |file| file.write_all(&bytes)),
         None => Ok(out.write_all(&bytes)?),
     }
 }
@@ -62,8 +62,8 @@ fn states(options: &Eval, crane: &LiveCrane) -> Outcome<States> {
     let description = crane.description();
     let size = description.coordinates.len();
     let guess = || (crane as &dyn DynCrane).guess();
-    let q = given("q", options.q.as_deref(), description)?.unwrap_or_else(|| vec![guess()]);
-    let mut v = given("v", options.v.as_deref(), description)?.unwrap_or_else(|| vec![vec![0.0; size]]);
+    let q = read_rows_given("q", options.q.as_deref(), description)?.unwrap_or_else(|| vec![guess()]);
+    let mut v = read_rows_given("v", options.v.as_deref(), description)?.unwrap_or_else(|| vec![vec![0.0; size]]);
     if v.len() == 1 {
         v.resize(q.len(), v[0].clone());
     }
@@ -77,7 +77,7 @@ fn states(options: &Eval, crane: &LiveCrane) -> Outcome<States> {
 }
 
 /// Numbers given inline or in a file, one per coordinate of each state.
-fn given(name: &str, given: Option<&str>, description: &Description) -> Outcome<Option<Vec<Vec<f64>>>> {
+fn read_rows_given(name: &str, given: Option<&str>, description: &Description) -> Outcome<Option<Vec<Vec<f64>>>> {
     let Some(given) = given else { return Ok(None) };
     let numbers = parse(given).map_or_else(|| parse_file(name, given), Ok)?;
     let wanted = description.coordinates.len();
@@ -93,7 +93,7 @@ fn given(name: &str, given: Option<&str>, description: &Description) -> Outcome<
 }
 
 fn parse_file(name: &str, path: &str) -> Outcome<Vec<f64>> {
-    let text = files::read(Path::new(path)).and_then(|bytes| String::from_utf8(bytes).map_err(io::Error::other));
+    let text = files::read_file(Path::new(path)).and_then(|bytes| String::from_utf8(bytes).map_err(io::Error::other));
     let text = text.map_err(|error| {
         Problem::usage(
             format!("`--{name} {path}` is neither a list of numbers nor a file: {error}"),
@@ -122,8 +122,8 @@ fn arrays(options: &Eval, crane: &LiveCrane, states: &States) -> Vec<Array> {
         Array { name: name.into(), shape, data }
     };
     let mut arrays = vec![over("q", vec![size], states.q.concat()), over("v", vec![size], states.v.concat())];
-    for (place, quantity) in options.quantities.iter().enumerate() {
-        if options.quantities[..place].contains(quantity) {
+    for (earlier, quantity) in options.quantities.iter().enumerate() {
+        if options.quantities[..earlier].contains(quantity) {
             continue;
         }
         let mut shape = Vec::new();

@@ -80,7 +80,7 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
             let code = screen::working(&chain, || in_c(options, &chain, &parameters, &header))?;
             vec![(file.with_file_name(header), code.header), (file, code.source)]
         }
-        Language::Fmu => return fmu::write(options, &file, chain, &spec, &parameters, out),
+        Language::Fmu => return fmu::write_unit(options, &file, chain, &spec, &parameters, out),
     };
     for (file, _) in &texts {
         files::check_place(file)?;
@@ -137,8 +137,8 @@ pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
     let Some(file) = &options.spec else {
         out.write_all(spec.as_bytes())?;
         // To standard error, not into the spec.
-        for said in &left_out {
-            screen::remark(said);
+        for remark in &left_out {
+            screen::remark(remark);
         }
         return Ok(());
     };
@@ -148,8 +148,8 @@ pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
     let (Chain { name, bodies, coordinates, .. }, _) = spec_file::load(file, false)?;
     let (file, bodies, coordinates) = (file.display(), bodies.len(), coordinates.len());
     writeln!(out, "{name}: valid; {bodies} bodies, {coordinates} coordinates; next: `crane run {file}`")?;
-    for said in &left_out {
-        writeln!(out, "{said}")?;
+    for remark in &left_out {
+        writeln!(out, "{remark}")?;
     }
     Ok(writeln!(out, "joints without `drives:` swing freely: add some where a joint must not fall")?)
 }

@@ -28,9 +28,9 @@ pub const PALETTE: [RGBColor; 6] = [BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY
 pub fn shade(part: f64) -> RGBColor {
     const STOPS: [[f64; 3]; 5] =
         [[68.0, 1.0, 84.0], [59.0, 82.0, 139.0], [33.0, 145.0, 140.0], [94.0, 201.0, 98.0], [253.0, 231.0, 37.0]];
-    let place = part.clamp(0.0, 1.0) * (STOPS.len() - 1) as f64;
-    let below = (place as usize).min(STOPS.len() - 2);
-    let between = place - below as f64;
+    let position = part.clamp(0.0, 1.0) * (STOPS.len() - 1) as f64;
+    let below = (position as usize).min(STOPS.len() - 2);
+    let between = position - below as f64;
     let [red, green, blue] =
         [0, 1, 2].map(|of| (STOPS[below][of] + between * (STOPS[below + 1][of] - STOPS[below][of])).round() as u8);
     RGBColor(red, green, blue)
@@ -163,8 +163,8 @@ pub fn font(size: f64) -> TextStyle<'static> {
 /// Lines of a title, none longer than a width.
 pub fn folded(title: &[String], width: u32) -> Vec<String> {
     let mut lines = Vec::new();
-    for (place, text) in title.iter().enumerate() {
-        let letter = LETTER * if place == 0 { TITLE } else { SMALL };
+    for (index, text) in title.iter().enumerate() {
+        let letter = LETTER * if index == 0 { TITLE } else { SMALL };
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive number")]
         let most = (f64::from(width) / letter) as usize;
         lines.extend(wrapped(text, most.max(1)));

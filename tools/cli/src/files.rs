@@ -66,31 +66,31 @@ pub fn folder(path: &Path) -> Outcome<()> {
 ///
 /// # Errors
 /// The file system refuses, or the command has read the file.
-pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Outcome<()> {
+pub fn write_file(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Outcome<()> {
     check_place(path)?;
     if let Some(parent) = path.parent().filter(|parent| !parent.as_os_str().is_empty()) {
         folder(parent)?;
     }
-    files::write(path, content).map_err(|error| Problem::file(path, &error))
+    files::write_file(path, content).map_err(|error| Problem::file(path, &error))
 }
 
 /// Reads a file, unless it is too large or not a file.
 ///
 /// # Errors
 /// The file system refuses, or the file is too large.
-pub fn read(path: &Path) -> io::Result<Vec<u8>> {
+pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
     /// Many times the results of a long run.
     const MOST_BYTES: usize = 512 << 20;
     remember(path);
-    files::read(path, MOST_BYTES)
+    files::read_file(path, MOST_BYTES)
 }
 
 /// A CSV file with a header.
 ///
 /// # Errors
-/// Those of [`read`].
+/// Those of [`read_file`].
 pub fn csv(path: &Path) -> Result<csv::Reader<io::Cursor<Vec<u8>>>, csv::Error> {
-    Ok(csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(io::Cursor::new(read(path)?)))
+    Ok(csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(io::Cursor::new(read_file(path)?)))
 }
 
 /// Writes text.
@@ -98,7 +98,7 @@ pub fn csv(path: &Path) -> Result<csv::Reader<io::Cursor<Vec<u8>>>, csv::Error> 
 /// # Errors
 /// The file system refuses.
 pub fn write_text(path: &Path, text: &str) -> Outcome<()> {
-    write(path, |file| file.write_all(text.as_bytes()))
+    write_file(path, |file| file.write_all(text.as_bytes()))
 }
 
 /// Writes a table as CSV, units in the header: `boom_psi [rad]`. Only finite numbers: anything else is an error.
@@ -129,7 +129,7 @@ pub fn write_fields(
         csv::ErrorKind::Io(reason) => reason,
         other => io::Error::other(format!("{other:?}")),
     };
-    write(path, |file| {
+    write_file(path, |file| {
         let mut csv = csv::Writer::from_writer(file);
         csv.write_record(header).map_err(reason)?;
         for row in rows {

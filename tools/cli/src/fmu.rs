@@ -50,7 +50,7 @@ impl System {
 }
 
 /// Writes a crane as a functional mock-up unit.
-pub fn write(
+pub fn write_unit(
     options: &Export,
     file: &Path,
     chain: Chain,
@@ -60,21 +60,21 @@ pub fn write(
 ) -> Outcome<()> {
     let is_compiled = options.crane.compile;
     let libraries = match options.libraries.as_slice() {
-        [] if is_compiled => vec![read(&compiled::unit(&chain, spec)?)?],
-        [] => vec![read(&beside_the_command()?)?],
+        [] if is_compiled => vec![read_library(&compiled::unit(&chain, spec)?)?],
+        [] => vec![read_library(&beside_the_command()?)?],
         [..] if is_compiled => {
             return Err(Problem::usage(
                 "`--library` names a library that is ready made, `--compile` makes one for this computer",
                 "leave one of them out",
             ));
         }
-        named => named.iter().map(|path| read(path)).collect::<Outcome<_>>()?,
+        named => named.iter().map(|path| read_library(path)).collect::<Outcome<_>>()?,
     };
     let mut crane = LiveCrane::new(chain);
     crane.set_parameters(parameters).map_err(|refused| Problem::usage(refused.to_string(), ""))?;
     let content = pack(&crane, spec, &libraries, options.fmi)
         .map_err(|error| Problem::failed(format!("{}: {error}", file.display()), "make its libraries smaller"))?;
-    files::write(file, |file| file.write_all(&content))?;
+    files::write_file(file, |file| file.write_all(&content))?;
     let systems: Vec<String> = libraries.iter().map(|library| library.system.folder(options.fmi)).collect();
     let (file, size) = (file.display(), content.len() as f64 / 1e6);
     Ok(writeln!(
@@ -113,12 +113,12 @@ fn pack(crane: &LiveCrane, spec: &str, libraries: &[Library], version: Fmi) -> R
     Ok(archive.finish()?.into_inner())
 }
 
-fn read(path: &Path) -> Outcome<Library> {
+fn read_library(path: &Path) -> Outcome<Library> {
     let ending = path.extension().unwrap_or_default();
     let system = SYSTEMS.iter().find(|system| ending == system.suffix).ok_or_else(|| {
         Problem::usage(format!("{} is not a shared library", path.display()), "give a .so, .dll or .dylib file")
     })?;
-    let content = files::read(path).map_err(|error| Problem::file(path, &error))?;
+    let content = files::read_file(path).map_err(|error| Problem::file(path, &error))?;
     Ok(Library { system, content })
 }
 
@@ -128,8 +128,8 @@ fn beside_the_command() -> Outcome<PathBuf> {
     let command =
         current_exe().map_err(|error| Problem::failed(format!("cannot find the path of this command: {error}"), ""))?;
     let folder = command.parent().unwrap_or(Path::new("."));
-    let place = folder.join(&name);
-    place.is_file().then_some(place).ok_or_else(|| {
+    let path = folder.join(&name);
+    path.is_file().then_some(path).ok_or_else(|| {
         let title = format!("there is no {name} in {}", folder.display());
         Problem::failed(title, "build it with `cargo build --release -p crane-fmu-library` and keep it next to the command, or name it with `--library FILE`")
     })

@@ -17,13 +17,13 @@ use crate::{
 
 /// Writes pose, A, K and D, squares of the undamped angular frequencies and the shapes, `xᵀ A x = 1`, as JSON or as an archive for
 /// `numpy.load`. Rows and columns are the coordinates that can move: not those that rigid drives prescribe.
-pub fn write(file: &Path, description: &Description, q: &[f64], motions: &SmallMotions) -> Outcome<()> {
+pub fn write_linearisation(file: &Path, description: &Description, q: &[f64], motions: &SmallMotions) -> Outcome<()> {
     let arrays = arrays(q, motions)?;
     match file.extension().and_then(|end| end.to_str()) {
         Some("npz") => {
             let bytes =
                 npz(&arrays).map_err(|error| Problem::failed(format!("cannot make an archive: {error}"), ""))?;
-            files::write(file, |out| out.write_all(&bytes))
+            files::write_file(file, |out| out.write_all(&bytes))
         }
         Some("json") => files::write_text(file, &format!("{:#}\n", json(description, motions, &arrays))),
         _ => Err(Problem::usage(
@@ -43,7 +43,7 @@ fn arrays(q: &[f64], motions: &SmallMotions) -> Outcome<Vec<Array>> {
     };
     let modes = undamped(motions)?;
     let of_unknowns = |shape: &crane_model::nalgebra::DVector<f64>| -> Vec<f64> {
-        motions.unknowns.iter().map(|place| shape[*place]).collect()
+        motions.unknowns.iter().map(|index| shape[*index]).collect()
     };
     Ok(vec![
         Array { name: "pose".into(), shape: vec![q.len()], data: q.to_vec() },
@@ -64,8 +64,8 @@ fn arrays(q: &[f64], motions: &SmallMotions) -> Outcome<Vec<Array>> {
 }
 
 fn json(description: &Description, motions: &SmallMotions, arrays: &[Array]) -> Value {
-    let name = |place: &usize| description.coordinates[*place].name.as_str();
-    let unit = |place: &usize| description.coordinates[*place].kind.unit();
+    let name = |index: &usize| description.coordinates[*index].name.as_str();
+    let unit = |index: &usize| description.coordinates[*index].kind.unit();
     let mut object = Map::new();
     object.insert("crane".to_owned(), description.name.as_str().into());
     object.insert("spec_hash".to_owned(), description.spec_hash.as_str().into());

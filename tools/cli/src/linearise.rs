@@ -68,7 +68,7 @@ pub fn linearise(options: &Linearise, registry: &Registry, out: &mut dyn Write) 
     let small = SmallMotions::about_motion(&crane, motion.t, [&motion.q, &motion.v, &motion.a]);
     let found = damped_with_shapes(&small)?;
     if let Some(file) = &options.file {
-        write(file, &arrays(&motion, &small, &found))?;
+        write_archive(file, &arrays(&motion, &small, &found))?;
     }
     let mut report = Report::default();
     report.fact("crane", description.name.as_str(), "");
@@ -272,9 +272,9 @@ fn array(name: &'static str, matrix: &DMatrix<f64>) -> Array {
 
 /// What programs get besides tables: names and units of the rows, matrices, and shapes as pairs of real and imaginary parts.
 fn values(description: &Description, small: &SmallMotions, found: &[Mode]) -> Vec<(&'static str, Value)> {
-    let info = |place: &usize| &description.coordinates[*place];
-    let names: Value = small.unknowns.iter().map(|place| info(place).name.as_str()).collect();
-    let units: Value = small.unknowns.iter().map(|place| info(place).kind.unit()).collect();
+    let info = |index: &usize| &description.coordinates[*index];
+    let names: Value = small.unknowns.iter().map(|index| info(index).name.as_str()).collect();
+    let units: Value = small.unknowns.iter().map(|index| info(index).kind.unit()).collect();
     let shape = |shape: &ComplexShape| -> Value { shape.iter().map(|x| Value::from(vec![x.re, x.im])).collect() };
     let mut values = vec![("coordinates", names), ("coordinate_units", units)];
     values.extend(matrices(small).map(|(name, matrix)| (name, array(name, &matrix).json())));
@@ -308,7 +308,7 @@ fn arrays(motion: &Motion, small: &SmallMotions, found: &[Mode]) -> Vec<Array> {
 }
 
 /// Writes an archive.
-fn write(file: &Path, arrays: &[Array]) -> Outcome<()> {
+fn write_archive(file: &Path, arrays: &[Array]) -> Outcome<()> {
     if file.extension().is_none_or(|end| end != "npz") {
         return Err(Problem::usage(
             format!("`--file {}` does not end in .npz", file.display()),
@@ -316,5 +316,5 @@ fn write(file: &Path, arrays: &[Array]) -> Outcome<()> {
         ));
     }
     let bytes = npz(arrays).map_err(|error| Problem::failed(format!("cannot make an archive: {error}"), ""))?;
-    files::write(file, |out| out.write_all(&bytes))
+    files::write_file(file, |out| out.write_all(&bytes))
 }

@@ -21,7 +21,7 @@ pub fn modes(options: &Modes, registry: &Registry, out: &mut dyn Write) -> Outco
     let motions = crane.small_motions_at(&case.equilibrium.q);
     let modes = damped(&motions)?;
     if let Some(file) = matrices {
-        linearisation::write(file, description, &case.equilibrium.q, &motions)?;
+        linearisation::write_linearisation(file, description, &case.equilibrium.q, &motions)?;
     }
     let mut report = Report::default();
     report.fact("crane", description.name.as_str(), "");

@@ -45,9 +45,9 @@ pub fn new(options: &New, registry: &Registry, out: &mut dyn Write) -> Outcome<(
     })?;
     // Before anything is written: not every name of a crate can be that of a crane.
     compile::load(&SourceFile::new(SPEC, spec.as_str())).map_err(|mistakes| {
-        let said =
+        let message =
             mistakes.mistakes().first().map(|first| (format!("{}: {}", first.title, first.label), first.help.clone()));
-        let (title, help) = said.unwrap_or_default();
+        let (title, help) = message.unwrap_or_default();
         Problem::usage(title, help)
     })?;
 
@@ -78,8 +78,9 @@ pub fn new(options: &New, registry: &Registry, out: &mut dyn Write) -> Outcome<(
         ("{{model}}", &model),
         ("{{codegen}}", &codegen),
     ];
-    let filled =
-        |template: &str| values.iter().fold(template.to_owned(), |text, (place, value)| text.replace(place, value));
+    let filled = |template: &str| {
+        values.iter().fold(template.to_owned(), |text, (placeholder, value)| text.replace(placeholder, value))
+    };
     let mut texts: Vec<(PathBuf, String)> =
         FILES.iter().map(|(file, template)| (PathBuf::from(file), filled(template))).collect();
     texts.push((SPEC.into(), spec));
@@ -92,7 +93,7 @@ pub fn new(options: &New, registry: &Registry, out: &mut dyn Write) -> Outcome<(
         }
         texts.extend(vendored::sources()?);
     }
-    write(&options.folder, &texts)?;
+    write_folder(&options.folder, &texts)?;
     writeln!(
         out,
         "{} written, based on {}: edit {SPEC} there, then run `cargo run --release`; the first build takes a few minutes",
@@ -103,7 +104,7 @@ pub fn new(options: &New, registry: &Registry, out: &mut dyn Write) -> Outcome<(
 }
 
 /// Writes a folder with its files, completely or not at all.
-fn write(folder: &Path, texts: &[(PathBuf, String)]) -> Outcome<()> {
+fn write_folder(folder: &Path, texts: &[(PathBuf, String)]) -> Outcome<()> {
     let part = folder.with_extension("part");
     let written = (|| {
         for (file, text) in texts {

@@ -7,7 +7,7 @@ use crane_model::{Description, dyn_crane::DynCrane};
 use crate::{
     files,
     problem::{Outcome, Problem},
-    selection::{parameter, set, told},
+    selection::{find_parameter, refusal_message, set_parameters},
 };
 
 /// Values of live parameters of many cranes.
@@ -44,8 +44,8 @@ impl ParameterTable {
                 "save it as CSV with commas between columns and decimal points, `900,0.006`",
             ));
         }
-        for (place, header) in headers.iter().enumerate() {
-            let at = Cell { path, line: 1, column: place + 1 };
+        for (column, header) in headers.iter().enumerate() {
+            let at = Cell { path, line: 1, column: column + 1 };
             let index = at.parameter(header, description)?;
             if columns.contains(&index) {
                 return Err(at.problem(&format!("`{header}` occurs twice"), "give each parameter one column"));
@@ -56,14 +56,14 @@ impl ParameterTable {
         for record in csv.records() {
             let record = record.map_err(unreadable)?;
             let line = record.position().map_or(0, csv::Position::line);
-            let value = |(place, (text, &index)): (usize, (&str, &usize))| {
-                let (info, at) = (&description.parameters[index], Cell { path, line, column: place + 1 });
+            let value = |(column, (text, &index)): (usize, (&str, &usize))| {
+                let (info, at) = (&description.parameters[index], Cell { path, line, column: column + 1 });
                 let number = text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
                     let help = format!("write a finite number, in {}, such as {}", info.unit, info.default);
                     at.problem(&format!("`{text}` is not a valid value for {}", info.name), help)
                 })?;
                 info.check(number).map_err(|refused| {
-                    let (title, help) = told(&refused);
+                    let (title, help) = refusal_message(&refused);
                     at.problem(&title, help)
                 })?;
                 Ok(number)
@@ -81,9 +81,9 @@ impl ParameterTable {
 
     /// All live parameters of every row: those without a column are as in `base`.
     pub fn parameters(&self, base: &dyn DynCrane) -> Vec<Vec<f64>> {
-        let own: Vec<f64> = (0..base.description().parameters.len()).map(|index| base.parameter(index)).collect();
+        let defaults: Vec<f64> = (0..base.description().parameters.len()).map(|index| base.parameter(index)).collect();
         let row = |row: &Vec<f64>| {
-            let mut values = own.clone();
+            let mut values = defaults.clone();
             for (&index, &value) in self.columns.iter().zip(row) {
                 values[index] = value;
             }
@@ -96,7 +96,7 @@ impl ParameterTable {
     pub fn crane(&self, base: &dyn DynCrane, row: &[f64]) -> Outcome<Box<dyn DynCrane>> {
         let mut crane = base.boxed_clone();
         let settings: Vec<(usize, f64)> = self.columns.iter().copied().zip(row.iter().copied()).collect();
-        set(crane.as_mut(), &settings)?;
+        set_parameters(crane.as_mut(), &settings)?;
         Ok(crane)
     }
 }
@@ -120,7 +120,7 @@ impl Cell<'_> {
             Some((name, unit)) => (name.trim_end(), Some(unit)),
             None => (header, None),
         };
-        let index = parameter(name, description).map_err(|(title, help)| self.problem(&title, help))?;
+        let index = find_parameter(name, description).map_err(|(title, help)| self.problem(&title, help))?;
         let wanted = &description.parameters[index].unit;
         match unit {
             Some(unit) if *wanted != unit => {

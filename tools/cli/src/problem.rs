@@ -24,13 +24,16 @@ pub type Outcome<T> = Result<T, Problem>;
 #[derive(Debug)]
 pub enum Problem {
     /// The reader of the output has closed it, so no message reaches anyone.
-    NobodyListens,
+    OutputClosed,
     /// The spec has mistakes.
     Mistakes(Box<Diagnostics>),
-    /// A failure that was already reported, here or by another program, with its exit code.
-    Elsewhere(u8),
+    /// A failure that was already reported, here or by another program.
+    AlreadyReported {
+        /// Its exit code.
+        exit_code: u8,
+    },
     /// A message.
-    Told {
+    Message {
         /// What is wrong.
         title: String,
         /// What to do about it.
@@ -43,12 +46,12 @@ pub enum Problem {
 impl Problem {
     /// The arguments are wrong.
     pub fn usage(title: impl Into<String>, help: impl Into<String>) -> Self {
-        Self::Told { title: title.into(), help: help.into(), code: USAGE }
+        Self::Message { title: title.into(), help: help.into(), code: USAGE }
     }
 
     /// The computation failed.
     pub fn failed(title: impl Into<String>, help: impl Into<String>) -> Self {
-        Self::Told { title: title.into(), help: help.into(), code: FAILED }
+        Self::Message { title: title.into(), help: help.into(), code: FAILED }
     }
 
     /// The spec has mistakes.
@@ -72,7 +75,7 @@ impl Problem {
     /// What is wrong.
     pub fn title(&self) -> &str {
         match self {
-            Problem::Told { title, .. } => title,
+            Problem::Message { title, .. } => title,
             _ => "",
         }
     }
@@ -80,7 +83,7 @@ impl Problem {
     /// What is wrong and what to do about it, in one line.
     pub fn message(&self) -> String {
         match self {
-            Problem::Told { title, help, .. } if !help.is_empty() => format!("{title}; {help}"),
+            Problem::Message { title, help, .. } if !help.is_empty() => format!("{title}; {help}"),
             Problem::Mistakes(mistakes) => mistakes.headline(),
             _ => self.title().to_owned(),
         }
@@ -104,7 +107,7 @@ fn remedy(kind: io::ErrorKind) -> &'static str {
 impl From<io::Error> for Problem {
     fn from(error: io::Error) -> Self {
         match error.kind() {
-            io::ErrorKind::BrokenPipe => Problem::NobodyListens,
+            io::ErrorKind::BrokenPipe => Problem::OutputClosed,
             kind => Problem::failed(format!("cannot write the output: {error}"), remedy(kind)),
         }
     }

@@ -9,14 +9,14 @@ use crate::{
     arguments::Run,
     files,
     integration::runs,
-    page::{cases, twin, write},
+    page::{cases, twin, write_page},
     problem::Outcome,
     selection::Registry,
     simulate::{Trace, file_list, write_figures, write_run},
 };
 
 /// Statics and motion of a crane, compared with its rigid twin if there is one; results, figures and the report.
-pub fn run(options: &Run, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+pub fn run_crane(options: &Run, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let crane = options.analysis.crane.open(registry)?;
     let (crane, twin) = (crane.as_ref(), twin::rigid(crane.as_ref(), registry));
     let cases = cases(crane, twin.as_deref());
@@ -41,7 +41,7 @@ pub fn run(options: &Run, registry: &Registry, out: &mut dyn Write) -> Outcome<(
     let description = crane.description();
     written.extend(write_figures(folder, &format!("{}_", description.name), description, &traces)?);
     let page = format!("{}.html", description.name);
-    write(&folder.join(&page), registry, (&cases, options.analysis.crane.limits), &settings, &runs)?;
+    write_page(&folder.join(&page), registry, (&cases, options.analysis.crane.limits), &settings, &runs)?;
     written.push(page);
 
     let labelled: Vec<_> = labels.zip(&runs).collect();

@@ -125,10 +125,10 @@ pub fn remark(words: &str) {
 /// Shows a problem; returns the exit code.
 pub fn report(problem: &Problem) -> u8 {
     let (title, help, code) = match problem {
-        Problem::NobodyListens => return 0,
-        Problem::Elsewhere(code) => return *code,
+        Problem::OutputClosed => return 0,
+        Problem::AlreadyReported { exit_code } => return *exit_code,
         Problem::Mistakes(mistakes) => (mistakes.headline(), "", FAILED),
-        Problem::Told { title, help, code } => (title.clone(), help.as_str(), *code),
+        Problem::Message { title, help, code } => (title.clone(), help.as_str(), *code),
     };
     if is_json() {
         let found = if let Problem::Mistakes(found) = problem { diagnostics(found) } else { json!([]) };
@@ -180,7 +180,7 @@ pub fn unaccepted() -> Option<Problem> {
         Severity::Warning => WARNED.load(Ordering::Relaxed),
         Severity::Caution => CAUTIONED.load(Ordering::Relaxed),
     };
-    MANNER.get()?.fail_on.iter().any(noticed).then_some(Problem::Elsewhere(NOTICED))
+    MANNER.get()?.fail_on.iter().any(noticed).then_some(Problem::AlreadyReported { exit_code: NOTICED })
 }
 
 /// Does what may take long for a large crane, and says so.

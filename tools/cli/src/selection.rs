@@ -182,7 +182,7 @@ impl Registry {
         let mut live = entry.live()?.clone();
         let values: Vec<f64> = (0..description.parameters.len()).map(|index| crane.parameter(index)).collect();
         DynCrane::set_parameters(&mut live, &values).map_err(|refused| {
-            let (title, help) = told(&refused);
+            let (title, help) = refusal_message(&refused);
             Problem::usage(title, help)
         })?;
         let inputs: Vec<Option<f64>> = (0..description.inputs.len()).map(|index| crane.input(index)).collect();
@@ -267,13 +267,13 @@ impl Parameters {
     pub fn crane(&self, name: &str, strict: bool, registry: &Registry) -> Outcome<Box<dyn DynCrane>> {
         let mut crane = registry.crane(name)?;
         let description = crane.description();
-        let settings = self.read(&description.name, &known(description))?;
+        let settings = self.read(&description.name, &known_parameters(description))?;
         if settings.is_empty() {
             return Ok(crane);
         }
         let values: Vec<(String, f64)> =
             settings.iter().map(|&(index, value)| (description.parameters[index].name.to_string(), value)).collect();
-        set(crane.as_mut(), &settings)?;
+        set_parameters(crane.as_mut(), &settings)?;
         if let Some(entry) = registry.entries.iter().find(|entry| entry.name == name) {
             let warned = spec_file::warn_of(&entry.source(), &values);
             if let (true, Some(problem)) = (strict, warned) {
@@ -305,7 +305,7 @@ impl Parameters {
                     "write `--set name=value`, such as `--set load_mass=300`",
                 )
             })?;
-            let index = place(name, crane, known).map_err(|(title, help)| Problem::usage(title, help))?;
+            let index = index_of_known(name, crane, known).map_err(|(title, help)| Problem::usage(title, help))?;
             let unit = known[index].1;
             let number = value_in(unit, value).ok_or_else(|| {
                 let angle = if unit == "rad" { ", or an angle such as `30deg`" } else { "" };
@@ -327,19 +327,19 @@ fn value_in(unit: &str, text: &str) -> Option<f64> {
 }
 
 /// Sets live parameters, by their indices in the description, all at once.
-pub fn set(crane: &mut dyn DynCrane, settings: &[(usize, f64)]) -> Outcome<()> {
+pub fn set_parameters(crane: &mut dyn DynCrane, settings: &[(usize, f64)]) -> Outcome<()> {
     let mut values: Vec<f64> = (0..crane.description().parameters.len()).map(|index| crane.parameter(index)).collect();
     for &(index, value) in settings {
         values[index] = value;
     }
     crane.set_parameters(&values).map_err(|refused| {
-        let (title, help) = told(&refused);
+        let (title, help) = refusal_message(&refused);
         Problem::usage(title, help)
     })
 }
 
 /// What is wrong with the value of a parameter, and what to write instead.
-pub fn told(refused: &ParameterError) -> (String, String) {
+pub fn refusal_message(refused: &ParameterError) -> (String, String) {
     let Refusal { code, title, help } = &refused.refusal;
     let title = match &refused.given {
         Some((parameter, value)) if value.abs() < 1e15 => format!("parameter `{parameter}`: {title} {value} [{code}]"),
@@ -350,16 +350,16 @@ pub fn told(refused: &ParameterError) -> (String, String) {
 }
 
 /// Names and units of a crane's live parameters.
-fn known(description: &Description) -> Vec<(&str, &str)> {
+fn known_parameters(description: &Description) -> Vec<(&str, &str)> {
     description.parameters.iter().map(|parameter| (parameter.name.as_str(), parameter.unit.as_str())).collect()
 }
 
 /// Index of a live parameter by its name; otherwise what is wrong and what to write.
-pub fn parameter(name: &str, description: &Description) -> Result<usize, (String, String)> {
-    place(name, &description.name, &known(description))
+pub fn find_parameter(name: &str, description: &Description) -> Result<usize, (String, String)> {
+    index_of_known(name, &description.name, &known_parameters(description))
 }
 
-fn place(name: &str, crane: &str, known: &[(&str, &str)]) -> Result<usize, (String, String)> {
+fn index_of_known(name: &str, crane: &str, known: &[(&str, &str)]) -> Result<usize, (String, String)> {
     known.iter().position(|(known, _)| *known == name).ok_or_else(|| {
         let names: Vec<String> = known.iter().map(|(name, unit)| format!("{name} [{unit}]")).collect();
         let title = format!("{crane} has no live parameter `{name}`");

@@ -151,7 +151,7 @@ pub fn spoken(name: &str) -> String {
 fn path(description: &Description, traces: &[Trace<'_>]) -> Panel {
     /// Points hardly move along an axis if their range is below this fraction of that along z.
     const HARDLY: f64 = 0.01;
-    let way = |axis: &str| {
+    let travel = |axis: &str| {
         let columns = description.points.iter().map(|point| format!("{point}_{axis}"));
         let ranges = columns.filter_map(|column| {
             let values: Vec<f64> = traces.first()?.table.values(&column)?.collect();
@@ -159,7 +159,7 @@ fn path(description: &Description, traces: &[Trace<'_>]) -> Panel {
         });
         ranges.fold(0.0, f64::max)
     };
-    let [x, y] = match (way("x"), way("y"), HARDLY * way("z")) {
+    let [x, y] = match (travel("x"), travel("y"), HARDLY * travel("z")) {
         (_, y, hardly) if y < hardly => ["x", "z"],
         (x, _, hardly) if x < hardly => ["y", "z"],
         _ => ["x", "y"],

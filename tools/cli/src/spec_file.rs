@@ -31,7 +31,7 @@ pub fn parse(source: SourceFile, strict: bool) -> Outcome<(Chain, String)> {
     if !warnings.is_empty() {
         screen::warn(&warnings);
         if strict {
-            return Err(Problem::Elsewhere(FAILED));
+            return Err(Problem::AlreadyReported { exit_code: FAILED });
         }
     }
     Ok((chain, source.text))
@@ -44,7 +44,7 @@ pub fn warn_of(source: &SourceFile, set: &[(String, f64)]) -> Option<Problem> {
     let added = compile::check_with(source, &set).ok()?.warnings.without(&known);
     (!added.is_empty()).then(|| {
         screen::warn(&added);
-        Problem::Elsewhere(FAILED)
+        Problem::AlreadyReported { exit_code: FAILED }
     })
 }
 

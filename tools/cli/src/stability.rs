@@ -67,11 +67,11 @@ fn along(description: &Description, poses: &[Pose]) -> Grid {
 }
 
 /// The stability region of every explicit method, with hλ of every mode at its largest stable step, or the spec's if none limits it.
-fn regions(modes: &[DampedMode], own: f64) -> Vec<Panel> {
+fn regions(modes: &[DampedMode], crane_limit: f64) -> Vec<Panel> {
     let panel = |method: Method| {
         let function = method.stability();
         let boundary = function.boundary().iter().map(|z| (z.re, z.im)).collect();
-        let largest = limit(modes, &function).map_or(own, |limit| limit.step);
+        let largest = limit(modes, &function).map_or(crane_limit, |limit| limit.step);
         let marks = |h: f64| {
             let pair = |mode: &DampedMode| {
                 let z = mode.eigenvalue * h;

@@ -32,11 +32,11 @@ pub enum Variable {
 impl Variable {
     /// The variable that a column of results contains.
     fn of(name: &str, description: &Description) -> Option<Self> {
-        let place = |name: &str| description.coordinates.iter().position(|coordinate| coordinate.name == name);
-        let rate = || name.strip_suffix(RATE).and_then(place).map(Self::Rate);
+        let index_of = |name: &str| description.coordinates.iter().position(|coordinate| coordinate.name == name);
+        let rate = || name.strip_suffix(RATE).and_then(index_of).map(Self::Rate);
         let force_state =
             || force_states::columns(description).iter().position(|column| column == name).map(Self::ForceState);
-        place(name).map(Self::Position).or_else(rate).or_else(force_state)
+        index_of(name).map(Self::Position).or_else(rate).or_else(force_state)
     }
 
     /// The variable that an option names.
@@ -49,13 +49,13 @@ impl Variable {
 
     fn set(self, start: &mut Start, value: f64) {
         match self {
-            Self::Position(place) => start.q[place] = value,
-            Self::Rate(place) => start.v[place] = value,
-            Self::ForceState(place) => {
-                if start.x.len() <= place {
-                    start.x.resize(place + 1, f64::NAN);
+            Self::Position(index) => start.q[index] = value,
+            Self::Rate(index) => start.v[index] = value,
+            Self::ForceState(index) => {
+                if start.x.len() <= index {
+                    start.x.resize(index + 1, f64::NAN);
                 }
-                start.x[place] = value;
+                start.x[index] = value;
             }
         }
     }
@@ -81,8 +81,8 @@ impl Timing {
             }
             let states = force_states::columns(description);
             start.x.resize(if start.x.is_empty() { 0 } else { states.len() }, f64::NAN);
-            if let Some(place) = start.x.iter().position(|x| x.is_nan()) {
-                let title = format!("{} has no column {}", file.display(), states[place]);
+            if let Some(index) = start.x.iter().position(|x| x.is_nan()) {
+                let title = format!("{} has no column {}", file.display(), states[index]);
                 return Err(Problem::usage(
                     title,
                     "to continue a run, give all pressures, valves and bristles of the earlier run",
@@ -168,7 +168,7 @@ pub fn row(file: &Path, description: &Description, at: Option<f64>) -> Outcome<R
     let headers = csv.headers().map_err(unreadable)?.clone();
     let name_of = |header: &str| header.split(" [").next().unwrap_or(header).to_owned();
     let clock = headers.iter().position(|header| name_of(header) == TIME);
-    let time_of = |record: &csv::StringRecord| clock.and_then(|place| record.get(place)?.parse::<f64>().ok());
+    let time_of = |record: &csv::StringRecord| clock.and_then(|column| record.get(column)?.parse::<f64>().ok());
     let off = |record: &csv::StringRecord| at.zip(time_of(record)).map(|(at, time)| (time - at).abs());
     let mut chosen: Option<csv::StringRecord> = None;
     for record in csv.records() {

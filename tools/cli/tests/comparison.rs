@@ -45,8 +45,8 @@ fn json(folder: &Path, arguments: &[&str]) -> Value {
 }
 
 /// Height of the tip at rest.
-fn height(said: &Value) -> f64 {
-    said["points"][0]["z"].as_f64().expect("a number")
+fn height(report: &Value) -> f64 {
+    report["points"][0]["z"].as_f64().expect("a number")
 }
 
 /// The drive's spring gives way by `m g L / k`, and nothing else deflects: `δ = L · (m_total g L_eff)/k`.
@@ -74,10 +74,10 @@ fn a_rigid_twin_bends_nowhere() {
 #[test]
 fn a_crane_is_compared_with_itself_and_with_another() {
     let folder = folder("pair");
-    let said = json(&folder, &["compare", "boom.yaml", "--format", "json", "--out", "twins"]);
+    let report = json(&folder, &["compare", "boom.yaml", "--format", "json", "--out", "twins"]);
     let [rigid, flexible] = [&["--rigid"][..], &[]]
         .map(|more| height(&json(&folder, &[&["statics", "boom.yaml", "--format", "json"], more].concat())));
-    let apart = said["deflection"][0]["z"].as_f64().expect("a number");
+    let apart = report["deflection"][0]["z"].as_f64().expect("a number");
     assert!((apart - (flexible - rigid)).abs() < 1e-12, "{apart} m, {flexible} m, {rigid} m");
     assert!(apart < -1e-3, "a boom of steel sinks by some millimetres: {apart}");
     for file in ["report.html", "comparison_deviation.svg", "boom.csv", "boom_rigid.csv"] {
@@ -88,10 +88,10 @@ fn a_crane_is_compared_with_itself_and_with_another() {
     fs::write(folder.join("longer.yaml"), BOOM.replace("length: 4", "length: 5")).expect("a file");
     let arguments =
         ["compare", "boom.yaml", "longer.yaml", "--set", "payload=100", "--format", "json", "--out", "pair"];
-    let said = json(&folder, &arguments);
+    let report = json(&folder, &arguments);
     let longer = json(&folder, &["statics", "longer.yaml", "--set", "payload=100", "--format", "json"]);
     let shorter = json(&folder, &["statics", "boom.yaml", "--set", "payload=100", "--format", "json"]);
-    let apart = said["deflection"][0]["z"].as_f64().expect("a number");
+    let apart = report["deflection"][0]["z"].as_f64().expect("a number");
     assert!((apart - (height(&longer) - height(&shorter))).abs() < 1e-12, "{apart}");
     assert!(folder.join("pair/boom_other.csv").is_file());
 
@@ -104,7 +104,7 @@ fn a_crane_is_compared_with_itself_and_with_another() {
 #[test]
 fn matrices_have_the_modes_of_the_table() {
     let folder = folder("matrices");
-    let said = json(&folder, &["modes", "boom.yaml", "--matrices", "boom.json", "--format", "json"]);
+    let report = json(&folder, &["modes", "boom.yaml", "--matrices", "boom.json", "--format", "json"]);
     let text = fs::read_to_string(folder.join("boom.json")).expect("a file");
     let written: Value = serde_json::from_str(&text).expect("JSON");
     let numbers = |value: &Value| -> Vec<f64> {
@@ -127,7 +127,7 @@ fn matrices_have_the_modes_of_the_table() {
             assert!((force - square * momentum).abs() < 1e-8 * size.max(square.abs()), "{force}, {square} {momentum}");
         }
     }
-    let frequency = said["undamped"][0]["frequency"].as_f64().expect("a number");
+    let frequency = report["undamped"][0]["frequency"].as_f64().expect("a number");
     assert!((squares[0].sqrt() / std::f64::consts::TAU / frequency - 1.0).abs() < 1e-12);
 
     assert!(crane(&folder, &["modes", "boom.yaml", "--matrices", "boom.npz"]).status.success());

@@ -44,7 +44,7 @@ fn command(folder: &Path, arguments: &[&str]) -> Command {
     command
 }
 
-fn run(folder: &Path, arguments: &[&str]) -> Output {
+fn run_command(folder: &Path, arguments: &[&str]) -> Output {
     command(folder, arguments).output().expect("it starts")
 }
 
@@ -60,8 +60,8 @@ fn table(folder: &Path) -> (Vec<String>, Vec<Vec<String>>) {
 fn a_load_chart_is_the_equilibrium_of_moments() {
     let folder = folder("chart");
     let ranges = ["--range", "column=0:360deg:25", "--range", "arm_x=2:6:9", "--tipping", "0.2", "--format", "json"];
-    let said = run(&folder, &ranges);
-    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    let output = run_command(&folder, &ranges);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let (header, rows) = table(&folder);
     assert_eq!(rows.len(), 25 * 9);
     let column =
@@ -84,8 +84,8 @@ fn a_load_chart_is_the_equilibrium_of_moments() {
     }
     // The chart applies all round, so the sides govern, whose lines are 1 m from the slewing axis; its loads are at least those of
     // the next larger radius of a pose, rounded down.
-    let said: Value = serde_json::from_slice(&said.stdout).expect("JSON");
-    let chart = said["load_chart"].as_array().expect("a chart");
+    let output: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let chart = output["load_chart"].as_array().expect("a chart");
     assert!(chart.len() >= 5, "{chart:?}");
     for row in chart {
         let radius = row["radius"].as_f64().unwrap();
@@ -110,7 +110,7 @@ fn a_load_chart_is_the_equilibrium_of_moments() {
 fn what_is_interrupted_goes_on() {
     let ranges = ["--range", "column=0:350deg:60", "--range", "arm=2:6:100", "--threads", "2"];
     let whole = folder("whole");
-    assert!(run(&whole, &ranges).status.success());
+    assert!(run_command(&whole, &ranges).status.success());
     let broken = folder("broken");
     let part = broken.join("truck_envelope.part.csv");
     let mut killed = command(&broken, &ranges).stdout(Stdio::null()).spawn().expect("it starts");
@@ -126,11 +126,11 @@ fn what_is_interrupted_goes_on() {
     fs::write(&part, format!("{written}5999,tipping,\"a")).expect("half a line");
 
     // Other limits are refused: they would mix results that do not belong together.
-    let other = run(&broken, &[&ranges[..], &["--tipping", "0.1"]].concat());
+    let other = run_command(&broken, &[&ranges[..], &["--tipping", "0.1"]].concat());
     assert_eq!(other.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&other.stderr).contains("--restart"));
 
-    assert!(run(&broken, &ranges).status.success());
+    assert!(run_command(&broken, &ranges).status.success());
     let [one, two] = [&whole, &broken].map(|folder| fs::read(folder.join("truck_envelope.csv")).expect("a table"));
     assert!(one == two, "the same bytes");
     assert!(!part.exists());
@@ -156,16 +156,16 @@ fn what_is_kept_is_not_computed_again() {
     fields[5] = "12345.678";
     lines[first] = fields.join(",");
     fs::write(&part, lines.join("\n") + "\n").expect("the file");
-    assert!(run(&folder, &ranges).status.success());
+    assert!(run_command(&folder, &ranges).status.success());
     let (_, rows) = table(&folder);
     assert_eq!(rows[0][2], "12345.678");
     assert_eq!(rows.len(), 4000);
 }
 
 #[test]
-fn mistakes_are_told() {
+fn mistakes_in_arguments_are_refused() {
     let folder = folder("mistakes");
-    for (arguments, told) in [
+    for (arguments, expected) in [
         (&["--range", "truck_x=0:1:3"][..], "truck_x has no drive"),
         (&["--range", "colum_psi=0:1:3"], "did you mean `column_psi`"),
         (&["--range", "arm=0:1"], "does not have one or three parts"),
@@ -182,22 +182,22 @@ fn mistakes_are_told() {
         (&["--range", "arm=0:1:3", "--without", "presure"], "pressure"),
         (&["--range", "arm=0:1:3", "--load-factor", "0"], "above 0"),
     ] {
-        let said = run(&folder, arguments);
-        assert_eq!(said.status.code(), Some(2), "{arguments:?}");
-        let message = String::from_utf8_lossy(&said.stderr);
-        assert!(message.contains(told), "{arguments:?}: {message}");
+        let output = run_command(&folder, arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert!(message.contains(expected), "{arguments:?}: {message}");
     }
 }
 
 /// Limits that were and were not considered, crane and spec stand beside the chart, in every form of it.
 #[test]
-fn a_chart_says_what_it_is_and_fits_a_screen() {
+fn a_chart_has_a_title_and_fits_a_screen() {
     let folder = folder("says");
     let ranges =
         ["--range", "column=0:180deg:7", "--range", "arm_x=2:6:9", "--without", "utilisation", "--load-factor", "1.25"];
-    let said = run(&folder, &ranges);
-    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
-    let text = String::from_utf8(said.stdout).expect("text");
+    let output = run_command(&folder, &ranges);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).expect("text");
     let widest = text.lines().filter(|line| !line.starts_with("caution")).map(|line| line.chars().count()).max();
     assert!(widest.is_some_and(|widest| widest <= 100), "{widest:?}\n{text}");
     for words in [
@@ -249,19 +249,19 @@ fn a_chart_over_radius_and_height_has_limits_in_its_cells() {
         .replace("points:", "  - {coordinate: mast_z, rigid: true, motion: {hold: 1}}\npoints:");
     fs::write(folder.join("truck.yaml"), text).expect("a file");
     let ranges = ["--range", "arm_x=2:6:9", "--range", "mast_z=0.5:3:6", "--set", "payload=100"];
-    let said = run(&folder, &[&ranges[..], &["--format", "json"]].concat());
-    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
-    let said: Value = serde_json::from_slice(&said.stdout).expect("JSON");
-    let places = said["loads_by_place"].as_array().expect("rows");
+    let output = run_command(&folder, &[&ranges[..], &["--format", "json"]].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let output: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let places = output["loads_by_place"].as_array().expect("rows");
     assert!(places.len() > 20, "{places:?}");
-    for place in places {
-        let (radius, load) = (place["radius"].as_f64().unwrap(), place["load"].as_f64().unwrap());
+    for row in places {
+        let (radius, load) = (row["radius"].as_f64().unwrap(), row["load"].as_f64().unwrap());
         // In front of the truck, towards x: its line is 1.5 m away. The nearest poses are up to 0.5 m further out.
         let bears = |radius: f64| 4002.0 * 1.5 / (radius - 1.5);
-        assert!(load <= bears(radius) * 1.001 && load >= 0.99 * bears(radius + 0.5), "{place}");
-        assert_eq!(place["limit"], "tipping");
+        assert!(load <= bears(radius) * 1.001 && load >= 0.99 * bears(radius + 0.5), "{row}");
+        assert_eq!(row["limit"], "tipping");
     }
-    let text = String::from_utf8(run(&folder, &ranges).stdout).expect("text");
+    let text = String::from_utf8(run_command(&folder, &ranges).stdout).expect("text");
     assert!(text.contains("over radius and height") && text.contains("T tipping") && text.contains(" T"), "{text}");
     let map = fs::read_to_string(folder.join("truck_envelope_largest_load_map.svg")).expect("a picture");
     assert_eq!(map.matches(" T\n").count(), 9 * 6);
@@ -271,14 +271,14 @@ fn a_chart_over_radius_and_height_has_limits_in_its_cells() {
 #[test]
 fn a_chart_of_another_crane_is_refused() {
     let folder = folder("other");
-    assert!(run(&folder, &["--range", "arm_x=2:6:5"]).status.success());
+    assert!(run_command(&folder, &["--range", "arm_x=2:6:5"]).status.success());
     let report = |spec: &str, more: &[&str]| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));
         command.current_dir(&folder).args(["report", spec, "--duration", "0.02", "--no-verify", "-o", "page.html"]);
         command.args(["--envelope", "truck_envelope.csv"]).args(more).output().expect("it starts")
     };
-    let said = report("truck.yaml", &[]);
-    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    let output = report("truck.yaml", &[]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     assert!(fs::read_to_string(folder.join("page.html")).expect("a page").contains("\"loads_by_place\""));
     fs::write(folder.join("bus.yaml"), TRUCK.replace("name: truck\n", "name: bus\n")).expect("a file");
     fs::write(folder.join("newer.yaml"), TRUCK.replace("mass: 4000", "mass: 4001")).expect("a file");
@@ -287,9 +287,9 @@ fn a_chart_of_another_crane_is_refused() {
         ("newer.yaml", &[], "another version of the spec"),
         ("truck.yaml", &["--set", "track=1.2"], "with track = 1.0 m; here it is 1.2"),
     ] {
-        let said = report(spec, more);
-        assert_eq!(said.status.code(), Some(2), "{spec}");
-        let message = String::from_utf8_lossy(&said.stderr);
+        let output = report(spec, more);
+        assert_eq!(output.status.code(), Some(2), "{spec}");
+        let message = String::from_utf8_lossy(&output.stderr);
         assert!(message.contains(words) && message.contains("crane envelope"), "{message}");
     }
 }

@@ -30,8 +30,8 @@ fn spec(name: &str, from: &str, to: &str) -> String {
 #[test]
 fn shipped_cranes_are_checked_explained_and_generated_by_name() {
     let checked = crane(&["check", "cantilever"]);
-    let said = text(&checked.stdout);
-    assert!(said.starts_with("cantilever: valid; ") && said.contains(" 24 coordinates"), "{said}");
+    let report = text(&checked.stdout);
+    assert!(report.starts_with("cantilever: valid; ") && report.contains(" 24 coordinates"), "{report}");
     assert!(text(&crane(&["explain", "cantilever"]).stdout).starts_with("cantilever: "));
     let module = crane(&["generate", "double_pendulum"]);
     assert!(text(&module.stdout).contains("from double_pendulum.yaml; do not edit."), "{}", text(&module.stderr));
@@ -93,15 +93,15 @@ fn warnings_are_drawn_and_end_a_strict_command() {
 fn a_spec_computes_to_the_bit_what_the_shipped_crane_does() {
     // The same crane with another hash, compiled to machine code, which is kept.
     let file = spec("knuckle.yaml", "title: Planar", "title: A planar");
-    let own = crane(&["eval", &file, "--compile", "--q", "0.1,0.2,0.3,0.4", "--v", "1,2,3,4"]);
-    assert!(own.status.success(), "{}", text(&own.stderr));
+    let compiled = crane(&["eval", &file, "--compile", "--q", "0.1,0.2,0.3,0.4", "--v", "1,2,3,4"]);
+    assert!(compiled.status.success(), "{}", text(&compiled.stderr));
     let shipped = crane(&["eval", "knuckle_boom", "--q", "0.1,0.2,0.3,0.4", "--v", "1,2,3,4"]);
     let numbers = |output: &Output| -> serde_json::Value {
         let mut report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
         report.as_object_mut().expect("an object").remove("spec_hash").expect("a hash");
         report
     };
-    assert_eq!(numbers(&own), numbers(&shipped));
+    assert_eq!(numbers(&compiled), numbers(&shipped));
     // Kept: the second time nothing is compiled; parameters, options and exit codes are passed on.
     let again = crane(&["statics", &file, "--compile", "--set", "payload=1", "--format", "json"]);
     assert!(again.status.success(), "{}", text(&again.stderr));

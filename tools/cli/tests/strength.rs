@@ -9,10 +9,10 @@ fn strength(name: &str, spec: &str, arguments: &[&str]) -> Value {
     let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.yaml"));
     fs::write(&file, format!("format: 1\nname: {name}\n{spec}")).expect("a file");
     let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));
-    let said =
+    let output =
         command.arg("strength").arg(&file).args(["--format", "json"]).args(arguments).output().expect("it starts");
-    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
-    serde_json::from_slice(&said.stdout).expect("JSON")
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).expect("JSON")
 }
 
 fn assert_close(what: &str, actual: &Value, expected: f64, tolerance: f64) {
@@ -37,22 +37,22 @@ const COMPLIANCE: f64 = 1e-5;
 
 #[test]
 fn a_truck_on_four_feet_tips_where_moments_say() {
-    let said = strength("truck", TRUCK, &[]);
+    let report = strength("truck", TRUCK, &[]);
     // About the line of the left feet: 4000 kg at 1 m balance 100 kg at 4 m.
-    assert_eq!(said["governing_line"], "front_left – rear_left");
-    assert_close("margin", &said["tipping_margin"], 0.9, COMPLIANCE);
-    let line = said["tipping"].as_array().expect("a table").iter().find(|line| line["from"] == "front_left");
+    assert_eq!(report["governing_line"], "front_left – rear_left");
+    assert_close("margin", &report["tipping_margin"], 0.9, COMPLIANCE);
+    let line = report["tipping"].as_array().expect("a table").iter().find(|line| line["from"] == "front_left");
     let line = line.expect("the line");
     assert_close("stabilising", &line["stabilising"], 4000.0 * 9.81, COMPLIANCE);
     assert_close("overturning", &line["overturning"], 400.0 * 9.81, COMPLIANCE);
     // (4000 + m)/4 − 5 m/4 − 3 · 1.5 m/9 = 0 at the opposite foot, on springs of equal stiffness.
-    assert_eq!(said["critical_loads"]["first_foot"]["at"], "rear_right");
-    assert_close("lift", &said["critical_loads"]["first_foot"]["load"], 1000.0 / 1.5, COMPLIANCE);
+    assert_eq!(report["critical_loads"]["first_foot"]["at"], "rear_right");
+    assert_close("lift", &report["critical_loads"]["first_foot"]["load"], 1000.0 / 1.5, COMPLIANCE);
     // 4000 kg · 1 m = m · 4 m
-    assert_eq!(said["critical_loads"]["tipping"]["at"], "front_left – rear_left");
-    assert_close("tips", &said["critical_loads"]["tipping"]["load"], 1000.0, COMPLIANCE);
+    assert_eq!(report["critical_loads"]["tipping"]["at"], "front_left – rear_left");
+    assert_close("tips", &report["critical_loads"]["tipping"]["load"], 1000.0, COMPLIANCE);
     // What the ground carries.
-    let ground = &said["loads"][0];
+    let ground = &report["loads"][0];
     assert_eq!(ground["joint"], "ground");
     assert_close("weight", &ground["Fz"], -4100.0 * 9.81, 1e-12);
     assert_close("moment", &ground["Mx"], -500.0 * 9.81, COMPLIANCE);
@@ -60,12 +60,12 @@ fn a_truck_on_four_feet_tips_where_moments_say() {
 
 /// Above the tipping load, the crane is reported to tip, and the critical loads are found below the given one.
 #[test]
-fn a_crane_that_tips_is_told_so() {
-    let said = strength("overloaded", TRUCK, &["--set", "payload=1500"]);
-    assert_close("margin", &said["tipping_margin"], 1.0 - 1500.0 * 4.0 / 4000.0, 10.0 * COMPLIANCE);
-    let cautions = said["cautions"].to_string();
+fn a_crane_that_tips_gets_a_caution() {
+    let report = strength("overloaded", TRUCK, &["--set", "payload=1500"]);
+    assert_close("margin", &report["tipping_margin"], 1.0 - 1500.0 * 4.0 / 4000.0, 10.0 * COMPLIANCE);
+    let cautions = report["cautions"].to_string();
     assert!(cautions.contains("tips over the line front_left – rear_left"), "{cautions}");
-    assert_close("tips", &said["critical_loads"]["tipping"]["load"], 1000.0, COMPLIANCE);
+    assert_close("tips", &report["critical_loads"]["tipping"]["load"], 1000.0, COMPLIANCE);
 }
 
 /// A quintic of 1 m in 2 s accelerates at most by `10/√3 · 1 m/(2 s)²`, after `(3 − √3)/6` of its time.
@@ -77,9 +77,9 @@ drives: [{coordinate: cage_z, rigid: true, motion: {quintic: {from: 0, to: 1, du
 run: {duration: 2, output: 0.001}
 ";
     let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("hoist.csv");
-    let said = strength("hoist", hoist, &["--run", "-o", file.to_str().expect("a path")]);
+    let report = strength("hoist", hoist, &["--run", "-o", file.to_str().expect("a path")]);
     let peak = 10.0 / 3.0f64.sqrt() / 4.0;
-    let extremes = said["extremes_of_loads"].as_array().expect("a table");
+    let extremes = report["extremes_of_loads"].as_array().expect("a table");
     let of = |component: &str| {
         let found = extremes.iter().find(|row| row["joint"] == "cage" && row["component"] == component);
         found.expect("a component of the joint").clone()
@@ -106,32 +106,32 @@ links:
 
 #[test]
 fn a_cantilever_is_stressed_by_bending_shear_and_torsion() {
-    let said = strength("cantilever", CANTILEVER, &[]);
+    let report = strength("cantilever", CANTILEVER, &[]);
     let (height, width, wall): (f64, f64, f64) = (0.25, 0.2, 0.008);
     let (inner_height, inner_width) = (height - 2.0 * wall, width - 2.0 * wall);
     let area = height * width - inner_height * inner_width;
     let second = (width * height.powi(3) - inner_width * inner_height.powi(3)) / 12.0;
     let first = (width * height.powi(2) - inner_width * inner_height.powi(2)) / 8.0;
-    let own = 9.81 * 7850.0 * area * 2.0;
-    let normal = (981.0 * 2.0 + own) * (height / 2.0) / second;
-    let shear = (981.0 + own) * first / (second * 2.0 * wall);
+    let weight = 9.81 * 7850.0 * area * 2.0;
+    let normal = (981.0 * 2.0 + weight) * (height / 2.0) / second;
+    let shear = (981.0 + weight) * first / (second * 2.0 * wall);
     let torsion = 981.0 * 0.5 / (2.0 * wall * (width - wall) * (height - wall));
     let equivalent = (normal.powi(2) + 3.0 * (shear + torsion).powi(2)).sqrt();
-    let root = &said["stresses"][0];
+    let root = &report["stresses"][0];
     // The tip sinks by 0.3 mm, which tilts the load by 2e-4 rad, so that a part of it becomes a normal force.
     for (what, stress) in [("normal", normal), ("shear", shear), ("torsion", torsion), ("equivalent", equivalent)] {
         assert_close(what, &root[what], stress, 1e-4);
     }
-    assert_close("utilisation", &said["greatest_utilisation"], 1.25 * equivalent / 355e6, 1e-4);
-    assert_eq!(said["place_of_the_greatest_stress"], "boom, 0.000 m from its start");
+    assert_close("utilisation", &report["greatest_utilisation"], 1.25 * equivalent / 355e6, 1e-4);
+    assert_eq!(report["place_of_the_greatest_stress"], "boom, 0.000 m from its start");
     // The maximum is at the clamped end, whatever the sections; the deflection of 0.3 mm is known to a few percent.
-    let change = &said["change_of_the_greatest_stress_with_twice_the_sections"];
+    let change = &report["change_of_the_greatest_stress_with_twice_the_sections"];
     assert!(change.as_f64().expect("a number").abs() < 1e-5, "{change}");
-    let end = said["sections"].as_array().and_then(|rows| rows.iter().rfind(|row| row["beam"] == "boom"));
+    let end = report["sections"].as_array().and_then(|rows| rows.iter().rfind(|row| row["beam"] == "boom"));
     let end = end.expect("the last section");
     assert_eq!((&end["x"], &end["place"]), (&serde_json::json!(2.0), &serde_json::json!("at the end")));
     assert_close("load at the end", &end["Qy"], -981.0, 1e-4);
-    assert!(said["tipping_margin"].is_null(), "the crane has no supports");
+    assert!(report["tipping_margin"].is_null(), "the crane has no supports");
 }
 
 /// A beam on a hinge and a strut that bends under its own weight most where no spring is: with two sections the maximum between the springs is
@@ -148,7 +148,7 @@ links:
 connectors:
   - {name: strut, from: {at: [4, -10, 0]}, to: {link: beam, at: [4, 0, 0]}, law: {spring: {stiffness: 1e12, length: 10}}}
 ";
-    let said = strength("sagging", beam, &[]);
+    let report = strength("sagging", beam, &[]);
     // Springs at 1 m and 3 m; with four sections at 0.5, 1.5, 2.5 and 3.5 m. Stresses are in units of the weight per length.
     let second = (0.4 * 0.5f64.powi(3) - 0.36 * 0.46f64.powi(3)) / 12.0;
     let first = (0.4 * 0.5f64.powi(2) - 0.36 * 0.46f64.powi(2)) / 8.0;
@@ -157,17 +157,17 @@ connectors:
         (moment * 0.25 / second).hypot(3.0f64.sqrt() * force * first / (second * 0.04))
     };
     let change = equivalent(1.5) / equivalent(1.0) - 1.0;
-    assert_close("change", &said["change_of_the_greatest_stress_with_twice_the_sections"], change, 1e-3);
-    let cautions = said["cautions"].to_string();
+    assert_close("change", &report["change_of_the_greatest_stress_with_twice_the_sections"], change, 1e-3);
+    let cautions = report["cautions"].to_string();
     assert!(cautions.contains("when the number of sections doubles"), "{cautions}");
 }
 
 /// About three tonnes more than the boom can carry.
 #[test]
-fn a_boom_that_yields_is_told_so() {
-    let said = strength("overstressed", &CANTILEVER.replace("mass: 100", "mass: 10000"), &[]);
-    assert!(said["greatest_utilisation"].as_f64().expect("a number") > 1.0);
-    let cautions = said["cautions"].to_string();
+fn a_boom_that_yields_gets_a_caution() {
+    let report = strength("overstressed", &CANTILEVER.replace("mass: 100", "mass: 10000"), &[]);
+    assert!(report["greatest_utilisation"].as_f64().expect("a number") > 1.0);
+    let cautions = report["cautions"].to_string();
     assert!(cautions.contains("times the allowable stress"), "{cautions}");
 }
 
@@ -176,9 +176,9 @@ fn an_unknown_load_is_refused() {
     let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("other.yaml");
     fs::write(&file, format!("format: 1\nname: other\n{TRUCK}")).expect("a file");
     let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));
-    let said = command.arg("strength").arg(&file).args(["--load", "pay_load"]).output().expect("it starts");
-    assert_eq!(said.status.code(), Some(2));
-    let message = String::from_utf8_lossy(&said.stderr);
+    let output = command.arg("strength").arg(&file).args(["--load", "pay_load"]).output().expect("it starts");
+    assert_eq!(output.status.code(), Some(2));
+    let message = String::from_utf8_lossy(&output.stderr);
     assert!(message.contains("there is no live parameter `pay_load`") && message.contains("`payload`"), "{message}");
 }
 
@@ -186,15 +186,15 @@ fn an_unknown_load_is_refused() {
 #[test]
 fn an_applied_load_tips() {
     let pull = "loads: [{name: pull, link: truck, at: [0, 0, 2], force: [0, 5000, 0]}]\n";
-    let said = strength("pulled_truck", &format!("{TRUCK}{pull}"), &[]);
-    let line = said["tipping"].as_array().expect("a table").iter().find(|line| line["from"] == "front_left");
+    let report = strength("pulled_truck", &format!("{TRUCK}{pull}"), &[]);
+    let line = report["tipping"].as_array().expect("a table").iter().find(|line| line["from"] == "front_left");
     let line = line.expect("the line");
     assert_close("stabilising", &line["stabilising"], 4000.0 * 9.81 - 2.0 * 5000.0, COMPLIANCE);
     assert_close("overturning", &line["overturning"], 400.0 * 9.81, COMPLIANCE);
     // (4000 − 10000/9.81) kg · 1 m = m · 4 m
     let tips = (4000.0 - 10000.0 / 9.81) / 4.0;
-    assert_close("tips", &said["critical_loads"]["tipping"]["load"], tips, COMPLIANCE);
-    let ground = &said["loads"][0];
+    assert_close("tips", &report["critical_loads"]["tipping"]["load"], tips, COMPLIANCE);
+    let ground = &report["loads"][0];
     assert_close("pull", &ground["Fy"], 5000.0, 1e-12);
     assert_close("weight", &ground["Fz"], -4100.0 * 9.81, 1e-12);
     assert_close("moment", &ground["Mx"], -500.0 * 9.81 - 2.0 * 5000.0, COMPLIANCE);
@@ -222,7 +222,7 @@ fn critical_loads_are_found_or_their_absence_is_explained() {
     assert!(loads[0]["reasons"].as_object().expect("reasons").is_empty());
 
     let hanging = "parameters: {payload: {value: 100, unit: kg}}\nlinks: [{name: load, joint: {revolute: {axis: y}}, mass: payload, com: [0, 0, -1]}]\n";
-    let said = strength("hanging", hanging, &[]);
-    assert!(said["critical_loads"]["tipping"].is_null());
-    assert_eq!(said["critical_loads"]["reasons"]["tipping"], "the crane has no supports");
+    let report = strength("hanging", hanging, &[]);
+    assert!(report["critical_loads"]["tipping"].is_null());
+    assert_eq!(report["critical_loads"]["reasons"]["tipping"], "the crane has no supports");
 }

@@ -39,7 +39,7 @@ pub fn write_parameters(crane: &dyn DynModel) -> String {
 /// A message, if a file cannot be read, the spec has mistakes, or a compiled crane belongs to another spec.
 pub fn open(folder: &Path, make: Make) -> Result<Opened, String> {
     // Not by the compiler's reader of files: the text includes the specs that it extends.
-    let bytes = read(folder, SPEC)?;
+    let bytes = read_resource(folder, SPEC)?;
     let source = SourceFile::from_bytes(SPEC, &bytes).map_err(|mistakes| mistakes.to_string())?;
     let Checked { chain, warnings } = compile::check(&source).map_err(|mistakes| mistakes.to_string())?;
     let spec_hash = chain.spec_hash.clone();
@@ -52,21 +52,21 @@ pub fn open(folder: &Path, make: Make) -> Result<Opened, String> {
     }
     let mut parameters: Vec<f64> =
         (0..crane.description().parameters.len()).map(|index| crane.parameter(index)).collect();
-    let bytes = read(folder, PARAMETERS)?;
+    let bytes = read_resource(folder, PARAMETERS)?;
     let mut known = vec![false; parameters.len()];
     for line in String::from_utf8_lossy(&bytes).lines() {
-        let (place, value) = read_line(crane.as_ref(), line).ok_or_else(|| format!("{PARAMETERS}: `{line}`"))?;
-        (parameters[place], known[place]) = (value, true);
+        let (parameter, value) = read_line(crane.as_ref(), line).ok_or_else(|| format!("{PARAMETERS}: `{line}`"))?;
+        (parameters[parameter], known[parameter]) = (value, true);
     }
-    if let Some(place) = known.iter().position(|known| !known) {
-        let name = &crane.description().parameters[place].name;
+    if let Some(parameter) = known.iter().position(|known| !known) {
+        let name = &crane.description().parameters[parameter].name;
         return Err(format!("{PARAMETERS} has no value of `{name}`: export the unit again"));
     }
     Ok(Opened { crane, parameters, warnings: warnings.lines().collect::<Vec<_>>().join("; ") })
 }
 
 /// A file of the folder.
-fn read(folder: &Path, name: &str) -> Result<Vec<u8>, String> {
+fn read_resource(folder: &Path, name: &str) -> Result<Vec<u8>, String> {
     let file = folder.join(name);
     fs::read(&file).map_err(|error| format!("{}: {error}", file.display()))
 }
@@ -74,8 +74,8 @@ fn read(folder: &Path, name: &str) -> Result<Vec<u8>, String> {
 /// Index and value of a parameter.
 fn read_line(crane: &dyn DynModel, line: &str) -> Option<(usize, f64)> {
     let (name, value) = line.split_once(',')?;
-    let place = crane.description().parameters.iter().position(|parameter| parameter.name == name)?;
-    Some((place, value.parse().ok()?))
+    let index = crane.description().parameters.iter().position(|parameter| parameter.name == name)?;
+    Some((index, value.parse().ok()?))
 }
 
 /// The folder that a URI of FMI 2.0 names: `file:///folder`, `file:/folder` or `file://localhost/folder`.

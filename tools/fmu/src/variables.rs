@@ -66,8 +66,8 @@ pub fn list(description: &Description) -> Vec<Variable> {
             _ if index <= 2 * n => Source::Rate(index - 1 - n),
             _ => states.iter().position(|state| *state == column.name).map_or(Source::Quantity(index), Source::Own),
         };
-        if let Source::Own(place) = source {
-            units[place].clone_from(&column.unit);
+        if let Source::Own(state) = source {
+            units[state].clone_from(&column.unit);
         }
         let is_output = match source {
             Source::Position(i) | Source::Rate(i) => !description.coordinates[i].role.is_element(),

@@ -231,7 +231,7 @@ def test_a_state_is_kept_and_brought_back(export, slave):
     unit.freeFMUstate(state)
 
 
-def test_two_cranes_in_one_co_simulation_do_not_meddle(export, slave):
+def test_two_instances_are_independent(export, slave):
     names = ["load_centre_x", "load_centre_z"]
     file = export("knuckle_boom")
     alone = slave(file, payload=300)

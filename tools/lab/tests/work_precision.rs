@@ -30,11 +30,11 @@ fn folder(name: &str) -> PathBuf {
 }
 
 /// Wrong arguments end with code 2 and say what was meant.
-fn refused(arguments: &[&str], said: &[&str]) {
+fn refused(arguments: &[&str], expected: &[&str]) {
     let output = lab(arguments);
     let message = text(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
-    for words in said {
+    for words in expected {
         assert!(message.contains(words), "{arguments:?}: `{words}` not in: {message}");
     }
 }
@@ -83,7 +83,7 @@ fn work_precision_of_every_method() {
 }
 
 #[test]
-fn work_precision_refuses_what_makes_no_sense() {
+fn work_precision_refuses_senseless_options() {
     refused(&["work-precision", "--sections", "3"], &["two or more different numbers", "`none`"]);
     refused(&["work-precision", "--sections", "many"], &["2,4,8"]);
     refused(&["work-precision", "--sections", "none", "--duration", "0"], &["`--duration 0`", "positive"]);
@@ -112,8 +112,8 @@ points: [{name: middle, remove: true}]
     let arguments = ["--quick", "--sections", "1,2", "--duration", "0.2", "--format", "json", "--out", &out];
     let report = json(&[&["work-precision", &file][..], &arguments].concat());
     // A tip force P bends it by 1 − 1/(4n²) of the beam's PL³/3EI, its own weight W by 1 − 1/(2n²) of WL³/8EI.
-    let (tip, own) = (20.0, 2.0 * 0.06 * 0.04 * 7850.0);
-    let (by_tip, by_own) = (tip / 3.0, own / 8.0);
+    let (tip, beam) = (20.0, 2.0 * 0.06 * 0.04 * 7850.0);
+    let (by_tip, by_own) = (tip / 3.0, beam / 8.0);
     for (row, n) in report["sections"].as_array().expect("rows").iter().zip([1.0, 2.0]) {
         let error = row["static_deflection"].as_f64().expect("a number");
         let law = (by_tip / 4.0 + by_own / 2.0) / (by_tip + by_own) / (n * n);

@@ -23,7 +23,7 @@ pub struct Dual8 {
 impl Dual8 {
     /// A number with slope 1 in one direction; with zero slopes only, if `direction` is none of the eight.
     pub fn along(value: f64, direction: Option<usize>) -> Self {
-        let slope = |place: usize| if Some(place) == direction { 1.0 } else { 0.0 };
+        let slope = |index: usize| if Some(index) == direction { 1.0 } else { 0.0 };
         Self { value, slopes: f64x8::new(std::array::from_fn(slope)) }
     }
 
@@ -106,7 +106,7 @@ impl Number for Dual8 {
     fn sin_cos(angles: [Self; ANGLES]) -> ([Self; ANGLES], [Self; ANGLES]) {
         let (sines, cosines) = sin_cos(angles.map(|angle| angle.value));
         let of = |value: &dyn Fn(usize) -> f64, derivative: &dyn Fn(usize) -> f64| {
-            std::array::from_fn(|place| angles[place].chain(value(place), derivative(place)))
+            std::array::from_fn(|index| angles[index].chain(value(index), derivative(index)))
         };
         (of(&|i| sines[i], &|i| cosines[i]), of(&|i| cosines[i], &|i| -sines[i]))
     }
@@ -119,8 +119,8 @@ impl Number for Dual8 {
         let [c0, c1, c2, c3, c4, c5] = &known;
         let orders = [c0, c1, c2, c3, c4, c5, &sixth, &seventh];
         std::array::from_fn(|k| {
-            let derivative = |place: usize| 0.5 * (k as f64 * orders[k + 2][place] - orders[k + 1][place]);
-            std::array::from_fn(|place| arguments[place].chain(orders[k][place], derivative(place)))
+            let derivative = |index: usize| 0.5 * (k as f64 * orders[k + 2][index] - orders[k + 1][index]);
+            std::array::from_fn(|index| arguments[index].chain(orders[k][index], derivative(index)))
         })
     }
 }

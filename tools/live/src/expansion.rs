@@ -66,14 +66,14 @@ pub fn second_derivatives(
     for &count in degrees {
         for m in 0..count {
             for n in m..count {
-                if let Some(place) = out.next() {
-                    *place = turned(Vector3::from(axes[m]), &first[start + n]);
+                if let Some(entry) = out.next() {
+                    *entry = turned(Vector3::from(axes[m]), &first[start + n]);
                     let within = |of: &usize| *of <= m && n < of + 3;
                     if let Some(vector) = vectors.iter().position(within) {
                         let (of, row) = (vectors[vector], m - vectors[vector]);
                         let pair = 6 * vector + row * 3 - row * row.saturating_sub(1) / 2 + n - m;
                         for (k, share) in shares[pair].iter().enumerate() {
-                            *place += *share * derivative(&first[start + of + k]);
+                            *entry += *share * derivative(&first[start + of + k]);
                         }
                     }
                 }

@@ -56,15 +56,15 @@ fn append(shape: &Shape, first: usize, entries: &mut Vec<Entry>) {
 /// A full matrix, column by column, of the slots of its upper triangle, row by row.
 fn symmetric(n: usize, first: usize) -> impl Iterator<Item = Entry> {
     let slot = move |row: usize, column: usize| first + row * n + column - row * (row + 1) / 2;
-    (0..n * n).map(move |place| {
-        let (i, j) = (place % n, place / n);
+    (0..n * n).map(move |index| {
+        let (i, j) = (index % n, index / n);
         Entry::Slot(slot(i.min(j), i.max(j)))
     })
 }
 
 /// A 4×4 matrix, column by column, of the slots of three rows.
 fn homogeneous(first: usize, corner: f64) -> impl Iterator<Item = Entry> {
-    (0..16).map(move |place| match (place % 4, place / 4) {
+    (0..16).map(move |index| match (index % 4, index / 4) {
         (3, 3) => Entry::Number(corner),
         (3, _) => Entry::Number(0.0),
         (row, column) => Entry::Slot(first + 4 * row + column),

@@ -23,7 +23,8 @@ impl DynLineariseMotion for LiveCrane {
         let quantities = [Quantity::InverseDynamics, Quantity::Of(FunctionId::Forces)];
         let mut forces = quantities.map(|quantity| Evaluation::<Dual8>::new(self, quantity));
         let numbers = |values: &[f64], first: Option<usize>| -> Vec<Dual8> {
-            let along = |i: usize| first.and_then(|first| i.checked_sub(first)).filter(|place| *place < DIRECTIONS);
+            let along =
+                |i: usize| first.and_then(|first| i.checked_sub(first)).filter(|direction| *direction < DIRECTIONS);
             values.iter().enumerate().map(|(i, value)| Dual8::along(*value, along(i))).collect()
         };
         let (t, a) = (Dual8::splat(t), numbers(a, None));
@@ -33,9 +34,9 @@ impl DynLineariseMotion for LiveCrane {
                 let v = numbers(v, of_rates.then_some(first));
                 let [required, given] = &mut forces;
                 let (required, given) = (required.at(t, &q, &v, &a), given.at(t, &q, &v, &a));
-                for (place, column) in columns.chunks_exact_mut(n).skip(first).take(DIRECTIONS).enumerate() {
+                for (direction, column) in columns.chunks_exact_mut(n).skip(first).take(DIRECTIONS).enumerate() {
                     for (entry, (required, given)) in column.iter_mut().zip(required.iter().zip(given)) {
-                        *entry = required.slope(place) - given.slope(place);
+                        *entry = required.slope(direction) - given.slope(direction);
                     }
                 }
             }

@@ -71,21 +71,21 @@ fn a_boom_bends_under_its_cylinder() {
     let crane: &dyn DynCrane = &crane;
     let (q, still) = (rest(crane), vec![0.0; crane.size()]);
     let transforms = crane.transforms_at(&q);
-    let place = |body: usize, at: [f64; 3]| {
+    let position = |body: usize, at: [f64; 3]| {
         let point = transforms[body] * Vector3::from(at).push(1.0);
         Vector3::new(point.x, point.y, point.z)
     };
     let bodies = &crane.description().bodies;
     let of_head = bodies.iter().position(|body| body.name.as_ref() == "boom_2").expect("an element");
     // Elements of symmetric sections begin at 0, 0.4, 1.2, 2.0, 2.8 and 3.6 m.
-    let head = place(of_head, [HEAD - 1.2, -0.1, 0.0]);
-    let foot = place(0, [0.1, 0.0, -1.2]);
+    let head = position(of_head, [HEAD - 1.2, -0.1, 0.0]);
+    let foot = position(0, [0.1, 0.0, -1.2]);
     let along = (head - foot).normalize();
     // Weights of the elements, each in its middle, and of the load.
     let density = 7850.0 * (0.16 * 0.12 - 0.148 * 0.108);
-    let mut weights = vec![(bodies.len() - 1, place(bodies.len() - 1, [0.0; 3]), 500.0)];
+    let mut weights = vec![(bodies.len() - 1, position(bodies.len() - 1, [0.0; 3]), 500.0)];
     for (index, body) in bodies.iter().enumerate().filter(|(_, body)| body.link.as_ref() == "boom") {
-        weights.push((index, place(index, [0.5 * body.length, 0.0, 0.0]), density * body.length));
+        weights.push((index, position(index, [0.5 * body.length, 0.0, 0.0]), density * body.length));
     }
     let turning = |at: &Vector3<f64>, force: Vector3<f64>| at.cross(&force).y;
     let down = |mass: f64| Vector3::new(0.0, 0.0, -mass * GRAVITY);
@@ -103,7 +103,7 @@ fn a_boom_bends_under_its_cylinder() {
     springs.reverse();
     for (cut, wrench) in crane.description().cuts().into_iter().zip(&wrenches) {
         let Cut::Body { body, section: Some(_) } = cut else { continue };
-        let origin = place(body, [0.0; 3]);
+        let origin = position(body, [0.0; 3]);
         let beyond = weights.iter().filter(|(index, ..)| *index >= body);
         let mut force: Vector3<f64> = beyond.clone().map(|(_, _, mass)| down(*mass)).sum();
         let mut bending: f64 = beyond.map(|(_, at, mass)| turning(&(at - origin), down(*mass))).sum();

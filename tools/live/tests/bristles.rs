@@ -180,7 +180,8 @@ fn every_method_follows_the_laws_written_a_second_time() {
             assert!(off < 1e-4, "{method:?}, {index}: {} for {}, off by {off:.1e}", found[index], y[index]);
         }
         // The work of the drive is stored in springs, moves the slide, or is dissipated.
-        let balance = column(&table, "energy_balance").into_iter().fold(0.0, |worst: f64, own| worst.max(own.abs()));
+        let balance =
+            column(&table, "energy_balance").into_iter().fold(0.0, |worst: f64, error| worst.max(error.abs()));
         assert!(balance < 1e-5 * column(&table, "drive_work")[100], "{method:?}: {balance:e}");
     }
     assert!(least < 1e-5, "it slips without sticking: {least}");
@@ -201,8 +202,8 @@ fn sliding_bristles_limit_the_step_of_explicit_methods() {
     let decay = STIFFNESS * RATE / COULOMB;
     assert!((limit.mode.eigenvalue.re / -decay - 1.0).abs() < 1e-9, "{} for {decay}", limit.mode.eigenvalue);
     let end = |step: f64| {
-        let own = Settings { step, ..settings(&crane, Method::Rk4, 1.0) };
-        let run = runs::record(&crane, &start, &own, &mut |_| ControlFlow::Continue(()));
+        let short = Settings { step, ..settings(&crane, Method::Rk4, 1.0) };
+        let run = runs::record(&crane, &start, &short, &mut |_| ControlFlow::Continue(()));
         run.ok().map(|run| *column(&run.table, "slide_x_bristle").last().expect("a row"))
     };
     let exact = COULOMB / STIFFNESS;

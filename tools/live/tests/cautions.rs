@@ -20,7 +20,7 @@ fn spec(text: &str) -> LiveCrane {
     LiveCrane::from_spec(&SourceFile::new("crane.yaml", text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
 }
 
-fn said(crane: &LiveCrane, settings: &Settings) -> Vec<String> {
+fn cautions_of_run(crane: &LiveCrane, settings: &Settings) -> Vec<String> {
     let start = Start::of(crane).unwrap_or_else(|failed| panic!("{failed}"));
     let check = (false, cautions::BEND);
     let recorded = record_checked(crane, &start, settings, check, &mut |_| ControlFlow::Continue(()));
@@ -33,10 +33,10 @@ fn ensembles_have_the_cautions_and_extremes_of_single_runs() {
     for name in ["eight_link_hydraulic", "loader_tipping"] {
         let crane = shipped(name);
         let settings = Settings { duration: 6.5, audit: false, ..Settings::of(crane.description()) };
-        let single = said(&crane, &settings);
+        let single = cautions_of_run(&crane, &settings);
         assert!(!single.is_empty(), "{name}");
         let execution = Execution { threads: 1, done: &|_, _| (), cancelled: &|_| false };
-        let rows = ensemble::run(&crane, &[crane.parameters().to_vec().into()], &settings, &execution);
+        let rows = ensemble::run_ensemble(&crane, &[crane.parameters().to_vec().into()], &settings, &execution);
         assert_eq!(rows[0].cautions, single, "{name}");
 
         let start = Start::of(&crane).expect("it rests");
@@ -81,15 +81,15 @@ run: {{duration: 3, output: 0.01}}
 /// Without feed-forward a servo falls behind by v/(K gain), with K the speed at the fully open valve, here by much more than a twentieth
 /// of the motion; with feed-forward it hardly does.
 #[test]
-fn a_servo_that_stays_behind_says_so() {
+fn a_servo_that_stays_behind_gets_a_caution() {
     let behind = |crane: &LiveCrane| {
-        let all = said(crane, &Settings::of(crane.description()));
+        let all = cautions_of_run(crane, &Settings::of(crane.description()));
         all.into_iter().find(|caution| caution.starts_with("ram falls behind"))
     };
-    let said = behind(&lift(1e-3, "gain: 2, feed_forward: 0")).expect("a caution");
-    assert!(said.contains("slide_z is up to 0.1") && said.ends_with("its valve is never fully open"), "{said}");
-    let said = behind(&lift(1e-5, "gain: 10, feed_forward: 0")).expect("a caution");
-    assert!(said.contains("its valve is fully open for"), "{said}");
+    let text = behind(&lift(1e-3, "gain: 2, feed_forward: 0")).expect("a caution");
+    assert!(text.contains("slide_z is up to 0.1") && text.ends_with("its valve is never fully open"), "{text}");
+    let text = behind(&lift(1e-5, "gain: 10, feed_forward: 0")).expect("a caution");
+    assert!(text.contains("its valve is fully open for"), "{text}");
     assert_eq!(behind(&lift(1e-3, "gain: 10")), None);
 }
 
@@ -112,6 +112,6 @@ drives: [{{coordinate: lift_z, stiffness: 1e5, max_effort: {limit}, motion: {{ho
     // If it can, but only just, a caution says how close it is to its limit: 981 of 985 N.
     let crane = lift(985.0);
     let start = Start::of(&crane).expect("it rests");
-    let said = cautions::of_pose(&crane, &start.q, cautions::BEND);
-    assert!(said[0].starts_with("the drive of lift_z is at its limit, 981.0 of 985.0 N"), "{said:?}");
+    let cautions = cautions::of_pose(&crane, &start.q, cautions::BEND);
+    assert!(cautions[0].starts_with("the drive of lift_z is at its limit, 981.0 of 985.0 N"), "{cautions:?}");
 }

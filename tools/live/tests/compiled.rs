@@ -198,7 +198,7 @@ fn prescribed(crane: &dyn DynCrane) -> Vec<f64> {
 }
 
 #[test]
-fn a_live_crane_says_of_itself_what_the_compiled_one_does() {
+fn live_and_compiled_descriptions_are_equal() {
     for (compiled, live) in both() {
         let live: &dyn DynCrane = &live;
         assert_eq!(live.description(), compiled.description());

@@ -39,7 +39,12 @@ fn rest(crane: &dyn DynCrane) -> Vec<f64> {
     equilibrium.q
 }
 
-fn run(crane: &dyn DynCrane, settings: &Settings, start: &InitialState, see: &mut dyn FnMut(&Sample<'_>)) -> Run {
+fn run_watched(
+    crane: &dyn DynCrane,
+    settings: &Settings,
+    start: &InitialState,
+    see: &mut dyn FnMut(&Sample<'_>),
+) -> Run {
     let run = crane.simulate(start, settings, &mut |sample: &Sample<'_>| {
         see(sample);
         ControlFlow::Continue(())
@@ -168,7 +173,7 @@ fn a_falling_weight_is_caught_by_its_rope() {
         let settings = Settings { method, tolerance: 1e-7, duration, output: 1e-3, audit: true, ..of_spec };
         let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
         let mut recording = Recording::new(crane);
-        run(crane, &settings, &start, &mut |sample| {
+        run_watched(crane, &settings, &start, &mut |sample| {
             recording.push(sample);
             lowest = lowest.min(sample.q[0]);
             if sample.t > 0.5 * duration {
@@ -199,7 +204,7 @@ fn a_winch_does_the_work_of_the_weight() {
     let of_spec = Settings::of(crane.description());
     let settings = Settings { tolerance: 1e-7, duration: 10.0, output: 0.1, audit: true, ..of_spec };
     let mut end = (0.0, 0.0);
-    run(crane, &settings, &start, &mut |sample| end = (sample.q[0], sample.work));
+    run_watched(crane, &settings, &start, &mut |sample| end = (sample.q[0], sample.work));
     assert!((end.0 - start.q[0] - 1.2).abs() < 1e-6, "{}", end.0);
     let work = 50.0 * GRAVITY * 1.2;
     // The rope's damper dissipates the vibration that the winch's acceleration excites.
@@ -253,7 +258,7 @@ fn a_spring_along_a_slide_steps_like_that_of_a_drive() {
             let of_spec = Settings::of(slide.description());
             let settings = Settings { method, tolerance: 1e-6, duration: 0.5, output: 0.5, ..of_spec };
             let mut end = f64::NAN;
-            let run = run(slide, &settings, &start, &mut |sample| end = sample.q[0]);
+            let run = run_watched(slide, &settings, &start, &mut |sample| end = sample.q[0]);
             (end, run.statistics.steps)
         });
         assert_eq!(one.1, other.1, "{method}: steps");
@@ -281,7 +286,7 @@ fn implicit_steps_know_springs_across_several_joints() {
     let [(q, steps), (exact, most)] = [Method::Bdf, Method::DormandPrince].map(|method| {
         let settings = Settings { method, tolerance: 1e-5, duration: 0.6, output: 0.6, ..of_spec };
         let mut q = Vec::new();
-        let run = run(arms, &settings, &start, &mut |sample| q = sample.q.to_vec());
+        let run = run_watched(arms, &settings, &start, &mut |sample| q = sample.q.to_vec());
         (q, run.statistics.steps)
     });
     let off = q.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
@@ -310,7 +315,7 @@ fn a_second_stage_follows_the_first() {
     let of_spec = Settings::of(telescope.description());
     let settings = Settings { tolerance: 1e-6, duration: 6.0, output: 1.0, audit: true, ..of_spec };
     let (mut end, mut recording) = (Vec::new(), Recording::new(telescope));
-    run(telescope, &settings, &start, &mut |sample| {
+    run_watched(telescope, &settings, &start, &mut |sample| {
         recording.push(sample);
         end = sample.q.to_vec();
     });

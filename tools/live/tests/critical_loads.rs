@@ -87,7 +87,7 @@ fn the_first_foot_lifts_where_statics_says() {
                 // The foot that lifts is the one that carries least just before.
                 let before = forces(crane, truth * (1.0 - 1e-5)).expect("it rests");
                 let least = (0..4).min_by(|a, b| before[*a].total_cmp(&before[*b])).expect("four feet");
-                assert_eq!(all[0].place, crane.description().supports[least].name.as_str());
+                assert_eq!(all[0].location, crane.description().supports[least].name.as_str());
             }
         }
     }
@@ -130,12 +130,12 @@ fn the_load_that_tips_is_never_left_out() {
                     all.push(critical_load(crane, 0, Critical::Tipping));
                 }
                 assert!(all.iter().all(|found| *found == all[0]), "{all:?}");
-                let CriticalLoad { load, place } = all.remove(0).expect("a load");
+                let CriticalLoad { load, location: line } = all.remove(0).expect("a load");
                 for (share, expected) in [(1.0 - 1e-6, true), (1.0 + 1e-6, false)] {
                     let found = stands(crane, 0.9 * load, share * load);
                     assert_eq!(found, expected, "{drive}, {stiffness:e} N/m, {slew}°: {share} of {load}");
                 }
-                assert!(place.contains(" – "), "{place}");
+                assert!(line.contains(" – "), "{line}");
             }
         }
     }

@@ -113,10 +113,10 @@ fn a_parallelogram_turns_its_rocker_with_the_arm() {
     for theta in [-0.9f64, -0.3, 0.2, 0.7] {
         // The rocker's pin in the x-z plane, from the foot 0.5 m below the pivot.
         let length = (0.25 * theta.cos()).hypot(0.5 - 0.25 * theta.sin());
-        let own = [&right, &left].map(|crane| at(crane, &[0.0, theta], &[0.0; 2]).length);
-        let found = own.iter().filter(|own| (*own - length).abs() < 1e-13).count();
-        assert!(found >= 1, "{theta}: {own:?} for {length}");
-        differ += usize::from((own[0] - own[1]).abs() > 1e-3);
+        let lengths = [&right, &left].map(|crane| at(crane, &[0.0, theta], &[0.0; 2]).length);
+        let found = lengths.iter().filter(|lengths| (*lengths - length).abs() < 1e-13).count();
+        assert!(found >= 1, "{theta}: {lengths:?} for {length}");
+        differ += usize::from((lengths[0] - lengths[1]).abs() > 1e-3);
         for crane in [&right, &left] {
             let [less, more] = [-1e-5, 1e-5].map(|by| at(crane, &[0.0, theta + by], &[0.0; 2]).length);
             let arm = at(crane, &[0.0, theta], &[0.0; 2]).arm;
@@ -196,10 +196,10 @@ fn a_linkage_that_does_not_reach_is_named() {
     let settings = Settings { duration: 3.0, ..Settings::of(crane.description()) };
     let failed = runs::record(&crane, &start, &settings, &mut |_| std::ops::ControlFlow::Continue(()))
         .expect_err("it does not reach");
-    let said = failed.to_string();
-    assert!(said.contains("the linkage of lift cannot be assembled at 1."), "{said}");
-    let said = cautions::of_pose(&crane, &[0.0, -0.6], 20.0);
-    assert!(said.iter().any(|said| said.contains("lift cannot be assembled")), "{said:?}");
+    let message = failed.to_string();
+    assert!(message.contains("the linkage of lift cannot be assembled at 1."), "{message}");
+    let message = cautions::of_pose(&crane, &[0.0, -0.6], 20.0);
+    assert!(message.iter().any(|message| message.contains("lift cannot be assembled")), "{message:?}");
 }
 
 /// Cautions name strokes, pressures and flows beyond their limits, and drives stiffer than their oil.
@@ -207,10 +207,10 @@ fn a_linkage_that_does_not_reach_is_named() {
 fn limits_of_cylinders_are_cautions() {
     let short = arm(&PLAIN.replace("stroke: 0.6", "stroke: 0.05").replace("21e6", "8e5"));
     let rest = (&short as &dyn DynCrane).equilibrium(&statics::Settings::default());
-    let said = cautions::of_pose(&short, &rest.q, 20.0).join("; ");
+    let caution = cautions::of_pose(&short, &rest.q, 20.0).join("; ");
     // Its pins are 0.8 m and 0.6 m from the joint, at right angles except for the sag.
-    assert!(said.contains("lift is 1.000 m long: its stroke is from 0.900 to 0.950 m"), "{said}");
-    assert!(said.contains("on the side of its piston: its relief valve opens at 8 bar"), "{said}");
+    assert!(caution.contains("lift is 1.000 m long: its stroke is from 0.900 to 0.950 m"), "{caution}");
+    assert!(caution.contains("on the side of its piston: its relief valve opens at 8 bar"), "{caution}");
     let oily = arm(&format!("{PLAIN}\n    bulk_modulus: 2e8\n    hose_volumes: [1e-3, 2e-3]"));
     let info = &oily.description().cylinders[0];
     let state = at(&oily, &[0.0, 0.0], &[0.0; 2]);
@@ -218,8 +218,8 @@ fn limits_of_cylinders_are_cautions() {
     let stiffness = 2e8 * (piston * piston / (1e-3 + piston * y) + ring * ring / (2e-3 + ring * (0.6 - y)));
     let found = state.oil_stiffness(info).expect("there is oil");
     assert!((found / (stiffness * state.arm * state.arm) - 1.0).abs() < 1e-14, "{found}");
-    let said = cautions::of_pose(&oily, &[0.0, 0.0], 20.0).join("; ");
+    let caution = cautions::of_pose(&oily, &[0.0, 0.0], 20.0).join("; ");
     let ratio = format!("the drive of arm_theta is {:.1} times as stiff as the oil in lift", 1e7 / found);
-    assert!(said.contains(&ratio), "{said}");
+    assert!(caution.contains(&ratio), "{caution}");
     assert!(at(&short, &[0.0, 0.0], &[0.0; 2]).oil_stiffness(&short.description().cylinders[0]).is_none());
 }

@@ -121,7 +121,7 @@ fn turned(b: f64, theta: f64) -> Vec<f64> {
 type See<'a> = dyn FnMut(f64, &[f64], &[f64]) + 'a;
 
 /// Runs a crane and passes on its samples; its energy balances to 0.3 % of the energy at stake.
-fn run(crane: &LiveCrane, start: &InitialState, settings: &Settings, at_stake: f64, see: &mut See<'_>) {
+fn run_watched(crane: &LiveCrane, start: &InitialState, settings: &Settings, at_stake: f64, see: &mut See<'_>) {
     let crane: &dyn DynCrane = crane;
     let energy = |t: f64, q: &[f64], v: &[f64]| crane.energies_at(t, q, v).total();
     let begin = energy(0.0, &start.q, &start.v);
@@ -155,11 +155,17 @@ fn a_slender_block_rocks_as_housner_says() {
     let at_stake = BLOCK * 9.81 * radius * ((alpha - theta).cos() - alpha.cos()).abs();
     let mut landed = None;
     let crane: &dyn DynCrane = &block;
-    run(&block, &start, &settings(&block, Method::Bdf, 1e-7, 1.2 * expected, 1e-4), at_stake, &mut |t, q, _| {
-        if crane.support_gaps_at(q)[0] < 0.0 {
-            landed.get_or_insert(t);
-        }
-    });
+    run_watched(
+        &block,
+        &start,
+        &settings(&block, Method::Bdf, 1e-7, 1.2 * expected, 1e-4),
+        at_stake,
+        &mut |t, q, _| {
+            if crane.support_gaps_at(q)[0] < 0.0 {
+                landed.get_or_insert(t);
+            }
+        },
+    );
     let landed = landed.expect("it lands");
     // The law is that of small angles, off by α²/6 or so, and the foot below gives way by 2 µm.
     assert!((landed / expected - 1.0).abs() < alpha * alpha / 3.0, "{landed} s for {expected} s");
@@ -176,7 +182,7 @@ fn energy_balances_over_lifting_and_landing() {
     for (method, tolerance) in [(Method::Bdf, 1e-8), (Method::Rosenbrock, 1e-8), (Method::DormandPrince, 1e-7)] {
         let crane: &dyn DynCrane = &block;
         let mut lifted = [0; 2];
-        run(&block, &start, &settings(&block, method, tolerance, 2.0, 1e-3), at_stake, &mut |_, q, _| {
+        run_watched(&block, &start, &settings(&block, method, tolerance, 2.0, 1e-3), at_stake, &mut |_, q, _| {
             for (samples, gap) in lifted.iter_mut().zip(crane.support_gaps_at(q)) {
                 *samples += usize::from(gap > 1e-3);
             }
@@ -201,12 +207,18 @@ fn free_play_is_a_gap() {
     let start = InitialState { q: vec![0.0], v: vec![0.0], ..InitialState::default() };
     for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince, Method::Rk4] {
         let mut last = 0.0;
-        run(&jumper, &start, &settings(&jumper, method, 1e-9, period, 1e-4), mass * gravity * gap, &mut |t, q, _| {
-            if t < 0.99 * fall {
-                assert!((q[0] + 0.5 * gravity * t * t).abs() < 1e-7, "{method:?} at {t}: {}", q[0]);
-            }
-            last = q[0];
-        });
+        run_watched(
+            &jumper,
+            &start,
+            &settings(&jumper, method, 1e-9, period, 1e-4),
+            mass * gravity * gap,
+            &mut |t, q, _| {
+                if t < 0.99 * fall {
+                    assert!((q[0] + 0.5 * gravity * t * t).abs() < 1e-7, "{method:?} at {t}: {}", q[0]);
+                }
+                last = q[0];
+            },
+        );
         assert!(last.abs() < 1e-5, "{method:?}: {last} m");
     }
 }
@@ -230,9 +242,9 @@ fn a_truck_that_tips_names_the_moments_and_the_links() {
     assert_eq!([worst.link.as_str(), best.link.as_str()], ["load", "truck"]);
     assert!(off(worst.weight, load * 9.81) < 1e-12 && off(-worst.moment / worst.weight, RADIUS - TRACK) < 1e-12);
     let reason = Reason::no_equilibrium(crane, &found);
-    let (said, advice) =
+    let (message, advice) =
         (Failed { crane: "truck".into(), reason: Box::new(reason.clone()) }.to_string(), reason.advice());
-    assert!(said.contains("load overturns it most") && said.contains("6.00 m outside the line"), "{said}");
+    assert!(message.contains("load overturns it most") && message.contains("6.00 m outside the line"), "{message}");
     assert!(advice.contains("wider stance") && !advice.contains("guess"), "{advice}");
     // Seven times the tipping load, divided by 9.81, is less than it; twenty times is not; twice is an ordinary overload.
     for (times, suspected) in [(2.0, false), (7.0, true), (20.0, false)] {

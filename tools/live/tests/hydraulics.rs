@@ -219,9 +219,9 @@ fn by_hand(end: f64, [from, to, duration]: [f64; 3], start: [f64; 6], [gain, sha
     let k = FLOW / root(DROP);
     let wanted = |t: f64| {
         let s = (t / duration).clamp(0.0, 1.0);
-        let place = from + (to - from) * s.powi(3) * (10.0 - 15.0 * s + 6.0 * s * s);
+        let position = from + (to - from) * s.powi(3) * (10.0 - 15.0 * s + 6.0 * s * s);
         let rate = (to - from) / duration * 30.0 * s * s * (1.0 - s).powi(2);
-        (place, rate)
+        (position, rate)
     };
     let [a, b] = areas();
     let slope = |t: f64, [z, v, p, r, u, s]: [f64; 6]| {
@@ -235,9 +235,9 @@ fn by_hand(end: f64, [from, to, duration]: [f64; 3], start: [f64; 6], [gain, sha
             (u * k * root(p - TANK), q, q)
         };
         let suck = |p: f64| if p < TANK { FLOW * (TANK - p) / 1e5 } else { 0.0 };
-        let (place, rate) = wanted(t);
+        let (position, rate) = wanted(t);
         let (side, area) = if rate > 0.0 { (p, a) } else { (r, b) };
-        let command = gain * (place - z) + share * area * rate / (k * root(s - side));
+        let command = gain * (position - z) + share * area * rate / (k * root(s - side));
         let pump = MAX_FLOW * ((PUMP - s) / (0.05 * PUMP)).clamp(0.0, 1.0);
         [
             v,
@@ -334,11 +334,11 @@ fn oil_limits_the_step_of_explicit_methods() {
     let start = Start::of(&crane).expect("it rests");
     let limit = runs::step_limit(&crane, &start).expect("a limit").limit;
     assert!(limit.step < 0.2 * 2.8 / (stiffness(0.1) / MASS).sqrt(), "{} s", limit.step);
-    let said = crane_model::stability::cause(crane.description(), &limit.mode);
-    assert!(said.starts_with("oil of ram; "), "{said}");
+    let cause = crane_model::stability::cause(crane.description(), &limit.mode);
+    assert!(cause.starts_with("oil of ram; "), "{cause}");
     let exact = column(&record(&crane, &settings(Method::Bdf, 1e-8, 0.5)), "slide_z");
-    let own = Settings { step: 0.9 * limit.step, ..settings(Method::Rk4, 1e-8, 0.5) };
-    let found = column(&record(&crane, &own), "slide_z");
+    let short = Settings { step: 0.9 * limit.step, ..settings(Method::Rk4, 1e-8, 0.5) };
+    let found = column(&record(&crane, &short), "slide_z");
     let off = exact.iter().zip(&found).map(|(exact, found)| (exact - found).abs()).fold(0.0, f64::max);
     assert!(off < 1e-5, "{off:.1e} m");
 }

@@ -20,7 +20,7 @@ fn slide(more: &str) -> LiveCrane {
 }
 
 /// Time, position and rate of a run from q = 0 at the rate v, every millisecond; its energy balances.
-fn run(crane: &LiveCrane, method: Method, tolerance: f64, duration: f64, v: f64) -> Vec<[f64; 3]> {
+fn run_states(crane: &LiveCrane, method: Method, tolerance: f64, duration: f64, v: f64) -> Vec<[f64; 3]> {
     run_counted(crane, method, tolerance, duration, v).0
 }
 
@@ -33,8 +33,8 @@ fn run_counted(
     v: f64,
 ) -> (Vec<[f64; 3]>, Statistics) {
     let crane: &dyn DynCrane = crane;
-    let own = Settings::of(crane.description());
-    let settings = Settings { method, tolerance, duration, output: 1e-3, step: 1e-5, audit: true, ..own };
+    let defaults = Settings::of(crane.description());
+    let settings = Settings { method, tolerance, duration, output: 1e-3, step: 1e-5, audit: true, ..defaults };
     let start = InitialState { q: vec![0.0], v: vec![v], ..InitialState::default() };
     let energy = |sample: &Sample<'_>| crane.energies_at(sample.t, sample.q, sample.v).total();
     let mut samples = Vec::new();
@@ -56,7 +56,7 @@ fn a_stop_gives_back_the_speed() {
     let crane = slide(&format!("stops: {{slide_x: {{max: {at}, stiffness: {stiffness}}}}}\n"));
     let contact = PI * (MASS / stiffness).sqrt();
     for method in Method::ALL {
-        let samples = run(&crane, method, 1e-9, 0.5, 1.0);
+        let samples = run_states(&crane, method, 1e-9, 0.5, 1.0);
         let [t, q, v] = samples[samples.len() - 1];
         // Adaptive steps end at the stop; a constant step of 1e-5 s that meets it is of order 2, with (k/m) h²/2 = 2e-6 of the speed.
         let allowed = if method.is_adaptive() { 2e-7 } else { 4e-6 };
@@ -93,7 +93,7 @@ fn steps_end_at_contacts() {
 fn a_damped_stop_keeps_what_hunt_and_crossley_say() {
     for damping in [0.01, 0.1, 0.5] {
         let crane = slide(&format!("stops: {{slide_x: {{max: 0.1, stiffness: 8e4, damping: {damping}}}}}\n"));
-        let samples = run(&crane, Method::Bdf, 1e-9, 0.3, 1.0);
+        let samples = run_states(&crane, Method::Bdf, 1e-9, 0.3, 1.0);
         let found = -samples[samples.len() - 1][2];
         let law = |e: f64| damping * (1.0 + e) - ((1.0 + damping) / (1.0 - damping * e)).ln();
         let (mut low, mut high) = (0.0, 1.0);
@@ -114,7 +114,7 @@ fn a_sliding_mass_stops_where_coulomb_says() {
     for width in [0.1, 1e-2, 1e-3] {
         let crane = slide(&format!("friction: {{slide_x: {{coulomb: {force}, width: {width}}}}}\n"));
         for method in [Method::Bdf, Method::Rosenbrock] {
-            let samples = run(&crane, method, 1e-8, 1.5, 1.0);
+            let samples = run_states(&crane, method, 1e-8, 1.5, 1.0);
             let [_, q, v] = samples[samples.len() - 1];
             let expected = MASS / (2.0 * force) * (1.0 + width * width * PI * PI / 6.0);
             assert!(v.abs() < 1e-2 * width, "{method:?}, {width}: {v} m/s");
@@ -132,7 +132,7 @@ fn a_mass_sticks_and_slips() {
         "friction: {{slide_x: {{coulomb: {coulomb}, breakaway: {breakaway}, stribeck: {stribeck}, width: {width}}}}}\n\
          drives: [{{coordinate: slide_x, stiffness: {stiffness}, motion: {{speed: {{rate: {rate}}}}}}}]\n",
     ));
-    let samples = run(&crane, Method::Bdf, 1e-8, 4.0, 0.0);
+    let samples = run_states(&crane, Method::Bdf, 1e-8, 4.0, 0.0);
     let acceleration = |t: f64, [x, v]: [f64; 2]| {
         let size = coulomb + (breakaway - coulomb) * (-(v / stribeck).powi(2)).exp();
         (stiffness * (rate * t - x) - size * (v / width).tanh()) / MASS

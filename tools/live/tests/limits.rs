@@ -25,9 +25,9 @@ fn a_drive_at_its_limit_accelerates_evenly() {
     let start = InitialState { q: vec![0.0], v: vec![0.0], ..InitialState::default() };
     let begin = slide.energies_at(0.0, &start.q, &start.v).total();
     for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince, Method::Rk4] {
-        let own = Settings::of(slide.description());
+        let defaults = Settings::of(slide.description());
         let settings =
-            Settings { method, tolerance: 1e-9, duration: 2.0, output: 0.01, step: 1e-4, audit: true, ..own };
+            Settings { method, tolerance: 1e-9, duration: 2.0, output: 0.01, step: 1e-4, audit: true, ..defaults };
         let run = slide.simulate(&start, &settings, &mut |sample: &Sample<'_>| {
             let expected = 0.5 * limit / mass * sample.t * sample.t;
             assert!((sample.q[0] - expected).abs() < 1e-7, "{method:?} at {}: {}", sample.t, sample.q[0]);
@@ -57,9 +57,9 @@ fn power_and_rate_of_a_drive_are_limited() {
         let start = InitialState { q: vec![0.0], v: vec![v], ..InitialState::default() };
         let stored = slide.energies_at(0.0, &start.q, &start.v).total();
         for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince, Method::Rk4] {
-            let own = Settings::of(slide.description());
+            let defaults = Settings::of(slide.description());
             let settings =
-                Settings { method, tolerance: 1e-9, duration: 2.0, output: 0.01, step: 1e-4, audit: true, ..own };
+                Settings { method, tolerance: 1e-9, duration: 2.0, output: 0.01, step: 1e-4, audit: true, ..defaults };
             let run = slide.simulate(&start, &settings, &mut |sample: &Sample<'_>| {
                 check(sample, slide.drive_efforts_at(sample.t, sample.q, sample.v)[0]);
                 let energy = slide.energies_at(sample.t, sample.q, sample.v).total();
@@ -88,7 +88,7 @@ fn power_and_rate_of_a_drive_are_limited() {
 
 /// An arm whose weight exceeds the drive's limit sinks to where `m g l cos θ` equals the limit, and statics report it.
 #[test]
-fn statics_say_that_a_drive_cannot_hold() {
+fn statics_name_a_drive_that_cannot_hold() {
     let arm = |limit: f64| {
         crane(&format!(
             "format: 1\nname: arm\nlinks: [{{name: arm, joint: {{revolute: {{axis: y}}}}, mass: 10, com: [1, 0, 0]}}]\n\
@@ -102,8 +102,8 @@ fn statics_say_that_a_drive_cannot_hold() {
         assert!(found.is_stable(), "{limit}: {found}");
         let expected = (limit / 98.1_f64).acos();
         assert!((found.q[0] - expected).abs() < 1e-10, "{limit}: {} for {expected}", found.q[0]);
-        let said = cautions::of_pose(arm, &found.q, 20.0);
-        assert!(said.len() == 1 && said[0].contains("is at its limit"), "{said:?}");
+        let cautions = cautions::of_pose(arm, &found.q, 20.0);
+        assert!(cautions.len() == 1 && cautions[0].contains("is at its limit"), "{cautions:?}");
     }
     // Below 95 % of its limit the drive behaves like one without a limit.
     let (arm, weight) = (arm(110.0), 98.1);
@@ -151,8 +151,8 @@ fn efforts_are_rounded_off_at_the_limit() {
     for k in 0..80 {
         let from = f64::from(k) * step;
         energy += step / 6.0 * (effort(from) + 4.0 * effort(from + 0.5 * step) + effort(from + step));
-        let own = slide.energies_at(0.0, &[-from - step], &[0.0]).drives;
-        assert!((own - energy).abs() < 1e-12 * limit, "{}: {own} for {energy}", from + step);
+        let derived = slide.energies_at(0.0, &[-from - step], &[0.0]).drives;
+        assert!((derived - energy).abs() < 1e-12 * limit, "{}: {derived} for {energy}", from + step);
     }
     assert_eq!(slide.drive_limits_at(), [Some(limit)]);
 }

@@ -44,7 +44,7 @@ fn about_a_pose_at_rest_it_is_the_linearisation_of_statics() {
 /// quadratic in the rates, so that differences over any distance are exact to rounding there; in q, Richardson extrapolation leaves an
 /// error of h⁴.
 #[test]
-fn about_any_motion_it_is_what_differences_say() {
+fn linearisation_equals_differences_about_any_motion() {
     let live = shipped("eight_link_flexible");
     let n = live.size();
     let wave = |scale: f64, rate: f64| move |i: usize| scale * (rate * (i as f64 + 1.0)).sin();

@@ -91,7 +91,7 @@ fn rest(crane: &dyn DynCrane) -> Vec<f64> {
 }
 
 /// The world position of a point of a body.
-fn place(crane: &dyn DynCrane, q: &[f64], body: usize, at: [f64; 3]) -> Vector3<f64> {
+fn position_at(crane: &dyn DynCrane, q: &[f64], body: usize, at: [f64; 3]) -> Vector3<f64> {
     let point = crane.transforms_at(q)[body] * Vector3::from(at).push(1.0);
     Vector3::new(point.x, point.y, point.z)
 }
@@ -108,10 +108,10 @@ fn on_boom(crane: &dyn DynCrane, q: &[f64], at: [f64; 3]) -> Vector3<f64> {
         start += body.length;
     }
     let (body, start) = found.expect("an element");
-    place(crane, q, body, [at[0] - start, at[1], at[2]])
+    position_at(crane, q, body, [at[0] - start, at[1], at[2]])
 }
 
-fn named(crane: &dyn DynCrane, name: &str) -> usize {
+fn body_named(crane: &dyn DynCrane, name: &str) -> usize {
     crane.description().bodies.iter().position(|body| body.name.as_ref() == name).expect("a body")
 }
 
@@ -162,7 +162,8 @@ fn a_rocker_about_the_joint_is_a_direct_cylinder() {
             };
             for ((cut, a), (_, b)) in of_bodies(one).zip(of_bodies(other)) {
                 // The jib does not feel the force of the pivot, and the boom, not the jib, holds the rocker upright.
-                let of_jib = matches!(cut, Cut::Joint { body } | Cut::Body { body, .. } if body == named(one, "jib"));
+                let of_jib =
+                    matches!(cut, Cut::Joint { body } | Cut::Body { body, .. } if body == body_named(one, "jib"));
                 if of_jib {
                     assert!((a.moment.z - b.moment.z).abs() < 1e-4, "{sections}: {} for {}", a.moment.z, b.moment.z);
                     continue;
@@ -187,15 +188,15 @@ fn a_boom_carries_the_weight_and_the_rod() {
         let crane = loader(&boom(BOOM, &format!("sections: {sections}")), 0.0, &linkage("boom", FOOT, PIVOT));
         let crane: &dyn DynCrane = &crane;
         let q = rest(crane);
-        let jib = named(crane, "jib");
+        let jib = body_named(crane, "jib");
         let [foot, pivot] = [FOOT, PIVOT].map(|at| on_boom(crane, &q, at));
-        let [head, load] = [HEAD, [3.0, 0.0, 0.0]].map(|at| place(crane, &q, jib, at));
+        let [head, load] = [HEAD, [3.0, 0.0, 0.0]].map(|at| position_at(crane, &q, jib, at));
         // Angles grow about the world's −y.
         let axis = -Vector3::y();
         let pin = pivot + rods_pin(head - pivot, axis);
         let turning = |arm: Vector3<f64>, force: Vector3<f64>| arm.cross(&force).dot(&axis);
         let weight = |mass: f64| Vector3::new(0.0, 0.0, -mass * GRAVITY);
-        let joint = place(crane, &q, jib, [0.0; 3]);
+        let joint = position_at(crane, &q, jib, [0.0; 3]);
         // The link alone holds the jib, and the rod alone holds the rocker against the link.
         let of_link = (head - pin).normalize();
         let thrust = -turning(load - joint, weight(900.0)) / turning(head - joint, of_link);
@@ -210,16 +211,16 @@ fn a_boom_carries_the_weight_and_the_rod() {
         for (cut, wrench) in wrenches(crane, &q) {
             let Cut::Body { body, section: Some(section) } = cut else { continue };
             let x = crane.description().sections[section].x;
-            let origin = place(crane, &q, body, [0.0; 3]);
+            let origin = position_at(crane, &q, body, [0.0; 3]);
             let bodies = crane.description().bodies.iter().enumerate().skip(body);
-            let own: f64 = bodies
+            let by_boom: f64 = bodies
                 .filter(|(_, body)| body.link.as_ref() == "boom")
                 .map(|(index, body)| {
-                    let middle = place(crane, &q, index, [0.5 * body.length, 0.0, 0.0]);
+                    let middle = position_at(crane, &q, index, [0.5 * body.length, 0.0, 0.0]);
                     turning(middle - origin, weight(density * body.length))
                 })
                 .sum();
-            let weights = own + turning(load - origin, weight(900.0));
+            let weights = by_boom + turning(load - origin, weight(900.0));
             let expected = if x > PIVOT[0] {
                 beyond += 1;
                 weights + turning(head - origin, thrust * of_link)
@@ -240,8 +241,8 @@ fn a_boom_carries_the_weight_and_the_rod() {
 #[test]
 fn a_boom_in_two_pieces_is_a_boom_in_one() {
     let points = |crane: &dyn DynCrane, q: &[f64]| {
-        let jib = named(crane, "jib");
-        [[0.0; 3], [3.0, 0.0, 0.0]].map(|at| place(crane, q, jib, at))
+        let jib = body_named(crane, "jib");
+        [[0.0; 3], [3.0, 0.0, 0.0]].map(|at| position_at(crane, q, jib, at))
     };
     let whole = loader(&boom(BOOM, "sections: 8"), 0.3, &linkage("boom", FOOT, PIVOT));
     let cut = 0.8;
@@ -275,8 +276,8 @@ fn finer_meshes_converge_with_order_two() {
     let results = |sections: usize| {
         let crane = loader(&boom(BOOM, &format!("sections: {sections}")), 0.0, &longer);
         let q = rest(&crane);
-        let jib = named(&crane, "jib");
-        let load = place(&crane, &q, jib, [3.0, 0.0, 0.0]);
+        let jib = body_named(&crane, "jib");
+        let load = position_at(&crane, &q, jib, [3.0, 0.0, 0.0]);
         let state =
             cylinders_at(&crane, &q, &vec![0.0; q.len()], &(&crane as &dyn DynCrane).drive_efforts_at_rest(&q))[0];
         [load.z, state.force]

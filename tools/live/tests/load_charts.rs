@@ -72,7 +72,7 @@ fn geometry(theta: f64) -> [f64; 2] {
 }
 
 /// The limits that the parts of the crane have.
-fn own(crane: &dyn DynCrane) -> Limits {
+fn limits_of(crane: &dyn DynCrane) -> Limits {
     Limits { of_parts: PartLimit::DEFAULT.to_vec(), ..Limits::none(crane.description()) }
 }
 
@@ -102,7 +102,7 @@ fn a_relief_valve_limits_the_load() {
     let mut loads = Vec::new();
     for pressure in [100e5, 320e5] {
         let crane = arm("rigid: true", &cylinder(pressure, WIDE));
-        let ratings = chart(&crane, 1, &angles, own(&crane), 1.0);
+        let ratings = chart(&crane, 1, &angles, limits_of(&crane), 1.0);
         for (theta, rating) in angles.iter().zip(&ratings) {
             let [_, lever] = geometry(*theta);
             let expected = (pressure * areas[0] - BACK * areas[1]) * lever / (GRAVITY * REACH * theta.cos());
@@ -111,7 +111,7 @@ fn a_relief_valve_limits_the_load() {
         }
         loads.push(ratings[2].load.unwrap());
         // A dynamic factor divides the load.
-        let divided = chart(&crane, 1, &angles, own(&crane), 1.25);
+        let divided = chart(&crane, 1, &angles, limits_of(&crane), 1.25);
         for (whole, divided) in ratings.iter().zip(&divided) {
             assert_close("a factor", 1.25 * divided.load.unwrap(), whole.load.unwrap(), 2.0 * ACCURACY);
         }
@@ -121,7 +121,7 @@ fn a_relief_valve_limits_the_load() {
     let theta = 0.2f64;
     let above = cylinder(100e5, WIDE).replace(&format!("-{FOOT}"), &FOOT.to_string());
     let crane = arm("rigid: true", &above);
-    let rating = &chart(&crane, 1, &[theta], own(&crane), 1.0)[0];
+    let rating = &chart(&crane, 1, &[theta], limits_of(&crane), 1.0)[0];
     assert_eq!(rating.governing, Some(Limit::Pressure { cylinder: 0, rod: true }));
     let lever = FOOT * HEAD * theta.cos() / (FOOT * FOOT + HEAD * HEAD + 2.0 * FOOT * HEAD * theta.sin()).sqrt();
     let expected = (100e5 * areas[1] - BACK * areas[0]) * lever / (GRAVITY * REACH * theta.cos());
@@ -174,7 +174,7 @@ fn at_the_loads_of_a_chart_statics_finds_the_pressure() {
     for (max_pressure, pump) in [(100e5, 250e5), (320e5, 250e5), (320e5, 90e5)] {
         let greatest = f64::min(max_pressure, pump);
         let crane = boom(0.2, max_pressure, pump);
-        for (angle, rating) in angles.iter().zip(chart(&crane, 1, &angles, own(&crane), 1.0)) {
+        for (angle, rating) in angles.iter().zip(chart(&crane, 1, &angles, limits_of(&crane), 1.0)) {
             let there = &mut boom(*angle, max_pressure, pump);
             let there: &mut dyn DynCrane = there;
             there.set_parameter(0, rating.load.unwrap()).unwrap();
@@ -197,8 +197,8 @@ fn at_the_loads_of_a_chart_statics_finds_the_pressure() {
 fn a_stroke_ends_a_chart() {
     let [shortest, stroke] = [0.85, 0.25];
     let crane = arm("rigid: true", &cylinder(320e5, [shortest, stroke]));
-    let angles: Vec<f64> = (0..15).map(|place| -0.9 + 0.1 * f64::from(place)).collect();
-    let ratings = chart(&crane, 1, &angles, own(&crane), 1.0);
+    let angles: Vec<f64> = (0..15).map(|step| -0.9 + 0.1 * f64::from(step)).collect();
+    let ratings = chart(&crane, 1, &angles, limits_of(&crane), 1.0);
     let mut inside = 0;
     for (theta, rating) in angles.iter().zip(&ratings) {
         let [length, _] = geometry(*theta);
@@ -210,7 +210,7 @@ fn a_stroke_ends_a_chart() {
     assert!(inside > 2 && inside < 13, "{inside}");
     // A soft drive gives way until the piston meets its end: k · (0 − θ) = m g R cos θ, up to the angle of the shortest cylinder.
     let crane = arm("stiffness: 2e4", &cylinder(320e5, [shortest, stroke]));
-    let rating = &chart(&crane, 1, &[0.0], own(&crane), 1.0)[0];
+    let rating = &chart(&crane, 1, &[0.0], limits_of(&crane), 1.0)[0];
     // From the law of cosines: sin θ = (FOOT² + HEAD² − ℓ²)/(2 FOOT HEAD).
     let theta = ((FOOT * FOOT + HEAD * HEAD - shortest * shortest) / (2.0 * FOOT * HEAD)).asin();
     let expected = 2e4 * theta / (GRAVITY * REACH * theta.cos());
@@ -222,29 +222,29 @@ fn a_stroke_ends_a_chart() {
 #[test]
 fn a_drive_of_the_spec_limits_the_load() {
     let crane = arm("stiffness: 1e7, max_effort: 8e3", "");
-    let ratings = chart(&crane, 1, &[-0.5, 0.0], own(&crane), 1.0);
+    let ratings = chart(&crane, 1, &[-0.5, 0.0], limits_of(&crane), 1.0);
     for (theta, rating) in [-0.5f64, 0.0].iter().zip(&ratings) {
         // The drive yields by a milliradian, which changes the lever by some 5e-4 of it, and gives way within a thousandth of its limit.
         let expected = 8e3 / (GRAVITY * REACH * theta.cos());
         assert_close("max_effort", rating.load.unwrap(), expected, 3e-3);
         assert_eq!(rating.governing, Some(Limit::Effort { drive: 1 }));
     }
-    let mut limits = own(&crane);
+    let mut limits = limits_of(&crane);
     limits.of_parts.clear();
     let free = &chart(&crane, 1, &[0.0], limits.clone(), 1.0)[0];
     // The arm sinks until its lever is as short as its drive is weak.
     assert!(free.load > ratings[1].load.map(|load| 2.0 * load), "{:?}", free.load);
     // What is left out is said.
     let words = "the effort of arm_theta at most 8000 N m";
-    assert!(Coverage::of(&crane, &limits).not_considered.iter().any(|own| own == words));
-    assert!(Coverage::of(&crane, &own(&crane)).considered.iter().any(|own| own == words));
+    assert!(Coverage::of(&crane, &limits).not_considered.iter().any(|entry| entry == words));
+    assert!(Coverage::of(&crane, &limits_of(&crane)).considered.iter().any(|entry| entry == words));
 }
 
 /// A joint that gives way until it meets its stop at 0.02 rad: k · 0.02 = m g R cos 0.02.
 #[test]
 fn a_stop_of_a_driven_joint_ends_a_chart() {
     let crane = arm("stiffness: 2e5", "stops: {arm_theta: {max: 0.02, stiffness: 1e7}}");
-    let rating = &chart(&crane, 1, &[0.0], own(&crane), 1.0)[0];
+    let rating = &chart(&crane, 1, &[0.0], limits_of(&crane), 1.0)[0];
     assert_close("the stop", rating.load.unwrap(), 2e5 * 0.02 / (GRAVITY * REACH * 0.02f64.cos()), ACCURACY);
     assert_eq!(rating.governing, Some(Limit::Stop { coordinate: 1 }));
 }

@@ -28,11 +28,11 @@ fn boom(load: f64, more: &str) -> LiveCrane {
 /// A weight that hangs from a point is equivalent to a force in the world frame: the same pose and the same stiffness, to rounding.
 #[test]
 fn a_hanging_weight_is_a_force() {
-    let (own, weight) = (20.0, 150.0);
-    let heavy = boom(own + weight, "");
+    let (tip, weight) = (20.0, 150.0);
+    let heavy = boom(tip + weight, "");
     let force = -9.81 * weight;
     let loaded =
-        boom(own, &format!("loads: [{{name: pull, link: tip, at: [0.2, -0.3, 0.1], force: [0, 0, {force}]}}]\n"));
+        boom(tip, &format!("loads: [{{name: pull, link: tip, at: [0.2, -0.3, 0.1], force: [0, 0, {force}]}}]\n"));
     let [heavy, loaded]: [&dyn DynCrane; 2] = [&heavy, &loaded];
     let [one, other] = [heavy, loaded].map(|crane| crane.equilibrium(&statics::Settings::default()));
     assert!(one.is_stable() && other.is_stable(), "{one}; {other}");

@@ -87,18 +87,18 @@ fn a_hanging_rope_swings_as_a_heavy_string() {
     for frequency in &rod {
         assert!((frequency / (1.5 * GRAVITY / LENGTH).sqrt() - 1.0).abs() < 1e-12, "{frequency}");
     }
-    for (place, zero) in [2.404_825_557_695_773, 5.520_078_110_286_311].into_iter().enumerate() {
+    for (mode, zero) in [2.404_825_557_695_773, 5.520_078_110_286_311].into_iter().enumerate() {
         let exact = 0.5 * zero * (GRAVITY / LENGTH).sqrt();
         let error = |count| {
             let found = frequencies(&rope(count, ""));
             // Each frequency twice: along y and across it.
-            let [one, other] = [2 * place, 2 * place + 1].map(|index| (found[index] / exact - 1.0).abs());
+            let [one, other] = [2 * mode, 2 * mode + 1].map(|index| (found[index] / exact - 1.0).abs());
             assert!((one - other).abs() < 1e-9, "{one} {other}");
             one
         };
         let [coarse, fine, finest] = [8, 16, 32].map(error);
         for rate in [coarse / fine, fine / finest] {
-            assert!((3.5..4.5).contains(&rate), "mode {place}: {coarse:.2e} {fine:.2e} {finest:.2e}");
+            assert!((3.5..4.5).contains(&rate), "mode {mode}: {coarse:.2e} {fine:.2e} {finest:.2e}");
         }
     }
 }

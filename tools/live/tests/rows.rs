@@ -38,9 +38,9 @@ fn mass_matrices_with_parameters_of_their_own() {
     Evaluation::<f64x8>::new(&crane, Quantity::Of(FunctionId::MassMatrix)).run(&rows, 0..COUNT, &mut out);
     let mut alone = vec![f64::NAN; n * n];
     for row in 0..COUNT {
-        let mut own = crane.clone();
-        own.set_parameters(&parameters[row * count..(row + 1) * count]).unwrap();
-        own.mass_matrix(&q[row * n..(row + 1) * n], &mut alone);
+        let mut single = crane.clone();
+        single.set_parameters(&parameters[row * count..(row + 1) * count]).unwrap();
+        single.mass_matrix(&q[row * n..(row + 1) * n], &mut alone);
         assert_eq!(out[row * n * n..(row + 1) * n * n], alone, "row {row}");
     }
 }

@@ -148,7 +148,7 @@ fn the_caution_names_the_servo_and_a_gain_that_is_stable() {
     let crane = lift(300.0);
     let crane: &dyn DynCrane = &crane;
     let rest = crane.equilibrium(&crane_model::statics::Settings::default());
-    let said = cautions::of_servos(crane, 0.0, &rest.q).join("; ");
-    assert!(said.starts_with("servo of ram is unstable with slide at 26.5"), "{said}");
-    assert!(said.contains("use a `gain` below 140 instead of 300 1/m"), "{said}");
+    let caution = cautions::of_servos(crane, 0.0, &rest.q).join("; ");
+    assert!(caution.starts_with("servo of ram is unstable with slide at 26.5"), "{caution}");
+    assert!(caution.contains("use a `gain` below 140 instead of 300 1/m"), "{caution}");
 }

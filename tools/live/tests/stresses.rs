@@ -45,9 +45,9 @@ const AREA: f64 = 0.5 * 0.4 - 0.46 * 0.36;
 /// jumps there.
 #[test]
 fn a_simply_supported_beam_is_bent_most_under_its_force() {
-    let (length, place, force) = (4.0, 1.3, 50e3);
+    let (length, x_force, force) = (4.0, 1.3, 50e3);
     let line = DENSITY * AREA * GRAVITY;
-    let reaction = force * (length - place) / length + line * length / 2.0;
+    let reaction = force * (length - x_force) / length + line * length / 2.0;
     for sections in [1, 2, 4] {
         let beam = crane(&format!(
             "
@@ -56,7 +56,7 @@ links:
   - name: beam
     joint: revolute
     beam: {{length: {length}, sections: {sections}, material: steel, {STURDY}}}
-loads: [{{name: press, link: beam, at: [{place}, 0, 0], force: [0, -{force}, 0]}}]
+loads: [{{name: press, link: beam, at: [{x_force}, 0, 0], force: [0, -{force}, 0]}}]
 connectors:
   - {{name: strut, from: {{at: [{length}, -10, 0]}}, to: {{link: beam, at: [{length}, 0, 0]}}, law: {{spring: {{stiffness: 1e12, length: 10}}}}}}
 "
@@ -64,8 +64,8 @@ connectors:
         let (carried, _) = at_rest(&beam);
         for (info, wrench) in &carried {
             let x = info.x;
-            let pushed = x > place || (x == place && info.side == Side::After);
-            let bending = reaction * x - line * x * x / 2.0 - if pushed { force * (x - place) } else { 0.0 };
+            let pushed = x > x_force || (x == x_force && info.side == Side::After);
+            let bending = reaction * x - line * x * x / 2.0 - if pushed { force * (x - x_force) } else { 0.0 };
             let shear = -reaction + line * x + if pushed { force } else { 0.0 };
             // After the strut, at the very end, nothing is left.
             let end = x == length && info.side == Side::After;
@@ -74,7 +74,7 @@ connectors:
             assert!((wrench.moment.z - bending).abs() < 1e-5 * reaction, "{x}: {} for {bending}", wrench.moment.z);
             assert!((wrench.force.y - shear).abs() < 1e-5 * reaction, "{x}: {} for {shear}", wrench.force.y);
         }
-        let jump = at(&carried, place, Side::After).force.y - at(&carried, place, Side::Before).force.y;
+        let jump = at(&carried, x_force, Side::After).force.y - at(&carried, x_force, Side::Before).force.y;
         assert!((jump / force - 1.0).abs() < 1e-6, "{jump}");
     }
 }
@@ -113,7 +113,7 @@ loads: [{name: press, link: beam, at: [3, 0, 0], force: [0, -20e3, 0]}]
         assert!((found(side) / expected - 1.0).abs() < 2e-4, "{side:?}: {} for {expected}", found(side));
     }
     let (most, _) = stressed.iter().max_by(|(_, a), (_, b)| StressedSection::by_use(a, b)).expect("sections");
-    assert_eq!((most.x, most.place().as_str()), (1.7, "after the beginning of part 2"));
+    assert_eq!((most.x, most.location().as_str()), (1.7, "after the beginning of part 2"));
 }
 
 /// The boom of a loader: a hinge, a cylinder at 0.7 m, the load at the end.
@@ -157,7 +157,7 @@ fn the_peak_at_a_pin_converges_with_the_square_of_the_sections() {
         let (info, most) =
             stressed.into_iter().max_by(|(_, a), (_, b)| StressedSection::by_use(a, b)).expect("sections");
         assert!((info.x - 0.7).abs() < 1e-12, "{info:?}");
-        assert!(info.place().ends_with("the head of lift"), "{info:?}");
+        assert!(info.location().ends_with("the head of lift"), "{info:?}");
         most.stress.equivalent
     };
     let exact = {
@@ -179,26 +179,26 @@ fn the_peak_at_a_pin_converges_with_the_square_of_the_sections() {
 fn a_force_has_one_section_on_either_side() {
     let (length, force) = (4.0, 1e3);
     for tenth in 1..40 {
-        let place = 0.1 * f64::from(tenth);
+        let x_force = 0.1 * f64::from(tenth);
         let beam = crane(&format!(
             "
 gravity: [0, -{GRAVITY}, 0]
 links:
   - {{name: beam, joint: {{revolute: {{axis: y}}}}, beam: {{length: {length}, sections: 4, material: steel, {STURDY}}}}}
 drives: [{{coordinate: beam_theta, stiffness: 1e9, motion: {{hold: 0}}}}]
-loads: [{{name: press, link: beam, at: [{place}, 0, 0], force: [0, -{force}, 0]}}]
+loads: [{{name: press, link: beam, at: [{x_force}, 0, 0], force: [0, -{force}, 0]}}]
 "
         ));
         let (carried, _) = at_rest(&beam);
-        let here: Vec<_> = carried.iter().filter(|(info, _)| (info.x - place).abs() < 1e-9).collect();
+        let here: Vec<_> = carried.iter().filter(|(info, _)| (info.x - x_force).abs() < 1e-9).collect();
         let sides: Vec<Side> = here.iter().map(|(info, _)| info.side).collect();
-        assert_eq!(sides, [Side::Before, Side::After], "{place} m");
+        assert_eq!(sides, [Side::Before, Side::After], "{x_force} m");
         let jump = here[1].1.force.y - here[0].1.force.y;
-        assert!((jump.abs() / force - 1.0).abs() < 1e-6, "{place} m: {jump} N");
+        assert!((jump.abs() / force - 1.0).abs() < 1e-6, "{x_force} m: {jump} N");
         // Each place of the beam has either one section or one on either side.
         for (index, (info, _)) in carried.iter().enumerate() {
             let next = carried.get(index + 1).filter(|(next, _)| (next.x - info.x).abs() < 1e-9);
-            assert_eq!(info.side == Side::Before, next.is_some(), "{place} m: {info:?}");
+            assert_eq!(info.side == Side::Before, next.is_some(), "{x_force} m: {info:?}");
         }
     }
 }

@@ -35,7 +35,7 @@ drives:
     LiveCrane::from_spec(&SourceFile::new("telescope.yaml", text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
 }
 
-fn said(crane: &LiveCrane) -> [String; 2] {
+fn cautions_of(crane: &LiveCrane) -> [String; 2] {
     let crane: &dyn DynCrane = crane;
     let rest = crane.equilibrium(&statics::Settings::default());
     assert!(rest.is_stable(), "{rest}");
@@ -50,7 +50,7 @@ const SLIDES: &str = "{prismatic: {axis: x}}";
 #[test]
 fn an_overlapping_stage_is_named() {
     // It begins 2.8 m inside of the boom, less what it is drawn out.
-    let [pose, run] = said(&telescope("2", -2.8, SLIDES));
+    let [pose, run] = cautions_of(&telescope("2", -2.8, SLIDES));
     assert!(pose.contains("stage is in boom over 1.80 m, but the model holds it only where it begins"), "{pose}");
     assert!(run.contains("stage is in boom over up to 1.80 m"), "{run}");
     for words in [&pose, &run] {
@@ -62,7 +62,7 @@ fn an_overlapping_stage_is_named() {
 #[test]
 fn other_links_are_not() {
     for crane in [telescope("2", 0.0, SLIDES), telescope("rigid", -2.8, SLIDES), telescope("2", -2.8, "revolute")] {
-        for words in said(&crane) {
+        for words in cautions_of(&crane) {
             assert!(!words.contains("is in boom"), "{words}");
         }
     }

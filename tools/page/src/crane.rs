@@ -124,7 +124,7 @@ fn outlines(live: &LiveCrane) -> Value {
             .iter()
             .map(|(x, Outline { size: [height, width], .. })| [x, height, width].map(number))
             .collect();
-        let greatest = |side: usize| along.iter().map(|place| place[side]).fold(0.0, f64::max);
+        let greatest = |side: usize| along.iter().map(|sides| sides[side]).fold(0.0, f64::max);
         let round = beam.outlines.first()?.1.round;
         Some((beam.link.clone(), json!({"size": [greatest(1), greatest(2)], "along": along, "round": round})))
     };
@@ -142,8 +142,8 @@ fn modes(subject: &Subject<'_>) -> Result<Vec<Vibration>, NoModes> {
     let damping = |mode: &Mode| {
         /// Share of a mode's motion that another one must have to count as the same.
         const SAME: f64 = 0.7;
-        let own: Vec<f64> = motions.unknowns.iter().map(|&unknown| mode.shape[unknown]).collect();
-        let weighted = (&motions.mass * DVector::from_vec(own)).map(Complex::from);
+        let unknowns: Vec<f64> = motions.unknowns.iter().map(|&unknown| mode.shape[unknown]).collect();
+        let weighted = (&motions.mass * DVector::from_vec(unknowns)).map(Complex::from);
         // Both are normalised by the mass matrix.
         let share = |shape: &ComplexShape| weighted.dotc(shape).norm_sqr();
         let alike = damped.iter().map(|(mode, shape)| (share(shape), mode));

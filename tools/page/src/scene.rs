@@ -125,8 +125,9 @@ fn points(crane: &dyn DynCrane, q: &[f64]) -> Vec<Value> {
     let other: Vec<f64> = q.iter().enumerate().map(|(i, q)| q + WAY / (1.0 + i as f64)).collect();
     let local = |q: &[f64]| -> Vec<Vec<Vector3<f64>>> {
         let inverses: Vec<Matrix4<f64>> = crane.transforms_at(q).iter().map(inverse).collect();
-        let place = |point: &Vector3<f64>| inverses.iter().map(|inverse| (inverse * point.push(1.0)).xyz()).collect();
-        crane.points_at(q).iter().map(place).collect()
+        let in_bodies =
+            |point: &Vector3<f64>| inverses.iter().map(|inverse| (inverse * point.push(1.0)).xyz()).collect();
+        crane.points_at(q).iter().map(in_bodies).collect()
     };
     crane
         .description()
@@ -136,7 +137,7 @@ fn points(crane: &dyn DynCrane, q: &[f64]) -> Vec<Value> {
         .map(|(name, (here, there))| {
             let moved = |body: usize| (here[body] - there[body]).norm();
             let body = (0..here.len()).min_by(|&a, &b| moved(a).total_cmp(&moved(b))).unwrap_or(0);
-            json!({"name": name.as_str(), "body": body, "at": here.get(body).map(|place| <[f64; 3]>::from(*place))})
+            json!({"name": name.as_str(), "body": body, "at": here.get(body).map(|in_bodies| <[f64; 3]>::from(*in_bodies))})
         })
         .collect()
 }

@@ -31,7 +31,7 @@ fn sections(description: &Description, moduli: &[SectionModuli], history: &[&Ins
         .iter()
         .map(|section| {
             let info = section.info(description);
-            json!({"beam": section.beam(description), "body": info.body, "x": info.x, "place": info.place()})
+            json!({"beam": section.beam(description), "body": info.body, "x": info.x, "place": info.location()})
         })
         .collect();
     let values = history.iter().copied().flat_map(|instant| {

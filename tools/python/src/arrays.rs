@@ -27,13 +27,13 @@ impl Argument {
         if object.is_instance_of::<PyFloat>() || object.is_instance_of::<PyInt>() {
             return Ok(Self { shape: Vec::new(), numbers: vec![object.extract()?], width: 1 });
         }
-        let (shape, numbers) = read(name, object)?;
+        let (shape, numbers) = read_numbers(name, object)?;
         Ok(Self { shape, numbers, width: 1 })
     }
 
     /// As many numbers per row as the crane has coordinates: `q`, `v`, `a`.
     pub fn coordinates(name: &str, object: &Bound<'_, PyAny>, description: &Description) -> PyResult<Self> {
-        let (mut shape, numbers) = read(name, object)?;
+        let (mut shape, numbers) = read_numbers(name, object)?;
         let width = description.coordinates.len();
         let last = shape.pop();
         if last != Some(width) {
@@ -64,25 +64,27 @@ impl Argument {
             return Cow::Borrowed(&self.numbers);
         }
         let rows: usize = shape.iter().product();
-        let own = (0..rows).map(|row| {
-            let (mut rest, mut place, mut stride) = (row, 0, 1);
+        let length = (0..rows).map(|row| {
+            let (mut rest, mut index, mut stride) = (row, 0, 1);
             for (axis, size) in shape.iter().rev().enumerate() {
-                let own = self.shape.iter().rev().nth(axis).copied().unwrap_or(1);
-                if own > 1 {
-                    place += rest % size * stride;
-                    stride *= own;
+                let length = self.shape.iter().rev().nth(axis).copied().unwrap_or(1);
+                if length > 1 {
+                    index += rest % size * stride;
+                    stride *= length;
                 }
                 rest /= size;
             }
-            place
+            index
         });
-        Cow::Owned(own.flat_map(|place| &self.numbers[place * self.width..(place + 1) * self.width]).copied().collect())
+        Cow::Owned(
+            length.flat_map(|index| &self.numbers[index * self.width..(index + 1) * self.width]).copied().collect(),
+        )
     }
 }
 
 /// Shape and numbers of anything that `NumPy` converts to an array of real numbers, in the order of its indices: the last one varies
 /// fastest, however the array lies in memory.
-fn read(name: &str, object: &Bound<'_, PyAny>) -> PyResult<(Vec<usize>, Vec<f64>)> {
+fn read_numbers(name: &str, object: &Bound<'_, PyAny>) -> PyResult<(Vec<usize>, Vec<f64>)> {
     if object.is_exact_instance_of::<PyUntypedArray>()
         && let Ok(array) = object.cast::<PyArrayDyn<f64>>()
         && array.is_c_contiguous()
@@ -121,12 +123,12 @@ pub fn real_array<'py>(name: &str, object: &Bound<'py, PyAny>) -> PyResult<Bound
         _ => return refused("holds records", "give one field, or an array of floats"),
     }
     let in_order = [("order", "C")].into_py_dict(py)?;
-    let own = numpy.call_method(intern!(py, "array"), (&given, intern!(py, "float64")), Some(&in_order))?;
+    let copy = numpy.call_method(intern!(py, "array"), (&given, intern!(py, "float64")), Some(&in_order))?;
     let masked = numpy.getattr(intern!(py, "ma"))?;
     if given.is_instance(&masked.getattr(intern!(py, "MaskedArray"))?)? {
-        own.set_item(masked.call_method1(intern!(py, "getmaskarray"), (&given,))?, f64::NAN)?;
+        copy.set_item(masked.call_method1(intern!(py, "getmaskarray"), (&given,))?, f64::NAN)?;
     }
-    Ok(own.cast_into()?)
+    Ok(copy.cast_into()?)
 }
 
 /// Arguments over the leading axes of all of them.
@@ -142,19 +144,19 @@ impl<'a> Joined<'a> {
     pub fn new(arguments: &[(&str, &'a Argument)]) -> PyResult<Self> {
         let mut shape: Vec<usize> = Vec::new();
         for (name, argument) in arguments {
-            let own = &argument.shape;
-            if own.len() > shape.len() {
-                shape.splice(0..0, std::iter::repeat_n(1, own.len() - shape.len()));
+            let axes = &argument.shape;
+            if axes.len() > shape.len() {
+                shape.splice(0..0, std::iter::repeat_n(1, axes.len() - shape.len()));
             }
-            let begin = shape.len() - own.len();
-            for (joint, own) in shape[begin..].iter_mut().zip(own) {
-                match (*joint, *own) {
-                    (joint, own) if joint == own => {}
-                    (1, own) => *joint = own,
+            let begin = shape.len() - axes.len();
+            for (joint, axes) in shape[begin..].iter_mut().zip(axes) {
+                match (*joint, *axes) {
+                    (joint, axes) if joint == axes => {}
+                    (1, axes) => *joint = axes,
                     (_, 1) => {}
-                    (size, own) => {
+                    (size, axes) => {
                         return Err(PyValueError::new_err(format!(
-                            "the leading axes of {name} do not match those of the other arguments: {own} and {size}"
+                            "the leading axes of {name} do not match those of the other arguments: {axes} and {size}"
                         )));
                     }
                 }
@@ -178,8 +180,8 @@ impl<'a> Joined<'a> {
 }
 
 /// An array of zeros with leading axes and those of a row.
-pub fn zeros<'py>(py: Python<'py>, shape: &[usize], own: &[usize]) -> Bound<'py, PyArrayDyn<f64>> {
-    PyArrayDyn::zeros(py, [shape, own].concat(), false)
+pub fn zeros<'py>(py: Python<'py>, shape: &[usize], of_row: &[usize]) -> Bound<'py, PyArrayDyn<f64>> {
+    PyArrayDyn::zeros(py, [shape, of_row].concat(), false)
 }
 
 /// Numbers as an array with leading axes and those of a row.
@@ -187,7 +189,7 @@ pub fn array<'py>(
     py: Python<'py>,
     numbers: Vec<f64>,
     shape: &[usize],
-    own: &[usize],
+    of_row: &[usize],
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    numpy::PyArray1::from_vec(py, numbers).reshape([shape, own].concat())
+    numpy::PyArray1::from_vec(py, numbers).reshape([shape, of_row].concat())
 }

@@ -227,8 +227,8 @@ impl Crane {
         let mut values: Vec<Option<f64>> = (0..description.inputs.len()).map(|index| self.live.input(index)).collect();
         for (name, value) in given {
             let name: String = name.extract()?;
-            let place = input_place(description, &name)?;
-            values[place] = if value.is_none() { None } else { Some(input(&name, &value)?) };
+            let slot = input_place(description, &name)?;
+            values[slot] = if value.is_none() { None } else { Some(input(&name, &value)?) };
         }
         self.live = self.live.with_inputs(&values);
         Ok(self)
@@ -262,7 +262,7 @@ impl Crane {
             .collect();
         for (name, value) in given.into_iter().flatten() {
             let name: String = name.extract()?;
-            values[place(&description, &name)?] = Argument::scalars(&name, &value)?;
+            values[parameter_index(&description, &name)?] = Argument::scalars(&name, &value)?;
         }
         let names = description.parameters.iter().map(|info| &*info.name);
         let joined = Joined::new(&names.zip(&values).collect::<Vec<_>>())?;
@@ -308,9 +308,9 @@ impl Crane {
     /// Runs `call` with the workspace for a quantity of one state, kept from the last call.
     pub fn in_room<R>(&self, quantity: Quantity, call: impl FnOnce(&mut Evaluation<f64>) -> R) -> R {
         let kept = self.rooms.lock().unwrap_or_else(PoisonError::into_inner).remove(&quantity);
-        let mut room = kept.unwrap_or_else(|| Evaluation::new(&self.live, quantity));
-        let result = call(&mut room);
-        self.rooms.lock().unwrap_or_else(PoisonError::into_inner).insert(quantity, room);
+        let mut evaluation = kept.unwrap_or_else(|| Evaluation::new(&self.live, quantity));
+        let result = call(&mut evaluation);
+        self.rooms.lock().unwrap_or_else(PoisonError::into_inner).insert(quantity, evaluation);
         result
     }
 }
@@ -342,8 +342,8 @@ fn input(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
     }
 }
 
-/// Place of a live parameter by its name.
-fn place(description: &Description, name: &str) -> PyResult<usize> {
+/// Index of a live parameter by its name.
+fn parameter_index(description: &Description, name: &str) -> PyResult<usize> {
     let names = || description.parameters.iter().map(|info| &*info.name);
     names().position(|known| known == name).ok_or_else(|| {
         let known: Vec<String> =

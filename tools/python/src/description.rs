@@ -96,7 +96,7 @@ impl Crane {
             row.set_item("kind", kind)?;
             row.set_item("link", body.map(|body| &*description.bodies[body].link))?;
             row.set_item("x", section.map(|section| section.x))?;
-            row.set_item("place", section.map(SectionInfo::place))?;
+            row.set_item("place", section.map(SectionInfo::location))?;
             rows.push(row);
         }
         all.set_item("cuts", list(std::mem::take(&mut rows))?)?;
@@ -104,7 +104,7 @@ impl Crane {
             let row = PyDict::new(py);
             row.set_item("beam", &*description.bodies[section.body].link)?;
             row.set_item("x", section.x)?;
-            row.set_item("place", section.place())?;
+            row.set_item("place", section.location())?;
             rows.push(row);
         }
         all.set_item("sections", list(rows)?)?;

@@ -65,7 +65,7 @@ impl Crane {
         }
         let crane: &dyn DynCrane = &self.live;
         let description = crane.description();
-        let point = asked.point.as_deref().map(|name| place(name, "point", &points(description))).transpose()?;
+        let point = asked.point.as_deref().map(|name| index_of(name, "point", &points(description))).transpose()?;
         let point = point.or((description.points.len() == 1).then_some(0));
         let envelope = asked.envelope(description)?;
         let poses = envelope.axes.poses();
@@ -136,7 +136,7 @@ impl Asked {
         }
         let load = match &self.load {
             Some(name) => {
-                let load = place(name, "live parameter", &parameters(description))?;
+                let load = index_of(name, "live parameter", &parameters(description))?;
                 let unit = &description.parameters[load].unit;
                 if !is_load(&description.parameters[load]) {
                     return Err(PyValueError::new_err(format!("`{name}` is in {unit}: it is not a load")));
@@ -180,7 +180,7 @@ impl Asked {
                     known.join(", ")
                 ))
             })?;
-            of_parts.retain(|own| *own != kind);
+            of_parts.retain(|left_out| *left_out != kind);
         }
         of_parts.extend(self.lift_off.then_some(PartLimit::LiftOff));
         of_parts.extend(self.slack_ropes.then_some(PartLimit::SlackRopes));
@@ -209,28 +209,29 @@ impl Named<'_> {
         let numbers = |of: &dyn Fn(&Rating) -> Option<f64>| {
             array(py, ratings.iter().map(|rating| of(rating).unwrap_or(f64::NAN)).collect(), &self.shape, &[])
         };
-        let place =
+        let position =
             |rating: &Rating| rating.loaded.as_ref().map(|at| self.point.map_or(at.end, |point| at.points[point]));
         all.set_item("load", numbers(&|rating| rating.load)?)?;
-        all.set_item("radius", numbers(&|rating| Some(self.slew.radius(&place(rating)?)))?)?;
-        all.set_item("height", numbers(&|rating| Some(place(rating)?.z))?)?;
-        all.set_item("tipping_margin", numbers(&|rating| rating.own.as_ref()?.margin())?)?;
-        all.set_item("utilisation", numbers(&|rating| rating.own.as_ref()?.utilisation())?)?;
+        all.set_item("radius", numbers(&|rating| Some(self.slew.radius(&position(rating)?)))?)?;
+        all.set_item("height", numbers(&|rating| Some(position(rating)?.z))?)?;
+        all.set_item("tipping_margin", numbers(&|rating| rating.with_spec_load.as_ref()?.margin())?)?;
+        all.set_item("utilisation", numbers(&|rating| rating.with_spec_load.as_ref()?.utilisation())?)?;
         let n = self.description.coordinates.len();
         let rows = |width: usize, of: &dyn Fn(&Rating) -> Option<Vec<f64>>| {
             let row = |rating: &Rating| of(rating).unwrap_or_else(|| vec![f64::NAN; width]);
             array(py, ratings.iter().flat_map(row).collect(), &self.shape, &[width])
         };
         all.set_item("q", rows(n, &|rating| Some(rating.loaded.as_ref()?.q.clone()))?)?;
-        let own = |of: fn(&Condition) -> &Vec<f64>| move |rating: &Rating| Some(of(rating.own.as_ref()?).clone());
-        all.set_item("drive_efforts", rows(self.description.drives.len(), &own(|own| &own.efforts))?)?;
+        let of_load =
+            |of: fn(&Condition) -> &Vec<f64>| move |rating: &Rating| Some(of(rating.with_spec_load.as_ref()?).clone());
+        all.set_item("drive_efforts", rows(self.description.drives.len(), &of_load(|of_load| &of_load.efforts))?)?;
         let moved = |rating: &Rating| (!rating.deflections.is_empty()).then(|| rating.deflections.clone());
         all.set_item("deflections", rows(self.description.points.len(), &moved)?)?;
         let words = |of: &dyn Fn(Limit) -> String| -> Vec<String> {
             ratings.iter().map(|rating| rating.governing.map_or_else(String::new, of)).collect()
         };
         all.set_item("governing", words(&|limit| limit.kind().to_owned()))?;
-        all.set_item("governing_of", words(&|limit| limit.place(self.description)))?;
+        all.set_item("governing_of", words(&|limit| limit.location(self.description)))?;
         all.set_item("shape", self.shape.clone())?;
         all.set_item("unit", self.description.parameters[envelope.load].unit.as_str())?;
         all.set_item("parameter", self.description.parameters[envelope.load].name.as_str())?;
@@ -254,8 +255,8 @@ fn parameters(description: &Description) -> Vec<&str> {
     description.parameters.iter().map(|parameter| &*parameter.name).collect()
 }
 
-/// Place of a name.
-fn place(name: &str, what: &str, names: &[&str]) -> PyResult<usize> {
+/// Index of a name.
+fn index_of(name: &str, what: &str, names: &[&str]) -> PyResult<usize> {
     names
         .iter()
         .position(|known| *known == name)
@@ -266,13 +267,13 @@ fn place(name: &str, what: &str, names: &[&str]) -> PyResult<usize> {
 fn limits(given: &[(String, f64)], what: &str, names: &[&str]) -> PyResult<Vec<f64>> {
     let mut limits = vec![f64::INFINITY; names.len()];
     for (name, limit) in given {
-        let place = place(name, what, names)?;
+        let index = index_of(name, what, names)?;
         if limit.is_nan() || *limit <= 0.0 {
             return Err(PyValueError::new_err(format!(
                 "the limit of `{name}` is {limit}: write a number above 0, in SI units"
             )));
         }
-        limits[place] = *limit;
+        limits[index] = *limit;
     }
     Ok(limits)
 }

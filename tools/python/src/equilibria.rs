@@ -67,16 +67,16 @@ impl Crane {
         invalid: &str,
     ) -> PyResult<Bound<'py, PyDict>> {
         let invalid = Invalid::named(invalid)?;
-        let own = Settings::default();
+        let defaults = Settings::default();
         let settings = Settings {
-            tolerance: tolerance.unwrap_or(own.tolerance),
-            iterations: iterations.unwrap_or(own.iterations),
-            load_steps: load_steps.unwrap_or(own.load_steps),
+            tolerance: tolerance.unwrap_or(defaults.tolerance),
+            iterations: iterations.unwrap_or(defaults.iterations),
+            load_steps: load_steps.unwrap_or(defaults.load_steps),
         };
         if !(settings.tolerance > 0.0 && settings.tolerance < 1.0) {
             return Err(PyValueError::new_err(format!(
                 "tolerance={}: write a number between 0 and 1, the part of the balancing forces that may be left over ({:e})",
-                settings.tolerance, own.tolerance
+                settings.tolerance, defaults.tolerance
             )));
         }
         if settings.iterations == 0 {
@@ -126,19 +126,19 @@ impl Crane {
                 .and_then(|found| found.diagnosis.as_ref())
                 .unwrap_or(&Diagnosis::Unknown)
                 .advice();
-            let said = describe(first, &joined.shape);
+            let found_at = describe(first, &joined.shape);
             return Err(NoEquilibrium::new_err(format!(
-                "{}: statics did not find a stable equilibrium ({said}); {hint}",
+                "{}: statics did not find a stable equilibrium ({found_at}); {hint}",
                 description.name
             )));
         }
         warn_of_rows(py, &bad, &joined.shape)?;
-        let numbers = |of: fn(&Found) -> &Vec<f64>, own: &[usize]| {
+        let numbers = |of: fn(&Found) -> &Vec<f64>, defaults: &[usize]| {
             let row = |found: &Option<Found>| -> Vec<f64> {
                 let found = found.as_ref().filter(|found| found.rests());
-                found.map_or_else(|| vec![f64::NAN; own.iter().product()], |found| of(found).clone())
+                found.map_or_else(|| vec![f64::NAN; defaults.iter().product()], |found| of(found).clone())
             };
-            array(py, found.iter().flat_map(row).collect(), &joined.shape, own)
+            array(py, found.iter().flat_map(row).collect(), &joined.shape, defaults)
         };
         let all = PyDict::new(py);
         all.set_item("q", numbers(|found| &found.equilibrium.q, &[n])?)?;

@@ -66,25 +66,25 @@ pub struct Moment {
 }
 
 impl Crane {
-    /// A function of all rows, `own`: the axes of one of its results.
+    /// A function of all rows, `of_row`: the axes of one of its results.
     pub fn function<'py>(
         &self,
         py: Python<'py>,
         function: FunctionId,
         state: State<'_, 'py>,
-        own: &[usize],
+        of_row: &[usize],
         invalid: &str,
     ) -> Array<'py> {
-        self.compute(py, Quantity::Of(function), state, own, invalid)
+        self.compute(py, Quantity::Of(function), state, of_row, invalid)
     }
 
-    /// A quantity of all rows, `own`: the axes of one of them.
+    /// A quantity of all rows, `of_row`: the axes of one of them.
     pub fn compute<'py>(
         &self,
         py: Python<'py>,
         quantity: Quantity,
         state: State<'_, 'py>,
-        own: &[usize],
+        of_row: &[usize],
         invalid: &str,
     ) -> Array<'py> {
         self.refuse_force_states(quantity)?;
@@ -94,18 +94,20 @@ impl Crane {
         let [t, q, v, a, parameters] = [0, 1, 2, 3, 4].map(|index| &*joined.arguments[index]);
         let parameters = if self.is_single() { &[][..] } else { parameters };
         let rows = Rows { t, q, v, a, parameters };
-        let (count, width) = (joined.rows(), own.iter().product::<usize>());
+        let (count, width) = (joined.rows(), of_row.iter().product::<usize>());
         if joined.shape.is_empty() && bad.is_empty() {
-            let out = zeros(py, &[], own);
-            self.in_room(quantity, |room| room.run(&rows, 0..1, out.readwrite().as_slice_mut().unwrap_or_default()));
+            let out = zeros(py, &[], of_row);
+            self.in_room(quantity, |evaluation| {
+                evaluation.run(&rows, 0..1, out.readwrite().as_slice_mut().unwrap_or_default())
+            });
             return Ok(out);
         }
         let mut out = vec![0.0; count * width];
         let make = || Evaluation::<f64x8>::new(&self.live, quantity);
-        for_rows(py, (PIECE, width), &mut out, make, |room, range, out| room.run(&rows, range, out))?;
+        for_rows(py, (PIECE, width), &mut out, make, |evaluation, range, out| evaluation.run(&rows, range, out))?;
         forget(&mut out, &bad, width);
         warn_of_rows(py, &bad, &joined.shape)?;
-        array(py, out, &joined.shape, own)
+        array(py, out, &joined.shape, of_row)
     }
 
     /// The same by a function of one crane.
@@ -113,14 +115,14 @@ impl Crane {
         &self,
         py: Python<'py>,
         state: State<'_, 'py>,
-        own: &[usize],
+        of_row: &[usize],
         invalid: &str,
         write: impl Fn(&crane_live::LiveCrane, &Moment, &mut [f64]) + Sync,
     ) -> Array<'py> {
         let arguments = self.read(state)?;
         let joined = self.joined(&arguments)?;
         let bad = self.bad_rows(&joined, STATE, Invalid::named(invalid)?)?;
-        let (n, width) = (self.live.size(), own.iter().product::<usize>());
+        let (n, width) = (self.live.size(), of_row.iter().product::<usize>());
         let rows = map_rows(py, joined.rows(), |row, _| {
             let mut out = vec![0.0; width];
             if bad.iter().all(|bad| bad.row != row) {
@@ -134,7 +136,7 @@ impl Crane {
         let mut out = rows.concat();
         forget(&mut out, &bad, width);
         warn_of_rows(py, &bad, &joined.shape)?;
-        array(py, out, &joined.shape, own)
+        array(py, out, &joined.shape, of_row)
     }
 
     /// Refuses functions whose forces have states of their own, so that they do not follow from pose, rates and time.
@@ -215,12 +217,12 @@ impl Crane {
             }
             for row in 0..joined.rows() {
                 let first = if list.len() <= size { 0 } else { row * size };
-                let Some(place) = list[first..first + size].iter().position(|x| !x.is_finite()) else { continue };
-                let value = list[first + place];
+                let Some(index) = list[first..first + size].iter().position(|x| !x.is_finite()) else { continue };
+                let value = list[first + index];
                 let of = coordinates
-                    .get(place)
+                    .get(index)
                     .filter(|_| name != "t")
-                    .map_or(String::new(), |info| format!("[{place}] ({})", info.name));
+                    .map_or(String::new(), |info| format!("[{index}] ({})", info.name));
                 bad.push(BadRow { row, reason: format!("{name}{of} is {value}, not a finite number") });
             }
         }

@@ -82,12 +82,12 @@ pub fn warn_of_rows(py: Python<'_>, bad: &[BadRow], shape: &[usize]) -> PyResult
     if bad.is_empty() {
         return Ok(());
     }
-    let mut told: Vec<String> = bad.iter().take(TOLD).map(|bad| describe(bad, shape)).collect();
+    let mut texts: Vec<String> = bad.iter().take(TOLD).map(|bad| describe(bad, shape)).collect();
     if bad.len() > TOLD {
-        told.push(format!("{} more", bad.len() - TOLD));
+        texts.push(format!("{} more", bad.len() - TOLD));
     }
     let category = py.get_type::<InvalidRowWarning>();
-    warn(py, &category, format!("results of {} rows are NaN: {}", bad.len(), told.join("; ")))
+    warn(py, &category, format!("results of {} rows are NaN: {}", bad.len(), texts.join("; ")))
 }
 
 /// A bad row in words: its index, and why.
@@ -102,9 +102,9 @@ fn index(row: usize, shape: &[usize]) -> String {
         .iter()
         .rev()
         .map(|size| {
-            let place = rest % size.max(&1);
+            let position = rest % size.max(&1);
             rest /= size.max(&1);
-            place.to_string()
+            position.to_string()
         })
         .collect();
     places.reverse();

@@ -61,15 +61,15 @@ impl Timing {
                 "`tolerance` has no effect with {method}: give `step`, or method=\"bdf\""
             )));
         }
-        let own = Settings::of(description);
+        let defaults = Settings::of(description);
         let settings = Settings {
             method,
-            duration: self.duration.unwrap_or(own.duration),
-            output: self.output.unwrap_or_else(|| own.output.min(self.duration.unwrap_or(own.output))),
-            tolerance: self.tolerance.unwrap_or(own.tolerance),
-            step: self.step.unwrap_or(own.step),
+            duration: self.duration.unwrap_or(defaults.duration),
+            output: self.output.unwrap_or_else(|| defaults.output.min(self.duration.unwrap_or(defaults.output))),
+            tolerance: self.tolerance.unwrap_or(defaults.tolerance),
+            step: self.step.unwrap_or(defaults.step),
             audit: true,
-            ..own
+            ..defaults
         };
         for (name, value, (least, greatest), unit) in [
             ("duration", settings.duration, Settings::TIMES, "s"),
@@ -129,7 +129,7 @@ fn raised(failed: &Failed) -> PyErr {
 }
 
 /// Names and units of columns.
-fn named(columns: &[Column]) -> Vec<(&str, &str)> {
+fn columns_with_units(columns: &[Column]) -> Vec<(&str, &str)> {
     columns.iter().map(|column| (column.name.as_str(), column.unit.as_str())).collect()
 }
 
@@ -149,7 +149,7 @@ fn unless(off: bool) -> ControlFlow<()> {
 }
 
 /// Pose and rates that were given, of one state.
-fn given(name: &str, object: &Bound<'_, PyAny>, description: &Description) -> PyResult<Vec<f64>> {
+fn read_coordinates(name: &str, object: &Bound<'_, PyAny>, description: &Description) -> PyResult<Vec<f64>> {
     let argument = Argument::coordinates(name, object, description)?;
     if !argument.shape.is_empty() {
         return Err(PyValueError::new_err(format!("{name} has {} axes: give one state", argument.shape.len() + 1)));
@@ -160,9 +160,9 @@ fn given(name: &str, object: &Bound<'_, PyAny>, description: &Description) -> Py
 
 /// Refuses states with numbers that are not finite.
 fn check_finite(name: &str, argument: &Argument, description: &Description) -> PyResult<()> {
-    let Some(place) = argument.numbers.iter().position(|x| !x.is_finite()) else { return Ok(()) };
-    let (row, coordinate) = (place / argument.width, place % argument.width);
-    let (value, of) = (argument.numbers[place], &description.coordinates[coordinate].name);
+    let Some(index) = argument.numbers.iter().position(|x| !x.is_finite()) else { return Ok(()) };
+    let (row, coordinate) = (index / argument.width, index % argument.width);
+    let (value, of) = (argument.numbers[index], &description.coordinates[coordinate].name);
     let reason = format!("{name}[{coordinate}] ({of}) is {value}, not a finite number");
     Err(PyValueError::new_err(describe(&BadRow { row, reason }, &argument.shape)))
 }
@@ -189,8 +189,8 @@ impl Crane {
         if bend.is_nan() || bend <= 0.0 {
             return Err(PyValueError::new_err(format!("bend_limit={bend}: write an angle above 0, in degrees")));
         }
-        let [q, v] =
-            [("q", q), ("v", v)].map(|(name, state)| state.map(|state| given(name, state, description)).transpose());
+        let [q, v] = [("q", q), ("v", v)]
+            .map(|(name, state)| state.map(|state| read_coordinates(name, state, description)).transpose());
         let (q, v) = (q?, v?);
         let watch = Watch::new();
         let result = py.detach(|| {
@@ -202,7 +202,7 @@ impl Crane {
         watch.finish(py)?;
         let (settings, Recorded { start, run, table, wall, verification, cautions }) = result?;
         let all = PyDict::new(py);
-        all.set_item("columns", named(&table.columns))?;
+        all.set_item("columns", columns_with_units(&table.columns))?;
         let rows = table.rows.len();
         all.set_item("table", array(py, table.rows.concat(), &[rows], &[table.columns.len()])?)?;
         all.set_item("start", start)?;
@@ -242,14 +242,14 @@ impl Crane {
             if !settings.method.is_adaptive() {
                 // A step that is stable for the first and the last row, if these have a start.
                 for row in [rows.first(), rows.last()].into_iter().flatten() {
-                    if let Ok((own, start)) = ensemble::ready(crane, row) {
-                        settings.step = settings.step.min(timing.stable(own.as_ref(), &start)?.step);
+                    if let Ok((case, start)) = ensemble::ready(crane, row) {
+                        settings.step = settings.step.min(timing.stable(case.as_ref(), &start)?.step);
                     }
                 }
             }
             let cancelled = |caller: bool| if caller { watch.look() } else { watch.is_off() };
             let execution = Execution { threads: threads(), done: &|_, _| watch.count(), cancelled: &cancelled };
-            Ok::<_, PyErr>(ensemble::run(crane, &rows, &settings, &execution))
+            Ok::<_, PyErr>(ensemble::run_ensemble(crane, &rows, &settings, &execution))
         });
         watch.finish(py)?;
         let outcomes = outcomes?;
@@ -269,7 +269,7 @@ impl Crane {
         let n = crane.size();
         let or_nan = |state: &Vec<f64>| if state.len() == n { state.clone() } else { vec![f64::NAN; n] };
         let all = PyDict::new(py);
-        all.set_item("columns", named(&columns))?;
+        all.set_item("columns", columns_with_units(&columns))?;
         all.set_item("table", array(py, values.collect(), shape, &[columns.len()])?)?;
         all.set_item("time", array(py, outcomes.iter().map(ensemble::Outcome::time).collect(), shape, &[])?)?;
         let ends =
@@ -308,7 +308,8 @@ impl Crane {
             return Err(PyValueError::new_err(format!("t is {t}, not a finite number")));
         }
         let settings = Settings { duration: f64::INFINITY, most_steps: usize::MAX, ..timing.settings(description)? };
-        let start = InitialState { q: given("q", q, description)?, v: given("v", v, description)?, x };
+        let start =
+            InitialState { q: read_coordinates("q", q, description)?, v: read_coordinates("v", v, description)?, x };
         let states = ForceStates::new(description).len();
         if let Some(wrong) = force_states::impossible(description, &start.x) {
             return Err(PyValueError::new_err(wrong));
@@ -364,9 +365,9 @@ impl Crane {
             }
             let mut values = 3..;
             for (index, _, given) in &changed {
-                inputs[*index] = given.as_ref().zip(values.next()).map(|(_, place)| joined.row(place, 1, row)[0]);
+                inputs[*index] = given.as_ref().zip(values.next()).map(|(_, index)| joined.row(index, 1, row)[0]);
             }
-            let state = |given: bool, place: usize| given.then(|| joined.row(place, n, row).to_vec());
+            let state = |given: bool, index: usize| given.then(|| joined.row(index, n, row).to_vec());
             Case {
                 parameters: joined.row(2, self.parameters.width, row).to_vec(),
                 inputs,

@@ -50,21 +50,21 @@ impl Given<'_> {
         let rows = self.table.as_array();
         let name = &crane.description().name;
         if rows.ncols() != table.columns.len() || rows.nrows() == 0 {
-            let (given, own) = (rows.shape(), table.columns.len());
+            let (given, expected) = (rows.shape(), table.columns.len());
             return Err(PyValueError::new_err(format!(
-                "the table of a run of {name} has {own} columns, not {given:?}"
+                "the table of a run of {name} has {expected} columns, not {given:?}"
             )));
         }
         table.rows = rows.outer_iter().map(|row| row.to_vec()).collect();
         let times: Vec<f64> = table.rows.iter().map(|row| row[0]).collect();
         let duration = times[times.len() - 1];
-        let own = Settings::of(crane.description());
+        let expected = Settings::of(crane.description());
         let settings = Settings {
             duration,
             output: times.get(1).map_or(duration, |second| second - times[0]),
             method: self.method.parse().map_err(|_| PyValueError::new_err(format!("method={:?}", self.method)))?,
-            tolerance: self.tolerance.unwrap_or(own.tolerance),
-            ..own
+            tolerance: self.tolerance.unwrap_or(expected.tolerance),
+            ..expected
         };
         let [steps, rejections, evaluations, factorisations] = self.statistics;
         let statistics = Statistics { steps, rejections, evaluations, factorisations };

@@ -115,13 +115,13 @@ pub fn for_rows<R>(
         let waiting = Mutex::new(out.chunks_mut((piece * width).max(1)).enumerate());
         let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
         let run = |off: &dyn Fn() -> bool| {
-            let mut room = None;
+            let mut workspace = None;
             while let Some((index, out)) = next() {
                 if off() {
                     break;
                 }
                 let rows = index * piece..index * piece + out.len() / width.max(1);
-                work(room.get_or_insert_with(&make), rows, out);
+                work(workspace.get_or_insert_with(&make), rows, out);
             }
         };
         thread::scope(|scope| {

@@ -33,11 +33,11 @@ impl Crane {
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let rest = self.rest(py);
         let state = State { t, q: Some(q), v: Some(v.unwrap_or(&rest)), a: Some(a.unwrap_or(&rest)) };
-        let own = [self.live.description().cuts().len(), 6];
+        let of_row = [self.live.description().cuts().len(), 6];
         if self.live.description().has_valves() {
-            return self.one_by_one(py, state, &own, invalid, write_wrenches);
+            return self.one_by_one(py, state, &of_row, invalid, write_wrenches);
         }
-        self.compute(py, Quantity::Of(FunctionId::InternalForces), state, &own, invalid)
+        self.compute(py, Quantity::Of(FunctionId::InternalForces), state, &of_row, invalid)
     }
 
     /// (..., 5 sections + 5): stresses and utilisation of every section of beams, then margin, moments and supports of the governing
@@ -55,7 +55,7 @@ impl Crane {
         let rest = self.rest(py);
         let state = State { t, q: Some(q), v: Some(v.unwrap_or(&rest)), a: Some(a.unwrap_or(&rest)) };
         let width = OF_SECTION * self.live.description().sections.len() + OF_LINE;
-        self.one_by_one(py, state, &[width], invalid, write)
+        self.one_by_one(py, state, &[width], invalid, write_wrenches_of)
     }
 }
 
@@ -77,7 +77,7 @@ fn write_wrenches(crane: &LiveCrane, Moment { t, q, v, a }: &Moment, out: &mut [
 }
 
 /// Stresses and the governing tipping line of a crane; NaN where moduli or lines are unknown.
-fn write(crane: &LiveCrane, Moment { t, q, v, a }: &Moment, out: &mut [f64]) {
+fn write_wrenches_of(crane: &LiveCrane, Moment { t, q, v, a }: &Moment, out: &mut [f64]) {
     let crane: &dyn DynCrane = crane;
     let description = crane.description();
     out.fill(f64::NAN);

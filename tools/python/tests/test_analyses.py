@@ -39,7 +39,7 @@ def test_statics_along_the_manoeuvre(flexible):
     assert abs(rest.q[-1, psi] - flexible.drive_motions(5.0)[0, 0]) < 1e-3
 
 
-def test_no_equilibrium_is_raised_or_said(pendulum):
+def test_no_equilibrium_is_raised_or_reported(pendulum):
     with pytest.raises(crane.NoEquilibrium, match="change `guess:`"):
         pendulum.statics(guess=[np.pi])
     with pytest.warns(crane.InvalidRowWarning):

@@ -1,6 +1,6 @@
 //! The manual as a book: docs/SUMMARY.md lists every page, and every link leads to an existing page and heading.
 //!
-//! [`check`] reads the Markdown, including pages outside of the book, in a second. [`site`] builds the site with mdBook and follows the
+//! [`check_manual`] reads the Markdown, including pages outside of the book, in a second. [`build_site`] builds the site with mdBook and follows the
 //! links of its pages.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -14,17 +14,17 @@ const SUMMARY: &str = "docs/SUMMARY.md";
 const OUTSIDE: [&str; 3] = ["ARCHITECTURE.md", "CONTRIBUTING.md", "README.md"];
 
 /// Every page that is not listed exactly once, and every link that leads nowhere.
-pub fn check() -> Result<(), String> {
+pub fn check_manual() -> Result<(), String> {
     let mut pages = BTreeMap::new();
-    let inside = workspace::files(FOLDER, "md")?;
+    let inside = workspace::find_files(FOLDER, "md")?;
     for path in inside.into_iter().chain(OUTSIDE.map(str::to_owned)) {
-        let text = workspace::read(&path)?;
+        let text = workspace::read_file(&path)?;
         pages.insert(path, text);
     }
-    let mut wrong = unlisted(&pages);
+    let mut wrong = unlisted_pages(&pages);
     for (path, text) in &pages {
-        for (line, link) in links(text) {
-            if let Some(problem) = problem(path, link, &pages) {
+        for (line, link) in links_of(text) {
+            if let Some(problem) = problem_of_link(path, link, &pages) {
                 wrong.push(format!("{path}:{line}: {problem}"));
             }
         }
@@ -33,21 +33,21 @@ pub fn check() -> Result<(), String> {
 }
 
 /// Builds the manual as a site into the folder `book` of the target, and follows every link of its pages.
-pub fn site() -> Result<(), String> {
+pub fn build_site() -> Result<(), String> {
     let builder = |task: &str| {
         let mut command = Command::new(step::cargo());
         let manifest = ["--locked", "--manifest-path", "tools/book/Cargo.toml", "--target-dir"];
         command.arg(task).args(manifest).arg(workspace::target().join("book-builder")).current_dir(workspace::root());
         command
     };
-    step::finish(&mut builder("test"))?;
-    step::finish(builder("run").args(["--", FOLDER]).arg(workspace::target().join("book")))
+    step::run_to_end(&mut builder("test"))?;
+    step::run_to_end(builder("run").args(["--", FOLDER]).arg(workspace::target().join("book")))
 }
 
 /// Pages of the book that its summary does not list exactly once.
-fn unlisted(pages: &BTreeMap<String, String>) -> Vec<String> {
+fn unlisted_pages(pages: &BTreeMap<String, String>) -> Vec<String> {
     let summary = pages.get(SUMMARY).map_or("", String::as_str);
-    let listed: Vec<String> = links(summary).into_iter().map(|(_, link)| resolve(SUMMARY, link)).collect();
+    let listed: Vec<String> = links_of(summary).into_iter().map(|(_, link)| resolve_link(SUMMARY, link)).collect();
     let inside = pages.keys().filter(|page| page.starts_with(FOLDER) && *page != SUMMARY);
     let count = |page: &str| listed.iter().filter(|listed| *listed == page).count();
     inside
@@ -58,22 +58,22 @@ fn unlisted(pages: &BTreeMap<String, String>) -> Vec<String> {
 }
 
 /// What is wrong with a link of a page, if anything is.
-fn problem(page: &str, link: &str, pages: &BTreeMap<String, String>) -> Option<String> {
+fn problem_of_link(page: &str, link: &str, pages: &BTreeMap<String, String>) -> Option<String> {
     if link.contains("://") {
         return None;
     }
     let (file, anchor) = link.split_once('#').map_or((link, None), |(file, anchor)| (file, Some(anchor)));
-    let target = if file.is_empty() { page.to_owned() } else { resolve(page, file) };
+    let target = if file.is_empty() { page.to_owned() } else { resolve_link(page, file) };
     if !workspace::root().join(&target).exists() {
         return Some(format!("`{link}`: there is no {target}"));
     }
     let anchor = anchor?;
     let known = pages.get(&target)?;
-    (!headings(known).contains(anchor)).then(|| format!("`{link}`: {target} has no such heading"))
+    (!anchors_of(known).contains(anchor)).then(|| format!("`{link}`: {target} has no such heading"))
 }
 
 /// The path from the root of a link on a page.
-fn resolve(page: &str, link: &str) -> String {
+fn resolve_link(page: &str, link: &str) -> String {
     let mut parts: Vec<&str> = page.split('/').collect();
     parts.pop();
     for part in link.split('/') {
@@ -87,7 +87,7 @@ fn resolve(page: &str, link: &str) -> String {
 }
 
 /// Lines of a page outside of blocks of code, with their numbers.
-fn prose(page: &str) -> impl Iterator<Item = (usize, &str)> {
+fn prose_lines(page: &str) -> impl Iterator<Item = (usize, &str)> {
     let mut in_code = false;
     (1..).zip(page.lines()).filter(move |(_, line)| {
         let fence = line.starts_with("```");
@@ -97,8 +97,8 @@ fn prose(page: &str) -> impl Iterator<Item = (usize, &str)> {
 }
 
 /// Links of a page, with the numbers of their lines.
-fn links(page: &str) -> Vec<(usize, &str)> {
-    prose(page)
+fn links_of(page: &str) -> Vec<(usize, &str)> {
+    prose_lines(page)
         .flat_map(|(number, line)| {
             line.split("](").skip(1).filter_map(move |rest| Some((number, rest.split(')').next()?)))
         })
@@ -106,8 +106,8 @@ fn links(page: &str) -> Vec<(usize, &str)> {
 }
 
 /// Anchors of a page's headings, as mdBook and forges make them.
-fn headings(page: &str) -> BTreeSet<String> {
-    prose(page)
+fn anchors_of(page: &str) -> BTreeSet<String> {
+    prose_lines(page)
         .filter_map(|(_, line)| line.strip_prefix('#'))
         .map(|rest| anchor(rest.trim_start_matches('#')))
         .collect()
@@ -131,20 +131,20 @@ mod tests {
     fn links_and_headings_are_found_outside_of_code() {
         let page =
             "# A page\n[one](b.md#Two) and [two](../c.md)\n```sh\n# no heading [x](y)\n```\n## T̃(3,i), `loops`: why?\n";
-        assert_eq!(links(page), [(2, "b.md#Two"), (2, "../c.md")]);
+        assert_eq!(links_of(page), [(2, "b.md#Two"), (2, "../c.md")]);
         let expected = ["a-page", "t3i-loops-why"].map(str::to_owned);
-        assert_eq!(headings(page), BTreeSet::from(expected));
-        assert_eq!(resolve("docs/manual/a.md", "../SPEC.md"), "docs/SPEC.md");
+        assert_eq!(anchors_of(page), BTreeSet::from(expected));
+        assert_eq!(resolve_link("docs/manual/a.md", "../SPEC.md"), "docs/SPEC.md");
     }
 
     #[test]
     fn pages_and_anchors_that_are_missing_are_named() {
         let pages = [(SUMMARY, "[A](a.md)"), ("docs/a.md", "# A\n[b](b.md) [c](#c)"), ("docs/d.md", "")];
         let pages: BTreeMap<String, String> = pages.map(|(path, text)| (path.to_owned(), text.to_owned())).into();
-        assert_eq!(unlisted(&pages), [format!("{SUMMARY}: lists docs/d.md 0 times instead of once")]);
-        let of = |link| problem("docs/a.md", link, &pages).unwrap_or_default();
+        assert_eq!(unlisted_pages(&pages), [format!("{SUMMARY}: lists docs/d.md 0 times instead of once")]);
+        let of = |link| problem_of_link("docs/a.md", link, &pages).unwrap_or_default();
         assert!(of("b.md").contains("there is no docs/b.md"), "{}", of("b.md"));
         // This page exists in the workspace.
-        assert_eq!(problem("docs/manual/a.md", "../SPEC.md", &pages), None);
+        assert_eq!(problem_of_link("docs/manual/a.md", "../SPEC.md", &pages), None);
     }
 }

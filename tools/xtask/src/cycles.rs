@@ -24,13 +24,13 @@ const HELPED: usize = 2;
 type Imports = BTreeMap<String, BTreeSet<String>>;
 
 /// Every circle of rooms, and every cycle of files, as a line that names them.
-pub fn cycles() -> Result<Vec<String>, String> {
+pub fn find_cycles() -> Result<Vec<String>, String> {
     let mut found = Vec::new();
     for root in CRATES {
         let imports = imports_of(root)?;
-        let rooms = groups(&by_room(&imports, root)).into_iter().filter(|rooms| rooms.len() > 1);
+        let rooms = cyclic_groups(&by_room(&imports, root)).into_iter().filter(|rooms| rooms.len() > 1);
         found.extend(rooms.map(|rooms| format!("{} of {root} import each other in a circle", rooms.join(", "))));
-        let cycles = groups(&imports).into_iter().filter(|files| files.len() > HELPED);
+        let cycles = cyclic_groups(&imports).into_iter().filter(|files| files.len() > HELPED);
         found.extend(cycles.map(|files| format!("{} import each other in a cycle", files.join(", "))));
     }
     Ok(found)
@@ -38,17 +38,17 @@ pub fn cycles() -> Result<Vec<String>, String> {
 
 /// What every file of a crate names, also through what the crate's root exports. The root itself names everything, and tests may.
 fn imports_of(root: &str) -> Result<Imports, String> {
-    let all = workspace::files(root, "rs")?;
+    let all = workspace::find_files(root, "rs")?;
     let (roots, files): (Vec<String>, Vec<String>) =
         all.into_iter().filter(|file| !file.ends_with("/tests.rs")).partition(|file| is_root(file, root));
     let known: BTreeSet<&str> = files.iter().map(String::as_str).collect();
     let mut exports = Exports::new();
     for file in &roots {
-        exports.extend(exported(&workspace::read(file)?, root, &known));
+        exports.extend(exports_of(&workspace::read_file(file)?, root, &known));
     }
     let mut imports = Imports::new();
     for file in &files {
-        let named = imported(&workspace::read(file)?, file, (root, &exports), &known);
+        let named = files_imported(&workspace::read_file(file)?, file, (root, &exports), &known);
         imports.insert(file.clone(), named);
     }
     Ok(imports)
@@ -56,15 +56,15 @@ fn imports_of(root: &str) -> Result<Imports, String> {
 
 /// The same between rooms.
 fn by_room(imports: &Imports, root: &str) -> Imports {
-    let room = |file: &str| {
+    let room_of = |file: &str| {
         let inside = file.strip_prefix(root).unwrap_or(file).trim_start_matches('/');
         inside.split('/').next().unwrap_or(inside).trim_end_matches(".rs").to_owned()
     };
     let mut rooms = Imports::new();
     for (file, named) in imports {
-        let own = room(file);
-        let others = named.iter().map(|other| room(other)).filter(|other| *other != own);
-        rooms.entry(own.clone()).or_default().extend(others.collect::<Vec<_>>());
+        let room = room_of(file);
+        let others = named.iter().map(|other| room_of(other)).filter(|other| *other != room);
+        rooms.entry(room.clone()).or_default().extend(others.collect::<Vec<_>>());
     }
     rooms
 }
@@ -77,30 +77,35 @@ fn is_root(file: &str, root: &str) -> bool {
 pub type Exports = BTreeMap<String, String>;
 
 /// What a root exports with `pub use`.
-fn exported(text: &str, root: &str, known: &BTreeSet<&str>) -> Exports {
+fn exports_of(text: &str, root: &str, known: &BTreeSet<&str>) -> Exports {
     let uses = text.match_indices("pub use ").chain(text.match_indices("pub(crate) use "));
-    let paths = uses.flat_map(|(at, before)| paths(text[at + before.len()..].trim_start_matches("crate::")));
-    let named = |path: Vec<String>| Some((path.last()?.clone(), resolve(root, &path, known)?));
+    let paths = uses.flat_map(|(at, before)| paths_of(text[at + before.len()..].trim_start_matches("crate::")));
+    let named = |path: Vec<String>| Some((path.last()?.clone(), resolve_path(root, &path, known)?));
     paths.filter_map(named).collect()
 }
 
 /// Files that a text names in paths from `crate`, `super` or `self`. A folder's `mod.rs` that declares a file does not import it.
-pub fn imported(text: &str, file: &str, (root, exports): (&str, &Exports), known: &BTreeSet<&str>) -> BTreeSet<String> {
+pub fn files_imported(
+    text: &str,
+    file: &str,
+    (root, exports): (&str, &Exports),
+    known: &BTreeSet<&str>,
+) -> BTreeSet<String> {
     // Tests at the end may use everything.
     let code = text.split("\n#[cfg(test)]").next().unwrap_or_default();
     let code: String = code.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
-    let own = folder_of(file);
+    let folder = folder_of(file);
     let mut found = BTreeSet::new();
-    for (start, base) in [("crate::", root.to_owned()), ("super::", parent(file)), ("self::", own)] {
+    for (start, base) in [("crate::", root.to_owned()), ("super::", parent_of(file)), ("self::", folder)] {
         for (at, _) in code.match_indices(start) {
             let before = code[..at].chars().next_back();
             if before.is_some_and(|c| c.is_alphanumeric() || c == '_' || c == ':') {
                 continue;
             }
-            for path in paths(&code[at + start.len()..]) {
+            for path in paths_of(&code[at + start.len()..]) {
                 let exported = path.first().filter(|_| base == root).and_then(|name| exports.get(name)).cloned();
-                let place = resolve(&base, &path, known).or(exported);
-                found.extend(place.filter(|place| place != file));
+                let target = resolve_path(&base, &path, known).or(exported);
+                found.extend(target.filter(|target| target != file));
             }
         }
     }
@@ -114,26 +119,26 @@ fn folder_of(file: &str) -> String {
 }
 
 /// The folder that holds the siblings of a file.
-fn parent(file: &str) -> String {
+fn parent_of(file: &str) -> String {
     folder_of(file).rsplit_once('/').map_or_else(String::new, |(parent, _)| parent.to_owned())
 }
 
 /// Paths at the beginning of a text, those in braces expanded: `a::{b, c::d}` is `a::b` and `a::c::d`.
-pub fn paths(text: &str) -> Vec<Vec<String>> {
+pub fn paths_of(text: &str) -> Vec<Vec<String>> {
     let mut found = Vec::new();
-    expand(text.trim_start(), &mut Vec::new(), &mut found);
+    expand_path(text.trim_start(), &mut Vec::new(), &mut found);
     found
 }
 
 /// Reads one path and returns what follows it.
-fn expand<'t>(text: &'t str, before: &mut Vec<String>, found: &mut Vec<Vec<String>>) -> &'t str {
+fn expand_path<'t>(text: &'t str, before: &mut Vec<String>, found: &mut Vec<Vec<String>>) -> &'t str {
     let depth = before.len();
     let mut rest = text;
     loop {
         if let Some(list) = rest.strip_prefix('{') {
             rest = list.trim_start();
             while !rest.is_empty() && !rest.starts_with('}') {
-                rest = expand(rest, before, found).trim_start();
+                rest = expand_path(rest, before, found).trim_start();
                 rest = rest.strip_prefix(',').unwrap_or(rest).trim_start();
             }
             before.truncate(depth);
@@ -164,9 +169,9 @@ fn expand<'t>(text: &'t str, before: &mut Vec<String>, found: &mut Vec<Vec<Strin
 }
 
 /// The file that a path from a folder names: that of the longest beginning of the path that is a module.
-fn resolve(base: &str, path: &[String], known: &BTreeSet<&str>) -> Option<String> {
+fn resolve_path(base: &str, path: &[String], known: &BTreeSet<&str>) -> Option<String> {
     let mut folder = base.to_owned();
-    let mut place = None;
+    let mut module = None;
     for name in path {
         if name == "super" {
             folder = folder.rsplit_once('/').map_or_else(String::new, |(parent, _)| parent.to_owned());
@@ -176,17 +181,17 @@ fn resolve(base: &str, path: &[String], known: &BTreeSet<&str>) -> Option<String
         let file =
             [format!("{folder}.rs"), format!("{folder}/mod.rs")].into_iter().find(|file| known.contains(file.as_str()));
         match file {
-            Some(file) => place = Some(file),
+            Some(file) => module = Some(file),
             None => break,
         }
     }
-    place
+    module
 }
 
 /// Files that reach each other, group by group.
-fn groups(imports: &Imports) -> Vec<Vec<String>> {
+fn cyclic_groups(imports: &Imports) -> Vec<Vec<String>> {
     let reached: BTreeMap<&str, BTreeSet<&str>> =
-        imports.keys().map(|file| (file.as_str(), reach(imports, file))).collect();
+        imports.keys().map(|file| (file.as_str(), files_reached(imports, file))).collect();
     let mut found: Vec<Vec<String>> = Vec::new();
     for file in imports.keys() {
         if found.iter().flatten().any(|known| known == file) {
@@ -202,7 +207,7 @@ fn groups(imports: &Imports) -> Vec<Vec<String>> {
 }
 
 /// Everything that a file needs, directly or through others.
-fn reach<'i>(imports: &'i Imports, file: &str) -> BTreeSet<&'i str> {
+fn files_reached<'i>(imports: &'i Imports, file: &str) -> BTreeSet<&'i str> {
     let mut found = BTreeSet::new();
     let mut open: Vec<&str> = imports.get(file).into_iter().flatten().map(String::as_str).collect();
     while let Some(next) = open.pop() {
@@ -219,7 +224,7 @@ mod tests {
 
     #[test]
     fn paths_in_braces_are_written_out() {
-        let words = |text: &str| paths(text).iter().map(|path| path.join("::")).collect::<Vec<_>>();
+        let words = |text: &str| paths_of(text).iter().map(|path| path.join("::")).collect::<Vec<_>>();
         assert_eq!(words("chain::Chain;"), ["chain::Chain"]);
         assert_eq!(
             words("{SourceFile, compile as c, emit::{self, labels::Labels}, own::*};"),
@@ -231,8 +236,8 @@ mod tests {
     #[test]
     fn cycles_of_three_are_found_and_pairs_are_not() {
         let known: BTreeSet<&str> = ["r/a.rs", "r/b/mod.rs", "r/b/c.rs", "r/d.rs"].into();
-        let exports = exported("pub use d::{self, Deep};\n", "r", &known);
-        let of = |file: &str, text: &str| (file.to_owned(), imported(text, file, ("r", &exports), &known));
+        let exports = exports_of("pub use d::{self, Deep};\n", "r", &known);
+        let of = |file: &str, text: &str| (file.to_owned(), files_imported(text, file, ("r", &exports), &known));
         let mut imports: Imports = [
             of("r/a.rs", "use crate::{b::c::Name, d};\n"),
             of("r/b/mod.rs", "mod c;\nuse crate::Deep;\n"),
@@ -241,12 +246,12 @@ mod tests {
         ]
         .into();
         let cycle = ["r/a.rs", "r/b/c.rs", "r/d.rs"].map(str::to_owned).to_vec();
-        assert_eq!(groups(&imports), [cycle]);
+        assert_eq!(cyclic_groups(&imports), [cycle]);
         imports.extend([of("r/b/c.rs", "use std::fmt;\n")]);
-        assert_eq!(groups(&imports), [["r/a.rs", "r/d.rs"].map(str::to_owned).to_vec()]);
+        assert_eq!(cyclic_groups(&imports), [["r/a.rs", "r/d.rs"].map(str::to_owned).to_vec()]);
         assert!(imports["r/b/mod.rs"].contains("r/d.rs"));
         let rooms = by_room(&imports, "r");
         assert_eq!(rooms["b"], ["d".to_owned()].into());
-        assert_eq!(groups(&rooms), [["a", "b", "d"].map(str::to_owned).to_vec()]);
+        assert_eq!(cyclic_groups(&rooms), [["a", "b", "d"].map(str::to_owned).to_vec()]);
     }
 }

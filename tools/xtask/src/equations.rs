@@ -10,16 +10,16 @@ const INVARIANTS: &str = "ARCHITECTURE.md";
 const FUNCTIONS: &str = "codegen/src/program/id.rs";
 
 /// Every name that is stale, and every generated function without a row.
-pub fn check() -> Result<(), String> {
-    let document = workspace::read(DOCUMENT)?;
-    let generated = generated_functions(&workspace::read(FUNCTIONS)?);
+pub fn check_equations() -> Result<(), String> {
+    let document = workspace::read_file(DOCUMENT)?;
+    let generated = generated_functions(&workspace::read_file(FUNCTIONS)?);
     let mut stale = Vec::new();
     let mut documented = Vec::new();
     for (index, line) in document.lines().enumerate().filter(|(_, line)| line.starts_with('|')) {
         let mut complain = |what: String| stale.push(format!("{DOCUMENT}:{}: {what}", index + 1));
         let names: Vec<&str> = line.split('`').skip(1).step_by(2).collect();
         for name in names.iter().filter(|name| name.contains("::")) {
-            if !exists(name)? {
+            if !function_exists(name)? {
                 complain(format!("`{name}` does not exist"));
             }
         }
@@ -40,9 +40,9 @@ pub fn check() -> Result<(), String> {
             .filter(|function| !documented.contains(function))
             .map(|function| format!("{DOCUMENT}: the generated function `{function}` has no row")),
     );
-    let invariants = workspace::read(INVARIANTS)?;
+    let invariants = workspace::read_file(INVARIANTS)?;
     for name in tests_named(&invariants) {
-        if !exists(name)? {
+        if !function_exists(name)? {
             stale.push(format!("{INVARIANTS}: `{name}` does not exist"));
         }
     }
@@ -50,17 +50,17 @@ pub fn check() -> Result<(), String> {
 }
 
 /// Whether `path/file.rs::name` or `module::name` of the compiler is a function.
-fn exists(name: &str) -> Result<bool, String> {
-    let Some((place, function)) = name.rsplit_once("::") else { return Ok(false) };
-    let candidates = if place.contains('.') {
-        vec![place.to_owned()]
+fn function_exists(name: &str) -> Result<bool, String> {
+    let Some((module, function)) = name.rsplit_once("::") else { return Ok(false) };
+    let candidates = if module.contains('.') {
+        vec![module.to_owned()]
     } else {
-        let path = place.replace("::", "/");
+        let path = module.replace("::", "/");
         vec![format!("codegen/src/{path}.rs"), format!("codegen/src/{path}/mod.rs")]
     };
     let found: Vec<&String> = candidates.iter().filter(|path| workspace::root().join(path).is_file()).collect();
     for path in found {
-        let text = workspace::read(path)?;
+        let text = workspace::read_file(path)?;
         let defined = ["fn ", "def "].iter().any(|keyword| {
             text.match_indices(&format!("{keyword}{function}"))
                 .any(|(at, found)| text[at + found.len()..].starts_with(['(', '<']))
@@ -91,8 +91,8 @@ mod tests {
     fn tests_of_invariants_are_found_and_exist() {
         let text = "* held by `a/b.rs::c`, by `T`, `m::f` and by `d.py::e`";
         assert_eq!(tests_named(text).collect::<Vec<_>>(), ["a/b.rs::c", "d.py::e"]);
-        assert!(exists("tools/xtask/src/equations.rs::tests_of_invariants_are_found_and_exist").unwrap());
-        assert!(!exists("tools/xtask/src/equations.rs::another").unwrap());
-        assert!(tests_named(&workspace::read(INVARIANTS).unwrap()).count() > 15);
+        assert!(function_exists("tools/xtask/src/equations.rs::tests_of_invariants_are_found_and_exist").unwrap());
+        assert!(!function_exists("tools/xtask/src/equations.rs::another").unwrap());
+        assert!(tests_named(&workspace::read_file(INVARIANTS).unwrap()).count() > 15);
     }
 }

@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use crate::step::{cargo, finish};
+use crate::step::{cargo, run_to_end};
 use crate::workspace;
 
 /// Tests that compare results of generated code with results computed in another way.
@@ -11,7 +11,7 @@ const TESTS: [&str; 3] = ["interpreter", "accuracy", "sin_cos"];
 /// Builds and runs them with AVX2 and fused multiply-adds, which a build for all machines of the architecture may not use.
 ///
 /// With an explicit target, flags apply to the target only: the compiler, which runs in build scripts, is not built again.
-pub fn check() -> Result<(), String> {
+pub fn check_fused() -> Result<(), String> {
     if !has_fma() {
         println!("this machine has no AVX2 with fused multiply-adds");
         return Ok(());
@@ -19,8 +19,8 @@ pub fn check() -> Result<(), String> {
     let mut command = Command::new(cargo());
     command.args(["test", "--release", "--package", "crane-tests"]).current_dir(workspace::root());
     command.args(TESTS.iter().flat_map(|test| ["--test", test]));
-    command.args(["--target", &workspace::host()?]).env("RUSTFLAGS", "-C target-cpu=x86-64-v3");
-    finish(&mut command)
+    command.args(["--target", &workspace::host_triple()?]).env("RUSTFLAGS", "-C target-cpu=x86-64-v3");
+    run_to_end(&mut command)
 }
 
 #[cfg(target_arch = "x86_64")]

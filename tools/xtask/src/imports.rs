@@ -59,50 +59,50 @@ const ONLY_IN: [(&[&str], &[&str], &str); 5] = [
 ];
 
 /// Every breach of the rules.
-pub fn check() -> Result<(), String> {
-    let page = workspace::read(PAGE)?;
-    let mut breaches = modules(&page)?;
-    breaches.extend(crates(&page)?);
+pub fn check_imports() -> Result<(), String> {
+    let page = workspace::read_file(PAGE)?;
+    let mut breaches = check_modules(&page)?;
+    breaches.extend(check_crates(&page)?);
     for (folder, extension, words, reason) in MAY_NOT_NAME {
-        for file in &workspace::files(folder, extension)? {
-            for (number, line) in code_lines(&workspace::read(file)?) {
+        for file in &workspace::find_files(folder, extension)? {
+            for (number, line) in code_lines(&workspace::read_file(file)?) {
                 breaches.extend(
                     words.iter().filter(|w| line.contains(**w)).map(|w| format!("{file}:{number}: `{w}`: {reason}")),
                 );
             }
         }
     }
-    for file in workspace::files(COMPILER, "rs")? {
-        let place = &file[COMPILER.len() + 1..];
-        let lines = code_lines(&workspace::read(&file)?);
+    for file in workspace::find_files(COMPILER, "rs")? {
+        let module = &file[COMPILER.len() + 1..];
+        let lines = code_lines(&workspace::read_file(&file)?);
         for (words, places, what) in ONLY_IN {
-            let permitted = places.iter().any(|permitted| place.starts_with(permitted));
+            let permitted = places.iter().any(|permitted| module.starts_with(permitted));
             let named = |line: &str| words.iter().any(|word| line.replace("env!(", "").contains(word));
             let found = lines.iter().filter(|(_, line)| !permitted && named(line));
             breaches.extend(found.map(|(number, _)| format!("{file}:{number}: only {} use {what}", places.join(", "))));
         }
     }
-    breaches.extend(cycles::cycles()?);
+    breaches.extend(cycles::find_cycles()?);
     if breaches.is_empty() { Ok(()) } else { Err(format!("\n{}", breaches.join("\n"))) }
 }
 
 /// Differences between the first table and what the modules of the compiler import.
-fn modules(page: &str) -> Result<Vec<String>, String> {
-    let rows = table(page, MODULES);
-    let files = workspace::files(COMPILER, "rs")?;
-    let present: BTreeSet<&str> = files.iter().map(|file| module(file)).filter(|name| *name != "lib").collect();
-    let mut breaches = unlisted(MODULES, &present, &rows);
+fn check_modules(page: &str) -> Result<Vec<String>, String> {
+    let rows = read_table(page, MODULES);
+    let files = workspace::find_files(COMPILER, "rs")?;
+    let present: BTreeSet<&str> = files.iter().map(|file| module_of(file)).filter(|name| *name != "lib").collect();
+    let mut breaches = unlisted_rows(MODULES, &present, &rows);
     let known: BTreeSet<&str> = files.iter().map(String::as_str).collect();
-    let reexports = reexports()?;
+    let reexports = read_reexports()?;
     // Of each module the modules that it names, each with a file that does.
     let mut used: BTreeMap<&str, BTreeMap<String, &str>> = BTreeMap::new();
     for file in files.iter().filter(|file| !is_test(file)) {
-        let text = workspace::read(file)?;
-        let named = cycles::imported(&text, file, (COMPILER, &cycles::Exports::new()), &known);
-        let mut named: BTreeSet<String> = named.iter().map(|file| module(file).to_owned()).collect();
-        named.extend(named_modules(&text, "crate::", &reexports));
-        named.retain(|name| name != module(file) && name != "lib");
-        used.entry(module(file)).or_default().extend(named.into_iter().map(|name| (name, file.as_str())));
+        let text = workspace::read_file(file)?;
+        let named = cycles::files_imported(&text, file, (COMPILER, &cycles::Exports::new()), &known);
+        let mut named: BTreeSet<String> = named.iter().map(|file| module_of(file).to_owned()).collect();
+        named.extend(modules_named(&text, "crate::", &reexports));
+        named.retain(|name| name != module_of(file) && name != "lib");
+        used.entry(module_of(file)).or_default().extend(named.into_iter().map(|name| (name, file.as_str())));
     }
     for (row, name) in rows.iter().flat_map(|row| row[0].iter().map(move |name| (row, name))) {
         let Some(used) = used.get(name.as_str()) else { continue };
@@ -115,25 +115,26 @@ fn modules(page: &str) -> Result<Vec<String>, String> {
 }
 
 /// Crates that depend on a crate, or name a module of the compiler, that the second table does not permit.
-fn crates(page: &str) -> Result<Vec<String>, String> {
-    let rows = table(page, CRATES);
-    let manifest = workspace::read("Cargo.toml")?;
+fn check_crates(page: &str) -> Result<Vec<String>, String> {
+    let rows = read_table(page, CRATES);
+    let manifest = workspace::read_file("Cargo.toml")?;
     let members = manifest.split("members = [").nth(1).and_then(|rest| rest.split(']').next()).unwrap_or_default();
     let members: BTreeSet<&str> = members.split('"').skip(1).step_by(2).collect();
-    let mut breaches = unlisted(CRATES, &members, &rows);
-    let reexports = reexports()?;
+    let mut breaches = unlisted_rows(CRATES, &members, &rows);
+    let reexports = read_reexports()?;
     for (row, member) in rows.iter().flat_map(|row| row[0].iter().map(move |member| (row, member))) {
         if !members.contains(member.as_str()) {
             continue;
         }
         let manifest = format!("{member}/Cargo.toml");
-        let wrong = dependencies(&workspace::read(&manifest)?).into_iter().filter(|name| !row[1].contains(name));
+        let wrong =
+            dependencies_of(&workspace::read_file(&manifest)?).into_iter().filter(|name| !row[1].contains(name));
         breaches.extend(wrong.map(|name| format!("{manifest}: may not depend on crane-{name}")));
         if row[2].contains(ALL) {
             continue;
         }
-        for file in workspace::files(&format!("{member}/src"), "rs")?.iter().filter(|file| !is_test(file)) {
-            let named = named_modules(&workspace::read(file)?, "crane_codegen::", &reexports);
+        for file in workspace::find_files(&format!("{member}/src"), "rs")?.iter().filter(|file| !is_test(file)) {
+            let named = modules_named(&workspace::read_file(file)?, "crane_codegen::", &reexports);
             let wrong = named.iter().filter(|name| !row[2].contains(*name));
             breaches.extend(wrong.map(|name| format!("{file}: may not import `{name}` of the compiler")));
         }
@@ -142,7 +143,7 @@ fn crates(page: &str) -> Result<Vec<String>, String> {
 }
 
 /// Crates of the project on which a manifest depends, except for its tests.
-fn dependencies(manifest: &str) -> BTreeSet<String> {
+fn dependencies_of(manifest: &str) -> BTreeSet<String> {
     let sections = manifest
         .split("\n[")
         .filter(|section| ["dependencies]", "build-dependencies]"].iter().any(|title| section.starts_with(title)));
@@ -151,7 +152,7 @@ fn dependencies(manifest: &str) -> BTreeSet<String> {
 }
 
 /// Rows of the table under a heading: the words in backticks of each cell.
-fn table(page: &str, heading: &str) -> Vec<Vec<BTreeSet<String>>> {
+fn read_table(page: &str, heading: &str) -> Vec<Vec<BTreeSet<String>>> {
     let part = page.split("\n#").find(|part| part.lines().next().is_some_and(|line| line.ends_with(heading)));
     let rows = part.unwrap_or_default().lines().filter(|line| line.starts_with("| `"));
     let words = |cell: &str| cell.split('`').skip(1).step_by(2).map(str::to_owned).collect();
@@ -159,7 +160,7 @@ fn table(page: &str, heading: &str) -> Vec<Vec<BTreeSet<String>>> {
 }
 
 /// Names that have no row, or more than one, and rows of what does not exist.
-fn unlisted(heading: &str, present: &BTreeSet<&str>, rows: &[Vec<BTreeSet<String>>]) -> Vec<String> {
+fn unlisted_rows(heading: &str, present: &BTreeSet<&str>, rows: &[Vec<BTreeSet<String>>]) -> Vec<String> {
     let listed: Vec<&str> = rows.iter().flat_map(|row| &row[0]).map(String::as_str).collect();
     let once = |name: &str| listed.iter().filter(|listed| **listed == name).count() == 1;
     let lacking = present.iter().filter(|name| !once(name)).map(|name| format!("`{name}` needs one row"));
@@ -168,24 +169,24 @@ fn unlisted(heading: &str, present: &BTreeSet<&str>, rows: &[Vec<BTreeSet<String
 }
 
 /// The module of the compiler that a file belongs to.
-fn module(file: &str) -> &str {
-    let place = file.trim_start_matches(COMPILER).trim_start_matches('/');
-    place.split('/').next().unwrap_or_default().trim_end_matches(".rs")
+fn module_of(file: &str) -> &str {
+    let path = file.trim_start_matches(COMPILER).trim_start_matches('/');
+    path.split('/').next().unwrap_or_default().trim_end_matches(".rs")
 }
 
 /// Names that the compiler's root exports from its modules: `Diagnostics` from `diagnostic`.
-fn reexports() -> Result<BTreeMap<String, String>, String> {
-    let text = workspace::read(&format!("{COMPILER}/lib.rs"))?;
-    let lines = text.split("\npub use ").skip(1).flat_map(cycles::paths);
+fn read_reexports() -> Result<BTreeMap<String, String>, String> {
+    let text = workspace::read_file(&format!("{COMPILER}/lib.rs"))?;
+    let lines = text.split("\npub use ").skip(1).flat_map(cycles::paths_of);
     Ok(lines.filter_map(|path| Some((path.last()?.clone(), path.first()?.clone()))).collect())
 }
 
 /// Modules of the compiler that a text names in paths with a beginning; what the root exports belongs to its module.
-fn named_modules(text: &str, start: &str, reexports: &BTreeMap<String, String>) -> BTreeSet<String> {
+fn modules_named(text: &str, start: &str, reexports: &BTreeMap<String, String>) -> BTreeSet<String> {
     let code: Vec<String> = code_lines(text).into_iter().map(|(_, line)| line).collect();
     let code = code.join("\n");
     let macros = code.replace(&format!("${start}"), "");
-    let paths = macros.split(start).skip(1).flat_map(cycles::paths);
+    let paths = macros.split(start).skip(1).flat_map(cycles::paths_of);
     let names = paths.filter_map(|path| path.into_iter().next());
     names
         .filter_map(|name| match reexports.get(&name) {
@@ -217,25 +218,25 @@ mod tests {
     #[test]
     fn modules_are_found() {
         let reexports = [("SourceFile".to_owned(), "diagnostic".to_owned())].into();
-        let named = |text: &str| named_modules(text, "crate::", &reexports).into_iter().collect::<Vec<_>>();
+        let named = |text: &str| modules_named(text, "crate::", &reexports).into_iter().collect::<Vec<_>>();
         assert_eq!(named("use crate::chain::Chain;"), ["chain"]);
         assert_eq!(
             named("use crate::{\n    SourceFile, compile,\n    emit::{self, Report},\n};"),
             ["compile", "diagnostic", "emit"]
         );
         assert_eq!(named("    crate::lower::lower(p)\n// crate::read\n#[cfg(test)]\nuse crate::spec;"), ["lower"]);
-        assert_eq!(module("codegen/src/emit/mod.rs"), "emit");
-        assert_eq!(module("codegen/src/build.rs"), "build");
+        assert_eq!(module_of("codegen/src/emit/mod.rs"), "emit");
+        assert_eq!(module_of("codegen/src/build.rs"), "build");
     }
 
     #[test]
     fn tables_are_read_and_compared() {
         let page = "# A\n## Tables\n### Modules of the compiler\n| Module | May use |\n|---|---|\n| `a`, `b` | `c` |\n| `c` | nothing |\n## B\n| `d` | |\n";
-        let rows = table(page, MODULES);
+        let rows = read_table(page, MODULES);
         assert_eq!(rows.len(), 2);
         assert_eq!(rows[0][0], ["a", "b"].map(str::to_owned).into());
         assert_eq!(rows[0][1], ["c".to_owned()].into());
-        let problems = unlisted(MODULES, &["a", "c", "x"].into(), &rows);
+        let problems = unlisted_rows(MODULES, &["a", "c", "x"].into(), &rows);
         assert_eq!(problems.len(), 2, "{problems:?}");
         assert!(problems[0].ends_with("`x` needs one row") && problems[1].ends_with("there is no `b`"), "{problems:?}");
     }
@@ -244,6 +245,6 @@ mod tests {
     fn dependencies_are_found() {
         let manifest = "[package]\nname = \"crane-x\"\n\n[dependencies]\ncrane-model = { path = \"..\" }\nserde = \"1\"\n\n\
                         [dev-dependencies]\ncrane-live.workspace = true\n\n[build-dependencies]\ncrane-codegen.workspace = true\n";
-        assert_eq!(dependencies(manifest), ["codegen", "model"].map(str::to_owned).into());
+        assert_eq!(dependencies_of(manifest), ["codegen", "model"].map(str::to_owned).into());
     }
 }

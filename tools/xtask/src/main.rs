@@ -46,14 +46,14 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let task = arguments.first().map_or("", String::as_str);
     let steps = match task {
-        "test" => [prepare(), lint(), tests(), oracles()].concat(),
-        "lint" => lint(),
-        "oracles" => [prepare(), vec![programs()], oracles()].concat(),
+        "test" => [prepare_steps(), lint_steps(), test_steps(), oracle_steps()].concat(),
+        "lint" => lint_steps(),
+        "oracles" => [prepare_steps(), vec![build_step()], oracle_steps()].concat(),
         "performance" => {
-            vec![Step::check("times of the generated functions and of other libraries", oracles::performance)]
+            vec![Step::check("times of the generated functions and of other libraries", oracles::measure_performance)]
         }
         "error-vs-runtime" => vec![Step::cargo("error against run time", &ERROR_VS_RUNTIME)],
-        "bless" => bless(),
+        "bless" => bless_steps(),
         "help" | "--help" | "-h" => {
             println!("{USAGE}");
             return ExitCode::SUCCESS;
@@ -73,7 +73,7 @@ fn main() -> ExitCode {
         eprintln!("no step of `{task}` has a title with these words");
         return ExitCode::from(2);
     }
-    run(&chosen)
+    run_steps(&chosen)
 }
 
 /// With diffsol for comparison.
@@ -93,7 +93,7 @@ const ERROR_VS_RUNTIME: [&str; 12] = [
 ];
 
 /// Runs all steps in order, and says at the end which failed and how long each took.
-fn run(steps: &[Step]) -> ExitCode {
+fn run_steps(steps: &[Step]) -> ExitCode {
     let start = Instant::now();
     let mut summary = String::new();
     let mut failed = 0;
@@ -119,21 +119,21 @@ fn run(steps: &[Step]) -> ExitCode {
 }
 
 /// What is downloaded, before anything is built.
-fn prepare() -> Vec<Step> {
+fn prepare_steps() -> Vec<Step> {
     vec![
-        Step::check("Python environment", oracles::prepare),
-        Step::check("packages of the report page", report::prepare),
+        Step::check("Python environment", oracles::prepare_python),
+        Step::check("packages of the report page", report::prepare_packages),
     ]
 }
 
-fn lint() -> Vec<Step> {
+fn lint_steps() -> Vec<Step> {
     vec![
         Step::cargo("formatting", &["fmt", "--all", "--", "--check"]),
-        Step::check("import rules", imports::check),
-        Step::check("plain English", prose::check),
-        Step::check("pages and links of the manual", book::check),
-        Step::check("docs/EQUATIONS.md is current", equations::check),
-        Step::check("units built twice", units::check),
+        Step::check("import rules", imports::check_imports),
+        Step::check("plain English", prose::check_prose),
+        Step::check("pages and links of the manual", book::check_manual),
+        Step::check("docs/EQUATIONS.md is current", equations::check_equations),
+        Step::check("units built twice", units::check_units),
         Step::cargo("clippy", &["clippy", "--release", "--workspace", "--all-targets", "--", "-D", "warnings"])
             .with(SECTIONS, "0"),
         // A separate workspace, which no other step checks.
@@ -149,29 +149,29 @@ const SECTIONS: &str = "CRANE_BENCH_SECTIONS";
 
 /// All packages together, as the tests build them: alone, a package would select other features of its dependencies. This
 /// includes the library of functional mock-up units.
-fn programs() -> Step {
+fn build_step() -> Step {
     Step::cargo("all programs", &["build", "--release", "--workspace", "--exclude", "crane-bench", "--bins", "--lib"])
 }
 
-fn tests() -> Vec<Step> {
+fn test_steps() -> Vec<Step> {
     vec![
-        programs(),
+        build_step(),
         Step::cargo("tests", &["test", "--release", "--workspace", "--exclude", "crane-bench", "--no-fail-fast"]),
-        Step::check("tests with fused multiply-adds", fused::check),
+        Step::check("tests with fused multiply-adds", fused::check_fused),
         Step::program("the default run", "crane"),
-        Step::check("the report page is current", report::is_current),
-        Step::check("the report page in a browser", report::in_browser),
+        Step::check("the report page is current", report::check_current),
+        Step::check("the report page in a browser", report::check_in_browser),
         Step::program("the example of your own crane", "own-crane"),
-        Step::check("a new crane", new_crane::check),
-        Step::check("commands of the manual", manual::check),
-        Step::check("commands of the README and of CONTRIBUTING", || commands::check(USAGE)),
-        Step::check("commands that pages name", || named::check(USAGE)),
-        Step::check("the manual as a site", book::site),
-        Step::check("the Python package", package::check),
-        Step::check("random cranes by every way to compute them", outside::ways),
-        Step::check("pages of the Python package in a browser", report::in_notebook),
-        Step::check("functional mock-up units", outside::units),
-        Step::check("what the command prints as JSON", outside::output),
+        Step::check("a new crane", new_crane::check_new_crane),
+        Step::check("commands of the manual", manual::check_manual),
+        Step::check("commands of the README and of CONTRIBUTING", || commands::check_commands(USAGE)),
+        Step::check("commands that pages name", || named::check_named(USAGE)),
+        Step::check("the manual as a site", book::build_site),
+        Step::check("the Python package", package::check_package),
+        Step::check("random cranes by every way to compute them", outside::check_ways),
+        Step::check("pages of the Python package in a browser", report::check_in_notebook),
+        Step::check("functional mock-up units", outside::check_units),
+        Step::check("what the command prints as JSON", outside::check_output),
         // A static library with its own panic handler: no crate that it depends on may link std or need a heap.
         Step::cargo(
             "a crane without std and heap",
@@ -181,23 +181,23 @@ fn tests() -> Vec<Step> {
             ]
             .concat(),
         ),
-        Step::check("cranes without panics", no_panic::check),
+        Step::check("cranes without panics", no_panic::check_no_panic),
     ]
 }
 
-fn oracles() -> Vec<Step> {
+fn oracle_steps() -> Vec<Step> {
     vec![
-        Step::check("CasADi's own checks notice errors", oracles::self_test),
-        Step::check("generated code against CasADi", oracles::check),
-        Step::check("runs against SciPy's Radau", oracles::motion),
-        Step::check("Pinocchio and MuJoCo agree and notice errors", oracles::peers_self_test),
-        Step::check("generated code against Pinocchio and MuJoCo", oracles::peers),
-        Step::check("URDF and MJCF there and back", oracles::exchange),
-        Step::check("cylinders against Exudyn", oracles::hydraulics),
+        Step::check("CasADi's own checks notice errors", oracles::check_oracles),
+        Step::check("generated code against CasADi", oracles::check_generated_code),
+        Step::check("runs against SciPy's Radau", oracles::check_motion),
+        Step::check("Pinocchio and MuJoCo agree and notice errors", oracles::check_peers),
+        Step::check("generated code against Pinocchio and MuJoCo", oracles::compare_with_peers),
+        Step::check("URDF and MJCF there and back", oracles::check_exchange),
+        Step::check("cylinders against Exudyn", oracles::check_hydraulics),
     ]
 }
 
-fn bless() -> Vec<Step> {
+fn bless_steps() -> Vec<Step> {
     let update = |title, arguments: &[&str]| {
         Step::cargo(title, arguments)
             .with("UPDATE_GOLDEN", "1")

@@ -12,7 +12,7 @@ use crate::{step, workspace};
 pub const SUMMARY: &str = "docs/SUMMARY.md";
 
 /// Runs all commands of all chapters.
-pub fn check() -> Result<(), String> {
+pub fn check_manual() -> Result<(), String> {
     let folder = workspace::target().join("manual");
     match fs::remove_dir_all(&folder) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(format!("{}: {error}", folder.display())),
@@ -23,8 +23,8 @@ pub fn check() -> Result<(), String> {
     let path = env::var_os("PATH").unwrap_or_default();
     let path = env::join_paths([programs].into_iter().chain(env::split_paths(&path))).map_err(|e| e.to_string())?;
     let mut commands = 0;
-    for chapter in chapters(&workspace::read(SUMMARY)?) {
-        for block in blocks(&workspace::read(&chapter)?) {
+    for chapter in chapters_of(&workspace::read_file(SUMMARY)?) {
+        for block in blocks_of(&workspace::read_file(&chapter)?) {
             if let Some(name) = &block.file {
                 fs::write(folder.join(name), &block.text).map_err(|error| format!("{chapter}: {name}: {error}"))?;
             }
@@ -32,7 +32,7 @@ pub fn check() -> Result<(), String> {
                 println!("--- {chapter}\n{}", block.text.trim_end());
                 let mut shell = Command::new("sh");
                 shell.args(["-e", "-c", &block.text]).current_dir(&folder).env("PATH", &path);
-                step::finish(&mut shell).map_err(|error| format!("{chapter}: {error}"))?;
+                step::run_to_end(&mut shell).map_err(|error| format!("{chapter}: {error}"))?;
                 commands += block.text.lines().count();
             }
         }
@@ -41,7 +41,7 @@ pub fn check() -> Result<(), String> {
 }
 
 /// Chapters of the manual that a list links to.
-pub fn chapters(summary: &str) -> Vec<String> {
+pub fn chapters_of(summary: &str) -> Vec<String> {
     let links = summary.split("](").skip(1).filter_map(|rest| rest.split(')').next());
     links.filter(|link| link.starts_with("manual/")).map(|link| format!("docs/{link}")).collect()
 }
@@ -58,7 +58,7 @@ pub struct Block {
 }
 
 /// Blocks of code of a page, in order.
-pub fn blocks(page: &str) -> Vec<Block> {
+pub fn blocks_of(page: &str) -> Vec<Block> {
     let (mut blocks, mut open, mut file) = (Vec::new(), None::<Block>, None);
     for line in page.lines() {
         match (&mut open, line.strip_prefix("```")) {
@@ -90,7 +90,7 @@ mod tests {
             Block { language: "yaml".into(), text: "b: 1\n".into(), file: Some("a.yaml".into()) },
             Block { language: "sh".into(), text: "crane list\n".into(), file: None },
         ];
-        assert_eq!(blocks(page), expected);
-        assert_eq!(chapters("* [A](manual/a.md)\n* [B](SPEC.md)\n"), ["docs/manual/a.md"]);
+        assert_eq!(blocks_of(page), expected);
+        assert_eq!(chapters_of("* [A](manual/a.md)\n* [B](SPEC.md)\n"), ["docs/manual/a.md"]);
     }
 }

@@ -1,5 +1,5 @@
 //! Commands that README.md, CONTRIBUTING.md and the manual name in a sentence or show without being run: what they name must exist. For
-//! `crane` these are the command and its options, as `--help` lists them; for others see [`commands::exists`].
+//! `crane` these are the command and its options, as `--help` lists them; for others see [`commands::check_program`].
 
 use std::collections::BTreeMap;
 use std::process::Command;
@@ -10,17 +10,17 @@ use crate::{commands, manual, workspace};
 const PROGRAMS: [&str; 3] = ["crane", "cargo", "pip"];
 
 /// Checks all of them.
-pub fn check(tasks: &str) -> Result<(), String> {
+pub fn check_named(tasks: &str) -> Result<(), String> {
     let mut helps = BTreeMap::new();
     let mut checked = 0;
     for page in
-        commands::PAGES.iter().map(ToString::to_string).chain(manual::chapters(&workspace::read(manual::SUMMARY)?))
+        commands::PAGES.iter().map(ToString::to_string).chain(manual::chapters_of(&workspace::read(manual::SUMMARY)?))
     {
         for command in named(&workspace::read(&page)?) {
             let locate = |problem: String| format!("{page}: `{command}`: {problem}");
             match commands::CRANE.iter().find_map(|start| command.strip_prefix(start)) {
                 Some(arguments) => has(arguments, &mut helps).map_err(locate)?,
-                None => commands::exists(&command, tasks).map_err(locate)?,
+                None => commands::check_program(&command, tasks).map_err(locate)?,
             }
             checked += 1;
         }
@@ -30,7 +30,7 @@ pub fn check(tasks: &str) -> Result<(), String> {
 
 /// Commands between backticks, and in blocks that are shown.
 fn named(page: &str) -> Vec<String> {
-    let shown = manual::blocks(page).into_iter().filter(|block| block.language == "console");
+    let shown = manual::blocks_of(page).into_iter().filter(|block| block.language == "console");
     let shown: Vec<String> =
         shown.flat_map(|block| block.text.lines().map(str::to_owned).collect::<Vec<_>>()).collect();
     let prose: String = {

@@ -24,19 +24,19 @@ const PROFILE: [&str; 11] = [
 ];
 
 /// Makes a crate, runs its tests and its program.
-pub fn check() -> Result<(), String> {
+pub fn check_new_crane() -> Result<(), String> {
     let folder = workspace::target().join(FOLDER);
     match fs::remove_dir_all(&folder) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(format!("{}: {error}", folder.display())),
         _ => {}
     }
     let crane = workspace::target().join("release/crane");
-    step::finish(Command::new(crane).arg("new").arg(&folder).args(["--from", "knuckle-boom"]))?;
+    step::run_to_end(Command::new(crane).arg("new").arg(&folder).args(["--from", "knuckle-boom"]))?;
     for task in ["test", "run"] {
         let mut cargo = Command::new(step::cargo());
         cargo.args([task, "--release"]).env("CARGO_TARGET_DIR", workspace::target()).current_dir(&folder);
         cargo.args(PROFILE.iter().flat_map(|setting| ["--config".to_owned(), format!("profile.release.{setting}")]));
-        step::finish(&mut cargo)?;
+        step::run_to_end(&mut cargo)?;
     }
     Ok(())
 }

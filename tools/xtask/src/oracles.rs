@@ -5,14 +5,14 @@ use std::process::Command;
 use crate::python::{CHECKS, Environment, PERFORMANCE};
 use crate::{step, workspace};
 
-fn script(environment: &Environment, path: &str) -> Command {
+fn python_script(environment: &Environment, path: &str) -> Command {
     let mut command = Command::new(environment.python());
     command.arg(workspace::root().join(path)).current_dir(workspace::root());
     command
 }
 
-fn on_generated_code(path: &str) -> Result<(), String> {
-    step::finish(script(&CHECKS, path).arg("--evaluate").arg(workspace::target().join("release/evaluate")))
+fn run_on_generated_code(path: &str) -> Result<(), String> {
+    step::run_to_end(python_script(&CHECKS, path).arg("--evaluate").arg(workspace::target().join("release/evaluate")))
 }
 
 const CHECK: &str = "tools/casadi/check.py";
@@ -20,50 +20,50 @@ const MOTION: &str = "tools/casadi/motion.py";
 const AGREE: &str = "tools/peers/agree.py";
 
 /// CasADi's derivations obey the laws of mechanics, and an error of 1e-8 in any quantity is noticed.
-pub fn self_test() -> Result<(), String> {
-    step::finish(script(&CHECKS, CHECK).arg("--self-test"))
+pub fn check_oracles() -> Result<(), String> {
+    step::run_to_end(python_script(&CHECKS, CHECK).arg("--self-test"))
 }
 
 /// Every generated function of every shipped crane and of random cranes.
-pub fn check() -> Result<(), String> {
-    on_generated_code(CHECK)
+pub fn check_generated_code() -> Result<(), String> {
+    run_on_generated_code(CHECK)
 }
 
 /// Pinocchio and MuJoCo agree with each other, and an error of 1e-7 in A, e or q̈ is noticed.
-pub fn peers_self_test() -> Result<(), String> {
-    step::finish(script(&CHECKS, AGREE).arg("--self-test"))
+pub fn check_peers() -> Result<(), String> {
+    step::run_to_end(python_script(&CHECKS, AGREE).arg("--self-test"))
 }
 
 /// A, e and q̈ of the same cranes.
-pub fn peers() -> Result<(), String> {
-    on_generated_code(AGREE)
+pub fn compare_with_peers() -> Result<(), String> {
+    run_on_generated_code(AGREE)
 }
 
 /// Exported cranes in Pinocchio and MuJoCo, imported robots in the compiler.
-pub fn exchange() -> Result<(), String> {
+pub fn check_exchange() -> Result<(), String> {
     let program = |name: &str| workspace::target().join("release").join(name);
-    let mut command = script(&CHECKS, "tools/peers/exchange.py");
-    step::finish(command.arg("--crane").arg(program("crane")).arg("--evaluate").arg(program("evaluate")))
+    let mut command = python_script(&CHECKS, "tools/peers/exchange.py");
+    step::run_to_end(command.arg("--crane").arg(program("crane")).arg("--evaluate").arg(program("evaluate")))
 }
 
 /// Runs of shipped cranes against `SciPy`'s Radau on `CasADi`'s equations of motion.
-pub fn motion() -> Result<(), String> {
-    step::finish(script(&CHECKS, MOTION).arg("--command").arg(workspace::target().join("release/crane")))
+pub fn check_motion() -> Result<(), String> {
+    step::run_to_end(python_script(&CHECKS, MOTION).arg("--command").arg(workspace::target().join("release/crane")))
 }
 
 /// Arms on hydraulic cylinders, beside Exudyn's.
-pub fn hydraulics() -> Result<(), String> {
-    let mut command = script(&CHECKS, "tools/peers/hydraulics.py");
-    step::finish(command.arg("--command").arg(workspace::target().join("release/crane")))
+pub fn check_hydraulics() -> Result<(), String> {
+    let mut command = python_script(&CHECKS, "tools/peers/hydraulics.py");
+    step::run_to_end(command.arg("--command").arg(workspace::target().join("release/crane")))
 }
 
 /// The environment of the checks.
-pub fn prepare() -> Result<(), String> {
+pub fn prepare_python() -> Result<(), String> {
     CHECKS.prepare()
 }
 
 /// Times the generated functions and other libraries, and writes docs/performance.md; the words after the task are options.
-pub fn performance() -> Result<(), String> {
+pub fn measure_performance() -> Result<(), String> {
     PERFORMANCE.prepare()?;
-    step::finish(script(&PERFORMANCE, "tools/peers/measure.py").args(std::env::args().skip(2)))
+    step::run_to_end(python_script(&PERFORMANCE, "tools/peers/measure.py").args(std::env::args().skip(2)))
 }

@@ -7,24 +7,24 @@ use crate::python::CHECKS;
 use crate::{step, workspace};
 
 /// Runs the tests of functional mock-up units.
-pub fn units() -> Result<(), String> {
-    run("tools/fmu/tests", &[])
+pub fn check_units() -> Result<(), String> {
+    run_python_tests("tools/fmu/tests", &[])
 }
 
 /// Runs the tests of what the command prints as JSON.
-pub fn output() -> Result<(), String> {
-    run("tools/cli/tests/output", &[])
+pub fn check_output() -> Result<(), String> {
+    run_python_tests("tools/cli/tests/output", &[])
 }
 
 /// Compares what random cranes compute in the Python package with what the command writes, and with functional mock-up units and C that
 /// it makes. The package must be installed.
-pub fn ways() -> Result<(), String> {
+pub fn check_ways() -> Result<(), String> {
     let combinations = workspace::target().join("release/combinations");
-    run("tests/combinations/ways", &["--combinations", &combinations.to_string_lossy()])
+    run_python_tests("tests/combinations/ways", &["--combinations", &combinations.to_string_lossy()])
 }
 
 /// Runs the tests of a folder with the built command and other arguments.
-fn run(tests: &str, arguments: &[&str]) -> Result<(), String> {
+fn run_python_tests(tests: &str, arguments: &[&str]) -> Result<(), String> {
     let mut command = Command::new(CHECKS.python());
     command
         .args(["-m", "pytest", "-q", "-p", "no:cacheprovider", "--rootdir", tests, "--durations", "5", tests])
@@ -33,5 +33,5 @@ fn run(tests: &str, arguments: &[&str]) -> Result<(), String> {
         .args(arguments)
         .env("PYTHONDONTWRITEBYTECODE", "1")
         .current_dir(workspace::root());
-    step::finish(&mut command)
+    step::run_to_end(&mut command)
 }

@@ -9,7 +9,7 @@ const FOLDER: &str = "tools/python";
 
 /// Installs the package from the clone into the environment of the checks, and runs its tests there, in a folder that does not hold
 /// its sources.
-pub fn check() -> Result<(), String> {
+pub fn check_package() -> Result<(), String> {
     let root = workspace::root();
     let python = |arguments: &[&str]| {
         let mut command = Command::new(CHECKS.python());
@@ -28,9 +28,9 @@ pub fn check() -> Result<(), String> {
     };
     let install =
         ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-build-isolation", "--no-deps"];
-    step::finish(python(&install).args(["--force-reinstall", &format!("./{FOLDER}")]))?;
+    step::run_to_end(python(&install).args(["--force-reinstall", &format!("./{FOLDER}")]))?;
     let tests = format!("{FOLDER}/tests");
-    step::finish(&mut python(&[
+    step::run_to_end(&mut python(&[
         "-m",
         "pytest",
         "-q",

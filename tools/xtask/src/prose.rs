@@ -54,14 +54,14 @@ const DOCUMENTS: [&str; 3] = ["ARCHITECTURE.md", "CONTRIBUTING.md", "README.md"]
 const HERE: &str = "tools/xtask/src/prose.rs";
 
 /// Every place where one occurs.
-pub fn check() -> Result<(), String> {
+pub fn check_prose() -> Result<(), String> {
     let mut files: Vec<String> = DOCUMENTS.map(str::to_owned).to_vec();
     for (folder, extension) in TEXTS {
-        files.extend(workspace::files(folder, extension)?);
+        files.extend(workspace::find_files(folder, extension)?);
     }
     let mut found = Vec::new();
     for file in files.iter().filter(|file| *file != HERE && !file.contains("/target/")) {
-        for (number, line) in workspace::read(file)?.lines().enumerate() {
+        for (number, line) in workspace::read_file(file)?.lines().enumerate() {
             let rest = PLAIN.iter().fold(line.to_owned(), |line, plain| line.replace(plain, " "));
             let stumbles = STUMBLES.iter().filter(|(words, _)| rest.contains(words));
             found.extend(

@@ -43,18 +43,19 @@ impl Environment {
     /// Makes it, unless it already has what is required.
     pub fn prepare(&self) -> Result<(), String> {
         let folder = workspace::root().join(self.folder);
-        let requirements = self.requirements.iter().map(|file| workspace::read(file)).collect::<Result<String, _>>()?;
+        let requirements =
+            self.requirements.iter().map(|file| workspace::read_file(file)).collect::<Result<String, _>>()?;
         let stamp = folder.join("requirements.installed");
         if fs::read_to_string(&stamp).is_ok_and(|installed| installed == requirements) {
             println!("{}: installed", self.requirements.join(", "));
             return Ok(());
         }
-        step::finish(Command::new("python3").args(["-m", "venv", "--clear"]).arg(&folder)).map_err(|error| {
+        step::run_to_end(Command::new("python3").args(["-m", "venv", "--clear"]).arg(&folder)).map_err(|error| {
             format!(
                 "{error}; Python 3.11 or newer with its venv module is needed (Debian: apt-get install python3-venv)"
             )
         })?;
-        step::finish(
+        step::run_to_end(
             Command::new(self.python())
                 .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"])
                 .args(self.requirements.iter().flat_map(|file| ["--requirement", file]))

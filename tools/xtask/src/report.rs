@@ -17,64 +17,66 @@ const OTHERS: [(&str, &[&str]); 4] = [
     ("eight_link_hydraulic", &["--duration", "3"]),
 ];
 
-fn in_folder(program: &str) -> Command {
+fn command_in_folder(program: &str) -> Command {
     let mut command = Command::new(program);
     command.current_dir(workspace::root().join(FOLDER));
     command
 }
 
 /// Installs the pinned packages, unless they are installed.
-pub fn prepare() -> Result<(), String> {
-    let lock = workspace::read(&format!("{FOLDER}/package-lock.json"))?;
+pub fn prepare_packages() -> Result<(), String> {
+    let lock = workspace::read_file(&format!("{FOLDER}/package-lock.json"))?;
     let stamp = workspace::root().join(FOLDER).join("node_modules/installed.json");
     if fs::read_to_string(&stamp).is_ok_and(|installed| installed == lock) {
         println!("{FOLDER}/package-lock.json is installed");
         return Ok(());
     }
-    step::finish(in_folder("npm").arg("ci"))
+    step::run_to_end(command_in_folder("npm").arg("ci"))
         .map_err(|error| format!("{error}; npm is needed (Debian: apt-get install nodejs npm)"))?;
     fs::write(&stamp, lock).map_err(|error| format!("{}: {error}", stamp.display()))
 }
 
 /// Checks that the page included in the command is the one built from its sources.
-pub fn is_current() -> Result<(), String> {
-    step::finish(in_folder("node").args(["build.js", "--check"]))
+pub fn check_current() -> Result<(), String> {
+    step::run_to_end(command_in_folder("node").args(["build.js", "--check"]))
 }
 
 /// What a notebook shows of a crane and of a run, in headless Chromium.
-pub fn in_notebook() -> Result<(), String> {
+pub fn check_in_notebook() -> Result<(), String> {
     let file = workspace::root().join("out/notebook.html");
     fs::create_dir_all(workspace::root().join("out")).map_err(|error| format!("out: {error}"))?;
-    step::finish(
+    step::run_to_end(
         Command::new(CHECKS.python()).arg("notebook.py").arg(&file).current_dir(workspace::root().join(FOLDER)),
     )?;
-    step::finish(in_folder("node").arg("notebook.js").arg(file))
+    step::run_to_end(command_in_folder("node").arg("notebook.js").arg(file))
 }
 
 /// Pages of several cranes in headless Chromium; that of the default run is compared with its CSV files. Of all shipped cranes, what the
 /// pages say is compared with what the command wrote.
-pub fn in_browser() -> Result<(), String> {
+pub fn check_in_browser() -> Result<(), String> {
     let out = workspace::root().join("out");
     let files = ["report.html", "eight_link_flexible.csv", "eight_link_rigid.csv"].map(|name| out.join(name));
-    step::finish(in_folder("node").arg("test.js").args(files))?;
+    step::run_to_end(command_in_folder("node").arg("test.js").args(files))?;
     for (crane, options) in OTHERS {
-        step::finish(in_folder("node").arg("test.js").arg(page(&out, crane, options)?))?;
+        step::run_to_end(command_in_folder("node").arg("test.js").arg(write_page(&out, crane, options)?))?;
     }
-    let pages =
-        shipped()?.into_iter().map(|crane| page(&out.join("pages"), &crane, &[])).collect::<Result<Vec<_>, _>>()?;
-    step::finish(in_folder("node").arg("text.js").args(pages))
+    let pages = shipped_cranes()?
+        .into_iter()
+        .map(|crane| write_page(&out.join("pages"), &crane, &[]))
+        .collect::<Result<Vec<_>, _>>()?;
+    step::run_to_end(command_in_folder("node").arg("text.js").args(pages))
 }
 
 /// Writes the page of a crane.
-fn page(folder: &Path, crane: &str, options: &[&str]) -> Result<PathBuf, String> {
+fn write_page(folder: &Path, crane: &str, options: &[&str]) -> Result<PathBuf, String> {
     let page = folder.join(format!("{crane}.html"));
     let mut command = Command::new(workspace::target().join("release/crane"));
-    step::finish(command.args(["report", crane]).args(options).arg("-o").arg(&page))?;
+    step::run_to_end(command.args(["report", crane]).args(options).arg("-o").arg(&page))?;
     Ok(page)
 }
 
 /// Names of the shipped cranes.
-fn shipped() -> Result<Vec<String>, String> {
+fn shipped_cranes() -> Result<Vec<String>, String> {
     let specs = workspace::root().join("specs");
     let files = fs::read_dir(&specs).map_err(|error| format!("{}: {error}", specs.display()))?;
     let names = files.filter_map(|file| Some(file.ok()?.file_name().to_str()?.strip_suffix(".yaml")?.to_owned()));

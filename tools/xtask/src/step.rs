@@ -50,12 +50,12 @@ impl Step {
             Action::Check(check) => check(),
             Action::Program(name) => {
                 let program = workspace::target().join("release").join(name);
-                finish(Command::new(program).current_dir(workspace::root()))
+                run_to_end(Command::new(program).current_dir(workspace::root()))
             }
             Action::Cargo { arguments, environment } => {
                 let mut command = Command::new(cargo());
                 command.args(arguments).envs(environment.iter().copied()).current_dir(workspace::root());
-                finish(&mut command)
+                run_to_end(&mut command)
             }
         }
     }
@@ -67,7 +67,7 @@ pub fn cargo() -> String {
 }
 
 /// Runs a command; anything but success is an error.
-pub fn finish(command: &mut Command) -> Result<(), String> {
+pub fn run_to_end(command: &mut Command) -> Result<(), String> {
     let status = command.status().map_err(|error| format!("{}: {error}", command.get_program().display()))?;
     if status.success() { Ok(()) } else { Err(format!("{} ended with {status}", command.get_program().display())) }
 }

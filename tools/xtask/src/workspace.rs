@@ -15,12 +15,12 @@ pub fn target() -> PathBuf {
 }
 
 /// A file's text, by its path from the root.
-pub fn read(path: &str) -> Result<String, String> {
+pub fn read_file(path: &str) -> Result<String, String> {
     fs::read_to_string(root().join(path)).map_err(|error| format!("{path}: {error}"))
 }
 
 /// Files with an extension under a folder, by their paths from the root, sorted.
-pub fn files(folder: &str, extension: &str) -> Result<Vec<String>, String> {
+pub fn find_files(folder: &str, extension: &str) -> Result<Vec<String>, String> {
     let mut found = Vec::new();
     let mut folders = vec![folder.to_owned()];
     while let Some(folder) = folders.pop() {
@@ -40,7 +40,7 @@ pub fn files(folder: &str, extension: &str) -> Result<Vec<String>, String> {
 }
 
 /// The target triple of this machine.
-pub fn host() -> Result<String, String> {
+pub fn host_triple() -> Result<String, String> {
     let rustc = env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     let output = Command::new(rustc).arg("-vV").output().map_err(|error| format!("rustc: {error}"))?;
     let text = String::from_utf8_lossy(&output.stdout);

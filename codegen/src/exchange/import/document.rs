@@ -38,34 +38,34 @@ impl Reader {
     }
 
     /// `N` finite numbers of a required attribute, or a mistake.
-    pub(super) fn numbers<const N: usize>(&mut self, node: Node, key: &str, place: &str) -> Option<[f64; N]> {
-        self.required(node, key, place)?;
-        self.exact_numbers(node.attribute_node(key)?, place)
+    pub(super) fn numbers<const N: usize>(&mut self, node: Node, key: &str, subject: &str) -> Option<[f64; N]> {
+        self.required(node, key, subject)?;
+        self.exact_numbers(node.attribute_node(key)?, subject)
     }
 
     /// The same for an attribute that is present.
-    pub(super) fn exact_numbers<const N: usize>(&mut self, attribute: Attribute, place: &str) -> Option<[f64; N]> {
+    pub(super) fn exact_numbers<const N: usize>(&mut self, attribute: Attribute, subject: &str) -> Option<[f64; N]> {
         let found = finite_numbers(attribute.value()).and_then(|numbers| <[f64; N]>::try_from(numbers).ok());
         if found.is_none() {
             let expected =
                 if N == 1 { "a finite number".to_owned() } else { format!("{N} finite numbers separated by blanks") };
-            self.wrong_numbers(attribute, place, expected);
+            self.wrong_numbers(attribute, subject, expected);
         }
         found
     }
 
     /// Any number of finite numbers of an attribute, or a mistake.
-    pub(super) fn some_numbers(&mut self, attribute: Attribute, place: &str) -> Option<Vec<f64>> {
+    pub(super) fn some_numbers(&mut self, attribute: Attribute, subject: &str) -> Option<Vec<f64>> {
         let found = finite_numbers(attribute.value());
         if found.is_none() {
-            self.wrong_numbers(attribute, place, "finite numbers separated by blanks");
+            self.wrong_numbers(attribute, subject, "finite numbers separated by blanks");
         }
         found
     }
 
     /// Reports an attribute that is not as `expected`.
-    pub(super) fn wrong_numbers(&mut self, attribute: Attribute, place: &str, expected: impl Display) {
-        self.mistakes.push(rule::wrong_numbers(value_span(attribute), place, attribute.value(), expected));
+    pub(super) fn wrong_numbers(&mut self, attribute: Attribute, subject: &str, expected: impl Display) {
+        self.mistakes.push(rule::wrong_numbers(value_span(attribute), subject, attribute.value(), expected));
     }
 }
 

@@ -94,10 +94,10 @@ pub(super) fn links<'r>(groups: &[Group<'r>]) -> Vec<SpecLink<'r>> {
         let mut bodies = Names::default();
         let ends = group.links.len() > 1 && link.joint.is_some();
         for (index, (member, frame)) in group.links.iter().enumerate() {
-            let own = rotated.local(frame);
+            let pose = rotated.local(frame);
             match &member.lump {
-                Some(lump) => link.bodies.push((bodies.unique(&member.name), lump.seen_through(&own))),
-                None if ends && index > 0 => link.points.push((member.name.clone(), clean(own.origin))),
+                Some(lump) => link.bodies.push((bodies.unique(&member.name), lump.seen_through(&pose))),
+                None if ends && index > 0 => link.points.push((member.name.clone(), clean(pose.origin))),
                 None => {}
             }
         }
@@ -124,7 +124,7 @@ fn free_base(links: &mut Vec<SpecLink>) {
     const ORDER: [(bool, Axis); 6] =
         [(false, Axis::X), (false, Axis::Y), (false, Axis::Z), (true, Axis::Z), (true, Axis::Y), (true, Axis::X)];
     let mut motions: Vec<(bool, Axis)> = Vec::new();
-    let mut place = 0;
+    let mut next = 0;
     for (index, link) in links.iter().enumerate() {
         // A free base has neither springs nor dampers of its own.
         if !link.joint.is_some_and(Joint::is_plain) {
@@ -135,11 +135,11 @@ fn free_base(links: &mut Vec<SpecLink>) {
             SpecMotion::Revolute(axis) => (true, axis),
             _ => return,
         };
-        let Some(found) = ORDER[place..].iter().position(|other| *other == motion) else { return };
+        let Some(found) = ORDER[next..].iter().position(|other| *other == motion) else { return };
         if index > 0 && link.placement != Frame::WORLD {
             return;
         }
-        place += found + 1;
+        next += found + 1;
         motions.push(motion);
         if !link.bodies.is_empty() || !link.points.is_empty() {
             break;

@@ -11,7 +11,7 @@ catalogue! {
     /// Links, bodies and joints have what their language requires of them.
     U003 missing(owner, what) "{owner} lacks {what}", "{what} is missing here", "add {what}: URDF and MJCF require it";
     /// Numeric attributes have the right count of numbers.
-    U004 wrong_numbers(place, given, expected) "{place} cannot be `{given}`", "not {expected}", "write {expected}, in SI units";
+    U004 wrong_numbers(subject, given, expected) "{subject} cannot be `{given}`", "not {expected}", "write {expected}, in SI units";
     /// Names of links and of joints are unique.
     U005 duplicate(kind, name) "two {kind}s are called `{name}`", "already used by another {kind}", "rename one of the two";
     /// Joints connect links that are in the file.

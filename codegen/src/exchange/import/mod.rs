@@ -1,7 +1,8 @@
 //! A robot described in URDF or MJCF as a spec: `crane import`.
 //!
 //! ```text
-//! SourceFile ─urdf::read, mjcf::read→ Robot ─serial::chain→ groups of links ─links::links→ links of a spec ─yaml::write→ text
+//! SourceFile ─urdf::read_robot, mjcf::read_robot→ Robot ─serial::chain→ groups of links
+//!     ─links::links→ links of a spec ─yaml::write_spec→ text
 //! ```
 //!
 //! Links connected by fixed joints become one link of several bodies; massless frames at their ends become points. Joints
@@ -37,16 +38,16 @@ pub struct Imported {
 /// Mistakes in the file, and structures that cannot be a crane: branches, and joints that are neither fixed nor about or along
 /// one axis.
 pub fn import(source: &SourceFile, fixed: &[String]) -> Result<Imported, Diagnostics> {
-    let told = |mistakes| Diagnostics::new(source, mistakes);
-    let document = document::parse(source).map_err(told)?;
+    let diagnostics = |mistakes| Diagnostics::new(source, mistakes);
+    let document = document::parse(source).map_err(diagnostics)?;
     let root = document.root_element();
     let robot = match root.tag_name().name() {
-        "robot" => urdf::read(root),
-        "mujoco" => mjcf::read(root),
+        "robot" => urdf::read_robot(root),
+        "mujoco" => mjcf::read_robot(root),
         _ => Err(vec![mistakes::rule::not_a_robot(document::tag(root), document::name_of(root))]),
     };
-    let robot = robot.map_err(told)?;
-    let groups = serial::chain(&robot, fixed).map_err(told)?;
-    let spec = yaml::write(&robot, &links::links(&groups), source);
+    let robot = robot.map_err(diagnostics)?;
+    let groups = serial::chain(&robot, fixed).map_err(diagnostics)?;
+    let spec = yaml::write_spec(&robot, &links::links(&groups), source);
     Ok(Imported { spec, left_out: robot.left_out })
 }

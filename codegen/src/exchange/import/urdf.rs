@@ -11,7 +11,7 @@ use crate::exchange::mass::Lump;
 use crate::exchange::rotation::length;
 
 /// Reads a file by its root; returns what could be read, and all mistakes.
-pub(super) fn read(root: Node) -> Result<Robot, Vec<Mistake>> {
+pub(super) fn read_robot(root: Node) -> Result<Robot, Vec<Mistake>> {
     let mut reader = Reader::default();
     let mut robot = Robot {
         name: root.attribute("name").unwrap_or("robot").to_owned(),

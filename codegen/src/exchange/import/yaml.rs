@@ -13,7 +13,7 @@ use crate::exchange::urdf::NO_LIMIT;
 use crate::exchange::xml::number_text;
 
 /// The text of a spec.
-pub(super) fn write(robot: &Robot, links: &[SpecLink], source: &SourceFile) -> String {
+pub(super) fn write_spec(robot: &Robot, links: &[SpecLink], source: &SourceFile) -> String {
     let file = Path::new(&source.name).file_name().unwrap_or_default().to_string_lossy();
     let (file, robot_name) = (plain(&file), plain(&robot.name));
     let mut text = format!("# The robot {robot_name}, from {file}. SI units; angles in rad, or written as `90 deg`.\n");
@@ -98,11 +98,11 @@ fn couplings(links: &[SpecLink]) -> String {
         let Some(Follows { leader, multiplier, offset }) = link.joint.and_then(|joint| joint.follows.as_ref()) else {
             continue;
         };
-        let (own, Some(leading)) = (coordinate(link), of_joint(&leader.name)) else { continue };
+        let (follower, Some(leading)) = (coordinate(link), of_joint(&leader.name)) else { continue };
         let offset = if *offset == 0.0 { String::new() } else { format!("offset: {}, ", decimal(*offset)) };
         let _ = writeln!(
             text,
-            "  - {{name: {own}_follows, coordinate: {own}, follows: {leading}, ratio: {}, {offset}stiffness: 1e6, damping: 1e4}}",
+            "  - {{name: {follower}_follows, coordinate: {follower}, follows: {leading}, ratio: {}, {offset}stiffness: 1e6, damping: 1e4}}",
             decimal(*multiplier)
         );
     }

@@ -29,7 +29,7 @@ enum Operands {
 #[derive(Debug, Default)]
 struct Plan {
     /// The expressions of the first visit, operands before their users.
-    own: Vec<ExprId>,
+    template: Vec<ExprId>,
     /// The loop under construction: its iterations and what their operands require.
     making: Loop,
     /// Sources of operands, by their expressions in each iteration.
@@ -86,7 +86,7 @@ pub(super) fn reroll(
     if rerolling.rerolled.loops.is_empty() {
         return None;
     }
-    rerolling.hand_over(function);
+    rerolling.return_rows_from_loops(function);
     Some(rerolling.rerolled)
 }
 
@@ -147,18 +147,19 @@ impl Rerolling<'_> {
 
     /// The loop of these iterations, if all its operands from outside have a source.
     fn plan(&self, matches: &[Match]) -> Option<Plan> {
-        let mut own: Vec<ExprId> = matches[0].nodes.keys().copied().collect();
-        own.sort();
-        let mut plan = Plan { own, making: Loop { iterations: matches.len(), ..Loop::default() }, ..Plan::default() };
-        for &id in &plan.own {
-            for (place, _) in self.program.op(id).operands().enumerate() {
-                if matches[0].outside.contains_key(&(id, place)) {
-                    let operands: Vec<ExprId> = matches.iter().map(|m| m.outside[&(id, place)]).collect();
+        let mut template: Vec<ExprId> = matches[0].nodes.keys().copied().collect();
+        template.sort();
+        let mut plan =
+            Plan { template, making: Loop { iterations: matches.len(), ..Loop::default() }, ..Plan::default() };
+        for &id in &plan.template {
+            for (operand, _) in self.program.op(id).operands().enumerate() {
+                if matches[0].outside.contains_key(&(id, operand)) {
+                    let operands: Vec<ExprId> = matches.iter().map(|m| m.outside[&(id, operand)]).collect();
                     if !plan.sources.contains_key(&operands) {
                         let source = self.source(&operands, matches, &mut plan.making)?;
                         plan.sources.insert(operands.clone(), source);
                     }
-                    plan.sites.push(((id, place), operands));
+                    plan.sites.push(((id, operand), operands));
                 }
             }
         }
@@ -207,8 +208,9 @@ impl Rerolling<'_> {
             return Some(Operands::From(Source::Cosine(places)));
         }
         if let Op::Stumpff(k, _) = ops[0] {
-            let place = |id: &ExprId| self.stumpff.iter().position(|known| known.values[usize::from(k)] == Some(*id));
-            if let Some(places) = progression(operands.iter().map(place)) {
+            let argument_of =
+                |id: &ExprId| self.stumpff.iter().position(|known| known.values[usize::from(k)] == Some(*id));
+            if let Some(places) = progression(operands.iter().map(argument_of)) {
                 return Some(Operands::From(Source::Stumpff(k, places)));
             }
         }
@@ -247,7 +249,7 @@ fn number(op: Op) -> Option<f64> {
 /// The arithmetic progression that the indices form, if they do and there are at least two.
 fn progression(places: impl Iterator<Item = Option<usize>>) -> Option<Progression> {
     let places: Vec<isize> =
-        places.map(|place| place.and_then(|place| isize::try_from(place).ok())).collect::<Option<_>>()?;
+        places.map(|number| number.and_then(|number| isize::try_from(number).ok())).collect::<Option<_>>()?;
     let (first, step) = (*places.first()?, places.get(1)? - places[0]);
     let fits = places.windows(2).all(|pair| pair[1] - pair[0] == step);
     fits.then_some(Progression { first: usize::try_from(first).ok()?, step })

@@ -13,7 +13,7 @@ impl Rerolling<'_> {
     /// Writes the loop's body as separate expressions.
     pub(super) fn write(
         &mut self,
-        Plan { own, mut making, sources, sites }: Plan,
+        Plan { template, mut making, sources, sites }: Plan,
         visits: &[Visit],
         matches: &[Match],
     ) {
@@ -48,10 +48,10 @@ impl Rerolling<'_> {
             symbols.insert(operands, id);
             outside.insert(*site, id);
         }
-        for id in own {
-            let mut place = 0..;
+        for id in template {
+            let mut operand_numbers = 0..;
             let op = self.program.op(id).map(|operand| {
-                let site = (id, place.next().unwrap_or_default());
+                let site = (id, operand_numbers.next().unwrap_or_default());
                 outside.get(&site).copied().unwrap_or_else(|| making.body[&operand])
             });
             let inside = self.program.append(op);
@@ -154,7 +154,7 @@ impl Rerolling<'_> {
         let loop_carried =
             loop_carried.iter().position(|(_, next)| *next == value).filter(|_| iteration + 1 == *iterations);
         let live_out = match loop_carried {
-            Some(place) => LiveOut::LoopCarried { of, place },
+            Some(slot) => LiveOut::LoopCarried { of, slot },
             None => LiveOut::Saved { of, slot: self.save(of, template), iteration },
         };
         let index = self.rerolled.live_outs.len();
@@ -165,7 +165,7 @@ impl Rerolling<'_> {
 
     /// Decides where each slot of the result is written: in a loop if the indices of its slots form an arithmetic progression, otherwise
     /// outside.
-    pub(super) fn hand_over(&mut self, function: &Function) {
+    pub(super) fn return_rows_from_loops(&mut self, function: &Function) {
         let mut rows: HashMap<(usize, ExprId), Vec<(usize, usize)>> = HashMap::new();
         if matches!(function.shape, Shape::Vector(_) | Shape::Factors(_) | Shape::Columns { .. }) {
             for (slot, value) in function.outputs.iter().enumerate() {

@@ -54,9 +54,9 @@ impl Plausibility<'_> {
 
     fn beam(&mut self, link: &Link, beam: &Beam) {
         let name = link.name.value.as_deref().unwrap_or_default();
-        let place = format!("beam `{name}`");
+        let subject = format!("beam `{name}`");
         if let Some(Either::Full(material)) = beam.material.as_ref().and_then(|material| material.value.as_ref()) {
-            self.material(material, &place);
+            self.material(material, &subject);
         }
         if let Some(given) = &beam.safety_factor {
             let (factor, at) = self.number(given);
@@ -67,7 +67,7 @@ impl Plausibility<'_> {
         let of_parts = items(beam.parts.as_ref()).flat_map(|part| [Some(&part.section), part.to.as_ref()]);
         let sections = std::iter::once(beam.section.as_ref()).chain(of_parts).flatten();
         for section in sections.filter_map(|section| section.value.as_ref()) {
-            self.section(section, &place, self.number(&beam.length).0);
+            self.section(section, &subject, self.number(&beam.length).0);
         }
     }
 
@@ -80,14 +80,14 @@ impl Plausibility<'_> {
         }
     }
 
-    fn material(&mut self, material: &Material, place: &str) {
+    fn material(&mut self, material: &Material, subject: &str) {
         let ((e, at), (g, at_g)) = (self.number(&material.youngs_modulus), self.number(&material.shear_modulus));
         let (density, at_density) = self.number(&material.density);
         if !YOUNGS_MODULUS.contains(&e) {
-            self.warn(rule::modulus(at, "Young's modulus `E`", place, e, "1e9 to 1e12", in_pascal(e)));
+            self.warn(rule::modulus(at, "Young's modulus `E`", subject, e, "1e9 to 1e12", in_pascal(e)));
         }
         if !SHEAR_MODULUS.contains(&g) {
-            self.warn(rule::modulus(at_g, "the shear modulus `G`", place, g, "1e8 to 5e11", in_pascal(g)));
+            self.warn(rule::modulus(at_g, "the shear modulus `G`", subject, g, "1e8 to 5e11", in_pascal(g)));
         }
         if let Some((stress, at)) = material.yield_stress.as_ref().map(|given| self.number(given))
             && !YIELD_STRESS.contains(&stress)
@@ -97,10 +97,10 @@ impl Plausibility<'_> {
             } else {
                 "write it in Pa; structural steel has 2.35e8 to 1.1e9".to_owned()
             };
-            self.warn(rule::modulus(at, "the `yield_stress`", place, stress, "1e6 to 5e9", help));
+            self.warn(rule::modulus(at, "the `yield_stress`", subject, stress, "1e6 to 5e9", help));
         }
         if YOUNGS_MODULUS.contains(&e) && SHEAR_MODULUS.contains(&g) && g > 0.5 * e {
-            self.warn(rule::poisson(at_g, place, rounded(e / (2.0 * g) - 1.0)));
+            self.warn(rule::poisson(at_g, subject, rounded(e / (2.0 * g) - 1.0)));
         }
         if !DENSITY.contains(&density) {
             let help = if (0.5..=25.0).contains(&density) {
@@ -108,47 +108,47 @@ impl Plausibility<'_> {
             } else {
                 "write it in kg/m³; steel has 7850".to_owned()
             };
-            self.warn(rule::density(at_density, place, density, help));
+            self.warn(rule::density(at_density, subject, density, help));
         }
     }
 
-    fn section(&mut self, section: &Section, place: &str, length: f64) {
+    fn section(&mut self, section: &Section, subject: &str, length: f64) {
         let sides: Vec<(&str, &Spanned<Number>)> = match section {
             Section::Box { height, width, .. } | Section::Solid { height, width } => {
                 vec![("height", height), ("width", width)]
             }
             Section::Tube { diameter, .. } | Section::Circle { diameter } => vec![("diameter", diameter)],
-            Section::Numbers { area, jy, jz, jo, .. } => return self.section_numbers([area, jy, jz, jo], place),
+            Section::Numbers { area, jy, jz, jo, .. } => return self.section_numbers([area, jy, jz, jo], subject),
         };
         // Only the first implausible side is reported.
         for (key, given) in sides {
             let (side, at) = self.number(given);
             if side > LONGEST_SIDE {
-                return self.warn(rule::section_size(at, place, format!("a `{key}` of {side} m"), in_metres(side)));
+                return self.warn(rule::section_size(at, subject, format!("a `{key}` of {side} m"), in_metres(side)));
             }
             if side > length {
-                return self.warn(rule::stubby(at, place, key, side, length));
+                return self.warn(rule::stubby(at, subject, key, side, length));
             }
         }
     }
 
-    fn section_numbers(&mut self, [area, jy, jz, jo]: [&Spanned<Number>; 4], place: &str) {
+    fn section_numbers(&mut self, [area, jy, jz, jo]: [&Spanned<Number>; 4], subject: &str) {
         let (a, at) = self.number(area);
         if a > LARGEST_AREA {
             let help = "write it in m²: 1 mm² is 1e-6, 1 cm² is 1e-4";
-            return self.warn(rule::section_size(at, place, format!("an `area` of {a} m²"), help));
+            return self.warn(rule::section_size(at, subject, format!("an `area` of {a} m²"), help));
         }
         for (key, given) in [("Jy", jy), ("Jz", jz), ("Jo", jo)] {
             let (moment, at) = self.number(given);
             if moment > LARGEST_MOMENT {
                 let help = "write it in m⁴: 1 mm⁴ is 1e-12, 1 cm⁴ is 1e-8";
-                return self.warn(rule::section_size(at, place, format!("`{key}` = {moment} m⁴"), help));
+                return self.warn(rule::section_size(at, subject, format!("`{key}` = {moment} m⁴"), help));
             }
         }
         let ((jy, _), (jz, _), (jo, at)) = (self.number(jy), self.number(jz), self.number(jo));
         if jo > (1.0 + WRITTEN) * (jy + jz) {
             let polar = format!("{:e}", rounded(jy + jz));
-            self.warn(rule::torsion_constant(at, place, format!("{jo:e}"), polar));
+            self.warn(rule::torsion_constant(at, subject, format!("{jo:e}"), polar));
         }
     }
 

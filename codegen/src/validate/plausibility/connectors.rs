@@ -20,10 +20,10 @@ impl Plausibility<'_> {
             let named = |connector: &&Force| Some(&connector.name) == given.name.value.as_ref();
             let Some(connector) = chain.connectors().iter().find(named) else { continue };
             let Strain::Coupling { coordinate, leader, ratio } = &connector.strain else { continue };
-            let [own, other] = [coordinate, leader].map(|id| &chain.coordinates[id.0]);
+            let [follower, other] = [coordinate, leader].map(|id| &chain.coordinates[id.0]);
             let ratio = ratio.at(&self.values);
-            if own.kind == other.kind && ratio.abs() > RATIO {
-                let names = [&own.name, &other.name];
+            if follower.kind == other.kind && ratio.abs() > RATIO {
+                let names = [&follower.name, &other.name];
                 self.warn(rule::high_ratio(given.ratio.span, &connector.name, rounded(ratio), names[0], names[1]));
             }
         }

@@ -16,15 +16,15 @@ impl Plausibility<'_> {
         let (crane, chain) = (self.crane, self.chain);
         let places: Vec<[f64; 3]> =
             chain.supports.iter().map(|support| support.position.each_ref().map(|x| x.at(&self.values))).collect();
-        let mut heights: Vec<f64> = places.iter().map(|place| place[2]).collect();
+        let mut heights: Vec<f64> = places.iter().map(|position| position[2]).collect();
         heights.sort_by(f64::total_cmp);
         for (index, (given, support)) in items(crane.supports.as_ref()).zip(&chain.supports).enumerate() {
-            let (name, place) = (&support.name, places[index]);
+            let (name, position) = (&support.name, places[index]);
             let usual = heights[(heights.len() - 1) / 2];
-            if places.len() > 2 && (place[2] - usual).abs() > HEIGHT {
-                self.warn(rule::raised_foot(given.at.span, name, rounded(place[2]), rounded(usual)));
+            if places.len() > 2 && (position[2] - usual).abs() > HEIGHT {
+                self.warn(rule::raised_foot(given.at.span, name, rounded(position[2]), rounded(usual)));
             }
-            let near = |other: &[f64; 3]| (0..3).all(|i| (other[i] - place[i]).abs() < ONE_PLACE);
+            let near = |other: &[f64; 3]| (0..3).all(|i| (other[i] - position[i]).abs() < ONE_PLACE);
             if let Some(other) = places[..index].iter().position(near) {
                 self.warn(rule::same_foot(given.at.span, name, &chain.supports[other].name));
             }

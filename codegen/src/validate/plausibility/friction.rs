@@ -12,7 +12,7 @@ impl Plausibility<'_> {
     pub(super) fn bristles(&mut self) {
         let entries = self.crane.friction.as_ref().and_then(|friction| friction.value.as_ref());
         for (name, given) in entries.into_iter().flat_map(|entries| &entries.0) {
-            let Some(given) = given.value.as_ref().and_then(|own| own.bristle.as_ref()) else { continue };
+            let Some(given) = given.value.as_ref().and_then(|written| written.bristle.as_ref()) else { continue };
             let named = |known: &&Coordinate| Some(known.name.as_str()) == name.value.as_deref();
             let Some(coordinate) = self.chain.coordinates.iter().find(named) else { continue };
             let of_joint = |(id, _): &(CoordinateId, _)| self.chain.coordinates[id.0].name == coordinate.name;

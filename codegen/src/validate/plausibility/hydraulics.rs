@@ -11,39 +11,39 @@ use crate::spec::{Constant, Cylinder, Motion, Pump, Spanned, Valve};
 struct Usual {
     unit: &'static str,
     range: RangeInclusive<f64>,
-    said: &'static str,
+    range_text: &'static str,
     help: fn(f64) -> String,
 }
 
 /// Diameters of pistons and rods.
-const DIAMETER: Usual = Usual { unit: "m", range: 2e-3..=2.0, said: "0.002 to 2 m", help: in_metres };
+const DIAMETER: Usual = Usual { unit: "m", range: 2e-3..=2.0, range_text: "0.002 to 2 m", help: in_metres };
 /// Lengths between pins, and strokes.
-const LENGTH: Usual = Usual { unit: "m", range: 1e-3..=50.0, said: "0.001 to 50 m", help: in_metres };
+const LENGTH: Usual = Usual { unit: "m", range: 1e-3..=50.0, range_text: "0.001 to 50 m", help: in_metres };
 /// Pressures of pumps and relief valves, and pressure drops.
-const PRESSURE: Usual = Usual { unit: "Pa", range: 1e4..=5e8, said: "1e4 to 5e8 Pa", help: in_pascal };
+const PRESSURE: Usual = Usual { unit: "Pa", range: 1e4..=5e8, range_text: "1e4 to 5e8 Pa", help: in_pascal };
 /// Back pressures, of tank lines.
-const BACK_PRESSURE: Usual = Usual { unit: "Pa", range: 1e3..=1e7, said: "0 to 1e7 Pa", help: in_pascal };
+const BACK_PRESSURE: Usual = Usual { unit: "Pa", range: 1e3..=1e7, range_text: "0 to 1e7 Pa", help: in_pascal };
 /// Nominal flows of valves and pumps.
 const FLOW: Usual = Usual {
     unit: "m³/s",
     range: 1e-8..=0.1,
-    said: "1e-8 to 0.1 m³/s",
+    range_text: "1e-8 to 0.1 m³/s",
     help: |flow| format!("write it in m³/s: {flow} l/min = {:e} m³/s", rounded(flow / 6e4)),
 };
 /// Bulk moduli, from oil with air to the purest.
-const BULK_MODULUS: Usual = Usual { unit: "Pa", range: 5e7..=5e9, said: "5e7 to 5e9 Pa", help: in_pascal };
+const BULK_MODULUS: Usual = Usual { unit: "Pa", range: 5e7..=5e9, range_text: "5e7 to 5e9 Pa", help: in_pascal };
 /// Volumes of hoses, and of the oil between pump and valves.
 const VOLUME: Usual = Usual {
     unit: "m³",
     range: 0.0..=0.1,
-    said: "at most 0.1 m³",
+    range_text: "at most 0.1 m³",
     help: |volume| format!("write it in m³: {volume} l = {:e} m³", rounded(1e-3 * volume)),
 };
 /// Time constants of spools.
 const LAG: Usual = Usual {
     unit: "s",
     range: 1e-5..=2.0,
-    said: "1e-5 to 2 s",
+    range_text: "1e-5 to 2 s",
     help: |lag| format!("write it in s: {lag} ms = {:e} s", rounded(1e-3 * lag)),
 };
 
@@ -139,7 +139,14 @@ impl Plausibility<'_> {
         for (what, given, usual) in numbers.into_iter().flatten() {
             let Some(number) = given.value.as_ref().map(|number| self.scalar(&number.0)) else { continue };
             if number != 0.0 && !usual.range.contains(&number) {
-                self.warn(rule::hydraulics(given.span, what, number, usual.unit, usual.said, (usual.help)(number)));
+                self.warn(rule::hydraulics(
+                    given.span,
+                    what,
+                    number,
+                    usual.unit,
+                    usual.range_text,
+                    (usual.help)(number),
+                ));
             }
         }
     }

@@ -94,11 +94,11 @@ impl Plausibility<'_> {
             let Some(inertia) = &body.inertia else { continue };
             let mass = inertia.mass.at(&self.values);
             let first = frame.direction(inertia.first.each_ref().map(|first| first.at(&self.values)));
-            let way = [0, 1, 2].map(|i| first[i] + mass * (frame.origin[i] - origin[i]));
+            let first_moment = [0, 1, 2].map(|i| first[i] + mass * (frame.origin[i] - origin[i]));
             let moment = [
-                way[1] * gravity[2] - way[2] * gravity[1],
-                way[2] * gravity[0] - way[0] * gravity[2],
-                way[0] * gravity[1] - way[1] * gravity[0],
+                first_moment[1] * gravity[2] - first_moment[2] * gravity[1],
+                first_moment[2] * gravity[0] - first_moment[0] * gravity[2],
+                first_moment[0] * gravity[1] - first_moment[1] * gravity[0],
             ];
             effort += match info.kind {
                 CoordinateKind::Rotation => (0..3).map(|i| axis[i] * moment[i]).sum::<f64>(),
@@ -112,8 +112,8 @@ impl Plausibility<'_> {
     pub(super) fn stiff_springs(&mut self) {
         let crane = self.crane;
         let units = |name: &str| {
-            let own = self.chain.coordinates.iter().find(|coordinate| coordinate.name == name);
-            let slides = own.is_some_and(|coordinate| coordinate.kind == CoordinateKind::Translation);
+            let coordinate = self.chain.coordinates.iter().find(|coordinate| coordinate.name == name);
+            let slides = coordinate.is_some_and(|coordinate| coordinate.kind == CoordinateKind::Translation);
             if slides { "N/m" } else { "N m/rad" }
         };
         let mut found = Vec::new();

@@ -16,56 +16,56 @@ impl Plausibility<'_> {
         }
         for support in items(crane.supports.as_ref()) {
             let name = support.name.value.as_deref().unwrap_or_default();
-            self.place(Some(&support.at), &format!("support `{name}`"));
+            self.check_position(Some(&support.at), &format!("support `{name}`"));
         }
         for load in items(crane.loads.as_ref()) {
             let name = load.name.value.as_deref().unwrap_or_default();
-            self.place(load.at.as_ref(), &format!("load `{name}`"));
+            self.check_position(load.at.as_ref(), &format!("load `{name}`"));
         }
         for connector in items(crane.connectors.as_ref()) {
             let name = connector.name.value.as_deref().unwrap_or_default();
             for end in [&connector.from, &connector.to].into_iter().filter_map(|end| end.value.as_ref()) {
                 // Points of the world are not checked: the crane may stand anywhere.
                 if end.link.is_some() {
-                    self.place(Some(&end.at), &format!("connector `{name}`"));
+                    self.check_position(Some(&end.at), &format!("connector `{name}`"));
                 }
             }
         }
         for point in items(crane.points.as_ref()) {
             let name = point.name.value.as_deref().unwrap_or_default();
-            self.place(Some(&point.at), &format!("point `{name}`"));
+            self.check_position(Some(&point.at), &format!("point `{name}`"));
         }
     }
 
     fn lengths_of(&mut self, link: &Link, first: bool) {
         let name = link.name.value.as_deref().unwrap_or_default();
         if let Some(beam) = link.beam.as_ref().and_then(|beam| beam.value.as_ref()) {
-            self.length(&beam.length, &format!("the length of beam `{name}`"));
+            self.check_length(&beam.length, &format!("the length of beam `{name}`"));
         }
         if let Some(rope) = link.rope.as_ref().and_then(|rope| rope.value.as_ref()) {
-            self.length(&rope.length, &format!("the length of rope `{name}`"));
+            self.check_length(&rope.length, &format!("the length of rope `{name}`"));
         }
-        self.place(link.com.as_ref(), &format!("the centre of mass of link `{name}`"));
+        self.check_position(link.com.as_ref(), &format!("the centre of mass of link `{name}`"));
         for body in items(link.bodies.as_ref()) {
             let body_name = body.name.value.as_deref().unwrap_or_default();
-            self.place(Some(&body.com), &format!("the centre of mass of body `{body_name}`"));
+            self.check_position(Some(&body.com), &format!("the centre of mass of body `{body_name}`"));
         }
         // The crane as a whole may be anywhere in the world.
         let placement = link.placement.as_ref().filter(|_| !first).and_then(|placement| placement.value.as_ref());
         let what = format!("the placement of link `{name}`");
         let along = match placement {
-            Some(Placement::Transform(transform)) => return self.place(transform.translation.as_ref(), &what),
+            Some(Placement::Transform(transform)) => return self.check_position(transform.translation.as_ref(), &what),
             Some(Placement::ModifiedDh(row)) => [&row.a, &row.d],
             Some(Placement::ClassicDh(row)) => [&row.a, &row.d],
             None => return,
         };
         for given in along.into_iter().flatten() {
-            self.length(given, &what);
+            self.check_length(given, &what);
         }
     }
 
     /// Three lengths; only the first that is too long is reported.
-    fn place(&mut self, given: Option<&Spanned<Vector>>, what: &str) {
+    fn check_position(&mut self, given: Option<&Spanned<Vector>>, what: &str) {
         let Some(numbers) = given.and_then(|given| given.value.as_ref()) else { return };
         let far = numbers.each_ref().map(|number| self.number(number)).into_iter().find(|(number, _)| is_far(*number));
         if let Some((number, at)) = far {
@@ -73,7 +73,7 @@ impl Plausibility<'_> {
         }
     }
 
-    fn length(&mut self, given: &Spanned<Number>, what: &str) {
+    fn check_length(&mut self, given: &Spanned<Number>, what: &str) {
         let (number, at) = self.number(given);
         if is_far(number) {
             self.far(number, at, what);

@@ -26,20 +26,20 @@ impl Plausibility<'_> {
         let most = SMALL.max(BEYOND * size);
         for link in items(Some(&crane.links)) {
             let name = link.name.value.as_deref().unwrap_or_default();
-            let place = format!("link `{name}`");
-            let own = chain.bodies.iter().find(|body| body.link == name).and_then(|body| body.inertia.as_ref());
-            let (Some(inertia), Some(com)) = (own, &link.com) else { continue };
+            let subject = format!("link `{name}`");
+            let inertia = chain.bodies.iter().find(|body| body.link == name).and_then(|body| body.inertia.as_ref());
+            let (Some(inertia), Some(com)) = (inertia, &link.com) else { continue };
             let mass = inertia.mass.at(&self.values);
             let centre = inertia.first.each_ref().map(|first| first.at(&self.values) / mass);
             let distance = centre.iter().map(|x| x * x).sum::<f64>().sqrt();
             if distance > most {
-                self.warn(rule::far_mass(com.span, &place, rounded(distance), rounded(size)));
+                self.warn(rule::far_mass(com.span, &subject, rounded(distance), rounded(size)));
                 continue;
             }
             let [xx, yy, zz] = [0, 1, 2].map(|i| inertia.second[i].at(&self.values) / mass - centre[i] * centre[i]);
             let radius = (xx + yy).max(yy + zz).max(zz + xx).sqrt();
             if let Some(given) = link.inertia.as_ref().filter(|_| radius > most) {
-                self.warn(rule::spread_mass(given.span, &place, rounded(radius), rounded(size)));
+                self.warn(rule::spread_mass(given.span, &subject, rounded(radius), rounded(size)));
             }
         }
     }
@@ -89,17 +89,17 @@ impl Plausibility<'_> {
         let at_the_end =
             items(Some(&crane.links)).last().is_some_and(|link| link.beam.is_none() && link.rope.is_none());
         let count = masses.len();
-        for (index, (place, given)) in masses.into_iter().enumerate() {
+        for (index, (subject, given)) in masses.into_iter().enumerate() {
             let live = matches!(given.value.as_ref().map(|mass| &mass.0), Some(Scalar::Name(_)));
             if live || (at_the_end && index + 1 == count) {
                 let (mass, at) = self.number(given);
-                self.payload(&place, mass, at, if live { LIGHTEST_LIVE } else { LIGHTEST });
+                self.payload(&subject, mass, at, if live { LIGHTEST_LIVE } else { LIGHTEST });
             }
         }
     }
 
     /// Compares a payload with the rest of the crane, except for a moving base: the mass of a truck says nothing about its crane.
-    fn payload(&mut self, place: &str, mass: f64, at: Span, lightest: f64) {
+    fn payload(&mut self, subject: &str, mass: f64, at: Span, lightest: f64) {
         let chain = self.chain;
         let base = chain.base.iter().any(Option::is_some);
         let carried = chain.bodies.iter().skip(usize::from(base)).filter_map(|body| body.inertia.as_ref());
@@ -110,10 +110,10 @@ impl Plausibility<'_> {
         }
         if mass < lightest * crane {
             let help = format!("write masses in kg: {mass} t = {} kg", rounded(1e3 * mass));
-            self.warn(rule::payload(at, place, mass, rounded(crane), help));
+            self.warn(rule::payload(at, subject, mass, rounded(crane), help));
         } else if mass > HEAVIEST * crane {
             let help = "write all masses in kg, also those of the links";
-            self.warn(rule::payload(at, place, mass, rounded(crane), help));
+            self.warn(rule::payload(at, subject, mass, rounded(crane), help));
         }
     }
 }

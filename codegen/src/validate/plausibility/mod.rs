@@ -75,8 +75,8 @@ impl<'a> Plausibility<'a> {
 
     /// Value of a parameter.
     fn value(&self, name: &str) -> Option<f64> {
-        let place = self.chain.parameters.iter().position(|parameter| parameter.name == name)?;
-        self.values.get(place).copied()
+        let index = self.chain.parameters.iter().position(|parameter| parameter.name == name)?;
+        self.values.get(index).copied()
     }
 
     /// Whether a parameter has a value other than in the spec.

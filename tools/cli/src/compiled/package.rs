@@ -86,7 +86,7 @@ pub struct Package<'a> {
 }
 
 /// Runs the program of some cranes: the kept one, or one that is compiled now.
-pub fn run(package: &Package<'_>, arguments: impl Fn(&mut Command)) -> Outcome<()> {
+pub fn run_package(package: &Package<'_>, arguments: impl Fn(&mut Command)) -> Outcome<()> {
     if let Some(program) = package.kept()? {
         if let Some(outcome) = start(&program, &arguments) {
             return outcome;
@@ -105,7 +105,7 @@ fn start(program: &Path, arguments: &impl Fn(&mut Command)) -> Option<Outcome<()
     let mut command = Command::new(program);
     arguments(&mut command);
     let code = command.status().ok()?.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(FAILED);
-    Some(if code == 0 { Ok(()) } else { Err(Problem::Elsewhere(code)) })
+    Some(if code == 0 { Ok(()) } else { Err(Problem::AlreadyReported { exit_code: code }) })
 }
 
 impl Package<'_> {
@@ -172,7 +172,8 @@ impl Package<'_> {
             ("{{link}}", link),
         ];
         for (file, template) in FILES.into_iter().chain([product.source()]) {
-            let content = values.iter().fold(template.to_owned(), |text, (place, value)| text.replace(place, value));
+            let content =
+                values.iter().fold(template.to_owned(), |text, (placeholder, value)| text.replace(placeholder, value));
             keep(&folder.join(file), &content)?;
         }
         for (name, text) in cranes {

@@ -102,7 +102,8 @@ impl Chart<'_> {
                 "height [m]".to_owned(),
                 "limit".to_owned(),
             ];
-            let title = format!("Load chart{}: largest load in the best and in the worst pose of a radius", of(sheet));
+            let title =
+                format!("Load chart{}: largest load in the best and in the worst pose of a radius", caption_of(sheet));
             let mut grid = Grid::new(KEY, title, &headings.each_ref().map(String::as_str));
             for radius in self.radii() {
                 let Some(knots) = best_and_worst(sheet, radius) else { continue };
@@ -164,7 +165,7 @@ impl Chart<'_> {
             let columns = thinned(columns, (SCREEN - 14) / (width.max(5) + 2));
             let title = format!(
                 "Load chart{}: largest load [{unit}] over radius and height, and what limits it: {}",
-                of(sheet),
+                caption_of(sheet),
                 legend(used.iter().copied()).join(", ")
             );
             let headings: Vec<String> = ["height [m]".to_owned()]
@@ -192,7 +193,7 @@ impl Chart<'_> {
 }
 
 /// The label of a sheet in a title.
-fn of(sheet: &Sheet) -> String {
+fn caption_of(sheet: &Sheet) -> String {
     if sheet.label.is_empty() { String::new() } else { format!(", {}", sheet.label) }
 }
 

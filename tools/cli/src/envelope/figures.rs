@@ -48,7 +48,7 @@ impl Heading {
 }
 
 /// Writes the figures that apply; returns their names.
-pub fn write(
+pub fn write_chart_figures(
     folder: &Path,
     name: &str,
     asked: &Envelope,
@@ -75,7 +75,7 @@ pub fn write(
         let title = heading.of(&format!("Largest {parameter} over the slewing angle [{}]", load.unit));
         save("slew_diagram", crate::figures::titled(&title, &[slew_diagram(asked, layout, rows, slewing)], 1))?;
     }
-    let varying: Vec<usize> = (0..asked.axes.0.len()).filter(|place| asked.axes.0[*place].values.len() > 1).collect();
+    let varying: Vec<usize> = (0..asked.axes.0.len()).filter(|axis| asked.axes.0[*axis].values.len() > 1).collect();
     if let [.., y, x] = varying[..] {
         let title = heading.of(&format!("Largest {parameter} [{}], the least over all else that varies", load.unit));
         let governed = map(asked, layout, rows, ([x, y], title), |row| layout.load_of(row), f64::min);
@@ -114,8 +114,8 @@ fn load_chart(surface: &Surface) -> Vec<Panel> {
             mark: Mark::Solid,
             points,
         });
-        let curves = levels.iter().enumerate().flat_map(|(place, level)| {
-            let part = place as f64 / (levels.len().max(2) - 1) as f64;
+        let curves = levels.iter().enumerate().flat_map(|(index, level)| {
+            let part = index as f64 / (levels.len().max(2) - 1) as f64;
             contour(sheet, *level).into_iter().map(move |points| Curve {
                 label: format!("{} {unit}", short(*level)),
                 colour: shade(part),
@@ -136,13 +136,13 @@ fn load_chart(surface: &Surface) -> Vec<Panel> {
 
 /// The four sides of a sheet.
 fn outline(sheet: &Sheet) -> Vec<Vec<(f64, f64)>> {
-    let place = |knot: &Knot| (knot.radius, knot.height);
+    let position = |knot: &Knot| (knot.radius, knot.height);
     let last = sheet.knots.len() - 1;
     let sides = [
-        sheet.knots[0].iter().map(place).collect(),
-        sheet.knots[last].iter().map(place).collect(),
-        sheet.knots.iter().filter_map(|row| row.first()).map(place).collect(),
-        sheet.knots.iter().filter_map(|row| row.last()).map(place).collect(),
+        sheet.knots[0].iter().map(position).collect(),
+        sheet.knots[last].iter().map(position).collect(),
+        sheet.knots.iter().filter_map(|row| row.first()).map(position).collect(),
+        sheet.knots.iter().filter_map(|row| row.last()).map(position).collect(),
     ];
     sides.to_vec()
 }
@@ -190,10 +190,10 @@ fn slew_diagram(asked: &Envelope, layout: &Layout, rows: &[Row], slewing: usize)
     let chosen = evenly(groups.len(), MOST_CURVES);
     let label = |places: &[usize]| {
         let others =
-            axes.iter().zip(places).enumerate().filter(|(place, (axis, _))| *place != slewing && axis.values.len() > 1);
-        let words = others.map(|(_, (axis, place))| {
+            axes.iter().zip(places).enumerate().filter(|(index, (axis, _))| *index != slewing && axis.values.len() > 1);
+        let words = others.map(|(_, (axis, index))| {
             let (name, unit, factor) = shown(axis, &layout.description);
-            format!("{name} {}{}{unit}", short(axis.values[*place] * factor), if unit == "°" { "" } else { " " })
+            format!("{name} {}{}{unit}", short(axis.values[*index] * factor), if unit == "°" { "" } else { " " })
         });
         let words: Vec<String> = words.collect();
         if words.is_empty() { "largest load".to_owned() } else { words.join(", ") }
@@ -221,9 +221,9 @@ fn map(
     worst: fn(f64, f64) -> f64,
 ) -> Map {
     let axes = &asked.axes.0;
-    let side = |place: usize| {
-        let (name, unit, factor) = shown(&axes[place], &layout.description);
-        let values: Vec<f64> = axes[place].values.iter().map(|value| value * factor).collect();
+    let side = |axis: usize| {
+        let (name, unit, factor) = shown(&axes[axis], &layout.description);
+        let values: Vec<f64> = axes[axis].values.iter().map(|value| value * factor).collect();
         (format!("{name} [{unit}]"), values)
     };
     let (width, height) = (axes[x].values.len(), axes[y].values.len());

@@ -28,13 +28,13 @@ pub fn facts(table: &Path, crane: &dyn DynCrane) -> Outcome<Value> {
         let title = format!("{} has no file with its facts beside it, `….json`", table.display());
         return Err(Problem::usage(title, again()));
     };
-    let own = facts["crane"].as_str().unwrap_or("another crane");
-    if own != description.name.as_str() {
-        let title = format!("{} is a chart of {own}, not of {}", table.display(), description.name);
+    let charted = facts["crane"].as_str().unwrap_or("another crane");
+    if charted != description.name.as_str() {
+        let title = format!("{} is a chart of {charted}, not of {}", table.display(), description.name);
         return Err(Problem::usage(title, format!("name the chart of {}, or {}", description.name, again())));
     }
     if facts["spec_hash"] != description.spec_hash.as_str() {
-        let title = format!("{} was computed with another version of the spec of {own}", table.display());
+        let title = format!("{} was computed with another version of the spec of {charted}", table.display());
         return Err(Problem::usage(title, again()));
     }
     let other = description.parameters.iter().enumerate().find(|(index, info)| {

@@ -79,10 +79,10 @@ fn draw(map: &Map, text: &mut String, title: (&[String], u32)) -> Result<(), Box
             chart.draw_series([Rectangle::new(cell, colour(*number).filled())])?;
         }
     }
-    let room = |count: usize, length: u32| f64::from(length) / count.max(1) as f64;
+    let spacing = |count: usize, length: u32| f64::from(length) / count.max(1) as f64;
     let (width, height) = (SIZE.0 - SCALE - 70 * PIXEL, SIZE.1 - 46 * PIXEL);
     let letters = map.words.iter().flatten().map(|word| word.chars().count()).max().unwrap_or(0);
-    if room(map.x.1.len(), width) >= letters as f64 * ROOM.0 && room(map.y.1.len(), height) >= ROOM.1 {
+    if spacing(map.x.1.len(), width) >= letters as f64 * ROOM.0 && spacing(map.y.1.len(), height) >= ROOM.1 {
         for (words, (row, sides)) in map.words.iter().zip(map.cells.iter().zip(y.windows(2))) {
             for (word, (number, ends)) in words.iter().zip(row.iter().zip(x.windows(2))) {
                 // Dark cells have white letters.
@@ -109,8 +109,8 @@ fn draw(map: &Map, text: &mut String, title: (&[String], u32)) -> Result<(), Box
         .label_style(font(0.87 * FONT))
         .draw()?;
     let step = (greatest - least) / f64::from(STEPS);
-    let steps = (0..STEPS).map(|place| {
-        let from = least + step * f64::from(place);
+    let steps = (0..STEPS).map(|index| {
+        let from = least + step * f64::from(index);
         Rectangle::new([(0.0, from), (1.0, from + step)], colour(from + 0.5 * step).filled())
     });
     scale.draw_series(steps)?;

@@ -32,13 +32,13 @@ use crate::{
     integration::styled,
     journal::{self, Journal, Request},
     problem::{Outcome, Problem},
-    selection::{Registry, told},
+    selection::{Registry, refusal_message},
     strength::load_parameter,
 };
 
 use chart::Chart;
 pub use identity::facts as facts_of_chart;
-pub use ranges::{number, point, read as read_ranges, varied};
+pub use ranges::{number, point, read_ranges, varied};
 use rows::{Layout, Row};
 
 /// Maximum number of poses: they take some hours.
@@ -59,7 +59,7 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
         elsewhere: "choose another folder with `--out`",
     };
     let (journal, records) = Journal::open(&journal, &request, options.restart)?;
-    let kept = kept(&records, &asked, &layout);
+    let kept = kept_rows(&records, &asked, &layout);
     let rows = rate(&asked, &layout, crane.as_ref(), options.threads, &journal, kept)?;
     let seconds = begin.elapsed().as_secs_f64();
 
@@ -68,7 +68,7 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
     summary::facts(&mut report, &asked, &layout, &coverage, &rows);
     report.fact("wall time", seconds, "s");
     report.value("parameters", identity::parameters(crane.as_ref(), &asked));
-    let mut written = rows::write(&options.folder.out, &name, &asked, &layout, &rows)?;
+    let mut written = rows::write_rows(&options.folder.out, &name, &asked, &layout, &rows)?;
     let surface = surface::Surface::of(&asked, &layout, &rows);
     let chart = surface.as_ref().map(|surface| Chart { surface, rows: &rows });
     let [by_radius, by_place] = chart.as_ref().map_or_else(chart::empty, |chart| [chart.table(), chart.by_place()]);
@@ -85,7 +85,14 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
     report.data(by_place);
     report.grid(summary::governing(&asked, &layout, &rows));
     let heading = figures::Heading::new(&asked, &layout, &coverage);
-    written.extend(figures::write(&options.folder.out, &name, &asked, &layout, &rows, (surface.as_ref(), &heading))?);
+    written.extend(figures::write_chart_figures(
+        &options.folder.out,
+        &name,
+        &asked,
+        &layout,
+        &rows,
+        (surface.as_ref(), &heading),
+    )?);
     let companion = format!("{name}.json");
     written.push(companion.clone());
     journal.remove()?;
@@ -101,7 +108,7 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
 /// What the arguments ask for.
 fn ask(options: &Envelope, crane: &dyn DynCrane) -> Outcome<(crane_model::envelope::Envelope, Layout)> {
     let description = crane.description();
-    let axes = ranges::read(&options.ranges, description)?;
+    let axes = read_ranges(&options.ranges, description)?;
     if axes.poses() > MOST_POSES {
         return Err(Problem::usage(
             format!("{} poses are more than {MOST_POSES}", axes.poses()),
@@ -128,7 +135,7 @@ fn ask(options: &Envelope, crane: &dyn DynCrane) -> Outcome<(crane_model::envelo
             format!("write a number above {least}, in {}", info.unit),
         ));
     }
-    let without = |name: &str| options.without.iter().any(|own| own.name() == name);
+    let without = |name: &str| options.without.iter().any(|left_out| left_out.name() == name);
     let more = [(options.lift_off, PartLimit::LiftOff), (options.slack_ropes, PartLimit::SlackRopes)];
     let of_parts = PartLimit::DEFAULT.into_iter().filter(|kind| !without(kind.name()));
     let limits = Limits {
@@ -154,11 +161,11 @@ fn points(description: &Description) -> Vec<&str> {
 }
 
 /// Rows of the poses that an interrupted command completed. A piece counts only as a whole.
-fn kept(records: &[Vec<String>], asked: &crane_model::envelope::Envelope, layout: &Layout) -> Vec<Option<Row>> {
+fn kept_rows(records: &[Vec<String>], asked: &crane_model::envelope::Envelope, layout: &Layout) -> Vec<Option<Row>> {
     let mut kept = vec![None; asked.axes.poses()];
     for (pose, row) in records.iter().filter_map(|record| layout.read(record)) {
-        if let Some(place) = kept.get_mut(pose) {
-            *place = Some(row);
+        if let Some(slot) = kept.get_mut(pose) {
+            *slot = Some(row);
         }
     }
     for piece in 0..asked.pieces() {
@@ -201,7 +208,7 @@ fn rate(
     let run = asked.run(crane, &pieces, &Execution { threads, done: &done, cancelled: &failed });
     bar.finish_and_clear();
     run.map_err(|refused| {
-        let (title, help) = told(&refused);
+        let (title, help) = refusal_message(&refused);
         Problem::usage(title, help)
     })?;
     let (rows, written) = state.into_inner().unwrap_or_else(PoisonError::into_inner);

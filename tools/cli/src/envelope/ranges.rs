@@ -14,7 +14,7 @@ use crate::problem::{Outcome, Problem, nearest};
 const MOST: usize = 100_000;
 
 /// What `--range NAME=FROM:TO:COUNT` and `--range NAME=VALUE` ask for.
-pub fn read(ranges: &[String], description: &Description) -> Outcome<Axes> {
+pub fn read_ranges(ranges: &[String], description: &Description) -> Outcome<Axes> {
     let mut axes: Vec<Axis> = Vec::new();
     for range in ranges {
         let (name, values) = range.split_once('=').ok_or_else(|| {
@@ -86,7 +86,7 @@ fn values_of(name: &str, text: &str) -> Outcome<Vec<f64>> {
                 return Err(wrong(&format!("a count must be from 2 to {MOST}")));
             }
             let steps = (count - 1) as f64;
-            Ok((0..count).map(|place| from + (to - from) * (place as f64 / steps)).collect())
+            Ok((0..count).map(|index| from + (to - from) * (index as f64 / steps)).collect())
         }
         _ => Err(wrong("it does not have one or three parts")),
     }
@@ -117,12 +117,12 @@ pub fn limits(given: &[String], option: &str, what: &str, names: &[&str]) -> Out
                 format!("write `--{option} NAME=VALUE` with the name of a {what} and a number above zero, in SI units"),
             )
         })?;
-        let place = names.iter().position(|known| *known == name).ok_or_else(|| {
+        let index = names.iter().position(|known| *known == name).ok_or_else(|| {
             let guess = nearest(name, names.iter().copied());
             let guess = guess.map_or_else(String::new, |guess| format!("did you mean `{guess}`? "));
             Problem::usage(format!("there is no {what} `{name}`"), format!("{guess}{what}s: {}", names.join(", ")))
         })?;
-        limits[place] = value;
+        limits[index] = value;
     }
     Ok(limits)
 }

@@ -114,25 +114,25 @@ impl Layout {
 
     /// The row of a pose.
     pub fn row(&self, asked: &Envelope, pose: usize, rating: &Rating) -> Row {
-        let place: Option<Vector3<f64>> = rating.loaded.as_ref().map(|at| match self.point {
+        let position: Option<Vector3<f64>> = rating.loaded.as_ref().map(|at| match self.point {
             Some(point) => at.points[point],
             None => at.end,
         });
         let or_nan = |number: Option<f64>| number.unwrap_or(f64::NAN);
-        let own = rating.own.as_ref();
+        let spec_load = rating.with_spec_load.as_ref();
         let mut numbers = asked.axes.values(pose);
         numbers.push(or_nan(rating.load));
-        numbers.push(or_nan(place.map(|place| self.slew.radius(&place))));
-        numbers.push(or_nan(place.map(|place| place.z)));
-        numbers.push(or_nan(own.and_then(Condition::margin)));
-        numbers.push(or_nan(own.and_then(Condition::utilisation)));
+        numbers.push(or_nan(position.map(|position| self.slew.radius(&position))));
+        numbers.push(or_nan(position.map(|position| position.z)));
+        numbers.push(or_nan(spec_load.and_then(Condition::margin)));
+        numbers.push(or_nan(spec_load.and_then(Condition::utilisation)));
         let efforts = self.description.drives.len();
-        numbers.extend((0..efforts).map(|drive| or_nan(own.map(|own| own.efforts[drive]))));
+        numbers.extend((0..efforts).map(|drive| or_nan(spec_load.map(|spec_load| spec_load.efforts[drive]))));
         let points = self.description.points.len();
         numbers.extend((0..points).map(|point| or_nan(rating.deflections.get(point).copied())));
         let governing = rating
             .governing
-            .map_or_else(Default::default, |limit: Limit| [limit.kind().to_owned(), limit.place(&self.description)]);
+            .map_or_else(Default::default, |limit: Limit| [limit.kind().to_owned(), limit.location(&self.description)]);
         Row { numbers, governing }
     }
 
@@ -159,7 +159,7 @@ pub fn field(number: f64) -> String {
 }
 
 /// Writes all rows as CSV and as arrays; returns the names of the files.
-pub fn write(folder: &Path, name: &str, asked: &Envelope, layout: &Layout, rows: &[Row]) -> Outcome<Vec<String>> {
+pub fn write_rows(folder: &Path, name: &str, asked: &Envelope, layout: &Layout, rows: &[Row]) -> Outcome<Vec<String>> {
     let csv = format!("{name}.csv");
     let header = layout.columns.iter().map(ToString::to_string);
     let header = header.chain(["governing", "of"].map(str::to_owned));
@@ -184,6 +184,6 @@ pub fn write(folder: &Path, name: &str, asked: &Envelope, layout: &Layout, rows:
     });
     let bytes = npz(&axes.chain(columns).collect::<Vec<_>>())
         .map_err(|error| Problem::failed(format!("cannot make {archive}: {error}"), ""))?;
-    files::write(&folder.join(&archive), |file| file.write_all(&bytes))?;
+    files::write_file(&folder.join(&archive), |file| file.write_all(&bytes))?;
     Ok(vec![csv, archive])
 }

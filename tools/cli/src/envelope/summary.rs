@@ -30,8 +30,8 @@ pub fn facts(report: &mut Report, asked: &Envelope, layout: &Layout, coverage: &
         report.line("loads multiplied by", asked.factor, "");
     }
     for (name, all) in [("limits", &coverage.considered), ("not considered", &coverage.not_considered)] {
-        for (place, words) in all.iter().flat_map(|words| wrapped(words, ROOM)).enumerate() {
-            report.line(if place == 0 { name } else { "" }, words, "");
+        for (index, words) in all.iter().flat_map(|words| wrapped(words, ROOM)).enumerate() {
+            report.line(if index == 0 { name } else { "" }, words, "");
         }
     }
     report.value("limits", limits_of(asked, description, coverage));
@@ -42,8 +42,8 @@ pub fn facts(report: &mut Report, asked: &Envelope, layout: &Layout, coverage: &
         for (key, name, row) in
             [("least", "minimum of the largest loads", least), ("greatest", "maximum of the largest loads", greatest)]
         {
-            for (place, words) in told(row, asked, layout).into_iter().enumerate() {
-                report.line(if place == 0 { name } else { "" }, words, "");
+            for (index, words) in row_text(row, asked, layout).into_iter().enumerate() {
+                report.line(if index == 0 { name } else { "" }, words, "");
             }
             report.value(key, rating_of(row, asked, layout));
         }
@@ -75,8 +75,10 @@ fn limits_of(asked: &Envelope, description: &Description, coverage: &Coverage) -
     let efforts = efforts.map(|(info, effort)| {
         json!({"drive": drive(info).name.as_str(), "value": effort, "unit": drive(info).kind.force_unit()})
     });
-    let deflections = description.points.iter().zip(&limits.deflections).filter(|(_, way)| way.is_finite());
-    let deflections = deflections.map(|(point, way)| json!({"point": point.as_str(), "value": way, "unit": "m"}));
+    let deflections =
+        description.points.iter().zip(&limits.deflections).filter(|(_, deflection)| deflection.is_finite());
+    let deflections =
+        deflections.map(|(point, deflection)| json!({"point": point.as_str(), "value": deflection, "unit": "m"}));
     json!({
         "tipping_margin": limits.tipping,
         "utilisation": limits.utilisation,
@@ -106,7 +108,7 @@ fn rating_of(row: &Row, asked: &Envelope, layout: &Layout) -> Value {
 }
 
 /// Load and place of a row; its pose; its governing limit.
-fn told(row: &Row, asked: &Envelope, layout: &Layout) -> [String; 3] {
+fn row_text(row: &Row, asked: &Envelope, layout: &Layout) -> [String; 3] {
     let pose = asked.axes.0.iter().zip(&row.numbers).map(|(axis, value)| {
         let (name, unit, factor) = shown(axis, &layout.description);
         let blank = if unit == "°" { "" } else { " " };

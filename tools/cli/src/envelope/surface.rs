@@ -47,23 +47,23 @@ impl Surface {
     pub fn of(asked: &Envelope, layout: &Layout, rows: &[Row]) -> Option<Self> {
         let axes = &asked.axes.0;
         let slewing = layout.slewing(asked);
-        let moves = |place: &usize| {
-            axes[*place].values.len() > 1 && Some(*place) != slewing && matches!(axes[*place].varied, Varied::Drive(_))
+        let moves = |axis: &usize| {
+            axes[*axis].values.len() > 1 && Some(*axis) != slewing && matches!(axes[*axis].varied, Varied::Drive(_))
         };
         let mut net = (0..axes.len()).filter(moves);
         let first = net.next()?;
         let second = net.next();
         let others: Vec<usize> = (0..axes.len())
-            .filter(|place| *place != first && Some(*place) != second && Some(*place) != slewing)
-            .filter(|place| axes[*place].values.len() > 1)
+            .filter(|axis| *axis != first && Some(*axis) != second && Some(*axis) != slewing)
+            .filter(|axis| axes[*axis].values.len() > 1)
             .collect();
-        let count = |place: Option<usize>| place.map_or(1, |place| axes[place].values.len());
-        let combinations: usize = others.iter().map(|place| axes[*place].values.len()).product();
+        let count = |axis: Option<usize>| axis.map_or(1, |axis| axes[axis].values.len());
+        let combinations: usize = others.iter().map(|axis| axes[*axis].values.len()).product();
         let none = Knot { radius: f64::NAN, height: f64::NAN, load: f64::INFINITY, pose: usize::MAX };
         let mut sheets = vec![vec![vec![none; count(second)]; count(Some(first))]; combinations];
         for (pose, row) in rows.iter().enumerate() {
             let places = asked.axes.places(pose);
-            let sheet = others.iter().fold(0, |sheet, place| sheet * axes[*place].values.len() + places[*place]);
+            let sheet = others.iter().fold(0, |sheet, axis| sheet * axes[*axis].values.len() + places[*axis]);
             let knot = &mut sheets[sheet][places[first]][second.map_or(0, |second| places[second])];
             let load = layout.load_of(row);
             if load < knot.load {
@@ -73,10 +73,10 @@ impl Surface {
         let label = |sheet: usize| {
             let mut rest = sheet;
             let mut words = Vec::new();
-            for place in others.iter().rev() {
-                let (name, unit, factor) = shown(&axes[*place], &layout.description);
-                let value = axes[*place].values[rest % axes[*place].values.len()] * factor;
-                rest /= axes[*place].values.len();
+            for axis in others.iter().rev() {
+                let (name, unit, factor) = shown(&axes[*axis], &layout.description);
+                let value = axes[*axis].values[rest % axes[*axis].values.len()] * factor;
+                rest /= axes[*axis].values.len();
                 words.push(format!("{name} {} {unit}", short(value)));
             }
             words.reverse();
@@ -123,7 +123,7 @@ pub fn evenly(count: usize, most: usize) -> Vec<usize> {
     if count <= most {
         return (0..count).collect();
     }
-    (0..most).map(|place| place * (count - 1) / (most - 1)).collect()
+    (0..most).map(|index| index * (count - 1) / (most - 1)).collect()
 }
 
 /// A number with at most two decimals.
@@ -145,7 +145,7 @@ pub fn levels(least: f64, greatest: f64, most: usize) -> Vec<f64> {
         power *= 10.0;
     }
     levels.retain(|level| (least..greatest).contains(level));
-    evenly(levels.len(), most).into_iter().map(|place| levels[place]).collect()
+    evenly(levels.len(), most).into_iter().map(|index| levels[index]).collect()
 }
 
 #[cfg(test)]

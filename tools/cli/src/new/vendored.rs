@@ -21,7 +21,7 @@ pub fn sources() -> Outcome<Vec<(PathBuf, String)>> {
     let mut texts = Vec::new();
     for name in CRATES {
         let root = compiled::root().join(name);
-        let manifest = tables(&read(&root.join("Cargo.toml"))?, |header| header != "[dev-dependencies]");
+        let manifest = tables(&read_source(&root.join("Cargo.toml"))?, |header| header != "[dev-dependencies]");
         texts.push((Path::new(FOLDER).join(name).join("Cargo.toml"), manifest));
         let mut folders = vec![root.join("src")];
         while let Some(folder) = folders.pop() {
@@ -31,15 +31,15 @@ pub fn sources() -> Outcome<Vec<(PathBuf, String)>> {
                 if path.is_dir() {
                     folders.push(path);
                 } else {
-                    let text = read(&path)?;
-                    let place = path.strip_prefix(compiled::root()).unwrap_or(&path);
-                    texts.push((Path::new(FOLDER).join(place), text));
+                    let text = read_source(&path)?;
+                    let relative = path.strip_prefix(compiled::root()).unwrap_or(&path);
+                    texts.push((Path::new(FOLDER).join(relative), text));
                 }
             }
         }
     }
     for licence in ["LICENSE-APACHE", "LICENSE-MIT"] {
-        texts.push((Path::new(FOLDER).join(licence), read(&compiled::root().join(licence))?));
+        texts.push((Path::new(FOLDER).join(licence), read_source(&compiled::root().join(licence))?));
     }
     texts.sort();
     Ok(texts)
@@ -47,7 +47,7 @@ pub fn sources() -> Outcome<Vec<(PathBuf, String)>> {
 
 /// The tables of the workspace's manifest that the copies inherit from.
 pub fn inherited() -> Outcome<String> {
-    let manifest = read(&compiled::root().join("Cargo.toml"))?;
+    let manifest = read_source(&compiled::root().join("Cargo.toml"))?;
     let text = tables(&manifest, |header| INHERITED.contains(&header));
     // Other crates of the source tree are not copied.
     let needed =
@@ -74,6 +74,6 @@ fn tables(manifest: &str, wanted: impl Fn(&str) -> bool) -> String {
     lines.collect()
 }
 
-fn read(path: &Path) -> Outcome<String> {
+fn read_source(path: &Path) -> Outcome<String> {
     fs::read_to_string(path).map_err(|error| Problem::file(path, &error))
 }

@@ -29,7 +29,7 @@ pub struct LoadCharts {
 }
 
 /// The figures and facts beside the table of an envelope, `…_envelope.csv`, if it is one of this crane.
-pub fn read(table: &Path, crane: &dyn DynCrane) -> Outcome<LoadCharts> {
+pub fn read_chart(table: &Path, crane: &dyn DynCrane) -> Outcome<LoadCharts> {
     crate::files::remember(table);
     let figures = figures(table)?;
     Ok(LoadCharts { figures, facts: facts_of_chart(table, crane)? })

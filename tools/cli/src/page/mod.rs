@@ -32,7 +32,7 @@ pub fn report(options: &Page, registry: &Registry, out: &mut dyn Write) -> Outco
     let crane = options.crane.open(registry)?;
     let twin = twin::rigid(crane.as_ref(), registry);
     let cases = cases(crane.as_ref(), twin.as_deref());
-    let chart = options.envelope.as_deref().map(|table| chart::read(table, crane.as_ref())).transpose()?;
+    let chart = options.envelope.as_deref().map(|table| chart::read_chart(table, crane.as_ref())).transpose()?;
     let (settings, runs) = runs(&cases, &options.timing, options.crane.limits, Method::RECOMMENDED)?;
     write_with(&options.file, registry, (&cases, options.crane.limits), &settings, &runs, chart)?;
     writeln!(out, "{} written: open it in a browser", options.file.display())?;
@@ -48,7 +48,7 @@ pub fn cases<'a>(crane: &'a dyn DynCrane, twin: Option<&'a dyn DynCrane>) -> Vec
 }
 
 /// Writes the page of cranes side by side. The last crane is the subject; the others are shown for comparison.
-pub fn write(
+pub fn write_page(
     file: &Path,
     registry: &Registry,
     cases: (&[Case<'_>], Limits),
@@ -58,7 +58,7 @@ pub fn write(
     write_with(file, registry, cases, settings, runs, None)
 }
 
-/// As [`write`], with load charts.
+/// As [`write_page`], with load charts.
 fn write_with(
     file: &Path,
     registry: &Registry,

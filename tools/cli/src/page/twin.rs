@@ -8,14 +8,14 @@ use crate::selection::Registry;
 pub fn rigid(crane: &dyn DynCrane, registry: &Registry) -> Option<Box<dyn DynCrane>> {
     let parameters = &crane.description().parameters;
     registry.all().flatten().find_map(|mut other| {
-        let own = |(index, parameter): (usize, &ParameterInfo)| match parameters
+        let position = |(index, parameter): (usize, &ParameterInfo)| match parameters
             .iter()
-            .position(|own| own.name == parameter.name)
+            .position(|position| position.name == parameter.name)
         {
-            Some(own) => crane.parameter(own),
+            Some(position) => crane.parameter(position),
             None => other.parameter(index),
         };
-        let values: Vec<f64> = other.description().parameters.iter().enumerate().map(own).collect();
+        let values: Vec<f64> = other.description().parameters.iter().enumerate().map(position).collect();
         other.set_parameters(&values).ok()?;
         is_rigid(crane, other.as_ref()).then_some(other)
     })
@@ -26,16 +26,16 @@ pub fn rigid(crane: &dyn DynCrane, registry: &Registry) -> Option<Box<dyn DynCra
 fn is_rigid(crane: &dyn DynCrane, other: &dyn DynCrane) -> bool {
     /// Displacement from the guess, m and rad.
     const OFF: f64 = 0.1;
-    let (own, rigid) = (crane.description(), other.description());
+    let (flexible, rigid) = (crane.description(), other.description());
     let joints: Vec<usize> =
-        (0..own.coordinates.len()).filter(|&index| !own.coordinates[index].role.is_element()).collect();
-    let same_joints = joints.iter().map(|&index| &own.coordinates[index]).eq(&rigid.coordinates);
-    let same_supports = own.supports.iter().map(|s| &s.name).eq(rigid.supports.iter().map(|s| &s.name));
-    if joints.len() == own.coordinates.len() || !same_joints || !same_supports || own.points != rigid.points {
+        (0..flexible.coordinates.len()).filter(|&index| !flexible.coordinates[index].role.is_element()).collect();
+    let same_joints = joints.iter().map(|&index| &flexible.coordinates[index]).eq(&rigid.coordinates);
+    let same_supports = flexible.supports.iter().map(|s| &s.name).eq(rigid.supports.iter().map(|s| &s.name));
+    if joints.len() == flexible.coordinates.len() || !same_joints || !same_supports || flexible.points != rigid.points {
         return false;
     }
     let pose: Vec<f64> = other.guess().iter().map(|guess| guess + OFF).collect();
-    let mut straight = vec![0.0; own.coordinates.len()];
+    let mut straight = vec![0.0; flexible.coordinates.len()];
     for (&index, &value) in joints.iter().zip(&pose) {
         straight[index] = value;
     }

@@ -18,7 +18,7 @@ use crate::{
     files,
     integration::batches,
     problem::{Outcome, Problem},
-    selection::{Registry, set},
+    selection::{Registry, set_parameters},
     simulate::write_figure,
 };
 use quantities::{Quantities, Row, figure, table};
@@ -181,7 +181,7 @@ pub fn rows(asked: &Asked<'_>, registry: &Registry, out: &mut dyn Write) -> Outc
 
 /// Parameters of a pose, by their indices.
 fn settings(axes: &Axes, pose: usize, description: &Description) -> Outcome<Vec<(usize, f64)>> {
-    let place = |varied| match varied {
+    let coordinate_of = |varied| match varied {
         Varied::Parameter(index) => Some(index),
         Varied::Drive(drive) => {
             let name = parameter_of(description, drive);
@@ -189,13 +189,14 @@ fn settings(axes: &Axes, pose: usize, description: &Description) -> Outcome<Vec<
         }
     };
     let pairs = axes.0.iter().zip(axes.values(pose));
-    let found: Option<Vec<(usize, f64)>> = pairs.map(|(axis, value)| Some((place(axis.varied)?, value))).collect();
+    let found: Option<Vec<(usize, f64)>> =
+        pairs.map(|(axis, value)| Some((coordinate_of(axis.varied)?, value))).collect();
     found.ok_or_else(|| Problem::failed("a drive does not hold", "please report this as a bug"))
 }
 
 /// The crane in a pose.
 fn posed(crane: &dyn DynCrane, settings: &[(usize, f64)]) -> Outcome<Box<dyn DynCrane>> {
     let mut crane = crane.boxed_clone();
-    set(crane.as_mut(), settings)?;
+    set_parameters(crane.as_mut(), settings)?;
     Ok(crane)
 }

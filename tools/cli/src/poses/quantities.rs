@@ -17,7 +17,7 @@ use super::posed;
 use crate::{
     figures::{Curve, Mark, PALETTE, Panel},
     problem::{Outcome, Problem},
-    selection::{Registry, set},
+    selection::{Registry, set_parameters},
     variants,
 };
 
@@ -127,10 +127,10 @@ impl<'a> Subject<'a> {
             return Ok(Row { settings, values: vec![None; self.columns().len()], status, stable });
         }
         let q = equilibrium.q;
-        let place = self.place(crane, &q);
-        let mut values = vec![Some(self.slew.radius(&place)), Some(place.z)];
+        let position = self.position_of_point(crane, &q);
+        let mut values = vec![Some(self.slew.radius(&position)), Some(position.z)];
         match self.wanted {
-            Quantities::Statics => values.extend(self.of_statics(crane, &q, &place)?),
+            Quantities::Statics => values.extend(self.of_statics(crane, &q, &position)?),
             Quantities::Strength => values.extend(of_strength(crane, q)),
             Quantities::Modes(count) => values.extend(of_modes(crane, &q, count)?),
         }
@@ -138,7 +138,7 @@ impl<'a> Subject<'a> {
     }
 
     /// Where the point is that is shown.
-    fn place(&self, crane: &dyn DynCrane, q: &[f64]) -> Vector3<f64> {
+    fn position_of_point(&self, crane: &dyn DynCrane, q: &[f64]) -> Vector3<f64> {
         match self.point {
             Some(point) => crane.points_at(q)[point],
             None => {
@@ -147,17 +147,17 @@ impl<'a> Subject<'a> {
         }
     }
 
-    fn of_statics(&self, crane: &dyn DynCrane, q: &[f64], place: &Vector3<f64>) -> Outcome<Vec<Option<f64>>> {
+    fn of_statics(&self, crane: &dyn DynCrane, q: &[f64], position: &Vector3<f64>) -> Outcome<Vec<Option<f64>>> {
         let moved = |other: &dyn DynCrane| {
             let rest = other.equilibrium(&statics::Settings::default());
-            rest.is_stable().then(|| (place - self.place(other, &rest.q)).norm())
+            rest.is_stable().then(|| (position - self.position_of_point(other, &rest.q)).norm())
         };
         let mut values = Vec::new();
         if let Some(rigid) = &self.rigid {
             let mut rigid = rigid.boxed_clone();
             let all: Vec<(usize, f64)> =
                 (0..crane.description().parameters.len()).map(|index| (index, crane.parameter(index))).collect();
-            set(rigid.as_mut(), &all)?;
+            set_parameters(rigid.as_mut(), &all)?;
             values.push(moved(rigid.as_ref()));
         }
         if let Some(unloaded) = self.load {
@@ -182,8 +182,8 @@ impl<'a> Subject<'a> {
                 .push(format!("{fallen} of {} poses have no stable equilibrium: see the column status", rows.len()));
         }
         let over = |name: &str, is_over: fn(f64) -> bool| {
-            let place = self.columns().iter().position(|column| column.name == name)?;
-            let count = rows.iter().filter(|row| row.values[place].is_some_and(is_over)).count();
+            let index = self.columns().iter().position(|column| column.name == name)?;
+            let count = rows.iter().filter(|row| row.values[index].is_some_and(is_over)).count();
             (count > 0).then_some(count)
         };
         let of = |count: usize| format!("in {count} of {} poses", rows.len());
@@ -273,9 +273,9 @@ pub fn figure(subject: &Subject<'_>, rows: &[Row]) -> Vec<Panel> {
     let headings = subject.headings();
     let [(name, unit, angle)] = headings.as_slice() else { return Vec::new() };
     let across = |value: f64| if *angle { value.to_degrees() } else { value };
-    let panel = |(place, column): (usize, Column)| {
+    let panel = |(index, column): (usize, Column)| {
         let point = |row: &Row| {
-            let value = row.values[place]?;
+            let value = row.values[index]?;
             Some((across(row.settings[0]), Cell::shown(value, column.unit).number()?))
         };
         let points: Vec<_> = rows.iter().filter_map(point).collect();

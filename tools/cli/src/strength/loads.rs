@@ -43,16 +43,16 @@ pub fn critical(report: &mut Report, crane: &mut dyn DynCrane, index: usize) -> 
     let parameter = &crane.description().parameters[index];
     let (name, unit) = (parameter.name.to_string(), parameter.unit.to_string());
     let (mut critical, mut reasons) = (Map::new(), Map::new());
-    for (key, what, place, kind) in [
+    for (key, what, location, kind) in [
         ("first_foot", "lifts the first foot", "first foot to lift", Critical::FirstFoot),
         ("tipping", "tips the crane", "line that it tips over", Critical::Tipping),
     ] {
         let found = critical_load(crane, index, kind);
         crane.set_parameter(index, before).map_err(|refused| Problem::failed(refused.to_string(), ""))?;
         let value = match found {
-            Ok(CriticalLoad { load, place: at }) => {
+            Ok(CriticalLoad { load, location: at }) => {
                 report.line(format!("{name} that {what}"), load, &unit);
-                report.line(place, at.as_str(), "");
+                report.line(location, at.as_str(), "");
                 json!({"load": load, "at": at})
             }
             Err(none) => {

@@ -22,7 +22,7 @@ pub fn verdict(
     let greatest = sections.max_by(|(_, a), (_, b)| StressedSection::by_use(a, b));
     let Some((t, section)) = greatest else { return };
     let StressedSection { stress, utilisation, .. } = section;
-    let place = section.place(description);
+    let location = section.location(description);
     let key = |name: &str| format!("{name}{of_what}").replace(' ', "_");
     if let Some(utilisation) = utilisation {
         report.fact_as(&key("greatest utilisation"), format!("maximum utilisation{of_what}"), utilisation, "");
@@ -34,7 +34,7 @@ pub fn verdict(
         Cell::Shown(stress.equivalent, Scale::Megapascal),
         "MPa",
     );
-    report.fact_as(&key("place of the greatest stress"), format!("place of the maximum stress{of_what}"), place, "");
+    report.fact_as(&key("place of the greatest stress"), format!("place of the maximum stress{of_what}"), location, "");
     if !of_what.is_empty() {
         report.fact_as("time_of_the_greatest_stress", "time of the maximum stress", t, "s");
     }
@@ -52,8 +52,8 @@ pub fn table(description: &Description, moduli: &[SectionModuli], wrenches: &[Wr
         let info = section.info(description);
         let Stress { normal, shear, torsion, equivalent } = stress;
         let stresses = [normal, shear, torsion, equivalent].map(|pascal| Cell::Shown(pascal, Scale::Megapascal));
-        let place = [Cell::from(section.beam(description)), info.x.into(), info.place().into()];
-        let row = place.into_iter().chain(stresses).chain([utilisation.into()]);
+        let location = [Cell::from(section.beam(description)), info.x.into(), info.location().into()];
+        let row = location.into_iter().chain(stresses).chain([utilisation.into()]);
         grid.row(row.collect::<Vec<_>>());
     }
     grid

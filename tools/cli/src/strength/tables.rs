@@ -62,8 +62,8 @@ pub fn sections(description: &Description, wrenches: &[Wrench]) -> Grid {
         if let Some(section) = cut.section() {
             let section = &description.sections[section];
             let beam = description.bodies[section.body].link.as_str();
-            let place = [Cell::from(beam), section.x.into(), section.place().into()];
-            let row = place.into_iter().chain(numbers(wrench).map(Cell::from));
+            let location = [Cell::from(beam), section.x.into(), section.location().into()];
+            let row = location.into_iter().chain(numbers(wrench).map(Cell::from));
             grid.row(row.collect::<Vec<_>>());
         }
     }

@@ -13,7 +13,7 @@ fn table(name: &str, text: &str) -> String {
 
 #[test]
 fn a_table_with_mistakes_is_refused_with_its_place() {
-    for (text, said) in [
+    for (text, words) in [
         ("payload;length\n900;0,006\n", &["semicolons between columns", "commas between columns"][..]),
         ("payload,paylod\n1,2\n", &["line 1, column 2", "no live parameter `paylod`", "did you mean `payload`?"][..]),
         ("payload,payload\n1,2\n", &["line 1, column 2", "occurs twice"]),
@@ -31,7 +31,7 @@ fn a_table_with_mistakes_is_refused_with_its_place() {
         ("payload\n", &["has no rows"]),
         ("", &["has no rows"]),
     ] {
-        refused(&["simulate", "knuckle_boom", "--ensemble", &table("mistakes.csv", text)], said);
+        refused(&["simulate", "knuckle_boom", "--ensemble", &table("mistakes.csv", text)], words);
     }
     refused(&["simulate", "knuckle_boom", "--ensemble", "no_such_table.csv"], &["cannot use no_such_table.csv"]);
     refused(&["simulate", "knuckle_boom", "--threads", "2"], &["--ensemble"]);
@@ -92,10 +92,10 @@ fn an_ensemble_writes_a_row_for_every_crane() {
     ]);
     let mut run = csv::Reader::from_path(out.join("knuckle_boom.csv")).expect("a CSV file");
     let name = "main_boom_theta_drive_torque [N m]";
-    let place = run.headers().expect("a header").iter().position(|column| column == name).expect("a column");
+    let index = run.headers().expect("a header").iter().position(|column| column == name).expect("a column");
     let single = run
         .records()
-        .map(|row| row.expect("a row")[place].parse().expect("a number"))
+        .map(|row| row.expect("a row")[index].parse().expect("a number"))
         .fold(0.0_f64, |m, x: f64| m.max(x.abs()));
     // One crane and eight lanes, by the same method, differ only by rounding.
     assert!((single - before).abs() < 1e-8 * single, "{single} {before}");
@@ -111,11 +111,11 @@ fn an_ensemble_by_the_default_method_is_its_single_runs() {
     assert_eq!(report["method"], "bdf");
     let mut csv = csv::Reader::from_path(&file).expect("a CSV file");
     let header = csv.headers().expect("a header").clone();
-    let place =
+    let index_of =
         |header: &csv::StringRecord, name: &str| header.iter().position(|column| column == name).expect("a column");
     for (row, load) in csv.records().zip(["200", "800"]) {
         let row = row.expect("a row");
-        let number = |name: &str| row[place(&header, name)].parse::<f64>().expect("a number");
+        let number = |name: &str| row[index_of(&header, name)].parse::<f64>().expect("a number");
         let set = format!("payload={load}");
         let arguments =
             ["simulate", "knuckle_boom", "--set", &set, "--duration", "1", "--no-verify", "--format", "json"];

@@ -38,12 +38,12 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// Wrong arguments end with code 2 and a message that contains `said`.
-fn refused(arguments: &[&str], said: &[&str]) {
+/// Wrong arguments end with code 2 and a message that contains `expected`.
+fn refused(arguments: &[&str], expected: &[&str]) {
     let output = crane(arguments);
     let message = text(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
-    for words in said {
+    for words in expected {
         assert!(message.contains(words), "{arguments:?}: `{words}` not in: {message}");
     }
     assert!(output.stdout.is_empty());
@@ -185,7 +185,7 @@ fn the_comparison_speaks_json() {
 }
 
 #[test]
-fn an_impossible_load_is_told_not_panicked() {
+fn an_impossible_load_is_refused_without_a_panic() {
     for (load, command) in [("1e12", "simulate"), ("1e12", "statics")] {
         let output = crane(&[command, "--set", &format!("load_mass={load}")]);
         let message = text(&output.stderr);
@@ -307,10 +307,10 @@ fn many_states_are_evaluated_at_once() {
     let (first, second) = ("0.1,0.2,0.3,0.4", "0.2,0.1,-0.3,0.5");
     let both = asked(&format!("{first},{second}"), "1,2,3,4");
     assert!(both.get("transforms").is_none());
-    for (place, q) in [first, second].into_iter().enumerate() {
+    for (row, q) in [first, second].into_iter().enumerate() {
         let one = asked(q, "1,2,3,4");
         for name in names.split(',') {
-            assert_eq!(both[name][place], one[name], "{name}");
+            assert_eq!(both[name][row], one[name], "{name}");
         }
     }
     refused(
@@ -335,11 +335,20 @@ fn every_crane_is_listed_described_and_analysed() {
 #[test]
 fn help_groups_commands_by_task() {
     let help = text(&crane(&["--help"]).stdout);
-    let place = |words: &str| help.find(words).unwrap_or_else(|| panic!("`{words}` not in: {help}"));
-    assert!(place("Describe a crane:") < place("  check ") && place("  check ") < place("Compute:"), "{help}");
-    assert!(place("Compute:") < place("  statics ") && place("  statics ") < place("For developers:"), "{help}");
-    assert!(place("For developers:") < place("  schema ") && place("  schema ") < place("Options:"), "{help}");
-    assert!(place("Options:") < place("Exit codes:"), "{help}");
+    let position = |words: &str| help.find(words).unwrap_or_else(|| panic!("`{words}` not in: {help}"));
+    assert!(
+        position("Describe a crane:") < position("  check ") && position("  check ") < position("Compute:"),
+        "{help}"
+    );
+    assert!(
+        position("Compute:") < position("  statics ") && position("  statics ") < position("For developers:"),
+        "{help}"
+    );
+    assert!(
+        position("For developers:") < position("  schema ") && position("  schema ") < position("Options:"),
+        "{help}"
+    );
+    assert!(position("Options:") < position("Exit codes:"), "{help}");
 }
 
 #[test]

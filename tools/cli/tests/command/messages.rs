@@ -60,8 +60,8 @@ fn colours_are_for_terminals_and_those_who_force_them() {
 fn several_specs_are_checked_at_once() {
     let output = crane(&["check", "knuckle_boom", BAD, "cantilever"]);
     assert_eq!(output.status.code(), Some(1));
-    let said = text(&output.stdout);
-    assert!(said.contains("knuckle_boom: valid") && said.contains("cantilever: valid"), "{said}");
+    let report = text(&output.stdout);
+    assert!(report.contains("knuckle_boom: valid") && report.contains("cantilever: valid"), "{report}");
     assert!(text(&output.stderr).contains("error[E010]"));
     let output = crane(&["check", "knuckle_boom", BAD, "--format", "json"]);
     let all: Value = serde_json::from_slice(&output.stdout).expect("JSON");
@@ -120,13 +120,13 @@ fn explain_and_its_picture_number_coordinates_alike() {
     let out = folder("numbers");
     let svg = out.join("chain.svg");
     let output = crane(&["explain", "eight_link_flexible", "--svg", svg.to_str().expect("a path")]);
-    let said = text(&output.stdout);
-    let line = said.lines().find(|line| line.contains(" boom_psi ")).expect("a coordinate").trim_start();
+    let report = text(&output.stdout);
+    let line = report.lines().find(|line| line.contains(" boom_psi ")).expect("a coordinate").trim_start();
     let number = line.split_whitespace().next().expect("a number");
     let picture = fs::read_to_string(&svg).expect("a picture");
     let cells: Vec<&str> = picture.split("</text>").map(|text| text.rsplit('>').next().unwrap_or_default()).collect();
-    let place = cells.iter().position(|cell| *cell == "boom_psi").expect("a row");
-    assert_eq!(cells[place - 1], number);
-    assert!(!said.contains("unsimplified"));
+    let column = cells.iter().position(|cell| *cell == "boom_psi").expect("a row");
+    assert_eq!(cells[column - 1], number);
+    assert!(!report.contains("unsimplified"));
     assert!(text(&crane(&["explain", "double_pendulum", "--operations"]).stdout).contains("unsimplified"));
 }

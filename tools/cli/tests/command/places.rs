@@ -102,8 +102,8 @@ fn results_do_not_overwrite_what_they_are_computed_from() {
         (&ensemble, table),
         (&ensemble, data),
     ];
-    for (command, place) in commands {
-        refused(&[command, &[place]].concat(), &["is an input of this command", "choose another file"]);
+    for (command, target) in commands {
+        refused(&[command, &[target]].concat(), &["is an input of this command", "choose another file"]);
     }
     for (file, content) in given {
         assert_eq!(fs::read_to_string(file).expect("a file"), content, "{}", file.display());
@@ -154,8 +154,8 @@ fn warnings_do_not_stop_a_command() {
     fs::write(&spec, written.replace("name: implausible", "name: warned\nrun: {duration: 0.1}")).expect("a spec");
     let spec = spec.to_str().expect("a path");
     let dir = out.to_str().expect("a path");
-    let place = |name: &str| out.join(name).to_str().expect("a path").to_owned();
-    let [page, rust, urdf] = ["page.html", "crane.rs", "crane.urdf"].map(place);
+    let path = |name: &str| out.join(name).to_str().expect("a path").to_owned();
+    let [page, rust, urdf] = ["page.html", "crane.rs", "crane.urdf"].map(path);
     let commands: [&[&str]; 11] = [
         &["check"],
         &["statics"],
@@ -172,8 +172,8 @@ fn warnings_do_not_stop_a_command() {
     for command in commands {
         let arguments = [&command[..1], &[spec], &command[1..]].concat();
         let output = crane(&arguments);
-        let said = text(&output.stderr) + &text(&output.stdout);
-        assert!(output.status.success() && said.contains("W022"), "{command:?}: {said}");
+        let report = text(&output.stderr) + &text(&output.stdout);
+        assert!(output.status.success() && report.contains("W022"), "{command:?}: {report}");
     }
     for command in ["check", "statics", "modes"] {
         assert_eq!(crane(&[command, spec, "--strict"]).status.code(), Some(1), "{command}");

@@ -119,8 +119,8 @@ fn a_run_goes_on_from_the_end_of_another() {
     let folder = folder("in_two_halves");
     let file = |name: &str| folder.join(name).join("double_pendulum.csv");
     let run = |name: &str, more: &[&str]| {
-        let place = folder.join(name).display().to_string();
-        let arguments = ["simulate", "double_pendulum", "--method", "bdf", "--tolerance", "1e-10", "--out", &place];
+        let path = folder.join(name).display().to_string();
+        let arguments = ["simulate", "double_pendulum", "--method", "bdf", "--tolerance", "1e-10", "--out", &path];
         let output = crane(&[&arguments[..], more].concat());
         assert!(output.status.success(), "{}", text(&output.stderr));
         let csv = fs::read_to_string(file(name)).expect("results");

@@ -299,8 +299,8 @@ unsafe extern "C" fn fmi2GetRealStatus(component: Component, kind: c_int, value:
     // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| match value.as_mut() {
-            Some(place) if kind == LAST_SUCCESSFUL_TIME => {
-                *place = unit.last;
+            Some(time) if kind == LAST_SUCCESSFUL_TIME => {
+                *time = unit.last;
                 Ok(())
             }
             _ => Err(nothing_pending()),

@@ -318,8 +318,8 @@ unsafe extern "C" fn fmi3UpdateDiscreteStates(
     unsafe {
         with(component, |unit| {
             let next = unit.instance.next_event()?;
-            for place in [update_needed, terminate, nominals_changed, values_changed] {
-                write(place, FALSE);
+            for flag in [update_needed, terminate, nominals_changed, values_changed] {
+                write(flag, FALSE);
             }
             write(next_event_time_defined, if next.is_some() { TRUE } else { FALSE });
             write(next_event_time, next.unwrap_or(0.0));
@@ -350,11 +350,11 @@ macro_rules! counts {
     ($($name:ident: $count:expr;)*) => {$(
         #[unsafe(no_mangle)]
         unsafe extern "C" fn $name(component: Component, count: *mut usize) -> Status {
-            let own: fn(&Instance) -> usize = $count;
+            let counted: fn(&Instance) -> usize = $count;
             // SAFETY: as the FMI standard guarantees.
             unsafe {
                 with(component, |unit| {
-                    write(count, own(&unit.instance));
+                    write(count, counted(&unit.instance));
                     Ok(())
                 })
             }
@@ -399,8 +399,8 @@ unsafe extern "C" fn fmi3DoStep(
     // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
-            for place in [event_handling_needed, terminate, early_return] {
-                write(place, FALSE);
+            for flag in [event_handling_needed, terminate, early_return] {
+                write(flag, FALSE);
             }
             write(last, unit.last);
             unit.instance.step(from, length)?;

@@ -16,11 +16,11 @@ fn no_state() -> Fault {
 /// `state` is null, or there is a pointer at `state` that is null or points to a state that was made here.
 pub(super) unsafe fn keep(unit: &Unit, state: *mut Pointer) -> Result<(), Fault> {
     // SAFETY: as the caller promises.
-    let place = unsafe { state.as_mut() }.ok_or_else(no_state)?;
+    let pointer = unsafe { state.as_mut() }.ok_or_else(no_state)?;
     // SAFETY: as the caller promises.
-    match unsafe { place.cast::<State>().as_mut() } {
+    match unsafe { pointer.cast::<State>().as_mut() } {
         Some(kept) => *kept = unit.instance.state(),
-        None => *place = Box::into_raw(Box::new(unit.instance.state())).cast(),
+        None => *pointer = Box::into_raw(Box::new(unit.instance.state())).cast(),
     }
     Ok(())
 }
@@ -43,9 +43,9 @@ pub(super) unsafe fn restore(unit: &mut Unit, state: Pointer) -> Result<(), Faul
 pub(super) unsafe fn free(state: *mut Pointer) {
     // SAFETY: as the caller promises.
     unsafe {
-        if let Some(place) = state.as_mut().filter(|place| !place.is_null()) {
-            drop(Box::from_raw(place.cast::<State>()));
-            *place = ptr::null_mut();
+        if let Some(pointer) = state.as_mut().filter(|pointer| !pointer.is_null()) {
+            drop(Box::from_raw(pointer.cast::<State>()));
+            *pointer = ptr::null_mut();
         }
     }
 }
@@ -68,11 +68,11 @@ pub(super) unsafe fn measure(state: Pointer, size: *mut usize) -> Result<(), Fau
 pub(super) unsafe fn to_bytes(state: Pointer, bytes: *mut u8, size: usize) -> Result<(), Fault> {
     // SAFETY: as the caller promises.
     let (state, bytes) = unsafe { (state.cast::<State>().as_ref().ok_or_else(no_state)?, array_mut(bytes, size)?) };
-    let own = state.bytes();
-    let Some(place) = bytes.get_mut(..own.len()) else {
-        return Err(Fault::Error(format!("{size} bytes are too few: the state takes {}", own.len())));
+    let saved = state.bytes();
+    let Some(target) = bytes.get_mut(..saved.len()) else {
+        return Err(Fault::Error(format!("{size} bytes are too few: the state takes {}", saved.len())));
     };
-    place.copy_from_slice(&own);
+    target.copy_from_slice(&saved);
     Ok(())
 }
 
@@ -82,9 +82,9 @@ pub(super) unsafe fn to_bytes(state: Pointer, bytes: *mut u8, size: usize) -> Re
 /// There are `size` bytes; there is room for a pointer at `state`.
 pub(super) unsafe fn from_bytes(unit: &Unit, bytes: *const u8, size: usize, state: *mut Pointer) -> Result<(), Fault> {
     // SAFETY: as the caller promises.
-    let (bytes, place) = unsafe { (array(bytes, size)?, state.as_mut()) };
+    let (bytes, pointer) = unsafe { (array(bytes, size)?, state.as_mut()) };
     let read = unit.instance.state_of(bytes);
     let read = read.ok_or_else(|| Fault::Error(format!("{size} bytes are not a state of this crane")))?;
-    *place.ok_or_else(no_state)? = Box::into_raw(Box::new(read)).cast();
+    *pointer.ok_or_else(no_state)? = Box::into_raw(Box::new(read)).cast();
     Ok(())
 }

@@ -111,19 +111,19 @@ pub(super) unsafe fn free(component: Pointer) {
 /// Writes a value to memory of the importer, unless the pointer is null.
 ///
 /// # Safety
-/// `place` points to memory for one value that nothing else accesses meanwhile; or it is null.
-pub(super) unsafe fn write<T>(place: *mut T, value: T) {
+/// `target` points to memory for one value that nothing else accesses meanwhile; or it is null.
+pub(super) unsafe fn write<T>(target: *mut T, value: T) {
     // SAFETY: as the caller promises.
-    if let Some(place) = unsafe { place.as_mut() } {
-        *place = value;
+    if let Some(target) = unsafe { target.as_mut() } {
+        *target = value;
     }
 }
 
 /// Refuses a request for variables of a type that a crane does not have.
-pub(super) fn none_of(count: usize, kind: &str, own: &str) -> Result<(), Fault> {
+pub(super) fn none_of(count: usize, kind: &str, only: &str) -> Result<(), Fault> {
     if count == 0 {
         Ok(())
     } else {
-        Err(Fault::Error(format!("a crane has no variables of type {kind}: all are {own}")))
+        Err(Fault::Error(format!("a crane has no variables of type {kind}: all are {only}")))
     }
 }

@@ -6,7 +6,7 @@ use crane_model::dyn_crane::DynModel;
 use super::Subject;
 
 /// `modelDescription.xml` of a crane with its current parameters.
-pub fn write(crane: &dyn DynModel) -> String {
+pub fn write_description(crane: &dyn DynModel) -> String {
     let subject = Subject::new(crane);
     let name = crane.description().name.to_string();
     let mut xml = Xml::new("Units: SI, rad. Value references are places in the list of variables, from 0.");

@@ -13,8 +13,8 @@ use crane_model::force_states;
 
 use crate::variables::{self, Source, Variable};
 
-pub use fmi2::write as write_fmi2;
-pub use fmi3::write as write_fmi3;
+pub use fmi2::write_description as write_fmi2;
+pub use fmi3::write_description as write_fmi3;
 
 /// Categories of messages, and what they contain.
 const CATEGORIES: [(&str, &str); 2] = [
@@ -56,8 +56,8 @@ impl<'a> Subject<'a> {
     fn derivatives(&self) -> Vec<usize> {
         let n = self.crane.size();
         let (rates, accelerations) = ((0..n).map(Source::Rate), (0..n).map(Source::Acceleration));
-        let own = (0..force_states::columns(self.crane.description()).len()).map(Source::OwnRate);
-        rates.chain(accelerations).chain(own).map(|source| self.reference(source)).collect()
+        let of_forces = (0..force_states::columns(self.crane.description()).len()).map(Source::OwnRate);
+        rates.chain(accelerations).chain(of_forces).map(|source| self.reference(source)).collect()
     }
 
     /// Value references of the event indicators.

@@ -15,7 +15,7 @@ impl Instance {
         let (rates, rest) = out.split_at_mut(self.crane.size());
         rates.copy_from_slice(&self.moment()?.v);
         let (accelerations, of_forces) = self.accelerations()?;
-        rest.iter_mut().zip(accelerations.iter().chain(of_forces)).for_each(|(place, value)| *place = *value);
+        rest.iter_mut().zip(accelerations.iter().chain(of_forces)).for_each(|(entry, value)| *entry = *value);
         let name = match rest.iter().position(|rate| !rate.is_finite()) {
             Some(index) if index < rates.len() => {
                 format!("the acceleration of {}", self.crane.description().coordinates[index].name)
@@ -56,10 +56,10 @@ impl Instance {
             out.fill(0.0);
             return Ok(());
         }
-        let own = self.moment()?.clone();
+        let moment = self.moment()?.clone();
         let h = RELATIVE / greatest;
         let mut aside = |side: f64, out: &mut [f64]| {
-            let Moment { mut q, mut v, mut x, .. } = own.clone();
+            let Moment { mut q, mut v, mut x, .. } = moment.clone();
             let mut inputs = self.inputs.clone();
             for (&reference, along) in knowns.iter().zip(direction) {
                 let Variable { name, source, .. } = self.variable(reference)?;
@@ -76,14 +76,14 @@ impl Instance {
             }
             give_inputs(self.crane.as_mut(), &inputs);
             (self.quantities, self.accelerations) = (None, None);
-            self.moment = Some(Moment { t: own.t, q, v, x });
+            self.moment = Some(Moment { t: moment.t, q, v, x });
             self.get(unknowns, out)
         };
         let mut behind = vec![0.0; out.len()];
         let found = aside(h, out).and_then(|()| aside(-h, &mut behind));
         out.iter_mut().zip(&behind).for_each(|(ahead, behind)| *ahead = (*ahead - behind) / (2.0 * h));
         give_inputs(self.crane.as_mut(), &self.inputs);
-        self.moment = Some(own);
+        self.moment = Some(moment);
         self.forget();
         found
     }

@@ -51,7 +51,7 @@ pub struct Instance {
     /// Accelerations, and the rates of the forces' states.
     accelerations: Option<(Vec<f64>, Vec<f64>)>,
     /// Messages to report, and cautions that have been reported once.
-    said: Vec<String>,
+    messages: Vec<String>,
     cautions: Vec<&'static str>,
 }
 
@@ -63,15 +63,15 @@ impl Instance {
     pub fn new(folder: &Path, token: &str, make: Make) -> Result<Self, String> {
         let Opened { crane, parameters, warnings } = resources::open(folder, make)?;
         let variables = variables::list(crane.description());
-        let own = variables::token(crane.description(), &variables);
-        if token != own {
+        let expected = variables::token(crane.description(), &variables);
+        if token != expected {
             return Err(format!(
-                "the model description ({token}) is not that of this library and spec ({own}): export the unit again"
+                "the model description ({token}) is not that of this library and spec ({expected}): export the unit again"
             ));
         }
         let inputs = vec![None; crane.description().inputs.len()];
         Ok(Self {
-            token: own,
+            token: expected,
             contacts: Contacts::new(crane.as_ref()),
             inputs,
             settings: Settings { duration: f64::INFINITY, most_steps: usize::MAX, ..Settings::of(crane.description()) },
@@ -87,14 +87,14 @@ impl Instance {
             motion: None,
             quantities: None,
             accelerations: None,
-            said: Some(warnings).into_iter().filter(|words| !words.is_empty()).collect(),
+            messages: Some(warnings).into_iter().filter(|words| !words.is_empty()).collect(),
             cautions: Vec::new(),
         })
     }
 
     /// Messages since the last call: warnings about the spec, and conditions for which the model is not valid.
     pub fn take_warnings(&mut self) -> Vec<String> {
-        std::mem::take(&mut self.said)
+        std::mem::take(&mut self.messages)
     }
 
     /// Sets the tolerance of the crane's own integrator and the start time, s.
@@ -207,8 +207,8 @@ impl Instance {
     }
 
     fn variable(&self, reference: u32) -> Result<&Variable, Fault> {
-        let place = usize::try_from(reference).unwrap_or(usize::MAX);
-        self.variables.get(place).ok_or_else(|| Fault::Error(format!("there is no variable {reference}")))
+        let index = usize::try_from(reference).unwrap_or(usize::MAX);
+        self.variables.get(index).ok_or_else(|| Fault::Error(format!("there is no variable {reference}")))
     }
 
     /// Values of variables by their references.
@@ -216,8 +216,8 @@ impl Instance {
     /// # Errors
     /// There is no such variable; the parameters break a rule of the spec language; there is no equilibrium to start from.
     pub fn get(&mut self, references: &[u32], out: &mut [f64]) -> Result<(), Fault> {
-        for (&reference, place) in references.iter().zip(out) {
-            *place = match self.variable(reference)?.source {
+        for (&reference, slot) in references.iter().zip(out) {
+            *slot = match self.variable(reference)?.source {
                 Source::Parameter(index) => self.parameters[index],
                 Source::Input(index) => self.input(index),
                 Source::Time => self.time(),
@@ -242,9 +242,9 @@ impl Instance {
     /// # Errors
     /// As [`Instance::get`]; the length of `out` is not their number.
     pub fn event_indicators(&mut self, out: &mut [f64]) -> Result<(), Fault> {
-        let own = self.indicators();
-        if out.len() != own {
-            return Err(Fault::Error(format!("{} numbers for {own} event indicators", out.len())));
+        let count = self.indicators();
+        if out.len() != count {
+            return Err(Fault::Error(format!("{} numbers for {count} event indicators", out.len())));
         }
         self.settle()?;
         let Self { crane, moment: Some(Moment { t, q, v, .. }), contacts, .. } = self else {
@@ -252,7 +252,7 @@ impl Instance {
         };
         let mut places = out.iter_mut();
         contacts.indicators(crane.as_ref(), *t, (q, v), |indicator| {
-            places.next().into_iter().for_each(|place| *place = indicator);
+            places.next().into_iter().for_each(|slot| *slot = indicator);
         });
         Ok(())
     }
@@ -347,7 +347,7 @@ impl Instance {
     pub fn continuous_states(&mut self, out: &mut [f64]) -> Result<(), Fault> {
         self.check_states(out.len())?;
         let Moment { q, v, x, .. } = self.moment()?;
-        out.iter_mut().zip(q.iter().chain(v).chain(x)).for_each(|(place, value)| *place = *value);
+        out.iter_mut().zip(q.iter().chain(v).chain(x)).for_each(|(entry, value)| *entry = *value);
         Ok(())
     }
 
@@ -409,7 +409,7 @@ impl Instance {
         for (kind, words) in found.into_iter().filter_map(|(kind, words)| Some((kind, words?))) {
             if !self.cautions.contains(&kind) {
                 self.cautions.push(kind);
-                self.said.push(format!("t = {t:.3} s: {words}"));
+                self.messages.push(format!("t = {t:.3} s: {words}"));
             }
         }
     }

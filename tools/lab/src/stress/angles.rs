@@ -57,8 +57,8 @@ supports:
         let (singular, tilted) = (description.near_singular(&equilibrium.q), description.large_tilt(&equilibrium.q));
         let right = if near { singular.is_some() } else { singular.is_none() };
         let right = right && tilted.is_some() == (!exact && angle >= LARGE_TILT);
-        let said = appended(singular.iter().chain(&tilted));
-        expect(finite && right, format!("{equilibrium}; θ = {:.6} rad{said}", equilibrium.q[4]))
+        let cautions = appended(singular.iter().chain(&tilted));
+        expect(finite && right, format!("{equilibrium}; θ = {:.6} rad{cautions}", equilibrium.q[4]))
     })
 }
 
@@ -83,12 +83,12 @@ run: {{duration: 1}}
         );
         let subject = Subject::new(&Spec::new(text))?;
         match subject.run(&timing(Method::RECOMMENDED, 1e-6, 1.0)) {
-            Err(said) => expect(said.contains("block_theta"), said),
+            Err(message) => expect(message.contains("block_theta"), message),
             Ok(recorded) => {
                 let last = recorded.table.rows.last().map_or(f64::NAN, |row| row[5]);
-                let said = cautions(&recorded);
+                let message = cautions(&recorded);
                 let right = angle != FRAC_PI_2 && (last - angle).abs() < 1e-9;
-                expect(right, format!("θ = {last:.6} rad at the end{said}"))
+                expect(right, format!("θ = {last:.6} rad at the end{message}"))
             }
         }
     })
@@ -110,7 +110,7 @@ run: {duration: 3}
 ";
         let subject = Subject::new(&Spec::new(text))?;
         match subject.run(&timing(Method::RECOMMENDED, 1e-6, 3.0)) {
-            Err(said) => expect(said.contains("block_theta") && said.contains("90°"), said),
+            Err(message) => expect(message.contains("block_theta") && message.contains("90°"), message),
             Ok(recorded) => balanced(&recorded, 1e-3),
         }
     })

@@ -34,8 +34,8 @@ fn deflection(spec: Spec, sections: usize) -> Case {
     const RIGIDITY: f64 = MODULUS * 0.06 * 0.04 * 0.04 * 0.04 / 12.0;
     let square = (sections * sections) as f64;
     let load = 20.0 * GRAVITY * LENGTH.powi(3) / (3.0 * RIGIDITY) * (1.0 - 1.0 / (4.0 * square));
-    let own = 7850.0 * 0.06 * 0.04 * GRAVITY * LENGTH.powi(4) / (8.0 * RIGIDITY) * (1.0 - 1.0 / (2.0 * square));
-    let sunk = load + own;
+    let by_weight = 7850.0 * 0.06 * 0.04 * GRAVITY * LENGTH.powi(4) / (8.0 * RIGIDITY) * (1.0 - 1.0 / (2.0 * square));
+    let sunk = load + by_weight;
     let expected = format!("stable; tip sinks by {:.4} mm, the Euler–Bernoulli beam divided into sections", sunk * 1e3);
     Case::new("number of sections", format!("cantilever of {sections}, statics"), expected, move || {
         let subject = Subject::new(&spec)?;

@@ -70,13 +70,13 @@ fn stopped(stiffness: f64, method: Method) -> Case {
 /// Coulomb friction stops it after `m v²/2F_c`, plus `m π² v₀²/12F_c` of creep.
 fn rubbed(width: f64, method: Method) -> Case {
     let force = 100.0;
-    let way = MASS / (2.0 * force) * (SPEED * SPEED + PI * PI * width * width / 6.0);
-    let expected = format!("at rest after {way:.5} m");
+    let distance = MASS / (2.0 * force) * (SPEED * SPEED + PI * PI * width * width / 6.0);
+    let expected = format!("at rest after {distance:.5} m");
     Case::new(GROUP, format!("slide with friction of width {width:e} m/s, {method}"), expected, move || {
         let spec = slide(&format!("friction: {{slide_x: {{coulomb: {force}, width: {width:e}}}}}"));
         let recorded = Subject::new(&spec)?.run(&moving(method, 1e-7, 1.0))?;
         let (x, v) = recorded.table.rows.last().map_or((f64::NAN, f64::NAN), |row| (row[1], row[2]));
-        expect((x - way).abs() < 1e-4 && v.abs() < width, format!("x = {x:.5} m, {v:.1e} m/s"))
+        expect((x - distance).abs() < 1e-4 && v.abs() < width, format!("x = {x:.5} m, {v:.1e} m/s"))
     })
 }
 

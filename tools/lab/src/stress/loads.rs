@@ -35,7 +35,8 @@ fn statics(spec: Spec, load: f64) -> Case {
         let rest = subject.rest()?;
         let reactions = subject.crane.support_reactions_at(&rest.q, &vec![0.0; rest.q.len()]);
         let carried = reactions.iter().map(|force| force.z).sum::<f64>();
-        let tilted = subject.crane.description().large_tilt(&rest.q).map_or(String::new(), |said| format!("; {said}"));
+        let tilted =
+            subject.crane.description().large_tilt(&rest.q).map_or(String::new(), |caution| format!("; {caution}"));
         expect((carried / weight - 1.0).abs() < 1e-8, format!("{rest}; {carried:.6e} N{tilted}"))
     })
 }
@@ -58,7 +59,7 @@ fn senseless(spec: Spec, mass: f64) -> Case {
         };
         match subject.run(&timing(Method::RECOMMENDED, 1e-4, 0.1)) {
             Ok(_) => Err("it ran".to_owned()),
-            Err(said) => expect(!said.contains("NaN") && !said.contains("in the results"), said),
+            Err(message) => expect(!message.contains("NaN") && !message.contains("in the results"), message),
         }
     })
 }
@@ -118,8 +119,8 @@ fn swing(upper: f64, lower: f64) -> Case {
                 let subject = Subject::new(&rods(upper, lower, [1.0, 0.5]).changed("analyses: [dynamics]"))?;
                 let energy = balanced(&subject.run(&timing(Method::DormandPrince, 1e-9, 2.0))?, 1e-5)?;
                 match subject.run(&timing(Method::RECOMMENDED, 1e-6, 2.0)) {
-                    Err(said) if said.contains("very light link") => Ok(format!("{energy}; {said}")),
-                    Err(said) => Err(said),
+                    Err(message) if message.contains("very light link") => Ok(format!("{energy}; {message}")),
+                    Err(message) => Err(message),
                     Ok(_) => Err(format!("{} came to the end", Method::RECOMMENDED)),
                 }
             },

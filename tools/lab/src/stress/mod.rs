@@ -116,7 +116,7 @@ pub fn stress(options: &Stress, registry: &Registry, out: &mut dyn Write) -> Out
     bar.finish_and_clear();
 
     files::folder(&options.out)?;
-    write(&options.out, &verdicts)?;
+    write_verdicts(&options.out, &verdicts)?;
     let failed = verdicts.iter().filter(|verdict| !verdict.passed).count();
     let mut report = Report::default();
     report.fact("cases", verdicts.len(), "");
@@ -158,13 +158,13 @@ fn grid(verdicts: &[Verdict]) -> Grid {
     let mut grid = Grid::new("cases", "Cases", &["group", "case", "expected", "happened", "verdict", "wall s"]);
     for verdict in verdicts {
         let Verdict { group, name, expected, happened, passed, wall } = verdict;
-        let said = VERDICTS[usize::from(*passed)];
+        let word = VERDICTS[usize::from(*passed)];
         grid.row([
             (*group).into(),
             name.as_str().into(),
             expected.as_str().into(),
             happened.as_str().into(),
-            said.into(),
+            word.into(),
             wall.as_secs_f64().into(),
         ]);
     }
@@ -172,7 +172,7 @@ fn grid(verdicts: &[Verdict]) -> Grid {
 }
 
 /// Writes the results as CSV and as a Markdown page; without times, so that both files are reproducible.
-fn write(folder: &Path, verdicts: &[Verdict]) -> Outcome<()> {
+fn write_verdicts(folder: &Path, verdicts: &[Verdict]) -> Outcome<()> {
     let header = ["group", "case", "expected", "happened", "verdict"];
     let fields = |verdict: &Verdict| {
         let Verdict { group, name, expected, happened, passed, .. } = verdict;

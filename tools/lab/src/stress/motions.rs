@@ -62,15 +62,15 @@ drives:
         let recorded = match Subject::new(&spec)?.run(&timing(method, accuracy, end)) {
             Ok(recorded) => recorded,
             // A run that ends with a stated reason does not mislead.
-            Err(said) => return expect(missed, said),
+            Err(message) => return expect(missed, message),
         };
         let last = recorded.table.rows.last().map_or(f64::NAN, |row| row[1]);
         let (off, steps) = (imbalance(&recorded), recorded.run.statistics.steps);
-        let said = cautions(&recorded);
+        let message = cautions(&recorded);
         let right = if sharp { (last - exact).abs() < 1e-4 } else { off < 1e-5 };
         expect(
-            right || missed && !said.is_empty(),
-            format!("x = {last:.6} m, energy off by {off:.1e}, {steps} steps{said}"),
+            right || missed && !message.is_empty(),
+            format!("x = {last:.6} m, energy off by {off:.1e}, {steps} steps{message}"),
         )
     })
 }
@@ -80,8 +80,8 @@ fn sagging() -> Case {
     let expected = "a caution that the beam passed ±90°, or energy balanced to 1e-3";
     Case::new("angles near ±90°", "soft beam falling through 90°, rk4 with 5e-4 s", expected, move || {
         let recorded = Subject::new(&soft_beam(2.1e8))?.run(&timing(Method::Rk4, 5e-4, 20.0))?;
-        let (said, off) = (cautions(&recorded), imbalance(&recorded));
-        expect(!said.is_empty() || off < 1e-3, format!("energy off by {off:.1e}{said}"))
+        let (message, off) = (cautions(&recorded), imbalance(&recorded));
+        expect(!message.is_empty() || off < 1e-3, format!("energy off by {off:.1e}{message}"))
     })
 }
 

@@ -66,7 +66,7 @@ fn option(spec: Spec, name: &'static str, set: Set, value: f64) -> Case {
         set(&mut timing, value);
         match Subject::new(&spec)?.run(&timing) {
             Ok(recorded) => Ok(format!("ran in {} steps", recorded.run.statistics.steps)),
-            Err(said) => expect(said.contains(name) && !said.contains("in row"), said),
+            Err(message) => expect(message.contains(name) && !message.contains("in row"), message),
         }
     })
 }
@@ -88,7 +88,7 @@ fn refused(number: &'static str, code: &'static str) -> Case {
     Case::new("limits of numbers", format!("spec with a mass of {number}"), expected, move || {
         match Subject::new(&rod(number, "-1")) {
             Ok(_) => Err("accepted".to_owned()),
-            Err(said) => expect(said.contains(code), said),
+            Err(message) => expect(message.contains(code), message),
         }
     })
 }
@@ -131,7 +131,7 @@ fn parameter(spec: Spec, load: f64) -> Case {
 
 /// As expected unless a number is not finite, in the pose or in the message of a run.
 fn sound(statics: &str, finite: bool, run: Option<&str>) -> super::case::Finding {
-    let told = run.unwrap_or("ran to the end");
-    let clear = !told.contains("NaN") && !told.contains("in the results") && !told.contains("inf ");
-    expect(finite && clear, format!("{statics}; {told}"))
+    let outcome = run.unwrap_or("ran to the end");
+    let clear = !outcome.contains("NaN") && !outcome.contains("in the results") && !outcome.contains("inf ");
+    expect(finite && clear, format!("{statics}; {outcome}"))
 }

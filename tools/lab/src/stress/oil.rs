@@ -129,7 +129,7 @@ pump: {{max_flow: {max_flow:e}, pressure: {pump:e}}}
         let recorded = Subject::new(&self.spec())?.run(&timing(method, 1e-6, duration))?;
         let places: Vec<f64> = column(&recorded, "slide_z");
         let rate = column(&recorded, "slide_z_rate").last().copied().unwrap_or(f64::NAN);
-        let ends = [places.first(), places.last()].map(|place| place.copied().unwrap_or(f64::NAN));
+        let ends = [places.first(), places.last()].map(|position| position.copied().unwrap_or(f64::NAN));
         Ok((recorded, ends, rate))
     }
 }
@@ -174,8 +174,8 @@ fn too_weak(lift: Lift, name: &str, method: Method) -> Case {
         move || {
             let (recorded, [begin, end], _) = lift.run(method, 2.0)?;
             let (moved, off) = (end - begin, imbalance(&recorded));
-            let said = format!("moves by {moved:.1e} m, energy off by {off:.1e}{}", cautions(&recorded));
-            expect((-1e-6..most).contains(&moved) && off < 1e-3, said)
+            let findings = format!("moves by {moved:.1e} m, energy off by {off:.1e}{}", cautions(&recorded));
+            expect((-1e-6..most).contains(&moved) && off < 1e-3, findings)
         },
     )
 }

@@ -23,13 +23,13 @@ pub fn cases(specs: &Specs) -> Vec<Case> {
     let reference = || specs.reference();
     let crane = |name: &str| specs.shipped(name);
 
-    cases.push(named("upside down", "knuckle_boom, load above the hook", Expected::Unstable(&["hook_theta"]), {
+    cases.push(named_case("upside down", "knuckle_boom, load above the hook", Expected::Unstable(&["hook_theta"]), {
         crane("knuckle_boom").changed("guess: {hook_theta: 150 deg}")
     }));
-    cases.push(named("upside down", "knuckle_boom, 1 rad off upside down", Expected::Stable, {
+    cases.push(named_case("upside down", "knuckle_boom, 1 rad off upside down", Expected::Stable, {
         crane("knuckle_boom").changed("guess: {hook_theta: 93 deg}")
     }));
-    cases.push(named(
+    cases.push(named_case(
         "upside down",
         "eight_link_flexible, grapple above its hinge",
         Expected::Unstable(&["upper_hinge_psi"]),
@@ -37,43 +37,43 @@ pub fn cases(specs: &Specs) -> Vec<Case> {
     ));
 
     let weightless = |spec: Spec| spec.changed(WEIGHTLESS);
-    cases.push(named("zero gravity", "cantilever", Expected::Stable, weightless(specs.cantilever(8))));
-    cases.push(named("zero gravity", "eight_link_flexible", Expected::Singular(HINGES), weightless(reference())));
+    cases.push(named_case("zero gravity", "cantilever", Expected::Stable, weightless(specs.cantilever(8))));
+    cases.push(named_case("zero gravity", "eight_link_flexible", Expected::Singular(HINGES), weightless(reference())));
     cases.push(floating(weightless(reference())));
 
     let group = "nothing holds it";
     let undriven =
         |coordinate: &str| reference().changed(&format!("drives: [{{coordinate: {coordinate}, stiffness: 0}}]"));
-    cases.push(named(
+    cases.push(named_case(
         group,
         "slewing crane on the ground, joint without a drive",
         Expected::Singular(&["column_psi"]),
         slewing(""),
     ));
-    cases.push(named(
+    cases.push(named_case(
         group,
         "slewing crane on the ground, drive of zero stiffness",
         Expected::Singular(&["column_psi"]),
         slewing("drives: [{coordinate: column_psi, stiffness: 0, damping: 7e3, motion: {hold: 0}}]"),
     ));
     // Its supports give way and let the truck tilt towards the load: slewing has a lowest position.
-    cases.push(named(
+    cases.push(named_case(
         group,
         "eight_link_flexible, slewing drive of zero stiffness",
         Expected::Stable,
         undriven("column_psi"),
     ));
-    cases.push(named(group, "eight_link_flexible, slewing joint without a drive", Expected::Stable, {
+    cases.push(named_case(group, "eight_link_flexible, slewing joint without a drive", Expected::Stable, {
         reference().changed("drives: [{coordinate: column_psi, remove: true}]")
     }));
-    cases.push(named(
+    cases.push(named_case(
         group,
         "eight_link_flexible, supports of zero stiffness along x",
         Expected::Singular(&["truck_x"]),
         with_supports(&reference(), [0.0, SUPPORT[1], SUPPORT[2]]),
     ));
     // It rests where its axis is level, and slides away when pushed.
-    cases.push(named(
+    cases.push(named_case(
         group,
         "eight_link_flexible, telescope drive of zero stiffness",
         Expected::Unstable(&["telescope_z"]),
@@ -124,7 +124,7 @@ impl Expected {
     }
 }
 
-fn named(group: &'static str, name: &str, expected: Expected, spec: Spec) -> Case {
+fn named_case(group: &'static str, name: &str, expected: Expected, spec: Spec) -> Case {
     Case::new(group, name, expected.words(), move || {
         let equilibrium = Subject::new(&spec)?.equilibrium();
         expect(expected.meets(&equilibrium), equilibrium.to_string())

@@ -37,19 +37,19 @@ pub fn cases(specs: &Specs) -> Vec<Case> {
     let mut cases = Vec::new();
     for factor in FACTORS {
         cases.push(drives(specs.reference(), factor));
-        cases.push(run(OF_DRIVES, stiffened_drives(&specs.reference(), factor), factor));
+        cases.push(run_case(OF_DRIVES, stiffened_drives(&specs.reference(), factor), factor));
         cases.push(single_element(specs.cantilever(1), factor));
-        cases.push(run("stiffness of elements", stiffened_steel(&specs.reference(), factor), factor));
+        cases.push(run_case("stiffness of elements", stiffened_steel(&specs.reference(), factor), factor));
         cases.push(supports(specs.reference(), factor));
         // With softer supports the crane overturns.
         if factor >= 1e-2 {
-            cases.push(run("stiffness of supports", stiffened_supports(&specs.reference(), factor), factor));
+            cases.push(run_case("stiffness of supports", stiffened_supports(&specs.reference(), factor), factor));
         }
     }
     for beta in [0.0, 1e-6, 1e-4, 1e-2, 1e-1] {
         cases.push(damping(&specs.cantilever(8), beta));
         let spec = with_boom(&specs.reference(), &format!("damping: {{beta: {beta:e}}}"));
-        cases.push(run("damping of elements", spec, beta));
+        cases.push(run_case("damping of elements", spec, beta));
     }
     cases
 }
@@ -68,15 +68,18 @@ fn stiffened_supports(spec: &Spec, factor: f64) -> Spec {
 }
 
 /// A run as the command performs it by default.
-fn run(group: &'static str, spec: Spec, factor: f64) -> Case {
+fn run_case(group: &'static str, spec: Spec, factor: f64) -> Case {
     let what = if group.starts_with("damping") { "β = " } else { "× " };
     let expected = format!("{DURATION} s to the end, energy balanced to {:.1} %", BALANCE * 100.0);
     let case = Case::new(group, format!("eight_link_flexible {what}{factor:e}, motion"), expected, move || {
         let recorded = Subject::new(&spec)?.run(&timing(Method::RECOMMENDED, 1e-4, DURATION))?;
         let (off, steps) = (imbalance(&recorded), recorded.run.statistics.steps);
-        let said = cautions(&recorded);
+        let warnings = cautions(&recorded);
 
-        expect(recorded.run.time == DURATION && off < BALANCE, format!("{steps} steps, energy off by {off:.1e}{said}"))
+        expect(
+            recorded.run.time == DURATION && off < BALANCE,
+            format!("{steps} steps, energy off by {off:.1e}{warnings}"),
+        )
     });
     if factor == 1e-4 || factor == 1e6 && group != OF_DRIVES { case } else { case.long() }
 }
@@ -96,8 +99,8 @@ fn drives(spec: Spec, factor: f64) -> Case {
         let rest = subject.rest()?;
         let boom = subject.index("boom_psi")?;
         let drives = &subject.crane.description().drives;
-        let place = drives.iter().position(|drive| drive.coordinate == boom).ok_or("no drive of the boom")?;
-        let torque = subject.crane.drive_efforts_at(0.0, &rest.q, &vec![0.0; rest.q.len()])[place];
+        let index = drives.iter().position(|drive| drive.coordinate == boom).ok_or("no drive of the boom")?;
+        let torque = subject.crane.drive_efforts_at(0.0, &rest.q, &vec![0.0; rest.q.len()])[index];
         // Sag of some centimetres and tilt of the truck shorten and lengthen the levers by about a percent.
         let carried = torque / LEVEL_MOMENT;
         // The weight pulls a sinking boom downwards until it hangs; a drive held at 0 rad carries the moment of its spring.
@@ -136,8 +139,8 @@ fn single_element(spec: Spec, factor: f64) -> Case {
         let found = rest.q[subject.index("beam_1_theta")?];
         let caution = description.near_singular(&rest.q);
         let right = (tip.z + sunk).abs() < 1e-8 && (found - angle).abs() < 1e-8 && caution.is_none();
-        let said = caution.map_or(String::new(), |caution| format!("; {caution}"));
-        expect(right, format!("{rest}; tip {:.6} m, {found:.6} rad{said}", tip.z))
+        let warning = caution.map_or(String::new(), |caution| format!("; {caution}"));
+        expect(right, format!("{rest}; tip {:.6} m, {found:.6} rad{warning}", tip.z))
     })
 }
 

@@ -28,8 +28,8 @@ impl Subject {
     /// The crane of a spec, or the codes and titles of its mistakes.
     pub fn new(spec: &Spec) -> Result<Self, String> {
         let crane = LiveCrane::from_spec(spec.source()).map_err(|mistakes| {
-            let told = mistakes.mistakes().iter().map(|mistake| format!("{}: {}", mistake.code, mistake.title));
-            format!("refused, {}", told.collect::<Vec<_>>().join("; "))
+            let mistakes = mistakes.mistakes().iter().map(|mistake| format!("{}: {}", mistake.code, mistake.title));
+            format!("refused, {}", mistakes.collect::<Vec<_>>().join("; "))
         })?;
         Ok(Self { crane: Box::new(crane) })
     }
@@ -65,12 +65,12 @@ impl Subject {
     /// A run as the command performs it, or its message if it is refused or ends early. All numbers of the results are finite.
     pub fn run(&self, timing: &Timing) -> Result<Recorded, String> {
         let crane = self.crane.as_ref();
-        let told = |problem: Problem| problem.message();
-        let start = timing.start(crane, false).map_err(told)?;
-        let settings = timing.settings(crane, &start, Method::RECOMMENDED).map_err(told)?;
+        let message = |problem: Problem| problem.message();
+        let start = timing.start(crane, false).map_err(message)?;
+        let settings = timing.settings(crane, &start, Method::RECOMMENDED).map_err(message)?;
         let checks = (false, results::cautions::BEND);
         let recorded = runs::record_checked(crane, &start, &settings, checks, &mut |_| ControlFlow::Continue(()))
-            .map_err(|failed| told(failed.into()))?;
+            .map_err(|failed| message(failed.into()))?;
         let table = &recorded.table;
         match table.not_finite() {
             Some((row, column)) => {

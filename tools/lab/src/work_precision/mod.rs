@@ -157,15 +157,15 @@ fn start(crane: &dyn DynCrane) -> Outcome<Start> {
 
 /// The run to be studied.
 fn base(options: &WorkPrecision, description: &Description) -> Outcome<Settings> {
-    let own = Settings::of(description);
-    let duration = options.duration.unwrap_or(own.duration);
+    let defaults = Settings::of(description);
+    let duration = options.duration.unwrap_or(defaults.duration);
     if !(duration.is_finite() && duration > 0.0) {
         return Err(Problem::usage(
             format!("`--duration {duration}` is not a duration"),
             "write a positive number of seconds, such as 2",
         ));
     }
-    Ok(Settings { duration, output: own.output.min(duration), ..own })
+    Ok(Settings { duration, output: defaults.output.min(duration), ..defaults })
 }
 
 /// Writes tables and figures, and prints the results.
@@ -185,7 +185,7 @@ fn deliver(options: &WorkPrecision, found: Found<'_>, out: &mut dyn Write) -> Ou
         written.push(file);
     }
     if let Some(file) = &options.page {
-        page::write(file, &found)?;
+        page::write_page(file, &found)?;
         written.push(file.display().to_string());
     }
     let mut report = found.facts;

@@ -40,7 +40,7 @@ const TEXTS: [(&str, &str, &str); 5] = [
 ];
 
 /// Writes the page, and its figures into the folder `images` next to it.
-pub fn write(file: &Path, found: &Found<'_>) -> Outcome<()> {
+pub fn write_page(file: &Path, found: &Found<'_>) -> Outcome<()> {
     let name = &found.description.name;
     let mut text = format!(
         "# Error against run time\n\nThis page shows the run time needed for a given error on the crane `{name}`, depending on the \
@@ -91,8 +91,8 @@ fn pictures(key: &str) -> &'static [(&'static str, &'static str)] {
 
 /// The machine, if the system reports it.
 fn machine() -> String {
-    let told = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let model = told.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
+    let facts = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = facts.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
     let model = model.map_or(std::env::consts::ARCH, |(_, model)| model.trim());
     format!("{model}, {}", std::env::consts::OS)
 }

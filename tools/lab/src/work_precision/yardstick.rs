@@ -30,7 +30,7 @@ const FAILURES: usize = 100_000;
 const LONG: f64 = 3.0;
 
 /// A run from `start` at rest by a method of the library: results, wall time and counts.
-fn run(
+fn run_yardstick(
     crane: &dyn DynCrane,
     start: &[f64],
     base: &Settings,
@@ -107,7 +107,7 @@ pub fn series(
     for method in METHODS {
         for tolerance in TOLERANCES {
             let mut runs: Vec<_> =
-                (0..repeats).map_while(|_| run(crane, start, base, method, tolerance).ok()).collect();
+                (0..repeats).map_while(|_| run_yardstick(crane, start, base, method, tolerance).ok()).collect();
             runs.sort_by(|a, b| a.1.total_cmp(&b.1));
             if runs.is_empty() {
                 continue;

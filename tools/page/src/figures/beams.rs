@@ -19,20 +19,20 @@ pub(super) fn utilisation(crane: &Shown<'_>) -> Option<Figure> {
     });
     let (time, section) = sections.max_by(|(_, a), (_, b)| StressedSection::by_use(a, b))?;
     let info = section.info(description);
-    let mut place = format!("{}, {} m from its start", spoken(section.beam(description)), readable(info.x));
+    let mut location = format!("{}, {} m from its start", spoken(section.beam(description)), readable(info.x));
     if !info.at.is_empty() {
-        place = format!("{place}, {}", info.place());
+        location = format!("{location}, {}", info.location());
     }
     let stress = format!("{} MPa", readable(section.stress.equivalent / 1e6));
     let when = crane.when(time);
     let Some(used) = section.utilisation else {
-        let note = format!("{place}, {when}; no yield stress is given");
+        let note = format!("{location}, {when}; no yield stress is given");
         return Some(Figure::new("equivalent_stress", "largest equivalent stress", stress, note));
     };
     let value = format!("{} %", readable(100.0 * used));
     let beyond = (used > 1.0)
         .then(|| format!("stress of {} is {value} of the allowable one", spoken(section.beam(description))));
-    let note = format!("{place}, {when}; {stress}");
+    let note = format!("{location}, {when}; {stress}");
     Some(Figure::new("utilisation", "largest utilisation", value, note).judged(beyond))
 }
 
@@ -44,14 +44,17 @@ pub(super) fn deflection(crane: &Shown<'_>, rigid: &Shown<'_>) -> Option<Figure>
         Some(x?.zip(y?).zip(z?).map(|((x, y), z)| Vector3::new(x, y, z)).collect())
     };
     let ways = crane.subject.crane.description().points.iter().filter_map(|point| {
-        let (own, other) = (places(crane, point)?, places(rigid, point)?);
-        Some((point, own.iter().zip(&other).map(|(own, other)| (own - other).norm()).collect::<Vec<f64>>()))
+        let (flexible, other) = (places(crane, point)?, places(rigid, point)?);
+        Some((
+            point,
+            flexible.iter().zip(&other).map(|(flexible, other)| (flexible - other).norm()).collect::<Vec<f64>>(),
+        ))
     });
     let ways: Vec<_> = ways.collect();
-    let rest = ways.iter().filter_map(|(_, way)| way.first().copied()).max_by(f64::total_cmp)?;
-    let all = ways
-        .iter()
-        .flat_map(|(point, way)| way.iter().zip(&crane.table.rows).map(move |(way, row)| (point, *way, row[0])));
+    let rest = ways.iter().filter_map(|(_, distances)| distances.first().copied()).max_by(f64::total_cmp)?;
+    let all = ways.iter().flat_map(|(point, distances)| {
+        distances.iter().zip(&crane.table.rows).map(move |(distances, row)| (point, *distances, row[0]))
+    });
     let (point, most, time) = all.max_by(|a, b| a.1.total_cmp(&b.1))?;
     let motion = format!("; up to {} in motion ({}, {})", quantity(most, "m"), spoken(point), crane.when(time));
     let note = format!("compared with the rigid crane{}", if crane.moves() { motion } else { String::new() });

@@ -125,12 +125,12 @@ pub(super) fn pressure(crane: &Shown<'_>) -> Option<Figure> {
     let greatest = (0..all.len()).max_by(|&a, &b| share(a).total_cmp(&share(b)).then(size(a).total_cmp(&size(b))))?;
     let (info, highest) = all[greatest];
     let limit = info.max_pressure.map(|limit| format!("; relief valve at {}", quantity(limit, "Pa")));
-    let place = format!("{}, side of its {}, {}", spoken(&info.name), highest.side, crane.when(highest.time));
+    let location = format!("{}, side of its {}, {}", spoken(&info.name), highest.side, crane.when(highest.time));
     let figure = Figure::new(
         "highest_pressure",
         "highest pressure",
         quantity(highest.pressure, "Pa"),
-        place + limit.as_deref().unwrap_or_default(),
+        location + limit.as_deref().unwrap_or_default(),
     );
     let open: Vec<String> = all
         .iter()

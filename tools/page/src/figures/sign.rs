@@ -100,13 +100,13 @@ fn cautions(crane: &Shown<'_>, recorded: &Recorded) -> Vec<String> {
     let verification = recorded.verification.as_ref();
     let inexact = verification.map_or_else(Vec::new, |found| found.cautions(description, &recorded.table));
     let about_crane = recorded.cautions.iter().filter(|caution| !inexact.contains(caution));
-    let mut said: Vec<String> = about_crane.cloned().collect();
+    let mut shown: Vec<String> = about_crane.cloned().collect();
     match inexact.as_slice() {
         [] => {}
-        [one] => said.push(one.clone()),
+        [one] => shown.push(one.clone()),
         [first, others @ ..] => {
-            said.push(format!("accuracy: {first}; {} more such cautions are in the tables", others.len()));
+            shown.push(format!("accuracy: {first}; {} more such cautions are in the tables", others.len()));
         }
     }
-    if said.is_empty() { vec!["none".to_owned()] } else { said }
+    if shown.is_empty() { vec!["none".to_owned()] } else { shown }
 }

@@ -92,7 +92,7 @@ fn greatest(packed: &Value, sign: f64) -> f64 {
 }
 
 /// Every tile against the columns of the run, its cautions and the curves of the page.
-fn check(name: &str, live: &LiveCrane, recorded: &Recorded, data: &Value) {
+fn check_data(name: &str, live: &LiveCrane, recorded: &Recorded, data: &Value) {
     let crane: &dyn crane_model::dyn_crane::DynCrane = live;
     let description = crane.description();
     for (key, ending) in [("largest_drive_torque", "_drive_torque"), ("largest_drive_force", "_drive_force")] {
@@ -123,10 +123,10 @@ fn check(name: &str, live: &LiveCrane, recorded: &Recorded, data: &Value) {
         assert_eq!(cautions.contains("feet that lift off"), !lifted.is_empty(), "{name}: {cautions}");
         for foot in reactions.keys() {
             let first = format!("{} first", spoken(foot));
-            let said = note.split([':', ';']).any(|part| part.trim_start().starts_with(&first));
-            assert_eq!(said, lifted.contains(&foot), "{name}: {foot} in {note}");
+            let is_named = note.split([':', ';']).any(|part| part.trim_start().starts_with(&first));
+            assert_eq!(is_named, lifted.contains(&foot), "{name}: {foot} in {note}");
             assert_eq!(
-                said,
+                is_named,
                 cautions.split([':', ';']).any(|part| part.trim_start().starts_with(&format!("{foot} first at"))),
                 "{name}: {foot} in {cautions}"
             );
@@ -189,9 +189,9 @@ fn check_summary(name: &str, recorded: &Recorded, data: &Value) {
             assert!(words(self::line(lines, "verdict")).contains(text(figure, "excess")), "{name}");
         }
     }
-    let said = words(line("cautions"));
+    let shown = words(line("cautions"));
     for caution in &recorded.cautions {
-        assert!(said.contains(caution), "{name}: {caution}");
+        assert!(shown.contains(caution), "{name}: {caution}");
     }
     let all = data["summary"].to_string() + &data["figures"].to_string() + &data["cranes"][0]["repeat"].to_string();
     for nothing in ["NaN", "inf ", "undefined"] {
@@ -204,10 +204,10 @@ fn line<'a>(lines: &'a [Value], name: &str) -> &'a Value {
 }
 
 #[test]
-fn the_page_of_every_shipped_crane_says_what_its_run_says() {
+fn pages_of_shipped_cranes_show_the_results_of_their_runs() {
     for (name, text) in crane_specs::SPECS {
         let (live, recorded, data) = shown(name, text);
-        check(name, &live, &recorded, &data);
+        check_data(name, &live, &recorded, &data);
         check_summary(name, &recorded, &data);
     }
 }
@@ -257,7 +257,7 @@ run: {{duration: 2, output: 0.02}}
 #[test]
 fn what_is_beyond_its_limit_is_named_first() {
     let quiet = shown("boom", &boom(100.0, 700e6, 320e5));
-    check("quiet", &quiet.0, &quiet.1, &quiet.2);
+    check_data("quiet", &quiet.0, &quiet.1, &quiet.2);
     assert_eq!(quiet.2["verdict"]["verdict"], "within", "{}", quiet.2["verdict"]);
     // 1780 kg at 2.5 m beyond the front feet hold 4.5 t m; the truck and the mast 4.65 t m: starting to lift it, 10 % more, lifts the rear feet.
     let cases = [
@@ -267,7 +267,7 @@ fn what_is_beyond_its_limit_is_named_first() {
     ];
     for (spec, words, beyond) in cases {
         let (live, recorded, data) = shown("boom", &spec);
-        check(words, &live, &recorded, &data);
+        check_data(words, &live, &recorded, &data);
         check_summary(words, &recorded, &data);
         assert!(text(&data["verdict"], "text").contains(words), "{words}: {}", data["verdict"]);
         for key in beyond {

@@ -88,10 +88,10 @@ pub fn equilibria(cases: &[Case<'_>], bend: f64) -> Report {
     for case in cases {
         let (equilibrium, guess) = (&case.equilibrium, case.crane.guess());
         // Where a search ended without an equilibrium, forces and positions mean nothing.
-        let (q, place) = if equilibrium.rests() { (&equilibrium.q, "") } else { (&guess, "at the guess, ") };
+        let (q, prefix) = if equilibrium.rests() { (&equilibrium.q, "") } else { (&guess, "at the guess, ") };
         let label = if cases.len() > 1 { format!("{}: ", case.label) } else { String::new() };
         for caution in cautions::of_pose(case.crane, q, bend) {
-            report.caution(Some(format!("{label}{place}{caution}")));
+            report.caution(Some(format!("{label}{prefix}{caution}")));
         }
     }
     let cases = if cases.iter().all(|case| case.equilibrium.rests()) { cases } else { &[] };
@@ -123,8 +123,9 @@ pub fn deflection(first: &Case<'_>, second: &Case<'_>) -> Grid {
         let Some(from) = names.iter().zip(&from).find_map(|(other, from)| (other == name).then_some(from)) else {
             continue;
         };
-        let way = to - from;
-        let [x, y, z, distance] = [way.x, way.y, way.z, way.norm()].map(|way| Cell::Shown(way, Scale::Millimetre));
+        let displacement = to - from;
+        let [x, y, z, distance] = [displacement.x, displacement.y, displacement.z, displacement.norm()]
+            .map(|displacement| Cell::Shown(displacement, Scale::Millimetre));
         grid.row([name.as_str().into(), x, y, z, distance, Cell::ShownUnit(Scale::Millimetre)]);
     }
     grid
@@ -261,7 +262,8 @@ fn points(cases: &[Case<'_>]) -> Grid {
     for (index, name) in
         cases.first().map_or(&[][..], |case| case.crane.description().points.as_slice()).iter().enumerate()
     {
-        let places = positions.iter().map(|of| of.get(index).map_or([None; 3], |place| (*place).map(Some).into()));
+        let places =
+            positions.iter().map(|of| of.get(index).map_or([None; 3], |position| (*position).map(Some).into()));
         grid.row(vector_row(name, places, "m"));
     }
     grid

@@ -143,12 +143,12 @@ impl<'a, 'i> File<'a, 'i> {
         let span = value_span(name);
         // A body may have the same name.
         let taken = self.robot.links.iter().any(|link| link.name == name.value());
-        let own = if taken { format!("{}_site", name.value()) } else { name.value().to_owned() };
+        let free_name = if taken { format!("{}_site", name.value()) } else { name.value().to_owned() };
         let placement = site.frame.outer(&self.pose(site.node, site.class, &format!("site `{}`", name.value())));
-        let ends = [link, &own].map(|end| Named { name: end.to_owned(), span });
-        let joint = Joint::new(&format!("{own} is a site"), span, Motion::Fixed, ends);
+        let ends = [link, &free_name].map(|end| Named { name: end.to_owned(), span });
+        let joint = Joint::new(&format!("{free_name} is a site"), span, Motion::Fixed, ends);
         self.robot.joints.push(Joint { placement, ..joint });
-        self.robot.links.push(Link { name: own, span, lump: None });
+        self.robot.links.push(Link { name: free_name, span, lump: None });
     }
 
     /// A joint, and its anchor in the frame of its body. `here`: pose of the body, before this joint moves it, in the previous link.

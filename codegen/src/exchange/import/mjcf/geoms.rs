@@ -133,8 +133,8 @@ pub(super) fn together(lumps: &[Lump]) -> Option<Lump> {
     for lump in lumps {
         let [x, y, z] = [0, 1, 2].map(|i| lump.com[i] - com[i]);
         let shifted = [y * y + z * z, x * x + z * z, x * x + y * y, -x * y, -x * z, -y * z];
-        for (sum, (own, shift)) in tensor.iter_mut().zip(lump.tensor.iter().zip(shifted)) {
-            *sum += own + lump.mass * shift;
+        for (sum, (about_com, shift)) in tensor.iter_mut().zip(lump.tensor.iter().zip(shifted)) {
+            *sum += about_com + lump.mass * shift;
         }
     }
     Some(Lump { mass, com, tensor })

@@ -36,7 +36,7 @@ const OF_MASSES: [(&str, &str); 5] = [
 ];
 
 /// Reads a file by its root; returns what could be read, and all mistakes.
-pub(super) fn read(root: Node) -> Result<Robot, Vec<Mistake>> {
+pub(super) fn read_robot(root: Node) -> Result<Robot, Vec<Mistake>> {
     let mut file = File {
         reader: Reader::default(),
         classes: Classes::default(),

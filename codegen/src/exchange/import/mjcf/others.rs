@@ -70,30 +70,30 @@ impl<'a, 'i> File<'a, 'i> {
         if name_of(node) != "joint" {
             return self.reader.mistakes.push(rule::closed_loop(tag(node), format!("<{}>", name_of(node))));
         }
-        let Some(own) = self.reader.required(node, "joint1", "<joint> of <equality>") else { return };
-        let power = |place: usize| if place == 1 { 1.0 } else { 0.0 };
+        let Some(follower) = self.reader.required(node, "joint1", "<joint> of <equality>") else { return };
+        let power = |exponent: usize| if exponent == 1 { 1.0 } else { 0.0 };
         let given = self.classes.find(node, None, "polycoef");
         let given = given.and_then(|given| self.reader.some_numbers(given, "`polycoef`")).unwrap_or_default();
         let [zeroth, first, higher @ ..] =
-            [0, 1, 2, 3, 4].map(|place| given.get(place).copied().unwrap_or_else(|| power(place)));
+            [0, 1, 2, 3, 4].map(|exponent| given.get(exponent).copied().unwrap_or_else(|| power(exponent)));
         let leader = node.attribute_node("joint2").and_then(|_| self.reader.required(node, "joint2", ""));
         if leader.is_some() && higher != [0.0; 3] {
-            return self.reader.mistakes.push(rule::not_linear(tag(node), &own.name));
+            return self.reader.mistakes.push(rule::not_linear(tag(node), &follower.name));
         }
         let reference =
             |robot: &[Joint], name: &str| robot.iter().find(|joint| joint.name == name).map(|joint| joint.reference);
-        let Some(of_own) = reference(&self.robot.joints, &own.name) else {
-            return self.reader.mistakes.push(rule::equality(own.span, &own.name));
+        let Some(of_follower) = reference(&self.robot.joints, &follower.name) else {
+            return self.reader.mistakes.push(rule::equality(follower.span, &follower.name));
         };
         let of_leader = leader.as_ref().map(|leader| reference(&self.robot.joints, &leader.name).unwrap_or(0.0));
-        let Some(joint) = self.robot.joints.iter_mut().find(|joint| joint.name == own.name) else { return };
+        let Some(joint) = self.robot.joints.iter_mut().find(|joint| joint.name == follower.name) else { return };
         match (leader, of_leader) {
             (Some(Named { name, span }), Some(of_leader)) => {
                 // q₁ − ref₁ = c₀ + c₁ (q₂ − ref₂).
-                let offset = of_own + zeroth - first * of_leader;
+                let offset = of_follower + zeroth - first * of_leader;
                 joint.follows = Some(Follows { leader: Named { name, span }, multiplier: first, offset });
             }
-            _ => joint.held = Some(of_own + zeroth),
+            _ => joint.held = Some(of_follower + zeroth),
         }
     }
 
@@ -106,8 +106,8 @@ impl<'a, 'i> File<'a, 'i> {
         if pose.len() == count {
             self.robot.joints.iter_mut().filter(moving).zip(pose).for_each(|(joint, start)| joint.start = Some(start));
         } else {
-            let said = format!("The key frame is left out: it has {} numbers for {count} joints.", pose.len());
-            self.robot.left_out.push(said);
+            let remark = format!("The key frame is left out: it has {} numbers for {count} joints.", pose.len());
+            self.robot.left_out.push(remark);
         }
     }
 }

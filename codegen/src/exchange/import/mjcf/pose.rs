@@ -58,14 +58,16 @@ impl<'a, 'i> File<'a, 'i> {
         };
         // Numbers that could not be read are already reported; a direction without length is reported here.
         let frame = match *key {
-            "quat" => self.own::<4>(given, key, owner).map(from_quaternion),
-            "axisangle" => self.own::<4>(given, key, owner).map(|[x, y, z, angle]| {
+            "quat" => self.numbers_of::<4>(given, key, owner).map(from_quaternion),
+            "axisangle" => self.numbers_of::<4>(given, key, owner).map(|[x, y, z, angle]| {
                 let axis = unit([x, y, z])?;
                 Some(about(axis, angle * self.angles.unit))
             }),
-            "xyaxes" => self.own::<6>(given, key, owner).map(|[a, b, c, d, e, f]| from_x_and_y([a, b, c], [d, e, f])),
-            "zaxis" => self.own::<3>(given, key, owner).map(with_z_along),
-            _ => self.own::<3>(given, key, owner).map(|angles| Some(self.euler(angles))),
+            "xyaxes" => {
+                self.numbers_of::<6>(given, key, owner).map(|[a, b, c, d, e, f]| from_x_and_y([a, b, c], [d, e, f]))
+            }
+            "zaxis" => self.numbers_of::<3>(given, key, owner).map(with_z_along),
+            _ => self.numbers_of::<3>(given, key, owner).map(|angles| Some(self.euler(angles))),
         };
         if let Some(None) = frame {
             self.reader.mistakes.push(rule::no_orientation(tag(given), owner, key));
@@ -74,7 +76,7 @@ impl<'a, 'i> File<'a, 'i> {
     }
 
     /// Numbers of an element's own attribute.
-    fn own<const N: usize>(&mut self, node: Node, key: &str, owner: &str) -> Option<[f64; N]> {
+    fn numbers_of<const N: usize>(&mut self, node: Node, key: &str, owner: &str) -> Option<[f64; N]> {
         self.reader.exact_numbers(node.attribute_node(key)?, &format!("`{key}` of {owner}"))
     }
 
