@@ -9,6 +9,7 @@ use crate::{
     dynamics::{InitialState, Run, Sample, Stopped, ensemble::Member},
     force_states,
     hydraulics::Oil,
+    loop_joints::Loops,
     modes,
     modes::SmallMotions,
     stateful_force::StateAt,
@@ -27,7 +28,7 @@ impl dyn DynCrane + '_ {
 
     /// The same at a state of the crane and its forces.
     pub(crate) fn drive_efforts_with(&self, moment: &StateAt<'_>) -> Vec<f64> {
-        let mut efforts = self.drive_efforts_at(moment.t, moment.q, moment.v);
+        let mut efforts = self.open_drive_efforts(moment.t, moment.q, moment.v);
         force_states::add_to_rigid_drives(self, moment, &mut efforts);
         if let Some(oil) = Oil::at(self, moment) {
             oil.give_efforts(self.description(), &mut efforts);
@@ -44,12 +45,16 @@ impl dyn DynCrane + '_ {
                 pushes[*index] = state.force;
             }
         }
-        self.internal_forces_with(t, motion, &pushes)
+        let closed = force_states::motion_at(self, &StateAt { t, q, v, x });
+        self.internal_forces_with(t, motion, &pushes, closed.multipliers())
     }
 
-    /// The guess for the present parameters: [`statics::guess`].
+    /// The guess for the present parameters, [`statics::guess`], with loops closed, if they can be.
     pub fn guess(&self) -> Vec<f64> {
-        statics::guess_dyn(self)
+        let mut q = statics::guess_dyn(self);
+        let open = q.clone();
+        let mut loops = Loops::new(self);
+        if loops.assemble(self, &mut q, &mut |q, r, x| self.solve_mass(q, r, x)).is_err() { open } else { q }
     }
 
     /// Static equilibrium from the guess: [`statics::solve`]. If feet lift and no pose is
@@ -74,7 +79,7 @@ impl dyn DynCrane + '_ {
         let mut motions = SmallMotions::of(self, q);
         modes::stiffen_by_oil(self, q, &mut motions);
         modes::stiffen_by_bristles(self.description(), &mut motions);
-        motions
+        motions.with_closed_loops(self, q)
     }
 
     /// A run: [`dynamics::simulate`].

@@ -10,6 +10,7 @@ use crate::{
     bristles::Bristles,
     dyn_crane::{DynDynamics, DynModel},
     hydraulics::Hydraulics,
+    loop_joints::{self, Loops},
     stateful_force::{Evaluated, ForceState, Row, StateAt, StatefulForce, StatefulForces},
 };
 
@@ -209,15 +210,17 @@ impl ForceStates {
     }
 }
 
-/// Adds what forces with states contribute to the efforts of rigid drives, which generated code computes without them, N m and N.
+/// Adds what forces with states and closed loops contribute to the efforts of rigid drives, which generated code computes without them, N m
+/// and N.
 pub(crate) fn add_to_rigid_drives(crane: &dyn DynDynamics, moment: &StateAt<'_>, efforts: &mut [f64]) {
     let description = crane.description();
     let mut states = ForceStates::new(description);
-    if states.is_empty() || moment.x.len() < states.len() {
-        return;
+    let mut all = loops_on_rigid_drives(crane, moment);
+    if !states.is_empty() && moment.x.len() >= states.len() {
+        states.evaluate(crane, moment, &mut vec![0.0; moment.x.len()], None);
+        all.extend(states.on_rigid_drives(crane, moment.q));
     }
-    states.evaluate(crane, moment, &mut vec![0.0; moment.x.len()], None);
-    for (coordinate, added) in states.on_rigid_drives(crane, moment.q) {
+    for (coordinate, added) in all {
         if let Some(drive) = description.drives.iter().position(|drive| drive.coordinate == coordinate) {
             efforts[drive] += added;
         }
@@ -247,12 +250,53 @@ pub fn impossible(description: &Description, x: &[f64]) -> Option<String> {
 /// # Panics
 /// If `x` does not have one entry per state.
 pub fn accelerations(crane: &dyn DynDynamics, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let states = ForceStates::new(crane.description()).len();
+    assert_eq!(x.len(), states, "one number for each state of a force");
+    let Motion { accelerations, rates, .. } = motion_at(crane, &StateAt { t, q, v, x });
+    (accelerations, rates)
+}
+
+/// Accelerations at a state of a crane, and what closes its loops.
+pub(crate) struct Motion {
+    /// q̈, with closed loops.
+    pub accelerations: Vec<f64>,
+    /// The part of q̈ that closing the loops causes; empty without loops.
+    change: Vec<f64>,
+    /// Rates of the states of forces.
+    rates: Vec<f64>,
+    loops: Loops,
+}
+
+impl Motion {
+    /// What each equation of the loop joints transmits, N and N m.
+    pub fn multipliers(&self) -> &[f64] {
+        self.loops.multipliers()
+    }
+}
+
+/// The accelerations at a state; without the states of forces if they are not given.
+pub(crate) fn motion_at(crane: &dyn DynDynamics, moment: &StateAt<'_>) -> Motion {
+    let &StateAt { t, q, v, x } = moment;
     let (mut accelerations, mut rates) = (vec![0.0; q.len()], vec![0.0; x.len()]);
     crane.forward_dynamics(t, q, v, &mut accelerations);
     let mut states = ForceStates::new(crane.description());
-    assert_eq!(x.len(), states.len(), "one number for each state of a force");
-    if !states.is_empty() {
-        states.accelerate(crane, &StateAt { t, q, v, x }, &mut rates, &mut accelerations);
+    if !states.is_empty() && x.len() >= states.len() {
+        states.accelerate(crane, moment, &mut rates, &mut accelerations);
     }
-    (accelerations, rates)
+    let (mut loops, mut change) = (Loops::new(crane), Vec::new());
+    if !loops.is_empty() {
+        change.clone_from(&accelerations);
+        loops.accelerate(crane, q, v, &mut accelerations);
+        change.iter_mut().zip(&accelerations).for_each(|(change, closed)| *change = closed - *change);
+    }
+    Motion { accelerations, change, rates, loops }
+}
+
+/// What closing the loops adds to the effort of each rigid drive: its coordinate, and N m or N.
+pub(crate) fn loops_on_rigid_drives(crane: &dyn DynDynamics, moment: &StateAt<'_>) -> Vec<(usize, f64)> {
+    if crane.loop_joints().is_empty() || crane.description().prescribed().is_empty() {
+        return Vec::new();
+    }
+    let Motion { change, loops, .. } = motion_at(crane, moment);
+    loop_joints::on_rigid_drives(crane, moment.q, &loops, &change)
 }

@@ -44,6 +44,8 @@ pub mod force_states;
 #[cfg(feature = "std")]
 pub mod hydraulics;
 #[cfg(feature = "std")]
+pub mod loop_joints;
+#[cfg(feature = "std")]
 pub mod modes;
 #[cfg(feature = "std")]
 pub mod results;
@@ -63,8 +65,9 @@ pub mod tipping;
 
 pub use description::{
     AttachmentInfo, BodyInfo, Bound, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole,
-    CylinderInfo, Description, DriveInfo, InputInfo, LARGE_TILT, List, LoadInfo, NEAR_SINGULAR, ParameterError,
-    ParameterInfo, PumpInfo, Refusal, SectionInfo, Side, SupportInfo, TIPPED, Text, ValveInfo,
+    CylinderInfo, Description, DriveInfo, InputInfo, LARGE_TILT, List, LoadInfo, LoopEquationInfo, LoopJointInfo,
+    NEAR_SINGULAR, ParameterError, ParameterInfo, PumpInfo, Refusal, SectionInfo, Side, SupportInfo, TIPPED, Text,
+    ValveInfo,
 };
 pub use model::{
     CraneModel, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise, OneByOne,

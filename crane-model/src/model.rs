@@ -10,7 +10,7 @@ use nalgebra::{
 };
 
 use crate::{
-    description::{Description, ParameterError},
+    description::{Description, LoopJointInfo, ParameterError},
     rt::lanes::f64x8,
     stress::SectionModuli,
     wrench::{Tension, Wrench},
@@ -112,6 +112,19 @@ pub trait CraneModel<const N: usize>: Send + Sync {
 
     /// `∂ℓ/∂q` of every connector, ℓ its length. `out`: one row per connector.
     fn connector_jacobians(&self, _q: &SVector<f64, N>, _out: &mut [[f64; N]]) {}
+
+    /// The joints that close loops. Forces, accelerations and equilibria of the traits here are those of the open chain; what takes a crane
+    /// on slices closes the loops.
+    fn loop_joints(&self) -> &[LoopJointInfo] {
+        &[]
+    }
+
+    /// Every equation of the loop joints: its gap φ, m or 1, its rate `J q̇`, and `J̇ q̇`, the part of its second rate that does not depend on
+    /// accelerations. `out`: one vector per equation.
+    fn loop_states(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
+
+    /// `J = ∂φ/∂q` of the loop joints. `out`: one row per equation.
+    fn loop_jacobians(&self, _q: &SVector<f64, N>, _out: &mut [[f64; N]]) {}
 
     /// Start and end of the intervals in which winches move smoothly, s. `out`: one pair per interval, connector by connector;
     /// [`ConnectorInfo::pieces`](crate::ConnectorInfo::pieces) is their number.
@@ -391,6 +404,10 @@ pub trait InternalForces<const N: usize>: CraneModel<N> {
     /// What each connector between two bodies contributes to the wrench at each cut while it pulls with 1 N, zero for others; the moments
     /// are in m. `out`: one per cut, connector by connector. A crane without such connectors writes nothing.
     fn connector_wrenches(&self, _q: &SVector<f64, N>, _out: &mut [Wrench]) {}
+
+    /// What each equation of the loop joints contributes to the wrench at each cut while it transmits 1 N or 1 N m. `out`: one per cut,
+    /// equation by equation. A crane without loops writes nothing.
+    fn loop_wrenches(&self, _q: &SVector<f64, N>, _out: &mut [Wrench]) {}
 
     /// Positions of the supports' attachment points in the world frame, m. `out`: one per support.
     fn support_positions(&self, _q: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}

@@ -10,6 +10,7 @@ from crane_spec import CraneSpec
 from cuts import Cut
 from cylinders import Cylinder, pin_of_rocker, turning_axis
 from inertias import read_pseudo_inertia
+from loop_joints import read_loop_joint
 from profiles import read_profile
 from sections import add_sections
 from transforms import classic_dh, modified_dh, place, rotate, rotate_by_vector, translate, translate_along
@@ -161,6 +162,7 @@ class Crane:
     loads: list = field(default_factory=list)
     cylinders: list = field(default_factory=list)
     connectors: list = field(default_factory=list)
+    loop_joints: list = field(default_factory=list)
     points: dict = field(default_factory=dict)
     guess: list = field(default_factory=list)
 
@@ -245,6 +247,8 @@ def read_crane(path):
         crane.connectors.append(read_connector(crane, written, spans))
     for written in spec.get("couplings", []):
         crane.connectors.append(read_coupling(crane, written))
+    for written in spec.get("loop_joints", []):
+        crane.loop_joints.append(read_loop_joint(spec, written, spans, carrier))
     for written in spec.get("points", []):
         crane.points[written["name"]] = read_point(spec, written, spans[written["link"]])
     add_sections(crane, [spans[link["name"]] for link in spec.keys["links"] if "beam" in link or "rope" in link])

@@ -8,6 +8,7 @@ import casadi as ca
 import numpy as np
 
 import cylinders
+import loop_joints
 from contacts import contact
 from limits import limited_drive, slope_at_rest
 
@@ -39,6 +40,7 @@ class Derivations:
             **self.motions(),
             **self.prescribed(),
             **self.internal_forces(),
+            **loop_joints.quantities(crane.loop_joints, crane.q, crane.v),
         }
 
     def rate(self, expression):
@@ -498,7 +500,7 @@ class Derivations:
 
     def sizes(self):
         """How many numbers each quantity has."""
-        own = {name: expression.numel() for name, expression in self.quantities.items() if name not in INTERNAL}
+        own = {name: expression.numel() for name, expression in self.quantities.items() if name not in INTERNAL + LOOPS}
         return own | dict.fromkeys(SOLUTIONS, self.crane.q.numel())
 
     def evaluate(self, states):
@@ -509,6 +511,15 @@ class Derivations:
         values = function(*columns)
         values = {name: value.full().T for name, value in zip(names, values)}
         return values | solutions(values, states.v, list(self.crane.rigid_drives))
+
+    def closed_accelerations(self, values):
+        """Accelerations with closed loops, from the quantities of :meth:`evaluate`: those of generated code are of the open chain."""
+        prescribed, count = list(self.crane.rigid_drives), self.crane.q.numel()
+        square = values["mass_matrix"].reshape(-1, count, count)
+        rows = values["loop_jacobians"].reshape(len(square), -1, count)
+        curvatures = values["loop_states"].reshape(len(square), -1, 3)[:, :, 2]
+        forces = values["bias"] + values["forces"]
+        return loop_joints.closed(square, forces, rows, curvatures, values["forward_dynamics"], prescribed)
 
 
 # Step size of `implicit_solution`, s; that of the program `evaluate`.
@@ -522,6 +533,8 @@ PRESCRIBED = "prescribed_acceleration"
 # The damping in implicit steps, likewise.
 LINEAR_DAMPING = "linear_damping"
 INTERNAL = [SPRINGS, PRESCRIBED, LINEAR_DAMPING]
+# Of joints that close loops; the program `evaluate` calls functions of the open chain.
+LOOPS = ["loop_states", "loop_jacobians"]
 
 
 def solutions(values, v, prescribed):

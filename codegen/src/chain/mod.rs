@@ -11,6 +11,7 @@ mod force;
 mod frame;
 mod input;
 mod load;
+mod loop_joint;
 mod loops;
 mod parameter;
 mod profile;
@@ -29,6 +30,7 @@ pub use force::*;
 pub use frame::{Frame, Vector};
 pub use input::{Input, InputId};
 pub use load::{Load, LoadAxes};
+pub use loop_joint::{Across, LoopEquation, LoopJoint, LoopJointKind, normalised};
 pub use loops::Loops;
 pub use parameter::{Bound, Parameter, Refusal, Relation};
 pub use profile::{Profile, Ramp, Segment};
@@ -80,6 +82,8 @@ pub struct Chain {
     pub cylinders: Vec<Cylinder>,
     /// The pump that supplies the cylinders.
     pub pump: Option<Pump>,
+    /// Joints that close loops.
+    pub loop_joints: Vec<LoopJoint>,
     /// Inputs that are set between steps.
     pub inputs: Vec<Input>,
     /// Rotors that joints drive through gears.

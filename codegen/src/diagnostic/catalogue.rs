@@ -377,6 +377,26 @@ catalogue! {
     E142 data_separators(file, with) "`{file}` has {with}", "expected lines such as `0.5,1.2`",
         "save it as CSV with commas between columns and decimal points; in a spreadsheet, choose English (USA) as its language first";
 
+    // Joints that close loops.
+    /// A joint that closes a loop holds a link.
+    E143 loop_in_the_world(joint) "loop joint `{joint}` holds nothing", "both points are in the world",
+        "write `link:` under `from` or `to`";
+    /// At least one coordinate moves the points of a loop joint against each other.
+    E144 rigid_loop(joint) "loop joint `{joint}` closes no loop", "there is no joint between its points",
+        "attach it to links on both sides of a joint, or to a link and the world";
+    /// At least one coordinate between the points of a loop joint is free to move.
+    E145 prescribed_loop(joint) "loop joint `{joint}` holds what rigid drives move", "all coordinates between its points are prescribed",
+        "give one of these drives a `stiffness`, or leave its joint passive: the loop moves it";
+    /// The axis of a loop joint has a direction.
+    E146 loop_axis(joint) "the axis of loop joint `{joint}` has no direction", "all three numbers are 0",
+        "write a direction in the frame of the link, such as `[0, 1, 0]`";
+    /// The two points of a rod are apart.
+    E147 meeting_rod(joint) "the two points of rod `{joint}` coincide at the guess", "the rod between them has no direction",
+        "write a `guess` at which the rod has about its length; a joint without length is a `ball`";
+    /// Eight cranes per call cannot have loops.
+    E148 ensemble_of_loops() "`ensemble` cannot be combined with loop joints", "eight cranes per call are for open chains",
+        "remove `ensemble`: runs of many cranes then compute them one by one";
+
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.
     W001 modulus(what, subject, given, usual, help) "{what} of {subject} is {given} Pa", "usual: {usual} Pa", "{help}";

@@ -168,6 +168,13 @@ fn common_methods(chain: &Chain) -> TokenStream {
         )
     };
     let inputs = input_methods(chain);
+    let loop_joints = (!chain.loop_joints.is_empty()).then(|| {
+        quote!(
+            fn loop_joints(&self) -> &[LoopJointInfo] {
+                &LOOP_JOINTS
+            }
+        )
+    });
     quote! {
         fn description(&self) -> &Description {
             &DESCRIPTION
@@ -175,6 +182,7 @@ fn common_methods(chain: &Chain) -> TokenStream {
         #get
         #set
         #inputs
+        #loop_joints
     }
 }
 

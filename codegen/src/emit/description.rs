@@ -239,7 +239,8 @@ fn connector_info(chain: &Chain, connector: &Force) -> TokenStream {
     quote!(ConnectorInfo { name: #name, ends: #ends, kind: #kind, is_rope: #is_rope, spanned: [#first, #end], pieces: #pieces })
 }
 
-fn attachment_info(chain: &Chain, end: &Attachment) -> TokenStream {
+/// A point of a body or of the world.
+pub fn attachment_info(chain: &Chain, end: &Attachment) -> TokenStream {
     let defaults = chain.parameter_defaults();
     let position = end.position.iter().map(|x| literal(x.at(&defaults)));
     let body = if let Some(BodyId(body)) = end.body {

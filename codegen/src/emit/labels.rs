@@ -56,6 +56,7 @@ impl<'a> Labels<'a> {
             Shape::Vectors(_) if function.id == FunctionId::CylinderStates => {
                 Some(chain.cylinders[slot / 3].name.clone())
             }
+            Shape::Vectors(_) if function.id == FunctionId::LoopStates => chain.loop_equations().nth(slot / 3),
             Shape::Vectors(_) => Some(chain.points[slot / 3].name.clone()),
             Shape::Pairs(_)
                 if matches!(
@@ -88,6 +89,7 @@ impl<'a> Labels<'a> {
             Shape::Rows { n, .. } if function.id == FunctionId::CylinderJacobians => {
                 Some(chain.cylinders[slot / n].name.clone())
             }
+            Shape::Rows { n, .. } if function.id == FunctionId::LoopJacobians => chain.loop_equations().nth(slot / n),
             Shape::Rows { n, .. } => Some(chain.connectors()[slot / n].name.clone()),
             Shape::Structs(Struct::Tension, _) => Some(chain.connectors()[slot / Struct::Tension.len()].name.clone()),
             Shape::Structs(Struct::SectionModuli, _) => {
@@ -105,6 +107,9 @@ impl<'a> Labels<'a> {
                 Some(match function.id {
                     FunctionId::CylinderWrenches => format!("{} – {cut}", chain.cylinders[place / cuts.len()].name),
                     FunctionId::ConnectorWrenches => format!("{} – {cut}", chain.connectors()[place / cuts.len()].name),
+                    FunctionId::LoopWrenches => {
+                        format!("{} – {cut}", chain.loop_equations().nth(place / cuts.len()).unwrap_or_default())
+                    }
                     _ => cut,
                 })
             }

@@ -24,6 +24,7 @@ mod kinds;
 mod kinematics;
 mod laws;
 mod loads;
+mod loop_joints;
 mod model;
 mod newton_euler;
 mod omissions;

@@ -78,6 +78,8 @@ functions! {
         ConnectorTensions = "connector_tensions",
         ConnectorJacobians = "connector_jacobians",
         WinchPieces = "winch_pieces",
+        LoopStates = "loop_states",
+        LoopJacobians = "loop_jacobians",
         SupportReactions = "support_reactions",
         SupportGaps = "support_gaps",
         CylinderStates = "cylinder_states",
@@ -126,6 +128,7 @@ functions! {
         InternalForces = "internal_forces",
         CylinderWrenches = "cylinder_wrenches",
         ConnectorWrenches = "connector_wrenches",
+        LoopWrenches = "loop_wrenches",
         SupportPositions = "support_positions",
         SectionModuli = "section_moduli",
     }

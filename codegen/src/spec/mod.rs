@@ -11,6 +11,7 @@ mod input;
 mod joint;
 mod link;
 mod load;
+mod loop_joint;
 mod placement;
 mod scalar;
 mod schema;
@@ -28,6 +29,7 @@ pub use input::Input;
 pub use joint::{Bristle, Friction, Stops};
 pub use link::{BaseCoordinate, Body, HangingRope, Joint, JointAxis, Link};
 pub use load::{Axes, Load};
+pub use loop_joint::{Direction, LoopJoint, LoopJointKind, LoopRod, PinAxis, SlideAxis};
 pub use placement::{AxisName, ClassicDh, ModifiedDh, Placement, Transform, Turn};
 pub use scalar::{Angle, Constant, FixedAngle, Number, Scalar, Vector, parse_angle};
 pub use schema::json_schema;
@@ -113,6 +115,8 @@ pub struct Crane {
     pub connectors: Option<Spanned<Vec<Spanned<Connector>>>>,
     /// Coordinates that follow others: stages of telescopes, gears.
     pub couplings: Option<Spanned<Vec<Spanned<Coupling>>>>,
+    /// Joints that close loops of links.
+    pub loop_joints: Option<Spanned<Vec<Spanned<LoopJoint>>>>,
     /// Hydraulic cylinders of driven joints, by their pins.
     pub cylinders: Option<Spanned<Vec<Spanned<Cylinder>>>>,
     /// The pump that supplies the cylinders.

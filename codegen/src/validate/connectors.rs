@@ -18,7 +18,8 @@ impl<'a> Check<'a> {
             if !name.is_empty() {
                 self.register_connector(&name, connector.name.span, cylinders);
             }
-            let [from, to] = [&connector.from, &connector.to].map(|end| self.attachment(end, &name));
+            let [from, to] =
+                [&connector.from, &connector.to].map(|end| self.attachment(end, &format!("connector `{name}`")));
             let law = connector.law.value.as_ref().map(|law| self.connector_law(law, connector.law.span, &name));
             let (Some(from), Some(to), Some(law)) = (from, to, law) else { continue };
             if self.reach(&from) == self.reach(&to) {
@@ -85,16 +86,17 @@ impl<'a> Check<'a> {
         }
     }
 
-    fn attachment(&mut self, given: &Spanned<spec::Attachment>, name: &str) -> Option<Attachment> {
+    /// A point of an element, which `what` names.
+    pub(super) fn attachment(&mut self, given: &Spanned<spec::Attachment>, what: &str) -> Option<Attachment> {
         let end = given.value.as_ref()?;
-        let at = self.vector(&end.at, &format!("an end of connector `{name}`"), "m", Limit::Any);
+        let at = self.vector(&end.at, &format!("an end of {what}"), "m", Limit::Any);
         let Some(link) = &end.link else { return Some(Attachment { body: None, position: at }) };
         let (body, position) = self.attach(link, at)?;
         Some(Attachment { body: Some(body), position })
     }
 
     /// How many coordinates move an end. After a mistake, the body of the end may be missing.
-    fn reach(&self, end: &Attachment) -> usize {
+    pub(super) fn reach(&self, end: &Attachment) -> usize {
         end.body.map_or(0, |BodyId(body)| {
             let before = self.bodies.iter().take(body + 1);
             before.flat_map(|body| &body.path).map(|step| step.coordinates().len()).sum()

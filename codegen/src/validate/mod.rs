@@ -14,6 +14,7 @@ mod joints;
 mod limits;
 mod links;
 mod loads;
+mod loop_joints;
 mod mass;
 mod names;
 mod numbers;
@@ -73,6 +74,7 @@ pub fn check_with(spec: &CraneSpec, source: &SourceFile, set: &[(&str, f64)]) ->
         // The mass matrix exists only if there are no other mistakes.
         check.regular(&chain, &spec.crane);
         check.connectors_apart(&chain, &spec.crane);
+        check.loops_move(&mut chain, &spec.crane);
         check.keep_masses(&mut chain);
     }
     if !check.mistakes.is_empty() {
@@ -198,8 +200,9 @@ impl<'a> Check<'a> {
         let pump = self.pump(crane);
         self.make_drives_hydraulic(crane, &cylinders, pump.as_ref(), &mut drives);
         let connectors = self.connectors(crane, &cylinders);
+        let loop_joints = self.loop_joints(crane, &cylinders, &connectors);
         rotors.extend(self.rotors(crane, &drives));
-        self.beam_sections(&loads, &cylinders, &connectors);
+        self.beam_sections(&loads, &cylinders, &connectors, &loop_joints);
         let points = self.points(crane, &supports);
         let guess = self.guess(crane, &drives, &connectors);
         let run = self.run(crane.run.as_ref());
@@ -224,6 +227,7 @@ impl<'a> Check<'a> {
             loads,
             cylinders,
             pump,
+            loop_joints,
             inputs: std::mem::take(&mut self.inputs),
             rotors,
             points,

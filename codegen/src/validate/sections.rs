@@ -4,7 +4,9 @@
 //! at both ends of the beam and where each of its elements begins.
 
 use super::Check;
-use crate::chain::{Beam, BodyId, Cylinder, Force, Inside, Load, Moduli, Outline, Section, Side, Value};
+use crate::chain::{
+    Beam, BodyId, Cylinder, Force, Inside, Load, LoopJoint, Moduli, Outline, Section, Side, Value,
+};
 use crate::expand::beam::Distribution;
 
 /// Places of an element that are closer to each other than this fraction of its beam are one place.
@@ -36,11 +38,17 @@ impl Check<'_> {
     }
 
     /// Finds the sections of all beams.
-    pub(super) fn beam_sections(&mut self, loads: &[Load], cylinders: &[Cylinder], connectors: &[Force]) {
+    pub(super) fn beam_sections(
+        &mut self,
+        loads: &[Load],
+        cylinders: &[Cylinder],
+        connectors: &[Force],
+        loop_joints: &[LoopJoint],
+    ) {
         if !self.mistakes.is_empty() {
             return;
         }
-        let pins = pins(loads, cylinders, connectors);
+        let pins = pins(loads, cylinders, connectors, loop_joints);
         let mut beams = std::mem::take(&mut self.beams);
         for (beam, distribution) in beams.iter_mut().zip(std::mem::take(&mut self.distributions)) {
             beam.sections = self.sections_of(&beam.link, distribution.as_ref(), &pins);
@@ -112,7 +120,7 @@ struct Pin {
 }
 
 /// All places where forces act on bodies.
-fn pins(loads: &[Load], cylinders: &[Cylinder], connectors: &[Force]) -> Vec<Pin> {
+fn pins(loads: &[Load], cylinders: &[Cylinder], connectors: &[Force], loop_joints: &[LoopJoint]) -> Vec<Pin> {
     let pin =
         |BodyId(body): BodyId, position: &[Value; 3], what: String| Pin { body, along: position[0].clone(), what };
     let mut pins: Vec<Pin> = Vec::new();
@@ -125,6 +133,11 @@ fn pins(loads: &[Load], cylinders: &[Cylinder], connectors: &[Force]) -> Vec<Pin
     for connector in connectors {
         for end in connector.strain.ends().into_iter().flatten() {
             pins.extend(end.body.map(|body| pin(body, &end.position, format!("attachment of {}", connector.name))));
+        }
+    }
+    for joint in loop_joints {
+        for end in &joint.ends {
+            pins.extend(end.body.map(|body| pin(body, &end.position, format!("joint {}", joint.name))));
         }
     }
     pins

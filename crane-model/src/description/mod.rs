@@ -1,9 +1,11 @@
 //! Metadata of a crane.
 
+mod loop_joint;
 mod parameter;
 mod poses;
 mod shared;
 
+pub use loop_joint::{LoopEquationInfo, LoopJointInfo};
 pub use parameter::{Bound, ParameterError, ParameterInfo, Refusal};
 pub use poses::{LARGE_TILT, NEAR_SINGULAR, TIPPED};
 pub use shared::{List, Text};

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     CraneModel, Description, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise,
-    ParameterError, SectionModuli, Statics, Tension, TransformDerivatives, Wrench, rt::lanes::f64x8,
+    LoopJointInfo, ParameterError, SectionModuli, Statics, Tension, TransformDerivatives, Wrench, rt::lanes::f64x8,
 };
 
 /// A crane compiled with every analysis except derivatives.
@@ -103,6 +103,18 @@ impl<const N: usize, H: Deref<Target: CraneModel<N>> + Send + Sync> DynModel for
 
     fn connector_jacobians(&self, q: &[f64], out: &mut [f64]) {
         self.0.connector_jacobians(&vector(q), out.as_chunks_mut().0);
+    }
+
+    fn loop_joints(&self) -> &[LoopJointInfo] {
+        self.0.loop_joints()
+    }
+
+    fn loop_states(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]) {
+        self.0.loop_states(&vector(q), &vector(v), out);
+    }
+
+    fn loop_jacobians(&self, q: &[f64], out: &mut [f64]) {
+        self.0.loop_jacobians(&vector(q), out.as_chunks_mut().0);
     }
 
     fn winch_pieces(&self, out: &mut [[f64; 2]]) {
@@ -314,6 +326,10 @@ impl<const N: usize, H: Deref<Target: InternalForces<N>> + Send + Sync> DynInter
 
     fn connector_wrenches(&self, q: &[f64], out: &mut [Wrench]) {
         self.0.connector_wrenches(&vector(q), out);
+    }
+
+    fn loop_wrenches(&self, q: &[f64], out: &mut [Wrench]) {
+        self.0.loop_wrenches(&vector(q), out);
     }
 
     fn support_positions(&self, q: &[f64], out: &mut [Vector3<f64>]) {

@@ -32,7 +32,7 @@ pub(crate) use instance::Block;
 pub use instance::{Crane, Instance, boxed};
 pub use quantities::Energies;
 
-use crate::{Description, ParameterError, SectionModuli, Tension, Wrench, rt::lanes::f64x8};
+use crate::{Description, LoopJointInfo, ParameterError, SectionModuli, Tension, Wrench, rt::lanes::f64x8};
 
 /// Poses, forces and potential energy of a crane: [`CraneModel`](crate::CraneModel) on slices.
 pub trait DynModel: Send + Sync {
@@ -83,6 +83,15 @@ pub trait DynModel: Send + Sync {
 
     /// `∂ℓ/∂q` of every connector, row by row.
     fn connector_jacobians(&self, q: &[f64], out: &mut [f64]);
+
+    /// The joints that close loops.
+    fn loop_joints(&self) -> &[LoopJointInfo];
+
+    /// φ, J q̇ and J̇ q̇ of every equation of the loop joints.
+    fn loop_states(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]);
+
+    /// `J = ∂φ/∂q` of the loop joints, row by row.
+    fn loop_jacobians(&self, q: &[f64], out: &mut [f64]);
 
     /// Beginning and end of the intervals in which winches move smoothly, s; one pair per interval, connector by connector.
     fn winch_pieces(&self, out: &mut [[f64; 2]]);
@@ -146,6 +155,11 @@ pub trait DynModel: Send + Sync {
 
     /// Power that all dampers dissipate, W.
     fn dissipation(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
+
+    /// Number of equations of all loop joints.
+    fn loop_equations(&self) -> usize {
+        self.loop_joints().iter().map(|joint| joint.equations.len()).sum()
+    }
 
     /// Number of coordinates.
     fn size(&self) -> usize {
@@ -253,6 +267,9 @@ pub trait DynInternalForces: DynModel {
     /// What each connector between two bodies contributes at each cut while it pulls with 1 N, connector by connector; nothing is written
     /// for a crane without such connectors.
     fn connector_wrenches(&self, q: &[f64], out: &mut [Wrench]);
+
+    /// What each equation of the loop joints adds to the wrench at each cut while it transmits 1 N or 1 N m, equation by equation.
+    fn loop_wrenches(&self, q: &[f64], out: &mut [Wrench]);
 
     /// Positions of the supports' attachment points, m.
     fn support_positions(&self, q: &[f64], out: &mut [Vector3<f64>]);

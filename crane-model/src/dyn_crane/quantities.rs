@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector, Matrix4, Vector3};
 
 use super::{DynCrane, DynDerivatives, DynImplicit, DynModel};
-use crate::{CoordinateKind, CoordinateRole, CylinderInfo, Description, SectionModuli, Tension, Wrench, wrench};
+use crate::{CoordinateKind, CoordinateRole, Description, SectionModuli, Tension};
 
 /// Energies of a crane, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -100,34 +100,6 @@ impl dyn DynCrane + '_ {
         numbers(self, |out| self.bias(q, v, out)).into()
     }
 
-    /// Accelerations q̈, m/s² and rad/s².
-    pub fn accelerations_at(&self, t: f64, q: &[f64], v: &[f64]) -> DVector<f64> {
-        numbers(self, |out| self.forward_dynamics(t, q, v, out)).into()
-    }
-
-    /// Torques and forces of the drives, in their order: N m and N.
-    pub fn drive_efforts_at(&self, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
-        let forces = numbers(self, |out| self.drive_forces(t, q, v, out));
-        self.description().drives.iter().map(|drive| forces[drive.coordinate]).collect()
-    }
-
-    /// Torques and forces of the drives that hold the crane at rest at t = 0, including rigid drives: N m and N.
-    pub fn drive_efforts_at_rest(&self, q: &[f64]) -> Vec<f64> {
-        self.efforts_at_rest(0.0, &self.drive_positions_at(0.0), q)
-    }
-
-    /// Torques and forces of the drives that hold the crane at rest with the drives at given positions, one per drive, and loads and winches
-    /// as at time `t`: N m and N.
-    pub fn drive_efforts_holding(&self, t: f64, positions: &[f64], q: &[f64]) -> Vec<f64> {
-        self.efforts_at_rest(t, &self.description().by_coordinate(positions), q)
-    }
-
-    /// With positions by coordinate.
-    fn efforts_at_rest(&self, t: f64, positions: &[f64], q: &[f64]) -> Vec<f64> {
-        let forces = numbers(self, |out| self.drive_forces_at_rest(t, q, positions, out));
-        self.description().drives.iter().map(|drive| forces[drive.coordinate]).collect()
-    }
-
     /// Maximum efforts of the drives, N m and N; `None` where there is no limit.
     pub fn drive_limits_at(&self) -> Vec<Option<f64>> {
         let mut out = vec![[0.0; 2]; self.description().drives.len()];
@@ -189,52 +161,6 @@ impl dyn DynCrane + '_ {
         let mut out = vec![[0.0; 2]; self.description().supports.len()];
         self.support_gaps(q, &vec![0.0; q.len()], &mut out);
         out.into_iter().map(|[gap, _]| gap).collect()
-    }
-
-    /// The wrench that the part beyond each cut exerts on the part before it, cut by cut: N and N m. Cylinders with a valve push with
-    /// the force that the accelerations require, without friction of bristles, whose states are not known here.
-    pub fn internal_forces_at(&self, t: f64, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
-        let pushes = if self.description().has_valves() { self.pushes_required(t, q, v, a) } else { Vec::new() };
-        self.internal_forces_with(t, [q, v, a], &pushes)
-    }
-
-    /// With cylinders that push with given forces, N; `pushes` is empty if they exert none.
-    pub(crate) fn internal_forces_with(&self, t: f64, [q, v, a]: [&[f64]; 3], pushes: &[f64]) -> Vec<Wrench> {
-        let mut out = vec![Wrench::ZERO; self.description().cuts().len()];
-        self.internal_forces(t, q, v, a, &mut out);
-        let mut of_cylinders = vec![Wrench::ZERO; pushes.len() * out.len()];
-        self.cylinder_wrenches(q, &mut of_cylinders);
-        for (push, own) in pushes.iter().zip(of_cylinders.chunks_exact(out.len())) {
-            wrench::add(&mut out, *push, own);
-        }
-        out
-    }
-
-    /// Forces with which cylinders with a valve push so that the crane has given accelerations, N; 0 for others.
-    fn pushes_required(&self, t: f64, q: &[f64], v: &[f64], a: &[f64]) -> Vec<f64> {
-        let Description { drives, cylinders, .. } = self.description();
-        let inertia = self.mass_matrix_at(q) * DVector::from_column_slice(a);
-        let (bias, forces) = (self.bias_at(q, v), numbers(self, |out| self.forces(t, q, v, out)));
-        let mut states = vec![Vector3::zeros(); cylinders.len()];
-        self.cylinder_states(q, v, &mut states);
-        let push = |(cylinder, state): (&CylinderInfo, &Vector3<f64>)| {
-            let j = drives[cylinder.drive].coordinate;
-            if cylinder.valve.is_some() { (inertia[j] - bias[j] - forces[j]) / state.z } else { 0.0 }
-        };
-        cylinders.iter().zip(&states).map(push).collect()
-    }
-
-    /// The wrench at each cut without forces that are internal to the crane, those of connectors between two bodies and of cylinders: only
-    /// inertia, weight and what acts from outside, N and N m.
-    pub(crate) fn external_forces_at(&self, t: f64, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
-        let mut out = self.internal_forces_with(t, [q, v, a], &[]);
-        let tensions = self.connector_tensions_at(t, q, v);
-        let mut of_connectors = vec![Wrench::ZERO; tensions.len() * out.len()];
-        self.connector_wrenches(q, &mut of_connectors);
-        for (tension, own) in tensions.iter().zip(of_connectors.chunks_exact(out.len())) {
-            wrench::add(&mut out, -tension.force, own);
-        }
-        out
     }
 
     /// Positions of the supports' attachment points, m.

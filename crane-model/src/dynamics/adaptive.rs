@@ -90,14 +90,24 @@ impl<'a, F: Formula> Adaptive<'a, F> {
 }
 
 impl<F: Formula> Adaptive<'_, F> {
-    /// Moves to the end of a step.
-    fn accept(&mut self, reached: f64) {
+    /// Moves to the end of a step, onto the loops of the crane.
+    fn accept(&mut self, reached: f64) -> Result<(), Stopped> {
         let n = self.equations.n;
+        // The error of the step is known; its storage holds the change until the next one.
+        let Self { equations, step, .. } = self;
+        let length = step.length;
+        self.norm.note(&step.end, &step.error);
+        if let Err(open) = equations.project_end(reached, &mut step.end, &mut step.error) {
+            let q = &self.motion[..n];
+            let description = equations.crane.description();
+            let context = StepContext { method: F::METHOD, t: reached, h: length, q, description };
+            return Err(context.open(equations.crane, open));
+        }
         self.motion.copy_from_slice(&self.step.end);
         self.equations.make_absolute(reached, &mut self.motion);
-        self.norm.note(&self.step.end, &self.step.error);
         let (q, v) = self.motion[..2 * n].split_at(n);
         self.norm.note_rounding(q, v);
+        Ok(())
     }
 }
 
@@ -136,7 +146,7 @@ impl<F: Formula + Send> Stepper for Adaptive<'_, F> {
                 if change < f64::INFINITY && self.switches.is_of_limit() {
                     self.next = self.next.min(AFRESH);
                 }
-                self.accept(reached);
+                self.accept(reached)?;
                 return Ok(reached);
             }
             self.rejections += 1;

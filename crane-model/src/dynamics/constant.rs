@@ -178,6 +178,10 @@ impl Stepper for Rk4<'_> {
             let (pose, rest) = motion.split_at_mut(n);
             equations.crane.prescribe(t + h, pose, &mut rest[..n]);
         }
+        let closed = if advanced.is_ok() { equations.project(motion) } else { Ok(()) };
+        if let Err(open) = closed {
+            return Err(self.context(t + h, h).open(self.equations.crane, open));
+        }
         if let Err(NotFinite) = advanced {
             let context = self.context(t, h);
             return Err(self.rough(&context, |context| context.failed(Cause::Growth, self.equations.crane)));

@@ -5,7 +5,11 @@
 //! agree; where already the midpoint agrees with Gauss's rule, that is enough. A. S. Kronrod, Nodes and Weights of Quadrature Formulas,
 //! Consultants Bureau 1965.
 
-use crate::{dyn_crane::DynDynamics, force_states::ForceStates, stateful_force::StateAt};
+use crate::{
+    dyn_crane::DynDynamics,
+    force_states::{ForceStates, loops_on_rigid_drives},
+    stateful_force::StateAt,
+};
 
 /// Integrals along an audited motion: work of the drives and winches, energy that the dampers dissipated, work of the loads.
 pub(super) const INTEGRALS: usize = 3;
@@ -95,6 +99,8 @@ impl<'a> EnergyIntegrals<'a> {
         let (q, rest) = motion.split_at(crane.size());
         let (v, x) = rest.split_at(q.len());
         let work = crane.drive_power(t, q, v) + crane.winch_power(t, q, v);
+        let of_loops = loops_on_rigid_drives(*crane, &StateAt { t, q, v, x });
+        let work = work + of_loops.iter().map(|(j, effort)| effort * v[*j]).sum::<f64>();
         let mut powers = [work, crane.dissipation(t, q, v), crane.load_power(t, q, v)];
         if !force_states.is_empty() {
             force_states.evaluate(*crane, &StateAt { t, q, v, x }, rates, None);

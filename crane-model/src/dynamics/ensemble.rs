@@ -148,6 +148,7 @@ impl<'a> Batch<'a> {
     ) -> Self {
         let description = models[0].description();
         assert!(!description.has_force_states(), "states of forces have no lanes");
+        assert!(models.iter().all(|model| model.loop_joints().is_empty()), "closed loops have no lanes");
         let (n, vectors) = (description.coordinates.len(), lanes / LANES);
         let prescribes = description.coordinates.iter().any(|info| info.role == CoordinateRole::Prescribed);
         let mut start = [(); 2].map(|()| vec![f64x8::splat(0.0); n * vectors]);

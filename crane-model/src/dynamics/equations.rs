@@ -4,7 +4,12 @@ use super::{
     references::References,
     state::{NotFinite, finite},
 };
-use crate::{dyn_crane::DynDynamics, force_states::ForceStates, stateful_force::StateAt};
+use crate::{
+    dyn_crane::DynDynamics,
+    force_states::ForceStates,
+    loop_joints::{Loops, Open},
+    stateful_force::StateAt,
+};
 
 /// A crane, the references of its motions, and the number of evaluations of its accelerations.
 pub(super) struct Equations<'a> {
@@ -18,6 +23,7 @@ pub(super) struct Equations<'a> {
     /// Pose and rates of the last evaluated motion.
     state: Vec<f64>,
     force_states: ForceStates,
+    loops: Loops,
     /// Number of their states.
     states: usize,
 }
@@ -28,7 +34,8 @@ impl<'a> Equations<'a> {
         let n = crane.size();
         let force_states = ForceStates::new(crane.description());
         let states = force_states.len();
-        Self { crane, n, references, evaluations: 0, state: vec![0.0; 2 * n], force_states, states }
+        let loops = Loops::new(crane);
+        Self { crane, n, references, evaluations: 0, state: vec![0.0; 2 * n], force_states, loops, states }
     }
 
     /// The number of components of a motion: coordinates, rates and states of forces.
@@ -39,6 +46,11 @@ impl<'a> Equations<'a> {
     /// Number of states of forces.
     pub fn states(&self) -> usize {
         self.states
+    }
+
+    /// Whether joints close loops.
+    pub fn has_loops(&self) -> bool {
+        !self.loops.is_empty()
     }
 
     /// The states of forces in a motion.
@@ -67,6 +79,7 @@ impl<'a> Equations<'a> {
     pub fn accelerate(&mut self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]) -> Result<(), NotFinite> {
         self.evaluations += 1;
         self.crane.forward_dynamics(t, q, v, out);
+        self.loops.accelerate(self.crane, q, v, out);
         finite(out)
     }
 
@@ -84,7 +97,31 @@ impl<'a> Equations<'a> {
             self.force_states.accelerate(self.crane, &StateAt { t, q, v, x: &motion[2 * n..] }, rest, accelerations);
             finite(rest)?;
         }
+        self.loops.accelerate(self.crane, q, v, accelerations);
         self.references.subtract_accelerations(self.crane, t, accelerations);
         finite(accelerations)
+    }
+
+    /// Moves a motion, given in full, onto the loops of the crane.
+    pub fn project(&mut self, motion: &mut [f64]) -> Result<(), Open> {
+        let (q, rest) = motion.split_at_mut(self.n);
+        self.loops.project(self.crane, q, &mut rest[..self.n])
+    }
+
+    /// Moves the end of a step, given relative to the references, onto the loops of the crane. `moved` receives the change, if there is any.
+    pub fn project_end(&mut self, t: f64, end: &mut [f64], moved: &mut [f64]) -> Result<bool, Open> {
+        if self.loops.is_empty() {
+            return Ok(false);
+        }
+        moved.copy_from_slice(end);
+        self.make_absolute(t, moved);
+        self.state.copy_from_slice(&moved[..2 * self.n]);
+        self.project(moved)?;
+        for (moved, before) in moved.iter_mut().zip(&self.state) {
+            *moved -= before;
+        }
+        moved[2 * self.n..].fill(0.0);
+        end.iter_mut().zip(&*moved).for_each(|(end, moved)| *end += *moved);
+        Ok(true)
     }
 }

@@ -17,6 +17,7 @@ use super::{
 use crate::{
     dyn_crane::{DynDynamics, DynImplicit, DynModel},
     force_states::ForceStates,
+    loop_joints::{Loops, Open},
 };
 
 /// Steps and rejections after which an adaptive method's pace is measured: a fraction of a second of computing, and many times as many steps
@@ -39,6 +40,8 @@ pub struct Integration<'a> {
     /// Time and motion of the last result.
     time: f64,
     motion: Vec<f64>,
+    /// The loops of the crane, onto which interpolated results are moved.
+    loops: Loops,
     /// Work and dissipation up to there, in an audited run.
     energy: Option<EnergyIntegrals<'a>>,
 }
@@ -87,6 +90,11 @@ impl<'a> Integration<'a> {
         let mut motion = [start.q.as_slice(), &start.v, &states].concat();
         let (pose, rates) = motion[..2 * n].split_at_mut(n);
         crane.prescribe(begin, pose, rates);
+        let mut loops = Loops::new(crane);
+        close(crane, &mut loops, pose, rates).map_err(|open| {
+            StepContext { method, t: begin, h: settings.step, q: pose, description: crane.description() }
+                .open(crane, open)
+        })?;
         stepper.start(begin, &motion)?;
         let end = begin + settings.duration;
         let stops = Stops::between([crane as &dyn DynModel], begin, end);
@@ -103,6 +111,7 @@ impl<'a> Integration<'a> {
             paced: (0, begin),
             time: begin,
             motion,
+            loops,
             energy,
         })
     }
@@ -137,6 +146,12 @@ impl<'a> Integration<'a> {
         }
         self.integrate_powers(result);
         self.stepper.interpolate(result, &mut self.motion);
+        let (q, rest) = self.motion.split_at_mut(n);
+        if let Err(open) = self.loops.project(self.crane, q, &mut rest[..n]) {
+            let context =
+                StepContext { method: self.settings.method, t: result, h: self.settings.step, q, description };
+            return Err(context.open(self.crane, open));
+        }
         self.time = result;
         Ok(ControlFlow::Continue(()))
     }
@@ -181,6 +196,12 @@ impl<'a> Integration<'a> {
         };
         Run { statistics, step, time: self.time, efforts: self.stepper.efforts() }
     }
+}
+
+/// Moves a start onto the loops of a crane, by the smallest change in the metric of its mass matrix.
+fn close(crane: &dyn DynDynamics, loops: &mut Loops, q: &mut [f64], v: &mut [f64]) -> Result<(), Open> {
+    loops.assemble(crane, q, &mut |q, r, x| crane.solve_mass(q, r, x))?;
+    loops.project(crane, q, v)
 }
 
 /// Checks that the mass matrix at a pose is positive definite: the O(n) recursion divides by inertias one by one and would

@@ -4,8 +4,8 @@ use nalgebra::SVector;
 
 use crate::Dynamics;
 
-/// An acceleration is not finite: a body has no inertia, or the pose contains NaN. Or forces have states of their own, which single
-/// steps do not support: an `Integration` does.
+/// An acceleration is not finite: a body has no inertia, or the pose contains NaN. Or forces have states of their own, or
+/// joints close loops, which single steps do not support: an `Integration` does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NotFinite;
 
@@ -36,7 +36,7 @@ pub fn acceleration<const N: usize, C: Dynamics<N>>(
     q: &SVector<f64, N>,
     v: &SVector<f64, N>,
 ) -> Result<SVector<f64, N>, NotFinite> {
-    if crane.description().has_force_states() {
+    if crane.description().has_force_states() || !crane.loop_joints().is_empty() {
         return Err(NotFinite);
     }
     let a = crane.forward_dynamics(t, q, v);

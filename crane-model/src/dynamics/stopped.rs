@@ -5,7 +5,11 @@ use std::{error::Error, fmt};
 use nalgebra::DMatrix;
 
 use super::Method;
-use crate::{Description, Text, dyn_crane::DynDynamics};
+use crate::{
+    Description, Text,
+    dyn_crane::DynDynamics,
+    loop_joints::{Gap, Open},
+};
 
 /// Why a run stopped early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,6 +24,8 @@ pub enum Cause {
     Steps,
     /// The mass matrix is not positive definite: a coordinate moves nothing that has inertia.
     MassMatrix,
+    /// A loop does not close: [`Stopped::coordinate`] is its joint and the direction, [`Stopped::value`] the gap.
+    OpenLoop,
 }
 
 /// A run that stopped early, and where.
@@ -31,7 +37,7 @@ pub struct Stopped {
     pub method: Method,
     /// When, s.
     pub time: f64,
-    /// Coordinate with the largest value, or that moves no inertia.
+    /// Coordinate with the largest value, or that moves no inertia; or the joint of a loop that is open.
     pub coordinate: Text,
     /// Its value.
     pub value: f64,
@@ -59,6 +65,13 @@ impl StepContext<'_> {
         let (name, unit) = info.map_or((Text::Static(""), ""), |info| (info.name.clone(), info.kind.unit()));
         let value = self.q.get(coordinate).copied().unwrap_or(f64::NAN);
         Stopped { cause, method: self.method, time: self.t, coordinate: name, value, unit, step: self.h }
+    }
+
+    /// A run that stopped because a loop does not close.
+    pub fn open(&self, crane: &dyn DynDynamics, open: Open) -> Stopped {
+        let Gap { joint, direction, gap, unit } = Gap::of(crane, open);
+        let along = if direction.is_empty() { joint } else { format!("{joint} along {direction}") };
+        Stopped { coordinate: along.into(), value: gap, unit, ..self.stopped(Cause::OpenLoop, 0) }
     }
 
     /// Like [`stopped`](Self::stopped), for the coordinate with the largest value: the first that is not finite, otherwise the largest.
@@ -110,6 +123,11 @@ impl Stopped {
                 self.step
             ),
             Cause::Steps => "use a longer step or a shorter duration; the setting `most_steps` is the limit".to_owned(),
+            Cause::OpenLoop => format!(
+                "check the points and axes of {} and the pose at which the run starts; a loop that closes in a plane but not in space has \
+                 joints that are not parallel: hold it with a `ball` or a `slide` instead of a `pin`, or with fewer joints",
+                self.coordinate
+            ),
             Cause::MassMatrix => format!(
                 "give the links that {} moves a `mass` above zero, in kg, and an `inertia`, in kg m², if it only rotates them, or \
                  write `joint: fixed`; a parameter may have been set to zero",
@@ -132,6 +150,10 @@ impl fmt::Display for Stopped {
             }
             Cause::Steps => {
                 write!(f, "the run takes more than its maximum number of steps; it stopped at t = {time:.6} s")
+            }
+            Cause::OpenLoop => {
+                let (size, unit) = if *unit == "m" { (value * 1e3, "mm") } else { (value.to_degrees(), "°") };
+                write!(f, "a loop does not close at t = {time:.6} s: joint {coordinate} is open by {size:.3} {unit}")
             }
             Cause::MassMatrix => write!(
                 f,

@@ -10,7 +10,7 @@
 //! ```
 //!
 //! The contribution of connectors, `Σ Jᵀ (c d + c² k) J`, has low rank: [`ConnectorUpdate`]. So has that of forces with
-//! states of their own, which are eliminated: [`ForceStateUpdate`].
+//! states of their own, which are eliminated: [`ForceStateUpdate`]. Loop joints are connectors without compliance: [`Loops`].
 
 use nalgebra::Matrix6;
 
@@ -21,6 +21,7 @@ use super::{
 use crate::{
     Description,
     dyn_crane::{DynImplicit, DynSystem},
+    loop_joints::Loops,
     stateful_force::StateAt,
 };
 
@@ -41,6 +42,8 @@ pub(super) struct System<'a> {
     connectors: ConnectorUpdate,
     /// Forces with states.
     force_states: ForceStateUpdate,
+    /// Loop joints: rows J of the bordered system, without compliance.
+    loops: Loops,
     /// c, s.
     c: f64,
     added_inertia: Vec<f64>,
@@ -70,6 +73,7 @@ impl<'a> System<'a> {
             base: [Matrix6::zeros(); 2],
             connectors: ConnectorUpdate::new(crane),
             force_states: ForceStateUpdate::new(crane),
+            loops: Loops::new(crane),
             c: f64::NAN,
             added_inertia: zeros(),
             right: zeros(),
@@ -105,7 +109,23 @@ impl<'a> System<'a> {
             factors.solve(right, solution);
             connectors.correct(solution);
         });
+        self.close(q, v);
         self.factorisations += 1;
+    }
+
+    /// Adds the loop joints: increments of the rates obey `J z = 0` besides the equations of the open chain, so that the system is bordered by J.
+    fn close(&mut self, q: &[f64], v: &[f64]) {
+        let Self { crane, factors, connectors, force_states, loops, .. } = self;
+        if loops.is_empty() {
+            return;
+        }
+        loops.evaluate(*crane, q, v);
+        loops.choose();
+        loops.factorise(&mut |right, solution| {
+            factors.solve(right, solution);
+            connectors.correct(solution);
+            force_states.correct(solution);
+        });
     }
 
     /// Whether at a state some law acts that did not act where the system was factorised, or vice versa: a stiffness or a damping
@@ -148,6 +168,7 @@ impl<'a> System<'a> {
         self.factors.solve(&self.right, &mut self.solution);
         self.connectors.correct(&mut self.solution);
         self.force_states.correct(&mut self.solution);
+        self.loops.correct(&mut self.solution, false);
         let (of_q, rest) = u.split_at_mut(n);
         let (of_v, of_x) = rest.split_at_mut(n);
         for i in 0..n {

@@ -4,13 +4,16 @@ use nalgebra::{ComplexField, DMatrix, DVector, DVectorView};
 
 use super::NoModes;
 use crate::{
-    Linearisation,
-    dyn_crane::{DynLinearise, DynLineariseMotion},
+    CoordinateRole, Linearisation,
+    dyn_crane::{DynCrane, DynLinearise, DynLineariseMotion},
+    loop_joints::{closed_motions, geometric_stiffness, required},
     model::state_blocks,
 };
 
 /// A coordinate is dominant in a mode if its share of the energy is at least this fraction of the largest one.
 const SHARE: f64 = 0.2;
+/// How good it is that a loop determines a coordinate with a drive or a spring, relative to one without.
+const DRIVEN: f64 = 1e-3;
 
 /// Coefficients of `A δq̈ + D δq̇ + K δq = 0`, of the coordinates that can move. About a pose at rest K and D are symmetric.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +28,8 @@ pub struct SmallMotions {
     pub unknowns: Vec<usize>,
     /// Number of coordinates.
     pub size: usize,
+    /// With loops: the motion of all coordinates per unit of each unknown; without, only the unknowns move.
+    pub basis: Option<DMatrix<f64>>,
 }
 
 /// For all coordinates; a prescribed one oscillates separately at 1 rad/s, unless removed by [`without`](SmallMotions::without).
@@ -33,7 +38,7 @@ impl<const N: usize> From<&Linearisation<N>> for SmallMotions {
         let Linearisation { mass, stiffness, damping } = linearisation;
         let dynamic = |matrix: &nalgebra::SMatrix<f64, N, N>| DMatrix::from_column_slice(N, N, matrix.as_slice());
         let (mass, stiffness, damping) = (dynamic(mass), dynamic(stiffness), dynamic(damping));
-        Self { mass, stiffness, damping, unknowns: (0..N).collect(), size: N }
+        Self { mass, stiffness, damping, unknowns: (0..N).collect(), size: N, basis: None }
     }
 }
 
@@ -43,7 +48,7 @@ impl SmallMotions {
         let zeros = || DMatrix::zeros(q.len(), q.len());
         let (mut mass, mut stiffness, mut damping) = (zeros(), zeros(), zeros());
         crane.linearise(q, mass.as_mut_slice(), stiffness.as_mut_slice(), damping.as_mut_slice());
-        let all = Self { mass, stiffness, damping, unknowns: (0..q.len()).collect(), size: q.len() };
+        let all = Self { mass, stiffness, damping, unknowns: (0..q.len()).collect(), size: q.len(), basis: None };
         all.without(&crane.description().prescribed())
     }
 
@@ -53,7 +58,7 @@ impl SmallMotions {
         let zeros = || DMatrix::zeros(size, size);
         let (mut mass, mut stiffness, mut damping) = (zeros(), zeros(), zeros());
         crane.linearise_motion(t, motion, mass.as_mut_slice(), stiffness.as_mut_slice(), damping.as_mut_slice());
-        let all = Self { mass, stiffness, damping, unknowns: (0..size).collect(), size };
+        let all = Self { mass, stiffness, damping, unknowns: (0..size).collect(), size, basis: None };
         all.without(&crane.description().prescribed())
     }
 
@@ -81,11 +86,49 @@ impl SmallMotions {
             damping: of(&self.damping),
             unknowns: kept.iter().map(|i| self.unknowns[*i]).collect(),
             size: self.size,
+            basis: self.basis,
+        }
+    }
+
+    /// The coefficients of the motions about the pose `q` that leave the loops of a crane closed: on a basis Z of the null space of J, `Zᵀ A Z`,
+    /// `Zᵀ D Z` and `Zᵀ (K + Σ λ_i ∂²φ_i/∂q²) Z`. Coordinates without drives and springs are determined by the others.
+    pub(crate) fn with_closed_loops(self, crane: &dyn DynCrane, q: &[f64]) -> Self {
+        if crane.loop_joints().is_empty() {
+            return self;
+        }
+        let rest = vec![0.0; q.len()];
+        let multipliers = required(crane, 0.0, [q, &rest, &rest], &[]);
+        let geometric = geometric_stiffness(crane, q, &multipliers);
+        let coordinates = &crane.description().coordinates;
+        let preferred = |j: usize| if coordinates[j].role == CoordinateRole::Passive { 1.0 } else { DRIVEN };
+        let (free, basis) = closed_motions(crane, q, preferred);
+        let of_unknowns = basis.select_rows(&self.unknowns);
+        let stiffness = &self.stiffness + geometric.select_rows(&self.unknowns).select_columns(&self.unknowns);
+        let of = |matrix: &DMatrix<f64>| of_unknowns.tr_mul(&(matrix * &of_unknowns));
+        let symmetric = |matrix: DMatrix<f64>| (&matrix + matrix.transpose()) * 0.5;
+        Self {
+            mass: symmetric(of(&self.mass)),
+            stiffness: of(&stiffness),
+            damping: of(&self.damping),
+            unknowns: free,
+            size: self.size,
+            basis: Some(basis),
+        }
+    }
+
+    /// What a row over all coordinates is along the unknowns.
+    pub(super) fn along_unknowns(&self, entry: impl Fn(usize) -> f64) -> DVector<f64> {
+        match &self.basis {
+            Some(basis) => basis.tr_mul(&DVector::from_fn(self.size, |j, _| entry(j))),
+            None => DVector::from_iterator(self.unknowns.len(), self.unknowns.iter().map(|&j| entry(j))),
         }
     }
 
     /// A shape over all coordinates; fixed ones have zeros.
     pub(super) fn shape(&self, of_unknowns: &DVector<f64>) -> DVector<f64> {
+        if let Some(basis) = &self.basis {
+            return basis * of_unknowns;
+        }
         let mut shape = DVector::zeros(self.size);
         for (coordinate, x) in self.unknowns.iter().zip(of_unknowns) {
             shape[*coordinate] = *x;

@@ -36,7 +36,7 @@ impl StateSpace {
         // Generalized forces by states; rates of states by positions and by rates, state by state.
         let [mut pushes, mut by_position, mut by_rate] = [(); 3].map(|()| DMatrix::<f64>::zeros(n, m));
         for (force, row) in forces.forces().iter().zip(forces.rows()) {
-            let along = DVector::from_iterator(n, motions.unknowns.iter().map(|&coordinate| row.entry(coordinate)));
+            let along = motions.along_unknowns(|coordinate| row.entry(coordinate));
             let StatefulForce { first, count, by_length, by_speed, .. } = *force;
             motions.stiffness.ger(-by_length, &along, &along, 1.0);
             motions.damping.ger(-by_speed, &along, &along, 1.0);

@@ -1,7 +1,7 @@
 //! Cautions about poses and runs for which the model is not valid.
 
-use super::{Extremes, Table, connectors, cylinders, feet, limits, loads, servos, stop_effort, telescopes};
-use crate::{CylinderInfo, Description, dyn_crane::DynCrane};
+use super::{Extremes, Table, connectors, cylinders, feet, limits, loads, loops, servos, stop_effort, telescopes};
+use crate::{CylinderInfo, Description, dyn_crane::DynCrane, loop_joints};
 
 /// Default rotation of one section of a beam above which there is a caution, degrees: linear springs and straight elements then
 /// have an error of about 1 %.
@@ -26,6 +26,7 @@ pub fn of_pose(crane: &dyn DynCrane, q: &[f64], bend: f64) -> Vec<String> {
         .chain(cylinders::of_pose(crane, q))
         .chain(stopped)
         .chain(connectors::of_pose(crane, q))
+        .chain(loop_joints::cautions(crane, q))
         .chain(of_telescopes(crane, q))
         .chain(bent_beyond(bent, bend))
         .chain(description.near_singular(q))
@@ -63,6 +64,7 @@ pub fn of_run(crane: &dyn DynCrane, table: &Table, bend: f64) -> Vec<String> {
         .chain(cylinders::of_run(description, table))
         .chain(stopped)
         .chain(connectors::of_run(description, table))
+        .chain(loops::of_run(crane, table))
         .chain(telescopes::of_run(crane, table))
         .chain(bent_beyond(bent, bend))
         .chain(near_singular(description, table))

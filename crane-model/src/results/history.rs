@@ -41,7 +41,7 @@ impl Instant {
 pub fn instants<'a>(crane: &dyn DynCrane, rows: impl Iterator<Item = &'a Vec<f64>>) -> Vec<Instant> {
     let n = crane.size();
     // Time, coordinates and rates come first.
-    let columns = quantities(crane.description());
+    let columns = quantities(crane.description(), crane.loop_joints());
     let index_of = |name: String| columns.iter().position(|column| column.name == name);
     let oil: Vec<usize> = force_states::columns(crane.description()).into_iter().filter_map(index_of).collect();
     rows.map(|row| {

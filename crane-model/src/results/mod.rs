@@ -9,6 +9,7 @@ mod headlines;
 mod history;
 mod limits;
 mod loads;
+mod loops;
 mod peaks;
 mod recording;
 mod servos;

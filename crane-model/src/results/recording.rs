@@ -1,9 +1,10 @@
 //! Recording of a run in columns.
 
 use crate::{
-    ConnectorInfo, CoordinateKind, Description, bristles,
+    ConnectorInfo, CoordinateKind, Description, LoopJointInfo, bristles,
     dyn_crane::{DynCrane, Energies},
     dynamics::Sample,
+    force_states,
     hydraulics::{self, Oil},
     results::{Column, Table, cylinders},
     stateful_force::StateAt,
@@ -17,7 +18,8 @@ use crate::{
 /// `_vx`, `_vy`, `_vz`; for a support `<support>_reaction_x`, `_y`, `_z`, and `<support>_gap` if it is one-sided; for a coordinate of an
 /// element `<coordinate>_moment`; for end stops and friction `<coordinate>_stop_torque` or `_stop_force`, `<coordinate>_friction_torque` or
 /// `_friction_force`; for joints that stick `<coordinate>_bristle`; for a connector `<connector>_length`, `<connector>_length_rate` and
-/// `<connector>_force`; for a coupling `<coupling>_slip`, `<coupling>_slip_rate` and `<coupling>_force` or `_torque`; energies.
+/// `<connector>_force`; for a coupling `<coupling>_slip`, `<coupling>_slip_rate` and `<coupling>_force` or `_torque`; for a joint that closes a loop `<joint>_force` or `<joint>_force_x` and
+/// `<joint>_moment_x`, as many as it has equations; energies.
 /// `energy_balance` is `E(t) − E(0) − drive_work − load_work + dissipated_energy`, the error of the run if it is audited.
 pub struct Recording<'a> {
     crane: &'a dyn DynCrane,
@@ -38,13 +40,13 @@ pub(crate) enum Extent {
 impl<'a> Recording<'a> {
     /// A recording without samples.
     pub fn new(crane: &'a dyn DynCrane) -> Self {
-        let columns = [quantities(crane.description()), audited(crane.description())].concat();
+        let columns = [quantities(crane.description(), crane.loop_joints()), audited(crane.description())].concat();
         Self { crane, extent: Extent::All, table: Table { columns, rows: Vec::new() }, energy_at_start: 0.0 }
     }
 
     /// A recording without samples, of only what peaks and cautions need.
     pub(crate) fn of_peaks(crane: &'a dyn DynCrane) -> Self {
-        let columns = quantities_of(crane.description(), Extent::Peaks);
+        let columns = quantities_of(crane.description(), crane.loop_joints(), Extent::Peaks);
         Self { crane, extent: Extent::Peaks, table: Table { columns, rows: Vec::new() }, energy_at_start: 0.0 }
     }
 
@@ -137,6 +139,9 @@ fn push_quantities(
         row.extend(length);
         row.push(tension.force);
     }
+    if !crane.loop_joints().is_empty() {
+        row.extend(force_states::motion_at(crane, &moment).multipliers());
+    }
     if !all {
         return None;
     }
@@ -146,11 +151,11 @@ fn push_quantities(
 }
 
 /// Names and units of the quantities at a state.
-pub fn quantities(description: &Description) -> Vec<Column> {
-    quantities_of(description, Extent::All)
+pub fn quantities(description: &Description, loop_joints: &[LoopJointInfo]) -> Vec<Column> {
+    quantities_of(description, loop_joints, Extent::All)
 }
 
-fn quantities_of(description: &Description, extent: Extent) -> Vec<Column> {
+fn quantities_of(description: &Description, loop_joints: &[LoopJointInfo], extent: Extent) -> Vec<Column> {
     let all = extent == Extent::All;
     let mut table = Table::default();
     table.add("t", "s");
@@ -200,6 +205,11 @@ fn quantities_of(description: &Description, extent: Extent) -> Vec<Column> {
         table.add(format!("{}_{what}", connector.name), unit);
         table.add(format!("{}_{what}_rate", connector.name), format!("{unit}/s"));
         table.add(connector_force(connector), connector.kind.force_unit());
+    }
+    for joint in loop_joints {
+        for equation in &joint.equations {
+            table.add(equation.column(&joint.name), equation.force_unit());
+        }
     }
     if !all {
         return table.columns;

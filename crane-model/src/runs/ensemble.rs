@@ -106,9 +106,10 @@ pub fn run_ensemble(
     settings: &Settings,
     execution: &Execution<'_>,
 ) -> Vec<Outcome> {
-    // Lanes support neither states of forces nor different inputs.
+    // Lanes support neither states of forces nor different inputs nor loops.
     let same_inputs = rows.iter().all(|row| row.inputs.is_empty());
     let in_lanes = settings.method == Method::Rk4 && same_inputs && !crane.description().has_force_states();
+    let in_lanes = in_lanes && crane.loop_joints().is_empty();
     let piece = if in_lanes { crane.lanes() } else { 1 };
     let waiting = Mutex::new(rows.chunks(piece).enumerate());
     let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).next();

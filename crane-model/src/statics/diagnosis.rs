@@ -7,6 +7,7 @@ use crate::{
     CoordinateKind, CoordinateRole, Text,
     dyn_crane::DynCrane,
     hydraulics::unassembled_at,
+    loop_joints::{Gap, gap_at},
     tipping::{LinkMoment, TippingLine, lines, moments},
 };
 
@@ -22,6 +23,11 @@ pub enum Diagnosis {
     Unassembled {
         /// The cylinder.
         cylinder: Text,
+    },
+    /// A loop cannot be closed from the guess.
+    OpenLoop {
+        /// The joint that is open, where the search ended.
+        gap: Gap,
     },
     /// Drives are at the limits of their efforts.
     Overloaded {
@@ -65,6 +71,9 @@ impl Diagnosis {
         if let Some(cylinder) = unassembled_at(crane, &guess) {
             return Self::Unassembled { cylinder };
         }
+        if let Some(gap) = gap_at(crane, &equilibrium.q) {
+            return Self::OpenLoop { gap };
+        }
         let coordinates = overloaded(crane, &equilibrium.q);
         if !coordinates.is_empty() {
             return Self::Overloaded { coordinates };
@@ -89,6 +98,9 @@ impl Diagnosis {
         match self {
             Self::Unassembled { .. } => {
                 "lengthen its `rocker` or `link`, check the positions of its pins, or start from a pose where they reach each other".to_owned()
+            }
+            Self::OpenLoop { .. } => {
+                "check the points, axes and lengths of the loop's joints, and write a `guess:` near a pose in which they meet".to_owned()
             }
             Self::Overloaded { .. } => {
                 "raise `max_effort` of these drives, or change `guess:` and the motions to a pose that they can hold".to_owned()
@@ -181,6 +193,7 @@ impl fmt::Display for Diagnosis {
                     "; the linkage of {cylinder} cannot be assembled at the guess: its rocker and link do not reach each other"
                 )
             }
+            Self::OpenLoop { gap } => write!(f, "; a loop cannot be closed from the guess: {gap}"),
             Self::Overloaded { coordinates } => match coordinates.as_slice() {
                 [one] => write!(f, "; the drive of {one} is at its limit"),
                 several => write!(f, "; the drives of {} are at their limits", several.join(", ")),

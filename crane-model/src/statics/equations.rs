@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::closed::Closed;
 use crate::{CoordinateRole, dyn_crane::DynStatics};
 
 /// The equations that a pose at rest satisfies, with loads and winches as at a time and the drives at given positions.
@@ -11,17 +12,19 @@ pub(super) struct Equations<'a> {
     pub t: f64,
     /// Positions of the drives, by coordinate.
     pub positions: Vec<f64>,
+    /// What closes the loops, once the search has begun; `None` without loops.
+    closed: Option<Closed>,
 }
 
 impl<'a> Equations<'a> {
     /// With the drives where their motions are at time `t`, s.
     pub(super) fn at(crane: &'a dyn DynStatics, t: f64) -> Self {
-        Self { crane, t, positions: crane.drive_positions_at(t) }
+        Self { crane, t, positions: crane.drive_positions_at(t), closed: None }
     }
 
     /// With the drives at `positions`, one per drive.
     pub(super) fn holding(crane: &'a dyn DynStatics, t: f64, positions: &[f64]) -> Self {
-        Self { crane, t, positions: crane.description().by_coordinate(positions) }
+        Self { crane, t, positions: crane.description().by_coordinate(positions), closed: None }
     }
 
     /// Sets the coordinates of rigid drives, which have no residual, to the positions of these drives.
@@ -34,15 +37,52 @@ impl<'a> Equations<'a> {
         }
     }
 
-    /// `r(q)`: N for translations, N m for rotations.
+    /// Begins a search at a pose, which is moved onto the loops; returns whether they close.
+    pub(super) fn begin(&mut self, q: &mut DVector<f64>) -> bool {
+        if self.crane.loop_joints().is_empty() {
+            return true;
+        }
+        self.closed = Some(Closed::new(&self.open_stiffness(q), self.crane.description()));
+        self.close(q)
+    }
+
+    /// Whether joints close loops.
+    pub(super) fn has_loops(&self) -> bool {
+        self.closed.is_some()
+    }
+
+    /// Moves a pose onto the loops; returns whether they close.
+    pub(super) fn close(&self, q: &mut DVector<f64>) -> bool {
+        self.closed.as_ref().is_none_or(|closed| closed.close(self.crane, q.as_mut_slice()))
+    }
+
+    /// `r(q)`, with loops that of the motions that leave them closed: N for translations, N m for rotations.
     pub(super) fn residual(&self, q: &DVector<f64>) -> DVector<f64> {
+        let residual = self.open_residual(q);
+        match &self.closed {
+            Some(closed) => closed.residual(self.crane, q.as_slice(), &residual),
+            None => residual,
+        }
+    }
+
+    /// `∂r/∂q`, with loops positive in the directions that open them.
+    pub(super) fn stiffness(&self, q: &DVector<f64>) -> DMatrix<f64> {
+        let stiffness = self.open_stiffness(q);
+        match &self.closed {
+            Some(closed) => closed.stiffness(self.crane, q.as_slice(), &self.open_residual(q), &stiffness),
+            None => stiffness,
+        }
+    }
+
+    /// `r(q)` of the open chain.
+    pub(super) fn open_residual(&self, q: &DVector<f64>) -> DVector<f64> {
         let mut residual = DVector::zeros(q.len());
         self.crane.static_residual(self.t, q.as_slice(), &self.positions, residual.as_mut_slice());
         residual
     }
 
-    /// `∂r/∂q`
-    pub(super) fn stiffness(&self, q: &DVector<f64>) -> DMatrix<f64> {
+    /// `∂r/∂q` of the open chain.
+    fn open_stiffness(&self, q: &DVector<f64>) -> DMatrix<f64> {
         let mut stiffness = DMatrix::zeros(q.len(), q.len());
         self.crane.tangent_stiffness(self.t, q.as_slice(), &self.positions, stiffness.as_mut_slice());
         stiffness

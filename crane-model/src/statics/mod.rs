@@ -1,5 +1,6 @@
 //! Static equilibrium by damped Newton–Raphson with the analytic tangent stiffness, and by continuation where that fails.
 
+mod closed;
 mod continuation;
 mod diagnosis;
 mod equations;

@@ -68,7 +68,10 @@ pub(super) fn iterate(
             };
             let step = limited(newton, |i| description.coordinates[i].kind);
             halvings.map(|k| 0.5_f64.powi(k.cast_signed())).find_map(|fraction| {
-                let pose = &q + &step * fraction;
+                let mut pose = &q + &step * fraction;
+                if !equations.close(&mut pose) {
+                    return None;
+                }
                 let residual = equations.residual(&pose);
                 let trial = scale.norm(&residual);
                 (trial < norm || is_nearer(&residual)).then_some((pose, residual, trial, fraction))

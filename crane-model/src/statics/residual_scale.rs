@@ -37,7 +37,7 @@ impl ResidualScale {
                 *driving = 0.0;
             }
         }
-        let gravity = equations.residual(q) + &springs - driving + holding;
+        let gravity = equations.open_residual(q) + &springs - driving + holding;
         let greatest = |kind: CoordinateKind| {
             (0..n)
                 .filter(|&i| coordinates[i].kind == kind)
@@ -119,7 +119,7 @@ fn of_lengths(&Equations { crane, t, .. }: &Equations<'_>, q: &DVector<f64>) -> 
 }
 
 /// The same for the springs that stand for cylinders with a valve at rest.
-fn of_cylinders(&Equations { crane, t, ref positions }: &Equations<'_>, q: &DVector<f64>) -> DVector<f64> {
+fn of_cylinders(&Equations { crane, t, ref positions, .. }: &Equations<'_>, q: &DVector<f64>) -> DVector<f64> {
     /// Change of the drives' positions by which their stiffness is measured, m or rad.
     const MOVED: f64 = 1e-4;
     let Description { cylinders, drives, .. } = crane.description();

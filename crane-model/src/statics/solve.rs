@@ -3,7 +3,7 @@
 use nalgebra::{DVector, SVector};
 
 use super::{
-    Equilibrium, Settings, Status, continuation, equations::Equations, guess_dyn, newton,
+    Equilibrium, Iteration, Settings, Status, continuation, equations::Equations, guess_dyn, newton,
     residual_scale::ResidualScale, tangent::Tangent,
 };
 use crate::{
@@ -35,7 +35,7 @@ pub fn solve<const N: usize, C: Statics<N>>(crane: &C, settings: &Settings) -> E
 
 /// As [`solve`], for a crane of any size.
 pub fn solve_dyn(crane: &dyn DynStatics, settings: &Settings) -> Equilibrium {
-    search(&Equations::at(crane, 0.0), &guess_dyn(crane), settings)
+    search(&mut Equations::at(crane, 0.0), &guess_dyn(crane), settings)
 }
 
 /// As [`solve`], with the drives, loads and winches where they are at time `t`, s, and starting from the pose `q`: where the crane would
@@ -51,18 +51,22 @@ pub fn solve_at<const N: usize, C: Statics<N>>(
 
 /// As [`solve_at`], for a crane of any size.
 pub fn solve_at_dyn(crane: &dyn DynStatics, t: f64, q: &[f64], settings: &Settings) -> Equilibrium {
-    search(&Equations::at(crane, t), q, settings)
+    search(&mut Equations::at(crane, t), q, settings)
 }
 
 /// As [`solve_at_dyn`] at t = 0, with the drives at given positions, one per drive, instead of those of their motions.
 pub fn solve_holding_dyn(crane: &dyn DynStatics, positions: &[f64], q: &[f64], settings: &Settings) -> Equilibrium {
-    search(&Equations::holding(crane, 0.0, positions), q, settings)
+    search(&mut Equations::holding(crane, 0.0, positions), q, settings)
 }
 
 /// The solution from the pose `q`, with the exact positions of rigid drives: the steps change them only by rounding.
-fn search(equations: &Equations<'_>, q: &[f64], settings: &Settings) -> Equilibrium {
+fn search(equations: &mut Equations<'_>, q: &[f64], settings: &Settings) -> Equilibrium {
     let mut start = DVector::from_column_slice(q);
     equations.prescribe(start.as_mut_slice());
+    if !equations.begin(&mut start) {
+        let history = vec![Iteration { residual: f64::INFINITY, fraction: 0.0 }];
+        return Equilibrium { status: Status::NotConverged, q: start.as_slice().to_vec(), history, load_steps: None };
+    }
     let mut found = search_from(equations, &start, settings);
     equations.prescribe(&mut found.q);
     found
@@ -79,6 +83,10 @@ fn search_from(equations: &Equations<'_>, start: &DVector<f64>, settings: &Setti
     let second = iterate(start, newton::CAUTIOUS);
     if second.is_stable() {
         return second;
+    }
+    // The springs of the path below would open the loops.
+    if equations.has_loops() {
+        return first;
     }
     let mut load_steps = 0;
     let mut arrive = |q: DVector<f64>, steps: usize| {

@@ -41,6 +41,12 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
         return Err(Problem::usage("`--compile` is for `--format fmu` alone", "leave `--compile` out"));
     }
     let (chain, spec) = registry.load(&options.crane.name, options.crane.strict)?;
+    if let Some(joint) = chain.loop_joints.first() {
+        return Err(Problem::usage(
+            format!("{} has a loop, which `{}` closes; exported models are open chains", chain.name, joint.name),
+            "run it here, in the command or in Python; or export a spec without `loop_joints`, and close the loop in the other program",
+        ));
+    }
     let mut parameters = chain.parameter_defaults();
     let known: Vec<(&str, &str)> = chain.parameters.iter().map(|p| (p.name.as_str(), p.unit.as_str())).collect();
     for (index, value) in options.crane.parameters.read(&chain.name, &known)? {

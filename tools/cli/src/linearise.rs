@@ -61,6 +61,15 @@ pub fn linearise(options: &Linearise, registry: &Registry, out: &mut dyn Write) 
             "`crane modes` gives the small motions about rest, with shut valves and joints that stick",
         ));
     }
+    if let Some(joint) = crane.loop_joints().first() {
+        return Err(Problem::usage(
+            format!(
+                "{} has a loop, which `{}` closes: small motions about a motion are those of open chains",
+                description.name, joint.name
+            ),
+            "`crane modes` gives the small motions about rest, with closed loops",
+        ));
+    }
     let motion = match &options.from {
         Some(file) => of_results(&crane, file, options.time)?,
         None => of_steady(&crane, options)?,

@@ -59,7 +59,7 @@ pub fn list(description: &Description) -> Vec<Variable> {
         .collect();
     let states = force_states::columns(description);
     let mut units = vec![String::new(); states.len()];
-    let quantities = results::quantities(description).into_iter().enumerate().map(|(index, column)| {
+    let quantities = results::quantities(description, &[]).into_iter().enumerate().map(|(index, column)| {
         let source = match index {
             0 => Source::Time,
             _ if index <= n => Source::Position(index - 1),

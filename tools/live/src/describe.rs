@@ -5,8 +5,8 @@ use crane_codegen::chain::{
 };
 use crane_model::{
     AttachmentInfo, BodyInfo, Bound, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole,
-    CylinderInfo, Description, DriveInfo, InputInfo, LoadInfo, ParameterInfo, PumpInfo, Refusal, SectionInfo, Side,
-    SupportInfo, ValveInfo,
+    CylinderInfo, Description, DriveInfo, InputInfo, LoadInfo, LoopEquationInfo, LoopJointInfo, ParameterInfo,
+    PumpInfo, Refusal, SectionInfo, Side, SupportInfo, ValveInfo,
 };
 
 /// The description of a chain, as the compiler writes it.
@@ -60,10 +60,7 @@ pub fn describe(chain: &Chain) -> Description {
     let connectors = chain.connectors().iter().map(|connector| ConnectorInfo {
         name: connector.name.clone().into(),
         ends: connector.strain.ends().map(|ends| {
-            ends.each_ref().map(|end| AttachmentInfo {
-                body: end.body.map(|BodyId(body)| body),
-                position: end.position.each_ref().map(|x| x.at(&defaults)),
-            })
+            ends.each_ref().map(|end| attachment_info(end, &defaults))
         }),
         kind: kind_of(chain.kind_of(&connector.strain)),
         is_rope: connector.is_rope(),
@@ -107,6 +104,30 @@ pub fn describe(chain: &Chain) -> Description {
         duration: chain.run.duration,
         step: chain.run.step,
         output: chain.run.output,
+    }
+}
+
+/// The joints of a chain that close loops.
+pub fn describe_loop_joints(chain: &Chain) -> Vec<LoopJointInfo> {
+    let defaults = chain.parameter_defaults();
+    let joint = |joint: &chain::LoopJoint| LoopJointInfo {
+        name: joint.name.clone().into(),
+        kind: joint.kind.name().into(),
+        ends: joint.ends.each_ref().map(|end| attachment_info(end, &defaults)),
+        spanned: chain.closed_by(joint),
+        equations: joint.kind.equations().into_iter().map(equation_info).collect(),
+    };
+    chain.loop_joints.iter().map(joint).collect()
+}
+
+fn equation_info(chain::LoopEquation { direction, is_moment }: chain::LoopEquation) -> LoopEquationInfo {
+    LoopEquationInfo { direction: direction.into(), is_moment }
+}
+
+fn attachment_info(end: &chain::Attachment, parameters: &[f64]) -> AttachmentInfo {
+    AttachmentInfo {
+        body: end.body.map(|BodyId(body)| body),
+        position: end.position.each_ref().map(|x| x.at(parameters)),
     }
 }
 

@@ -295,6 +295,8 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
             FunctionId::ConnectorLengths => 2 * description.connectors.len(),
             FunctionId::ConnectorTensions => 3 * description.connectors.len(),
             FunctionId::ConnectorJacobians => n * description.connectors.len(),
+            FunctionId::LoopStates => 3 * crane.loop_equations(),
+            FunctionId::LoopJacobians => n * crane.loop_equations(),
             FunctionId::WinchPieces => {
                 2 * description.connectors.iter().map(|connector| connector.pieces).sum::<usize>()
             }
@@ -306,6 +308,7 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
             FunctionId::InternalForces
             | FunctionId::CylinderWrenches
             | FunctionId::ConnectorWrenches
+            | FunctionId::LoopWrenches
             | FunctionId::SupportPositions
             | FunctionId::SectionModuli
             | FunctionId::PrescribedMotions

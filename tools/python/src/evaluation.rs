@@ -155,7 +155,7 @@ impl Crane {
             _ => (false, ""),
         };
         if !depends {
-            return Ok(());
+            return self.refuse_loops(function);
         }
         Err(PyValueError::new_err(format!(
             "{} of {} follows from {}, which are states of a run: {instead}",
@@ -163,6 +163,27 @@ impl Crane {
             description.name,
             self.force_states()
         )))
+    }
+
+    /// Refuses quantities that are computed of the open chain, and that closed loops change.
+    fn refuse_loops(&self, function: FunctionId) -> PyResult<()> {
+        let description = self.live.description();
+        let rigid = !description.prescribed().is_empty();
+        let instead = match function {
+            FunctionId::Linearise => "use modes(q)",
+            FunctionId::DriveForces | FunctionId::DrivePower if rigid => "use simulate, whose columns contain them",
+            FunctionId::DriveForcesAtRest if rigid => "use statics",
+            _ => return Ok(()),
+        };
+        match self.live.loop_joints().first() {
+            None => Ok(()),
+            Some(joint) => Err(PyValueError::new_err(format!(
+                "{} of {} depends on the loop that {} closes: {instead}",
+                function.name(),
+                description.name,
+                joint.name
+            ))),
+        }
     }
 
     /// States of the forces of a crane that has some, in words.

@@ -2,7 +2,7 @@
 
 use crane_live::FunctionId;
 use crane_live::rows::Quantity;
-use crane_model::dyn_crane::{DynDerivatives, DynModel};
+use crane_model::dyn_crane::{DynCrane, DynDerivatives, DynModel};
 use pyo3::prelude::*;
 
 use crate::crane::Crane;
@@ -287,7 +287,28 @@ impl Crane {
         self.function(py, FunctionId::ValveOpenings, State::default().at(Some(t)), &own, invalid)
     }
 
-    /// (..., n): accelerations q̈ of `A q̈ = e + f`, m/s² and rad/s².
+    /// (..., equations, 3): gaps of the equations of loop joints, m and 1, their rates, and the part of their second rates that does not
+    /// depend on accelerations.
+    #[pyo3(signature = (q, v, *, invalid="raise"))]
+    fn loop_states<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        v: &Bound<'py, PyAny>,
+        invalid: &str,
+    ) -> Array<'py> {
+        let own = [self.live.loop_equations(), 3];
+        self.function(py, FunctionId::LoopStates, State::moving(q, v), &own, invalid)
+    }
+
+    /// (..., equations, n): derivatives of the gaps of loop joints with respect to q.
+    #[pyo3(signature = (q, *, invalid="raise"))]
+    fn loop_jacobians<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
+        let own = [self.live.loop_equations(), self.live.size()];
+        self.function(py, FunctionId::LoopJacobians, State::pose(q), &own, invalid)
+    }
+
+    /// (..., n): accelerations q̈ of `A q̈ = e + f`, with closed loops, m/s² and rad/s².
     #[pyo3(signature = (q, v, t=None, *, invalid="raise"))]
     fn forward_dynamics<'py>(
         &self,
@@ -298,6 +319,12 @@ impl Crane {
         invalid: &str,
     ) -> Array<'py> {
         let own = [self.live.size()];
+        if !self.live.loop_joints().is_empty() && !self.live.description().has_force_states() {
+            return self.one_by_one(py, State::moving(q, v).at(t), &own, invalid, |crane, at, out| {
+                let crane: &dyn DynCrane = crane;
+                out.copy_from_slice(crane.accelerations_at(at.t, &at.q, &at.v).as_slice());
+            });
+        }
         self.function(py, FunctionId::ForwardDynamics, State::moving(q, v).at(t), &own, invalid)
     }
 

@@ -224,6 +224,13 @@ impl Crane {
                 "forces of {name} follow from {states}, which are states of a run: use modes(q), about poses at rest"
             )));
         }
+        if let Some(joint) = self.live.loop_joints().first() {
+            return Err(PyValueError::new_err(format!(
+                "{} has a loop, which {} closes: use modes(q), about poses at rest",
+                self.live.description().name,
+                joint.name
+            )));
+        }
         Ok(())
     }
 }

@@ -4,6 +4,7 @@ mod drive_efforts;
 mod energies;
 mod forces;
 mod internal_forces;
+mod loop_joints;
 mod statics;
 
 use crate::chain::{Analyses, BodyId, Chain, Group};
@@ -66,6 +67,7 @@ impl<'g> Derivation<'g> {
     fn functions(&self, analyses: Analyses, symbols: &mut Vec<Symbol>) -> Vec<Function> {
         let mut functions = self.poses();
         functions.extend(self.force_functions());
+        functions.extend(self.loop_joints());
         functions.extend(self.energies());
         if analyses.dynamics {
             functions.extend(self.dynamics());

@@ -33,6 +33,7 @@ use super::{
 use crate::{
     Implicit,
     dyn_crane::{DynImplicit, Instance},
+    loop_joints::Open,
 };
 use correction::Correction;
 use history::History;
@@ -73,7 +74,7 @@ pub fn step<const N: usize, C: Implicit<N>>(
     const EXACT: f64 = 1e-14;
     let crane = Instance::<N, _>(crane);
     let mut equations = Equations::new(&crane, References::of(&crane));
-    if equations.states() > 0 {
+    if equations.states() > 0 || equations.has_loops() {
         return Err(NotFinite);
     }
     let mut history = History::new(2 * N);
@@ -139,6 +140,8 @@ pub struct Bdf<'a> {
     switches: Switches,
     /// Length of the next step, s, if the last one ended where a law changes its branch: the history does not predict the motion beyond.
     restart: Option<f64>,
+    /// A loop that the last step left open.
+    open: Option<Open>,
     /// Motion at the time reached.
     motion: Vec<f64>,
     steps: usize,
@@ -178,6 +181,7 @@ impl<'a> Bdf<'a> {
             slope: vec![0.0; len],
             switches: Switches::new(crane, len),
             restart: None,
+            open: None,
             motion: vec![0.0; len],
             steps: 0,
             rejections: 0,
@@ -186,10 +190,13 @@ impl<'a> Bdf<'a> {
 
     /// The error that no further step is possible from the last state.
     fn stuck(&self) -> Stopped {
+        self.context().failed(Cause::Tolerance, self.crane)
+    }
+
+    fn context(&self) -> StepContext<'_> {
         let History { t, h, .. } = &self.history;
         let q = &self.motion[..self.equations.n];
-        let context = StepContext { method: Method::Bdf, t: *t, h: *h, q, description: self.crane.description() };
-        context.failed(Cause::Tolerance, self.crane)
+        StepContext { method: Method::Bdf, t: *t, h: *h, q, description: self.crane.description() }
     }
 
     /// Shortens the interval of the states so that a whole number of steps ends at `stop`, if it is close.
@@ -228,7 +235,7 @@ impl<'a> Bdf<'a> {
     /// Tries a step, and chooses order and length of the next, unless the step only has to end where a contact changes. `again`: the step
     /// has been shortened already; `repeats`: how often it was repeated to end where a law changes.
     fn attempt(&mut self, again: bool, repeats: usize) -> Attempt {
-        let Self { equations, history, correction, control, switches, .. } = self;
+        let Self { equations, history, correction, control, switches, slope, open, .. } = self;
         let order = history.order;
         correction.predict(equations, history);
         let error = if control.converges(equations, history.h, correction) {
@@ -245,6 +252,12 @@ impl<'a> Bdf<'a> {
         } else if change.is_some() {
             return Attempt::Repeated { change };
         } else {
+            let reached = history.t + history.h;
+            match equations.project_end(reached, &mut correction.end, slope) {
+                Ok(true) => correction.d.iter_mut().zip(&*slope).for_each(|(d, moved)| *d += *moved),
+                Ok(false) => {}
+                Err(gap) => *open = Some(gap),
+            }
             history.push(&correction.d);
             control.norm.note(&correction.end, &correction.d);
             control.steps_since_change += 1;
@@ -312,7 +325,10 @@ impl Stepper for Bdf<'_> {
             self.history.t = ahead.stop;
         }
         self.accept();
-        Ok(self.history.t)
+        match self.open.take() {
+            Some(open) => Err(self.context().open(self.crane, open)),
+            None => Ok(self.history.t),
+        }
     }
 
     fn motion(&self) -> &[f64] {

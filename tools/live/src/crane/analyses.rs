@@ -85,6 +85,10 @@ impl DynInternalForces for LiveCrane {
         self.call(FunctionId::ConnectorWrenches, &at(q), |_, results| copy_as(results.as_chunks().0, wrench, out));
     }
 
+    fn loop_wrenches(&self, q: &[f64], out: &mut [Wrench]) {
+        self.call(FunctionId::LoopWrenches, &at(q), |_, results| copy_as(results.as_chunks().0, wrench, out));
+    }
+
     fn section_moduli(&self, out: &mut [SectionModuli]) {
         self.call(FunctionId::SectionModuli, &Arguments::none(), |_, results| {
             let moduli = |numbers: &[f64; 8]| {

@@ -12,9 +12,9 @@ use crane_codegen::program::FunctionId;
 use crane_codegen::{Diagnostics, SourceFile, compile};
 use crane_model::dyn_crane::DynCrane;
 use crane_model::nalgebra::{Matrix4, Matrix6, Vector3};
-use crane_model::{Description, ParameterError};
+use crane_model::{Description, LoopJointInfo, ParameterError};
 
-use crate::describe::{describe, refusal};
+use crate::describe::{describe, describe_loop_joints, refusal};
 use crate::library::Library;
 use crate::machine::{Arguments, Machine};
 use crate::routine::Routine;
@@ -25,6 +25,7 @@ use crate::routine::Routine;
 pub struct LiveCrane {
     library: Arc<Library>,
     description: Description,
+    loop_joints: Vec<LoopJointInfo>,
     parameters: Vec<f64>,
     /// Two numbers per input: its value if it is set, else 0; and 0 if it is set, else 1.
     inputs: Vec<f64>,
@@ -54,9 +55,11 @@ impl LiveCrane {
     /// The crane of a chain, with the parameters of its spec.
     #[must_use]
     pub fn new(chain: Chain) -> Self {
-        let (description, parameters) = (describe(&chain), chain.parameter_defaults());
+        let (description, loop_joints) = (describe(&chain), describe_loop_joints(&chain));
+        let parameters = chain.parameter_defaults();
         let inputs = not_set(&chain);
-        Self { library: Arc::new(Library::new(chain)), description, parameters, inputs, rooms: no_rooms() }
+        let library = Arc::new(Library::new(chain));
+        Self { library, description, loop_joints, parameters, inputs, rooms: no_rooms() }
     }
 
     /// The chain from which it was made.
@@ -101,10 +104,11 @@ impl LiveCrane {
         for (slots, value) in inputs.chunks_mut(Input::SLOTS).zip(values) {
             set(slots, *value);
         }
-        let Self { library, description, parameters, rooms, .. } = self;
+        let Self { library, description, loop_joints, parameters, rooms, .. } = self;
         Self {
             library: Arc::clone(library),
             description: description.clone(),
+            loop_joints: loop_joints.clone(),
             parameters: parameters.clone(),
             inputs,
             rooms: Arc::clone(rooms),
@@ -219,6 +223,7 @@ impl Clone for LiveCrane {
         Self {
             library: Arc::clone(&self.library),
             description: self.description.clone(),
+            loop_joints: self.loop_joints.clone(),
             parameters: self.parameters.clone(),
             inputs: self.inputs.clone(),
             rooms: no_rooms(),

@@ -4,7 +4,7 @@ use crane_codegen::chain::Input;
 use crane_codegen::program::FunctionId;
 use crane_model::dyn_crane::DynModel;
 use crane_model::nalgebra::{Matrix4, Vector3};
-use crane_model::{Description, Tension};
+use crane_model::{Description, LoopJointInfo, Tension};
 
 use super::{LiveCrane, at, copy_as, state};
 use crate::machine::Arguments;
@@ -76,6 +76,18 @@ impl DynModel for LiveCrane {
 
     fn connector_jacobians(&self, q: &[f64], out: &mut [f64]) {
         self.numbers(FunctionId::ConnectorJacobians, &at(q), out);
+    }
+
+    fn loop_joints(&self) -> &[LoopJointInfo] {
+        &self.loop_joints
+    }
+
+    fn loop_states(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]) {
+        self.vectors(FunctionId::LoopStates, &state(0.0, q, v), out);
+    }
+
+    fn loop_jacobians(&self, q: &[f64], out: &mut [f64]) {
+        self.numbers(FunctionId::LoopJacobians, &at(q), out);
     }
 
     fn winch_pieces(&self, out: &mut [[f64; 2]]) {

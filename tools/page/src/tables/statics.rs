@@ -103,6 +103,9 @@ pub fn equilibria(cases: &[Case<'_>], bend: f64) -> Report {
     if let Some(grid) = connectors(cases) {
         report.grid(grid);
     }
+    if let Some(grid) = loop_joints(cases) {
+        report.grid(grid);
+    }
     report.grid(points(cases));
     report.excerpt(pose(cases), 0);
     report
@@ -252,6 +255,27 @@ fn connectors(cases: &[Case<'_>]) -> Option<Grid> {
         let strain = if connector.ends.is_some() { "length" } else { "slip" };
         row(strain, connector.kind.unit(), |(length, _)| *length);
         row("force", connector.kind.force_unit(), |(_, tension)| tension.force);
+    }
+    Some(grid)
+}
+
+/// Forces and moments of the joints that close loops.
+fn loop_joints(cases: &[Case<'_>]) -> Option<Grid> {
+    let first = cases.iter().find(|case| !case.crane.loop_joints().is_empty())?;
+    let mut headings = headings("joint", cases);
+    headings.insert(1, "quantity".into());
+    let title =
+        "Joints that close loops: what `to` exerts on `from`, in the axes of `from`; rods are positive in tension";
+    let mut grid = Grid::with_headings("loop_joints", title, headings);
+    let values: Vec<_> = cases.iter().map(|case| case.crane.loop_forces_at_rest(&case.equilibrium.q)).collect();
+    let joints = first.crane.loop_joints().iter();
+    let equations = joints.flat_map(|joint| joint.equations.iter().map(move |equation| (joint, equation)));
+    for (index, (joint, equation)) in equations.enumerate() {
+        let what = if equation.is_moment { "moment" } else { "force" };
+        let quantity = format!("{what} {}", equation.direction);
+        let cells = values.iter().map(|values| Cell::from(values.get(index).copied()));
+        let words = [joint.name.as_str().into(), quantity.trim_end().to_owned().into()];
+        grid.row(words.into_iter().chain(cells).chain([equation.force_unit().into()]).collect::<Vec<_>>());
     }
     Some(grid)
 }

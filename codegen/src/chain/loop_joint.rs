@@ -1,0 +1,155 @@
+//! Joints that close loops: equations between two attachments, φ(q) = 0.
+
+use super::{Attachment, Chain, Value, Vector};
+
+/// A joint between two attachments that are already connected through other joints.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoopJoint {
+    /// Unique name.
+    pub name: String,
+    /// Its points; directions are in the axes of the first.
+    pub ends: [Attachment; 2],
+    /// What it holds together.
+    pub kind: LoopJointKind,
+}
+
+/// What a joint that closes a loop holds together.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LoopJointKind {
+    /// The points.
+    Ball,
+    /// The points, and a direction of both bodies.
+    Pin {
+        /// Directions normal to it in the axes of the first body.
+        across: Across,
+        /// Unit vector along it in the axes of the second body.
+        to_axis: Vector,
+    },
+    /// The points at a distance.
+    Rod {
+        /// Length, m.
+        length: Value,
+    },
+    /// The second point on a line of the first body.
+    Slide {
+        /// Directions normal to the line, in the axes of the first body.
+        across: Across,
+    },
+}
+
+/// Two unit vectors u, w normal to an axis a, with `u × w = a`, and their names.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Across {
+    /// u and w.
+    pub directions: [Vector; 2],
+    /// `x`, `y` or `z` if they are axes of the body, otherwise `u` and `w`.
+    pub names: [&'static str; 2],
+    /// a.
+    pub axis: Vector,
+}
+
+/// One of the equations of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LoopEquation {
+    /// The direction of its force or moment; empty for a rod.
+    pub direction: &'static str,
+    /// Whether it transmits a moment, N m, instead of a force, N.
+    pub is_moment: bool,
+}
+
+impl LoopJointKind {
+    /// The word for it in a spec.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            LoopJointKind::Ball => "ball",
+            LoopJointKind::Pin { .. } => "pin",
+            LoopJointKind::Rod { .. } => "rod",
+            LoopJointKind::Slide { .. } => "slide",
+        }
+    }
+
+    /// Its equations, in order.
+    #[must_use]
+    pub fn equations(&self) -> Vec<LoopEquation> {
+        let forces = |directions: &[&'static str]| -> Vec<LoopEquation> {
+            directions.iter().map(|&direction| LoopEquation { direction, is_moment: false }).collect()
+        };
+        match self {
+            LoopJointKind::Ball => forces(&["x", "y", "z"]),
+            LoopJointKind::Pin { across, .. } => {
+                let moments = across.names.map(|direction| LoopEquation { direction, is_moment: true });
+                [forces(&["x", "y", "z"]), moments.to_vec()].concat()
+            }
+            LoopJointKind::Rod { .. } => forces(&[""]),
+            LoopJointKind::Slide { across } => forces(&across.names),
+        }
+    }
+}
+
+impl Across {
+    /// Directions normal to an axis of any length above zero: the axes of the body if it is one of them.
+    #[must_use]
+    pub fn to(axis: Vector) -> Self {
+        const UNITS: [Vector; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        const NAMES: [&str; 3] = ["x", "y", "z"];
+        let a = normalised(axis);
+        if let Some(along) = (0..3).find(|&i| a[i].abs() >= 1.0) {
+            let [u, w] = [1, 2].map(|next| (along + next) % 3);
+            return Self { directions: [UNITS[u], UNITS[w]], names: [NAMES[u], NAMES[w]], axis: UNITS[along] };
+        }
+        let least = (0..3).min_by(|&i, &j| a[i].abs().total_cmp(&a[j].abs())).unwrap_or(0);
+        let u = normalised([0, 1, 2].map(|i| UNITS[least][i] - a[least] * a[i]));
+        let w = [a[1] * u[2] - a[2] * u[1], a[2] * u[0] - a[0] * u[2], a[0] * u[1] - a[1] * u[0]];
+        Self { directions: [u, w], names: ["u", "w"], axis: a }
+    }
+}
+
+/// A vector over its length.
+#[must_use]
+pub fn normalised(vector: Vector) -> Vector {
+    let length = libm::sqrt(vector.iter().map(|x| x * x).sum());
+    vector.map(|x| x / length)
+}
+
+impl Chain {
+    /// Names of all equations of loop joints, in order: `<joint> force <direction>` or `<joint> moment <direction>`.
+    pub fn loop_equations(&self) -> impl Iterator<Item = String> + '_ {
+        self.loop_joints.iter().flat_map(|joint| {
+            joint.kind.equations().into_iter().map(|LoopEquation { direction, is_moment }| {
+                let what = if is_moment { "moment" } else { "force" };
+                format!("{} {what} {direction}", joint.name).trim_end().to_owned()
+            })
+        })
+    }
+
+    /// The range of coordinates that move the ends of a joint against each other: the first, and one past the last.
+    #[must_use]
+    pub fn closed_by(&self, joint: &LoopJoint) -> [usize; 2] {
+        let [one, other] = joint.ends.each_ref().map(|end| self.reach(end));
+        [one.min(other), one.max(other)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_across_an_axis_complete_a_frame() {
+        for axis in [[0.0, 0.0, -2.0], [3.0, 0.0, 0.0], [1.0, -2.0, 0.5]] {
+            let Across { directions: [u, w], axis, .. } = Across::to(axis);
+            let dot = |a: Vector, b: Vector| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
+            // A few rounding errors of numbers up to 1.
+            for (a, b, expected) in
+                [(u, u, 1.0), (w, w, 1.0), (axis, axis, 1.0), (u, w, 0.0), (u, axis, 0.0), (w, axis, 0.0)]
+            {
+                assert!((dot(a, b) - expected).abs() < 1e-15);
+            }
+            let triple = u[0] * (w[1] * axis[2] - w[2] * axis[1])
+                + u[1] * (w[2] * axis[0] - w[0] * axis[2])
+                + u[2] * (w[0] * axis[1] - w[1] * axis[0]);
+            assert!((triple - 1.0).abs() < 1e-15);
+        }
+    }
+}

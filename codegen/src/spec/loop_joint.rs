@@ -1,0 +1,63 @@
+//! Joints that close loops.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{Attachment, Constant, Number, Spanned};
+
+/// A joint that closes a loop: it connects two links that are already connected through others, or a link and the world, exactly.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `name`, `from`, `to` and `joint`")]
+pub struct LoopJoint {
+    /// Name, a `snake_case` identifier.
+    pub name: Spanned<String>,
+    /// Its point on one link, whose axes are those of its forces.
+    pub from: Spanned<Attachment>,
+    /// Its point on the other.
+    pub to: Spanned<Attachment>,
+    /// What it holds together; exactly one.
+    pub joint: Spanned<LoopJointKind>,
+}
+
+/// What a joint that closes a loop holds together: `ball`, `pin`, `rod` or `slide`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum LoopJointKind {
+    /// The two points: three equations.
+    Ball,
+    /// The two points, and a direction of both links: five equations.
+    Pin(PinAxis),
+    /// The two points at a distance: a massless rod between two balls, one equation.
+    Rod(LoopRod),
+    /// The point of `to` on a line of `from`: two equations.
+    Slide(SlideAxis),
+}
+
+/// A direction, of any length.
+pub type Direction = [Spanned<Constant>; 3];
+
+/// The axis of a pin.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `axis`")]
+pub struct PinAxis {
+    /// Its direction in the frame of the link `from`, or of the world.
+    pub axis: Spanned<Direction>,
+    /// Its direction in the frame of the link `to`. Default: the same numbers.
+    pub to_axis: Option<Spanned<Direction>>,
+}
+
+/// A massless rod of constant length.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `length`")]
+pub struct LoopRod {
+    /// Length, m.
+    pub length: Spanned<Number>,
+}
+
+/// A line along which a point slides.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `axis`")]
+pub struct SlideAxis {
+    /// Its direction in the frame of the link `from`, or of the world.
+    pub axis: Spanned<Direction>,
+}

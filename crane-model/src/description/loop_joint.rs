@@ -1,0 +1,46 @@
+//! Joints that close loops.
+
+use super::{AttachmentInfo, List, Text};
+
+/// A joint that closes a loop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoopJointInfo {
+    /// Name.
+    pub name: Text,
+    /// `ball`, `pin`, `rod` or `slide`.
+    pub kind: Text,
+    /// Its points; the directions of its forces are in the axes of the first.
+    pub ends: [AttachmentInfo; 2],
+    /// The coordinates that move its points against each other: the first, and the one after the last.
+    pub spanned: [usize; 2],
+    /// Its equations.
+    pub equations: List<LoopEquationInfo>,
+}
+
+/// An equation of a joint that closes a loop.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LoopEquationInfo {
+    /// The direction of its force or moment; empty for a rod, whose force is along it.
+    pub direction: Text,
+    /// Whether it transmits a moment, N m, instead of a force, N.
+    pub is_moment: bool,
+}
+
+impl LoopEquationInfo {
+    /// Unit of its gap.
+    pub const fn unit(&self) -> &'static str {
+        if self.is_moment { "rad" } else { "m" }
+    }
+
+    /// Unit of what it transmits.
+    pub const fn force_unit(&self) -> &'static str {
+        if self.is_moment { "N m" } else { "N" }
+    }
+
+    /// Name of the column of results with what it transmits, of a joint with a name.
+    #[cfg(feature = "std")]
+    pub fn column(&self, joint: &str) -> String {
+        let what = if self.is_moment { "moment" } else { "force" };
+        format!("{joint}_{what}_{}", self.direction).trim_end_matches('_').to_owned()
+    }
+}

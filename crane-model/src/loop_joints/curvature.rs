@@ -1,0 +1,77 @@
+//! How the forces of loop joints turn with the pose, and motions that leave loops closed.
+
+use nalgebra::{DMatrix, Vector3};
+
+use super::Loops;
+use crate::dyn_crane::DynModel;
+
+/// `Σ λ_i ∂²φ_i/∂q²`, n × n: the geometric stiffness of loop joints that transmit λ.
+///
+/// `J̇ q̇` is the quadratic form of the second derivatives, so that its values for pairs of coordinates give them exactly.
+pub(crate) fn geometric_stiffness(crane: &(impl DynModel + ?Sized), q: &[f64], multipliers: &[f64]) -> DMatrix<f64> {
+    let n = q.len();
+    let mut matrix = DMatrix::zeros(n, n);
+    let (mut states, mut v) = (vec![Vector3::zeros(); multipliers.len()], vec![0.0; n]);
+    let spans = crane.loop_joints().iter().map(|joint| joint.spanned);
+    let spanned: Vec<usize> = (0..n).filter(|j| spans.clone().any(|[first, end]| (first..end).contains(j))).collect();
+    let mut along = |coordinates: &[usize]| {
+        coordinates.iter().for_each(|&j| v[j] = 1.0);
+        crane.loop_states(q, &v, &mut states);
+        coordinates.iter().for_each(|&j| v[j] = 0.0);
+        states.iter().zip(multipliers).map(|(state, multiplier)| multiplier * state.z).sum::<f64>()
+    };
+    for &j in &spanned {
+        matrix[(j, j)] = along(&[j]);
+    }
+    for (place, &j) in spanned.iter().enumerate() {
+        for &i in &spanned[..place] {
+            let both = along(&[i, j]);
+            let entry = 0.5 * (both - matrix[(i, i)] - matrix[(j, j)]);
+            (matrix[(i, j)], matrix[(j, i)]) = (entry, entry);
+        }
+    }
+    matrix
+}
+
+/// Motions that leave the loops closed: the coordinates that are free in them, and a basis Z with a column for each, `J Z = 0`, over all
+/// coordinates. `preferred` tells how good it is to have a coordinate determined by the others.
+pub(crate) fn closed_motions(
+    crane: &(impl DynModel + ?Sized),
+    q: &[f64],
+    preferred: impl Fn(usize) -> f64,
+) -> (Vec<usize>, DMatrix<f64>) {
+    let n = q.len();
+    let mut loops = Loops::new(crane);
+    loops.evaluate(crane, q, &vec![0.0; n]);
+    loops.choose();
+    let prescribed = crane.description().prescribed();
+    let rows = loops.independent().len();
+    let mut matrix = DMatrix::from_fn(rows, n, |i, j| {
+        if prescribed.contains(&j) { 0.0 } else { loops.jacobian()[loops.independent()[i] * n + j] }
+    });
+    // Gauss–Jordan elimination: every row determines one coordinate.
+    let mut determined: Vec<usize> = Vec::new();
+    for row in 0..rows {
+        let places = (row..rows).flat_map(|i| (0..n).map(move |j| (i, j)));
+        let places = places.filter(|(_, j)| !determined.contains(j));
+        let size = |(i, j): (usize, usize)| matrix[(i, j)].abs() * preferred(j);
+        let Some((i, j)) = places.max_by(|&a, &b| size(a).total_cmp(&size(b))) else { break };
+        matrix.swap_rows(row, i);
+        let pivot = matrix[(row, j)];
+        matrix.row_mut(row).iter_mut().for_each(|entry| *entry /= pivot);
+        for other in (0..rows).filter(|&other| other != row) {
+            let factor = matrix[(other, j)];
+            for column in 0..n {
+                let entry = matrix[(row, column)];
+                matrix[(other, column)] -= factor * entry;
+            }
+        }
+        determined.push(j);
+    }
+    let free: Vec<usize> = (0..n).filter(|j| !determined.contains(j) && !prescribed.contains(j)).collect();
+    let basis = DMatrix::from_fn(n, free.len(), |j, column| match determined.iter().position(|&own| own == j) {
+        Some(row) => -matrix[(row, free[column])],
+        None => f64::from(u8::from(free[column] == j)),
+    });
+    (free, basis)
+}

@@ -1,0 +1,181 @@
+//! Which equations of loop joints are independent.
+//!
+//! A planar four-bar described in space has five equations, of which two are independent. The rows of J, each over its length, are
+//! eliminated with the largest remaining row as pivot; a pivot is the square of the sine of the angle between a row and the space of
+//! those before. Units do not matter, and neither do masses.
+
+/// A row shorter than this fraction of what it could be is zero: rounding of the axes leaves 1e-16.
+const NOTHING: f64 = 1e-9;
+/// A row whose pivot is below this depends on others: a sine of 1e-5.
+const DEPENDENT: f64 = 1e-10;
+/// The choice is made again if the smallest pivot falls below this fraction of that at the last choice.
+const WORSE: f64 = 0.1;
+/// The choice is made again if a row left out has a pivot above this.
+const APPEARED: f64 = 1e-8;
+
+/// The choice of independent equations.
+pub(super) struct Independence {
+    /// Whether each equation transmits a moment, joint by joint.
+    groups: Vec<Vec<bool>>,
+    /// Chosen equations, in the order of their pivots.
+    kept: Vec<usize>,
+    is_kept: Vec<bool>,
+    /// The smallest pivot, and that when the choice was made; NaN before.
+    least: f64,
+    chosen: f64,
+    /// `J Jᵀ` of rows of unit length, eliminated step by step.
+    gram: Vec<f64>,
+    lengths: Vec<f64>,
+    remaining: Vec<bool>,
+}
+
+impl Independence {
+    pub fn new(groups: Vec<Vec<bool>>) -> Self {
+        let count = groups.iter().map(Vec::len).sum();
+        Self {
+            groups,
+            kept: Vec::with_capacity(count),
+            is_kept: vec![false; count],
+            least: f64::NAN,
+            chosen: f64::NAN,
+            gram: vec![0.0; count * count],
+            lengths: vec![0.0; count],
+            remaining: vec![false; count],
+        }
+    }
+
+    /// Number of equations.
+    pub fn len(&self) -> usize {
+        self.lengths.len()
+    }
+
+    /// Whether no choice was made so far.
+    pub fn is_unknown(&self) -> bool {
+        self.chosen.is_nan()
+    }
+
+    pub fn kept(&self) -> &[usize] {
+        &self.kept
+    }
+
+    pub fn is_kept(&self, equation: usize) -> bool {
+        self.is_kept[equation]
+    }
+
+    /// The square root of the smallest pivot; 1 without equations.
+    pub fn least(&self) -> f64 {
+        if self.kept.is_empty() { 1.0 } else { self.least.sqrt() }
+    }
+
+    /// Chooses equations at a state; `prescribed` coordinates do not count. Those chosen before remain if they are still good.
+    pub fn choose(&mut self, jacobian: &[f64], n: usize, prescribed: &[usize]) {
+        self.measure(jacobian, n, prescribed);
+        if !self.is_unknown() && self.are_good() {
+            return;
+        }
+        self.measure(jacobian, n, prescribed);
+        self.kept.clear();
+        self.is_kept.fill(false);
+        self.least = 1.0;
+        while let Some(next) = self.largest().filter(|&next| self.pivot(next) > DEPENDENT) {
+            self.least = self.least.min(self.pivot(next));
+            self.eliminate(next);
+            self.kept.push(next);
+            self.is_kept[next] = true;
+        }
+        self.chosen = self.least;
+    }
+
+    /// Whether the equations chosen are as independent as before, and those left out still depend on them.
+    fn are_good(&mut self) -> bool {
+        self.least = 1.0;
+        for place in 0..self.kept.len() {
+            let next = self.kept[place];
+            let pivot = self.pivot(next);
+            self.least = self.least.min(pivot);
+            if pivot.is_nan() || pivot < DEPENDENT || !self.remaining[next] {
+                return false;
+            }
+            self.eliminate(next);
+        }
+        self.least >= WORSE * self.chosen && self.largest().is_none_or(|next| self.pivot(next) < APPEARED)
+    }
+
+    fn pivot(&self, row: usize) -> f64 {
+        self.gram[row * self.len() + row]
+    }
+
+    /// The remaining row with the largest pivot; of equal ones the first.
+    fn largest(&self) -> Option<usize> {
+        let rows = (0..self.len()).filter(|&row| self.remaining[row]);
+        rows.reduce(|one, other| if self.pivot(other) > self.pivot(one) * (1.0 + 1e-9) { other } else { one })
+    }
+
+    /// Removes a row, and its part from those that remain.
+    fn eliminate(&mut self, row: usize) {
+        let (size, pivot) = (self.len(), self.pivot(row));
+        self.remaining[row] = false;
+        for i in (0..size).filter(|&i| self.remaining[i]) {
+            let factor = self.gram[i * size + row] / pivot;
+            for j in 0..size {
+                self.gram[i * size + j] -= factor * self.gram[row * size + j];
+            }
+        }
+    }
+
+    /// The products of all rows of unit length; rows that are zero do not remain.
+    fn measure(&mut self, jacobian: &[f64], n: usize, prescribed: &[usize]) {
+        let product = |i: usize, j: usize| -> f64 {
+            let (one, other) = (&jacobian[i * n..][..n], &jacobian[j * n..][..n]);
+            let whole: f64 = one.iter().zip(other).map(|(a, b)| a * b).sum();
+            whole - prescribed.iter().map(|&k| one[k] * other[k]).sum::<f64>()
+        };
+        let size = self.len();
+        for row in 0..size {
+            self.lengths[row] = product(row, row).max(0.0).sqrt();
+        }
+        let mut first = 0;
+        for group in &self.groups {
+            let own = first..first + group.len();
+            let greatest = self.lengths[own.clone()].iter().zip(group).filter(|(_, is_moment)| !**is_moment);
+            let greatest = greatest.map(|(length, _)| *length).fold(0.0, f64::max);
+            for (row, is_moment) in own.zip(group) {
+                let whole = if *is_moment { 1.0 } else { greatest };
+                self.remaining[row] = self.lengths[row] > NOTHING * whole && self.lengths[row] > 0.0;
+            }
+            first += group.len();
+        }
+        for i in 0..size {
+            for j in 0..=i {
+                let both = self.remaining[i] && self.remaining[j];
+                let entry = if both { product(i, j) / (self.lengths[i] * self.lengths[j]) } else { 0.0 };
+                (self.gram[i * size + j], self.gram[j * size + i]) = (entry, entry);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Three rows in two dimensions, one zero row, and one that depends only on a prescribed coordinate.
+    #[test]
+    fn dependent_rows_are_left_out_and_good_choices_remain() {
+        let mut independence = Independence::new(vec![vec![false; 4], vec![true]]);
+        let rows = |angle: f64| -> Vec<f64> {
+            let (sin, cos) = angle.sin_cos();
+            [[1.0, 0.0, 0.0], [cos, sin, 0.0], [2.0 * cos, -sin, 0.0], [0.0, 1e-17, 0.0], [0.0, 0.0, 1.0]].concat()
+        };
+        independence.choose(&rows(1.0), 3, &[2]);
+        assert_eq!(independence.kept().len(), 2);
+        let before = independence.kept().to_vec();
+        independence.choose(&rows(1.1), 3, &[2]);
+        assert_eq!(independence.kept(), before);
+        // Rows 0 and 1 nearly coincide at a small angle: the sine of the best pair is that between row 2 and either of them.
+        independence.choose(&rows(1e-3), 3, &[2]);
+        assert!(independence.least() < 2e-3);
+        independence.choose(&rows(0.0), 3, &[2]);
+        assert_eq!(independence.kept().len(), 1);
+    }
+}

@@ -1,0 +1,378 @@
+//! Joints that close loops, exactly: equations φ(q) = 0 whose rows `J = ∂φ/∂q` are those of connectors without compliance.
+//!
+//! What eliminates connectors from an implicit step is `(M + Uᵀ R U)⁻¹ = M⁻¹ − M⁻¹ Uᵀ (R⁻¹ + U M⁻¹ Uᵀ)⁻¹ U M⁻¹`; loop joints have
+//! `R⁻¹ = 0`. For accelerations, with f all forces of the open chain and γ = J̇ q̇,
+//!
+//! ```text
+//! A q̈ = f − Jᵀ λ,   J q̈ + γ = 0:      S = J A⁻¹ Jᵀ,    λ = S⁻¹ (J A⁻¹ f + γ),    q̈ = A⁻¹ f − A⁻¹ Jᵀ λ
+//! ```
+//!
+//! so r equations take r + 1 recursions of the open chain and one dense system of size r. Positions and rates that a method has
+//! integrated are moved back onto the loop after every step: the smallest change in the metric of A,
+//!
+//! ```text
+//! φ(q − A⁻¹ Jᵀ μ) = 0,      v ← v − A⁻¹ Jᵀ S⁻¹ J v
+//! ```
+//!
+//! which keeps the order of the method (E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, section IV.4).
+//!
+//! Equations that depend on others ([`independence`]) are left out: what they would transmit cannot be determined.
+
+mod curvature;
+mod independence;
+mod quantities;
+mod reactions;
+
+pub(crate) use curvature::{closed_motions, geometric_stiffness};
+pub use reactions::{DEAD_CENTRE, Gap, cautions, gap_at, undetermined};
+pub(crate) use reactions::{add_to_wrenches, at_rest, on_rigid_drives, required};
+
+use nalgebra::Vector3;
+
+use crate::{
+    CoordinateKind,
+    dyn_crane::{DynDynamics, DynModel},
+};
+use independence::Independence;
+
+/// Gap beyond which a loop that should be closed is open, m or rad: a thousandth of a millimetre.
+pub(crate) const OPEN: f64 = 1e-6;
+/// Gap that counts as closed up to rounding, m or rad.
+const CLOSED: f64 = 1e-11;
+/// Iterations that move a pose back onto the loop: with the matrix of the step each gains several digits.
+const ITERATIONS: usize = 20;
+/// Iterations that assemble a guess.
+const ASSEMBLY: usize = 60;
+/// Halvings of a step of assembly before it is given up.
+const HALVINGS: u32 = 12;
+/// Largest rotation in a step of assembly, rad.
+const GREATEST_ROTATION: f64 = 0.5;
+
+/// A loop that is open.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Open {
+    /// Index of the equation with the largest gap, among those of all joints.
+    pub equation: usize,
+    /// The gap, m or rad.
+    pub gap: f64,
+}
+
+/// Solves a linear system, `x = M⁻¹ r`.
+pub(crate) type Solve<'a> = &'a mut dyn FnMut(&[f64], &mut [f64]);
+
+/// The loop joints of a crane at a state, with storage that is reused.
+pub(crate) struct Loops {
+    /// Number of coordinates.
+    n: usize,
+    /// Coordinates that rigid drives prescribe: no force moves them.
+    prescribed: Vec<usize>,
+    /// φ, φ̇ and J̇ q̇, equation by equation.
+    states: Vec<Vector3<f64>>,
+    /// J, row by row.
+    jacobian: Vec<f64>,
+    /// Which equations are independent.
+    independence: Independence,
+    /// M⁻¹ Jᵀ of the independent equations, row by row.
+    columns: Vec<f64>,
+    /// S of the independent equations, then its Cholesky factor, row by row.
+    schur: Vec<f64>,
+    /// Numbers of the independent equations.
+    shares: Vec<f64>,
+    /// λ, equation by equation; 0 for dependent ones.
+    multipliers: Vec<f64>,
+    /// A pose that is tried, and a change of the pose.
+    trial: Vec<f64>,
+    step: Vec<f64>,
+    rest: Vec<f64>,
+}
+
+impl Loops {
+    /// Storage for the loop joints of a crane.
+    pub fn new(crane: &(impl DynModel + ?Sized)) -> Self {
+        let n = crane.size();
+        let joints = crane.loop_joints();
+        let groups = joints.iter().map(|joint| joint.equations.iter().map(|equation| equation.is_moment).collect());
+        let independence = Independence::new(groups.collect());
+        let count = independence.len();
+        let of_crane = if count == 0 { 0 } else { n };
+        Self {
+            n: of_crane,
+            prescribed: crane.description().prescribed(),
+            states: vec![Vector3::zeros(); count],
+            jacobian: vec![0.0; count * of_crane],
+            independence,
+            columns: vec![0.0; count * of_crane],
+            schur: vec![0.0; count * count],
+            shares: vec![0.0; count],
+            multipliers: vec![0.0; count],
+            trial: vec![0.0; of_crane],
+            step: vec![0.0; of_crane],
+            rest: vec![0.0; of_crane],
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.states.is_empty()
+    }
+
+    /// λ of the last solution, equation by equation: N and N m.
+    pub fn multipliers(&self) -> &[f64] {
+        &self.multipliers
+    }
+
+    /// J, row by row, as last evaluated.
+    pub fn jacobian(&self) -> &[f64] {
+        &self.jacobian
+    }
+
+    /// Indices of the independent equations, as last chosen.
+    pub fn independent(&self) -> &[usize] {
+        self.independence.kept()
+    }
+
+    /// How far the independent equations are from depending on each other, 0 to 1: a sine, 0 at a dead centre.
+    pub fn distance_to_dead_centre(&self) -> f64 {
+        self.independence.least()
+    }
+
+    /// φ, φ̇ and J̇ q̇ of every equation, and J.
+    pub fn evaluate(&mut self, crane: &(impl DynModel + ?Sized), q: &[f64], v: &[f64]) {
+        crane.loop_states(q, v, &mut self.states);
+        crane.loop_jacobians(q, &mut self.jacobian);
+    }
+
+    /// Chooses independent equations at the state evaluated; those chosen before remain if they are still good.
+    pub fn choose(&mut self) {
+        let Self { independence, jacobian, n, prescribed, .. } = self;
+        independence.choose(jacobian, *n, prescribed);
+    }
+
+    /// Prepares solutions at the state evaluated; `solve` solves the system of the open chain.
+    pub fn factorise(&mut self, solve: Solve<'_>) {
+        let Self { n, jacobian, independence, columns, schur, .. } = self;
+        let (n, kept) = (*n, independence.kept());
+        for (place, &row) in kept.iter().enumerate() {
+            solve(&jacobian[row * n..][..n], &mut columns[place * n..][..n]);
+        }
+        let size = kept.len();
+        for (i, &row) in kept.iter().enumerate() {
+            for j in 0..=i {
+                schur[i * size + j] = dot(&jacobian[row * n..][..n], &columns[j * n..][..n]);
+            }
+        }
+        cholesky(&mut schur[..size * size], size);
+    }
+
+    /// Turns the solution of the open chain, `x = M⁻¹ r`, into that with the loops closed, for which `J x + γ = 0`; γ is J̇ q̇ of the
+    /// state evaluated if `moving`, otherwise 0.
+    pub fn correct(&mut self, x: &mut [f64], moving: bool) {
+        if self.is_empty() {
+            return;
+        }
+        let Self { n, jacobian, independence, shares, states, .. } = self;
+        for (share, &row) in shares.iter_mut().zip(independence.kept()) {
+            let gamma = if moving { states[row].z } else { 0.0 };
+            *share = dot(&jacobian[row * *n..][..*n], x) + gamma;
+        }
+        self.subtract(x);
+        let Self { independence, shares, multipliers, .. } = self;
+        multipliers.fill(0.0);
+        for (share, &row) in shares.iter().zip(independence.kept()) {
+            multipliers[row] = *share;
+        }
+    }
+
+    /// `x − M⁻¹ Jᵀ S⁻¹ shares`; the shares become `S⁻¹ shares`.
+    fn subtract(&mut self, x: &mut [f64]) {
+        let Self { n, independence, columns, schur, shares, .. } = self;
+        let size = independence.kept().len();
+        solve_cholesky(&schur[..size * size], size, &mut shares[..size]);
+        for (share, column) in shares[..size].iter().zip(columns.chunks_exact(*n)) {
+            for (x, entry) in x.iter_mut().zip(column) {
+                *x -= share * entry;
+            }
+        }
+    }
+
+    /// Accelerations with the loops closed, in place of those of the open chain. λ is then known.
+    pub fn accelerate(&mut self, crane: &dyn DynDynamics, q: &[f64], v: &[f64], accelerations: &mut [f64]) {
+        if self.is_empty() {
+            return;
+        }
+        self.evaluate(crane, q, v);
+        if self.independence.is_unknown() {
+            self.choose();
+        }
+        self.factorise(&mut |r, x| crane.solve_mass(q, r, x));
+        self.correct(accelerations, true);
+    }
+
+    /// The independent equation with the largest gap.
+    fn greatest(&self) -> Open {
+        self.worst(|row| self.independence.is_kept(row))
+    }
+
+    /// The equation with the largest gap, as last evaluated.
+    pub fn widest(&self) -> Open {
+        self.worst(|_| true)
+    }
+
+    fn worst(&self, counts: impl Fn(usize) -> bool) -> Open {
+        let gaps = self.states.iter().enumerate().filter(|(row, _)| counts(*row));
+        // A gap that is not a number is the largest.
+        let gaps = gaps.map(|(equation, state)| Open {
+            equation,
+            gap: if state.x.is_nan() { f64::INFINITY } else { state.x.abs() },
+        });
+        gaps.reduce(|one, other| if other.gap > one.gap { other } else { one })
+            .unwrap_or(Open { equation: 0, gap: 0.0 })
+    }
+
+    /// Moves a pose and its rates, which a method has integrated, onto the loops.
+    ///
+    /// # Errors
+    /// A loop does not close: one of its equations that depend on others has a gap, or the pose is too far away.
+    pub fn project(&mut self, crane: &dyn DynDynamics, q: &mut [f64], v: &mut [f64]) -> Result<(), Open> {
+        if self.is_empty() {
+            return Ok(());
+        }
+        self.evaluate(crane, q, v);
+        self.choose();
+        {
+            let q = &*q;
+            self.factorise(&mut |r, x| crane.solve_mass(q, r, x));
+        }
+        let mut before = f64::INFINITY;
+        for _ in 0..ITERATIONS {
+            let Open { gap, .. } = self.greatest();
+            // Rounding ends the iteration.
+            if gap <= f64::EPSILON || gap > 0.5 * before {
+                break;
+            }
+            before = gap;
+            self.take_gaps();
+            self.subtract(q);
+            crane.loop_states(q, v, &mut self.states);
+        }
+        let open = self.greatest();
+        if open.gap > CLOSED {
+            return Err(open);
+        }
+        crane.loop_jacobians(q, &mut self.jacobian);
+        // The matrix of the pose before leaves a share of the rates as small as the pose's change.
+        for _ in 0..2 {
+            let Self { n, jacobian, independence, shares, .. } = self;
+            for (share, &row) in shares.iter_mut().zip(independence.kept()) {
+                *share = dot(&jacobian[row * *n..][..*n], v);
+            }
+            self.subtract(v);
+        }
+        let widest = self.widest();
+        if widest.gap > OPEN { Err(widest) } else { Ok(()) }
+    }
+
+    /// √Σ φ²
+    fn size(&self) -> f64 {
+        self.states.iter().map(|state| state.x * state.x).sum::<f64>().sqrt()
+    }
+
+    /// The gaps of the independent equations as shares.
+    fn take_gaps(&mut self) {
+        let Self { independence, shares, states, .. } = self;
+        for (share, &row) in shares.iter_mut().zip(independence.kept()) {
+            *share = states[row].x;
+        }
+    }
+
+    /// Moves a guess onto the loops by Gauss–Newton steps, in the metric of the matrix that `solve` inverts at a pose: the branch is the one
+    /// on which the guess lies.
+    ///
+    /// # Errors
+    /// It does not close; the pose is the nearest one that was found.
+    pub fn assemble(
+        &mut self,
+        crane: &(impl DynModel + ?Sized),
+        q: &mut [f64],
+        solve: &mut dyn FnMut(&[f64], &[f64], &mut [f64]),
+    ) -> Result<(), Open> {
+        if self.is_empty() {
+            return Ok(());
+        }
+        let rest = std::mem::take(&mut self.rest);
+        self.evaluate(crane, q, &rest);
+        for _ in 0..ASSEMBLY {
+            self.choose();
+            let size = self.size();
+            if size <= f64::EPSILON {
+                break;
+            }
+            {
+                let q = &*q;
+                self.factorise(&mut |r, x| solve(q, r, x));
+            }
+            self.take_gaps();
+            let mut step = std::mem::take(&mut self.step);
+            step.fill(0.0);
+            self.subtract(&mut step);
+            limit(&mut step, crane);
+            let mut trial = std::mem::take(&mut self.trial);
+            let nearer = (0..HALVINGS).any(|k| {
+                let fraction = 0.5_f64.powi(k.cast_signed());
+                for (trial, (q, step)) in trial.iter_mut().zip(q.iter().zip(&step)) {
+                    *trial = q + fraction * step;
+                }
+                crane.loop_states(&trial, &rest, &mut self.states);
+                self.size() < size
+            });
+            if nearer {
+                q.copy_from_slice(&trial);
+            }
+            (self.step, self.trial) = (step, trial);
+            self.evaluate(crane, q, &rest);
+            if !nearer {
+                break;
+            }
+        }
+        self.rest = rest;
+        let widest = self.widest();
+        if widest.gap > OPEN { Err(widest) } else { Ok(()) }
+    }
+}
+
+/// Shortens a step so that no coordinate rotates by more than [`GREATEST_ROTATION`].
+fn limit(step: &mut [f64], crane: &(impl DynModel + ?Sized)) {
+    let coordinates = &crane.description().coordinates;
+    let rotations = coordinates.iter().zip(&*step).filter(|(info, _)| info.kind == CoordinateKind::Rotation);
+    let greatest = rotations.map(|(_, step)| step.abs()).fold(0.0, f64::max);
+    if greatest > GREATEST_ROTATION {
+        step.iter_mut().for_each(|step| *step *= GREATEST_ROTATION / greatest);
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Replaces the lower triangle of a symmetric matrix by its Cholesky factor; not finite unless the matrix is positive definite.
+fn cholesky(matrix: &mut [f64], size: usize) {
+    for i in 0..size {
+        for j in 0..=i {
+            let sum: f64 = (0..j).map(|k| matrix[i * size + k] * matrix[j * size + k]).sum();
+            let rest = matrix[i * size + j] - sum;
+            matrix[i * size + j] = if i == j { rest.sqrt() } else { rest / matrix[j * size + j] };
+        }
+    }
+}
+
+/// The solution in place of the right-hand side, from a Cholesky factor.
+fn solve_cholesky(factor: &[f64], size: usize, x: &mut [f64]) {
+    for i in 0..size {
+        let known: f64 = (0..i).map(|k| factor[i * size + k] * x[k]).sum();
+        x[i] = (x[i] - known) / factor[i * size + i];
+    }
+    for i in (0..size).rev() {
+        let known: f64 = (i + 1..size).map(|k| factor[k * size + i] * x[k]).sum();
+        x[i] = (x[i] - known) / factor[i * size + i];
+    }
+}

@@ -1,0 +1,83 @@
+"""Joints that close loops: their equations from the YAML, and accelerations by Lagrange multipliers."""
+
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+
+
+@dataclass
+class LoopJoint:
+    """A joint, and what is zero while it is closed."""
+
+    name: str
+    gaps: list
+
+
+def frame_of(written, spans, spec, carrier):
+    """Rotation and point of an end."""
+    at = spec.vector(written["at"])
+    if "link" not in written:
+        return ca.SX.eye(3), at
+    body, local = carrier(spec, at, spans[written["link"]])
+    return body.transform[:3, :3], body.transform[:3, :3] @ local + body.transform[:3, 3]
+
+
+def across(axis):
+    """An axis as a unit vector, and two directions normal to it: axes of the frame, if it is one of them."""
+    axis = np.array(axis, float) / np.linalg.norm(axis)
+    for place in range(3):
+        if abs(axis[place]) >= 1:
+            units = np.eye(3)
+            return units[place], units[(place + 1) % 3], units[(place + 2) % 3]
+    start = np.eye(3)[np.argmin(abs(axis))]
+    first = start - axis * (axis @ start)
+    first /= np.linalg.norm(first)
+    return axis, first, np.cross(axis, first)
+
+
+def read_loop_joint(spec, written, spans, carrier):
+    """What is zero: points together, directions of axes, distances from a line, or from a length."""
+    (one, point), (other, end) = (frame_of(written[key], spans, spec, carrier) for key in ("from", "to"))
+    way = one.T @ (end - point)
+    joint = written["joint"]
+    kind, keys = (joint, {}) if isinstance(joint, str) else next(iter(joint.items()))
+    if kind == "ball":
+        gaps = [way]
+    elif kind == "rod":
+        gaps = [ca.norm_2(end - point) - spec.number(keys["length"])]
+    elif kind == "slide":
+        _, first, second = across(keys["axis"])
+        gaps = [ca.dot(ca.SX(first), way), ca.dot(ca.SX(second), way)]
+    else:
+        axis, first, second = across(keys["axis"])
+        along = np.array(keys.get("to_axis", keys["axis"]), float)
+        turned = one.T @ (other @ ca.SX(along / np.linalg.norm(along)))
+        gaps = [way, -ca.dot(ca.SX(second), turned), ca.dot(ca.SX(first), turned)]
+    return LoopJoint(written["name"], gaps)
+
+
+def quantities(joints, q, v):
+    """φ, φ̇ and J̇ q̇ of every equation, and J."""
+    gaps = ca.vertcat(ca.SX(0, 1), *[gap for joint in joints for gap in joint.gaps])
+    rates = ca.jtimes(gaps, q, v)
+    states = ca.horzcat(gaps, rates, ca.jtimes(rates, q, v))
+    return {"loop_states": ca.vec(states.T), "loop_jacobians": ca.vec(ca.densify(ca.jacobian(gaps, q)).T)}
+
+
+def closed(mass, forces, jacobians, curvatures, given, prescribed):
+    """Accelerations with closed loops, state by state: `[A Jᵀ; J 0] [q̈; λ] = [e + f; −J̇ q̇]` by least squares, because equations may depend on
+    each other; prescribed coordinates have the accelerations `given`."""
+    free = [i for i in range(mass.shape[1]) if i not in prescribed]
+    out = given.copy()
+    for state in range(len(mass)):
+        a, j = mass[state], jacobians[state]
+        right = forces[state][free] - a[np.ix_(free, prescribed)] @ given[state][prescribed]
+        gaps = -curvatures[state] - j[:, prescribed] @ given[state][prescribed]
+        scale = 1 / np.sqrt(np.diag(a)[free])
+        scaled = a[np.ix_(free, free)] * scale[:, None] * scale
+        rows = j[:, free] * scale
+        whole = np.block([[scaled, rows.T], [rows, np.zeros((len(j), len(j)))]])
+        found = np.linalg.lstsq(whole, np.concatenate([scale * right, gaps]), rcond=1e-13)[0]
+        out[state][free] = scale * found[: len(free)]
+    return out
