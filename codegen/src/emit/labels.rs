@@ -107,9 +107,7 @@ impl<'a> Labels<'a> {
                 Some(match function.id {
                     FunctionId::CylinderWrenches => format!("{} – {cut}", chain.cylinders[place / cuts.len()].name),
                     FunctionId::ConnectorWrenches => format!("{} – {cut}", chain.connectors()[place / cuts.len()].name),
-                    FunctionId::LoopWrenches => {
-                        format!("{} – {cut}", chain.loop_equations().nth(place / cuts.len()).unwrap_or_default())
-                    }
+                    FunctionId::LoopWrenches => format!("{} – {cut}", self.loop_equation(place / cuts.len())),
                     _ => cut,
                 })
             }
@@ -132,6 +130,10 @@ impl<'a> Labels<'a> {
                 Some(format!("{}, row of {row}", capitalised(name)))
             }
         }
+    }
+
+    fn loop_equation(&self, index: usize) -> String {
+        self.chain.loop_equations().nth(index).unwrap_or_default()
     }
 
     fn section(&self, section: &Section) -> String {

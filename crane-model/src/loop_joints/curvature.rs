@@ -15,9 +15,13 @@ pub(crate) fn geometric_stiffness(crane: &(impl DynModel + ?Sized), q: &[f64], m
     let spans = crane.loop_joints().iter().map(|joint| joint.spanned);
     let spanned: Vec<usize> = (0..n).filter(|j| spans.clone().any(|[first, end]| (first..end).contains(j))).collect();
     let mut along = |coordinates: &[usize]| {
-        coordinates.iter().for_each(|&j| v[j] = 1.0);
+        for &j in coordinates {
+            v[j] = 1.0;
+        }
         crane.loop_states(q, &v, &mut states);
-        coordinates.iter().for_each(|&j| v[j] = 0.0);
+        for &j in coordinates {
+            v[j] = 0.0;
+        }
         states.iter().zip(multipliers).map(|(state, multiplier)| multiplier * state.z).sum::<f64>()
     };
     for &j in &spanned {

@@ -60,6 +60,9 @@ pub(crate) struct Open {
 /// Solves a linear system, `x = M⁻¹ r`.
 pub(crate) type Solve<'a> = &'a mut dyn FnMut(&[f64], &mut [f64]);
 
+/// Solves a linear system of a pose, `x = M(q)⁻¹ r`: q, r, x.
+pub(crate) type SolveAt<'a> = &'a mut dyn FnMut(&[f64], &[f64], &mut [f64]);
+
 /// The loop joints of a crane at a state, with storage that is reused.
 pub(crate) struct Loops {
     /// Number of coordinates.
@@ -294,7 +297,7 @@ impl Loops {
         &mut self,
         crane: &(impl DynModel + ?Sized),
         q: &mut [f64],
-        solve: &mut dyn FnMut(&[f64], &[f64], &mut [f64]),
+        solve: SolveAt<'_>,
     ) -> Result<(), Open> {
         if self.is_empty() {
             return Ok(());
@@ -346,7 +349,9 @@ fn limit(step: &mut [f64], crane: &(impl DynModel + ?Sized)) {
     let rotations = coordinates.iter().zip(&*step).filter(|(info, _)| info.kind == CoordinateKind::Rotation);
     let greatest = rotations.map(|(_, step)| step.abs()).fold(0.0, f64::max);
     if greatest > GREATEST_ROTATION {
-        step.iter_mut().for_each(|step| *step *= GREATEST_ROTATION / greatest);
+        for step in step.iter_mut() {
+            *step *= GREATEST_ROTATION / greatest;
+        }
     }
 }
 

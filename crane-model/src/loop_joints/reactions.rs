@@ -149,7 +149,9 @@ pub(crate) fn required(crane: &(impl DynDynamics + ?Sized), t: f64, [q, v, a]: [
 pub(crate) fn at_rest(crane: &(impl DynStatics + ?Sized), t: f64, positions: &[f64], q: &[f64]) -> Vec<f64> {
     let mut residual = vec![0.0; q.len()];
     crane.static_residual(t, q, positions, &mut residual);
-    residual.iter_mut().for_each(|entry| *entry = -*entry);
+    for entry in &mut residual {
+        *entry = -*entry;
+    }
     let mut loops = Loops::new(crane);
     loops.evaluate(crane, q, &vec![0.0; q.len()]);
     loops.choose();
