@@ -127,7 +127,9 @@ impl ForceStates {
                 by_states.as_deref_mut().map(|matrix| matrix.view_mut((first, first), (*end - first, *end - first)));
             let out = Evaluated { rates: &mut rates[first..*end], forces: &mut *forces, rows };
             kind.evaluate(crane, &moment.with_states(first..*end), out, block);
-            forces.iter_mut().for_each(|force| force.first += first);
+            for force in forces {
+                force.first += first;
+            }
             [first_force, first] = [*end_force, *end];
         }
     }
