@@ -3,8 +3,8 @@
 use super::elements::{Element, Elements};
 use super::kinematics::Kinematics;
 use super::laws::At;
-use super::loads::Place;
 use super::model::Model;
+use super::place::Place;
 use super::profile;
 use super::strains::Strained;
 use super::vector::Vec3;

@@ -30,8 +30,8 @@
 //! which the linkage cannot be assembled, the square root is of a negative number, and the result is NaN.
 
 use super::kinematics::Kinematics;
-use super::loads::Place;
 use super::model::Model;
+use super::place::Place;
 use super::vector::{SymmetricMatrix, Vec3};
 use crate::chain::{BodyId, Cylinder, Linkage, Pin, Value};
 use crate::symbolic::Expr;

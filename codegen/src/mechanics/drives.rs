@@ -2,8 +2,8 @@
 //! in motion, the force of its cylinder follows from pressures, which are states of the run; at rest it is that of a spring along the
 //! cylinder.
 
+use super::acts::{Acts, Rest, add};
 use super::cylinders;
-use super::forces::{Acts, Rest, add};
 use super::model::Model;
 use super::power_limits::delivered;
 use super::profile;

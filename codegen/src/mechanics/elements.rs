@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::forces::{Acts, Rest};
+use super::acts::{Acts, Rest};
 use super::kinematics::Kinematics;
 use super::laws::{At, Law, law};
 use super::model::Model;

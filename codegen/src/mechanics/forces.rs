@@ -3,6 +3,7 @@
 //! Whatever sums over all forces goes through [`Forces`]. Most kinds are groups of [`elements`](super::elements), laws of one strain each;
 //! supports have a law of three strains, drives have motions, and loads have no strain.
 
+use super::acts::{Acts, Rest, add};
 use super::drives::{self, Drives};
 use super::elements::Elements;
 use super::kinematics::Kinematics;
@@ -50,57 +51,9 @@ impl Kind {
     }
 }
 
-/// What is given at rest besides the pose.
-pub struct Rest<'g> {
-    /// Time of loads and winches, s.
-    pub t: Expr<'g>,
-    /// Positions at which the drives hold the crane, by coordinate.
-    pub positions: Vec<Expr<'g>>,
-}
-
-impl<'g> Rest<'g> {
-    /// At any time, with the drives at any positions.
-    pub fn given(model: &Model<'g>) -> Self {
-        Rest { t: model.t, positions: model.drive_positions.clone() }
-    }
-
-    /// At t = 0, with the drives where their motions start.
-    pub fn at_start(model: &Model<'g>) -> Self {
-        Rest { t: model.zero(), positions: drives::positions(model, model.zero()) }
-    }
-}
-
-/// The forces of a kind.
-pub trait Acts<'g> {
-    /// Generalized forces in motion.
-    fn in_motion(&self) -> Vec<Expr<'g>>;
-
-    /// Generalized forces at rest, `−∂E/∂q`: oil holds its joints, and no winch moves.
-    fn at_rest(&self, rest: &Rest<'g>) -> Vec<Expr<'g>>;
-
-    /// The energy that they store, if any.
-    fn energy(&self) -> Option<Expr<'g>> {
-        None
-    }
-
-    /// The power that they dissipate, if they can.
-    fn dissipation(&self) -> Option<Expr<'g>> {
-        None
-    }
-
-    /// Adds the tangent stiffness at rest, `∂²E/∂q∂q`, without that of oil, which follows from its volumes.
-    fn add_stiffness(&self, rest: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>);
-
-    /// Adds the damping at rest, `−∂f/∂q̇`.
-    fn add_damping(&self, _rest: &Rest<'g>, _matrix: &mut SymmetricMatrix<'g>) {}
-
-    /// Adds stiffness and damping for an implicit step: constants for linear springs and dampers on single coordinates, and for the base's
-    /// coordinates values at the present state, which are never negative.
-    fn add_step_matrices(&self, _matrices: [&mut SymmetricMatrix<'g>; 2]) {}
-
-    /// Adds stiffness and damping for an implicit step of other laws on single coordinates, at the present state. The derivative of a law
-    /// that declines is set to 0: a step does not need the exact one, but `A + D̂` must stay positive definite.
-    fn add_nonlinear(&self, _diagonal: &mut [[Expr<'g>; 2]]) {}
+/// The crane at rest at t = 0, with the drives where their motions start.
+pub fn rest_at_start<'g>(model: &Model<'g>) -> Rest<'g> {
+    Rest { t: model.zero(), positions: drives::positions(model, model.zero()) }
 }
 
 /// The forces of a chain, except those of rigid drives, which have no law: they follow from the motion.
@@ -182,9 +135,4 @@ impl<'a, 'g> Forces<'a, 'g> {
     fn zero_matrix(&self) -> SymmetricMatrix<'g> {
         SymmetricMatrix::zero(self.model.graph, self.model.size())
     }
-}
-
-/// The sum of two vectors of generalized forces.
-pub fn add<'g>(a: &[Expr<'g>], b: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    a.iter().zip(b).map(|(&a, &b)| a + b).collect()
 }

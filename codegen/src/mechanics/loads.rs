@@ -3,10 +3,11 @@
 //! `f_j = F · Ω_j x + M · ω_j` for the coordinates j that move the body, x the point in the world: the power `F · ẋ + M · ω` at unit
 //! rate of j.
 
+use super::acts::{Acts, Rest};
 use super::connectors;
-use super::forces::{Acts, Rest};
 use super::kinematics::Kinematics;
 use super::model::Model;
+use super::place::Place;
 use super::profile;
 use super::twist::Twist;
 use super::vector::{SymmetricMatrix, Vec3};
@@ -124,15 +125,6 @@ pub fn on_bodies<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Vec<
         actions[body].push(Action { along, wrench: [force, lever.cross(force)] });
     }
     actions
-}
-
-/// Where a force acts on a body.
-#[derive(Clone, Debug)]
-pub struct Place {
-    /// The body.
-    pub body: BodyId,
-    /// Position along it, m.
-    pub along: Value,
 }
 
 /// Start and end of the smooth intervals of every load's factor.

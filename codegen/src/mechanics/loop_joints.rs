@@ -18,8 +18,8 @@
 //! are `f = −Jᵀ λ`.
 
 use super::kinematics::{Generator, Kinematics, Pose};
-use super::loads::Place;
 use super::model::Model;
+use super::place::Place;
 use super::vector::{Rotation, Vec3};
 use crate::chain::{Across, Attachment, BodyId, LoopJoint, LoopJointKind, Vector};
 use crate::symbolic::Expr;

@@ -4,6 +4,7 @@
 //! implementation of the rigid finite element method in the statics and dynamics analysis of forest cranes*, Applied
 //! Mathematical Modelling, 2016; `docs/EQUATIONS.md` explains where we deviate from it.
 
+mod acts;
 mod articulated;
 mod axis_rotation;
 mod columns;
@@ -29,6 +30,7 @@ mod model;
 mod newton_euler;
 mod omissions;
 mod outward;
+mod place;
 mod points;
 mod power_limits;
 mod profile;

@@ -5,9 +5,10 @@
 
 use super::factors::Factor;
 use super::kinematics::Kinematics;
-use super::loads::{self, Action, Place};
+use super::loads::{self, Action};
 use super::model::Model;
 use super::outward::{Velocities, along};
+use super::place::Place;
 use super::vector::Vec3;
 use crate::chain::{Axis, BodyId, Cut, Inertia, Section, Side};
 use crate::symbolic::Expr;

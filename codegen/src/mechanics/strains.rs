@@ -6,8 +6,8 @@
 //!   `J_j = 1`, `J_i = −r`.
 
 use super::kinematics::{Kinematics, Pose};
-use super::loads::Place;
 use super::model::Model;
+use super::place::Place;
 use super::vector::Vec3;
 use crate::chain::{Attachment, BodyId, CoordinateId, Strain};
 use crate::symbolic::Expr;

@@ -11,8 +11,8 @@
 use crate::chain::{CoordinateId, Step, Support, SupportKinematics};
 use crate::symbolic::Expr;
 
+use super::acts::{Acts, Rest};
 use super::contact::Contact;
-use super::forces::{Acts, Rest};
 use super::kinematics::Kinematics;
 use super::model::Model;
 use super::vector::{Rotation, Symmetric3, SymmetricMatrix, Vec3};

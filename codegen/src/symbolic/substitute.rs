@@ -7,7 +7,7 @@ use super::graph::Graph;
 use super::op::ExprId;
 
 impl Graph {
-    /// An expression in which symbols are replaced, simplified anew.
+    /// An expression in which symbols are replaced, simplified again.
     pub fn substitute<'g>(&'g self, of: Expr<'g>, replaced: &[(Expr<'g>, Expr<'g>)]) -> Expr<'g> {
         let mut known = replaced.iter().map(|(symbol, by)| (symbol.id(), by.id())).collect();
         self.expr(self.substituted(of.id(), &mut known))

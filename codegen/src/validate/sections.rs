@@ -4,9 +4,7 @@
 //! at both ends of the beam and where each of its elements begins.
 
 use super::Check;
-use crate::chain::{
-    Beam, BodyId, Cylinder, Force, Inside, Load, LoopJoint, Moduli, Outline, Section, Side, Value,
-};
+use crate::chain::{Beam, BodyId, Cylinder, Force, Inside, Load, LoopJoint, Moduli, Outline, Section, Side, Value};
 use crate::expand::beam::Distribution;
 
 /// Places of an element that are closer to each other than this fraction of its beam are one place.

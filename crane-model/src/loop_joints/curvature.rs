@@ -38,7 +38,7 @@ pub(crate) fn geometric_stiffness(crane: &(impl DynModel + ?Sized), q: &[f64], m
 }
 
 /// Motions that leave the loops closed: the coordinates that are free in them, and a basis Z with a column for each, `J Z = 0`, over all
-/// coordinates. `preferred` tells how good it is to have a coordinate determined by the others.
+/// coordinates. `preferred`: how good it is to determine a coordinate by the others.
 pub(crate) fn closed_motions(
     crane: &(impl DynModel + ?Sized),
     q: &[f64],

@@ -91,18 +91,12 @@ pub fn of_strength(description: &Description) -> Vec<String> {
 
 /// The first pose of a run near which the equations are singular.
 pub fn near_singular(description: &Description, table: &Table) -> Option<String> {
-    poses(description, table).find_map(|q| description.near_singular(q))
+    table.poses(description).find_map(|q| description.near_singular(q))
 }
 
 /// The first pose of a run at which a base that is limited to small rotations has rotated further.
 pub fn large_tilt(description: &Description, table: &Table) -> Option<String> {
-    poses(description, table).find_map(|q| description.large_tilt(q))
-}
-
-/// The poses of a run: the columns after the time.
-pub(super) fn poses<'a>(description: &Description, table: &'a Table) -> impl Iterator<Item = &'a [f64]> {
-    let n = description.coordinates.len();
-    table.rows.iter().filter_map(move |row| row.get(1..=n))
+    table.poses(description).find_map(|q| description.large_tilt(q))
 }
 
 /// Reports how long a joint is on its stops during a run, and their largest effort.

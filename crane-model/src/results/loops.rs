@@ -1,6 +1,6 @@
 //! Loops near a dead centre, and reactions that cannot be determined.
 
-use super::{Table, cautions::poses};
+use super::Table;
 use crate::{dyn_crane::DynCrane, loop_joints};
 
 /// The first cautions of a run, each with its time.
@@ -9,7 +9,7 @@ pub(super) fn of_run(crane: &dyn DynCrane, table: &Table) -> Vec<String> {
         return Vec::new();
     }
     let mut found: Vec<(String, String)> = Vec::new();
-    for (index, q) in poses(crane.description(), table).enumerate() {
+    for (index, q) in table.poses(crane.description()).enumerate() {
         for caution in loop_joints::cautions(crane, q) {
             // Cautions of one kind differ in their numbers.
             let kind = caution.split(|c: char| c.is_ascii_digit()).next().unwrap_or_default().to_owned();

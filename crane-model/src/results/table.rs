@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::Description;
+
 /// Name and unit of a column.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Column {
@@ -42,6 +44,12 @@ impl Table {
     pub(super) fn time_of(&self, results: usize) -> f64 {
         let duration = self.rows.last().map_or(0.0, |row| row[0]);
         (results as f64 * duration / (self.rows.len().max(2) - 1) as f64).min(duration)
+    }
+
+    /// The poses of a run: the columns after the time.
+    pub(super) fn poses(&self, description: &Description) -> impl Iterator<Item = &[f64]> {
+        let n = description.coordinates.len();
+        self.rows.iter().filter_map(move |row| row.get(1..=n))
     }
 
     /// The values of a column by its name.

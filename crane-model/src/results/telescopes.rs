@@ -1,7 +1,6 @@
 //! Flexible links that slide in one another: a stage is held where it begins, not at the pads of the link in which it slides.
 
 use super::Table;
-use super::cautions::poses;
 use crate::dyn_crane::DynCrane;
 use crate::{CoordinateKind, Description};
 
@@ -30,7 +29,7 @@ pub(super) fn of_run(crane: &dyn DynCrane, table: &Table) -> Vec<String> {
         return Vec::new();
     }
     let mut greatest = Vec::new();
-    for q in poses(description, table) {
+    for q in table.poses(description) {
         let overlaps = overlaps(crane, &stages, q);
         greatest.resize(overlaps.len(), 0.0);
         for (greatest, overlap) in greatest.iter_mut().zip(overlaps) {

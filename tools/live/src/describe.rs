@@ -59,9 +59,7 @@ pub fn describe(chain: &Chain) -> Description {
     let loads = chain.loads.iter().map(|load| LoadInfo { name: load.name.clone().into(), pieces: load.pieces() });
     let connectors = chain.connectors().iter().map(|connector| ConnectorInfo {
         name: connector.name.clone().into(),
-        ends: connector.strain.ends().map(|ends| {
-            ends.each_ref().map(|end| attachment_info(end, &defaults))
-        }),
+        ends: connector.strain.ends().map(|ends| ends.each_ref().map(|end| attachment_info(end, &defaults))),
         kind: kind_of(chain.kind_of(&connector.strain)),
         is_rope: connector.is_rope(),
         spanned: chain.spanned(&connector.strain),

@@ -106,6 +106,7 @@ impl FourBar {
     }
 
     /// Angle and rate of the crank after some time, by RK4 with steps of 0.2 ms.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few thousand steps")]
     fn after(time: f64, mut theta: f64, mut rate: f64) -> [f64; 2] {
         let steps = (time / 2e-4).round() as usize;
         let h = time / steps as f64;

@@ -1,7 +1,7 @@
 //! Efforts, motions and limits of drives.
 
 use super::{Derivation, function};
-use crate::mechanics::{drives, forces};
+use crate::mechanics::{acts, drives};
 use crate::program::Argument::{Position, Time, Velocity};
 use crate::program::{Function, FunctionId, Shape};
 use crate::symbolic::{Expr, SweepTrace};
@@ -66,7 +66,7 @@ impl<'g> Derivation<'g> {
     pub(super) fn drive_forces(&self) -> Vec<Expr<'g>> {
         let model = &self.model;
         let flexible = drives::forces(model, model.t, &model.v);
-        if self.rigid { forces::add(&flexible, &self.rigid_efforts()) } else { flexible }
+        if self.rigid { acts::add(&flexible, &self.rigid_efforts()) } else { flexible }
     }
 
     /// Efforts of rigid drives: the forces that the prescribed motions require, minus the other forces on their joints.

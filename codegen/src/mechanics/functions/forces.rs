@@ -2,7 +2,8 @@
 
 use super::{Derivation, function};
 use crate::chain::Group;
-use crate::mechanics::forces::{Kind, add};
+use crate::mechanics::acts::add;
+use crate::mechanics::forces::Kind;
 use crate::mechanics::{connectors, loads, supports};
 use crate::program::Argument::{Position, Time, Velocity};
 use crate::program::{Function, FunctionId, Shape, Struct};

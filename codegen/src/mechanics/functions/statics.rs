@@ -2,8 +2,9 @@
 
 use super::{Derivation, function};
 use crate::chain::CoordinateId;
+use crate::mechanics::acts::Rest;
 use crate::mechanics::columns::columns;
-use crate::mechanics::forces::{Kind, Rest};
+use crate::mechanics::forces::{Kind, rest_at_start};
 use crate::mechanics::vector::SymmetricMatrix;
 use crate::mechanics::{cylinders, gravity};
 use crate::program::Argument::{DrivePositions, Position, Time};
@@ -82,7 +83,7 @@ impl<'g> Derivation<'g> {
     }
 
     pub(super) fn linearise(&self) -> Function {
-        let (model, rest) = (&self.model, Rest::at_start(&self.model));
+        let (model, rest) = (&self.model, rest_at_start(&self.model));
         let damping = self.forces().damping(&rest);
         let columns = columns(model, &self.factors);
         let mut outputs = self.unknowns(columns.mass_matrix(model), 1.0).into_upper();
