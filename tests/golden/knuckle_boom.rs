@@ -28,13 +28,13 @@
 //   drive_forces                        84        95
 //   drive_motions                       69        80
 //   drive_pieces                         0         0
-//   joint_damper_forces                  1         2
-//   forces                              85       105
+//   joint_damper_forces                  1         8
+//   forces                              85       111
 //   gravity_energy                      37       188
 //   drive_energy                        66        74
 //   drive_power                         89       110
-//   dissipation                         51        63
-//   forward_dynamics                   244       964
+//   dissipation                         51        65
+//   forward_dynamics                   244       970
 //   solve_mass                         101       849
 //   mass_matrix                        127       517
 //   mass_matrix_and_bias               204       875
@@ -42,11 +42,11 @@
 //   kinetic_energy                     216       837
 //   factorise                           95       711
 //   solve                               61       138
-//   joint_stiffness_and_damping          0         7
-//   static_residual                     53       306
-//   tangent_stiffness                   51       338
+//   joint_stiffness_and_damping          0        24
+//   static_residual                     53       314
+//   tangent_stiffness                   51       348
 //   drive_forces_at_rest                 6         6
-//   linearise                          165       793
+//   linearise                          165       808
 
 use ::crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
 use ::crane_model::rt::{MassAndBias, fill, fma, sin_cos, symmetric};
