@@ -16,7 +16,7 @@
 //!
 //! which keeps the order of the method (E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, section IV.4).
 //!
-//! Equations that depend on others ([`independence`]) are left out: what they would transmit cannot be determined.
+//! Equations that depend on others (`independence`) are left out: what they would transmit cannot be determined.
 
 mod curvature;
 mod independence;
