@@ -10,7 +10,8 @@ pub use catalogue::CATALOGUE;
 pub(crate) use catalogue::rule;
 pub use definition::Rule;
 pub(crate) use definition::{catalogue, printable};
-pub(crate) use nearest::{list, nearest, suggest};
+pub use nearest::nearest;
+pub(crate) use nearest::{list, suggest};
 pub use source::{MAX_BYTES, Part, SourceFile, Span};
 
 use std::fmt;

@@ -13,8 +13,8 @@ pub(crate) fn suggest<'a>(word: &str, offered: impl IntoIterator<Item = &'a str>
     }
 }
 
-/// The most similar of the valid words, if one is similar.
-pub(crate) fn nearest<'a>(word: &str, offered: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+/// The most similar of the valid words, if one is similar: at most a third of the letters of `word` are wrong.
+pub fn nearest<'a>(word: &str, offered: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     // A longer word may contain more typing errors.
     let tolerance = (word.chars().count() / 3).max(1);
     let by_distance = offered.into_iter().map(|known| (distance(word, known), known));

@@ -2,7 +2,7 @@
 
 use std::{io, path::Path};
 
-use crane_codegen::Diagnostics;
+use crane_codegen::{Diagnostics, diagnostic};
 use crane_model::{
     dynamics::{Method, Stopped},
     modes::NoModes,
@@ -137,14 +137,9 @@ impl From<NoModes> for Problem {
     }
 }
 
-/// The word of `known` that is most similar to `word`, if any is similar.
+/// The word of `known` that is most similar to `word`, or else one that contains it.
 pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    /// From here on two words count as similar: 0 for nothing in common, 1 for equal.
-    const ALIKE: f64 = 0.6;
-    known
-        .into_iter()
-        .map(|candidate| (strsim::normalized_damerau_levenshtein(word, candidate), candidate))
-        .filter(|(likeness, candidate)| *likeness >= ALIKE || (!word.is_empty() && candidate.contains(word)))
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, candidate)| candidate)
+    let known: Vec<&str> = known.into_iter().collect();
+    let contains = |candidate: &&str| !word.is_empty() && candidate.contains(word);
+    diagnostic::nearest(word, known.iter().copied()).or_else(|| known.iter().copied().find(contains))
 }
