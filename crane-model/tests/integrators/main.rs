@@ -1,5 +1,34 @@
 //! Orders, stability and error control of the methods, on cranes written by hand.
 
+/// `CraneModel` for a crane in a wrapper: that of its field `crane`.
+macro_rules! impl_model_as_in_crane {
+    ($wrapper:ident) => {
+        impl<const N: usize, C: CraneModel<N>> CraneModel<N> for $wrapper<C> {
+            fn description(&self) -> &Description {
+                self.crane.description()
+            }
+            fn parameter(&self, index: usize) -> f64 {
+                self.crane.parameter(index)
+            }
+            fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), ParameterError> {
+                self.crane.set_parameter(index, value)
+            }
+            fn transforms(&self, q: &SVector<f64, N>, out: &mut [Matrix4<f64>]) {
+                self.crane.transforms(q, out);
+            }
+            fn forces(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
+                self.crane.forces(t, q, v)
+            }
+            fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]) {
+                self.crane.drive_motions(t, out);
+            }
+            fn gravity_energy(&self, q: &SVector<f64, N>) -> f64 {
+                self.crane.gravity_energy(q)
+            }
+        }
+    };
+}
+
 #[path = "../common/mod.rs"]
 mod common;
 mod orders;

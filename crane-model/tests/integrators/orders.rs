@@ -19,26 +19,7 @@ struct Misled<C> {
     stiffness_and_damping: [f64; 2],
 }
 
-impl<const N: usize, C: CraneModel<N>> CraneModel<N> for Misled<C> {
-    fn description(&self) -> &Description {
-        self.crane.description()
-    }
-    fn parameter(&self, index: usize) -> f64 {
-        self.crane.parameter(index)
-    }
-    fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), ParameterError> {
-        self.crane.set_parameter(index, value)
-    }
-    fn transforms(&self, q: &SVector<f64, N>, out: &mut [Matrix4<f64>]) {
-        self.crane.transforms(q, out);
-    }
-    fn forces(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
-        self.crane.forces(t, q, v)
-    }
-    fn gravity_energy(&self, q: &SVector<f64, N>) -> f64 {
-        self.crane.gravity_energy(q)
-    }
-}
+impl_model_as_in_crane!(Misled);
 
 impl<const N: usize, C: Dynamics<N>> Dynamics<N> for Misled<C> {
     fn mass_matrix(&self, q: &SVector<f64, N>) -> SMatrix<f64, N, N> {

@@ -152,29 +152,7 @@ struct Counted<C> {
     factorisations: AtomicUsize,
 }
 
-impl<const N: usize, C: CraneModel<N>> CraneModel<N> for Counted<C> {
-    fn description(&self) -> &Description {
-        self.crane.description()
-    }
-    fn parameter(&self, index: usize) -> f64 {
-        self.crane.parameter(index)
-    }
-    fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), ParameterError> {
-        self.crane.set_parameter(index, value)
-    }
-    fn transforms(&self, q: &SVector<f64, N>, out: &mut [Matrix4<f64>]) {
-        self.crane.transforms(q, out);
-    }
-    fn forces(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
-        self.crane.forces(t, q, v)
-    }
-    fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]) {
-        self.crane.drive_motions(t, out);
-    }
-    fn gravity_energy(&self, q: &SVector<f64, N>) -> f64 {
-        self.crane.gravity_energy(q)
-    }
-}
+impl_model_as_in_crane!(Counted);
 
 impl<const N: usize, C: Dynamics<N>> Dynamics<N> for Counted<C> {
     fn mass_matrix(&self, q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
