@@ -287,7 +287,7 @@ impl Sheet {
         }
     }
 
-    /// A circle for a rotation, a square for a translation, filled if a drive moves it; with its place in q.
+    /// A circle for a rotation, a square for a translation, filled if a drive moves it; with its index in q.
     fn joint(&mut self, chain: &Chain, joint: &Joint) {
         let (x, y) = self.project(joint.at);
         let fill = if matches!(role(chain, joint.coordinate), "driven" | "prescribed") { INK } else { "#fff" };

@@ -21,15 +21,15 @@ pub enum Source {
     OwnRate(usize),
     /// A derived quantity, by its index in [`results::quantities`].
     Quantity(usize),
-    /// A live parameter, by its place in the description.
+    /// A live parameter, by its index in the description.
     Parameter(usize),
-    /// An input, by its place in the description.
+    /// An input, by its index in the description.
     Input(usize),
-    /// What changes its sign where a contact begins or ends, by its place in the list of [`Contacts`].
+    /// What changes its sign where a contact begins or ends, by its index in the list of [`Contacts`].
     Indicator(usize),
 }
 
-/// A variable. Its value reference is its place in the list.
+/// A variable. Its value reference is its index in the list.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Variable {
     /// Name, as that of the column in the command's results.

@@ -31,7 +31,7 @@ pub struct Crane {
     /// Rows whose parameters break a rule.
     pub bad: Vec<BadRow>,
     /// Workspaces for single states, by quantity.
-    rooms: Mutex<HashMap<Quantity, Evaluation<f64>>>,
+    workspaces: Mutex<HashMap<Quantity, Evaluation<f64>>>,
 }
 
 /// Names of the cranes that come with the package.
@@ -194,7 +194,7 @@ impl Crane {
         }
     }
 
-    /// Values of a live parameter, by its place, over the leading axes.
+    /// Values of a live parameter, by its index, over the leading axes.
     #[pyo3(name = "_parameter_rows")]
     fn parameter_rows<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyAny>> {
         let values = self.parameters.numbers.iter().skip(index).step_by(self.parameters.width.max(1)).copied();
@@ -227,7 +227,7 @@ impl Crane {
         let mut values: Vec<Option<f64>> = (0..description.inputs.len()).map(|index| self.live.input(index)).collect();
         for (name, value) in given {
             let name: String = name.extract()?;
-            let slot = input_place(description, &name)?;
+            let slot = input_index(description, &name)?;
             values[slot] = if value.is_none() { None } else { Some(input(&name, &value)?) };
         }
         self.live = self.live.with_inputs(&values);
@@ -286,7 +286,7 @@ impl Crane {
             live.set_parameters(row).map_err(|refused| ParameterError::new_err(refused.to_string()))?;
         }
         let parameters = Argument { shape: joined.shape.clone(), numbers, width };
-        Ok(Self { live, source, parameters, bad, rooms: Mutex::default() })
+        Ok(Self { live, source, parameters, bad, workspaces: Mutex::default() })
     }
 
     /// The crane of a row of parameters.
@@ -306,17 +306,17 @@ impl Crane {
     }
 
     /// Runs `call` with the workspace for a quantity of one state, kept from the last call.
-    pub fn in_room<R>(&self, quantity: Quantity, call: impl FnOnce(&mut Evaluation<f64>) -> R) -> R {
-        let kept = self.rooms.lock().unwrap_or_else(PoisonError::into_inner).remove(&quantity);
+    pub fn with_workspace<R>(&self, quantity: Quantity, call: impl FnOnce(&mut Evaluation<f64>) -> R) -> R {
+        let kept = self.workspaces.lock().unwrap_or_else(PoisonError::into_inner).remove(&quantity);
         let mut evaluation = kept.unwrap_or_else(|| Evaluation::new(&self.live, quantity));
         let result = call(&mut evaluation);
-        self.rooms.lock().unwrap_or_else(PoisonError::into_inner).insert(quantity, evaluation);
+        self.workspaces.lock().unwrap_or_else(PoisonError::into_inner).insert(quantity, evaluation);
         result
     }
 }
 
-/// Place of an input by its name.
-pub fn input_place(description: &Description, name: &str) -> PyResult<usize> {
+/// Index of an input by its name.
+pub fn input_index(description: &Description, name: &str) -> PyResult<usize> {
     let known = || description.inputs.iter().map(|info| &*info.name);
     known().position(|known| known == name).ok_or_else(|| {
         let known: Vec<&str> = known().collect();

@@ -97,7 +97,7 @@ impl Crane {
         let (count, width) = (joined.rows(), of_row.iter().product::<usize>());
         if joined.shape.is_empty() && bad.is_empty() {
             let out = zeros(py, &[], of_row);
-            self.in_room(quantity, |evaluation| {
+            self.with_workspace(quantity, |evaluation| {
                 evaluation.run(&rows, 0..1, out.readwrite().as_slice_mut().unwrap_or_default())
             });
             return Ok(out);

@@ -18,7 +18,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use crate::arrays::{Argument, Joined, array};
-use crate::crane::{Crane, input_place};
+use crate::crane::{Crane, input_index};
 use crate::mistakes::{BadRow, Invalid, NoEquilibrium, describe, warn_of_rows};
 use crate::parallel::{Watch, threads};
 
@@ -346,7 +346,7 @@ impl Crane {
         let mut changed: Vec<(usize, String, Option<Argument>)> = Vec::new();
         for (name, value) in inputs.into_iter().flatten() {
             let name: String = name.extract()?;
-            let index = input_place(description, &name)?;
+            let index = input_index(description, &name)?;
             let values =
                 if value.is_none() { None } else { Some(Argument::scalars(&format!("inputs['{name}']"), &value)?) };
             if let Some(wrong) = values.iter().flat_map(|values| &values.numbers).find(|value| !value.is_finite()) {

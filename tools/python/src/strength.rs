@@ -14,7 +14,7 @@ use crate::evaluation::{Given, Moment, State};
 
 /// Numbers of a section: normal, shear, torsional and equivalent stress, utilisation.
 const OF_SECTION: usize = 5;
-/// Numbers of the governing tipping line: margin, stabilising and overturning moment, places of its two supports.
+/// Numbers of the governing tipping line: margin, stabilising and overturning moment, indices of its two supports.
 const OF_LINE: usize = 5;
 
 #[pymethods]
