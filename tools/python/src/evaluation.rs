@@ -98,7 +98,7 @@ impl Crane {
         if joined.shape.is_empty() && bad.is_empty() {
             let out = zeros(py, &[], of_row);
             self.with_workspace(quantity, |evaluation| {
-                evaluation.run(&rows, 0..1, out.readwrite().as_slice_mut().unwrap_or_default())
+                evaluation.run(&rows, 0..1, out.readwrite().as_slice_mut().unwrap_or_default());
             });
             return Ok(out);
         }
