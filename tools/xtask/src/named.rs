@@ -13,10 +13,12 @@ const PROGRAMS: [&str; 3] = ["crane", "cargo", "pip"];
 pub fn check_named(tasks: &str) -> Result<(), String> {
     let mut helps = BTreeMap::new();
     let mut checked = 0;
-    for page in
-        commands::PAGES.iter().map(ToString::to_string).chain(manual::chapters_of(&workspace::read(manual::SUMMARY)?))
+    for page in commands::PAGES
+        .iter()
+        .map(ToString::to_string)
+        .chain(manual::chapters_of(&workspace::read_file(manual::SUMMARY)?))
     {
-        for command in named(&workspace::read(&page)?) {
+        for command in named(&workspace::read_file(&page)?) {
             let locate = |problem: String| format!("{page}: `{command}`: {problem}");
             match commands::CRANE.iter().find_map(|start| command.strip_prefix(start)) {
                 Some(arguments) => has(arguments, &mut helps).map_err(locate)?,
