@@ -214,8 +214,8 @@ class Crane:
     def valve_openings(self, t: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., drives, 2): commands over time of the drives' valves at times t, −1 to 1, and their rates, 1/s; zeros without one."""
     def loop_states(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., equations, 3): gaps of the equations of loop joints, m and 1, their rates, and the part of their second rates that does
-        not depend on accelerations."""
+        """(..., equations, 3): gaps of the equations of loop joints, m and 1, their rates, and the part of their second rates that does not
+        depend on accelerations."""
     def loop_jacobians(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., equations, n): derivatives of the gaps of loop joints with respect to q."""
     def forward_dynamics(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
