@@ -441,21 +441,31 @@ impl Writer<'_> {
                 "head": {"link": "boom", "at": head}, "bore": 0.16, "rod": 0.08, "retracted": 0.8, "stroke": 3}),
             );
             if self.has(F::Valve) {
-                lift["valve"] = json!({"flow": 6e-4, "pressure_drop": 1e6, "lag": 0.03, "gain": 2, "overlap": 0.03, "leakage": 1e-13});
+                lift["valve"] = valve();
             }
             self.push("cylinders", lift);
         }
         if self.has(F::Linkage) {
             let (foot, pivot) = (self.between(0.9, 1.9), self.between(2.9, 3.2));
-            self.push("cylinders", with_oil(json!({"name": "knuckle", "coordinate": "arm_psi",
+            let mut knuckle = with_oil(json!({"name": "knuckle", "coordinate": "arm_psi",
                 "foot": {"link": "boom", "at": [foot, -0.24, 0.02]}, "head": {"link": "arm", "at": [0.24, -0.2, 0]},
                 "linkage": {"pivot": [pivot, self.between(-0.03, 0.03), 0], "rocker": 0.46, "link": 0.52, "side": "right"},
-                "bore": 0.14, "rod": 0.07, "retracted": 0.6, "stroke": 3})));
+                "bore": 0.14, "rod": 0.07, "retracted": 0.6, "stroke": 3}));
+            // A drive with a maximum effort has no oil.
+            if self.has(F::Valve) && !self.has(F::LimitedDrive) {
+                knuckle["valve"] = valve();
+            }
+            self.push("cylinders", knuckle);
         }
         if self.has(F::Cylinder) || self.has(F::Linkage) {
             self.tree["pump"] = json!({"max_flow": 1.5e-3, "pressure": 300e5});
         }
     }
+}
+
+/// A valve with a servo, as each cylinder has it.
+fn valve() -> Tree {
+    json!({"flow": 6e-4, "pressure_drop": 1e6, "lag": 0.03, "gain": 2, "overlap": 0.03, "leakage": 1e-13})
 }
 
 /// Four significant digits: as a person would write it.

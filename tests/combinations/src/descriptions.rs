@@ -5,6 +5,7 @@ use fastrand::Rng;
 use serde_json::{Value, json};
 
 use crate::crane::BOOM;
+use crate::pins;
 use crate::tree::{Tree, entry, entry_mut, for_each_key, for_each_place, numbers, source};
 
 /// The name in a second description of a number of the first.
@@ -25,7 +26,9 @@ pub struct Second {
 }
 
 impl Second {
-    fn of(tree: &Tree) -> Self {
+    /// A spec whose numbers are all those of the first.
+    #[must_use]
+    pub fn of(tree: &Tree) -> Self {
         Second {
             first: None,
             source: source(tree),
@@ -35,7 +38,9 @@ impl Second {
         }
     }
 
-    fn named(self, name: impl Fn(&str) -> Option<String> + 'static) -> Self {
+    /// With names of its own.
+    #[must_use]
+    pub fn named(self, name: impl Fn(&str) -> Option<String> + 'static) -> Self {
         Second { name: Box::new(name), ..self }
     }
 }
@@ -44,7 +49,7 @@ impl Second {
 pub type Description = fn(&Tree, &mut Rng) -> Option<Second>;
 
 /// All of them, with their names.
-pub const ALL: [(&str, Description); 16] = [
+pub const ALL: [(&str, Description); 17] = [
     ("beam split by a fixed joint", split_boom),
     ("beam given element by element", boom_one_by_one),
     ("rigid beam as a body", rigid_boom_as_body),
@@ -57,15 +62,17 @@ pub const ALL: [(&str, Description); 16] = [
     ("angles in degrees", degrees),
     ("lists in another order", other_order),
     ("weight as a force", weight_as_force),
+    ("cylinders as forces at their pins", pins::as_loads),
     ("rope link by link", rope_link_by_link),
     ("massless frames between links", massless_frames),
     ("another unit of mass", mass_unit),
     ("loops of generated code", loops),
 ];
 
-/// Whether a column or body belongs to an element of the boom, `boom_2…`.
+/// Whether a column or body belongs to an element of the boom, `boom_2…`, or a stress to the boom as a whole.
 fn of_boom_element(name: &str) -> bool {
-    name.strip_prefix("boom_").is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
+    name.starts_with("boom stress")
+        || name.strip_prefix("boom_").is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
 }
 
 fn without_boom_elements(name: &str) -> Option<String> {
@@ -199,7 +206,8 @@ fn boom_one_by_one(tree: &Tree, _: &mut Rng) -> Option<Second> {
     if beam["section_joint"].is_string() {
         link["beam"]["section_joint"] = beam["section_joint"].clone();
     }
-    Some(Second::of(&second))
+    // Elements that are given one by one have no sections.
+    Some(Second::of(&second).named(|name| (!name.contains("stress")).then(|| name.to_owned())))
 }
 
 /// A beam without springs, and the body that it is.
@@ -223,7 +231,7 @@ fn rigid_boom_as_body(tree: &Tree, _: &mut Rng) -> Option<Second> {
     arm["placement"] = json!({"transform": {"translation": [BOOM, 0, 0]}});
     let second = Second { first: Some(first), ..Second::of(&second) };
     // The body of a rigid beam is called after its element.
-    Some(second.named(|name| Some(name.replace("boom_0", "boom"))))
+    Some(second.named(|name| (!name.contains("stress")).then(|| name.replace("boom_0", "boom"))))
 }
 
 /// Every link has another name.

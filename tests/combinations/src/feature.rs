@@ -53,7 +53,7 @@ features! {
     Winch: "winch",
     Cylinder: "cylinder between its pins",
     Linkage: "cylinder with rocker and link",
-    Valve: "cylinder with a valve",
+    Valve: "cylinders with valves",
     Parameters: "live parameters",
     DenavitHartenberg: "D-H rows",
 }

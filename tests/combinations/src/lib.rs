@@ -13,4 +13,5 @@ pub mod feature;
 pub mod laws;
 pub mod meshes;
 pub mod observe;
+pub mod pins;
 pub mod tree;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use crate::observe::{Number, Numbers, observe};
+use crate::observe::{CHART, Number, Numbers, live, observe, rated_load};
 use crate::tree::{Tree, for_each_place, source};
 
 /// The name of the check.
@@ -14,9 +14,9 @@ const SECTIONS: [u32; 3] = [4, 8, 16];
 /// The difference between the finer two over that between the coarser two: 1/4 for order 2; more, since the terms behind the leading one
 /// count at four sections.
 const RATIO: f64 = 0.45;
-/// Differences below this share of the largest number of a unit are not looked at: Newton's tolerance for poses. For modes, the terms of
+/// Differences below this share of the largest number of a unit are not looked at: Newton's tolerance for poses. For modes and stresses, the terms of
 /// order 2 and 4 may cancel between the coarser two.
-const SMALL: [(&str, f64); 2] = [("rest", 1e-8), ("modes", 1e-4)];
+const SMALL: [(&str, f64); 4] = [("rest", 1e-8), ("modes", 1e-4), ("cuts", 3e-4), CHART];
 
 /// What does not converge with order 2; `None` for a crane without divided beams, or with beams that cannot be divided again.
 pub fn check_meshes(tree: &Tree) -> Option<Vec<String>> {
@@ -36,14 +36,18 @@ pub fn check_meshes(tree: &Tree) -> Option<Vec<String>> {
                 beam.insert("sections".into(), json!(sections));
             }
         }
-        observe(&source(&tree), false).ok()
+        let mut numbers = observe(&source(&tree), false).ok()?;
+        if let Some(value) = live(&source(&tree)).ok().and_then(|crane| rated_load(&crane)) {
+            numbers.insert(format!("{} load", CHART.0), Number { group: CHART.0, unit: "kg".to_owned(), value });
+        }
+        Some(numbers)
     };
     let [coarse, middle, fine]: [Numbers; 3] = [with(SECTIONS[0])?, with(SECTIONS[1])?, with(SECTIONS[2])?];
     let of = |name: &String, number: &Number| Some((coarse.get(name)?.value, middle.get(name)?.value, number.value));
     // Forces that joints transmit are listed by bodies, of which a finer beam has others; higher modes are not yet resolved.
     let counts = |name: &String, number: &Number| {
         let high = number.group == "modes" && !LOWEST.iter().any(|mode| name.ends_with(mode));
-        number.group != "cuts" && !of_element(name) && !high
+        (number.group != "cuts" || name.contains("stress")) && !of_element(name) && !high
     };
     // The error of a place within a section depends on where between two springs it is, so it need not fall at each refinement: it is
     // compared with the largest change of any number of its unit.

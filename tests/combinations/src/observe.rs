@@ -7,8 +7,10 @@ use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::Settings;
+use crane_model::envelope::{Axes, Envelope, Execution, Limits, PartLimit, Rating, only_mass};
 use crane_model::runs::{Start, record};
-use crane_model::{Cut, modes, statics};
+use crane_model::sections::stressed_sections;
+use crane_model::{Cut, Wrench, modes, statics};
 
 /// A number with its unit, and how far it may be off, relative to the largest number of this unit in the same group.
 #[derive(Clone, Debug)]
@@ -83,7 +85,11 @@ pub fn observe(source: &SourceFile, run: bool) -> Result<Numbers, String> {
     }
     let rest = vec![0.0; q.len()];
     let description = crane.description();
-    for (cut, wrench) in description.cuts().iter().zip(crane.internal_forces_at(0.0, &q, &rest, &rest)) {
+    let wrenches = crane.internal_forces_at(0.0, &q, &rest, &rest);
+    for (name, unit, value) in stresses(crane, &wrenches) {
+        add(CUTS.0, name, unit, value);
+    }
+    for (cut, wrench) in description.cuts().iter().zip(wrenches) {
         if let Cut::Body { body, .. } = cut {
             let body = description.bodies[*body].name.as_str();
             add(CUTS.0, format!("{body} force"), "N", wrench.force.norm());
@@ -105,6 +111,44 @@ pub fn observe(source: &SourceFile, run: bool) -> Result<Numbers, String> {
         }
     }
     Ok(numbers)
+}
+
+/// The largest stress of each beam, Pa, and the largest utilisation of all.
+fn stresses(crane: &dyn DynCrane, wrenches: &[Wrench]) -> Vec<(String, &'static str, f64)> {
+    let description = crane.description();
+    let mut greatest: BTreeMap<String, (&'static str, f64)> = BTreeMap::new();
+    for section in stressed_sections(description, &crane.section_moduli_at(), wrenches) {
+        let beam = section.beam(description);
+        let used = section.utilisation.map(|used| ("utilisation with stress".to_owned(), "", used));
+        for (name, unit, value) in used.into_iter().chain([(format!("{beam} stress"), "Pa", section.stress.equivalent)])
+        {
+            let (_, most) = greatest.entry(name).or_insert((unit, 0.0));
+            *most = most.max(value);
+        }
+    }
+    greatest.into_iter().map(|(name, (unit, value))| (name, unit, value)).collect()
+}
+
+/// Accuracy of the loads of charts.
+pub const CHART: (&str, f64) = ("chart", 1e-5);
+
+/// The load that a chart gives for the pose of the spec, kg: within stress, tipping, pressure, strokes, stops and efforts. `None` for a crane
+/// without a mass as a live parameter, and where the chart begins beyond a limit.
+#[must_use]
+pub fn rated_load(crane: &LiveCrane) -> Option<f64> {
+    let whole: &dyn DynCrane = crane;
+    let load = only_mass(whole.description())?;
+    let none = Limits::none(whole.description());
+    let limits = Limits { tipping: Some(0.05), utilisation: Some(1.0), of_parts: PartLimit::DEFAULT.to_vec(), ..none };
+    let asked = Envelope { axes: Axes::default(), load, loads: [1.0, 2e4], limits, factor: 1.0 };
+    let found = std::sync::Mutex::new(Vec::new());
+    let done = |_: usize, ratings: &[Rating]| {
+        if let Ok(mut found) = found.lock() {
+            found.extend(ratings.to_vec());
+        }
+    };
+    asked.run(crane, &[0], &Execution { threads: 1, done: &done, cancelled: &|| false }).ok()?;
+    found.into_inner().ok()?.first()?.load
 }
 
 /// Columns of an audit, which is off.
@@ -132,13 +176,15 @@ pub fn differences(
         };
         let (value, scale) = (b.value / factor(&a.unit), scales[&(a.group, a.unit.as_str())]);
         let off = (a.value - value).abs();
-        // Absolute floor: a micrometre at rest, a millionth of a newton.
-        if off.is_nan() || off > tolerance(a.group) * scale.max(FLOOR) {
+        if off.is_nan() || off > tolerance(a.group) * scale.max(floor(a.group)) {
             lines.push(format!("{key}: {:.9e} {} against {value:.9e}", a.value, a.unit));
         }
     }
     lines
 }
 
-/// Where all numbers of a unit are smaller than this, they are rounding.
-const FLOOR: f64 = 1e-3;
+/// Where all numbers of a unit are smaller than this, they are rounding. At the end of a run, the error of rates is that of the pose, 1e-8,
+/// times the fastest frequency that its steps follow, some 10 1/s.
+fn floor(group: &str) -> f64 {
+    if group == RUN.0 { 1e-2 } else { 1e-3 }
+}
