@@ -100,7 +100,7 @@ impl Writer<'_> {
         self.hook();
         self.forces();
         self.connectors();
-        self.cylinders();
+        self.cylinders(seed);
         self.push("points", json!({"name": "tip", "link": "arm", "at": [ARM, 0, 0]}));
         let position = self.random_point(BOOM);
         self.push("points", json!({"name": "middle", "link": "boom", "at": position}));
@@ -424,7 +424,7 @@ impl Writer<'_> {
         }
     }
 
-    fn cylinders(&mut self) {
+    fn cylinders(&mut self, seed: u64) {
         let down = 1.05 - self.column_height();
         let oil =
             json!({"max_pressure": 320e5, "back_pressure": 5e5, "bulk_modulus": 1.2e9, "hose_volumes": [1e-3, 1e-3]});
@@ -447,9 +447,17 @@ impl Writer<'_> {
         }
         if self.has(F::Linkage) {
             let (foot, pivot) = (self.between(0.9, 1.9), self.between(2.9, 3.2));
+            let rise = self.between(-0.03, 0.03);
+            // On the arm of every other crane: the mirror image, along both links from the joint.
+            let (links, side, along): (_, _, fn(f64) -> f64) = if seed.is_multiple_of(2) {
+                (["boom", "arm"], "right", |x| x)
+            } else {
+                (["arm", "boom"], "left", |x| round(BOOM - x))
+            };
             let mut knuckle = with_oil(json!({"name": "knuckle", "coordinate": "arm_psi",
-                "foot": {"link": "boom", "at": [foot, -0.24, 0.02]}, "head": {"link": "arm", "at": [0.24, -0.2, 0]},
-                "linkage": {"pivot": [pivot, self.between(-0.03, 0.03), 0], "rocker": 0.46, "link": 0.52, "side": "right"},
+                "foot": {"link": links[0], "at": [along(foot), -0.24, 0.02]},
+                "head": {"link": links[1], "at": [along(0.24), -0.2, 0]},
+                "linkage": {"pivot": [along(pivot), rise, 0], "rocker": 0.46, "link": 0.52, "side": side},
                 "bore": 0.14, "rod": 0.07, "retracted": 0.6, "stroke": 3}));
             // A drive with a maximum effort has no oil.
             if self.has(F::Valve) && !self.has(F::LimitedDrive) {

@@ -49,7 +49,7 @@ impl Second {
 pub type Description = fn(&Tree, &mut Rng) -> Option<Second>;
 
 /// All of them, with their names.
-pub const ALL: [(&str, Description); 17] = [
+pub const ALL: [(&str, Description); 19] = [
     ("beam split by a fixed joint", split_boom),
     ("beam given element by element", boom_one_by_one),
     ("rigid beam as a body", rigid_boom_as_body),
@@ -63,6 +63,8 @@ pub const ALL: [(&str, Description); 17] = [
     ("lists in another order", other_order),
     ("weight as a force", weight_as_force),
     ("cylinders as forces at their pins", pins::as_loads),
+    ("foot and head of cylinders exchanged", pins::exchanged),
+    ("a loop joint holds what hangs", held_by_loop),
     ("rope link by link", rope_link_by_link),
     ("massless frames between links", massless_frames),
     ("another unit of mass", mass_unit),
@@ -525,6 +527,25 @@ fn rope_link_by_link(tree: &Tree, _: &mut Rng) -> Option<Second> {
             Some(name.to_owned())
         }
     }))
+}
+
+/// What follows the arm, or its stages, slides along three axes and is held in its place by a loop joint.
+fn held_by_loop(tree: &Tree, _: &mut Rng) -> Option<Second> {
+    // From most guesses, statics of a crane on such feet needs continuation, which is for open chains.
+    if tree["supports"].as_array().into_iter().flatten().any(|foot| foot["one_sided"] == true) {
+        return None;
+    }
+    let mut second = tree.clone();
+    let links = second["links"].as_array_mut()?;
+    let held = links.iter().position(|link| ["rope", "swing", "hook"].iter().any(|name| link["name"] == *name))?;
+    let mut anchor = json!({"name": "anchor"});
+    anchor["placement"] = links[held].as_object_mut()?.remove("placement")?;
+    let slide = |axis: &str| json!({"name": format!("slide_{axis}"), "joint": {"prismatic": {"axis": axis}}});
+    links.splice(held..held, [anchor, slide("x"), slide("y"), slide("z")]);
+    let joint = json!({"name": "holder", "from": {"link": "anchor", "at": [0, 0, 0]}, "to": {"link": "slide_z", "at": [0, 0, 0]},
+        "joint": "ball"});
+    crate::tree::push(&mut second, "loop_joints", joint);
+    Some(Second::of(&second))
 }
 
 /// The placement of every other link belongs to a massless link before it.

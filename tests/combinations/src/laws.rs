@@ -123,12 +123,11 @@ fn kinetic_energy(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Resu
     let (t, q, v) = state(crane, pose, rng);
     let whole: &dyn DynCrane = crane;
     let a = whole.accelerations_at(t, &q, &v);
-    let energy = |sign: f64| {
-        let q: Vec<f64> = q.iter().zip(&v).map(|(q, v)| q + sign * STEP * v).collect();
-        let v: Vec<f64> = v.iter().zip(a.iter()).map(|(v, a)| v + sign * STEP * a).collect();
+    let energy = |step: f64| {
+        let q: Vec<f64> = q.iter().zip(&v).map(|(q, v)| q + step * v).collect();
+        let v: Vec<f64> = v.iter().zip(a.iter()).map(|(v, a)| v + step * a).collect();
         crane.kinetic_energy(&q, &v)
     };
-    let rate = (energy(1.0) - energy(-1.0)) / (2.0 * STEP);
     let matrix = whole.mass_matrix_at(&q);
     let inertia = matrix * &a;
     let v = DVector::from_vec(v.clone());
@@ -139,7 +138,10 @@ fn kinetic_energy(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Resu
     let size: f64 = terms.iter().map(|x| x.abs()).sum();
     // ½ vᵀ Ȧ v = −vᵀ h, so d/dt E_k = vᵀ (A a − h) with e = −h + weight.
     let expected = v.dot(&inertia) - v.dot(&velocity_forces);
-    Some(close("rate", rate, expected, size.max(1e-3 * energy(0.0).abs()), 1e-5))
+    let size = size.max(1e-3 * energy(0.0).abs());
+    let balance = |step: f64| close("rate", (energy(step) - energy(-step)) / (2.0 * step), expected, size, 1e-5);
+    // Accelerations of stiff elements are large: their error falls with the square of the step.
+    Some(balance(STEP).or_else(|_| balance(0.1 * STEP)))
 }
 
 /// Step of differences of forces over the pose: the error of a central difference is its square, rounding 1e-10.
@@ -154,19 +156,23 @@ fn tangent(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Result<(), 
     let prescribed = crane.description().prescribed();
     let direction =
         DVector::from_iterator(n, v.iter().enumerate().map(|(j, v)| if prescribed.contains(&j) { 0.0 } else { *v }));
-    let residual = |sign: f64| {
-        let q: Vec<f64> = q.iter().zip(direction.iter()).map(|(q, by)| q + sign * SMALL_STEP * by).collect();
+    let residual = |step: f64| {
+        let q: Vec<f64> = q.iter().zip(direction.iter()).map(|(q, by)| q + step * by).collect();
         let mut out = vec![0.0; n];
         crane.static_residual(t, &q, &positions, &mut out);
         DVector::from_vec(out)
     };
-    let along = (residual(1.0) - residual(-1.0)) / (2.0 * SMALL_STEP);
     let mut matrix = DMatrix::zeros(n, n);
     crane.tangent_stiffness(t, &q, &positions, matrix.as_mut_slice());
-    let (work, expected) = (along.dot(&direction), (&matrix * &direction).dot(&direction));
+    let expected = (&matrix * &direction).dot(&direction);
     // Terms of both signs, of which the stiffest element counts most.
     let size = matrix.abs().row_sum().amax() * direction.norm_squared();
-    Some(close("work of the tangent", work, expected, size, 1e-7))
+    // The tangent of a foot jumps where it is fully held: within the longer step, perhaps, but not within both.
+    let derivative = |step: f64| {
+        let along = (residual(step) - residual(-step)) / (2.0 * step);
+        close("work of the tangent", along.dot(&direction), expected, size, 1e-7)
+    };
+    Some(derivative(SMALL_STEP).or_else(|_| derivative(0.1 * SMALL_STEP)))
 }
 
 /// The spring before an element of a beam transmits the moments of the section there, at rest and in motion. They are about axes that

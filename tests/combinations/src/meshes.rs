@@ -14,9 +14,9 @@ const SECTIONS: [u32; 3] = [4, 8, 16];
 /// The difference between the finer two over that between the coarser two: 1/4 for order 2; more, since the terms behind the leading one
 /// count at four sections.
 const RATIO: f64 = 0.45;
-/// Differences below this share of the largest number of a unit are not looked at: Newton's tolerance for poses. For modes and stresses, the terms of
-/// order 2 and 4 may cancel between the coarser two.
-const SMALL: [(&str, f64); 4] = [("rest", 1e-8), ("modes", 1e-4), ("cuts", 3e-4), CHART];
+/// Differences below this share of the largest number of a unit are not looked at: Newton's tolerance for poses. For modes, stresses and the loads
+/// that these limit, the terms of order 2 and 4 may cancel between the coarser two.
+const SMALL: [(&str, f64); 4] = [("rest", 1e-8), ("modes", 1e-4), ("cuts", 3e-4), (CHART, 3e-4)];
 
 /// What does not converge with order 2; `None` for a crane without divided beams, or with beams that cannot be divided again.
 pub fn check_meshes(tree: &Tree) -> Option<Vec<String>> {
@@ -38,7 +38,7 @@ pub fn check_meshes(tree: &Tree) -> Option<Vec<String>> {
         }
         let mut numbers = observe(&source(&tree), false).ok()?;
         if let Some(value) = live(&source(&tree)).ok().and_then(|crane| rated_load(&crane)) {
-            numbers.insert(format!("{} load", CHART.0), Number { group: CHART.0, unit: "kg".to_owned(), value });
+            numbers.insert(format!("{CHART} load"), Number { group: CHART, unit: "kg".to_owned(), value });
         }
         Some(numbers)
     };

@@ -46,6 +46,19 @@ fn gradients(pins: &Pins, linkage: &Tree) -> Pins {
     })
 }
 
+/// Foot and head of cylinders between two pins exchanged: their distance is the same.
+pub fn exchanged(tree: &Tree, _: &mut Rng) -> Option<Second> {
+    let mut second = tree.clone();
+    let all = second.get_mut("cylinders")?.as_array_mut()?;
+    let mut plain = all.iter_mut().filter(|cylinder| cylinder["linkage"].is_null()).peekable();
+    plain.peek()?;
+    for cylinder in plain {
+        let foot = cylinder["foot"].take();
+        cylinder["foot"] = std::mem::replace(&mut cylinder["head"], foot);
+    }
+    Some(Second::of(&second))
+}
+
 /// Every cylinder with a valve as forces along fixed axes at its pins; its drive is where the joint is, and has nothing to do.
 pub fn as_loads(tree: &Tree, _: &mut Rng) -> Option<Second> {
     let mut first = tree.clone();
@@ -92,8 +105,9 @@ pub fn as_loads(tree: &Tree, _: &mut Rng) -> Option<Second> {
         load("head", &cylinder["head"]["link"], &cylinder["head"]["at"], ("force", head));
         if let Some(at) = cylinder.pointer("/linkage/pivot") {
             load("pivot", &cylinder["foot"]["link"], at, ("force", pivot));
-            // What carries the joint also holds the plane of the linkage across its axis.
-            load("plane", &cylinder["foot"]["link"], &json!([BOOM, 0, 0]), ("moment", axis.cross(&turn)));
+            // What carries the joint on the side of the rocker also holds the plane of the linkage across its axis.
+            let at_joint = if cylinder["foot"]["link"] == "boom" { BOOM } else { 0.0 };
+            load("plane", &cylinder["foot"]["link"], &json!([at_joint, 0, 0]), ("moment", axis.cross(&turn)));
         }
         second["cylinders"].as_array_mut()?.retain(|other| other["name"] != cylinder["name"]);
         let drive = entry_mut(&mut second, "drives", "coordinate", cylinder["coordinate"].as_str()?)?;

@@ -60,7 +60,7 @@ pub fn for_each_key(tree: &mut Tree, act: &mut impl FnMut(&str, &mut Tree)) {
 }
 
 /// Keys in the order in which a person writes them.
-const ORDER: [&str; 24] = [
+const ORDER: [&str; 25] = [
     "format",
     "name",
     "title",
@@ -81,6 +81,7 @@ const ORDER: [&str; 24] = [
     "armature",
     "loads",
     "connectors",
+    "loop_joints",
     "points",
     "guess",
     "run",

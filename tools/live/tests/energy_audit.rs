@@ -56,18 +56,19 @@ fn drives_at_their_limits_balance() {
     for limits in ["max_effort: 200", "max_effort: 200, max_power: 150, max_rate: 1.5"] {
         let slide = limited(limits);
         let exact = audit(&slide, Method::DormandPrince, 1e-11);
-        for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince] {
-            let errors = [2e-5, 1e-7, 1e-9].map(|tolerance| {
+        // About twice what each method reaches: its steps do not end where a limit begins, except at those of efforts.
+        for (method, allowed) in [
+            (Method::Bdf, [2e-4, 1e-6, 5e-8]),
+            (Method::Rosenbrock, [1.6e-3, 2e-5, 6e-7]),
+            (Method::DormandPrince, [4.5e-3, 4e-5, 6e-7]),
+        ] {
+            for (tolerance, allowed) in [2e-5, 1e-7, 1e-9].into_iter().zip(allowed) {
                 let [work, lost, off] = audit(&slide, method, tolerance);
-                eprintln!("{limits} {method} {tolerance:e}: {:e}", off / work);
-                assert!(off < 1e-1 * work, "{limits}, {method}, {tolerance:e}: off by {off:e} of {work} J");
+                assert!(off < allowed * work, "{limits}, {method}, {tolerance:e}: off by {off:e} of {work} J");
                 // The motion, and with it the work, is that of the most accurate run up to the error of the balance and of the motion.
                 let difference = (work - exact[0]).abs().max((lost - exact[1]).abs());
                 assert!(difference < 1e-3 * work, "{limits}, {method}, {tolerance:e}: {work}, {lost} for {exact:?}");
-                off / work
-            });
-            let falls = errors[2] < 1e-2 * errors[0] + 1e-8;
-            assert!(falls || method != Method::Bdf, "{limits}, {method}: {errors:?}");
+            }
         }
     }
 }
