@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::crane::BOOM;
 use crate::pins;
-use crate::tree::{Tree, entry, entry_mut, for_each_key, for_each_place, numbers, source};
+use crate::tree::{Tree, entry, entry_mut, for_each_key, for_each_place, numbers, push, source};
 
 /// The name in a second description of a number of the first.
 pub type Rename = Box<dyn Fn(&str) -> Option<String>>;
@@ -481,7 +481,7 @@ fn weight_as_force(tree: &Tree, _: &mut Rng) -> Option<Second> {
         0.5 * mass
     };
     let force: Vec<f64> = gravity.iter().map(|g| half * g).collect();
-    crate::tree::push(&mut second, "loads", json!({"name": "weight", "link": "hook", "at": at, "force": force}));
+    push(&mut second, "loads", json!({"name": "weight", "link": "hook", "at": at, "force": force}));
     let same = |name: &str| {
         let inertia = name.ends_with("energy") || name.starts_with("omega");
         (!inertia).then(|| name.to_owned())
@@ -544,7 +544,7 @@ fn held_by_loop(tree: &Tree, _: &mut Rng) -> Option<Second> {
     links.splice(held..held, [anchor, slide("x"), slide("y"), slide("z")]);
     let joint = json!({"name": "holder", "from": {"link": "anchor", "at": [0, 0, 0]}, "to": {"link": "slide_z", "at": [0, 0, 0]},
         "joint": "ball"});
-    crate::tree::push(&mut second, "loop_joints", joint);
+    push(&mut second, "loop_joints", joint);
     Some(Second::of(&second))
 }
 

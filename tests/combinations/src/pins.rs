@@ -1,4 +1,4 @@
-//! Cylinders with oil as forces at their pins: the crane at rest does not notice.
+//! Cylinders described by their pins: with foot and head exchanged, and with oil as forces at them, which leave a crane at rest as it is.
 
 use crane_model::dyn_crane::DynCrane;
 use crane_model::nalgebra::Vector3;

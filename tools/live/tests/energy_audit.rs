@@ -62,13 +62,17 @@ fn drives_at_their_limits_balance() {
             (Method::Rosenbrock, [1.6e-3, 2e-5, 6e-7]),
             (Method::DormandPrince, [4.5e-3, 4e-5, 6e-7]),
         ] {
-            for (tolerance, allowed) in [2e-5, 1e-7, 1e-9].into_iter().zip(allowed) {
+            let errors = [2e-5, 1e-7, 1e-9].into_iter().zip(allowed).map(|(tolerance, allowed)| {
                 let [work, lost, off] = audit(&slide, method, tolerance);
                 assert!(off < allowed * work, "{limits}, {method}, {tolerance:e}: off by {off:e} of {work} J");
                 // The motion, and with it the work, is that of the most accurate run up to the error of the balance and of the motion.
                 let difference = (work - exact[0]).abs().max((lost - exact[1]).abs());
                 assert!(difference < 1e-3 * work, "{limits}, {method}, {tolerance:e}: {work}, {lost} for {exact:?}");
-            }
+                off / work
+            });
+            let errors: Vec<f64> = errors.collect();
+            let falls = errors[2] < 1e-2 * errors[0] + 1e-8;
+            assert!(falls || method != Method::Bdf, "{limits}, {method}: {errors:?}");
         }
     }
 }
