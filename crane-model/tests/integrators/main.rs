@@ -2,7 +2,7 @@
 
 /// `CraneModel` for a crane in a wrapper: that of its field `crane`.
 macro_rules! impl_model_as_in_crane {
-    ($wrapper:ident) => {
+    ($wrapper:ident $($more:tt)*) => {
         impl<const N: usize, C: CraneModel<N>> CraneModel<N> for $wrapper<C> {
             fn description(&self) -> &Description {
                 self.crane.description()
@@ -19,12 +19,10 @@ macro_rules! impl_model_as_in_crane {
             fn forces(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
                 self.crane.forces(t, q, v)
             }
-            fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]) {
-                self.crane.drive_motions(t, out);
-            }
             fn gravity_energy(&self, q: &SVector<f64, N>) -> f64 {
                 self.crane.gravity_energy(q)
             }
+            $($more)*
         }
     };
 }

@@ -19,6 +19,7 @@ struct Misled<C> {
     stiffness_and_damping: [f64; 2],
 }
 
+// It does not report the motions of its drives.
 impl_model_as_in_crane!(Misled);
 
 impl<const N: usize, C: Dynamics<N>> Dynamics<N> for Misled<C> {

@@ -152,7 +152,12 @@ struct Counted<C> {
     factorisations: AtomicUsize,
 }
 
-impl_model_as_in_crane!(Counted);
+impl_model_as_in_crane! {
+    Counted
+    fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]) {
+        self.crane.drive_motions(t, out);
+    }
+}
 
 impl<const N: usize, C: Dynamics<N>> Dynamics<N> for Counted<C> {
     fn mass_matrix(&self, q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
