@@ -5,6 +5,7 @@
 use std::ops::{Div, Mul, Neg};
 
 use crane_codegen::symbolic::Scalar;
+use crane_jit::Width;
 use crane_model::rt::lanes::{Function, Fused, f64x8};
 use crane_model::rt::{exp, fma, select, sin_cos, sqrt, stumpff};
 
@@ -91,6 +92,12 @@ impl Neg for Dual8 {
 }
 
 impl Number for Dual8 {
+    const WIDTH: Option<Width> = None;
+
+    fn flat(_: &mut [Self]) -> &mut [f64] {
+        &mut []
+    }
+
     fn splat(number: f64) -> Self {
         Self { value: number, slopes: f64x8::splat(0.0) }
     }

@@ -34,6 +34,7 @@ mod library;
 mod linearise;
 pub mod machine;
 mod motion;
+mod native;
 mod routine;
 pub mod rows;
 

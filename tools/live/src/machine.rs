@@ -3,8 +3,10 @@
 use std::ops::{Div, Mul, Neg};
 
 use crane_codegen::program::Argument;
+use crane_jit::Width;
 use crane_model::rt::lanes::{Function, Fused, f64x8};
 use crane_model::rt::{exp, fma, select, sin_cos, sin_cos_lanes, sqrt, stumpff, stumpff_lanes};
+use wide::bytemuck::cast_slice_mut;
 
 use crate::bytecode::{Code, Fixed, Instruction, Kind};
 
@@ -12,6 +14,10 @@ use crate::bytecode::{Code, Fixed, Instruction, Kind};
 pub trait Number:
     Copy + Fused + Function + Div<Output = Self> + Mul<Output = Self> + Neg<Output = Self> + 'static
 {
+    /// How many numbers machine code has for it; none for derivatives, which are always interpreted.
+    const WIDTH: Option<Width>;
+    /// The numbers of several, next to each other; nothing for derivatives.
+    fn flat(several: &mut [Self]) -> &mut [f64];
     /// The same number everywhere.
     fn splat(number: f64) -> Self;
     /// The smaller of two.
@@ -40,6 +46,10 @@ pub trait Batch: Number {
 pub const ANGLES: usize = 8;
 
 impl Number for f64 {
+    const WIDTH: Option<Width> = Some(Width::One);
+    fn flat(several: &mut [Self]) -> &mut [f64] {
+        several
+    }
     fn splat(number: f64) -> Self {
         number
     }
@@ -68,6 +78,10 @@ impl Batch for f64 {
 }
 
 impl Number for f64x8 {
+    const WIDTH: Option<Width> = Some(Width::Eight);
+    fn flat(several: &mut [Self]) -> &mut [f64] {
+        cast_slice_mut(several)
+    }
     fn splat(number: f64) -> Self {
         f64x8::splat(number)
     }
@@ -160,6 +174,20 @@ impl<T: Number> Arguments<'_, T> {
             Argument::LoopVarying | Argument::LiveOut => &[],
         }
     }
+
+    /// Writes those that a function reads after its fixed numbers.
+    pub(crate) fn write(&self, code: &Code, registers: &mut [T]) {
+        let mut registers = registers.get_mut(code.fixed.len()..).unwrap_or_default();
+        for inputs in &code.inputs {
+            let given = self.of(inputs.argument);
+            let (own, rest) = registers.split_at_mut(inputs.count.min(registers.len()));
+            match given.get(inputs.first..inputs.first + inputs.count) {
+                Some(given) => own.copy_from_slice(given),
+                None => own.fill(T::splat(0.0)),
+            }
+            registers = rest;
+        }
+    }
 }
 
 /// Possible numbers of registers of a machine, powers of two: register indices are masked instead of checked.
@@ -173,10 +201,22 @@ enum File<T> {
     Large(Box<[T; SIZES[2]]>),
 }
 
+impl<T> File<T> {
+    fn registers(&mut self) -> &mut [T] {
+        match self {
+            File::Small(file) => file.as_mut_slice(),
+            File::Medium(file) => file.as_mut_slice(),
+            File::Large(file) => file.as_mut_slice(),
+        }
+    }
+}
+
 /// The registers of a function, including its fixed numbers.
 #[derive(Clone, Debug)]
 pub struct Machine<T> {
     file: File<T>,
+    /// The frame of machine code, once there is any.
+    frame: Vec<T>,
 }
 
 impl<T: Number> Machine<T> {
@@ -187,7 +227,7 @@ impl<T: Number> Machine<T> {
             count if count <= SIZES[1] => File::Medium(zeros()),
             _ => File::Large(zeros()),
         };
-        Self { file }
+        Self { file, frame: vec![] }
     }
 
     /// Sets the fixed numbers of a function; `parameter` and `stored` return live parameters and the constants computed from them, by index.
@@ -202,33 +242,31 @@ impl<T: Number> Machine<T> {
             };
             *register = if sign { negative(number) } else { number };
         }
+        // Machine code has them in the first places of its frame.
+        let Self { file, frame } = self;
+        frame.iter_mut().zip(file.registers()).take(code.fixed.len()).for_each(|(place, fixed)| *place = *fixed);
     }
 
     fn registers(&mut self) -> &mut [T] {
-        match &mut self.file {
-            File::Small(file) => file.as_mut_slice(),
-            File::Medium(file) => file.as_mut_slice(),
-            File::Large(file) => file.as_mut_slice(),
-        }
+        self.file.registers()
     }
 
     /// Runs the function for which the machine was made. Arguments that are not given are zero.
     pub fn run(&mut self, code: &Code, arguments: &Arguments<'_, T>, out: &mut [T]) {
-        let mut registers = self.registers().get_mut(code.fixed.len()..).unwrap_or_default();
-        for inputs in &code.inputs {
-            let given = arguments.of(inputs.argument);
-            let (own, rest) = registers.split_at_mut(inputs.count.min(registers.len()));
-            match given.get(inputs.first..inputs.first + inputs.count) {
-                Some(given) => own.copy_from_slice(given),
-                None => own.fill(T::splat(0.0)),
-            }
-            registers = rest;
-        }
+        arguments.write(code, self.registers());
         match &mut self.file {
             File::Small(file) => run(code, file, out),
             File::Medium(file) => run(code, file, out),
             File::Large(file) => run(code, file, out),
         }
+    }
+
+    /// The frame of machine code, made from the fixed numbers if there is none.
+    pub(crate) fn frame(&mut self, make: impl FnOnce(&[T]) -> Vec<T>) -> &mut [T] {
+        if self.frame.is_empty() {
+            self.frame = make(self.registers());
+        }
+        &mut self.frame
     }
 }
 

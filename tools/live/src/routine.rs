@@ -2,17 +2,21 @@
 
 use crane_codegen::lower::Constants;
 use crane_codegen::program::{Function, Program, Shape};
+use crane_jit::Width;
 
 use crate::assemble::{TooLarge, assemble, assemble_constants};
 use crate::bytecode::Code;
 use crate::machine::{Arguments, Machine, Number};
+use crate::native::{Hot, Native};
 
-/// A function as bytecode, with its constants computed from live parameters.
-#[derive(Clone, Debug)]
+/// A function as bytecode, with its constants computed from live parameters; and as machine code, once it was called often.
+#[derive(Debug)]
 pub struct Routine {
     shape: Shape,
     code: Code,
     constants: Code,
+    /// Machine code for one state, and for eight.
+    native: [Hot; 2],
 }
 
 impl Routine {
@@ -28,6 +32,7 @@ impl Routine {
             shape: function.shape.clone(),
             code: code.transpose()?.unwrap_or_default(),
             constants: assemble_constants(&alone, &constants)?,
+            native: Default::default(),
         })
     }
 
@@ -69,8 +74,28 @@ impl Routine {
         machine.fix(&self.code, |index| at(parameters, index), |index| at(&stored, index));
     }
 
-    /// Runs it on a machine that it made.
+    /// Runs it on a machine that it made: from some hundred calls on as machine code, with the same results.
     pub fn run<T: Number>(&self, machine: &mut Machine<T>, arguments: &Arguments<'_, T>, out: &mut [T]) {
+        match self.hot::<T>().and_then(|(hot, width)| hot.called(&self.code, width)) {
+            Some(native) if out.len() >= native.results() => native.run(&self.code, machine, arguments, out),
+            _ => machine.run(&self.code, arguments, out),
+        }
+    }
+
+    /// Runs its bytecode.
+    pub fn interpret<T: Number>(&self, machine: &mut Machine<T>, arguments: &Arguments<'_, T>, out: &mut [T]) {
         machine.run(&self.code, arguments, out);
+    }
+
+    /// Makes its machine code now, instead of after some hundred calls; returns its bytes, or `None` if this processor or
+    /// system has none.
+    pub fn compile<T: Number>(&self) -> Option<usize> {
+        let (hot, width) = self.hot::<T>()?;
+        hot.get(&self.code, width).map(Native::bytes)
+    }
+
+    fn hot<T: Number>(&self) -> Option<(&Hot, Width)> {
+        let [one, eight] = &self.native;
+        T::WIDTH.map(|width| (if width == Width::One { one } else { eight }, width))
     }
 }

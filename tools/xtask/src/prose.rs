@@ -23,7 +23,7 @@ const STUMBLES: [(&str, &str); 15] = [
 /// Where `is no` is plain English.
 const PLAIN: [&str; 5] = ["here is no ", "here are no ", " is no longer ", " are no longer ", " is no more "];
 /// Folders and files, by extension, of texts that people write.
-const TEXTS: [(&str, &str); 24] = [
+const TEXTS: [(&str, &str); 25] = [
     ("codegen", "rs"),
     ("crane-model", "rs"),
     ("docs", "md"),
@@ -38,6 +38,7 @@ const TEXTS: [(&str, &str); 24] = [
     ("tools/cli", "template"),
     ("tools/fmu", "py"),
     ("tools/fmu", "rs"),
+    ("tools/jit", "rs"),
     ("tools/lab", "md"),
     ("tools/lab", "rs"),
     ("tools/live", "rs"),

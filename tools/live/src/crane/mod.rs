@@ -120,6 +120,12 @@ impl LiveCrane {
         Arc::clone(&self.library)
     }
 
+    /// Makes the machine code of a function now, instead of after some hundred calls, so that no later call takes longer than
+    /// others; returns whether there is any: the crane needs the function, and this processor and system have machine code.
+    pub fn compile(&self, id: FunctionId) -> bool {
+        self.library.routine(id).is_some_and(|routine| routine.compile::<f64>().is_some())
+    }
+
     /// Whether all parameters together may have these values.
     ///
     /// # Errors

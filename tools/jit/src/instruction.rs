@@ -1,0 +1,93 @@
+//! Operations on registers and places of the frame, as processors have them.
+
+use crate::operations::Kind;
+
+/// Number of a floating-point register.
+pub type Register = u8;
+
+/// A place in the frame: its number in the first iteration of a loop, and by how much it moves from iteration to iteration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Place {
+    /// Its number.
+    pub at: i32,
+    /// Places per iteration; 0 outside of loops.
+    pub step: i32,
+}
+
+/// Where an operand is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Operand {
+    /// In a register.
+    Register(Register),
+    /// In the frame.
+    Memory(Place),
+}
+
+/// An instruction, or a few that belong together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Instruction {
+    /// From the frame to a register.
+    Load(Register, Place),
+    /// From a register to the frame.
+    Store(Register, Place),
+    /// From a register to the results.
+    Result(Register, Place),
+    /// From a register (the second) to another.
+    Move(Register, Register),
+    /// An operation. At most one operand is in memory: the last, or any of a fused one. Without three-operand forms, the result
+    /// of a fused operation is in the register of one of its operands. `spare`: a register for the choices of an extremum.
+    Compute {
+        /// What it computes.
+        kind: Kind,
+        /// Register of the result.
+        out: Register,
+        /// As many operands as the kind has.
+        operands: [Operand; 3],
+        /// Any register that is neither result nor operand.
+        spare: Register,
+    },
+    /// The first instruction of a loop: iterations.
+    Begin(u32),
+    /// The last instruction of a loop.
+    End,
+}
+
+impl Instruction {
+    /// The places of the frame that it reads or writes.
+    pub fn places(&self) -> impl Iterator<Item = Place> {
+        let of = |operand: Operand| match operand {
+            Operand::Memory(place) => Some(place),
+            Operand::Register(_) => None,
+        };
+        let places = match *self {
+            Instruction::Load(_, place) | Instruction::Store(_, place) => [Some(place), None, None],
+            Instruction::Compute { operands, .. } => operands.map(of),
+            Instruction::Result(..) | Instruction::Move(..) | Instruction::Begin(_) | Instruction::End => [None; 3],
+        };
+        places.into_iter().flatten()
+    }
+
+    /// Raises the numbers of places of the frame and of the results to what it reads and writes; `iterations` is that of the loop
+    /// around it.
+    ///
+    /// # Panics
+    /// If a place is before the frame.
+    pub fn reach(&self, places: &mut usize, results: &mut usize, iterations: &mut i32) {
+        match self {
+            Instruction::Begin(count) => *iterations = count.cast_signed(),
+            Instruction::End => *iterations = 1,
+            _ => {}
+        }
+        let end = |place: Place| {
+            let last = place.at + place.step * (*iterations - 1);
+            assert!(place.at >= 0 && last >= 0, "a place before the frame");
+            place.at.max(last).unsigned_abs() as usize + 1
+        };
+        for place in self.places() {
+            *places = end(place).max(*places);
+        }
+        if let Instruction::Result(_, place) = self {
+            *results = end(*place).max(*results);
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! Code in memory, and calls of it: the only unsafe code of this crate.
+//!
+//! Why a call is sound: `encode` translates [`Instruction`]s one by one, and the only memory that these read or write is at the
+//! places that they name, in the frame, and among the results. [`Functions::new`] counts both, and [`Functions::call`] compares
+//! them with the slices that it receives. Pages are first writable, then executable, never both. They live as long as the value
+//! that calls them.
+
+#![allow(unsafe_code)]
+
+use memmap2::{Mmap, MmapMut};
+
+use crate::encode::encode;
+use crate::instruction::Instruction;
+use crate::line::Width;
+
+/// A function of two pointers: the frame and the results.
+#[cfg(target_arch = "x86_64")]
+type Entry = unsafe extern "sysv64" fn(*mut f64, *mut f64);
+#[cfg(not(target_arch = "x86_64"))]
+type Entry = unsafe extern "C" fn(*mut f64, *mut f64);
+
+/// Functions in executable memory, which is freed when this is dropped.
+#[derive(Debug)]
+pub struct Functions {
+    pages: Mmap,
+    /// Where each begins, bytes.
+    begins: Vec<usize>,
+    width: Width,
+    places: usize,
+    results: usize,
+    bytes: usize,
+    loops: usize,
+}
+
+impl Functions {
+    /// The machine code of functions.
+    ///
+    /// # Errors
+    /// The system has no memory, or does not permit to execute it.
+    pub fn new<'a>(functions: impl Iterator<Item = &'a [Instruction]> + Clone, width: Width) -> std::io::Result<Self> {
+        let (mut places, mut results, mut iterations) = (0, 0, 1);
+        for instruction in functions.clone().flatten() {
+            instruction.reach(&mut places, &mut results, &mut iterations);
+        }
+        let is_loop = |instruction: &&Instruction| matches!(instruction, Instruction::Begin(_));
+        let loops = functions.clone().flatten().filter(is_loop).count();
+        let functions: Vec<Vec<u8>> = functions.map(|instructions| encode(instructions, width)).collect();
+        let (mut begins, mut size) = (vec![], 0);
+        for code in &functions {
+            begins.push(size);
+            // A function begins where a line of the cache does.
+            size += code.len().next_multiple_of(64);
+        }
+        let mut pages = MmapMut::map_anon(size.max(1))?;
+        for (begin, code) in begins.iter().zip(&functions) {
+            pages[*begin..begin + code.len()].copy_from_slice(code);
+        }
+        let pages = pages.make_exec()?;
+        synchronise(&pages);
+        Ok(Self { pages, begins, width, places, results, bytes: functions.iter().map(Vec::len).sum(), loops })
+    }
+
+    /// The number of places in the frame.
+    pub fn places(&self) -> usize {
+        self.places
+    }
+
+    /// The length of the code.
+    pub fn bytes(&self) -> usize {
+        self.bytes
+    }
+
+    /// The number of loops.
+    pub fn loops(&self) -> usize {
+        self.loops
+    }
+
+    /// Calls a function with the frame and the results; `lane`: the first of the numbers of each place that it computes.
+    pub fn call(&self, function: usize, frame: &mut [f64], results: &mut [f64], lane: usize) {
+        let numbers = self.width.numbers();
+        assert!(frame.len() >= self.places * numbers, "a frame has {} places", self.places);
+        assert!(results.len() >= self.results * numbers, "there are {} results", self.results);
+        assert!(lane.is_multiple_of(4) && lane < numbers, "four numbers at a time, or one");
+        let begin = &raw const self.pages[self.begins[function]];
+        // SAFETY: the code of a function of this type begins there, see `new`.
+        let entry = unsafe { std::mem::transmute::<*const u8, Entry>(begin) };
+        let [frame, results] = [frame, results].map(|numbers| numbers.as_mut_ptr().wrapping_add(lane));
+        // SAFETY: it stays within both slices, which the lines above compare with what it reads and writes.
+        unsafe { entry(frame, results) }
+    }
+}
+
+/// What was written as data is seen as instructions.
+#[cfg(target_arch = "aarch64")]
+fn synchronise(pages: &Mmap) {
+    use std::arch::asm;
+    // The least size of a line of either cache.
+    const LINE: usize = 16;
+    let range = pages.as_ptr_range();
+    let (begin, end) = (range.start as usize, range.end as usize);
+    for line in (begin..end).step_by(LINE) {
+        // SAFETY: cleans a line of mapped memory.
+        unsafe { asm!("dc cvau, {}", in(reg) line, options(nostack, preserves_flags)) };
+    }
+    // SAFETY: waits for it.
+    unsafe { asm!("dsb ish", options(nostack, preserves_flags)) };
+    for line in (begin..end).step_by(LINE) {
+        // SAFETY: forgets a line of instructions.
+        unsafe { asm!("ic ivau, {}", in(reg) line, options(nostack, preserves_flags)) };
+    }
+    // SAFETY: waits for it, and forgets what was fetched ahead.
+    unsafe { asm!("dsb ish", "isb", options(nostack, preserves_flags)) };
+}
+
+/// Caches of data and instructions agree by themselves.
+#[cfg(not(target_arch = "aarch64"))]
+fn synchronise(_: &Mmap) {}

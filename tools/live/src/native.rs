@@ -1,0 +1,210 @@
+//! Bytecode as machine code: for functions that are called often, on processors for which there is any.
+
+use std::ops::Range;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use crane_jit::{Code as MachineCode, Line, Pause, Rounding, Step, Value, Width};
+
+use crate::bytecode::{Code, Fixed, Instruction, Kind};
+use crate::machine::{ANGLES, Arguments, Machine, Number};
+
+/// After as many calls of interpreted bytecode as machine code saves the time that it took to make it, about 1 µs per operation.
+const CALLS: u32 = 500;
+
+/// How products and sums round in this build, in which bytecode and machine code agree.
+const ROUNDING: Rounding =
+    if cfg!(any(target_feature = "fma", target_arch = "aarch64")) { Rounding::Fused } else { Rounding::Separate };
+
+/// The machine code of a function, from some call on.
+#[derive(Debug, Default)]
+pub struct Hot {
+    calls: AtomicU32,
+    code: OnceLock<Option<Native>>,
+}
+
+impl Hot {
+    /// The machine code, if the function was called often enough and there is any.
+    pub fn called(&self, code: &Code, width: Width) -> Option<&Native> {
+        if let Some(known) = self.code.get() {
+            return known.as_ref();
+        }
+        // A call of eight cranes takes as long as three or four of one.
+        let weight = if width == Width::One { 1 } else { 4 };
+        if self.calls.fetch_add(weight, Ordering::Relaxed) < CALLS {
+            return None;
+        }
+        self.get(code, width)
+    }
+
+    /// The machine code, made now if it was not made before.
+    pub fn get(&self, code: &Code, width: Width) -> Option<&Native> {
+        self.code.get_or_init(|| Native::of(code, width)).as_ref()
+    }
+}
+
+/// A function as machine code, with pauses for what is computed for eight numbers at a time: sines and cosines, Stumpff's functions,
+/// exponentials.
+#[derive(Debug)]
+pub struct Native {
+    code: MachineCode,
+    /// What is computed in each pause.
+    pauses: Vec<Kind>,
+    /// The number of places of fixed numbers, and the number of all given ones.
+    given: [usize; 2],
+    results: usize,
+}
+
+impl Native {
+    fn of(code: &Code, width: Width) -> Option<Self> {
+        let (line, pauses) = line(code);
+        let given = [code.fixed.len(), line.given.len()];
+        Some(Self { code: MachineCode::of(&line, ROUNDING, width)?, pauses, given, results: code.results })
+    }
+
+    /// Bytes of machine code.
+    pub fn bytes(&self) -> usize {
+        self.code.bytes()
+    }
+
+    /// The number of results.
+    pub fn results(&self) -> usize {
+        self.results
+    }
+
+    /// A frame with these fixed numbers.
+    fn frame<T: Number>(&self, fixed: &[T]) -> Vec<T> {
+        let [fixed_places, given] = self.given;
+        let mut frame = vec![T::splat(0.0); self.code.places().max(given)];
+        frame.iter_mut().zip(fixed).take(fixed_places).for_each(|(place, number)| *place = *number);
+        self.code.numbers().for_each(|(place, number)| frame[place] = T::splat(number));
+        frame
+    }
+
+    /// Runs it on a machine of its bytecode; there is room for all results.
+    pub fn run<T: Number>(&self, code: &Code, machine: &mut Machine<T>, arguments: &Arguments<'_, T>, out: &mut [T]) {
+        let frame = machine.frame(|fixed| self.frame(fixed));
+        arguments.write(code, frame);
+        for part in 0..self.code.parts() {
+            self.code.run(part, T::flat(frame), T::flat(out));
+            if let (Some(pause), Some(kind)) = (self.code.pause(part), self.pauses.get(part)) {
+                compute(*kind, pause, frame);
+            }
+        }
+    }
+}
+
+/// What is computed in a pause, eight by eight: values follow their arguments in the frame, order by order.
+fn compute<T: Number>(kind: Kind, pause: Pause, frame: &mut [T]) {
+    let Pause { arguments, reads, values, makes } = pause;
+    let (arguments, values) = frame[arguments..values + makes].split_at_mut(reads);
+    for first in (0..reads).step_by(ANGLES) {
+        let own = first..reads.min(first + ANGLES);
+        let mut eight = [T::splat(0.0); ANGLES];
+        eight.iter_mut().zip(&arguments[own.clone()]).for_each(|(place, argument)| *place = *argument);
+        let mut write = |order: usize, computed: &[T; ANGLES]| {
+            let Range { start, end } = own;
+            values[order * reads + start..order * reads + end].copy_from_slice(&computed[..end - start]);
+        };
+        match kind {
+            Kind::Angle => {
+                let (sines, cosines) = T::sin_cos(eight);
+                write(0, &sines);
+                write(1, &cosines);
+            }
+            Kind::Stumpff => T::stumpff(eight).iter().enumerate().for_each(|(order, row)| write(order, row)),
+            _ => write(0, &eight.map(crane_model::rt::exp)),
+        }
+    }
+}
+
+/// Bytecode as a line, in which each value has its own number; and what its pauses compute.
+fn line(code: &Code) -> (Line, Vec<Kind>) {
+    let number = |fixed: &Fixed| match fixed {
+        Fixed::Number(number) => Some(*number),
+        Fixed::Parameter { .. } | Fixed::Stored { .. } => None,
+    };
+    let inputs: usize = code.inputs.iter().map(|inputs| inputs.count).sum();
+    let given: Vec<_> = code.fixed.iter().map(number).chain((0..inputs).map(|_| None)).collect();
+    let mut of = vec![0; code.registers.max(given.len())];
+    (0..given.len()).for_each(|at| of[at] = value(at));
+    let mut writer =
+        Writer { of, count: given.len(), pauses: vec![], line: Line { given, steps: vec![], results: code.results } };
+    let (mut instructions, mut stores) = (code.instructions.as_slice(), code.stores.as_slice());
+    for segment in &code.segments {
+        let length = segment.length as usize;
+        if segment.kind == Kind::Store {
+            let (own, rest) = stores.split_at(length);
+            stores = rest;
+            let step = |store: &crate::bytecode::Store| Step::Store {
+                place: store.place,
+                value: writer.of[usize::from(store.register)],
+            };
+            let steps: Vec<Step> = own.iter().map(step).collect();
+            writer.line.steps.extend(steps);
+        } else {
+            let (own, rest) = instructions.split_at(length);
+            instructions = rest;
+            writer.write(segment.kind, own);
+        }
+    }
+    (writer.line, writer.pauses)
+}
+
+/// A line under construction.
+struct Writer {
+    /// The value in each register.
+    of: Vec<Value>,
+    /// The number of values.
+    count: usize,
+    pauses: Vec<Kind>,
+    line: Line,
+}
+
+impl Writer {
+    fn write(&mut self, kind: Kind, instructions: &[Instruction]) {
+        if matches!(kind, Kind::Angle | Kind::Stumpff | Kind::Exp) {
+            self.pause(kind, instructions);
+            return;
+        }
+        for i in instructions {
+            let [a, b, c] = [i.a(), i.b(), i.c()].map(|register| self.of[usize::from(register)]);
+            self.line.steps.push(match kind {
+                Kind::Div => Step::Div([a, b]),
+                Kind::Min => Step::Min([a, b]),
+                Kind::Max => Step::Max([a, b]),
+                Kind::Sqrt => Step::Sqrt(a),
+                Kind::Select => Step::Select([a, b, c]),
+                _ => Step::MulAdd([a, b, c]),
+            });
+            self.of[usize::from(i.out())] = value(self.count);
+            self.count += 1;
+        }
+    }
+
+    /// Functions of several arguments at once: no argument is a value of another.
+    fn pause(&mut self, kind: Kind, instructions: &[Instruction]) {
+        let per_argument = kind.instructions() as usize;
+        let arguments: Vec<Value> =
+            instructions.iter().step_by(per_argument).map(|i| self.of[usize::from(i.a())]).collect();
+        let reads = arguments.len();
+        let first = self.count;
+        for (at, own) in instructions.chunks(per_argument).enumerate() {
+            let outs = own.iter().flat_map(|i| match kind {
+                Kind::Exp => vec![i.out()],
+                Kind::Angle => vec![i.out(), i.b()],
+                _ => vec![i.out(), i.b(), i.c()],
+            });
+            for (order, register) in outs.enumerate() {
+                self.of[usize::from(register)] = value(first + order * reads + at);
+                self.count += 1;
+            }
+        }
+        self.line.steps.push(Step::Pause { arguments, makes: self.count - first });
+        self.pauses.push(kind);
+    }
+}
+
+fn value(at: usize) -> Value {
+    Value::try_from(at).unwrap_or(Value::MAX)
+}

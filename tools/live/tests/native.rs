@@ -1,0 +1,99 @@
+//! Machine code against bytecode: every function of every shipped crane, to the bit, except for the sign of a zero.
+
+use crane_codegen::chain::{Analyses, Chain};
+use crane_codegen::program::{FunctionId, Program};
+use crane_codegen::{build, compile, mechanics};
+use crane_live::Routine;
+use crane_live::machine::{Arguments, Batch, Machine};
+use crane_model::rt::lanes::f64x8;
+
+/// Whether this processor has machine code.
+const HAS_CODE: bool = cfg!(any(target_arch = "x86_64", target_arch = "aarch64"));
+/// Whether it has machine code for eight states.
+const HAS_LANES: bool = cfg!(target_arch = "x86_64");
+
+/// All shipped cranes, and one with many sections.
+fn cranes() -> Vec<(String, Chain)> {
+    let folder = format!("{}/../../specs", env!("CARGO_MANIFEST_DIR"));
+    let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let mut specs: Vec<_> = files.filter(|path| path.extension().is_some_and(|end| end == "yaml")).collect();
+    specs.sort();
+    let open = |path: &std::path::Path| build::open(path).unwrap_or_else(|failure| panic!("{failure}"));
+    let mut sources: Vec<_> = specs.iter().map(|path| (path.display().to_string(), open(path))).collect();
+    // With loops.
+    let reference = specs.iter().find(|path| path.ends_with("eight_link_flexible.yaml")).unwrap();
+    let longer = open(reference).changed("name: many_sections\nlinks: [{name: boom, beam: {sections: 20}}]");
+    sources.push(("20 sections".to_owned(), longer));
+    sources.into_iter().map(|(name, source)| (name, compile::load(&source).unwrap())).collect()
+}
+
+/// Numbers that differ from place to place and from lane to lane.
+fn waves<T: Batch>(count: usize, base: impl Fn(usize) -> f64, scale: f64, rate: f64) -> Vec<T> {
+    let number = |i: usize, lane: usize| base(i) + scale * (rate * (i as f64 + 1.0) + 0.3 * lane as f64).sin();
+    (0..count).map(|i| T::from_lanes(|lane| number(i, lane))).collect()
+}
+
+/// Numbers of results, lane by lane, of one way to run a function.
+fn results<T: Batch>(
+    chain: &Chain,
+    program: &Program,
+    routine: &Routine,
+    run: impl Fn(&Routine, &mut Machine<T>, &Arguments<'_, T>, &mut [T]),
+) -> Vec<f64> {
+    let n = chain.coordinates.len();
+    let factors = program.function(FunctionId::Factorise).map_or(0, |function| function.shape.len());
+    let guess = |i: usize| chain.guess[i];
+    let zero = |_| 0.0;
+    let mut base = vec![T::splat(0.0); 36];
+    (0..6).for_each(|i| base[7 * i] = T::splat(3.0));
+    let defaults = chain.parameter_defaults();
+    let parameters: Vec<T> = defaults.iter().map(|p| T::from_lanes(|lane| p * (1.0 + 0.01 * lane as f64))).collect();
+    let arguments = Arguments {
+        t: T::from_lanes(|lane| 0.7 + 0.1 * lane as f64),
+        q: &waves(n, guess, 0.05, 1.3),
+        v: &waves(n, zero, 0.4, 0.7),
+        a: &waves(n, zero, 0.4, 2.9),
+        right: &waves(n, zero, 100.0, 2.1),
+        positions: &waves(n, guess, 0.05, 1.1),
+        added_inertia: &waves(n, |_| 2.0, 0.5, 0.9),
+        base: &base,
+        factors: &waves(factors, |_| 1.5, 1.0, 0.37),
+        parameters: &[],
+        inputs: &waves(2 * chain.inputs.len(), |_| 0.5, 0.2, 1.0),
+    };
+    let mut machine = routine.machine(&parameters);
+    let mut out = vec![T::splat(f64::NAN); routine.results()];
+    // Twice: registers and frames keep nothing from call to call.
+    for _ in 0..2 {
+        run(routine, &mut machine, &arguments, &mut out);
+    }
+    out.iter().flat_map(|number| (0..T::LANES).map(|lane| number.lane(lane)).collect::<Vec<_>>()).collect()
+}
+
+fn compare<T: Batch>(what: &str, chain: &Chain, program: &Program, routine: &Routine, compiles: bool) -> usize {
+    let bytes = routine.compile::<T>();
+    assert_eq!(bytes.is_some(), compiles, "{what}");
+    let interpreted = results::<T>(chain, program, routine, Routine::interpret);
+    let native = results::<T>(chain, program, routine, Routine::run);
+    for (place, (x, y)) in native.iter().zip(&interpreted).enumerate() {
+        assert!(x == y || x.is_nan() && y.is_nan(), "{what}, number {place}: {x:e} instead of {y:e}");
+    }
+    interpreted.iter().filter(|x| x.is_finite() && **x != 0.0).count()
+}
+
+#[test]
+fn machine_code_gives_the_bits_of_bytecode() {
+    let (mut functions, mut numbers) = (0, 0);
+    for (name, chain) in cranes() {
+        let program = mechanics::derive(&chain, Analyses::ALL);
+        for function in &program.functions {
+            let routine = Routine::new(&program, function).unwrap();
+            let what = format!("{} of {name}", function.id.name());
+            numbers += compare::<f64>(&what, &chain, &program, &routine, HAS_CODE);
+            numbers += compare::<f64x8>(&what, &chain, &program, &routine, HAS_LANES);
+            functions += 1;
+        }
+    }
+    println!("{functions} functions, {numbers} numbers that are neither zero nor infinite");
+    assert!(functions > 200 && numbers > 100_000);
+}
