@@ -36,7 +36,9 @@ impl Code {
     /// The number of places in a frame.
     #[must_use]
     pub fn places(&self) -> usize {
-        self.functions.places()
+        // What a pause makes has a place even if nothing reads it.
+        let made = self.pauses.iter().flatten().map(|pause| pause.values + pause.makes);
+        made.fold(self.functions.places(), usize::max)
     }
 
     /// The numbers that a frame holds besides the given values, and their places: to be written before the first call.

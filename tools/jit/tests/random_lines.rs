@@ -247,3 +247,14 @@ fn what_repeats_is_a_loop() {
     assert!(compare(Rounding::Separate, Width::One, repeating_line) >= 250);
     assert!(compare(Rounding::Fused, Width::Eight, repeating_line) >= 250);
 }
+
+/// The frame has places for all that a pause makes: callers write it although only a part is read.
+#[test]
+fn what_pauses_make_has_places_even_if_nothing_reads_it() {
+    let pause = Step::Pause { arguments: vec![0], makes: 6 };
+    let line = Line { given: vec![None], steps: vec![pause, Step::Store { place: 0, value: 1 }], results: 1 };
+    let Some(code) = Code::of(&line, Rounding::Separate, Width::One) else { return };
+    let pause = code.pause(0).expect("the line pauses once");
+    assert_eq!(pause.makes, 6);
+    assert!(code.places() >= pause.values + pause.makes, "{} places, {pause:?}", code.places());
+}
