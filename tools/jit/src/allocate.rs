@@ -101,9 +101,9 @@ pub fn allocate(mut operations: Operations, processor: Processor) -> Allocated {
     Allocated { parts, numbers }
 }
 
-#[expect(clippy::cast_possible_wrap, reason = "a frame has far fewer than 2^31 places")]
+/// A place that does not move. One that is too far away is as far as possible, where `memory` refuses it.
 fn fixed(at: u32) -> Place {
-    Place { at: at as i32, step: 0 }
+    Place { at: i32::try_from(at).unwrap_or(i32::MAX), step: 0 }
 }
 
 /// Registers during a line.

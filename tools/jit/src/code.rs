@@ -20,8 +20,8 @@ pub struct Code {
 }
 
 impl Code {
-    /// The machine code of a line for this processor; `None` if there is none for it, or if the system does not permit to
-    /// execute code that was written at run time.
+    /// The machine code of a line for this processor; `None` if there is none for it, if the system does not permit to
+    /// execute code that was written at run time, or if the line has more than a million results or places.
     ///
     /// # Panics
     /// If a step reads a value that is not made before it.

@@ -72,16 +72,17 @@ impl Instruction {
     ///
     /// # Panics
     /// If a place is before the frame.
-    pub fn reach(&self, places: &mut usize, results: &mut usize, iterations: &mut i32) {
+    pub fn reach(&self, places: &mut usize, results: &mut usize, iterations: &mut u32) {
         match self {
-            Instruction::Begin(count) => *iterations = count.cast_signed(),
+            Instruction::Begin(count) => *iterations = *count,
             Instruction::End => *iterations = 1,
             _ => {}
         }
         let end = |place: Place| {
-            let last = place.at + place.step * (*iterations - 1);
-            assert!(place.at >= 0 && last >= 0, "a place before the frame");
-            place.at.max(last).unsigned_abs() as usize + 1
+            let first = i64::from(place.at);
+            let last = first + i64::from(place.step) * (i64::from(*iterations) - 1);
+            assert!(first >= 0 && last >= 0, "a place before the frame");
+            usize::try_from(first.max(last)).map_or(usize::MAX, |last| last + 1)
         };
         for place in self.places() {
             *places = end(place).max(*places);

@@ -1,9 +1,11 @@
 //! Code in memory, and calls of it: the only unsafe code of this crate.
 //!
-//! Why a call is sound: `encode` translates [`Instruction`]s one by one, and the only memory that these read or write is at the
-//! places that they name, in the frame, and among the results. [`Functions::new`] counts both, and [`Functions::call`] compares
-//! them with the slices that it receives. Pages are first writable, then executable, never both. They live as long as the value
-//! that calls them.
+//! Why a call is sound: `Code::of` asks for code only on processors that have its instructions. `encode` translates
+//! [`Instruction`]s one by one, gives back the registers that a call must keep, and returns; the only memory that the code reads or
+//! writes besides is at the places that instructions name, in the frame and among the results. [`Functions::new`] counts both,
+//! through all iterations of loops, and refuses what displacements do not reach; [`Functions::call`] compares them with the slices
+//! that it receives. Pages are first writable, then executable, never both. They live as long as the value that calls them, and
+//! nothing writes to them, so threads may call them at the same time.
 
 #![allow(unsafe_code)]
 
@@ -18,6 +20,10 @@ use crate::line::Width;
 type Entry = unsafe extern "sysv64" fn(*mut f64, *mut f64);
 #[cfg(not(target_arch = "x86_64"))]
 type Entry = unsafe extern "C" fn(*mut f64, *mut f64);
+
+/// Places that a frame or the results may have. All displacements that `encode` writes reach as far: 2³¹ bytes on x86-64, where a
+/// place takes at most 64, and 2²⁴ on aarch64, where it takes 8.
+const PLACES: usize = 1 << 20;
 
 /// Functions in executable memory, which is freed when this is dropped.
 #[derive(Debug)]
@@ -36,11 +42,14 @@ impl Functions {
     /// The machine code of functions.
     ///
     /// # Errors
-    /// The system has no memory, or does not permit to execute it.
+    /// The system has no memory, or does not permit to execute it; or a displacement would not reach all places.
     pub fn new<'a>(functions: impl Iterator<Item = &'a [Instruction]> + Clone, width: Width) -> std::io::Result<Self> {
-        let (mut places, mut results, mut iterations) = (0, 0, 1);
+        let (mut places, mut results, mut iterations) = (0, 0, 1u32);
         for instruction in functions.clone().flatten() {
             instruction.reach(&mut places, &mut results, &mut iterations);
+        }
+        if places.max(results) > PLACES {
+            return Err(std::io::ErrorKind::FileTooLarge.into());
         }
         let is_loop = |instruction: &&Instruction| matches!(instruction, Instruction::Begin(_));
         let loops = functions.clone().flatten().filter(is_loop).count();
@@ -82,10 +91,11 @@ impl Functions {
         assert!(results.len() >= self.results * numbers, "there are {} results", self.results);
         assert!(lane.is_multiple_of(4) && lane < numbers, "four numbers at a time, or one");
         let begin = &raw const self.pages[self.begins[function]];
-        // SAFETY: the code of a function of this type begins there, see `new`.
+        // SAFETY: `new` put the code of a function of this type there, in pages that are executable as long as `self` lives.
         let entry = unsafe { std::mem::transmute::<*const u8, Entry>(begin) };
         let [frame, results] = [frame, results].map(|numbers| numbers.as_mut_ptr().wrapping_add(lane));
-        // SAFETY: it stays within both slices, which the lines above compare with what it reads and writes.
+        // SAFETY: the code takes one number of each place, or four, from number `lane` on: the last of them is within both slices,
+        // which the assertions above compare with the places that it names. Both are borrowed for this call alone.
         unsafe { entry(frame, results) }
     }
 }
@@ -99,16 +109,16 @@ fn synchronise(pages: &Mmap) {
     let range = pages.as_ptr_range();
     let (begin, end) = (range.start as usize, range.end as usize);
     for line in (begin..end).step_by(LINE) {
-        // SAFETY: cleans a line of mapped memory.
+        // SAFETY: cleans a line of memory that is mapped; no number changes.
         unsafe { asm!("dc cvau, {}", in(reg) line, options(nostack, preserves_flags)) };
     }
-    // SAFETY: waits for it.
+    // SAFETY: a barrier, which waits for that.
     unsafe { asm!("dsb ish", options(nostack, preserves_flags)) };
     for line in (begin..end).step_by(LINE) {
-        // SAFETY: forgets a line of instructions.
+        // SAFETY: forgets a line of instructions, which is read again from memory that is mapped.
         unsafe { asm!("ic ivau, {}", in(reg) line, options(nostack, preserves_flags)) };
     }
-    // SAFETY: waits for it, and forgets what was fetched ahead.
+    // SAFETY: barriers, which wait for that and forget what was fetched ahead.
     unsafe { asm!("dsb ish", "isb", options(nostack, preserves_flags)) };
 }
 

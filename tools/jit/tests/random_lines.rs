@@ -210,7 +210,10 @@ fn compare(rounding: Rounding, width: Width, line: impl Fn(&mut Rng) -> Line) ->
         let mut rng = Rng::with_seed(seed);
         let line = line(&mut rng);
         let given: Vec<Vec<f64>> = (0..LANES).map(|_| given(&line, &mut rng)).collect();
-        let Some(code) = Code::of(&line, rounding, width) else { return usize::MAX };
+        let Some(code) = Code::of(&line, rounding, width) else {
+            assert!(!has_code(rounding, width), "there is code for this processor");
+            return usize::MAX;
+        };
         loops += code.loops();
         let computed = run(&code, &line, lanes, &given);
         for (lane, (computed, given)) in computed.iter().zip(&given).enumerate() {
@@ -223,6 +226,19 @@ fn compare(rounding: Rounding, width: Width, line: impl Fn(&mut Rng) -> Line) ->
     println!("{compared} numbers compared, {loops} loops");
     assert!(compared > 2_000, "too few numbers to tell");
     loops
+}
+
+/// Whether there is code for this processor.
+#[cfg(target_arch = "x86_64")]
+fn has_code(rounding: Rounding, _: Width) -> bool {
+    let fuses = || std::arch::is_x86_feature_detected!("fma");
+    std::arch::is_x86_feature_detected!("avx") && (rounding == Rounding::Separate || fuses())
+}
+
+/// Whether there is code for this processor.
+#[cfg(not(target_arch = "x86_64"))]
+fn has_code(_: Rounding, width: Width) -> bool {
+    cfg!(target_arch = "aarch64") && width == Width::One
 }
 
 fn any_line(rng: &mut Rng) -> Line {
