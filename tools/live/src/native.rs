@@ -31,10 +31,9 @@ impl Hot {
         }
         // A call of eight cranes takes as long as three or four of one.
         let weight = if width == Width::One { 1 } else { 4 };
-        if self.calls.fetch_add(weight, Ordering::Relaxed) < CALLS {
-            return None;
-        }
-        self.get(code, width)
+        let before = self.calls.fetch_add(weight, Ordering::Relaxed);
+        // One call makes the code; calls on other threads go on with bytecode meanwhile, and wait for nothing.
+        (before < CALLS && before + weight >= CALLS).then(|| self.get(code, width)).flatten()
     }
 
     /// The machine code, made now if it was not made before.
