@@ -1,5 +1,6 @@
-//! Live cranes against compiled ones: `cargo bench -p crane-bench --bench live`. Forward dynamics of one state, and of blocks as wide as the
-//! lanes of each; medians of alternating rounds, so that both run under the same conditions.
+//! Live cranes against compiled ones: `cargo bench -p crane-bench --bench live`. Forward dynamics of one state, as machine code and as
+//! bytecode, and of blocks as wide as the lanes of each; medians of alternating rounds, so that all run under the same conditions.
+//! Then how long it takes to make the machine code from bytecode, for one state and for eight, and for one state from the spec.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -7,7 +8,11 @@ use std::time::{Duration, Instant};
 use crane_bench::cranes::{self, Entry};
 use crane_bench::kernel::Kernel;
 use crane_codegen::SourceFile;
-use crane_live::LiveCrane;
+use crane_codegen::chain::Analyses;
+use crane_codegen::mechanics;
+use crane_codegen::program::FunctionId;
+use crane_live::machine::{Arguments, Number};
+use crane_live::{LiveCrane, Routine};
 use crane_model::dyn_crane::{DynBlock, DynDynamics, DynEnsemble, DynModel};
 use crane_model::rt::lanes::f64x8;
 
@@ -15,6 +20,9 @@ use crane_model::rt::lanes::f64x8;
 const ROUNDS: usize = 31;
 /// Approximate duration of a round, s.
 const ROUND: f64 = 5e-3;
+
+/// Calls after which a live crane's function is derived and machine code.
+const WARM_UP: u64 = 1000;
 
 /// One state of a crane: t, q, v.
 struct State {
@@ -24,27 +32,76 @@ struct State {
 }
 
 fn main() {
-    println!("forward dynamics, µs per crane, and live over compiled; medians of {ROUNDS} alternating rounds");
-    println!("coordinates  compiled      live  ratio  compiled lanes  live block  ratio");
+    println!(
+        "forward dynamics, µs per crane, and ratios to compiled code: medians of {ROUNDS} alternating rounds; ms until there is machine code"
+    );
+    println!("                       one state                     |           lanes            |           ms until");
+    println!(
+        "coordinates  compiled  machine code  |    bytecode   |  compiled  |  machine code  |    one   eight  from the spec"
+    );
     for entry in cranes::all() {
         let live = LiveCrane::from_spec(&SourceFile::new("crane.yaml", entry.spec)).expect("a spec that was compiled");
         let states = states(&entry);
         let mut singly = compiled(&entry, "forward_dynamics");
-        let single = ratio(&mut |calls| singly.time(calls), &mut |calls| one_by_one(&live, &states, calls));
+        let routine = routine(&live);
+        let [single, machine_code, bytecode] =
+            medians([&mut |calls| singly.time(calls), &mut |calls| one_by_one(&live, &states, calls), &mut |calls| {
+                interpreted(&routine, &live, &states, calls)
+            }]);
         let mut lanes = compiled(&entry, "forward_dynamics_lanes");
         let parameters = live.parameters().to_vec();
         let mut block = live.block(&vec![parameters.as_slice(); live.lanes()]).expect("the crane's own parameters");
         let width = live.lanes() / 8;
         // A call serves as many cranes as there are lanes.
         let per_call = |duration: Duration, cranes: usize| duration.div_f64(cranes as f64);
-        let together = ratio(&mut |calls| per_call(lanes.time(calls), 8), &mut |calls| {
+        let [eight, in_lanes] = medians([&mut |calls| per_call(lanes.time(calls), 8), &mut |calls| {
             per_call(in_block(&mut *block, width, &states, calls), 8 * width)
-        });
+        }]);
+        let [one, other] = [making::<f64>(&live), making::<f64x8>(&live)];
+        let ratio = |[time, ratio]: [f64; 2]| format!("{time:>7.3} {ratio:>5.2}");
+        let [code, bytes, together] = [machine_code, bytecode, in_lanes].map(ratio);
         println!(
-            "{:>11}  {:>8.2}  {:>8.2}  {:>5.2}  {:>14.2}  {:>10.2}  {:>5.2}",
-            entry.coordinates, single[0], single[1], single[2], together[0], together[1], together[2]
+            "{:>11}  {:>8.3} {code} |{bytes}  |  {:>8.3}  |{together}   |  {one:>5.1}   {other:>5.1}          {:>5.1}",
+            entry.coordinates,
+            single[0],
+            eight[0],
+            from_spec(&entry)
         );
     }
+}
+
+/// Forward dynamics of a live crane, without its machine code.
+fn routine(live: &LiveCrane) -> Routine {
+    let program = mechanics::derive(live.chain(), Analyses::ALL);
+    let function = program.function(FunctionId::ForwardDynamics).expect("a function of every crane");
+    Routine::new(&program, function).expect("a crane of moderate size")
+}
+
+/// Time to make machine code of forward dynamics, ms.
+fn making<T: Number>(live: &LiveCrane) -> f64 {
+    let milliseconds = |_| {
+        let routine = routine(live);
+        let begin = Instant::now();
+        black_box(routine.compile::<T>());
+        1e3 * begin.elapsed().as_secs_f64()
+    };
+    median((0..11).map(milliseconds).collect())
+}
+
+/// Time from the text of a spec to machine code of its forward dynamics, ms.
+fn from_spec(entry: &Entry) -> f64 {
+    let milliseconds = |_| {
+        let begin = Instant::now();
+        let live = LiveCrane::from_spec(&SourceFile::new("crane.yaml", entry.spec)).expect("a spec that was compiled");
+        black_box(live.compile(FunctionId::ForwardDynamics));
+        1e3 * begin.elapsed().as_secs_f64()
+    };
+    median((0..11).map(milliseconds).collect())
+}
+
+fn median(mut numbers: Vec<f64>) -> f64 {
+    numbers.sort_by(f64::total_cmp);
+    numbers[numbers.len() / 2]
 }
 
 fn compiled(entry: &Entry, name: &str) -> Kernel {
@@ -67,6 +124,20 @@ fn one_by_one(live: &LiveCrane, states: &[State], calls: u64) -> Duration {
     begin.elapsed()
 }
 
+fn interpreted(routine: &Routine, live: &LiveCrane, states: &[State], calls: u64) -> Duration {
+    let mut out = vec![0.0; routine.results()];
+    let mut machine = routine.machine(live.parameters());
+    // No input is set: they follow the spec.
+    let inputs = [0.0, 1.0].repeat(live.chain().inputs.len());
+    let begin = Instant::now();
+    for (_, State { t, q, v }) in (0..calls).zip(states.iter().cycle()) {
+        let arguments = Arguments { t: black_box(*t), q: black_box(q), v, inputs: &inputs, ..Arguments::none() };
+        routine.interpret(&mut machine, &arguments, &mut out);
+        black_box(&out);
+    }
+    begin.elapsed()
+}
+
 fn in_block(block: &mut (dyn DynBlock + '_), width: usize, states: &[State], calls: u64) -> Duration {
     let spread = |numbers: &[f64]| -> Vec<f64x8> {
         numbers.iter().flat_map(|x| std::iter::repeat_n(f64x8::splat(*x), width)).collect()
@@ -81,26 +152,24 @@ fn in_block(block: &mut (dyn DynBlock + '_), width: usize, states: &[State], cal
     begin.elapsed()
 }
 
-/// Medians of both, µs per call, and of their ratio.
-fn ratio(compiled: &mut dyn FnMut(u64) -> Duration, live: &mut dyn FnMut(u64) -> Duration) -> [f64; 3] {
-    let calls_of = |work: &mut dyn FnMut(u64) -> Duration| {
+/// Medians of the time of each, µs per call, and of its ratio to that of the first.
+fn medians<const WAYS: usize>(mut ways: [&mut dyn FnMut(u64) -> Duration; WAYS]) -> [[f64; 2]; WAYS] {
+    let counts = ways.each_mut().map(|work| {
+        work(WARM_UP);
         let mut calls = 16;
         while work(calls).as_secs_f64() < ROUND && calls < 1 << 20 {
             calls *= 2;
         }
         calls
-    };
-    let counts = [calls_of(compiled), calls_of(live)];
-    let per_call = |work: &mut dyn FnMut(u64) -> Duration, calls: u64| 1e6 * work(calls).as_secs_f64() / calls as f64;
-    let mut rounds = [const { Vec::new() }; 3];
+    });
+    let mut rounds: [[Vec<f64>; 2]; WAYS] = std::array::from_fn(|_| [vec![], vec![]]);
     for _ in 0..ROUNDS {
-        let [one, other] = [per_call(compiled, counts[0]), per_call(live, counts[1])];
-        for (round, number) in rounds.iter_mut().zip([one, other, other / one]) {
-            round.push(number);
+        let mut first = None;
+        for ((work, calls), [times, ratios]) in ways.iter_mut().zip(counts).zip(&mut rounds) {
+            let time = 1e6 * work(calls).as_secs_f64() / calls as f64;
+            times.push(time);
+            ratios.push(time / *first.get_or_insert(time));
         }
     }
-    rounds.map(|mut round| {
-        round.sort_by(f64::total_cmp);
-        round[ROUNDS / 2]
-    })
+    rounds.map(|[times, ratios]| [median(times), median(ratios)])
 }

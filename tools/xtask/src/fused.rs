@@ -5,8 +5,8 @@ use std::process::Command;
 use crate::step::{cargo, run_to_end};
 use crate::workspace;
 
-/// Tests that compare results of generated code with results computed in another way.
-const TESTS: [&str; 3] = ["interpreter", "accuracy", "sin_cos"];
+/// Tests that compare results of generated code, and of machine code made at run time, with results computed in another way.
+const TESTS: [&str; 4] = ["interpreter", "accuracy", "sin_cos", "native"];
 
 /// Builds and runs them with AVX2 and fused multiply-adds, which a build for all machines of the architecture may not use.
 ///
@@ -17,7 +17,9 @@ pub fn check_fused() -> Result<(), String> {
         return Ok(());
     }
     let mut command = Command::new(cargo());
-    command.args(["test", "--release", "--package", "crane-tests"]).current_dir(workspace::root());
+    command
+        .args(["test", "--release", "--package", "crane-tests", "--package", "crane-live"])
+        .current_dir(workspace::root());
     command.args(TESTS.iter().flat_map(|test| ["--test", test]));
     command.args(["--target", &workspace::host_triple()?]).env("RUSTFLAGS", "-C target-cpu=x86-64-v3");
     run_to_end(&mut command)
