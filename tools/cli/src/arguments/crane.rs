@@ -72,7 +72,7 @@ pub struct Choice {
     /// Replace beams that bend with rigid ones
     #[arg(long, conflicts_with = "compile")]
     pub rigid: bool,
-    /// Compile the crane to machine code first (needs cargo) and keep it: about five times faster, for long studies
+    /// Compile the crane with rustc first (needs cargo) and keep it: up to 1.6 times as fast, for long studies
     #[arg(long)]
     pub compile: bool,
 }
