@@ -129,6 +129,11 @@ impl Loops {
         &self.jacobian
     }
 
+    /// φ of an equation, as last evaluated, m or rad.
+    pub fn gap(&self, equation: usize) -> f64 {
+        self.states[equation].x
+    }
+
     /// Indices of the independent equations, as last chosen.
     pub fn independent(&self) -> &[usize] {
         self.independence.kept()

@@ -29,10 +29,11 @@ pub(super) struct Closed {
     prescribed: Vec<usize>,
 }
 
-/// Q and R with `D^-½ Jᵀ = Q R` at a pose, J of the independent equations.
+/// Q and R with `D^-½ Jᵀ = Q R` at a pose, J of the independent equations, and their gaps.
 struct Rows {
     basis: DMatrix<f64>,
     triangle: DMatrix<f64>,
+    gaps: DVector<f64>,
     independent: Vec<usize>,
     equations: usize,
 }
@@ -77,7 +78,8 @@ impl Closed {
             if self.prescribed.contains(&i) { 0.0 } else { entry }
         });
         let (basis, triangle) = columns.qr().unpack();
-        Rows { basis, triangle, independent, equations: crane.loop_equations() }
+        let gaps = DVector::from_iterator(independent.len(), independent.iter().map(|&row| loops.gap(row)));
+        Rows { basis, triangle, gaps, independent, equations: crane.loop_equations() }
     }
 
     /// The residual of motions that leave the loops closed, `D^½ Π D^-½ r`.
@@ -97,6 +99,53 @@ impl Closed {
         stiffness: &DMatrix<f64>,
     ) -> DMatrix<f64> {
         let rows = self.rows(crane, q);
+        let whole = self.lagrangian(crane, q, &rows, residual, stiffness);
+        let basis = &rows.basis;
+        let half = &whole - basis * basis.tr_mul(&whole);
+        let mut both = &half - (&half * basis) * basis.transpose() + basis * basis.transpose();
+        self.restore(&mut both);
+        (&both + both.transpose()) * 0.5
+    }
+
+    /// A force r that acts on the motions that leave the loops closed, together with the gaps of the loops, and its derivatives by q and by a
+    /// parameter, from those of the open chain:
+    ///
+    /// ```text
+    /// D^½ (Π D^-½ r + Q R⁻ᵀ φ)        by q: D^½ (Π D^-½ (∂r/∂q + Σ λ_i ∂²φ_i/∂q²) D^-½ + Q Qᵀ) D^½
+    /// ```
+    ///
+    /// The derivative is exact where r is in equilibrium.
+    pub fn partly_loaded(
+        &self,
+        crane: &dyn DynStatics,
+        q: &[f64],
+        force: &DVector<f64>,
+        by_pose: &DMatrix<f64>,
+        by_parameter: &DVector<f64>,
+    ) -> (DVector<f64>, DMatrix<f64>, DVector<f64>) {
+        let rows = self.rows(crane, q);
+        let basis = &rows.basis;
+        let along = |force: &DVector<f64>| {
+            let scaled = force.component_div(&self.scale);
+            &scaled - basis * basis.tr_mul(&scaled)
+        };
+        let gaps = rows.triangle.tr_solve_upper_triangular(&rows.gaps).unwrap_or_else(|| rows.gaps.clone() * f64::NAN);
+        let value = (along(force) + basis * gaps).component_mul(&self.scale);
+        let whole = self.lagrangian(crane, q, &rows, force, by_pose);
+        let mut derivative = &whole - basis * basis.tr_mul(&whole) + basis * basis.transpose();
+        self.restore(&mut derivative);
+        (value, derivative, along(by_parameter).component_mul(&self.scale))
+    }
+
+    /// `D^-½ (K + Σ λ_i ∂²φ_i/∂q²) D^-½`, where λ balances the residual.
+    fn lagrangian(
+        &self,
+        crane: &dyn DynStatics,
+        q: &[f64],
+        rows: &Rows,
+        residual: &DVector<f64>,
+        stiffness: &DMatrix<f64>,
+    ) -> DMatrix<f64> {
         let multipliers = rows.multipliers(&residual.component_div(&self.scale));
         let mut geometric = geometric_stiffness(crane, q, &multipliers);
         for &j in &self.prescribed {
@@ -108,14 +157,15 @@ impl Closed {
             whole.row_mut(i).scale_mut(1.0 / scale);
             whole.column_mut(i).scale_mut(1.0 / scale);
         }
-        let basis = &rows.basis;
-        let half = &whole - basis * basis.tr_mul(&whole);
-        let mut both = &half - (&half * basis) * basis.transpose() + basis * basis.transpose();
+        whole
+    }
+
+    /// `D^½ X D^½` in place of X.
+    fn restore(&self, matrix: &mut DMatrix<f64>) {
         for (i, scale) in self.scale.iter().enumerate() {
-            both.row_mut(i).scale_mut(*scale);
-            both.column_mut(i).scale_mut(*scale);
+            matrix.row_mut(i).scale_mut(*scale);
+            matrix.column_mut(i).scale_mut(*scale);
         }
-        (&both + both.transpose()) * 0.5
     }
 }
 

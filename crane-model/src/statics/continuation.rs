@@ -75,13 +75,11 @@ impl Path<'_> {
     fn system(&self, point: &DVector<f64>, last: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
         let n = self.start.len();
         let (q, load) = (point.rows(0, n).into_owned(), point[n]);
-        let (residual, stiffness) = (self.equations.residual(&q), self.equations.stiffness(&q));
-        let held = (q - self.start).component_mul(&self.springs);
-        let value = self.scale.scaled(&(&residual * load + &held * (1.0 - load)));
-        let by_load = self.scale.scaled(&(residual - held));
+        let held = (&q - self.start).component_mul(&self.springs);
+        let (value, by_pose, by_load) = self.equations.partly_loaded(&q, load, &held, &self.springs);
+        let (value, by_load) = (self.scale.scaled(&value), self.scale.scaled(&by_load));
         let matrix = DMatrix::from_fn(n + 1, n + 1, |i, j| match (i < n, j < n) {
-            (true, true) if i == j => self.scale.row(i, stiffness[(i, j)] * load + self.springs[i] * (1.0 - load)),
-            (true, true) => self.scale.row(i, stiffness[(i, j)] * load),
+            (true, true) => self.scale.row(i, by_pose[(i, j)]),
             (true, false) => by_load[i],
             (false, _) => last[j],
         });

@@ -46,11 +46,6 @@ impl<'a> Equations<'a> {
         self.close(q)
     }
 
-    /// Whether joints close loops.
-    pub(super) fn has_loops(&self) -> bool {
-        self.closed.is_some()
-    }
-
     /// Moves a pose onto the loops; returns whether they close.
     pub(super) fn close(&self, q: &mut DVector<f64>) -> bool {
         self.closed.as_ref().is_none_or(|closed| closed.close(self.crane, q.as_mut_slice()))
@@ -71,6 +66,25 @@ impl<'a> Equations<'a> {
         match &self.closed {
             Some(closed) => closed.stiffness(self.crane, q.as_slice(), &self.open_residual(q), &stiffness),
             None => stiffness,
+        }
+    }
+
+    /// `H = load r(q) + (1 − load) S (q − q₀)`, with loops restricted to the motions that leave them closed, together with their gaps; and
+    /// its derivatives by q and by the load. `held` is `S (q − q₀)`, `springs` the diagonal of S.
+    pub(super) fn partly_loaded(
+        &self,
+        q: &DVector<f64>,
+        load: f64,
+        held: &DVector<f64>,
+        springs: &DVector<f64>,
+    ) -> (DVector<f64>, DMatrix<f64>, DVector<f64>) {
+        let residual = self.open_residual(q);
+        let value = &residual * load + held * (1.0 - load);
+        let by_load = residual - held;
+        let by_pose = self.open_stiffness(q) * load + DMatrix::from_diagonal(springs) * (1.0 - load);
+        match &self.closed {
+            Some(closed) => closed.partly_loaded(self.crane, q.as_slice(), &value, &by_pose, &by_load),
+            None => (value, by_pose, by_load),
         }
     }
 

@@ -26,7 +26,8 @@ use crate::{
 /// ```
 ///
 /// This path does not end before λ = 1 if the potential energy grows with the distance from the guess, so that it reaches an equilibrium
-/// for almost every guess. It is followed by arclength, since λ may decrease along it.
+/// for almost every guess. It is followed by arclength, since λ may decrease along it. With loops it lies on φ(q) = 0, and H is restricted to
+/// the motions that leave them closed.
 /// S. N. Chow, J. Mallet-Paret, J. A. Yorke, Finding zeroes of maps, Math. Comp. 32 (1978) 887; H. B. Keller, Numerical
 /// solution of bifurcation and nonlinear eigenvalue problems, in Applications of Bifurcation Theory, Academic Press 1977.
 pub fn solve<const N: usize, C: Statics<N>>(crane: &C, settings: &Settings) -> Equilibrium {
@@ -84,13 +85,12 @@ fn search_from(equations: &Equations<'_>, start: &DVector<f64>, settings: &Setti
     if second.is_stable() {
         return second;
     }
-    // The springs of the path below would open the loops.
-    if equations.has_loops() {
-        return first;
-    }
     let mut load_steps = 0;
-    let mut arrive = |q: DVector<f64>, steps: usize| {
+    let mut arrive = |mut q: DVector<f64>, steps: usize| {
         load_steps = steps;
+        if !equations.close(&mut q) {
+            return None;
+        }
         [newton::BOLD, newton::CAUTIOUS].into_iter().map(|limits| iterate(&q, limits)).find(Equilibrium::is_stable)
     };
     let found = continuation::follow(equations, start, settings.load_steps, &scale, &mut arrive);

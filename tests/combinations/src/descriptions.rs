@@ -531,10 +531,6 @@ fn rope_link_by_link(tree: &Tree, _: &mut Rng) -> Option<Second> {
 
 /// What follows the arm, or its stages, slides along three axes and is held in its place by a loop joint.
 fn held_by_loop(tree: &Tree, _: &mut Rng) -> Option<Second> {
-    // From most guesses, statics of a crane on such feet needs continuation, which is for open chains.
-    if tree["supports"].as_array().into_iter().flatten().any(|foot| foot["one_sided"] == true) {
-        return None;
-    }
     let mut second = tree.clone();
     let links = second["links"].as_array_mut()?;
     let held = links.iter().position(|link| ["rope", "swing", "hook"].iter().any(|name| link["name"] == *name))?;
