@@ -37,6 +37,7 @@ use nalgebra::{DMatrixViewMut, Vector3};
 use crate::{
     CylinderInfo, Description,
     dyn_crane::{DynDynamics, DynModel},
+    loop_joints,
     stateful_force::{Evaluated, ForceState, Row, STATES, StateAt, StatefulForces},
 };
 use cylinder::{Command, Pump, ValveCylinder};
@@ -177,7 +178,7 @@ impl StatefulForces for Hydraulics {
         true
     }
 
-    /// Shut valves, and the unloaded side at tank pressure.
+    /// Shut valves, and the unloaded side at tank pressure. The cylinders also balance what loop joints transmit.
     fn holding(&mut self, crane: &dyn DynDynamics, t: f64, q: &[f64]) -> Vec<f64> {
         if self.is_empty() {
             return Vec::new();
@@ -187,8 +188,10 @@ impl StatefulForces for Hydraulics {
         crane.bias(q, &rest, &mut bias);
         crane.forces(t, q, &rest, &mut forces);
         crane.cylinder_states(q, &rest, &mut self.here);
+        let resisted = loop_joints::generalized(crane, q, &loop_joints::required(crane, t, [q, &rest, &rest]));
         let of_cylinder = |cylinder: &ValveCylinder| {
-            let effort = -(bias[cylinder.coordinate] + forces[cylinder.coordinate]);
+            let j = cylinder.coordinate;
+            let effort = resisted[j] - (bias[j] + forces[j]);
             let state = CylinderState::new(&cylinder.info, self.here[cylinder.index].into(), effort);
             let [piston, rod] = state.pressures;
             [piston, rod, 0.0]

@@ -25,7 +25,7 @@ mod reactions;
 
 pub(crate) use curvature::{closed_motions, geometric_stiffness};
 pub use reactions::{DEAD_CENTRE, Gap, cautions, gap_at, undetermined};
-pub(crate) use reactions::{add_to_wrenches, at_rest, on_rigid_drives, required};
+pub(crate) use reactions::{add_to_wrenches, at_rest, generalized, on_rigid_drives, required};
 
 use nalgebra::Vector3;
 

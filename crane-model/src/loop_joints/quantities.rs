@@ -2,7 +2,7 @@
 
 use nalgebra::{DVector, Vector3};
 
-use super::{Loops, add_to_wrenches, at_rest, on_rigid_drives, required};
+use super::{Loops, add_to_wrenches, at_rest, generalized, on_rigid_drives, required};
 use crate::{CylinderInfo, Description, Wrench, dyn_crane::DynCrane, wrench};
 
 /// # Panics
@@ -54,12 +54,9 @@ impl dyn DynCrane + '_ {
     fn efforts_at_rest(&self, t: f64, positions: &[f64], q: &[f64]) -> Vec<f64> {
         let mut forces = self.numbers(|out| self.drive_forces_at_rest(t, q, positions, out));
         if !self.loop_joints().is_empty() {
-            let (multipliers, n) = (at_rest(self, t, positions, q), q.len());
-            let mut jacobian = vec![0.0; multipliers.len() * n];
-            self.loop_jacobians(q, &mut jacobian);
+            let resisted = generalized(self, q, &at_rest(self, t, positions, q));
             for j in self.description().prescribed() {
-                forces[j] +=
-                    multipliers.iter().zip(jacobian.chunks_exact(n)).map(|(share, row)| share * row[j]).sum::<f64>();
+                forces[j] += resisted[j];
             }
         }
         self.description().drives.iter().map(|drive| forces[drive.coordinate]).collect()
@@ -82,7 +79,7 @@ impl dyn DynCrane + '_ {
 
     /// What the equations of the loop joints transmit so that the crane has given accelerations; empty without loops.
     fn loop_forces_required(&self, t: f64, motion: [&[f64]; 3]) -> Vec<f64> {
-        if self.loop_joints().is_empty() { Vec::new() } else { required(self, t, motion, &[]) }
+        if self.loop_joints().is_empty() { Vec::new() } else { required(self, t, motion) }
     }
 
     /// With cylinders that push with given forces, N, and loop joints that transmit given forces and moments; both are empty if there are
@@ -109,17 +106,13 @@ impl dyn DynCrane + '_ {
     fn pushes_required(&self, t: f64, [q, v, a]: [&[f64]; 3], multipliers: &[f64]) -> Vec<f64> {
         let Description { drives, cylinders, .. } = self.description();
         let inertia = self.mass_matrix_at(q) * DVector::from_column_slice(a);
-        let (bias, mut forces) = (self.bias_at(q, v), self.numbers(|out| self.forces(t, q, v, out)));
-        let mut rows = vec![0.0; multipliers.len() * q.len()];
-        self.loop_jacobians(q, &mut rows);
-        for (share, row) in multipliers.iter().zip(rows.chunks_exact(q.len())) {
-            forces.iter_mut().zip(row).for_each(|(force, entry)| *force -= share * entry);
-        }
+        let (bias, forces) = (self.bias_at(q, v), self.numbers(|out| self.forces(t, q, v, out)));
+        let resisted = generalized(self, q, multipliers);
         let mut states = vec![Vector3::zeros(); cylinders.len()];
         self.cylinder_states(q, v, &mut states);
         let push = |(cylinder, state): (&CylinderInfo, &Vector3<f64>)| {
             let j = drives[cylinder.drive].coordinate;
-            if cylinder.valve.is_some() { (inertia[j] - bias[j] - forces[j]) / state.z } else { 0.0 }
+            if cylinder.valve.is_some() { (inertia[j] - bias[j] - forces[j] + resisted[j]) / state.z } else { 0.0 }
         };
         cylinders.iter().zip(&states).map(push).collect()
     }

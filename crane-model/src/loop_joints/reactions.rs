@@ -2,7 +2,7 @@
 
 use super::{Loops, OPEN, Open, cholesky, dot, solve_cholesky};
 use crate::{
-    CoordinateRole, Wrench,
+    CoordinateRole, Description, Wrench,
     description::{LoopEquationInfo, LoopJointInfo},
     dyn_crane::{DynDynamics, DynInternalForces, DynModel, DynStatics},
     wrench,
@@ -108,22 +108,23 @@ pub fn cautions(crane: &(impl DynModel + ?Sized), q: &[f64]) -> Vec<String> {
     near.into_iter().chain(unknown).collect()
 }
 
-/// λ that the accelerations of a motion require, with other generalized forces `added` to those of generated code:
+/// λ that the accelerations of a motion require:
 ///
 /// ```text
-/// Jᵀ λ = e + f − A a
+/// Jᵀ λ = e + f + Cᵀ p − A a
 /// ```
 ///
 /// in the rows of the coordinates without drives if these determine λ, since the efforts of drives that hold the crane elsewhere are not
-/// known here, otherwise in all that are not prescribed.
-pub(crate) fn required(crane: &(impl DynDynamics + ?Sized), t: f64, [q, v, a]: [&[f64]; 3], added: &[f64]) -> Vec<f64> {
+/// known here, otherwise in all that are not prescribed. The pushes p of cylinders with a valve are unknown, too: each follows from the row
+/// of its joint.
+pub(crate) fn required(crane: &(impl DynDynamics + ?Sized), t: f64, [q, v, a]: [&[f64]; 3]) -> Vec<f64> {
     let n = q.len();
     let (mut mass, mut rest, mut forces) = (vec![0.0; n * n], vec![0.0; n], vec![0.0; n]);
     crane.mass_matrix(q, &mut mass);
     crane.bias(q, v, &mut rest);
     crane.forces(t, q, v, &mut forces);
     for (i, (rest, force)) in rest.iter_mut().zip(&forces).enumerate() {
-        *rest += force + added.get(i).copied().unwrap_or(0.0) - dot(&mass[i * n..][..n], a);
+        *rest += force - dot(&mass[i * n..][..n], a);
     }
     let roles: Vec<CoordinateRole> = crane.description().coordinates.iter().map(|info| info.role).collect();
     let free = |i: usize| roles[i] != CoordinateRole::Prescribed;
@@ -136,13 +137,52 @@ pub(crate) fn required(crane: &(impl DynDynamics + ?Sized), t: f64, [q, v, a]: [
     let mut without_drives = Loops::new(crane);
     without_drives.prescribed = counts(&undriven);
     without_drives.evaluate(crane, q, v);
-    without_drives.choose();
+    for system in [&mut without_drives, &mut loops] {
+        take_out_pushes(crane, q, &mut system.jacobian, &mut rest);
+        system.choose();
+    }
     if without_drives.independent().len() == all {
         balanced(&mut without_drives, &rest)
     } else {
         loops.prescribed = counts(&free);
+        loops.choose();
         balanced(&mut loops, &rest)
     }
+}
+
+/// Takes the unknown pushes of cylinders with a valve out of `Jᵀ λ = r + Cᵀ p`. With j the joint that a cylinder moves and C its row, the push is
+/// `((Jᵀ λ)_j − r_j)/C_j`, and there remains
+///
+/// ```text
+/// (J − J_j C/C_j)ᵀ λ = r − r_j C/C_j
+/// ```
+fn take_out_pushes(crane: &(impl DynModel + ?Sized), q: &[f64], jacobian: &mut [f64], r: &mut [f64]) {
+    let Description { drives, cylinders, .. } = crane.description();
+    if !crane.description().has_valves() {
+        return;
+    }
+    let n = q.len();
+    let mut rows = vec![0.0; cylinders.len() * n];
+    crane.cylinder_jacobians(q, &mut rows);
+    for (cylinder, row) in cylinders.iter().zip(rows.chunks_exact(n)).filter(|(cylinder, _)| cylinder.valve.is_some()) {
+        let joint = drives[cylinder.drive].coordinate;
+        for numbers in jacobian.chunks_exact_mut(n).chain([&mut *r]) {
+            let share = numbers[joint] / row[joint];
+            numbers.iter_mut().zip(row).for_each(|(number, entry)| *number -= share * entry);
+            numbers[joint] = 0.0;
+        }
+    }
+}
+
+/// `Jᵀ λ`: the generalized forces that loop joints resist with.
+pub(crate) fn generalized(crane: &(impl DynModel + ?Sized), q: &[f64], multipliers: &[f64]) -> Vec<f64> {
+    let mut rows = vec![0.0; multipliers.len() * q.len()];
+    crane.loop_jacobians(q, &mut rows);
+    let mut sum = vec![0.0; q.len()];
+    for (share, row) in multipliers.iter().zip(rows.chunks_exact(q.len())) {
+        sum.iter_mut().zip(row).for_each(|(sum, entry)| *sum += share * entry);
+    }
+    sum
 }
 
 /// λ of a crane at rest, with loads and winches as at time `t` and the drives at given positions, by coordinate: `Jᵀ λ = −∂E_p/∂q`.

@@ -97,7 +97,7 @@ impl SmallMotions {
             return self;
         }
         let rest = vec![0.0; q.len()];
-        let multipliers = required(crane, 0.0, [q, &rest, &rest], &[]);
+        let multipliers = required(crane, 0.0, [q, &rest, &rest]);
         let geometric = geometric_stiffness(crane, q, &multipliers);
         let coordinates = &crane.description().coordinates;
         let preferred = |j: usize| if coordinates[j].role == CoordinateRole::Passive { 1.0 } else { DRIVEN };
