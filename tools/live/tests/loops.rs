@@ -464,3 +464,86 @@ fn a_loop_that_cannot_close_says_so() {
     let stopped = run.expect_err("an open loop").to_string();
     assert!(stopped.contains("hinge along x is open by 100.0"), "{stopped}");
 }
+
+/// Rocker and link of a cylinder as bars of a loop, light compared with the jib, against the linkage in closed form: the pin of the jib on the boom
+/// closes the loop, and a stiff spring takes the place of the cylinder.
+#[test]
+fn light_bars_are_the_linkage_of_a_cylinder() {
+    const FOOT: [f64; 2] = [-1.6, 0.3];
+    const PIVOT: [f64; 2] = [-0.3, 0.02];
+    const HEAD: [f64; 2] = [0.3, -0.1];
+    let (rocker, link, angle) = (0.46, 0.6, -0.2);
+    let jib = |com: [f64; 2]| {
+        format!("mass: 900, com: [{}, {}, 0], inertia: {{about: com, Ixx: 30, Iyy: 300, Izz: 300}}", com[0], com[1])
+    };
+    let boom =
+        "- {name: boom, placement: {transform: {rotation: {x: 90 deg}}}, joint: fixed, mass: 10, com: [0, 0, 0]}\n";
+    let closed = crane(&format!(
+        "format: 1\nname: closed\nlinks:\n{boom}- {{name: jib, joint: revolute, {}}}\n\
+         drives: [{{coordinate: jib_psi, rigid: true, motion: {{hold: {angle}}}}}]\n\
+         cylinders:\n- {{name: knuckle, coordinate: jib_psi, foot: {{link: boom, at: [{}, {}, 0]}}, head: {{link: jib, at: [{}, {}, 0]}}, \
+         linkage: {{pivot: [{}, {}, 0], rocker: {rocker}, link: {link}, side: left}}, bore: 0.1, rod: 0.06, retracted: 1, stroke: 1}}\n",
+        jib([3.0, 0.0]),
+        FOOT[0],
+        FOOT[1],
+        HEAD[0],
+        HEAD[1],
+        PIVOT[0],
+        PIVOT[1],
+    ));
+    let closed: &dyn DynCrane = &closed;
+    let mut states = [Vector3::zeros()];
+    closed.cylinder_states(&[angle], &[1.0], &mut states);
+    let torque = closed.drive_efforts_at_rest(&[angle])[0];
+    let (length, arm) = (states[0].x, states[0].z);
+    // The rod's pin B, on the left of the way from the pivot to the head.
+    let (sin, cos) = angle.sin_cos();
+    let head = [cos * HEAD[0] - sin * HEAD[1], sin * HEAD[0] + cos * HEAD[1]];
+    let way = [head[0] - PIVOT[0], head[1] - PIVOT[1]];
+    let distance = way[0].hypot(way[1]);
+    let along = (distance * distance + rocker * rocker - link * link) / (2.0 * distance);
+    let aside = (rocker * rocker - along * along).sqrt();
+    let pin = [(along * way[0] - aside * way[1]) / distance, (along * way[1] + aside * way[0]) / distance];
+    let to_head = [way[0] - pin[0], way[1] - pin[1]];
+    let (of_rocker, of_link) = (pin[1].atan2(pin[0]), to_head[1].atan2(to_head[0]));
+    let force_at = |mass: f64| {
+        let stiffness = 1e9;
+        let loops = crane(&format!(
+            "format: 1\nname: loops\nlinks:\n{boom}{}{}\
+             - {{name: jib, placement: {{transform: {{translation: [{link}, 0, 0]}}}}, joint: revolute, {}}}\n\
+             loop_joints: [{{name: hinge, from: {{link: boom, at: [0, 0, 0]}}, to: {{link: jib, at: [{}, {}, 0]}}, joint: {{pin: {{axis: [0, 0, 1]}}}}}}]\n\
+             connectors: [{{name: cylinder, from: {{link: boom, at: [{}, {}, 0]}}, to: {{link: rocker, at: [{rocker}, 0, 0]}}, \
+             law: {{spring: {{stiffness: {stiffness}, length: {}}}}}}}]\n\
+             guess: {{rocker_psi: {of_rocker}, link_psi: {}, jib_psi: {}}}\n",
+            bar("rocker", &format!("translation: [{}, {}, 0]", PIVOT[0], PIVOT[1]), rocker, mass),
+            bar("link", &format!("translation: [{rocker}, 0, 0]"), link, mass),
+            jib([3.0 - HEAD[0], -HEAD[1]]),
+            -HEAD[0],
+            -HEAD[1],
+            FOOT[0],
+            FOOT[1],
+            length + torque / arm / stiffness,
+            of_link - of_rocker,
+            angle - of_link,
+        ));
+        let loops: &dyn DynCrane = &loops;
+        let equilibrium = loops.equilibrium(&statics::Settings::default());
+        assert!(equilibrium.is_stable(), "{equilibrium}");
+        let q = &equilibrium.q;
+        // The spring is as long as the cylinder where it carries the same force.
+        assert!((q.iter().sum::<f64>() - angle).abs() < 1e-6, "{q:?}");
+        let tension = loops.connector_tensions_at(0.0, q, &[0.0; 3])[0].force;
+        // Rates that leave the loop closed, by unit rate of the jib on the boom.
+        let motions = loops.small_motions_at(q);
+        let shape = &modes::undamped(&motions).expect("modes")[0].shape;
+        let rate = loops.connector_lengths_at(q, shape.as_slice())[0][1] / shape.sum();
+        (tension, rate)
+    };
+    let (tension, rate) = force_at(1e-6);
+    // The bars' weight is 1e-10 of the force.
+    assert!((rate / arm - 1.0).abs() < 1e-9, "{rate} {arm}");
+    assert!((-tension / (torque / arm) - 1.0).abs() < 1e-9, "{tension} {}", torque / arm);
+    // Heavier bars change the force in proportion to their mass.
+    let (one, two) = (force_at(1.0).0 - tension, force_at(2.0).0 - tension);
+    assert!((two / one - 2.0).abs() < 1e-3 && one.abs() > 1.0, "{one} {two}");
+}
