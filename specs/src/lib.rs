@@ -8,7 +8,10 @@ mod manual;
 include!(concat!(env!("OUT_DIR"), "/cranes.rs"));
 
 /// Names and specs (YAML) of commented examples, to copy and change; they are not among the shipped cranes.
-pub const EXAMPLES: &[(&str, &str)] = &[("loader_crane", include_str!("../examples/loader_crane.yaml"))];
+pub const EXAMPLES: &[(&str, &str)] = &[
+    ("loader_crane", include_str!("../examples/loader_crane.yaml")),
+    ("parallel_harvester", include_str!("../examples/parallel_harvester.yaml")),
+];
 
 /// The spec of a shipped crane (YAML), by its name.
 #[must_use]

@@ -547,3 +547,66 @@ fn light_bars_are_the_linkage_of_a_cylinder() {
     let (one, two) = (force_at(1.0).0 - tension, force_at(2.0).0 - tension);
     assert!((two / one - 2.0).abs() < 1e-3 && one.abs() > 1.0, "{one} {two}");
 }
+
+/// Potential energy of the example `parallel_harvester` at an angle of its boom and an extension of its parallel cylinder, J, and the place of its tip
+/// in the plane, m: from the triangle of the jib's pin, its lever and the cylinder's pin on the column.
+fn harvester(theta: f64, extension: f64) -> (f64, [f64; 2]) {
+    const LEVER: [f64; 2] = [-0.4, 0.06];
+    const COLUMN: [f64; 2] = [-0.23, 2.19];
+    let along = |[x, z]: [f64; 2], angle: f64, [u, w]: [f64; 2]| {
+        let (sin, cos) = angle.sin_cos();
+        [x + cos * u - sin * w, z + sin * u + cos * w]
+    };
+    let pin = [0.1, 1.6];
+    let hinge = along(pin, theta, [4.0, 0.0]);
+    let length = 3.4 + extension;
+    let way = [COLUMN[0] - hinge[0], COLUMN[1] - hinge[1]];
+    let (distance, lever) = (way[0].hypot(way[1]), LEVER[0].hypot(LEVER[1]));
+    let turn = ((distance * distance + lever * lever - length * length) / (2.0 * distance * lever)).acos();
+    let phi = way[1].atan2(way[0]) - turn - LEVER[1].atan2(LEVER[0]);
+    let end = along(hinge, phi, LEVER);
+    let of_rod = (COLUMN[1] - end[1]).atan2(COLUMN[0] - end[0]);
+    let tip = along(hinge, phi, [4.6, 0.0]);
+    let weights = [
+        (900.0, 0.8),
+        (520.0, along(pin, theta, [1.9, 0.05])[1]),
+        (380.0, along(hinge, phi, [1.9, 0.0])[1]),
+        (1200.0, tip[1]),
+        (60.0, along(end, of_rod, [0.8, 0.0])[1]),
+        (110.0, along(end, of_rod, [1.2 + extension + 1.1, 0.0])[1]),
+    ];
+    (GRAVITY * weights.iter().map(|(mass, height)| mass * height).sum::<f64>(), tip)
+}
+
+/// The example's tip moves outwards on a level, its loop is the triangle above, and its drives hold the weight by virtual work.
+#[test]
+fn the_parallel_harvester_moves_its_tip_on_a_level() {
+    const STEP: f64 = 1e-4;
+    let (_, text) = crane_specs::EXAMPLES.iter().find(|(name, _)| *name == "parallel_harvester").expect("the example");
+    let harvester_crane = crane(text);
+    let harvester_crane: &dyn DynCrane = &harvester_crane;
+    let mut tips = Vec::new();
+    let mut q = harvester_crane.guess();
+    for angle in [70.0, 60.0, 50.0, 40.0, 32.0] {
+        let drives = [0.3, f64::to_radians(angle), 0.41];
+        let rest = harvester_crane.equilibrium_holding(&drives, &q, &statics::Settings::default());
+        assert!(rest.is_stable(), "{rest}");
+        q.clone_from(&rest.q);
+        let (theta, extension) = (q[1], q[4]);
+        let (_, tip) = harvester(theta, extension);
+        let found = harvester_crane.points_at(&q)[0];
+        assert!((found.xy().norm() - tip[0]).abs() < 1e-10 && (found.z - tip[1]).abs() < 1e-10, "{found} {tip:?}");
+        let slope = |dt: f64, ds: f64| {
+            let [before, after] = [-STEP, STEP].map(|step| harvester(theta + step * dt, extension + step * ds).0);
+            (after - before) / (2.0 * STEP)
+        };
+        let efforts = harvester_crane.drive_efforts_holding(0.0, &drives, &q);
+        // Differences of energies of 1e5 J, whose third derivatives are of the same size.
+        assert!((efforts[1] - slope(1.0, 0.0)).abs() < 0.01, "{efforts:?} {}", slope(1.0, 0.0));
+        assert!((efforts[2] - slope(0.0, 1.0)).abs() < 0.01, "{efforts:?} {}", slope(0.0, 1.0));
+        tips.push(tip);
+    }
+    let heights = tips.iter().map(|tip| tip[1]);
+    let range = heights.clone().fold(f64::MIN, f64::max) - heights.fold(f64::MAX, f64::min);
+    assert!(range < 0.15 && tips[4][0] - tips[0][0] > 3.1, "{tips:?}");
+}
