@@ -44,6 +44,11 @@ impl Independence {
         }
     }
 
+    /// For a choice from the beginning.
+    pub fn begin_again(&self) -> Self {
+        Self::new(self.groups.clone())
+    }
+
     /// Number of equations.
     pub fn len(&self) -> usize {
         self.lengths.len()

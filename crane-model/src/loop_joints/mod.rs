@@ -19,13 +19,18 @@
 //! Equations that depend on others (`independence`) are left out: what they would transmit cannot be determined.
 
 mod curvature;
+mod drives;
 mod independence;
 mod quantities;
 mod reactions;
+mod required;
 
 pub(crate) use curvature::{closed_motions, geometric_stiffness};
-pub use reactions::{DEAD_CENTRE, Gap, cautions, gap_at, undetermined};
-pub(crate) use reactions::{add_to_wrenches, at_rest, generalized, on_rigid_drives, required};
+pub use drives::DEAD_CENTRE;
+pub(crate) use drives::prescribed_too_much;
+pub use reactions::{Gap, cautions, gap_at, undetermined};
+pub(crate) use reactions::{add_to_wrenches, on_rigid_drives};
+pub(crate) use required::{at_rest, generalized, required};
 
 use nalgebra::Vector3;
 
@@ -154,6 +159,13 @@ impl Loops {
     pub fn choose(&mut self) {
         let Self { independence, jacobian, n, prescribed, .. } = self;
         independence.choose(jacobian, *n, prescribed);
+    }
+
+    /// Number of equations that are independent while some coordinates rest, and how far they are from depending on each other.
+    fn independent_without(&self, held: &[usize]) -> (usize, f64) {
+        let mut independence = self.independence.begin_again();
+        independence.choose(&self.jacobian, self.n, held);
+        (independence.kept().len(), independence.least())
     }
 
     /// Prepares solutions at the state evaluated; `solve` solves the system of the open chain.

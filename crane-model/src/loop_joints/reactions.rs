@@ -1,15 +1,15 @@
 //! What loop joints transmit, and what to say about them at a pose.
 
-use super::{Loops, OPEN, Open, cholesky, dot, solve_cholesky};
+use super::{
+    Loops, OPEN, Open, dot,
+    drives::{DEAD_CENTRE, dead_centre_of_drives, fighting_valves, prescribed_too_much},
+};
 use crate::{
-    CoordinateRole, Description, Wrench,
+    Wrench,
     description::{LoopEquationInfo, LoopJointInfo},
-    dyn_crane::{DynDynamics, DynInternalForces, DynModel, DynStatics},
+    dyn_crane::{DynDynamics, DynInternalForces, DynModel},
     wrench,
 };
-
-/// Sine of the angle to a dead centre below which there is a caution: 2°.
-pub const DEAD_CENTRE: f64 = 0.035;
 
 /// A loop that is open at a pose.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,7 +88,7 @@ pub fn cautions(crane: &(impl DynModel + ?Sized), q: &[f64]) -> Vec<String> {
         return Vec::new();
     }
     let undetermined = undetermined(crane, q);
-    let unknown = (!undetermined.is_empty()).then(|| {
+    let unknown = (!undetermined.is_empty() && prescribed_too_much(crane, q).is_empty()).then(|| {
         format!(
             "reactions of {} cannot be determined: other joints hold the same; they are shown as 0",
             undetermined.join(", ")
@@ -96,132 +96,29 @@ pub fn cautions(crane: &(impl DynModel + ?Sized), q: &[f64]) -> Vec<String> {
     });
     loops.evaluate(crane, q, &vec![0.0; q.len()]);
     loops.choose();
+    let last = loops.independent().last().copied().unwrap_or(0);
+    let name = &equation_of(crane.loop_joints(), last).0.name;
     let distance = loops.distance_to_dead_centre();
     let near = (distance < DEAD_CENTRE).then(|| {
-        let last = loops.independent().last().copied().unwrap_or(0);
         format!(
-            "the loop of {} is {:.2}° from a dead centre: its forces are large and its motion beyond is not determined",
-            equation_of(crane.loop_joints(), last).0.name,
+            "the loop of {name} is {:.2}° from a dead centre: its forces are large and its motion beyond is not determined",
             distance.asin().to_degrees()
         )
     });
-    near.into_iter().chain(unknown).collect()
-}
-
-/// λ that the accelerations of a motion require:
-///
-/// ```text
-/// Jᵀ λ = e + f + Cᵀ p − A a
-/// ```
-///
-/// in the rows of the coordinates without drives if these determine λ, since the efforts of drives that hold the crane elsewhere are not
-/// known here, otherwise in all that are not prescribed. The pushes p of cylinders with a valve are unknown, too: each follows from the row
-/// of its joint.
-pub(crate) fn required(crane: &(impl DynDynamics + ?Sized), t: f64, [q, v, a]: [&[f64]; 3]) -> Vec<f64> {
-    let n = q.len();
-    let (mut mass, mut rest, mut forces) = (vec![0.0; n * n], vec![0.0; n], vec![0.0; n]);
-    crane.mass_matrix(q, &mut mass);
-    crane.bias(q, v, &mut rest);
-    crane.forces(t, q, v, &mut forces);
-    for (i, (rest, force)) in rest.iter_mut().zip(&forces).enumerate() {
-        *rest += force - dot(&mass[i * n..][..n], a);
-    }
-    let roles: Vec<CoordinateRole> = crane.description().coordinates.iter().map(|info| info.role).collect();
-    let free = |i: usize| roles[i] != CoordinateRole::Prescribed;
-    let undriven = |i: usize| free(i) && roles[i] != CoordinateRole::Driven;
-    let mut loops = Loops::new(crane);
-    loops.evaluate(crane, q, v);
-    loops.choose();
-    let all = loops.independent().len();
-    let counts = |counts: &dyn Fn(usize) -> bool| (0..n).filter(|&i| !counts(i)).collect::<Vec<_>>();
-    let mut without_drives = Loops::new(crane);
-    without_drives.prescribed = counts(&undriven);
-    without_drives.evaluate(crane, q, v);
-    for system in [&mut without_drives, &mut loops] {
-        take_out_pushes(crane, q, &mut system.jacobian, &mut rest);
-        system.choose();
-    }
-    if without_drives.independent().len() == all {
-        balanced(&mut without_drives, &rest)
-    } else {
-        loops.prescribed = counts(&free);
-        loops.choose();
-        balanced(&mut loops, &rest)
-    }
-}
-
-/// Takes the unknown pushes of cylinders with a valve out of `Jᵀ λ = r + Cᵀ p`. With j the joint that a cylinder moves and C its row, the push is
-/// `((Jᵀ λ)_j − r_j)/C_j`, and there remains
-///
-/// ```text
-/// (J − J_j C/C_j)ᵀ λ = r − r_j C/C_j
-/// ```
-fn take_out_pushes(crane: &(impl DynModel + ?Sized), q: &[f64], jacobian: &mut [f64], r: &mut [f64]) {
-    let Description { drives, cylinders, .. } = crane.description();
-    if !crane.description().has_valves() {
-        return;
-    }
-    let n = q.len();
-    let mut rows = vec![0.0; cylinders.len() * n];
-    crane.cylinder_jacobians(q, &mut rows);
-    for (cylinder, row) in cylinders.iter().zip(rows.chunks_exact(n)).filter(|(cylinder, _)| cylinder.valve.is_some()) {
-        let joint = drives[cylinder.drive].coordinate;
-        for numbers in jacobian.chunks_exact_mut(n).chain([&mut *r]) {
-            let share = numbers[joint] / row[joint];
-            numbers.iter_mut().zip(row).for_each(|(number, entry)| *number -= share * entry);
-            numbers[joint] = 0.0;
-        }
-    }
-}
-
-/// `Jᵀ λ`: the generalized forces that loop joints resist with.
-pub(crate) fn generalized(crane: &(impl DynModel + ?Sized), q: &[f64], multipliers: &[f64]) -> Vec<f64> {
-    let mut rows = vec![0.0; multipliers.len() * q.len()];
-    crane.loop_jacobians(q, &mut rows);
-    let mut sum = vec![0.0; q.len()];
-    for (share, row) in multipliers.iter().zip(rows.chunks_exact(q.len())) {
-        sum.iter_mut().zip(row).for_each(|(sum, entry)| *sum += share * entry);
-    }
-    sum
-}
-
-/// λ of a crane at rest, with loads and winches as at time `t` and the drives at given positions, by coordinate: `Jᵀ λ = −∂E_p/∂q`.
-pub(crate) fn at_rest(crane: &(impl DynStatics + ?Sized), t: f64, positions: &[f64], q: &[f64]) -> Vec<f64> {
-    let mut residual = vec![0.0; q.len()];
-    crane.static_residual(t, q, positions, &mut residual);
-    for entry in &mut residual {
-        *entry = -*entry;
-    }
-    let mut loops = Loops::new(crane);
-    loops.evaluate(crane, q, &vec![0.0; q.len()]);
-    loops.choose();
-    balanced(&mut loops, &residual)
-}
-
-/// λ with `Jᵀ λ = r` in the coordinates that are not `prescribed`, by least squares of the independent equations.
-fn balanced(loops: &mut Loops, r: &[f64]) -> Vec<f64> {
-    let free: Vec<f64> = (0..r.len()).map(|i| f64::from(u8::from(!loops.prescribed.contains(&i)))).collect();
-    let kept = loops.independent().to_vec();
-    let (n, size) = (loops.n, kept.len());
-    let row = |row: usize| -> Vec<f64> {
-        loops.jacobian()[row * n..][..n].iter().zip(&free).map(|(entry, free)| entry * free).collect()
-    };
-    let rows: Vec<Vec<f64>> = kept.iter().map(|&equation| row(equation)).collect();
-    let lengths: Vec<f64> = rows.iter().map(|row| dot(row, row).sqrt()).collect();
-    let mut gram = vec![0.0; size * size];
-    for i in 0..size {
-        for j in 0..=i {
-            gram[i * size + j] = dot(&rows[i], &rows[j]) / (lengths[i] * lengths[j]);
-        }
-    }
-    cholesky(&mut gram, size);
-    let mut shares: Vec<f64> = rows.iter().zip(&lengths).map(|(row, length)| dot(row, r) / length).collect();
-    solve_cholesky(&gram, size, &mut shares);
-    let mut multipliers = vec![0.0; loops.states.len()];
-    for ((&equation, share), length) in kept.iter().zip(shares).zip(lengths) {
-        multipliers[equation] = share / length;
-    }
-    multipliers
+    let loose = dead_centre_of_drives(crane, &loops).filter(|_| near.is_none()).map(|angle| {
+        format!(
+            "the loop of {name} is {:.2}° from a dead centre of its drives: they hardly hold it, and which way it moves on is not determined",
+            angle.to_degrees()
+        )
+    });
+    let fighting = fighting_valves(crane, q, &loops).map(|cylinders| {
+        format!(
+            "{} hold one loop together and can push against each other: how they share its load depends on the oil trapped in them; a run begins \
+             with the smallest forces in the loop",
+            cylinders.join(" and ")
+        )
+    });
+    near.into_iter().chain(loose).chain(fighting).chain(unknown).collect()
 }
 
 /// Adds what loop joints transmit at every cut; only those that hold to the world if `to_world`.

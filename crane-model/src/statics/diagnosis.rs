@@ -7,7 +7,7 @@ use crate::{
     CoordinateKind, CoordinateRole, Text,
     dyn_crane::DynCrane,
     hydraulics::unassembled_at,
-    loop_joints::{Gap, gap_at},
+    loop_joints::{Gap, gap_at, prescribed_too_much},
     tipping::{LinkMoment, TippingLine, lines, moments},
 };
 
@@ -28,6 +28,8 @@ pub enum Diagnosis {
     OpenLoop {
         /// The joint that is open, where the search ended.
         gap: Gap,
+        /// Coordinates in loops that rigid drives prescribe, if they prescribe more than the loops leave free.
+        prescribed: Vec<String>,
     },
     /// Drives are at the limits of their efforts.
     Overloaded {
@@ -72,7 +74,7 @@ impl Diagnosis {
             return Self::Unassembled { cylinder };
         }
         if let Some(gap) = gap_at(crane, &equilibrium.q) {
-            return Self::OpenLoop { gap };
+            return Self::OpenLoop { gap, prescribed: prescribed_too_much(crane, &equilibrium.q) };
         }
         let coordinates = overloaded(crane, &equilibrium.q);
         if !coordinates.is_empty() {
@@ -99,6 +101,10 @@ impl Diagnosis {
             Self::Unassembled { .. } => {
                 "lengthen its `rocker` or `link`, check the positions of its pins, or start from a pose where they reach each other".to_owned()
             }
+            Self::OpenLoop { prescribed, .. } if !prescribed.is_empty() => format!(
+                "rigid drives prescribe {}, of which the loop determines a part: give one of these drives a `stiffness`, or leave its joint passive",
+                prescribed.join(" and ")
+            ),
             Self::OpenLoop { .. } => {
                 "check the points, axes and lengths of the loop's joints, and write a `guess:` near a pose in which they meet".to_owned()
             }
@@ -193,7 +199,7 @@ impl fmt::Display for Diagnosis {
                     "; the linkage of {cylinder} cannot be assembled at the guess: its rocker and link do not reach each other"
                 )
             }
-            Self::OpenLoop { gap } => write!(f, "; a loop cannot be closed from the guess: {gap}"),
+            Self::OpenLoop { gap, .. } => write!(f, "; a loop cannot be closed from the guess: {gap}"),
             Self::Overloaded { coordinates } => match coordinates.as_slice() {
                 [one] => write!(f, "; the drive of {one} is at its limit"),
                 several => write!(f, "; the drives of {} are at their limits", several.join(", ")),

@@ -55,9 +55,9 @@ impl Report {
         self.values.insert(key.to_owned(), value.into());
     }
 
-    /// Adds a warning, if there is one.
+    /// Adds a warning, if there is one that is not there yet: what holds at rest often holds during a run, too.
     pub fn caution(&mut self, words: Option<impl Into<String>>) {
-        self.cautions.extend(words.map(Into::into));
+        self.cautions.extend(words.map(Into::into).filter(|words| !self.cautions.contains(words)));
     }
 
     /// Whether there are warnings.
