@@ -28,6 +28,8 @@ impl Gap {
     /// Of an equation of a crane.
     pub(crate) fn of(crane: &(impl DynModel + ?Sized), Open { equation, gap }: Open) -> Self {
         let (joint, info) = equation_of(crane.loop_joints(), equation);
+        // That of an axis is a sine.
+        let gap = if info.is_moment && gap <= 1.0 { gap.asin() } else { gap };
         Self { joint: joint.name.to_string(), direction: info.direction.to_string(), gap, unit: info.unit() }
     }
 }
@@ -88,7 +90,8 @@ pub fn cautions(crane: &(impl DynModel + ?Sized), q: &[f64]) -> Vec<String> {
         return Vec::new();
     }
     let undetermined = undetermined(crane, q);
-    let unknown = (!undetermined.is_empty() && prescribed_too_much(crane, q).is_empty()).then(|| {
+    let is_closed = gap_at(crane, q).is_none();
+    let unknown = (is_closed && !undetermined.is_empty() && prescribed_too_much(crane, q).is_empty()).then(|| {
         format!(
             "reactions of {} cannot be determined: other joints hold the same; they are shown as 0",
             undetermined.join(", ")

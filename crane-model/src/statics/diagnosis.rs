@@ -105,6 +105,11 @@ impl Diagnosis {
                 "rigid drives prescribe {}, of which the loop determines a part: give one of these drives a `stiffness`, or leave its joint passive",
                 prescribed.join(" and ")
             ),
+            Self::OpenLoop { gap, .. } if gap.unit == "rad" => format!(
+                "write `to_axis`, the axis of {} in the frame of its link `to`, which may be turned against that of `from`, or a `guess:` near a pose \
+                 in which both point the same way",
+                gap.joint
+            ),
             Self::OpenLoop { .. } => {
                 "check the points, axes and lengths of the loop's joints, and write a `guess:` near a pose in which they meet".to_owned()
             }

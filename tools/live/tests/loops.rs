@@ -443,6 +443,29 @@ fn a_rod_is_the_limit_of_stiff_springs() {
     assert!(differences[2] < 3.0 * differences[0] * 1e-6 + 1e-12, "{differences:?}");
 }
 
+fn diagnosis_advice(crane: &dyn DynCrane, equilibrium: &statics::Equilibrium) -> String {
+    statics::Diagnosis::of(crane, equilibrium).advice()
+}
+
+/// An axis that is written in one frame only is 90° off in the other, which is turned: about two directions, whose sines are one together.
+#[test]
+fn axes_that_differ_are_named_with_their_angle() {
+    let turned = four_bar(0.8, "{pin: {axis: [0, 1, 0]}}", "");
+    let turned: &dyn DynCrane = &turned;
+    let equilibrium = turned.equilibrium(&statics::Settings::default());
+    let diagnosis = statics::Diagnosis::of(turned, &equilibrium);
+    let mut states = vec![Vector3::zeros(); turned.loop_equations()];
+    turned.loop_states(&equilibrium.q, &[0.0; 3], &mut states);
+    let sines = [states[3].x, states[4].x];
+    assert!((sines[0].hypot(sines[1]) - 1.0).abs() < 1e-9, "{sines:?}");
+    let angle = sines[0].abs().max(sines[1].abs()).asin().to_degrees();
+    assert!(
+        diagnosis.to_string().contains(&format!("the axes of joint hinge differ by {angle:.3}° about")),
+        "{diagnosis}"
+    );
+    assert!(diagnosis.advice().starts_with("write `to_axis`, the axis of hinge"), "{}", diagnosis.advice());
+}
+
 /// A loop that cannot be closed says which joint is open, and by how much: the bars are too short by 0.1 m.
 #[test]
 fn a_loop_that_cannot_close_says_so() {
@@ -458,6 +481,8 @@ fn a_loop_that_cannot_close_says_so() {
     assert!(!equilibrium.is_stable());
     let diagnosis = statics::Diagnosis::of(short, &equilibrium).to_string();
     assert!(diagnosis.contains("joint hinge is open by 100.0"), "{diagnosis}");
+    assert!(diagnosis_advice(short, &equilibrium).contains("write a `guess:`"));
+    assert!(loop_joints::cautions(short, &equilibrium.q).iter().all(|caution| !caution.contains("reactions")));
     let run = short.simulate(&InitialState::at_rest(short.guess()), &Settings::of(short.description()), &mut |_| {
         ControlFlow::Continue(())
     });
