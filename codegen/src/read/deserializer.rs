@@ -235,6 +235,12 @@ impl<'de> Deserializer<'de> for Reader<'de> {
                 let span = choices.get(1).map_or(self.span, |(span, ..)| *span);
                 Err(self.report(rule::not_one_choice(span, self.subject, choices.len(), list(variants))))
             }
+            Content::Sequence(_) if self.subject.key() == "loops" => {
+                let choices = list(variants);
+                Err(Unread::Expected(format!(
+                    "one of {choices} for generated code; joints that close loops belong under `loop_joints:`"
+                )))
+            }
             _ => Err(Unread::Expected(format!("one of {}", list(variants)))),
         }
     }
