@@ -19,10 +19,13 @@ pub fn explain(chain: &Chain, report: Option<&Report>) -> String {
 
 fn bodies(chain: &Chain) -> String {
     let defaults = chain.parameter_defaults();
-    let mut text = format!("{:<20} {:>12} {:>6}  {}\n", "body", "mass [kg]", "n_dof", "path from the previous body");
+    let heading = if chain.has_branches() { "path from the body it is on" } else { "path from the previous body" };
+    let mut text = format!("{:<20} {:>12} {:>6}  {heading}\n", "body", "mass [kg]", "n_dof");
     for (p, body) in chain.bodies.iter().enumerate() {
         let mass = body.inertia.as_ref().map_or(0.0, |inertia| inertia.mass.at(&defaults));
-        let path: Vec<String> = body.path.iter().map(|step| describe(chain, step, &defaults)).collect();
+        let carrier = body.parent.filter(|_| chain.has_branches()).map(|BodyId(parent)| &chain.bodies[parent].name);
+        let steps = body.path.iter().map(|step| describe(chain, step, &defaults));
+        let path: Vec<String> = carrier.map(|name| format!("{name}:")).into_iter().chain(steps).collect();
         let degrees = chain.degrees_of_freedom(BodyId(p));
         let _ = writeln!(text, "{:<20} {mass:>12.3} {degrees:>6}  {}", body.name, path.join(" "));
         for part in body.parts.iter().filter(|part| part.name != body.link) {

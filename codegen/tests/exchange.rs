@@ -82,6 +82,16 @@ fn a_crane_comes_back_from_urdf() {
     }
 }
 
+/// A robot with two fingers on one arm.
+#[test]
+fn branches_of_a_robot_are_those_of_the_crane() {
+    let spec = spec("branches.urdf", include_str!("robots/branches.urdf"));
+    assert!(spec.contains("    on: upper\n"), "{spec}");
+    let crane = chain(&SourceFile::new("arm", spec));
+    let carriers: Vec<_> = crane.bodies.iter().map(|body| body.parent.map(|parent| parent.0)).collect();
+    assert_eq!(carriers, [None, Some(0), Some(0)]);
+}
+
 #[test]
 fn friction_of_a_robots_joint_is_that_of_the_crane() {
     let urdf = "<robot name='arm'><link name='base'/>\

@@ -159,6 +159,41 @@ fn a_load_is_carried_from_where_it_acts() {
     assert_close("ground", wrenches[0], [[0.0, 100.0, 0.0], [0.0, 0.0, 120.0]]);
 }
 
+/// Links on a beam are carried by the sections before the place that they are attached to: one at a place between the ends, one at the
+/// beginning, and two at the tip, of which each is carried by all of the beam.
+#[test]
+fn branches_are_carried_from_where_they_begin() {
+    const G: f64 = 9.81;
+    let side = "{name: side, on: {link: beam, at: [1.2, 0, 0]}, joint: revolute, mass: 25, com: [0.3, 0, 0]}";
+    let other = "{name: other, on: {link: beam, at: start}, mass: 70, com: [0, 0.1, 0]}";
+    let second = "{name: second, on: beam, mass: 15, com: [0.2, 0, 0]}";
+    let links = |links: &[&str]| links.iter().map(|link| format!("  - {link}\n")).collect::<String>();
+    for order in [[side, other, second], [second, side, other]] {
+        let chain = loaded_beam("fixed", "[0, 0, -9.81]", "symmetric", &links(&order));
+        let rest = vec![0.0; chain.coordinates.len()];
+        let wrenches = wrenches(&chain, &rest, &rest, &rest);
+        let sections = sections(&chain, &wrenches);
+        let at = |place: f64| sections.iter().filter(|(x, ..)| *x == place).map(|(_, side, _)| *side).collect::<Vec<_>>();
+        assert_eq!(at(1.2), [Side::Before, Side::After]);
+        assert_eq!(at(0.0), [Side::Before, Side::After]);
+        for (x, side, wrench) in &sections {
+            let beyond = LENGTH - x;
+            let line = DENSITY * AREA * G;
+            let mut weight = line * beyond + (LOAD + 15.0) * G;
+            let mut moment = [0.0, line * beyond * beyond / 2.0 + LOAD * G * beyond + 15.0 * G * (beyond + 0.2), 0.0];
+            if *x < 1.2 || (*x == 1.2 && *side == Side::Before) {
+                weight += 25.0 * G;
+                moment[1] += 25.0 * G * (1.2 + 0.3 - x);
+            }
+            if *x == 0.0 && *side == Side::Before {
+                weight += 70.0 * G;
+                moment[0] -= 70.0 * G * 0.1;
+            }
+            assert_close(&format!("x = {x}, {side:?}"), *wrench, [[0.0, 0.0, -weight], moment]);
+        }
+    }
+}
+
 /// `N = ∫ ρAω² x dx + m ω² l`; and with an angular acceleration α, `Qy = −α (∫ ρA x dx + m l)` and
 /// `Mz = −α (∫ ρA x (x − x₀) dx + m l (l − x₀) + ρ J_z (l − x₀))`, the last term due to the rotary inertia of the sections.
 #[test]

@@ -65,7 +65,7 @@ pub mod tipping;
 
 pub use description::{
     AttachmentInfo, BodyInfo, Bound, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole,
-    CylinderInfo, Description, DriveInfo, InputInfo, LARGE_TILT, List, LoadInfo, LoopEquationInfo, LoopJointInfo,
+    CylinderInfo, Description, DriveInfo, HoldInfo, InputInfo, LARGE_TILT, List, LoadInfo, LoopEquationInfo, LoopJointInfo,
     NEAR_SINGULAR, ParameterError, ParameterInfo, PumpInfo, Refusal, SectionInfo, Side, SupportInfo, TIPPED, Text,
     ValveInfo,
 };
@@ -76,6 +76,8 @@ pub use model::{
 /// The linear algebra of every signature, so that generated code needs only this crate.
 pub use nalgebra;
 pub use stress::SectionModuli;
+#[cfg(feature = "std")]
+pub use description::Tree;
 #[cfg(feature = "std")]
 pub use stress::Stress;
 pub use wrench::{Cut, Tension, Wrench};

@@ -21,6 +21,12 @@ pub trait CraneModel<const N: usize>: Send + Sync {
     /// Names, units and settings.
     fn description(&self) -> &Description;
 
+    /// What the bodies of a crane with branches are attached to: for each body after the first, the index of an earlier one. Empty for a
+    /// crane without branches, whose bodies are attached to the one before.
+    fn parents(&self) -> &[usize] {
+        &[]
+    }
+
     /// Value of a live parameter, by its index in [`Description::parameters`].
     fn parameter(&self, index: usize) -> f64;
 

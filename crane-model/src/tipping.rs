@@ -100,24 +100,30 @@ fn loads_of_links(crane: &dyn DynCrane, t: f64, [q, v, a]: [&[f64]; 3]) -> Vec<(
         crate::Cut::Body { body, .. } => Some((body, wrench)),
         _ => None,
     });
-    // The wrench of each link and everything beyond it.
-    let (mut beyond, mut links): (Vec<Wrench>, Vec<Text>) = (Vec::new(), Vec::new());
+    // The first body of each link, and the wrench of the link and everything beyond it.
+    let mut beyond: Vec<(usize, Wrench)> = Vec::new();
     for (body, wrench) in beginnings {
         let link = &description.bodies[body].link;
         if body == 0 || description.bodies[body - 1].link != *link {
             let (turn, position) =
                 (transforms[body].fixed_view::<3, 3>(0, 0), transforms[body].fixed_view::<3, 1>(0, 3));
             let force = turn * wrench.force;
-            beyond.push(Wrench { force, moment: turn * wrench.moment + position.cross(&force) });
-            links.push(description.bodies[body].link.clone());
+            beyond.push((body, Wrench { force, moment: turn * wrench.moment + position.cross(&force) }));
         }
     }
-    let next = beyond.clone().into_iter().skip(1).chain([Wrench::ZERO]);
-    let of_links = beyond
-        .iter()
-        .zip(next)
-        .map(|(all, rest)| Wrench { force: all.force - rest.force, moment: all.moment - rest.moment });
-    links.into_iter().zip(of_links).collect()
+    let tree = crane.tree();
+    let link_of = |body: usize| &description.bodies[body].link;
+    let of_link = |&(first, all): &(usize, Wrench)| {
+        let carried = beyond.iter().filter(|(body, _)| {
+            *body != first && tree.parent(*body).is_some_and(|carrier| link_of(carrier) == link_of(first))
+        });
+        let own = carried.fold(all, |own, (_, rest)| Wrench {
+            force: own.force - rest.force,
+            moment: own.moment - rest.moment,
+        });
+        (link_of(first).clone(), own)
+    };
+    beyond.iter().map(of_link).collect()
 }
 
 /// Fraction of the polygon's size below which a foot counts as on the line between two others.

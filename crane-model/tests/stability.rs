@@ -89,7 +89,8 @@ fn predicted_limits_of_all_shipped_cranes_are_observed() {
         eight_link_rigid,
         eight_link_two_flexible,
         knuckle_boom,
-        loader_tipping
+        loader_tipping,
+        two_arms
     );
     // Single steps do not support the states of valves.
     let with_valves = cranes::all().iter().filter(|crane| crane.description().has_valves()).count();

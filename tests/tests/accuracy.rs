@@ -79,20 +79,21 @@ impl Crane {
         // Three rows of four, one after the other.
         let mut derivatives = entries.chunks(12);
         for (index, body) in self.chain.bodies.iter().enumerate() {
-            let moving: Vec<_> = derivatives.by_ref().take(self.chain.degrees_of_freedom(BodyId(index))).collect();
+            let coordinates = self.chain.coordinates_of(BodyId(index));
+            let moving: Vec<_> = coordinates.iter().map(|id| id.0).zip(derivatives.by_ref()).collect();
             let Some(inertia) = &body.inertia else { continue };
             let pseudo_inertia = pseudo_inertia(inertia, &self.chain.parameter_defaults());
-            for (i, derivative) in moving.iter().enumerate() {
+            for (place, (i, derivative)) in moving.iter().enumerate() {
                 let product = |row: usize, column: usize| {
                     let terms = (0..4).map(|k| derivative[4 * row + k].clone() * pseudo_inertia[k][column].clone());
                     terms.fold(Precise::from_f64(0.0), Precise::add)
                 };
                 let momentum: Vec<Precise> = (0..12).map(|k| product(k / 4, k % 4)).collect();
-                for (j, other) in moving.iter().enumerate().skip(i) {
+                for (j, other) in &moving[place..] {
                     let terms = momentum.iter().zip(*other).map(|(a, b)| a.clone() * b.clone());
-                    let sum = terms.fold(matrix[i][j].clone(), Precise::add);
-                    matrix[j][i] = sum.clone();
-                    matrix[i][j] = sum;
+                    let sum = terms.fold(matrix[*i][*j].clone(), Precise::add);
+                    matrix[*j][*i] = sum.clone();
+                    matrix[*i][*j] = sum;
                 }
             }
         }

@@ -126,7 +126,7 @@ macro_rules! every_crane {
 
 every_crane! {
     cantilever double_pendulum eight_link_flexible eight_link_hydraulic eight_link_identified eight_link_rigid eight_link_two_flexible knuckle_boom
-    loader_tipping
+    loader_tipping two_arms
 }
 
 /// Exact kinematics, rotation vectors, a rigid drive, stops, cylinders, springs and ropes between points.

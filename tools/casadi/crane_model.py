@@ -1,4 +1,4 @@
-"""A crane as CasADi expressions: links become bodies with T(p) = T(p-1) T̃(p) [Urbaś 2016, Eq. (3)]."""
+"""A crane as CasADi expressions: links become bodies with T(p) = T(λ(p)) T̃(p), λ(p) the body that carries p [Urbaś 2016, Eq. (3)]."""
 
 import math
 from dataclasses import dataclass, field
@@ -20,6 +20,8 @@ TRANSLATIONS = {"x": "x", "y": "y", "z": "z"}
 ROTATION_NAMES = {axis: name for name, axis in ROTATIONS.items()}
 # Two positions along a beam coincide if they differ by less than this fraction of its length: rounding of decimals.
 SAME_PLACE = 1e-12
+# What is attached to a beam this near to its end, as a fraction of its length, is attached to its tip.
+AT_THE_TIP = 1e-9
 FREE = ["x", "y", "z", "psi", "theta", "phi"]
 
 
@@ -38,12 +40,23 @@ class Coordinate:
 
 @dataclass
 class Body:
-    """A body: its pose in the world, how many coordinates move it, its pseudo-inertia (zero for a massless frame)."""
+    """A body: its pose in the world, the indices of the coordinates that move it, its pseudo-inertia (zero for a massless frame).
+
+    `parent` is the index of the body that carries it, `at` the distance along that body, None at its end.
+    """
 
     name: str
     transform: ca.SX
-    degrees_of_freedom: int
+    moved_by: list
     pseudo_inertia: ca.SX
+    parent: object = None
+    at: object = None
+    along: float = math.inf
+
+    @property
+    def degrees_of_freedom(self):
+        """How many coordinates move it."""
+        return len(self.moved_by)
 
 
 @dataclass
@@ -133,10 +146,21 @@ class Support:
 
 @dataclass
 class Span:
-    """A link as bodies in a row, and where each begins along the undeformed link."""
+    """A link as bodies in a row, and where each begins along the undeformed link; the pose of its tip, and the length of its last body."""
 
     bodies: list
     starts: list
+    tip: object = None
+    last: object = 0.0
+
+
+@dataclass
+class Place:
+    """Where a link begins: the pose there, the body that carries it, and the distance along that, None at its end."""
+
+    transform: ca.SX
+    parent: object = None
+    at: object = None
 
 
 @dataclass
@@ -206,10 +230,14 @@ class Crane:
             return rotate(ROTATIONS[symbol], coordinate.q)
         return translate_along(TRANSLATIONS[symbol], coordinate.q)
 
-    def add_body(self, name, transform, pseudo_inertia):
-        """Adds a body that all coordinates so far move."""
+    def add_body(self, name, transform, pseudo_inertia, place):
+        """Adds a body that begins at a place; the coordinates added since the last body are those of its joint."""
         self.cuts.append(Cut(transform, len(self.bodies)))
-        self.bodies.append(Body(name, transform, len(self.coordinates), pseudo_inertia))
+        known = {index for body in self.bodies for index in body.moved_by}
+        own = [index for index in range(len(self.coordinates)) if index not in known]
+        before = [] if place.parent is None else self.bodies[place.parent].moved_by
+        along = math.inf if place.at is None else self.spec.default(place.at)
+        self.bodies.append(Body(name, transform, before + own, pseudo_inertia, place.parent, place.at, along))
         return self.bodies[-1]
 
 
@@ -259,23 +287,52 @@ def read_crane(path):
 def read_links(crane):
     """Adds the bodies of all links and returns the span of each."""
     spans = {}
-    tip = ca.SX.eye(4)
-    crane.cuts.append(Cut(tip, 0))
+    crane.cuts.append(Cut(ca.SX.eye(4), 0))
+    place = Place(ca.SX.eye(4))
     for index, link in enumerate(crane.spec.keys["links"]):
         name = link["name"]
+        if "on" in link:
+            place = read_place(crane, link["on"], spans)
         joint, frame = read_joint(crane, link, is_base=index == 0)
         if "rope" in link:
             joint = frame = frame @ swing(crane, f"{name}_1")
-        crane.cuts.append(Cut(tip @ joint, len(crane.bodies)))
-        transform = tip @ frame
+        crane.cuts.append(Cut(place.transform @ joint, len(crane.bodies)))
+        transform = place.transform @ frame
         if "beam" in link:
-            spans[name], tip = read_beam_bodies(crane, name, transform, link["beam"])
+            spans[name] = read_beam_bodies(crane, name, transform, link["beam"], place)
         elif "rope" in link:
-            spans[name], tip = read_rope_bodies(crane, name, transform, link["rope"])
+            spans[name] = read_rope_bodies(crane, name, transform, link["rope"], place)
         else:
-            body = crane.add_body(name, transform, read_link_inertia(crane.spec, link))
-            spans[name], tip = Span([body], [0.0]), transform
+            body = crane.add_body(name, transform, read_link_inertia(crane.spec, link), place)
+            spans[name] = Span([body], [0.0], transform)
+        place = at_tip(crane, spans[name])
     return spans
+
+
+def index_of(crane, body):
+    """The index of a body."""
+    return next(i for i, other in enumerate(crane.bodies) if other is body)
+
+
+def at_tip(crane, span):
+    """The place at the tip of a link."""
+    return Place(span.tip, index_of(crane, span.bodies[-1]))
+
+
+def read_place(crane, written, spans):
+    """Where a link begins that is attached to an earlier one."""
+    written = {"link": written} if isinstance(written, str) else written
+    span, at = spans[written["link"]], written.get("at", "tip")
+    if at == "tip":
+        return at_tip(crane, span)
+    if at == "start":
+        return Place(span.bodies[0].transform, index_of(crane, span.bodies[0]), 0.0)
+    at = crane.spec.vector(at)
+    whole = crane.spec.default(span.starts[-1] + span.last)
+    if whole > 0 and abs(crane.spec.default(at[0]) - whole) <= AT_THE_TIP * whole:
+        return Place(span.tip @ translate(0, at[1], at[2]), index_of(crane, span.bodies[-1]))
+    body, local = carrier(crane.spec, at, span)
+    return Place(body.transform @ translate(local[0], local[1], local[2]), index_of(crane, body), local[0])
 
 
 def read_link_inertia(spec, link):
@@ -284,8 +341,8 @@ def read_link_inertia(spec, link):
     return sum((read_pseudo_inertia(spec, body) for body in written), ca.SX(4, 4))
 
 
-def read_beam_bodies(crane, name, transform, written):
-    """Adds the elements of a beam; returns its span and the pose of its tip."""
+def read_beam_bodies(crane, name, transform, written, place):
+    """Adds the elements of a beam; returns its span."""
     beam = read_beam(crane.spec, written)
     crane.beams.append(beam)
     span, start = Span([], []), 0.0
@@ -310,11 +367,13 @@ def read_beam_bodies(crane, name, transform, written):
                 stiffness, damping = beam.stiffness[index - 1][symbol], beam.damping[index - 1][symbol]
                 crane.elements.append(Spring(coordinate, stiffness, damping))
         body_name = name if written.get("sections") == "rigid" else element
-        span.bodies.append(crane.add_body(body_name, transform, pseudo_inertia))
+        span.bodies.append(crane.add_body(body_name, transform, pseudo_inertia, place))
         span.starts.append(start)
         transform = transform @ translate(x=length)
         start = start + length
-    return span, transform
+        place = Place(transform, len(crane.bodies) - 1)
+    span.tip, span.last = transform, length
+    return span
 
 
 def swing(crane, name):
@@ -322,8 +381,8 @@ def swing(crane, name):
     return crane.move(name, "psi") @ crane.move(name, "theta")
 
 
-def read_rope_bodies(crane, name, transform, written):
-    """Adds the links of a rope, whose first joint is in `transform`; returns its span and the pose of its end."""
+def read_rope_bodies(crane, name, transform, written, place):
+    """Adds the links of a rope, whose first joint is in `transform`; returns its span."""
     count = int(written["links"])
     length = crane.spec.number(written["length"]) / count
     mass = crane.spec.number(written["mass_per_length"]) * length
@@ -339,9 +398,11 @@ def read_rope_bodies(crane, name, transform, written):
             transform = transform @ translate(x=length) @ swing(crane, f"{name}_{number}")
         for coordinate in crane.coordinates[-2:]:
             crane.rope_dampers.append(Spring(coordinate, 0, crane.spec.number(written.get("damping", 0))))
-        span.bodies.append(crane.add_body(f"{name}_{number}", transform, pseudo_inertia))
+        span.bodies.append(crane.add_body(f"{name}_{number}", transform, pseudo_inertia, place))
         span.starts.append((number - 1) * length)
-    return span, transform @ translate(x=length)
+        place = Place(transform, len(crane.bodies) - 1)
+    span.tip, span.last = transform @ translate(x=length), length
+    return span
 
 
 def read_joint(crane, link, is_base):
@@ -479,11 +540,12 @@ def read_cylinder(crane, written, spans):
         pin_of_pivot = carrier(spec, spec.vector(linkage["pivot"]), spans[written["foot"]["link"]])
         pivot = place(pin_of_pivot[0].transform, pin_of_pivot[1])
         of_pivot = next(i for i, other in enumerate(crane.bodies) if other is pin_of_pivot[0])
-        beyond = max(foot, head, key=lambda pin: pin[0].degrees_of_freedom)[0]
-        axis = turning_axis(beyond.transform[:3, :3], coordinate.q)
+        of_joint = crane.coordinates.index(coordinate)
+        moved = next(i for i, body in enumerate(crane.bodies) if of_joint in body.moved_by)
+        axis = turning_axis(crane.bodies[moved].transform[:3, :3], coordinate.q)
         # Beside the joint, on the side of the foot.
-        moved = next(i for i, body in enumerate(crane.bodies) if body.degrees_of_freedom > crane.coordinates.index(coordinate))
-        carrier_of_axis, along = (moved - 1, math.inf) if of_head > of_foot else (moved, 0.0)
+        before = crane.bodies[moved].parent, crane.bodies[moved].along
+        carrier_of_axis, along = before if of_joint in head[0].moved_by else (moved, 0.0)
         carried += [(pivot, of_pivot, spec.default(pin_of_pivot[1][0]), False), (axis, carrier_of_axis, along, True)]
         pins += [(of_pivot, pin_of_pivot[1][0])] if "valve" in written else []
         lengths = [spec.number(linkage[key]) for key in ("rocker", "link")]

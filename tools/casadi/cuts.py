@@ -8,17 +8,19 @@ import casadi as ca
 
 @dataclass
 class Cut:
-    """A cut through the chain: the pose of its frame in the world, and the index of the first body beyond it.
+    """A cut through the crane: the pose of its frame in the world, and the index of the body that it separates, with all beyond, from the rest.
 
-    Within an element of a beam: the index of the first body that is wholly beyond, the pseudo-inertia of the part of the element beyond,
-    about the element's frame, and the distance along the element beyond which forces act beyond the cut.
+    Within an element of a beam: the pseudo-inertia of the part of the element beyond, about the element's frame, and the distance along the element
+    beyond which forces act, and other links begin, beyond the cut.
     """
 
     frame: ca.SX
-    beyond: int
+    body: int
     portion: object = None
     distance: float = math.inf
 
-    def has_beyond(self, body, along):
+    def has_beyond(self, bodies, body, along=0.0):
         """Whether what acts on a body, at a distance along it, acts beyond the cut."""
-        return body >= self.beyond or (body == self.beyond - 1 and along > self.distance)
+        while body is not None and body != self.body:
+            body, along = bodies[body].parent, bodies[body].along
+        return body is not None and (self.portion is None or along > self.distance)

@@ -21,14 +21,14 @@ class Cylinder:
     pins: list
 
 
-def on_part_beyond(cylinder, cut):
+def on_part_beyond(cylinder, cut, bodies):
     """Force and moment about the world's origin on everything beyond a cut, while the cylinder pushes with 1 N: its power as that is
     displaced against the rest."""
     along, about = ca.SX.sym("along", 3), ca.SX.sym("about", 3)
     displaced = []
     for vector, body, distance, is_axis in cylinder.carried:
         shift = ca.cross(about, vector) if is_axis else along + ca.cross(about, vector)
-        displaced.append(vector + shift if cut.has_beyond(body, distance) else vector)
+        displaced.append(vector + shift if cut.has_beyond(bodies, body, distance) else vector)
     length = cylinder.length_of(*displaced)
     zeros = ca.DM.zeros(3)
     return [ca.substitute(ca.gradient(length, by), ca.vertcat(along, about), ca.vertcat(zeros, zeros)) for by in (along, about)]

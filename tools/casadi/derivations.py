@@ -57,14 +57,14 @@ class Derivations:
         first = ca.jacobian(poses, q)
         second = {}
         for m in range(count):
-            reached = ca.vertcat(*[first[block[p], m] for p, body in enumerate(bodies) if body.degrees_of_freedom > m])
+            reached = ca.vertcat(*[first[block[p], m] for p, body in enumerate(bodies) if m in body.moved_by])
             second[m] = ca.jacobian(reached, q[m:])
 
         def pair(p, m, n):
-            skipped = sum(body.degrees_of_freedom <= m for body in bodies)
-            return second[m][block[p - skipped], n - m]
+            place = sum(m in body.moved_by for body in bodies[:p])
+            return second[m][block[place], n - m]
 
-        moving = [(p, range(body.degrees_of_freedom)) for p, body in enumerate(bodies)]
+        moving = [(p, body.moved_by) for p, body in enumerate(bodies)]
         return {
             "transforms": poses,
             "transform_derivatives": ca.vertcat(*[first[block[p], i] for p, dof in moving for i in dof]),
@@ -79,21 +79,26 @@ class Derivations:
         With H the pseudo-inertia, `∫ ẍ dm` is the last column of `T̈ H`, and `∫ x × ẍ dm` the axial vector of `T̈ H Tᵀ`. The
         rates are used as accelerations, too.
         """
-        force, moment, sums = ca.SX(3, 1), ca.SX(3, 1), {len(self.crane.bodies): (ca.SX(3, 1), ca.SX(3, 1))}
-        for place, body in reversed(list(enumerate(self.crane.bodies))):
-            own = self.momenta_rate(body.transform, body.pseudo_inertia)
-            force, moment = force + own[0], moment + own[1]
+        bodies = self.crane.bodies
+        required = [self.momenta_rate(body.transform, body.pseudo_inertia) for body in bodies]
+        for place in range(len(bodies)):
             for _, pull, turn in self.actions(place):
-                force, moment = force - pull, moment - turn
-            sums[place] = force, moment
+                required[place] = required[place][0] - pull, required[place][1] - turn
+        # A body comes after the one that carries it.
+        sums = list(required)
+        for place, body in reversed(list(enumerate(bodies))):
+            if body.parent is not None:
+                sums[body.parent] = sums[body.parent][0] + sums[place][0], sums[body.parent][1] + sums[place][1]
         wrenches = []
         for cut in self.crane.cuts:
-            force, moment = sums[cut.beyond]
+            force, moment = sums[cut.body]
             if cut.portion is not None:
-                own = self.momenta_rate(self.crane.bodies[cut.beyond - 1].transform, cut.portion)
-                force, moment = force + own[0], moment + own[1]
-                for along, pull, turn in self.actions(cut.beyond - 1):
-                    if cut.has_beyond(cut.beyond - 1, along):
+                force, moment = self.momenta_rate(bodies[cut.body].transform, cut.portion)
+                for place, body in enumerate(bodies):
+                    if body.parent == cut.body and cut.has_beyond(bodies, place):
+                        force, moment = force + sums[place][0], moment + sums[place][1]
+                for along, pull, turn in self.actions(cut.body):
+                    if cut.has_beyond(bodies, cut.body, along):
                         force, moment = force - pull, moment - turn
             wrenches += in_cut(cut, -force, -moment)
         positions = [support.position for support in self.crane.supports]
@@ -134,7 +139,7 @@ class Derivations:
         of_cylinders, of_connectors = [ca.SX(0, 1)], [ca.SX(0, 1)]
         for cylinder in self.crane.cylinders:
             for cut in self.crane.cuts:
-                force, moment = cylinders.on_part_beyond(cylinder, cut) if self.by_oil else (ca.SX(3, 1), ca.SX(3, 1))
+                force, moment = cylinders.on_part_beyond(cylinder, cut, self.crane.bodies) if self.by_oil else (ca.SX(3, 1), ca.SX(3, 1))
                 of_cylinders += in_cut(cut, force, moment)
         for connector in self.crane.connectors:
             joins = connector.points and None not in connector.bodies
@@ -143,7 +148,7 @@ class Derivations:
                 if joins:
                     pull = (connector.points[1] - connector.points[0]) / ca.norm_2(connector.points[1] - connector.points[0])
                     for body, point, along, sign in zip(connector.bodies, connector.points, connector.along, (1, -1)):
-                        if cut.has_beyond(body, along):
+                        if cut.has_beyond(self.crane.bodies, body, along):
                             force, moment = force + sign * pull, moment + ca.cross(point, sign * pull)
                 of_connectors += in_cut(cut, force, moment)
         return {"cylinder_wrenches": ca.vertcat(*of_cylinders), "connector_wrenches": ca.vertcat(*of_connectors)}

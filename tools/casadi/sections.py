@@ -29,7 +29,7 @@ def add_sections(crane, spans):
                 limit = place - SAME * whole if before else place + SAME * whole
                 if not before and place >= whole * (1 - SAME):
                     limit = math.inf
-                added[index].append(Cut(body.transform @ shift, index + 1, rest, limit))
+                added[index].append(Cut(body.transform @ shift, index, rest, limit))
                 moduli.append(of_section)
         beam.sections = moduli
     crane.cuts[:] = merged(crane, added)
@@ -40,9 +40,9 @@ def merged(crane, added):
     cuts = []
     for place, cut in enumerate(crane.cuts):
         cuts.append(cut)
-        is_last = place + 1 == len(crane.cuts) or crane.cuts[place + 1].beyond > cut.beyond
+        is_last = place + 1 == len(crane.cuts) or crane.cuts[place + 1].body > cut.body
         if is_last:
-            cuts.extend(added.get(cut.beyond, []))
+            cuts.extend(added.get(cut.body, []))
     return cuts
 
 
@@ -83,7 +83,8 @@ def within(crane, beam, span, element, index):
 
 
 def pins(crane, index):
-    """Distances along a body at which something acts on it."""
+    """Distances along a body at which something acts on it, or another link begins."""
+    yield from (body.at for body in crane.bodies if body.parent == index and body.at is not None)
     yield from (load.at for load in crane.loads if load.body == index)
     for cylinder in crane.cylinders:
         yield from (at for body, at in cylinder.pins if body == index)

@@ -101,16 +101,21 @@ def compare_all(expected, generated, states):
     ]
 
 
+def last_moved(body):
+    """The last coordinate that moves a body, -1 without one."""
+    return max(body.moved_by, default=-1)
+
+
 def compare_wrenches(crane, generated, states):
     """Compares the wrenches in joints and sections, with the rates as accelerations, with Pinocchio's recursion."""
     first_moved = {}
     for place, body in enumerate(crane.bodies):
-        first_moved.setdefault(body.degrees_of_freedom, place)
+        first_moved.setdefault(last_moved(body), place)
     cuts = [
-        (place, cut.frame, crane.bodies[cut.beyond].degrees_of_freedom - 1)
+        (place, cut.frame, last_moved(crane.bodies[cut.body]))
         for place, cut in enumerate(crane.cuts)
         # The joint before a cut carries what is beyond the cut, and nothing else.
-        if place > 0 and cut.portion is None and first_moved[crane.bodies[cut.beyond].degrees_of_freedom] == cut.beyond
+        if place > 0 and cut.portion is None and first_moved[last_moved(crane.bodies[cut.body])] == cut.body
     ]
     cuts = [cut for cut in cuts if cut[2] >= 0]
     # The joint wrenches of a chain do not include loads and connectors.

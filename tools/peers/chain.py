@@ -149,7 +149,7 @@ def at_zero(crane):
     """All bodies at q = 0."""
     bodies = []
     for body in crane.bodies:
-        along = [coordinate.q for coordinate in crane.coordinates[: body.degrees_of_freedom]]
+        along = [crane.coordinates[index].q for index in body.moved_by]
         derivatives = [ca.jacobian(ca.vec(body.transform), ca.vertcat(*along))] if along else []
         pose, inertia, *motions = evaluate(crane, [body.transform, body.pseudo_inertia, *derivatives])
         columns = motions[0].T if motions else []

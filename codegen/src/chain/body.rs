@@ -50,7 +50,11 @@ pub struct Body {
     pub name: String,
     /// Name of the link it belongs to.
     pub link: String,
-    /// The transformation from the previous body's frame to this one's, T̃, as elementary steps in order.
+    /// The body to which it is attached, an earlier one; `None` for the first, which is attached to the world.
+    pub parent: Option<BodyId>,
+    /// Where it is attached along the parent's x, m.
+    pub along: Value,
+    /// The transformation from the parent's frame to this one's, T̃, as elementary steps in order.
     pub path: Vec<Step>,
     /// Mass properties about the origin of the body's frame; `None` for a massless frame.
     pub inertia: Option<Inertia>,

@@ -1,7 +1,6 @@
 //! Hydraulic cylinders between their pins.
 
 use std::f64::consts::PI;
-use std::ops::Range;
 
 use super::{BodyId, Chain, CoordinateId, Value, frame::Vector};
 
@@ -133,10 +132,9 @@ impl Chain {
 
     /// The coordinates that move only some of a cylinder's pins, and so change its length: that of its joint and those of beams.
     #[must_use]
-    pub fn spanned_by(&self, cylinder: &Cylinder) -> Range<usize> {
-        let pins = cylinder.pins().map(|pin| self.degrees_of_freedom(pin.body));
-        let (first, end) = pins.fold((usize::MAX, 0), |(first, end), moved| (first.min(moved), end.max(moved)));
-        first..end
+    pub fn spanned_by(&self, cylinder: &Cylinder) -> Vec<CoordinateId> {
+        let pins: Vec<_> = cylinder.pins().map(|pin| self.coordinates_of(pin.body)).collect();
+        self.between(&pins)
     }
 
     /// The index of the drive whose effort is that of a cylinder.

@@ -1,6 +1,6 @@
 //! Numeric frames: poses of bodies at given coordinates.
 
-use super::{Axis, Body, Chain, CoordinateId, CoordinateKind, Step};
+use super::{Axis, Body, BodyId, Chain, CoordinateId, CoordinateKind, Step};
 
 /// A point or a direction: x, y, z.
 pub type Vector = [f64; 3];
@@ -114,19 +114,20 @@ impl Chain {
     /// Frames of all bodies in the world at a pose.
     #[must_use]
     pub fn frames(&self, q: &[f64], parameters: &[f64]) -> Vec<Frame> {
-        let mut frame = Frame::WORLD;
-        let body = |body: &Body| {
-            frame = body.path.iter().fold(frame, |frame, step| frame.after(step, self, q, parameters));
-            frame
-        };
-        self.bodies.iter().map(body).collect()
+        let mut frames: Vec<Frame> = Vec::with_capacity(self.bodies.len());
+        for Body { parent, path, .. } in &self.bodies {
+            let before = parent.map_or(Frame::WORLD, |BodyId(parent)| frames[parent]);
+            frames.push(path.iter().fold(before, |frame, step| frame.after(step, self, q, parameters)));
+        }
+        frames
     }
 
     /// The axis of a coordinate in the world at a pose: a point on it, and its direction.
     #[must_use]
     pub fn axis(&self, coordinate: CoordinateId, q: &[f64], parameters: &[f64]) -> [Vector; 2] {
         let mut frame = Frame::WORLD;
-        for step in self.bodies.iter().flat_map(|body| &body.path) {
+        let path = self.path(self.coordinates[coordinate.0].body);
+        for step in path.iter().flat_map(|BodyId(body)| &self.bodies[*body].path) {
             // A rotation about the axis and a translation along it leave its direction in place.
             frame = frame.after(step, self, q, parameters);
             if step.coordinates().contains(&coordinate) {

@@ -1,6 +1,6 @@
 //! Joints that close loops: equations between two attachments, φ(q) = 0.
 
-use super::{Attachment, Chain, Value, Vector};
+use super::{Attachment, Chain, CoordinateId, Value, Vector};
 
 /// A joint between two attachments that are already connected through other joints.
 #[derive(Clone, Debug, PartialEq)]
@@ -123,11 +123,10 @@ impl Chain {
         })
     }
 
-    /// The range of coordinates that move the ends of a joint against each other: the first, and one past the last.
+    /// The coordinates that move the ends of a joint against each other, in the order of q.
     #[must_use]
-    pub fn closed_by(&self, joint: &LoopJoint) -> [usize; 2] {
-        let [one, other] = joint.ends.each_ref().map(|end| self.reach(end));
-        [one.min(other), one.max(other)]
+    pub fn closed_by(&self, joint: &LoopJoint) -> Vec<CoordinateId> {
+        self.between(&joint.ends.each_ref().map(|end| self.reach(end)))
     }
 }
 

@@ -1,4 +1,4 @@
-//! A valid crane: bodies on an open chain, with every reference resolved and every number checked.
+//! A valid crane: bodies that form a tree, with every reference resolved and every number checked.
 //!
 //! // AFTER THIS POINT: no stage knows about links, D-H rows, cross-sections or YAML, and a failure is a bug.
 
@@ -19,6 +19,7 @@ mod run;
 mod start;
 mod strain;
 mod support;
+mod tree;
 mod value;
 
 pub use beam::{Beam, Inside, Moduli, Outline, Section, Side};
@@ -47,7 +48,7 @@ pub struct CoordinateId(pub usize);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct BodyId(pub usize);
 
-/// An open chain of bodies, the compiler's view of a crane.
+/// A chain of bodies, the compiler's view of a crane: open, and with branches where several bodies are attached to one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
     /// Name of the crane, a valid Rust identifier.
@@ -64,7 +65,7 @@ pub struct Chain {
     pub relations: Vec<Relation>,
     /// Generalized coordinates `q`, Eq. (1).
     pub coordinates: Vec<Coordinate>,
-    /// Bodies from the base to the tip; body `p` is attached to body `p − 1`, the first to the world.
+    /// Bodies, each after the one to which it is attached; the first is attached to the world.
     pub bodies: Vec<Body>,
     /// The base's coordinates in the order x, y, z, ψ, θ, φ; `None` for those that it lacks.
     pub base: [Option<CoordinateId>; 6],
@@ -114,12 +115,6 @@ pub struct Point {
 impl Chain {
     /// Maximum number of coordinates: far more than make sense, and few enough for the registers of live cranes.
     pub const MOST_COORDINATES: usize = 3000;
-
-    /// Number of coordinates of the chain up to and including a body: `n_dof(p)`, Eq. (2).
-    #[must_use]
-    pub fn degrees_of_freedom(&self, body: BodyId) -> usize {
-        self.bodies[..=body.0].iter().flat_map(|b| &b.path).map(|step| step.coordinates().len()).sum()
-    }
 
     /// Whether a coordinate is a component of a rotation vector.
     #[must_use]

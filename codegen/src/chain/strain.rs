@@ -47,19 +47,22 @@ impl Strain {
 }
 
 impl Chain {
-    /// The range of coordinates that change a strain, the first and one past the last: between two points, those that move only one of
-    /// them.
+    /// The coordinates that change a strain, in the order of q: between two points, those that move only one of them.
     #[must_use]
-    pub fn spanned(&self, strain: &Strain) -> [usize; 2] {
+    pub fn spanned(&self, strain: &Strain) -> Vec<CoordinateId> {
         match strain {
-            Strain::Coordinate(CoordinateId(j)) => [*j, *j + 1],
-            Strain::Distance(ends) => {
-                let [one, other] = ends.each_ref().map(|end| self.reach(end));
-                [one.min(other), one.max(other)]
-            }
-            Strain::Coupling { coordinate: CoordinateId(one), leader: CoordinateId(other), .. } => {
-                [*one.min(other), *one.max(other) + 1]
-            }
+            Strain::Coordinate(coordinate) => vec![*coordinate],
+            Strain::Distance(ends) => self.between(&ends.each_ref().map(|end| self.reach(end))),
+            Strain::Coupling { coordinate: one, leader: other, .. } => vec![*one.min(other), *one.max(other)],
+        }
+    }
+
+    /// The coordinates in terms of which a strain and its derivatives are expressed: all that move its points.
+    #[must_use]
+    pub fn read_by(&self, strain: &Strain) -> Vec<CoordinateId> {
+        match strain {
+            Strain::Distance(ends) => ends.iter().flat_map(|end| self.reach(end)).collect(),
+            Strain::Coordinate(_) | Strain::Coupling { .. } => self.spanned(strain),
         }
     }
 
@@ -84,9 +87,9 @@ impl Chain {
         (0..3).map(|i| (other[i] - one[i]).powi(2)).sum::<f64>().sqrt()
     }
 
-    /// Number of coordinates that move a point: they are the first ones of the chain.
+    /// The coordinates that move a point, in the order of q.
     #[must_use]
-    pub fn reach(&self, end: &Attachment) -> usize {
-        end.body.map_or(0, |body| self.degrees_of_freedom(body))
+    pub fn reach(&self, end: &Attachment) -> Vec<CoordinateId> {
+        end.body.map_or_else(Vec::new, |body| self.coordinates_of(body))
     }
 }

@@ -396,6 +396,23 @@ catalogue! {
     /// Eight cranes per call cannot have loops.
     E148 ensemble_of_loops() "`ensemble` cannot be combined with loop joints", "eight cranes per call are for open chains",
         "remove `ensemble`: runs of many cranes then compute them one by one";
+    // Branches.
+    /// The first link stands on the world.
+    E150 base_on_link(link) "the first link, `{link}`, cannot be attached to another link", "it stands on the world",
+        "remove `on`, or list the link that carries it before it";
+    /// A link is not attached to itself.
+    E151 on_itself(link) "link `{link}` is attached to itself", "its own name", "name an earlier link, or remove `on` to use the previous one";
+    /// A link is attached to an earlier one.
+    E152 on_later(link, other) "link `{link}` is attached to `{other}`, which comes later", "listed below `{link}`",
+        "list `{other}` before `{link}`: a link comes after the one that carries it";
+    /// Links are not attached to each other in a circle.
+    E153 circle(link, other) "links `{link}` and `{other}` carry each other", "`{other}` is attached to `{link}`, directly or through others",
+        "attach one of them to another link; a joint under `loop_joints:` closes a loop of links";
+    /// Only beams and ropes have a `start`.
+    E154 start_of_rigid(link) "link `{link}` has no start", "a rigid link has one frame", "leave out `at`, or write `[x, y, z]` in the frame of `{link}`, in m";
+    /// A place on a beam or a rope is between its beginning and its end.
+    E155 beside_the_beam(link, x, length) "the place at x = {x} m is not on link `{link}`", "the link reaches from 0 to {length} m",
+        "write `[x, y, z]` in m from the beginning of `{link}` along its x, or `tip`";
 
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.

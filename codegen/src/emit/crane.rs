@@ -10,7 +10,7 @@ use super::names::field_name;
 use super::number::Number;
 use super::print::plain;
 use super::shape::{Storage, struct_name};
-use crate::chain::{Chain, Input};
+use crate::chain::{BodyId, Chain, Input};
 use crate::lower::{LoweredFunction, LoweredProgram};
 use crate::program::{Argument, FunctionId, RuntimeTrait, Shape};
 
@@ -175,10 +175,19 @@ fn common_methods(chain: &Chain) -> TokenStream {
             }
         )
     });
+    let parents = chain.has_branches().then(|| {
+        let parents = chain.bodies.iter().filter_map(|body| body.parent).map(|BodyId(parent)| integer(parent));
+        quote! {
+            fn parents(&self) -> &[usize] {
+                &[#(#parents),*]
+            }
+        }
+    });
     quote! {
         fn description(&self) -> &Description {
             &DESCRIPTION
         }
+        #parents
         #get
         #set
         #inputs

@@ -24,8 +24,7 @@ fn cylinder_info(chain: &Chain, cylinder: &Cylinder) -> TokenStream {
     let [retracted, stroke, back_pressure] = [cylinder.retracted, cylinder.stroke, cylinder.back_pressure].map(literal);
     let [of_piston, of_rod] = cylinder.hose_volumes.map(literal);
     let of_drive = chain.drive_of(cylinder);
-    let spanned = chain.spanned_by(cylinder);
-    let [first, end] = [spanned.start, spanned.end].map(integer);
+    let [first, end] = Chain::range(&chain.spanned_by(cylinder)).map(integer);
     let (name, drive) = (text(&cylinder.name), integer(of_drive));
     let commanded = chain.drives[of_drive].opening().is_some();
     let valve = cylinder.valve.as_ref().map_or_else(|| quote!(None), |valve| valve_info(valve, commanded));
@@ -115,8 +114,14 @@ fn description_constant(chain: &Chain) -> Item {
         let name = text(&support.name);
         let position = support.position.iter().map(at_defaults);
         let linear = support.kinematics == SupportKinematics::Linear;
-        let one_sided = support.full_hold.is_some();
-        quote!(SupportInfo { name: #name, position: [#(#position),*], linear: #linear, one_sided: #one_sided })
+        let hold = support.full_hold.as_ref().map_or_else(
+            || quote!(None),
+            |full| {
+                let (stiffness, full) = (support.stiffness.iter().map(at_defaults), at_defaults(full));
+                quote!(Some(HoldInfo { stiffness: [#(#stiffness),*], full: #full }))
+            },
+        );
+        quote!(SupportInfo { name: #name, position: [#(#position),*], linear: #linear, hold: #hold })
     });
     let drives = chain.drives.iter().map(|drive| drive_info(drive, &defaults));
     let stops = chain.stopped().into_iter().map(|id| integer(id.0));
@@ -226,7 +231,7 @@ fn role(chain: &Chain, coordinate: usize) -> TokenStream {
 fn connector_info(chain: &Chain, connector: &Force) -> TokenStream {
     let name = text(&connector.name);
     let is_rope = connector.is_rope();
-    let [first, end] = chain.spanned(&connector.strain).map(integer);
+    let [first, end] = Chain::range(&chain.spanned(&connector.strain)).map(integer);
     let pieces = integer(connector.pieces());
     let ends = connector.strain.ends().map_or(quote!(None), |ends| {
         let ends = ends.iter().map(|end| attachment_info(chain, end));

@@ -153,11 +153,12 @@ impl<'a> Labels<'a> {
             body += 1;
         }
         let name = &self.chain.bodies[body].name;
-        let coordinate = |i: usize| &self.chain.coordinates[i].name;
+        let moving = self.chain.coordinates_of(BodyId(body));
+        let coordinate = |i: usize| &self.chain.coordinates[moving[i].0].name;
         match function {
             FunctionId::TransformDerivatives => format!("∂T({name})/∂{}", coordinate(matrix)),
             FunctionId::TransformSecondDerivatives => {
-                let (m, n) = row_of_triangle(self.chain.degrees_of_freedom(BodyId(body)), matrix);
+                let (m, n) = row_of_triangle(moving.len(), matrix);
                 format!("∂²T({name})/∂{}∂{}", coordinate(m), coordinate(n))
             }
             _ => format!("T({name})"),

@@ -131,6 +131,7 @@ fn imports(items: &[syn::Item]) -> String {
                 "Dynamics",
                 "Ensemble",
                 "Implicit",
+                "HoldInfo",
                 "InputInfo",
                 "InternalForces",
                 "Linearisation",

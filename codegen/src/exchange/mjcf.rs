@@ -7,7 +7,7 @@ use super::rotation::quaternion;
 use super::springs::{JointSpring, linear_rows, on};
 use super::xml::{Xml, number_text, numbers};
 use super::{RADIUS, approximations, bars, hinged, origin, placements};
-use crate::chain::{Chain, CoordinateId, CoordinateKind, Frame, Step, Support, SupportKinematics};
+use crate::chain::{BodyId, Chain, CoordinateId, CoordinateKind, Frame, Step, Support, SupportKinematics};
 
 /// `MuJoCo` refuses moving bodies without mass or inertia: a massless frame, or a point, gets this value, kg or kg m². It is
 /// negligible against the mass of any crane.
@@ -81,9 +81,6 @@ pub fn mjcf(chain: &Chain, parameters: &[f64]) -> Result<String, Inexpressible> 
 
     xml.open("worldbody", &[]);
     bodies(&mut xml, chain, parameters);
-    for _ in &chain.bodies {
-        xml.close();
-    }
     xml.close();
 
     if !chain.supports.is_empty() {
@@ -104,16 +101,26 @@ pub fn mjcf(chain: &Chain, parameters: &[f64]) -> Result<String, Inexpressible> 
         xml.close();
     }
     xml.open("keyframe", &[]);
-    xml.leaf("key", &[("name", "start".into()), ("qpos", numbers(&chain.guess))]);
+    // MuJoCo lists joints in the order of the file.
+    let order = chain.depth_first().into_iter().flat_map(|body| &chain.bodies[body.0].path).flat_map(Step::coordinates);
+    let guess: Vec<f64> = order.map(|id| chain.guess[id.0]).collect();
+    xml.leaf("key", &[("name", "start".into()), ("qpos", numbers(&guess))]);
     Ok(xml.finish())
 }
 
-/// All bodies, each within the previous one, left open.
+/// All bodies, each within the one that carries it.
 fn bodies(xml: &mut Xml, chain: &Chain, parameters: &[f64]) {
     let placements = placements(chain, parameters);
     let bars = bars(chain, &placements, parameters);
     let rest = vec![0.0; chain.coordinates.len()];
-    for (index, (body, placement)) in chain.bodies.iter().zip(&placements).enumerate() {
+    let mut open: Vec<BodyId> = Vec::new();
+    for id in chain.depth_first() {
+        let (index, body, placement) = (id.0, &chain.bodies[id.0], &placements[id.0]);
+        while open.last().copied() != body.parent {
+            open.pop();
+            xml.close();
+        }
+        open.push(id);
         let attributes = [
             ("name", body.name.clone()),
             ("pos", numbers(&placement.origin)),
@@ -141,6 +148,9 @@ fn bodies(xml: &mut Xml, chain: &Chain, parameters: &[f64]) {
             let at = point.position.each_ref().map(|value| value.at(parameters));
             xml.leaf("site", &[("name", point.name.clone()), ("pos", numbers(&at))]);
         }
+    }
+    for _ in open {
+        xml.close();
     }
 }
 

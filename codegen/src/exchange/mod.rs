@@ -19,7 +19,7 @@ pub use urdf::urdf;
 
 use std::fmt::Write;
 
-use crate::chain::{Body, Chain, Frame, Group, Step, Vector};
+use crate::chain::{Body, BodyId, Chain, Frame, Group, Step, Vector};
 
 /// The origin of a crane, and the values of its parameters.
 fn origin(chain: &Chain, parameters: &[f64]) -> String {
@@ -66,7 +66,7 @@ pub fn approximations(chain: &Chain) -> Option<String> {
     (!lost.is_empty()).then(|| lost.join(" "))
 }
 
-/// Poses of all bodies at `q = 0`, each in the frame of the previous body.
+/// Poses of all bodies at `q = 0`, each in the frame of the body that carries it.
 fn placements(chain: &Chain, parameters: &[f64]) -> Vec<Frame> {
     let rest = vec![0.0; chain.coordinates.len()];
     let along =
@@ -74,10 +74,11 @@ fn placements(chain: &Chain, parameters: &[f64]) -> Vec<Frame> {
     chain.bodies.iter().map(|body| along(&body.path)).collect()
 }
 
-/// The end of the bar that represents a body in pictures, from the origin of its frame: the next body, or its centre of mass.
+/// The end of the bar that represents a body in pictures, from the origin of its frame: the first body that it carries, or its centre of mass.
 fn bars(chain: &Chain, placements: &[Frame], parameters: &[f64]) -> Vec<Option<Vector>> {
     let end = |(index, body): (usize, &Body)| {
-        let next = placements.get(index + 1).map(|next| next.origin);
+        let next = chain.bodies.iter().skip(index).position(|other| other.parent == Some(BodyId(index)));
+        let next = next.map(|next| placements[index + next].origin);
         let com = body.inertia.as_ref().map(|inertia| mass::Lump::of(inertia, parameters).com);
         [next, com].into_iter().flatten().find(|end| rotation::length(*end) > SHORTEST_BAR)
     };

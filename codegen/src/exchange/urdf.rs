@@ -4,7 +4,7 @@ use super::mass::Lump;
 use super::rotation::{along_z, length, roll_pitch_yaw};
 use super::xml::{Xml, number_text, numbers};
 use super::{RADIUS, approximations, bars, hinged, origin, placements};
-use crate::chain::{Chain, CoordinateKind, Frame, Step, Vector};
+use crate::chain::{BodyId, Chain, CoordinateKind, Frame, Step, Vector};
 
 /// URDF requires limits for joints that are not `continuous`, which would have two coordinates in Pinocchio. The crane has no
 /// limits: this value is used for positions (rad or m), velocities (rad/s or m/s) and efforts (N m or N).
@@ -30,8 +30,8 @@ pub fn urdf(chain: &Chain, parameters: &[f64]) -> String {
     let ground = if taken { format!("{WORLD}_0") } else { WORLD.to_owned() };
     xml.leaf("link", &[("name", ground.clone())]);
     let bars = bars(chain, &placements(chain, parameters), parameters);
-    let mut parent = ground;
     for (body, bar) in chain.bodies.iter().zip(bars) {
+        let mut parent = body.parent.map_or(&ground, |BodyId(parent)| &chain.bodies[parent].name).clone();
         let mut placement = Frame::WORLD;
         let path = hinged(&body.path);
         for (index, step) in path.iter().enumerate() {
@@ -53,7 +53,6 @@ pub fn urdf(chain: &Chain, parameters: &[f64]) -> String {
         }
         if parent != body.name {
             joint(&mut xml, &format!("{}_mount", body.name), (&parent, &body.name), &placement, None);
-            parent.clone_from(&body.name);
         }
         let mass = body.inertia.as_ref().map(|inertia| Lump::of(inertia, parameters));
         link(&mut xml, &body.name, mass.as_ref(), bar);

@@ -268,6 +268,21 @@ impl<'g> Articulated<'g> {
     }
 }
 
+impl Add for Articulated<'_> {
+    type Output = Self;
+
+    /// What two parts attached at the same frame require together.
+    fn add(self, other: Self) -> Self {
+        Articulated {
+            rotational: self.rotational + other.rotational,
+            coupling: self.coupling + other.coupling,
+            translational: self.translational + other.translational,
+            moment: self.moment + other.moment,
+            force: self.force + other.force,
+        }
+    }
+}
+
 impl<'g> Reaction<'g> {
     /// τ from the accelerations before the joint's own motion.
     pub fn effort(&self, angular: Vec3<'g>, linear: Vec3<'g>) -> Expr<'g> {

@@ -33,7 +33,7 @@ use super::kinematics::Kinematics;
 use super::model::Model;
 use super::place::Place;
 use super::vector::{SymmetricMatrix, Vec3};
-use crate::chain::{BodyId, Cylinder, Linkage, Pin, Value};
+use crate::chain::{Body, BodyId, CoordinateId, Cylinder, Linkage, Pin, Value};
 use crate::symbolic::Expr;
 
 /// A point on which the length of a cylinder depends.
@@ -143,18 +143,22 @@ impl<'g> Line<'g> {
     /// Indices and values of the entries of `∂ℓ/∂q`: the rate of ℓ while a coordinate moves the side of the head against the other, which
     /// is the opposite of that while it moves the other side.
     fn jacobian(&self, model: &Model<'g>, kinematics: &Kinematics<'g>, cylinder: &Cylinder) -> Vec<(usize, Expr<'g>)> {
-        let (joint, head_beyond) = (cylinder.coordinate.0, cylinder.head.body > cylinder.foot.body);
-        let entry = |j: usize| {
+        let joint = cylinder.coordinate;
+        let of_joint = model.chain.coordinates[joint.0].body;
+        let entry = |id: CoordinateId| {
+            let CoordinateId(j) = id;
             let generator = &kinematics.generators[j];
-            let moves = |body: BodyId| body.0 >= generator.body;
+            let moves = |body: BodyId| model.chain.moves(id, body);
             let with_head = self.points.iter().filter(|point| moves(point.place.body) == moves(cylinder.head.body));
             let of_points = with_head.map(|point| point.gradient.dot(generator.velocity(point.position)));
-            let turns_axis = if head_beyond { j < joint } else { j > joint };
+            // The joint's own motion leaves its axis in place, and so do those after it.
+            let moves_axis = id < joint && moves(of_joint);
+            let turns_axis = id != joint && moves_axis == moves(cylinder.head.body);
             let of_axis = self.axis.filter(|_| turns_axis).map(|[axis, by_axis]| by_axis.dot(generator.rotate(axis)));
             let rate = of_points.chain(of_axis).fold(model.zero(), |sum, rate| sum + rate);
             (j, if moves(cylinder.head.body) { rate } else { -rate })
         };
-        model.chain.spanned_by(cylinder).map(entry).collect()
+        model.chain.spanned_by(cylinder).into_iter().map(entry).collect()
     }
 }
 
@@ -162,7 +166,7 @@ impl<'g> Line<'g> {
 fn lines<'g, 'a>(model: &'a Model<'g>) -> impl Iterator<Item = (&'a Cylinder, Expr<'g>, Vec<(usize, Expr<'g>)>)> {
     let cylinders = &model.chain.cylinders;
     let mut q = model.zeros();
-    for j in cylinders.iter().flat_map(|cylinder| model.chain.spanned_by(cylinder)) {
+    for CoordinateId(j) in cylinders.iter().flat_map(|cylinder| model.chain.spanned_by(cylinder)) {
         q[j] = model.q[j];
     }
     let model = model.at(q);
@@ -208,11 +212,13 @@ pub fn pushes<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, cylinder: &Cyl
     let line = Line::new(model, kinematics, cylinder);
     let at = |point: &Point<'g>| (point.place.clone(), [point.gradient, point.position.cross(point.gradient)]);
     // The joint leaves its axis in place, seen from both of its sides: that on which the head is not. On the body before it, it is at the end.
-    let beyond = kinematics.generators[cylinder.coordinate.0].body;
-    let carrier = if cylinder.head.body > cylinder.foot.body {
-        Place { body: BodyId(beyond - 1), along: model.chain.bodies[beyond - 1].length.clone() }
-    } else {
-        Place { body: BodyId(beyond), along: Value::ZERO }
+    let beyond = model.chain.coordinates[cylinder.coordinate.0].body;
+    let Body { parent, along, .. } = &model.chain.bodies[beyond.0];
+    let carrier = match parent {
+        Some(parent) if model.chain.moves(cylinder.coordinate, cylinder.head.body) => {
+            Place { body: *parent, along: along.clone() }
+        }
+        _ => Place { body: beyond, along: Value::ZERO },
     };
     let on_carrier = line.axis.map(|[axis, by_axis]| (carrier, [Vec3::zero(model.graph), axis.cross(by_axis)]));
     line.points.iter().map(at).chain(on_carrier).collect()
@@ -251,6 +257,6 @@ pub fn holding_forces<'g>(model: &Model<'g>, positions: &[Expr<'g>]) -> Vec<Expr
 /// Adds `−∂f/∂q` of the forces that hold the crane at rest.
 pub fn holding_stiffness<'g>(model: &Model<'g>, positions: &[Expr<'g>], matrix: &mut SymmetricMatrix<'g>) {
     let held = model.chain.cylinders.iter().filter(|cylinder| holding(model, cylinder).is_some());
-    let spanned = held.flat_map(|cylinder| model.chain.spanned_by(cylinder)).collect();
+    let spanned = held.flat_map(|cylinder| model.chain.spanned_by(cylinder)).map(|CoordinateId(j)| j).collect();
     model.add_tangent(&holding_forces(model, positions), &spanned, matrix);
 }

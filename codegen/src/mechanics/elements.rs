@@ -8,7 +8,7 @@ use super::laws::{At, Law, law};
 use super::model::Model;
 use super::strains::Strained;
 use super::vector::SymmetricMatrix;
-use crate::chain::{Force, Group};
+use crate::chain::{CoordinateId, Force, Group};
 use crate::symbolic::Expr;
 
 /// The forces of a group.
@@ -84,8 +84,9 @@ impl<'g> Acts<'g> for Elements<'_, 'g> {
             }
             return;
         }
-        let reach = self.forces.iter().map(|force| model.chain.spanned(&force.strain)[1]).max().unwrap_or(0);
-        model.add_tangent(&self.at_rest(rest), &(0..reach).collect::<BTreeSet<_>>(), matrix);
+        let read: BTreeSet<usize> =
+            self.forces.iter().flat_map(|force| model.chain.read_by(&force.strain)).map(|CoordinateId(j)| j).collect();
+        model.add_tangent(&self.at_rest(rest), &read, matrix);
     }
 
     fn add_damping(&self, rest: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>) {

@@ -1,13 +1,16 @@
-//! The chain from the base to the tip as a sequence of factors: constant placements, joints, bodies.
+//! The chain from the base to the tips as a sequence of factors: constant placements, joints, bodies.
+//!
+//! Where a branch begins, the sequence continues from a body that was reached before. An outward sweep takes the state up again that it had
+//! there ([`Reached`]); an inward sweep adds what the branch brings when it arrives at that body ([`Branches`]).
 
-use crate::chain::{Axis, CoordinateKind, Step};
+use crate::chain::{Axis, BodyId, CoordinateKind, Step};
 
 use super::axis_rotation::AxisRotation;
 use super::model::Model;
 use super::rotation_vector::RotationVector;
 use super::vector::Vec3;
 
-/// One factor of the chain from the base to the tip.
+/// One factor of the chain from the base to the tips.
 #[derive(Clone, Debug)]
 pub enum Factor<'g> {
     /// Constant translation.
@@ -24,12 +27,55 @@ pub enum Factor<'g> {
     RotationVector { j: usize, vector: Box<RotationVector<'g>> },
     /// The frame reached is that of a body.
     Body(usize),
+    /// The factors that follow, up to the next branch, begin at the frame of this body: a branch.
+    Branch(usize),
+}
+
+/// The states of an outward sweep at the bodies that it has reached.
+#[derive(Debug)]
+pub struct Reached<S>(Vec<S>);
+
+impl<S: Copy> Reached<S> {
+    /// None so far.
+    pub fn new() -> Self {
+        Reached(Vec::new())
+    }
+
+    /// At the frame of a body, notes the state; at the beginning of a branch, takes up that of its body.
+    pub fn follow(&mut self, factor: &Factor<'_>, state: &mut S) {
+        match factor {
+            Factor::Body(_) => self.0.push(*state),
+            Factor::Branch(from) => *state = self.0[*from],
+            _ => {}
+        }
+    }
+}
+
+/// What an inward sweep brings from branches to the bodies at which they begin.
+#[derive(Debug)]
+pub struct Branches<T>(Vec<Vec<T>>);
+
+impl<T> Branches<T> {
+    /// None so far.
+    pub fn new(model: &Model<'_>) -> Self {
+        Branches(model.chain.bodies.iter().map(|_| Vec::new()).collect())
+    }
+
+    /// The sweep has passed a branch that begins at a body.
+    pub fn bring(&mut self, to: usize, what: T) {
+        self.0[to].push(what);
+    }
+
+    /// The sweep reaches a body: what all branches that begin at it bring.
+    pub fn take(&mut self, at: usize) -> Vec<T> {
+        std::mem::take(&mut self.0[at])
+    }
 }
 
 impl<'g> Factor<'g> {
     /// Whether it depends on coordinates.
     pub fn moves(&self) -> bool {
-        !matches!(self, Factor::Translate(_) | Factor::Rotation(_) | Factor::Body(_))
+        !matches!(self, Factor::Translate(_) | Factor::Rotation(_) | Factor::Body(_) | Factor::Branch(_))
     }
 
     /// Its elementary rotations, from the base to the tip, with their coordinates.
@@ -40,15 +86,22 @@ impl<'g> Factor<'g> {
             Factor::Ball { j, rotations } => {
                 rotations.iter().enumerate().map(|(k, rotation)| (Some(j + k), *rotation)).collect()
             }
-            Factor::Translate(_) | Factor::Prismatic { .. } | Factor::RotationVector { .. } | Factor::Body(_) => vec![],
+            Factor::Translate(_)
+            | Factor::Prismatic { .. }
+            | Factor::RotationVector { .. }
+            | Factor::Body(_)
+            | Factor::Branch(_) => vec![],
         }
     }
 }
 
-/// The factors of a chain, from the base to the tip.
+/// The factors of a chain, from the base to the tips.
 pub fn factors<'g>(model: &Model<'g>) -> Vec<Factor<'g>> {
     let mut factors = Vec::new();
     for (index, body) in model.chain.bodies.iter().enumerate() {
+        if model.chain.begins_branch(BodyId(index)) {
+            factors.extend(body.parent.map(|BodyId(parent)| Factor::Branch(parent)));
+        }
         let mut path = body.path.as_slice();
         while let Some((step, rest)) = path.split_first() {
             path = rest;

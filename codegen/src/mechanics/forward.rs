@@ -9,7 +9,7 @@
 
 use super::articulated::{Articulated, BallResponse, Effort, Reaction, Response};
 use super::axis_rotation::AxisRotation;
-use super::factors::Factor;
+use super::factors::{Branches, Factor, Reached};
 use super::model::Model;
 use super::outward::{Velocities, velocities};
 use super::rotation_vector::RotationVector;
@@ -54,7 +54,7 @@ pub fn hybrid_dynamics<'g>(model: &Model<'g>, factors: &[Factor<'g>], inputs: &F
     outward(model, factors, &velocities, &joints, (Vec3::zero(model.graph), -inputs.gravity))
 }
 
-/// Articulated inertias from tip to base, and the remaining inertia at the base.
+/// Articulated inertias from the tips to the base, and the remaining inertia at the base.
 pub(super) fn inward<'g>(
     model: &Model<'g>,
     factors: &[Factor<'g>],
@@ -63,6 +63,7 @@ pub(super) fn inward<'g>(
     prescribed: &[Option<Expr<'g>>],
 ) -> (Vec<Joint<'g>>, Articulated<'g>) {
     let mut articulated = Articulated::zero(model.graph);
+    let mut branches = Branches::new(model);
     let sweep = model.graph.sweep();
     let mut joints: Vec<Joint<'g>> = factors
         .iter()
@@ -72,12 +73,19 @@ pub(super) fn inward<'g>(
             (Factor::Body(index), Velocities::Body { omega }) => {
                 let body = &model.chain.bodies[*index];
                 sweep.visit(&body.name);
+                for branch in branches.take(*index) {
+                    articulated = articulated + branch;
+                }
                 if let Some(inertia) = &body.inertia {
                     let second = model.second_moments(inertia);
                     let (mass, first) = (model.number(&inertia.mass), model.vector(&inertia.first));
                     articulated.add_body(mass, first, second.tensor(), *omega);
                     articulated.named(&body.name);
                 }
+                Joint::None
+            }
+            (Factor::Branch(from), _) => {
+                branches.bring(*from, std::mem::replace(&mut articulated, Articulated::zero(model.graph)));
                 Joint::None
             }
             (Factor::Rotation(rotation), _) => {
@@ -129,7 +137,7 @@ pub(super) fn inward<'g>(
     (joints, articulated)
 }
 
-/// Accelerations from base to tip; `start` contains the angular and linear accelerations before the first factor.
+/// Accelerations from the base to the tips; `start` contains the angular and linear accelerations before the first factor.
 pub(super) fn outward<'g>(
     model: &Model<'g>,
     factors: &[Factor<'g>],
@@ -139,6 +147,7 @@ pub(super) fn outward<'g>(
 ) -> Motion<'g> {
     let (mut angular, mut linear) = start;
     let (mut accelerations, mut efforts) = (model.zeros(), model.zeros());
+    let mut reached = Reached::new();
     let sweep = model.graph.sweep();
     for ((factor, velocity), joint) in factors.iter().zip(velocities).zip(joints) {
         if let Velocities::Translation { by, acceleration } = velocity {
@@ -179,6 +188,9 @@ pub(super) fn outward<'g>(
             }
             _ => {}
         }
+        let mut state = (angular, linear);
+        reached.follow(factor, &mut state);
+        (angular, linear) = state;
     }
     for (acceleration, coordinate) in accelerations.iter().zip(&model.chain.coordinates) {
         model.graph.name(*acceleration, format!("{}_ddot", coordinate.name));

@@ -4,6 +4,7 @@ use super::inertia::Inertias;
 use super::kinematics::{Curvature, Kinematics};
 use super::model::Model;
 use super::vector::SymmetricMatrix;
+use crate::chain::{BodyId, CoordinateId};
 use crate::symbolic::Expr;
 
 /// `E_g = −Σ γ · ∫ x dm` [Urbaś 2016, Eq. (6), with `T r_C`].
@@ -25,7 +26,7 @@ pub fn gradient<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, inertias: &I
         .collect()
 }
 
-/// `∂²E_g/∂q_i∂q_j = −γ · Ω_i Ω_j s_j`, i ≤ j, and the contribution of curvatures.
+/// `∂²E_g/∂q_i∂q_j = −γ · Ω_i Ω_j s_j`, i ≤ j on the path of j, and the contribution of curvatures.
 pub fn stiffness<'g>(
     model: &Model<'g>,
     kinematics: &Kinematics<'g>,
@@ -37,8 +38,8 @@ pub fn stiffness<'g>(
         let composite = &inertias.composites[moving.body];
         // γ · (ω_i × u) = ω_i · (u × γ)
         let torque = composite.linear_momentum(moving.omega, moving.upsilon).cross(gravity);
-        for (i, before) in kinematics.generators[..=j].iter().enumerate() {
-            matrix.add(i, j, -before.omega.dot(torque));
+        for CoordinateId(i) in model.chain.coordinates_of(BodyId(moving.body)).into_iter().filter(|i| i.0 <= j) {
+            matrix.add(i, j, -kinematics.generators[i].omega.dot(torque));
         }
     }
     for curvature in &kinematics.curvatures {

@@ -4,7 +4,7 @@
 //! numbers of W are stored as the mass, the first moments `s = ∫ x dm` and, for the second moments `Σ = ∫ x xᵀ dm`, the inertia
 //! tensor `I = tr(Σ) 1 − Σ`, all about the world's origin.
 
-use crate::chain::Inertia;
+use crate::chain::{BodyId, Inertia};
 
 use super::kinematics::{Kinematics, Pose};
 use super::model::Model;
@@ -41,7 +41,7 @@ impl<'g> WorldInertia<'g> {
     }
 }
 
-/// World pseudo-inertias of the bodies (`None` for massless frames), and the composites from each body to the tip.
+/// World pseudo-inertias of the bodies (`None` for massless frames), and the composites of each body and everything beyond it.
 pub struct Inertias<'g> {
     pub bodies: Vec<Option<WorldInertia<'g>>>,
     pub composites: Vec<WorldInertia<'g>>,
@@ -57,18 +57,22 @@ impl<'g> Inertias<'g> {
             .map(|(body, pose)| Some(world_inertia(model, body.inertia.as_ref()?, pose, &body.name)))
             .collect();
         let zero = model.zero();
-        let mut sum = WorldInertia { mass: zero, first: Vec3([zero; 3]), tensor: Symmetric3([zero; 6]) };
-        let mut composites = Vec::new();
-        for (inertia, body) in bodies.iter().zip(&model.chain.bodies).rev() {
+        let nothing = WorldInertia { mass: zero, first: Vec3([zero; 3]), tensor: Symmetric3([zero; 6]) };
+        // What is beyond each body, while its children are added.
+        let mut composites: Vec<Option<WorldInertia<'g>>> = vec![None; bodies.len()];
+        for (index, (inertia, body)) in bodies.iter().zip(&model.chain.bodies).enumerate().rev() {
+            let mut sum = composites[index].unwrap_or(nothing);
             if let Some(inertia) = inertia {
                 sum = sum.plus(*inertia);
                 sum.first.named(&format!("first_from_{}", body.name));
                 sum.tensor.named(&format!("inertia_from_{}", body.name));
             }
-            composites.push(sum);
+            composites[index] = Some(sum);
+            if let Some(BodyId(parent)) = body.parent {
+                composites[parent] = Some(composites[parent].map_or(sum, |others| others.plus(sum)));
+            }
         }
-        composites.reverse();
-        Inertias { bodies, composites }
+        Inertias { bodies, composites: composites.into_iter().map(|composite| composite.unwrap_or(nothing)).collect() }
     }
 }
 

@@ -1,4 +1,4 @@
-//! Poses of bodies and axes of motion, in one pass along the chain.
+//! Poses of bodies and axes of motion, in one pass from the base to the tips.
 //!
 //! Notation
 //! : `T(p)` pose of body p in the world; `R`, `r` its rotation and origin. For coordinate j the generator in the world
@@ -9,11 +9,11 @@
 //! : paths of the bodies, q.
 //!
 //! Output
-//! : `T(p) = T(p−1) T̃(p)` [Urbaś 2016, Eq. (3)], and Ω_j, with which `∂T/∂q_j = Ω_j T`. Second derivatives are
+//! : `T(p) = T(λ(p)) T̃(p)`, λ(p) the body to which p is attached [Urbaś 2016, Eq. (3), where it is p − 1], and Ω_j, with which `∂T/∂q_j = Ω_j T`. Second derivatives are
 //!   `∂²T/∂q_m∂q_n = Ω_m Ω_n T`, m ≤ n; for two coordinates of one rotation vector, each of whose axes depends on the other
 //!   coordinate, with an additional rotation about the same point ([`Curvature`]).
 
-use crate::chain::{CoordinateId, CoordinateKind, Step};
+use crate::chain::{BodyId, CoordinateId, CoordinateKind, Step};
 use crate::symbolic::Expr;
 
 use super::axis_rotation::AxisRotation;
@@ -114,9 +114,10 @@ pub struct Kinematics<'g> {
 
 impl<'g> Kinematics<'g> {
     pub fn new(model: &Model<'g>) -> Self {
-        let mut pose = Pose { rotation: Rotation::identity(model.graph), origin: Vec3::zero(model.graph) };
-        let (mut poses, mut generators, mut curvatures) = (Vec::new(), Vec::new(), Vec::new());
+        let world = Pose { rotation: Rotation::identity(model.graph), origin: Vec3::zero(model.graph) };
+        let (mut poses, mut generators, mut curvatures): (Vec<Pose<'g>>, _, _) = (Vec::new(), Vec::new(), Vec::new());
         for (index, body) in model.chain.bodies.iter().enumerate() {
+            let mut pose = body.parent.map_or(world, |BodyId(parent)| poses[parent]);
             for step in &body.path {
                 match step {
                     Step::Translate(by) => pose.origin = pose.origin + pose.rotation.apply(model.vector(by)),

@@ -11,7 +11,7 @@ use super::place::Place;
 use super::profile;
 use super::twist::Twist;
 use super::vector::{SymmetricMatrix, Vec3};
-use crate::chain::{BodyId, Load, LoadAxes, Profile, Value};
+use crate::chain::{BodyId, CoordinateId, Load, LoadAxes, Profile, Value};
 use crate::symbolic::Expr;
 
 /// The loads of a chain.
@@ -77,9 +77,9 @@ fn forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, t: Expr<'g>) -> Ve
     let mut forces = model.zeros();
     for load in &model.chain.loads {
         let Applied { at, force, moment } = applied(model, kinematics, load, t);
-        let moving = kinematics.generators.iter().take(model.chain.degrees_of_freedom(load.body));
-        for (sum, generator) in forces.iter_mut().zip(moving) {
-            *sum = *sum + (force.dot(generator.velocity(at)) + moment.dot(generator.omega));
+        for CoordinateId(j) in model.chain.coordinates_of(load.body) {
+            let generator = &kinematics.generators[j];
+            forces[j] = forces[j] + (force.dot(generator.velocity(at)) + moment.dot(generator.omega));
         }
     }
     forces

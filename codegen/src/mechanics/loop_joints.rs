@@ -17,11 +17,11 @@
 //! λ are the forces and moments that the second body exerts on the first, along the directions of the equations: the generalized forces
 //! are `f = −Jᵀ λ`.
 
-use super::kinematics::{Generator, Kinematics, Pose};
+use super::kinematics::{Curvature, Generator, Kinematics, Pose};
 use super::model::Model;
 use super::place::Place;
 use super::vector::{Rotation, Vec3};
-use crate::chain::{Across, Attachment, BodyId, LoopJoint, LoopJointKind, Vector};
+use crate::chain::{Across, Attachment, BodyId, CoordinateId, LoopJoint, LoopJointKind, Vector};
 use crate::symbolic::Expr;
 
 /// An equation of a joint.
@@ -84,9 +84,9 @@ struct Closed<'g> {
 impl<'g> Closed<'g> {
     /// Coordinates that move both bodies or none do not matter and are at zero.
     fn new(model: &Model<'g>, joint: &LoopJoint) -> Self {
-        let [first, end] = model.chain.closed_by(joint);
+        let closed_by = model.chain.closed_by(joint);
         let mut model = model.clone();
-        for j in (0..model.size()).filter(|j| !(first..end).contains(j)) {
+        for j in (0..model.size()).filter(|j| !closed_by.contains(&CoordinateId(*j))) {
             (model.q[j], model.v[j]) = (model.zero(), model.zero());
         }
         let kinematics = Kinematics::new(&model);
@@ -156,9 +156,15 @@ struct Bodies<'a, 'g> {
 type Moves<'a, 'g> = &'a dyn Fn(&Generator<'g>) -> Vec3<'g>;
 
 impl<'g> Bodies<'_, 'g> {
+    /// The coordinates that move one of the bodies.
+    fn reach(&self, end: usize) -> Vec<CoordinateId> {
+        self.model.chain.reach(&self.joint.ends[end])
+    }
+
     /// The generators of the coordinates that move one of the bodies, in order.
     fn moving(&self, end: usize) -> impl DoubleEndedIterator<Item = (usize, &Generator<'g>)> {
-        self.kinematics.generators.iter().enumerate().take(self.model.chain.reach(&self.joint.ends[end]))
+        let generators = &self.kinematics.generators;
+        self.reach(end).into_iter().map(|CoordinateId(j)| (j, &generators[j]))
     }
 
     /// A vector of the second body as seen from the first.
@@ -172,15 +178,17 @@ impl<'g> Bodies<'_, 'g> {
         for (j, generator) in self.moving(0) {
             by_coordinate[j] = by_coordinate[j] - moves(generator);
         }
-        let [first, last] = self.model.chain.closed_by(self.joint);
-        let between = first..last;
-        let rate = between.clone().fold(zero, |sum, j| sum + v[j] * by_coordinate[j]);
+        let between = self.model.chain.closed_by(self.joint);
+        let rate = between.iter().fold(zero, |sum, &CoordinateId(j)| sum + v[j] * by_coordinate[j]);
         let turning = self.moving(0).fold(zero, |sum, (j, generator)| sum + v[j] * generator.omega);
         let coriolis = turning.cross(rate);
         let second = self.second_rate(1, moves) - self.second_rate(0, moves) - (coriolis + coriolis);
         Moving {
             motion: [value, rate, second].map(|vector| frame.apply_transposed(vector)),
-            slopes: between.map(|j| (j, frame.apply_transposed(by_coordinate[j]))).collect(),
+            slopes: between
+                .into_iter()
+                .map(|CoordinateId(j)| (j, frame.apply_transposed(by_coordinate[j])))
+                .collect(),
         }
     }
 
@@ -194,9 +202,10 @@ impl<'g> Bodies<'_, 'g> {
             sum = sum + v[j] * generator.omega.cross(own + beyond + beyond);
             beyond = beyond + own;
         }
-        let reach = self.model.chain.reach(&self.joint.ends[end]);
-        for curvature in self.kinematics.curvatures.iter().filter(|curvature| curvature.first < reach) {
-            for pair @ (m, n) in super::kinematics::Curvature::PAIRS {
+        let reach = self.reach(end);
+        let moves_it = |curvature: &&Curvature<'g>| reach.contains(&CoordinateId(curvature.first));
+        for curvature in self.kinematics.curvatures.iter().filter(moves_it) {
+            for pair @ (m, n) in Curvature::PAIRS {
                 let rates = v[curvature.first + m] * v[curvature.first + n];
                 let share = if m == n { rates } else { 2.0 * rates };
                 sum = sum + share * moves(&curvature.generator(pair));

@@ -3,7 +3,7 @@
 //! J. Y. S. Luh, M. W. Walker, R. P. C. Paul, J. Dyn. Syst. Meas. Control 102 (1980) 69. At q̈ = 0 the efforts are the bias; at
 //! any q̈ the forces and moments of the inward sweep are those that the crane transmits.
 
-use super::factors::Factor;
+use super::factors::{Branches, Factor, Reached};
 use super::kinematics::Kinematics;
 use super::loads::{self, Action};
 use super::model::Model;
@@ -65,26 +65,29 @@ fn at_cuts<'g>(
             let BodyId(body) = section.body;
             let reached = |factor: &Factor<'g>| matches!(factor, Factor::Body(index) if *index == body);
             let motion = factors.iter().zip(motions).find(|(factor, _)| reached(factor)).map(|(_, motion)| motion);
-            within(model, section, (swept.beyond[body], motion?), &applied[body])
+            within(model, section, (swept.beyond[body], motion?), [&swept.branches[body], &applied[body]])
         }
     });
     wrenches.flatten().flat_map(|vector| vector.0).collect()
 }
 
-/// The wrench that a section within a body transmits, about its centre: what is beyond the body, the inertia and weight of the part of the
-/// body beyond the section, and what acts on that part.
+/// The wrench that a section within a body transmits, about its centre: what is beyond the body, the branches that begin beyond the section,
+/// the inertia and weight of the part of the body beyond the section, and what acts on that part.
 fn within<'g>(
     model: &Model<'g>,
     section: &Section,
     (beyond, motion): (Option<Wrench<'g>>, &Motion<'g>),
-    applied: &[Action<'g>],
+    [branches, applied]: [&[Action<'g>]; 2],
 ) -> Option<Wrench<'g>> {
     let ([mut force, mut moment], inside) = (beyond?, section.inside.as_ref()?);
     let Velocities::Body { omega } = &motion.velocities else { return None };
+    let sum_beyond =
+        |actions: &[Action<'g>]| loads::sum(actions.iter().filter(|action| acts_beyond(model, section, action)));
+    if let Some([more, more_moment]) = sum_beyond(branches) {
+        (force, moment) = (force + more, moment + more_moment);
+    }
     [force, moment] = with_inertia(model, [force, moment], &inside.beyond, *omega, (motion.alpha, motion.a));
-    if let Some([load, moment_of_load]) =
-        loads::sum(applied.iter().filter(|action| acts_beyond(model, section, action)))
-    {
+    if let Some([load, moment_of_load]) = sum_beyond(applied) {
         (force, moment) = (force - load, moment - moment_of_load);
     }
     let lever = Vec3::along(Axis::X, model.number(&inside.distance));
@@ -117,6 +120,11 @@ fn with_inertia<'g>(
     ]
 }
 
+/// A wrench about a body's origin, plus what branches require.
+fn with_branches<'g>(own: Wrench<'g>, branches: &[Action<'g>]) -> Wrench<'g> {
+    branches.iter().fold(own, |[force, moment], branch| [force + branch.wrench[0], moment + branch.wrench[1]])
+}
+
 /// The motion of the frame after one factor.
 struct Motion<'g> {
     velocities: Velocities<'g>,
@@ -126,7 +134,7 @@ struct Motion<'g> {
     a: Vec3<'g>,
 }
 
-/// From base to tip: ω, α and a of each frame, the base accelerated by `start`. In one sweep the three chains of dependent operations are
+/// From the base to the tips: ω, α and a of each frame, the base accelerated by `start`. In one sweep the three chains of dependent operations are
 /// interleaved.
 fn outward<'g>(
     model: &Model<'g>,
@@ -136,6 +144,7 @@ fn outward<'g>(
 ) -> Vec<Motion<'g>> {
     let zero = Vec3::zero(model.graph);
     let (mut omega, mut alpha, mut a) = (zero, zero, start);
+    let mut reached = Reached::new();
     let own = |vector: Vec3<'g>, own: &dyn Fn(&[Expr<'g>]) -> Vec3<'g>| match accelerations {
         Some(accelerations) => vector + own(accelerations),
         None => vector,
@@ -171,6 +180,9 @@ fn outward<'g>(
             (Factor::Body(index), _) => sweep.leave(&model.chain.bodies[*index].name),
             _ => {}
         }
+        let mut state = [omega, alpha, a];
+        reached.follow(factor, &mut state);
+        [omega, alpha, a] = state;
         motions.push(Motion { velocities, alpha, a });
     }
     motions
@@ -187,13 +199,15 @@ struct Inward<'g> {
     joints: Vec<Option<Wrench<'g>>>,
     /// The wrench recorded for each body in its own frame.
     bodies: Vec<Option<Wrench<'g>>>,
-    /// What everything beyond a body requires, in the body's frame.
+    /// What everything attached to the end of a body requires, in the body's frame.
     beyond: Vec<Option<Wrench<'g>>>,
+    /// What each branch that begins at a body requires, in the body's frame.
+    branches: Vec<Vec<Action<'g>>>,
     /// The wrench recorded in the world frame.
     ground: Option<Wrench<'g>>,
 }
 
-/// From tip to base: the force and moment that each frame requires, minus the loads `applied` to the bodies. `note` converts them to
+/// From the tips to the base: the force and moment that each frame requires, minus the loads `applied` to the bodies. `note` converts them to
 /// the wrench recorded at each cut.
 fn inward<'g>(
     model: &Model<'g>,
@@ -207,6 +221,8 @@ fn inward<'g>(
     let mut bias = model.zeros();
     let mut joints = vec![None; model.chain.bodies.len()];
     let (mut bodies, mut beyond) = (joints.clone(), joints.clone());
+    let mut branches = Branches::new(model);
+    let mut at_bodies = vec![Vec::new(); model.chain.bodies.len()];
     // The body whose path the sweep follows.
     let mut on = 0;
     let sweep = model.graph.sweep();
@@ -218,7 +234,12 @@ fn inward<'g>(
             (Factor::Body(index), Velocities::Body { omega }) => {
                 let body = &model.chain.bodies[*index];
                 sweep.visit(&body.name);
+                let (at_end, elsewhere): (Vec<_>, Vec<_>) =
+                    branches.take(*index).into_iter().partition(|branch: &Action<'g>| branch.along == body.length);
+                [force, moment] = with_branches([force, moment], &at_end);
                 beyond[*index] = Some([force, moment]);
+                [force, moment] = with_branches([force, moment], &elsewhere);
+                at_bodies[*index] = elsewhere;
                 if let Some(inertia) = &body.inertia {
                     [force, moment] = with_inertia(model, [force, moment], inertia, *omega, (*alpha, *a));
                     force.named(&format!("force_{}", body.name));
@@ -230,6 +251,10 @@ fn inward<'g>(
                 }
                 on = *index;
                 bodies[on] = note(force, moment);
+            }
+            (Factor::Branch(from), _) => {
+                branches.bring(*from, Action { along: model.chain.bodies[on].along.clone(), wrench: [force, moment] });
+                (force, moment) = (zero, zero);
             }
             (Factor::Rotation(_) | Factor::Revolute { .. } | Factor::Ball { .. }, _) => {
                 for (j, rotation) in factor.rotations().into_iter().rev() {
@@ -257,5 +282,5 @@ fn inward<'g>(
             _ => {}
         }
     }
-    Inward { bias, joints, bodies, beyond, ground: note(force, moment) }
+    Inward { bias, joints, bodies, beyond, branches: at_bodies, ground: note(force, moment) }
 }

@@ -1,4 +1,4 @@
-//! The first sweep of every recursion along the chain: from base to tip, in local frames.
+//! The first sweep of every recursion along the chain: from the base to the tips, in local frames.
 //!
 //! Notation
 //! : `ω` angular velocity of the frame reached, `a` acceleration of its origin, `α` its angular acceleration, all in
@@ -10,7 +10,7 @@
 //!   `e q̈ + 2 ω × e q̇` in addition where d changes.
 
 use super::axis_rotation::AxisRotation;
-use super::factors::Factor;
+use super::factors::{Factor, Reached};
 use super::model::Model;
 use super::vector::Vec3;
 use crate::symbolic::Expr;
@@ -30,16 +30,20 @@ pub enum Velocities<'g> {
     Rotation,
     /// The frame of a body, with its angular velocity.
     Body { omega: Vec3<'g> },
+    /// The beginning of a branch.
+    Branch,
 }
 
 /// Sweeps outward along `factors` with the velocities `v`, the base at rest.
 pub fn velocities<'g>(model: &Model<'g>, factors: &[Factor<'g>], v: &[Expr<'g>]) -> Vec<Velocities<'g>> {
     let mut omega = Vec3::zero(model.graph);
+    let mut reached = Reached::new();
     let sweep = model.graph.sweep();
     factors
         .iter()
         .map(|factor| {
             let velocities = along(model, &mut omega, factor, v);
+            reached.follow(factor, &mut omega);
             if let Factor::Body(index) = factor {
                 sweep.leave(&model.chain.bodies[*index].name);
             }
@@ -48,7 +52,7 @@ pub fn velocities<'g>(model: &Model<'g>, factors: &[Factor<'g>], v: &[Expr<'g>])
         .collect()
 }
 
-/// Transforms ω across one factor.
+/// Transforms ω across one factor; at a branch, it stays.
 pub fn along<'g>(model: &Model<'g>, omega: &mut Vec3<'g>, factor: &Factor<'g>, v: &[Expr<'g>]) -> Velocities<'g> {
     let mut rotate = |rotation: &AxisRotation<'g>, rate: Expr<'g>| {
         let spin = Vec3::along(rotation.axis, rate);
@@ -81,6 +85,7 @@ pub fn along<'g>(model: &Model<'g>, omega: &mut Vec3<'g>, factor: &Factor<'g>, v
             omega.named(&format!("omega_{}", model.chain.bodies[*index].name));
             Velocities::Body { omega: *omega }
         }
+        Factor::Branch(_) => Velocities::Branch,
     }
 }
 

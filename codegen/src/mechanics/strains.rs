@@ -41,15 +41,17 @@ impl<'g> Strained<'g> {
                 Strained { length: model.q[*j], jacobian: vec![(*j, model.graph.constant(1.0))], line: None }
             }
             Strain::Distance(ends) => {
-                let [first, end] = model.chain.spanned(strain);
                 let points = ends.each_ref().map(|end| point(model, kinematics, end));
                 let way = points[1] - points[0];
                 let length = way.dot(way).sqrt();
                 let direction = (1.0 / length) * way;
-                let moves_second = model.chain.reach(&ends[1]) == end;
-                let (moved, sign) = if moves_second { (points[1], 1.0) } else { (points[0], -1.0) };
-                let column = |j: usize| (j, sign * direction.dot(kinematics.generators[j].velocity(moved)));
-                Strained { length, jacobian: (first..end).map(column).collect(), line: Some((points, direction)) }
+                let of_second = model.chain.reach(&ends[1]);
+                let column = |id: CoordinateId| {
+                    let (moved, sign) = if of_second.contains(&id) { (points[1], 1.0) } else { (points[0], -1.0) };
+                    (id.0, sign * direction.dot(kinematics.generators[id.0].velocity(moved)))
+                };
+                let jacobian = model.chain.spanned(strain).into_iter().map(column).collect();
+                Strained { length, jacobian, line: Some((points, direction)) }
             }
             Strain::Coupling { coordinate: CoordinateId(j), leader: CoordinateId(i), ratio } => {
                 let ratio = model.number(ratio);

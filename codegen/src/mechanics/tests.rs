@@ -23,6 +23,8 @@ pub(super) fn double_pendulum() -> Chain {
     let body = |i: usize, path: Vec<Step>| Body {
         name: format!("rod_{i}"),
         link: format!("rod_{i}"),
+        parent: i.checked_sub(1).map(BodyId),
+        along: Value::ZERO,
         path,
         inertia: Some(rod(MASS[i], LENGTH[i])),
         parts: vec![],

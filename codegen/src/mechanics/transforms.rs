@@ -3,7 +3,7 @@
 use super::kinematics::{Curvature, Generator, Kinematics, Pose};
 use super::model::Model;
 use super::vector::Vec3;
-use crate::chain::{BodyId, CoordinateKind};
+use crate::chain::{BodyId, CoordinateId, CoordinateKind};
 use crate::program::Shape;
 use crate::symbolic::Expr;
 
@@ -33,11 +33,11 @@ fn moved<'g>(generator: &Generator<'g>, pose: &Pose<'g>) -> [Vec3<'g>; 4] {
     [generator.rotate(x), generator.rotate(y), generator.rotate(z), generator.velocity(origin)]
 }
 
-/// `∂T(p)/∂q_j` for every body and every coordinate before it.
+/// `∂T(p)/∂q_j` for every body and every coordinate that moves it.
 pub fn derivatives<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
     let mut outputs = Vec::new();
-    for (body, count) in degrees_of_freedom(model) {
-        for j in 0..count {
+    for (body, moving) in moving(model) {
+        for j in moving {
             outputs.extend(rows(derivative(kinematics, body, j)));
         }
     }
@@ -48,14 +48,18 @@ pub fn derivatives<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Ex
 /// rustc longer than the rest of the crane.
 const MOST_PAIRS_WRITTEN_OUT: usize = 500;
 
-/// `∂²T(p)/∂q_m∂q_n = Ω_m Ω_n T(p)`, m ≤ n, for every body and every pair of coordinates before it; written out for a
+/// `∂²T(p)/∂q_m∂q_n = Ω_m Ω_n T(p)`, m ≤ n, for every body and every pair of coordinates that move it; written out for a
 /// small crane, as factors for a large one.
 pub fn second_derivatives<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> (Shape, Vec<Expr<'g>>) {
     let rotations: Vec<bool> = model.chain.coordinates.iter().map(|c| c.kind == CoordinateKind::Rotation).collect();
-    let degrees: Vec<usize> = degrees_of_freedom(model).map(|(_, count)| count).collect();
-    let pairs: usize = degrees.iter().map(|&n| (0..n).filter(|&m| rotations[m]).map(|m| n - m).sum::<usize>()).sum();
-    if pairs <= MOST_PAIRS_WRITTEN_OUT {
-        let counts = degrees.iter().map(|n| n * (n + 1) / 2).collect();
+    let moving: Vec<Vec<usize>> = moving(model).map(|(_, moving)| moving).collect();
+    let nonzero = |moving: &Vec<usize>| {
+        let places = moving.iter().enumerate().filter(|(_, m)| rotations[**m]);
+        places.map(|(place, _)| moving.len() - place).sum::<usize>()
+    };
+    let pairs: usize = moving.iter().map(nonzero).sum();
+    if pairs <= MOST_PAIRS_WRITTEN_OUT || model.chain.has_branches() {
+        let counts = moving.iter().map(|moving| moving.len() * (moving.len() + 1) / 2).collect();
         return (Shape::Transforms { counts, corner: 0 }, written_out(model, kinematics));
     }
     let mut factors: Vec<Expr<'g>> = kinematics.generators.iter().flat_map(|generator| generator.omega.0).collect();
@@ -64,17 +68,18 @@ pub fn second_derivatives<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) ->
         factors.extend(Curvature::PAIRS.into_iter().flat_map(|pair| curvature.shares(pair)));
     }
     let vectors = kinematics.curvatures.iter().map(|curvature| curvature.first).collect();
+    let degrees = moving.iter().map(Vec::len).collect();
     (Shape::TransformFactors { degrees, rotations, vectors }, factors)
 }
 
 fn written_out<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
     let mut outputs = Vec::new();
-    for (body, count) in degrees_of_freedom(model) {
-        let first: Vec<_> = (0..count).map(|j| derivative(kinematics, body, j)).collect();
-        for m in 0..count {
-            for n in m..count {
+    for (body, moving) in moving(model) {
+        let first: Vec<_> = moving.iter().map(|&j| derivative(kinematics, body, j)).collect();
+        for (place, &m) in moving.iter().enumerate() {
+            for (&n, first) in moving.iter().zip(&first).skip(place) {
                 // The columns of Ω_n T are directions, so Ω_m only rotates them.
-                let rotated = first[n].map(|column| kinematics.generators[m].rotate(column));
+                let rotated = first.map(|column| kinematics.generators[m].rotate(column));
                 let within = |curvature: &&Curvature<'g>| curvature.first <= m && n < curvature.first + 3;
                 outputs.extend(rows(match kinematics.curvatures.iter().find(within) {
                     Some(curvature) => {
@@ -90,7 +95,8 @@ fn written_out<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'
     outputs
 }
 
-/// Every body with the number of coordinates that move it.
-fn degrees_of_freedom<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (usize, usize)> + 'a {
-    (0..model.chain.bodies.len()).map(|body| (body, model.chain.degrees_of_freedom(BodyId(body))))
+/// Every body with the coordinates that move it.
+fn moving<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (usize, Vec<usize>)> + 'a {
+    let moving = |body| model.chain.coordinates_of(BodyId(body)).into_iter().map(|CoordinateId(j)| j).collect();
+    (0..model.chain.bodies.len()).map(move |body| (body, moving(body)))
 }

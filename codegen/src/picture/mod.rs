@@ -80,9 +80,10 @@ pub fn picture(chain: &Chain) -> String {
 /// Frames of all bodies, and the joints between them.
 fn poses(chain: &Chain) -> (Vec<Frame>, Vec<Joint>) {
     let defaults = chain.parameter_defaults();
-    let mut frame = Frame::WORLD;
     let mut joints = Vec::new();
-    let frames = chain.bodies.iter().map(|body| {
+    let mut frames: Vec<Frame> = Vec::new();
+    for body in &chain.bodies {
+        let mut frame = body.parent.map_or(Frame::WORLD, |BodyId(parent)| frames[parent]);
         for step in &body.path {
             for id in step.coordinates() {
                 let axis = frame.axes[chain.coordinates[id.0].axis.index()];
@@ -90,9 +91,9 @@ fn poses(chain: &Chain) -> (Vec<Frame>, Vec<Joint>) {
             }
             frame = frame.after(step, chain, &chain.guess, &defaults);
         }
-        frame
-    });
-    (frames.collect(), joints)
+        frames.push(frame);
+    }
+    (frames, joints)
 }
 
 /// The role of a coordinate, in one word.
@@ -143,13 +144,18 @@ fn places(chain: &Chain, frames: &[Frame]) -> Vec<Vector> {
 /// Lines from frame to frame; elements blue, with ticks between them.
 fn links(sheet: &mut Sheet, chain: &Chain, frames: &[Frame]) {
     let fixed = chain.base.iter().all(Option::is_none);
-    let mut from = if fixed { [0.0; 3] } else { frames.first().map_or([0.0; 3], |frame| frame.origin) };
+    let stand = if fixed { [0.0; 3] } else { frames.first().map_or([0.0; 3], |frame| frame.origin) };
+    let defaults = chain.parameter_defaults();
     for (index, (body, frame)) in chain.bodies.iter().zip(frames).enumerate() {
-        sheet.line(from, frame.origin, INK, 3.0);
-        from = frame.origin;
+        // From the axis of the body that carries it.
+        let along = |BodyId(parent): BodyId| {
+            let carrier = &chain.bodies[parent];
+            let along = if carrier.length.is_zero() { 0.0 } else { body.along.at(&defaults) };
+            frames[parent].transform_point([along, 0.0, 0.0])
+        };
+        sheet.line(body.parent.map_or(stand, along), frame.origin, INK, 3.0);
         if !body.length.is_zero() {
-            from = end(chain, index, frame);
-            sheet.line(frame.origin, from, BLUE, 7.0);
+            sheet.line(frame.origin, end(chain, index, frame), BLUE, 7.0);
             if is_inner(chain, body) {
                 let (x, y) = sheet.project(frame.origin);
                 let _ = writeln!(
@@ -159,7 +165,6 @@ fn links(sheet: &mut Sheet, chain: &Chain, frames: &[Frame]) {
             }
         }
     }
-    let defaults = chain.parameter_defaults();
     for point in &chain.points {
         let frame = &frames[point.body.0];
         sheet.line(frame.origin, frame.transform_point([0, 1, 2].map(|i| point.position[i].at(&defaults))), GREY, 1.0);

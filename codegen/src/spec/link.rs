@@ -3,16 +3,19 @@
 use schemars::{JsonSchema, Schema};
 use serde::Deserialize;
 
-use super::{AxisName, Beam, Constant, Inertia, Number, Placement, Spanned, Vector};
+use super::{AxisName, Beam, Constant, Either, Inertia, Number, On, Placement, Spanned, Vector};
 
 /// A link: its placement, its joint, and its mass: `mass`, `com` and `inertia`, or several `bodies`, or a `beam`, or
 /// a `rope`, or nothing (a massless frame).
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `name`, `placement`, `joint` and what the link carries")]
+#[serde(deny_unknown_fields, expecting = "a mapping of `name`, `on`, `placement`, `joint` and what the link carries")]
 pub struct Link {
     /// Name, a `snake_case` identifier; coordinates are named after it, such as `boom_psi`.
     pub name: Spanned<String>,
-    /// Its pose relative to the previous link. Default: the same frame.
+    /// What it is attached to: an earlier link, such as `on: column`, or with the place `on: {link: boom, at: start}`. Default: the
+    /// previous link; the first link stands on the world.
+    pub on: Option<Spanned<Either<String, On>>>,
+    /// Its pose relative to what it is attached to. Default: the same frame.
     pub placement: Option<Spanned<Placement>>,
     /// Its joint. Default `fixed`.
     pub joint: Option<Spanned<Joint>>,
@@ -24,9 +27,9 @@ pub struct Link {
     pub inertia: Option<Spanned<Inertia>>,
     /// Several bodies combined into the link.
     pub bodies: Option<Spanned<Vec<Spanned<Body>>>>,
-    /// A beam along x, of rigid finite elements; the next link is attached to its tip.
+    /// A beam along x, of rigid finite elements; other links are attached to its tip.
     pub beam: Option<Spanned<Beam>>,
-    /// A rope or chain along x, of rigid links that hang from each other; the next link, such as a hook, is attached to its end.
+    /// A rope or chain along x, of rigid links that hang from each other; other links, such as a hook, are attached to its end.
     pub rope: Option<Spanned<HangingRope>>,
 }
 

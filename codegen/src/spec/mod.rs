@@ -12,6 +12,7 @@ mod joint;
 mod link;
 mod load;
 mod loop_joint;
+mod on;
 mod placement;
 mod scalar;
 mod schema;
@@ -30,6 +31,7 @@ pub use joint::{Bristle, Friction, Stops};
 pub use link::{BaseCoordinate, Body, HangingRope, Joint, JointAxis, Link};
 pub use load::{Axes, Load};
 pub use loop_joint::{Direction, LoopJoint, LoopJointKind, LoopRod, PinAxis, SlideAxis};
+pub use on::{On, Place};
 pub use placement::{AxisName, ClassicDh, ModifiedDh, Placement, Transform, Turn};
 pub use scalar::{Angle, Constant, FixedAngle, Number, Scalar, Vector, parse_angle};
 pub use schema::json_schema;
@@ -67,7 +69,7 @@ pub(crate) struct Lookalike {
     pub known: String,
 }
 
-/// A crane: an open chain of links from the base to the tip. Every number is in SI units; the name of an entry of
+/// A crane: links attached to each other, from the base to the tips. Every number is in SI units; the name of an entry of
 /// `parameters` can replace a number, which keeps it live at run time.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of keys to values")]
@@ -95,7 +97,7 @@ pub struct Crane {
     pub inputs: Option<Spanned<Entries<Input>>>,
     /// Materials of beams, by name.
     pub materials: Option<Spanned<Entries<Material>>>,
-    /// The links in order from the base to the tip; each is attached to the previous one.
+    /// The links, from the base to the tips; each is attached to the previous one, or to the one that `on` names.
     pub links: Spanned<Vec<Spanned<Link>>>,
     /// Springs and dampers between a free base and the ground.
     pub supports: Option<Spanned<Vec<Spanned<Support>>>>,

@@ -1,11 +1,11 @@
-//! Poses of links relative to their previous links.
+//! Poses of links relative to what they are attached to.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{Angle, Many, Number, Spanned, Vector};
 
-/// Pose of a link relative to the previous one (after a beam: to its tip), exactly one of these.
+/// Pose of a link relative to the link and the place that it is attached to (after a beam: to its tip), exactly one of these.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Placement {

@@ -2,12 +2,12 @@
 
 use super::elements::WRITTEN;
 use super::limits::Limit;
+use super::on::Attached;
 use super::section::Elastic;
 use super::{Check, Owner};
 use crate::chain::{self, Axis, Chain, CoordinateKind, Force, Group, Law, Outline, Spring, Step, Value};
 use crate::diagnostic::{Span, rule};
 use crate::expand::beam::{self, Distribution, Elements, Joint, Part, RigidElement};
-use crate::expand::placement::translate;
 use crate::spec::{Beam, BeamDamping, BeamPart, Bend, Directions, Either, Number, SectionJoint, Sections, Spanned};
 
 /// Maximum number of sections of a beam.
@@ -21,13 +21,13 @@ const FEWER_SECTIONS: &str =
 const ROTATIONS: [Axis; 3] = [Axis::Z, Axis::Y, Axis::X];
 
 impl<'a> Check<'a> {
-    /// Appends the elements of a beam; returns their starts along x, and the position of the next link.
+    /// Appends the elements of a beam; returns their starts along x, and the tip along x of the last.
     pub(super) fn beam(
         &mut self,
         given: &'a Spanned<Beam>,
         link: &str,
         span: Span,
-        path: Vec<Step>,
+        attached: Attached,
     ) -> (Vec<Value>, Value) {
         let elements = given.value.as_ref().and_then(|inside| {
             let length = self.number(&inside.length, "`length`", "m", Limit::Positive);
@@ -57,7 +57,7 @@ impl<'a> Check<'a> {
             return (vec![Value::ZERO], Value::ZERO);
         };
         let section_joint = section_joint.unwrap_or(SectionJoint::Symmetric);
-        self.unroll((link, span), path, (elements, joints), section_joint)
+        self.unroll((link, span), attached, (elements, joints), section_joint)
     }
 
     /// Appends rigid elements as bodies: element 0 on the link's joint, element i ≥ 1 at the end of the previous one,
@@ -66,12 +66,11 @@ impl<'a> Check<'a> {
     fn unroll(
         &mut self,
         (link, span): (&str, Span),
-        path: Vec<Step>,
+        mut attached: Attached,
         (elements, joints): (Vec<RigidElement>, Vec<Joint>),
         section_joint: SectionJoint,
     ) -> (Vec<Value>, Value) {
         let rigid = joints.is_empty();
-        let mut path = path;
         let mut starts = Vec::new();
         let mut start = Value::ZERO;
         let mut joints = joints.into_iter();
@@ -79,8 +78,9 @@ impl<'a> Check<'a> {
         for (index, RigidElement { length, inertia }) in elements.into_iter().enumerate() {
             let name = if rigid { link.to_owned() } else { format!("{link}_{index}") };
             if index > 0 {
-                translate(&mut path, [tip, Value::ZERO, Value::ZERO]);
+                attached = self.on_the_last_body(tip);
             }
+            let path = &mut attached.path;
             if let Some(joint) = (index > 0).then(|| joints.next()).flatten() {
                 let mut rotation = |axis| {
                     let owner = Owner::Beam(link.to_owned());
@@ -98,10 +98,13 @@ impl<'a> Check<'a> {
                     self.element_springs.push(Force::on(&self.coordinates, Group::Elements, id, law));
                 }
             }
+            let Attached { parent, along, path } = std::mem::take(&mut attached);
             let body = chain::Body {
                 name,
                 link: link.to_owned(),
-                path: std::mem::take(&mut path),
+                parent,
+                along,
+                path,
                 inertia: Some(inertia),
                 parts: Vec::new(),
                 length: length.clone(),

@@ -4,7 +4,7 @@ use super::Check;
 use super::drives::{Units, units};
 use super::limits::Limit;
 use crate::chain::{
-    self, Attachment, BodyId, Chain, CoordinateKind, Cylinder, Force, Group, Law, Profile, Rope, Spring, Strain, Value,
+    self, Attachment, Chain, CoordinateKind, Cylinder, Force, Group, Law, Profile, Rope, Spring, Strain, Value,
 };
 use crate::diagnostic::{Span, rule};
 use crate::spec::{self, Crane, Number, Spanned};
@@ -22,7 +22,7 @@ impl<'a> Check<'a> {
                 [&connector.from, &connector.to].map(|end| self.attachment(end, &format!("connector `{name}`")));
             let law = connector.law.value.as_ref().map(|law| self.connector_law(law, connector.law.span, &name));
             let (Some(from), Some(to), Some(law)) = (from, to, law) else { continue };
-            if self.reach(&from) == self.reach(&to) {
+            if self.coordinates_of(from.body) == self.coordinates_of(to.body) {
                 self.report(rule::rigid_connector(connector.name.span, &name));
             }
             let strain = Strain::Distance([from, to]);
@@ -93,14 +93,6 @@ impl<'a> Check<'a> {
         let Some(link) = &end.link else { return Some(Attachment { body: None, position: at }) };
         let (body, position) = self.attach(link, at)?;
         Some(Attachment { body: Some(body), position })
-    }
-
-    /// How many coordinates move an end. After a mistake, the body of the end may be missing.
-    pub(super) fn reach(&self, end: &Attachment) -> usize {
-        end.body.map_or(0, |BodyId(body)| {
-            let before = self.bodies.iter().take(body + 1);
-            before.flat_map(|body| &body.path).map(|step| step.coordinates().len()).sum()
-        })
     }
 
     fn rope_law(&mut self, rope: &spec::Rope, span: Span, name: &str) -> Law {

@@ -3,7 +3,7 @@
 use super::Check;
 use super::limits::Limit;
 use crate::chain::{
-    BodyId, CoordinateId, CoordinateKind, Cylinder, Drive, Linkage, Pin, Profile, Pump, Step, Transmission, Valve,
+    BodyId, CoordinateId, CoordinateKind, Cylinder, Drive, Linkage, Pin, Profile, Pump, Transmission, Valve,
 };
 use crate::diagnostic::{Span, rule};
 use crate::spec::{self, Constant, Crane, Side, Spanned};
@@ -223,9 +223,10 @@ impl<'a> Check<'a> {
         if self.unknown.links {
             return;
         }
-        let (near, far) = if foot < head { (foot, head) } else { (head, foot) };
-        let paths = self.bodies.iter().take(far.0 + 1).skip(near.0 + 1).flat_map(|body| &body.path);
-        let between: Vec<CoordinateId> = paths.flat_map(Step::coordinates).copied().collect();
+        let [of_foot, of_head] = [foot, head].map(|body| self.coordinates_of(Some(body)));
+        let of_both = |id: &CoordinateId| of_foot.contains(id) == of_head.contains(id);
+        let mut between: Vec<CoordinateId> = of_foot.iter().chain(&of_head).copied().filter(|id| !of_both(id)).collect();
+        between.sort_unstable();
         let called = &self.coordinates[joint.0].name;
         if !between.contains(&joint) {
             self.report(rule::spans_not(given.coordinate.span, name, called));

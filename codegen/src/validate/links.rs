@@ -1,6 +1,7 @@
 //! Links, their placements and joints.
 
 use super::limits::Limit;
+use super::on::Attached;
 use super::{Check, LinkBodies, Owner};
 use crate::chain::{Axis, Body, BodyId, Chain, Coordinate, CoordinateId, CoordinateKind, Step, Value};
 use crate::diagnostic::{Span, rule};
@@ -44,11 +45,13 @@ impl<'a> Check<'a> {
         if links.is_empty() {
             self.report(rule::no_links(given.span));
         }
-        // Position of the next link in the frame of the last body: the tip of a beam.
-        let mut tip = Value::ZERO;
+        let mut previous = None;
         for (index, link) in links.iter().enumerate() {
             match &link.value {
-                Some(inside) => tip = self.link(inside, index == 0, tip),
+                Some(inside) => {
+                    let attached = self.attached(links, index, previous.as_ref());
+                    previous = Some(self.link(inside, index == 0, attached));
+                }
                 None => self.unknown.links = true,
             }
             let count = self.coordinates.len();
@@ -68,23 +71,22 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// Appends the bodies of a link to the chain; returns the position of the next link along x.
-    fn link(&mut self, link: &'a Link, is_base: bool, tip: Value) -> Value {
+    /// Appends the bodies of a link to the chain; returns where they are.
+    fn link(&mut self, link: &'a Link, is_base: bool, mut attached: Attached) -> LinkBodies {
         let name = self.name(&link.name).unwrap_or_else(|| {
             self.unknown.links = true;
             ""
         });
-        let mut path = Vec::new();
-        placement::translate(&mut path, [tip, Value::ZERO, Value::ZERO]);
         let motion = self.joint(link, name, is_base);
-        path.extend(self.placed(link, motion));
+        attached.path.extend(self.placed(link, motion));
 
         let first = self.bodies.len();
-        let (starts, tip) = self.carried(link, name, path);
-        if !name.is_empty() && self.links.insert(name, LinkBodies { first, starts }).is_some() {
+        let (starts, tip) = self.carried(link, name, attached);
+        let own = LinkBodies { first, starts, tip };
+        if !name.is_empty() && self.links.insert(name, own.clone()).is_some() {
             self.report(rule::duplicate_name(link.name.span, "links", name, "an earlier link"));
         }
-        tip
+        own
     }
 
     /// Appends a body; its name must not be taken.

@@ -25,7 +25,7 @@ impl<'a> Check<'a> {
             let (Some(from), Some(to), Some(Some(kind))) = (from, to, kind) else { continue };
             if from.body.is_none() && to.body.is_none() {
                 self.report(rule::loop_in_the_world(joint.name.span, &name));
-            } else if self.reach(&from) == self.reach(&to) {
+            } else if self.coordinates_of(from.body) == self.coordinates_of(to.body) {
                 self.report(rule::rigid_loop(joint.name.span, &name));
             }
             joints.push(LoopJoint { name, ends: [from, to], kind });
@@ -89,9 +89,7 @@ impl<'a> Check<'a> {
         let frame = |end: &crate::chain::Attachment| end.body.map_or(Frame::WORLD, |body| frames[body.0]);
         let mut joints = std::mem::take(&mut chain.loop_joints);
         for (joint, given) in joints.iter_mut().zip(given(crane)) {
-            let [first, end] = chain.closed_by(joint);
-            let mut between = chain.coordinates[first..end].iter().enumerate();
-            if between.all(|(index, _)| chain.is_prescribed(crate::chain::CoordinateId(first + index))) {
+            if chain.closed_by(joint).into_iter().all(|coordinate| chain.is_prescribed(coordinate)) {
                 self.report(rule::prescribed_loop(given.name.span, &joint.name));
             }
             match &mut joint.kind {

@@ -2,7 +2,8 @@
 
 use super::Check;
 use super::limits::Limit;
-use crate::chain::{self, Part, Step, Value};
+use super::on::Attached;
+use crate::chain::{self, Part, Value};
 use crate::diagnostic::{Span, rule};
 use crate::expand::inertia::{self, Tensor};
 use crate::spec::{About, Body, Inertia, Link, Number, Spanned, Vector};
@@ -15,8 +16,8 @@ const WRITTEN: f64 = 1e-6;
 const VANISHING: f64 = 1e-12;
 
 impl<'a> Check<'a> {
-    /// Appends the bodies of a link; returns their starts along x, and the position of the next link.
-    pub(super) fn carried(&mut self, link: &'a Link, name: &'a str, path: Vec<Step>) -> (Vec<Value>, Value) {
+    /// Appends the bodies of a link; returns their starts along x, and the tip along x of the last.
+    pub(super) fn carried(&mut self, link: &'a Link, name: &'a str, attached: Attached) -> (Vec<Value>, Value) {
         let carried: Vec<(&str, Span)> = [
             ("mass", link.mass.as_ref().map(|given| given.span)),
             ("bodies", link.bodies.as_ref().map(|given| given.span)),
@@ -32,10 +33,10 @@ impl<'a> Check<'a> {
         self.alone(link, name);
 
         if let Some(beam) = &link.beam {
-            return self.beam(beam, name, link.name.span, path);
+            return self.beam(beam, name, link.name.span, attached);
         }
         if let Some(rope) = &link.rope {
-            return self.rope(rope, name, link.name.span, path);
+            return self.rope(rope, name, link.name.span, attached);
         }
         let (inertia, parts) = match (&link.mass, &link.bodies) {
             (Some(mass), _) => {
@@ -47,8 +48,9 @@ impl<'a> Check<'a> {
             (None, None) => (None, Vec::new()),
         };
         let (name, link_name) = (name.to_owned(), name.to_owned());
+        let Attached { parent, along, path } = attached;
         self.push_body(
-            chain::Body { name, link: link_name, path, inertia, parts, length: Value::ZERO },
+            chain::Body { name, link: link_name, parent, along, path, inertia, parts, length: Value::ZERO },
             link.name.span,
         );
         (vec![Value::ZERO], Value::ZERO)

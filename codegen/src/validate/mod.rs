@@ -18,6 +18,7 @@ mod loop_joints;
 mod mass;
 mod names;
 mod numbers;
+mod on;
 mod plausibility;
 mod regular;
 mod rope;
@@ -28,7 +29,7 @@ mod sections;
 use std::collections::BTreeMap;
 
 use crate::chain::{
-    self, Analyses, Body, Bound, Chain, Coordinate, CoordinateId, Force, Input, Loops, Parameter, ParameterId,
+    self, Analyses, Body, BodyId, Bound, Chain, Coordinate, CoordinateId, Force, Input, Loops, Parameter, ParameterId,
     Relation, Value,
 };
 use crate::diagnostic::{Diagnostics, Mistake, SourceFile, rule};
@@ -121,6 +122,15 @@ struct LinkBodies {
     first: usize,
     /// The starts of its bodies along x when undeformed, m.
     starts: Vec<Value>,
+    /// The tip along x of its last body, m; 0 for a rigid link.
+    tip: Value,
+}
+
+impl LinkBodies {
+    /// Its last body.
+    fn last(&self) -> BodyId {
+        BodyId(self.first + self.starts.len().saturating_sub(1))
+    }
 }
 
 /// The check of one spec: its state so far, and the mistakes found.

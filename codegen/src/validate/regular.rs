@@ -1,6 +1,6 @@
 //! Whether the mass matrix is regular: every coordinate moves a mass of its own.
 //!
-//! An articulated-body recursion from the tip to the base, in world coordinates about the world's origin, gives the
+//! An articulated-body recursion from the tips to the base, in world coordinates about the world's origin, gives the
 //! pivots of the mass matrix one by one: the inertia `D_j` that coordinate j feels with all later joints free.
 
 use super::{Check, Owner};
@@ -93,13 +93,13 @@ impl Check<'_> {
     /// Coordinates that move no mass of their own, each with the body to whose joint it belongs, at a generic pose.
     pub(super) fn idle_coordinates(&self, chain: &Chain, parameters: &[f64]) -> Vec<(BodyId, CoordinateId)> {
         let mut idle = Vec::new();
-        let mut frame = Frame::WORLD;
-        let mut frames = Vec::with_capacity(chain.bodies.len());
+        let mut frames: Vec<Frame> = Vec::with_capacity(chain.bodies.len());
         let mut motions = vec![[0.0; 6]; chain.coordinates.len()];
         // Beams stay nearly straight; each joint has a different angle, without symmetry.
         let offset = |n: usize| if matches!(self.owners[n], Owner::Beam(_)) { 0.0 } else { generic(n) };
         let q: Vec<f64> = chain.guess.iter().enumerate().map(|(n, guess)| guess + offset(n)).collect();
         for body in &chain.bodies {
+            let mut frame = body.parent.map_or(Frame::WORLD, |BodyId(parent)| frames[parent]);
             for step in &body.path {
                 // Beams are straight here, so a rotation vector's axes are those of the frame.
                 for id in step.coordinates() {
@@ -111,8 +111,10 @@ impl Check<'_> {
             frames.push(frame);
         }
 
-        let (mut articulated, mut locked) = ([[0.0; 6]; 6], [[0.0; 6]; 6]);
+        // With all joints beyond free, and with all of them locked.
+        let mut beyond = vec![[[[0.0; 6]; 6]; 2]; chain.bodies.len()];
         for (index, (body, frame)) in chain.bodies.iter().zip(&frames).enumerate().rev() {
+            let [mut articulated, mut locked] = beyond[index];
             if let Some(inertia) = &body.inertia {
                 let of_body = inertia_in_world(frame, inertia, parameters);
                 for (i, j) in (0..6).flat_map(|i| (0..6).map(move |j| (i, j))) {
@@ -131,6 +133,13 @@ impl Check<'_> {
                 }
                 for (i, j) in (0..6).flat_map(|i| (0..6).map(move |j| (i, j))) {
                     articulated[i][j] -= force[i] * force[j] / pivot;
+                }
+            }
+            if let Some(BodyId(parent)) = body.parent {
+                for (sum, own) in beyond[parent].iter_mut().zip([articulated, locked]) {
+                    for (sum, own) in sum.iter_mut().flatten().zip(own.iter().flatten()) {
+                        *sum += own;
+                    }
                 }
             }
         }

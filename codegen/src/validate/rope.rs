@@ -1,10 +1,10 @@
 //! Ropes and chains: rigid links that hang from each other.
 
 use super::limits::Limit;
+use super::on::Attached;
 use super::{Check, Owner};
 use crate::chain::{self, Axis, CoordinateKind, Inertia, Step, Value};
 use crate::diagnostic::{Span, rule};
-use crate::expand::placement::translate;
 use crate::spec::{HangingRope, Spanned};
 
 /// Maximum number of links of a rope.
@@ -13,13 +13,13 @@ const MOST_LINKS: f64 = 1000.0;
 const ROTATIONS: [Axis; 2] = [Axis::Z, Axis::Y];
 
 impl<'a> Check<'a> {
-    /// Appends the links of a rope; returns their starts along x, and the position of the next link.
+    /// Appends the links of a rope; returns their starts along x, and the tip along x of the last.
     pub(super) fn rope(
         &mut self,
         given: &'a Spanned<HangingRope>,
         link: &str,
         span: Span,
-        mut path: Vec<Step>,
+        mut attached: Attached,
     ) -> (Vec<Value>, Value) {
         let links = given.value.as_ref().and_then(|rope| Some((rope, self.links_of_rope(rope)?)));
         let Some((rope, count)) = links else {
@@ -36,19 +36,24 @@ impl<'a> Check<'a> {
         let (mut starts, mut start, mut tip) = (Vec::new(), Value::ZERO, Value::ZERO);
         for number in 1..=count {
             let name = format!("{link}_{number}");
-            translate(&mut path, [tip, Value::ZERO, Value::ZERO]);
+            if number > 1 {
+                attached = self.on_the_last_body(tip);
+            }
             for axis in ROTATIONS {
                 let coordinate =
                     self.push_coordinate((link, &name), CoordinateKind::Rotation, axis, Owner::Joint, span);
-                path.push(Step::Move(coordinate));
+                attached.path.push(Step::Move(coordinate));
                 if !damping.is_zero() {
                     self.rope_damping.push((coordinate, damping.clone()));
                 }
             }
+            let Attached { parent, along, path } = std::mem::take(&mut attached);
             let body = chain::Body {
                 name,
                 link: link.to_owned(),
-                path: std::mem::take(&mut path),
+                parent,
+                along,
+                path,
                 inertia: Some(inertia.clone()),
                 parts: Vec::new(),
                 length: length.clone(),

@@ -6,10 +6,6 @@ use crate::chain::{BodyId, CoordinateId, Drive, Force, Point, Run, Spring, Strai
 use crate::diagnostic::{Span, rule, suggest};
 use crate::spec::{self, Constant, Crane, Spanned};
 
-/// A point belongs to the element that starts at its x, with this fraction of that start as tolerance, because both
-/// are rounded numbers.
-const AT_THE_JOINT: f64 = 1e-12;
-
 impl<'a> Check<'a> {
     pub(super) fn points(&mut self, crane: &'a Crane, supports: &[Support]) -> Vec<Point> {
         let given = crane.points.as_ref().and_then(|points| points.value.as_deref()).unwrap_or_default();
@@ -50,10 +46,8 @@ impl<'a> Check<'a> {
             return None;
         };
         let [x, y, z] = at;
-        let reach = self.now(&x) + AT_THE_JOINT * body.starts.last().map_or(0.0, |start| self.now(start));
-        let element = body.starts.iter().rposition(|start| self.now(start) <= reach).unwrap_or(0);
-        let start = body.starts.get(element).cloned().unwrap_or(Value::ZERO);
-        Some((BodyId(body.first + element), [x - start, y, z]))
+        let (body, x) = self.element_at(body, x);
+        Some((body, [x, y, z]))
     }
 
     /// As written, where drives begin, or where the coordinates are that others follow; otherwise 0.

@@ -46,12 +46,23 @@ impl Check<'_> {
         if !self.mistakes.is_empty() {
             return;
         }
-        let pins = pins(loads, cylinders, connectors, loop_joints);
+        let mut pins = pins(loads, cylinders, connectors, loop_joints);
+        pins.extend(self.branches());
         let mut beams = std::mem::take(&mut self.beams);
         for (beam, distribution) in beams.iter_mut().zip(std::mem::take(&mut self.distributions)) {
             beam.sections = self.sections_of(&beam.link, distribution.as_ref(), &pins);
         }
         self.beams = beams;
+    }
+
+    /// The places at which other links are attached to bodies, apart from their ends.
+    fn branches(&self) -> impl Iterator<Item = Pin> {
+        self.bodies.iter().filter_map(|body| {
+            let BodyId(parent) = body.parent?;
+            let what = || format!("attachment of {}", body.link);
+            let elsewhere = body.link != self.bodies[parent].link && body.along != self.bodies[parent].length;
+            elsewhere.then(|| Pin { body: parent, along: body.along.clone(), what: what() })
+        })
     }
 
     fn sections_of(&self, link: &str, distribution: Option<&Distribution>, pins: &[Pin]) -> Vec<Section> {

@@ -4,11 +4,15 @@ mod loop_joint;
 mod parameter;
 mod poses;
 mod shared;
+#[cfg(feature = "std")]
+mod tree;
 
 pub use loop_joint::{LoopEquationInfo, LoopJointInfo};
 pub use parameter::{Bound, ParameterError, ParameterInfo, Refusal};
 pub use poses::{LARGE_TILT, NEAR_SINGULAR, TIPPED};
 pub use shared::{List, Text};
+#[cfg(feature = "std")]
+pub use tree::Tree;
 
 /// Names, units and settings of a crane: constants of a generated module, or owned by a crane made at run time.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,7 +27,7 @@ pub struct Description {
     pub parameters: List<ParameterInfo>,
     /// Generalized coordinates in the order of `q`.
     pub coordinates: List<CoordinateInfo>,
-    /// Bodies from base to tip.
+    /// Bodies, each after the one to which it is attached.
     pub bodies: List<BodyInfo>,
     /// Sections of beams and ropes, from the base to the tip.
     pub sections: List<SectionInfo>,
@@ -70,6 +74,14 @@ impl Description {
     /// Whether forces have states besides pose and rates: forces and accelerations then need those, too.
     pub fn has_force_states(&self) -> bool {
         self.has_valves() || !self.bristles.is_empty()
+    }
+
+    /// The first body that a coordinate moves: the coordinate is named after it, or after its link.
+    #[cfg(feature = "std")]
+    pub(crate) fn first_moved(&self, coordinate: usize) -> Option<&BodyInfo> {
+        let (stem, _) = self.coordinates[coordinate].name.rsplit_once('_')?;
+        let named = |of: fn(&BodyInfo) -> &Text| self.bodies.iter().find(|body| of(body).as_str() == stem);
+        named(|body| &body.name).or_else(|| named(|body| &body.link))
     }
 
     /// Numbers of the drives, each at the index of the drive's coordinate; 0 at all others.
@@ -168,7 +180,8 @@ pub struct BodyInfo {
     pub mass: f64,
     /// Length along x of a rigid finite element, m; 0 otherwise.
     pub length: f64,
-    /// Number of coordinates that move it: the first `degrees_of_freedom` of `q`, Eq. (2).
+    /// Number of coordinates that move it, Eq. (2): the first of `q`, unless the crane has branches
+    /// ([`CraneModel::parents`](crate::CraneModel::parents)).
     pub degrees_of_freedom: usize,
 }
 
@@ -224,8 +237,24 @@ pub struct SupportInfo {
     pub position: [f64; 3],
     /// Whether its elongation is linear in the base's coordinates, `kinematics: linear`.
     pub linear: bool,
+    /// How firmly it holds, if it only presses, and lifts off instead of pulling; `None` for a support that also pulls.
+    pub hold: Option<HoldInfo>,
+}
+
+impl SupportInfo {
     /// Whether it only presses, and lifts off instead of pulling.
-    pub one_sided: bool,
+    pub fn is_one_sided(&self) -> bool {
+        self.hold.is_some()
+    }
+}
+
+/// How firmly a support that only presses holds sideways, with default parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HoldInfo {
+    /// Stiffness along x, y, z, N/m.
+    pub stiffness: [f64; 3],
+    /// Pressing force from which it holds in full, N₀, N.
+    pub full: f64,
 }
 
 /// A drive.
@@ -264,7 +293,7 @@ pub struct CylinderInfo {
     pub bulk_modulus: Option<f64>,
     /// Volumes of the oil in hoses and valves on the piston's side and on the rod's, m³.
     pub hose_volumes: [f64; 2],
-    /// The coordinates that change its length: the first, and the one after the last. Its joint's, and those of beams between its pins.
+    /// A range of coordinates that contains those that change its length: the first, and the one after the last. Its joint's, and those of beams between its pins.
     pub spanned: [usize; 2],
     /// The valve that moves it; its pressures and the valve's opening are then states of the motion.
     pub valve: Option<ValveInfo>,
@@ -354,7 +383,7 @@ pub struct ConnectorInfo {
     pub kind: CoordinateKind,
     /// Whether it is a rope, which pulls and never pushes.
     pub is_rope: bool,
-    /// The coordinates that change its length: the first, and the one after the last.
+    /// A range of coordinates that contains those that change its length: the first, and the one after the last.
     pub spanned: [usize; 2],
     /// The number of intervals in which its winch moves smoothly.
     pub pieces: usize,

@@ -45,6 +45,10 @@ impl<const N: usize, H: Deref<Target: CraneModel<N>> + Send + Sync> DynModel for
         self.0.description()
     }
 
+    fn parents(&self) -> &[usize] {
+        self.0.parents()
+    }
+
     fn parameter(&self, index: usize) -> f64 {
         self.0.parameter(index)
     }

@@ -39,6 +39,10 @@ pub trait DynModel: Send + Sync {
     /// Names, units and settings.
     fn description(&self) -> &Description;
 
+    /// What the bodies of a crane with branches are attached to: for each body after the first, the index of an earlier one. Empty for a
+    /// crane without branches.
+    fn parents(&self) -> &[usize];
+
     /// Value of a live parameter, by its index in the description.
     fn parameter(&self, index: usize) -> f64;
 

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector, Matrix4, Vector3};
 
 use super::{DynCrane, DynDerivatives, DynImplicit, DynModel};
-use crate::{CoordinateKind, CoordinateRole, Description, SectionModuli, Tension};
+use crate::{CoordinateKind, CoordinateRole, Description, SectionModuli, Tension, Tree};
 
 /// Energies of a crane, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -64,9 +64,21 @@ impl dyn DynImplicit + '_ {
     }
 }
 
+impl dyn DynModel + '_ {
+    /// What the bodies are attached to.
+    pub fn tree(&self) -> Tree {
+        Tree::new(self.description(), self.parents())
+    }
+}
+
 /// # Panics
 /// If `q`, `v` or a start does not have as many numbers as the crane has coordinates.
 impl dyn DynCrane + '_ {
+    /// What the bodies are attached to.
+    pub fn tree(&self) -> Tree {
+        Tree::new(self.description(), self.parents())
+    }
+
     /// Transforms of all bodies into the world frame.
     pub fn transforms_at(&self, q: &[f64]) -> Vec<Matrix4<f64>> {
         let mut out = vec![Matrix4::identity(); self.description().bodies.len()];

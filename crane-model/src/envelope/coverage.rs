@@ -48,7 +48,7 @@ impl Coverage {
             Some(margin) => self.add(true, format!("a tipping margin of at least {margin}")),
             None => self.add(false, "tipping".to_owned()),
         }
-        let what = if description.supports.iter().all(|support| support.one_sided) {
+        let what = if description.supports.iter().all(|support| support.is_one_sided()) {
             "the first foot that lifts off"
         } else {
             "the first support that pulls"

@@ -73,10 +73,18 @@ pub fn of_run(crane: &dyn DynCrane, table: &Table, bend: f64) -> Vec<String> {
 }
 
 /// Cylinders that load the beams between their pins by a torque at the joint, because they have no valve.
-pub fn of_strength(description: &Description) -> Vec<String> {
+pub fn of_strength(crane: &dyn DynCrane) -> Vec<String> {
+    let (description, tree) = (crane.description(), crane.tree());
     let over_beams = |info: &&CylinderInfo| {
-        let mut spanned = description.coordinates[info.spanned[0]..info.spanned[1]].iter();
-        info.valve.is_none() && spanned.any(|coordinate| coordinate.role.is_element())
+        let [first, end] = info.spanned;
+        // Other branches may have coordinates in this range.
+        let ends = [description.drives[info.drive].coordinate, end - 1];
+        let on_a_path = |coordinate: &usize| {
+            let moving = ends.map(|end| (0..description.bodies.len()).find(|body| tree.own(*body).contains(&end)));
+            moving.into_iter().flatten().any(|body| tree.coordinates(body).contains(coordinate))
+        };
+        let mut bends = (first..end).filter(|coordinate| description.coordinates[*coordinate].role.is_element());
+        info.valve.is_none() && bends.any(|coordinate| on_a_path(&coordinate))
     };
     let caution = |info: &CylinderInfo| {
         let joint = &description.coordinates[description.drives[info.drive].coordinate].name;

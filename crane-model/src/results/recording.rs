@@ -122,7 +122,7 @@ fn push_quantities(
         row.extend(&reaction);
     }
     let gaps = crane.support_gaps_at(q).into_iter().zip(&*crane.description().supports);
-    row.extend(gaps.filter(|(_, support)| support.one_sided).map(|(gap, _)| gap));
+    row.extend(gaps.filter(|(_, support)| support.is_one_sided()).map(|(gap, _)| gap));
     if all {
         row.extend(crane.element_moments_at(q, v));
     }
@@ -184,7 +184,7 @@ fn quantities_of(description: &Description, loop_joints: &[LoopJointInfo], exten
             table.add(format!("{}_reaction_{axis}", support.name), "N");
         }
     }
-    for support in description.supports.iter().filter(|support| support.one_sided) {
+    for support in description.supports.iter().filter(|support| support.is_one_sided()) {
         table.add(support_gap(&support.name), "m");
     }
     for coordinate in description.coordinates.iter().filter(|coordinate| all && coordinate.role.is_element()) {

@@ -51,7 +51,7 @@ fn sentence(description: &Description, UnstableServo { cylinder, mode, gain }: &
     let info = &description.cylinders[*cylinder];
     let mut links: Vec<&str> = Vec::new();
     for &coordinate in &mode.dominating {
-        let moved = description.bodies.iter().find(|body| body.degrees_of_freedom > coordinate);
+        let moved = description.first_moved(coordinate);
         links.extend(moved.map(|body| body.link.as_str()));
     }
     let mut seen = Vec::new();

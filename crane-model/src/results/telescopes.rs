@@ -2,7 +2,7 @@
 
 use super::Table;
 use crate::dyn_crane::DynCrane;
-use crate::{CoordinateKind, Description};
+use crate::{BodyInfo, CoordinateInfo, CoordinateKind, Description, Text};
 
 /// Overlaps below this length, m, are those of a stage that is drawn out.
 const NONE: f64 = 1e-6;
@@ -18,13 +18,14 @@ struct Stage {
 /// Stages that overlap the link in which they slide, at a pose.
 pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
     let description = crane.description();
-    cautions(description, &overlaps(crane, &stages(description), q), "")
+    let stages = stages(crane);
+    cautions(description, &stages, &overlaps(crane, &stages, q), "")
 }
 
 /// The same over a run, with the greatest overlap of each.
 pub(super) fn of_run(crane: &dyn DynCrane, table: &Table) -> Vec<String> {
     let description = crane.description();
-    let stages = stages(description);
+    let stages = stages(crane);
     if stages.is_empty() {
         return Vec::new();
     }
@@ -36,12 +37,12 @@ pub(super) fn of_run(crane: &dyn DynCrane, table: &Table) -> Vec<String> {
             *greatest = overlap.max(*greatest);
         }
     }
-    cautions(description, &greatest, "up to ")
+    cautions(description, &stages, &greatest, "up to ")
 }
 
-fn cautions(description: &Description, overlaps: &[f64], up_to: &str) -> Vec<String> {
-    let overlapping = stages(description).into_iter().zip(overlaps).filter(|(_, overlap)| **overlap > NONE);
-    let caution = |(stage, overlap): (Stage, &f64)| {
+fn cautions(description: &Description, stages: &[Stage], overlaps: &[f64], up_to: &str) -> Vec<String> {
+    let overlapping = stages.iter().zip(overlaps).filter(|(_, overlap)| **overlap > NONE);
+    let caution = |(stage, overlap): (&Stage, &f64)| {
         let [stage, outer] = [stage.first, stage.outer].map(|body| &description.bodies[body].link);
         format!(
             "{stage} is in {outer} over {up_to}{overlap:.2} m, but the model holds it only where it begins: its stress and the deflection are too large, \
@@ -51,29 +52,25 @@ fn cautions(description: &Description, overlaps: &[f64], up_to: &str) -> Vec<Str
     overlapping.map(caution).collect()
 }
 
-/// Flexible links that slide on the flexible link before them.
-fn stages(description: &Description) -> Vec<Stage> {
+/// Flexible links that slide on the flexible link that carries them.
+fn stages(crane: &dyn DynCrane) -> Vec<Stage> {
+    let (description, tree) = (crane.description(), crane.tree());
     let bodies = &description.bodies;
-    let bends = |link: &str| {
-        let mut moved = 0;
-        bodies.iter().any(|body| {
-            let range = moved..body.degrees_of_freedom;
-            moved = body.degrees_of_freedom;
-            body.link.as_str() == link
-                && description.coordinates[range].iter().any(|coordinate| coordinate.role.is_element())
-        })
+    let has = |body: usize, what: fn(&CoordinateInfo) -> bool| description.coordinates[tree.own(body)].iter().any(what);
+    let bends = |link: &Text| {
+        let deforms = |(body, info): (usize, &BodyInfo)| {
+            info.link == *link && has(body, |coordinate| coordinate.role.is_element())
+        };
+        bodies.iter().enumerate().any(deforms)
     };
-    let slides = |[before, first]: [usize; 2]| {
-        let range = bodies[before].degrees_of_freedom..bodies[first].degrees_of_freedom;
-        description.coordinates[range].iter().any(|coordinate| coordinate.kind == CoordinateKind::Translation)
-    };
-    let begin = (1..bodies.len()).map(|first| [first - 1, first]);
-    let between = begin.filter(|[before, first]| bodies[*before].link != bodies[*first].link);
-    let sliding = between.filter(|pair| slides(*pair) && pair.iter().all(|body| bends(bodies[*body].link.as_str())));
-    sliding.map(|[outer, first]| Stage { first, outer }).collect()
+    let slides = |stage: &Stage| has(stage.first, |coordinate| coordinate.kind == CoordinateKind::Translation);
+    let carried = (0..bodies.len()).filter_map(|first| Some(Stage { first, outer: tree.parent(first)? }));
+    let of_two_links = carried.filter(|stage| bodies[stage.outer].link != bodies[stage.first].link);
+    let flexible = |stage: &Stage| [stage.outer, stage.first].iter().all(|body| bends(&bodies[*body].link));
+    of_two_links.filter(|stage| slides(stage) && flexible(stage)).collect()
 }
 
-/// Over which length each stage is in the link before it, m; 0 for one that does not point along it.
+/// Over which length each stage is in the link that carries it, m; 0 for one that does not point along it.
 fn overlaps(crane: &dyn DynCrane, stages: &[Stage], q: &[f64]) -> Vec<f64> {
     if stages.is_empty() {
         return Vec::new();

@@ -40,7 +40,7 @@ fn moving(description: &Description, coordinate: usize) -> (String, Option<&str>
         CoordinateRole::Passive => (format!("joint {name}"), None),
         CoordinateRole::Element | CoordinateRole::ElementVector => {
             // The rotations of an element are consecutive; the first body that a coordinate moves carries it.
-            let body = description.bodies.iter().find(|body| body.degrees_of_freedom > coordinate);
+            let body = description.first_moved(coordinate);
             let (link, body) = body.map_or(("", name.as_str()), |body| (&body.link, &body.name));
             let what = match name.rsplit('_').next() {
                 Some("psi") => "bending in x-y",

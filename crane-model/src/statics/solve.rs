@@ -119,6 +119,6 @@ fn missed(equations: &Equations<'_>, start: &DVector<f64>, settings: &Settings, 
         Status::Singular { .. } => !found.at_rest(settings),
         Status::NotConverged => true,
         // A crane that has tipped half off its feet may balance there, besides standing on them.
-        Status::Unstable { .. } => !meant() || stable() || description.supports.iter().any(|foot| foot.one_sided),
+        Status::Unstable { .. } => !meant() || stable() || description.supports.iter().any(|foot| foot.is_one_sided()),
     }
 }

@@ -98,6 +98,7 @@ impl Writer<'_> {
         self.arm();
         self.stages();
         self.hook();
+        self.branches();
         self.forces();
         self.connectors();
         self.cylinders(seed);
@@ -335,6 +336,25 @@ impl Writer<'_> {
             hook["placement"] = hangs;
         }
         self.link(hook);
+    }
+
+    /// A flexible arm with a platform on the back of the column, and a lamp on the boom.
+    fn branches(&mut self) {
+        if !self.has(F::SecondArm) {
+            return;
+        }
+        let back = json!({"transform": {"translation": [-0.2, 0, round(SHOULDER[1] - self.column_height())],
+            "rotation": [{"z": "180 deg"}, {"x": "90 deg"}]}});
+        self.link(json!({"name": "jib", "on": "column", "placement": back, "joint": "revolute",
+            "beam": {"length": 2.2, "sections": self.rng.borrow_mut().u8(1..3), "material": "steel",
+                "section": {"box": {"height": 0.16, "width": self.between(0.1, 0.14), "thickness": 0.005}}, "damping": {"beta": 1.5e-3}}}));
+        self.link(json!({"name": "platform", "mass": self.between(80.0, 150.0), "com": [0.4, 0.3, self.between(-0.2, 0.2)],
+            "inertia": {"gyration": [0.3, 0.35, 0.4]}}));
+        let angle = self.between(0.2, 0.9);
+        self.drive("jib_psi", json!({"stiffness": 2e7, "damping": 3e4}), angle, 0.1);
+        let at = self.random_point(BOOM);
+        self.link(json!({"name": "lamp", "on": {"link": "boom", "at": at}, "mass": self.between(10.0, 30.0), "com": [0.02, 0.2, -0.01],
+            "inertia": {"gyration": [0.1, 0.12, 0.14]}}));
     }
 
     /// A place on a link of this length: at its beginning, its tip, or anywhere, mostly off the axis.

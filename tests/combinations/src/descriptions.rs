@@ -49,7 +49,7 @@ impl Second {
 pub type Description = fn(&Tree, &mut Rng) -> Option<Second>;
 
 /// All of them, with their names.
-pub const ALL: [(&str, Description); 19] = [
+pub const ALL: [(&str, Description); 20] = [
     ("beam split by a fixed joint", split_boom),
     ("beam given element by element", boom_one_by_one),
     ("rigid beam as a body", rigid_boom_as_body),
@@ -65,6 +65,7 @@ pub const ALL: [(&str, Description); 19] = [
     ("cylinders as forces at their pins", pins::as_loads),
     ("foot and head of cylinders exchanged", pins::exchanged),
     ("a loop joint holds what hangs", held_by_loop),
+    ("branches in another order", branches_exchanged),
     ("rope link by link", rope_link_by_link),
     ("massless frames between links", massless_frames),
     ("another unit of mass", mass_unit),
@@ -117,7 +118,7 @@ fn split_boom(tree: &Tree, rng: &mut Rng) -> Option<Second> {
             attached["at"][0] = json!(x - cut);
         }
     };
-    for list in ["loads", "connectors", "cylinders", "points"] {
+    for list in ["links", "loads", "connectors", "cylinders", "points"] {
         if let Some(entries) = second.get_mut(list) {
             for_each_place(entries, &mut { moved });
         }
@@ -251,7 +252,7 @@ fn other_names(tree: &Tree, _: &mut Rng) -> Option<Second> {
         link["name"] = json!(renamed(link["name"].as_str()?));
     }
     for_each_key(&mut second, &mut |key, value| {
-        if let (true, Some(name)) = (matches!(key, "link" | "coordinate" | "follows"), value.as_str()) {
+        if let (true, Some(name)) = (matches!(key, "link" | "on" | "coordinate" | "follows"), value.as_str()) {
             *value = json!(renamed(name));
         }
     });
@@ -337,8 +338,12 @@ fn planes_exchanged(tree: &Tree, _: &mut Rng) -> Option<Second> {
     if arm["placement"].is_object() {
         return None;
     }
-    arm["placement"] = json!({"transform": {"rotation": {"x": "-90 deg"}}});
-    for list in ["loads", "connectors", "cylinders", "points"] {
+    let back = json!({"transform": {"rotation": {"x": "-90 deg"}}});
+    arm["placement"] = back.clone();
+    if let Some(lamp) = entry_mut(&mut second, "links", "name", "lamp") {
+        lamp["placement"] = back;
+    }
+    for list in ["links", "loads", "connectors", "cylinders", "points"] {
         let Some(entries) = second.get_mut(list) else { continue };
         for_each_place(entries, &mut |attached| {
             if attached["link"] == "boom" {
@@ -544,14 +549,30 @@ fn held_by_loop(tree: &Tree, _: &mut Rng) -> Option<Second> {
     Some(Second::of(&second))
 }
 
+/// The second arm before what the column carried first.
+fn branches_exchanged(tree: &Tree, _: &mut Rng) -> Option<Second> {
+    let mut second = tree.clone();
+    entry_mut(&mut second, "links", "name", "boom")?["on"] = json!("column");
+    let links = second["links"].as_array_mut()?;
+    let position = |name: &str| links.iter().position(|link| link["name"] == name);
+    let (boom, jib, lamp) = (position("boom")?, position("jib")?, position("lamp")?);
+    links[boom..lamp].rotate_left(jib - boom);
+    Some(Second::of(&second))
+}
+
 /// The placement of every other link belongs to a massless link before it.
 fn massless_frames(tree: &Tree, _: &mut Rng) -> Option<Second> {
     let mut second = tree.clone();
     let mut links = Vec::new();
     for (k, mut link) in second["links"].as_array()?.iter().cloned().enumerate() {
         if link["placement"]["transform"].is_object() && k > 0 {
-            let placement = link.as_object_mut()?.remove("placement");
-            links.push(json!({"name": format!("frame_{k}"), "placement": placement}));
+            let mut frame = json!({"name": format!("frame_{k}")});
+            for key in ["on", "placement"] {
+                if let Some(value) = link.as_object_mut()?.remove(key) {
+                    frame[key] = value;
+                }
+            }
+            links.push(frame);
         }
         links.push(link);
     }

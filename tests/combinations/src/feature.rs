@@ -56,6 +56,7 @@ features! {
     Valve: "cylinders with valves",
     Parameters: "live parameters",
     DenavitHartenberg: "D-H rows",
+    SecondArm: "branches: a second arm, and a lamp on the boom",
 }
 
 /// A set of features.

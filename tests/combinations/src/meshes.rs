@@ -111,7 +111,7 @@ const LOWEST: [&str; 3] = ["squared_0", "squared_1", "squared_2"];
 
 /// Whether a number belongs to an element of a beam: `rest boom_2_psi`.
 fn of_element(name: &str) -> bool {
-    ["boom_", "arm_"]
+    ["boom_", "arm_", "jib_"]
         .iter()
         .any(|beam| name.split(beam).nth(1).is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit())))
 }

@@ -129,6 +129,10 @@ impl Writer {
         ] {
             self.line(&format!("  - {{name: {name}, from: {from}, to: {to}, law: {law}}}"));
         }
+        if self.branches {
+            let ends = "from: {link: claw, at: [0.2, 0.1, -0.3]}, to: {link: grip, at: [0.1, 0.4, 0]}";
+            self.line(&format!("  - {{name: cross, {ends}, law: {{spring: {{stiffness: 120, damping: 5, length: 1.3}}}}}}"));
+        }
     }
 
     /// A coordinate that follows another one on the other side of several joints, and one that follows its neighbour.
@@ -150,6 +154,9 @@ impl Writer {
         self.line("  shift: {value: 0.05, unit: rad}");
         self.line("loads:");
         self.line("  - {name: wind, link: first, at: [0.7, 0.1, 0], force: [3, -5, 2]}");
+        if self.branches {
+            self.line("  - {name: draught, link: claw, at: [0.2, 0.3, 0], force: [-1, 2, 3], axes: link}");
+        }
         self.line("  - {name: steered, link: second, force: [0, 1, 2], scale: {input: pull}}");
         self.line("  - {name: trimmed, link: second, moment: [0, 30, 0], scale: {input: shift}}");
         self.line("  - name: push");
@@ -181,7 +188,9 @@ impl Writer {
         let valve = "flow: 1.0e-3, pressure_drop: 1.0e6, lag: 0.03, gain: 4";
         let oil = "max_pressure: 2.0e7, bulk_modulus: 1.0e9, hose_volumes: [1.0e-3, 1.0e-3]";
         self.line(&format!("  - {{name: bending, coordinate: {bends}, bore: 0.1, rod: 0.05, retracted: 1, stroke: 1,"));
-        self.line("     foot: {link: arm, at: [0.4, -0.7, 0.5]}, head: {link: first, at: [1.1, 0.2, 0.3]},");
+        // A shelf is on the arm, but not between the arm and the beam.
+        let foot = if self.branches { "shelf" } else { "arm" };
+        self.line(&format!("     foot: {{link: {foot}, at: [0.4, -0.7, 0.5]}}, head: {{link: first, at: [1.1, 0.2, 0.3]}},"));
         self.line(&format!("     {oil}, valve: {{{valve}}}}}"));
         self.line("pump: {max_flow: 1.0e-3, pressure: 1.5e7}");
     }

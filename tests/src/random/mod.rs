@@ -1,5 +1,6 @@
 //! Random cranes, as specs, with fixed seeds: all kinds of joints, placements, drives and supports, two flexible links.
 
+mod branches;
 mod forces;
 
 use std::fmt::Write;
@@ -9,6 +10,12 @@ use fastrand::Rng;
 /// A random crane as YAML. The same seed gives the same text.
 pub fn spec(seed: u64) -> String {
     Writer::new(seed, true).crane(seed)
+}
+
+/// The same with branches: links on links that have others on them, beside each other in the text and apart.
+#[allow(dead_code)] // the build script compiles cranes without branches
+pub fn with_branches(seed: u64) -> String {
+    Writer { branches: true, ..Writer::new(seed, true) }.crane(seed)
 }
 
 /// The same without drives and dampers: its energy is conserved.
@@ -24,6 +31,10 @@ struct Writer {
     coordinates: Vec<(String, bool)>,
     /// Whether it has drives and dampers.
     driven: bool,
+    /// Whether it has branches.
+    branches: bool,
+    /// What the next link is attached to, unless it is the previous one.
+    on: Option<String>,
     /// Which flexible links have the section joint of the paper: the first, the second, both or none, depending on the seed.
     paper: [bool; 2],
 }
@@ -43,6 +54,8 @@ impl Writer {
             text: String::new(),
             coordinates: Vec::new(),
             driven,
+            branches: false,
+            on: None,
             paper: [seed / 2 % 2 == 1, seed / 4 % 2 == 1],
         }
     }
@@ -73,6 +86,9 @@ impl Writer {
             self.line(&format!(
                 "  - {{name: cable, placement: {{transform: {{rotation: {{y: 50 deg}}}}}}, rope: {rope}}}"
             ));
+        }
+        if self.branches {
+            self.branches();
         }
         self.supports(base, seed);
         if self.driven {
@@ -123,9 +139,17 @@ impl Writer {
 
     /// A link with its own mass.
     fn link(&mut self, name: &str, joint: &str, may_turn_axis: bool) {
-        self.line(&format!("  - name: {name}"));
+        self.begin(name);
         self.placement_and_joint(name, joint, may_turn_axis);
         self.body(9.0);
+    }
+
+    /// Begins a link, on another one than the previous if so decided.
+    fn begin(&mut self, name: &str) {
+        self.line(&format!("  - name: {name}"));
+        if let Some(on) = self.on.take() {
+            self.line(&format!("    on: {on}"));
+        }
     }
 
     fn placement_and_joint(&mut self, name: &str, joint: &str, may_turn_axis: bool) {
@@ -168,7 +192,7 @@ impl Writer {
 
     /// A flexible link, by its section or element by element.
     fn beam(&mut self, name: &str, one_by_one: bool) {
-        self.line(&format!("  - name: {name}"));
+        self.begin(name);
         self.placement_and_joint(name, "revolute", false);
         self.line("    beam:");
         self.line("      length: 1.2");

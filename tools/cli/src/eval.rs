@@ -7,7 +7,7 @@ use std::{
 
 use crane_live::LiveCrane;
 use crane_model::{
-    Description,
+    Description, Tree,
     dyn_crane::{DynCrane, DynDerivatives, DynModel},
 };
 use nalgebra::{Matrix4, Vector3};
@@ -134,7 +134,7 @@ fn arrays(options: &Eval, crane: &LiveCrane, states: &States) -> Vec<Array> {
             data.extend(numbers);
         }
         arrays.push(over(quantity.name(), shape, data));
-        arrays.extend(index(*quantity, crane.description()));
+        arrays.extend(index(*quantity, &(crane as &dyn DynModel).tree()));
     }
     arrays
 }
@@ -213,16 +213,18 @@ fn matrices(matrices: &[Matrix4<f64>]) -> (Vec<usize>, Vec<f64>) {
 }
 
 /// Body and coordinates that belong to each matrix of a list of derivatives.
-fn index(quantity: Quantity, description: &Description) -> Option<Array> {
-    let bodies = description.bodies.iter().map(|body| body.degrees_of_freedom).enumerate();
+fn index(quantity: Quantity, tree: &Tree) -> Option<Array> {
+    let bodies = (0..tree.parents().len()).map(|body| (body, tree.coordinates(body)));
     let (name, width, rows): (_, _, Vec<Vec<usize>>) = match quantity {
         Quantity::TransformDerivatives => {
-            let rows = bodies.flat_map(|(p, count)| (0..count).map(move |i| vec![p, i]));
+            let rows = bodies.flat_map(|(p, moving)| moving.into_iter().map(move |i| vec![p, i]));
             ("transform_derivatives_index", 2, rows.collect())
         }
         Quantity::TransformSecondDerivatives => {
-            let pairs = |count: usize| (0..count).flat_map(move |m| (m..count).map(move |n| [m, n]));
-            let rows = bodies.flat_map(|(p, count)| pairs(count).map(move |[m, n]| vec![p, m, n]));
+            let rows = bodies.flat_map(|(p, moving)| {
+                let pairs = |(place, m): (usize, &usize)| moving[place..].iter().map(|n| vec![p, *m, *n]).collect::<Vec<_>>();
+                moving.iter().enumerate().flat_map(pairs).collect::<Vec<_>>()
+            });
             ("transform_second_derivatives_index", 3, rows.collect())
         }
         _ => return None,

@@ -5,9 +5,15 @@ use crane_codegen::chain::{
 };
 use crane_model::{
     AttachmentInfo, BodyInfo, Bound, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole,
-    CylinderInfo, Description, DriveInfo, InputInfo, LoadInfo, LoopEquationInfo, LoopJointInfo, ParameterInfo,
+    CylinderInfo, Description, DriveInfo, HoldInfo, InputInfo, LoadInfo, LoopEquationInfo, LoopJointInfo, ParameterInfo,
     PumpInfo, Refusal, SectionInfo, Side, SupportInfo, ValveInfo,
 };
+
+/// What the bodies of a chain with branches are attached to, as the compiler writes it.
+pub fn parents(chain: &Chain) -> Vec<usize> {
+    let parents = chain.bodies.iter().filter_map(|body| body.parent).map(|BodyId(parent)| parent);
+    if chain.has_branches() { parents.collect() } else { Vec::new() }
+}
 
 /// The description of a chain, as the compiler writes it.
 pub fn describe(chain: &Chain) -> Description {
@@ -47,7 +53,10 @@ pub fn describe(chain: &Chain) -> Description {
         name: support.name.clone().into(),
         position: support.position.each_ref().map(at_defaults),
         linear: support.kinematics == SupportKinematics::Linear,
-        one_sided: support.full_hold.is_some(),
+        hold: support.full_hold.as_ref().map(|full| HoldInfo {
+            stiffness: support.stiffness.each_ref().map(at_defaults),
+            full: at_defaults(full),
+        }),
     });
     let drives = chain.drives.iter().map(|drive| DriveInfo {
         coordinate: drive.coordinate.0,
@@ -62,7 +71,7 @@ pub fn describe(chain: &Chain) -> Description {
         ends: connector.strain.ends().map(|ends| ends.each_ref().map(|end| attachment_info(end, &defaults))),
         kind: kind_of(chain.kind_of(&connector.strain)),
         is_rope: connector.is_rope(),
-        spanned: chain.spanned(&connector.strain),
+        spanned: Chain::range(&chain.spanned(&connector.strain)),
         pieces: connector.pieces(),
     });
     let inputs = chain.inputs.iter().map(|input| InputInfo {
@@ -112,7 +121,7 @@ pub fn describe_loop_joints(chain: &Chain) -> Vec<LoopJointInfo> {
         name: joint.name.clone().into(),
         kind: joint.kind.name().into(),
         ends: joint.ends.each_ref().map(|end| attachment_info(end, &defaults)),
-        spanned: chain.closed_by(joint),
+        spanned: Chain::range(&chain.closed_by(joint)),
         equations: joint.kind.equations().into_iter().map(equation_info).collect(),
     };
     chain.loop_joints.iter().map(joint).collect()
@@ -168,12 +177,11 @@ fn bristle_info((id, bristle): (chain::CoordinateId, chain::Bristle)) -> Bristle
 }
 
 fn cylinder_info(chain: &Chain, cylinder: &chain::Cylinder) -> CylinderInfo {
-    let spanned = chain.spanned_by(cylinder);
     CylinderInfo {
         name: cylinder.name.clone().into(),
         drive: chain.drive_of(cylinder),
         areas: cylinder.areas(),
-        spanned: [spanned.start, spanned.end],
+        spanned: Chain::range(&chain.spanned_by(cylinder)),
         retracted: cylinder.retracted,
         stroke: cylinder.stroke,
         max_pressure: cylinder.max_pressure,

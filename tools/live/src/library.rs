@@ -6,6 +6,7 @@ use crane_codegen::chain::{Analyses, Chain};
 use crane_codegen::mechanics;
 use crane_codegen::program::{FunctionId, Program, RuntimeTrait};
 
+use crate::describe::parents;
 use crate::routine::Routine;
 
 /// Functions that are derived together.
@@ -65,6 +66,7 @@ impl Group {
 #[derive(Debug)]
 pub struct Library {
     chain: Chain,
+    parents: Vec<usize>,
     programs: [OnceLock<Program>; Group::COUNT],
     routines: [OnceLock<Option<Routine>>; FunctionId::COUNT],
 }
@@ -73,12 +75,17 @@ impl Library {
     /// The functions of a chain, none of them derived yet.
     pub fn new(chain: Chain) -> Self {
         let routines = std::array::from_fn(|_| OnceLock::new());
-        Self { chain, programs: Default::default(), routines }
+        Self { parents: parents(&chain), chain, programs: Default::default(), routines }
     }
 
     /// The chain.
     pub fn chain(&self) -> &Chain {
         &self.chain
+    }
+
+    /// What the bodies of a chain with branches are attached to.
+    pub fn parents(&self) -> &[usize] {
+        &self.parents
     }
 
     /// A function; `None` if the crane does not need it.

@@ -7,7 +7,6 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crane_codegen::program::{FunctionId, Shape};
-use crane_model::Description;
 use crane_model::dyn_crane::DynModel;
 use crane_model::rt::fma;
 
@@ -216,7 +215,7 @@ impl<T: Number> Call<T> {
             id,
             machine: routine.machine(&parameters),
             factors: vec![T::splat(0.0); routine.results()],
-            places: places(crane.description(), crane.size(), id),
+            places: places(crane, crane.size(), id),
         })
     }
 
@@ -321,17 +320,22 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
 }
 
 /// Where a function's result contains the numbers of transforms or their derivatives, whose matrices it writes column by column.
-fn places(description: &Description, n: usize, id: FunctionId) -> Option<Vec<Option<usize>>> {
-    let bodies = &description.bodies;
+fn places(crane: &LiveCrane, n: usize, id: FunctionId) -> Option<Vec<Option<usize>>> {
+    let bodies = &crane.description().bodies;
     let row_by_row = |matrix: usize| (0..16).map(move |place| 16 * matrix + 4 * (place % 4) + place / 4);
     match id {
         FunctionId::Transforms => Some((0..bodies.len()).flat_map(row_by_row).map(Some).collect()),
         FunctionId::TransformDerivatives => {
-            let (mut places, mut first) = (Vec::new(), 0);
-            for body in bodies {
-                places.extend((first..first + body.degrees_of_freedom).flat_map(row_by_row).map(Some));
-                places.extend((16 * body.degrees_of_freedom..16 * n).map(|_| None));
-                first += body.degrees_of_freedom;
+            let tree = (crane as &dyn DynModel).tree();
+            let (mut places, mut matrices) = (Vec::new(), 0..);
+            for body in 0..bodies.len() {
+                let moving = tree.coordinates(body);
+                for coordinate in 0..n {
+                    match moving.binary_search(&coordinate).ok().and_then(|_| matrices.next()) {
+                        Some(matrix) => places.extend(row_by_row(matrix).map(Some)),
+                        None => places.extend([None; 16]),
+                    }
+                }
             }
             Some(places)
         }

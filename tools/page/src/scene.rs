@@ -8,7 +8,7 @@
 use crane_codegen::chain::{CoordinateId, Cylinder, Linkage, Pin, Value as Number};
 use crane_live::LiveCrane;
 use crane_model::{
-    BodyInfo, CoordinateRole, Description,
+    BodyInfo, CoordinateRole, Description, Tree,
     dyn_crane::{DynCrane, DynDerivatives, DynModel},
 };
 use nalgebra::{Matrix4, Vector3};
@@ -22,14 +22,18 @@ pub fn scene(live: &LiveCrane, q: &[f64]) -> Value {
         description.coordinates.iter().map(|coordinate| coordinate.role == CoordinateRole::ElementVector).collect();
     let reference: Vec<f64> = q.iter().zip(&is_vector).map(|(q, vector)| if *vector { 0.0 } else { *q }).collect();
     let frames = crane.transforms_at(&reference);
+    let tree = (live as &dyn DynModel).tree();
     let bodies: Vec<Value> = description
         .bodies
         .iter()
         .zip(&frames)
-        .map(|(body, frame)| {
+        .enumerate()
+        .map(|(index, (body, frame))| {
+            let own = tree.own(index);
             json!({
                 "name": body.name.as_str(), "link": body.link.as_str(), "mass": body.mass, "length": body.length,
-                "moved_by": body.degrees_of_freedom, "frame": rows(frame), "rope": is_rope(description, body),
+                "parent": tree.parent(index), "along": live.chain().bodies[index].along.at(live.parameters()),
+                "moved_by": [own.start, own.end], "frame": rows(frame), "rope": is_rope(description, &tree, body),
             })
         })
         .collect();
@@ -56,10 +60,10 @@ pub fn scene(live: &LiveCrane, q: &[f64]) -> Value {
 }
 
 /// Whether a body is a link of a rope or chain: such links have lengths, as elements of beams do, and do not deform.
-fn is_rope(description: &Description, body: &BodyInfo) -> bool {
-    let of_link = description.bodies.iter().filter(|other| other.link == body.link);
-    let last = of_link.map(|other| other.degrees_of_freedom).max().unwrap_or(0);
-    let deforms = description.coordinates[..last].iter().rev().take(1).any(|coordinate| coordinate.role.is_element());
+fn is_rope(description: &Description, tree: &Tree, body: &BodyInfo) -> bool {
+    let last = description.bodies.iter().rposition(|other| other.link == body.link);
+    let moving = last.map(|last| tree.coordinates(last)).unwrap_or_default();
+    let deforms = moving.last().is_some_and(|&coordinate| description.coordinates[coordinate].role.is_element());
     body.length > 0.0 && !deforms
 }
 
@@ -99,9 +103,11 @@ fn screws(live: &LiveCrane, q: &[f64], frames: &[Matrix4<f64>]) -> Vec<[f64; 6]>
     let derivatives = (live as &dyn DynDerivatives).transform_derivatives_at(q);
     let mut screws = Vec::with_capacity(q.len());
     let mut first = 0;
-    for (body, frame) in live.description().bodies.iter().zip(frames) {
-        // Those of earlier coordinates are known from earlier bodies.
-        for derivative in &derivatives[first + screws.len()..first + body.degrees_of_freedom] {
+    let tree = (live as &dyn DynModel).tree();
+    for (index, (body, frame)) in live.description().bodies.iter().zip(frames).enumerate() {
+        // Of the coordinates that move a body, those of its own joint are the last.
+        let before = body.degrees_of_freedom - tree.own(index).len();
+        for derivative in &derivatives[first + before..first + body.degrees_of_freedom] {
             let s = derivative * inverse(frame);
             screws.push([s[(2, 1)], s[(0, 2)], s[(1, 0)], s[(0, 3)], s[(1, 3)], s[(2, 3)]]);
         }

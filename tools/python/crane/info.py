@@ -13,13 +13,16 @@ class Coordinate(TypedDict):
 
 
 class Body(TypedDict):
-    """A rigid body or a rigid element of a beam: mass, kg, and length, m; it moves with so many of the coordinates."""
+    """A rigid body or a rigid element of a beam: mass, kg, and length, m; the index of the body that carries it, and those of the
+    coordinates that move it."""
 
     name: str
     link: str
     mass: float
     length: float
     degrees_of_freedom: int
+    parent: int | None
+    coordinates: list[int]
 
 
 class Drive(TypedDict):

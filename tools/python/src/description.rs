@@ -25,13 +25,16 @@ impl Crane {
             rows.push(row);
         }
         all.set_item("coordinates", list(std::mem::take(&mut rows))?)?;
-        for info in &description.bodies {
+        let tree = (&self.live as &dyn DynModel).tree();
+        for (body, info) in description.bodies.iter().enumerate() {
             let row = PyDict::new(py);
             row.set_item("name", &*info.name)?;
             row.set_item("link", &*info.link)?;
             row.set_item("mass", info.mass)?;
             row.set_item("length", info.length)?;
             row.set_item("degrees_of_freedom", info.degrees_of_freedom)?;
+            row.set_item("parent", tree.parent(body))?;
+            row.set_item("coordinates", tree.coordinates(body))?;
             rows.push(row);
         }
         all.set_item("bodies", list(std::mem::take(&mut rows))?)?;
@@ -49,7 +52,7 @@ impl Crane {
             let row = PyDict::new(py);
             row.set_item("name", &*info.name)?;
             row.set_item("position", info.position.to_vec())?;
-            row.set_item("one_sided", info.one_sided)?;
+            row.set_item("one_sided", info.is_one_sided())?;
             rows.push(row);
         }
         all.set_item("supports", list(std::mem::take(&mut rows))?)?;

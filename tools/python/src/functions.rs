@@ -32,9 +32,11 @@ impl Crane {
         self.one_by_one(py, state, &[bodies, n, n, 4, 4], invalid, |crane, Moment { q, .. }, out| {
             let crane: &dyn DynDerivatives = crane;
             let mut matrices = crane.transform_second_derivatives_at(q).into_iter();
-            for (body, of_body) in crane.description().bodies.iter().zip(out.chunks_mut(16 * n * n)) {
-                for m in 0..body.degrees_of_freedom {
-                    for k in m..body.degrees_of_freedom {
+            let tree = (crane as &dyn DynModel).tree();
+            for (body, of_body) in out.chunks_mut(16 * n * n).enumerate() {
+                let moving = tree.coordinates(body);
+                for (place, &m) in moving.iter().enumerate() {
+                    for &k in &moving[place..] {
                         let rows = matrices.next().unwrap_or_default().transpose();
                         for place in [m * n + k, k * n + m] {
                             of_body[16 * place..16 * (place + 1)].copy_from_slice(rows.as_slice());

@@ -91,15 +91,15 @@ export class Figure {
     const { bodies, frames } = this.kinematics;
     this.chassis = this.chassisOf();
     for (const link of links(this.kinematics)) this.beam(link);
-    bodies.forEach((body, p) => {
-      const next = bodies[p + 1];
-      if (body.rope || !next || body.link === next.link && body.flexible) return;
-      if (body.flexible) this.inner(p, frames);
-      else this.link(p, frames);
+    bodies.forEach(({ parent, link }, next) => {
+      const carrier = bodies[parent];
+      if (!carrier || carrier.rope || carrier.link === link && carrier.flexible) return;
+      if (carrier.flexible) this.inner(parent, next, frames);
+      else this.link(parent, next, frames);
     });
     this.ropes();
     this.pins();
-    this.end();
+    bodies.forEach((_, p) => this.kinematics.carriedBy(p).length || this.end(p));
     this.stand();
     this.connect();
     const paint = { barrel: COLOURS.barrel, rod: COLOURS.rod, linkage: COLOURS.linkage, pin: COLOURS.pin };
@@ -143,19 +143,16 @@ export class Figure {
     this.usual ??= side;
   }
 
-  /** From a body's origin to where the next one begins; a sliding one comes out of it. */
-  link(p, frames) {
+  /** From a body's origin to where another one begins that it carries; a sliding one comes out of it. */
+  link(p, next, frames) {
     const { bodies, coordinates, reference, screws } = this.kinematics;
-    const [body, next] = [bodies[p], bodies[p + 1]];
+    const body = bodies[p];
     const inverse = frames[p].clone().invert();
     const origin = new Vector3();
-    const far = new Vector3().setFromMatrixPosition(frames[p + 1]).applyMatrix4(inverse);
-    const slides = [];
-    for (let j = body.moved_by; j < next.moved_by; j += 1) {
-      if (coordinates[j].unit === "m" && coordinates[j].role !== "base") slides.push(j);
-    }
+    const far = new Vector3().setFromMatrixPosition(frames[next]).applyMatrix4(inverse);
+    const slides = this.kinematics.slides(next);
     const outline = this.thickness(body.mass, far.length());
-    if (body.mass > 0 && far.length() > NOTHING * this.size && coordinates[body.moved_by - 1]?.role !== "base") this.usual ??= outline;
+    if (body.mass > 0 && far.length() > NOTHING * this.size && coordinates[body.moved_by[1] - 1]?.role !== "base") this.usual ??= outline;
     if (slides.length !== 1) {
       const isBase = p === 0 && coordinates[0]?.role === "base";
       // On a truck, from its frame up.
@@ -171,30 +168,28 @@ export class Figure {
     const side = this.thickness(body.mass, Math.max(sleeve.length(), far.length() / 2));
     this.box(p, origin, sleeve, side, COLOURS.link);
     // A beam shows itself.
-    if (next.flexible) return;
+    if (bodies[next].flexible) return;
     // Long enough to stay in its sleeve at the far end of its travel.
-    const inside = new Vector3().setFromMatrixPosition(frames[p]).applyMatrix4(frames[p + 1].clone().invert());
-    const back = axis.transformDirection(frames[p]).transformDirection(frames[p + 1].clone().invert()).negate();
+    const inside = new Vector3().setFromMatrixPosition(frames[p]).applyMatrix4(frames[next].clone().invert());
+    const back = axis.transformDirection(frames[p]).transformDirection(frames[next].clone().invert()).negate();
     const reach = Math.min(Math.abs(travel[1]) + 0.5 * side, inside.length() + Math.abs(travel[1] - reference[j]));
-    this.box(p + 1, origin.clone(), back.multiplyScalar(reach), 0.78 * side, COLOURS.slide);
+    this.box(next, origin.clone(), back.multiplyScalar(reach), 0.78 * side, COLOURS.slide);
   }
 
   /** What slides out of a flexible beam: the beam is its sleeve. */
-  inner(p, frames) {
-    const { bodies, coordinates, screws, reference } = this.kinematics;
-    const [body, next] = [bodies[p], bodies[p + 1]];
+  inner(p, next, frames) {
+    const { bodies, screws, reference } = this.kinematics;
     // A beam shows itself.
-    if (next.flexible) return;
-    const slides = [];
-    for (let j = body.moved_by; j < next.moved_by; j += 1) if (coordinates[j].unit === "m") slides.push(j);
+    if (bodies[next].flexible) return;
+    const slides = this.kinematics.slides(next);
     if (slides.length !== 1) return;
     const [j] = slides;
-    const back = new Vector3(...screws[j].slice(3)).transformDirection(frames[p + 1].clone().invert()).negate();
+    const back = new Vector3(...screws[j].slice(3)).transformDirection(frames[next].clone().invert()).negate();
     const [least, most] = this.travel(j);
-    const side = 0.7 * (this.usual ?? this.thickness(next.mass, 1));
+    const side = 0.7 * (this.usual ?? this.thickness(bodies[next].mass, 1));
     // From its frame back into the beam, far enough to stay in it at the far end of its travel; its part outside is drawn as a link.
     const reach = Math.max(Math.abs(most), Math.abs(least), Math.abs(reference[j])) + 0.5 * side;
-    this.box(p + 1, new Vector3(), back.multiplyScalar(reach), side, COLOURS.slide);
+    this.box(next, new Vector3(), back.multiplyScalar(reach), side, COLOURS.slide);
   }
 
   /** Minimum and maximum of a coordinate over the run. */
@@ -208,8 +203,8 @@ export class Figure {
     const { bodies, coordinates, screws, frames } = this.kinematics;
     coordinates.forEach(({ role, unit }, j) => {
       if (unit !== "rad" || !["driven", "passive"].includes(role)) return;
-      const p = bodies.findIndex((body) => body.moved_by > j);
-      if (bodies[p].rope || bodies[p - 1]?.rope) return;
+      const p = bodies.findIndex((body) => body.moved_by[1] > j);
+      if (bodies[p].rope || bodies[bodies[p].parent]?.rope) return;
       const axis = new Vector3(...screws[j].slice(0, 3)).transformDirection(frames[p].clone().invert());
       const upright = Math.abs(screws[j][2]) > 0.9;
       const side = this.thickness(bodies[p].mass, 0);
@@ -222,17 +217,16 @@ export class Figure {
     });
   }
 
-  /** What the last body carries: a stem to its points, a rod through them, or a block of its mass. */
-  end() {
+  /** What the last body of a branch carries: a stem to its points, a rod through them, or a block of its mass. */
+  end(p) {
     const { bodies, points } = this.kinematics;
-    const p = bodies.length - 1;
-    if (p < 0 || bodies[p].flexible) return;
+    if (bodies[p].flexible) return;
     const places = points.filter((point) => point.body === p).map((point) => point.at);
     const { mass } = bodies[p];
     const middle = places.reduce((sum, place) => sum.add(place), new Vector3()).divideScalar(Math.max(places.length, 1));
     let [from, to] = [middle, middle];
     for (const a of places) for (const b of places) if (a.distanceTo(b) > from.distanceTo(to)) [from, to] = [a, b];
-    const hangs = bodies[p - 1]?.rope;
+    const hangs = bodies[bodies[p].parent]?.rope;
     const stem = hangs ? 2 * RADIUS.rope * this.size : this.thickness(0, 0) * 0.5;
     this.box(p, new Vector3(), middle, stem, hangs ? COLOURS.rope : COLOURS.link);
     if (hangs) this.hook(p, middle);
@@ -276,7 +270,7 @@ export class Figure {
     if (!bodies.length) return;
     const side = this.thickness(bodies[0].mass, 0);
     const first = new Vector3().setFromMatrixPosition(frames[0]);
-    const slides = this.crane.coordinates.slice(0, bodies[0].moved_by).some(({ unit }) => unit === "m");
+    const slides = this.crane.coordinates.slice(...bodies[0].moved_by).some(({ unit }) => unit === "m");
     const plate = this.mesh(new CylinderGeometry(2 * side, 2 * side, 0.5 * side, 40), COLOURS.base);
     // A beam that begins at the origin is clamped to a wall.
     const normal = bodies[0].flexible && first.length() < NOTHING * this.size ? new Vector3().setFromMatrixColumn(frames[0], 0) : new Vector3(0, 0, 1);
@@ -417,8 +411,9 @@ export function extent(crane) {
     anchors.forEach(({ at }) => include(new Vector3(...at)));
   }
   if (crane.coordinates[0]?.role !== "base") include(new Vector3());
-  const last = kinematics.bodies.at(-1);
-  if (last?.flexible) include(new Vector3(last.length, 0, 0).applyMatrix4(kinematics.frames.at(-1)));
+  kinematics.bodies.forEach(({ flexible, length }, p) => {
+    if (flexible) include(new Vector3(length, 0, 0).applyMatrix4(kinematics.frames[p]));
+  });
   // Links are thicker than their axes.
   const margin = MARGIN * low.distanceTo(high);
   low.addScalar(-margin);

@@ -32,35 +32,43 @@ export class Kinematics {
     this.vectors = scene.vectors;
     this.points = scene.points.map((point) => ({ ...point, at: new Vector3(...point.at) }));
     this.frames = this.bodies.map(() => new Matrix4());
+    this.motions = this.bodies.map(() => ({ truth: new Matrix4(), drawn: new Matrix4(), offset: new Vector3() }));
   }
 
   /**
    * Frames of all bodies at pose `q`, with the deformation of elements drawn `factor` times as large. What follows a
-   * flexible link moves along with its drawn tip but keeps its true direction: a hanging load still hangs.
+   * flexible link moves along with the drawn place that carries it but keeps its true direction: a hanging load still hangs.
    */
   pose(q, factor = 1) {
     const step = new Matrix4();
-    const truth = new Matrix4();
-    const drawn = new Matrix4();
-    const offset = new Vector3();
-    let done = 0;
     this.bodies.forEach((body, p) => {
-      const before = this.bodies[p - 1];
-      if (before && before.link !== body.link) {
-        if (before.flexible) offset.add(tip(before, drawn)).sub(tip(before, truth));
-        drawn.copy(truth);
+      const { truth, drawn, offset } = this.motions[p];
+      const carrier = this.bodies[body.parent];
+      if (carrier) {
+        const before = this.motions[body.parent];
+        const isInside = carrier.link === body.link;
+        truth.copy(before.truth);
+        drawn.copy(isInside ? before.drawn : before.truth);
+        offset.copy(before.offset);
+        if (carrier.flexible && !isInside) {
+          const place = (motion) => new Vector3(body.along, 0, 0).applyMatrix4(carrier.reference).applyMatrix4(motion);
+          offset.add(place(before.drawn)).sub(place(before.truth));
+        }
+      } else {
+        for (const motion of [truth, drawn]) motion.identity();
+        offset.set(0, 0, 0);
       }
-      for (; done < body.moved_by; done += 1) {
-        if (this.vectors[done]) {
-          truth.multiply(exponential(combined(this.screws, q, done, 1), 1, step));
-          drawn.multiply(exponential(combined(this.screws, q, done, factor), 1, step));
-          done += 2;
+      for (let j = body.moved_by[0]; j < body.moved_by[1]; j += 1) {
+        if (this.vectors[j]) {
+          truth.multiply(exponential(combined(this.screws, q, j, 1), 1, step));
+          drawn.multiply(exponential(combined(this.screws, q, j, factor), 1, step));
+          j += 2;
           continue;
         }
-        const way = q[done] - this.reference[done];
-        truth.multiply(exponential(this.screws[done], way, step));
-        const larger = this.coordinates[done].role === "element" ? factor * q[done] - this.reference[done] : way;
-        drawn.multiply(exponential(this.screws[done], larger, step));
+        const way = q[j] - this.reference[j];
+        truth.multiply(exponential(this.screws[j], way, step));
+        const larger = this.coordinates[j].role === "element" ? factor * q[j] - this.reference[j] : way;
+        drawn.multiply(exponential(this.screws[j], larger, step));
       }
       const frame = this.frames[p].multiplyMatrices(drawn, body.reference);
       frame.elements[12] += offset.x;
@@ -70,15 +78,24 @@ export class Kinematics {
     return this.frames;
   }
 
+  /** The indices of the bodies that a body carries, in the order of the spec. */
+  carriedBy(p) {
+    return this.bodies.flatMap((body, index) => (body.parent === p ? [index] : []));
+  }
+
+  /** The coordinates of a body's joint that slide. */
+  slides(p) {
+    const [first, end] = this.bodies[p].moved_by;
+    const own = this.coordinates.slice(first, end);
+    return own.flatMap(({ unit, role }, k) => (unit === "m" && role !== "base" ? [first + k] : []));
+  }
+
   /** Position of a point of interest at the latest pose. */
   point(index, out = new Vector3()) {
     const { body, at } = this.points[index];
     return out.copy(at).applyMatrix4(this.frames[body]);
   }
 }
-
-/** End of a rigid element. */
-const tip = (body, motion) => new Vector3(body.length, 0, 0).applyMatrix4(body.reference).applyMatrix4(motion);
 
 /** Flexible links, each with the indices of its bodies. */
 export function links(kinematics) {

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::robot::{Joint, Motion};
-use super::serial::Group;
+use super::groups::Group;
 use crate::chain::{Axis, Frame, Vector};
 use crate::exchange::mass::{Lump, clean};
 use crate::exchange::rotation::along_z;
@@ -16,7 +16,9 @@ pub(super) struct SpecLink<'r> {
     pub(super) joint: Option<&'r Joint>,
     /// Joints without mass before it that are part of a free base, in order.
     pub(super) before: Vec<&'r Joint>,
-    /// Pose in the frame of the previous link.
+    /// The index of the link that carries it; `None` if it stands on the world.
+    pub(super) on: Option<usize>,
+    /// Pose in the frame of that link.
     pub(super) placement: Frame,
     pub(super) motion: SpecMotion,
     pub(super) bodies: Vec<(String, Lump)>,
@@ -59,17 +61,17 @@ impl SpecMotion {
     }
 }
 
-/// The links of a spec, one per group; the fixed group is left out if it carries nothing.
+/// The links of a spec, one per group; the fixed group is left out if it has no mass and carries one group.
 pub(super) fn links<'r>(groups: &[Group<'r>]) -> Vec<SpecLink<'r>> {
     let mut names = Names::default();
     let mut links: Vec<SpecLink> = Vec::new();
-    // The frame of the spec's link, expressed in the frame of the robot's link.
-    let mut rotated = Frame::WORLD;
+    // For each group, its link, and the frame of that link expressed in the frame of the robot's link.
+    let mut done: Vec<(Option<usize>, Frame)> = Vec::new();
     for group in groups {
         let Some((carrier, _)) = group.links.first() else { continue };
-        let before = rotated;
+        let (on, before) = group.carrier.map_or((None, Frame::WORLD), |carrier| done[carrier]);
         let (mut placement, mut motion) = (Frame::WORLD, SpecMotion::Fixed);
-        rotated = Frame::WORLD;
+        let mut rotated = Frame::WORLD;
         if let Some((joint, at)) = &group.joint {
             let (axis, frame) = onto_an_axis(joint.axis);
             rotated = frame;
@@ -85,6 +87,7 @@ pub(super) fn links<'r>(groups: &[Group<'r>]) -> Vec<SpecLink<'r>> {
             was: &carrier.name,
             joint: group.joint.map(|(joint, _)| joint),
             before: Vec::new(),
+            on,
             placement,
             motion,
             bodies: Vec::new(),
@@ -101,7 +104,10 @@ pub(super) fn links<'r>(groups: &[Group<'r>]) -> Vec<SpecLink<'r>> {
                 None => {}
             }
         }
-        if link.joint.is_some() || !link.bodies.is_empty() {
+        let carried = groups.iter().filter(|other| other.carrier == Some(done.len())).count();
+        let is_link = link.joint.is_some() || !link.bodies.is_empty() || carried > 1;
+        done.push((is_link.then_some(links.len()).or(on), rotated));
+        if is_link {
             // The fixed group is named after what it carries, not `world`.
             let heavy = group.links.iter().find(|(member, _)| member.lump.is_some() && link.joint.is_none());
             link.was = &heavy.map_or(carrier, |(heavy, _)| heavy).name;
@@ -136,7 +142,11 @@ fn free_base(links: &mut Vec<SpecLink>) {
             _ => return,
         };
         let Some(found) = ORDER[next..].iter().position(|other| *other == motion) else { return };
-        if index > 0 && link.placement != Frame::WORLD {
+        if index > 0 && (link.placement != Frame::WORLD || link.on != Some(index - 1)) {
+            return;
+        }
+        // It carries nothing else.
+        if links.iter().skip(index + 2).any(|other| other.on == Some(index)) && link.bodies.is_empty() {
             return;
         }
         next += found + 1;
@@ -148,7 +158,11 @@ fn free_base(links: &mut Vec<SpecLink>) {
     // A single motion is an ordinary joint.
     if motions.len() > 1 && links.get(motions.len() - 1).is_some_and(|base| !base.bodies.is_empty()) {
         let placement = links[0].placement;
-        let before = links.drain(..motions.len() - 1).filter_map(|link| link.joint).collect();
+        let removed = motions.len() - 1;
+        let before = links.drain(..removed).filter_map(|link| link.joint).collect();
+        for link in links.iter_mut() {
+            link.on = link.on.and_then(|on| on.checked_sub(removed));
+        }
         links[0].before = before;
         links[0].placement = placement;
         links[0].motion = SpecMotion::Free(motions);

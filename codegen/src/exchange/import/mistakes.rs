@@ -18,7 +18,7 @@ catalogue! {
     U006 unknown_link(joint, name, help) "joint `{joint}` names link `{name}`, which is not in the file", "no such link", "{help}";
     /// A link is the child of one joint.
     U007 two_parents(link, other) "link `{link}` is the child of two joints", "also the child of joint `{other}`",
-        "a crane is an open chain: cut the loop at one of the two joints";
+        "cut the loop at one of the two joints; a joint under `loop_joints:` of the spec then closes it";
     /// All links form one tree with one root.
     U008 not_a_tree(problem) "the links are not a tree: {problem}", "every link but the root is the child of one joint", "make every link but one the child of exactly one joint";
     /// Joints rotate about an axis, slide along it, or are fixed.
@@ -26,9 +26,6 @@ catalogue! {
         "hold it at zero with `--fix {joint}`, or replace it with joints of one axis each; for a free base write `joint: free` in the spec";
     /// A joint follows a joint of the file.
     U010 unknown_leader(joint, leader, help) "joint `{joint}` follows joint `{leader}`, which is not in the file", "no such joint", "{help}";
-    /// Moving joints follow each other in a chain.
-    U011 branches(link, first, second) "the chain branches after link `{link}`: joints `{first}` and `{second}` both move on it", "the second branch",
-        "hold one of them at zero, with everything beyond it: `--fix {second}` or `--fix {first}`";
     /// Something moves.
     U012 nothing_moves() "nothing in the robot can move", "no joint that rotates or slides", "leave a joint out of `--fix`";
     /// A joint to be held is in the file.
@@ -44,7 +41,7 @@ catalogue! {
     U017 unknown_mass(body, shape) "the mass of body `{body}` is not in the file", "only MuJoCo knows the mass of a {shape}",
         "add `<inertial>` to the body: `mujoco.mj_saveLastXML` writes it; or give the shape `mass=\"0\"`";
     /// Equalities hold joints or let them follow others.
-    U018 closed_loop(found) "the equality {found} is not supported", "it constrains bodies of an open chain",
+    U018 closed_loop(found) "the equality {found} is not supported", "it closes a loop",
         "remove it, or write `active=\"false\"`; replace a cylinder with a drive of the joint that it moves";
     /// A joint follows another one in proportion.
     U019 not_linear(joint) "joint `{joint}` does not follow its leader in proportion", "powers of the leader's position are not supported",

@@ -1,7 +1,7 @@
 //! A robot described in URDF or MJCF as a spec: `crane import`.
 //!
 //! ```text
-//! SourceFile ─urdf::read_robot, mjcf::read_robot→ Robot ─serial::chain→ groups of links
+//! SourceFile ─urdf::read_robot, mjcf::read_robot→ Robot ─groups::groups→ groups of links
 //!     ─links::links→ links of a spec ─yaml::write_spec→ text
 //! ```
 //!
@@ -9,11 +9,11 @@
 //! keep their coordinates: if the axis of a joint is not x, y or z, the frame of the link is rotated so that it is.
 
 mod document;
+mod groups;
 mod links;
 mod mistakes;
 mod mjcf;
 mod robot;
-mod serial;
 mod urdf;
 mod yaml;
 
@@ -35,7 +35,7 @@ pub struct Imported {
 /// Masses and inertias are passed on unchanged; the validation of the spec checks them.
 ///
 /// # Errors
-/// Mistakes in the file, and structures that cannot be a crane: branches, and joints that are neither fixed nor about or along
+/// Mistakes in the file, and structures that cannot be a crane: closed loops, and joints that are neither fixed nor about or along
 /// one axis.
 pub fn import(source: &SourceFile, fixed: &[String]) -> Result<Imported, Diagnostics> {
     let diagnostics = |mistakes| Diagnostics::new(source, mistakes);
@@ -47,7 +47,7 @@ pub fn import(source: &SourceFile, fixed: &[String]) -> Result<Imported, Diagnos
         _ => Err(vec![mistakes::rule::not_a_robot(document::tag(root), document::name_of(root))]),
     };
     let robot = robot.map_err(diagnostics)?;
-    let groups = serial::chain(&robot, fixed).map_err(diagnostics)?;
+    let groups = groups::groups(&robot, fixed).map_err(diagnostics)?;
     let spec = yaml::write_spec(&robot, &links::links(&groups), source);
     Ok(Imported { spec, left_out: robot.left_out })
 }

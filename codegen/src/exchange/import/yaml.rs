@@ -20,8 +20,9 @@ pub(super) fn write_spec(robot: &Robot, links: &[SpecLink], source: &SourceFile)
     text += "# Positions, velocities and zero positions of joints are those of the robot.\n";
     let _ =
         write!(text, "format: 1\nname: {}\ntitle: \"{robot_name}, from {file}\"\n\nlinks:\n", identifier(&robot.name));
-    for link in links {
-        text += &link_text(link);
+    for (index, link) in links.iter().enumerate() {
+        let carrier = link.on.filter(|on| Some(*on) != index.checked_sub(1)).map(|on| links[on].name.as_str());
+        text += &link_text(link, carrier);
     }
 
     if let Some(gravity) = robot.gravity {
@@ -113,7 +114,8 @@ fn couplings(links: &[SpecLink]) -> String {
     [comment, &text, "\n"].concat()
 }
 
-fn link_text(link: &SpecLink) -> String {
+/// A link; `on` is the one that carries it, unless it is the previous one.
+fn link_text(link: &SpecLink, on: Option<&str>) -> String {
     let mut comments = Vec::new();
     match (link.joint, &link.motion) {
         (_, SpecMotion::Free(_)) => comments.push("the base, free".to_owned()),
@@ -137,6 +139,9 @@ fn link_text(link: &SpecLink) -> String {
         comments.push(format!("held at {} {}: {}", decimal(position), unit(joint), plain(&joint.name)));
     }
     let mut text = format!("  - {:<27} # {}\n", format!("name: {}", link.name), comments.join("; "));
+    if let Some(carrier) = on {
+        let _ = writeln!(text, "    on: {carrier}");
+    }
     if let Some(placement) = placement(&link.placement) {
         let _ = writeln!(text, "    placement: {{transform: {{{placement}}}}}");
     }

@@ -162,8 +162,10 @@ impl<'g> Derivation<'g> {
         let (solution, solution_trace) = model.graph.recorded(|| self.hybrid_dynamics(&at_rest).accelerations);
         let (columns, mass_trace) = model.graph.recorded(|| columns(model, &self.factors));
         let (bias, bias_trace) = model.graph.recorded(|| newton_euler::bias(model, &self.factors));
-        // The loop does not include rotors.
-        let looped = model.chain.loops.fill_mass_matrix(model.size()) && model.chain.rotors.is_empty();
+        // The loop includes neither rotors nor branches, which leave most of A zero.
+        let looped = model.chain.loops.fill_mass_matrix(model.size())
+            && model.chain.rotors.is_empty()
+            && !model.chain.has_branches();
         let (mass_shape, both_shape, mass, mut both) = if looped {
             let slots = columns.slots();
             let shape = |bias| Shape::Columns { n: model.size(), points: columns.points(model), bias };

@@ -1,7 +1,7 @@
 //! Booms that no drive can raise, and drives that the weight of the crane overcomes.
 
 use super::{Plausibility, items, rounded};
-use crate::chain::{CoordinateId, CoordinateKind, Drive};
+use crate::chain::{Body, BodyId, Chain, CoordinateId, CoordinateKind, Drive};
 use crate::diagnostic::{Span, rule};
 use crate::spec::{Joint, Link};
 
@@ -12,26 +12,42 @@ const SAG: f64 = 0.5;
 /// Stiffness of a spring beyond which it is a slip, N/m or N m/rad.
 const STIFFEST: f64 = 1e13;
 
+fn named(link: &Link) -> &str {
+    link.name.value.as_deref().unwrap_or_default()
+}
+
 impl Plausibility<'_> {
     /// A beam whose joint turns about the vertical directly after another such joint.
     pub(super) fn swept_booms(&mut self) {
         let links: Vec<&Link> = items(Some(&self.crane.links)).collect();
-        for pair in links.windows(2) {
-            let [before, boom] = pair else { continue };
+        for boom in &links {
+            let Some(before) = self.carrier(boom).and_then(|name| links.iter().find(|link| named(link) == name)) else {
+                continue;
+            };
             let [Some(first), Some(second)] = [before, boom].map(|link| self.turns(link)) else { continue };
             if boom.beam.is_some() && [first, second].into_iter().all(|id| self.is_vertical(id)) {
-                let [name, other] = [boom, before].map(|link| link.name.value.as_deref().unwrap_or_default());
+                let [name, other] = [boom, before].map(|link| named(link));
                 let at = boom.placement.as_ref().map_or(boom.name.span, |placement| placement.span);
                 self.warn(rule::swept(at, name, other));
             }
         }
     }
 
+    /// The name of the link that a link is attached to.
+    fn carrier(&self, link: &Link) -> Option<&str> {
+        let BodyId(parent) = self.first_body(named(link))?.parent?;
+        Some(&self.chain.bodies[parent].link)
+    }
+
+    fn first_body(&self, link: &str) -> Option<&Body> {
+        self.chain.bodies.iter().find(|body| body.link == link)
+    }
+
     /// The coordinate of the revolute joint of a link.
     fn turns(&self, link: &Link) -> Option<CoordinateId> {
         let is_revolute = matches!(link.joint.as_ref()?.value.as_ref()?, Joint::Revolute(_));
         let name = link.name.value.as_deref().filter(|_| is_revolute)?;
-        let body = self.chain.bodies.iter().find(|body| body.link == name)?;
+        let body = self.first_body(name)?;
         body.path.iter().find_map(|step| step.coordinates().first().copied())
     }
 
@@ -64,7 +80,7 @@ impl Plausibility<'_> {
             let Some(stiffness) = stiffness.map(|stiffness| stiffness.at(&self.values)) else { continue };
             // Other springs, ropes and stops may hold the joint instead.
             let held = chain.connectors().iter().any(|connector| {
-                let [first, end] = chain.spanned(&connector.strain);
+                let [first, end] = Chain::range(&chain.spanned(&connector.strain));
                 (first..end).contains(&drive.coordinate.0)
             });
             let sag = self.effort_of_weight(drive.coordinate).abs() / stiffness;
@@ -90,8 +106,9 @@ impl Plausibility<'_> {
         let [origin, axis] = chain.axis(coordinate, &q, &self.values);
         let info = &chain.coordinates[coordinate.0];
         let mut effort = 0.0;
-        for (body, frame) in chain.bodies.iter().zip(chain.frames(&q, &self.values)).skip(info.body.0) {
-            let Some(inertia) = &body.inertia else { continue };
+        for (index, frame) in chain.frames(&q, &self.values).into_iter().enumerate().skip(info.body.0) {
+            let inertia = chain.bodies[index].inertia.as_ref().filter(|_| chain.moves(coordinate, BodyId(index)));
+            let Some(inertia) = inertia else { continue };
             let mass = inertia.mass.at(&self.values);
             let first = frame.direction(inertia.first.each_ref().map(|first| first.at(&self.values)));
             let first_moment = [0, 1, 2].map(|i| first[i] + mass * (frame.origin[i] - origin[i]));

@@ -53,7 +53,7 @@ pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) ->
     for caution in cautions::of_pose(crane.as_ref(), &q, options.analysis.crane.limits.bend) {
         report.caution(Some(caution));
     }
-    for caution in cautions::of_strength(crane.description()) {
+    for caution in cautions::of_strength(crane.as_ref()) {
         report.caution(Some(caution));
     }
     if let Some(index) = load {

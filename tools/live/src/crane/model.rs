@@ -14,6 +14,10 @@ impl DynModel for LiveCrane {
         &self.description
     }
 
+    fn parents(&self) -> &[usize] {
+        self.library.parents()
+    }
+
     fn parameter(&self, index: usize) -> f64 {
         self.parameters.get(index).copied().unwrap_or(f64::NAN)
     }

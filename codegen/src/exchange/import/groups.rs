@@ -1,4 +1,4 @@
-//! A robot as a chain: groups of links that move together, each on a joint.
+//! A robot as a tree: groups of links that move together, each on a joint.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,7 +9,9 @@ use crate::diagnostic::{Mistake, Span, suggest};
 
 /// Links that move together.
 pub(super) struct Group<'r> {
-    /// The joint that moves it, and the pose of its frame at zero in that of the previous group; `None` for the fixed group.
+    /// The index of the group that carries it; `None` for the fixed group.
+    pub(super) carrier: Option<usize>,
+    /// The joint that moves it, and the pose of its frame at zero in that of the group that carries it; `None` for the fixed group.
     pub(super) joint: Option<(&'r Joint, Frame)>,
     /// Its links, each in the frame of the first.
     pub(super) links: Vec<(&'r Link, Frame)>,
@@ -17,8 +19,8 @@ pub(super) struct Group<'r> {
     pub(super) held: Vec<(&'r Joint, f64)>,
 }
 
-/// The chain of a robot with some of its joints held; the first group is fixed.
-pub(super) fn chain<'r>(robot: &'r Robot, fixed: &[String]) -> Result<Vec<Group<'r>>, Vec<Mistake>> {
+/// The groups of a robot with some of its joints held, each followed by all beyond it; the first group is fixed.
+pub(super) fn groups<'r>(robot: &'r Robot, fixed: &[String]) -> Result<Vec<Group<'r>>, Vec<Mistake>> {
     let mut mistakes = Vec::new();
     names(robot, fixed, &mut mistakes);
     let root = root(robot, &mut mistakes);
@@ -30,11 +32,11 @@ pub(super) fn chain<'r>(robot: &'r Robot, fixed: &[String]) -> Result<Vec<Group<
     }
     let link = |name: &str| robot.links.iter().find(|link| link.name == name);
     let mut groups = Vec::new();
-    let mut next = Some((None, root));
-    while let Some((joint, carrier)) = next.take() {
-        let mut group = Group { joint, links: Vec::new(), held: Vec::new() };
+    let mut next = vec![(None, None, root)];
+    while let Some((carrier, joint, first)) = next.pop() {
+        let mut group = Group { carrier, joint, links: Vec::new(), held: Vec::new() };
         let mut moving: Vec<(&Joint, Frame)> = Vec::new();
-        let mut open = vec![(carrier, Frame::WORLD)];
+        let mut open = vec![(first, Frame::WORLD)];
         while let Some((member, frame)) = open.pop() {
             group.links.push((member, frame));
             for joint in children.get(member.name.as_str()).into_iter().flatten().rev() {
@@ -49,14 +51,10 @@ pub(super) fn chain<'r>(robot: &'r Robot, fixed: &[String]) -> Result<Vec<Group<
                 }
             }
         }
-        // The first one in the file continues the chain.
-        moving.sort_by_key(|(joint, _)| joint.span.start);
-        if let [(first, _), others @ ..] = moving.as_slice() {
-            let branch =
-                |(other, _): &(&Joint, Frame)| rule::branches(other.span, &carrier.name, &first.name, &other.name);
-            mistakes.extend(others.iter().map(branch));
-        }
-        next = moving.first().and_then(|(joint, frame)| Some((Some((*joint, *frame)), link(&joint.child.name)?)));
+        // In the order of the file; the first one continues before the others.
+        moving.sort_by_key(|(joint, _)| std::cmp::Reverse(joint.span.start));
+        let on_it = |(joint, frame): (&'r Joint, Frame)| Some((Some(groups.len()), Some((joint, frame)), link(&joint.child.name)?));
+        next.extend(moving.into_iter().filter_map(on_it));
         groups.push(group);
     }
     if groups.len() == 1 && mistakes.is_empty() {
