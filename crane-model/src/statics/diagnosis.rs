@@ -2,7 +2,11 @@
 
 use std::fmt;
 
-use super::{Equilibrium, Status, guess_dyn, overloaded::overloaded};
+use super::{
+    Equilibrium, Status, guess_dyn,
+    overloaded::overloaded,
+    slipping::{Slip, slips},
+};
 use crate::{
     CoordinateKind, CoordinateRole, Text,
     dyn_crane::DynCrane,
@@ -15,6 +19,10 @@ use crate::{
 const STANDS: f64 = 0.1;
 /// Distance below which feet are in one place, m.
 const ONE_PLACE: f64 = 1e-3;
+/// Distance above the other feet from which one is in the wrong place, m.
+const RAISED: f64 = 0.5;
+/// Tangent stiffness beyond which rounding hides all other forces, N/m or N m/rad.
+const TOO_STIFF: f64 = 1e15;
 
 /// Why there is no stable equilibrium, as far as the crane shows it.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,6 +49,13 @@ pub enum Diagnosis {
         /// Their sum, upwards, N.
         upwards: f64,
     },
+    /// Feet let go under a lateral force.
+    Slips {
+        /// The foot that is furthest beside its place.
+        foot: Text,
+        /// How far, m.
+        distance: f64,
+    },
     /// The feet form no polygon that the crane can stand on.
     NoPolygon {
         /// Whether they are all in one place, instead of on one line.
@@ -59,6 +74,22 @@ pub enum Diagnosis {
     Yields {
         /// The tipping margin with rigid feet.
         margin: f64,
+    },
+    /// A foot is far above or below the others.
+    RaisedFoot {
+        /// The foot.
+        foot: Text,
+        /// How far it is above them, m; negative below.
+        height: f64,
+    },
+    /// A spring is so stiff that rounding hides all other forces.
+    TooStiff {
+        /// The coordinate that it holds.
+        coordinate: Text,
+        /// The tangent stiffness along it, N/m or N m/rad.
+        stiffness: f64,
+        /// Its unit.
+        unit: &'static str,
     },
     /// Numbers overflow.
     Overflow,
@@ -82,6 +113,7 @@ impl Diagnosis {
         }
         match &equilibrium.status {
             Status::Floats => Self::Floats { upwards: upwards(crane, 0.0, &guess).unwrap_or(f64::NAN) },
+            Status::Slips { .. } => slipping(crane, &equilibrium.q),
             Status::Overflow => Self::Overflow,
             Status::TipsOver { .. } | Status::Singular { .. } | Status::Unstable { .. }
                 if has_no_polygon(crane, &guess) =>
@@ -91,7 +123,7 @@ impl Diagnosis {
                 Self::NoPolygon { one_place }
             }
             Status::TipsOver { feet } => tipping(crane, &guess, feet),
-            _ => Self::Unknown,
+            _ => raised_foot(crane, &guess).or_else(|| too_stiff(crane, &guess)).unwrap_or(Self::Unknown),
         }
     }
 
@@ -119,6 +151,10 @@ impl Diagnosis {
             Self::Floats { .. } => {
                 "z points upwards: write `gravity: [0, 0, -9.81]`, and check the loads that pull upwards".to_owned()
             }
+            Self::Slips { foot, .. } => format!(
+                "check the ropes and loads that pull sideways, and whether enough weight is on {foot}; with a smaller `full_hold` it holds under less \
+                 weight"
+            ),
             Self::NoPolygon { .. } => {
                 "give each foot its own place, `at: [x, y, z]` in m, so that they form a polygon around the crane".to_owned()
             }
@@ -136,6 +172,12 @@ impl Diagnosis {
             }
             Self::Yields { .. } => {
                 "check `stiffness`, in N/m, and `free_play`, in m, of the supports, and start from a `guess:` near the pose at rest".to_owned()
+            }
+            Self::RaisedFoot { foot, .. } => {
+                format!("check the third number of `at` of {foot}, in m: the feet of a crane at rest are on one level")
+            }
+            Self::TooStiff { coordinate, .. } => {
+                format!("check the stiffnesses of what holds {coordinate}, in N/m and N m/rad; with 1e10 a spring is as good as rigid")
             }
             Self::Overflow => {
                 "check the exponents and units of masses, stiffnesses and positions; `crane check` warns about unusual ones".to_owned()
@@ -168,6 +210,42 @@ fn has_no_polygon(crane: &dyn DynCrane, q: &[f64]) -> bool {
     });
     let rest = vec![0.0; q.len()];
     !description.supports.is_empty() && tilts.count() == 2 && lines(crane, 0.0, q, &rest, &rest).is_empty()
+}
+
+/// The foot that slips most.
+fn slipping(crane: &dyn DynCrane, q: &[f64]) -> Diagnosis {
+    let most = slips(crane, q).into_iter().max_by(|a, b| a.distance.total_cmp(&b.distance));
+    most.map_or(Diagnosis::Unknown, |Slip { foot, distance }| Diagnosis::Slips {
+        foot: crane.description().supports[foot].name.clone(),
+        distance,
+    })
+}
+
+/// The foot that is furthest above or below the others, if it is too far.
+fn raised_foot(crane: &dyn DynCrane, q: &[f64]) -> Option<Diagnosis> {
+    let feet = crane.support_positions_at(q);
+    let above_others = |foot: usize| {
+        let mut others: Vec<f64> =
+            feet.iter().enumerate().filter(|(other, _)| *other != foot).map(|(_, at)| at.z).collect();
+        others.sort_by(f64::total_cmp);
+        Some(feet[foot].z - others.get(others.len() / 2)?)
+    };
+    let heights = (0..feet.len()).filter_map(|foot| Some((foot, above_others(foot)?)));
+    let (foot, height) = heights.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+    let name = &crane.description().supports[foot].name;
+    (height.abs() > RAISED).then(|| Diagnosis::RaisedFoot { foot: name.clone(), height })
+}
+
+/// The coordinate that is held most stiffly, if that is too stiff.
+fn too_stiff(crane: &dyn DynCrane, q: &[f64]) -> Option<Diagnosis> {
+    let coordinates = &crane.description().coordinates;
+    let n = coordinates.len();
+    let mut tangent = vec![0.0; n * n];
+    crane.tangent_stiffness(0.0, q, &crane.drive_positions_at(0.0), &mut tangent);
+    let held = coordinates.iter().enumerate().map(|(j, info)| (info, tangent[j * n + j]));
+    let (info, stiffness) = held.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let unit = if info.kind == CoordinateKind::Rotation { "N m/rad" } else { "N/m" };
+    (stiffness > TOO_STIFF).then(|| Diagnosis::TooStiff { coordinate: info.name.clone(), stiffness, unit })
 }
 
 /// Why a crane tips over the line between two feet.
@@ -212,6 +290,7 @@ impl fmt::Display for Diagnosis {
             Self::Floats { upwards } => {
                 write!(f, "; together they pull upwards with {:.2} kN", upwards / 1e3)
             }
+            Self::Slips { foot, distance } => write!(f, "; there {foot} is {:.0} mm beside its place", 1e3 * distance),
             Self::NoPolygon { one_place: true } => f.write_str("; seen from above, all its feet are in one place"),
             Self::NoPolygon { one_place: false } => f.write_str("; seen from above, all its feet are on one line"),
             Self::Overturned { feet: [from, to], line, most: [worst, best] } => {
@@ -231,6 +310,13 @@ impl fmt::Display for Diagnosis {
             }
             Self::Yields { margin } => {
                 write!(f, "; its feet yield until it falls: on rigid feet the tipping margin would be {margin:.2}")
+            }
+            Self::RaisedFoot { foot, height } => {
+                let (size, side) = (height.abs(), if *height > 0.0 { "above" } else { "below" });
+                write!(f, "; {foot} is {size:.2} m {side} the other feet")
+            }
+            Self::TooStiff { coordinate, stiffness, unit } => {
+                write!(f, "; {coordinate} is held with {stiffness:.1e} {unit}, beside which rounding hides all other forces")
             }
             Self::Overflow | Self::Unknown => Ok(()),
         }

@@ -42,7 +42,11 @@ impl Equilibrium {
         match self.status {
             Status::Converged | Status::Unstable { .. } => true,
             Status::Singular { .. } => self.at_rest(&Settings::default()),
-            Status::TipsOver { .. } | Status::Floats | Status::Overflow | Status::NotConverged => false,
+            Status::TipsOver { .. }
+            | Status::Floats
+            | Status::Slips { .. }
+            | Status::Overflow
+            | Status::NotConverged => false,
         }
     }
 

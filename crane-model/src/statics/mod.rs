@@ -10,6 +10,7 @@ mod newton;
 mod overloaded;
 mod residual_scale;
 mod settings;
+mod slipping;
 mod solve;
 mod status;
 mod tangent;

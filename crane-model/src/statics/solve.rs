@@ -4,7 +4,7 @@ use nalgebra::{DVector, SVector};
 
 use super::{
     Equilibrium, Iteration, Settings, Status, continuation, equations::Equations, guess_dyn, newton,
-    residual_scale::ResidualScale, tangent::Tangent,
+    residual_scale::ResidualScale, slipping::slips, tangent::Tangent,
 };
 use crate::{
     CoordinateKind, Statics,
@@ -77,24 +77,44 @@ fn search(equations: &mut Equations<'_>, q: &[f64], settings: &Settings) -> Equi
 fn search_from(equations: &Equations<'_>, start: &DVector<f64>, settings: &Settings) -> Equilibrium {
     let scale = ResidualScale::at(equations, start);
     let iterate = |q: &DVector<f64>, limits| newton::iterate(equations, q.clone(), settings, &scale, limits);
-    let first = iterate(start, newton::BOLD);
+    let first = with_slips_status(equations, iterate(start, newton::BOLD));
     if settings.load_steps == 0 || !missed(equations, start, settings, &first) {
         return first;
     }
-    let second = iterate(start, newton::CAUTIOUS);
+    let second = with_slips_status(equations, iterate(start, newton::CAUTIOUS));
     if second.is_stable() {
         return second;
     }
     let mut load_steps = 0;
+    let mut slipping = None;
     let mut arrive = |mut q: DVector<f64>, steps: usize| {
         load_steps = steps;
         if !equations.close(&mut q) {
             return None;
         }
-        [newton::BOLD, newton::CAUTIOUS].into_iter().map(|limits| iterate(&q, limits)).find(Equilibrium::is_stable)
+        for limits in [newton::BOLD, newton::CAUTIOUS] {
+            let end = with_slips_status(equations, iterate(&q, limits));
+            match end.status {
+                Status::Converged => return Some(end),
+                Status::Slips { .. } => slipping = Some(end),
+                _ => {}
+            }
+        }
+        None
     };
     let found = continuation::follow(equations, start, settings.load_steps, &scale, &mut arrive);
-    found.map_or(first, |found| Equilibrium { load_steps: Some(load_steps), ..found })
+    let found = found.map(|found| Equilibrium { load_steps: Some(load_steps), ..found });
+    found.or(slipping).unwrap_or(first)
+}
+
+/// An equilibrium in which feet slip is none of a real crane.
+fn with_slips_status(equations: &Equations<'_>, found: Equilibrium) -> Equilibrium {
+    let slips = if found.is_stable() { slips(equations.crane, &found.q) } else { Vec::new() };
+    if slips.is_empty() {
+        return found;
+    }
+    let supports = &equations.crane.description().supports;
+    Equilibrium { status: Status::Slips { feet: slips.iter().map(|slip| supports[slip.foot].name.clone()).collect() }, ..found }
 }
 
 /// Rotation by which an equilibrium may differ from the guess and still be the intended one, rad.
@@ -117,7 +137,7 @@ fn missed(equations: &Equations<'_>, start: &DVector<f64>, settings: &Settings, 
         Status::Converged | Status::TipsOver { .. } | Status::Floats | Status::Overflow => false,
         // Also reported for poses where no step helps; at an equilibrium it is exact.
         Status::Singular { .. } => !found.at_rest(settings),
-        Status::NotConverged => true,
+        Status::NotConverged | Status::Slips { .. } => true,
         // A crane that has tipped half off its feet may balance there, besides standing on them.
         Status::Unstable { .. } => !meant() || stable() || description.supports.iter().any(|foot| foot.is_one_sided()),
     }

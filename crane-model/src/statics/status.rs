@@ -27,6 +27,11 @@ pub enum Status {
     },
     /// Weight and loads pull a crane on feet that do not hold it down upwards.
     Floats,
+    /// The only pose found is one in which feet stand on the push of their own lateral springs, which let go.
+    Slips {
+        /// These feet.
+        feet: Vec<Text>,
+    },
     /// Forces or stiffnesses at the guess are not finite numbers.
     Overflow,
     /// No equilibrium found within the allowed iterations, or no step reduced the residual.
@@ -34,12 +39,13 @@ pub enum Status {
 }
 
 impl Status {
-    /// A word for it: `stable`, `tips over`, `floats`, `unstable`, `singular`, `overflow` or `not converged`.
+    /// A word for it: `stable`, `tips over`, `floats`, `slips`, `unstable`, `singular`, `overflow` or `not converged`.
     pub fn name(&self) -> &'static str {
         match self {
             Status::Converged => "stable",
             Status::TipsOver { .. } => "tips over",
             Status::Floats => "floats",
+            Status::Slips { .. } => "slips",
             Status::Unstable { .. } => "unstable",
             Status::Singular { .. } => "singular",
             Status::Overflow => "overflow",
@@ -61,6 +67,9 @@ impl fmt::Display for Status {
             Status::TipsOver { feet } if feet.is_empty() => f.write_str("tips over: no stable pose is left"),
             Status::TipsOver { feet } => write!(f, "tips over about {}: no stable pose is left", feet.join(" – ")),
             Status::Floats => f.write_str("floats: weight and loads do not press the crane onto its feet"),
+            Status::Slips { feet } => {
+                write!(f, "slips: pulled sideways, {} let go, and no pose was found in which they hold", feet.join(", "))
+            }
             Status::Overflow => f.write_str("forces overflow: a mass, a stiffness or a position is out of range"),
             Status::NotConverged => f.write_str("not converged: no equilibrium found from this guess"),
         }

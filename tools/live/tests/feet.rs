@@ -281,6 +281,53 @@ fn gravity_upwards_and_feet_in_one_place_are_named() {
     assert_eq!(Diagnosis::of(stacked, &found), Diagnosis::NoPolygon { one_place: true }, "{found}");
 }
 
+/// What statics ends with if a number of one foot has a wrong place or exponent.
+#[test]
+fn a_foot_in_the_air_and_a_spring_beyond_reason_are_named() {
+    let (_, loader) = crane_specs::EXAMPLES.iter().find(|(name, _)| *name == "loader_crane").expect("an example");
+    let diagnosis = |from: &str, to: &str| {
+        assert!(loader.contains(from), "{from}");
+        let changed = crane(&loader.replacen(from, to, 1));
+        let crane: &dyn DynCrane = &changed;
+        let found = crane.equilibrium(&Statics::default());
+        assert!(!found.is_stable(), "{to}: {found}");
+        Diagnosis::of(crane, &found)
+    };
+    let found = diagnosis("at: [0, 2.4, 0]", "at: [0, 2.4, 3]");
+    assert_eq!(found, Diagnosis::RaisedFoot { foot: "front_left".into(), height: 3.0 });
+    let found = diagnosis("stiffness: [3e6, 3e6, 8e6]", "stiffness: [3e6, 3e6, 1e18]");
+    let Diagnosis::TooStiff { stiffness, .. } = &found else { panic!("{found:?}") };
+    assert!(*stiffness > 1e17, "{found}");
+    assert!(found.advice().contains("N/m"), "{}", found.advice());
+}
+
+/// A loader crane that a rope pulls sideways with 17 kN. Newton's method ends where its rear foot stands on the push of its own lateral springs,
+/// with some meshes; at rest all feet hold, and all meshes agree. With more `full_hold` than the foot carries the whole truck would stand on such
+/// a push, 3 m beside its place.
+#[test]
+fn no_crane_stands_on_the_push_of_springs_that_let_go() {
+    let text = include_str!("specs/two_rests.yaml");
+    let loader = |hold: f64, sections: u32| {
+        crane(&text.replace("SECTIONS", &sections.to_string()).replace("HOLD", &format!("{hold:?}")))
+    };
+    for hold in [1000.0, 4000.0] {
+        for sections in [3, 14, 16, 18] {
+            let loader = loader(hold, sections);
+            let loader: &dyn DynCrane = &loader;
+            let found = loader.equilibrium(&Statics::default());
+            assert!(found.is_stable(), "{hold}, {sections}: {found}");
+            let reactions = loader.support_reactions_at(&found.q, &vec![0.0; found.q.len()]);
+            // Three sections are 0.5 N from the limit.
+            assert!((reactions[3].z - 9005.0).abs() < 2.0, "{hold}, {sections}: {reactions:?}");
+        }
+    }
+    let loader = loader(16_000.0, 16);
+    let loader: &dyn DynCrane = &loader;
+    let found = loader.equilibrium(&Statics::default());
+    let Diagnosis::Slips { distance, .. } = Diagnosis::of(loader, &found) else { panic!("{found}") };
+    assert!(distance > 1.0 && found.status.name() == "slips", "{found}");
+}
+
 /// A block that rocks without damping on stiff ground keeps its energy. Its feet land beside where they stood, where a law changes within
 /// 1e-11 s: steps must be able to follow it.
 #[test]

@@ -88,7 +88,7 @@ class Equilibrium:
     """Where a crane rests, over the leading axes.
 
     q: (..., n), m and rad; NaN where there is no equilibrium.
-    status: "stable", "tips over", "floats", "unstable", "singular", "not converged" or "overflow"; "invalid" for a row whose parameters or arguments
+    status: "stable", "tips over", "floats", "slips", "unstable", "singular", "not converged" or "overflow"; "invalid" for a row whose parameters or arguments
     are not allowed; a str, or (...) of them. message: the same in a sentence.
     residual: (...), relative to the balancing forces.
     steps: (...), Newton steps.
