@@ -1,8 +1,10 @@
 // The data that the command put into the page.
 
 /** All data of the page: cranes, tables, spec, command. The crane the page is about comes last. */
-export function read() {
-  const data = JSON.parse(document.getElementById("data").textContent);
+export const read = () => decoded(JSON.parse(document.getElementById("data").textContent));
+
+/** The same with the numbers of runs unpacked. */
+export function decoded(data) {
   for (const crane of data.cranes) crane.run = run(crane.run);
   const crane = data.cranes.at(-1);
   return { ...data, crane, rigid: data.cranes.length > 1 ? data.cranes[0] : null };

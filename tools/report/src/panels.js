@@ -16,13 +16,13 @@ const MOMENTS = [
   { suffix: "_phi", title: "Torsion moment" },
 ];
 
-/** All plots of the page. */
-export function panels(data, player) {
+/** All plots of the page, or of a part of it with the same sections. */
+export function panels(data, player, root = document) {
   const { crane, rigid } = data;
   const plots = [];
   const time = { label: "t", unit: "s", values: crane.run.t };
   const add = (section, options) => {
-    const host = document.querySelector(`#${section} .panels`);
+    const host = root.querySelector(`#${section} .panels`);
     const plot = new Plot(host, { prefix: crane.name, player, x: time, ...options });
     plots.push(plot);
     return plot;
@@ -59,7 +59,7 @@ export function panels(data, player) {
   along.push(...strength(add, overTime, crane));
   stability(overTime, crane);
   energy(overTime, crane, both);
-  explorer(add, crane, rigid, plots);
+  explorer(root.querySelector("#explorer"), { add, crane, rigid, plots });
   return { plots, along };
 }
 
@@ -234,8 +234,7 @@ function energy(overTime, crane, both) {
 }
 
 /** Any column of the run. */
-function explorer(add, crane, rigid, plots) {
-  const host = document.querySelector("#explorer");
+function explorer(host, { add, crane, rigid, plots }) {
   const choice = host.querySelector("select");
   for (const { name, unit } of crane.run.list.slice(1)) choice.append(new Option(`${spoken(name)} [${unit}]`, name));
   const passive = crane.coordinates.find(({ role }) => role === "passive") ?? crane.coordinates[0];

@@ -50,8 +50,7 @@ export function tables(data) {
 }
 
 /** Outcome and results. */
-function results({ facts, grids }) {
-  const host = document.querySelector("#tables .tables");
+export function results({ facts, grids }, host = document.querySelector("#tables .tables")) {
   if (facts.length) {
     host.append(pairs("Outcome", facts.map(([name, value, unit]) => [spoken(name), `${value} ${unit}`.trim()]), "facts"));
   }

@@ -2,11 +2,10 @@
 import { element } from "./element.js";
 
 /** Fills the tiles, and the sentence above them. */
-export function tiles({ figures, verdict }) {
-  const sentence = document.querySelector("#verdict");
+export function tiles({ figures, verdict }, sentence = document.querySelector("#verdict"), host = document.querySelector("#tiles")) {
   if (verdict.verdict === "unlimited") sentence.remove();
   else Object.assign(sentence, { textContent: verdict.text, className: verdict.verdict });
-  document.querySelector("#tiles").append(
+  host.append(
     ...figures.map(({ title, value, note, verdict: own }) =>
       element("div", { className: own }, ...[["span", title], ["strong", value], ["span", note]].map(([tag, textContent]) => element(tag, { textContent }))),
     ),

@@ -1,7 +1,7 @@
 // The view in three dimensions: cranes, ground, traces, forces, camera.
 import {
-  ACESFilmicToneMapping, ArrowHelper, CircleGeometry, Color, DirectionalLight, Fog, GridHelper, HemisphereLight, Mesh,
-  MeshBasicMaterial, MeshStandardMaterial, PCFShadowMap, PerspectiveCamera, Scene, SphereGeometry, Vector3, WebGLRenderer,
+  ACESFilmicToneMapping, ArrowHelper, CircleGeometry, Color, DirectionalLight, Fog, GridHelper, Group, HemisphereLight, Mesh,
+  MeshBasicMaterial, MeshLambertMaterial, PCFShadowMap, PerspectiveCamera, Scene, SphereGeometry, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { Line2 } from "three/examples/jsm/lines/Line2.js";
@@ -18,7 +18,15 @@ const SWING = 0.012;
 const WAVES = 0.5;
 /** Room around the crane, relative to what it occupies, and for the thickness of its links, relative to its size. */
 const ROOM = 1.04;
-const MARGIN = 0.03;
+const MARGIN = 0.05;
+/** Where the picture ends for a crane that moves, from −1 to 1. */
+const EDGE = 0.97;
+/** Most picture elements per point of the screen. */
+const FINEST = 2;
+/** Levels of detail, from the best: picture elements, of those that the screen has, and those across the map of shadows. */
+const DETAIL = [{ ratio: 1, shadows: 2048 }, { ratio: 1, shadows: 512 }, { ratio: 1, shadows: 0 }, { ratio: 0.7, shadows: 0 }, { ratio: 0.5, shadows: 0 }];
+/** Time without a change after which a picture is one of the crane at rest, ms. */
+const QUIET = 400;
 /** Length of the largest reaction as drawn, relative to the crane's size. */
 const ARROW = 0.22;
 /** Fraction of the largest reaction below which a pull is rounding. */
@@ -32,32 +40,49 @@ export const VIEWS = {
 };
 
 export class Viewer {
-  constructor(canvas, { crane, rigid }, player) {
+  /** Without `antialias`, edges are smoothed by more picture elements, and only at rest: pictures of motions then take less time in software. */
+  constructor(canvas, data, player, { antialias = true } = {}) {
+    this.antialias = antialias;
     this.canvas = canvas;
-    this.crane = crane;
     this.player = player;
     this.factor = 1;
-    this.mode = null;
-    this.extent = extent(crane);
-    const { size } = this.extent;
-    this.renderer = new WebGLRenderer({ canvas, antialias: true });
+    this.detail = 0;
+    this.moves = false;
+    this.renderer = new WebGLRenderer({ canvas, antialias });
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
     this.renderer.toneMapping = ACESFilmicToneMapping;
     this.scene = new Scene();
-    this.camera = new PerspectiveCamera(34, 1, 0.01 * size, 60 * size);
+    this.camera = new PerspectiveCamera(34, 1);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.maxPolarAngle = 0.56 * Math.PI;
     this.controls.listenToKeyEvents(canvas);
     this.controls.addEventListener("change", () => this.draw());
-    this.figure = new Figure(crane, size);
-    this.scene.add(this.figure.group);
-    if (rigid) {
-      this.ghost = new Figure(rigid, size, { ghost: true });
-      this.scene.add(this.ghost.group);
-    }
+    this.load(data);
+    new ResizeObserver(() => this.resize()).observe(canvas);
+    this.resize();
+    this.look("corner");
+    player.follow(() => this.show());
+  }
+
+  /** Shows these cranes, in place of others, seen from where the camera is. */
+  load({ crane, rigid }) {
+    this.crane = crane;
     this.rigid = rigid;
+    this.mode = null;
+    this.extent = extent(crane);
+    const { size } = this.extent;
+    Object.assign(this.camera, { near: 0.01 * size, far: 60 * size }).updateProjectionMatrix();
+    // What is shown no longer keeps its programs on the graphics card until those of the new cranes are there.
+    if (this.content) this.stale = this.content;
+    this.scene.remove(this.content);
+    this.content = new Group();
+    this.scene.add(this.content);
+    this.figure = new Figure(crane, size);
+    this.content.add(this.figure.group);
+    this.ghost = rigid ? new Figure(rigid, size, { ghost: true }) : null;
+    if (this.ghost) this.content.add(this.ghost.group);
     this.used = used(crane);
     /** Value at the end of the colour scale. */
     this.full = this.used.unit === "1" ? 1 : Math.max(...this.used.beams.flatMap(({ sections }) => sections.map(({ values }) => range(values)[1])), 1e-9);
@@ -67,11 +92,7 @@ export class Viewer {
     this.traces();
     this.forces();
     this.tippingLines();
-    new ResizeObserver(() => this.resize()).observe(canvas);
-    this.resize();
-    this.look("corner");
     this.theme();
-    player.follow(() => this.show());
   }
 
   lights() {
@@ -80,12 +101,12 @@ export class Viewer {
     const sun = new DirectionalLight(0xffffff, 2.6);
     sun.position.copy(centre).add(new Vector3(-0.9, -0.7, 1.6).multiplyScalar(size));
     sun.target.position.copy(centre);
-    sun.castShadow = true;
-    sun.shadow.mapSize.set(2048, 2048);
+    this.sun = sun;
+    this.shade();
     sun.shadow.bias = -0.0004;
     sun.shadow.normalBias = 0.002 * size;
     Object.assign(sun.shadow.camera, { left: -size, right: size, top: size, bottom: -size, near: 0.1 * size, far: 4 * size });
-    this.scene.add(this.sky, sun, sun.target);
+    this.content.add(this.sky, sun, sun.target);
   }
 
   /** Level ground under the lowest foot, with a grid whose squares are a round number of metres. */
@@ -93,7 +114,7 @@ export class Viewer {
     const { low, size, centre } = this.extent;
     const { supports } = this.crane.scene;
     const level = supports.length ? Math.min(...supports.map(({ at: [, , z] }) => z)) - 0.008 * size : Math.min(low.z, 0);
-    this.floor = new Mesh(new CircleGeometry(6 * size, 64), new MeshStandardMaterial({ roughness: 1 }));
+    this.floor = new Mesh(new CircleGeometry(6 * size, 64), new MeshLambertMaterial());
     this.floor.position.set(centre.x, centre.y, level);
     this.floor.receiveShadow = true;
     const square = 10 ** Math.round(Math.log10(size / 12));
@@ -103,7 +124,7 @@ export class Viewer {
     this.grid.position.set(Math.round(centre.x), Math.round(centre.y), level + 0.0015 * size);
     this.grid.material.transparent = true;
     this.grid.material.opacity = 0.35;
-    this.scene.add(this.floor, this.grid);
+    this.content.add(this.floor, this.grid);
     this.square = square;
   }
 
@@ -120,11 +141,11 @@ export class Viewer {
         const material = new LineMaterial({ linewidth: width, transparent: true, opacity, worldUnits: false });
         const path = new Line2(new LineGeometry().setPositions(places), material);
         path.frustumCulled = false;
-        this.scene.add(path);
+        this.content.add(path);
         return path;
       };
       const dot = new Mesh(new SphereGeometry(0.008 * this.extent.size, 20, 12), new MeshBasicMaterial());
-      this.scene.add(dot);
+      this.content.add(dot);
       return { index, whole: line(1.2, 0.3), come: line(3, 1), dot };
     });
   }
@@ -136,7 +157,7 @@ export class Viewer {
     this.reactions = crane.scene.supports.map(({ name, at: local }) => {
       const values = ["x", "y", "z"].map((axis) => column(name, axis));
       const arrow = new ArrowHelper(new Vector3(0, 0, 1), new Vector3(), 1, 0xffffff);
-      this.scene.add(arrow);
+      this.content.add(arrow);
       return { values, local: new Vector3(...local), arrow };
     });
     this.greatest = Math.max(...this.reactions.map(({ values: [, , z] }) => Math.max(...range(z).map(Math.abs))), 1e-9);
@@ -154,7 +175,7 @@ export class Viewer {
     this.tipping = new Line2(new LineGeometry().setPositions([0, 0, 0, 1, 0, 0]), material);
     this.tipping.frustumCulled = false;
     this.tipping.visible = false;
-    this.scene.add(this.tipping);
+    this.content.add(this.tipping);
   }
 
   /** Draws the line with the least margin now. */
@@ -170,8 +191,12 @@ export class Viewer {
   }
 
   look(view) {
+    this.fit(new Vector3(...VIEWS[view]).normalize());
+  }
+
+  /** Looks from a direction, from as near as shows all places of the crane. */
+  fit(from) {
     const { centre, size } = this.extent;
-    const from = new Vector3(...VIEWS[view]).normalize();
     this.camera.position.copy(centre).addScaledVector(from, size);
     this.camera.lookAt(centre);
     this.camera.updateMatrixWorld();
@@ -195,14 +220,57 @@ export class Viewer {
     this.draw();
   }
 
-  resize() {
+  /** Steps back, if the crane as it is posed now leaves the picture: seen from where it was. */
+  follow() {
+    const { frames, points } = this.figure.kinematics;
+    const now = [...frames.map((frame) => new Vector3().setFromMatrixPosition(frame)), ...points.map((_, index) => this.figure.kinematics.point(index))];
+    const left = now.filter((place) => {
+      const { x, y } = place.clone().project(this.camera);
+      return Math.max(Math.abs(x), Math.abs(y)) > EDGE;
+    });
+    if (!left.length) return;
+    this.extent.places.push(...left.map((place) => place.clone()));
+    this.fit(this.camera.position.clone().sub(this.controls.target).normalize());
+  }
+
+  /** Draws with less detail, or with all of it again, if there is such a level. */
+  refine(level) {
+    if (level === this.detail || !DETAIL[level]) return;
+    this.detail = level;
+    this.shade();
+    this.resize();
+  }
+
+  /** The level of detail now. */
+  get level() {
+    return Math.max(this.detail, this.moves ? 1 : 0);
+  }
+
+  /** The crane, or what it is seen from, begins to move or came to rest. */
+  move(moves) {
+    this.moves = moves;
+    this.shade();
+    this.resize(true);
+  }
+
+  shade() {
+    const { shadows } = DETAIL[this.level];
+    const { sun } = this;
+    sun.castShadow = shadows > 0;
+    sun.shadow.mapSize.setScalar(Math.max(shadows, 1));
+    sun.shadow.map?.dispose();
+    sun.shadow.map = null;
+  }
+
+  resize(asked = false) {
     const { clientWidth, clientHeight } = this.canvas;
     if (!clientWidth || !clientHeight) return;
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    const smoothed = this.level === 0 && !this.antialias ? FINEST : Math.min(window.devicePixelRatio, FINEST);
+    this.renderer.setPixelRatio(DETAIL[this.level].ratio * smoothed);
     this.renderer.setSize(clientWidth, clientHeight, false);
     this.camera.aspect = clientWidth / clientHeight;
     this.camera.updateProjectionMatrix();
-    this.draw();
+    this.draw(asked);
   }
 
   theme() {
@@ -304,8 +372,13 @@ export class Viewer {
     if (colours.length) this.figure.paint(colours);
   }
 
-  /** Draws once, however often it is called before the next frame. */
-  draw() {
+  /** Draws once, however often it is called before the next frame; `asked`: nothing but the level of detail has changed. */
+  draw(asked = false) {
+    if (!this.antialias && !asked) {
+      clearTimeout(this.quiet);
+      this.quiet = setTimeout(() => this.move(false), QUIET);
+      if (!this.moves) this.move(true);
+    }
     if (this.asked || !this.renderer) return;
     this.asked = true;
     requestAnimationFrame(() => {
@@ -324,5 +397,11 @@ export class Viewer {
   /** Draws at once. */
   paint() {
     this.renderer.render(this.scene, this.camera);
+    this.stale?.traverse((one) => {
+      one.geometry?.dispose();
+      one.material?.dispose();
+      one.shadow?.dispose();
+    });
+    this.stale = null;
   }
 }
