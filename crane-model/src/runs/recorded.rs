@@ -22,7 +22,7 @@ pub struct Recorded {
     pub run: Run,
     /// All results.
     pub table: Table,
-    /// Wall time.
+    /// Wall time; zero where there is no clock.
     pub wall: Duration,
     /// Its estimated errors, if requested.
     pub verification: Option<Verification>,
@@ -90,6 +90,11 @@ impl Watch for Recorder<'_> {
     }
 }
 
+/// The time now; none in WebAssembly, where the standard library has no clock and would panic.
+fn clock() -> Option<Instant> {
+    (!cfg!(all(target_family = "wasm", target_os = "unknown"))).then(Instant::now)
+}
+
 /// Runs from `start` and records every result. `proceed` receives the time after every step, s, and may stop the run, which then keeps
 /// its results so far.
 ///
@@ -101,7 +106,7 @@ pub fn record(
     settings: &dynamics::Settings,
     proceed: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Recorded, Failed> {
-    let begin = Instant::now();
+    let begin = clock();
     let mut recorder = Recorder { recording: Recording::new(crane), proceed };
     let run = dynamics::simulate_watched(crane, &start.state(), settings, &mut recorder);
     let table = recorder.recording.into_table();
@@ -127,7 +132,14 @@ pub fn record(
         )
     });
     let cautions = unbalanced.into_iter().collect();
-    Ok(Recorded { start: start.what.clone(), run, table, wall: begin.elapsed(), verification: None, cautions })
+    Ok(Recorded {
+        start: start.what.clone(),
+        run,
+        table,
+        wall: begin.map_or(Duration::ZERO, |begin| begin.elapsed()),
+        verification: None,
+        cautions,
+    })
 }
 
 /// As [`record`], with all cautions, the most important first, and with a second run to estimate the error if `verify`; `bend`: degrees by

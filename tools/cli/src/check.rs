@@ -3,7 +3,7 @@
 use std::{io::Write, mem};
 
 use crane_codegen::{Checked, Diagnostics, chain::Chain, compile};
-use crane_page::tables::FORMAT;
+use crane_page::tables::{FORMAT, diagnostics};
 use serde_json::{Value, json};
 
 use crate::{
@@ -69,6 +69,6 @@ fn json(valid: bool, chain: Option<&Chain>, found: &Diagnostics) -> Value {
         "bodies": chain.map(|chain| chain.bodies.len()),
         "coordinates": chain.map(|chain| chain.coordinates.len()),
         "spec_hash": chain.map(|chain| &chain.spec_hash),
-        "diagnostics": screen::diagnostics(found),
+        "diagnostics": diagnostics(found),
     })
 }

@@ -11,8 +11,8 @@ use std::{
 };
 
 use clap::{Args, ValueEnum};
-use crane_codegen::{Diagnostics, Located, chain::Chain};
-use crane_page::tables::Report;
+use crane_codegen::{Diagnostics, chain::Chain};
+use crane_page::tables::{Report, diagnostics};
 use indicatif::ProgressBar;
 use serde_json::{Value, json};
 
@@ -83,25 +83,6 @@ fn tell(words: &str) {
 
 fn drawn(found: &Diagnostics) -> String {
     if has_colours(io::stderr().is_terminal()) { found.coloured() } else { found.to_string() }
-}
-
-/// Mistakes or warnings of a spec for programs.
-pub fn diagnostics(found: &Diagnostics) -> Value {
-    let of = |Located { mistake, file, start, end }: Located<'_>| {
-        json!({
-            "code": mistake.code,
-            "severity": if mistake.is_warning() { "warning" } else { "error" },
-            "file": file,
-            "line": start.0,
-            "column": start.1,
-            "end_line": end.0,
-            "end_column": end.1,
-            "message": mistake.title,
-            "label": mistake.label,
-            "help": mistake.help,
-        })
-    };
-    found.located().map(of).collect()
 }
 
 /// Shows warnings about a spec.

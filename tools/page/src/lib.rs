@@ -69,6 +69,16 @@ pub struct Texts<'a> {
 /// # Errors
 /// The modes of a crane could not be computed.
 pub fn page(subjects: &[Subject<'_>], texts: Texts<'_>, program: Program) -> Result<String, NoModes> {
+    let data = data(subjects, texts, program)?.to_string();
+    // No text of a spec may end the script element that contains the data.
+    Ok(PAGE.replacen(PLACE, &data.replace('<', "\\u003c"), 1))
+}
+
+/// The data of such a page.
+///
+/// # Errors
+/// The modes of a crane could not be computed.
+pub fn data(subjects: &[Subject<'_>], texts: Texts<'_>, program: Program) -> Result<Value, NoModes> {
     let shown = subjects.iter().map(Shown::new).collect::<Result<Vec<_>, _>>()?;
     let Texts { tables, chart, load_chart, command, spec } = texts;
     let tables = tables.map(|report| report.page());
@@ -80,7 +90,7 @@ pub fn page(subjects: &[Subject<'_>], texts: Texts<'_>, program: Program) -> Res
     let figures = main.map_or_else(Vec::new, |main| figures::figures(main, rigid));
     let summary = main.map(|main| figures::sign::summary(main, &figures, command.as_deref(), program));
     let (verdict, sentence) = figures::verdict(&figures);
-    let data = json!({
+    Ok(json!({
         "cranes": shown.iter().map(|crane| crane.data(program)).collect::<Vec<_>>(),
         "figures": figures::json(&figures),
         "verdict": {"verdict": verdict.name(), "text": sentence},
@@ -90,10 +100,7 @@ pub fn page(subjects: &[Subject<'_>], texts: Texts<'_>, program: Program) -> Res
         "load_chart": load_chart,
         "command": command,
         "spec": spec,
-    })
-    .to_string();
-    // No text of a spec may end the script element that contains the data.
-    Ok(PAGE.replacen(PLACE, &data.replace('<', "\\u003c"), 1))
+    }))
 }
 
 #[cfg(test)]

@@ -7,9 +7,11 @@
 //! | `runs` | extremes, work and time of runs |
 //! | `modes` | modes and the largest stable steps |
 //! | `page` | all tables of a page |
+//! | `mistakes` | mistakes of a spec and warnings about it, for programs |
 
 mod cell;
 mod grid;
+mod mistakes;
 mod modes;
 mod page;
 mod report;
@@ -19,6 +21,7 @@ mod statics;
 pub use cell::{Cell, Scale, number_text};
 pub(crate) use cell::{readable, uncertain};
 pub use grid::{Grid, Heading, VALUE};
+pub use mistakes::diagnostics;
 pub use modes::{damped_mode, damped_modes, names, stable_steps, undamped_modes};
 pub use page::of_page;
 pub use report::{FORMAT, Report};

@@ -1,0 +1,269 @@
+//! The crane of the page, and what is asked about it.
+
+use std::ops::ControlFlow;
+
+use crane_codegen::{
+    Checked, SourceFile, build,
+    chain::{End, Force, Group, Law},
+    compile,
+    diagnostic::Diagnostics,
+};
+use crane_live::LiveCrane;
+use crane_model::{
+    Text,
+    dyn_crane::{DynCrane, DynDynamics, DynModel},
+    dynamics::{Method, Settings},
+    results::cautions::BEND,
+    runs::{Start, record_checked},
+    statics::{self, Equilibrium},
+};
+use crane_page::{
+    Program, Subject, Texts, data,
+    tables::{Case, VALUE, diagnostics, equilibria, of_page},
+};
+use serde_json::{Value, json};
+
+use crate::{
+    chart::{self, Wanted},
+    driving::Driving,
+    levers::{self, Numbers},
+    request::Request,
+};
+
+/// What computed the results.
+const PROGRAM: Program = Program { name: "crane", version: env!("CARGO_PKG_VERSION") };
+
+/// What went wrong, in words for the reader of the page.
+pub type Outcome<T> = Result<T, String>;
+
+/// The crane of the page.
+#[derive(Default)]
+pub struct Engine {
+    crane: Option<Opened>,
+    driving: Option<Driving>,
+}
+
+/// A spec without mistakes.
+struct Opened {
+    live: LiveCrane,
+    /// The same crane with its drives at positions of the page; made when the first one is moved.
+    posed: Option<LiveCrane>,
+}
+
+impl Engine {
+    /// Answers a request, JSON in UTF-8, in JSON.
+    pub fn answer(&mut self, request: &[u8]) -> String {
+        let answered = serde_json::from_slice::<Request>(request)
+            .map_err(|error| format!("the page asks for something unknown: {error}"))
+            .and_then(|request| self.reply(request));
+        answered.unwrap_or_else(|words| json!({"error": words})).to_string()
+    }
+
+    fn reply(&mut self, request: Request) -> Outcome<Value> {
+        match request {
+            Request::Open { name, text } => Ok(self.open(&name, &text)),
+            Request::Rest { parameters, positions } => {
+                let crane = self.crane()?.at(&parameters, &positions)?;
+                rest(&crane, positions.is_empty())
+            }
+            Request::Run { parameters, duration } => run(&self.crane()?.at(&parameters, &[])?, duration),
+            Request::Chart { parameters, positions, load, point, ranges } => {
+                let crane = self.crane()?.at(&parameters, &positions)?;
+                chart::chart(&crane, &Wanted { load, point, ranges })
+            }
+            Request::Drive { parameters, positions } => {
+                let (driving, begun) = Driving::begin(&self.crane()?.live, &parameters, &positions)?;
+                self.driving = Some(driving);
+                Ok(begun)
+            }
+            Request::Advance { to, levers, tolerance } => {
+                let driving = self.driving.as_mut().ok_or("the crane is not being driven")?;
+                driving.advance(to, &levers, tolerance)
+            }
+            Request::Repeat { calls } => Ok(repeat(&self.crane()?.live, calls)),
+        }
+    }
+
+    fn crane(&mut self) -> Outcome<&mut Opened> {
+        self.crane.as_mut().ok_or_else(|| "there is no crane: the spec has mistakes".to_owned())
+    }
+
+    /// Reads a spec; mistakes leave the page without a crane.
+    fn open(&mut self, name: &str, text: &str) -> Value {
+        (self.crane, self.driving) = (None, None);
+        let Checked { chain, warnings } = match check(name, text) {
+            Ok(checked) => checked,
+            Err(words) => return words,
+        };
+        let live = LiveCrane::new(chain);
+        let opened = described(&live, &diagnostics(&warnings));
+        self.crane = Some(Opened { live, posed: None });
+        opened
+    }
+}
+
+/// The spec of a shipped crane, by the name of the crane or of its file.
+fn shipped(name: &str) -> Option<&'static str> {
+    crane_specs::spec(name.strip_suffix(".yaml").unwrap_or(name))
+}
+
+/// A valid chain, or the answer that lists its mistakes.
+fn check(name: &str, text: &str) -> Result<Checked, Value> {
+    let mistakes = |found: &Diagnostics| json!({"diagnostics": diagnostics(found), "drawn": found.to_string()});
+    let source: SourceFile = build::read_with(name, text.as_bytes(), &shipped).map_err(|failure| match failure {
+        build::Failure::File(words) => json!({"error": words}),
+        build::Failure::Mistakes(found) => mistakes(&found),
+    })?;
+    compile::check(&source).map_err(|found| mistakes(&found))
+}
+
+/// What the page needs to know of a crane before anything is computed.
+fn described(live: &LiveCrane, warnings: &Value) -> Value {
+    let description = live.description();
+    let parameters: Vec<Value> = description
+        .parameters
+        .iter()
+        .map(|info| {
+            let ends = [&info.lower_bound, &info.upper_bound].map(|bound| bound.value);
+            json!({
+                "name": info.name.as_str(), "unit": info.unit.as_str(), "about": info.about.as_str(), "value": info.default,
+                "least": ends[0], "most": ends[1],
+            })
+        })
+        .collect();
+    let stops = |coordinate: usize, side: End| {
+        let of_side = |force: &Force| match &force.law {
+            Law::Stop(stop) if stop.end == side && force.coordinate()?.0 == coordinate => {
+                Some(stop.at.at(live.parameters()))
+            }
+            _ => None,
+        };
+        live.chain().of(Group::Stops).iter().find_map(of_side)
+    };
+    let drives: Vec<Value> = description
+        .drives
+        .iter()
+        .zip(&live.chain().drives)
+        .map(|(info, drive)| {
+            let coordinate = &description.coordinates[info.coordinate];
+            json!({
+                "name": coordinate.name.as_str(), "unit": coordinate.kind.unit(), "start": info.start,
+                "lever": match levers::kind(drive) { levers::Kind::Valve => "valve", levers::Kind::Speed => "speed" },
+                "full": levers::full_speed(coordinate.kind, info.max_rate), "stops": [stops(info.coordinate, End::Lower), stops(info.coordinate, End::Upper)],
+            })
+        })
+        .collect();
+    json!({
+        "diagnostics": warnings, "name": description.name.as_str(), "title": description.title.as_str(),
+        "coordinates": live.size(), "bodies": description.bodies.len(), "spec_hash": description.spec_hash.as_str(),
+        "parameters": parameters, "drives": drives, "points": description.points.iter().map(Text::as_str).collect::<Vec<_>>(),
+        "duration": description.duration,
+        "cylinders": description.cylinders.iter().map(|own| json!({"name": own.name.as_str(), "most": own.max_pressure})).collect::<Vec<_>>(),
+    })
+}
+
+impl Opened {
+    /// The crane with parameters, and with its drives at positions; with none of them, that of the spec.
+    fn at(&mut self, parameters: &[f64], positions: &[f64]) -> Outcome<LiveCrane> {
+        if positions.is_empty() {
+            return with_parameters(&self.live, parameters);
+        }
+        check_positions(&self.live, positions)?;
+        let posed = self.posed.get_or_insert_with(|| LiveCrane::new(levers::with_levers(self.live.chain(), false)));
+        let mut crane = posed.clone();
+        let all = with_numbers(&self.live, parameters, positions.iter().map(|position| Numbers::holding(*position)))?;
+        crane.set_parameters(&all).map_err(|refused| refused.to_string())?;
+        Ok(crane)
+    }
+}
+
+/// A crane with other parameters; if none are given, with its own.
+pub fn with_parameters(live: &LiveCrane, parameters: &[f64]) -> Outcome<LiveCrane> {
+    let mut crane = live.clone();
+    if !parameters.is_empty() {
+        let own = with_numbers(live, parameters, std::iter::empty())?;
+        crane.set_parameters(&own).map_err(|refused| refused.to_string())?;
+    }
+    Ok(crane)
+}
+
+/// Where the motions of the drives begin, m and rad.
+pub fn starts(crane: &LiveCrane) -> Vec<f64> {
+    (crane as &dyn DynCrane).drive_motions_at(0.0).iter().map(|[position, _]| *position).collect()
+}
+
+/// Parameters of a crane with levers: its own, or other values of them, then the numbers of its drives.
+pub fn with_numbers(live: &LiveCrane, parameters: &[f64], numbers: impl Iterator<Item = Numbers>) -> Outcome<Vec<f64>> {
+    let own = if parameters.is_empty() { live.parameters() } else { parameters };
+    if own.len() != live.parameters().len() {
+        return Err(format!("{} values for {} parameters", own.len(), live.parameters().len()));
+    }
+    Ok(own.iter().copied().chain(numbers.flat_map(Numbers::array)).collect())
+}
+
+/// Whether there is one position for each drive.
+pub fn check_positions(live: &LiveCrane, positions: &[f64]) -> Outcome<()> {
+    let drives = live.chain().drives.len();
+    if positions.len() == drives { Ok(()) } else { Err(format!("{} positions for {drives} drives", positions.len())) }
+}
+
+/// The crane at rest: what the page draws, and the same tables as those of `crane statics`.
+fn rest(crane: &LiveCrane, as_written: bool) -> Outcome<Value> {
+    let case = Case::new(VALUE, crane as &dyn DynCrane);
+    let report = equilibria(std::slice::from_ref(&case), BEND);
+    let results = if as_written { report.json() } else { Value::Null };
+    let texts = Texts { tables: Some(report), ..Texts::default() };
+    let mut page = page_of(crane, &case.equilibrium, None, texts)?;
+    let found = &case.equilibrium;
+    page["results"] = results;
+    page["rest"] = json!({
+        "stable": found.is_stable(), "rests": found.rests(), "words": found.to_string(), "steps": found.steps(), "q": found.q,
+        "drives": starts(crane),
+    });
+    if !found.is_stable() {
+        let failed = crane_model::runs::Reason::no_equilibrium(crane, found).of(&crane.description().name);
+        page["rest"]["why"] = json!(format!("{failed}; {}", failed.advice()));
+    }
+    Ok(page)
+}
+
+/// The run of the spec from its start, with all tables.
+fn run(crane: &LiveCrane, duration: Option<f64>) -> Outcome<Value> {
+    let own = Settings::of(crane.description());
+    let settings =
+        Settings { method: Method::RECOMMENDED, audit: true, duration: duration.unwrap_or(own.duration), ..own };
+    if !(settings.duration > 0.0 && settings.duration <= Settings::TIMES.1)
+        || settings.duration / settings.output > Settings::MOST_RESULTS
+    {
+        return Err(format!("a run of {} s: choose a time above 0 with at most a million results", settings.duration));
+    }
+    let told = |failed: crane_model::runs::Failed| format!("{failed}; {}", failed.advice());
+    let start = Start::of(crane).map_err(told)?;
+    let recorded =
+        record_checked(crane, &start, &settings, (false, BEND), &mut |_| ControlFlow::Continue(())).map_err(told)?;
+    let case = Case::new(VALUE, crane as &dyn DynCrane);
+    let tables = of_page(std::slice::from_ref(&case), &[&recorded], BEND, None).map_err(told)?;
+    let texts = Texts { tables: Some(tables), ..Texts::default() };
+    page_of(crane, &case.equilibrium, Some((&settings, &recorded)), texts)
+}
+
+/// Data of the page of one crane.
+pub fn page_of(
+    crane: &LiveCrane,
+    equilibrium: &Equilibrium,
+    run: Option<(&Settings, &crane_model::runs::Recorded)>,
+    texts: Texts<'_>,
+) -> Outcome<Value> {
+    let subject = Subject { label: VALUE, crane, live: crane, equilibrium, run };
+    data(&[subject], texts, PROGRAM).map_err(|error| error.to_string())
+}
+
+/// Calls the acceleration many times; the page measures how long this takes.
+fn repeat(crane: &LiveCrane, calls: u32) -> Value {
+    let q = (crane as &dyn DynCrane).equilibrium(&statics::Settings::default()).q;
+    let (v, mut a) = (vec![0.0; q.len()], vec![0.0; q.len()]);
+    for _ in 0..calls {
+        crane.forward_dynamics(0.0, &q, &v, &mut a);
+    }
+    json!({"calls": calls, "sum": a.iter().sum::<f64>()})
+}
