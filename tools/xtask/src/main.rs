@@ -8,6 +8,7 @@ mod cycles;
 mod equations;
 mod fused;
 mod imports;
+mod instrument;
 mod manual;
 mod named;
 mod new_crane;
@@ -40,6 +41,8 @@ With words, only the steps whose titles contain one of them run.
            time the generated functions and other libraries in turns, write docs/performance.md; needs g++ or clang
   error-vs-runtime
            time methods and numbers of sections of the reference crane, write docs/error-vs-runtime.md
+  instrument
+           build the page as an instrument, out/instrument.html; needs Node.js, and Rust for wasm32-unknown-unknown, which rustup installs
   bless    rewrite the files that tests compare with: goldens, snapshots, schema, docs/OPERATIONS.md, the gallery";
 
 fn main() -> ExitCode {
@@ -53,6 +56,7 @@ fn main() -> ExitCode {
             vec![Step::check("times of the generated functions and of other libraries", oracles::measure_performance)]
         }
         "error-vs-runtime" => vec![Step::cargo("error against run time", &ERROR_VS_RUNTIME)],
+        "instrument" => vec![Step::check("the page as an instrument", instrument::build_page)],
         "bless" => bless_steps(),
         "help" | "--help" | "-h" => {
             println!("{USAGE}");
@@ -161,6 +165,7 @@ fn test_steps() -> Vec<Step> {
         Step::program("the default run", "crane"),
         Step::check("the report page is current", report::check_current),
         Step::check("the report page in a browser", report::check_in_browser),
+        Step::check("the instrument in a browser", instrument::check_instrument),
         Step::program("the example of your own crane", "own-crane"),
         Step::check("a new crane", new_crane::check_new_crane),
         Step::check("commands of the manual", manual::check_manual),

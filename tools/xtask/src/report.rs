@@ -17,7 +17,8 @@ const OTHERS: [(&str, &[&str]); 4] = [
     ("eight_link_hydraulic", &["--duration", "3"]),
 ];
 
-fn command_in_folder(program: &str) -> Command {
+/// A program that runs in the folder of the pages.
+pub fn command_in_folder(program: &str) -> Command {
     let mut command = Command::new(program);
     command.current_dir(workspace::root().join(FOLDER));
     command

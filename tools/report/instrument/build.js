@@ -1,0 +1,42 @@
+// Builds the instrument into one HTML file: `node instrument/build.js ENGINE.wasm TARGET.html`.
+import { readFile, writeFile } from "node:fs/promises";
+import { gzipSync } from "node:zlib";
+import { build } from "esbuild";
+import { assemble, output } from "../page.js";
+
+const [engine, target] = process.argv.slice(2);
+const folder = new URL("..", import.meta.url).pathname;
+const file = (path) => readFile(new URL(path, import.meta.url), "utf8");
+
+const options = { absWorkingDir: folder, bundle: true, minify: true, target: "es2022", legalComments: "none", charset: "utf8", write: false, outdir: "out" };
+const worker = await build({ ...options, entryPoints: ["instrument/src/worker.js"], format: "iife" });
+/** The worker is text of the page: a page in one file has no other script to start it from. */
+const source = {
+  name: "worker-source",
+  setup({ onResolve, onLoad }) {
+    onResolve({ filter: /^worker-source$/ }, ({ path }) => ({ path, namespace: "text" }));
+    onLoad({ filter: /.*/, namespace: "text" }, () => ({ contents: output(worker, ".js"), loader: "text" }));
+  },
+};
+const page = await build({ ...options, entryPoints: ["instrument/src/page.js"], format: "esm", plugins: [source] });
+
+/** The cranes to start from, simplest first, with the titles of their specs. */
+const EXAMPLES = [
+  "knuckle_boom", "double_pendulum", "cantilever", "loader_tipping", "examples/loader_crane", "examples/parallel_harvester", "eight_link_rigid", "eight_link_flexible", "eight_link_hydraulic",
+  "eight_link_identified", "eight_link_two_flexible",
+];
+const examples = await Promise.all(EXAMPLES.map(async (name) => ({ name: `${name.split("/").at(-1)}.yaml`, text: await file(`../../../specs/${name}.yaml`) })));
+const given = JSON.stringify({ examples, schema: JSON.parse(await file("../../../specs/crane.schema.json")) }).replaceAll("<", "\\u003c");
+const compressed = gzipSync(await readFile(engine), { level: 9 });
+const version = /^version = "(.*)"/m.exec(await file("../../../Cargo.toml"))[1];
+
+const html = await assemble({
+  template: await file("src/page.html"), script: output(page, ".js"), style: output(page, ".css"),
+  packages: ["three", "uplot", "@codemirror/autocomplete", "@codemirror/commands", "@codemirror/lang-yaml", "@codemirror/language", "@codemirror/lint", "@codemirror/search", "@codemirror/state", "@codemirror/view", "@lezer/common", "@lezer/highlight", "@lezer/lr", "@lezer/yaml", "@marijn/find-cluster-break", "crelt", "style-mod", "w3c-keyname"],
+  // The engine is compiled, and its worker is text of the page.
+  policy: { "script-src": ["'wasm-unsafe-eval'"], "worker-src": ["blob:"] },
+  more: { given, engine: compressed.toString("base64"), version },
+});
+await writeFile(target, html);
+const megabytes = (bytes) => `${(bytes / 1e6).toFixed(2)} MB`;
+console.log(`${target}: ${megabytes(html.length)}, engine ${megabytes(compressed.length)} compressed, script ${megabytes(output(page, ".js").length)}`);

@@ -1,0 +1,90 @@
+// The crane at rest: sliders for live parameters and positions of drives, key figures, tables.
+import { spoken } from "../../src/data.js";
+import { element } from "../../src/element.js";
+import { results } from "../../src/tables.js";
+import { tiles } from "../../src/tiles.js";
+
+/** Travel of a slider to either side of where a drive begins, if it has no stops: degrees, m. */
+const TRAVEL = { rad: 60, m: 1 };
+const DEGREES = 180 / Math.PI;
+
+/** A slider and a field for the same number. `change(value)` gets it in SI units. */
+function slider({ name, about, unit, value, least, most }, change) {
+  const turns = unit === "rad";
+  const factor = turns ? DEGREES : 1;
+  const shown = (number) => Number((number * factor).toPrecision(6));
+  const [low, high] = [shown(least), shown(most)];
+  const label = `${spoken(name)}${unit || turns ? `, ${turns ? "°" : unit}` : ""}`;
+  const step = 10 ** Math.floor(Math.log10((high - low) / 200));
+  const bar = element("input", { type: "range", min: low, max: high, step, value: shown(value) });
+  const field = element("input", { type: "number", step: "any", value: shown(value) });
+  bar.setAttribute("aria-label", label);
+  field.setAttribute("aria-label", `${label}, exact`);
+  const take = (from, to) => {
+    const number = Number(from.value);
+    if (from.value === "" || !Number.isFinite(number)) return;
+    to.value = from.value;
+    change(number / factor);
+  };
+  bar.addEventListener("input", () => take(bar, field));
+  field.addEventListener("input", () => take(field, bar));
+  return element("div", { className: "slider", title: about }, element("span", { textContent: spoken(name) }), bar, field, element("span", { className: "soft", textContent: turns ? "°" : unit }));
+}
+
+export class Rest {
+  /** `changed()` is called when a slider moves. */
+  constructor(host, changed) {
+    this.sliders = host.querySelector(".sliders");
+    this.results = host.querySelector(".results");
+    this.changed = changed;
+  }
+
+  /** Sliders of another crane. */
+  open(crane) {
+    this.parameters = crane.parameters.map(({ value }) => value);
+    this.positions = crane.drives.map(({ start }) => start);
+    this.starts = [...this.positions];
+    this.moved = false;
+    const again = () => this.open(crane);
+    const parameters = crane.parameters.map((one, index) => {
+      const around = Math.abs(one.value) || 1;
+      const least = Math.max(one.least, one.value < 0 ? -2 * around : 0);
+      const slide = { ...one, least: one.value === 0 && one.least < 0 ? -1 : least, most: Math.min(one.most, one.value <= 0 && one.value !== 0 ? 0 : 2 * around) };
+      return slider(slide, (value) => this.take(this.parameters, index, value));
+    });
+    const drives = crane.drives.map((one, index) => {
+      const way = TRAVEL[one.unit] / (one.unit === "rad" ? DEGREES : 1);
+      const [low, high] = one.stops;
+      const slide = { ...one, about: "position of the drive", value: one.start, least: low ?? one.start - way, most: high ?? one.start + way };
+      return slider(slide, (value) => this.take(this.positions, index, value, true));
+    });
+    const group = (title, rows) => (rows.length ? [element("fieldset", {}, element("legend", { textContent: title }), ...rows)] : []);
+    const reset = element("button", { type: "button", textContent: "As in the spec", title: "All sliders back to the numbers of the spec" });
+    reset.addEventListener("click", () => {
+      again();
+      this.changed();
+    });
+    this.sliders.replaceChildren(...group("Live parameters", parameters), ...group("Positions of the drives", drives), ...(parameters.length + drives.length ? [reset] : []));
+  }
+
+  take(numbers, index, value, moves = false) {
+    numbers[index] = value;
+    if (moves) this.moved = true;
+    this.changed();
+  }
+
+  /** What to ask the engine: positions only once a drive was moved. */
+  get given() {
+    return { parameters: this.parameters, positions: this.moved ? this.positions : [] };
+  }
+
+  /** Shows figures and tables. */
+  show({ figures, verdict, tables }) {
+    const [sentence, host, grids] = [element("p", { id: "rest_verdict" }), element("div", { id: "rest_tiles" }), element("div", { className: "tables" })];
+    const open = new Set([...this.results.querySelectorAll("details[open]")].map(({ id }) => id));
+    this.results.replaceChildren(sentence, host, grids);
+    tiles({ figures, verdict }, sentence, host);
+    results(tables, grids);
+    for (const one of this.results.querySelectorAll("details")) one.open = open.has(one.id);
+  }
+}

@@ -1,0 +1,91 @@
+// The crane in three dimensions, whatever is known of it: at rest, in a mode, in a run, driven.
+import { decoded, readable, scaled } from "../../src/data.js";
+import { gradient } from "../../src/colours.js";
+import { element } from "../../src/element.js";
+import { Player } from "../../src/player.js";
+import { Viewer } from "../../src/viewer.js";
+
+/** Time in which a mode is shown over and over, s. */
+const WAVES = 10;
+/** Logarithm of the ratio of sizes from which a crane is looked at anew. */
+const GROWN = 0.2;
+
+/** Whether 3-D is drawn by the processor: then pictures of a motion have less detail than those at rest. */
+function inSoftware() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const name = gl?.getParameter(gl.getExtension("WEBGL_debug_renderer_info")?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER);
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
+}
+
+export class Stage {
+  constructor() {
+    this.antialias = !inSoftware();
+    this.player = new Player(WAVES);
+    this.viewer = null;
+    this.crane = null;
+  }
+
+  /** Shows data of the engine: `{cranes}`; returns them with the numbers unpacked. */
+  show(data, { run = false } = {}) {
+    const shown = decoded(data);
+    const crane = shown.cranes.at(-1);
+    this.present(crane, run);
+    return { ...shown, crane, rigid: null };
+  }
+
+  /** Shows a crane; the view stays where it is unless the crane is another one, or grew. */
+  present(crane, run = false) {
+    const before = this.viewer && { name: this.crane.name, size: this.viewer.extent.size };
+    this.player.play(false);
+    this.player.duration = run ? crane.run.t.at(-1) : WAVES;
+    this.player.t = 0;
+    this.crane = crane;
+    try {
+      if (this.viewer) this.viewer.load({ crane, rigid: null });
+      else if (!this.flat) this.viewer = new Viewer(document.querySelector("#view canvas"), { crane, rigid: null }, this.player, { antialias: this.antialias });
+    } catch (error) {
+      this.flat = true;
+      const words = `3-D is not available in this browser (${error.message}). Everything else is here.`;
+      for (const overlay of document.querySelectorAll("#view .overlay")) overlay.hidden = true;
+      document.querySelector("#view canvas").replaceWith(element("p", { textContent: words, className: "sorry" }));
+    }
+    const grown = before && Math.abs(Math.log(before.size / this.viewer.extent.size)) > GROWN;
+    if (before && (before.name !== crane.name || grown)) this.viewer.look("corner");
+    this.player.seek(0);
+    this.legend();
+  }
+
+  /** What the lengths and the colours of the arrows mean. */
+  legend() {
+    const legend = document.querySelector("#legend");
+    const feet = this.crane.scene.supports.length > 0;
+    legend.hidden = !feet || !this.viewer;
+    if (!feet || !this.viewer) return;
+    const { unit, factor } = scaled("N", [this.viewer.greatest]);
+    legend.querySelector("i").style.background = gradient;
+    legend.querySelector("b").textContent = `${readable(this.viewer.greatest * factor)} ${unit}`;
+  }
+
+  /** Shows a mode, or the crane as it is. */
+  vibrate(mode) {
+    this.viewer?.vibrate(mode);
+    this.player.play(Boolean(mode));
+    if (!mode) this.player.seek(0);
+  }
+
+  /** Takes over a row of results and margins about tipping lines, of a crane that is shown at rest. */
+  follow(row, margins) {
+    this.crane.run.list.forEach(({ values }, column) => {
+      if (column < row.length) values[0] = row[column];
+    });
+    const { lines } = this.viewer ?? { lines: [] };
+    if (lines.length === margins.length) lines.forEach((line, index) => (line.values[0] = margins[index].margin));
+    this.viewer?.show();
+    this.viewer?.follow();
+  }
+
+  theme() {
+    this.viewer?.theme();
+  }
+}

@@ -1,0 +1,347 @@
+// Uses the instrument in a headless browser: `node instrument/test.js INSTRUMENT.html`; saves pictures next to it.
+import assert from "node:assert/strict";
+import { readFile, stat } from "node:fs/promises";
+import { dirname, join } from "node:path";
+import { pathToFileURL } from "node:url";
+import { deflateRawSync } from "node:zlib";
+import { PATIENCE, launch } from "../browser.js";
+
+const [file] = process.argv.slice(2);
+const address = pathToFileURL(file).href;
+const picture = (name) => join(dirname(file), `instrument_${name}.png`);
+
+/** Largest size of the page: engine, 3-D, editor and examples. */
+const MOST_BYTES = 4e6;
+/** Figures of an idle machine; this one may be busy with other tests. */
+const BUSY = Number(process.env.INSTRUMENT_BUSY ?? 8);
+/** Time until the first crane is there, and from an edit to statics of 25 coordinates, ms. */
+const GOALS = { ready: 1500, edit: 100 };
+
+const times = {};
+const quick = (what, took, goal) => {
+  times[what] = Math.round(took);
+  assert(took < goal * BUSY, `${what}: ${Math.round(took)} ms, the goal is ${goal} ms`);
+};
+
+const fragment = (text) => `#spec=${deflateRawSync(text).toString("base64url")}`;
+const state = (page) => page.locator("#state").textContent();
+const at = (page, expression) => page.evaluate(expression);
+
+/** Waits until a check passes. */
+async function eventually(page, check, patience = 20_000) {
+  const end = Date.now() + patience;
+  for (;;) {
+    try {
+      return await check();
+    } catch (error) {
+      if (Date.now() > end) throw error;
+      await page.waitForTimeout(50);
+    }
+  }
+}
+
+/** Opens the page in a context of its own; fails on anything it says or asks for. */
+async function open(browser, options, use, { hash = "", silent = true } = {}) {
+  const context = await browser.newContext(options);
+  const page = await context.newPage();
+  page.setDefaultTimeout(PATIENCE);
+  const said = [];
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && said.push(`${message.type()}: ${message.text()}`));
+  page.on("pageerror", (error) => said.push(`error: ${error.message}`));
+  page.on("dialog", (dialog) => {
+    said.push(`dialog: ${dialog.message()}`);
+    dialog.dismiss();
+  });
+  page.on("request", (request) => {
+    if (!/^(blob|data):/.test(request.url()) && !request.url().startsWith(address)) said.push(`request: ${request.url()}`);
+  });
+  // Software rendering says that it is slow.
+  const own = () => said.filter((line) => !/GPU stall|GL Driver Message/.test(line));
+  await context.setOffline(true);
+  const begin = Date.now();
+  await page.goto(address + hash);
+  await page.waitForSelector("html[data-ready]");
+  try {
+    await use(page, Date.now() - begin);
+  } catch (error) {
+    await page.screenshot({ path: picture("failed") }).catch(() => {});
+    error.message += `\nthe page said: ${own().join("\n")}\nits state: ${await state(page).catch(() => "")}`;
+    throw error;
+  }
+  if (silent) assert.deepEqual(own(), [], "the page says or asks for something");
+  await context.close();
+}
+
+const example = async (page, name) => {
+  const index = await page.evaluate((name) => [...document.querySelectorAll("#example option")].findIndex(({ textContent }) => textContent === name) - 1, name);
+  await page.selectOption("#example", String(index));
+  await eventually(page, async () => assert.equal(await at(page, () => globalThis.instrument.crane?.name), name.replaceAll(" ", "_")));
+  await eventually(page, async () => assert.match(await state(page), /^At rest/));
+};
+
+/** Replaces text in the editor, as an edit would. */
+const edit = (page, from, to) => page.evaluate(([from, to]) => {
+  const { view } = globalThis.instrument.editor;
+  const found = view.state.doc.toString().indexOf(from);
+  if (found < 0) throw new Error(`no ${from} in the spec`);
+  view.dispatch({ changes: { from: found, to: found + from.length, insert: to } });
+}, [from, to]);
+
+/** Edits: statics follow at once; mistakes are shown where they are, with their remedies. */
+async function edits(page) {
+  await example(page, "eight link flexible");
+  const force = () => at(page, () => globalThis.instrument.atRest.results.drives.map(({ value }) => value));
+  const before = await force();
+  const took = [];
+  for (let mass = 500; mass < 540; mass += 10) {
+    await at(page, () => (globalThis.instrument.took = null));
+    await edit(page, `value: ${mass}`, `value: ${mass + 10}`);
+    await eventually(page, async () => assert(await at(page, () => globalThis.instrument.took)));
+    took.push(await at(page, () => globalThis.instrument.took));
+  }
+  quick("edit", Math.min(...took), GOALS.edit);
+  assert.notDeepEqual(await force(), before, "statics of the edited spec");
+  await edit(page, "stiffness:", "stifness:");
+  await eventually(page, async () => assert.match(await state(page), /mistake/));
+  const problem = page.locator("#problems li.error").first();
+  const text = await problem.textContent();
+  assert(/unknown key `stifness`/.test(text) && /\[E010\]/.test(text) && /stiffness/.test(text), text);
+  const [line] = /^(\d+):/.exec(text).slice(1);
+  await problem.locator("button").click();
+  const here = await at(page, () => {
+    const { view } = globalThis.instrument.editor;
+    return view.state.doc.lineAt(view.state.selection.main.head).number;
+  });
+  assert.equal(here, Number(line), "a click goes to the mistake");
+  assert((await page.locator("#editor .cm-lintRange-error").count()) > 0, "it is underlined");
+  await edit(page, "stifness:", "stiffness:");
+  await eventually(page, async () => assert.match(await state(page), /^At rest/));
+}
+
+/** Completion and help come from the schema. */
+async function schema(page) {
+  await at(page, () => {
+    const { editor: { view } } = globalThis.instrument;
+    view.dispatch({ changes: { from: view.state.doc.length, insert: "\nru" }, selection: { anchor: view.state.doc.length + 3 } });
+    view.focus();
+  });
+  await page.keyboard.type("n");
+  const list = page.locator("#editor .cm-tooltip-autocomplete");
+  await list.waitFor();
+  assert.match(await list.textContent(), /run/);
+  await page.keyboard.press("Escape");
+  await at(page, () => {
+    const { editor: { view } } = globalThis.instrument;
+    const { length } = view.state.doc;
+    view.dispatch({ changes: { from: length - 4, to: length, insert: "" }, selection: { anchor: 0 }, scrollIntoView: true });
+  });
+  await page.locator("#editor .cm-content").getByText("links", { exact: true }).first().hover();
+  await page.locator("#editor .cm-help").waitFor();
+  await eventually(page, async () => assert.match(await state(page), /^At rest/));
+}
+
+/** Sliders move the crane and its numbers. */
+async function sliders(page) {
+  await example(page, "knuckle boom");
+  const torque = () => at(page, () => globalThis.instrument.stage.crane.run.list.map(({ values }) => values[0]));
+  const before = await torque();
+  const slider = page.locator("#sliders input[type=range]").first();
+  await slider.focus();
+  for (let press = 0; press < 5; press += 1) await page.keyboard.press("ArrowRight");
+  await eventually(page, async () => assert.notDeepEqual(await torque(), before));
+  const moved = await torque();
+  const angle = page.locator("#sliders fieldset:last-of-type input[type=number]").first();
+  await angle.fill("33");
+  await eventually(page, async () => {
+    assert.notDeepEqual(await torque(), moved);
+    const positions = await at(page, () => globalThis.instrument.atRest.rest.drives);
+    assert(Math.abs(positions[0] - (33 * Math.PI) / 180) < 1e-4, `${positions}`);
+  });
+  await page.getByRole("button", { name: "As in the spec" }).click();
+  await eventually(page, async () => assert.deepEqual(await torque(), before));
+}
+
+/** Modes move the crane; runs and load charts have plots with labels. */
+async function analyses(page) {
+  await page.getByRole("tab", { name: "Modes" }).click();
+  await page.locator("#modes .mode input").first().check();
+  const pose = () => at(page, () => globalThis.instrument.stage.viewer.figure.kinematics.frames.at(-1).elements.join());
+  const still = await pose();
+  await eventually(page, async () => assert.notEqual(await pose(), still));
+  await page.getByRole("tab", { name: "Run" }).click();
+  await page.fill("#duration", "3");
+  await page.click("#start");
+  await page.waitForSelector("#run .panel");
+  const ids = await page.$$eval("#run .panel", (panels) => panels.map(({ id }) => id));
+  assert(ids.includes("path") && ids.some((id) => id.startsWith("drive_")) && ids.includes("balance"), ids.join());
+  const rows = await at(page, () => globalThis.instrument.stage.crane.run.t.at(-1));
+  assert(Math.abs(rows - 3) < 1e-6);
+  await page.screenshot({ path: picture("run") });
+  await page.getByRole("tab", { name: "Load chart" }).click();
+  await page.getByRole("button", { name: "Compute" }).click();
+  await page.waitForSelector("#load_chart .panel");
+  assert((await page.locator("#table_chart tbody tr").count()) > 10);
+  await page.screenshot({ path: picture("chart") });
+}
+
+/** Driving by keys: the crane moves in real time, levers spring back, the record is a file. */
+async function drive(page) {
+  await example(page, "eight link hydraulic");
+  await page.getByRole("tab", { name: "Drive" }).click();
+  await page.click("#engage");
+  await page.waitForSelector("#cockpit:not([hidden])");
+  const seen = () => at(page, () => {
+    const { drive } = globalThis.instrument;
+    return { t: drive.t, row: [...(drive.rows.at(-1) ?? [])], pace: drive.pace, rate: drive.rate, share: drive.share, tolerance: drive.tolerance };
+  });
+  await eventually(page, async () => assert((await seen()).t > 0.3));
+  const still = await seen();
+  const boom = await at(page, () => globalThis.instrument.stage.crane.run.list.findIndex(({ name }) => name === "boom_psi"));
+  await page.keyboard.down("KeyW");
+  await eventually(page, async () => assert.equal(await page.locator("#levers .track").nth(1).getAttribute("aria-valuenow"), "100"));
+  await eventually(page, async () => assert((await seen()).t > still.t + 2));
+  await page.screenshot({ path: picture("drive") });
+  const moved = await seen();
+  await page.keyboard.up("KeyW");
+  assert(moved.row[boom] - still.row[boom] > 0.02, `the boom lifts: ${still.row[boom]} … ${moved.row[boom]} rad`);
+  await eventually(page, async () => assert.equal(await page.locator("#levers .track").nth(1).getAttribute("aria-valuenow"), "0"));
+  assert.match(await page.locator("#gauges").textContent(), /tipping margin.*swing.*bar/s);
+  await eventually(page, async () => assert((await seen()).t > moved.t + 1));
+  const last = await seen();
+  Object.assign(times, { pictures: Math.round(last.rate), pace: last.pace.toFixed(2), share: last.share.toFixed(2), tolerance: last.tolerance });
+  // A gamepad: its second axis is the second lever, pushed away from oneself.
+  await at(page, () => (navigator.getGamepads = () => [{ axes: [0, -1, 0, 0], buttons: [] }]));
+  await eventually(page, async () => assert.equal(await page.locator("#levers .track").nth(1).getAttribute("aria-valuenow"), "100"));
+  await at(page, () => (navigator.getGamepads = () => []));
+  await page.click("#engage");
+  const [download] = await Promise.all([page.waitForEvent("download"), page.click("#record")]);
+  const csv = await readFile(await download.path(), "utf8");
+  const [head, ...lines] = csv.trim().split("\n");
+  assert(head.startsWith("t [s],") && head.includes("boom_psi [rad]") && lines.length > 10, head.slice(0, 200));
+}
+
+/** Times of the page without anything else to do: accelerations of 25 coordinates, a second of driving. */
+async function speeds(page) {
+  await example(page, "eight link flexible");
+  times.accelerationMicroseconds = await at(page, async () => {
+    const { engine } = globalThis.instrument;
+    const least = async (calls) => {
+      const took = [];
+      for (let time = 0; time < 20; time += 1) took.push((await engine.ask({ ask: "repeat", calls })).took);
+      return Math.min(...took);
+    };
+    return Number((((await least(4000)) - (await least(0))) / 4).toFixed(2));
+  });
+  await example(page, "eight link hydraulic");
+  const computing = await at(page, async () => {
+    const { engine, crane } = globalThis.instrument;
+    await engine.ask({ ask: "drive" });
+    const levers = crane.drives.map(() => 0);
+    let took = 0;
+    for (let picture = 1; picture <= 60; picture += 1) took += (await engine.ask({ ask: "advance", to: picture / 60, levers: levers.map((_, at) => (at === 1 ? 0.5 : 0)), tolerance: 1e-3 })).took;
+    return took;
+  });
+  times.secondOfDriving = Math.round(computing);
+}
+
+/** A link contains the spec; hostile ones are refused or harmless. */
+async function links(browser) {
+  const small = { viewport: { width: 640, height: 480 } };
+  const text = "format: 1\nname: linked\nlinks:\n  - {name: rod, placement: {transform: {rotation: {x: 90 deg}}}, joint: revolute, mass: 3, com: [0, -1, 0]}\ndamping: {rod_psi: 1}\n";
+  await open(browser, small, async (page) => {
+    assert.equal(await at(page, () => globalThis.instrument.crane.name), "linked");
+    await page.click("#share");
+    await eventually(page, async () => assert.equal(await at(page, () => location.hash.startsWith("#spec=")), true));
+    const hash = await at(page, () => location.hash);
+    await page.goto("about:blank");
+    await page.goto(address + hash);
+    await page.waitForSelector("html[data-ready]");
+    assert.equal(await at(page, () => globalThis.instrument.editor.text), text);
+  }, { hash: fragment(text) });
+  const script = '</script><img src=x onerror="alert(1)"><script>alert(2)</script>';
+  const named = `${text}title: '${script.replaceAll("'", "''")}'\n`;
+  await open(browser, small, async (page) => {
+    await eventually(page, async () => assert.match(await page.title(), /onerror/));
+    assert.equal(await page.locator("h1 img, #rest img").count(), 0);
+  }, { hash: fragment(named) });
+  const bomb = `a: &a [x,x,x,x,x,x,x,x,x]\n${[..."bcdefghij"].map((name, at) => `${name}: &${name} [${Array(9).fill(`*${"abcdefghij"[at]}`).join(",")}]`).join("\n")}\n`;
+  await open(browser, small, async (page) => {
+    assert((await page.locator("#problems li.error").count()) > 0, "the bomb is a mistake");
+  }, { hash: fragment(bomb) });
+  const deep = `format: 1\nname: deep\nlinks: ${"[".repeat(100_000)}`;
+  await open(browser, small, async (page) => {
+    await eventually(page, async () => assert.match(await state(page), /mistake|ended|failed/));
+    // The page still works.
+    await example(page, "knuckle boom");
+  }, { hash: fragment(deep) });
+  // A gigabyte of text in a link of a megabyte.
+  const zeros = deflateRawSync(Buffer.alloc(1 << 28, "#"));
+  await open(browser, small, async (page) => {
+    await eventually(page, async () => assert.match(await state(page), /longer than 4 MB/));
+  }, { hash: `#spec=${zeros.toString("base64url")}` });
+  await open(browser, small, async (page) => assert.match(await state(page), /damaged/), { hash: "#spec=!!!" });
+}
+
+/** A calculation that takes too long is ended, and the page says so and goes on. */
+async function patience(page) {
+  await example(page, "knuckle boom");
+  const words = await at(page, () => globalThis.instrument.engine.ask({ ask: "repeat", calls: 4_000_000_000 }, 0.5).catch(({ message }) => message));
+  assert.match(words, /took longer than 0.5 s/);
+  await edit(page, "format: 1", "format: 1 ");
+  await eventually(page, async () => assert.match(await state(page), /^At rest/));
+}
+
+const begin = Date.now();
+const bytes = (await stat(file)).size;
+assert(bytes < MOST_BYTES, `${bytes} bytes`);
+const browser = await launch({ swift: true });
+await open(browser, { viewport: { width: 1440, height: 900 }, colorScheme: "light", acceptDownloads: true }, async (page, ready) => {
+  const loaded = await at(page, () => performance.now());
+  quick("ready", Math.min(ready, loaded), GOALS.ready);
+  await page.waitForTimeout(500);
+  await page.screenshot({ path: picture("first") });
+  await edits(page);
+  await page.screenshot({ path: picture("light") });
+  await schema(page);
+  await sliders(page);
+  await analyses(page);
+  await drive(page);
+  await speeds(page);
+  await patience(page);
+});
+await open(browser, { viewport: { width: 1440, height: 900 }, colorScheme: "dark" }, async (page) => {
+  assert.equal(await at(page, () => document.documentElement.dataset.theme), "dark");
+  await example(page, "loader tipping");
+  await edit(page, "joint: revolute", "joint: revolut");
+  await eventually(page, async () => assert.match(await state(page), /mistake/));
+  await page.screenshot({ path: picture("dark") });
+});
+const phone = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, isMobile: true, hasTouch: true };
+await open(browser, phone, async (page) => {
+  for (const tab of ["At rest", "Modes", "Run", "Load chart", "Drive", "Spec"]) {
+    await page.getByRole("tab", { name: tab }).click();
+    const [width, screen] = await at(page, () => [document.documentElement.scrollWidth, innerWidth]);
+    assert(width <= screen, `${tab} is ${width} wide on a screen of ${screen}`);
+  }
+  await page.screenshot({ path: picture("phone_spec") });
+  await page.getByRole("tab", { name: "At rest" }).click();
+  await page.screenshot({ path: picture("phone") });
+  await page.getByRole("tab", { name: "Drive" }).click();
+  await page.click("#engage");
+  await page.waitForSelector("#cockpit:not([hidden])");
+  const track = await page.locator("#levers .track").first().boundingBox();
+  await page.touchscreen.tap(track.x + track.width * 0.9, track.y + track.height / 2);
+  await page.waitForTimeout(500);
+  await page.screenshot({ path: picture("phone_drive") });
+});
+await links(browser);
+await browser.close();
+
+// Without 3-D, everything else is there.
+const flat = await launch({ flat: true });
+await open(flat, { viewport: { width: 1000, height: 700 } }, async (page) => {
+  assert.match(await page.locator("#view").textContent(), /3-D is not available/);
+  await eventually(page, async () => assert.match(await state(page), /^At rest/));
+}, { silent: false });
+await flat.close();
+console.log(`instrument: ${(bytes / 1e6).toFixed(2)} MB, ${JSON.stringify(times)}, ${((Date.now() - begin) / 1000).toFixed(0)} s`);
