@@ -173,7 +173,8 @@ fn branches_are_carried_from_where_they_begin() {
         let rest = vec![0.0; chain.coordinates.len()];
         let wrenches = wrenches(&chain, &rest, &rest, &rest);
         let sections = sections(&chain, &wrenches);
-        let at = |place: f64| sections.iter().filter(|(x, ..)| *x == place).map(|(_, side, _)| *side).collect::<Vec<_>>();
+        let at =
+            |place: f64| sections.iter().filter(|(x, ..)| *x == place).map(|(_, side, _)| *side).collect::<Vec<_>>();
         assert_eq!(at(1.2), [Side::Before, Side::After]);
         assert_eq!(at(0.0), [Side::Before, Side::After]);
         for (x, side, wrench) in &sections {

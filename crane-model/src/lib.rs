@@ -63,11 +63,13 @@ pub mod statics;
 #[cfg(feature = "std")]
 pub mod tipping;
 
+#[cfg(feature = "std")]
+pub use description::Tree;
 pub use description::{
     AttachmentInfo, BodyInfo, Bound, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole,
-    CylinderInfo, Description, DriveInfo, HoldInfo, InputInfo, LARGE_TILT, List, LoadInfo, LoopEquationInfo, LoopJointInfo,
-    NEAR_SINGULAR, ParameterError, ParameterInfo, PumpInfo, Refusal, SectionInfo, Side, SupportInfo, TIPPED, Text,
-    ValveInfo,
+    CylinderInfo, Description, DriveInfo, HoldInfo, InputInfo, LARGE_TILT, List, LoadInfo, LoopEquationInfo,
+    LoopJointInfo, NEAR_SINGULAR, ParameterError, ParameterInfo, PumpInfo, Refusal, SectionInfo, Side, SupportInfo,
+    TIPPED, Text, ValveInfo,
 };
 pub use model::{
     CraneModel, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise, OneByOne,
@@ -76,8 +78,6 @@ pub use model::{
 /// The linear algebra of every signature, so that generated code needs only this crate.
 pub use nalgebra;
 pub use stress::SectionModuli;
-#[cfg(feature = "std")]
-pub use description::Tree;
 #[cfg(feature = "std")]
 pub use stress::Stress;
 pub use wrench::{Cut, Tension, Wrench};

@@ -117,10 +117,8 @@ fn loads_of_links(crane: &dyn DynCrane, t: f64, [q, v, a]: [&[f64]; 3]) -> Vec<(
         let carried = beyond.iter().filter(|(body, _)| {
             *body != first && tree.parent(*body).is_some_and(|carrier| link_of(carrier) == link_of(first))
         });
-        let own = carried.fold(all, |own, (_, rest)| Wrench {
-            force: own.force - rest.force,
-            moment: own.moment - rest.moment,
-        });
+        let own = carried
+            .fold(all, |own, (_, rest)| Wrench { force: own.force - rest.force, moment: own.moment - rest.moment });
         (link_of(first).clone(), own)
     };
     beyond.iter().map(of_link).collect()

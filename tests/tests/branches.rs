@@ -147,7 +147,9 @@ fn the_order_in_which_branches_are_written_does_not_matter() {
         (arm[..at].to_owned(), arm[at..].to_owned())
     };
     let ((boom_a, rest_a), (boom_b, rest_b)) = (split(&first), split(&second));
-    let on = |rest: &str, letter: &str| rest.replacen(&format!("stick_{letter},"), &format!("stick_{letter}, on: boom_{letter},"), 1);
+    let on = |rest: &str, letter: &str| {
+        rest.replacen(&format!("stick_{letter},"), &format!("stick_{letter}, on: boom_{letter},"), 1)
+    };
     let orders = [
         format!("{first}{second}"),
         format!("{second}{first}"),
@@ -205,13 +207,15 @@ fn a_tree_comes_back_from_urdf_and_mjcf() {
     let values = tree.chain.parameter_defaults();
     let files = [exchange::urdf(&tree.chain, &values), exchange::mjcf(&tree.chain, &values).expect("expressible")];
     for text in files {
-        let imported = exchange::import(&SourceFile::new("tree.xml", text), &[]).unwrap_or_else(|told| panic!("{told}"));
+        let imported =
+            exchange::import(&SourceFile::new("tree.xml", text), &[]).unwrap_or_else(|told| panic!("{told}"));
         let back = crane(&imported.spec);
         let places: Vec<usize> =
             places(&tree, &back, str::to_owned).into_iter().map(|place| place.expect("the same coordinates")).collect();
         for state in states::far(&tree.chain, 3, 1) {
             let given: Vec<Option<usize>> = places.iter().copied().map(Some).collect();
-            let there = State { q: moved(&state.q, &given, back.size()), v: moved(&state.v, &given, back.size()), ..state };
+            let there =
+                State { q: moved(&state.q, &given, back.size()), v: moved(&state.v, &given, back.size()), ..state };
             let (own, other) = (tree.matrix("mass_matrix", &state), back.matrix("mass_matrix", &there));
             for (i, j) in (0..tree.size()).flat_map(|i| (0..tree.size()).map(move |j| (i, j))) {
                 // Orientations are written with all digits of their angles.

@@ -206,11 +206,7 @@ impl Add for Composite<'_> {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
-        Composite {
-            mass: self.mass + other.mass,
-            first: self.first + other.first,
-            second: self.second + other.second,
-        }
+        Composite { mass: self.mass + other.mass, first: self.first + other.first, second: self.second + other.second }
     }
 }
 

@@ -185,10 +185,7 @@ impl<'g> Bodies<'_, 'g> {
         let second = self.second_rate(1, moves) - self.second_rate(0, moves) - (coriolis + coriolis);
         Moving {
             motion: [value, rate, second].map(|vector| frame.apply_transposed(vector)),
-            slopes: between
-                .into_iter()
-                .map(|CoordinateId(j)| (j, frame.apply_transposed(by_coordinate[j])))
-                .collect(),
+            slopes: between.into_iter().map(|CoordinateId(j)| (j, frame.apply_transposed(by_coordinate[j]))).collect(),
         }
     }
 

@@ -225,7 +225,8 @@ impl<'a> Check<'a> {
         }
         let [of_foot, of_head] = [foot, head].map(|body| self.coordinates_of(Some(body)));
         let of_both = |id: &CoordinateId| of_foot.contains(id) == of_head.contains(id);
-        let mut between: Vec<CoordinateId> = of_foot.iter().chain(&of_head).copied().filter(|id| !of_both(id)).collect();
+        let mut between: Vec<CoordinateId> =
+            of_foot.iter().chain(&of_head).copied().filter(|id| !of_both(id)).collect();
         between.sort_unstable();
         let called = &self.coordinates[joint.0].name;
         if !between.contains(&joint) {

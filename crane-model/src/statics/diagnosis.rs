@@ -316,7 +316,10 @@ impl fmt::Display for Diagnosis {
                 write!(f, "; {foot} is {size:.2} m {side} the other feet")
             }
             Self::TooStiff { coordinate, stiffness, unit } => {
-                write!(f, "; {coordinate} is held with {stiffness:.1e} {unit}, beside which rounding hides all other forces")
+                write!(
+                    f,
+                    "; {coordinate} is held with {stiffness:.1e} {unit}, beside which rounding hides all other forces"
+                )
             }
             Self::Overflow | Self::Unknown => Ok(()),
         }

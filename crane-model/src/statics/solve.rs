@@ -114,7 +114,10 @@ fn with_slips_status(equations: &Equations<'_>, found: Equilibrium) -> Equilibri
         return found;
     }
     let supports = &equations.crane.description().supports;
-    Equilibrium { status: Status::Slips { feet: slips.iter().map(|slip| supports[slip.foot].name.clone()).collect() }, ..found }
+    Equilibrium {
+        status: Status::Slips { feet: slips.iter().map(|slip| supports[slip.foot].name.clone()).collect() },
+        ..found
+    }
 }
 
 /// Rotation by which an equilibrium may differ from the guess and still be the intended one, rad.

@@ -68,7 +68,11 @@ impl fmt::Display for Status {
             Status::TipsOver { feet } => write!(f, "tips over about {}: no stable pose is left", feet.join(" – ")),
             Status::Floats => f.write_str("floats: weight and loads do not press the crane onto its feet"),
             Status::Slips { feet } => {
-                write!(f, "slips: pulled sideways, {} let go, and no pose was found in which they hold", feet.join(", "))
+                write!(
+                    f,
+                    "slips: pulled sideways, {} let go, and no pose was found in which they hold",
+                    feet.join(", ")
+                )
             }
             Status::Overflow => f.write_str("forces overflow: a mass, a stiffness or a position is out of range"),
             Status::NotConverged => f.write_str("not converged: no equilibrium found from this guess"),

@@ -348,8 +348,10 @@ impl Writer<'_> {
         self.link(json!({"name": "jib", "on": "column", "placement": back, "joint": "revolute",
             "beam": {"length": 2.2, "sections": self.rng.borrow_mut().u8(1..3), "material": "steel",
                 "section": {"box": {"height": 0.16, "width": self.between(0.1, 0.14), "thickness": 0.005}}, "damping": {"beta": 1.5e-3}}}));
-        self.link(json!({"name": "platform", "mass": self.between(80.0, 150.0), "com": [0.4, 0.3, self.between(-0.2, 0.2)],
-            "inertia": {"gyration": [0.3, 0.35, 0.4]}}));
+        self.link(
+            json!({"name": "platform", "mass": self.between(80.0, 150.0), "com": [0.4, 0.3, self.between(-0.2, 0.2)],
+            "inertia": {"gyration": [0.3, 0.35, 0.4]}}),
+        );
         let angle = self.between(0.2, 0.9);
         self.drive("jib_psi", json!({"stiffness": 2e7, "damping": 3e4}), angle, 0.1);
         let at = self.random_point(BOOM);

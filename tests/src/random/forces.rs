@@ -131,7 +131,9 @@ impl Writer {
         }
         if self.branches {
             let ends = "from: {link: claw, at: [0.2, 0.1, -0.3]}, to: {link: grip, at: [0.1, 0.4, 0]}";
-            self.line(&format!("  - {{name: cross, {ends}, law: {{spring: {{stiffness: 120, damping: 5, length: 1.3}}}}}}"));
+            self.line(&format!(
+                "  - {{name: cross, {ends}, law: {{spring: {{stiffness: 120, damping: 5, length: 1.3}}}}}}"
+            ));
         }
     }
 
@@ -190,7 +192,9 @@ impl Writer {
         self.line(&format!("  - {{name: bending, coordinate: {bends}, bore: 0.1, rod: 0.05, retracted: 1, stroke: 1,"));
         // A shelf is on the arm, but not between the arm and the beam.
         let foot = if self.branches { "shelf" } else { "arm" };
-        self.line(&format!("     foot: {{link: {foot}, at: [0.4, -0.7, 0.5]}}, head: {{link: first, at: [1.1, 0.2, 0.3]}},"));
+        self.line(&format!(
+            "     foot: {{link: {foot}, at: [0.4, -0.7, 0.5]}}, head: {{link: first, at: [1.1, 0.2, 0.3]}},"
+        ));
         self.line(&format!("     {oil}, valve: {{{valve}}}}}"));
         self.line("pump: {max_flow: 1.0e-3, pressure: 1.5e7}");
     }

@@ -222,7 +222,8 @@ fn index(quantity: Quantity, tree: &Tree) -> Option<Array> {
         }
         Quantity::TransformSecondDerivatives => {
             let rows = bodies.flat_map(|(p, moving)| {
-                let pairs = |(place, m): (usize, &usize)| moving[place..].iter().map(|n| vec![p, *m, *n]).collect::<Vec<_>>();
+                let pairs =
+                    |(place, m): (usize, &usize)| moving[place..].iter().map(|n| vec![p, *m, *n]).collect::<Vec<_>>();
                 moving.iter().enumerate().flat_map(pairs).collect::<Vec<_>>()
             });
             ("transform_second_derivatives_index", 3, rows.collect())

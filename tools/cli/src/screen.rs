@@ -14,7 +14,7 @@ use clap::{Args, ValueEnum};
 use crane_codegen::{Diagnostics, chain::Chain};
 use crane_page::tables::{Report, diagnostics};
 use indicatif::ProgressBar;
-use serde_json::{Value, json};
+use serde_json::json;
 
 use crate::problem::{FAILED, NOTICED, Problem};
 

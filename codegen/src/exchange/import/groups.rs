@@ -53,7 +53,9 @@ pub(super) fn groups<'r>(robot: &'r Robot, fixed: &[String]) -> Result<Vec<Group
         }
         // In the order of the file; the first one continues before the others.
         moving.sort_by_key(|(joint, _)| std::cmp::Reverse(joint.span.start));
-        let on_it = |(joint, frame): (&'r Joint, Frame)| Some((Some(groups.len()), Some((joint, frame)), link(&joint.child.name)?));
+        let on_it = |(joint, frame): (&'r Joint, Frame)| {
+            Some((Some(groups.len()), Some((joint, frame)), link(&joint.child.name)?))
+        };
         next.extend(moving.into_iter().filter_map(on_it));
         groups.push(group);
     }

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::robot::{Joint, Motion};
 use super::groups::Group;
+use super::robot::{Joint, Motion};
 use crate::chain::{Axis, Frame, Vector};
 use crate::exchange::mass::{Lump, clean};
 use crate::exchange::rotation::along_z;
