@@ -22,7 +22,7 @@ pub trait CraneModel<const N: usize>: Send + Sync {
     fn description(&self) -> &Description;
 
     /// What the bodies of a crane with branches are attached to: for each body after the first, the index of an earlier one. Empty for a
-    /// crane without branches, whose bodies are attached to the one before.
+    /// crane without branches, whose bodies are attached to the previous one.
     fn parents(&self) -> &[usize] {
         &[]
     }

@@ -5,7 +5,7 @@
 use super::{BodyId, Chain, CoordinateId, Step};
 
 impl Chain {
-    /// The bodies on the path from the world to a body: each is attached to the one before it, and the body itself is the last.
+    /// The bodies on the path from the world to a body: each is attached to the previous one, and the body itself is the last.
     #[must_use]
     pub fn path(&self, body: BodyId) -> Vec<BodyId> {
         let mut path: Vec<BodyId> =
@@ -106,7 +106,7 @@ impl Chain {
         })
     }
 
-    /// Whether some body is not attached to the one before it.
+    /// Whether some body is not attached to the previous one.
     #[must_use]
     pub fn has_branches(&self) -> bool {
         let before = (0..self.bodies.len()).map(|index| index.checked_sub(1).map(BodyId));

@@ -13,7 +13,7 @@ pub struct Tree {
 
 impl Tree {
     /// The tree of a crane with these `parents`: for each body after the first, the index of the one that carries it. Without them, each body
-    /// is attached to the one before it.
+    /// is attached to the previous one.
     pub fn new(description: &Description, parents: &[usize]) -> Self {
         let count = description.bodies.len();
         let carrier = |before: usize| parents.get(before).copied().unwrap_or(before);
@@ -51,7 +51,7 @@ impl Tree {
         coordinates
     }
 
-    /// Whether some body is not attached to the one before it.
+    /// Whether some body is not attached to the previous one.
     pub fn has_branches(&self) -> bool {
         self.parents.iter().enumerate().any(|(body, parent)| *parent != body.checked_sub(1))
     }

@@ -19,7 +19,7 @@ use super::{
     force_state_update::ForceStateUpdate,
 };
 use crate::{
-    Description,
+    Description, SupportInfo,
     dyn_crane::{DynImplicit, DynSystem},
     loop_joints::Loops,
     stateful_force::StateAt,
@@ -61,7 +61,7 @@ impl<'a> System<'a> {
         crane.joint_stiffness_and_damping(&mut linear);
         let zeros = || vec![0.0; n];
         let Description { stops, frictions, supports, connectors, .. } = crane.description();
-        let one_sided = supports.iter().any(|support| support.is_one_sided());
+        let one_sided = supports.iter().any(SupportInfo::is_one_sided);
         let ropes = connectors.iter().any(|connector| connector.is_rope);
         Self {
             crane,

@@ -1,7 +1,7 @@
 //! What a load chart takes into account, in words that stand beside it.
 
 use super::{Limits, PartLimit};
-use crate::{CylinderInfo, Description, dyn_crane::DynCrane};
+use crate::{CylinderInfo, Description, SupportInfo, dyn_crane::DynCrane};
 
 /// What a load chart takes into account, and what it does not, for people.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -48,7 +48,7 @@ impl Coverage {
             Some(margin) => self.add(true, format!("a tipping margin of at least {margin}")),
             None => self.add(false, "tipping".to_owned()),
         }
-        let what = if description.supports.iter().all(|support| support.is_one_sided()) {
+        let what = if description.supports.iter().all(SupportInfo::is_one_sided) {
             "the first foot that lifts off"
         } else {
             "the first support that pulls"

@@ -116,7 +116,7 @@ pub fn tips_over(description: &Description, table: &Table) -> Option<TipsOver> {
     let n = description.coordinates.len();
     let pose = |row: &[f64]| row[1..=n].to_vec();
     let start = pose(table.rows.first()?);
-    let lifts = description.supports.iter().any(|support| support.is_one_sided());
+    let lifts = description.supports.iter().any(SupportInfo::is_one_sided);
     let over = table.rows.iter().position(|row| lifts && description.has_tipped(&start, &pose(row)))?;
     let presses = |row: &[f64], name: &str| {
         let column = reaction(name);

@@ -6,7 +6,7 @@
 
 use nalgebra::Vector3;
 
-use crate::{HoldInfo, dyn_crane::DynModel};
+use crate::{HoldInfo, SupportInfo, dyn_crane::DynModel};
 
 /// A support that carries more than N₀, although it is pressed in with less.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,7 +20,7 @@ pub(super) struct Slip {
 /// The supports of a pose at rest that slip.
 pub(super) fn slips(crane: &(impl DynModel + ?Sized), q: &[f64]) -> Vec<Slip> {
     let supports = &crane.description().supports;
-    if !supports.iter().any(|support| support.is_one_sided()) {
+    if !supports.iter().any(SupportInfo::is_one_sided) {
         return Vec::new();
     }
     let rest = vec![0.0; q.len()];

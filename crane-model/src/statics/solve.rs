@@ -7,7 +7,7 @@ use super::{
     residual_scale::ResidualScale, slipping::slips, tangent::Tangent,
 };
 use crate::{
-    CoordinateKind, Statics,
+    CoordinateKind, Statics, SupportInfo,
     dyn_crane::{DynStatics, Instance},
 };
 
@@ -142,6 +142,6 @@ fn missed(equations: &Equations<'_>, start: &DVector<f64>, settings: &Settings, 
         Status::Singular { .. } => !found.at_rest(settings),
         Status::NotConverged | Status::Slips { .. } => true,
         // A crane that has tipped half off its feet may balance there, besides standing on them.
-        Status::Unstable { .. } => !meant() || stable() || description.supports.iter().any(|foot| foot.is_one_sided()),
+        Status::Unstable { .. } => !meant() || stable() || description.supports.iter().any(SupportInfo::is_one_sided),
     }
 }

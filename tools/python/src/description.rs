@@ -1,7 +1,7 @@
 //! What a crane consists of: names, units and numbers that do not change.
 
 use crane_model::dyn_crane::DynModel;
-use crane_model::{ConnectorInfo, Cut, Description, SectionInfo};
+use crane_model::{BodyInfo, ConnectorInfo, Cut, Description, SectionInfo};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
@@ -25,19 +25,7 @@ impl Crane {
             rows.push(row);
         }
         all.set_item("coordinates", list(std::mem::take(&mut rows))?)?;
-        let tree = (&self.live as &dyn DynModel).tree();
-        for (body, info) in description.bodies.iter().enumerate() {
-            let row = PyDict::new(py);
-            row.set_item("name", &*info.name)?;
-            row.set_item("link", &*info.link)?;
-            row.set_item("mass", info.mass)?;
-            row.set_item("length", info.length)?;
-            row.set_item("degrees_of_freedom", info.degrees_of_freedom)?;
-            row.set_item("parent", tree.parent(body))?;
-            row.set_item("coordinates", tree.coordinates(body))?;
-            rows.push(row);
-        }
-        all.set_item("bodies", list(std::mem::take(&mut rows))?)?;
+        all.set_item("bodies", describe_bodies(py, &self.live)?)?;
         for info in &description.drives {
             let coordinate = &description.coordinates[info.coordinate];
             let row = PyDict::new(py);
@@ -127,4 +115,22 @@ fn describe_connectors<'py>(py: Python<'py>, description: &Description) -> PyRes
         Ok(row)
     };
     PyList::new(py, description.connectors.iter().map(describe).collect::<PyResult<Vec<_>>>()?)
+}
+
+/// Bodies, with what carries each and which coordinates move it.
+fn describe_bodies<'py>(py: Python<'py>, crane: &dyn DynModel) -> PyResult<Bound<'py, PyList>> {
+    let tree = crane.tree();
+    let describe = |(body, info): (usize, &BodyInfo)| {
+        let row = PyDict::new(py);
+        row.set_item("name", &*info.name)?;
+        row.set_item("link", &*info.link)?;
+        row.set_item("mass", info.mass)?;
+        row.set_item("length", info.length)?;
+        row.set_item("degrees_of_freedom", info.degrees_of_freedom)?;
+        row.set_item("parent", tree.parent(body))?;
+        row.set_item("coordinates", tree.coordinates(body))?;
+        Ok(row)
+    };
+    let rows: PyResult<Vec<_>> = crane.description().bodies.iter().enumerate().map(describe).collect();
+    PyList::new(py, rows?)
 }
