@@ -103,7 +103,9 @@ export class LoadChart {
     const ranges = by ? [by, along] : [along];
     try {
       const chart = await this.ask({ ask: "chart", ...this.given(), load: this.load.value, ranges }, PATIENCE);
-      this.state.textContent = `${chart.poses.length} poses in ${(chart.took / 1000).toFixed(2)} s`;
+      const free = chart.poses.filter(({ load, limit }) => load !== null && limit === null).length;
+      const words = free ? `; ${free} without a limit up to the largest load that was tried: this crane has no rating there` : "";
+      this.state.textContent = `${chart.poses.length} poses in ${(chart.took / 1000).toFixed(2)} s${words}`;
       this.show(chart, along, by);
     } catch ({ message }) {
       this.state.textContent = message;
