@@ -167,9 +167,9 @@ fn branches_are_carried_from_where_they_begin() {
     let side = "{name: side, on: {link: beam, at: [1.2, 0, 0]}, joint: revolute, mass: 25, com: [0.3, 0, 0]}";
     let other = "{name: other, on: {link: beam, at: start}, mass: 70, com: [0, 0.1, 0]}";
     let second = "{name: second, on: beam, mass: 15, com: [0.2, 0, 0]}";
-    let links = |links: &[&str]| links.iter().map(|link| format!("  - {link}\n")).collect::<String>();
+    let links = |links: [&str; 3]| links.map(|link| format!("  - {link}\n")).concat();
     for order in [[side, other, second], [second, side, other]] {
-        let chain = loaded_beam("fixed", "[0, 0, -9.81]", "symmetric", &links(&order));
+        let chain = loaded_beam("fixed", "[0, 0, -9.81]", "symmetric", &links(order));
         let rest = vec![0.0; chain.coordinates.len()];
         let wrenches = wrenches(&chain, &rest, &rest, &rest);
         let sections = sections(&chain, &wrenches);
