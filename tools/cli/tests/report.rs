@@ -65,28 +65,44 @@ fn a_flexible_crane_is_shown_with_the_rigid_one_of_the_same_drives() {
 
 #[test]
 fn the_screws_of_a_page_move_its_frames_as_the_crane_does() {
-    let data = data(&page("eight_link_flexible", "0.01"));
-    let scene = &data["cranes"][1]["scene"];
-    let pose = numbers(&scene["pose"]);
-    let screws: Vec<Vec<f64>> = scene["screws"].as_array().expect("screws").iter().map(numbers).collect();
-    // Every coordinate displaced from the pose, each by a different amount.
-    let q: Vec<f64> = pose.iter().enumerate().map(|(i, q)| q + 0.3 * (1.0 + i as f64).sin()).collect();
-    let text = q.iter().map(|q| format!("{q:?}")).collect::<Vec<_>>().join(",");
-    let exact: Value = serde_json::from_slice(&crane(&["eval", "eight_link_flexible", "--q", &text])).expect("JSON");
-    for (body, exact) in
-        scene["bodies"].as_array().expect("bodies").iter().zip(exact["transforms"].as_array().expect("T"))
-    {
-        let moved = usize::try_from(body["moved_by"].as_u64().expect("a count")).expect("a count");
-        let mut frame = Matrix4::identity();
-        for j in 0..moved {
-            frame *= exponential(&screws[j], q[j] - pose[j]);
+    for (name, index) in [("eight_link_flexible", 1), ("two_arms", 0)] {
+        let data = data(&page(name, "0.01"));
+        let scene = &data["cranes"][index]["scene"];
+        let reference = numbers(&scene["reference"]);
+        let screws: Vec<Vec<f64>> = scene["screws"].as_array().expect("screws").iter().map(numbers).collect();
+        let vectors = scene["vectors"].as_array().expect("flags");
+        // Every coordinate displaced from the reference, each by a different amount.
+        let q: Vec<f64> = reference.iter().enumerate().map(|(i, q)| q + 0.3 * (1.0 + i as f64).sin()).collect();
+        let text = q.iter().map(|q| format!("{q:?}")).collect::<Vec<_>>().join(",");
+        let exact: Value = serde_json::from_slice(&crane(&["eval", name, "--q", &text])).expect("JSON");
+        let mut motions: Vec<Matrix4<f64>> = Vec::new();
+        for (body, exact) in
+            scene["bodies"].as_array().expect("bodies").iter().zip(exact["transforms"].as_array().expect("T"))
+        {
+            let index = |value: &Value| usize::try_from(value.as_u64().expect("an index")).expect("an index");
+            let parent = body["parent"].as_u64().map(|_| motions[index(&body["parent"])]);
+            let mut motion = parent.unwrap_or_else(Matrix4::identity);
+            let mut own = index(&body["moved_by"][0])..index(&body["moved_by"][1]);
+            while let Some(j) = own.next() {
+                if vectors[j] == true {
+                    // A rotation vector is one turn about the sum of its screws.
+                    let sum: Vec<f64> = (0..6).map(|k| (j..j + 3).map(|i| q[i] * screws[i][k]).sum()).collect();
+                    let angle = Vector3::new(q[j], q[j + 1], q[j + 2]).norm();
+                    motion *= exponential(&sum.iter().map(|entry| entry / angle).collect::<Vec<_>>(), angle);
+                    own.nth(1);
+                } else {
+                    motion *= exponential(&screws[j], q[j] - reference[j]);
+                }
+            }
+            motions.push(motion);
+            let rows = numbers(&body["frame"]);
+            let frame =
+                motion * Matrix4::from_fn(|i, j| if i < 3 { rows[4 * i + j] } else { f64::from(u8::from(j == 3)) });
+            let exact: Vec<f64> = exact.as_array().expect("rows").iter().flat_map(numbers).collect();
+            let error = (frame - Matrix4::from_row_slice(&exact)).amax();
+            // Rounding of a product of 25 matrices, on a crane of 10 m.
+            assert!(error < 1e-12, "{}: {error:e}", body["name"]);
         }
-        let rows = numbers(&body["frame"]);
-        frame *= Matrix4::from_fn(|i, j| if i < 3 { rows[4 * i + j] } else { f64::from(u8::from(j == 3)) });
-        let exact: Vec<f64> = exact.as_array().expect("rows").iter().flat_map(numbers).collect();
-        let error = (frame - Matrix4::from_row_slice(&exact)).amax();
-        // Rounding of a product of 25 matrices, on a crane of 10 m.
-        assert!(error < 1e-12, "{}: {error:e}", body["name"]);
     }
 }
 
