@@ -48,7 +48,7 @@ def agree(options):
 
 
 def has_branches(crane):
-    """Whether a crane is no chain: some body is not moved by the first coordinates. This is then said."""
+    """Whether a crane has branches: some body is not moved by the first coordinates. If so, says that it is left out."""
     found = any(list(body.moved_by) != list(range(len(body.moved_by))) for body in crane.bodies)
     if found:
         print(f"{crane.name}: not compared, a chain has no branches; CasADi derives it")
