@@ -19,8 +19,7 @@ pub(super) fn dead_centre_of_drives(crane: &(impl DynModel + ?Sized), loops: &Lo
     const ALWAYS: f64 = 1e-7;
     let coordinates = &crane.description().coordinates;
     let (kept, n) = (loops.independent(), coordinates.len());
-    let moves = |j: &usize| loops.jacobian().iter().skip(*j).step_by(n).any(|entry| *entry != 0.0);
-    let all: Vec<usize> = (0..n).filter(moves).collect();
+    let all: Vec<usize> = (0..n).filter(|j| loops.is_moved_by(*j)).collect();
     let role = |j: &usize| coordinates[*j].role;
     if !all.iter().any(|j| role(j) == CoordinateRole::Driven) || all.iter().any(|j| role(j).is_element()) {
         return None;
@@ -59,9 +58,8 @@ pub(crate) fn prescribed_too_much(crane: &(impl DynModel + ?Sized), q: &[f64]) -
     loops.evaluate(crane, q, &vec![0.0; q.len()]);
     let prescribed = loops.prescribed.clone();
     let [(with, _), (without, _)] = [&[], prescribed.as_slice()].map(|held| loops.independent_without(held));
-    let spanned =
-        |j: &&usize| crane.loop_joints().iter().any(|joint| (joint.spanned[0]..joint.spanned[1]).contains(*j));
-    let names = prescribed.iter().filter(spanned).map(|j| crane.description().coordinates[*j].name.to_string());
+    let in_loops = prescribed.iter().filter(|j| loops.is_moved_by(**j));
+    let names = in_loops.map(|j| crane.description().coordinates[*j].name.to_string());
     if without < with { names.collect() } else { Vec::new() }
 }
 
@@ -75,8 +73,7 @@ pub(super) fn fighting_valves(crane: &(impl DynModel + ?Sized), q: &[f64], loops
     without_pushes(crane, q, &mut jacobian, &mut vec![0.0; q.len()]);
     let free: Vec<usize> = (0..q.len()).filter(|j| !loops.prescribed.contains(j)).collect();
     let unique = Balance::of(loops, &jacobian, &free)?.is_unique();
-    let spanned = |j: usize| crane.loop_joints().iter().any(|joint| (joint.spanned[0]..joint.spanned[1]).contains(&j));
-    let own = description.cylinders.iter().filter(|cylinder| cylinder.valve.is_some());
-    let own = own.filter(|cylinder| spanned(description.drives[cylinder.drive].coordinate));
-    (!unique).then(|| own.map(|cylinder| cylinder.name.to_string()).collect())
+    let with_valves = description.cylinders.iter().filter(|cylinder| cylinder.valve.is_some());
+    let in_loops = with_valves.filter(|cylinder| loops.is_moved_by(description.drives[cylinder.drive].coordinate));
+    (!unique).then(|| in_loops.map(|cylinder| cylinder.name.to_string()).collect())
 }

@@ -134,6 +134,11 @@ impl Loops {
         &self.jacobian
     }
 
+    /// Whether a coordinate moves the points of some loop joint against each other, as last evaluated.
+    fn is_moved_by(&self, coordinate: usize) -> bool {
+        self.jacobian.iter().skip(coordinate).step_by(self.n).any(|entry| *entry != 0.0)
+    }
+
     /// φ of an equation, as last evaluated, m or rad.
     pub fn gap(&self, equation: usize) -> f64 {
         self.states[equation].x

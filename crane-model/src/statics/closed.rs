@@ -85,9 +85,13 @@ impl Closed {
     /// The residual of motions that leave the loops closed, `D^½ Π D^-½ r`.
     pub fn residual(&self, crane: &dyn DynStatics, q: &[f64], residual: &DVector<f64>) -> DVector<f64> {
         let rows = self.rows(crane, q);
-        let scaled = residual.component_div(&self.scale);
-        let along = &scaled - &rows.basis * rows.basis.tr_mul(&scaled);
-        along.component_mul(&self.scale)
+        self.project(&rows, residual).component_mul(&self.scale)
+    }
+
+    /// `Π D^-½ r`, the part of a force along the motions that leave the loops closed, in scaled coordinates.
+    fn project(&self, rows: &Rows, force: &DVector<f64>) -> DVector<f64> {
+        let scaled = force.component_div(&self.scale);
+        &scaled - &rows.basis * rows.basis.tr_mul(&scaled)
     }
 
     /// `D^½ K̃ D^½`, from the residual and the stiffness of the open chain.
@@ -125,16 +129,12 @@ impl Closed {
     ) -> (DVector<f64>, DMatrix<f64>, DVector<f64>) {
         let rows = self.rows(crane, q);
         let basis = &rows.basis;
-        let along = |force: &DVector<f64>| {
-            let scaled = force.component_div(&self.scale);
-            &scaled - basis * basis.tr_mul(&scaled)
-        };
         let gaps = rows.triangle.tr_solve_upper_triangular(&rows.gaps).unwrap_or_else(|| rows.gaps.clone() * f64::NAN);
-        let value = (along(force) + basis * gaps).component_mul(&self.scale);
+        let value = (self.project(&rows, force) + basis * gaps).component_mul(&self.scale);
         let whole = self.lagrangian(crane, q, &rows, force, by_pose);
         let mut derivative = &whole - basis * basis.tr_mul(&whole) + basis * basis.transpose();
         self.restore(&mut derivative);
-        (value, derivative, along(by_parameter).component_mul(&self.scale))
+        (value, derivative, self.project(&rows, by_parameter).component_mul(&self.scale))
     }
 
     /// `D^-½ (K + Σ λ_i ∂²φ_i/∂q²) D^-½`, where λ balances the residual.
