@@ -1,7 +1,7 @@
 //! A motion in real time: levers in, the state of the crane out.
 //!
 //! The method is the one-step implicit `rosw4`: a lever that is moved changes the motion of its drive, and a method with a history would
-//! begin anew each time. The page chooses the tolerance, by the time that the last pictures took.
+//! begin again each time. The page chooses the tolerance, by the time that the last pictures took.
 
 use std::ops::ControlFlow;
 

@@ -281,7 +281,7 @@ function controls() {
 /** Opens a file. */
 async function take(file) {
   if (!file) return;
-  if (file.size > MOST) note(`${file.name} is longer than ${MOST >> 20} MB: that is no spec`, true);
+  if (file.size > MOST) note(`${file.name} is longer than ${MOST >> 20} MB: that is not a spec`, true);
   else load(file.name, await file.text());
 }
 

@@ -7,7 +7,7 @@ import { Viewer } from "../../src/viewer.js";
 
 /** Time in which a mode is shown over and over, s. */
 const WAVES = 10;
-/** Logarithm of the ratio of sizes from which a crane is looked at anew. */
+/** Logarithm of the ratio of sizes from which the camera moves to a crane again. */
 const GROWN = 0.2;
 
 /** Whether 3-D is drawn by the processor: then pictures of a motion have less detail than those at rest. */
