@@ -59,9 +59,9 @@ async function open(browser, options, use, { hash = "", silent = true } = {}) {
   const own = () => said.filter((line) => !/GPU stall|GL Driver Message/.test(line));
   await context.setOffline(true);
   const begin = Date.now();
-  await page.goto(address + hash);
-  await page.waitForSelector("html[data-ready]");
   try {
+    await page.goto(address + hash);
+    await page.waitForSelector("html[data-ready]");
     await use(page, Date.now() - begin);
   } catch (error) {
     await page.screenshot({ path: picture("failed") }).catch(() => {});
@@ -268,7 +268,8 @@ async function links(browser) {
   await open(browser, small, async (page) => {
     assert((await page.locator("#problems li.error").count()) > 0, "the bomb is a mistake");
   }, { hash: fragment(bomb) });
-  const deep = `format: 1\nname: deep\nlinks: ${"[".repeat(100_000)}`;
+  // Deeper than any browser's stack.
+  const deep = `format: 1\nname: deep\nlinks: ${"[".repeat(1_000_000)}`;
   await open(browser, small, async (page) => {
     await eventually(page, async () => assert.match(await state(page), /mistake|ended|failed/));
     // The page still works.

@@ -1,12 +1,13 @@
 // The editor: YAML with highlighting, completion and help from the schema, and mistakes where they are.
 import { autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap } from "@codemirror/autocomplete";
 import { defaultKeymap, history, historyKeymap, indentWithTab } from "@codemirror/commands";
-import { yaml } from "@codemirror/lang-yaml";
-import { HighlightStyle, bracketMatching, indentOnInput, indentUnit, syntaxHighlighting } from "@codemirror/language";
+import { yamlLanguage } from "@codemirror/lang-yaml";
+import { HighlightStyle, LanguageSupport, bracketMatching, indentOnInput, indentUnit, syntaxHighlighting } from "@codemirror/language";
 import { lintGutter, lintKeymap, setDiagnostics } from "@codemirror/lint";
 import { highlightSelectionMatches, searchKeymap } from "@codemirror/search";
 import { EditorState } from "@codemirror/state";
 import { EditorView, drawSelection, highlightActiveLine, highlightActiveLineGutter, hoverTooltip, keymap, lineNumbers, tooltips } from "@codemirror/view";
+import { NodeType, Tree } from "@lezer/common";
 import { tags } from "@lezer/highlight";
 import { element } from "../../src/element.js";
 import { Schema, context } from "./schema.js";
@@ -22,6 +23,28 @@ const colours = HighlightStyle.define([
   { tag: [tags.punctuation, tags.separator, tags.squareBracket, tags.brace], color: "var(--soft)" },
   { tag: tags.invalid, color: "var(--bad)" },
 ]);
+
+/** The parser builds its tree by recursion: a text that is nested too deeply for the browser's stack stays without colours. */
+const wrap = (parse, input) => ({
+  advance() {
+    try {
+      return parse.advance();
+    } catch (error) {
+      if (!(error instanceof RangeError)) throw error;
+      return new Tree(NodeType.none, [], [], input.length);
+    }
+  },
+  get parsedPos() {
+    return parse.parsedPos;
+  },
+  get stoppedAt() {
+    return parse.stoppedAt;
+  },
+  stopAt(position) {
+    parse.stopAt(position);
+  },
+});
+const yaml = new LanguageSupport(yamlLanguage.configure({ wrap }));
 
 const look = EditorView.theme({
   "&": { height: "100%", fontSize: "13px", color: "var(--ink)", backgroundColor: "var(--card)" },
@@ -61,7 +84,7 @@ export class Editor {
     root.append(parent);
     const extensions = [
       lineNumbers(), highlightActiveLine(), highlightActiveLineGutter(), history(), drawSelection(), indentOnInput(), bracketMatching(), closeBrackets(),
-      highlightSelectionMatches(), yaml(), indentUnit.of("  "), syntaxHighlighting(colours), look, lintGutter(), tooltips({ position: "fixed" }),
+      highlightSelectionMatches(), yaml, indentUnit.of("  "), syntaxHighlighting(colours), look, lintGutter(), tooltips({ position: "fixed" }),
       EditorState.tabSize.of(2), EditorView.contentAttributes.of({ "aria-label": "Spec of the crane, YAML", spellcheck: "false" }),
       autocompletion({ override: [(state) => this.complete(state)], icons: false }),
       hoverTooltip((view, position) => this.help(view, position), { hoverTime: 350 }),

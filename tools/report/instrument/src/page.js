@@ -63,13 +63,14 @@ async function begin() {
   }
   globalThis.instrument.compiled = performance.now();
   const text = await linked;
-  await (text === null ? load(examples[0].name, examples[0].text) : load(UNNAMED, text));
+  const opened = text === null ? load(examples[0].name, examples[0].text) : load(UNNAMED, text);
+  await opened.catch(({ message }) => note(`The spec cannot be shown: ${message}.`, true));
   if (refused) note(`${refused}. This is an example instead.`, true);
   root.dataset.ready = "yes";
 }
 
 /** Puts a spec into the editor and reads it. */
-function load(given, text) {
+async function load(given, text) {
   name = given;
   editor.text = text;
   kept = editor.text;
