@@ -1,14 +1,16 @@
 //! Laws of mechanics that hold for any crane.
 
+use crane_codegen::chain::{Group, Law as ForceLaw, Profile};
 use crane_live::LiveCrane;
-use crane_model::Cut;
 use crane_model::dyn_crane::{DynCrane, DynDynamics, DynModel, DynStatics};
-use crane_model::dynamics::Settings;
+use crane_model::dynamics::{Method, Settings};
 use crane_model::nalgebra::{DMatrix, DVector};
 use crane_model::runs::{Start, record};
+use crane_model::{Cut, modes};
 use fastrand::Rng;
 use std::ops::ControlFlow;
 
+use crate::cuts::{Motion, imbalances};
 use crate::observe::{equilibrium, live};
 use crate::tree::{Tree, source};
 
@@ -16,15 +18,17 @@ use crate::tree::{Tree, source};
 pub type Law = fn(&LiveCrane, &[f64], &mut Rng) -> Option<Result<(), String>>;
 
 /// All of them, with their names.
-pub const ALL: [(&str, Law); 10] = [
+pub const ALL: [(&str, Law); 12] = [
     ("accelerations solve A a = e + f", accelerations_solve),
     ("power of all forces", power),
     ("rate of the kinetic energy", kinetic_energy),
     ("tangent is the derivative of the residual", tangent),
     ("springs of beams carry what is beyond them", springs_carry),
+    ("every body is in balance", bodies_balance),
     ("energy balance of a run", energy_balance),
     ("ground carries weight and loads", ground_carries),
     ("a crane at rest stays at rest", rest_stays),
+    ("a damped run ends at rest", damped_run_ends),
     ("drives at rest as at the start of a run", efforts_at_rest),
     ("eight cranes as one", lanes),
 ];
@@ -222,6 +226,31 @@ fn springs_carry(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Resul
     applies.then_some(Ok(()))
 }
 
+/// The wrenches at the cuts before and beyond every body balance its weight, its inertia and what acts on it, at rest and in motion.
+fn bodies_balance(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Result<(), String>> {
+    let whole: &dyn DynCrane = crane;
+    let still = vec![0.0; pose.len()];
+    // At rest, Newton's tolerance in the efforts of valves; in motion, second differences.
+    let mut worst = imbalances(crane, &Motion { t: 0.0, q: pose, v: &still, a: &still })
+        .into_iter()
+        .map(|(body, by)| (body, by, 1e-8))
+        .collect::<Vec<_>>();
+    // Rotors add moments of their own, which follow from rates and accelerations.
+    if !has_states(crane) && crane.chain().rotors.is_empty() {
+        let (t, q, v) = state(crane, pose, rng);
+        let a = whole.accelerations_at(t, &q, &v).as_slice().to_vec();
+        worst.extend(
+            imbalances(crane, &Motion { t, q: &q, v: &v, a: &a }).into_iter().map(|(body, by)| (body, by, 1e-5)),
+        );
+    }
+    let missing = worst.into_iter().find(|(_, by, tolerance)| by.is_nan() || by > tolerance);
+    Some(
+        missing.map_or(Ok(()), |(body, by, _)| {
+            Err(format!("balance of {body}: {by:.3e} of the largest force is missing"))
+        }),
+    )
+}
+
 /// Energy, work and dissipation of the run of the spec balance, relative to the largest of them.
 fn energy_balance(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Result<(), String>> {
     let description = crane.description();
@@ -286,6 +315,65 @@ fn rest_stays(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Result<(), St
         }
     }
     Some(Ok(()))
+}
+
+/// The longest run to rest, s.
+const LONGEST: f64 = 200.0;
+
+/// The crane with everything that moves by itself held where it is at the start, and without friction, which would hold it elsewhere.
+fn held(crane: &LiveCrane) -> LiveCrane {
+    let mut chain = crane.chain().clone();
+    let parameters = crane.parameters();
+    let start = |profile: &Profile| Profile::Hold(profile.start(parameters).into());
+    for drive in &mut chain.drives {
+        drive.profile = start(&drive.profile);
+    }
+    for load in &mut chain.loads {
+        load.scale = load.scale.as_ref().map(start);
+    }
+    for force in &mut chain.forces {
+        if let ForceLaw::Rope(rope) = &mut force.law {
+            rope.length = start(&rope.length);
+        }
+    }
+    chain.forces.retain(|force| force.group != Group::Friction);
+    LiveCrane::new(chain)
+}
+
+/// Statics are the limit of a damped run: pushed aside, the crane comes back to its equilibrium.
+fn damped_run_ends(crane: &LiveCrane, q: &[f64], rng: &mut Rng) -> Option<Result<(), String>> {
+    // What leaks does not stay.
+    if crane.description().has_valves() {
+        return None;
+    }
+    let crane = &held(crane);
+    let description = crane.description();
+    let whole: &dyn DynCrane = crane;
+    let modes = modes::damped(&whole.small_motions_at(q)).ok()?;
+    let slowest = modes.iter().map(|mode| -mode.eigenvalue.re).fold(f64::INFINITY, f64::min);
+    // From a millimetre to 1e-7 m.
+    let duration = 10.0 / slowest;
+    if !(0.0..LONGEST).contains(&duration) {
+        return None;
+    }
+    let (_, aside, _) = state(crane, q, rng);
+    let start = Start { v: vec![0.0; q.len()], q: aside, x: Vec::new(), what: String::new(), rests: false };
+    let base = Settings {
+        method: Method::Bdf,
+        tolerance: 1e-7,
+        most_steps: 30_000,
+        audit: false,
+        ..Settings::of(description)
+    };
+    let settings = Settings { duration, output: duration, ..base };
+    let table = record(crane, &start, &settings, &mut |_| ControlFlow::Continue(())).ok()?.table;
+    let end = table.rows.last()?;
+    let off = |j: usize| (end[1 + j] - q[j]).abs();
+    let far = (0..q.len()).find(|&j| off(j) > 1e-5);
+    Some(far.map_or(Ok(()), |j| {
+        let name = &description.coordinates[j].name;
+        Err(format!("{name} ends at {:.9} after {duration:.0} s, {:.1e} from its equilibrium", end[1 + j], off(j)))
+    }))
 }
 
 /// The efforts with which statics hold the crane are those of the first result of a run.

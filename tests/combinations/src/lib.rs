@@ -8,6 +8,7 @@
 
 pub mod check;
 pub mod crane;
+pub mod cuts;
 pub mod descriptions;
 pub mod feature;
 pub mod laws;

@@ -1,0 +1,248 @@
+//! Every body is in balance: what the two sides of its cuts transmit, its weight, its inertia and what acts on it from outside.
+//!
+//! The balance is summed body by body in the world frame, from a chain's frames and masses; the accelerations are second differences of
+//! transforms. The recursion that it checks works in the frames of the bodies, outward and back.
+
+use crane_codegen::chain::{Attachment, Cylinder, Inertia, Load, LoadAxes, Pin};
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::DynCrane;
+use crane_model::nalgebra::{DMatrix, DVector, Matrix3, Matrix4, Vector3, Vector6};
+use crane_model::{Cut, Wrench};
+
+/// A force and its moment about the world's origin, N and N m.
+type Screw = Vector6<f64>;
+
+/// Step of the second differences, s: with those over half of it, their error is its fourth power times sixth derivatives, and rounding over
+/// its square.
+const STEP: f64 = 1e-4;
+
+/// A state of motion: time, pose, rates, accelerations.
+pub struct Motion<'a> {
+    /// Time, s.
+    pub t: f64,
+    /// Pose, m and rad.
+    pub q: &'a [f64],
+    /// Rates.
+    pub v: &'a [f64],
+    /// Accelerations.
+    pub a: &'a [f64],
+}
+
+/// What is missing for the balance of each body: its name, and what remains of the sum relative to the largest part of any body.
+#[must_use]
+pub fn imbalances(crane: &LiveCrane, motion: &Motion) -> Vec<(String, f64)> {
+    let chain = crane.chain();
+    let transforms = crane_transforms(crane, motion.q);
+    let mut sums = vec![Screw::zeros(); chain.bodies.len()];
+    let mut size: f64 = 0.0;
+    let mut add = |body: usize, screw: Screw| {
+        sums[body] += screw;
+        size = size.max(screw.norm());
+    };
+    for (body, wrench) in cuts(crane, motion) {
+        // A wrench is what the part beyond the cut exerts.
+        let transmitted = -screw(&transforms[body], &wrench);
+        add(body, transmitted);
+        if let Some(parent) = chain.bodies[body].parent {
+            add(parent.0, -transmitted);
+        }
+    }
+    for (body, inertial) in inertias(crane, motion).into_iter().enumerate() {
+        add(body, -inertial);
+    }
+    let known = connectors(crane, motion, &transforms)
+        .into_iter()
+        .chain(loads(crane, &transforms, false).into_iter().flatten());
+    for (body, force) in known {
+        add(body, force);
+    }
+    // The efforts of cylinders and the factors of loads over time are whatever balances all bodies best.
+    let cylinders = chain.cylinders.iter().filter(|cylinder| cylinder.valve.is_some());
+    let mut unknown = loads(crane, &transforms, true);
+    unknown.extend(cylinders.map(|cylinder| cylinder_forces(crane, cylinder, motion.q, &transforms)));
+    let mut columns = DMatrix::zeros(6 * sums.len(), unknown.len());
+    for (column, forces) in unknown.iter().enumerate() {
+        for (body, force) in forces {
+            let mut rows = columns.fixed_view_mut::<6, 1>(6 * body, column);
+            rows += force;
+        }
+    }
+    let rest =
+        DVector::from_iterator(6 * sums.len(), sums.iter().flat_map(|sum| sum.iter().copied().collect::<Vec<_>>()));
+    let rest = match unknown.len() {
+        0 => rest,
+        _ => columns
+            .clone()
+            .svd(true, true)
+            .solve(&-&rest, 1e-12)
+            .map_or(rest.clone(), |factors| rest + columns * factors),
+    };
+    let missing = |body: usize| rest.fixed_rows::<6>(6 * body).norm() / size.max(1.0);
+    chain.bodies.iter().enumerate().map(|(body, own)| (own.name.clone(), missing(body))).collect()
+}
+
+fn crane_transforms(crane: &LiveCrane, q: &[f64]) -> Vec<Matrix4<f64>> {
+    let crane: &dyn DynCrane = crane;
+    crane.transforms_at(q)
+}
+
+/// A wrench in a body's frame, about its origin, as a screw of the world.
+fn screw(transform: &Matrix4<f64>, wrench: &Wrench) -> Screw {
+    let turn = transform.fixed_view::<3, 3>(0, 0);
+    let mut whole = force_at(origin(transform), turn * wrench.force);
+    let mut moment = whole.fixed_rows_mut::<3>(3);
+    moment += turn * wrench.moment;
+    whole
+}
+
+fn origin(transform: &Matrix4<f64>) -> Vector3<f64> {
+    transform.fixed_view::<3, 1>(0, 3).into_owned()
+}
+
+/// A force at a point of the world.
+fn force_at(point: Vector3<f64>, force: Vector3<f64>) -> Screw {
+    let moment = point.cross(&force);
+    Screw::new(force.x, force.y, force.z, moment.x, moment.y, moment.z)
+}
+
+/// What is transmitted to each body through the cut before it.
+fn cuts(crane: &LiveCrane, Motion { t, q, v, a }: &Motion) -> Vec<(usize, Wrench)> {
+    let whole: &dyn DynCrane = crane;
+    let cuts = whole.description().cuts();
+    let of_bodies = cuts.iter().zip(whole.internal_forces_at(*t, q, v, a));
+    of_bodies
+        .filter_map(|(cut, wrench)| if let Cut::Body { body, .. } = cut { Some((*body, wrench)) } else { None })
+        .collect()
+}
+
+/// `∫ (r̈ − g) dm` and `∫ r × (r̈ − g) dm` of each body, from `∫ r̈ rᵀ dm = T̈ H Tᵀ`.
+fn inertias(crane: &LiveCrane, motion: &Motion) -> Vec<Screw> {
+    let chain = crane.chain();
+    let parameters = crane.parameters();
+    let after = |time: f64| {
+        let terms = motion.q.iter().zip(motion.v).zip(motion.a);
+        let q: Vec<f64> = terms.map(|((q, v), a)| q + time * (v + 0.5 * time * a)).collect();
+        crane_transforms(crane, &q)
+    };
+    let [before, earlier, now, later, after] = [-STEP, -0.5 * STEP, 0.0, 0.5 * STEP, STEP].map(after);
+    let gravity = Vector3::from(chain.gravity.each_ref().map(|g| g.at(parameters)));
+    let of_body = |body: usize| {
+        let Some(inertia) = &chain.bodies[body].inertia else { return Screw::zeros() };
+        let matrix = pseudo_inertia(inertia, parameters);
+        let wide = (after[body] - 2.0 * now[body] + before[body]) / (STEP * STEP);
+        let narrow = (later[body] - 2.0 * now[body] + earlier[body]) / (0.25 * STEP * STEP);
+        let mut second = (4.0 * narrow - wide) / 3.0;
+        if motion.v.iter().chain(motion.a).all(|rate| *rate == 0.0) {
+            second.fill(0.0);
+        }
+        // A body that is held against gravity accelerates upward in free fall's view.
+        let mut falling = second;
+        let mut column = falling.fixed_view_mut::<3, 1>(0, 3);
+        column -= gravity;
+        let rate = falling * matrix * now[body].transpose();
+        let moment = [rate[(2, 1)] - rate[(1, 2)], rate[(0, 2)] - rate[(2, 0)], rate[(1, 0)] - rate[(0, 1)]];
+        Screw::new(rate[(0, 3)], rate[(1, 3)], rate[(2, 3)], moment[0], moment[1], moment[2])
+    };
+    (0..chain.bodies.len()).map(of_body).collect()
+}
+
+/// `H = ∫ r rᵀ dm`, `r = [x y z 1]ᵀ`.
+fn pseudo_inertia(inertia: &Inertia, parameters: &[f64]) -> Matrix4<f64> {
+    let [xx, yy, zz, xy, xz, yz] = inertia.second.each_ref().map(|second| second.at(parameters));
+    let [x, y, z] = inertia.first.each_ref().map(|first| first.at(parameters));
+    Matrix4::new(xx, xy, xz, x, xy, yy, yz, y, xz, yz, zz, z, x, y, z, inertia.mass.at(parameters))
+}
+
+/// The forces of springs and ropes on the bodies at their ends.
+fn connectors(crane: &LiveCrane, motion: &Motion, transforms: &[Matrix4<f64>]) -> Vec<(usize, Screw)> {
+    let whole: &dyn DynCrane = crane;
+    let tensions = whole.connector_tensions_at(motion.t, motion.q, motion.v);
+    let point = |end: &Attachment| {
+        let local = Vector3::from(end.position.each_ref().map(|x| x.at(crane.parameters())));
+        end.body.map_or(local, |body| transforms[body.0].transform_point(&local.into()).coords)
+    };
+    let mut forces = Vec::new();
+    for (connector, tension) in crane.chain().connectors().iter().zip(tensions) {
+        let Some(ends) = connector.strain.ends() else { continue };
+        let [one, other] = ends.each_ref().map(point);
+        let pull = tension.force * (other - one).normalize();
+        for (end, at, force) in [(&ends[0], one, pull), (&ends[1], other, -pull)] {
+            forces.extend(end.body.map(|body| (body.0, force_at(at, force))));
+        }
+    }
+    forces
+}
+
+/// The loads whose factor changes over time, or those whose factor is 1: load by load.
+fn loads(crane: &LiveCrane, transforms: &[Matrix4<f64>], scaled: bool) -> Vec<Vec<(usize, Screw)>> {
+    let chosen = crane.chain().loads.iter().filter(|load| load.scale.is_some() == scaled);
+    chosen.map(|load| vec![(load.body.0, load_screw(crane, load, &transforms[load.body.0]))]).collect()
+}
+
+fn load_screw(crane: &LiveCrane, load: &Load, transform: &Matrix4<f64>) -> Screw {
+    let [position, force, moment] = [&load.position, &load.force, &load.moment]
+        .map(|vector| Vector3::from(vector.each_ref().map(|x| x.at(crane.parameters()))));
+    let turn = match load.axes {
+        LoadAxes::World => Matrix3::identity(),
+        LoadAxes::Link => transform.fixed_view::<3, 3>(0, 0).into_owned(),
+    };
+    let mut whole = force_at(transform.transform_point(&position.into()).coords, turn * force);
+    let mut rest = whole.fixed_rows_mut::<3>(3);
+    rest += turn * moment;
+    whole
+}
+
+/// Step of the differences of a cylinder's length, m: their error is its square, and rounding over it.
+const SMALL_STEP: f64 = 1e-5;
+
+/// What a cylinder exerts on the bodies of its pins for a push of 1 N: along the derivatives of its length. A linkage stays in the plane
+/// normal to the joint's axis, so what turns the axis exerts a moment on the link that carries it, on the side of the joint where the head is
+/// not.
+fn cylinder_forces(
+    crane: &LiveCrane,
+    cylinder: &Cylinder,
+    q: &[f64],
+    transforms: &[Matrix4<f64>],
+) -> Vec<(usize, Screw)> {
+    let (chain, parameters) = (crane.chain(), crane.parameters());
+    let point = |pin: &Pin| {
+        let local = Vector3::from(pin.position.each_ref().map(|x| x.at(parameters)));
+        transforms[pin.body.0].transform_point(&local.into()).coords
+    };
+    let (foot, head) = (point(&cylinder.foot), point(&cylinder.head));
+    let Some(linkage) = &cylinder.linkage else {
+        let push = (head - foot).normalize();
+        return vec![(cylinder.foot.body.0, force_at(foot, -push)), (cylinder.head.body.0, force_at(head, push))];
+    };
+    let [rocker, link] = [&linkage.rocker, &linkage.link].map(|length| length.at(parameters));
+    // From the pivot, the pin of the rod is at the angle of the law of cosines to the line to the head.
+    let length = |[foot, head, pivot, axis]: [Vector3<f64>; 4]| {
+        let across = head - pivot;
+        let aside = axis.cross(&across).normalize() * if linkage.left { 1.0 } else { -1.0 };
+        let cosine = (rocker.powi(2) + across.norm_squared() - link.powi(2)) / (2.0 * rocker * across.norm());
+        let sine = (1.0 - cosine * cosine).sqrt();
+        (pivot + rocker * (cosine * across.normalize() + sine * aside) - foot).norm()
+    };
+    let [_, axis] = chain.axis(cylinder.coordinate, q, parameters);
+    let given = [foot, head, point(&linkage.pivot), Vector3::from(axis)];
+    let gradient = |k: usize| {
+        Vector3::from_fn(|i, _| {
+            let stepped = |step: f64| {
+                let mut moved = given;
+                moved[k][i] += step;
+                length(moved)
+            };
+            (stepped(SMALL_STEP) - stepped(-SMALL_STEP)) / (2.0 * SMALL_STEP)
+        })
+    };
+    let joint = chain.coordinates[cylinder.coordinate.0].body;
+    let mut beyond = Some(cylinder.head.body);
+    while beyond.is_some_and(|body| body > joint) {
+        beyond = beyond.and_then(|body| chain.bodies[body.0].parent);
+    }
+    let carrier = if beyond == Some(joint) { chain.bodies[joint.0].parent } else { Some(joint) };
+    let moment = given[3].cross(&gradient(3));
+    let pins = [&cylinder.foot, &cylinder.head, &linkage.pivot].into_iter().enumerate();
+    let on_pins = pins.map(|(k, pin)| (pin.body.0, force_at(given[k], gradient(k))));
+    on_pins.chain(carrier.map(|body| (body.0, Screw::new(0.0, 0.0, 0.0, moment.x, moment.y, moment.z)))).collect()
+}
