@@ -172,13 +172,17 @@ fn falls_behind(description: &Description, info: &CylinderInfo, table: &Table) -
     } else {
         "its valve is never fully open".to_owned()
     };
+    let share = if most > travel {
+        "more than its whole travel".to_owned()
+    } else {
+        format!("{:.0} % of its travel", 100.0 * most / travel)
+    };
     (travel > 0.0 && most > FOLLOWS * travel).then(|| {
         format!(
-            "{} falls behind: {} is up to {most:.4} {} from its prescribed position, {:.0} % of its travel, at {:.2} s; {valve}",
+            "{} falls behind: {} is up to {most:.4} {} from its prescribed position, {share}, at {:.2} s; {valve}",
             info.name,
             coordinate.name,
             coordinate.kind.unit(),
-            100.0 * most / travel,
             row[0]
         )
     })
