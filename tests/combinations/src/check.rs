@@ -102,7 +102,7 @@ fn shrunk(case: &Case, mut failure: Failure, run: bool) -> Failure {
             (tree, failure.features) = (smaller, fewer);
         }
     }
-    let lists = ["points", "loads", "connectors", "cylinders", "couplings", "supports"];
+    let lists = ["points", "loads", "connectors", "cylinders", "loop_joints", "couplings", "supports"];
     for list in lists {
         for index in (0..tree[list].as_array().map_or(0, Vec::len)).rev() {
             let mut smaller = tree.clone();

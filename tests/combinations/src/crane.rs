@@ -99,6 +99,7 @@ impl Writer<'_> {
         self.stages();
         self.hook();
         self.branches();
+        self.lever();
         self.forces();
         self.connectors();
         self.cylinders(seed);
@@ -331,7 +332,9 @@ impl Writer<'_> {
             hook["joint"] = json!({"revolute": {"axis": "y"}});
             hook["com"] = json!([0.8, 0, 0]);
             self.tree["guess"]["swing_psi"] = json!(upright);
-            self.tree["damping"] = json!({"swing_psi": 30, "hook_theta": 30});
+            for swings in ["swing_psi", "hook_theta"] {
+                self.tree["damping"][swings] = json!(30);
+            }
         } else {
             hook["placement"] = hangs;
         }
@@ -357,6 +360,44 @@ impl Writer<'_> {
         let at = self.random_point(BOOM);
         self.link(json!({"name": "lamp", "on": {"link": "boom", "at": at}, "mass": self.between(10.0, 30.0), "com": [0.02, 0.2, -0.01],
             "inertia": {"gyration": [0.1, 0.12, 0.14]}}));
+    }
+
+    /// A lever on the column that follows the boom: through a massless rod, or through a bar of its own that a ball joint holds to the boom.
+    fn lever(&mut self) {
+        if !self.has(F::Loop) {
+            return;
+        }
+        let (aside, angle) = (self.between(-0.35, -0.25), self.between(0.4, 0.8));
+        let origin = [0.35, aside, 1.6];
+        let place = json!({"transform": {"translation": [origin[0], aside, round(origin[2] - self.column_height())], "rotation": {"x": "90 deg"}}});
+        self.link(json!({"name": "lever", "on": "column", "placement": place, "joint": "revolute", "mass": self.between(20.0, 40.0),
+            "com": [0.3, 0.01, 0], "inertia": {"Ixx": 0.2, "Iyy": 1, "Izz": 1}}));
+        self.tree["damping"]["lever_psi"] = json!(30);
+        self.tree["guess"]["lever_psi"] = json!(angle);
+        // The boom's z points to the right, as the lever's does. Off the lever's plane, the rod is one in space.
+        let x = self.between(1.0, 1.6);
+        let tip = [origin[0] + 0.6 * angle.cos(), origin[2] + 0.6 * angle.sin()];
+        let lift = self.angles[1];
+        let end = [SHOULDER[0] + x * lift.cos(), SHOULDER[1] + x * lift.sin()];
+        let between = (end[0] - tip[0]).hypot(end[1] - tip[1]);
+        let bar = self.rng.borrow_mut().bool();
+        let off = if bar { 0.0 } else { self.between(-0.15, 0.15) };
+        let to = json!({"link": "boom", "at": [x, 0, round(-aside + off)]});
+        if bar {
+            let turned = round((end[1] - tip[1]).atan2(end[0] - tip[0]) - angle);
+            self.link(json!({"name": "bar", "placement": {"transform": {"translation": [0.6, 0, 0]}}, "joint": "revolute",
+                "mass": self.between(8.0, 15.0), "com": [0.45, 0, 0], "inertia": {"Ixx": 0.05, "Iyy": 0.8, "Izz": 0.8}}));
+            self.tree["damping"]["bar_psi"] = json!(10);
+            self.tree["guess"]["bar_psi"] = json!(turned);
+            self.push("loop_joints", json!({"name": "end", "from": {"link": "bar", "at": [round(between), 0, 0]}, "to": to, "joint": "ball"}));
+        } else {
+            let length = round(between.hypot(off));
+            self.push(
+                "loop_joints",
+                json!({"name": "rod", "from": {"link": "lever", "at": [0.6, 0, 0]}, "to": to,
+                "joint": {"rod": {"length": length}}}),
+            );
+        }
     }
 
     /// A place on a link of this length: at its beginning, its tip, or anywhere, mostly off the axis.

@@ -3,7 +3,7 @@
 //! The balance is summed body by body in the world frame, from a chain's frames and masses; the accelerations are second differences of
 //! transforms. The recursion that it checks works in the frames of the bodies, outward and back.
 
-use crane_codegen::chain::{Attachment, Cylinder, Inertia, Load, LoadAxes, Pin};
+use crane_codegen::chain::{Attachment, Cylinder, Inertia, Load, LoadAxes, LoopJointKind, Pin};
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::nalgebra::{DMatrix, DVector, Matrix3, Matrix4, Vector3, Vector6};
@@ -56,9 +56,10 @@ pub fn imbalances(crane: &LiveCrane, motion: &Motion) -> Vec<(String, f64)> {
     for (body, force) in known {
         add(body, force);
     }
-    // The efforts of cylinders and the factors of loads over time are whatever balances all bodies best.
+    // The efforts of cylinders, the forces of loops and the factors of loads over time are whatever balances all bodies best.
     let cylinders = chain.cylinders.iter().filter(|cylinder| cylinder.valve.is_some());
     let mut unknown = loads(crane, &transforms, true);
+    unknown.extend(loop_forces(crane, &transforms));
     unknown.extend(cylinders.map(|cylinder| cylinder_forces(crane, cylinder, motion.q, &transforms)));
     let mut columns = DMatrix::zeros(6 * sums.len(), unknown.len());
     for (column, forces) in unknown.iter().enumerate() {
@@ -157,20 +158,41 @@ fn pseudo_inertia(inertia: &Inertia, parameters: &[f64]) -> Matrix4<f64> {
 fn connectors(crane: &LiveCrane, motion: &Motion, transforms: &[Matrix4<f64>]) -> Vec<(usize, Screw)> {
     let whole: &dyn DynCrane = crane;
     let tensions = whole.connector_tensions_at(motion.t, motion.q, motion.v);
-    let point = |end: &Attachment| {
-        let local = Vector3::from(end.position.each_ref().map(|x| x.at(crane.parameters())));
-        end.body.map_or(local, |body| transforms[body.0].transform_point(&local.into()).coords)
-    };
     let mut forces = Vec::new();
     for (connector, tension) in crane.chain().connectors().iter().zip(tensions) {
         let Some(ends) = connector.strain.ends() else { continue };
-        let [one, other] = ends.each_ref().map(point);
+        let [one, other] = ends.each_ref().map(|end| point_of(crane, end, transforms));
         let pull = tension.force * (other - one).normalize();
         for (end, at, force) in [(&ends[0], one, pull), (&ends[1], other, -pull)] {
             forces.extend(end.body.map(|body| (body.0, force_at(at, force))));
         }
     }
     forces
+}
+
+/// Forces of 1 N that joints which close loops transmit, force by force: along a rod, or in any direction through a point.
+fn loop_forces(crane: &LiveCrane, transforms: &[Matrix4<f64>]) -> Vec<Vec<(usize, Screw)>> {
+    let mut forces = Vec::new();
+    for joint in &crane.chain().loop_joints {
+        let [one, other] = joint.ends.each_ref().map(|end| point_of(crane, end, transforms));
+        let directions = match joint.kind {
+            LoopJointKind::Rod { .. } => vec![(other - one).normalize()],
+            _ => vec![Vector3::x(), Vector3::y(), Vector3::z()],
+        };
+        for direction in directions {
+            let ends = [(&joint.ends[0], one, direction), (&joint.ends[1], other, -direction)];
+            forces.push(
+                ends.into_iter().filter_map(|(end, at, force)| Some((end.body?.0, force_at(at, force)))).collect(),
+            );
+        }
+    }
+    forces
+}
+
+/// An attachment's position in the world, m.
+fn point_of(crane: &LiveCrane, end: &Attachment, transforms: &[Matrix4<f64>]) -> Vector3<f64> {
+    let local = Vector3::from(end.position.each_ref().map(|x| x.at(crane.parameters())));
+    end.body.map_or(local, |body| transforms[body.0].transform_point(&local.into()).coords)
 }
 
 /// The loads whose factor changes over time, or those whose factor is 1: load by load.

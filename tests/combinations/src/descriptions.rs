@@ -118,7 +118,7 @@ fn split_boom(tree: &Tree, rng: &mut Rng) -> Option<Second> {
             attached["at"][0] = json!(x - cut);
         }
     };
-    for list in ["links", "loads", "connectors", "cylinders", "points"] {
+    for list in ["links", "loads", "connectors", "cylinders", "loop_joints", "points"] {
         if let Some(entries) = second.get_mut(list) {
             for_each_place(entries, &mut { moved });
         }
@@ -343,7 +343,7 @@ fn planes_exchanged(tree: &Tree, _: &mut Rng) -> Option<Second> {
     if let Some(lamp) = entry_mut(&mut second, "links", "name", "lamp") {
         lamp["placement"] = back;
     }
-    for list in ["links", "loads", "connectors", "cylinders", "points"] {
+    for list in ["links", "loads", "connectors", "cylinders", "loop_joints", "points"] {
         let Some(entries) = second.get_mut(list) else { continue };
         for_each_place(entries, &mut |attached| {
             if attached["link"] == "boom" {
@@ -462,7 +462,7 @@ fn degrees(tree: &Tree, _: &mut Rng) -> Option<Second> {
 
 fn other_order(tree: &Tree, rng: &mut Rng) -> Option<Second> {
     let mut second = tree.clone();
-    for list in ["supports", "drives", "loads", "connectors", "cylinders", "points"] {
+    for list in ["supports", "drives", "loads", "connectors", "cylinders", "loop_joints", "points"] {
         if let Some(entries) = second.get_mut(list).and_then(Value::as_array_mut) {
             rng.shuffle(entries);
         }

@@ -57,6 +57,7 @@ features! {
     Parameters: "live parameters",
     DenavitHartenberg: "D-H rows",
     SecondArm: "branches: a second arm, and a lamp on the boom",
+    Loop: "closed loop: a lever on the column, moved by the boom through a rod or a bar",
 }
 
 /// A set of features.

@@ -74,8 +74,11 @@ fn by_differences(steps: [f64; 2], compare: impl Fn(f64) -> Result<(), String>) 
     compare(step).or_else(|_| compare(shorter))
 }
 
-/// `A q̈ = e + f`, in the rows of unknowns.
+/// `A q̈ = e + f`, in the rows of unknowns, of open chains.
 fn accelerations_solve(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Result<(), String>> {
+    if !crane.chain().loop_joints.is_empty() {
+        return None;
+    }
     let (t, q, v) = state(crane, pose, rng);
     let whole: &dyn DynCrane = crane;
     let a = whole.accelerations_at(t, &q, &v);

@@ -1,9 +1,12 @@
-"""One random crane by every way to compute it: Python, the command's tables, functional mock-up units, C."""
+"""One random crane by every way to compute it: Python, the command's tables, JSON and text, the page, functional mock-up units, C."""
 
+import base64
 import csv
 import ctypes
 import json
+import re
 import subprocess
+from decimal import Decimal
 
 import crane as package
 import numpy as np
@@ -106,3 +109,61 @@ def test_arrays_of_any_order_are_the_same_numbers(specs, seed, loaded):
             arguments = (pose,) if function == "mass_matrix" else (pose, rate)
             usual = (poses,) if function == "mass_matrix" else (poses, rates)
             assert (getattr(crane, function)(*arguments) == getattr(crane, function)(*usual)).all(), function
+
+
+def shows(text, value):
+    """Whether a number of a table is a value, rounded to the digits that it has."""
+    return abs(float(text) - value) <= 0.501 * 10.0 ** Decimal(text).as_tuple().exponent
+
+
+def number(text):
+    """A number, or `None` if a cell has something else."""
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
+def test_statics_as_json_and_as_text_are_what_python_computes(specs, seed, loaded, command):
+    """JSON has all digits; the text shows the same numbers with fewer."""
+    crane, _ = loaded
+    equilibrium = crane.statics()
+    told = json.loads(command("statics", specs(seed), "--format", "json"))
+    assert told["cranes"][0]["status"] == equilibrium.status
+    for key, expected in [("drives", equilibrium.drive_efforts), ("points", equilibrium.points)]:
+        values = [[row[axis] for axis in "xyz"] if key == "points" else row["value"] for row in told[key]]
+        size = max(1.0, np.abs(expected).max(initial=0.0))
+        assert np.abs(np.array(values).reshape(np.shape(expected)) - expected).max(initial=0.0) < 1e-9 * size, key
+    supports = [support["name"] for support in crane.info["supports"]]
+    feet = np.array([[row[axis] for axis in "xyz"] for row in told["reactions"] if row["support"] in supports])
+    if feet.size:
+        assert np.abs(feet - equilibrium.support_reactions).max() < 1e-9 * np.abs(equilibrium.support_reactions).max()
+    lines = [line.split() for line in command("statics", specs(seed)).splitlines()]
+    for drive in told["drives"]:
+        assert any(line[:1] == [drive["drive"]] and shows(line[1], drive["value"]) for line in lines if len(line) > 1), drive
+    for point in told["points"]:
+        shown = [line[1:4] for line in lines if line[:1] == [point["point"]] and line[-1] == "m"]
+        assert any(all(map(shows, row, [point[axis] for axis in "xyz"])) for row in shown), point
+
+
+def test_the_page_contains_what_python_computes(specs, seed, loaded, command, tmp_path):
+    """The page has the run in single precision, and each number of its tables also with all digits."""
+    crane, _ = loaded
+    run = crane.simulate(duration=DURATION, output=OUTPUT, verify=False)
+    command("report", specs(seed), "--duration", DURATION, "--interval", OUTPUT, "--no-verify", "-o", tmp_path / "page.html")
+    text = (tmp_path / "page.html").read_text()
+    data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.DOTALL)[1])
+    packed = data["cranes"][-1]["run"]
+    columns = np.frombuffer(base64.b64decode(packed["data"]), dtype="<f4").reshape(len(packed["columns"]), -1)
+    for column, values in zip(packed["columns"], columns):
+        size = max(1.0, np.abs(run[column["name"]]).max())
+        assert column["unit"] == run.units[column["name"]]
+        assert np.abs(values[:: packed["every"]] - run[column["name"]][:: packed["every"]]).max() < 1e-6 * size, column["name"]
+    grids = {grid["key"]: grid for grid in data["tables"]["grids"]}
+    drives = [float(exact[1]) for exact in grids["drives"]["exact"]]
+    expected = crane.statics().drive_efforts
+    assert np.abs(drives - expected).max() < 1e-9 * max(1.0, np.abs(expected).max())
+    for grid in data["tables"]["grids"]:
+        for row, exact in zip(grid["rows"], grid["exact"]):
+            for shown, whole in zip(row, exact):
+                assert whole == "" or four_digits(shown, float(whole)), (grid["title"], row, exact)

@@ -49,11 +49,12 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let task = arguments.first().map_or("", String::as_str);
     let steps = match task {
-        "test" => [prepare_steps(), lint_steps(), test_steps(), oracle_steps()].concat(),
+        "test" => [prepare_steps(), lint_steps(), test_steps(), oracle_steps(), measurement_steps()].concat(),
         "lint" => lint_steps(),
         "oracles" => [prepare_steps(), vec![build_step()], oracle_steps()].concat(),
         "performance" => {
-            vec![Step::check("times of the generated functions and of other libraries", oracles::measure_performance)]
+            let measure = || oracles::measure_performance(&std::env::args().skip(2).collect::<Vec<_>>());
+            vec![Step::check("times of the generated functions and of other libraries", measure)]
         }
         "error-vs-runtime" => vec![Step::cargo("error against run time", &ERROR_VS_RUNTIME)],
         "instrument" => vec![Step::check("the page as an instrument", instrument::build_page)],
@@ -187,6 +188,19 @@ fn test_steps() -> Vec<Step> {
             .concat(),
         ),
         Step::check("cranes without panics", no_panic::check_no_panic),
+    ]
+}
+
+/// The documented measurements in their quick forms: what is not run is broken one day. No time is compared with anything.
+fn measurement_steps() -> Vec<Step> {
+    let once = ["bench", "--package", "crane-bench", "--", "--test"];
+    let out = "target/error-vs-runtime/quick";
+    let lab = ["run", "--release", "--package", "crane-lab", "--", "work-precision", "knuckle_boom"];
+    let quick = [&lab[..], &["--quick", "--sections", "none", "--duration", "0.5", "--out", out]].concat();
+    vec![
+        Step::cargo("every benchmark once", &once).with(SECTIONS, "0"),
+        Step::cargo("error against run time, quickly", &quick),
+        Step::check("times beside other libraries, quickly", || oracles::measure_performance(&["--quick".to_owned()])),
     ]
 }
 
