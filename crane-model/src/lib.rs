@@ -26,6 +26,7 @@
 extern crate self as crane_model;
 
 mod description;
+mod methods;
 mod model;
 mod stress;
 mod wrench;
@@ -63,6 +64,7 @@ pub mod statics;
 #[cfg(feature = "std")]
 pub mod tipping;
 
+pub use crane_quantities::Count;
 #[cfg(feature = "std")]
 pub use description::Tree;
 pub use description::{
@@ -71,6 +73,7 @@ pub use description::{
     LoopJointInfo, NEAR_SINGULAR, ParameterError, ParameterInfo, PumpInfo, Refusal, SectionInfo, Side, SupportInfo,
     TIPPED, Text, ValveInfo,
 };
+pub use methods::Entry;
 pub use model::{
     CraneModel, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise, OneByOne,
     Statics, TransformDerivatives,

@@ -5,15 +5,13 @@
 //!
 //! Throughout: `N` coordinates, `q` in m and rad, `v = q̇` in m/s and rad/s, `t` in s, world frame with z up.
 
-use nalgebra::{
-    Cholesky, Const, DefaultAllocator, Dim, Matrix4, OMatrix, SMatrix, SVector, Vector3, allocator::Allocator,
-};
+use crane_quantities::quantities;
+use nalgebra::{Cholesky, Const, DefaultAllocator, Dim, OMatrix, SMatrix, SVector, allocator::Allocator};
 
 use crate::{
     description::{Description, LoopJointInfo, ParameterError},
+    methods::{Entry, sized_argument, sized_entry, sized_method, sized_methods, sized_result},
     rt::lanes::f64x8,
-    stress::SectionModuli,
-    wrench::{Tension, Wrench},
 };
 
 /// Poses, forces and potential energy of a crane.
@@ -55,189 +53,26 @@ pub trait CraneModel<const N: usize>: Send + Sync {
     /// A run reads the inputs when it begins; [`simulate_from`](crate::dynamics::simulate_from) continues it with changed ones.
     fn set_input(&mut self, _index: usize, _value: Option<f64>) {}
 
-    /// Transforms T of all bodies into the world frame, Eq. (3). `out`: one per body.
-    fn transforms(&self, q: &SVector<f64, N>, out: &mut [Matrix4<f64>]);
-
-    /// Positions of the points of interest in the world frame, m. `out`: one per point.
-    fn points(&self, _q: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
-
-    /// Velocities of the points of interest in the world frame, m/s. `out`: one per point.
-    fn point_velocities(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
-
-    /// Generalized forces of everything except inertia and gravity: supports, elements, drives, joint dampers. N and N m. The forces of
-    /// cylinders with a valve depend on their pressures and are not included.
-    fn forces(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> SVector<f64, N> {
-        SVector::zeros()
-    }
-
-    /// Generalized forces of the supports, Eq. (18).
-    fn support_forces(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> SVector<f64, N> {
-        SVector::zeros()
-    }
-
-    /// Generalized forces of the springs and dampers between rigid elements, Eq. (15).
-    fn element_forces(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> SVector<f64, N> {
-        SVector::zeros()
-    }
-
-    /// Generalized forces of the drives, Eq. (21).
-    fn drive_forces(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> SVector<f64, N> {
-        SVector::zeros()
-    }
-
-    /// Generalized forces of viscous damping in passive joints.
-    fn joint_damper_forces(&self, _v: &SVector<f64, N>) -> SVector<f64, N> {
-        SVector::zeros()
-    }
-
-    /// Generalized forces of the end stops.
-    fn stop_forces(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> SVector<f64, N> {
-        SVector::zeros()
-    }
-
-    /// Generalized forces of joint friction.
-    fn friction_forces(&self, _v: &SVector<f64, N>) -> SVector<f64, N> {
-        SVector::zeros()
-    }
-
-    /// Generalized forces of the external loads.
-    fn load_forces(&self, _t: f64, _q: &SVector<f64, N>) -> SVector<f64, N> {
-        SVector::zeros()
-    }
-
-    /// Generalized forces of connectors.
-    fn connector_forces(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> SVector<f64, N> {
-        SVector::zeros()
-    }
-
-    /// Length (m) of every connector, and its rate (m/s). `out`: one pair per connector.
-    fn connector_lengths(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [[f64; 2]]) {}
-
-    /// Force of every connector and its derivatives. `out`: one per connector.
-    fn connector_tensions(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [Tension]) {}
-
-    /// `∂ℓ/∂q` of every connector, ℓ its length. `out`: one row per connector.
-    fn connector_jacobians(&self, _q: &SVector<f64, N>, _out: &mut [[f64; N]]) {}
-
     /// The joints that close loops. Forces, accelerations and equilibria of the traits here are those of the open chain; what takes a crane
     /// on slices closes the loops.
     fn loop_joints(&self) -> &[LoopJointInfo] {
         &[]
     }
 
-    /// Every equation of the loop joints: its gap φ, m or 1, its rate `J q̇`, and `J̇ q̇`, the part of its second rate that does not depend on
-    /// accelerations. `out`: one vector per equation.
-    fn loop_states(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
-
-    /// `J = ∂φ/∂q` of the loop joints. `out`: one row per equation.
-    fn loop_jacobians(&self, _q: &SVector<f64, N>, _out: &mut [[f64; N]]) {}
-
-    /// Start and end of the intervals in which winches move smoothly, s. `out`: one pair per interval, connector by connector;
-    /// [`ConnectorInfo::pieces`](crate::ConnectorInfo::pieces) is their number.
-    fn winch_pieces(&self, _out: &mut [[f64; 2]]) {}
-
-    /// Start and end of the intervals in which the scales of loads are smooth, s. `out`: one pair per interval, load by load;
-    /// [`LoadInfo::pieces`](crate::LoadInfo::pieces) is their number.
-    fn load_pieces(&self, _out: &mut [[f64; 2]]) {}
-
-    /// Forces of the supports on the crane, world frame, N. `out`: one per support.
-    fn support_reactions(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
-
-    /// How far each one-sided support is above the ground, m, negative where it is pressed in, and the rate of that, m/s; 0 for all
-    /// others. `out`: one pair per support.
-    fn support_gaps(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, out: &mut [[f64; 2]]) {
-        out.fill([0.0; 2]);
-    }
-
-    /// Length of each cylinder, m, its rate, m/s, and its derivative with respect to the joint's coordinate, m/rad or m/m. `out`: one
-    /// vector per cylinder; NaN where its linkage cannot be assembled.
-    fn cylinder_states(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
-
-    /// Derivatives of the length of each cylinder with respect to the coordinates, m/m and m/rad: a cylinder with a valve that pushes with F
-    /// exerts the generalized forces `F ∂ℓ/∂q`. `out`: one row per cylinder. A crane without valves writes nothing.
-    fn cylinder_jacobians(&self, _q: &SVector<f64, N>, _out: &mut [[f64; N]]) {}
-
-    /// Prescribed position `q_dr` (m or rad) and rate `q̇_dr` of the drives. `out`: one pair per drive.
-    fn drive_motions(&self, _t: f64, _out: &mut [[f64; 2]]) {}
-
-    /// Maximum effort of each drive, N m or N, 0 if it has no limit, and its stiffness `−∂t_dr/∂q` at the state, N m/rad or N/m.
-    /// `out`: one pair per drive. A crane without limits writes zeros.
-    fn drive_limits(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>, out: &mut [[f64; 2]]) {
-        out.fill([0.0; 2]);
-    }
-
     /// Sets the coordinates that rigid drives prescribe, and their rates, at time t. A crane without rigid drives has none.
     fn prescribe(&self, _t: f64, _q: &mut SVector<f64, N>, _v: &mut SVector<f64, N>) {}
-
-    /// Command of the valve of every drive over time, −1 to 1, and its rate, 1/s; zeros without one. `out`: one pair per drive.
-    fn valve_openings(&self, _t: f64, out: &mut [[f64; 2]]) {
-        out.fill([0.0; 2]);
-    }
-
-    /// Start and end of the intervals in which the drives' motions and valves' commands are smooth, s. `out`: one pair per interval, drive
-    /// by drive; [`DriveInfo::pieces`](crate::DriveInfo::pieces) is their number.
-    fn drive_pieces(&self, _out: &mut [[f64; 2]]) {}
-
-    /// Potential energy of gravity, zero at the world's origin, Eq. (6). J.
-    fn gravity_energy(&self, q: &SVector<f64, N>) -> f64;
-
-    /// Energy of the supports' springs, Eq. (17). J.
-    fn support_energy(&self, _q: &SVector<f64, N>) -> f64 {
-        0.0
-    }
-
-    /// Energy of the elements' springs, Eq. (14). J.
-    fn element_energy(&self, _q: &SVector<f64, N>) -> f64 {
-        0.0
-    }
-
-    /// Energy of the drives' springs, Eq. (19). J.
-    fn drive_energy(&self, _t: f64, _q: &SVector<f64, N>) -> f64 {
-        0.0
-    }
-
-    /// Energy of the end stops. J.
-    fn stop_energy(&self, _q: &SVector<f64, N>) -> f64 {
-        0.0
-    }
-
-    /// Power of the drives' prescribed motions, `Σ t_dr q̇_dr`. W.
-    fn drive_power(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> f64 {
-        0.0
-    }
-
-    /// Energy of connectors. J.
-    fn connector_energy(&self, _t: f64, _q: &SVector<f64, N>) -> f64 {
-        0.0
-    }
-
-    /// Power that winches put in. W.
-    fn winch_power(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> f64 {
-        0.0
-    }
-
-    /// Power that the external loads put in. W.
-    fn load_power(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> f64 {
-        0.0
-    }
-
-    /// Power that all dampers dissipate, 2R ≥ 0. W.
-    fn dissipation(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> f64 {
-        0.0
-    }
 
     /// Potential energy of everything. J.
     fn potential_energy(&self, t: f64, q: &SVector<f64, N>) -> f64 {
         let linear = self.gravity_energy(q) + self.support_energy(q) + self.element_energy(q) + self.drive_energy(t, q);
         linear + self.stop_energy(q) + self.connector_energy(t, q)
     }
+
+    quantities! { sized_methods of CraneModel }
 }
 
 /// Equations of motion `A(q) q̈ = e(q, q̇) + f(t, q, q̇)`, Eq. (23).
 pub trait Dynamics<const N: usize>: CraneModel<N> {
-    /// Mass matrix A(q), Eq. (5), symmetric positive definite.
-    fn mass_matrix(&self, q: &SVector<f64, N>) -> SMatrix<f64, N, N>;
-
     /// A and e together. Only the lower triangle of `mass` is written, which Cholesky's factorisation reads.
     fn mass_matrix_and_bias(
         &self,
@@ -248,10 +83,6 @@ pub trait Dynamics<const N: usize>: CraneModel<N> {
         *mass = self.mass_matrix(q);
         self.bias(q, v)
     }
-
-    /// Bias `e = −(h + g)`, Eq. (9): velocity and gravity forces on the right-hand side of `A q̈ = e + f`. It is the negative of the bias
-    /// force C of Featherstone and of other libraries, which have it on the left.
-    fn bias(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N>;
 
     /// Accelerations q̈ of `A q̈ = e + f`, Eq. (23), in O(n) by articulated bodies: A is never formed. m/s² and rad/s². The forces of
     /// cylinders with a valve are not included, see [`forces`](CraneModel::forces).
@@ -266,8 +97,7 @@ pub trait Dynamics<const N: usize>: CraneModel<N> {
         Cholesky::new(self.mass_matrix(q)).map_or(SVector::repeat(f64::NAN), |factors| factors.solve(r))
     }
 
-    /// Kinetic energy, Eq. (4). J.
-    fn kinetic_energy(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64;
+    quantities! { sized_methods of Dynamics }
 }
 
 /// Cranes that can be simulated eight at a time, each with its own state and parameters.
@@ -322,49 +152,11 @@ pub trait Implicit<const N: usize>: Dynamics<N> {
     /// x of `(A + D̂) x = r`.
     fn solve(&self, f: &Self::Factors, r: &SVector<f64, N>) -> SVector<f64, N>;
 
-    /// Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) of elements, drives and joints on single coordinates; zero for
-    /// the base's. `out`: one pair per coordinate.
-    fn joint_stiffness_and_damping(&self, out: &mut [[f64; 2]]);
-
-    /// Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) of end stops and friction on single coordinates at a state.
-    /// `out`: one pair per coordinate.
-    fn nonlinear_stiffness_and_damping(
-        &self,
-        _t: f64,
-        _q: &SVector<f64, N>,
-        _v: &SVector<f64, N>,
-        out: &mut [[f64; 2]],
-    ) {
-        out.fill([0.0; 2]);
-    }
-
-    /// Stiffness over the base's coordinates: supports, the one-sided ones at this state, and drives. N/m, N and N m.
-    fn base_stiffness(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> SMatrix<f64, 6, 6> {
-        SMatrix::zeros()
-    }
-
-    /// Damping over the base's coordinates: supports, the one-sided ones at this state, drives, joints. N s/m, N s and N m s.
-    fn base_damping(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> SMatrix<f64, 6, 6> {
-        SMatrix::zeros()
-    }
+    quantities! { sized_methods of Implicit }
 }
 
 /// The crane at rest, with loads and winches as at time t and the drives at given positions, each at the index of its coordinate.
 pub trait Statics<const N: usize>: CraneModel<N> {
-    /// `∂E_p/∂q`; zero in equilibrium. N and N m.
-    fn static_residual(&self, t: f64, q: &SVector<f64, N>, positions: &SVector<f64, N>) -> SVector<f64, N>;
-
-    /// `∂²E_p/∂q²`, symmetric; positive definite if the equilibrium is stable. A prescribed coordinate, whose residual is 0,
-    /// has 1 on the diagonal and zeros elsewhere in its row and column.
-    fn tangent_stiffness(&self, t: f64, q: &SVector<f64, N>, positions: &SVector<f64, N>) -> SMatrix<f64, N, N>;
-
-    /// Generalized forces of the drives that hold the crane: those of their springs, for rigid drives the forces needed for equilibrium, and
-    /// those of springs along cylinders with a valve, `k (ℓ₀ − ℓ) ∂ℓ/∂q`. ℓ₀ is the length with the joint at the position of its drive and
-    /// straight beams, and k the stiffness of the drive over the squared lever arm there. N and N m.
-    fn drive_forces_at_rest(&self, _t: f64, _q: &SVector<f64, N>, _positions: &SVector<f64, N>) -> SVector<f64, N> {
-        SVector::zeros()
-    }
-
     /// Positions of the drives' motions at time t, each at the index of its coordinate; 0 at all others.
     fn drive_positions(&self, t: f64) -> SVector<f64, N> {
         let (mut motions, mut positions) = ([[0.0; 2]; N], SVector::<f64, N>::zeros());
@@ -376,6 +168,8 @@ pub trait Statics<const N: usize>: CraneModel<N> {
         }
         positions
     }
+
+    quantities! { sized_methods of Statics }
 }
 
 /// Small motions about a pose at rest: `A δq̈ + D δq̇ + K δq = 0`.
@@ -386,50 +180,13 @@ pub trait Linearise<const N: usize>: CraneModel<N> {
 
 /// Forces and moments between the parts of a crane.
 pub trait InternalForces<const N: usize>: CraneModel<N> {
-    /// At every cut, the wrench that the part beyond it exerts on the part before it, in the cut's frame about its origin, at time t,
-    /// pose q, rates v and accelerations a. `out`: one per cut, as [`Description::cuts`] lists them.
-    ///
-    /// It is the sum of the inertia forces and weights of everything beyond, the loads applied to it, and the forces of the connectors
-    /// attached to it: a joint or a section transmits what no connector carries past it, and supports act only on the base. The forces of
-    /// cylinders with a valve are not included, see [`cylinder_wrenches`](Self::cylinder_wrenches). At the ground
-    /// it is the load on the foundation or on the supports. In a section of a beam it is `N, Qy, Qz` and `Mx, My, Mz`: a positive N is
-    /// tension; Mx, My and Mz have the signs of the deformations that they cause, φ, θ and ψ.
-    fn internal_forces(
-        &self,
-        t: f64,
-        q: &SVector<f64, N>,
-        v: &SVector<f64, N>,
-        a: &SVector<f64, N>,
-        out: &mut [Wrench],
-    );
-
-    /// What each cylinder that pushes with 1 N adds to the wrench at each cut; the moments are in m. `out`: one per cut, cylinder by
-    /// cylinder. A crane without valves writes nothing.
-    fn cylinder_wrenches(&self, _q: &SVector<f64, N>, _out: &mut [Wrench]) {}
-
-    /// What each connector between two bodies contributes to the wrench at each cut while it pulls with 1 N, zero for others; the moments
-    /// are in m. `out`: one per cut, connector by connector. A crane without such connectors writes nothing.
-    fn connector_wrenches(&self, _q: &SVector<f64, N>, _out: &mut [Wrench]) {}
-
-    /// What each equation of the loop joints contributes to the wrench at each cut while it transmits 1 N or 1 N m. `out`: one per cut,
-    /// equation by equation. A crane without loops writes nothing.
-    fn loop_wrenches(&self, _q: &SVector<f64, N>, _out: &mut [Wrench]) {}
-
-    /// Positions of the supports' attachment points in the world frame, m. `out`: one per support.
-    fn support_positions(&self, _q: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
-
-    /// Section moduli for stresses of beams. `out`: one per section where an element begins, from the base to the tip.
-    fn section_moduli(&self, _out: &mut [SectionModuli]) {}
+    quantities! { sized_methods of InternalForces }
 }
 
 /// Derivatives of the transforms. Each body has derivatives with respect to the coordinates that move it, the first
 /// [`degrees_of_freedom`](crate::BodyInfo::degrees_of_freedom) of `q`; all others are zero and not stored.
 pub trait TransformDerivatives<const N: usize>: CraneModel<N> {
-    /// `∂T/∂q_j`, body by body, j = 0 …: in all `Σ n_dof(p)` matrices.
-    fn transform_derivatives(&self, q: &SVector<f64, N>, out: &mut [Matrix4<f64>]);
-
-    /// `∂²T/∂q_m∂q_n`, body by body, m = 0 …, n = m …: in all `Σ n_dof(p) (n_dof(p) + 1)/2` matrices.
-    fn transform_second_derivatives(&self, q: &SVector<f64, N>, out: &mut [Matrix4<f64>]);
+    quantities! { sized_methods of TransformDerivatives }
 }
 
 /// Coefficients of small motions about a pose at rest.

@@ -4,6 +4,7 @@
 
 mod beam;
 mod body;
+mod count;
 mod cut;
 mod cylinder;
 mod drive;

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::chain::{BodyId, Chain, Cut, Drive, Force, Load, Section, Side};
 use crate::lower::LoweredProgram;
-use crate::program::{Function, FunctionId, Shape, Struct};
+use crate::program::{Count, Extent, Function, FunctionId, Shape};
 use crate::symbolic::ExprId;
 
 use super::shape::{field_of, row_of_triangle};
@@ -50,66 +50,13 @@ impl<'a> Labels<'a> {
                     .to_owned(),
             }),
             Shape::Symmetric(n) => Some(format!("Row of {}", coordinate(row_of_triangle(*n, slot).0))),
-            Shape::Vectors(_) if matches!(function.id, FunctionId::SupportReactions | FunctionId::SupportPositions) => {
-                Some(chain.supports[slot / 3].name.clone())
-            }
-            Shape::Vectors(_) if function.id == FunctionId::CylinderStates => {
-                Some(chain.cylinders[slot / 3].name.clone())
-            }
-            Shape::Vectors(_) if function.id == FunctionId::LoopStates => chain.loop_equations().nth(slot / 3),
-            Shape::Vectors(_) => Some(chain.points[slot / 3].name.clone()),
-            Shape::Pairs(_)
-                if matches!(
-                    function.id,
-                    FunctionId::JointStiffnessAndDamping | FunctionId::NonlinearStiffnessAndDamping
-                ) =>
-            {
-                Some(coordinate(slot / 2).to_owned())
-            }
-            Shape::Pairs(_) if function.id == FunctionId::SupportGaps => Some(chain.supports[slot / 2].name.clone()),
-            Shape::Pairs(_) if function.id == FunctionId::PrescribedMotions => {
+            // Of the coordinates that rigid drives prescribe.
+            Shape::Pairs(_) if function.id.extent() == Extent::Other => {
                 chain.rigid_drives().nth(slot / 2).map(|drive| coordinate(drive.coordinate.0).to_owned())
             }
-            Shape::Pairs(_) if function.id == FunctionId::DrivePieces => {
-                let of = |drive: &'a Drive| std::iter::repeat_n(drive.coordinate.0, drive.pieces().len());
-                chain.drives.iter().flat_map(of).nth(slot / 2).map(|i| coordinate(i).to_owned())
-            }
-            Shape::Pairs(_) if function.id == FunctionId::LoadPieces => {
-                let of = |load: &'a Load| std::iter::repeat_n(&load.name, load.pieces());
-                chain.loads.iter().flat_map(of).nth(slot / 2).cloned()
-            }
-            Shape::Pairs(_) if function.id == FunctionId::ConnectorLengths => {
-                Some(chain.connectors()[slot / 2].name.clone())
-            }
-            Shape::Pairs(_) if function.id == FunctionId::WinchPieces => {
-                let of = |connector: &'a Force| std::iter::repeat_n(&connector.name, connector.pieces());
-                chain.connectors().iter().flat_map(of).nth(slot / 2).cloned()
-            }
-            Shape::Pairs(_) => Some(coordinate(chain.drives[slot / 2].coordinate.0).to_owned()),
-            Shape::Rows { n, .. } if function.id == FunctionId::CylinderJacobians => {
-                Some(chain.cylinders[slot / n].name.clone())
-            }
-            Shape::Rows { n, .. } if function.id == FunctionId::LoopJacobians => chain.loop_equations().nth(slot / n),
-            Shape::Rows { n, .. } => Some(chain.connectors()[slot / n].name.clone()),
-            Shape::Structs(Struct::Tension, _) => Some(chain.connectors()[slot / Struct::Tension.len()].name.clone()),
-            Shape::Structs(Struct::SectionModuli, _) => {
-                let mut sections = chain.beams.iter().flat_map(|beam| &beam.sections);
-                sections.nth(slot / Struct::SectionModuli.len()).map(|section| self.section(section))
-            }
-            Shape::Structs(Struct::Wrench, _) => {
-                let (cuts, place) = (chain.cuts(), slot / Struct::Wrench.len());
-                let cut = match &cuts[place % cuts.len()] {
-                    Cut::Ground => "Ground".to_owned(),
-                    Cut::Joint(body) => format!("Joint of {}", chain.bodies[body.0].link),
-                    Cut::Body(body) => format!("Before {}", chain.bodies[body.0].name),
-                    Cut::Inside(beam, section) => self.section(&chain.beams[*beam].sections[*section]),
-                };
-                Some(match function.id {
-                    FunctionId::CylinderWrenches => format!("{} – {cut}", chain.cylinders[place / cuts.len()].name),
-                    FunctionId::ConnectorWrenches => format!("{} – {cut}", chain.connectors()[place / cuts.len()].name),
-                    FunctionId::LoopWrenches => format!("{} – {cut}", self.loop_equation(place / cuts.len())),
-                    _ => cut,
-                })
+            Shape::Vectors(count) | Shape::Pairs(count) | Shape::Rows { count, .. } | Shape::Structs(_, count) => {
+                let Extent::List(_, of) = function.id.extent() else { return None };
+                self.part(of, slot / (function.shape.len() / count))
             }
             Shape::Transforms { counts, .. } => Some(self.transform(function.id, counts, slot / 12)),
             Shape::TransformFactors { degrees, rotations, .. } => {
@@ -132,8 +79,47 @@ impl<'a> Labels<'a> {
         }
     }
 
-    fn loop_equation(&self, index: usize) -> String {
-        self.chain.loop_equations().nth(index).unwrap_or_default()
+    /// Name of one of the parts that a list counts.
+    fn part(&self, of: Count, index: usize) -> Option<String> {
+        let chain = self.chain;
+        let coordinate = |i: usize| chain.coordinates[i].name.clone();
+        match of {
+            Count::Points => Some(chain.points[index].name.clone()),
+            Count::Supports => Some(chain.supports[index].name.clone()),
+            Count::Cylinders => Some(chain.cylinders[index].name.clone()),
+            Count::Connectors => Some(chain.connectors()[index].name.clone()),
+            Count::Drives => Some(coordinate(chain.drives[index].coordinate.0)),
+            Count::Coordinates => Some(coordinate(index)),
+            Count::LoopEquations => chain.loop_equations().nth(index),
+            Count::DrivePieces => {
+                let of = |drive: &'a Drive| std::iter::repeat_n(drive.coordinate.0, drive.pieces().len());
+                chain.drives.iter().flat_map(of).nth(index).map(coordinate)
+            }
+            Count::LoadPieces => {
+                let of = |load: &'a Load| std::iter::repeat_n(&load.name, load.pieces());
+                chain.loads.iter().flat_map(of).nth(index).cloned()
+            }
+            Count::WinchPieces => {
+                let of = |connector: &'a Force| std::iter::repeat_n(&connector.name, connector.pieces());
+                chain.connectors().iter().flat_map(of).nth(index).cloned()
+            }
+            Count::Sections => {
+                let mut sections = chain.beams.iter().flat_map(|beam| &beam.sections);
+                sections.nth(index).map(|section| self.section(section))
+            }
+            Count::Cuts => Some(match &chain.cuts()[index] {
+                Cut::Ground => "Ground".to_owned(),
+                Cut::Joint(body) => format!("Joint of {}", chain.bodies[body.0].link),
+                Cut::Body(body) => format!("Before {}", chain.bodies[body.0].name),
+                Cut::Inside(beam, section) => self.section(&chain.beams[*beam].sections[*section]),
+            }),
+            Count::CylinderCuts | Count::ConnectorCuts | Count::LoopCuts => {
+                let (first, cuts) = (of.factors()[0], chain.count(Count::Cuts));
+                let name = self.part(first, index / cuts).unwrap_or_default();
+                Some(format!("{name} – {}", self.part(Count::Cuts, index % cuts)?))
+            }
+            Count::Bodies | Count::Derivatives | Count::SecondDerivatives => None,
+        }
     }
 
     fn section(&self, section: &Section) -> String {

@@ -2,7 +2,6 @@
 
 mod count;
 mod expansion;
-mod id;
 mod interpret;
 mod shape;
 
@@ -11,7 +10,7 @@ use std::collections::HashMap;
 use crate::symbolic::{ExprId, Graph, Nodes, Op, SweepTrace, SymbolId};
 
 pub use count::OperationCount;
-pub use id::{FunctionId, RuntimeTrait};
+pub use crane_quantities::{Argument, Count, Extent, FunctionId, Item, RuntimeTrait};
 pub use interpret::Inputs;
 pub use shape::{ConcurrentAxes, Shape, Struct};
 
@@ -39,37 +38,6 @@ pub struct Symbol {
     pub argument: Argument,
     /// Its index in that argument.
     pub index: usize,
-}
-
-/// An argument of a function.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Argument {
-    /// One number, `t`.
-    Time,
-    /// A vector, `q`.
-    Position,
-    /// A vector, `v`.
-    Velocity,
-    /// A vector, `a`: accelerations of the coordinates.
-    Acceleration,
-    /// A generalized force, the right-hand side `r` of a linear system.
-    RightHandSide,
-    /// Positions at which drives are held, at the places of their coordinates.
-    DrivePositions,
-    /// Added inertias of single coordinates, a diagonal.
-    AddedInertia,
-    /// Added inertia of the base, a symmetric 6×6 matrix.
-    BaseAddedInertia,
-    /// Results of an earlier function that this one uses.
-    Factors,
-    /// Values that differ from one iteration of a loop to the next, in order of the loop's sources.
-    LoopVarying,
-    /// Values that a loop leaves, in order of the function's live-outs.
-    LiveOut,
-    /// Live parameters.
-    Parameters,
-    /// Inputs that are set between steps, two numbers each: the value while it is set, else 0; and 0 while it is set, else 1.
-    Inputs,
 }
 
 /// A function: its documentation, arguments and result.

@@ -1,5 +1,6 @@
 //! Metadata of a crane.
 
+mod count;
 mod loop_joint;
 mod parameter;
 mod poses;

@@ -24,15 +24,19 @@
 
 mod declare;
 mod instance;
+mod methods;
 mod quantities;
 
-use nalgebra::{Matrix4, Matrix6, Vector3};
+use crane_quantities::{Count, quantities};
+use nalgebra::Matrix6;
 
 pub(crate) use instance::Block;
 pub use instance::{Crane, Instance, boxed};
 pub use quantities::Energies;
 
-use crate::{Description, LoopJointInfo, ParameterError, SectionModuli, Tension, Wrench, rt::lanes::f64x8};
+use methods::{slice_method, slice_methods};
+
+use crate::{Description, LoopJointInfo, ParameterError, entry_type, rt::lanes::f64x8, slice_argument};
 
 /// Poses, forces and potential energy of a crane: [`CraneModel`](crate::CraneModel) on slices.
 pub trait DynModel: Send + Sync {
@@ -49,120 +53,20 @@ pub trait DynModel: Send + Sync {
     /// Value to which an input is set, by its index in the description; `None` while it follows its spec.
     fn input(&self, index: usize) -> Option<f64>;
 
-    /// Transforms T of all bodies into the world frame.
-    fn transforms(&self, q: &[f64], out: &mut [Matrix4<f64>]);
-
-    /// Positions of the points of interest, m.
-    fn points(&self, q: &[f64], out: &mut [Vector3<f64>]);
-
-    /// Velocities of the points of interest, m/s.
-    fn point_velocities(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]);
-
-    /// Generalized forces of everything except inertia and gravity.
-    fn forces(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]);
-
-    /// Generalized forces of the springs and dampers between rigid elements.
-    fn element_forces(&self, q: &[f64], v: &[f64], out: &mut [f64]);
-
-    /// Generalized forces of the drives.
-    fn drive_forces(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]);
-
-    /// Generalized forces of the end stops.
-    fn stop_forces(&self, q: &[f64], v: &[f64], out: &mut [f64]);
-
-    /// Generalized forces of joint friction.
-    fn friction_forces(&self, v: &[f64], out: &mut [f64]);
-
-    /// Generalized forces of the applied loads.
-    fn load_forces(&self, t: f64, q: &[f64], out: &mut [f64]);
-
-    /// Generalized forces of connectors.
-    fn connector_forces(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]);
-
-    /// Length of every connector, m, and its rate, m/s.
-    fn connector_lengths(&self, q: &[f64], v: &[f64], out: &mut [[f64; 2]]);
-
-    /// Force of every connector and its slopes.
-    fn connector_tensions(&self, t: f64, q: &[f64], v: &[f64], out: &mut [Tension]);
-
-    /// `∂ℓ/∂q` of every connector, row by row.
-    fn connector_jacobians(&self, q: &[f64], out: &mut [f64]);
-
     /// The joints that close loops.
     fn loop_joints(&self) -> &[LoopJointInfo];
-
-    /// φ, J q̇ and J̇ q̇ of every equation of the loop joints.
-    fn loop_states(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]);
-
-    /// `J = ∂φ/∂q` of the loop joints, row by row.
-    fn loop_jacobians(&self, q: &[f64], out: &mut [f64]);
-
-    /// Beginning and end of the intervals in which winches move smoothly, s; one pair per interval, connector by connector.
-    fn winch_pieces(&self, out: &mut [[f64; 2]]);
-
-    /// Beginning and end of the intervals in which the scales of loads are smooth, s; one pair per interval, load by load.
-    fn load_pieces(&self, out: &mut [[f64; 2]]);
-
-    /// Forces of the supports on the crane, world frame, N.
-    fn support_reactions(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]);
-
-    /// Height of each one-sided support above the ground, m, and its rate, m/s; 0 for all others.
-    fn support_gaps(&self, q: &[f64], v: &[f64], out: &mut [[f64; 2]]);
-
-    /// Length of every cylinder, its rate, and its derivative with respect to the joint's coordinate.
-    fn cylinder_states(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]);
-
-    /// `∂ℓ/∂q` of every cylinder, row by row; nothing is written for a crane without valves.
-    fn cylinder_jacobians(&self, q: &[f64], out: &mut [f64]);
-
-    /// Prescribed position and rate of every drive.
-    fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]);
-
-    /// Maximum effort of every drive, 0 if it has no limit, and its stiffness at the state.
-    fn drive_limits(&self, t: f64, q: &[f64], v: &[f64], out: &mut [[f64; 2]]);
 
     /// Sets the coordinates that rigid drives prescribe, and their rates, at time t.
     fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]);
 
-    /// Command of the valve of every drive over time, −1 to 1, and its rate, 1/s; zeros without one.
-    fn valve_openings(&self, t: f64, out: &mut [[f64; 2]]);
-
-    /// Beginning and end of the intervals in which drives' motions and valves' commands are smooth, s; one pair per interval, drive by drive.
-    fn drive_pieces(&self, out: &mut [[f64; 2]]);
-
-    /// Potential energy of gravity, J.
-    fn gravity_energy(&self, q: &[f64]) -> f64;
-
-    /// Energy of the supports' springs, J.
-    fn support_energy(&self, q: &[f64]) -> f64;
-
-    /// Energy of the elements' springs, J.
-    fn element_energy(&self, q: &[f64]) -> f64;
-
-    /// Energy of the drives' springs, J.
-    fn drive_energy(&self, t: f64, q: &[f64]) -> f64;
-
-    /// Energy of the end stops, J.
-    fn stop_energy(&self, q: &[f64]) -> f64;
-
-    /// Power of the drives' motions, W.
-    fn drive_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
-
-    /// Energy of connectors, J.
-    fn connector_energy(&self, t: f64, q: &[f64]) -> f64;
-
-    /// Power supplied by the winches, W.
-    fn winch_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
-
-    /// Power supplied by the applied loads, W.
-    fn load_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
-
-    /// Power that all dampers dissipate, W.
-    fn dissipation(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
+    /// How many of these parts it has.
+    fn count(&self, count: Count) -> usize {
+        self.description().count(self.loop_joints(), count)
+    }
 
     /// Number of equations of all loop joints.
     fn loop_equations(&self) -> usize {
-        self.loop_joints().iter().map(|joint| joint.equations.len()).sum()
+        self.count(Count::LoopEquations)
     }
 
     /// Number of coordinates.
@@ -177,37 +81,19 @@ pub trait DynModel: Send + Sync {
         let positions: Vec<f64> = motions.iter().map(|[position, _]| *position).collect();
         self.description().by_coordinate(&positions)
     }
+
+    quantities! { slice_methods of CraneModel }
 }
 
 /// The crane at rest, with loads and winches as at time t and the drives at given positions, by coordinate: [`Statics`](crate::Statics) on
 /// slices.
 pub trait DynStatics: DynModel {
-    /// `∂E_p/∂q`
-    fn static_residual(&self, t: f64, q: &[f64], positions: &[f64], out: &mut [f64]);
-
-    /// `∂²E_p/∂q²`, n × n.
-    fn tangent_stiffness(&self, t: f64, q: &[f64], positions: &[f64], out: &mut [f64]);
-
-    /// Generalized forces of the drives that hold the crane, including rigid drives and cylinders with a valve.
-    fn drive_forces_at_rest(&self, t: f64, q: &[f64], positions: &[f64], out: &mut [f64]);
+    quantities! { slice_methods of Statics }
 }
 
 /// Equations of motion: [`Dynamics`](crate::Dynamics) on slices.
 pub trait DynDynamics: DynModel {
-    /// Mass matrix A, n × n.
-    fn mass_matrix(&self, q: &[f64], out: &mut [f64]);
-
-    /// Bias e: velocity and gravity forces on the right-hand side, the negative of Featherstone's C.
-    fn bias(&self, q: &[f64], v: &[f64], out: &mut [f64]);
-
-    /// Accelerations q̈.
-    fn forward_dynamics(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]);
-
-    /// The solution x of `A(q) x = r`.
-    fn solve_mass(&self, q: &[f64], r: &[f64], out: &mut [f64]);
-
-    /// Kinetic energy, J.
-    fn kinetic_energy(&self, q: &[f64], v: &[f64]) -> f64;
+    quantities! { slice_methods of Dynamics }
 }
 
 /// Functions for an implicit step: [`Implicit`](crate::Implicit) on slices.
@@ -215,18 +101,7 @@ pub trait DynImplicit: DynDynamics {
     /// Storage for the factors of a system of this crane; created once per run.
     fn system(&self) -> Box<dyn DynSystem + '_>;
 
-    /// Stiffness and damping of elements, drives and joints on single coordinates; zero for the base's. `out`: one pair per
-    /// coordinate.
-    fn joint_stiffness_and_damping(&self, out: &mut [[f64; 2]]);
-
-    /// Stiffness and damping of end stops and friction on single coordinates at a state. `out`: one pair per coordinate.
-    fn nonlinear_stiffness_and_damping(&self, t: f64, q: &[f64], v: &[f64], out: &mut [[f64; 2]]);
-
-    /// Stiffness over the base's coordinates at a state.
-    fn base_stiffness(&self, q: &[f64], v: &[f64]) -> Matrix6<f64>;
-
-    /// Damping over the base's coordinates at a state.
-    fn base_damping(&self, q: &[f64], v: &[f64]) -> Matrix6<f64>;
+    quantities! { slice_methods of Implicit }
 }
 
 /// Systems `(A(q) + D̂) x = r` of a crane, one after the other.
@@ -261,25 +136,7 @@ pub trait DynLineariseMotion: DynDynamics {
 
 /// Forces and moments between the parts of a crane: [`InternalForces`](crate::InternalForces) on slices.
 pub trait DynInternalForces: DynModel {
-    /// The wrench that the part beyond each cut exerts on the part before it, without cylinders with a valve. `out`: one per cut, as
-    /// [`Description::cuts`] lists them. The methods `internal_forces_at` and `internal_forces_of` of [`DynCrane`] include these cylinders.
-    fn internal_forces(&self, t: f64, q: &[f64], v: &[f64], a: &[f64], out: &mut [Wrench]);
-
-    /// What each cylinder that pushes with 1 N adds at each cut, cylinder by cylinder; nothing is written for a crane without valves.
-    fn cylinder_wrenches(&self, q: &[f64], out: &mut [Wrench]);
-
-    /// What each connector between two bodies contributes at each cut while it pulls with 1 N, connector by connector; nothing is written
-    /// for a crane without such connectors.
-    fn connector_wrenches(&self, q: &[f64], out: &mut [Wrench]);
-
-    /// What each equation of the loop joints adds to the wrench at each cut while it transmits 1 N or 1 N m, equation by equation.
-    fn loop_wrenches(&self, q: &[f64], out: &mut [Wrench]);
-
-    /// Positions of the supports' attachment points, m.
-    fn support_positions(&self, q: &[f64], out: &mut [Vector3<f64>]);
-
-    /// Section moduli for stresses of beams; one per section, as [`Description::sections`] lists them.
-    fn section_moduli(&self, out: &mut [SectionModuli]);
+    quantities! { slice_methods of InternalForces }
 }
 
 /// Evaluation of several cranes at a time, each with its own state and parameters: [`Ensemble`](crate::Ensemble) on slices.
@@ -307,11 +164,7 @@ pub trait DynBlock {
 
 /// Derivatives of the transforms: [`TransformDerivatives`](crate::TransformDerivatives) on slices.
 pub trait DynDerivatives: DynModel {
-    /// `∂T/∂q_j`, body by body, for the coordinates j that move it.
-    fn transform_derivatives(&self, q: &[f64], out: &mut [Matrix4<f64>]);
-
-    /// `∂²T/∂q_m∂q_n`, body by body, for the pairs m ≤ n of the coordinates that move it.
-    fn transform_second_derivatives(&self, q: &[f64], out: &mut [Matrix4<f64>]);
+    quantities! { slice_methods of TransformDerivatives }
 }
 
 /// A crane with every analysis except two that are rarely needed: derivatives of transforms, [`DynDerivatives`], and small motions about a

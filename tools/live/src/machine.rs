@@ -121,7 +121,7 @@ pub struct Arguments<'a, T> {
     /// Accelerations.
     pub a: &'a [T],
     /// Right-hand side of a linear system.
-    pub right: &'a [T],
+    pub r: &'a [T],
     /// Positions at which drives are held.
     pub positions: &'a [T],
     /// Added inertias of single coordinates.
@@ -146,7 +146,7 @@ impl<T: Number> Arguments<'_, T> {
             q: &[],
             v: &[],
             a: &[],
-            right: &[],
+            r: &[],
             positions: &[],
             added_inertia: &[],
             base: &[],
@@ -163,7 +163,7 @@ impl<T: Number> Arguments<'_, T> {
             Argument::Position => self.q,
             Argument::Velocity => self.v,
             Argument::Acceleration => self.a,
-            Argument::RightHandSide => self.right,
+            Argument::RightHandSide => self.r,
             Argument::DrivePositions => self.positions,
             Argument::AddedInertia => self.added_inertia,
             Argument::BaseAddedInertia => self.base,

@@ -6,7 +6,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crane_codegen::program::{FunctionId, Shape};
+use crane_codegen::program::{Argument, Count, Extent, FunctionId, Shape};
 use crane_model::dyn_crane::DynModel;
 use crane_model::rt::fma;
 
@@ -90,9 +90,9 @@ impl<T: Number> Evaluation<T> {
     pub fn new(crane: &LiveCrane, quantity: Quantity) -> Self {
         let ids = match quantity {
             // The drives are where they are at the state's time.
-            Quantity::Of(
-                id @ (FunctionId::StaticResidual | FunctionId::TangentStiffness | FunctionId::DriveForcesAtRest),
-            ) => [Some(id), Some(FunctionId::DriveMotions)],
+            Quantity::Of(id) if id.arguments().contains(&Argument::DrivePositions) => {
+                [Some(id), Some(FunctionId::DriveMotions)]
+            }
             Quantity::Of(id) => [Some(id), None],
             Quantity::PointJacobians => [Some(FunctionId::PointVelocities), None],
             Quantity::InverseDynamics => [Some(FunctionId::MassMatrix), Some(FunctionId::Bias)],
@@ -248,74 +248,27 @@ impl<T: Number> Call<T> {
 
 /// How many numbers a quantity has for one state.
 fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
-    let description = crane.description();
-    let n = crane.size();
-    let [bodies, points, supports, drives] =
-        [description.bodies.len(), description.points.len(), description.supports.len(), description.drives.len()];
-    match quantity {
-        Quantity::PointJacobians => 3 * points * n,
-        Quantity::InverseDynamics => n,
-        Quantity::Of(id) => match id {
-            FunctionId::Transforms => 16 * bodies,
-            FunctionId::TransformDerivatives => 16 * bodies * n,
-            FunctionId::Points | FunctionId::PointVelocities => 3 * points,
-            FunctionId::SupportReactions => 3 * supports,
-            FunctionId::SupportGaps => 2 * supports,
-            FunctionId::CylinderStates => 3 * description.cylinders.len(),
-            FunctionId::CylinderJacobians => n * description.cylinders.len(),
-            FunctionId::DriveMotions | FunctionId::DriveLimits | FunctionId::ValveOpenings => 2 * drives,
-            FunctionId::GravityEnergy
-            | FunctionId::SupportEnergy
-            | FunctionId::ElementEnergy
-            | FunctionId::DriveEnergy
-            | FunctionId::StopEnergy
-            | FunctionId::KineticEnergy
-            | FunctionId::DrivePower
-            | FunctionId::ConnectorEnergy
-            | FunctionId::WinchPower
-            | FunctionId::LoadPower
-            | FunctionId::Dissipation => 1,
-            FunctionId::MassMatrix | FunctionId::TangentStiffness => n * n,
-            FunctionId::Linearise => 3 * n * n,
-            FunctionId::Forces
-            | FunctionId::SupportForces
-            | FunctionId::JointDamperForces
-            | FunctionId::ElementForces
-            | FunctionId::DriveForces
-            | FunctionId::ConnectorForces
-            | FunctionId::StopForces
-            | FunctionId::FrictionForces
-            | FunctionId::LoadForces
-            | FunctionId::StaticResidual
-            | FunctionId::DriveForcesAtRest
-            | FunctionId::Bias
-            | FunctionId::ForwardDynamics
-            | FunctionId::SolveMass => n,
-            FunctionId::ConnectorLengths => 2 * description.connectors.len(),
-            FunctionId::ConnectorTensions => 3 * description.connectors.len(),
-            FunctionId::ConnectorJacobians => n * description.connectors.len(),
-            FunctionId::LoopStates => 3 * crane.loop_equations(),
-            FunctionId::LoopJacobians => n * crane.loop_equations(),
-            FunctionId::WinchPieces => {
-                2 * description.connectors.iter().map(|connector| connector.pieces).sum::<usize>()
-            }
-            FunctionId::JointStiffnessAndDamping | FunctionId::NonlinearStiffnessAndDamping => 2 * n,
-            FunctionId::BaseStiffness | FunctionId::BaseDamping => 36,
-            FunctionId::DrivePieces => 2 * description.drives.iter().map(|drive| drive.pieces).sum::<usize>(),
-            FunctionId::LoadPieces => 2 * description.loads.iter().map(|load| load.pieces).sum::<usize>(),
-            // Quantities that other functions need, or that are left as factors.
-            FunctionId::InternalForces
-            | FunctionId::CylinderWrenches
-            | FunctionId::ConnectorWrenches
-            | FunctionId::LoopWrenches
-            | FunctionId::SupportPositions
-            | FunctionId::SectionModuli
-            | FunctionId::PrescribedMotions
-            | FunctionId::MassMatrixAndBias
-            | FunctionId::Factorise
-            | FunctionId::Solve
-            | FunctionId::TransformSecondDerivatives => crane.library().routine(id).map_or(0, Routine::results),
-        },
+    crane.shape(quantity).iter().product()
+}
+
+impl LiveCrane {
+    /// Extent of each index of a quantity for one state; of functions that leave factors, their number.
+    #[must_use]
+    pub fn shape(&self, quantity: Quantity) -> Vec<usize> {
+        let (n, count) = (self.size(), |count: Count| DynModel::count(self, count));
+        match quantity {
+            Quantity::PointJacobians => vec![count(Count::Points), 3, n],
+            Quantity::InverseDynamics => vec![n],
+            Quantity::Of(FunctionId::Linearise) => vec![3, n, n],
+            // Also those of coordinates that do not move a body.
+            Quantity::Of(FunctionId::TransformDerivatives) => vec![count(Count::Bodies), n, 4, 4],
+            Quantity::Of(id) => match id.extent() {
+                Extent::List(_, Count::SecondDerivatives) | Extent::Other => {
+                    vec![self.library().routine(id).map_or(0, Routine::results)]
+                }
+                extent => extent.shape(n, count).collect(),
+            },
+        }
     }
 }
 

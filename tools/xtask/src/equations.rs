@@ -7,7 +7,7 @@ const DOCUMENT: &str = "docs/EQUATIONS.md";
 /// Its invariants end with the names of their tests.
 const INVARIANTS: &str = "ARCHITECTURE.md";
 /// The file that lists the generated functions.
-const FUNCTIONS: &str = "codegen/src/program/id.rs";
+const FUNCTIONS: &str = "quantities/src/table.rs";
 
 /// Every name that is stale, and every generated function without a row.
 pub fn check_equations() -> Result<(), String> {
@@ -77,10 +77,11 @@ fn tests_named(text: &str) -> impl Iterator<Item = &str> {
     text.split('`').skip(1).step_by(2).filter(|name| [".rs::", ".py::"].iter().any(|file| name.contains(file)))
 }
 
-/// Names in lines `Id = "name",`.
+/// Names in rows `Id = name(arguments) -> result rule`.
 fn generated_functions(text: &str) -> Vec<String> {
-    let names = text.lines().filter_map(|line| line.split_once(" = \"")?.1.strip_suffix("\","));
-    names.map(str::to_owned).collect()
+    let rows = text.lines().filter_map(|line| line.strip_prefix("    ")?.split_once(") -> ")?.0.split_once(" = "));
+    let rows = rows.filter(|(id, _)| id.chars().all(char::is_alphanumeric));
+    rows.filter_map(|(_, call)| Some(call.split_once('(')?.0.to_owned())).collect()
 }
 
 #[cfg(test)]

@@ -1,8 +1,7 @@
 //! Efforts, motions and limits of drives.
 
-use super::{Derivation, function};
+use super::{Derivation, shaped};
 use crate::mechanics::{acts, drives};
-use crate::program::Argument::{Position, Time, Velocity};
 use crate::program::{Function, FunctionId, Shape};
 use crate::symbolic::{Expr, SweepTrace};
 
@@ -10,51 +9,20 @@ impl<'g> Derivation<'g> {
     /// Motions and limits of drives.
     pub(super) fn drives(&self) -> Vec<Function> {
         let (model, chain) = (&self.model, self.model.chain);
-        let mut functions = vec![function(
-            FunctionId::DriveMotions,
-            "Prescribed position q_dr (m, rad) and rate q̇_dr (m/s, rad/s) of every drive.",
-            "q_dr(t), q̇_dr(t)",
-            &[Time],
-            Shape::Pairs(chain.drives.len()),
-            drives::motions(model, chain.drives.iter()),
-        )];
+        let mut functions = vec![self.function(FunctionId::DriveMotions, drives::motions(model, chain.drives.iter()))];
         if chain.has_limited_drives() {
-            functions.push(function(
-                FunctionId::DriveLimits,
-                "Maximum effort of every drive, N m or N, 0 without a limit, and its stiffness at the state, N m/rad or N/m.",
-                "M, −∂t_dr/∂q",
-                &[Time, Position, Velocity],
-                Shape::Pairs(chain.drives.len()),
-                drives::limits(model),
-            ));
+            functions.push(self.function(FunctionId::DriveLimits, drives::limits(model)));
         }
         if chain.drives.iter().any(|drive| drive.opening().is_some()) {
-            functions.push(function(
-                FunctionId::ValveOpenings,
-                "Command of the valve of every drive over time, −1 to 1, and its rate, 1/s; zeros without one.",
-                "u*(t), u̇*(t)",
-                &[Time],
-                Shape::Pairs(chain.drives.len()),
-                drives::openings(model),
-            ));
+            functions.push(self.function(FunctionId::ValveOpenings, drives::openings(model)));
         }
         let pieces = drives::pieces(model);
         if !pieces.is_empty() {
-            functions.push(function(
-                FunctionId::DrivePieces,
-                "Start and end of the intervals in which the motions and valve commands of drives are smooth, drive by drive, s.",
-                "t_begin, t_end",
-                &[],
-                Shape::Pairs(pieces.len() / 2),
-                pieces,
-            ));
+            functions.push(self.function(FunctionId::DrivePieces, pieces));
         }
         if self.rigid {
-            functions.push(function(
+            functions.push(shaped(
                 FunctionId::PrescribedMotions,
-                "Position q_dr (m, rad) and rate q̇_dr (m/s, rad/s) of every coordinate that a rigid drive prescribes.",
-                "q_dr(t), q̇_dr(t)",
-                &[Time],
                 Shape::Pairs(chain.rigid_drives().count()),
                 drives::motions(model, chain.rigid_drives()),
             ));

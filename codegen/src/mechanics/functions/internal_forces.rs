@@ -1,35 +1,24 @@
 //! Forces and moments that joints, sections and the ground transmit, and the section moduli from which the stresses of beams follow.
 
-use super::{Derivation, function};
+use super::Derivation;
 use crate::chain::{Beam, Force, Moduli};
 use crate::mechanics::model::Model;
 use crate::mechanics::{connectors, cylinders, newton_euler, supports};
-use crate::program::Argument::{Acceleration, Position, Time, Velocity};
-use crate::program::{Function, FunctionId, Shape, Struct};
+use crate::program::{Function, FunctionId};
 use crate::symbolic::Expr;
+
+/// The documentation of the internal forces of a crane with valves.
+const WITHOUT_VALVES: &str = "Force (N) and moment (N m) that the part beyond a cut exerts on the part before it, cut by cut. Cylinders with a \
+                              valve are not included: add `cylinder_wrenches` times their forces.";
 
 impl Derivation<'_> {
     pub(super) fn internal_forces(&self) -> Vec<Function> {
         let model = &self.model;
         let (wrenches, trace) =
             model.graph.recorded(|| newton_euler::internal_forces(model, &self.kinematics, &self.factors));
-        let mut functions = vec![
-            function(
-                FunctionId::InternalForces,
-                if model.chain.has_valves() {
-                    "Force (N) and moment (N m) that the part beyond a cut exerts on the part before it, cut by cut. Cylinders with a valve are \
-                     not included: add `cylinder_wrenches` times their forces."
-                } else {
-                    "Force (N) and moment (N m) that the part beyond a cut exerts on the part before it, cut by cut."
-                },
-                "Σ F − Σ ∫ (ẍ − γ) dm, Σ (M + r × F) − Σ ∫ r × (ẍ − γ) dm over everything beyond, by Newton and Euler",
-                &[Time, Position, Velocity, Acceleration],
-                Shape::Structs(Struct::Wrench, model.chain.cuts().len()),
-                wrenches,
-            )
-            .by(trace),
-        ];
+        let mut functions = vec![self.function(FunctionId::InternalForces, wrenches).by(trace)];
         if model.chain.has_valves() {
+            functions[0].doc = WITHOUT_VALVES;
             functions.push(self.cylinder_wrenches());
         }
         if model.chain.connectors().iter().any(|connector| connector.strain.joins_bodies()) {
@@ -39,25 +28,11 @@ impl Derivation<'_> {
             functions.push(self.loop_wrenches());
         }
         if !model.chain.supports.is_empty() {
-            functions.push(function(
-                FunctionId::SupportPositions,
-                "Positions of the supports' attachment points in the world frame, m.",
-                "T(1) r_E",
-                &[Position],
-                Shape::Vectors(model.chain.supports.len()),
-                supports::positions(model, &self.kinematics),
-            ));
+            functions.push(self.function(FunctionId::SupportPositions, supports::positions(model, &self.kinematics)));
         }
-        let sections: usize = model.chain.beams.iter().map(|beam| beam.sections.len()).sum();
-        if sections > 0 {
-            functions.push(function(
-                FunctionId::SectionModuli,
-                "Section properties for the stresses of beams: areas (m²), moduli (m³), allowable stress (Pa); 0 where unknown.",
-                "A, W_y, W_z, W_t, A_y, A_z; yield stress over safety factor",
-                &[],
-                Shape::Structs(Struct::SectionModuli, sections),
-                model.chain.beams.iter().flat_map(|beam| section_moduli(model, beam)).collect(),
-            ));
+        let moduli: Vec<_> = model.chain.beams.iter().flat_map(|beam| section_moduli(model, beam)).collect();
+        if !moduli.is_empty() {
+            functions.push(self.function(FunctionId::SectionModuli, moduli));
         }
         functions
     }
@@ -69,14 +44,7 @@ impl Derivation<'_> {
             newton_euler::transmitted(model, kinematics, &self.factors, cylinders::pushes(model, kinematics, cylinder))
         };
         let wrenches = model.chain.cylinders.iter().flat_map(of_cylinder).collect();
-        function(
-            FunctionId::CylinderWrenches,
-            "Force (1) and moment (m) at every cut, cut by cut, due to each cylinder while it pushes with 1 N.",
-            "Σ g, Σ r × g over everything beyond",
-            &[Position],
-            Shape::Structs(Struct::Wrench, model.chain.cylinders.len() * model.chain.cuts().len()),
-            wrenches,
-        )
+        self.function(FunctionId::CylinderWrenches, wrenches)
     }
 
     /// What connectors between bodies contribute to the internal forces, each pulling with 1 N.
@@ -88,14 +56,7 @@ impl Derivation<'_> {
             newton_euler::transmitted(model, kinematics, &self.factors, on_bodies.collect())
         };
         let wrenches = model.chain.connectors().iter().flat_map(of_connector).collect();
-        function(
-            FunctionId::ConnectorWrenches,
-            "Force (1) and moment (m) at every cut, cut by cut, due to each connector between two bodies while it pulls with 1 N.",
-            "Σ e, Σ r × e over everything beyond",
-            &[Position],
-            Shape::Structs(Struct::Wrench, model.chain.connectors().len() * model.chain.cuts().len()),
-            wrenches,
-        )
+        self.function(FunctionId::ConnectorWrenches, wrenches)
     }
 }
 

@@ -8,10 +8,7 @@ mod loop_joints;
 mod statics;
 
 use crate::chain::{Analyses, BodyId, Chain, Group};
-use crate::program::Argument::{
-    self, AddedInertia, BaseAddedInertia, Factors, Position, RightHandSide, Time, Velocity,
-};
-use crate::program::{Function, FunctionId, Program, Shape, Symbol};
+use crate::program::{Argument, Count, Extent, Function, FunctionId, Item, Program, Shape, Struct, Symbol};
 use crate::symbolic::{Expr, Graph, Stages, SweepTrace, SymbolId};
 
 use super::articulated::Effort;
@@ -95,52 +92,19 @@ impl<'g> Derivation<'g> {
 
     fn poses(&self) -> Vec<Function> {
         let chain = self.model.chain;
-        let mut functions = vec![function(
-            FunctionId::Transforms,
-            "Transforms T of all bodies into the world frame; translations in m.",
-            "T(p) = T(p−1) T̃(p) [Urbaś 2016, Eq. (3)]",
-            &[Position],
-            Shape::Transforms { counts: vec![1; chain.bodies.len()], corner: 1 },
-            transforms::transforms(&self.kinematics),
-        )];
+        let mut functions = vec![self.function(FunctionId::Transforms, transforms::transforms(&self.kinematics))];
         if !chain.points.is_empty() {
-            let shape = || Shape::Vectors(chain.points.len());
-            functions.push(function(
-                FunctionId::Points,
-                "Positions of the points of interest in the world frame, m.",
-                "T(p) r",
-                &[Position],
-                shape(),
-                points::positions(&self.model, &self.kinematics),
-            ));
-            functions.push(function(
+            functions.push(self.function(FunctionId::Points, points::positions(&self.model, &self.kinematics)));
+            functions.push(self.function(
                 FunctionId::PointVelocities,
-                "Velocities of the points of interest in the world frame, m/s.",
-                "Ṫ(p) r = ω × x + υ",
-                &[Position, Velocity],
-                shape(),
                 points::velocities(&self.model, &self.kinematics, &self.twists),
             ));
         }
         if !chain.cylinders.is_empty() {
-            functions.push(function(
-                FunctionId::CylinderStates,
-                "Length of every cylinder, m, its rate, m/s, and its derivative with respect to the joint's coordinate, m/rad or m/m.",
-                "ℓ, ℓ̇, ∂ℓ/∂q_j",
-                &[Position, Velocity],
-                Shape::Vectors(chain.cylinders.len()),
-                cylinders::states(&self.model),
-            ));
+            functions.push(self.function(FunctionId::CylinderStates, cylinders::states(&self.model)));
         }
         if chain.has_valves() {
-            functions.push(function(
-                FunctionId::CylinderJacobians,
-                "Derivatives of the length of every cylinder with respect to the coordinates, m/m and m/rad.",
-                "∂ℓ/∂q",
-                &[Position],
-                Shape::Rows { count: chain.cylinders.len(), n: self.model.size() },
-                cylinders::jacobians(&self.model),
-            ));
+            functions.push(self.function(FunctionId::CylinderJacobians, cylinders::jacobians(&self.model)));
         }
         functions
     }
@@ -176,59 +140,12 @@ impl<'g> Derivation<'g> {
         };
         both.extend(&bias);
         vec![
-            function(
-                FunctionId::ForwardDynamics,
-                "Accelerations q̈, m/s² and rad/s².",
-                "A q̈ = e + f [Urbaś 2016, Eq. (23)], by articulated bodies",
-                &[Time, Position, Velocity],
-                Shape::Vector(model.size()),
-                accelerations,
-            )
-            .by(trace),
-            function(
-                FunctionId::SolveMass,
-                "Solution x of `A x = r`; r in N and N m, x in m/s² and rad/s².",
-                "A x = r, by articulated bodies at rest",
-                &[Position, RightHandSide],
-                Shape::Vector(model.size()),
-                solution,
-            )
-            .by(solution_trace),
-            function(
-                FunctionId::MassMatrix,
-                "Mass matrix A; kg, kg m and kg m².",
-                "a_ij = tr(Ω_i W_max(i,j) Ω_jᵀ) [Urbaś 2016, Eq. (5)]",
-                &[Position],
-                mass_shape,
-                mass,
-            )
-            .by(mass_trace.clone()),
-            function(
-                FunctionId::MassMatrixAndBias,
-                "Mass matrix A, its lower triangle, and bias e; kg, kg m, kg m², N, N m.",
-                "A, e [Urbaś 2016, Eqs. (5), (9)]",
-                &[Position, Velocity],
-                both_shape,
-                both,
-            )
-            .by(mass_trace.then(bias_trace.clone())),
-            function(
-                FunctionId::Bias,
-                "Bias e: velocity and gravity forces, N and N m.",
-                "e = −(h + g), h_i + g_i = tr(Ω_i Σ T H B̄ᵀ) [Urbaś 2016, Eqs. (5), (7), (9)]",
-                &[Position, Velocity],
-                Shape::Vector(model.size()),
-                bias,
-            )
-            .by(bias_trace),
-            function(
-                FunctionId::KineticEnergy,
-                "Kinetic energy, J.",
-                "E_k = ½ Σ tr(Ṫ H Ṫᵀ) [Urbaś 2016, Eq. (4)]",
-                &[Position, Velocity],
-                Shape::Scalar,
-                vec![energy::kinetic_energy(model, &self.inertias, &self.twists)],
-            ),
+            self.function(FunctionId::ForwardDynamics, accelerations).by(trace),
+            self.function(FunctionId::SolveMass, solution).by(solution_trace),
+            shaped(FunctionId::MassMatrix, mass_shape, mass).by(mass_trace.clone()),
+            shaped(FunctionId::MassMatrixAndBias, both_shape, both).by(mass_trace.then(bias_trace.clone())),
+            self.function(FunctionId::Bias, bias).by(bias_trace),
+            self.function(FunctionId::KineticEnergy, vec![energy::kinetic_energy(model, &self.inertias, &self.twists)]),
         ]
     }
 
@@ -260,55 +177,30 @@ impl<'g> Derivation<'g> {
         let solve = || effective_mass::solution(model, &self.kinematics, &self.factors);
         let (solution, trace) = model.graph.recorded(solve);
         let first = SymbolId(u32::try_from(symbols.len()).expect("fewer than 2^32 inputs"));
-        let late =
-            |SymbolId(id): SymbolId| symbols.get(id as usize).is_some_and(|symbol| symbol.argument == RightHandSide);
+        let late = |SymbolId(id): SymbolId| {
+            symbols.get(id as usize).is_some_and(|symbol| symbol.argument == Argument::RightHandSide)
+        };
         let Stages { factors, results, trace: late_trace } = model.graph.stages(&solution, &trace, late, first);
         symbols.extend((0..factors.len()).map(|index| Symbol {
             name: format!("f{index:03}"),
-            argument: Factors,
+            argument: Argument::Factors,
             index,
         }));
         let mut functions = vec![
-            function(
-                FunctionId::Factorise,
-                "Factors of `A + D̂` for [`solve`]: D̂ has `added_inertia` on its diagonal, and `base` in the base's rows and columns.",
-                "A + D̂, by articulated bodies at rest",
-                &[Position, AddedInertia, BaseAddedInertia],
-                Shape::Factors(factors.len()),
-                factors,
-            )
-            .by(trace),
-            function(
-                FunctionId::Solve,
-                "Solution x of `(A + D̂) x = r` from the factors of `A + D̂`.",
-                "(A + D̂) x = r",
-                &[Factors, RightHandSide],
-                Shape::Vector(model.size()),
-                results,
-            )
-            .by(late_trace),
+            shaped(FunctionId::Factorise, Shape::Factors(factors.len()), factors).by(trace),
+            shaped(FunctionId::Solve, Shape::Vector(model.size()), results).by(late_trace),
         ];
         let [stiffness, damping] = self.forces().step_matrices();
         let base: Vec<usize> = model.chain.base.iter().flatten().map(|id| id.0).collect();
         let diagonal =
             |j: usize| [&stiffness, &damping].map(|m| if base.contains(&j) { model.zero() } else { m.at(j, j) });
-        functions.push(function(
-            FunctionId::JointStiffnessAndDamping,
-            "Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) on single coordinates, without those of the base.",
-            "s, d [Urbaś 2016, Eqs. (14), (19)]",
-            &[],
-            Shape::Pairs(model.size()),
-            (0..model.size()).flat_map(diagonal).collect(),
-        ));
+        functions
+            .push(self.function(FunctionId::JointStiffnessAndDamping, (0..model.size()).flat_map(diagonal).collect()));
         if [Kind::Of(Group::Stops), Kind::Of(Group::Friction)].iter().any(|kind| kind.is_in(model.chain))
             || model.chain.has_limited_drives()
         {
-            functions.push(function(
+            functions.push(self.function(
                 FunctionId::NonlinearStiffnessAndDamping,
-                "Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) of end stops and friction on single coordinates.",
-                "∂F/∂q, max(0, ∂F/∂q̇)",
-                &[Time, Position, Velocity],
-                Shape::Pairs(model.size()),
                 self.forces().nonlinear().into_iter().flatten().collect(),
             ));
         }
@@ -320,65 +212,57 @@ impl<'g> Derivation<'g> {
                 };
                 (0..6).flat_map(|i| (i..6).map(move |j| (i, j))).map(|(i, j)| entry(i, j)).collect()
             };
-            for (id, doc, matrix) in [
-                (
-                    FunctionId::BaseStiffness,
-                    "Stiffness of supports and drives over the base's coordinates; N/m, N and N m.",
-                    &stiffness,
-                ),
-                (
-                    FunctionId::BaseDamping,
-                    "Damping of supports, drives and joints over the base's coordinates; N s/m, N s and N m s.",
-                    &damping,
-                ),
-            ] {
-                functions.push(function(
-                    id,
-                    doc,
-                    "Σ Jᵀ diag(s, d) J [Urbaś 2016, Eq. (18)]",
-                    &[Position, Velocity],
-                    Shape::Base,
-                    block(matrix),
-                ));
-            }
+            functions.push(self.function(FunctionId::BaseStiffness, block(&stiffness)));
+            functions.push(self.function(FunctionId::BaseDamping, block(&damping)));
         }
         functions
     }
 
     fn transform_derivatives(&self) -> Vec<Function> {
         let (model, kinematics) = (&self.model, &self.kinematics);
-        let counts = (0..model.chain.bodies.len()).map(|p| model.chain.degrees_of_freedom(BodyId(p))).collect();
         let (second_shape, second) = transforms::second_derivatives(model, kinematics);
         vec![
-            function(
-                FunctionId::TransformDerivatives,
-                "Derivatives ∂T/∂q_j of every body, for all coordinates j that move it; 1, m, 1/m.",
-                "∂T/∂q_j = Ω_j T",
-                &[Position],
-                Shape::Transforms { counts, corner: 0 },
-                transforms::derivatives(model, kinematics),
-            ),
-            function(
-                FunctionId::TransformSecondDerivatives,
-                "Second derivatives ∂²T/∂q_m∂q_n of every body, for all pairs m ≤ n of the coordinates that move it.",
-                "∂²T/∂q_m∂q_n = Ω_m Ω_n T",
-                &[Position],
-                second_shape,
-                second,
-            ),
+            self.function(FunctionId::TransformDerivatives, transforms::derivatives(model, kinematics)),
+            shaped(FunctionId::TransformSecondDerivatives, second_shape, second),
         ]
+    }
+
+    /// A function whose shape follows from the table and the counts of the chain.
+    fn function(&self, id: FunctionId, outputs: Vec<Expr<'_>>) -> Function {
+        shaped(id, shape(self.model.chain, id.extent()), outputs)
     }
 }
 
-fn function(
-    id: FunctionId,
-    doc: &'static str,
-    equation: &'static str,
-    arguments: &'static [Argument],
-    shape: Shape,
-    outputs: Vec<Expr<'_>>,
-) -> Function {
+/// The shape of a result.
+///
+/// # Panics
+/// If it does not follow from the counts of the chain.
+fn shape(chain: &Chain, extent: Extent) -> Shape {
+    let n = chain.coordinates.len();
+    match extent {
+        Extent::Number => Shape::Scalar,
+        Extent::Vector => Shape::Vector(n),
+        Extent::Matrix => Shape::Symmetric(n),
+        Extent::Base => Shape::Base,
+        Extent::List(Item::Vector, count) => Shape::Vectors(chain.count(count)),
+        Extent::List(Item::Pair, count) => Shape::Pairs(chain.count(count)),
+        Extent::List(Item::Row, count) => Shape::Rows { count: chain.count(count), n },
+        Extent::List(Item::Tension, count) => Shape::Structs(Struct::Tension, chain.count(count)),
+        Extent::List(Item::Wrench, count) => Shape::Structs(Struct::Wrench, chain.count(count)),
+        Extent::List(Item::Moduli, count) => Shape::Structs(Struct::SectionModuli, chain.count(count)),
+        Extent::List(Item::Transform, Count::Derivatives) => {
+            let counts = (0..chain.bodies.len()).map(|body| chain.degrees_of_freedom(BodyId(body))).collect();
+            Shape::Transforms { counts, corner: 0 }
+        }
+        Extent::List(Item::Transform, count) => Shape::Transforms { counts: vec![1; chain.count(count)], corner: 1 },
+        Extent::Other => unreachable!("such functions state their shapes"),
+    }
+}
+
+/// A function of another shape.
+fn shaped(id: FunctionId, shape: Shape, outputs: Vec<Expr<'_>>) -> Function {
     assert_eq!(shape.len(), outputs.len(), "{id:?}");
     let outputs = outputs.into_iter().map(Expr::id).collect();
+    let (doc, equation, arguments) = (id.doc(), id.equation(), id.arguments());
     Function { id, doc, equation, arguments, shape, outputs, trace: SweepTrace::default() }
 }

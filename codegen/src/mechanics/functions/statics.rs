@@ -1,13 +1,12 @@
 //! Statics and small motions.
 
-use super::{Derivation, function};
+use super::{Derivation, shaped};
 use crate::chain::CoordinateId;
 use crate::mechanics::acts::Rest;
 use crate::mechanics::columns::columns;
 use crate::mechanics::forces::{Kind, rest_at_start};
 use crate::mechanics::vector::SymmetricMatrix;
 use crate::mechanics::{cylinders, gravity};
-use crate::program::Argument::{DrivePositions, Position, Time};
 use crate::program::{Function, FunctionId, Shape};
 use crate::symbolic::Expr;
 
@@ -22,32 +21,11 @@ impl<'g> Derivation<'g> {
             (residual[j], holding[j]) = (model.zero(), gradient[j]);
         }
         let mut functions = vec![
-            function(
-                FunctionId::StaticResidual,
-                "Gradient of the potential energy with the drives at given positions, zero in equilibrium; N and N m.",
-                "∂E_p/∂q [Urbaś 2016, Eqs. (7), (15), (18), (20)]",
-                &[Time, Position, DrivePositions],
-                Shape::Vector(model.size()),
-                residual,
-            ),
-            function(
-                FunctionId::TangentStiffness,
-                "Tangent stiffness K: derivative of the residual, its symmetric part; N/m, N and N m.",
-                "∂²E_p/∂q∂q",
-                &[Time, Position, DrivePositions],
-                Shape::Symmetric(model.size()),
-                self.unknowns(self.tangent_stiffness(&rest), 1.0).into_upper(),
-            ),
+            self.function(FunctionId::StaticResidual, residual),
+            self.function(FunctionId::TangentStiffness, self.unknowns(self.tangent_stiffness(&rest), 1.0).into_upper()),
         ];
         if !model.chain.drives.is_empty() {
-            functions.push(function(
-                FunctionId::DriveForcesAtRest,
-                "Generalized forces of the drives that hold the crane at rest at given positions, N and N m.",
-                "s (q_dr − q) [Urbaś 2016, Eq. (20)]; of rigid drives ∂E_p/∂q_j; of cylinders with a valve k (ℓ₀ − ℓ) ∂ℓ/∂q",
-                &[Time, Position, DrivePositions],
-                Shape::Vector(model.size()),
-                holding,
-            ));
+            functions.push(self.function(FunctionId::DriveForcesAtRest, holding));
         }
         functions
     }
@@ -92,13 +70,6 @@ impl<'g> Derivation<'g> {
         let matrix = || Shape::Symmetric(model.size());
         let shape =
             Shape::Record("Linearisation", vec![("mass", matrix()), ("stiffness", matrix()), ("damping", matrix())]);
-        function(
-            FunctionId::Linearise,
-            "Mass matrix A, tangent stiffness K and damping matrix D of small motions about a pose at rest at t = 0.",
-            "A δq̈ + D δq̇ + K δq = 0",
-            &[Position],
-            shape,
-            outputs,
-        )
+        shaped(FunctionId::Linearise, shape, outputs)
     }
 }

@@ -1,6 +1,7 @@
 //! A crane from a chain that implements the traits of all algorithms.
 
 mod analyses;
+mod methods;
 mod model;
 mod systems;
 
@@ -8,13 +9,14 @@ use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crane_codegen::chain::{Chain, Input};
-use crane_codegen::program::FunctionId;
+use crane_codegen::program::{FunctionId, Shape};
 use crane_codegen::{Diagnostics, SourceFile, compile};
 use crane_model::dyn_crane::DynCrane;
-use crane_model::nalgebra::{Matrix4, Matrix6, Vector3};
-use crane_model::{Description, LoopJointInfo, ParameterError};
+use crane_model::nalgebra::{Matrix4, Matrix6};
+use crane_model::{Description, Entry, LoopJointInfo, ParameterError};
 
 use crate::describe::{describe, describe_loop_joints, refusal};
+use crate::expansion::{mass_matrix, second_derivatives};
 use crate::library::Library;
 use crate::machine::{Arguments, Machine};
 use crate::routine::Routine;
@@ -156,39 +158,36 @@ impl LiveCrane {
         self.call(id, arguments, |_, results| results.first().copied().unwrap_or(0.0)).unwrap_or(0.0)
     }
 
+    /// Numbers, zeros if the crane does not need the function.
     fn numbers(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [f64]) {
-        let called = self.call(id, arguments, |_, results| copy(results, out));
+        let called = self.call(id, arguments, |routine, results| match routine.shape() {
+            Shape::Columns { points, .. } => mass_matrix(points, results, out),
+            _ => copy(results, out),
+        });
         if called.is_none() {
             out.fill(0.0);
         }
     }
 
-    fn vectors(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [Vector3<f64>]) {
-        let vector = |vector: &[f64; 3]| Vector3::from(*vector);
-        let called = self.call(id, arguments, |_, results| copy_as(results.as_chunks().0, vector, out));
+    /// A list, zeros if the crane does not need the function.
+    fn list<T: Entry>(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [T]) {
+        let called = self.call(id, arguments, |_, results| copy_entries(results, out));
         if called.is_none() {
-            out.fill(Vector3::zeros());
-        }
-    }
-
-    fn pairs(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [[f64; 2]]) {
-        let called = self.call(id, arguments, |_, results| copy_as(results.as_chunks().0, |pair| *pair, out));
-        if called.is_none() {
-            out.fill([0.0; 2]);
+            out.fill(T::ZERO);
         }
     }
 
     fn matrices(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [Matrix4<f64>]) {
-        let called = self.call(id, arguments, |_, results| {
-            copy_as(results.as_chunks::<16>().0, |matrix| Matrix4::from_column_slice(matrix), out);
+        self.call(id, arguments, |routine, results| match routine.shape() {
+            Shape::TransformFactors { degrees, rotations, vectors } => {
+                second_derivatives(degrees, rotations.len(), vectors, results, out);
+            }
+            _ => copy_entries(results, out),
         });
-        if called.is_none() {
-            out.fill(Matrix4::zeros());
-        }
     }
 
-    fn over_the_base(&self, id: FunctionId, q: &[f64], v: &[f64]) -> Matrix6<f64> {
-        self.call(id, &state(0.0, q, v), |_, results| Matrix6::from_column_slice(results)).unwrap_or_default()
+    fn over_the_base(&self, id: FunctionId, arguments: &Arguments<'_, f64>) -> Matrix6<f64> {
+        self.call(id, arguments, |_, results| Matrix6::from_column_slice(results)).unwrap_or_default()
     }
 }
 
@@ -210,18 +209,13 @@ fn copy(results: &[f64], out: &mut [f64]) {
     out.iter_mut().zip(results).for_each(|(place, result)| *place = *result);
 }
 
-fn copy_as<T, R>(results: &[T], as_is: impl Fn(&T) -> R, out: &mut [R]) {
-    out.iter_mut().zip(results).for_each(|(place, result)| *place = as_is(result));
+fn copy_entries<T: Entry>(results: &[f64], out: &mut [T]) {
+    out.iter_mut().zip(results.chunks_exact(T::LEN)).for_each(|(entry, numbers)| *entry = T::from_numbers(numbers));
 }
 
 /// A pose.
 fn at(q: &[f64]) -> Arguments<'_, f64> {
     Arguments { q, ..Arguments::none() }
-}
-
-/// A state.
-fn state<'a>(t: f64, q: &'a [f64], v: &'a [f64]) -> Arguments<'a, f64> {
-    Arguments { t, q, v, ..Arguments::none() }
 }
 
 impl Clone for LiveCrane {

@@ -1,12 +1,14 @@
 //! Computations that keep numbers between calls: linear systems of implicit steps, and eight cranes at a time.
 
 use crane_codegen::program::FunctionId;
-use crane_model::ParameterError;
 use crane_model::dyn_crane::{DynBlock, DynEnsemble, DynImplicit, DynSystem};
 use crane_model::nalgebra::Matrix6;
 use crane_model::rt::lanes::f64x8;
+use crane_model::{ParameterError, entry_type, slice_argument};
+use crane_quantities::quantities;
 
-use super::{LiveCrane, at, state};
+use super::methods::{method, methods};
+use super::{LiveCrane, at};
 use crate::machine::{Arguments, Machine};
 use crate::routine::Routine;
 
@@ -24,21 +26,7 @@ impl DynImplicit for LiveCrane {
         })
     }
 
-    fn joint_stiffness_and_damping(&self, out: &mut [[f64; 2]]) {
-        self.pairs(FunctionId::JointStiffnessAndDamping, &Arguments::none(), out);
-    }
-
-    fn nonlinear_stiffness_and_damping(&self, t: f64, q: &[f64], v: &[f64], out: &mut [[f64; 2]]) {
-        self.pairs(FunctionId::NonlinearStiffnessAndDamping, &state(t, q, v), out);
-    }
-
-    fn base_stiffness(&self, q: &[f64], v: &[f64]) -> Matrix6<f64> {
-        self.over_the_base(FunctionId::BaseStiffness, q, v)
-    }
-
-    fn base_damping(&self, q: &[f64], v: &[f64]) -> Matrix6<f64> {
-        self.over_the_base(FunctionId::BaseDamping, q, v)
-    }
+    quantities! { methods of Implicit }
 }
 
 /// A function and the machine for its calls.
@@ -61,7 +49,7 @@ impl DynSystem for System<'_> {
 
     fn solve(&mut self, r: &[f64], out: &mut [f64]) {
         if let Some((routine, machine)) = &mut self.solve {
-            routine.run(machine, &Arguments { factors: &self.factors, right: r, ..Arguments::none() }, out);
+            routine.run(machine, &Arguments { factors: &self.factors, r, ..Arguments::none() }, out);
         }
     }
 }

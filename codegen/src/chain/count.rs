@@ -1,0 +1,33 @@
+//! Numbers of the parts of a chain.
+
+use crane_quantities::Count;
+
+use super::{BodyId, Chain};
+
+impl Chain {
+    /// How many of these parts it has.
+    #[must_use]
+    pub fn count(&self, count: Count) -> usize {
+        let degrees = (0..self.bodies.len()).map(|body| self.degrees_of_freedom(BodyId(body)));
+        match count {
+            Count::Bodies => self.bodies.len(),
+            Count::Points => self.points.len(),
+            Count::Supports => self.supports.len(),
+            Count::Drives => self.drives.len(),
+            Count::Cylinders => self.cylinders.len(),
+            Count::Connectors => self.connectors().len(),
+            Count::Sections => self.beams.iter().map(|beam| beam.sections.len()).sum(),
+            Count::Cuts => self.cuts().len(),
+            Count::Coordinates => self.coordinates.len(),
+            Count::LoopEquations => self.loop_equations().count(),
+            Count::DrivePieces => self.drives.iter().map(|drive| drive.pieces().len()).sum(),
+            Count::LoadPieces => self.loads.iter().map(|load| load.pieces()).sum(),
+            Count::WinchPieces => self.connectors().iter().map(|connector| connector.pieces()).sum(),
+            Count::Derivatives => degrees.sum(),
+            Count::SecondDerivatives => degrees.map(|n| n * (n + 1) / 2).sum(),
+            Count::CylinderCuts | Count::ConnectorCuts | Count::LoopCuts => {
+                count.factors().iter().map(|factor| self.count(*factor)).product()
+            }
+        }
+    }
+}

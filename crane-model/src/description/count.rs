@@ -1,0 +1,39 @@
+//! Numbers of the parts of a crane.
+
+use crane_quantities::Count;
+
+use super::{Description, LoopJointInfo};
+
+impl Description {
+    /// How many of these parts the crane has, with the joints that close its loops.
+    pub fn count(&self, loop_joints: &[LoopJointInfo], count: Count) -> usize {
+        let degrees = self.bodies.iter().map(|body| body.degrees_of_freedom);
+        match count {
+            Count::Bodies => self.bodies.len(),
+            Count::Points => self.points.len(),
+            Count::Supports => self.supports.len(),
+            Count::Drives => self.drives.len(),
+            Count::Cylinders => self.cylinders.len(),
+            Count::Connectors => self.connectors.len(),
+            Count::Sections => self.sections.len(),
+            Count::Cuts => {
+                let follows = |body: usize| body > 0 && self.bodies[body].link == self.bodies[body - 1].link;
+                let joints = (0..self.bodies.len()).filter(|body| !follows(*body)).count();
+                // The first section of a body is where the body begins.
+                let is_inside =
+                    |section: usize| section > 0 && self.sections[section].body == self.sections[section - 1].body;
+                1 + joints + self.bodies.len() + (0..self.sections.len()).filter(|section| is_inside(*section)).count()
+            }
+            Count::Coordinates => self.coordinates.len(),
+            Count::LoopEquations => loop_joints.iter().map(|joint| joint.equations.len()).sum(),
+            Count::DrivePieces => self.drives.iter().map(|drive| drive.pieces).sum(),
+            Count::LoadPieces => self.loads.iter().map(|load| load.pieces).sum(),
+            Count::WinchPieces => self.connectors.iter().map(|connector| connector.pieces).sum(),
+            Count::Derivatives => degrees.sum(),
+            Count::SecondDerivatives => degrees.map(|n| n * (n + 1) / 2).sum(),
+            Count::CylinderCuts | Count::ConnectorCuts | Count::LoopCuts => {
+                count.factors().iter().map(|factor| self.count(loop_joints, *factor)).product()
+            }
+        }
+    }
+}

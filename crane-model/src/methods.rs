@@ -1,0 +1,204 @@
+//! Methods of the traits of a crane, from the table of quantities.
+
+use nalgebra::{Matrix4, Vector3};
+
+use crate::{SectionModuli, Tension, Wrench};
+
+/// An entry of a list of results, made of numbers.
+pub trait Entry: Copy {
+    /// How many numbers it has.
+    const LEN: usize;
+    /// The entry whose numbers are 0.
+    const ZERO: Self;
+    /// The entry of these numbers, as functions write them: a matrix column by column.
+    ///
+    /// # Panics
+    /// If there are fewer than [`LEN`](Self::LEN).
+    fn from_numbers(numbers: &[f64]) -> Self;
+    /// Its numbers, in the same order.
+    fn numbers(&self) -> impl Iterator<Item = f64>;
+}
+
+impl Entry for f64 {
+    const LEN: usize = 1;
+    const ZERO: Self = 0.0;
+    #[inline]
+    fn from_numbers(numbers: &[f64]) -> Self {
+        numbers[0]
+    }
+    fn numbers(&self) -> impl Iterator<Item = f64> {
+        [*self].into_iter()
+    }
+}
+
+impl<const N: usize> Entry for [f64; N] {
+    const LEN: usize = N;
+    const ZERO: Self = [0.0; N];
+    fn from_numbers(numbers: &[f64]) -> Self {
+        core::array::from_fn(|index| numbers[index])
+    }
+    fn numbers(&self) -> impl Iterator<Item = f64> {
+        self.iter().copied()
+    }
+}
+
+impl Entry for Vector3<f64> {
+    const LEN: usize = 3;
+    const ZERO: Self = Vector3::new(0.0, 0.0, 0.0);
+    fn from_numbers(numbers: &[f64]) -> Self {
+        Vector3::new(numbers[0], numbers[1], numbers[2])
+    }
+    fn numbers(&self) -> impl Iterator<Item = f64> {
+        self.iter().copied()
+    }
+}
+
+impl Entry for Matrix4<f64> {
+    const LEN: usize = 16;
+    const ZERO: Self = Matrix4::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    fn from_numbers(numbers: &[f64]) -> Self {
+        Matrix4::from_column_slice(&numbers[..16])
+    }
+    fn numbers(&self) -> impl Iterator<Item = f64> {
+        self.iter().copied()
+    }
+}
+
+impl Entry for Tension {
+    const LEN: usize = 3;
+    const ZERO: Self = Tension::ZERO;
+    fn from_numbers(numbers: &[f64]) -> Self {
+        Tension { force: numbers[0], stiffness: numbers[1], damping: numbers[2] }
+    }
+    fn numbers(&self) -> impl Iterator<Item = f64> {
+        [self.force, self.stiffness, self.damping].into_iter()
+    }
+}
+
+impl Entry for Wrench {
+    const LEN: usize = 6;
+    const ZERO: Self = Wrench::ZERO;
+    fn from_numbers(numbers: &[f64]) -> Self {
+        Wrench { force: Vector3::from_numbers(numbers), moment: Vector3::from_numbers(&numbers[3..]) }
+    }
+    fn numbers(&self) -> impl Iterator<Item = f64> {
+        self.force.iter().chain(&self.moment).copied()
+    }
+}
+
+impl Entry for SectionModuli {
+    const LEN: usize = 8;
+    const ZERO: Self = SectionModuli::ZERO;
+    fn from_numbers(numbers: &[f64]) -> Self {
+        let [area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress] =
+            <[f64; 8]>::from_numbers(numbers);
+        SectionModuli { area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress }
+    }
+    fn numbers(&self) -> impl Iterator<Item = f64> {
+        let SectionModuli { area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress } = *self;
+        [area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress].into_iter()
+    }
+}
+
+/// Type of an argument of the traits with the number of coordinates `N` in their types.
+macro_rules! sized_argument {
+    (t) => { f64 };
+    ($vector:ident) => { &SVector<f64, N> };
+}
+
+/// Type of a result of those traits.
+macro_rules! sized_result {
+    (number) => { f64 };
+    (vector) => { SVector<f64, N> };
+    (matrix) => { SMatrix<f64, N, N> };
+    (base) => { SMatrix<f64, 6, 6> };
+}
+
+/// Type of an entry of a list of those traits.
+macro_rules! sized_entry {
+    (row) => {
+        [f64; N]
+    };
+    ($item:ident) => {
+        $crate::entry_type!($item)
+    };
+}
+
+/// A method of those traits.
+macro_rules! sized_method {
+    ($rule:ident other $($row:tt)*) => {};
+    (written $result:tt $($row:tt)*) => {};
+    (required [$item:ident; $count:ident] [$($about:tt)*] $name:ident($($argument:ident),*)) => {
+        $($about)*
+        #[doc = concat!("\n`out`: one ", stringify!($item), " for each of the crane's ", stringify!($count), ".")]
+        fn $name(&self, $($argument: sized_argument!($argument),)* out: &mut [sized_entry!($item)]);
+    };
+    (zero [$item:ident; $count:ident] [$($about:tt)*] $name:ident($($argument:ident),*)) => {
+        $($about)*
+        #[doc = concat!("\n`out`: one ", stringify!($item), " for each of the crane's ", stringify!($count), ".")]
+        #[allow(unused_variables, reason = "a crane without such a part needs no arguments")]
+        fn $name(&self, $($argument: sized_argument!($argument),)* out: &mut [sized_entry!($item)]) {
+            out.fill(Entry::ZERO);
+        }
+    };
+    (required $result:ident [$($about:tt)*] $name:ident($($argument:ident),*)) => {
+        $($about)*
+        fn $name(&self, $($argument: sized_argument!($argument)),*) -> sized_result!($result);
+    };
+    (zero number [$($about:tt)*] $name:ident($($argument:ident),*)) => {
+        $($about)*
+        #[allow(unused_variables, reason = "a crane without such a part needs no arguments")]
+        fn $name(&self, $($argument: sized_argument!($argument)),*) -> f64 {
+            0.0
+        }
+    };
+    (zero $result:ident [$($about:tt)*] $name:ident($($argument:ident),*)) => {
+        $($about)*
+        #[allow(unused_variables, reason = "a crane without such a part needs no arguments")]
+        fn $name(&self, $($argument: sized_argument!($argument)),*) -> sized_result!($result) {
+            nalgebra::zero()
+        }
+    };
+}
+
+/// The methods of a trait with the number of coordinates in its type.
+macro_rules! sized_methods {
+    ($(
+        $(#[doc = $remark:literal])*
+        $id:ident = $name:ident($($argument:ident),*) -> $result:tt $rule:ident $doc:literal $equation:literal
+        $(python($($python:tt)*))?;
+    )*) => {
+        $(sized_method! {
+            $rule $result [#[doc = $doc] #[doc = concat!("\n`", $equation, "`\n")] $(#[doc = $remark])*]
+            $name($($argument),*)
+        })*
+    };
+}
+
+pub(crate) use {sized_argument, sized_entry, sized_method, sized_methods, sized_result};
+
+/// Type of an entry of a list of results.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! entry_type {
+    (vector) => { $crate::nalgebra::Vector3<f64> };
+    (pair) => { [f64; 2] };
+    (tension) => { $crate::Tension };
+    (wrench) => { $crate::Wrench };
+    (moduli) => { $crate::SectionModuli };
+    (transform) => { $crate::nalgebra::Matrix4<f64> };
+    // Row by row.
+    (row) => { f64 };
+}
+
+/// Type of an argument of the traits on slices.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! slice_argument {
+    (t) => {
+        f64
+    };
+    ($vector:ident) => {
+        &[f64]
+    };
+}

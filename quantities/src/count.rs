@@ -1,0 +1,143 @@
+//! Shapes of results, in counts of a crane's parts.
+
+/// A number of parts of a crane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[expect(missing_docs, reason = "the names of the parts")]
+pub enum Count {
+    Bodies,
+    Points,
+    Supports,
+    Drives,
+    Cylinders,
+    Connectors,
+    Sections,
+    Cuts,
+    Coordinates,
+    /// Equations of joints that close loops.
+    LoopEquations,
+    /// Intervals in which the drives move smoothly.
+    DrivePieces,
+    /// Intervals in which the loads change smoothly.
+    LoadPieces,
+    /// Intervals in which the winches move smoothly.
+    WinchPieces,
+    /// Cuts, for each cylinder.
+    CylinderCuts,
+    /// Cuts, for each connector.
+    ConnectorCuts,
+    /// Cuts, for each equation of a loop joint.
+    LoopCuts,
+    /// Coordinates that move each body, body by body.
+    Derivatives,
+    /// Pairs of coordinates that move each body.
+    SecondDerivatives,
+}
+
+impl Count {
+    /// Its name in the table.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Count::Bodies => "bodies",
+            Count::Points => "points",
+            Count::Supports => "supports",
+            Count::Drives => "drives",
+            Count::Cylinders => "cylinders",
+            Count::Connectors => "connectors",
+            Count::Sections => "sections",
+            Count::Cuts => "cuts",
+            Count::Coordinates => "n",
+            Count::LoopEquations => "loop_equations",
+            Count::DrivePieces => "drive_pieces",
+            Count::LoadPieces => "load_pieces",
+            Count::WinchPieces => "winch_pieces",
+            Count::CylinderCuts => "cylinder_cuts",
+            Count::ConnectorCuts => "connector_cuts",
+            Count::LoopCuts => "loop_cuts",
+            Count::Derivatives => "derivatives",
+            Count::SecondDerivatives => "second_derivatives",
+        }
+    }
+
+    /// The counts whose product it is.
+    #[must_use]
+    pub const fn factors(self) -> &'static [Count] {
+        match self {
+            Count::CylinderCuts => &[Count::Cylinders, Count::Cuts],
+            Count::ConnectorCuts => &[Count::Connectors, Count::Cuts],
+            Count::LoopCuts => &[Count::LoopEquations, Count::Cuts],
+            _ => &[],
+        }
+    }
+}
+
+/// An item of a list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Item {
+    /// Three numbers.
+    Vector,
+    /// Two numbers.
+    Pair,
+    /// A number per coordinate.
+    Row,
+    /// The force of a connector and its derivatives.
+    Tension,
+    /// A force and a moment.
+    Wrench,
+    /// What the stresses of a section follow from.
+    Moduli,
+    /// A homogeneous matrix.
+    Transform,
+}
+
+impl Item {
+    /// Extent of each index, for n coordinates.
+    const fn shape(self, n: usize) -> [Option<usize>; 2] {
+        match self {
+            Item::Vector | Item::Tension => [Some(3), None],
+            Item::Pair => [Some(2), None],
+            Item::Row => [Some(n), None],
+            Item::Wrench => [Some(6), None],
+            Item::Moduli => [Some(8), None],
+            Item::Transform => [Some(4), Some(4)],
+        }
+    }
+}
+
+/// Shape of a result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Extent {
+    /// One number.
+    Number,
+    /// A number per coordinate.
+    Vector,
+    /// A symmetric matrix over all coordinates.
+    Matrix,
+    /// A symmetric matrix over the base's six coordinates.
+    Base,
+    /// A list.
+    List(Item, Count),
+    /// Another, written by hand where it is needed.
+    Other,
+}
+
+impl Extent {
+    /// Extent of each index, for n coordinates and counts of other parts; that of [`Other`](Self::Other) is unknown.
+    pub fn shape(self, n: usize, count: impl Fn(Count) -> usize) -> impl Iterator<Item = usize> {
+        let extents = match self {
+            Extent::Number | Extent::Other => [None; 4],
+            Extent::Vector => [Some(n), None, None, None],
+            Extent::Matrix => [Some(n), Some(n), None, None],
+            Extent::Base => [Some(6), Some(6), None, None],
+            Extent::List(item, of) => {
+                let [first, second] = match *of.factors() {
+                    [first, second] => [Some(count(first)), Some(count(second))],
+                    _ => [Some(count(of)), None],
+                };
+                let [third, fourth] = item.shape(n);
+                [first, second, third, fourth]
+            }
+        };
+        extents.into_iter().flatten()
+    }
+}

@@ -1,0 +1,14 @@
+//! The quantities that a crane computes, one row of a table each.
+//!
+//! The compiler takes identifiers, documentation, arguments and shapes of its functions from the table, the runtime the methods of its
+//! traits, live cranes their calls, the Python package its methods, the command what it can evaluate, and the tests the lists of what they
+//! must prove. [`quantities!`] hands the rows to a macro; [`FunctionId`] has them as data.
+
+#![no_std]
+
+mod count;
+mod function_id;
+mod table;
+
+pub use count::{Count, Extent, Item};
+pub use function_id::{Argument, FunctionId, PythonArguments, RuntimeTrait};

@@ -1,0 +1,293 @@
+//! The table.
+
+/// The table of the quantities that a crane computes, one row per function of generated code, by the trait of the runtime that has it as
+/// a method. `quantities! { consumer }` calls the macro `consumer` with all of it; `quantities! { consumer of Statics }` with the rows of one
+/// trait.
+///
+/// A row is
+///
+/// ```text
+/// /// What else must be known, below the documentation.
+/// Identifier = name(arguments) -> result rule "Documentation, with units." "Equation [source]" python(arguments; time);
+/// ```
+///
+/// * *arguments*: `t`, `q`, `v`, accelerations `a`, right-hand side `r`, `positions` of the drives, in this order.
+/// * *result*: `number`; per coordinate `vector`; n × n `matrix`; over the base's coordinates `base`; a list `[item; count]`, whose items
+///   are those of [`Item`](crate::Item) and whose count is one of [`Count`](crate::Count); `other`: everything about the method is written
+///   by hand.
+/// * *rule* for cranes without such a part: the result is `zero`; it is `required` of every crane; `written`: the default of the trait
+///   is written by hand.
+/// * *python*: offered by the Python package, with these arguments, the one after the semicolon optional.
+#[macro_export]
+macro_rules! quantities {
+    ($consumer:ident of $trait:ident) => {
+        $crate::quantities! { @($crate::select) [$trait $consumer] }
+    };
+    ($consumer:ident) => {
+        $crate::quantities! { @($consumer) }
+    };
+    (@($($consumer:tt)*) $([$($first:tt)*])?) => {
+        $($consumer)*! { $($($first)*)?
+CraneModel {
+    Transforms = transforms(q) -> [transform; bodies] required
+        "Transforms T of all bodies into the world frame; translations in m."
+        "T(p) = T(p−1) T̃(p) [Urbaś 2016, Eq. (3)]" python(q);
+    Points = points(q) -> [vector; points] zero
+        "Positions of the points of interest in the world frame, m."
+        "T(p) r" python(q);
+    PointVelocities = point_velocities(q, v) -> [vector; points] zero
+        "Velocities of the points of interest in the world frame, m/s."
+        "Ṫ(p) r = ω × x + υ" python(q, v);
+    /// The forces of cylinders with a valve depend on their pressures and are not included.
+    Forces = forces(t, q, v) -> vector zero
+        "Generalized forces of everything except inertia and gravity, N and N m."
+        "f_s + f_l + t_dr and viscous joints [Urbaś 2016, Eq. (23)]" python(q, v; t);
+    SupportForces = support_forces(q, v) -> vector zero
+        "Generalized forces of the supports, N and N m."
+        "−Jᵀ (s e + d ė) [Urbaś 2016, Eq. (18)]" python(q, v);
+    ElementForces = element_forces(q, v) -> vector zero
+        "Generalized forces of the springs and dampers between rigid elements, N m."
+        "−S q̃ − D q̃̇ [Urbaś 2016, Eq. (15)]" python(q, v);
+    DriveForces = drive_forces(t, q, v) -> vector zero
+        "Generalized forces of the drives, N and N m."
+        "s (q_dr − q) + d (q̇_dr − q̇) [Urbaś 2016, Eqs. (20)–(21)]" python(q, v; t);
+    JointDamperForces = joint_damper_forces(v) -> vector zero
+        "Generalized forces of viscous damping in passive joints, N and N m."
+        "−d q̇" python(v);
+    StopForces = stop_forces(q, v) -> vector zero
+        "Generalized forces of the end stops, N and N m."
+        "−k δ max(0, 1 + a δ̇)" python(q, v);
+    FrictionForces = friction_forces(v) -> vector zero
+        "Generalized forces of joint friction, N and N m."
+        "−(F_c + (F_b − F_c) exp(−(q̇/v_s)²)) tanh(q̇/v₀) − b q̇" python(v);
+    LoadForces = load_forces(t, q) -> vector zero
+        "Generalized forces of the loads applied from outside, N and N m."
+        "F · Ω_j x + M · ω_j" python(q; t);
+    /// A description has the number of intervals of each load, [`LoadInfo::pieces`](crate::LoadInfo::pieces).
+    LoadPieces = load_pieces() -> [pair; load_pieces] zero
+        "Start and end of the intervals in which the scales of loads are smooth, load by load, s."
+        "t_begin, t_end";
+    ConnectorForces = connector_forces(t, q, v) -> vector zero
+        "Generalized forces of connectors, N and N m."
+        "−Jᵀ F" python(q, v; t);
+    ConnectorLengths = connector_lengths(q, v) -> [pair; connectors] zero
+        "Length ℓ (m) of every connector, and its rate ℓ̇ (m/s)."
+        "|p₂ − p₁|, J q̇" python(q, v);
+    ConnectorTensions = connector_tensions(t, q, v) -> [tension; connectors] zero
+        "Force F of every connector (N), positive where it pulls, and its derivatives ∂F/∂ℓ (N/m) and ∂F/∂ℓ̇ (N s/m)."
+        "k (ℓ − ℓ₀) + d ℓ̇ − P; k σ max(0, 1 + a σ̇)" python(q, v; t);
+    ConnectorJacobians = connector_jacobians(q) -> [row; connectors] zero
+        "How the length of every connector changes with the coordinates, one row per connector, m/rad and 1."
+        "J = ∂ℓ/∂q" python(q);
+    /// A description has the number of intervals of each connector, [`ConnectorInfo::pieces`](crate::ConnectorInfo::pieces).
+    WinchPieces = winch_pieces() -> [pair; winch_pieces] zero
+        "Start and end of the intervals in which winches move smoothly, connector by connector, s."
+        "t_begin, t_end";
+    LoopStates = loop_states(q, v) -> [vector; loop_equations] zero
+        "Every equation of the loop joints: its gap φ (m, and 1 for the direction of a pin), the rate of φ, and the part of its second \
+         rate that does not depend on accelerations."
+        "φ, J q̇, J̇ q̇" python(q, v);
+    LoopJacobians = loop_jacobians(q) -> [row; loop_equations] zero
+        "How the gaps of the loop joints change with the coordinates, one row per equation."
+        "J = ∂φ/∂q" python(q);
+    SupportReactions = support_reactions(q, v) -> [vector; supports] zero
+        "Forces of the supports on the crane in the world frame, N."
+        "−s e − d ė [Urbaś 2016, Eq. (16)]" python(q, v);
+    SupportGaps = support_gaps(q, v) -> [pair; supports] zero
+        "How far one-sided supports are above the ground, m, negative where they are pressed in, and its rate, m/s; 0 for others."
+        "e_z, ė_z [Urbaś 2016, Eq. (16)]" python(q, v);
+    /// NaN where the linkage of a cylinder cannot be assembled.
+    CylinderStates = cylinder_states(q, v) -> [vector; cylinders] zero
+        "Length of every cylinder, m, its rate, m/s, and its derivative with respect to the joint's coordinate, m/rad or m/m."
+        "ℓ, ℓ̇, ∂ℓ/∂q_j" python(q, v);
+    /// A cylinder with a valve that pushes with F exerts the generalized forces `F ∂ℓ/∂q`. Zeros for a crane without valves.
+    CylinderJacobians = cylinder_jacobians(q) -> [row; cylinders] zero
+        "Derivatives of the length of every cylinder with respect to the coordinates, m/m and m/rad."
+        "∂ℓ/∂q" python(q);
+    DriveMotions = drive_motions(t) -> [pair; drives] zero
+        "Prescribed position q_dr (m, rad) and rate q̇_dr (m/s, rad/s) of every drive."
+        "q_dr(t), q̇_dr(t)" python(t);
+    ValveOpenings = valve_openings(t) -> [pair; drives] zero
+        "Command of the valve of every drive over time, −1 to 1, and its rate, 1/s; zeros without one."
+        "u*(t), u̇*(t)" python(t);
+    /// Zeros for a crane without limits.
+    DriveLimits = drive_limits(t, q, v) -> [pair; drives] zero
+        "Maximum effort of every drive, N m or N, 0 without a limit, and its stiffness at the state, N m/rad or N/m."
+        "M, −∂t_dr/∂q" python(t, q, v);
+    PrescribedMotions = prescribed_motions(t) -> other written
+        "Position q_dr (m, rad) and rate q̇_dr (m/s, rad/s) of every coordinate that a rigid drive prescribes."
+        "q_dr(t), q̇_dr(t)";
+    /// A description has the number of intervals of each drive, [`DriveInfo::pieces`](crate::DriveInfo::pieces).
+    DrivePieces = drive_pieces() -> [pair; drive_pieces] zero
+        "Start and end of the intervals in which the motions and valve commands of drives are smooth, drive by drive, s."
+        "t_begin, t_end";
+    GravityEnergy = gravity_energy(q) -> number required
+        "Potential energy of gravity, zero at the world's origin, J."
+        "E_g = −Σ γ · ∫ x dm [Urbaś 2016, Eq. (6)]" python(q);
+    SupportEnergy = support_energy(q) -> number zero
+        "Energy of the supports' springs, J."
+        "½ Σ s e² [Urbaś 2016, Eqs. (16)–(17)]" python(q);
+    ElementEnergy = element_energy(q) -> number zero
+        "Energy of the springs between rigid elements, J."
+        "½ q̃ᵀ S q̃ [Urbaś 2016, Eq. (14)]" python(q);
+    DriveEnergy = drive_energy(t, q) -> number zero
+        "Energy of the drives' springs, J."
+        "½ Σ s (q_dr − q)² [Urbaś 2016, Eq. (19)]" python(q; t);
+    StopEnergy = stop_energy(q) -> number zero
+        "Energy of the end stops, J."
+        "½ Σ k δ²" python(q);
+    ConnectorEnergy = connector_energy(t, q) -> number zero
+        "Energy of connectors, J."
+        "½ Σ k (ℓ − ℓ₀)² − P (ℓ − ℓ₀)" python(q; t);
+    DrivePower = drive_power(t, q, v) -> number zero
+        "Power of the prescribed motions, W."
+        "Σ t_dr q̇_dr" python(q, v; t);
+    LoadPower = load_power(t, q, v) -> number zero
+        "Power that the loads applied from outside put in, W."
+        "Σ F · ẋ + M · ω" python(q, v; t);
+    WinchPower = winch_power(t, q, v) -> number zero
+        "Power that winches put in, W."
+        "−Σ F ℓ̇₀" python(q, v; t);
+    Dissipation = dissipation(t, q, v) -> number zero
+        "Power that all dampers dissipate, W."
+        "2R [Urbaś 2016, Eqs. (14), (17), (19)]" python(q, v; t);
+}
+Dynamics {
+    /// In O(n): A is never formed. The forces of cylinders with a valve are not included. Of the open chain, except in Python.
+    ForwardDynamics = forward_dynamics(t, q, v) -> vector written
+        "Accelerations q̈, m/s² and rad/s²."
+        "A q̈ = e + f [Urbaś 2016, Eq. (23)], by articulated bodies" python(q, v; t);
+    SolveMass = solve_mass(q, r) -> vector written
+        "Solution x of `A x = r`; r in N and N m, x in m/s² and rad/s²."
+        "A x = r, by articulated bodies at rest";
+    /// Symmetric positive definite.
+    MassMatrix = mass_matrix(q) -> matrix required
+        "Mass matrix A; kg, kg m and kg m²."
+        "a_ij = tr(Ω_i W_max(i,j) Ω_jᵀ) [Urbaś 2016, Eq. (5)]" python(q);
+    MassMatrixAndBias = mass_matrix_and_bias(q, v) -> other written
+        "Mass matrix A, its lower triangle, and bias e; kg, kg m, kg m², N, N m."
+        "A, e [Urbaś 2016, Eqs. (5), (9)]";
+    /// They are on the right-hand side of `A q̈ = e + f`: the negative of the bias force C of Featherstone, of Pinocchio's `nle` and of
+    /// MuJoCo's `qfrc_bias`, which are on the left-hand side.
+    Bias = bias(q, v) -> vector required
+        "Bias e: velocity and gravity forces, N and N m."
+        "e = −(h + g), h_i + g_i = tr(Ω_i Σ T H B̄ᵀ) [Urbaś 2016, Eqs. (5), (7), (9)]" python(q, v);
+    KineticEnergy = kinetic_energy(q, v) -> number required
+        "Kinetic energy, J."
+        "E_k = ½ Σ tr(Ṫ H Ṫᵀ) [Urbaś 2016, Eq. (4)]" python(q, v);
+}
+Implicit {
+    Factorise = factorise(q, added_inertia, base) -> other written
+        "Factors of `A + D̂` for [`solve`]: D̂ has `added_inertia` on its diagonal, and `base` in the base's rows and columns."
+        "A + D̂, by articulated bodies at rest";
+    Solve = solve(f, r) -> other written
+        "Solution x of `(A + D̂) x = r` from the factors of `A + D̂`."
+        "(A + D̂) x = r";
+    JointStiffnessAndDamping = joint_stiffness_and_damping() -> [pair; coordinates] required
+        "Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) on single coordinates, without those of the base."
+        "s, d [Urbaś 2016, Eqs. (14), (19)]";
+    NonlinearStiffnessAndDamping = nonlinear_stiffness_and_damping(t, q, v) -> [pair; coordinates] zero
+        "Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) of end stops and friction on single coordinates."
+        "∂F/∂q, max(0, ∂F/∂q̇)";
+    BaseStiffness = base_stiffness(q, v) -> base zero
+        "Stiffness of supports and drives over the base's coordinates; N/m, N and N m."
+        "Σ Jᵀ diag(s, d) J [Urbaś 2016, Eq. (18)]";
+    BaseDamping = base_damping(q, v) -> base zero
+        "Damping of supports, drives and joints over the base's coordinates; N s/m, N s and N m s."
+        "Σ Jᵀ diag(s, d) J [Urbaś 2016, Eq. (18)]";
+}
+Statics {
+    /// In Python, the drives are where they are at times t.
+    StaticResidual = static_residual(t, q, positions) -> vector required
+        "Gradient of the potential energy with the drives at given positions, zero in equilibrium; N and N m."
+        "∂E_p/∂q [Urbaś 2016, Eqs. (7), (15), (18), (20)]" python(q; t);
+    /// Positive definite if the equilibrium is stable. A prescribed coordinate, whose residual is 0, has 1 on the diagonal and zeros elsewhere
+    /// in its row and column. In Python, the drives are where they are at times t.
+    TangentStiffness = tangent_stiffness(t, q, positions) -> matrix required
+        "Tangent stiffness K: derivative of the residual, its symmetric part; N/m, N and N m."
+        "∂²E_p/∂q∂q" python(q; t);
+    /// ℓ₀ is the length of a cylinder with the joint at the position of its drive and straight beams, and k the stiffness of the drive over
+    /// the squared lever arm there. In Python, the drives are where they are at times t.
+    DriveForcesAtRest = drive_forces_at_rest(t, q, positions) -> vector zero
+        "Generalized forces of the drives that hold the crane at rest at given positions, N and N m."
+        "s (q_dr − q) [Urbaś 2016, Eq. (20)]; of rigid drives ∂E_p/∂q_j; of cylinders with a valve k (ℓ₀ − ℓ) ∂ℓ/∂q" python(q; t);
+}
+Linearise {
+    Linearise = linearise(q) -> other written
+        "Mass matrix A, tangent stiffness K and damping matrix D of small motions about a pose at rest at t = 0."
+        "A δq̈ + D δq̇ + K δq = 0";
+}
+InternalForces {
+    /// In the frame of each cut, about its origin. Inertia forces, weights, loads and the forces of connectors attached to it count: a joint or
+    /// a section transmits what no connector carries past it, and supports act only on the base. The forces of cylinders with a valve are not
+    /// included, see [`cylinder_wrenches`](Self::cylinder_wrenches). At the ground it is the load on the foundation or on the supports. In a
+    /// section of a beam it is `N, Qy, Qz` and `Mx, My, Mz`: a positive N is tension; Mx, My and Mz have the signs of the deformations that
+    /// they cause, φ, θ and ψ.
+    InternalForces = internal_forces(t, q, v, a) -> [wrench; cuts] required
+        "Force (N) and moment (N m) that the part beyond a cut exerts on the part before it, cut by cut."
+        "Σ F − Σ ∫ (ẍ − γ) dm, Σ (M + r × F) − Σ ∫ r × (ẍ − γ) dm over everything beyond, by Newton and Euler";
+    /// Zeros for a crane without valves.
+    CylinderWrenches = cylinder_wrenches(q) -> [wrench; cylinder_cuts] zero
+        "Force (1) and moment (m) at every cut, cut by cut, due to each cylinder while it pushes with 1 N."
+        "Σ g, Σ r × g over everything beyond";
+    ConnectorWrenches = connector_wrenches(q) -> [wrench; connector_cuts] zero
+        "Force (1) and moment (m) at every cut, cut by cut, due to each connector between two bodies while it pulls with 1 N."
+        "Σ e, Σ r × e over everything beyond";
+    LoopWrenches = loop_wrenches(q) -> [wrench; loop_cuts] zero
+        "Force (1) and moment (m) at every cut, cut by cut, due to each equation of the loop joints while it transmits 1 N or 1 N m."
+        "Σ g, Σ r × g over everything beyond";
+    SupportPositions = support_positions(q) -> [vector; supports] zero
+        "Positions of the supports' attachment points in the world frame, m."
+        "T(1) r_E" python(q);
+    SectionModuli = section_moduli() -> [moduli; sections] zero
+        "Section properties for the stresses of beams: areas (m²), moduli (m³), allowable stress (Pa); 0 where unknown."
+        "A, W_y, W_z, W_t, A_y, A_z; yield stress over safety factor";
+}
+TransformDerivatives {
+    TransformDerivatives = transform_derivatives(q) -> [transform; derivatives] required
+        "Derivatives ∂T/∂q_j of every body, for all coordinates j that move it; 1, m, 1/m."
+        "∂T/∂q_j = Ω_j T" python(q);
+    TransformSecondDerivatives = transform_second_derivatives(q) -> [transform; second_derivatives] required
+        "Second derivatives ∂²T/∂q_m∂q_n of every body, for all pairs m ≤ n of the coordinates that move it."
+        "∂²T/∂q_m∂q_n = Ω_m Ω_n T";
+}
+        }
+    };
+}
+
+/// Calls a macro with the rows of one trait.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! select {
+    (CraneModel $consumer:ident CraneModel { $($row:tt)* } $($rest:tt)*) => { $consumer! { $($row)* } };
+    (Dynamics $consumer:ident Dynamics { $($row:tt)* } $($rest:tt)*) => { $consumer! { $($row)* } };
+    (Implicit $consumer:ident Implicit { $($row:tt)* } $($rest:tt)*) => { $consumer! { $($row)* } };
+    (Statics $consumer:ident Statics { $($row:tt)* } $($rest:tt)*) => { $consumer! { $($row)* } };
+    (InternalForces $consumer:ident InternalForces { $($row:tt)* } $($rest:tt)*) => { $consumer! { $($row)* } };
+    (TransformDerivatives $consumer:ident TransformDerivatives { $($row:tt)* } $($rest:tt)*) => { $consumer! { $($row)* } };
+    ($trait:ident $consumer:ident $other:ident { $($row:tt)* } $($rest:tt)*) => {
+        $crate::select! { $trait $consumer $($rest)* }
+    };
+}
+
+/// Extent of each index of a result, each after a comma.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! axes {
+    (number) => { "" };
+    (vector) => { ", n" };
+    (matrix) => { ", n, n" };
+    (base) => { ", 6, 6" };
+    (other) => { "" };
+    // Also those of coordinates that do not move a body.
+    ([transform; derivatives]) => { ", bodies, n, 4, 4" };
+    ([pair; coordinates]) => { ", n, 2" };
+    ([$item:ident; $count:ident]) => { concat!(", ", stringify!($count), $crate::axes!(@ $item)) };
+    (@ vector) => { ", 3" };
+    (@ pair) => { ", 2" };
+    (@ row) => { ", n" };
+    (@ tension) => { ", 3" };
+    (@ wrench) => { ", 6" };
+    (@ moduli) => { ", 8" };
+    (@ transform) => { ", 4, 4" };
+}
