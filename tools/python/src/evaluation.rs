@@ -46,11 +46,6 @@ impl<'a, 'py> State<'a, 'py> {
     pub fn moving(q: &'a Bound<'py, PyAny>, v: &'a Bound<'py, PyAny>) -> Self {
         Self { v: Some(v), ..Self::pose(q) }
     }
-
-    /// At a time.
-    pub fn at(self, t: Given<'a, 'py>) -> Self {
-        Self { t, ..self }
-    }
 }
 
 /// The state of a row; what was not given is empty, and the time 0.
@@ -66,27 +61,15 @@ pub struct Moment {
 }
 
 impl Crane {
-    /// A function of all rows, `of_row`: the axes of one of its results.
-    pub fn function<'py>(
-        &self,
-        py: Python<'py>,
-        function: FunctionId,
-        state: State<'_, 'py>,
-        of_row: &[usize],
-        invalid: &str,
-    ) -> Array<'py> {
-        self.compute(py, Quantity::Of(function), state, of_row, invalid)
-    }
-
-    /// A quantity of all rows, `of_row`: the axes of one of them.
+    /// A quantity of all rows.
     pub fn compute<'py>(
         &self,
         py: Python<'py>,
         quantity: Quantity,
         state: State<'_, 'py>,
-        of_row: &[usize],
         invalid: &str,
     ) -> Array<'py> {
+        let of_row = &*self.live.shape(quantity);
         self.refuse_force_states(quantity)?;
         let arguments = self.read(state)?;
         let joined = self.joined(&arguments)?;

@@ -39,6 +39,8 @@ mod _native {
     #[pymodule_export]
     use crate::crane::shipped;
     #[pymodule_export]
+    use crate::functions::functions;
+    #[pymodule_export]
     use crate::mistakes::{InvalidRowWarning, NoEquilibrium, ParameterError, SpecError, SpecWarning};
     #[pymodule_export]
     use crate::motion::Motion;

@@ -37,7 +37,7 @@ impl Crane {
         if self.live.description().has_valves() {
             return self.one_by_one(py, state, &of_row, invalid, write_wrenches);
         }
-        self.compute(py, Quantity::Of(FunctionId::InternalForces), state, &of_row, invalid)
+        self.compute(py, Quantity::Of(FunctionId::InternalForces), state, invalid)
     }
 
     /// (..., 5 sections + 5): stresses and utilisation of every section of beams, then margin, moments and supports of the governing
