@@ -22,9 +22,6 @@ fn interpret(crane: &Interpreted, quantity: &Quantity, inputs: &Inputs<Runtime>)
         "linearised_mass" => linearised(0),
         "linearised_stiffness" => linearised(1),
         "linearised_damping" => linearised(2),
-        "mass_solution" => {
-            crane.get("solve_mass", &inputs.clone().with(Argument::RightHandSide, inputs.get(Argument::Velocity)), n)
-        }
         "mass_matrix_lower" => {
             let both = crane.get("mass_matrix_and_bias", inputs, 0);
             let slot = |i: usize, j: usize| j * n - j * j.saturating_sub(1) / 2 + i - j;
@@ -32,10 +29,6 @@ fn interpret(crane: &Interpreted, quantity: &Quantity, inputs: &Inputs<Runtime>)
             (0..n * n).map(|k| entry(k / n, k % n)).collect()
         }
         "bias_with_mass_matrix" => crane.get("mass_matrix_and_bias", inputs, 0).split_off(n * (n + 1) / 2),
-        "internal_forces" => {
-            let accelerated = inputs.clone().with(Argument::Acceleration, inputs.get(Argument::Velocity));
-            crane.get("internal_forces", &accelerated, quantity.len())
-        }
         "lane_forward_dynamics" => crane.get("forward_dynamics", inputs, n),
         "implicit_solution" => implicit_solution(crane, inputs),
         "prescribed" => prescribed(crane, inputs),
@@ -80,7 +73,10 @@ fn generated_code_equals_the_interpreter_to_the_bit() {
         for state in states::far(&crane.chain, 4, 7) {
             let generated = (entry.evaluate)(&state, &parameters);
             let all = |values: &[f64]| values.iter().copied().map(Runtime).collect();
-            let inputs = Inputs::state(Runtime(state.t), all(&state.q), all(&state.v), all(&parameters));
+            // As in `evaluate`, the rates also serve as accelerations and as the right-hand side.
+            let inputs = Inputs::state(Runtime(state.t), all(&state.q), all(&state.v), all(&parameters))
+                .with(Argument::Acceleration, all(&state.v))
+                .with(Argument::RightHandSide, all(&state.v));
             let mut rest = generated.as_slice();
             for quantity in quantities(entry.description) {
                 let (first, others) = rest.split_at(quantity.len());

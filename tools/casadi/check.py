@@ -18,7 +18,7 @@ import numpy as np
 from command_line import parser, run
 from comparison import HEADER, compare
 from crane_model import read_crane
-from derivations import Derivations
+from derivations import NOT_DERIVED, Derivations
 from evaluate import Evaluate
 from identities import identities
 from sabotage import perturb, unnoticed
@@ -41,6 +41,7 @@ def check(options):
     evaluate = Evaluate(options.evaluate)
     names = options.crane or evaluate.names()
     quantities = [quantity["name"] for name in names[:1] for quantity in evaluate.layout(name)["quantities"]]
+    quantities = [name for name in quantities if name not in NOT_DERIVED]
     if options.sabotage and options.sabotage not in quantities:
         print(f"no quantity {options.sabotage!r}; there are: {', '.join(quantities)}", file=sys.stderr)
         return 2
@@ -104,6 +105,7 @@ def describe_differences(crane, derivations, layout):
         f"{key}: {layout[key]}, from the YAML {value}" for key, value in expected.items() if layout.get(key, value) != value
     ]
     offered = {quantity["name"]: quantity["length"] for quantity in layout["quantities"]}
+    offered = {name: length for name, length in offered.items() if name not in NOT_DERIVED}
     wanted = derivations.sizes()
     if "file" in layout:  # interpreted: only some of the quantities
         wanted = {name: size for name, size in wanted.items() if name in offered}

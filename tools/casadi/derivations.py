@@ -505,7 +505,7 @@ class Derivations:
 
     def sizes(self):
         """How many numbers each quantity has."""
-        own = {name: expression.numel() for name, expression in self.quantities.items() if name not in INTERNAL + LOOPS}
+        own = {name: expression.numel() for name, expression in self.quantities.items() if name not in INTERNAL}
         return own | dict.fromkeys(SOLUTIONS, self.crane.q.numel())
 
     def evaluate(self, states):
@@ -530,7 +530,7 @@ class Derivations:
 # Step size of `implicit_solution`, s; that of the program `evaluate`.
 IMPLICIT_STEP = 0.01
 # Computed from the other quantities at each state.
-SOLUTIONS = ["forward_dynamics", "lane_forward_dynamics", "mass_solution", "implicit_solution"]
+SOLUTIONS = ["forward_dynamics", "lane_forward_dynamics", "solve_mass", "implicit_solution"]
 # The stiffness of all springs in implicit steps, needed only for these: no generated function returns it.
 SPRINGS = "linear_stiffness"
 # The accelerations of coordinates that rigid drives prescribe, likewise.
@@ -538,8 +538,17 @@ PRESCRIBED = "prescribed_acceleration"
 # The damping in implicit steps, likewise.
 LINEAR_DAMPING = "linear_damping"
 INTERNAL = [SPRINGS, PRESCRIBED, LINEAR_DAMPING]
-# Of joints that close loops; the program `evaluate` calls functions of the open chain.
-LOOPS = ["loop_states", "loop_jacobians"]
+# What is not derived a second time: numbers of the spec, blocks of matrices that implicit solutions contain, and the wrenches of loop joints,
+# which no compiled crane has.
+NOT_DERIVED = [
+    "base_damping",
+    "base_stiffness",
+    "drive_pieces",
+    "joint_stiffness_and_damping",
+    "load_pieces",
+    "loop_wrenches",
+    "winch_pieces",
+]
 
 
 def solutions(values, v, prescribed):

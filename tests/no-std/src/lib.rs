@@ -14,18 +14,90 @@
 
 #![no_std]
 
+/// Type of an argument.
+macro_rules! argument {
+    (t) => {
+        f64
+    };
+    ($vector:ident) => {
+        &Vector
+    };
+}
+
+/// Type of a result.
+macro_rules! result {
+    (number) => {
+        f64
+    };
+    (vector) => {
+        Vector
+    };
+    (matrix) => {
+        Matrix
+    };
+    (base) => {
+        BaseMatrix
+    };
+}
+
+/// Type of an entry of a list.
+macro_rules! entry {
+    (row) => {
+        [f64; N]
+    };
+    ($item:ident) => {
+        crane_model::entry_type!($item)
+    };
+}
+
+/// One function per row of the table of quantities.
+macro_rules! exported {
+    ($($trait:ident { $(
+        $(#[doc = $remark:literal])*
+        $id:ident = $name:ident($($argument:ident),*) -> $result:tt $rule:ident $doc:literal $equation:literal
+        $(python($($python:tt)*))?;
+    )* })*) => {
+        $($(export! { $result $name($($argument),*) })*)*
+    };
+}
+
+/// One function.
+macro_rules! export {
+    (other $($row:tt)*) => {};
+    ([$item:ident; $count:ident] $name:ident($($argument:ident),*)) => {
+        exported_by_hand! { $name($($argument: argument!($argument),)* out: &mut [entry!($item)]); }
+    };
+    ($result:ident $name:ident($($argument:ident),*)) => {
+        exported_by_hand! { $name($($argument: argument!($argument)),*) -> result!($result); }
+    };
+}
+
+/// One function per method.
+macro_rules! exported_by_hand {
+    ($($name:ident($($argument:ident: $of:ty),*) $(-> $result:ty)?;)*) => {
+        $(
+            #[doc = concat!("`", stringify!($name), "` of the generated crane.")]
+            #[cfg_attr(feature = "no-panic", no_panic::no_panic)]
+            pub fn $name(crane: &Crane, $($argument: $of),*) $(-> $result)? {
+                crane.$name($($argument),*)
+            }
+        )*
+    };
+}
+
 /// All functions of a generated crane, one per method of the traits.
 macro_rules! crane {
     ($(#[$about:meta])* $name:ident) => {
         $(#[$about])*
         pub mod $name {
             use crane_model::dynamics::rk4::{self, State};
-            use crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
+            use crane_model::nalgebra::{SMatrix, SVector};
             use crane_model::rt::lanes::f64x8;
             use crane_model::{
                 CraneModel, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise,
-                ParameterError, SectionModuli, Statics, Tension, TransformDerivatives, Wrench,
+                ParameterError, Statics, TransformDerivatives,
             };
+            use crane_quantities::quantities;
 
             pub use generated::{Crane, DESCRIPTION, N};
 
@@ -48,69 +120,16 @@ macro_rules! crane {
             /// Eight cranes.
             pub type Lanes = <Crane as Ensemble<N>>::Lanes;
 
-            exported! {
-                Crane;
-                transforms(q: &Vector, out: &mut [Matrix4<f64>]);
-                points(q: &Vector, out: &mut [Vector3<f64>]);
-                point_velocities(q: &Vector, v: &Vector, out: &mut [Vector3<f64>]);
-                forces(t: f64, q: &Vector, v: &Vector) -> Vector;
-                support_forces(q: &Vector, v: &Vector) -> Vector;
-                element_forces(q: &Vector, v: &Vector) -> Vector;
-                drive_forces(t: f64, q: &Vector, v: &Vector) -> Vector;
-                joint_damper_forces(v: &Vector) -> Vector;
-                stop_forces(q: &Vector, v: &Vector) -> Vector;
-                friction_forces(v: &Vector) -> Vector;
-                load_forces(t: f64, q: &Vector) -> Vector;
-                load_pieces(out: &mut [[f64; 2]]);
-                connector_forces(t: f64, q: &Vector, v: &Vector) -> Vector;
-                connector_lengths(q: &Vector, v: &Vector, out: &mut [[f64; 2]]);
-                connector_tensions(t: f64, q: &Vector, v: &Vector, out: &mut [Tension]);
-                connector_jacobians(q: &Vector, out: &mut [[f64; N]]);
-                winch_pieces(out: &mut [[f64; 2]]);
-                support_reactions(q: &Vector, v: &Vector, out: &mut [Vector3<f64>]);
-                support_gaps(q: &Vector, v: &Vector, out: &mut [[f64; 2]]);
-                cylinder_states(q: &Vector, v: &Vector, out: &mut [Vector3<f64>]);
-                cylinder_jacobians(q: &Vector, out: &mut [[f64; N]]);
-                drive_limits(t: f64, q: &Vector, v: &Vector, out: &mut [[f64; 2]]);
-                drive_motions(t: f64, out: &mut [[f64; 2]]);
-                valve_openings(t: f64, out: &mut [[f64; 2]]);
-                drive_pieces(out: &mut [[f64; 2]]);
+            quantities! { exported }
+
+            exported_by_hand! {
                 prescribe(t: f64, q: &mut Vector, v: &mut Vector);
-                gravity_energy(q: &Vector) -> f64;
-                support_energy(q: &Vector) -> f64;
-                element_energy(q: &Vector) -> f64;
-                drive_energy(t: f64, q: &Vector) -> f64;
-                stop_energy(q: &Vector) -> f64;
                 potential_energy(t: f64, q: &Vector) -> f64;
-                drive_power(t: f64, q: &Vector, v: &Vector) -> f64;
-                connector_energy(t: f64, q: &Vector) -> f64;
-                winch_power(t: f64, q: &Vector, v: &Vector) -> f64;
-                load_power(t: f64, q: &Vector, v: &Vector) -> f64;
-                dissipation(t: f64, q: &Vector, v: &Vector) -> f64;
-                mass_matrix(q: &Vector) -> Matrix;
                 mass_matrix_and_bias(q: &Vector, v: &Vector, mass: &mut Matrix) -> Vector;
-                bias(q: &Vector, v: &Vector) -> Vector;
-                forward_dynamics(t: f64, q: &Vector, v: &Vector) -> Vector;
-                solve_mass(q: &Vector, r: &Vector) -> Vector;
-                kinetic_energy(q: &Vector, v: &Vector) -> f64;
                 factorise(q: &Vector, added_inertia: &Vector, base: &BaseMatrix) -> Factors;
                 solve(factors: &Factors, r: &Vector) -> Vector;
-                joint_stiffness_and_damping(out: &mut [[f64; 2]]);
-                nonlinear_stiffness_and_damping(t: f64, q: &Vector, v: &Vector, out: &mut [[f64; 2]]);
-                base_stiffness(q: &Vector, v: &Vector) -> BaseMatrix;
-                base_damping(q: &Vector, v: &Vector) -> BaseMatrix;
-                static_residual(t: f64, q: &Vector, positions: &Vector) -> Vector;
-                tangent_stiffness(t: f64, q: &Vector, positions: &Vector) -> Matrix;
-                drive_forces_at_rest(t: f64, q: &Vector, positions: &Vector) -> Vector;
                 drive_positions(t: f64) -> Vector;
                 linearise(q: &Vector) -> Linearisation<N>;
-                internal_forces(t: f64, q: &Vector, v: &Vector, a: &Vector, out: &mut [Wrench]);
-                cylinder_wrenches(q: &Vector, out: &mut [Wrench]);
-                connector_wrenches(q: &Vector, out: &mut [Wrench]);
-                support_positions(q: &Vector, out: &mut [Vector3<f64>]);
-                section_moduli(out: &mut [SectionModuli]);
-                transform_derivatives(q: &Vector, out: &mut [Matrix4<f64>]);
-                transform_second_derivatives(q: &Vector, out: &mut [Matrix4<f64>]);
             }
 
             /// Accelerations of eight cranes.
@@ -137,19 +156,6 @@ macro_rules! crane {
                 rk4::step(crane, t, h, state).is_ok()
             }
         }
-    };
-}
-
-/// One function per method.
-macro_rules! exported {
-    ($crane:ident; $($name:ident($($argument:ident: $of:ty),*) $(-> $result:ty)?;)*) => {
-        $(
-            #[doc = concat!("`", stringify!($name), "` of the generated crane.")]
-            #[cfg_attr(feature = "no-panic", no_panic::no_panic)]
-            pub fn $name(crane: &$crane, $($argument: $of),*) $(-> $result)? {
-                crane.$name($($argument),*)
-            }
-        )*
     };
 }
 

@@ -1,14 +1,16 @@
 //! Live cranes against compiled ones: every function, statics, modes, runs and ensembles of all shipped cranes.
 
+mod every;
+
 use std::ops::ControlFlow;
 
 use crane_codegen::build;
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynDerivatives, DynModel, Instance};
 use crane_model::dynamics::{InitialState, Settings, ensemble::Member};
-use crane_model::nalgebra::{Matrix4, Matrix6, Vector3};
-use crane_model::{ParameterError, SectionModuli};
-use crane_model::{modes, statics};
+use crane_model::nalgebra::Matrix6;
+use crane_model::{ParameterError, modes, statics};
+use every::{At, call_every};
 
 /// Whether a product and a sum round once: a loop of compiled code may then fuse other pairs than bytecode does.
 const FUSES: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
@@ -46,117 +48,28 @@ fn assert_same(what: &str, live: &[f64], compiled: &[f64]) {
     }
 }
 
-/// `count` numbers that a function writes into a list with other contents.
-fn numbers(count: usize, write: impl FnOnce(&mut [f64])) -> Vec<f64> {
-    let mut out = vec![f64::NAN; count];
-    write(&mut out);
-    out
-}
-
-fn vectors(count: usize, write: impl FnOnce(&mut [Vector3<f64>])) -> Vec<f64> {
-    let mut out = vec![Vector3::repeat(f64::NAN); count];
-    write(&mut out);
-    out.iter().flatten().copied().collect()
-}
-
-fn matrices(count: usize, write: impl FnOnce(&mut [Matrix4<f64>])) -> Vec<f64> {
-    let mut out = vec![Matrix4::repeat(f64::NAN); count];
-    write(&mut out);
-    out.iter().flatten().copied().collect()
-}
-
-fn pairs(count: usize, write: impl FnOnce(&mut [[f64; 2]])) -> Vec<f64> {
-    let mut out = vec![[f64::NAN; 2]; count];
-    write(&mut out);
-    out.into_flattened()
-}
-
-fn wrenches(crane: &dyn DynCrane, t: f64, [q, v, a]: [&[f64]; 3]) -> Vec<f64> {
-    let wrenches = crane.internal_forces_at(t, q, v, a);
-    wrenches.iter().flat_map(|wrench| wrench.force.iter().chain(&wrench.moment).copied().collect::<Vec<_>>()).collect()
-}
-
-fn moduli(crane: &dyn DynCrane) -> Vec<f64> {
-    let numbers = |of: &SectionModuli| {
-        let SectionModuli { area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress } = *of;
-        [area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress]
-    };
-    crane.section_moduli_at().iter().flat_map(numbers).collect()
-}
-
-fn tensions(crane: &dyn DynCrane, t: f64, [q, v]: [&[f64]; 2]) -> Vec<f64> {
-    let tensions = crane.connector_tensions_at(t, q, v);
-    tensions.iter().flat_map(|tension| [tension.force, tension.stiffness, tension.damping]).collect()
-}
-
 /// Everything that a crane computes at a state, by name.
 fn everything(crane: &dyn DynCrane) -> Vec<(&'static str, Vec<f64>)> {
     let (t, q, v) = state(crane);
     let held: Vec<f64> = q.iter().map(|q| 0.95 * q).collect();
-    let (q, v) = (&q[..], &v[..]);
-    let description = crane.description();
-    let n = crane.size();
-    let degrees: Vec<usize> = description.bodies.iter().map(|body| body.degrees_of_freedom).collect();
-    let pieces = description.drives.iter().map(|drive| drive.pieces).sum();
-    let connectors = &description.connectors;
-    let of_winches = connectors.iter().map(|connector| connector.pieces).sum();
-    let of_loads = description.loads.iter().map(|load| load.pieces).sum();
-    let (mut mass, mut stiffness, mut damping) = (vec![f64::NAN; n * n], vec![f64::NAN; n * n], vec![f64::NAN; n * n]);
-    crane.linearise(q, &mut mass, &mut stiffness, &mut damping);
-    let mut system = crane.system();
     let r: Vec<f64> = v.iter().map(|v| 100.0 * v).collect();
-    system.factorise(q, &vec![3.0; n], &Matrix6::from_diagonal_element(5.0));
-    vec![
-        ("transforms", matrices(degrees.len(), |out| crane.transforms(q, out))),
-        ("points", vectors(description.points.len(), |out| crane.points(q, out))),
-        ("point_velocities", vectors(description.points.len(), |out| crane.point_velocities(q, v, out))),
-        ("forces", numbers(n, |out| crane.forces(t, q, v, out))),
-        ("element_forces", numbers(n, |out| crane.element_forces(q, v, out))),
-        ("drive_forces", numbers(n, |out| crane.drive_forces(t, q, v, out))),
-        ("stop_forces", numbers(n, |out| crane.stop_forces(q, v, out))),
-        ("friction_forces", numbers(n, |out| crane.friction_forces(v, out))),
-        ("load_forces", numbers(n, |out| crane.load_forces(t, q, out))),
-        ("load_power", vec![crane.load_power(t, q, v)]),
-        ("stop_energy", vec![crane.stop_energy(q)]),
-        ("support_reactions", vectors(description.supports.len(), |out| crane.support_reactions(q, v, out))),
-        ("support_gaps", pairs(description.supports.len(), |out| crane.support_gaps(q, v, out))),
-        ("cylinder_states", vectors(description.cylinders.len(), |out| crane.cylinder_states(q, v, out))),
-        ("cylinder_jacobians", numbers(n * description.cylinders.len(), |out| crane.cylinder_jacobians(q, out))),
-        ("drive_limits", pairs(description.drives.len(), |out| crane.drive_limits(t, q, v, out))),
-        ("drive_motions", pairs(description.drives.len(), |out| crane.drive_motions(t, out))),
-        ("valve_openings", pairs(description.drives.len(), |out| crane.valve_openings(t, out))),
-        ("drive_forces_at_rest", numbers(n, |out| crane.drive_forces_at_rest(t, q, &held, out))),
-        ("drive_pieces", pairs(pieces, |out| crane.drive_pieces(out))),
-        ("connector_forces", numbers(n, |out| crane.connector_forces(t, q, v, out))),
-        ("connector_lengths", pairs(connectors.len(), |out| crane.connector_lengths(q, v, out))),
-        ("connector_tensions", tensions(crane, t, [q, v])),
-        ("connector_jacobians", numbers(n * connectors.len(), |out| crane.connector_jacobians(q, out))),
-        ("connector_energy", vec![crane.connector_energy(t, q), crane.winch_power(t, q, v)]),
-        ("winch_pieces", pairs(of_winches, |out| crane.winch_pieces(out))),
-        ("load_pieces", pairs(of_loads, |out| crane.load_pieces(out))),
-        ("energies", vec![crane.gravity_energy(q), crane.support_energy(q), crane.element_energy(q)]),
-        ("drive_energy", vec![crane.drive_energy(t, q)]),
-        ("powers", vec![crane.drive_power(t, q, v), crane.dissipation(t, q, v)]),
+    let n = crane.size();
+    let at = At { t, q: &q, v: &v, a: &r, r: &r, positions: &held };
+    let mut all = Vec::new();
+    call_every(crane, at, &mut |_, call| call(), &mut |id, numbers| all.push((id.name(), numbers)));
+    let [mut mass, mut stiffness, mut damping] = [f64::NAN; 3].map(|number| vec![number; n * n]);
+    crane.linearise(&q, &mut mass, &mut stiffness, &mut damping);
+    let (mut system, mut solution) = (crane.system(), vec![f64::NAN; n]);
+    system.factorise(&q, &vec![3.0; n], &Matrix6::from_diagonal_element(5.0));
+    system.solve(&r, &mut solution);
+    all.extend([
         ("prescribed motions", prescribed(crane)),
-        ("solve_mass", numbers(n, |out| crane.solve_mass(q, &r, out))),
-        ("static_residual", numbers(n, |out| crane.static_residual(t, q, &held, out))),
-        ("tangent_stiffness", numbers(n * n, |out| crane.tangent_stiffness(t, q, &held, out))),
-        ("mass_matrix", numbers(n * n, |out| crane.mass_matrix(q, out))),
-        ("bias", numbers(n, |out| crane.bias(q, v, out))),
-        ("forward_dynamics", numbers(n, |out| crane.forward_dynamics(t, q, v, out))),
-        ("kinetic_energy", vec![crane.kinetic_energy(q, v)]),
-        ("solve", numbers(n, |out| system.solve(&r, out))),
-        ("joint_stiffness_and_damping", pairs(n, |out| crane.joint_stiffness_and_damping(out))),
-        ("nonlinear_stiffness_and_damping", pairs(n, |out| crane.nonlinear_stiffness_and_damping(t, q, v, out))),
-        ("base_stiffness", crane.base_stiffness(q, v).as_slice().to_vec()),
-        ("base_damping", crane.base_damping(q, v).as_slice().to_vec()),
+        ("solve", solution),
         ("linearised mass", mass),
         ("linearised stiffness", stiffness),
         ("linearised damping", damping),
-        ("internal_forces", wrenches(crane, t, [q, v, &r])),
-        ("section_moduli", moduli(crane)),
-        ("support_positions", vectors(description.supports.len(), |out| crane.support_positions(q, out))),
-    ]
+    ]);
+    all
 }
 
 /// Derivatives of the transforms of both, in that order.
