@@ -6,7 +6,7 @@ use super::Precision;
 use super::function::{Writer, numbers};
 use super::words::{comment, field};
 use crate::chain::{Chain, CoordinateKind, Input};
-use crate::program::{Argument, Function, FunctionId, Shape, Struct};
+use crate::program::{Argument, Count, Extent, Function, FunctionId, Shape, Struct};
 
 /// The beginning of the source.
 pub fn source(chain: &Chain, header: &str) -> String {
@@ -175,62 +175,50 @@ fn of_argument(argument: Argument) -> &'static str {
     }
 }
 
-fn connectors(chain: &Chain) -> Vec<&str> {
-    chain.connectors().iter().map(|connector| connector.name.as_str()).collect()
-}
-
-fn cylinders(chain: &Chain) -> Vec<&str> {
-    chain.cylinders.iter().map(|cylinder| cylinder.name.as_str()).collect()
+/// Names of the parts that a list counts.
+fn names_of(chain: &Chain, of: Count) -> String {
+    let names: Vec<String> = match of {
+        Count::Bodies => chain.bodies.iter().map(|body| body.name.clone()).collect(),
+        Count::Points => chain.points.iter().map(|point| point.name.clone()).collect(),
+        Count::Supports => chain.supports.iter().map(|support| support.name.clone()).collect(),
+        Count::Connectors => chain.connectors().iter().map(|connector| connector.name.clone()).collect(),
+        Count::Cylinders => chain.cylinders.iter().map(|cylinder| cylinder.name.clone()).collect(),
+        Count::LoopEquations => chain.loop_equations().collect(),
+        _ => return format!("{} {}", chain.count(of), of.name()),
+    };
+    format!("{} {}", of.name().replace('_', " "), names.join(", "))
 }
 
 /// The shape of a result in words.
 fn result(chain: &Chain, Function { id, shape, .. }: &Function) -> String {
     let n = chain.coordinates.len();
-    let names = |names: Vec<&str>| names.join(", ");
+    let names = || match id.extent() {
+        Extent::List(_, count) => names_of(chain, count.factors().first().copied().unwrap_or(count)),
+        _ => String::new(),
+    };
     match shape {
         Shape::Vectors(_) if *id == FunctionId::CylinderStates => {
-            format!(
-                "out: length, its rate and its derivative by the joint's coordinate, of the cylinders {}",
-                names(cylinders(chain))
-            )
+            format!("out: length, its rate and its derivative by the joint's coordinate, of the {}", names())
         }
-        Shape::Rows { count, n } if *id == FunctionId::CylinderJacobians => {
-            format!("out: {count} x {n}, row by row, of the cylinders {}", names(cylinders(chain)))
-        }
-        Shape::Structs(Struct::Wrench, _) if *id == FunctionId::CylinderWrenches => {
-            format!(
-                "out: force x, y, z and moment x, y, z of all cuts, one after the other for {}",
-                names(cylinders(chain))
-            )
-        }
-        Shape::Structs(Struct::Wrench, _) if *id == FunctionId::ConnectorWrenches => {
-            format!(
-                "out: force x, y, z and moment x, y, z of all cuts, one after the other for {}",
-                names(connectors(chain))
-            )
+        Shape::Vectors(_) if *id == FunctionId::LoopStates => {
+            format!("out: gap, its rate and J' q', of the {}", names())
         }
         Shape::Scalar => "Returns the number".to_owned(),
         Shape::Vector(_) => "out: one number per coordinate".to_owned(),
         Shape::Symmetric(_) => format!("out: {n} x {n}, symmetric"),
         Shape::Base => "out: 6 x 6, symmetric, in the order x, y, z, psi, theta, phi of the base".to_owned(),
         Shape::MassAndBias(_) => format!("out: {n} x {n}, symmetric, then one number per coordinate"),
-        Shape::Vectors(count) if *count == chain.points.len() => {
-            let points = chain.points.iter().map(|point| point.name.as_str()).collect();
-            format!("out: x, y, z of each of {}", names(points))
-        }
-        Shape::Vectors(count) => format!("out: x, y, z of each of {count} supports"),
+        Shape::Vectors(_) => format!("out: x, y, z of each of the {}", names()),
         Shape::Pairs(count) => format!("out: {count} pairs"),
-        Shape::Rows { count, n } => {
-            format!("out: {count} x {n}, row by row, of the connectors {}", names(connectors(chain)))
-        }
+        Shape::Rows { count, n } => format!("out: {count} x {n}, row by row, of the {}", names()),
         Shape::Structs(Struct::Tension, _) => {
-            format!(
-                "out: force and its derivatives with respect to length and rate, of the connectors {}",
-                names(connectors(chain))
-            )
+            format!("out: force and its derivatives with respect to length and rate, of the {}", names())
         }
-        Shape::Structs(Struct::Wrench, count) => {
+        Shape::Structs(Struct::Wrench, count) if *id == FunctionId::InternalForces => {
             format!("out: force x, y, z and moment x, y, z of each of {count} cuts, from the ground to the tip")
+        }
+        Shape::Structs(Struct::Wrench, _) => {
+            format!("out: force x, y, z and moment x, y, z of all cuts, one after the other for the {}", names())
         }
         Shape::Structs(Struct::SectionModuli, count) => {
             format!(
@@ -239,12 +227,9 @@ fn result(chain: &Chain, Function { id, shape, .. }: &Function) -> String {
             )
         }
         Shape::Transforms { counts, .. } => {
-            let bodies = chain.bodies.iter().map(|body| body.name.as_str()).collect();
             let matrices: usize = counts.iter().sum();
-            format!(
-                "out: the upper three rows of {matrices} 4 x 4 matrices, row by row, of the bodies {}",
-                names(bodies)
-            )
+            let bodies = names_of(chain, Count::Bodies);
+            format!("out: the upper three rows of {matrices} 4 x 4 matrices, row by row, of the {bodies}")
         }
         Shape::Factors(count) => format!("out: {count} numbers for solve"),
         Shape::Record(_, fields) => {

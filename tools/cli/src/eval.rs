@@ -5,12 +5,14 @@ use std::{
     path::Path,
 };
 
-use crane_live::LiveCrane;
+use crane_codegen::program::Argument;
+use crane_live::rows::{self, Evaluation, Rows};
+use crane_live::{FunctionId, LiveCrane, Refusal};
 use crane_model::{
     Description, Tree,
     dyn_crane::{DynCrane, DynDerivatives, DynModel},
 };
-use nalgebra::{Matrix4, Vector3};
+use nalgebra::Matrix4;
 use serde_json::{Map, Value};
 
 use crate::{
@@ -24,18 +26,8 @@ use crate::{
 /// Evaluates and prints or writes.
 pub fn eval(options: &Eval, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let crane = registry.live(options.crane.open(registry)?.as_ref())?;
-    let by_forces = [Quantity::Forces, Quantity::Accelerations, Quantity::DriveEfforts];
-    if let Some(quantity) = options.quantities.iter().find(|quantity| by_forces.contains(quantity))
-        && crane.description().has_force_states()
-    {
-        return Err(Problem::usage(
-            format!(
-                "`{}` of {} follows from pressures or bristles, which are states of a run",
-                quantity.name(),
-                crane.description().name
-            ),
-            "ask for other `--quantities`, or simulate: results contain these states and the forces",
-        ));
+    for quantity in &options.quantities {
+        check(*quantity, &crane)?;
     }
     let states = states(options, &crane)?;
     let arrays = arrays(options, &crane, &states);
@@ -139,72 +131,58 @@ fn arrays(options: &Eval, crane: &LiveCrane, states: &States) -> Vec<Array> {
     arrays
 }
 
-impl Quantity {
-    /// Its name in results and on the command line.
-    fn name(self) -> &'static str {
-        match self {
-            Quantity::Transforms => "transforms",
-            Quantity::TransformDerivatives => "transform_derivatives",
-            Quantity::TransformSecondDerivatives => "transform_second_derivatives",
-            Quantity::Points => "points",
-            Quantity::PointVelocities => "point_velocities",
-            Quantity::MassMatrix => "mass_matrix",
-            Quantity::Bias => "bias",
-            Quantity::Forces => "forces",
-            Quantity::Accelerations => "accelerations",
-            Quantity::StaticResidual => "static_residual",
-            Quantity::TangentStiffness => "tangent_stiffness",
-            Quantity::Energies => "energies",
-            Quantity::DriveEfforts => "drive_efforts",
-            Quantity::SupportReactions => "support_reactions",
-        }
-    }
+/// Refuses quantities that do not follow from a state, or that closed loops change.
+fn check(quantity: Quantity, crane: &LiveCrane) -> Outcome<()> {
+    let refusal = match quantity {
+        Quantity::Of(id) if !takes_accelerations(id) => crane.refusal(id),
+        Quantity::Energies => None,
+        _ => crane.description().has_force_states().then_some(Refusal::ForceStates),
+    };
+    let why = match refusal {
+        None => return Ok(()),
+        Some(Refusal::ForceStates) => "follows from pressures or bristles, which are states of a run".to_owned(),
+        Some(Refusal::Loop(joint)) => format!("depends on the loop that {joint} closes"),
+    };
+    Err(Problem::usage(
+        format!("`{}` of {} {why}", quantity.name(), crane.description().name),
+        "ask for other `--quantities`, or simulate: results contain these states and the forces",
+    ))
+}
+
+fn takes_accelerations(id: FunctionId) -> bool {
+    id.arguments().contains(&Argument::Acceleration)
 }
 
 /// Shape and numbers of a quantity at one state.
 fn evaluate(quantity: Quantity, live: &LiveCrane, t: f64, q: &[f64], v: &[f64]) -> (Vec<usize>, Vec<f64>) {
     let crane: &dyn DynCrane = live;
     let derivatives: &dyn DynDerivatives = live;
-    let n = q.len();
     match quantity {
-        Quantity::Transforms => matrices(&crane.transforms_at(q)),
-        Quantity::TransformDerivatives => matrices(&derivatives.transform_derivatives_at(q)),
-        Quantity::TransformSecondDerivatives => matrices(&derivatives.transform_second_derivatives_at(q)),
-        Quantity::Points => vectors(&crane.points_at(q)),
-        Quantity::PointVelocities => vectors(&crane.point_velocities_at(q, v)),
-        Quantity::MassMatrix => (vec![n, n], crane.mass_matrix_at(q).as_slice().to_vec()),
-        Quantity::Bias => list(crane.bias_at(q, v).as_slice()),
-        Quantity::Forces => {
-            let mut forces = vec![0.0; n];
-            crane.forces(t, q, v, &mut forces);
-            list(&forces)
+        // Only those of coordinates that move a body.
+        Quantity::Of(FunctionId::TransformDerivatives) => matrices(&derivatives.transform_derivatives_at(q)),
+        Quantity::Of(FunctionId::TransformSecondDerivatives) => {
+            matrices(&derivatives.transform_second_derivatives_at(q))
+        }
+        Quantity::Of(id) => {
+            let quantity = rows::Quantity::Of(id);
+            let mut evaluation = Evaluation::<f64>::new(live, quantity);
+            let mut numbers = vec![0.0; evaluation.width()];
+            // Those of the motion from this state.
+            let a = if takes_accelerations(id) { crane.accelerations_at(t, q, v).as_slice().to_vec() } else { vec![] };
+            evaluation.run(&Rows { t: &[t], q, v, a: &a, ..Rows::default() }, 0..1, &mut numbers);
+            (live.shape(quantity), numbers)
         }
         Quantity::Accelerations => list(crane.accelerations_at(t, q, v).as_slice()),
-        Quantity::StaticResidual => {
-            let mut residual = vec![0.0; n];
-            crane.static_residual(t, q, &crane.drive_positions_at(t), &mut residual);
-            list(&residual)
-        }
-        Quantity::TangentStiffness => {
-            let mut stiffness = vec![0.0; n * n];
-            crane.tangent_stiffness(t, q, &crane.drive_positions_at(t), &mut stiffness);
-            (vec![n, n], stiffness)
-        }
         Quantity::Energies => {
             let energies = crane.energies_at(t, q, v);
             list(&energies.parts(crane.description()).map(|(_, energy)| energy).collect::<Vec<_>>())
         }
         Quantity::DriveEfforts => list(&crane.drive_efforts_at(t, q, v)),
-        Quantity::SupportReactions => vectors(&crane.support_reactions_at(q, v)),
     }
 }
 
 fn list(numbers: &[f64]) -> (Vec<usize>, Vec<f64>) {
     (vec![numbers.len()], numbers.to_vec())
-}
-
-fn vectors(vectors: &[Vector3<f64>]) -> (Vec<usize>, Vec<f64>) {
-    (vec![vectors.len(), 3], vectors.iter().flatten().copied().collect())
 }
 
 fn matrices(matrices: &[Matrix4<f64>]) -> (Vec<usize>, Vec<f64>) {
@@ -216,11 +194,11 @@ fn matrices(matrices: &[Matrix4<f64>]) -> (Vec<usize>, Vec<f64>) {
 fn index(quantity: Quantity, tree: &Tree) -> Option<Array> {
     let bodies = (0..tree.parents().len()).map(|body| (body, tree.coordinates(body)));
     let (name, width, rows): (_, _, Vec<Vec<usize>>) = match quantity {
-        Quantity::TransformDerivatives => {
+        Quantity::Of(FunctionId::TransformDerivatives) => {
             let rows = bodies.flat_map(|(p, moving)| moving.into_iter().map(move |i| vec![p, i]));
             ("transform_derivatives_index", 2, rows.collect())
         }
-        Quantity::TransformSecondDerivatives => {
+        Quantity::Of(FunctionId::TransformSecondDerivatives) => {
             let rows = bodies.flat_map(|(p, moving)| {
                 let pairs =
                     |(place, m): (usize, &usize)| moving[place..].iter().map(|n| vec![p, *m, *n]).collect::<Vec<_>>();

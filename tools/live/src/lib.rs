@@ -35,10 +35,12 @@ mod linearise;
 pub mod machine;
 mod motion;
 mod native;
+mod refusal;
 mod routine;
 pub mod rows;
 
 pub use crane::LiveCrane;
 pub use crane_codegen::program::FunctionId;
 pub use motion::Motion;
+pub use refusal::Refusal;
 pub use routine::Routine;

@@ -5,6 +5,7 @@ mod every;
 use std::ops::ControlFlow;
 
 use crane_codegen::build;
+use crane_codegen::program::{Count, Extent, FunctionId};
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynDerivatives, DynModel, Instance};
 use crane_model::dynamics::{InitialState, Settings, ensemble::Member};
@@ -115,6 +116,19 @@ fn live_and_compiled_descriptions_are_equal() {
     for (compiled, live) in both() {
         let live: &dyn DynCrane = &live;
         assert_eq!(live.description(), compiled.description());
+    }
+}
+
+/// The lists of compiled cranes, of live cranes and of their descriptions are of one length.
+#[test]
+fn a_chain_and_its_description_count_the_same_parts() {
+    for (compiled, live) in both() {
+        for id in FunctionId::ALL {
+            let Extent::List(_, count) = id.extent() else { continue };
+            let name = &compiled.description().name;
+            assert_eq!(compiled.count(count), live.chain().count(count), "{count:?} of {name}");
+        }
+        assert_eq!(compiled.count(Count::Cuts), compiled.description().cuts().len());
     }
 }
 

@@ -36,6 +36,9 @@ def set_threads(count: int | None = None) -> None:
 def threads() -> int:
     """How many threads a call uses."""
 
+def functions() -> list[tuple[str, list[str], list[str]]]:
+    """Methods of the table of quantities: name, arguments, and axes of the result of one state."""
+
 def real_array(name: str, object: ArrayLike) -> Array:
     """A new array of the numbers of anything that NumPy converts to an array of real numbers; masked ones are NaN. TypeError names what
     is none."""
@@ -158,74 +161,12 @@ class Crane:
     ) -> Array:
         """(..., 5 sections + 5): stresses and utilisation of every section of beams, then margin, moments and supports of the governing
         tipping line; `Crane.strength` names them."""
-    def transforms(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., bodies, 4, 4): transforms of the bodies into the world frame, m."""
-    def transform_derivatives(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., bodies, n, 4, 4): `∂T/∂q_j`; zero for coordinates that do not move a body."""
     def transform_second_derivatives(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., bodies, n, n, 4, 4): `∂²T/∂q_m∂q_n`."""
-    def points(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., points, 3): positions of the points of interest, world frame, m."""
-    def point_velocities(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., points, 3): their velocities, m/s."""
     def point_jacobians(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., points, 3, n): derivatives of their positions with respect to q, m/m and m/rad."""
-    def mass_matrix(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., n, n): the mass matrix A, symmetric positive definite; kg, kg m, kg m²."""
-    def bias(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., n): velocity and gravity forces e of `A q̈ = e + f`, N and N m: the negative of Pinocchio's `nle` and of
-        MuJoCo's `qfrc_bias`, which are on the left-hand side."""
-    def forces(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
-        """(..., n): generalized forces f of supports, elements, drives and joint dampers, N and N m. t: s, 0 unless given."""
-    def element_forces(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., n): generalized forces of the springs and dampers between rigid elements, N m."""
-    def drive_forces(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
-        """(..., n): generalized forces of the drives, N and N m."""
-    def stop_forces(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., n): generalized forces of the end stops, N and N m."""
-    def friction_forces(self, v: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., n): generalized forces of friction in joints, N and N m."""
-    def load_forces(self, q: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
-        """(..., n): generalized forces of the loads applied from outside, N and N m. t: s, 0 unless given."""
-    def connector_forces(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
-        """(..., n): generalized forces of the connectors, N and N m. t: s, 0 unless given."""
-    def connector_lengths(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., connectors, 2): lengths of the connectors, m, and their rates, m/s."""
-    def connector_tensions(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
-        """(..., connectors, 3): forces of the connectors, N, positive in tension, and their derivatives with respect to length, N/m, and
-        rate, N s/m."""
-    def drive_forces_at_rest(self, q: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
-        """(..., n): generalized forces of the drives, including rigid ones, that hold the crane at rest where they are at times t, N and N m."""
-    def support_reactions(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., supports, 3): forces of the supports on the crane, world frame, N."""
-    def support_gaps(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., supports, 2): how far one-sided supports are above the ground, m, negative where pressed in, and its rate, m/s; 0 for others."""
-    def cylinder_states(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., cylinders, 3): length of each cylinder, m, its rate, m/s, and its derivative with respect to the joint's coordinate,
-        m/rad or m/m."""
-    def cylinder_jacobians(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., cylinders, n): derivatives of the length of each cylinder with respect to the coordinates, m/rad or m/m. A cylinder with a valve
-        that pushes with F exerts the generalized forces F times its row. Zeros for a crane without valves."""
-    def drive_limits(self, t: ArrayLike, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., drives, 2): maximum effort of each drive, N or N m, 0 if it has no limit, and its stiffness at the state, N/m or N m/rad.
-        Zeros for a crane without limits."""
-    def drive_motions(self, t: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., drives, 2): prescribed positions and rates of the drives at times t, m and rad, m/s and rad/s."""
-    def valve_openings(self, t: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., drives, 2): commands over time of the drives' valves at times t, −1 to 1, and their rates, 1/s; zeros without one."""
-    def loop_states(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., equations, 3): gaps of the equations of loop joints, m and 1, their rates, and the part of their second rates that does not
-        depend on accelerations."""
-    def loop_jacobians(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., equations, n): derivatives of the gaps of loop joints with respect to q."""
-    def forward_dynamics(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
-        """(..., n): accelerations q̈ of `A q̈ = e + f`, with closed loops, m/s² and rad/s²."""
     def inverse_dynamics(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., n): generalized forces that a motion requires in total, `A a − e`, N and N m."""
-    def static_residual(self, q: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
-        """(..., n): `∂E_p/∂q` with the drives where they are at times t, zero in equilibrium, N and N m."""
-    def tangent_stiffness(self, q: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
-        """(..., n, n): `∂²E_p/∂q²` with the drives where they are at times t, N/m, N and N m."""
     def _small_motions(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., 3, n, n): A, K and D of small motions about poses at rest; `linearise` names them."""
     def _small_motions_about(
@@ -244,21 +185,118 @@ class Crane:
     ) -> Array:
         """(..., 3 n + 3): poses, rates and efforts of steady motions, drift, acceleration, part reached; `steady_motion` names them.
         held: coordinates, and whether a position is given; their rates and positions are at the same indices in `rates` and `positions`."""
-    def kinetic_energy(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(...): kinetic energy, J."""
+    # The methods below follow from the table of quantities: UPDATE_GOLDEN=1 cargo test -p crane-tests --test python_stub
+    def transforms(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., bodies, 4, 4): Transforms T of all bodies into the world frame; translations in m."""
+    def points(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., points, 3): Positions of the points of interest in the world frame, m."""
+    def point_velocities(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., points, 3): Velocities of the points of interest in the world frame, m/s."""
+    def forces(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(..., n): Generalized forces of everything except inertia and gravity, N and N m.
+        The forces of cylinders with a valve depend on their pressures and are not included.
+        t: s, 0 unless given."""
+    def support_forces(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., n): Generalized forces of the supports, N and N m."""
+    def element_forces(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., n): Generalized forces of the springs and dampers between rigid elements, N m."""
+    def drive_forces(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(..., n): Generalized forces of the drives, N and N m.
+        t: s, 0 unless given."""
+    def joint_damper_forces(self, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., n): Generalized forces of viscous damping in passive joints, N and N m."""
+    def stop_forces(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., n): Generalized forces of the end stops, N and N m."""
+    def friction_forces(self, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., n): Generalized forces of joint friction, N and N m."""
+    def load_forces(self, q: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(..., n): Generalized forces of the loads applied from outside, N and N m.
+        t: s, 0 unless given."""
+    def connector_forces(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(..., n): Generalized forces of connectors, N and N m.
+        t: s, 0 unless given."""
+    def connector_lengths(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., connectors, 2): Length ℓ (m) of every connector, and its rate ℓ̇ (m/s)."""
+    def connector_tensions(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(..., connectors, 3): Force F of every connector (N), positive where it pulls, and its derivatives ∂F/∂ℓ (N/m) and ∂F/∂ℓ̇ (N s/m).
+        t: s, 0 unless given."""
+    def connector_jacobians(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., connectors, n): How the length of every connector changes with the coordinates, one row per connector, m/rad and 1."""
+    def loop_states(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., loop_equations, 3): Every equation of the loop joints: its gap φ (m, and 1 for the direction of a pin), the rate of φ, and the part of its second rate that does not depend on accelerations."""
+    def loop_jacobians(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., loop_equations, n): How the gaps of the loop joints change with the coordinates, one row per equation."""
+    def support_reactions(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., supports, 3): Forces of the supports on the crane in the world frame, N."""
+    def support_gaps(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., supports, 2): How far one-sided supports are above the ground, m, negative where they are pressed in, and its rate, m/s; 0 for others."""
+    def cylinder_states(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., cylinders, 3): Length of every cylinder, m, its rate, m/s, and its derivative with respect to the joint's coordinate, m/rad or m/m.
+        NaN where the linkage of a cylinder cannot be assembled."""
+    def cylinder_jacobians(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., cylinders, n): Derivatives of the length of every cylinder with respect to the coordinates, m/m and m/rad.
+        A cylinder with a valve that pushes with F exerts the generalized forces `F ∂ℓ/∂q`. Zeros for a crane without valves."""
+    def drive_motions(self, t: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., drives, 2): Prescribed position q_dr (m, rad) and rate q̇_dr (m/s, rad/s) of every drive."""
+    def valve_openings(self, t: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., drives, 2): Command of the valve of every drive over time, −1 to 1, and its rate, 1/s; zeros without one."""
+    def drive_limits(self, t: ArrayLike, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., drives, 2): Maximum effort of every drive, N m or N, 0 without a limit, and its stiffness at the state, N m/rad or N/m.
+        Zeros for a crane without limits."""
     def gravity_energy(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(...): potential energy of gravity, zero at the world's origin, J."""
+        """(...): Potential energy of gravity, zero at the world's origin, J."""
     def support_energy(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(...): energy of the supports' springs, J."""
+        """(...): Energy of the supports' springs, J."""
     def element_energy(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(...): energy of the springs between rigid elements, J."""
+        """(...): Energy of the springs between rigid elements, J."""
     def drive_energy(self, q: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
-        """(...): energy of the drives' springs, J."""
+        """(...): Energy of the drives' springs, J.
+        t: s, 0 unless given."""
     def stop_energy(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(...): energy of the end stops, J."""
+        """(...): Energy of the end stops, J."""
     def connector_energy(self, q: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
-        """(...): energy of the connectors, J."""
+        """(...): Energy of connectors, J.
+        t: s, 0 unless given."""
     def drive_power(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
-        """(...): power that the drives' motions put in, W."""
+        """(...): Power of the prescribed motions, W.
+        t: s, 0 unless given."""
+    def load_power(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(...): Power that the loads applied from outside put in, W.
+        t: s, 0 unless given."""
+    def winch_power(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(...): Power that winches put in, W.
+        t: s, 0 unless given."""
     def dissipation(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
-        """(...): power that all dampers dissipate, W."""
+        """(...): Power that all dampers dissipate, W.
+        t: s, 0 unless given."""
+    def forward_dynamics(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(..., n): Accelerations q̈, m/s² and rad/s².
+        In O(n): A is never formed. The forces of cylinders with a valve are not included. Of the open chain, except in Python.
+        t: s, 0 unless given."""
+    def mass_matrix(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., n, n): Mass matrix A; kg, kg m and kg m².
+        Symmetric positive definite."""
+    def bias(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., n): Bias e: velocity and gravity forces, N and N m.
+        They are on the right-hand side of `A q̈ = e + f`: the negative of the bias force C of Featherstone, of Pinocchio's `nle` and of
+        MuJoCo's `qfrc_bias`, which are on the left-hand side."""
+    def kinetic_energy(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(...): Kinetic energy, J."""
+    def static_residual(self, q: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(..., n): Gradient of the potential energy with the drives at given positions, zero in equilibrium; N and N m.
+        In Python, the drives are where they are at times t.
+        t: s, 0 unless given."""
+    def tangent_stiffness(self, q: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(..., n, n): Tangent stiffness K: derivative of the residual, its symmetric part; N/m, N and N m.
+        Positive definite if the equilibrium is stable. A prescribed coordinate, whose residual is 0, has 1 on the diagonal and zeros elsewhere
+        in its row and column. In Python, the drives are where they are at times t.
+        t: s, 0 unless given."""
+    def drive_forces_at_rest(self, q: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(..., n): Generalized forces of the drives that hold the crane at rest at given positions, N and N m.
+        ℓ₀ is the length of a cylinder with the joint at the position of its drive and straight beams, and k the stiffness of the drive over
+        the squared lever arm there. In Python, the drives are where they are at times t.
+        t: s, 0 unless given."""
+    def support_positions(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., supports, 3): Positions of the supports' attachment points in the world frame, m."""
+    def transform_derivatives(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., bodies, n, 4, 4): Derivatives ∂T/∂q_j of every body, for all coordinates j that move it; 1, m, 1/m."""

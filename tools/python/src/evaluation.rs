@@ -1,7 +1,7 @@
 //! How a function is computed of states: rows of all arguments, eight at a time or one by one, on all threads.
 
-use crane_live::FunctionId;
 use crane_live::rows::{Evaluation, Quantity, Rows};
+use crane_live::{FunctionId, Refusal};
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::rt::lanes::f64x8;
 use numpy::{PyArrayDyn, PyArrayMethods};
@@ -70,7 +70,7 @@ impl Crane {
         invalid: &str,
     ) -> Array<'py> {
         let of_row = &*self.live.shape(quantity);
-        self.refuse_force_states(quantity)?;
+        self.refuse(quantity)?;
         let arguments = self.read(state)?;
         let joined = self.joined(&arguments)?;
         let bad = self.bad_rows(&joined, STATE, Invalid::named(invalid)?)?;
@@ -122,51 +122,23 @@ impl Crane {
         array(py, out, &joined.shape, of_row)
     }
 
-    /// Refuses functions whose forces have states of their own, so that they do not follow from pose, rates and time.
-    fn refuse_force_states(&self, quantity: Quantity) -> PyResult<()> {
-        let description = self.live.description();
-        let sticks = !description.bristles.is_empty();
+    /// Refuses functions that do not follow from pose, rates and time, or that closed loops change.
+    fn refuse(&self, quantity: Quantity) -> PyResult<()> {
         let Quantity::Of(function) = quantity else { return Ok(()) };
-        let (depends, instead) = match function {
-            FunctionId::Linearise => (description.has_force_states(), "use modes(q)"),
-            FunctionId::ForwardDynamics
-            | FunctionId::Forces
-            | FunctionId::DriveForces
-            | FunctionId::DrivePower
-            | FunctionId::Dissipation => (description.has_force_states(), "use simulate or simulation"),
-            FunctionId::FrictionForces => (sticks, "use simulate, whose columns contain them"),
-            _ => (false, ""),
+        let why = match self.live.refusal(function) {
+            None => return Ok(()),
+            Some(Refusal::ForceStates) => format!("follows from {}, which are states of a run", self.force_states()),
+            Some(Refusal::Loop(joint)) => format!("depends on the loop that {joint} closes"),
         };
-        if !depends {
-            return self.refuse_loops(function);
-        }
-        Err(PyValueError::new_err(format!(
-            "{} of {} follows from {}, which are states of a run: {instead}",
-            function.name(),
-            description.name,
-            self.force_states()
-        )))
-    }
-
-    /// Refuses quantities that are computed of the open chain, and that closed loops change.
-    fn refuse_loops(&self, function: FunctionId) -> PyResult<()> {
-        let description = self.live.description();
-        let rigid = !description.prescribed().is_empty();
         let instead = match function {
             FunctionId::Linearise => "use modes(q)",
-            FunctionId::DriveForces | FunctionId::DrivePower if rigid => "use simulate, whose columns contain them",
-            FunctionId::DriveForcesAtRest if rigid => "use statics",
-            _ => return Ok(()),
+            FunctionId::DriveForcesAtRest => "use statics",
+            FunctionId::FrictionForces => "use simulate, whose columns contain them",
+            _ if self.live.description().has_force_states() => "use simulate or simulation",
+            _ => "use simulate, whose columns contain them",
         };
-        match self.live.loop_joints().first() {
-            None => Ok(()),
-            Some(joint) => Err(PyValueError::new_err(format!(
-                "{} of {} depends on the loop that {} closes: {instead}",
-                function.name(),
-                description.name,
-                joint.name
-            ))),
-        }
+        let name = &self.live.description().name;
+        Err(PyValueError::new_err(format!("{} of {name} {why}: {instead}", function.name())))
     }
 
     /// States of the forces of a crane that has some, in words.

@@ -3,52 +3,30 @@
 import crane
 import numpy as np
 import pytest
+from crane import _native
 
-# Every function of a state, its arguments, and the axes of its result.
-FUNCTIONS = [
-    ("transforms", "q", lambda c: (len(c.info["bodies"]), 4, 4)),
-    ("transform_derivatives", "q", lambda c: (len(c.info["bodies"]), c.n, 4, 4)),
-    ("points", "q", lambda c: (len(c.info["points"]), 3)),
-    ("point_velocities", "qv", lambda c: (len(c.info["points"]), 3)),
-    ("point_jacobians", "q", lambda c: (len(c.info["points"]), 3, c.n)),
-    ("mass_matrix", "q", lambda c: (c.n, c.n)),
-    ("bias", "qv", lambda c: (c.n,)),
-    ("forces", "qvt", lambda c: (c.n,)),
-    ("element_forces", "qv", lambda c: (c.n,)),
-    ("drive_forces", "qvt", lambda c: (c.n,)),
-    ("stop_forces", "qv", lambda c: (c.n,)),
-    ("friction_forces", "v", lambda c: (c.n,)),
-    ("load_forces", "qt", lambda c: (c.n,)),
-    ("connector_forces", "qvt", lambda c: (c.n,)),
-    ("connector_lengths", "qv", lambda c: (len(c.info["connectors"]), 2)),
-    ("connector_tensions", "qvt", lambda c: (len(c.info["connectors"]), 3)),
-    ("drive_forces_at_rest", "qt", lambda c: (c.n,)),
-    ("support_reactions", "qv", lambda c: (len(c.info["supports"]), 3)),
-    ("support_gaps", "qv", lambda c: (len(c.info["supports"]), 2)),
-    ("cylinder_states", "qv", lambda c: (len(c.info["cylinders"]), 3)),
-    ("cylinder_jacobians", "q", lambda c: (len(c.info["cylinders"]), c.n)),
-    ("drive_limits", "tqv", lambda c: (len(c.info["drives"]), 2)),
-    ("drive_motions", "t", lambda c: (len(c.info["drives"]), 2)),
-    ("valve_openings", "t", lambda c: (len(c.info["drives"]), 2)),
-    ("forward_dynamics", "qvt", lambda c: (c.n,)),
-    ("static_residual", "qt", lambda c: (c.n,)),
-    ("tangent_stiffness", "qt", lambda c: (c.n, c.n)),
-    ("_small_motions", "q", lambda c: (3, c.n, c.n)),
-    ("kinetic_energy", "qv", lambda c: ()),
-    ("gravity_energy", "q", lambda c: ()),
-    ("support_energy", "q", lambda c: ()),
-    ("element_energy", "q", lambda c: ()),
-    ("drive_energy", "qt", lambda c: ()),
-    ("stop_energy", "q", lambda c: ()),
-    ("connector_energy", "qt", lambda c: ()),
-    ("drive_power", "qvt", lambda c: ()),
-    ("dissipation", "qvt", lambda c: ()),
+
+def axes_of(words):
+    """The extents of a result's axes, of a crane."""
+    return lambda c: tuple(int(word) if word.isdigit() else c.n if word == "n" else len(c.info.get(word, ())) for word in words)
+
+
+def arguments(states):
+    """The arguments of functions by their names; the rates are also the accelerations."""
+    t, q, v = states
+    return {"t": t, "q": q, "v": v, "a": v}
+
+
+# Every function of a state, its arguments, and the axes of its result: those of the table of quantities, and others.
+FUNCTIONS = [(name, takes, axes_of(axes)) for name, takes, axes in _native.functions()] + [
+    ("point_jacobians", "q", axes_of(["points", "3", "n"])),
+    ("_small_motions", "q", axes_of(["3", "n", "n"])),
 ]
 
 
 @pytest.mark.parametrize(("name", "takes", "axes"), FUNCTIONS)
 def test_a_batch_is_its_rows_to_the_last_bit(flexible, states, name, takes, axes):
-    given = dict(zip("tqv", states, strict=True))
+    given = arguments(states)
     function = getattr(flexible, name)
     batch = function(*(given[argument] for argument in takes))
     assert batch.shape == (7, *axes(flexible))
@@ -61,7 +39,7 @@ def test_a_batch_is_its_rows_to_the_last_bit(flexible, states, name, takes, axes
 @pytest.mark.parametrize(("name", "takes", "axes"), FUNCTIONS)
 def test_parameters_are_leading_axes_too(flexible, states, name, takes, axes):
     masses = np.array([0.0, 150.0, 700.0])
-    given = {argument: values[:2, None] for argument, values in zip("tqv", states, strict=True)}
+    given = {argument: values[:2, None] for argument, values in arguments(states).items()}
     batch = getattr(flexible.replace(load_mass=masses), name)(*(given[argument] for argument in takes))
     assert batch.shape == (2, 3, *axes(flexible))
     for row, mass in enumerate(masses):

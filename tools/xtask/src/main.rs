@@ -229,6 +229,9 @@ fn bless_steps() -> Vec<Step> {
         golden("double pendulum", "specs/double_pendulum.yaml", "tests/golden/double_pendulum.rs"),
         golden("knuckle boom", "specs/knuckle_boom.yaml", "tests/golden/knuckle_boom.rs"),
         update("schema and messages", &["test", "--release", "--package", "crane-codegen"]),
-        update("operation counts", &["test", "--release", "--package", "crane-tests", "--test", "golden"]),
+        update(
+            "operation counts and the stub of the Python package",
+            &["test", "--release", "--package", "crane-tests", "--test", "golden", "--test", "python_stub"],
+        ),
     ]
 }

@@ -1,8 +1,9 @@
 //! Analyses of one crane: strength, load charts, vibrations, stability, and quantities at given states.
 
-use std::{num::NonZeroUsize, path::PathBuf};
+use std::{num::NonZeroUsize, path::PathBuf, sync::LazyLock};
 
-use clap::{Args, ValueEnum, ValueHint};
+use clap::{Args, ValueEnum, ValueHint, builder::PossibleValue};
+use crane_live::FunctionId;
 
 use super::{
     crane::{Analysis, Choice},
@@ -174,38 +175,65 @@ pub enum EvalFormat {
 }
 
 /// What `crane eval` computes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-#[value(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
-    /// Transforms of the bodies into the world frame, 4 × 4 each; m
-    Transforms,
-    /// ∂T/∂q, with the body and coordinate of each
-    TransformDerivatives,
-    /// ∂²T/∂q∂q, with the body and coordinates of each
-    TransformSecondDerivatives,
-    /// Positions of the points of interest, m
-    Points,
-    /// Velocities of the points of interest, m/s
-    PointVelocities,
-    /// Mass matrix A; kg, kg m, kg m²
-    MassMatrix,
-    /// Velocity and gravity forces e of `A q̈ = e + f`, N and N m
-    Bias,
-    /// Generalized forces of everything except inertia and gravity, N and N m
-    Forces,
-    /// Accelerations q̈, m/s² and rad/s²
+    /// One of the table of quantities.
+    Of(FunctionId),
+    /// Accelerations, with closed loops.
     Accelerations,
-    /// Gradient of the potential energy at t = 0, N and N m
-    StaticResidual,
-    /// Second derivative of the potential energy at t = 0, N/m and N m/rad
-    TangentStiffness,
-    /// Energies: kinetic, of gravity, supports, elements and drives, then of end stops and connectors if the crane has them; J
+    /// Energies of all kinds of force that the crane has.
     Energies,
-    /// Efforts of the drives, N and N m
+    /// Efforts of the drives.
     DriveEfforts,
-    /// Forces of the supports on the crane, N
-    SupportReactions,
 }
+
+impl Quantity {
+    /// Its name in results and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Quantity::Of(id) => id.name(),
+            Quantity::Accelerations => "accelerations",
+            Quantity::Energies => "energies",
+            Quantity::DriveEfforts => "drive_efforts",
+        }
+    }
+
+    fn about(self) -> &'static str {
+        match self {
+            Quantity::Of(id) => id.doc().trim_end_matches('.'),
+            Quantity::Accelerations => "Accelerations q̈, m/s² and rad/s²",
+            Quantity::Energies => {
+                "Energies: kinetic, of gravity, supports, elements and drives, then of end stops and connectors if the crane has them; J"
+            }
+            Quantity::DriveEfforts => "Efforts of the drives, N and N m",
+        }
+    }
+}
+
+impl ValueEnum for Quantity {
+    fn value_variants<'a>() -> &'a [Self] {
+        /// Those of a state that the Python package offers; accelerations of the open chain are of no use.
+        static ALL: LazyLock<Vec<Quantity>> = LazyLock::new(|| {
+            let is_offered = |id: &FunctionId| id.python().is_some() || *id == FunctionId::TransformSecondDerivatives;
+            let of_table = FunctionId::ALL.iter().filter(|id| is_offered(id) && **id != FunctionId::ForwardDynamics);
+            let others = [Quantity::Accelerations, Quantity::Energies, Quantity::DriveEfforts];
+            of_table.map(|id| Quantity::Of(*id)).chain(others).collect()
+        });
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.name()).help(self.about()))
+    }
+}
+
+/// What `crane eval` computes unless told otherwise.
+const DEFAULT: [Quantity; 4] = [
+    Quantity::Of(FunctionId::Transforms),
+    Quantity::Of(FunctionId::TransformDerivatives),
+    Quantity::Of(FunctionId::MassMatrix),
+    Quantity::Of(FunctionId::Bias),
+];
 
 /// Quantities at one state or at many.
 #[derive(Debug, Args)]
@@ -214,7 +242,7 @@ pub struct Eval {
     pub crane: Choice,
     /// What to compute, separated by commas
     #[arg(long, value_enum, value_delimiter = ',', value_name = "NAMES",
-          default_values_t = [Quantity::Transforms, Quantity::TransformDerivatives, Quantity::MassMatrix, Quantity::Bias])]
+          default_values_t = DEFAULT)]
     pub quantities: Vec<Quantity>,
     /// Coordinates in m and rad: numbers separated by commas or blanks, or a file of them; several states follow one another
     /// [default: the spec's guess]

@@ -1,0 +1,44 @@
+//! Functions whose results do not follow from time, pose and rates alone, or which closed loops change.
+
+use crane_codegen::program::FunctionId;
+use crane_model::dyn_crane::DynModel;
+
+use crate::LiveCrane;
+
+/// Why a function of a state is not what a user asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refusal<'a> {
+    /// Some forces have states of their own, which belong to a run.
+    ForceStates,
+    /// The function is that of the open chain, and this joint closes a loop.
+    Loop(&'a str),
+}
+
+impl LiveCrane {
+    /// Why a function of a state is not what a user asks for, if it is not.
+    #[must_use]
+    pub fn refusal(&self, function: FunctionId) -> Option<Refusal<'_>> {
+        let description = self.description();
+        let depends = match function {
+            FunctionId::Linearise
+            | FunctionId::ForwardDynamics
+            | FunctionId::Forces
+            | FunctionId::DriveForces
+            | FunctionId::DrivePower
+            | FunctionId::Dissipation => description.has_force_states(),
+            FunctionId::FrictionForces => !description.bristles.is_empty(),
+            _ => false,
+        };
+        if depends {
+            return Some(Refusal::ForceStates);
+        }
+        let loops_matter = match function {
+            FunctionId::Linearise => true,
+            FunctionId::DriveForces | FunctionId::DrivePower | FunctionId::DriveForcesAtRest => {
+                !description.prescribed().is_empty()
+            }
+            _ => false,
+        };
+        self.loop_joints().first().filter(|_| loops_matter).map(|joint| Refusal::Loop(&joint.name))
+    }
+}
