@@ -38,6 +38,11 @@ CraneModel {
     PointVelocities = point_velocities(q, v) -> [vector; points] zero
         "Velocities of the points of interest in the world frame, m/s."
         "Ṫ(p) r = ω × x + υ" python(q, v);
+    /// An accelerometer at the point measures these minus the acceleration of gravity. `crane eval` takes the accelerations q̈ from the equations
+    /// of motion.
+    PointAccelerations = point_accelerations(q, v, a) -> [vector; points] zero
+        "Accelerations of the points of interest in the world frame, m/s²."
+        "J q̈ + J̇ q̇ = R (a + α × r + ω × (ω × r))" python(q, v, a);
     /// The forces of cylinders with a valve depend on their pressures and are not included.
     Forces = forces(t, q, v) -> vector zero
         "Generalized forces of everything except inertia and gravity, N and N m."

@@ -30,6 +30,7 @@
 //   transforms                          11        47
 //   points                              14        62
 //   point_velocities                    19       104
+//   point_accelerations                 28       152
 //   gravity_energy                       9        81
 //   forward_dynamics                    34       340
 //   solve_mass                          16       330
@@ -247,6 +248,60 @@ pub fn point_velocities(q: &SVector<f64, N>, v: &SVector<f64, N>) -> [Vector3<f6
         fma(0.8, lower_axis_z_x, sin_upper_theta),
         -(lower_theta_dot * sin_upper_theta),
     );
+    out
+}
+
+/// Accelerations of the points of interest in the world frame, m/s².
+///
+/// `J q̈ + J̇ q̇ = R (a + α × r + ω × (ω × r))`
+///
+/// 28 operations: 10 add, 16 mul, 0 div, 2 sin_cos.
+pub fn point_accelerations(
+    q: &SVector<f64, N>,
+    v: &SVector<f64, N>,
+    a: &SVector<f64, N>,
+) -> [Vector3<f64>; 1] {
+    let q = &q.data.0[0];
+    let v = &v.data.0[0];
+    let a = &a.data.0[0];
+    let mut out: [Vector3<f64>; 1] = [Vector3::zeros(); 1];
+    let upper_theta = q[0];
+    let lower_theta = q[1];
+    // Sines and cosines
+    let ([sin_upper_theta, sin_lower_theta], [cos_upper_theta, cos_lower_theta]) = sin_cos([
+        upper_theta,
+        lower_theta,
+    ]);
+    // Outward: lower
+    let upper_theta_dot = v[0];
+    let t001 = upper_theta_dot * upper_theta_dot;
+    let lower_theta_dot = v[1];
+    let omega_lower_y = upper_theta_dot + lower_theta_dot;
+    // end
+    let lower_axis_z_x = fma(
+        cos_upper_theta,
+        sin_lower_theta,
+        sin_upper_theta * cos_lower_theta,
+    );
+    let upper_theta_ddot = a[0];
+    let t002 = fma(
+        omega_lower_y,
+        0.8 * omega_lower_y,
+        fma(-upper_theta_ddot, sin_lower_theta, cos_lower_theta * t001),
+    );
+    let lower_axis_x_x = fma(
+        -sin_upper_theta,
+        sin_lower_theta,
+        cos_upper_theta * cos_lower_theta,
+    );
+    let lower_theta_ddot = a[1];
+    let t003 = fma(
+        0.8,
+        upper_theta_ddot + lower_theta_ddot,
+        fma(sin_lower_theta, t001, upper_theta_ddot * cos_lower_theta),
+    );
+    out[0].x = fma(lower_axis_z_x, t002, -(lower_axis_x_x * t003));
+    out[0].z = fma(lower_axis_x_x, t002, lower_axis_z_x * t003);
     out
 }
 
@@ -739,6 +794,15 @@ impl CraneModel<N> for Crane {
         out: &mut [Vector3<f64>],
     ) {
         fill(out, &point_velocities(q, v));
+    }
+    fn point_accelerations(
+        &self,
+        q: &SVector<f64, N>,
+        v: &SVector<f64, N>,
+        a: &SVector<f64, N>,
+        out: &mut [Vector3<f64>],
+    ) {
+        fill(out, &point_accelerations(q, v, a));
     }
     fn gravity_energy(&self, q: &SVector<f64, N>) -> f64 {
         gravity_energy(q)

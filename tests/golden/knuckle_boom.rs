@@ -25,6 +25,7 @@
 //   transforms                          29        98
 //   points                              30       125
 //   point_velocities                    54       210
+//   point_accelerations                 66       319
 //   drive_forces                        84        95
 //   drive_motions                       69        80
 //   drive_pieces                         0         0
@@ -232,8 +233,8 @@ impl Constants {
         let c009 = 1.0 / c008;
         let c010 = c008 * c009;
         let c011 = c002 * c009;
-        let t588 = c002 * c011;
-        let c012 = c001 - t588;
+        let t649 = c002 * c011;
+        let c012 = c001 - t649;
         let c013 = c001 - c012;
         let c014 = 2.6 * c006;
         let c015 = 2.0 * t330;
@@ -561,6 +562,109 @@ pub fn point_velocities(q: &SVector<f64, N>, v: &SVector<f64, N>) -> [Vector3<f6
     );
     let load_centre_x = fma(-1.2, hook_axis_z_x, extension_origin_x);
     out[1].z = fma(-omega_hook_y, load_centre_x, upsilon_hook_z);
+    out
+}
+
+/// Accelerations of the points of interest in the world frame, m/s².
+///
+/// `J q̈ + J̇ q̇ = R (a + α × r + ω × (ω × r))`
+///
+/// 66 operations: 25 add, 38 mul, 0 div, 3 sin_cos.
+pub fn point_accelerations(
+    q: &SVector<f64, N>,
+    v: &SVector<f64, N>,
+    a: &SVector<f64, N>,
+) -> [Vector3<f64>; 2] {
+    let q = &q.data.0[0];
+    let v = &v.data.0[0];
+    let a = &a.data.0[0];
+    let mut out: [Vector3<f64>; 2] = [Vector3::zeros(); 2];
+    let main_boom_theta = q[0];
+    let knuckle_theta = q[1];
+    let hook_theta = q[3];
+    // Sines and cosines
+    let (
+        [sin_main_boom_theta,
+        sin_knuckle_theta,
+        sin_hook_theta,
+        ],
+        [cos_main_boom_theta,
+        cos_knuckle_theta,
+        cos_hook_theta,
+        ],
+    ) = sin_cos([main_boom_theta, knuckle_theta, hook_theta]);
+    // Outward: knuckle
+    let main_boom_theta_dot = v[0];
+    let t001 = main_boom_theta_dot * (3.2 * main_boom_theta_dot);
+    let main_boom_theta_ddot = a[0];
+    let t002 = 3.2 * main_boom_theta_ddot;
+    let knuckle_theta_dot = v[1];
+    let omega_knuckle_y = main_boom_theta_dot + knuckle_theta_dot;
+    let knuckle_theta_ddot = a[1];
+    let t003 = main_boom_theta_ddot + knuckle_theta_ddot;
+    // Outward: extension
+    let extension_x_dot = v[2];
+    let extension_x = q[2];
+    let t004 = fma(
+        omega_knuckle_y,
+        2.0 * extension_x_dot,
+        fma(
+            extension_x,
+            t003,
+            fma(2.6, t003, fma(sin_knuckle_theta, t001, cos_knuckle_theta * t002)),
+        ),
+    );
+    let extension_x_ddot = a[2];
+    let t005 = extension_x_ddot
+        + fma(
+            -omega_knuckle_y,
+            extension_x * omega_knuckle_y,
+            fma(
+                -omega_knuckle_y,
+                2.6 * omega_knuckle_y,
+                fma(sin_knuckle_theta, t002, -(cos_knuckle_theta * t001)),
+            ),
+        );
+    // Outward: hook
+    let hook_theta_dot = v[3];
+    let omega_hook_y = hook_theta_dot + omega_knuckle_y;
+    // boom_tip
+    let knuckle_axis_x_x = fma(
+        -sin_main_boom_theta,
+        sin_knuckle_theta,
+        cos_main_boom_theta * cos_knuckle_theta,
+    );
+    let knuckle_axis_z_x = fma(
+        cos_main_boom_theta,
+        sin_knuckle_theta,
+        sin_main_boom_theta * cos_knuckle_theta,
+    );
+    out[0].x = fma(-knuckle_axis_z_x, t004, knuckle_axis_x_x * t005);
+    out[0].z = -fma(knuckle_axis_x_x, t004, knuckle_axis_z_x * t005);
+    // load_centre
+    let hook_axis_x_x = fma(
+        -sin_hook_theta,
+        knuckle_axis_z_x,
+        cos_hook_theta * knuckle_axis_x_x,
+    );
+    let hook_theta_ddot = a[3];
+    let t006 = fma(
+        -1.2,
+        hook_theta_ddot + t003,
+        fma(sin_hook_theta, t004, cos_hook_theta * t005),
+    );
+    let hook_axis_z_x = fma(
+        sin_hook_theta,
+        knuckle_axis_x_x,
+        cos_hook_theta * knuckle_axis_z_x,
+    );
+    let t007 = fma(
+        omega_hook_y,
+        1.2 * omega_hook_y,
+        fma(sin_hook_theta, t005, -(cos_hook_theta * t004)),
+    );
+    out[1].x = fma(hook_axis_z_x, t007, hook_axis_x_x * t006);
+    out[1].z = fma(hook_axis_x_x, t007, -(hook_axis_z_x * t006));
     out
 }
 
@@ -2815,6 +2919,15 @@ impl CraneModel<N> for Crane {
     ) {
         fill(out, &point_velocities(q, v));
     }
+    fn point_accelerations(
+        &self,
+        q: &SVector<f64, N>,
+        v: &SVector<f64, N>,
+        a: &SVector<f64, N>,
+        out: &mut [Vector3<f64>],
+    ) {
+        fill(out, &point_accelerations(q, v, a));
+    }
     fn forces(
         &self,
         t: f64,
@@ -2998,8 +3111,8 @@ pub mod lanes {
             let c009 = splat(1.0) / c008;
             let c010 = c008 * c009;
             let c011 = c002 * c009;
-            let t588 = c002 * c011;
-            let c012 = c001 - t588;
+            let t649 = c002 * c011;
+            let c012 = c001 - t649;
             let c013 = c001 - c012;
             let c014 = splat(2.6) * c006;
             let c015 = splat(2.0) * t330;

@@ -465,6 +465,8 @@ class Derivations:
         return {
             "points": points,
             "point_velocities": self.rate(points),
+            # The rates are used as accelerations, too.
+            "point_accelerations": ca.jtimes(self.rate(points), crane.q, crane.v) + self.rate(points),
             "support_reactions": ca.vertcat(*[self.reaction(s) for s in crane.supports]),
             "support_gaps": ca.vertcat(*[self.gap(s) for s in crane.supports]),
             "cylinder_states": ca.vertcat(*[cylinders.state(cylinder, self.rate) for cylinder in crane.cylinders]),

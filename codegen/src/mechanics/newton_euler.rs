@@ -10,7 +10,7 @@ use super::model::Model;
 use super::outward::{Velocities, along};
 use super::place::Place;
 use super::vector::Vec3;
-use crate::chain::{Axis, BodyId, Cut, Inertia, Section, Side};
+use crate::chain::{Axis, BodyId, Cut, Inertia, Point, Section, Side};
 use crate::symbolic::Expr;
 
 /// What acts on a body closer to a section than this fraction of the body's length acts at the section.
@@ -28,6 +28,32 @@ pub fn internal_forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, facto
     let motions = outward(model, factors, (&model.v, Some(&model.a)), -model.vector(&model.chain.gravity));
     let applied = loads::on_bodies(model, kinematics);
     at_cuts(model, factors, &motions, &applied)
+}
+
+/// `R (a + α × r + ω × (ω × r))`, with the motion of the body of each point of interest, R its rotation; world frame, m/s².
+pub fn point_accelerations<'g>(
+    model: &Model<'g>,
+    kinematics: &Kinematics<'g>,
+    factors: &[Factor<'g>],
+) -> Vec<Expr<'g>> {
+    let motions = outward(model, factors, (&model.v, Some(&model.a)), Vec3::zero(model.graph));
+    let acceleration = |point: &Point| {
+        let BodyId(body) = point.body;
+        let Some(Motion { velocities: Velocities::Body { omega }, alpha, a }) = motion_of(factors, &motions, body)
+        else {
+            return [model.zero(); 3];
+        };
+        let r = model.vector(&point.position);
+        let local = *a + alpha.cross(r) + omega.cross(omega.cross(r));
+        kinematics.poses[body].rotation.apply(local).0
+    };
+    model.chain.points.iter().flat_map(acceleration).collect()
+}
+
+/// The motion of a body's frame.
+fn motion_of<'a, 'g>(factors: &[Factor<'g>], motions: &'a [Motion<'g>], body: usize) -> Option<&'a Motion<'g>> {
+    let reached = |factor: &Factor<'g>| matches!(factor, Factor::Body(index) if *index == body);
+    factors.iter().zip(motions).find(|(factor, _)| reached(factor)).map(|(_, motion)| motion)
 }
 
 /// What forces and moments on bodies add to the internal forces at every cut: the sum of those beyond. They are in the world frame,
@@ -63,9 +89,8 @@ fn at_cuts<'g>(
         Cut::Inside(beam, section) => {
             let section = &model.chain.beams[beam].sections[section];
             let BodyId(body) = section.body;
-            let reached = |factor: &Factor<'g>| matches!(factor, Factor::Body(index) if *index == body);
-            let motion = factors.iter().zip(motions).find(|(factor, _)| reached(factor)).map(|(_, motion)| motion);
-            within(model, section, (swept.beyond[body], motion?), [&swept.branches[body], &applied[body]])
+            let motion = motion_of(factors, motions, body)?;
+            within(model, section, (swept.beyond[body], motion), [&swept.branches[body], &applied[body]])
         }
     });
     wrenches.flatten().flat_map(|vector| vector.0).collect()

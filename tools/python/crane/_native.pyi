@@ -192,6 +192,10 @@ class Crane:
         """(..., points, 3): Positions of the points of interest in the world frame, m."""
     def point_velocities(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., points, 3): Velocities of the points of interest in the world frame, m/s."""
+    def point_accelerations(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., points, 3): Accelerations of the points of interest in the world frame, m/s².
+        An accelerometer at the point measures these minus the acceleration of gravity. `crane eval` takes the accelerations q̈ from the equations
+        of motion."""
     def forces(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
         """(..., n): Generalized forces of everything except inertia and gravity, N and N m.
         The forces of cylinders with a valve depend on their pressures and are not included.

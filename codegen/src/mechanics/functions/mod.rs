@@ -99,6 +99,10 @@ impl<'g> Derivation<'g> {
                 FunctionId::PointVelocities,
                 points::velocities(&self.model, &self.kinematics, &self.twists),
             ));
+            let (model, kinematics) = (&self.model, &self.kinematics);
+            let (accelerations, trace) =
+                model.graph.recorded(|| newton_euler::point_accelerations(model, kinematics, &self.factors));
+            functions.push(self.function(FunctionId::PointAccelerations, accelerations).by(trace));
         }
         if !chain.cylinders.is_empty() {
             functions.push(self.function(FunctionId::CylinderStates, cylinders::states(&self.model)));
