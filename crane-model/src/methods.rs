@@ -169,7 +169,9 @@ macro_rules! sized_methods {
         $(python($($python:tt)*))?;
     )*) => {
         $(sized_method! {
-            $rule $result [#[doc = $doc] #[doc = concat!("\n`", $equation, "`\n")] $(#[doc = $remark])*]
+            $rule $result [
+                #[allow(clippy::doc_markdown, reason = "names of symbols, as in generated code")]
+                #[doc = $doc] #[doc = concat!("\n`", $equation, "`\n")] $(#[doc = $remark])*]
             $name($($argument),*)
         })*
     };

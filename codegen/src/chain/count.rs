@@ -2,7 +2,7 @@
 
 use crane_quantities::Count;
 
-use super::{BodyId, Chain};
+use super::{BodyId, Chain, Force, Load};
 
 impl Chain {
     /// How many of these parts it has.
@@ -21,8 +21,8 @@ impl Chain {
             Count::Coordinates => self.coordinates.len(),
             Count::LoopEquations => self.loop_equations().count(),
             Count::DrivePieces => self.drives.iter().map(|drive| drive.pieces().len()).sum(),
-            Count::LoadPieces => self.loads.iter().map(|load| load.pieces()).sum(),
-            Count::WinchPieces => self.connectors().iter().map(|connector| connector.pieces()).sum(),
+            Count::LoadPieces => self.loads.iter().map(Load::pieces).sum(),
+            Count::WinchPieces => self.connectors().iter().map(Force::pieces).sum(),
             Count::Derivatives => degrees.sum(),
             Count::SecondDerivatives => degrees.map(|n| n * (n + 1) / 2).sum(),
             Count::CylinderCuts | Count::ConnectorCuts | Count::LoopCuts => {

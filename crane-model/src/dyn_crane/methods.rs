@@ -7,7 +7,13 @@ macro_rules! slice_methods {
         $id:ident = $name:ident($($argument:ident),*) -> $result:tt $rule:ident $doc:literal $equation:literal
         $(python($($python:tt)*))?;
     )*) => {
-        $(slice_method! { $result [#[doc = $doc] #[doc = concat!("\n`", $equation, "`")]] $name($($argument),*) })*
+        $(slice_method! {
+            $result [
+                #[allow(clippy::doc_markdown, reason = "names of symbols, as in generated code")]
+                #[doc = $doc]
+                #[doc = concat!("\n`", $equation, "`")]
+            ] $name($($argument),*)
+        })*
     };
 }
 

@@ -35,7 +35,9 @@ fn a_new_crate_can_have_what_it_depends_on() {
     let folder = folder("new_vendored").join("mine");
     let output = crane(&["new", folder.to_str().expect("a path"), "--vendor"]);
     assert!(output.status.success(), "{}", text(&output.stderr));
-    for manifest in ["Cargo.toml", "crates/crane-model/Cargo.toml", "crates/codegen/Cargo.toml"] {
+    let manifests =
+        ["Cargo.toml", "crates/crane-model/Cargo.toml", "crates/codegen/Cargo.toml", "crates/quantities/Cargo.toml"];
+    for manifest in manifests {
         let written = fs::read_to_string(folder.join(manifest)).expect(manifest);
         let paths = written.lines().filter_map(|line| line.split_once("path = \"")?.1.split('"').next());
         for path in paths {
