@@ -15,7 +15,6 @@ import sys
 import tempfile
 from importlib.metadata import files
 from pathlib import Path
-from xml.etree import ElementTree
 
 import mujoco
 import numpy as np
@@ -45,33 +44,35 @@ ROBOTS = {
     "kinova.urdf": [],
     "bravo7_no_ee.urdf": [],
     "ur3_robot.urdf": [],
-    # Arm with a hand of two fingers, quadrupeds, two arms, humanoids.
+    # Arm with a hand of two fingers, quadrupeds, two arms, humanoids, the last with hands.
     "panda.urdf with fingers": [],
     "solo12.urdf": [],
     "a1.urdf": [],
     "baxter.urdf": [],
     "simple_humanoid.urdf": [],
     "talos_reduced.urdf": [],
+    "alex_sake_hands.urdf": [],
 }
 
 
 class Urdf(Pinocchio):
-    """A URDF file in Pinocchio; joints in `fixed` are held at 0."""
+    """A URDF file in Pinocchio; joints in `fixed` are held at 0. `imported`: the spec made of it and its coordinates, in the order of q."""
 
-    def __init__(self, path, gravity, fixed=(), coordinates=None):
+    def __init__(self, path, gravity, fixed=(), imported=None):
         self.model = pin.buildModelFromUrdf(str(path))
         if fixed:
             locked = [self.model.getJointId(name) for name in fixed]
             self.model = pin.buildReducedModel(self.model, locked, pin.neutral(self.model))
         self.model.gravity.linear = np.array(gravity)
         self.data = self.model.createData()
-        self.order = np.arange(self.model.nv) if coordinates is None else self.order_of(path, coordinates)
+        self.order = np.arange(self.model.nv) if imported is None else self.order_of(*imported)
 
-    def order_of(self, path, coordinates):
-        """Which coordinate of the spec each joint is: Pinocchio visits branches by name, the import as they are in the file."""
-        moved = {joint.get("name"): joint.find("child").get("link") for joint in ElementTree.parse(path).iter("joint")}
+    def order_of(self, spec, coordinates):
+        """Which coordinate of the spec each joint is: Pinocchio visits branches by name, the import as they are in the file. The import notes
+        the joint beside each link."""
+        moved = {joint: link for link, joint in re.findall(r"- name: (\S+) +# joint ([^;\n]+)", spec.read_text(encoding="utf-8"))}
         names = [coordinate.rpartition("_")[0] for coordinate in coordinates]
-        return np.array([names.index(name_in_spec(moved[joint])) for joint in list(self.model.names)[1:]])
+        return np.array([names.index(moved[joint]) for joint in list(self.model.names)[1:]])
 
     def evaluate(self, q, v, force):
         """A, e and q̈ at a state with generalized forces; to Pinocchio, a continuous joint is a point on a circle."""
@@ -79,11 +80,6 @@ class Urdf(Pinocchio):
         pose = pin.integrate(self.model, pin.neutral(self.model), q[order])
         mass_matrix, bias, acceleration = super().evaluate(pose, v[order], force[order])
         return mass_matrix[np.ix_(back, back)], bias[back], acceleration[back]
-
-
-def name_in_spec(link):
-    """The name of a link of a URDF file in a spec: lower case, other characters as `_`."""
-    return re.sub(r"\W+", "_", link).lower()
 
 
 class Mjcf(MuJoCo):
@@ -226,14 +222,14 @@ class Exported:
 def robot_agrees(name, fixed, evaluate, folder, options):
     """Imports a robot and compares the interpreter's results for the spec with Pinocchio's for the URDF file."""
     urdf = next(path for path in files("example-robot-data") if path.name == name.split()[0]).locate()
-    spec = folder / f"{Path(name).stem}.yaml"
+    spec = folder / f"{re.sub(r'[ .]', '_', name)}.yaml"
     crane(options, "import", urdf, "-o", spec, *[word for joint in fixed for word in ("--fix", joint)])
     layout = evaluate.layout(str(spec))
     rng, shape = np.random.default_rng(options.seed), (options.states, len(layout["coordinates"]))
     q, v = rng.uniform(-np.pi, np.pi, shape), rng.uniform(-2, 2, shape)
     states = States(np.zeros(options.states), q, v, np.empty((options.states, 0)))
     ours = evaluate.values(layout, states)
-    theirs = computed(Urdf(urdf, [0, 0, -9.81], fixed, layout["coordinates"]), states, ours["forces"])
+    theirs = computed(Urdf(urdf, [0, 0, -9.81], fixed, (spec, layout["coordinates"])), states, ours["forces"])
     return told(name, compare_all(theirs, ours, states))
 
 

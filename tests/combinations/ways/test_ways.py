@@ -33,10 +33,17 @@ def states(q, count=3):
     return q + 1e-3 * random.standard_normal((count, q.size)), 0.1 * random.standard_normal((count, q.size))
 
 
+def skip_loops(file):
+    """Exported models are open chains; a test of the command sees that the others are refused."""
+    if "loop_joints" in file.read_text():
+        pytest.skip("closed loops are not exported")
+
+
 def functions_of(file):
-    """The functions to compare of a crane: accelerations do not follow from pose and rates if oil or bristles have states."""
-    has_states = any(key in file.read_text() for key in ("valve", "bristle"))
-    return {function: arguments for function, arguments in FUNCTIONS.items() if not (has_states and function == "forward_dynamics")}
+    """The functions to compare of a crane: accelerations do not follow from pose and rates if oil or bristles have states, and those of
+    generated code are of the open chain."""
+    others = any(key in file.read_text() for key in ("valve", "bristle", "loop_joints"))
+    return {function: arguments for function, arguments in FUNCTIONS.items() if not (others and function == "forward_dynamics")}
 
 
 def test_the_command_writes_what_python_computes(specs, seed, loaded, command, tmp_path):
@@ -57,6 +64,7 @@ def test_the_command_writes_what_python_computes(specs, seed, loaded, command, t
 def test_units_move_as_the_command_does(specs, seed, loaded, command, tmp_path, version):
     """Steps of co-simulation continue the history, so they are the steps of a run."""
     crane, _ = loaded
+    skip_loops(specs(seed))
     unit = tmp_path / "unit.fmu"
     command("export", specs(seed), "--format", "fmu", "--fmi", version, "-o", unit)
     run = crane.simulate(duration=DURATION, output=OUTPUT, verify=False)
@@ -72,6 +80,7 @@ def test_c_computes_what_python_computes(specs, seed, loaded, command, tmp_path)
     crane, q = loaded
     if json.loads(command("info", specs(seed), "--format", "json")).get("inputs"):
         pytest.skip("functions of cranes with inputs take these, too")
+    skip_loops(specs(seed))
     compared = functions_of(specs(seed))
     source, library = tmp_path / "crane.c", tmp_path / "crane.so"
     command("export", specs(seed), "--format", "c", "--functions", ",".join(compared), "-o", source)
@@ -165,5 +174,5 @@ def test_the_page_contains_what_python_computes(specs, seed, loaded, command, tm
     assert np.abs(drives - expected).max() < 1e-9 * max(1.0, np.abs(expected).max())
     for grid in data["tables"]["grids"]:
         for row, exact in zip(grid["rows"], grid["exact"]):
-            for shown, whole in zip(row, exact):
-                assert whole == "" or four_digits(shown, float(whole)), (grid["title"], row, exact)
+            for shown, whole in zip(row, map(number, exact)):
+                assert whole is None or shows(shown, whole), (grid["title"], row, exact)
