@@ -13,8 +13,10 @@ use crane_model::{Cut, Wrench};
 type Screw = Vector6<f64>;
 
 /// Step of the second differences, s: with those over half of it, their error is its fourth power times sixth derivatives, and rounding over
-/// its square.
+/// its square. With large accelerations, it is so short that poses change by no more than [`CHANGE`].
 const STEP: f64 = 1e-4;
+/// m and rad.
+const CHANGE: f64 = 3e-4;
 
 /// A state of motion: time, pose, rates, accelerations.
 pub struct Motion<'a> {
@@ -120,18 +122,20 @@ fn cuts(crane: &LiveCrane, Motion { t, q, v, a }: &Motion) -> Vec<(usize, Wrench
 fn inertias(crane: &LiveCrane, motion: &Motion) -> Vec<Screw> {
     let chain = crane.chain();
     let parameters = crane.parameters();
+    let fastest = motion.a.iter().fold(0.0, |most: f64, a| most.max(a.abs()));
+    let step = STEP.min((CHANGE / fastest).sqrt());
     let after = |time: f64| {
         let terms = motion.q.iter().zip(motion.v).zip(motion.a);
         let q: Vec<f64> = terms.map(|((q, v), a)| q + time * (v + 0.5 * time * a)).collect();
         crane_transforms(crane, &q)
     };
-    let [before, earlier, now, later, after] = [-STEP, -0.5 * STEP, 0.0, 0.5 * STEP, STEP].map(after);
+    let [before, earlier, now, later, after] = [-step, -0.5 * step, 0.0, 0.5 * step, step].map(after);
     let gravity = Vector3::from(chain.gravity.each_ref().map(|g| g.at(parameters)));
     let of_body = |body: usize| {
         let Some(inertia) = &chain.bodies[body].inertia else { return Screw::zeros() };
         let matrix = pseudo_inertia(inertia, parameters);
-        let wide = (after[body] - 2.0 * now[body] + before[body]) / (STEP * STEP);
-        let narrow = (later[body] - 2.0 * now[body] + earlier[body]) / (0.25 * STEP * STEP);
+        let wide = (after[body] - 2.0 * now[body] + before[body]) / (step * step);
+        let narrow = (later[body] - 2.0 * now[body] + earlier[body]) / (0.25 * step * step);
         let mut second = (4.0 * narrow - wide) / 3.0;
         if motion.v.iter().chain(motion.a).all(|rate| *rate == 0.0) {
             second.fill(0.0);
