@@ -78,8 +78,20 @@ fn limits_of(crane: &dyn DynCrane) -> Limits {
 
 /// Ratings with the drive of this index at several positions.
 fn chart(crane: &LiveCrane, drive: usize, positions: &[f64], limits: Limits, factor: f64) -> Vec<Rating> {
+    chart_between([1e-3, 1e6], crane, drive, positions, limits, factor)
+}
+
+/// The same with a minimum and a maximum load.
+fn chart_between(
+    loads: [f64; 2],
+    crane: &LiveCrane,
+    drive: usize,
+    positions: &[f64],
+    limits: Limits,
+    factor: f64,
+) -> Vec<Rating> {
     let axes = Axes(vec![Axis { varied: Varied::Drive(drive), values: positions.to_vec() }]);
-    let asked = Envelope { axes, load: 0, loads: [1e-3, 1e6], limits, factor };
+    let asked = Envelope { axes, load: 0, loads, limits, factor };
     let found = std::sync::Mutex::new(Vec::new());
     let done = |_: usize, ratings: &[Rating]| found.lock().unwrap().extend(ratings.to_vec());
     let pieces: Vec<usize> = (0..asked.pieces()).collect();
@@ -247,6 +259,41 @@ fn a_stop_of_a_driven_joint_ends_a_chart() {
     let rating = &chart(&crane, 1, &[0.0], limits_of(&crane), 1.0)[0];
     assert_close("the stop", rating.load.unwrap(), 2e5 * 0.02 / (GRAVITY * REACH * 0.02f64.cos()), ACCURACY);
     assert_eq!(rating.governing, Some(Limit::Stop { coordinate: 1 }));
+}
+
+/// With a factor, the minimum load is one with which the crane rests that many times as heavy: a drive that holds 110 kg holds 88 kg with a
+/// factor of 1.25, although the minimum load is 100 kg.
+#[test]
+fn a_factor_divides_the_minimum_load_too() {
+    let crane = arm("rigid: true", "");
+    let mut limits = Limits::none(crane.description());
+    limits.efforts[1] = 110.0 * GRAVITY * REACH;
+    for factor in [1.0, 1.25] {
+        let rating = &chart_between([100.0, 1e6], &crane, 1, &[0.0], limits.clone(), factor)[0];
+        assert_close(&format!("factor {factor}"), rating.load.unwrap(), 110.0 / factor, ACCURACY);
+        assert_eq!(rating.governing, Some(Limit::Effort { drive: 1 }));
+    }
+}
+
+/// A rope holds an arm down, and is slack where the arm sinks to its length ℓ: at `ℓ² = 3 − 2 cos θ − 2 sin θ`, with only the drive carrying
+/// the load, `k θ = m g R cos θ`. The rope is named, although a spring is listed before it.
+#[test]
+fn a_rope_that_goes_slack_is_a_limit_when_asked_for() {
+    let (stiffness, length) = (2e5, 0.99);
+    let crane = arm(
+        &format!("stiffness: {stiffness:e}"),
+        &format!(
+            "connectors:
+  - {{name: buffer, from: {{at: [0, 0, 1]}}, to: {{link: post, at: [0, 0, 0]}}, law: {{spring: {{stiffness: 1e3, length: 1}}}}}}
+  - {{name: stay, from: {{at: [1, 0, -1]}}, to: {{link: arm, at: [1, 0, 0]}}, law: {{rope: {{stiffness: 1e5, length: {length}}}}}}}"
+        ),
+    );
+    let limits = Limits { of_parts: vec![PartLimit::SlackRopes], ..Limits::none(crane.description()) };
+    let rating = &chart(&crane, 1, &[0.0], limits, 1.0)[0];
+    let theta = ((3.0 - length * length) / 8.0f64.sqrt()).asin() - PI / 4.0;
+    assert_close("slack", rating.load.unwrap(), stiffness * theta / (GRAVITY * REACH * theta.cos()), ACCURACY);
+    assert_eq!(rating.governing, Some(Limit::Slack { rope: 1 }));
+    assert_eq!(rating.governing.unwrap().location(crane.description()), "stay");
 }
 
 /// Feet and tipping lines: a chart with the limit that no foot lifts has the critical load.
