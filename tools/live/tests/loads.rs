@@ -6,7 +6,8 @@ use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::{InitialState, Method, Sample, Settings};
-use crane_model::statics;
+use crane_model::nalgebra::Vector3;
+use crane_model::{Cut, statics};
 
 fn crane(text: &str) -> LiveCrane {
     LiveCrane::from_spec(&SourceFile::new("crane.yaml", text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
@@ -85,6 +86,33 @@ fn a_load_that_begins_later_buckles_what_it_presses_on() {
     assert!(buckled.is_stable() && psi > 1.0 && (100.0 * psi - 150.0 * psi.sin()).abs() < 1e-8, "{buckled}: {psi}");
     // Newton's method with the right tangent: quadratic.
     assert!(buckled.steps() <= 7 && buckled.load_steps.is_none(), "{buckled}");
+}
+
+/// What a joint transmits at a time is the load at that time, in the axes of the world and in those of a link at 30°.
+#[test]
+fn joints_transmit_what_a_load_is_at_a_time() {
+    let arm = crane(
+        "format: 1\nname: arm\ngravity: [0, 0, 0]\nlinks: [{name: arm, joint: revolute, mass: 10, com: [1, 0, 0], inertia: {gyration: [0.1, 0.5, 0.5]}}]\n\
+         drives: [{coordinate: arm_psi, stiffness: 100, motion: {hold: 0}}]\n\
+         loads:\n\
+         - {name: press, link: arm, at: [1, 0, 0], axes: link, force: [-1, 0, 0], scale: {cubic: {from: 0, to: 150, duration: 2, begin: 1}}}\n\
+         - {name: lift, link: arm, at: [1, 0, 0], force: [0, 0, 2], scale: {cubic: {from: 0, to: 150, duration: 2, begin: 1}}}\n",
+    );
+    let arm: &dyn DynCrane = &arm;
+    let psi = 30.0_f64.to_radians();
+    // Half of the load at half of its time.
+    for (t, load) in [(0.0, 0.0), (2.0, 75.0), (5.0, 150.0)] {
+        let all = arm.description().cuts().into_iter().zip(arm.internal_forces_at(t, &[psi], &[0.0], &[0.0]));
+        for (cut, wrench) in all {
+            // The ground is in the world's frame, about its origin, and so is the axis of the joint; a joint in that of its link.
+            let [along, aside] = if cut == Cut::Ground { [psi.cos(), psi.sin()] } else { [1.0, 0.0] };
+            let force = Vector3::new(-along, -aside, 2.0);
+            let moment = Vector3::new(along, aside, 0.0).cross(&force);
+            // Some roundings of numbers of the size of the load.
+            let off = (wrench.force - load * force).amax().max((wrench.moment - load * moment).amax());
+            assert!(off < 1e-12, "{t} s, {cut:?}: {wrench:?} for {load} N");
+        }
+    }
 }
 
 /// A constant force moves a slide by `F t²/2m`, and its work is the kinetic energy.
