@@ -134,6 +134,67 @@ fn a_cantilever_is_stressed_by_bending_shear_and_torsion() {
     assert!(report["tipping_margin"].is_null(), "the crane has no supports");
 }
 
+/// With twice the sections the crane has the same parameters: the maximum is still at the clamped end.
+#[test]
+fn finer_sections_are_those_of_the_same_parameters() {
+    let spec = format!(
+        "parameters: {{payload: {{value: 100, unit: kg}}}}{}",
+        CANTILEVER.replace("mass: 100", "mass: payload")
+    );
+    let report = strength("set", &spec, &["--set", "payload=300"]);
+    // As for the crane of 100 kg, with three times its deflection; with 100 kg the stress would be half as large.
+    let change = &report["change_of_the_greatest_stress_with_twice_the_sections"];
+    assert!(change.as_f64().expect("a number").abs() < 3e-5, "{change}");
+}
+
+/// The maximum is that of the utilisation where a beam has a yield stress, even though a beam without one is stressed more: `M = m g L + w L²/2`
+/// at the beginning of the outer one.
+#[test]
+fn a_beam_without_a_yield_stress_is_not_used() {
+    let section = "section: {box: {height: 0.25, width: 0.2, thickness: 0.008}}";
+    let spec = format!(
+        "
+materials:
+  iron: {{E: 2.1e11, G: 8.1e10, density: 7850}}
+  steel: {{E: 2.1e11, G: 8.1e10, density: 7850, yield_stress: 355e6}}
+links:
+  - {{name: inner, placement: {{transform: {{rotation: {{x: 90 deg}}}}}}, beam: {{length: 2, sections: 2, material: iron, {section}}}}}
+  - {{name: outer, beam: {{length: 1, sections: 2, material: steel, safety_factor: 1.25, {section}}}}}
+  - {{name: load, mass: 100, com: [0, 0, 0]}}
+"
+    );
+    let report = strength("two_materials", &spec, &[]);
+    let (height, width, wall): (f64, f64, f64) = (0.25, 0.2, 0.008);
+    let (inner_height, inner_width) = (height - 2.0 * wall, width - 2.0 * wall);
+    let second = (width * height.powi(3) - inner_width * inner_height.powi(3)) / 12.0;
+    let first = (width * height.powi(2) - inner_width * inner_height.powi(2)) / 8.0;
+    let weight = 9.81 * 7850.0 * (height * width - inner_height * inner_width);
+    let normal = (981.0 + weight / 2.0) * (height / 2.0) / second;
+    let equivalent = normal.hypot(3.0f64.sqrt() * (981.0 + weight) * first / (second * 2.0 * wall));
+    // The inner beam tilts the outer one by 4e-4 rad.
+    assert_close("utilisation", &report["greatest_utilisation"], 1.25 * equivalent / 355e6, 1e-4);
+    assert_close("stress", &report["greatest_equivalent_stress"], equivalent, 1e-4);
+    assert_eq!(report["place_of_the_greatest_stress"], "outer, 0.000 m from its start");
+    let of_inner = report["stresses"][0]["equivalent"].as_f64().expect("a number");
+    assert!(report["stresses"][0]["beam"] == "inner" && of_inner > 2.0 * equivalent, "{of_inner}");
+}
+
+/// Along a run at rest, the bending moment has its minimum at the clamped end, `−(m g L + w L²/2)`, and its maximum, 0, at the free end.
+#[test]
+fn extremes_of_sections_have_their_own_places() {
+    let report = strength("standing", &format!("{CANTILEVER}run: {{duration: 0.1, output: 0.05}}\n"), &["--run"]);
+    let rows = report["extremes_of_sections"].as_array().expect("a table");
+    let bending = rows.iter().find(|row| row["component"] == "Mz").expect("a component");
+    let weight = 9.81 * 7850.0 * (0.25 * 0.2 - 0.234 * 0.184) * 2.0;
+    // The tip sinks by 0.3 mm, which tilts the load, 0.5 m beside the beam.
+    assert_close("minimum", &bending["minimum"], -(981.0 * 2.0 + weight), 1e-4);
+    assert!(bending["maximum"].as_f64().expect("a number").abs() < 1.0, "{bending}");
+    assert_eq!(
+        (&bending["x_of_minimum"], &bending["x_of_maximum"]),
+        (&serde_json::json!(0.0), &serde_json::json!(2.0))
+    );
+}
+
 /// A beam on a hinge and a strut that bends under its own weight most where no spring is: with two sections the maximum between the springs is
 /// missed, and the command says so.
 #[test]
