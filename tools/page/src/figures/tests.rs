@@ -101,6 +101,13 @@ fn check_data(name: &str, live: &LiveCrane, recorded: &Recorded, data: &Value) {
         assert_eq!(figure(data, key).is_some(), most > f64::MIN, "{name}: {key}");
         if let Some(figure) = figure(data, key) {
             assert_close(&format!("{name}: {key}"), number(text(figure, "value")).abs(), most);
+            // At the time that the note gives, with two decimals, a drive has that effort.
+            let (_, time) = text(figure, "note").rsplit_once(", at ").expect("a time");
+            let time: f64 = time.trim_end_matches(" s").parse().expect("a number");
+            let efforts = recorded.table.columns.iter().enumerate().filter(|(_, column)| column.name.ends_with(ending));
+            let near = recorded.table.rows.iter().filter(|row| (row[0] - time).abs() < 0.005 + 1e-9);
+            let then = near.flat_map(|row| efforts.clone().map(|(index, _)| row[index].abs())).fold(0.0, f64::max);
+            assert_close(&format!("{name}: {key} at {time} s"), then, most);
         }
     }
     let reactions = ranges(recorded, "_reaction_z");
@@ -274,6 +281,29 @@ fn what_is_beyond_its_limit_is_named_first() {
             assert_eq!(figure(&data, key).expect("it is there")["verdict"], "beyond", "{words}: {}", data["figures"]);
         }
     }
+}
+
+/// Height and width along a tapered box, and rocker and link of a cylinder, each under its own name.
+#[test]
+fn what_is_drawn_has_the_measures_of_the_spec() {
+    const PARTS: &str = "parts: [{length: 4, section: {box: {height: 0.3, width: 0.15, thickness: 0.006}}, \
+                         to: {box: {height: 0.2, width: 0.1, thickness: 0.006}}}]";
+    let spec = boom(100.0, 700e6, 320e5)
+        .replace("section: {box: {height: 0.2, width: 0.15, thickness: 0.006}}", PARTS)
+        .replace("head: {link: boom, at: [0.9, 0, 0]}", "head: {link: boom, at: [0.9, 0, 0]}\n    linkage: {pivot: [0.1, 0, 1.6], rocker: 0.5, link: 0.6, side: right}")
+        .replace("retracted: 1.2", "retracted: 0.6");
+    let live = live("boom", &spec);
+    let crane: &dyn crane_model::dyn_crane::DynCrane = &live;
+    let equilibrium = crane.equilibrium(&statics::Settings::default());
+    let data = data_of(&Subject { label: "value", crane, live: &live, equilibrium: &equilibrium, run: None });
+    let shown = &data["cranes"][0];
+    let along = shown["outlines"]["boom"]["along"].as_array().expect("an outline");
+    let [first, last] = [along.first(), along.last()].map(|sides| sides.expect("an end").clone());
+    assert_eq!((first, last), (json!([0.0, 0.3, 0.15]), json!([4.0, 0.2, 0.1])));
+    assert_eq!(shown["outlines"]["boom"]["size"], json!([0.3, 0.15]));
+    let linkage = &shown["scene"]["cylinders"][0]["linkage"];
+    assert_eq!((&linkage["rocker"], &linkage["link"], &linkage["left"]), (&json!(0.5), &json!(0.6), &json!(false)));
+    assert_eq!(linkage["pivot"]["at"], json!([0.1, 0.0, 1.6]));
 }
 
 #[test]
