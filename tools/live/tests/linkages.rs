@@ -345,3 +345,36 @@ fn a_linkage_does_the_work_of_its_cylinder() {
         }
     }
 }
+
+/// The jib carries its weight and the force of the link at its head: the boom, not the jib, holds the rocker upright, also where the rod pushes
+/// aside of the plane. The force is that of the cylinder times the slope of its length by the position of the head.
+#[test]
+fn the_boom_holds_the_rocker_upright() {
+    let aside = [FOOT[0], FOOT[1], 0.06];
+    let crane = loader(&boom(BOOM, "sections: 4"), 0.3, &linkage("boom", aside, PIVOT));
+    let crane: &dyn DynCrane = &crane;
+    let q = rest(crane);
+    let jib = body_named(crane, "jib");
+    let [foot, pivot] = [aside, PIVOT].map(|at| on_boom(crane, &q, at));
+    let [joint, head, load, beside] =
+        [[0.0; 3], HEAD, [3.0, 0.0, 0.3], [0.0, 0.0, 1.0]].map(|at| position_at(crane, &q, jib, at));
+    let length = |head: Vector3<f64>| (pivot + rods_pin(head - pivot, beside - joint) - foot).norm();
+    let slope = Vector3::from_fn(|axis, _| {
+        let at = |by: f64| {
+            let mut moved = head;
+            moved[axis] += by;
+            length(moved)
+        };
+        (at(1e-5) - at(-1e-5)) / 2e-5
+    });
+    let still = vec![0.0; q.len()];
+    let push = cylinders_at(crane, &q, &still, &crane.drive_efforts_at_rest(&q))[0].force * slope;
+    let weight = Vector3::new(0.0, 0.0, -900.0 * GRAVITY);
+    let moment = (load - joint).cross(&weight) + (head - joint).cross(&push);
+    let turn = crane.transforms_at(&q)[jib].fixed_view::<3, 3>(0, 0).transpose();
+    let of_joint = |(cut, _): &(Cut, Wrench)| *cut == Cut::Joint { body: jib };
+    let (_, wrench) = wrenches(crane, &q).into_iter().find(of_joint).expect("the joint");
+    // Forces are some 1e5 N; central differences are exact to the third derivative times 1e-10, and to rounding over 1e-5.
+    assert!((wrench.force - turn * (weight + push)).amax() < 1e-2, "{}", wrench.force - turn * (weight + push));
+    assert!((wrench.moment - turn * moment).amax() < 1e-2, "{}", wrench.moment - turn * moment);
+}
