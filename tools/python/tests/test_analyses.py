@@ -449,6 +449,23 @@ def test_forces_with_states_say_what_to_use_instead():
     np.testing.assert_allclose(rubbing.friction_forces([[5.0], [-5.0]]), [[-3.0], [3.0]], rtol=1e-6)
 
 
+def test_a_closed_loop_is_pushed_by_a_load_at_its_time():
+    """A slide along y on one along x, whose end keeps to a line at 45°: `F(t) = (m + 2 M) ẍ` and ÿ = ẍ."""
+    text = """
+format: 1
+name: corner
+links:
+  - {name: along, joint: {prismatic: {axis: x}}, mass: 2, com: [0, 0, 0]}
+  - {name: aside, joint: {prismatic: {axis: y}}, mass: 3, com: [0, 0, 0]}
+loop_joints: [{name: groove, from: {at: [0, 0, 0]}, to: {link: aside, at: [0, 0, 0]}, joint: {slide: {axis: [1, 1, 0]}}}]
+loads: [{name: push, link: along, force: [16, 0, 0], scale: {cubic: {from: 0, to: 1, duration: 2}}}]
+"""
+    c = crane.load("corner.yaml", text=text)
+    # Half of the load at half of its time; some roundings.
+    found = c.forward_dynamics([0.4, 0.4], [0.0, 0.0], [0.0, 1.0, 2.0])
+    np.testing.assert_allclose(found, [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]], atol=1e-12)
+
+
 def test_what_is_printed_is_short(knuckle):
     run = knuckle.simulate(duration=0.2, verify=False)
     ensemble = knuckle.replace(payload=[1.0, 2.0]).simulate_ensemble(duration=0.2)

@@ -214,3 +214,15 @@ def test_cylinders_limit_a_load_chart():
     ]:
         with pytest.raises(ValueError, match=said):
             arm.envelope(**({"ranges": {"arm": [0.0]}} | wrong))
+
+
+def test_oil_and_a_load_that_changes():
+    """The ground of a crane with a valve carries a load across its plane at the time that is given."""
+    loads = "loads: [{name: wind, link: arm, at: [1, 0, 0], force: [0, 300, 0], scale: {cubic: {from: 0, to: 1, duration: 2}}}]\n"
+    oil = "    bulk_modulus: 1.2e9\n    hose_volumes: [1e-3, 1e-3]\n    valve: {flow: 6e-4, pressure_drop: 1e6, lag: 0.03, gain: 2}\npump: {max_flow: 8e-4, pressure: 9e6}\n"
+    arm = crane.load("lifter.yaml", text=LIFTER.replace("rigid: true", "stiffness: 1e8") + oil + loads)
+    ground = [cut["kind"] for cut in arm.info["cuts"]].index("ground")
+    forces = arm.internal_forces(arm.statics().q, t=[0.0, 1.0, 2.0])[:, ground]
+    # Half of the load at half of its time; some roundings of the weight.
+    np.testing.assert_allclose(forces[:, 1], [0.0, 150.0, 300.0], atol=1e-9)
+    np.testing.assert_allclose(forces[:, 5] - forces[0, 5], forces[:, 1] * np.cos(arm.statics().q[-1]), rtol=1e-9, atol=1e-9)
