@@ -30,6 +30,17 @@ macro_rules! call {
     };
 }
 
+/// Calls the functions of all rows: of a module, with a crane, numbers of entries and arguments.
+macro_rules! call_rows {
+    ($of:ident $crane:ident $length:ident $at:ident $($trait:ident { $(
+        $(#[doc = $remark:literal])*
+        $id:ident = $name:ident($($argument:ident),*) -> $result:tt $rule:ident $doc:literal $equation:literal
+        $(python($($python:tt)*))?;
+    )* })*) => {
+        $($(call! { $result $length $id ($of::$name) (&$crane $(, $at.$argument)*) })*)*
+    };
+}
+
 /// Calls every function of a crane.
 macro_rules! call_all {
     ($crane:ident) => {{
@@ -46,16 +57,7 @@ macro_rules! call_all {
         of::prescribe(&crane, t, &mut q, &mut v);
         let positions = black_box(of::drive_positions(&crane, t));
         let at = At { t, q: &q, v: &v, a: &v, r: &v, positions: &positions };
-        macro_rules! call_rows {
-            ($($trait:ident { $(
-                $(#[doc = $remark:literal])*
-                $id:ident = $name:ident($($argument:ident),*) -> $result:tt $rule:ident $doc:literal $equation:literal
-                $(python($($python:tt)*))?;
-            )* })*) => {
-                $($(call! { $result length $id (of::$name) (&crane $(, at.$argument)*) })*)*
-            };
-        }
-        quantities! { call_rows }
+        quantities! { @(call_rows) [of crane length at] }
         black_box(of::potential_energy(&crane, t, &q));
         black_box(of::mass_matrix_and_bias(&crane, &q, &v, &mut mass));
         let factors: <Crane as Implicit<{ of::N }>>::Factors = of::factorise(&crane, &q, &v, &BaseMatrix::zeros());
