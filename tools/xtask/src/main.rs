@@ -53,8 +53,7 @@ fn main() -> ExitCode {
         "lint" => lint_steps(),
         "oracles" => [prepare_steps(), vec![build_step()], oracle_steps()].concat(),
         "performance" => {
-            let measure = || oracles::measure_performance(&std::env::args().skip(2).collect::<Vec<_>>());
-            vec![Step::check("times of the generated functions and of other libraries", measure)]
+            vec![Step::check("times of the generated functions and of other libraries", oracles::measure_performance)]
         }
         "error-vs-runtime" => vec![Step::cargo("error against run time", &ERROR_VS_RUNTIME)],
         "instrument" => vec![Step::check("the page as an instrument", instrument::build_page)],
@@ -191,7 +190,7 @@ fn test_steps() -> Vec<Step> {
     ]
 }
 
-/// The documented measurements in their quick forms: what is not run is broken one day. No time is compared with anything.
+/// Documented measurements in their quick forms: what is not run is broken one day. No time is compared with anything.
 fn measurement_steps() -> Vec<Step> {
     let once = ["bench", "--package", "crane-bench", "--", "--test"];
     let out = "target/error-vs-runtime/quick";
@@ -200,7 +199,6 @@ fn measurement_steps() -> Vec<Step> {
     vec![
         Step::cargo("every benchmark once", &once).with(SECTIONS, "0"),
         Step::cargo("error against run time, quickly", &quick),
-        Step::check("times beside other libraries, quickly", || oracles::measure_performance(&["--quick".to_owned()])),
     ]
 }
 
