@@ -24,6 +24,41 @@ class Section:
     moduli: list = None
 
 
+@dataclass
+class Plates:
+    """A closed box of two flanges and two webs, (length, thickness) each, the webs between the flanges."""
+
+    flange: tuple
+    web: tuple
+
+    def second_moments(self):
+        """Jy, Jz: own moment of each plate, and Steiner's term of those beside the axis."""
+        (b, t), (h, s) = self.flange, self.web
+        jy = 2 * (t * b**3 / 12 + h * s**3 / 12 + h * s * ((b - s) / 2) ** 2)
+        jz = 2 * (s * h**3 / 12 + b * t**3 / 12 + b * t * ((h + t) / 2) ** 2)
+        return jy, jz
+
+    def section(self):
+        """Area and second moments."""
+        (b, t), (h, s) = self.flange, self.web
+        circulation = 2 * (b - s) / t + 2 * (h + t) / s  # ∮ ds/t along the middle of the walls
+        return Section(2 * (b * t + h * s), *self.second_moments(), 4 * ((b - s) * (h + t)) ** 2 / circulation)
+
+    def moduli(self):
+        """A, Wy, Wz, Wt, Ay, Az."""
+        (b, t), (h, s) = self.flange, self.web
+        jy, jz = self.second_moments()
+        first_z = b * t * (h + t) / 2 + s * h**2 / 4
+        first_y = h * s * (b - s) / 2 + t * b**2 / 4
+        torsion = 2 * (b - s) * (h + t) * ca.fmin(t, s)
+        return [2 * (b * t + h * s), jy / (b / 2), jz / (h / 2 + t), torsion, jz * 2 * s / first_z, jy * 2 * t / first_y]
+
+
+def plates_of(size):
+    """The plates of a welded box."""
+    return Plates((size["width"], size["flange"]), (size["height"] - 2 * size["flange"], size["web"]))
+
+
 def section_moduli(shape, size, section):
     """A, Wy, Wz, Wt, Ay, Az of a shape, and 1 if it has corners: maximum stresses are N/A, M/W and Q/A.
 
@@ -36,6 +71,8 @@ def section_moduli(shape, size, section):
             return None
         given = size["moduli"]
         return [section.area, given["Wy"], given["Wz"], given["Wt"], given["Ay"], given["Az"], 1]
+    if shape == "welded_box":
+        return [*plates_of(size).moduli(), 1]
     if shape in ("box", "solid"):
         h, b = size["height"], size["width"]
         wall = size.get("thickness")
@@ -123,6 +160,8 @@ def read_shape(shape, size):
         hi, bi = h - 2 * t, b - 2 * t
         bredt = 4 * ((h - t) * (b - t)) ** 2 * t / (2 * (h - t) + 2 * (b - t))  # 4 A_m² t / perimeter
         return Section(h * b - hi * bi, (h * b**3 - hi * bi**3) / 12, (b * h**3 - bi * hi**3) / 12, bredt)
+    if shape == "welded_box":
+        return plates_of(size).section()
     if shape == "solid":
         h, b = size["height"], size["width"]
         return Section(h * b, h * b**3 / 12, b * h**3 / 12, rectangle_torsion(h, b))

@@ -153,7 +153,7 @@ catalogue! {
         "give one spring fewer than elements, and at least one";
     /// Walls fit into their section.
     E063 wall(thickness, size) "the wall of the section is too thick", "two walls of {thickness} m do not fit into {size} m",
-        "make `thickness` less than half of the smaller side, in m, or use `solid` or `circle`";
+        "make the wall thinner than half of that side, in m, or use `solid` or `circle`";
     /// The elements of a beam add up to its length.
     E064 beam_length(sum, length) "the elements do not add up to the beam", "{sum} m in all, the beam is {length} m long",
         "make the lengths of the elements add up to `length`, in m";

@@ -26,6 +26,8 @@ pub(crate) struct CrossSection {
 pub(crate) enum Shape {
     /// Height, width and thickness.
     Box([Value; 3]),
+    /// Height, width, thickness of the flanges and of the webs.
+    WeldedBox([Value; 4]),
     /// Outer diameter and thickness.
     Tube([Value; 2]),
     /// Height and width.
@@ -41,6 +43,7 @@ impl Shape {
     pub(crate) fn name(&self) -> &'static str {
         match self {
             Shape::Box(_) => "box",
+            Shape::WeldedBox(_) => "welded_box",
             Shape::Tube(_) => "tube",
             Shape::Solid(_) => "solid",
             Shape::Circle(_) => "circle",
@@ -52,6 +55,7 @@ impl Shape {
     pub(crate) fn section(&self) -> CrossSection {
         match self {
             Shape::Box([height, width, thickness]) => hollow_rectangle(height, width, thickness),
+            Shape::WeldedBox([height, width, flange, web]) => welded_box([height, width], [flange, web]),
             Shape::Tube([diameter, thickness]) => tube(diameter, thickness),
             Shape::Solid([height, width]) => solid_rectangle(*height, *width),
             Shape::Circle(diameter) => circle(diameter),
@@ -65,6 +69,7 @@ impl Shape {
         let mix = |a: &Value, b: &Value| (1.0 - share) * a.clone() + share * b.clone();
         Some(match (self, other) {
             (Shape::Box(a), Shape::Box(b)) => Shape::Box(std::array::from_fn(|k| mix(&a[k], &b[k]))),
+            (Shape::WeldedBox(a), Shape::WeldedBox(b)) => Shape::WeldedBox(std::array::from_fn(|k| mix(&a[k], &b[k]))),
             (Shape::Tube(a), Shape::Tube(b)) => Shape::Tube(std::array::from_fn(|k| mix(&a[k], &b[k]))),
             (Shape::Solid(a), Shape::Solid(b)) => {
                 Shape::Solid(std::array::from_fn(|k| (1.0 - share) * a[k] + share * b[k]))
@@ -108,6 +113,38 @@ pub(crate) fn hollow_rectangle(height: &Value, width: &Value, thickness: &Value)
         moduli: Some(moduli),
         outline: Some(Outline { size: [h.clone(), b.clone()], round: false }),
         jo: 2.0 * t.clone() * power(&middle(b), 2) * power(&middle(h), 2) / (b.clone() + h.clone() - 2.0 * t.clone()),
+    }
+}
+
+/// Hollow rectangle with flanges of thickness t_f and webs of thickness t_w, `h_m = h − t_f` and `b_m = b − t_w` between their middles;
+/// torsion by Bredt's formulas for thin walls, `J_o = 4 (b_m h_m)²/(2b_m/t_f + 2h_m/t_w)` and `W_t = 2 b_m h_m min(t_f, t_w)`.
+///
+/// Shear by Zhuravskii's formula at the neutral axis, where two webs, or two flanges, carry it: `A_y = 2t_w J_z/S_z`, `A_z = 2t_f J_y/S_y`.
+pub(crate) fn welded_box([h, b]: [&Value; 2], [flange, web]: [&Value; 2]) -> CrossSection {
+    let twice = |thickness: &Value| 2.0 * thickness.clone();
+    let (hi, bi) = (h.clone() - twice(flange), b.clone() - twice(web));
+    let second = |b: &Value, h: &Value| b.clone() * power(h, 3) / 12.0.into();
+    let first =
+        |b: &Value, h: &Value, bi: &Value, hi: &Value| 0.125 * (b.clone() * power(h, 2) - bi.clone() * power(hi, 2));
+    let area = b.clone() * h.clone() - bi.clone() * hi.clone();
+    let (jy, jz) = (second(h, b) - second(&hi, &bi), second(b, h) - second(&bi, &hi));
+    let (hm, bm) = (h.clone() - flange.clone(), b.clone() - web.clone());
+    let enclosed = bm.clone() * hm.clone();
+    let thinner = 0.5 * (flange.clone() + web.clone() - power(&(flange.clone() - web.clone()), 2).sqrt());
+    let moduli = Moduli {
+        area: area.clone(),
+        bending: [2.0 * jy.clone() / b.clone(), 2.0 * jz.clone() / h.clone()],
+        torsion: 2.0 * enclosed.clone() * thinner,
+        shear: [twice(web) * jz.clone() / first(b, h, &bi, &hi), twice(flange) * jy.clone() / first(h, b, &hi, &bi)],
+        has_corners: true,
+    };
+    CrossSection {
+        area,
+        jy,
+        jz,
+        jo: 2.0 * power(&enclosed, 2) / (bm / flange.clone() + hm / web.clone()),
+        moduli: Some(moduli),
+        outline: Some(Outline { size: [h.clone(), b.clone()], round: false }),
     }
 }
 
@@ -228,6 +265,46 @@ mod tests {
         close(&bending[0], 2.0 * 4.519e-5 / 0.2, 1e-4);
         close(&torsion, 0.016 * 0.192 * 0.242, 1e-13);
         close(&shear[0], 0.016 * 6.395e-5 / 3.031e-4, 2e-4);
+    }
+
+    #[test]
+    fn a_welded_box_is_its_four_plates() {
+        // By Steiner's theorem, plate by plate: 0.3 m high, 0.2 m wide, flanges of 12 mm and webs of 6 mm between them.
+        let (h, b, flange, web) = (0.3, 0.2, 0.012, 0.006);
+        let section = welded_box([&h.into(), &b.into()], [&flange.into(), &web.into()]);
+        let inner = h - 2.0 * flange;
+        close(&section.area, 2.0 * (b * flange + inner * web), 1e-13);
+        let flanges = 2.0 * (b * flange.powi(3) / 12.0 + b * flange * (0.5 * (h - flange)).powi(2));
+        close(&section.jz, flanges + 2.0 * web * inner.powi(3) / 12.0, 1e-12);
+        let webs = 2.0 * (inner * web.powi(3) / 12.0 + inner * web * (0.5 * (b - web)).powi(2));
+        close(&section.jy, webs + 2.0 * flange * b.powi(3) / 12.0, 1e-12);
+        // Bredt by its line integral; the webs, which are thinner, have the largest shear stress.
+        let middle = (h - flange) * (b - web);
+        close(&section.jo, 4.0 * middle * middle / (2.0 * (b - web) / flange + 2.0 * (h - flange) / web), 1e-13);
+        let Moduli { torsion, shear, .. } = moduli(section.clone());
+        close(&torsion, 2.0 * middle * web, 1e-13);
+        // First moments of half of the section: a flange and two halves of webs; a web and two halves of flanges.
+        let upper = b * flange * 0.5 * (h - flange) + 2.0 * web * (0.5 * inner).powi(2) / 2.0;
+        close(&shear[0], 2.0 * web * section.jz.at(&[]) / upper, 1e-12);
+        let side = inner * web * 0.5 * (b - web) + 2.0 * flange * (0.5 * b).powi(2) / 2.0;
+        close(&shear[1], 2.0 * flange * section.jy.at(&[]) / side, 1e-12);
+    }
+
+    #[test]
+    fn a_welded_box_of_equal_plates_is_a_box() {
+        let [h, b, t] = [0.25, 0.2, 0.008].map(Value::from);
+        let (welded, plain) = (welded_box([&h, &b], [&t, &t]), hollow_rectangle(&h, &b, &t));
+        for (welded, plain) in
+            [(&welded.area, &plain.area), (&welded.jy, &plain.jy), (&welded.jz, &plain.jz), (&welded.jo, &plain.jo)]
+        {
+            close(welded, plain.at(&[]), 1e-14);
+        }
+        let (welded, plain) = (moduli(welded), moduli(plain));
+        close(&welded.torsion, plain.torsion.at(&[]), 1e-14);
+        for k in 0..2 {
+            close(&welded.bending[k], plain.bending[k].at(&[]), 1e-14);
+            close(&welded.shear[k], plain.shear[k].at(&[]), 1e-14);
+        }
     }
 
     #[test]

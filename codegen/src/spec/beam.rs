@@ -140,6 +140,17 @@ pub enum Section {
         /// Thickness of the walls, m.
         thickness: Spanned<Number>,
     },
+    /// Hollow rectangle of plates, whose flanges and webs differ in thickness.
+    WeldedBox {
+        /// Outer height along y, m.
+        height: Spanned<Number>,
+        /// Outer width along z, m.
+        width: Spanned<Number>,
+        /// Thickness of the plates above and below, m.
+        flange: Spanned<Number>,
+        /// Thickness of the plates at the sides, m.
+        web: Spanned<Number>,
+    },
     /// Hollow circle.
     Tube {
         /// Outer diameter, m.

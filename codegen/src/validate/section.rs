@@ -59,6 +59,14 @@ impl<'a> Check<'a> {
                 let [height, width] = size;
                 Shape::Box([height, width, wall])
             }
+            Section::WeldedBox { height, width, flange, web } => {
+                let size = [positive(height, "`height`", "m"), positive(width, "`width`", "m")];
+                let plates = [positive(flange, "`flange`", "m"), positive(web, "`web`", "m")];
+                self.wall(flange.span, &plates[0], [&size[0]].into_iter());
+                self.wall(web.span, &plates[1], [&size[1]].into_iter());
+                let ([height, width], [flange, web]) = (size, plates);
+                Shape::WeldedBox([height, width, flange, web])
+            }
             Section::Tube { diameter, thickness } => {
                 let size = positive(diameter, "`diameter`", "m");
                 let wall = positive(thickness, "`thickness`", "m");

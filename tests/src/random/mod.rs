@@ -213,11 +213,12 @@ impl Writer {
         }
         let section = [
             "{box: {height: 0.09, width: 0.07, thickness: 0.004}}",
+            "{welded_box: {height: 0.09, width: 0.07, flange: 0.006, web: 0.003}}",
             "{tube: {diameter: 0.08, thickness: 0.005}}",
             "{solid: {height: 0.05, width: 0.03}}",
             "{circle: {diameter: 0.06}}",
             "{numbers: {area: 1.1e-3, Jy: 8.0e-7, Jz: 1.2e-6, Jo: 1.5e-6}}",
-        ][self.rng.usize(0..5)];
+        ][self.rng.usize(0..6)];
         self.line("      sections: 2");
         self.line("      material: soft");
         self.line(&format!("      section: {section}"));

@@ -114,7 +114,9 @@ impl Plausibility<'_> {
 
     fn section(&mut self, section: &Section, subject: &str, length: f64) {
         let sides: Vec<(&str, &Spanned<Number>)> = match section {
-            Section::Box { height, width, .. } | Section::Solid { height, width } => {
+            Section::Box { height, width, .. }
+            | Section::WeldedBox { height, width, .. }
+            | Section::Solid { height, width } => {
                 vec![("height", height), ("width", width)]
             }
             Section::Tube { diameter, .. } | Section::Circle { diameter } => vec![("diameter", diameter)],
