@@ -183,8 +183,10 @@ fn loop_forces(crane: &LiveCrane, transforms: &[Matrix4<f64>]) -> Vec<Vec<(usize
             LoopJointKind::Rod { .. } => vec![(other - one).normalize()],
             _ => vec![Vector3::x(), Vector3::y(), Vector3::z()],
         };
+        // A gap is measured in the frame of the first end: also where the loop is open, both forces act at the second point.
+        let first = if matches!(joint.kind, LoopJointKind::Rod { .. }) { one } else { other };
         for direction in directions {
-            let ends = [(&joint.ends[0], one, direction), (&joint.ends[1], other, -direction)];
+            let ends = [(&joint.ends[0], first, direction), (&joint.ends[1], other, -direction)];
             forces.push(
                 ends.into_iter().filter_map(|(end, at, force)| Some((end.body?.0, force_at(at, force)))).collect(),
             );

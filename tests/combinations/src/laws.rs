@@ -233,25 +233,22 @@ fn springs_carry(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Resul
 fn bodies_balance(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Result<(), String>> {
     let whole: &dyn DynCrane = crane;
     let still = vec![0.0; pose.len()];
-    // At rest, Newton's tolerance in the efforts of valves; in motion, second differences.
-    let mut worst = imbalances(crane, &Motion { t: 0.0, q: pose, v: &still, a: &still })
-        .into_iter()
-        .map(|(body, by)| (body, by, 1e-8))
-        .collect::<Vec<_>>();
+    // Newton's tolerance, in the efforts of valves.
+    let mut broken = unbalanced("at rest", imbalances(crane, &Motion { t: 0.0, q: pose, v: &still, a: &still }), 1e-8);
     // Rotors add moments of their own, which follow from rates and accelerations.
     if !has_states(crane) && crane.chain().rotors.is_empty() {
         let (t, q, v) = state(crane, pose, rng);
         let a = whole.accelerations_at(t, &q, &v).as_slice().to_vec();
-        worst.extend(
-            imbalances(crane, &Motion { t, q: &q, v: &v, a: &a }).into_iter().map(|(body, by)| (body, by, 1e-5)),
-        );
+        // Second differences.
+        broken.extend(unbalanced("in motion", imbalances(crane, &Motion { t, q: &q, v: &v, a: &a }), 1e-5));
     }
-    let missing = worst.into_iter().find(|(_, by, tolerance)| by.is_nan() || by > tolerance);
-    Some(
-        missing.map_or(Ok(()), |(body, by, _)| {
-            Err(format!("balance of {body}: {by:.3e} of the largest force is missing"))
-        }),
-    )
+    Some(if broken.is_empty() { Ok(()) } else { Err(broken.join("; ")) })
+}
+
+/// The bodies that are not in balance, by how much of the largest force.
+fn unbalanced(when: &str, bodies: Vec<(String, f64)>, tolerance: f64) -> Vec<String> {
+    let broken = bodies.into_iter().filter(|(_, by)| by.is_nan() || *by > tolerance);
+    broken.map(|(body, by)| format!("balance of {body} {when}: {by:.3e} of the largest force is missing")).collect()
 }
 
 /// Energy, work and dissipation of the run of the spec balance, relative to the largest of them.

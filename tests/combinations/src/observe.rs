@@ -176,7 +176,7 @@ pub fn differences(
         };
         let (value, scale) = (b.value / factor(&a.unit), scales[&(a.group, a.unit.as_str())]);
         let off = (a.value - value).abs();
-        if off.is_nan() || off > tolerance(a.group) * scale.max(floor(a.group)) {
+        if off.is_nan() || off > tolerance(a.group) * scale.max(floor(a.group, &a.unit)) {
             lines.push(format!("{key}: {:.9e} {} against {value:.9e}", a.value, a.unit));
         }
     }
@@ -184,7 +184,11 @@ pub fn differences(
 }
 
 /// Where all numbers of a unit are smaller than this, they are rounding. At the end of a run, the error of rates is that of the pose, 1e-8,
-/// times the fastest frequency that its steps follow, some 10 1/s.
-fn floor(group: &str) -> f64 {
-    if group == RUN.0 { 1e-2 } else { 1e-3 }
+/// times the fastest frequency that its steps follow, some 10 1/s. A power is a flow times a pressure, some 1e7 Pa.
+fn floor(group: &str, unit: &str) -> f64 {
+    match unit {
+        "W" => 10.0,
+        _ if group == RUN.0 => 1e-2,
+        _ => 1e-3,
+    }
 }
