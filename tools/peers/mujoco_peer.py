@@ -1,4 +1,4 @@
-"""A chain in MuJoCo: one body per link, which contains its joints in order."""
+"""A tree of links in MuJoCo: one body per link, which contains its joints in order."""
 
 import mujoco
 import numpy as np
@@ -16,7 +16,7 @@ DISABLED = (
     | FLAGS.mjDSBL_EULERDAMP
     | FLAGS.mjDSBL_WARMSTART
 )
-# MuJoCo rejects bodies without inertia; a point mass gets this much, kg m².
+# MuJoCo rejects bodies without mass or inertia: they get this much, kg and kg m².
 LEAST_INERTIA = 1e-14
 
 
@@ -28,15 +28,18 @@ class MuJoCo:
     def __init__(self, chain):
         self.model = build(chain).compile()
         self.data = mujoco.MjData(self.model)
+        # The coordinate of each of MuJoCo's joints, which it sorts branch by branch.
+        self.order = [int(self.model.joint(joint).name) for joint in range(self.model.njnt)]
 
     def evaluate(self, q, v, force):
         """A, e and q̈ at a state with generalized forces."""
         data = self.data
-        data.qpos, data.qvel, data.qfrc_applied = q, v, force
+        data.qpos, data.qvel, data.qfrc_applied = (numbers[self.order] for numbers in (q, v, force))
         mujoco.mj_forward(self.model, data)
         mass_matrix = np.zeros((self.model.nv, self.model.nv))
         mujoco.mj_fullM(self.model, data, mass_matrix)
-        return mass_matrix, -data.qfrc_bias, data.qacc.copy()
+        back = np.argsort(self.order)
+        return mass_matrix[np.ix_(back, back)], -data.qfrc_bias[back], data.qacc[back]
 
 
 def with_springs(chain, springs, step):
@@ -67,18 +70,19 @@ def build(chain):
     spec.compiler.degree = False
     spec.option.gravity = chain.gravity
     spec.option.disableflags = int(DISABLED)
-    body = spec.worldbody
-    armature = iter(chain.armature)
+    bodies = [spec.worldbody]
     for link in chain.links:
-        body = body.add_body(pos=link.placement[:3, 3], quat=quaternion(link.placement[:3, :3]))
+        body = bodies[link.parent + 1].add_body(pos=link.placement[:3, 3], quat=quaternion(link.placement[:3, :3]))
         for joint in link.joints:
             kind = mujoco.mjtJoint.mjJNT_HINGE if joint.is_rotation else mujoco.mjtJoint.mjJNT_SLIDE
-            body.add_joint(type=kind, axis=joint.axis, pos=joint.point, armature=next(armature), limited=False)
+            added = body.add_joint(type=kind, axis=joint.axis, pos=joint.point, limited=False)
+            added.name, added.armature = str(joint.coordinate), chain.armature[joint.coordinate]
         # Principal axes are computed here: MuJoCo's own are accurate only to 1e-12.
         moments, axes = principal(link.tensor)
-        body.mass, body.ipos, body.iquat = link.mass, link.com, quaternion(axes)
+        body.mass, body.ipos, body.iquat = max(link.mass, LEAST_INERTIA), link.com, quaternion(axes)
         body.inertia = np.maximum(moments, LEAST_INERTIA)
         body.explicitinertial = True
+        bodies.append(body)
     return spec
 
 
