@@ -3,10 +3,10 @@
 //! The balance is summed body by body in the world frame, from a chain's frames and masses; the accelerations are second differences of
 //! transforms. The recursion that it checks works in the frames of the bodies, outward and back.
 
-use crane_codegen::chain::{Attachment, Cylinder, Inertia, Load, LoadAxes, LoopJointKind, Pin};
+use crane_codegen::chain::{Attachment, BodyId, Cylinder, Inertia, Load, LoadAxes, LoopJointKind, Pin, Value};
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
-use crane_model::nalgebra::{DMatrix, DVector, Matrix3, Matrix4, Vector3, Vector6};
+use crane_model::nalgebra::{DVector, Matrix3, Matrix4, Vector3, Vector6};
 use crane_model::{Cut, Wrench};
 
 /// A force and its moment about the world's origin, N and N m.
@@ -37,51 +37,66 @@ pub fn imbalances(crane: &LiveCrane, motion: &Motion) -> Vec<(String, f64)> {
     let transforms = crane_transforms(crane, motion.q);
     let mut sums = vec![Screw::zeros(); chain.bodies.len()];
     let mut size: f64 = 0.0;
-    let mut add = |body: usize, screw: Screw| {
+    for (body, screw) in known_forces(crane, motion, &transforms) {
         sums[body] += screw;
         size = size.max(screw.norm());
-    };
+    }
+    let rest = remainder(&sums, &unknown_forces(crane, motion.q, &transforms));
+    let missing = |body: usize| rest.fixed_rows::<6>(6 * body).norm() / size.max(1.0);
+    chain.bodies.iter().enumerate().map(|(body, own)| (own.name.clone(), missing(body))).collect()
+}
+
+/// What cuts transmit to the bodies on their two sides, the negative of inertia and weight, and the forces of connectors and of loads with a
+/// constant factor.
+fn known_forces(crane: &LiveCrane, motion: &Motion, transforms: &[Matrix4<f64>]) -> Vec<(usize, Screw)> {
+    let mut forces = Vec::new();
     for (body, wrench) in cuts(crane, motion) {
         // A wrench is what the part beyond the cut exerts.
         let transmitted = -screw(&transforms[body], &wrench);
-        add(body, transmitted);
-        if let Some(parent) = chain.bodies[body].parent {
-            add(parent.0, -transmitted);
+        forces.push((body, transmitted));
+        forces.extend(crane.chain().bodies[body].parent.map(|parent| (parent.0, -transmitted)));
+    }
+    forces.extend(inertias(crane, motion).into_iter().map(|inertial| -inertial).enumerate());
+    forces.extend(connectors(crane, motion, transforms));
+    forces.extend(loads(crane, transforms, false).into_iter().flatten());
+    forces
+}
+
+/// Forces of 1, whose factors are whatever balances all bodies best: the efforts of cylinders, the forces of loops, and the factors of loads
+/// over time.
+fn unknown_forces(crane: &LiveCrane, q: &[f64], transforms: &[Matrix4<f64>]) -> Vec<Vec<(usize, Screw)>> {
+    let mut unknown = loads(crane, transforms, true);
+    unknown.extend(loop_forces(crane, transforms));
+    let cylinders = crane.chain().cylinders.iter().filter(|cylinder| cylinder.valve.is_some());
+    unknown.extend(cylinders.map(|cylinder| cylinder_forces(crane, cylinder, q, transforms)));
+    unknown
+}
+
+/// What remains of sums, body by body, beside the best multiples of unknown forces: the part normal to all of them. Twice, by Gram and Schmidt:
+/// what rounding leaves of one pass goes with the second.
+fn remainder(sums: &[Screw], unknown: &[Vec<(usize, Screw)>]) -> DVector<f64> {
+    let mut rest = DVector::from_iterator(6 * sums.len(), sums.iter().flat_map(|sum| sum.iter().copied()));
+    let mut directions: Vec<DVector<f64>> = Vec::new();
+    let normal = |vector: &mut DVector<f64>, directions: &[DVector<f64>]| {
+        for direction in directions.iter().chain(directions) {
+            *vector -= direction * direction.dot(vector);
         }
-    }
-    for (body, inertial) in inertias(crane, motion).into_iter().enumerate() {
-        add(body, -inertial);
-    }
-    let known = connectors(crane, motion, &transforms)
-        .into_iter()
-        .chain(loads(crane, &transforms, false).into_iter().flatten());
-    for (body, force) in known {
-        add(body, force);
-    }
-    // The efforts of cylinders, the forces of loops and the factors of loads over time are whatever balances all bodies best.
-    let cylinders = chain.cylinders.iter().filter(|cylinder| cylinder.valve.is_some());
-    let mut unknown = loads(crane, &transforms, true);
-    unknown.extend(loop_forces(crane, &transforms));
-    unknown.extend(cylinders.map(|cylinder| cylinder_forces(crane, cylinder, motion.q, &transforms)));
-    let mut columns = DMatrix::zeros(6 * sums.len(), unknown.len());
-    for (column, forces) in unknown.iter().enumerate() {
+    };
+    for forces in unknown {
+        let mut direction = DVector::zeros(rest.len());
         for (body, force) in forces {
-            let mut rows = columns.fixed_view_mut::<6, 1>(6 * body, column);
+            let mut rows = direction.fixed_rows_mut::<6>(6 * body);
             rows += force;
         }
+        let whole = direction.norm();
+        normal(&mut direction, &directions);
+        // The others already contain it.
+        if direction.norm() > 1e-9 * whole {
+            directions.push(direction.normalize());
+        }
     }
-    let rest =
-        DVector::from_iterator(6 * sums.len(), sums.iter().flat_map(|sum| sum.iter().copied().collect::<Vec<_>>()));
-    let rest = match unknown.len() {
-        0 => rest,
-        _ => columns
-            .clone()
-            .svd(true, true)
-            .solve(&-&rest, 1e-12)
-            .map_or(rest.clone(), |factors| rest + columns * factors),
-    };
-    let missing = |body: usize| rest.fixed_rows::<6>(6 * body).norm() / size.max(1.0);
-    chain.bodies.iter().enumerate().map(|(body, own)| (own.name.clone(), missing(body))).collect()
+    normal(&mut rest, &directions);
+    rest
 }
 
 fn crane_transforms(crane: &LiveCrane, q: &[f64]) -> Vec<Matrix4<f64>> {
@@ -197,8 +212,18 @@ fn loop_forces(crane: &LiveCrane, transforms: &[Matrix4<f64>]) -> Vec<Vec<(usize
 
 /// An attachment's position in the world, m.
 fn point_of(crane: &LiveCrane, end: &Attachment, transforms: &[Matrix4<f64>]) -> Vector3<f64> {
-    let local = Vector3::from(end.position.each_ref().map(|x| x.at(crane.parameters())));
-    end.body.map_or(local, |body| transforms[body.0].transform_point(&local.into()).coords)
+    point_at(crane, end.body, &end.position, transforms)
+}
+
+/// The position in the world of a point of a body, or of the world itself, m.
+fn point_at(
+    crane: &LiveCrane,
+    body: Option<BodyId>,
+    position: &[Value; 3],
+    transforms: &[Matrix4<f64>],
+) -> Vector3<f64> {
+    let local = Vector3::from(position.each_ref().map(|x| x.at(crane.parameters())));
+    body.map_or(local, |body| transforms[body.0].transform_point(&local.into()).coords)
 }
 
 /// The loads whose factor changes over time, or those whose factor is 1: load by load.
@@ -233,10 +258,7 @@ fn cylinder_forces(
     transforms: &[Matrix4<f64>],
 ) -> Vec<(usize, Screw)> {
     let (chain, parameters) = (crane.chain(), crane.parameters());
-    let point = |pin: &Pin| {
-        let local = Vector3::from(pin.position.each_ref().map(|x| x.at(parameters)));
-        transforms[pin.body.0].transform_point(&local.into()).coords
-    };
+    let point = |pin: &Pin| point_at(crane, Some(pin.body), &pin.position, transforms);
     let (foot, head) = (point(&cylinder.foot), point(&cylinder.head));
     let Some(linkage) = &cylinder.linkage else {
         let push = (head - foot).normalize();
