@@ -6,7 +6,7 @@ use crate::Description;
 /// No crane is 1 km long and no joint of one turns 160 times: beyond this, m or rad, a run has blown up.
 const BOUND: f64 = 1e3;
 /// Keeps the error of peak drive efforts of all shipped cranes below 1e-3, and that of the load path of the reference crane below
-/// 5e-5 of its size. Measured: crane-model/tests/shipped.rs,
+/// 5e-5 of its size. Measured: crane-model/tests/runtime/shipped.rs,
 /// docs/error-vs-runtime.md.
 const TOLERANCE: f64 = 2e-5;
 /// Maximum number of steps of a run: RK4 simulates a quarter of an hour with them, at 1e-4 s, and an adaptive method that needs more is stuck.

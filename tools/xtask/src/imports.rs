@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::{cycles, workspace};
+use crate::{cycles, modules, workspace};
 
 const PAGE: &str = "ARCHITECTURE.md";
 const COMPILER: &str = "codegen/src";
@@ -83,6 +83,7 @@ pub fn check_imports() -> Result<(), String> {
         }
     }
     breaches.extend(cycles::find_cycles()?);
+    breaches.extend(modules::find_unused_files()?);
     if breaches.is_empty() { Ok(()) } else { Err(format!("\n{}", breaches.join("\n"))) }
 }
 

@@ -10,6 +10,7 @@ mod fused;
 mod imports;
 mod instrument;
 mod manual;
+mod modules;
 mod named;
 mod new_crane;
 mod no_panic;

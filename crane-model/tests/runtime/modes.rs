@@ -1,8 +1,6 @@
 //! Small vibrations of cranes written by hand.
 
-mod common;
-
-use common::{DoublePendulum, GRAVITY, Lift};
+use crate::common::{DoublePendulum, GRAVITY, Lift};
 use crane_model::{
     Linearisation, Linearise,
     modes::{SmallMotions, damped, undamped},

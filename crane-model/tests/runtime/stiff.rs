@@ -1,10 +1,8 @@
 //! A stiff nonlinear motion: a pendulum whose rod is a stiff spring.
 
-mod common;
-
 use std::ops::ControlFlow;
 
-use common::{
+use crate::common::{
     GRAVITY, coordinate, description,
     implicit::{Factors, factorise, solve},
 };

@@ -1,9 +1,6 @@
 //! The largest stable step: predicted from eigenvalues, observed by bisection over runs.
 
-mod common;
-#[path = "common/live.rs"]
-mod live;
-
+use crate::live::Live;
 use crane_codegen::SourceFile;
 use crane_model::{
     CoordinateKind, CoordinateRole, Dynamics, Linearise,
@@ -13,7 +10,6 @@ use crane_model::{
     statics,
 };
 use crane_specs as cranes;
-use live::Live;
 use nalgebra::{Complex, SVector};
 
 /// Maximum relative difference between predicted and observed limits.

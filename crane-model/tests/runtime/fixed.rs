@@ -1,10 +1,8 @@
 //! A crane without coordinates.
 
-mod common;
-
 use std::ops::ControlFlow;
 
-use common::Fixed;
+use crate::common::Fixed;
 use crane_model::{
     dyn_crane::{DynCrane, Instance},
     dynamics, modes, statics,

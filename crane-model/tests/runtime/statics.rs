@@ -1,8 +1,6 @@
 //! Static equilibrium of cranes written by hand.
 
-mod common;
-
-use common::{DoublePendulum, Lift};
+use crate::common::{DoublePendulum, Lift};
 use crane_model::Text;
 use crane_model::statics::{Settings, Status, guess, solve, solve_at};
 use nalgebra::Vector1;

@@ -306,7 +306,7 @@ fn a_foot_in_the_air_and_a_spring_beyond_reason_are_named() {
 /// a push, 3 m beside its place.
 #[test]
 fn no_crane_stands_on_the_push_of_springs_that_let_go() {
-    let text = include_str!("specs/two_rests.yaml");
+    let text = include_str!("../specs/two_rests.yaml");
     let loader = |hold: f64, sections: u32| {
         crane(&text.replace("SECTIONS", &sections.to_string()).replace("HOLD", &format!("{hold:?}")))
     };

@@ -1,8 +1,6 @@
 //! Cranes written by hand behind one pointer.
 
-mod common;
-
-use common::Sledge;
+use crate::common::Sledge;
 use crane_model::dyn_crane::{DynCrane, Instance};
 
 #[test]

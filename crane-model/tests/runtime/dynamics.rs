@@ -1,10 +1,8 @@
 //! Motion of cranes written by hand.
 
-mod common;
-
 use std::ops::ControlFlow;
 
-use common::{DoublePendulum, Lift};
+use crate::common::{self, DoublePendulum, Lift};
 use crane_model::{
     Description, Implicit,
     dynamics::{Cause, Method, Settings, rk4, simulate},

@@ -1,0 +1,12 @@
+//! The compiler, stage by stage: what it reads, expands, derives and draws.
+
+mod any_bytes;
+mod beam_parts;
+mod cost;
+mod documentation;
+mod expansion;
+mod internal_forces;
+mod parameters;
+mod picture;
+mod sections;
+mod shipped_specs;

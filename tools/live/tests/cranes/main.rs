@@ -1,0 +1,31 @@
+//! Live cranes: what they compute, against hand calculations, other descriptions of the same crane, and laws.
+
+mod attachments;
+mod bending_cylinders;
+mod bristles;
+mod bytecode;
+mod cautions;
+mod connectors;
+mod critical_loads;
+mod curved_beams;
+mod cylinders;
+mod energy_audit;
+mod feet;
+mod hot_cranes;
+mod hung_chains;
+mod hydraulics;
+mod inputs;
+mod laws;
+mod limits;
+mod linearise;
+mod linkages;
+mod load_charts;
+mod loads;
+mod loop_cuts;
+mod loop_drives;
+mod loops;
+mod rope;
+mod rows;
+mod servos;
+mod stresses;
+mod telescopes;
