@@ -1,14 +1,15 @@
 //! What loop joints transmit so that a crane moves or rests in a given way.
 
-use nalgebra::{DMatrix, DVector, Dyn, SVD};
+use nalgebra::{DMatrix, DVector};
 
 use super::{Loops, dot};
+use crate::least_squares::LeastSquares;
 use crate::{
     CoordinateRole, Description,
     dyn_crane::{DynDynamics, DynModel, DynStatics},
 };
 
-/// Singular values below this are zero: a sine of 1e-5, as for the choice of independent equations.
+/// Distances of a row from the span of others below this are zero: a sine of 1e-5, as for the choice of independent equations.
 const SINGULAR: f64 = 1e-5;
 
 /// λ that the accelerations of a motion require:
@@ -102,7 +103,7 @@ pub(super) struct Balance<'a> {
     coordinates: &'a [usize],
     /// Lengths of the rows of J, over which they are divided here: equations in m and in rad become comparable.
     lengths: Vec<f64>,
-    svd: SVD<f64, Dyn, Dyn>,
+    equations: LeastSquares,
 }
 
 impl<'a> Balance<'a> {
@@ -116,18 +117,18 @@ impl<'a> Balance<'a> {
         let lengths: Vec<f64> = kept.iter().map(|equation| dot(row(equation), row(equation)).sqrt()).collect();
         let unit =
             DMatrix::from_fn(coordinates.len(), kept.len(), |i, k| jacobian[kept[k] * n + coordinates[i]] / lengths[k]);
-        Some(Self { loops, coordinates, lengths, svd: unit.svd(true, true) })
+        Some(Self { loops, coordinates, lengths, equations: LeastSquares::new(unit, SINGULAR) })
     }
 
     /// Whether only one λ balances.
     pub fn is_unique(&self) -> bool {
-        self.svd.rank(SINGULAR) == self.lengths.len()
+        self.equations.is_unique()
     }
 
     /// The smallest λ with the least squares of what remains.
     fn multipliers(&self, r: &[f64]) -> Option<Vec<f64>> {
         let right = DVector::from_iterator(self.coordinates.len(), self.coordinates.iter().map(|&i| r[i]));
-        let shares = self.svd.solve(&right, SINGULAR).ok()?;
+        let shares = self.equations.solve(&right)?;
         let mut multipliers = vec![0.0; self.loops.states.len()];
         for ((&equation, share), length) in self.loops.independent().iter().zip(shares.iter()).zip(&self.lengths) {
             multipliers[equation] = share / length;

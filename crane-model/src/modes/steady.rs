@@ -5,6 +5,7 @@ use std::{error::Error, fmt};
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 
 use crate::dyn_crane::DynLineariseMotion;
+use crate::least_squares::LeastSquares;
 
 /// Maximum Newton steps at each fraction of the rates.
 const ITERATIONS: usize = 30;
@@ -16,7 +17,8 @@ const GREATEST_STEP: f64 = 0.5;
 const HALVINGS: u32 = 12;
 /// Minimum increment of the search, as a fraction of the rates.
 const LEAST_PART: f64 = 1e-3;
-/// Least singular value of the tangent, its rows and columns scaled to 1, with which every coordinate has its place.
+/// Least distance of a column of the tangent from the span of the others, rows and columns scaled to 1, with which every coordinate has its
+/// place.
 const SINGULAR: f64 = 1e-9;
 /// Time over which forces are compared to see whether a motion remains steady, s.
 const MOMENT: f64 = 1e-4;
@@ -190,10 +192,8 @@ impl<'a, C: DynLineariseMotion + ?Sized> Search<'a, C> {
             return Some(self.free[unknown]);
         }
         let scaled = DMatrix::from_fn(size.len(), size.len(), |i, j| stiffness[(i, j)] / (size[i] * size[j]).sqrt());
-        let found = scaled.svd(false, true);
-        let (unknown, least) = found.singular_values.argmin();
-        let direction = found.v_t?.row(unknown).abs();
-        (least < SINGULAR).then(|| self.free[direction.transpose().argmax().0])
+        let direction = LeastSquares::new(scaled, SINGULAR).null_direction()?;
+        Some(self.free[direction.abs().argmax().0])
     }
 
     /// The pose at a fraction of the rates, from a pose nearby.

@@ -82,6 +82,11 @@ fn without_boom_elements(name: &str) -> Option<String> {
     (!of_boom_element(name)).then(|| name.to_owned())
 }
 
+/// Where a beam is tapered, its stress may peak where only one of two descriptions has a cut.
+fn without_stresses_and_boom_elements(name: &str) -> Option<String> {
+    without_boom_elements(name).filter(|name| !name.ends_with("stress"))
+}
+
 /// The boom in two beams with the same sections, joined by a fixed joint between two of them.
 fn split_boom(tree: &Tree, rng: &mut Rng) -> Option<Second> {
     let mut second = tree.clone();
@@ -92,6 +97,7 @@ fn split_boom(tree: &Tree, rng: &mut Rng) -> Option<Second> {
     let first = rng.u64(1..sections);
     let share = first as f64 / sections as f64;
     let cut = share * BOOM;
+    let tapered = beam["parts"].as_array().into_iter().flatten().any(|part| part["to"].is_object());
     let mut halves = [beam.clone(), beam];
     for (half, (count, length)) in halves.iter_mut().zip([(first, cut), (sections - first, BOOM - cut)]) {
         half["sections"] = json!(count);
@@ -128,7 +134,7 @@ fn split_boom(tree: &Tree, rng: &mut Rng) -> Option<Second> {
     if pivot {
         return None;
     }
-    Some(Second::of(&second).named(without_boom_elements))
+    Some(Second::of(&second).named(if tapered { without_stresses_and_boom_elements } else { without_boom_elements }))
 }
 
 /// Parts of a beam before and behind a place.

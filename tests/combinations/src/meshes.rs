@@ -14,9 +14,10 @@ const SECTIONS: [u32; 3] = [4, 8, 16];
 /// The difference between the finer two over that between the coarser two: 1/4 for order 2; more, since the terms behind the leading one
 /// count at four sections.
 const RATIO: f64 = 0.45;
-/// Differences below this share of the largest number of a unit are not looked at: Newton's tolerance for poses. For modes, stresses and the loads
-/// that these limit, the terms of order 2 and 4 may cancel between the coarser two.
+/// Differences below this share of the largest number of a unit are not looked at: Newton's tolerance for poses. For pressures, modes, stresses and
+/// the loads that these limit, the terms of order 2 and 4 may cancel between the coarser two.
 const SMALL: [(&str, f64); 4] = [("rest", 1e-8), ("modes", 1e-4), ("cuts", 3e-4), (CHART, 3e-4)];
+const SMALL_PRESSURE: f64 = 1e-6;
 
 /// What does not converge with order 2; `None` for a crane without divided beams, or with beams that cannot be divided again.
 pub fn check_meshes(tree: &Tree) -> Option<Vec<String>> {
@@ -61,7 +62,8 @@ pub fn check_meshes(tree: &Tree) -> Option<Vec<String>> {
     for (name, number) in fine.iter().filter(|(name, number)| counts(name, number)) {
         let Some((a, b, c)) = of(name, number) else { continue };
         let [change, scale] = changes[&(number.group, number.unit.as_str())];
-        let small = SMALL.iter().find(|(group, _)| *group == number.group).map_or(0.0, |(_, small)| *small);
+        let of_group = SMALL.iter().find(|(group, _)| *group == number.group).map_or(0.0, |(_, small)| *small);
+        let small = if number.unit == "Pa" { of_group.max(SMALL_PRESSURE) } else { of_group };
         if (c - b).abs() > RATIO * change && (c - b).abs() > small * scale {
             lines.push(format!("{name}: {:?} {} with {SECTIONS:?} sections", [a, b, c], number.unit));
         }
