@@ -368,6 +368,16 @@ fn damped_run_ends(crane: &LiveCrane, q: &[f64], rng: &mut Rng) -> Option<Result
     let settings = Settings { duration, output: duration, ..base };
     let table = record(crane, &start, &settings, &mut |_| ControlFlow::Continue(())).ok()?.table;
     let end = table.rows.last()?;
+    // A foot holds sideways as much as it is pressed: pushed aside, a crane may come to rest on fewer feet, shifted by their slip.
+    let depths = |pose: &[f64]| {
+        let mut gaps = vec![[0.0; 2]; description.supports.len()];
+        whole.support_gaps(pose, &vec![0.0; pose.len()], &mut gaps);
+        gaps.into_iter().map(|[gap, _]| -gap).collect::<Vec<f64>>()
+    };
+    let lifted = |(before, after): (f64, f64)| before > 0.0 && after < 0.1 * before;
+    if depths(q).into_iter().zip(depths(&end[1..=q.len()])).any(lifted) {
+        return None;
+    }
     let off = |j: usize| (end[1 + j] - q[j]).abs();
     let far = (0..q.len()).find(|&j| off(j) > 1e-5);
     Some(far.map_or(Ok(()), |j| {
