@@ -8,7 +8,7 @@ use crate::emit::{GeneratedCode, emit};
 use crate::emit_c::{CCode, Precision, emit_c};
 use crate::lower::{LoweredProgram, lower};
 use crate::mechanics::{derive, derive_verbatim, left_out};
-use crate::program::{Function, FunctionId, Shape};
+use crate::program::{Function, FunctionId, RuntimeTrait, Shape};
 use crate::read::read;
 use crate::report::Report;
 use crate::validate::{self, Checked};
@@ -86,6 +86,7 @@ pub fn generate_c(
         modes: is_chosen(FunctionId::Linearise),
         internal_forces: true,
         derivatives: is_chosen(FunctionId::TransformDerivatives),
+        motion_derivatives: RuntimeTrait::MotionDerivatives.functions().any(is_chosen),
         ensemble: false,
     };
     // Straight-line code needs no tables of numbers and no loops over columns.

@@ -12,8 +12,15 @@ use crane_codegen::mechanics::derive;
 use crane_codegen::program::{Argument, Function, Inputs, Program, Shape};
 use crane_codegen::{SourceFile, build};
 
-const EVERYTHING: Analyses =
-    Analyses { statics: true, dynamics: true, modes: true, internal_forces: true, derivatives: false, ensemble: false };
+const EVERYTHING: Analyses = Analyses {
+    statics: true,
+    dynamics: true,
+    modes: true,
+    internal_forces: true,
+    derivatives: false,
+    motion_derivatives: false,
+    ensemble: false,
+};
 
 /// A strut, a taut rope on a winch and a slack rope for the knuckle-boom crane.
 const CONNECTORS: &str = "connectors:

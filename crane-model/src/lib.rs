@@ -3,7 +3,7 @@
 //!
 //! | what | where | needs |
 //! |---|---|---|
-//! | traits of a generated crane | [`CraneModel`], [`Dynamics`], [`Implicit`], [`Ensemble`], [`Statics`], [`Linearise`], [`InternalForces`], [`TransformDerivatives`] | nothing |
+//! | traits of a generated crane | [`CraneModel`], [`Dynamics`], [`Implicit`], [`Ensemble`], [`Statics`], [`Linearise`], [`InternalForces`], [`TransformDerivatives`], [`MotionDerivatives`] | nothing |
 //! | one step in time | [`dynamics::rk4`] | nothing |
 //! | adaptive steps, explicit and implicit | `dynamics::dormand_prince`, `dynamics::rosenbrock` | `std` |
 //! | equilibrium | `statics` | `std` |
@@ -77,8 +77,8 @@ pub use description::{
 };
 pub use methods::Entry;
 pub use model::{
-    CraneModel, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise, OneByOne,
-    Statics, TransformDerivatives,
+    CraneModel, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise,
+    MotionDerivatives, OneByOne, Statics, TransformDerivatives,
 };
 /// The linear algebra of every signature, so that generated code needs only this crate.
 pub use nalgebra;

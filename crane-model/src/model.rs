@@ -9,7 +9,7 @@ use crane_quantities::quantities;
 use nalgebra::{Cholesky, Const, DefaultAllocator, Dim, OMatrix, SMatrix, SVector, allocator::Allocator};
 
 use crate::{
-    description::{Description, LoopJointInfo, ParameterError},
+    description::{CoordinateRole, Description, LoopJointInfo, ParameterError},
     methods::{Entry, sized_argument, sized_entry, sized_method, sized_methods, sized_result},
     rt::lanes::f64x8,
 };
@@ -187,6 +187,52 @@ pub trait InternalForces<const N: usize>: CraneModel<N> {
 /// [`degrees_of_freedom`](crate::BodyInfo::degrees_of_freedom) of `q`; all others are zero and not stored.
 pub trait TransformDerivatives<const N: usize>: CraneModel<N> {
     quantities! { sized_methods of TransformDerivatives }
+}
+
+/// Derivatives of the dynamics, for controllers, optimization and identification.
+pub trait MotionDerivatives<const N: usize>: Dynamics<N> {
+    /// Derivatives of the accelerations q̈ of [`forward_dynamics`](Dynamics::forward_dynamics) of the open chain: rows of ∂q̈/∂q, then of ∂q̈/∂v,
+    /// then of ∂q̈/∂τ = A⁻¹ with generalized forces τ. `out`: 3 N rows. For coordinates that rigid drives prescribe the rows are zero, and so are
+    /// their columns of A⁻¹. NaN unless A is positive definite.
+    ///
+    /// `−A⁻¹ ∂r/∂q, −A⁻¹ ∂r/∂v, A⁻¹`, at a = q̈, by Cholesky's factors of A
+    fn forward_dynamics_derivatives(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>, out: &mut [[f64; N]]) {
+        let a = self.forward_dynamics(t, q, v);
+        let (rows, rest) = out.split_at_mut(out.len().min(2 * N));
+        self.dynamic_residual_derivatives(t, q, v, &a, rows);
+        let mut mass = self.mass_matrix(q);
+        let prescribed = |j: usize| {
+            self.description().coordinates.get(j).is_some_and(|info| info.role == CoordinateRole::Prescribed)
+        };
+        separate(&mut mass, prescribed);
+        let Some(factors) = Cholesky::new(mass) else {
+            rows.iter_mut().chain(rest).for_each(|row| row.fill(f64::NAN));
+            return;
+        };
+        for block in rows.chunks_mut(N.max(1)) {
+            let of_block = |i: usize, j: usize| block.get(i).and_then(|row| row.get(j)).copied().unwrap_or(0.0);
+            let right = SMatrix::<f64, N, N>::from_fn(|i, j| if prescribed(i) { 0.0 } else { -of_block(i, j) });
+            write_rows(&factors.solve(&right), block);
+        }
+        let unit = |i: usize, j: usize| if i == j && !prescribed(i) { 1.0 } else { 0.0 };
+        write_rows(&factors.solve(&SMatrix::<f64, N, N>::from_fn(unit)), rest);
+    }
+
+    quantities! { sized_methods of MotionDerivatives }
+}
+
+/// Writes a matrix row by row.
+fn write_rows<const N: usize>(matrix: &SMatrix<f64, N, N>, rows: &mut [[f64; N]]) {
+    for (out, row) in rows.iter_mut().zip(matrix.row_iter()) {
+        out.iter_mut().zip(row.iter()).for_each(|(out, entry)| *out = *entry);
+    }
+}
+
+/// Makes the rows and columns of some coordinates those of the unit matrix.
+fn separate<const N: usize>(matrix: &mut SMatrix<f64, N, N>, is_separate: impl Fn(usize) -> bool) {
+    let unit = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
+    let entry = |i: usize, j: usize, entry: f64| if is_separate(i) || is_separate(j) { unit(i, j) } else { entry };
+    *matrix = matrix.map_with_location(entry);
 }
 
 /// Coefficients of small motions about a pose at rest.

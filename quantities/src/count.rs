@@ -31,6 +31,14 @@ pub enum Count {
     Derivatives,
     /// Pairs of coordinates that move each body.
     SecondDerivatives,
+    /// Axes of the world: x, y, z.
+    Axes,
+    /// Coordinates of the points of interest in the world.
+    PointAxes,
+    /// What the derivatives of a residual are with respect to: poses and rates.
+    PosesAndRates,
+    /// Entries of a residual, for poses and for rates.
+    ResidualRows,
 }
 
 impl Count {
@@ -56,6 +64,10 @@ impl Count {
             Count::LoopCuts => "loop_cuts",
             Count::Derivatives => "derivatives",
             Count::SecondDerivatives => "second_derivatives",
+            Count::Axes => "3",
+            Count::PointAxes => "point_axes",
+            Count::PosesAndRates => "2",
+            Count::ResidualRows => "residual_rows",
         }
     }
 
@@ -66,6 +78,8 @@ impl Count {
             Count::CylinderCuts => &[Count::Cylinders, Count::Cuts],
             Count::ConnectorCuts => &[Count::Connectors, Count::Cuts],
             Count::LoopCuts => &[Count::LoopEquations, Count::Cuts],
+            Count::PointAxes => &[Count::Points, Count::Axes],
+            Count::ResidualRows => &[Count::PosesAndRates, Count::Coordinates],
             _ => &[],
         }
     }

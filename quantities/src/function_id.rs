@@ -179,6 +179,12 @@ macro_rules! count {
     (second_derivatives) => {
         Count::SecondDerivatives
     };
+    (point_axes) => {
+        Count::PointAxes
+    };
+    (residual_rows) => {
+        Count::ResidualRows
+    };
 }
 
 macro_rules! python {

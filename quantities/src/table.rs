@@ -256,6 +256,33 @@ TransformDerivatives {
         "Second derivatives ∂²T/∂q_m∂q_n of every body, for all pairs m ≤ n of the coordinates that move it."
         "∂²T/∂q_m∂q_n = Ω_m Ω_n T";
 }
+MotionDerivatives {
+    /// For each point the rows x, y and z: the velocities of the points are J q̇.
+    PointJacobians = point_jacobians(q) -> [row; point_axes] zero
+        "Derivatives J of the points' positions with respect to the coordinates; m/rad and 1."
+        "J = ∂(T(p) r)/∂q_j = Ω_j T(p) r" python(q);
+    /// The torque of robotics, with inertia and gravity alone: what all forces together must be. `crane eval` takes the accelerations q̈ from
+    /// the equations of motion.
+    InverseDynamics = inverse_dynamics(q, v, a) -> vector required
+        "Generalized forces that a motion requires in total, N and N m."
+        "A a − e = A a + h + g, by Newton and Euler" python(q, v, a);
+    /// What a drive or another force would have to add: positive where it pushes towards larger coordinates; zero in all coordinates that
+    /// move freely with a = q̈. For coordinates that rigid drives prescribe, f contains no force of these drives, and r is the effort that they
+    /// need. The forces of cylinders with a valve, of bristles and of joints that close loops are not part of f.
+    DynamicResidual = dynamic_residual(t, q, v, a) -> vector required
+        "Generalized forces r that a motion requires beyond those that act, N and N m."
+        "r = A a − e − f, by Newton and Euler" python(q, v, a; t);
+    /// Row i and column j of each matrix: the change of r_i with q_j, and with q̇_j. At rest ∂r/∂q is the tangent stiffness, and ∂r/∂v
+    /// the damping matrix.
+    DynamicResidualDerivatives = dynamic_residual_derivatives(t, q, v, a) -> [row; residual_rows] required
+        "Derivatives ∂r/∂q (N/m, N, N m) and ∂r/∂v (N s/m, N s, N m s) of the residual r = A a − e − f."
+        "Ω_i · (Ω̈_j W + 2 Ω̇_j G + Ω_j × F) − ∂f_i/∂q_j, 2 Ω_i · (Ω̇_j W + Ω_j G) − ∂f_i/∂q̇_j" python(q, v, a; t);
+    /// About a moving state, δq̈ = ∂q̈/∂q δq + ∂q̈/∂v δq̇ + A⁻¹ δτ. For coordinates that rigid drives prescribe the rows are zero, and so are their
+    /// columns of A⁻¹. Of the open chain.
+    ForwardDynamicsDerivatives = forward_dynamics_derivatives(t, q, v) -> other written
+        "Derivatives ∂q̈/∂q, ∂q̈/∂v and ∂q̈/∂τ = A⁻¹ of the accelerations q̈ of `forward_dynamics`."
+        "−A⁻¹ ∂r/∂q, −A⁻¹ ∂r/∂v, A⁻¹, at a = q̈";
+}
         }
     };
 }
@@ -270,6 +297,7 @@ macro_rules! select {
     (Statics $consumer:ident Statics { $($row:tt)* } $($rest:tt)*) => { $consumer! { $($row)* } };
     (InternalForces $consumer:ident InternalForces { $($row:tt)* } $($rest:tt)*) => { $consumer! { $($row)* } };
     (TransformDerivatives $consumer:ident TransformDerivatives { $($row:tt)* } $($rest:tt)*) => { $consumer! { $($row)* } };
+    (MotionDerivatives $consumer:ident MotionDerivatives { $($row:tt)* } $($rest:tt)*) => { $consumer! { $($row)* } };
     ($trait:ident $consumer:ident $other:ident { $($row:tt)* } $($rest:tt)*) => {
         $crate::select! { $trait $consumer $($rest)* }
     };
@@ -287,6 +315,8 @@ macro_rules! axes {
     // Also those of coordinates that do not move a body.
     ([transform; derivatives]) => { ", bodies, n, 4, 4" };
     ([pair; coordinates]) => { ", n, 2" };
+    ([row; point_axes]) => { ", points, 3, n" };
+    ([row; residual_rows]) => { ", 2, n, n" };
     ([$item:ident; $count:ident]) => { concat!(", ", stringify!($count), $crate::axes!(@ $item)) };
     (@ vector) => { ", 3" };
     (@ pair) => { ", 2" };

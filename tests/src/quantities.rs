@@ -6,7 +6,8 @@ use crane_model::dyn_crane::Crane;
 use crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
 use crane_model::rt::lanes::f64x8;
 use crane_model::{
-    CraneModel, Description, Entry, LaneDynamics, Linearisation, SectionModuli, Tension, TransformDerivatives, Wrench,
+    CraneModel, Description, Entry, LaneDynamics, Linearisation, MotionDerivatives, SectionModuli, Tension,
+    TransformDerivatives, Wrench,
 };
 use crane_quantities::quantities;
 
@@ -136,7 +137,7 @@ macro_rules! call {
 }
 
 /// Calls every method of the table and passes its numbers on, matrices row by row; allocates nothing.
-pub fn call_every<const N: usize, C: Crane<N> + TransformDerivatives<N>>(
+pub fn call_every<const N: usize, C: Crane<N> + TransformDerivatives<N> + MotionDerivatives<N>>(
     crane: &C,
     at: &At<'_, N>,
     lists: &mut Lists<N>,
@@ -174,7 +175,10 @@ trait RowByRow: Entry {
 impl<T: Entry> RowByRow for T {}
 
 /// All quantities of a generated crane at a state, one after the other.
-pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C, state: &State) -> Vec<f64> {
+pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N> + MotionDerivatives<N>>(
+    crane: &C,
+    state: &State,
+) -> Vec<f64> {
     let (t, q, v) =
         (state.t, &SVector::<f64, N>::from_column_slice(&state.q), &SVector::<f64, N>::from_column_slice(&state.v));
     let mut out = Vec::new();

@@ -14,8 +14,7 @@ use crane_tests::precise::{self, Precise};
 use crane_tests::quantities::State;
 use crane_tests::{random, states, workspace};
 
-const DYNAMICS: Analyses =
-    Analyses { statics: false, modes: false, internal_forces: false, derivatives: false, ..Analyses::ALL };
+const DYNAMICS: Analyses = Analyses { statics: false, modes: false, internal_forces: false, ..Analyses::COMMAND };
 const WITH_DERIVATIVES: Analyses = Analyses { derivatives: true, ..DYNAMICS };
 
 /// Relative to the largest acceleration: rounding of the forces alone, 1e-16 of the stiffest spring, is multiplied by

@@ -7,13 +7,16 @@ use crane_model::dyn_crane::{Crane, DynCrane};
 use crane_model::dynamics::{InitialState, Method, Settings};
 use crane_model::nalgebra::{Matrix6, SMatrix, SVector};
 use crane_model::rt::lanes::splat;
-use crane_model::{Ensemble, LaneDynamics, TransformDerivatives};
+use crane_model::{Ensemble, LaneDynamics, MotionDerivatives, TransformDerivatives};
 use crane_specs as cranes;
 use crane_tests::exact;
 use crane_tests::quantities::{At, Lists, call_every};
 
 /// Calls every function of the traits at the guess; lists go into `lists`.
-fn every_function<const N: usize>(crane: &mut (impl Crane<N> + TransformDerivatives<N>), lists: &mut Lists<N>) {
+fn every_function<const N: usize>(
+    crane: &mut (impl Crane<N> + TransformDerivatives<N> + MotionDerivatives<N>),
+    lists: &mut Lists<N>,
+) {
     let (t, q, v) = (0.7, SVector::<f64, N>::from_column_slice(&crane.description().guess), SVector::repeat(0.1));
     let (q, v) = (&q, &v);
     let _ = black_box(crane.set_parameter(0, black_box(crane.parameter(0))));

@@ -42,6 +42,7 @@ class Derivations:
             **self.internal_forces(),
             **loop_joints.quantities(crane.loop_joints, crane.q, crane.v),
         }
+        self.quantities |= self.motion_derivatives()
 
     def rate(self, expression):
         """Time derivative at given t, q, v: the directional derivative along (1, v)."""
@@ -72,6 +73,20 @@ class Derivations:
                 *[pair(p, m, n) for p, dof in moving for m in dof for n in dof if n >= m]
             ),
         }
+
+    def motion_derivatives(self):
+        """`A a - e`, `r = A a - e - f` and ∂r/∂q, ∂r/∂v at given a, for which the rates are used, too; derivatives of the points.
+
+        The forces of rigid drives are not part of f.
+        """
+        q, v, known = self.crane.q, self.crane.v, self.quantities
+        a = ca.SX.sym("a", q.numel())
+        required = ca.reshape(known["mass_matrix"], q.numel(), q.numel()) @ a - known["bias"]
+        residual = required - known["forces"]
+        slopes = [row_major(ca.densify(ca.jacobian(residual, x))) for x in (q, v)]
+        found = [ca.substitute(expression, a, v) for expression in (required, residual, ca.vertcat(*slopes))]
+        names = ["inverse_dynamics", "dynamic_residual", "dynamic_residual_derivatives"]
+        return dict(zip(names, found)) | {"point_jacobians": row_major(ca.densify(ca.jacobian(known["points"], q)))}
 
     def internal_forces(self):
         """What the part beyond each cut exerts on the part before it: its weight and the loads on it, minus the rate of its momenta.

@@ -25,7 +25,9 @@ impl Chain {
             Count::WinchPieces => self.connectors().iter().map(Force::pieces).sum(),
             Count::Derivatives => degrees.sum(),
             Count::SecondDerivatives => degrees.map(|n| n * (n + 1) / 2).sum(),
-            Count::CylinderCuts | Count::ConnectorCuts | Count::LoopCuts => {
+            Count::Axes => 3,
+            Count::PosesAndRates => 2,
+            Count::CylinderCuts | Count::ConnectorCuts | Count::LoopCuts | Count::PointAxes | Count::ResidualRows => {
                 count.factors().iter().map(|factor| self.count(*factor)).product()
             }
         }

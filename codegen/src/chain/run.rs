@@ -25,13 +25,15 @@ pub struct Analyses {
     pub internal_forces: bool,
     /// ∂T/∂q and ∂²T/∂q∂q of every body.
     pub derivatives: bool,
+    /// Residual of the equations of motion with its derivatives, derivatives of accelerations and of points.
+    pub motion_derivatives: bool,
     /// Eight cranes per call, for simulations of many cranes; needs dynamics.
     pub ensemble: bool,
 }
 
 impl Analyses {
     /// The analyses that the command needs.
-    pub const COMMAND: Analyses = Analyses { derivatives: false, ..Analyses::ALL };
+    pub const COMMAND: Analyses = Analyses { derivatives: false, motion_derivatives: false, ..Analyses::ALL };
     /// All analyses of one crane, for checks.
     pub const ALL: Analyses = Analyses {
         statics: true,
@@ -39,6 +41,7 @@ impl Analyses {
         modes: true,
         internal_forces: true,
         derivatives: true,
+        motion_derivatives: true,
         ensemble: false,
     };
 }

@@ -118,7 +118,9 @@ impl<'a> Labels<'a> {
                 let name = self.part(first, index / cuts).unwrap_or_default();
                 Some(format!("{name} – {}", self.part(Count::Cuts, index % cuts)?))
             }
-            Count::Bodies | Count::Derivatives | Count::SecondDerivatives => None,
+            Count::PointAxes => self.part(Count::Points, index / 3),
+            Count::ResidualRows => self.part(Count::Coordinates, index % chain.coordinates.len()),
+            Count::Bodies | Count::Derivatives | Count::SecondDerivatives | Count::Axes | Count::PosesAndRates => None,
         }
     }
 

@@ -140,6 +140,7 @@ fn imports(items: &[syn::Item]) -> String {
                 "LoadInfo",
                 "LoopEquationInfo",
                 "LoopJointInfo",
+                "MotionDerivatives",
                 "OneByOne",
                 "ParameterError",
                 "ParameterInfo",

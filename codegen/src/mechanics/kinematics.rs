@@ -78,6 +78,11 @@ impl<'g> Curvature<'g> {
     /// Indices m ≤ n among the three coordinates, row by row of a triangle.
     pub const PAIRS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
+    /// The rotation vector.
+    pub fn vector(&self) -> &RotationVector<'g> {
+        &self.vector
+    }
+
     /// Axes of two coordinates.
     fn axes(&self, (m, n): (usize, usize)) -> (usize, usize) {
         let axes = self.vector.by_coordinates([0, 1, 2]);

@@ -27,6 +27,7 @@ mod laws;
 mod loads;
 mod loop_joints;
 mod model;
+mod motion_derivatives;
 mod newton_euler;
 mod omissions;
 mod outward;

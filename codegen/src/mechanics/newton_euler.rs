@@ -22,6 +22,12 @@ pub fn bias<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
     inward(model, factors, &motions, &[], |_, _| None).bias
 }
 
+/// `A a − e` without rotors: the generalized forces that a motion requires.
+pub fn inverse_dynamics<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
+    let motions = outward(model, factors, (&model.v, Some(&model.a)), -model.vector(&model.chain.gravity));
+    inward(model, factors, &motions, &[], |_, _| None).bias.into_iter().map(|effort| -effort).collect()
+}
+
 /// Force and moment that the part beyond each cut exerts on the part before it: the inertia and the weight of everything
 /// beyond, the loads applied to it and the forces of connectors on it.
 pub fn internal_forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {

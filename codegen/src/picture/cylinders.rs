@@ -113,7 +113,7 @@ mod tests {
             let (frames, joints) = poses(&chain);
             let pins = Pins::of(&chain, &chain.cylinders[0], &frames, &joints);
             let length = |a: Vector, b: Vector| dot(difference(a, b), difference(a, b)).sqrt();
-            let program = mechanics::derive(&chain, Analyses { derivatives: false, ..Analyses::ALL });
+            let program = mechanics::derive(&chain, Analyses::COMMAND);
             let function = program.function(FunctionId::CylinderStates).expect("the crane has a cylinder");
             let inputs = Inputs::state(0.0, chain.guess.clone(), vec![0.0], chain.parameter_defaults());
             let computed = program.evaluate(function, &inputs)[0];

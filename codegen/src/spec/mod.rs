@@ -146,6 +146,8 @@ pub enum Analysis {
     InternalForces,
     /// First and second derivatives of every body's transformation.
     Derivatives,
+    /// Derivatives of accelerations, of the forces that a motion requires, and of points of interest; includes `dynamics`.
+    MotionDerivatives,
     /// Accelerations of eight cranes per call, for simulations of many cranes with different parameters; includes `dynamics`.
     Ensemble,
 }
@@ -160,6 +162,7 @@ impl Analysis {
             Analysis::Modes => "modes",
             Analysis::InternalForces => "internal_forces",
             Analysis::Derivatives => "derivatives",
+            Analysis::MotionDerivatives => "motion_derivatives",
             Analysis::Ensemble => "ensemble",
         }
     }

@@ -278,7 +278,7 @@ impl<'a> Check<'a> {
     }
 
     fn analyses(&mut self, given: Option<&Spanned<Vec<Spanned<Analysis>>>>) -> Analyses {
-        let default = Analyses { internal_forces: false, derivatives: false, ..Analyses::ALL };
+        let default = Analyses { internal_forces: false, ..Analyses::COMMAND };
         let Some((list, span)) = given.and_then(|given| Some((given.value.as_ref()?, given.span))) else {
             return default;
         };
@@ -288,10 +288,11 @@ impl<'a> Check<'a> {
         let wants = |analysis| list.iter().any(|item| item.value == Some(analysis));
         Analyses {
             statics: wants(Analysis::Statics),
-            dynamics: wants(Analysis::Dynamics) || wants(Analysis::Ensemble),
+            dynamics: wants(Analysis::Dynamics) || wants(Analysis::Ensemble) || wants(Analysis::MotionDerivatives),
             modes: wants(Analysis::Modes),
             internal_forces: wants(Analysis::InternalForces),
             derivatives: wants(Analysis::Derivatives),
+            motion_derivatives: wants(Analysis::MotionDerivatives),
             ensemble: wants(Analysis::Ensemble),
         }
     }

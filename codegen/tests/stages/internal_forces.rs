@@ -58,7 +58,7 @@ fn wrenches(chain: &Chain, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
 
 /// The wrench that every cut transmits at time t.
 fn wrenches_at(t: f64, chain: &Chain, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
-    let analyses = Analyses { derivatives: false, ..Analyses::ALL };
+    let analyses = Analyses::COMMAND;
     let program = mechanics::derive(chain, analyses);
     let function = program.function(FunctionId::InternalForces).expect("the analyses ask for it");
     let inputs = Inputs::state(t, q.to_vec(), v.to_vec(), chain.parameter_defaults());
@@ -287,8 +287,7 @@ fn they_cost_little_more_than_the_bias() {
     let text = std::fs::read_to_string(&path).expect("it is shipped");
     let chain = compile::load(&SourceFile::new(&path, &text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"));
     assert_eq!(chain.coordinates.len(), 25);
-    let report =
-        compile::report(&chain, Analyses { statics: false, modes: false, derivatives: false, ..Analyses::ALL });
+    let report = compile::report(&chain, Analyses { statics: false, modes: false, ..Analyses::COMMAND });
     let cost = |name| report.costs.iter().find(|cost| cost.function == name).expect("it is derived").operations.total();
     let (forces, bias) = (cost("internal_forces"), cost("bias"));
     assert!(2 * forces <= 3 * bias, "{forces} operations, {bias} of the bias");

@@ -19,7 +19,7 @@ fn crane(rest: &str) -> Chain {
 }
 
 fn evaluate(chain: &Chain, id: FunctionId, [q, v, a]: [&[f64]; 3]) -> Vec<f64> {
-    let program = mechanics::derive(chain, Analyses { derivatives: false, ..Analyses::ALL });
+    let program = mechanics::derive(chain, Analyses::COMMAND);
     let inputs = Inputs::state(0.0, q.to_vec(), v.to_vec(), chain.parameter_defaults());
     let function = program.function(id).expect("the analyses ask for it");
     program.evaluate(function, &inputs.with(Argument::Acceleration, a.to_vec()))

@@ -31,7 +31,9 @@ impl Description {
             Count::WinchPieces => self.connectors.iter().map(|connector| connector.pieces).sum(),
             Count::Derivatives => degrees.sum(),
             Count::SecondDerivatives => degrees.map(|n| n * (n + 1) / 2).sum(),
-            Count::CylinderCuts | Count::ConnectorCuts | Count::LoopCuts => {
+            Count::Axes => 3,
+            Count::PosesAndRates => 2,
+            Count::CylinderCuts | Count::ConnectorCuts | Count::LoopCuts | Count::PointAxes | Count::ResidualRows => {
                 count.factors().iter().map(|factor| self.count(loop_joints, *factor)).product()
             }
         }

@@ -8,11 +8,12 @@ use nalgebra::{Matrix6, SMatrix, SVector};
 use super::methods::{instance_method, instance_methods, sized};
 use super::{
     DynBlock, DynCrane, DynDerivatives, DynDynamics, DynEnsemble, DynImplicit, DynInternalForces, DynLinearise,
-    DynModel, DynStatics, DynSystem,
+    DynModel, DynMotionDerivatives, DynStatics, DynSystem,
 };
 use crate::{
     CraneModel, Description, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise,
-    LoopJointInfo, ParameterError, Statics, TransformDerivatives, entry_type, rt::lanes::f64x8, slice_argument,
+    LoopJointInfo, MotionDerivatives, ParameterError, Statics, TransformDerivatives, entry_type, rt::lanes::f64x8,
+    slice_argument,
 };
 
 /// A crane compiled with every analysis except derivatives.
@@ -147,6 +148,14 @@ impl<const N: usize, H: Deref<Target: InternalForces<N>> + Send + Sync> DynInter
 
 impl<const N: usize, H: Deref<Target: TransformDerivatives<N>> + Send + Sync> DynDerivatives for Instance<N, H> {
     quantities! { instance_methods of TransformDerivatives }
+}
+
+impl<const N: usize, H: Deref<Target: MotionDerivatives<N>> + Send + Sync> DynMotionDerivatives for Instance<N, H> {
+    fn forward_dynamics_derivatives(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]) {
+        self.0.forward_dynamics_derivatives(t, &vector(q), &vector(v), out.as_chunks_mut().0);
+    }
+
+    quantities! { instance_methods of MotionDerivatives }
 }
 
 impl<const N: usize, H> DynCrane for Instance<N, H>

@@ -14,6 +14,7 @@
 //! | [`DynInternalForces`] | [`InternalForces`](crate::InternalForces) | bearing loads, stresses |
 //! | [`DynEnsemble`] | [`Ensemble`](crate::Ensemble) | runs of many cranes |
 //! | [`DynDerivatives`] | [`TransformDerivatives`](crate::TransformDerivatives) | tables of derivatives |
+//! | [`DynMotionDerivatives`] | [`MotionDerivatives`](crate::MotionDerivatives) | controllers, optimization |
 //! | [`DynCrane`] | all of them except derivatives | the command |
 //!
 //! # Slices
@@ -167,8 +168,17 @@ pub trait DynDerivatives: DynModel {
     quantities! { slice_methods of TransformDerivatives }
 }
 
-/// A crane with every analysis except two that are rarely needed: derivatives of transforms, [`DynDerivatives`], and small motions about a
-/// motion, [`DynLineariseMotion`].
+/// Derivatives of the dynamics: [`MotionDerivatives`](crate::MotionDerivatives) on slices.
+pub trait DynMotionDerivatives: DynDynamics {
+    /// Rows of ∂q̈/∂q, ∂q̈/∂v and ∂q̈/∂τ = A⁻¹, 3 n rows of n numbers:
+    /// [`MotionDerivatives::forward_dynamics_derivatives`](crate::MotionDerivatives::forward_dynamics_derivatives).
+    fn forward_dynamics_derivatives(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]);
+
+    quantities! { slice_methods of MotionDerivatives }
+}
+
+/// A crane with every analysis except three that are rarely needed: derivatives of transforms, [`DynDerivatives`], derivatives of the dynamics,
+/// [`DynMotionDerivatives`], and small motions about a motion, [`DynLineariseMotion`].
 ///
 /// Functions that return owned lists and matrices are methods of [`dyn DynCrane`](trait.DynCrane.html#impl-dyn+DynCrane).
 pub trait DynCrane: DynStatics + DynImplicit + DynLinearise + DynInternalForces + DynEnsemble + Send + Sync {

@@ -95,7 +95,7 @@ macro_rules! crane {
             use crane_model::rt::lanes::f64x8;
             use crane_model::{
                 CraneModel, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise,
-                ParameterError, Statics, TransformDerivatives,
+                MotionDerivatives, ParameterError, Statics, TransformDerivatives,
             };
             use crane_quantities::quantities;
 

@@ -52,7 +52,7 @@ links:
 "
         );
         let chain = workspace::chain_of("beam", &spec);
-        let analyses = Analyses { derivatives: false, ..Analyses::ALL };
+        let analyses = Analyses::COMMAND;
         let program = mechanics::derive(&chain, analyses);
         Beam { crane: Interpreted { chain, program } }
     }

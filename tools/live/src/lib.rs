@@ -26,6 +26,7 @@
 pub mod assemble;
 pub mod bytecode;
 mod crane;
+mod derivatives;
 mod describe;
 mod dual;
 mod expansion;

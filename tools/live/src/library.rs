@@ -24,10 +24,12 @@ pub enum Group {
     InternalForces,
     /// Derivatives of transforms.
     Derivatives,
+    /// Derivatives of the dynamics.
+    MotionDerivatives,
 }
 
 impl Group {
-    const COUNT: usize = 6;
+    const COUNT: usize = 7;
 
     /// The group to which a function belongs.
     fn of(id: FunctionId) -> Self {
@@ -38,6 +40,7 @@ impl Group {
             RuntimeTrait::Linearise => Group::Modes,
             RuntimeTrait::InternalForces => Group::InternalForces,
             RuntimeTrait::TransformDerivatives => Group::Derivatives,
+            RuntimeTrait::MotionDerivatives => Group::MotionDerivatives,
         }
     }
 
@@ -49,6 +52,7 @@ impl Group {
             modes: false,
             internal_forces: false,
             derivatives: false,
+            motion_derivatives: false,
             ensemble: false,
         };
         match self {
@@ -58,6 +62,7 @@ impl Group {
             Group::Modes => Analyses { modes: true, ..nothing },
             Group::InternalForces => Analyses { internal_forces: true, ..nothing },
             Group::Derivatives => Analyses { derivatives: true, ..nothing },
+            Group::MotionDerivatives => Analyses { motion_derivatives: true, ..nothing },
         }
     }
 }

@@ -20,7 +20,7 @@ impl DynLineariseMotion for LiveCrane {
         let n = self.size();
         self.mass_matrix(q, mass);
         // A a − e, and f.
-        let quantities = [Quantity::InverseDynamics, Quantity::Of(FunctionId::Forces)];
+        let quantities = [FunctionId::InverseDynamics, FunctionId::Forces].map(Quantity::Of);
         let mut forces = quantities.map(|quantity| Evaluation::<Dual8>::new(self, quantity));
         let numbers = |values: &[f64], first: Option<usize>| -> Vec<Dual8> {
             let along =

@@ -22,6 +22,9 @@ impl LiveCrane {
         let depends = match function {
             FunctionId::Linearise
             | FunctionId::ForwardDynamics
+            | FunctionId::ForwardDynamicsDerivatives
+            | FunctionId::DynamicResidual
+            | FunctionId::DynamicResidualDerivatives
             | FunctionId::Forces
             | FunctionId::DriveForces
             | FunctionId::DrivePower
@@ -33,7 +36,7 @@ impl LiveCrane {
             return Some(Refusal::ForceStates);
         }
         let loops_matter = match function {
-            FunctionId::Linearise => true,
+            FunctionId::Linearise | FunctionId::ForwardDynamicsDerivatives => true,
             FunctionId::DriveForces | FunctionId::DrivePower | FunctionId::DriveForcesAtRest => {
                 !description.prescribed().is_empty()
             }

@@ -8,9 +8,9 @@ use std::sync::Arc;
 
 use crane_codegen::program::{Argument, Count, Extent, FunctionId, Shape};
 use crane_model::dyn_crane::DynModel;
-use crane_model::rt::fma;
 
 use crate::LiveCrane;
+use crate::derivatives::derivatives_of_accelerations;
 use crate::expansion::mass_matrix;
 use crate::library::Library;
 use crate::machine::{Arguments, Batch, Machine, Number};
@@ -21,10 +21,8 @@ use crate::routine::Routine;
 pub enum Quantity {
     /// A function of the compiler.
     Of(FunctionId),
-    /// Derivatives of the points' positions with respect to q: points × 3 × n.
-    PointJacobians,
-    /// Generalized forces that a motion requires, `A a − e`.
-    InverseDynamics,
+    /// Derivatives of the accelerations with respect to q, v and generalized forces: 3 × n × n.
+    ForwardDynamicsDerivatives,
 }
 
 /// States and parameters, row after row. A list of one row applies to all rows; missing parameters are those of the crane.
@@ -50,12 +48,14 @@ pub struct Evaluation<T> {
     width: usize,
     /// Numbers of coordinates and of live parameters.
     sizes: [usize; 2],
-    /// The function, and a second one if the quantity needs two.
-    calls: [Option<Call<T>>; 2],
+    /// The functions that the quantity needs.
+    calls: [Option<Call<T>>; 3],
     /// The states that are evaluated.
     lanes: Lanes<T>,
     /// The coordinates of the drives.
     driven: Vec<usize>,
+    /// The coordinates that rigid drives prescribe.
+    prescribed: Vec<usize>,
     /// The crane's inputs.
     inputs: Vec<T>,
     /// The results of the states.
@@ -91,11 +91,14 @@ impl<T: Number> Evaluation<T> {
         let ids = match quantity {
             // The drives are where they are at the state's time.
             Quantity::Of(id) if id.arguments().contains(&Argument::DrivePositions) => {
-                [Some(id), Some(FunctionId::DriveMotions)]
+                [Some(id), Some(FunctionId::DriveMotions), None]
             }
-            Quantity::Of(id) => [Some(id), None],
-            Quantity::PointJacobians => [Some(FunctionId::PointVelocities), None],
-            Quantity::InverseDynamics => [Some(FunctionId::MassMatrix), Some(FunctionId::Bias)],
+            Quantity::Of(id) => [Some(id), None, None],
+            Quantity::ForwardDynamicsDerivatives => [
+                Some(FunctionId::ForwardDynamics),
+                Some(FunctionId::DynamicResidualDerivatives),
+                Some(FunctionId::MassMatrix),
+            ],
         };
         let width = width(crane, quantity);
         Self {
@@ -105,6 +108,7 @@ impl<T: Number> Evaluation<T> {
             sizes: [crane.size(), crane.parameters().len()],
             calls: ids.map(|id| Call::new(crane, id?)),
             lanes: Lanes { t: vec![], q: vec![], v: vec![], a: vec![], positions: vec![], parameters: vec![] },
+            prescribed: crane.description().prescribed(),
             driven: crane.description().drives.iter().map(|drive| drive.coordinate).collect(),
             inputs: crane.inputs().iter().copied().map(T::splat).collect(),
             results: vec![T::splat(0.0); width],
@@ -130,10 +134,10 @@ impl<T: Number> Evaluation<T> {
 
     /// Computes the results of the states taken.
     fn evaluate(&mut self) {
-        let Self { calls, lanes, driven, inputs, results, library, .. } = self;
+        let Self { calls, lanes, driven, prescribed, inputs, results, library, .. } = self;
         let n = lanes.q.len();
         match (self.quantity, calls) {
-            (Quantity::Of(_), [Some(call), motions]) => {
+            (Quantity::Of(_), [Some(call), motions, _]) => {
                 lanes.positions.clear();
                 lanes.positions.resize(n, T::splat(0.0));
                 if let Some(motions) = motions {
@@ -143,24 +147,14 @@ impl<T: Number> Evaluation<T> {
                 }
                 call.run(library, lanes, inputs, results);
             }
-            (Quantity::PointJacobians, [Some(call), _]) => {
-                // Velocities are linear in the rates: column j is the contribution of the rate of coordinate j.
-                let mut column = vec![T::splat(0.0); results.len() / n.max(1)];
-                for j in 0..n {
-                    lanes.v.clear();
-                    lanes.v.resize(n, T::splat(0.0));
-                    lanes.v[j] = T::splat(1.0);
-                    call.run(library, lanes, inputs, &mut column);
-                    results.iter_mut().skip(j).step_by(n).zip(&column).for_each(|(result, of_j)| *result = *of_j);
-                }
-            }
-            (Quantity::InverseDynamics, [Some(mass), Some(bias)]) => {
-                bias.run(library, lanes, inputs, results);
+            (Quantity::ForwardDynamicsDerivatives, [Some(accelerations), Some(slopes), Some(mass)]) => {
+                let mut a = vec![T::splat(0.0); n];
+                accelerations.run(library, lanes, inputs, &mut a);
+                lanes.a = a;
+                slopes.run(library, lanes, inputs, &mut results[..2 * n * n]);
                 let mut matrix = vec![T::splat(0.0); n * n];
                 mass.run(library, lanes, inputs, &mut matrix);
-                for (result, row) in results.iter_mut().zip(matrix.chunks(n.max(1))) {
-                    *result = row.iter().zip(&lanes.a).fold(-*result, |sum, (entry, a)| fma(*entry, *a, sum));
-                }
+                derivatives_of_accelerations(&mut matrix, prescribed, results);
             }
             // The result of a function that the crane does not need is zero.
             _ => results.fill(T::splat(0.0)),
@@ -257,8 +251,7 @@ impl LiveCrane {
     pub fn shape(&self, quantity: Quantity) -> Vec<usize> {
         let (n, count) = (self.size(), |count: Count| DynModel::count(self, count));
         match quantity {
-            Quantity::PointJacobians => vec![count(Count::Points), 3, n],
-            Quantity::InverseDynamics => vec![n],
+            Quantity::ForwardDynamicsDerivatives => vec![3, n, n],
             Quantity::Of(FunctionId::Linearise) => vec![3, n, n],
             // Also those of coordinates that do not move a body.
             Quantity::Of(FunctionId::TransformDerivatives) => vec![count(Count::Bodies), n, 4, 4],

@@ -124,7 +124,10 @@ impl Crane {
 
     /// Refuses functions that do not follow from pose, rates and time, or that closed loops change.
     fn refuse(&self, quantity: Quantity) -> PyResult<()> {
-        let Quantity::Of(function) = quantity else { return Ok(()) };
+        let function = match quantity {
+            Quantity::Of(function) => function,
+            Quantity::ForwardDynamicsDerivatives => FunctionId::ForwardDynamicsDerivatives,
+        };
         let why = match self.live.refusal(function) {
             None => return Ok(()),
             Some(Refusal::ForceStates) => format!("follows from {}, which are states of a run", self.force_states()),

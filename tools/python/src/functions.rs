@@ -83,23 +83,20 @@ impl Crane {
         })
     }
 
-    /// (..., points, 3, n): derivatives of their positions with respect to q, m/m and m/rad.
-    #[pyo3(signature = (q, *, invalid="raise"))]
-    fn point_jacobians<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
-        self.compute(py, Quantity::PointJacobians, State::pose(q), invalid)
-    }
-
-    /// (..., n): generalized forces that a motion requires in total, `A a − e`, N and N m.
-    #[pyo3(signature = (q, v, a, *, invalid="raise"))]
-    fn inverse_dynamics<'py>(
+    /// (..., 3, n, n): derivatives ∂q̈/∂q, ∂q̈/∂v and ∂q̈/∂τ = A⁻¹ of the accelerations of `forward_dynamics`, τ generalized forces; row i and
+    /// column j of each: the change of q̈_i with q_j, with q̇_j and with τ_j. For coordinates that rigid drives prescribe the rows are zero, and so
+    /// are their columns of A⁻¹.
+    /// t: s, 0 unless given.
+    #[pyo3(signature = (q, v, t=None, *, invalid="raise"))]
+    fn forward_dynamics_derivatives<'py>(
         &self,
         py: Python<'py>,
         q: &Bound<'py, PyAny>,
         v: &Bound<'py, PyAny>,
-        a: &Bound<'py, PyAny>,
+        t: Given<'_, 'py>,
         invalid: &str,
     ) -> Array<'py> {
-        self.compute(py, Quantity::InverseDynamics, State { a: Some(a), ..State::moving(q, v) }, invalid)
+        self.compute(py, Quantity::ForwardDynamicsDerivatives, State { t, ..State::moving(q, v) }, invalid)
     }
 
     /// (..., 3, n, n): A, K and D of small motions about poses at rest; `linearise` names them.

@@ -19,7 +19,7 @@ def arguments(states):
 
 # Every function of a state, its arguments, and the axes of its result: those of the table of quantities, and others.
 FUNCTIONS = [(name, takes, axes_of(axes)) for name, takes, axes in _native.functions()] + [
-    ("point_jacobians", "q", axes_of(["points", "3", "n"])),
+    ("forward_dynamics_derivatives", "qvt", axes_of(["3", "n", "n"])),
     ("_small_motions", "q", axes_of(["3", "n", "n"])),
 ]
 
@@ -143,3 +143,30 @@ def test_bad_parameters_are_named_or_nan(flexible):
     np.testing.assert_array_equal(energies[2], flexible.replace(load_mass=3.0).gravity_energy(flexible.guess))
     with pytest.raises(TypeError, match="no live parameter `load`"):
         flexible.replace(load=1.0)
+
+
+def test_derivatives_of_accelerations_are_those_of_differences(flexible, states):
+    t, q, v = (values[0] for values in states)
+    of_q, of_v, inverse = flexible.forward_dynamics_derivatives(q, v, t)
+    # Accelerations are quadratic in the rates, so that differences over any distance are exact to rounding.
+    ahead, behind = (flexible.forward_dynamics(q, v + sign * np.eye(flexible.n), t) for sign in (1, -1))
+    np.testing.assert_allclose((ahead - behind).T / 2, of_v, atol=1e-9 * np.abs(of_v).max())
+    # Richardson's extrapolation leaves errors of h⁴, and rounding over 1e-3.
+    def slope(h):
+        ahead, behind = (flexible.forward_dynamics(q + sign * h * np.eye(flexible.n), v, t) for sign in (1, -1))
+        return (ahead - behind).T / (2 * h)
+
+    np.testing.assert_allclose((4 * slope(1e-3) - slope(2e-3)) / 3, of_q, atol=1e-7 * np.abs(of_q).max())
+    np.testing.assert_allclose(inverse @ flexible.mass_matrix(q), np.eye(flexible.n), atol=1e-8)
+
+
+def test_a_residual_is_what_a_motion_requires_beyond_the_forces(flexible, states):
+    t, q, v = states
+    required, forces = flexible.inverse_dynamics(q, v, v), flexible.forces(q, v, t)
+    scale = np.abs(required).max() + np.abs(forces).max()
+    # Rounding of forces of this size.
+    np.testing.assert_allclose(flexible.dynamic_residual(q, v, v, t), required - forces, atol=1e-13 * scale)
+    zeros = 0 * q[0]
+    at_rest = flexible.dynamic_residual_derivatives(q[0], zeros, zeros, t[0])[0]
+    tangent = flexible.tangent_stiffness(q[0], t[0])
+    np.testing.assert_allclose(at_rest, tangent, atol=1e-12 * np.abs(tangent).max())

@@ -5,6 +5,7 @@ mod energies;
 mod forces;
 mod internal_forces;
 mod loop_joints;
+mod motion_derivatives;
 mod statics;
 
 use crate::chain::{Analyses, BodyId, Chain, Group};
@@ -81,6 +82,9 @@ impl<'g> Derivation<'g> {
         }
         if analyses.derivatives {
             functions.extend(self.transform_derivatives());
+        }
+        if analyses.motion_derivatives {
+            functions.extend(self.motion_derivatives());
         }
         functions
     }

@@ -68,7 +68,7 @@ fn jacobians_turn_rates_into_velocities() {
     let q = poses(&crane);
     let v: Vec<f64> = (0..n).map(|j| (0.7 * (j as f64 + 1.0)).sin()).collect();
     let mut jacobian = vec![f64::NAN; 3 * points * n];
-    Evaluation::<f64>::new(&crane, Quantity::PointJacobians).run(
+    Evaluation::<f64>::new(&crane, Quantity::Of(FunctionId::PointJacobians)).run(
         &Rows { q: &q[..n], ..Rows::default() },
         0..1,
         &mut jacobian,

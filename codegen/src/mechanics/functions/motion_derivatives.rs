@@ -1,0 +1,25 @@
+//! What a motion requires beyond the forces that act, and derivatives.
+
+use super::Derivation;
+use crate::mechanics::{motion_derivatives, newton_euler, points};
+use crate::program::{Function, FunctionId};
+
+impl Derivation<'_> {
+    /// Derivatives of the points, the generalized forces that a motion requires, and their derivatives.
+    pub(super) fn motion_derivatives(&self) -> Vec<Function> {
+        let (model, kinematics) = (&self.model, &self.kinematics);
+        let mut functions = Vec::new();
+        if !model.chain.points.is_empty() {
+            functions.push(self.function(FunctionId::PointJacobians, points::jacobians(model, kinematics)));
+        }
+        let (required, trace) = model.graph.recorded(|| newton_euler::inverse_dynamics(model, &self.factors));
+        let required = motion_derivatives::with_rotors(model, required);
+        let forces = self.forces().all();
+        let residual = required.iter().zip(&forces).map(|(required, force)| *required - *force).collect();
+        functions.push(self.function(FunctionId::InverseDynamics, required).by(trace.clone()));
+        functions.push(self.function(FunctionId::DynamicResidual, residual).by(trace));
+        let derivatives = motion_derivatives::of_residual(model, kinematics, &self.inertias, &forces);
+        functions.push(self.function(FunctionId::DynamicResidualDerivatives, derivatives));
+        functions
+    }
+}

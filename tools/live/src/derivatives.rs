@@ -1,0 +1,175 @@
+//! Derivatives of accelerations from those of the residual.
+
+use crane_model::rt::fma;
+
+use crate::machine::Number;
+
+/// `−A⁻¹ ∂r/∂q`, `−A⁻¹ ∂r/∂v` and `A⁻¹` in place of ∂r/∂q, ∂r/∂v and whatever is in the third matrix, each row by row. Prescribed coordinates do
+/// not accelerate further: their rows are zero, and so are their columns of A⁻¹. `mass` is overwritten.
+///
+/// `A = L D Lᵀ`; the three matrices are solved together, row by row, so that the inner loops have no dependent operations.
+pub fn derivatives_of_accelerations<T: Number>(mass: &mut [T], prescribed: &[usize], out: &mut [T]) {
+    let n = mass.len().isqrt();
+    let (zero, one) = (T::splat(0.0), T::splat(1.0));
+    for &j in prescribed {
+        for k in 0..n {
+            (mass[j + n * k], mass[k + n * j]) = (zero, zero);
+        }
+        mass[j + n * j] = one;
+    }
+    let width = 3 * n;
+    let mut rows = vec![zero; width * n];
+    for (i, row) in rows.chunks_exact_mut(width.max(1)).enumerate() {
+        if prescribed.contains(&i) {
+            continue;
+        }
+        for block in 0..2 {
+            let of_block = &out[(block * n + i) * n..(block * n + i + 1) * n];
+            row[block * n..(block + 1) * n].iter_mut().zip(of_block).for_each(|(entry, slope)| *entry = -*slope);
+        }
+        row[2 * n + i] = one;
+    }
+    let reciprocals = factorise(mass, n);
+    for i in 0..n {
+        for k in 0..i {
+            subtract(&mut rows, width, (i, k), mass[i * n + k]);
+        }
+    }
+    for i in (0..n).rev() {
+        rows[i * width..(i + 1) * width].iter_mut().for_each(|entry| *entry = *entry * reciprocals[i]);
+        for k in i + 1..n {
+            subtract(&mut rows, width, (i, k), mass[k * n + i]);
+        }
+    }
+    for (i, row) in rows.chunks_exact(width.max(1)).enumerate() {
+        for (block, of_block) in row.chunks_exact(n).enumerate() {
+            out[(block * n + i) * n..(block * n + i + 1) * n].copy_from_slice(of_block);
+        }
+    }
+}
+
+/// Replaces the lower triangle of a symmetric matrix by L of `L D Lᵀ`, and returns the reciprocals of D.
+fn factorise<T: Number>(matrix: &mut [T], n: usize) -> Vec<T> {
+    let mut reciprocals = Vec::with_capacity(n);
+    for j in 0..n {
+        // Row j of L D so far, from the columns before j.
+        let scaled: Vec<T> = matrix[j * n..j * n + j].to_vec();
+        let mut diagonal = matrix[j * n + j];
+        for (k, scaled) in scaled.iter().enumerate() {
+            let entry = *scaled * reciprocals[k];
+            diagonal = fma(-*scaled, entry, diagonal);
+            matrix[j * n + k] = entry;
+        }
+        for i in j + 1..n {
+            let (above, below) = matrix.split_at_mut(i * n);
+            let mut entry = below[j];
+            for k in 0..j {
+                entry = fma(-below[k], above[j * n + k], entry);
+            }
+            below[j] = entry;
+        }
+        reciprocals.push(T::splat(1.0) / diagonal);
+    }
+    reciprocals
+}
+
+/// Row i minus a multiple of row k.
+fn subtract<T: Number>(rows: &mut [T], width: usize, (i, k): (usize, usize), factor: T) {
+    let (low, high) = (i.min(k), i.max(k));
+    let (before, after) = rows.split_at_mut(high * width);
+    let (first, second) = (&mut before[low * width..(low + 1) * width], &mut after[..width]);
+    let (changed, other) = if i < k { (first, &*second) } else { (second, &*first) };
+    changed.iter_mut().zip(other).for_each(|(entry, other)| *entry = fma(-factor, *other, *entry));
+}
+
+#[cfg(test)]
+mod tests {
+    use crane_codegen::build;
+    use crane_codegen::program::FunctionId;
+    use crane_model::dyn_crane::{DynCrane, DynModel, DynMotionDerivatives};
+
+    use crate::LiveCrane;
+    use crate::dual::{DIRECTIONS, Dual8};
+    use crate::machine::Number;
+    use crate::rows::{Evaluation, Quantity};
+
+    /// Prescribed coordinates, feet, stops, friction, branches, both section joints, cylinders.
+    const NAMES: [&str; 8] = [
+        "double_pendulum",
+        "knuckle_boom",
+        "cantilever",
+        "eight_link_rigid",
+        "eight_link_flexible",
+        "eight_link_identified",
+        "loader_tipping",
+        "two_arms",
+    ];
+
+    fn shipped(name: &str) -> LiveCrane {
+        let path = format!("{}/../../specs/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
+        LiveCrane::from_spec(&build::open(path.as_ref()).unwrap()).unwrap()
+    }
+
+    /// Derivatives of a function with respect to pose and rates, row by row, by dual numbers.
+    fn by_duals(crane: &LiveCrane, id: FunctionId, t: f64, [q, v, a]: [&[f64]; 3]) -> Vec<f64> {
+        let n = q.len();
+        let mut evaluation = Evaluation::<Dual8>::new(crane, Quantity::Of(id));
+        let mut out = vec![0.0; 2 * n * n];
+        for (block, of_block) in out.chunks_exact_mut(n * n).enumerate() {
+            for first in (0..n).step_by(DIRECTIONS) {
+                let numbers = |values: &[f64], moves: bool| -> Vec<Dual8> {
+                    let along = |i: usize| i.checked_sub(first).filter(|direction| moves && *direction < DIRECTIONS);
+                    values.iter().enumerate().map(|(i, value)| Dual8::along(*value, along(i))).collect()
+                };
+                let (q, v, a) = (numbers(q, block == 0), numbers(v, block == 1), numbers(a, false));
+                for (row, result) in of_block.chunks_exact_mut(n).zip(evaluation.at(Dual8::splat(t), &q, &v, &a)) {
+                    let columns = row.iter_mut().skip(first).take(DIRECTIONS).enumerate();
+                    columns.for_each(|(direction, entry)| *entry = result.slope(direction));
+                }
+            }
+        }
+        out
+    }
+
+    fn assert_close(what: &str, one: &[f64], other: &[f64], tolerance: f64) {
+        let size = other.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
+        for (place, (one, other)) in one.iter().zip(other).enumerate() {
+            let off = (one - other).abs();
+            assert!(off <= tolerance * size, "{what}, {place}: {one} for {other}, off by {off:e} of {size:e}");
+        }
+    }
+
+    #[test]
+    fn derivatives_are_those_of_dual_numbers() {
+        for name in NAMES {
+            let live = shipped(name);
+            let (crane, n, t): (&dyn DynCrane, _, _) = (&live, live.size(), 0.7);
+            let wave = |scale: f64, rate: f64| move |i: usize| scale * (rate * (i as f64 + 1.0)).sin();
+            let moved = (0..n).map(wave(0.1, 1.3)).collect::<Vec<_>>();
+            let q: Vec<f64> = crane.guess().iter().zip(moved).map(|(guess, moved)| guess + moved).collect();
+            let [v, a] =
+                [(0.4, 0.7), (0.9, 1.9)].map(|(scale, rate)| (0..n).map(wave(scale, rate)).collect::<Vec<_>>());
+            let mut found = vec![f64::NAN; 3 * n * n];
+            live.dynamic_residual_derivatives(t, &q, &v, &a, &mut found[..2 * n * n]);
+            let expected = by_duals(&live, FunctionId::DynamicResidual, t, [&q, &v, &a]);
+            for (block, (found, expected)) in found.chunks(n * n).zip(expected.chunks(n * n)).enumerate() {
+                // Some hundred rounding errors of the largest entry.
+                assert_close(&format!("{name}, r, {block}"), found, expected, 1e-13);
+            }
+            live.forward_dynamics_derivatives(t, &q, &v, &mut found);
+            let expected = by_duals(&live, FunctionId::ForwardDynamics, t, [&q, &v, &a]);
+            for (block, (found, expected)) in found.chunks(n * n).zip(expected.chunks(n * n)).enumerate() {
+                // Rounding, times the condition of A.
+                assert_close(&format!("{name}, q̈, {block}"), found, expected, 1e-11);
+            }
+            for (j, column) in
+                (0..n).map(|j| (j, found[2 * n * n..].iter().skip(j).step_by(n).copied().collect::<Vec<_>>()))
+            {
+                let force: Vec<f64> = (0..n).map(|i| if i == j { 1.0 } else { 0.0 }).collect();
+                let mut solution = vec![0.0; n];
+                crane.solve_mass(&q, &force, &mut solution);
+                assert_close(&format!("{name}, A⁻¹, {j}"), &column, &solution, 1e-11);
+            }
+        }
+    }
+}
