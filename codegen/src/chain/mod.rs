@@ -116,6 +116,8 @@ pub struct Point {
 impl Chain {
     /// Maximum number of coordinates: far more than make sense, and few enough for the registers of live cranes.
     pub const MOST_COORDINATES: usize = 3000;
+    /// Maximum number of coordinates for which derivatives of the residual are derived: two million operations in straight-line code.
+    pub const MOST_COORDINATES_OF_DERIVATIVES: usize = 250;
 
     /// Whether a coordinate is a component of a rotation vector.
     #[must_use]

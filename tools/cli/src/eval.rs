@@ -134,13 +134,16 @@ fn arrays(options: &Eval, crane: &LiveCrane, states: &States) -> Vec<Array> {
 /// Refuses quantities that do not follow from a state, or that closed loops change.
 fn check(quantity: Quantity, crane: &LiveCrane) -> Outcome<()> {
     let refusal = match quantity {
-        Quantity::Of(id) if !takes_accelerations(id) => crane.refusal(id),
+        Quantity::Of(id) if !takes_accelerations(id) || crane.refusal(id).is_some() => crane.refusal(id),
         Quantity::Energies => None,
         _ => crane.description().has_force_states().then_some(Refusal::ForceStates),
     };
     let why = match refusal {
         None => return Ok(()),
         Some(Refusal::ForceStates) => "follows from pressures or bristles, which are states of a run".to_owned(),
+        Some(Refusal::TooLarge) => {
+            format!("is there up to {} coordinates", LiveCrane::MOST_COORDINATES_OF_DERIVATIVES)
+        }
         Some(Refusal::Loop(joint)) => format!("depends on the loop that {joint} closes"),
     };
     Err(Problem::usage(

@@ -10,6 +10,8 @@ use crate::LiveCrane;
 pub enum Refusal<'a> {
     /// Some forces have states of their own, which belong to a run.
     ForceStates,
+    /// The crane has more than [`LiveCrane::MOST_COORDINATES_OF_DERIVATIVES`].
+    TooLarge,
     /// The function is that of the open chain, and this joint closes a loop.
     Loop(&'a str),
 }
@@ -19,6 +21,11 @@ impl LiveCrane {
     #[must_use]
     pub fn refusal(&self, function: FunctionId) -> Option<Refusal<'_>> {
         let description = self.description();
+        let of_residual =
+            matches!(function, FunctionId::DynamicResidualDerivatives | FunctionId::ForwardDynamicsDerivatives);
+        if of_residual && self.size() > Self::MOST_COORDINATES_OF_DERIVATIVES {
+            return Some(Refusal::TooLarge);
+        }
         let depends = match function {
             FunctionId::Linearise
             | FunctionId::ForwardDynamics

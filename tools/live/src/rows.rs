@@ -14,6 +14,7 @@ use crate::derivatives::derivatives_of_accelerations;
 use crate::expansion::mass_matrix;
 use crate::library::Library;
 use crate::machine::{Arguments, Batch, Machine, Number};
+use crate::refusal::Refusal;
 use crate::routine::Routine;
 
 /// The quantity computed for every row. Matrices are written row by row.
@@ -23,6 +24,17 @@ pub enum Quantity {
     Of(FunctionId),
     /// Derivatives of the accelerations with respect to q, v and generalized forces: 3 × n × n.
     ForwardDynamicsDerivatives,
+}
+
+impl Quantity {
+    /// Its row of the table.
+    #[must_use]
+    pub fn function(self) -> FunctionId {
+        match self {
+            Quantity::Of(id) => id,
+            Quantity::ForwardDynamicsDerivatives => FunctionId::ForwardDynamicsDerivatives,
+        }
+    }
 }
 
 /// States and parameters, row after row. A list of one row applies to all rows; missing parameters are those of the crane.
@@ -60,6 +72,8 @@ pub struct Evaluation<T> {
     inputs: Vec<T>,
     /// The results of the states.
     results: Vec<T>,
+    /// The result of a function that the crane does not have: zero if it needs none, NaN if it is too large.
+    absent: f64,
 }
 
 /// Some states.
@@ -112,6 +126,7 @@ impl<T: Number> Evaluation<T> {
             driven: crane.description().drives.iter().map(|drive| drive.coordinate).collect(),
             inputs: crane.inputs().iter().copied().map(T::splat).collect(),
             results: vec![T::splat(0.0); width],
+            absent: if crane.refusal(quantity.function()) == Some(Refusal::TooLarge) { f64::NAN } else { 0.0 },
         }
     }
 
@@ -134,7 +149,7 @@ impl<T: Number> Evaluation<T> {
 
     /// Computes the results of the states taken.
     fn evaluate(&mut self) {
-        let Self { calls, lanes, driven, prescribed, inputs, results, library, .. } = self;
+        let Self { calls, lanes, driven, prescribed, inputs, results, library, absent, .. } = self;
         let n = lanes.q.len();
         match (self.quantity, calls) {
             (Quantity::Of(_), [Some(call), motions, _]) => {
@@ -156,8 +171,7 @@ impl<T: Number> Evaluation<T> {
                 mass.run(library, lanes, inputs, &mut matrix);
                 derivatives_of_accelerations(&mut matrix, prescribed, results);
             }
-            // The result of a function that the crane does not need is zero.
-            _ => results.fill(T::splat(0.0)),
+            _ => results.fill(T::splat(*absent)),
         }
     }
 }

@@ -124,18 +124,21 @@ impl Crane {
 
     /// Refuses functions that do not follow from pose, rates and time, or that closed loops change.
     fn refuse(&self, quantity: Quantity) -> PyResult<()> {
-        let function = match quantity {
-            Quantity::Of(function) => function,
-            Quantity::ForwardDynamicsDerivatives => FunctionId::ForwardDynamicsDerivatives,
-        };
-        let why = match self.live.refusal(function) {
+        let function = quantity.function();
+        let refusal = self.live.refusal(function);
+        let why = match refusal {
             None => return Ok(()),
             Some(Refusal::ForceStates) => format!("follows from {}, which are states of a run", self.force_states()),
+            Some(Refusal::TooLarge) => {
+                let most = crane_live::LiveCrane::MOST_COORDINATES_OF_DERIVATIVES;
+                format!("is offered up to {most} coordinates, and the crane has {}", self.live.size())
+            }
             Some(Refusal::Loop(joint)) => format!("depends on the loop that {joint} closes"),
         };
         let instead = match function {
             FunctionId::Linearise => "use modes(q)",
             FunctionId::DriveForcesAtRest => "use statics",
+            _ if refusal == Some(Refusal::TooLarge) => "use linearise(q, v, a, t)",
             FunctionId::FrictionForces => "use simulate, whose columns contain them",
             _ if self.live.description().has_force_states() => "use simulate or simulation",
             _ => "use simulate, whose columns contain them",

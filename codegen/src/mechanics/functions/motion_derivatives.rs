@@ -1,11 +1,12 @@
 //! What a motion requires beyond the forces that act, and derivatives.
 
 use super::Derivation;
+use crate::chain::Chain;
 use crate::mechanics::{motion_derivatives, newton_euler, points};
 use crate::program::{Function, FunctionId};
 
 impl Derivation<'_> {
-    /// Derivatives of the points, the generalized forces that a motion requires, and their derivatives.
+    /// Derivatives of the points, the generalized forces that a motion requires, and their derivatives, unless there are too many of them.
     pub(super) fn motion_derivatives(&self) -> Vec<Function> {
         let (model, kinematics) = (&self.model, &self.kinematics);
         let mut functions = Vec::new();
@@ -18,8 +19,10 @@ impl Derivation<'_> {
         let residual = required.iter().zip(&forces).map(|(required, force)| *required - *force).collect();
         functions.push(self.function(FunctionId::InverseDynamics, required).by(trace.clone()));
         functions.push(self.function(FunctionId::DynamicResidual, residual).by(trace));
-        let derivatives = motion_derivatives::of_residual(model, kinematics, &self.inertias, &forces);
-        functions.push(self.function(FunctionId::DynamicResidualDerivatives, derivatives));
+        if model.size() <= Chain::MOST_COORDINATES_OF_DERIVATIVES {
+            let derivatives = motion_derivatives::of_residual(model, kinematics, &self.inertias, &forces);
+            functions.push(self.function(FunctionId::DynamicResidualDerivatives, derivatives));
+        }
         functions
     }
 }

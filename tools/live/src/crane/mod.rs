@@ -19,6 +19,7 @@ use crate::describe::{describe, describe_loop_joints, refusal};
 use crate::expansion::{mass_matrix, second_derivatives};
 use crate::library::Library;
 use crate::machine::{Arguments, Machine};
+use crate::refusal::Refusal;
 use crate::routine::Routine;
 
 /// A crane of any number of coordinates that is ready without rustc.
@@ -45,6 +46,8 @@ struct Room {
 impl LiveCrane {
     /// Coordinates of the largest crane whose functions fit into the registers: `solve` takes 49,144 of 65,536 at 3,013.
     pub const MOST_COORDINATES: usize = Chain::MOST_COORDINATES;
+    /// Coordinates of the largest crane that has derivatives of the residual and of accelerations; those of a larger one are NaN.
+    pub const MOST_COORDINATES_OF_DERIVATIVES: usize = Chain::MOST_COORDINATES_OF_DERIVATIVES;
 
     /// The crane of a spec.
     ///
@@ -173,7 +176,8 @@ impl LiveCrane {
     fn list<T: Entry>(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [T]) {
         let called = self.call(id, arguments, |_, results| copy_entries(results, out));
         if called.is_none() {
-            out.fill(T::ZERO);
+            let refused = self.refusal(id) == Some(Refusal::TooLarge);
+            out.fill(if refused { T::from_numbers(&[f64::NAN; 16]) } else { T::ZERO });
         }
     }
 
