@@ -1,6 +1,6 @@
 //! Derivatives of the generalized forces that a motion requires, in O(n²), by composite bodies.
 //!
-//! S. Singh, R. P. Russell, P. M. Wensing, IEEE Robotics and Automation Letters 7 (2022) 1776; here in the world frame, with the pseudo-inertias
+//! S. Singh, R. P. Russell, P. M. Wensing, IEEE Robotics and Automation Letters 7 (2022); here in the world frame, with the pseudo-inertias
 //! of Urbaś instead of spatial matrices, and for joints whose generators depend on their own coordinates.
 //!
 //! Notation
@@ -12,7 +12,7 @@
 //! : from `δẍ = Ω̈_j x + 2 Ω̇_j ẋ + Ω_j ẍ`, with i not beyond j,
 //!   `∂r_i/∂q_j = Ω_i · (Ω̈_j W + 2 Ω̇_j G + Ω_j × F)` and `∂r_j/∂q_i = Ω_j · (Ω̈_i W + 2 Ω̇_i G)`, all sums beyond j; the turn of F is missing in
 //!   the latter, since Ω_j turns with F. From `δẍ = 2 Ω̇_j x + 2 Ω_j ẋ`, `∂r_i/∂q̇_j = 2 Ω_i · (Ω̇_j W + Ω_j G)`, and with i and j exchanged. Gravity
-//!   does not turn: it adds −Ω_j γ' to Ω̈_j, γ' the direction γ without a place.
+//!   does not turn with F: the acceleration `ω_j × γ` is added to Ω̈_j.
 
 #[cfg(test)]
 mod tests;
@@ -70,7 +70,7 @@ pub fn of_residual<'g>(
         let wrench = beyond[curvature.body].required;
         for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
             let change = curvature.generator((j, i));
-            let mut effort = power(Twist { omega: change.omega, upsilon: change.upsilon }, wrench);
+            let mut effort = power(twist(&change), wrench);
             let (row, column) = (curvature.first + i, curvature.first + j);
             if i < j {
                 effort = effort - power(moving.axes[row].generator, turned(moving.axes[column].generator, wrench));
@@ -201,13 +201,13 @@ impl<'g> Moving<'g> {
         let of_axis = |(axis, generator): (&Axis<'g>, &Generator<'g>)| {
             let (inertia, beyond) = (&inertias.composites[generator.body], &beyond[generator.body]);
             let [s, u] = [axis.generator.omega, axis.generator.upsilon];
-            let turned_inertia = plus(momenta(inertia, axis.second), beyond.turn(2.0, axis.first.omega));
+            let turned_inertia = plus(momenta(inertia, axis.second), beyond.turn(double_of(axis.first.omega)));
             Column {
                 momenta: momenta(inertia, axis.generator),
                 gyration: double_of(beyond.turning.apply_transposed(s) + beyond.momentum.cross(u)),
                 turned: turned_inertia,
                 turning: plus(turned_inertia, turned(axis.generator, beyond.required)),
-                with_rate: plus(momenta(inertia, double(axis.first)), beyond.turn(2.0, s)),
+                with_rate: plus(momenta(inertia, double(axis.first)), beyond.turn(double_of(s))),
             }
         };
         self.axes.iter().zip(&kinematics.generators).map(of_axis).collect()
@@ -223,9 +223,8 @@ impl<'g> Beyond<'g> {
         }
     }
 
-    /// `factor · ∫ s × ẋ dm`, and its moment.
-    fn turn(&self, factor: f64, s: Vec3<'g>) -> Wrench<'g> {
-        let s = Vec3(s.0.map(|component| factor * component));
+    /// `∫ s × ẋ dm`, and its moment.
+    fn turn(&self, s: Vec3<'g>) -> Wrench<'g> {
         [s.cross(self.momentum), self.turning.apply(s)]
     }
 }
@@ -252,7 +251,7 @@ fn of_body<'g>(model: &Model<'g>, motion: &Motion<'g>, inertia: &WorldInertia<'g
 /// `Ω̇ = [V, Ω] + Ω̇'`, `Ω̈ = [V̇, Ω] + [V, Ω̇ + Ω̇'] + Ω̈'`.
 fn axis<'g>(before: Motion<'g>, generator: &Generator<'g>, own: [Twist<'g>; 2]) -> Axis<'g> {
     let [own_first, own_second] = own;
-    let generator = Twist { omega: generator.omega, upsilon: generator.upsilon };
+    let generator = twist(generator);
     let first = sum(commutator(before.velocity, generator), own_first);
     let of_first = commutator(before.velocity, sum(first, own_first));
     let second = sum(sum(commutator(before.rate, generator), of_first), own_second);
@@ -271,6 +270,11 @@ fn within_joint<'g>(model: &Model<'g>, curvature: &Curvature<'g>) -> Vec<[Twist<
     let [rates, seconds] = vector.jacobian_rates(of(&model.v), of(&model.a));
     let by_axis = [0, 1, 2].map(|k| [through(rates[k]), through(seconds[k])]);
     vector.by_coordinates(by_axis).to_vec()
+}
+
+/// Ω of a generator.
+fn twist<'g>(generator: &Generator<'g>) -> Twist<'g> {
+    Twist { omega: generator.omega, upsilon: generator.upsilon }
 }
 
 /// `Ω · F`
