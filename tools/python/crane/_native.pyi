@@ -307,3 +307,21 @@ class Crane:
         """(..., supports, 3): Positions of the supports' attachment points in the world frame, m."""
     def transform_derivatives(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., bodies, n, 4, 4): Derivatives ∂T/∂q_j of every body, for all coordinates j that move it; 1, m, 1/m."""
+    def point_jacobians(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., points, 3, n): Derivatives J of the points' positions with respect to the coordinates; m/rad and 1.
+        For each point the rows x, y and z: the velocities of the points are J q̇."""
+    def inverse_dynamics(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., n): Generalized forces that a motion requires in total, N and N m.
+        The torque of robotics, with inertia and gravity alone: what all forces together must be. `crane eval` takes the accelerations q̈ from
+        the equations of motion."""
+    def dynamic_residual(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(..., n): Generalized forces r that a motion requires beyond those that act, N and N m.
+        What a drive or another force would have to add: positive where it pushes towards larger coordinates; zero in all coordinates that
+        move freely with a = q̈. For coordinates that rigid drives prescribe, f contains no force of these drives, and r is the effort that they
+        need. The forces of cylinders with a valve, of bristles and of joints that close loops are not part of f.
+        t: s, 0 unless given."""
+    def dynamic_residual_derivatives(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(..., 2, n, n): Derivatives ∂r/∂q (N/m, N, N m) and ∂r/∂v (N s/m, N s, N m s) of the residual r = A a − e − f.
+        Row i and column j of each matrix: the change of r_i with q_j, and with q̇_j. At rest ∂r/∂q is the tangent stiffness, and ∂r/∂v
+        the damping matrix.
+        t: s, 0 unless given."""
