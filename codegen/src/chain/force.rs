@@ -71,12 +71,21 @@ point_laws!(laws);
 /// A rope, `F = k σ max(0, 1 + a σ̇)` with `σ = max(0, s − ℓ₀(t))`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rope {
-    /// k, N/m.
-    pub stiffness: Value,
+    /// k.
+    pub stiffness: RopeStiffness,
     /// a, s/m.
     pub damping: Value,
     /// ℓ₀(t), m: its length without force; a winch changes it.
     pub length: Profile,
+}
+
+/// The stiffness k of a rope.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RopeStiffness {
+    /// k, N/m: the same for every length.
+    Whole(Value),
+    /// EA, N, of a rope that a winch winds: `k = EA/ℓ₀(t)`.
+    Axial(Value),
 }
 
 /// An end stop, which pushes when the coordinate is beyond it and never pulls: with the penetration `δ`,
@@ -155,7 +164,7 @@ impl Force {
     pub fn coordinate(&self) -> Option<CoordinateId> {
         match self.strain {
             Strain::Coordinate(id) => Some(id),
-            Strain::Distance(_) | Strain::Coupling { .. } => None,
+            Strain::Line(_) | Strain::Coupling { .. } => None,
         }
     }
 

@@ -60,6 +60,30 @@ impl Profile {
         }
     }
 
+    /// Positions that it passes or at which it stops, as far as they are given: not those of an input that is set, nor where a speed leads.
+    #[must_use]
+    pub fn stations(&self) -> Vec<Value> {
+        match self {
+            Profile::Hold(position) | Profile::Speed { from: position, .. } => vec![position.clone()],
+            Profile::Quintic(ramp)
+            | Profile::Cubic(ramp)
+            | Profile::Cycloid(ramp)
+            | Profile::Trapezoid { ramp, .. } => {
+                vec![ramp.from.clone(), ramp.to.clone()]
+            }
+            Profile::Input(_, unless_set) => unless_set.stations(),
+            Profile::Sum(_) => Vec::new(),
+            Profile::Table { from, segments } => {
+                let end = |position: &mut f64, Segment { duration, coefficients: [c1, c2, c3], .. }: &Segment| {
+                    *position += duration * (c1 + duration * (c2 + duration * c3));
+                    Some(*position)
+                };
+                let ends = segments.iter().scan(*from, end);
+                [*from].into_iter().chain(ends).map(Value::Constant).collect()
+            }
+        }
+    }
+
     /// Begin and end, s, of the intervals in which it is smooth: at their ends some derivative jumps, or it comes to rest.
     #[must_use]
     pub fn pieces(&self) -> Vec<[Value; 2]> {

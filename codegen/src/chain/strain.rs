@@ -1,5 +1,7 @@
 //! Strains: lengths and angles that depend on the pose, on which forces act.
 
+use std::collections::BTreeSet;
+
 use super::{BodyId, Chain, CoordinateId, CoordinateKind, Frame, Value};
 
 /// A length or an angle that depends on the pose.
@@ -7,8 +9,8 @@ use super::{BodyId, Chain, CoordinateId, CoordinateKind, Frame, Value};
 pub enum Strain {
     /// A coordinate, m or rad.
     Coordinate(CoordinateId),
-    /// The distance between two points, m.
-    Distance([Attachment; 2]),
+    /// The length of a line through points, m.
+    Line(Line),
     /// `q_j − r q_i`, m or rad: how far a coordinate is from the position given by its leader.
     Coupling {
         /// j
@@ -18,6 +20,24 @@ pub enum Strain {
         /// r
         ratio: Value,
     },
+}
+
+/// A line through points, straight between them: from one end to the other, for a rope over the sheaves between.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    /// Its points in order; at least two.
+    pub points: Vec<Attachment>,
+    /// How many times its last part counts: the falls of a block and tackle.
+    pub falls: u32,
+}
+
+/// A straight part of a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinePart<'a> {
+    /// Both of its points.
+    pub ends: [&'a Attachment; 2],
+    /// How many times it counts.
+    pub falls: u32,
 }
 
 /// A point of a body or of the world.
@@ -30,29 +50,57 @@ pub struct Attachment {
 }
 
 impl Strain {
-    /// The points, if it is the distance between two.
+    /// The line, if it is the length of one.
     #[must_use]
-    pub fn ends(&self) -> Option<&[Attachment; 2]> {
+    pub fn line(&self) -> Option<&Line> {
         match self {
-            Strain::Distance(ends) => Some(ends),
+            Strain::Line(line) => Some(line),
             Strain::Coordinate(_) | Strain::Coupling { .. } => None,
         }
     }
 
-    /// Whether it is the distance between points of two bodies.
+    /// Whether it is the length of a line of which some part is between two bodies.
     #[must_use]
     pub fn joins_bodies(&self) -> bool {
-        self.ends().is_some_and(|ends| ends.iter().all(|end| end.body.is_some()))
+        self.line().is_some_and(|line| line.parts().any(LinePart::joins_bodies))
+    }
+}
+
+impl Line {
+    /// A straight line between two points.
+    #[must_use]
+    pub fn between(ends: [Attachment; 2]) -> Self {
+        Line { points: ends.into(), falls: 1 }
+    }
+
+    /// Its straight parts, in order.
+    pub fn parts(&self) -> impl Iterator<Item = LinePart<'_>> {
+        let pairs = self.points.iter().zip(self.points.iter().skip(1)).enumerate();
+        pairs.map(|(index, (one, other))| LinePart {
+            ends: [one, other],
+            falls: if index + 2 == self.points.len() { self.falls } else { 1 },
+        })
+    }
+}
+
+impl LinePart<'_> {
+    /// Whether both of its points are on bodies.
+    #[must_use]
+    pub fn joins_bodies(self) -> bool {
+        self.ends.iter().all(|end| end.body.is_some())
     }
 }
 
 impl Chain {
-    /// The coordinates that change a strain, in the order of q: between two points, those that move only one of them.
+    /// The coordinates that change a strain, in the order of q: of a line, those that move only one point of some part.
     #[must_use]
     pub fn spanned(&self, strain: &Strain) -> Vec<CoordinateId> {
         match strain {
             Strain::Coordinate(coordinate) => vec![*coordinate],
-            Strain::Distance(ends) => self.between(&ends.each_ref().map(|end| self.reach(end))),
+            Strain::Line(line) => {
+                let of_parts: BTreeSet<CoordinateId> = line.parts().flat_map(|part| self.changing(part)).collect();
+                of_parts.into_iter().collect()
+            }
             Strain::Coupling { coordinate: one, leader: other, .. } => vec![*one.min(other), *one.max(other)],
         }
     }
@@ -61,7 +109,7 @@ impl Chain {
     #[must_use]
     pub fn read_by(&self, strain: &Strain) -> Vec<CoordinateId> {
         match strain {
-            Strain::Distance(ends) => ends.iter().flat_map(|end| self.reach(end)).collect(),
+            Strain::Line(line) => line.points.iter().flat_map(|point| self.reach(point)).collect(),
             Strain::Coordinate(_) | Strain::Coupling { .. } => self.spanned(strain),
         }
     }
@@ -70,21 +118,40 @@ impl Chain {
     #[must_use]
     pub fn kind_of(&self, strain: &Strain) -> CoordinateKind {
         match strain {
-            Strain::Distance(_) => CoordinateKind::Translation,
+            Strain::Line(_) => CoordinateKind::Translation,
             Strain::Coordinate(coordinate) | Strain::Coupling { coordinate, .. } => self.coordinates[coordinate.0].kind,
         }
     }
 
+    /// The coordinates that change the length of a part of a line, in the order of q: those that move only one of its points.
+    #[must_use]
+    pub fn changing(&self, part: LinePart<'_>) -> Vec<CoordinateId> {
+        self.between(&part.ends.map(|end| self.reach(end)))
+    }
+
     /// The distance between two points at a pose, m.
     #[must_use]
-    pub fn distance(&self, ends: &[Attachment; 2], q: &[f64], parameters: &[f64]) -> f64 {
+    pub fn distance(&self, ends: [&Attachment; 2], q: &[f64], parameters: &[f64]) -> f64 {
         let frames = self.frames(q, parameters);
         let place = |end: &Attachment| {
             let frame = end.body.map_or(Frame::WORLD, |BodyId(body)| frames[body]);
             frame.transform_point(end.position.each_ref().map(|x| x.at(parameters)))
         };
-        let [one, other] = ends.each_ref().map(place);
+        let [one, other] = ends.map(place);
         (0..3).map(|i| (other[i] - one[i]).powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// The lengths of the straight parts of a line at a pose, m.
+    #[must_use]
+    pub fn distances(&self, line: &Line, q: &[f64], parameters: &[f64]) -> Vec<f64> {
+        line.parts().map(|part| self.distance(part.ends, q, parameters)).collect()
+    }
+
+    /// The length of a line at a pose, m.
+    #[must_use]
+    pub fn length(&self, line: &Line, q: &[f64], parameters: &[f64]) -> f64 {
+        let distances = self.distances(line, q, parameters);
+        line.parts().zip(distances).map(|(part, distance)| f64::from(part.falls) * distance).sum()
     }
 
     /// The coordinates that move a point, in the order of q.

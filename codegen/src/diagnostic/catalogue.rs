@@ -413,6 +413,25 @@ catalogue! {
     /// A place on a beam or a rope is between its beginning and its end.
     E155 beside_the_beam(link, x, length) "the place at x = {x} m is not on link `{link}`", "the link reaches from 0 to {length} m",
         "write `[x, y, z]` in m from the beginning of `{link}` along its x, or `tip`";
+    // Ropes over sheaves.
+    /// Neighbouring points of a rope over sheaves are apart.
+    E156 meeting_sheaves(rope, one, other) "{one} and {other} of rope `{rope}` coincide", "the rope between them has no direction",
+        "attach them to points that are apart at the `guess` and remain so while the crane moves";
+    /// Only ropes run over sheaves and have falls.
+    E157 sheaves_without_rope(connector, key) "connector `{connector}` has `{key}`, but its law is not `rope`", "only ropes run over sheaves",
+        "write `law: {{rope: {{axial_stiffness: 5e6, length: 12}}}}` with numbers of the rope, or remove `{key}`";
+    /// A list of sheaves has at least one.
+    E158 no_sheaves(rope) "rope `{rope}` runs over no sheaves", "an empty list",
+        "list the sheaves from `from` to `to`, such as `over: [{{link: boom, at: [4, 0, 0.2]}}]`, or remove `over`";
+    /// A rope has a whole number of falls.
+    E159 falls(rope, count) "rope `{rope}` has {count} falls", "a whole number from 1 to 100",
+        "write how many parts of the rope run between the last sheave and `to`, such as `falls: 2`";
+    /// A rope has a stiffness or an axial stiffness.
+    E160 rope_stiffness(rope) "rope `{rope}` needs exactly one of `stiffness` and `axial_stiffness`", "one of them gives its stiffness",
+        "write `stiffness:` in N/m, which stays the same, or `axial_stiffness:`, EA in N: the stiffness is then EA divided by the free length";
+    /// The free length of a rope with an axial stiffness stays above zero.
+    E161 wound_up(rope, length) "the free length of rope `{rope}` reaches {length} m", "EA divided by the free length is its stiffness",
+        "write lengths above 0 m, or a `stiffness` in N/m instead of `axial_stiffness`";
 
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.

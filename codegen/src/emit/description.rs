@@ -233,15 +233,14 @@ fn connector_info(chain: &Chain, connector: &Force) -> TokenStream {
     let is_rope = connector.is_rope();
     let [first, end] = Chain::range(&chain.spanned(&connector.strain)).map(integer);
     let pieces = integer(connector.pieces());
-    let ends = connector.strain.ends().map_or(quote!(None), |ends| {
-        let ends = ends.iter().map(|end| attachment_info(chain, end));
-        quote!(Some([#(#ends),*]))
-    });
+    let line = connector.strain.line();
+    let points = list(line.into_iter().flat_map(|line| &line.points).map(|point| attachment_info(chain, point)));
+    let falls = integer(line.map_or(1, |line| line.falls as usize));
     let kind = match chain.kind_of(&connector.strain) {
         CoordinateKind::Translation => quote!(CoordinateKind::Translation),
         CoordinateKind::Rotation => quote!(CoordinateKind::Rotation),
     };
-    quote!(ConnectorInfo { name: #name, ends: #ends, kind: #kind, is_rope: #is_rope, spanned: [#first, #end], pieces: #pieces })
+    quote!(ConnectorInfo { name: #name, points: #points, falls: #falls, kind: #kind, is_rope: #is_rope, spanned: [#first, #end], pieces: #pieces })
 }
 
 /// A point of a body or of the world.

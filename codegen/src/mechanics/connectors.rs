@@ -1,4 +1,4 @@
-//! Connectors: elements that pull or push two points along the line between them, and couplings of two coordinates.
+//! Connectors: elements that pull or push two points along the line between them, ropes over sheaves, and couplings of two coordinates.
 
 use super::elements::{Element, Elements};
 use super::kinematics::Kinematics;
@@ -8,7 +8,7 @@ use super::place::Place;
 use super::profile;
 use super::strains::Strained;
 use super::vector::Vec3;
-use crate::chain::{Force, Group, Profile, Strain};
+use crate::chain::{Force, Group, Law, Profile, Strain};
 use crate::symbolic::Expr;
 
 /// A connector in motion: ℓ, ℓ̇, and the force there.
@@ -54,11 +54,16 @@ pub fn tensions<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<
     pulled(model, kinematics).flat_map(tension).collect()
 }
 
-/// Power input of the winches, `−Σ F ℓ̇₀`.
+/// Power input of the winches, `−Σ W ℓ̇₀` with the force W that each overcomes.
 pub fn winch_power<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'g> {
-    pulled(model, kinematics).fold(model.zero(), |sum, Pulled { element, force, .. }| match element.force.winch() {
-        Some(length) => sum - force * profile::rate(model, length, model.t),
-        None => sum,
+    pulled(model, kinematics).fold(model.zero(), |sum, Pulled { element, force, .. }| {
+        match (&element.force.law, element.force.winch()) {
+            (Law::Rope(rope), Some(length)) => {
+                let overcome = rope.winch_force(At::now(model), element.strained.length, force);
+                sum - overcome * profile::rate(model, length, model.t)
+            }
+            _ => sum,
+        }
     })
 }
 
@@ -68,16 +73,17 @@ pub fn pieces<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     winches.flat_map(Profile::pieces).flatten().map(|time| model.number(&time)).collect()
 }
 
-/// Forces on the bodies at both ends, in the world: place, point, force.
+/// Forces on the bodies at the ends and at sheaves, in the world: place, point, force.
 pub fn pulls<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<(Place, Vec3<'g>, Vec3<'g>)> {
     let on_bodies =
         |Pulled { element: Element { force: Force { strain, .. }, strained, .. }, force, .. }: Pulled<'_, 'g>| {
-            strained.pulls(strain).map(|(place, point, pull)| (place, point, force * pull)).collect::<Vec<_>>()
+            let pulls = strained.pulls(strain, |_| true).into_iter();
+            pulls.map(|(place, point, pull)| (place, point, force * pull)).collect::<Vec<_>>()
         };
     pulled(model, kinematics).flat_map(on_bodies).collect()
 }
 
-/// The same for a strain along which a force of 1 N pulls at two bodies; none if it holds to the world.
+/// The same for a tension of 1 N in those parts of a line that are between two bodies; the others hold to the world.
 pub fn between_bodies<'g>(
     model: &Model<'g>,
     kinematics: &Kinematics<'g>,
@@ -86,5 +92,5 @@ pub fn between_bodies<'g>(
     if !strain.joins_bodies() {
         return Vec::new();
     }
-    Strained::new(model, kinematics, strain).pulls(strain).collect()
+    Strained::new(model, kinematics, strain).pulls(strain, |part| part.joins_bodies())
 }

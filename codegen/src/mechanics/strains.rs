@@ -1,15 +1,18 @@
-//! Strains at the present pose: coordinates, distances of points, couplings of coordinates.
+//! Strains at the present pose: coordinates, lengths of lines through points, couplings of coordinates.
 //!
 //! Notation
-//! : points p₁, p₂ in the world, `ℓ = |p₂ − p₁|`, `e = (p₂ − p₁)/ℓ`. `J_j = ∂ℓ/∂q_j = e · (∂p₂/∂q_j − ∂p₁/∂q_j)` for the coordinates
-//!   that move only one of the points: those that move both do not change ℓ. `ℓ̇ = J q̇`. For a coupling `ℓ = q_j − r q_i`,
-//!   `J_j = 1`, `J_i = −r`.
+//! : points p_i of a line in the world, `ℓ = Σ m_i |p_{i+1} − p_i|`, m_i = 1 except for the last part, which counts as often as the line has
+//!   falls; `u_i = m_i (p_{i+1} − p_i)/|p_{i+1} − p_i|`. `J_j = ∂ℓ/∂q_j = Σ u_i · (∂p_{i+1}/∂q_j − ∂p_i/∂q_j)`, summed over the parts of which
+//!   j moves only one end: if it moves both, their distance stays the same. `ℓ̇ = J q̇`. For a coupling `ℓ = q_j − r q_i`, `J_j = 1`,
+//!   `J_i = −r`.
+
+use std::collections::BTreeMap;
 
 use super::kinematics::{Kinematics, Pose};
 use super::model::Model;
 use super::place::Place;
 use super::vector::Vec3;
-use crate::chain::{Attachment, BodyId, CoordinateId, Strain};
+use crate::chain::{Attachment, BodyId, CoordinateId, Line, LinePart, Strain};
 use crate::symbolic::Expr;
 
 /// A strain at the present pose.
@@ -18,8 +21,10 @@ pub struct Strained<'g> {
     pub length: Expr<'g>,
     /// Indices and values of the entries of J.
     pub jacobian: Vec<(usize, Expr<'g>)>,
-    /// p₁, p₂ and e between points.
-    line: Option<([Vec3<'g>; 2], Vec3<'g>)>,
+    /// p_i of a line.
+    points: Vec<Vec3<'g>>,
+    /// u_i of its parts: a tension of 1 N pulls p_i with u_i, and p_{i+1} with −u_i.
+    pulls: Vec<Vec3<'g>>,
 }
 
 /// The position of an end in the world.
@@ -38,28 +43,41 @@ impl<'g> Strained<'g> {
     pub fn new(model: &Model<'g>, kinematics: &Kinematics<'g>, strain: &Strain) -> Self {
         match strain {
             Strain::Coordinate(CoordinateId(j)) => {
-                Strained { length: model.q[*j], jacobian: vec![(*j, model.graph.constant(1.0))], line: None }
+                Strained::without_points(model.q[*j], vec![(*j, model.graph.constant(1.0))])
             }
-            Strain::Distance(ends) => {
-                let points = ends.each_ref().map(|end| point(model, kinematics, end));
-                let way = points[1] - points[0];
-                let length = way.dot(way).sqrt();
-                let direction = (1.0 / length) * way;
-                let of_second = model.chain.reach(&ends[1]);
-                let column = |id: CoordinateId| {
-                    let (moved, sign) = if of_second.contains(&id) { (points[1], 1.0) } else { (points[0], -1.0) };
-                    (id.0, sign * direction.dot(kinematics.generators[id.0].velocity(moved)))
-                };
-                let jacobian = model.chain.spanned(strain).into_iter().map(column).collect();
-                Strained { length, jacobian, line: Some((points, direction)) }
-            }
+            Strain::Line(line) => Strained::of_line(model, kinematics, line),
             Strain::Coupling { coordinate: CoordinateId(j), leader: CoordinateId(i), ratio } => {
                 let ratio = model.number(ratio);
                 let mut jacobian = vec![(*j, model.graph.constant(1.0)), (*i, -ratio)];
                 jacobian.sort_by_key(|(place, _)| *place);
-                Strained { length: model.q[*j] - ratio * model.q[*i], jacobian, line: None }
+                Strained::without_points(model.q[*j] - ratio * model.q[*i], jacobian)
             }
         }
+    }
+
+    fn without_points(length: Expr<'g>, jacobian: Vec<(usize, Expr<'g>)>) -> Self {
+        Strained { length, jacobian, points: Vec::new(), pulls: Vec::new() }
+    }
+
+    fn of_line(model: &Model<'g>, kinematics: &Kinematics<'g>, line: &Line) -> Self {
+        let points: Vec<Vec3<'g>> = line.points.iter().map(|end| point(model, kinematics, end)).collect();
+        let (mut length, mut pulls) = (model.zero(), Vec::new());
+        let mut jacobian = BTreeMap::new();
+        for (part, ends) in line.parts().zip(points.windows(2)) {
+            let way = ends[1] - ends[0];
+            let distance = way.dot(way).sqrt();
+            let pull = times(model, part.falls, (1.0 / distance) * way);
+            let of_second = model.chain.reach(part.ends[1]);
+            for id in model.chain.changing(part) {
+                let (moved, sign) = if of_second.contains(&id) { (ends[1], 1.0) } else { (ends[0], -1.0) };
+                let column = sign * pull.dot(kinematics.generators[id.0].velocity(moved));
+                let sum = jacobian.remove(&id.0).map_or(column, |others: Expr<'g>| others + column);
+                jacobian.insert(id.0, sum);
+            }
+            length = length + f64::from(part.falls) * distance;
+            pulls.push(pull);
+        }
+        Strained { length, jacobian: jacobian.into_iter().collect(), points, pulls }
     }
 
     /// ℓ̇
@@ -76,13 +94,24 @@ impl<'g> Strained<'g> {
         }
     }
 
-    /// The bodies that it pulls with 1 N, in the world: place, point, force. Without points there are none: the force acts on joints, like
-    /// that of a drive.
-    pub fn pulls(&self, strain: &Strain) -> impl Iterator<Item = (Place, Vec3<'g>, Vec3<'g>)> {
-        let place = |end: &Attachment| end.body.map(|body| Place { body, along: end.position[0].clone() });
-        let of_line = strain.ends().zip(self.line).map(|(ends, (points, direction))| {
-            [(place(&ends[0]), points[0], direction), (place(&ends[1]), points[1], -direction)]
-        });
-        of_line.into_iter().flatten().filter_map(|(place, point, pull)| Some((place?, point, pull)))
+    /// The bodies that a tension of 1 N pulls, in the world: place, point, force; of all parts of a line or of some. Without points there are
+    /// none: the force acts on joints, like that of a drive.
+    pub fn pulls(&self, strain: &Strain, counts: impl Fn(&LinePart<'_>) -> bool) -> Vec<(Place, Vec3<'g>, Vec3<'g>)> {
+        let Some(line) = strain.line() else { return Vec::new() };
+        let mut sums: Vec<Option<Vec3<'g>>> = vec![None; self.points.len()];
+        for (index, (_, pull)) in line.parts().zip(&self.pulls).enumerate().filter(|(_, (part, _))| counts(part)) {
+            for (sum, pull) in sums[index..].iter_mut().zip([*pull, -*pull]) {
+                *sum = Some(sum.map_or(pull, |others| others + pull));
+            }
+        }
+        let of_point = |((end, point), pull): ((&Attachment, &Vec3<'g>), Option<Vec3<'g>>)| {
+            Some((Place { body: end.body?, along: end.position[0].clone() }, *point, pull?))
+        };
+        line.points.iter().zip(&self.points).zip(sums).filter_map(of_point).collect()
     }
+}
+
+/// A vector as many times as a line has falls; once without an operation.
+fn times<'g>(model: &Model<'g>, falls: u32, vector: Vec3<'g>) -> Vec3<'g> {
+    if falls == 1 { vector } else { model.graph.constant(f64::from(falls)) * vector }
 }

@@ -3,9 +3,9 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Angle, Motion, Number, Spanned, Vector};
+use super::{Angle, Constant, Motion, Number, Spanned, Vector};
 
-/// A spring, gas spring or rope between two points, which pulls or pushes them along the line between them.
+/// A spring, gas spring or rope between two points, which pulls or pushes them along the line between them. A rope may run over sheaves.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `name`, `from`, `to` and `law`")]
 pub struct Connector {
@@ -15,6 +15,10 @@ pub struct Connector {
     pub from: Spanned<Attachment>,
     /// The other.
     pub to: Spanned<Attachment>,
+    /// The sheaves over which a rope runs from one to the other, in order: points of links or of the world.
+    pub over: Option<Spanned<Vec<Spanned<Attachment>>>>,
+    /// The number of parallel parts of a rope between its last sheave, or `from`, and `to`, as in a block and tackle: 1 to 100. Default 1.
+    pub falls: Option<Spanned<Constant>>,
     /// The law of its force; exactly one.
     pub law: Spanned<ConnectorLaw>,
 }
@@ -73,12 +77,17 @@ macro_rules! laws {
 
 point_laws!(laws);
 
-/// A rope between two points.
+/// A rope between two points, perhaps over sheaves.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `stiffness`, `damping` and `length` or `motion`")]
+#[serde(
+    deny_unknown_fields,
+    expecting = "a mapping of `stiffness` or `axial_stiffness`, `damping`, and `length` or `motion`"
+)]
 pub struct Rope {
     /// Stiffness EA/ℓ₀, N/m.
-    pub stiffness: Spanned<Number>,
+    pub stiffness: Option<Spanned<Number>>,
+    /// Stiffness EA of its section, N, instead of `stiffness`, which is then EA/ℓ₀ and changes with a winch.
+    pub axial_stiffness: Option<Spanned<Number>>,
     /// Relative increase of the force with the rate of stretch, as a fraction per m/s. Default 0.
     pub damping: Option<Spanned<Number>>,
     /// Unstretched length, m.

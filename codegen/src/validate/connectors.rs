@@ -4,10 +4,14 @@ use super::Check;
 use super::drives::{Units, units};
 use super::limits::Limit;
 use crate::chain::{
-    self, Attachment, Chain, CoordinateKind, Cylinder, Force, Group, Law, Profile, Rope, Spring, Strain, Value,
+    self, Attachment, Chain, CoordinateKind, Cylinder, Force, Group, Law, Line, LinePart, Profile, Rope, RopeStiffness,
+    Spring, Strain, Value,
 };
 use crate::diagnostic::{Span, rule};
 use crate::spec::{self, Crane, Number, Spanned};
+
+/// Maximum number of falls of a rope.
+const MOST_FALLS: f64 = 100.0;
 
 impl<'a> Check<'a> {
     pub(super) fn connectors(&mut self, crane: &'a Crane, cylinders: &[Cylinder]) -> Vec<Force> {
@@ -18,18 +22,60 @@ impl<'a> Check<'a> {
             if !name.is_empty() {
                 self.register_connector(&name, connector.name.span, cylinders);
             }
-            let [from, to] =
-                [&connector.from, &connector.to].map(|end| self.attachment(end, &format!("connector `{name}`")));
+            let line = self.line(connector, &name);
             let law = connector.law.value.as_ref().map(|law| self.connector_law(law, connector.law.span, &name));
-            let (Some(from), Some(to), Some(law)) = (from, to, law) else { continue };
-            if self.coordinates_of(from.body) == self.coordinates_of(to.body) {
+            let (Some(line), Some(law)) = (line, law) else { continue };
+            let is_rigid = |part: LinePart<'_>| {
+                let [one, other] = part.ends.map(|end| self.coordinates_of(end.body));
+                one == other
+            };
+            if line.parts().all(is_rigid) {
                 self.report(rule::rigid_connector(connector.name.span, &name));
             }
-            let strain = Strain::Distance([from, to]);
-            connectors.push(Force { group: Group::Connectors, name, strain, law });
+            connectors.push(Force { group: Group::Connectors, name, strain: Strain::Line(line), law });
         }
         connectors.extend(self.couplings(crane, cylinders));
         connectors
+    }
+
+    /// The line from one end of a connector over its sheaves to the other.
+    fn line(&mut self, connector: &'a spec::Connector, name: &str) -> Option<Line> {
+        self.only_ropes_run(connector, name);
+        let [from, to] =
+            [&connector.from, &connector.to].map(|end| self.attachment(end, &format!("an end of connector `{name}`")));
+        let sheaves = sheaves(connector);
+        let over: Vec<_> =
+            sheaves.iter().map(|sheave| self.attachment(sheave, &format!("a sheave of rope `{name}`"))).collect();
+        let falls = connector.falls.as_ref().map_or(Some(1), |given| self.falls(given, name));
+        let points: Option<Vec<Attachment>> = [from].into_iter().chain(over).chain([to]).collect();
+        Some(Line { points: points?, falls: falls? })
+    }
+
+    /// Reports sheaves and falls of other connectors than ropes, and lists without sheaves.
+    fn only_ropes_run(&mut self, connector: &spec::Connector, name: &str) {
+        let over = connector.over.as_ref();
+        if let Some(over) = over.filter(|over| over.value.as_ref().is_some_and(Vec::is_empty)) {
+            self.report(rule::no_sheaves(over.span, name));
+        }
+        let key = over.map(|over| ("over", over.span)).or(connector.falls.as_ref().map(|falls| ("falls", falls.span)));
+        let is_rope = connector.law.value.as_ref().is_none_or(|law| matches!(law, spec::ConnectorLaw::Rope(_)));
+        if let Some((key, span)) = key.filter(|_| !is_rope) {
+            self.report(rule::sheaves_without_rope(span, name, key));
+        }
+    }
+
+    /// A number of falls; `None` if it is not whole.
+    fn falls(&mut self, given: &Spanned<spec::Constant>, name: &str) -> Option<u32> {
+        let count = self.constant(given, &format!("the falls of rope `{name}`"), "", Limit::Any);
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // an integer from 1 to 100
+        if (1.0..=MOST_FALLS).contains(&count) && count.fract() == 0.0 {
+            return Some(count as u32);
+        }
+        // A number that could not be read has been reported.
+        if !count.is_nan() {
+            self.report(rule::falls(given.span, name, count));
+        }
+        None
     }
 
     /// Registers the name of a connector or a coupling: like cylinders, they have result columns for length and force.
@@ -72,33 +118,80 @@ impl<'a> Check<'a> {
         couplings
     }
 
-    /// Reports connectors whose points coincide at the guess.
+    /// Reports connectors of which neighbouring points coincide at the guess.
     pub(super) fn connectors_apart(&mut self, chain: &Chain, crane: &Crane) {
         /// Distance below which two points coincide up to rounding, m.
         const NONE: f64 = 1e-9;
         let given = crane.connectors.as_ref().and_then(|connectors| connectors.value.as_deref()).unwrap_or_default();
         let given = given.iter().filter_map(|connector| connector.value.as_ref());
         for (connector, given) in chain.connectors().iter().zip(given) {
-            let Some(ends) = connector.strain.ends() else { continue };
-            if chain.distance(ends, &chain.guess, &self.defaults) < NONE {
-                self.report(rule::meeting_points(given.name.span, &connector.name));
-            }
+            let Some(line) = connector.strain.line() else { continue };
+            let distances = chain.distances(line, &chain.guess, &self.defaults);
+            let Some(part) = distances.iter().position(|distance| *distance < NONE) else { continue };
+            let sheaves = sheaves(given);
+            // The sheave at the beginning of a part, or at its end.
+            let sheave = |at: usize| at.checked_sub(1).and_then(|index| sheaves.get(index));
+            self.report(match sheave(part).or(sheave(part + 1)) {
+                Some(sheave) => {
+                    let name = |at: usize| match at {
+                        0 => "`from`".to_owned(),
+                        _ if at > sheaves.len() => "`to`".to_owned(),
+                        _ => format!("sheave {at}"),
+                    };
+                    rule::meeting_sheaves(sheave.span, &connector.name, name(part), name(part + 1))
+                }
+                None => rule::meeting_points(given.name.span, &connector.name),
+            });
         }
     }
 
-    /// A point of an element, which `what` names.
+    /// A point of an element; `what` names it in messages.
     pub(super) fn attachment(&mut self, given: &Spanned<spec::Attachment>, what: &str) -> Option<Attachment> {
         let end = given.value.as_ref()?;
-        let at = self.vector(&end.at, &format!("an end of {what}"), "m", Limit::Any);
+        let at = self.vector(&end.at, what, "m", Limit::Any);
         let Some(link) = &end.link else { return Some(Attachment { body: None, position: at }) };
         let (body, position) = self.attach(link, at)?;
         Some(Attachment { body: Some(body), position })
     }
 
     fn rope_law(&mut self, rope: &spec::Rope, span: Span, name: &str) -> Law {
-        let stiffness = self.point_number(Some(&rope.stiffness), (name, "stiffness"), "N/m", Limit::Positive);
         let damping = self.point_number(rope.damping.as_ref(), (name, "damping"), "s/m", Limit::NotNegative);
-        Law::Rope(Rope { stiffness, damping, length: self.rope_length(rope, span, name) })
+        let length = self.rope_length(rope, span, name);
+        Law::Rope(Rope { stiffness: self.rope_stiffness(rope, span, name, &length), damping, length })
+    }
+
+    /// A stiffness that stays the same, or EA of a rope whose length changes.
+    fn rope_stiffness(&mut self, rope: &spec::Rope, span: Span, name: &str, length: &Profile) -> RopeStiffness {
+        match (&rope.stiffness, &rope.axial_stiffness) {
+            (Some(stiffness), None) => {
+                RopeStiffness::Whole(self.point_number(Some(stiffness), (name, "stiffness"), "N/m", Limit::Positive))
+            }
+            (None, Some(axial)) => {
+                if rope.motion.is_some() {
+                    self.keep_rope(length, span, name);
+                }
+                let axial = self.point_number(Some(axial), (name, "axial stiffness"), "N", Limit::Positive);
+                match length {
+                    Profile::Hold(length) => RopeStiffness::Whole(axial / length.clone()),
+                    _ => RopeStiffness::Axial(axial),
+                }
+            }
+            _ => {
+                self.report(rule::rope_stiffness(span, name));
+                RopeStiffness::Whole(f64::NAN.into())
+            }
+        }
+    }
+
+    /// The free length of a rope with EA is above zero wherever its motion says it in numbers.
+    fn keep_rope(&mut self, length: &Profile, span: Span, name: &str) {
+        let lengths = length.stations();
+        if let Some(wound) = lengths.iter().map(|length| self.now(length)).find(|length| *length <= 0.0) {
+            return self.report(rule::wound_up(span, name, wound));
+        }
+        for length in lengths {
+            self.keep_positive(length, &rule::wound_up(span, name, ""));
+        }
     }
 
     /// A number of a law; 0 if it is left out.
@@ -131,6 +224,11 @@ impl<'a> Check<'a> {
             }
         }
     }
+}
+
+/// The sheaves of a connector.
+fn sheaves(connector: &spec::Connector) -> &[Spanned<spec::Attachment>] {
+    connector.over.as_ref().and_then(|over| over.value.as_deref()).unwrap_or_default()
 }
 
 /// A number that is given always or perhaps.

@@ -20,7 +20,7 @@ impl<'a> Check<'a> {
                 self.register_loop_joint(&name, joint.name.span, cylinders, connectors);
             }
             let what = format!("loop joint `{name}`");
-            let [from, to] = [&joint.from, &joint.to].map(|end| self.attachment(end, &what));
+            let [from, to] = [&joint.from, &joint.to].map(|end| self.attachment(end, &format!("an end of {what}")));
             let kind = joint.joint.value.as_ref().map(|kind| self.loop_joint_kind(kind, &name));
             let (Some(from), Some(to), Some(Some(kind))) = (from, to, kind) else { continue };
             if from.body.is_none() && to.body.is_none() {
@@ -100,7 +100,9 @@ impl<'a> Check<'a> {
                         *to_axis = to_axis.map(|x| -x);
                     }
                 }
-                LoopJointKind::Rod { .. } if chain.distance(&joint.ends, &chain.guess, &self.defaults) < NONE => {
+                LoopJointKind::Rod { .. }
+                    if chain.distance(joint.ends.each_ref(), &chain.guess, &self.defaults) < NONE =>
+                {
                     self.report(rule::meeting_rod(given.name.span, &joint.name));
                 }
                 LoopJointKind::Ball | LoopJointKind::Rod { .. } | LoopJointKind::Slide { .. } => {}

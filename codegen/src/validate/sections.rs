@@ -140,8 +140,10 @@ fn pins(loads: &[Load], cylinders: &[Cylinder], connectors: &[Force], loop_joint
         }
     }
     for connector in connectors {
-        for end in connector.strain.ends().into_iter().flatten() {
-            pins.extend(end.body.map(|body| pin(body, &end.position, format!("attachment of {}", connector.name))));
+        let points = connector.strain.line().map_or(&[][..], |line| &line.points);
+        for (index, end) in points.iter().enumerate() {
+            let what = if index == 0 || index + 1 == points.len() { "attachment" } else { "sheave" };
+            pins.extend(end.body.map(|body| pin(body, &end.position, format!("{what} of {}", connector.name))));
         }
     }
     for joint in loop_joints {

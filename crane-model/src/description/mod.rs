@@ -373,13 +373,15 @@ pub struct InputInfo {
     pub moves: bool,
 }
 
-/// An element between two points, or a coupling of two coordinates.
+/// An element between two points, a rope over sheaves, or a coupling of two coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConnectorInfo {
     /// Name.
     pub name: Text,
-    /// Its points; `None` for a coupling.
-    pub ends: Option<[AttachmentInfo; 2]>,
+    /// Its points: both ends, and between them the sheaves over which a rope runs; none for a coupling.
+    pub points: List<AttachmentInfo>,
+    /// How many parallel parts of a rope run between its last two points.
+    pub falls: usize,
     /// Whether its length is a length or an angle.
     pub kind: CoordinateKind,
     /// Whether it is a rope, which pulls and never pushes.
@@ -391,9 +393,9 @@ pub struct ConnectorInfo {
 }
 
 impl ConnectorInfo {
-    /// Whether one of its ends is fixed in the world.
+    /// Whether one of its points is fixed in the world.
     pub fn holds_to_world(&self) -> bool {
-        self.ends.iter().flatten().any(|end| end.body.is_none())
+        self.points.iter().any(|point| point.body.is_none())
     }
 }
 

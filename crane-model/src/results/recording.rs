@@ -232,9 +232,9 @@ pub fn support_gap(support: &str) -> String {
     format!("{support}_gap")
 }
 
-/// Name of a connector's length: the distance between its points, or the slip of a coupling.
+/// Name of a connector's length: that of the line through its points, or the slip of a coupling.
 fn length_of(connector: &ConnectorInfo) -> &'static str {
-    if connector.ends.is_some() { "length" } else { "slip" }
+    if connector.points.is_empty() { "slip" } else { "length" }
 }
 
 /// Name of the column with the force or torque of a connector.

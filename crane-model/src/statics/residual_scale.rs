@@ -109,7 +109,9 @@ fn of_lengths(&Equations { crane, t, .. }: &Equations<'_>, q: &DVector<f64>) -> 
     crane.connector_tensions(t, q.as_slice(), &rest, &mut tensions);
     let rows = jacobians.chunks_exact(q.len()).zip(connectors.iter().zip(lengths.iter().zip(&tensions)));
     for (row, (connector, ([length, _], tension))) in rows {
-        let places = connector.ends.iter().flatten().flat_map(|end| end.position);
+        #[allow(clippy::cast_precision_loss)] // at most 100
+        let falls = connector.falls as f64;
+        let places = connector.points.iter().flat_map(|point| point.position.map(|x| x * falls));
         let size = places.fold(*length, |size: f64, x| size.max(x.abs()));
         for (sum, slope) in sum.iter_mut().zip(row) {
             *sum += tension.stiffness * slope.abs() * size;

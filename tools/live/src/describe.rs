@@ -68,7 +68,8 @@ pub fn describe(chain: &Chain) -> Description {
     let loads = chain.loads.iter().map(|load| LoadInfo { name: load.name.clone().into(), pieces: load.pieces() });
     let connectors = chain.connectors().iter().map(|connector| ConnectorInfo {
         name: connector.name.clone().into(),
-        ends: connector.strain.ends().map(|ends| ends.each_ref().map(|end| attachment_info(end, &defaults))),
+        points: points_of(connector).iter().map(|point| attachment_info(point, &defaults)).collect(),
+        falls: connector.strain.line().map_or(1, |line| line.falls as usize),
         kind: kind_of(chain.kind_of(&connector.strain)),
         is_rope: connector.is_rope(),
         spanned: Chain::range(&chain.spanned(&connector.strain)),
@@ -112,6 +113,11 @@ pub fn describe(chain: &Chain) -> Description {
         step: chain.run.step,
         output: chain.run.output,
     }
+}
+
+/// The points of a connector.
+fn points_of(connector: &chain::Force) -> &[chain::Attachment] {
+    connector.strain.line().map_or(&[], |line| &line.points)
 }
 
 /// The joints of a chain that close loops.

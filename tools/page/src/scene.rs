@@ -8,7 +8,7 @@
 use crane_codegen::chain::{CoordinateId, Cylinder, Linkage, Pin, Value as Number};
 use crane_live::LiveCrane;
 use crane_model::{
-    BodyInfo, CoordinateRole, Description, Tree,
+    AttachmentInfo, BodyInfo, CoordinateRole, Description, Tree,
     dyn_crane::{DynCrane, DynDerivatives, DynModel},
 };
 use nalgebra::{Matrix4, Vector3};
@@ -45,9 +45,11 @@ pub fn scene(live: &LiveCrane, q: &[f64]) -> Value {
     let connectors: Vec<Value> = description
         .connectors
         .iter()
-        .filter_map(|connector| {
-            let ends = connector.ends.as_ref()?.each_ref().map(|end| json!({"body": end.body, "at": end.position}));
-            Some(json!({"rope": connector.is_rope, "ends": ends}))
+        .filter(|connector| !connector.points.is_empty())
+        .map(|connector| {
+            let point = |point: &AttachmentInfo| json!({"body": point.body, "at": point.position});
+            let points: Vec<Value> = connector.points.iter().map(point).collect();
+            json!({"rope": connector.is_rope, "points": points, "falls": connector.falls})
         })
         .collect();
     let screws = screws(live, &reference, &frames);

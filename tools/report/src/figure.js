@@ -1,7 +1,7 @@
 // A crane in three dimensions, drawn from its chain: links from frame to frame, with a thickness estimated from
 // their mass, flexible links bent, with the outline of their section if the spec gives one, pins at revolute joints, legs at the supports,
 // hydraulic cylinders, and springs and ropes between their points.
-import { BoxGeometry, CylinderGeometry, Group, Matrix4, Mesh, MeshStandardMaterial, Quaternion, TorusGeometry, Vector3 } from "three";
+import { BoxGeometry, CylinderGeometry, Group, Matrix4, Mesh, MeshStandardMaterial, Quaternion, SphereGeometry, TorusGeometry, Vector3 } from "three";
 import { BeamGeometry, sizeAt } from "./beam.js";
 import { Cylinder, stretch } from "./cylinders.js";
 import { Kinematics, links } from "./kinematics.js";
@@ -14,7 +14,8 @@ const THICKNESS = [0.012, 0.06];
 const NOTHING = 1e-3;
 
 /** Radius of a spring and of a rope as drawn, and size of a hook, relative to the crane's size. */
-const RADIUS = { spring: 0.004, rope: 0.0015, hook: 0.008 };
+const RADIUS = { spring: 0.004, rope: 0.0015, hook: 0.008, sheave: 0.006 };
+const [X, Y] = [new Vector3(1, 0, 0), new Vector3(0, 1, 0)];
 /** Feet less far below the base's frame than this fraction of the crane's size are on its level. */
 const LEVEL = 0.02;
 /** Largest height of the frame of a truck above its feet if its spec does not tell, relative to the crane's size. */
@@ -338,12 +339,16 @@ export class Figure {
     });
   }
 
-  /** A bar for each connector, of length 1 until a pose stretches it. */
+  /** A bar for each part of a connector, of length 1 until a pose stretches it; one for each fall of a rope, and a sheave at each point between. */
   connect() {
-    this.connectors = this.crane.scene.connectors.map(({ rope, ends }) => {
+    this.connectors = this.crane.scene.connectors.map(({ rope, points, falls }) => {
       const radius = (rope ? RADIUS.rope : RADIUS.spring) * this.size;
-      const mesh = this.mesh(new CylinderGeometry(radius, radius, 1, 16), rope ? COLOURS.pin : COLOURS.slide);
-      return { mesh, ends: ends.map(({ body, at }) => ({ body, at: new Vector3(...at) })) };
+      const bar = () => this.mesh(new CylinderGeometry(radius, radius, 1, 16), rope ? COLOURS.pin : COLOURS.slide);
+      const counts = points.slice(1).map((_, index) => (index + 2 === points.length ? falls : 1));
+      const bars = counts.map((count) => Array.from({ length: count }, bar));
+      const sheave = () => this.mesh(new SphereGeometry(RADIUS.sheave * this.size, 20, 12), COLOURS.pin);
+      const sheaves = points.slice(1, -1).map(sheave);
+      return { bars, sheaves, apart: 4 * radius, points: points.map(({ body, at }) => ({ body, at: new Vector3(...at) })) };
     });
   }
 
@@ -355,9 +360,19 @@ export class Figure {
       mesh.matrixWorldNeedsUpdate = true;
     }
     for (const { geometry, elements } of this.beams) geometry.follow(elements.map((p) => frames[p]));
-    for (const { mesh, ends } of this.connectors) {
-      const [from, to] = ends.map(({ body, at }) => (body === null ? at.clone() : at.clone().applyMatrix4(frames[body])));
-      stretch(mesh, from, to);
+    for (const { bars, sheaves, apart, points } of this.connectors) {
+      const places = points.map(({ body, at }) => (body === null ? at.clone() : at.clone().applyMatrix4(frames[body])));
+      sheaves.forEach((mesh, index) => mesh.position.copy(places[index + 1]));
+      bars.forEach((falls, part) => {
+        const [from, to] = [places[part], places[part + 1]];
+        // Falls hang side by side.
+        const way = to.clone().sub(from);
+        const side = new Vector3().crossVectors(way, Math.abs(way.y) > 0.9 * way.length() ? X : Y).normalize();
+        falls.forEach((mesh, index) => {
+          const shift = side.clone().multiplyScalar(apart * (index - (falls.length - 1) / 2));
+          stretch(mesh, from.clone().add(shift), to.clone().add(shift));
+        });
+      });
     }
     for (const cylinder of this.cylinders) cylinder.follow(frames);
   }
@@ -407,7 +422,7 @@ export function extent(crane) {
     for (const frame of frames) include(new Vector3().setFromMatrixPosition(frame));
     kinematics.points.forEach((_, index) => include(kinematics.point(index)));
     crane.scene.supports.forEach(({ at }) => include(new Vector3(...at).applyMatrix4(frames[0])));
-    const anchors = crane.scene.connectors.flatMap(({ ends }) => ends.filter(({ body }) => body === null));
+    const anchors = crane.scene.connectors.flatMap(({ points }) => points.filter(({ body }) => body === null));
     anchors.forEach(({ at }) => include(new Vector3(...at)));
   }
   if (crane.coordinates[0]?.role !== "base") include(new Vector3());

@@ -1,8 +1,8 @@
-//! A rope: `E = ½ k σ²`, `D = k σ max(−1, a σ̇)`, with `σ = max(0, s − ℓ₀(t))`.
+//! A rope: `E = ½ k σ²`, `D = k σ max(−1, a σ̇)`, with `σ = max(0, s − ℓ₀(t))`, and `k = EA/ℓ₀(t)` if EA is given.
 
 use super::super::profile;
 use super::{At, Law};
-use crate::chain::Rope;
+use crate::chain::{Rope, RopeStiffness};
 use crate::symbolic::Expr;
 
 impl Rope {
@@ -10,6 +10,26 @@ impl Rope {
     fn stretch<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>) -> Expr<'g> {
         let length = profile::position(at.model, &self.length, at.t);
         (length - strain).select(at.zero(), strain - length)
+    }
+
+    /// k
+    fn stiffness<'g>(&self, at: At<'_, 'g>) -> Expr<'g> {
+        match &self.stiffness {
+            RopeStiffness::Whole(stiffness) => at.number(stiffness),
+            RopeStiffness::Axial(axial) => at.number(axial) / profile::position(at.model, &self.length, at.t),
+        }
+    }
+
+    /// The force that a winch overcomes, `−∂E/∂ℓ₀ + D`: the rope's force F; with `k = EA/ℓ₀` also `E/ℓ₀`, because the rope that it winds up
+    /// is stretched.
+    pub fn winch_force<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>, force: Expr<'g>) -> Expr<'g> {
+        match self.stiffness {
+            RopeStiffness::Whole(_) => force,
+            RopeStiffness::Axial(_) => {
+                let length = profile::position(at.model, &self.length, at.t);
+                force + 0.5 * self.twice_energy(at, strain) / length
+            }
+        }
     }
 
     /// `a σ̇`
@@ -21,22 +41,22 @@ impl Rope {
 
 impl Law for Rope {
     fn twice_energy<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>) -> Expr<'g> {
-        at.number(&self.stiffness) * self.stretch(at, strain).squared()
+        self.stiffness(at) * self.stretch(at, strain).squared()
     }
 
     fn resistance<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {
         let share = self.growth(at, rate).max(at.model.graph.constant(-1.0));
-        at.number(&self.stiffness) * self.stretch(at, strain) * share
+        self.stiffness(at) * self.stretch(at, strain) * share
     }
 
     /// `k σ max(0, 1 + a σ̇)`
     fn force<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {
         let growth = (1.0 + self.growth(at, rate)).max(at.zero());
-        at.number(&self.stiffness) * self.stretch(at, strain) * growth
+        self.stiffness(at) * self.stretch(at, strain) * growth
     }
 
     fn slopes<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> [Expr<'g>; 2] {
-        let (stiffness, damping) = (at.number(&self.stiffness), at.number(&self.damping));
+        let (stiffness, damping) = (self.stiffness(at), at.number(&self.damping));
         let slack = profile::position(at.model, &self.length, at.t) - strain;
         let growth = 1.0 + self.growth(at, rate);
         let by_strain = slack.select(at.zero(), stiffness * growth.max(at.zero()));

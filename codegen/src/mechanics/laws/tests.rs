@@ -2,7 +2,7 @@
 
 use super::{At, Law, derived_slopes, elastic_force, law};
 use crate::chain::{
-    self, Bristle, End, Friction, GasSpring, Profile, ProgressiveSpring, Ramp, Rope, Spring, Stop, Value,
+    self, Bristle, End, Friction, GasSpring, Profile, ProgressiveSpring, Ramp, Rope, RopeStiffness, Spring, Stop, Value,
 };
 use crate::mechanics::model::Model;
 use crate::mechanics::tests::double_pendulum;
@@ -15,7 +15,7 @@ fn laws() -> Vec<(&'static str, chain::Law)> {
     let friction =
         |breakaway, bristle| Friction { coulomb: c(8.0), breakaway, width: c(0.05), viscous: c(3.0), bristle };
     let bristle = Bristle { coulomb: 8.0, breakaway: 12.0, stribeck: 0.1, stiffness: 1e4, damping: 30.0 };
-    let rope = |length| Rope { stiffness: c(700.0), damping: c(0.4), length };
+    let rope = |length| Rope { stiffness: RopeStiffness::Whole(c(700.0)), damping: c(0.4), length };
     let winch = Ramp { from: c(1.2), to: c(0.4), begin: c(0.0), duration: c(2.0) };
     vec![
         ("spring", chain::Law::Spring(Spring::new(c(500.0), c(20.0)))),
@@ -33,7 +33,11 @@ fn laws() -> Vec<(&'static str, chain::Law)> {
             }),
         ),
         ("rope", chain::Law::Rope(rope(Profile::Hold(c(0.8))))),
-        ("winch", chain::Law::Rope(rope(Profile::Quintic(winch)))),
+        ("winch", chain::Law::Rope(rope(Profile::Quintic(winch.clone())))),
+        (
+            "winch of a rope with EA",
+            chain::Law::Rope(Rope { stiffness: RopeStiffness::Axial(c(500.0)), ..rope(Profile::Quintic(winch)) }),
+        ),
         ("lower stop", chain::Law::Stop(stop(End::Lower, 0.3))),
         ("upper stop", chain::Law::Stop(stop(End::Upper, -0.2))),
         ("friction", chain::Law::Friction(friction(Some((c(12.0), c(0.1))), None))),

@@ -33,8 +33,8 @@ impl Plausibility<'_> {
     pub(super) fn connectors(&mut self) {
         let (crane, chain) = (self.crane, self.chain);
         for (given, connector) in items(crane.connectors.as_ref()).zip(chain.connectors()) {
-            let Some(ends) = connector.strain.ends() else { continue };
-            let distance = chain.distance(ends, &chain.guess, &self.values);
+            let Some(line) = connector.strain.line() else { continue };
+            let distance = chain.length(line, &chain.guess, &self.values);
             let Some(length) = connector.law.length(&self.values) else { continue };
             let least = if connector.is_rope() { 1.0 / STRETCHED } else { USUAL[0] };
             if length < least * distance || length > USUAL[1] * distance {

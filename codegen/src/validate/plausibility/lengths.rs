@@ -24,7 +24,8 @@ impl Plausibility<'_> {
         }
         for connector in items(crane.connectors.as_ref()) {
             let name = connector.name.value.as_deref().unwrap_or_default();
-            for end in [&connector.from, &connector.to].into_iter().filter_map(|end| end.value.as_ref()) {
+            let ends = [&connector.from, &connector.to].into_iter().filter_map(|end| end.value.as_ref());
+            for end in ends.chain(items(connector.over.as_ref())) {
                 // Points of the world are not checked: the crane may stand anywhere.
                 if end.link.is_some() {
                     self.check_position(Some(&end.at), &format!("connector `{name}`"));
