@@ -116,8 +116,8 @@ class Load:
 
 @dataclass
 class Connector:
-    """An element whose force follows from its length; if it is between points, the indices of the bodies that it pulls, the points, and their
-    distances along the bodies (as written, and with default parameters)."""
+    """An element whose force follows from its length; if it is between points, the indices of the bodies that it pulls, the points in order, and
+    their distances along the bodies (as written, and with default parameters). The last part of a rope counts once for every fall."""
 
     bodies: list
     points: list
@@ -130,6 +130,22 @@ class Connector:
     length: object
     push: object
     progression: object = 0
+    falls: int = 1
+
+    def pulls(self, within=False):
+        """Forces on the points at a tension of 1 N: minus the slopes of the length, `within`: of the parts between two bodies."""
+        moved = [ca.SX.sym("point", 3) for _ in self.points]
+        chosen = [None not in ends or not within for ends in zip(self.bodies, self.bodies[1:])]
+        slopes = ca.gradient(length_over(moved, self.falls, chosen), ca.vertcat(*moved))
+        forces = -ca.densify(ca.substitute(slopes, ca.vertcat(*moved), ca.vertcat(*self.points)))
+        return ca.vertsplit(forces, 3)
+
+
+def length_over(points, falls, chosen=None):
+    """Length of a rope over points, the last distance counted `falls` times; of the chosen parts, if some are chosen."""
+    counts = [1] * (len(points) - 2) + [falls]
+    parts = zip(counts, points, points[1:], chosen or [True] * len(counts))
+    return sum((count * ca.norm_2(end - start) for count, start, end, is_chosen in parts if is_chosen), ca.SX(0))
 
 
 @dataclass
@@ -556,10 +572,10 @@ def read_cylinder(crane, written, spans):
 
 
 def read_connector(crane, written, spans):
-    """An element between two points: a spring, a gas spring, which pushes, a progressive spring, or a rope, which pulls."""
+    """An element between two points: a spring, a gas spring, which pushes, a progressive spring, or a rope, which pulls, perhaps over sheaves."""
     spec = crane.spec
     bodies, points, along = [], [], []
-    for end in (written["from"], written["to"]):
+    for end in (written["from"], *written.get("over", []), written["to"]):
         at = spec.vector(end["at"])
         if "link" in end:
             body, at = carrier(spec, at, spans[end["link"]])
@@ -573,8 +589,11 @@ def read_connector(crane, written, spans):
     motion = law.get("motion", {"hold": law.get("length")})
     length = read_profile(spec, motion, False, crane.time)[0]
     stiffness, damping, push, progression = (spec.number(law.get(key, 0)) for key in ("stiffness", "damping", "force", "progression"))
-    strain = ca.norm_2(points[1] - points[0])
-    return Connector(bodies, points, along, [spec.default(at) for at in along], strain, kind == "rope", stiffness, damping, length, push, progression)
+    if "axial_stiffness" in law:
+        stiffness = spec.number(law["axial_stiffness"]) / length
+    falls = int(written.get("falls", 1))
+    strain, defaults = length_over(points, falls), [spec.default(at) for at in along]
+    return Connector(bodies, points, along, defaults, strain, kind == "rope", stiffness, damping, length, push, progression, falls)
 
 
 def read_coupling(crane, written):

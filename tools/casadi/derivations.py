@@ -143,28 +143,25 @@ class Derivations:
         for connector in self.crane.connectors:
             if not connector.points:
                 continue
-            length, _, tension, _ = self.connector(connector)
-            pull = tension * (connector.points[1] - connector.points[0]) / length
-            for end, point, along, sign in zip(connector.bodies, connector.points, connector.along, (1, -1)):
+            tension = self.connector(connector)[2]
+            for end, point, along, pull in zip(connector.bodies, connector.points, connector.along, connector.pulls()):
                 if end == place:
-                    yield along, sign * pull, ca.cross(point, sign * pull)
+                    yield along, tension * pull, ca.cross(point, tension * pull)
 
     def transmitted(self):
-        """What each cylinder and each connector between two bodies adds to the wrench at each cut, with a force of 1 N."""
+        """What each cylinder and the parts of each connector between two bodies add to the wrench at each cut, with a force of 1 N."""
         of_cylinders, of_connectors = [ca.SX(0, 1)], [ca.SX(0, 1)]
         for cylinder in self.crane.cylinders:
             for cut in self.crane.cuts:
                 force, moment = cylinders.on_part_beyond(cylinder, cut, self.crane.bodies) if self.by_oil else (ca.SX(3, 1), ca.SX(3, 1))
                 of_cylinders += in_cut(cut, force, moment)
         for connector in self.crane.connectors:
-            joins = connector.points and None not in connector.bodies
+            pulls = connector.pulls(within=True) if connector.points else []
             for cut in self.crane.cuts:
                 force, moment = ca.SX(3, 1), ca.SX(3, 1)
-                if joins:
-                    pull = (connector.points[1] - connector.points[0]) / ca.norm_2(connector.points[1] - connector.points[0])
-                    for body, point, along, sign in zip(connector.bodies, connector.points, connector.along, (1, -1)):
-                        if cut.has_beyond(self.crane.bodies, body, along):
-                            force, moment = force + sign * pull, moment + ca.cross(point, sign * pull)
+                for body, point, along, pull in zip(connector.bodies, connector.points, connector.along, pulls):
+                    if cut.has_beyond(self.crane.bodies, body, along):
+                        force, moment = force + pull, moment + ca.cross(point, pull)
                 of_connectors += in_cut(cut, force, moment)
         return {"cylinder_wrenches": ca.vertcat(*of_cylinders), "connector_wrenches": ca.vertcat(*of_connectors)}
 
@@ -303,7 +300,9 @@ class Derivations:
             row = ca.jacobian(length, q)
             forces -= row.T * force
             energy += stored
-            wound = -force * self.rate(ca.SX(connector.length)) if connector.is_rope else 0
+            # A winch changes the energy at the same length of the rope's way, and resists the damper.
+            winding = self.rate(ca.SX(connector.length))
+            wound = ca.jtimes(stored, self.crane.time, ca.SX(1)) - (force - still) * winding if connector.is_rope else 0
             power += wound
             lost += wound + force * rate - self.rate(stored)
             # Slopes of F(ℓ, ℓ̇) by symbols for length and rate; those of a rope where it is taut.
