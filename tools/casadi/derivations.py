@@ -300,7 +300,7 @@ class Derivations:
             row = ca.jacobian(length, q)
             forces -= row.T * force
             energy += stored
-            # A winch changes the energy at the same length of the rope's way, and resists the damper.
+            # While the rope's way stays as long as it is, a winch changes the energy, and works against the damper.
             winding = self.rate(ca.SX(connector.length))
             wound = ca.jtimes(stored, self.crane.time, ca.SX(1)) - (force - still) * winding if connector.is_rope else 0
             power += wound

@@ -430,7 +430,7 @@ catalogue! {
     E160 rope_stiffness(rope) "rope `{rope}` needs exactly one of `stiffness` and `axial_stiffness`", "one of them gives its stiffness",
         "write `stiffness:` in N/m, which stays the same, or `axial_stiffness:`, EA in N: the stiffness is then EA divided by the free length";
     /// The free length of a rope with an axial stiffness stays above zero.
-    E161 wound_up(rope, length) "the free length of rope `{rope}` reaches {length} m", "EA divided by the free length is its stiffness",
+    E161 wound_up(rope, length) "the free length of rope `{rope}` does not stay above zero", "it reaches {length} m, and EA divided by it is the stiffness",
         "write lengths above 0 m, or a `stiffness` in N/m instead of `axial_stiffness`";
 
     // Plausibility: warnings.
