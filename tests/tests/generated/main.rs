@@ -5,6 +5,7 @@ mod cantilever;
 mod errata;
 mod extremes;
 mod identities;
+mod motion_derivatives;
 mod omissions;
 mod own_crane;
 mod prescribed_runs;
