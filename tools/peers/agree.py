@@ -53,7 +53,7 @@ def agree_on(name, evaluate, options):
     layout = evaluate.layout(name)
     crane = read_crane(TOOLS.parent / layout["spec"])
     if crane.has_rotation_vectors:
-        print(f"{name}: not compared, hinges are no symmetric section joints; CasADi derives it")
+        print(f"{name}: not compared, hinges cannot be symmetric section joints; CasADi derives it")
         return True
     states = seeded_states(crane, options)
     generated = evaluate.values(layout, states)

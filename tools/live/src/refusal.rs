@@ -21,9 +21,7 @@ impl LiveCrane {
     #[must_use]
     pub fn refusal(&self, function: FunctionId) -> Option<Refusal<'_>> {
         let description = self.description();
-        let of_residual =
-            matches!(function, FunctionId::DynamicResidualDerivatives | FunctionId::ForwardDynamicsDerivatives);
-        if of_residual && self.size() > Self::MOST_COORDINATES_OF_DERIVATIVES {
+        if self.is_too_large_for(function) {
             return Some(Refusal::TooLarge);
         }
         let depends = match function {

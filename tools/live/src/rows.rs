@@ -14,7 +14,6 @@ use crate::derivatives::derivatives_of_accelerations;
 use crate::expansion::mass_matrix;
 use crate::library::Library;
 use crate::machine::{Arguments, Batch, Machine, Number};
-use crate::refusal::Refusal;
 use crate::routine::Routine;
 
 /// The quantity computed for every row. Matrices are written row by row.
@@ -126,7 +125,7 @@ impl<T: Number> Evaluation<T> {
             driven: crane.description().drives.iter().map(|drive| drive.coordinate).collect(),
             inputs: crane.inputs().iter().copied().map(T::splat).collect(),
             results: vec![T::splat(0.0); width],
-            absent: if crane.refusal(quantity.function()) == Some(Refusal::TooLarge) { f64::NAN } else { 0.0 },
+            absent: if crane.is_too_large_for(quantity.function()) { f64::NAN } else { 0.0 },
         }
     }
 

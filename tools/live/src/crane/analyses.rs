@@ -10,8 +10,8 @@ use crane_quantities::quantities;
 
 use super::methods::{method, methods};
 use super::{LiveCrane, at, copy};
+use crate::derivatives::derivatives_of_accelerations;
 use crate::machine::Arguments;
-use crate::rows::{Evaluation, Quantity, Rows};
 
 impl DynStatics for LiveCrane {
     quantities! { methods of Statics }
@@ -44,8 +44,12 @@ impl DynDerivatives for LiveCrane {
 
 impl DynMotionDerivatives for LiveCrane {
     fn forward_dynamics_derivatives(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]) {
-        let mut evaluation = Evaluation::<f64>::new(self, Quantity::ForwardDynamicsDerivatives);
-        evaluation.run(&Rows { t: &[t], q, v, ..Rows::default() }, 0..1, out);
+        let n = q.len();
+        let (mut a, mut mass) = (vec![0.0; n], vec![0.0; n * n]);
+        self.forward_dynamics(t, q, v, &mut a);
+        self.dynamic_residual_derivatives(t, q, v, &a, &mut out[..2 * n * n]);
+        self.mass_matrix(q, &mut mass);
+        derivatives_of_accelerations(&mut mass, &self.description().prescribed(), out);
     }
 
     quantities! { methods of MotionDerivatives }

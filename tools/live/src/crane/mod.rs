@@ -19,7 +19,6 @@ use crate::describe::{describe, describe_loop_joints, refusal};
 use crate::expansion::{mass_matrix, second_derivatives};
 use crate::library::Library;
 use crate::machine::{Arguments, Machine};
-use crate::refusal::Refusal;
 use crate::routine::Routine;
 
 /// A crane of any number of coordinates that is ready without rustc.
@@ -172,12 +171,17 @@ impl LiveCrane {
         }
     }
 
+    /// Whether the crane has too many coordinates for a function.
+    pub(crate) fn is_too_large_for(&self, id: FunctionId) -> bool {
+        let grows = matches!(id, FunctionId::DynamicResidualDerivatives | FunctionId::ForwardDynamicsDerivatives);
+        grows && self.size() > Self::MOST_COORDINATES_OF_DERIVATIVES
+    }
+
     /// A list, zeros if the crane does not need the function.
     fn list<T: Entry>(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [T]) {
         let called = self.call(id, arguments, |_, results| copy_entries(results, out));
         if called.is_none() {
-            let refused = self.refusal(id) == Some(Refusal::TooLarge);
-            out.fill(if refused { T::from_numbers(&[f64::NAN; 16]) } else { T::ZERO });
+            out.fill(if self.is_too_large_for(id) { T::from_numbers(&[f64::NAN; 16]) } else { T::ZERO });
         }
     }
 
