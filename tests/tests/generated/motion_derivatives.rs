@@ -58,8 +58,8 @@ fn derivatives_are_those_of_dual_numbers() {
                 };
                 let solved = DMatrix::from_columns(&(0..n).map(column).collect::<Vec<_>>());
                 let (off, size) = ((&solved - &expected).amax(), expected.amax());
-                // The same, times the condition of A.
-                assert!(off <= 1e-11 * size, "{name}, q̈, rates {of_rates}: off by {off:e} of {size:e}");
+                // The same, times the condition of A, for which the dense solution loses six digits on random cranes.
+                assert!(off <= 1e-9 * size, "{name}, q̈, rates {of_rates}: off by {off:e} of {size:e}");
             }
         }
     }

@@ -1,85 +1,29 @@
 //! Derivatives of accelerations from those of the residual.
 
-use crane_model::rt::fma;
-
 use crate::machine::Number;
 
-/// `−A⁻¹ ∂r/∂q`, `−A⁻¹ ∂r/∂v` and `A⁻¹` in place of ∂r/∂q, ∂r/∂v and whatever is in the third matrix, each row by row. Prescribed coordinates do
-/// not accelerate further: their rows are zero, and so are their columns of A⁻¹. `mass` is overwritten.
-///
-/// `A = L D Lᵀ`; the three matrices are solved together, row by row, so that the inner loops have no dependent operations.
-pub fn derivatives_of_accelerations<T: Number>(mass: &mut [T], prescribed: &[usize], out: &mut [T]) {
-    let n = mass.len().isqrt();
+/// `−A⁻¹ ∂r/∂q`, `−A⁻¹ ∂r/∂v` and `A⁻¹` in place of ∂r/∂q, ∂r/∂v and whatever is in the third matrix, each row by row, column by column with the
+/// solution of `A x = r` in O(n). Prescribed coordinates do not accelerate further: their rows are zero, and so are their columns of A⁻¹.
+pub fn derivatives_of_accelerations<T: Number>(
+    n: usize,
+    prescribed: &[usize],
+    out: &mut [T],
+    mut solve: impl FnMut(&[T], &mut [T]),
+) {
     let (zero, one) = (T::splat(0.0), T::splat(1.0));
-    for &j in prescribed {
-        for k in 0..n {
-            (mass[j + n * k], mass[k + n * j]) = (zero, zero);
-        }
-        mass[j + n * j] = one;
-    }
-    let width = 3 * n;
-    let mut rows = vec![zero; width * n];
-    for (i, row) in rows.chunks_exact_mut(width.max(1)).enumerate() {
-        if prescribed.contains(&i) {
-            continue;
-        }
-        for block in 0..2 {
-            let of_block = &out[(block * n + i) * n..(block * n + i + 1) * n];
-            row[block * n..(block + 1) * n].iter_mut().zip(of_block).for_each(|(entry, slope)| *entry = -*slope);
-        }
-        row[2 * n + i] = one;
-    }
-    let reciprocals = factorise(mass, n);
-    for i in 0..n {
-        for k in 0..i {
-            subtract(&mut rows, width, (i, k), mass[i * n + k]);
-        }
-    }
-    for i in (0..n).rev() {
-        rows[i * width..(i + 1) * width].iter_mut().for_each(|entry| *entry = *entry * reciprocals[i]);
-        for k in i + 1..n {
-            subtract(&mut rows, width, (i, k), mass[k * n + i]);
-        }
-    }
-    for (i, row) in rows.chunks_exact(width.max(1)).enumerate() {
-        for (block, of_block) in row.chunks_exact(n).enumerate() {
-            out[(block * n + i) * n..(block * n + i + 1) * n].copy_from_slice(of_block);
-        }
-    }
-}
-
-/// Replaces the lower triangle of a symmetric matrix by L of `L D Lᵀ`, and returns the reciprocals of D.
-fn factorise<T: Number>(matrix: &mut [T], n: usize) -> Vec<T> {
-    let mut reciprocals = Vec::with_capacity(n);
-    for j in 0..n {
-        // Row j of L D so far, from the columns before j.
-        let scaled: Vec<T> = matrix[j * n..j * n + j].to_vec();
-        let mut diagonal = matrix[j * n + j];
-        for (k, scaled) in scaled.iter().enumerate() {
-            let entry = *scaled * reciprocals[k];
-            diagonal = fma(-*scaled, entry, diagonal);
-            matrix[j * n + k] = entry;
-        }
-        for i in j + 1..n {
-            let (above, below) = matrix.split_at_mut(i * n);
-            let mut entry = below[j];
-            for k in 0..j {
-                entry = fma(-below[k], above[j * n + k], entry);
+    let (mut right, mut solution) = (vec![zero; n], vec![zero; n]);
+    for (block, matrix) in out.chunks_exact_mut((n * n).max(1)).enumerate() {
+        for j in 0..n {
+            for (i, right) in right.iter_mut().enumerate() {
+                let unit = if i == j { one } else { zero };
+                *right = if block < 2 { -matrix[i * n + j] } else { unit };
             }
-            below[j] = entry;
+            prescribed.iter().for_each(|i| right[*i] = zero);
+            solve(&right, &mut solution);
+            prescribed.iter().for_each(|i| solution[*i] = zero);
+            solution.iter().enumerate().for_each(|(i, x)| matrix[i * n + j] = *x);
         }
-        reciprocals.push(T::splat(1.0) / diagonal);
     }
-    reciprocals
-}
-
-/// Row i minus a multiple of row k.
-fn subtract<T: Number>(rows: &mut [T], width: usize, (i, k): (usize, usize), factor: T) {
-    let (low, high) = (i.min(k), i.max(k));
-    let (before, after) = rows.split_at_mut(high * width);
-    let (first, second) = (&mut before[low * width..(low + 1) * width], &mut after[..width]);
-    let (changed, other) = if i < k { (first, &*second) } else { (second, &*first) };
-    changed.iter_mut().zip(other).for_each(|(entry, other)| *entry = fma(-factor, *other, *entry));
 }
 
 #[cfg(test)]

@@ -60,7 +60,7 @@ pub struct Evaluation<T> {
     /// Numbers of coordinates and of live parameters.
     sizes: [usize; 2],
     /// The functions that the quantity needs.
-    calls: [Option<Call<T>>; 3],
+    calls: [Option<Call<T>>; 4],
     /// The states that are evaluated.
     lanes: Lanes<T>,
     /// The coordinates of the drives.
@@ -84,6 +84,11 @@ struct Lanes<T> {
     a: Vec<T>,
     /// Positions of the drives, by coordinate, for functions at rest.
     positions: Vec<T>,
+    /// Right-hand side of a system and its factors.
+    r: Vec<T>,
+    factors: Vec<T>,
+    /// As many zeros as a coordinate or the base has numbers.
+    zeros: Vec<T>,
     parameters: Vec<T>,
 }
 
@@ -104,13 +109,14 @@ impl<T: Number> Evaluation<T> {
         let ids = match quantity {
             // The drives are where they are at the state's time.
             Quantity::Of(id) if id.arguments().contains(&Argument::DrivePositions) => {
-                [Some(id), Some(FunctionId::DriveMotions), None]
+                [Some(id), Some(FunctionId::DriveMotions), None, None]
             }
-            Quantity::Of(id) => [Some(id), None, None],
+            Quantity::Of(id) => [Some(id), None, None, None],
             Quantity::ForwardDynamicsDerivatives => [
                 Some(FunctionId::ForwardDynamics),
                 Some(FunctionId::DynamicResidualDerivatives),
-                Some(FunctionId::MassMatrix),
+                Some(FunctionId::Factorise),
+                Some(FunctionId::Solve),
             ],
         };
         let width = width(crane, quantity);
@@ -120,7 +126,7 @@ impl<T: Number> Evaluation<T> {
             width,
             sizes: [crane.size(), crane.parameters().len()],
             calls: ids.map(|id| Call::new(crane, id?)),
-            lanes: Lanes { t: vec![], q: vec![], v: vec![], a: vec![], positions: vec![], parameters: vec![] },
+            lanes: Lanes::new(),
             prescribed: crane.description().prescribed(),
             driven: crane.description().drives.iter().map(|drive| drive.coordinate).collect(),
             inputs: crane.inputs().iter().copied().map(T::splat).collect(),
@@ -151,7 +157,7 @@ impl<T: Number> Evaluation<T> {
         let Self { calls, lanes, driven, prescribed, inputs, results, library, absent, .. } = self;
         let n = lanes.q.len();
         match (self.quantity, calls) {
-            (Quantity::Of(_), [Some(call), motions, _]) => {
+            (Quantity::Of(_), [Some(call), motions, ..]) => {
                 lanes.positions.clear();
                 lanes.positions.resize(n, T::splat(0.0));
                 if let Some(motions) = motions {
@@ -161,14 +167,24 @@ impl<T: Number> Evaluation<T> {
                 }
                 call.run(library, lanes, inputs, results);
             }
-            (Quantity::ForwardDynamicsDerivatives, [Some(accelerations), Some(slopes), Some(mass)]) => {
+            (
+                Quantity::ForwardDynamicsDerivatives,
+                [Some(accelerations), Some(slopes), Some(factorise), Some(solve)],
+            ) => {
                 let mut a = vec![T::splat(0.0); n];
                 accelerations.run(library, lanes, inputs, &mut a);
                 lanes.a = a;
                 slopes.run(library, lanes, inputs, &mut results[..2 * n * n]);
-                let mut matrix = vec![T::splat(0.0); n * n];
-                mass.run(library, lanes, inputs, &mut matrix);
-                derivatives_of_accelerations(&mut matrix, prescribed, results);
+                // No inertia is added.
+                lanes.zeros.resize(n.max(36), T::splat(0.0));
+                let mut factors = vec![T::splat(0.0); factorise.factors.len()];
+                factorise.run(library, lanes, inputs, &mut factors);
+                lanes.factors = factors;
+                derivatives_of_accelerations(n, prescribed, results, |right, solution| {
+                    lanes.r.clear();
+                    lanes.r.extend_from_slice(right);
+                    solve.run(library, lanes, inputs, solution);
+                });
             }
             _ => results.fill(T::splat(*absent)),
         }
@@ -195,6 +211,22 @@ impl<T: Batch> Evaluation<T> {
                 }
             }
             first += count;
+        }
+    }
+}
+
+impl<T> Lanes<T> {
+    fn new() -> Self {
+        Self {
+            t: vec![],
+            q: vec![],
+            v: vec![],
+            a: vec![],
+            positions: vec![],
+            r: vec![],
+            factors: vec![],
+            zeros: vec![],
+            parameters: vec![],
         }
     }
 }
@@ -235,8 +267,9 @@ impl<T: Number> Call<T> {
     fn run(&mut self, library: &Library, lanes: &Lanes<T>, inputs: &[T], out: &mut [T]) {
         let Some(routine) = library.routine(self.id) else { return };
         let t = lanes.t.first().copied().unwrap_or(T::splat(0.0));
-        let Lanes { q, v, a, positions, .. } = lanes;
-        let arguments = Arguments { t, q, v, a, positions, inputs, ..Arguments::none() };
+        let Lanes { q, v, a, positions, r, factors, zeros, .. } = lanes;
+        let of_system = Arguments { r, factors, added_inertia: zeros, base: zeros, ..Arguments::none() };
+        let arguments = Arguments { t, q, v, a, positions, inputs, ..of_system };
         match (routine.shape(), &self.places) {
             (Shape::Columns { points, .. }, _) => {
                 routine.run(&mut self.machine, &arguments, &mut self.factors);

@@ -2,9 +2,9 @@
 
 use crane_codegen::program::FunctionId;
 use crane_model::dyn_crane::{
-    DynDerivatives, DynDynamics, DynInternalForces, DynLinearise, DynMotionDerivatives, DynStatics,
+    DynDerivatives, DynDynamics, DynImplicit, DynInternalForces, DynLinearise, DynMotionDerivatives, DynStatics,
 };
-use crane_model::nalgebra::Matrix4;
+use crane_model::nalgebra::{Matrix4, Matrix6};
 use crane_model::{entry_type, slice_argument};
 use crane_quantities::quantities;
 
@@ -45,11 +45,13 @@ impl DynDerivatives for LiveCrane {
 impl DynMotionDerivatives for LiveCrane {
     fn forward_dynamics_derivatives(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]) {
         let n = q.len();
-        let (mut a, mut mass) = (vec![0.0; n], vec![0.0; n * n]);
+        let mut a = vec![0.0; n];
         self.forward_dynamics(t, q, v, &mut a);
         self.dynamic_residual_derivatives(t, q, v, &a, &mut out[..2 * n * n]);
-        self.mass_matrix(q, &mut mass);
-        derivatives_of_accelerations(&mut mass, &self.description().prescribed(), out);
+        let mut system = self.system();
+        system.factorise(q, &vec![0.0; n], &Matrix6::zeros());
+        let solve = |right: &[f64], solution: &mut [f64]| system.solve(right, solution);
+        derivatives_of_accelerations(n, &self.description.prescribed(), out, solve);
     }
 
     quantities! { methods of MotionDerivatives }

@@ -174,7 +174,7 @@ impl LiveCrane {
     /// Whether the crane has too many coordinates for a function.
     pub(crate) fn is_too_large_for(&self, id: FunctionId) -> bool {
         let grows = matches!(id, FunctionId::DynamicResidualDerivatives | FunctionId::ForwardDynamicsDerivatives);
-        grows && self.size() > Self::MOST_COORDINATES_OF_DERIVATIVES
+        grows && self.chain().coordinates.len() > Self::MOST_COORDINATES_OF_DERIVATIVES
     }
 
     /// A list, zeros if the crane does not need the function.
