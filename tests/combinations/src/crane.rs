@@ -485,6 +485,60 @@ impl Writer<'_> {
                 "law": {"rope": rope}}),
             );
         }
+        if self.has(F::Sheaves) {
+            self.reeving(down);
+        }
+    }
+
+    /// A rope from the column or from a place in the world over sheaves on the boom and perhaps on a mast to the arm.
+    fn reeving(&mut self, down: f64) {
+        let [slew, lift, bend] = self.angles;
+        // Radius, distance to the left and height at the guess.
+        let along = |[x, up, aside]: [f64; 3], [radius, height]: [f64; 2], angle: f64| {
+            let (sin, cos) = angle.sin_cos();
+            [radius + x * cos - up * sin, -aside, height + x * sin + up * cos]
+        };
+        let in_world = |[radius, left, height]: [f64; 3]| {
+            let (sin, cos) = slew.sin_cos();
+            [radius * cos - left * sin, radius * sin + left * cos, height].map(round)
+        };
+        let mut way = Vec::new();
+        let [left, height] = [self.between(-0.3, 0.3), self.between(0.4, 0.9)];
+        if self.rng.borrow_mut().bool() {
+            way.push(([0.5, left, 1.05 + height], json!({"link": "column", "at": [0.5, left, round(height + down)]})));
+        } else {
+            let place = [-2.5, left, 1.05 + height];
+            way.push((place, json!({"at": in_world(place)})));
+        }
+        let on_boom = [self.between(1.0, BOOM), self.between(0.15, 0.3), self.between(-0.1, 0.1)];
+        way.push((along(on_boom, SHOULDER, lift), json!({"link": "boom", "at": on_boom})));
+        if self.rng.borrow_mut().bool() {
+            let place = [self.between(1.5, 2.5), left, self.between(6.0, 7.0)];
+            way.push((place, json!({"at": in_world(place)})));
+        }
+        let on_arm = [self.between(0.8, ARM), self.between(0.1, 0.2), self.between(-0.1, 0.1)];
+        let [radius, _, height] = along([BOOM, 0.0, 0.0], SHOULDER, lift);
+        way.push((along(on_arm, [radius, height], lift + bend), json!({"link": "arm", "at": on_arm})));
+        let falls = self.rng.borrow_mut().u8(1..4);
+        let distance =
+            |pair: &[([f64; 3], Tree)]| (0..3).map(|k| (pair[1].0[k] - pair[0].0[k]).powi(2)).sum::<f64>().sqrt();
+        let parts: Vec<f64> = way.windows(2).map(distance).collect();
+        let last = parts.last().map_or(0.0, |last| f64::from(falls - 1) * last);
+        let free = round(parts.iter().sum::<f64>() + last - 0.1);
+        let mut rope = json!({"axial_stiffness": 1e5, "damping": 0.3});
+        if self.rng.borrow_mut().bool() {
+            rope["motion"] = json!({"cubic": {"from": free, "to": round(free - 0.05), "duration": 1}});
+        } else {
+            rope["length"] = json!(free);
+        }
+        let points: Vec<Tree> = way.into_iter().map(|(_, point)| point).collect();
+        if let [from, over @ .., to] = points.as_slice() {
+            let mut reeving = json!({"name": "reeving", "from": from, "over": over, "to": to, "law": {"rope": rope}});
+            if falls > 1 {
+                reeving["falls"] = json!(falls);
+            }
+            self.push("connectors", reeving);
+        }
     }
 
     fn cylinders(&mut self, seed: u64) {

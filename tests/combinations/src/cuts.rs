@@ -3,7 +3,7 @@
 //! The balance is summed body by body in the world frame, from a chain's frames and masses; the accelerations are second differences of
 //! transforms. The recursion that it checks works in the frames of the bodies, outward and back.
 
-use crane_codegen::chain::{Attachment, BodyId, Cylinder, Inertia, Load, LoadAxes, LoopJointKind, Pin, Value};
+use crane_codegen::chain::{Attachment, BodyId, Cylinder, Inertia, Line, Load, LoadAxes, LoopJointKind, Pin, Value};
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::nalgebra::{DVector, Matrix3, Matrix4, Vector3, Vector6};
@@ -173,17 +173,20 @@ fn pseudo_inertia(inertia: &Inertia, parameters: &[f64]) -> Matrix4<f64> {
     Matrix4::new(xx, xy, xz, x, xy, yy, yz, y, xz, yz, zz, z, x, y, z, inertia.mass.at(parameters))
 }
 
-/// The forces of springs and ropes on the bodies at their ends.
+/// The forces of springs and ropes on the bodies at their ends and at sheaves.
 fn connectors(crane: &LiveCrane, motion: &Motion, transforms: &[Matrix4<f64>]) -> Vec<(usize, Screw)> {
     let whole: &dyn DynCrane = crane;
     let tensions = whole.connector_tensions_at(motion.t, motion.q, motion.v);
     let mut forces = Vec::new();
     for (connector, tension) in crane.chain().connectors().iter().zip(tensions) {
-        let Some(ends) = connector.strain.ends() else { continue };
-        let [one, other] = ends.each_ref().map(|end| point_of(crane, end, transforms));
-        let pull = tension.force * (other - one).normalize();
-        for (end, at, force) in [(&ends[0], one, pull), (&ends[1], other, -pull)] {
-            forces.extend(end.body.map(|body| (body.0, force_at(at, force))));
+        let Some(Line { points, falls }) = connector.strain.line() else { continue };
+        for (index, ends) in points.windows(2).enumerate() {
+            let [one, other] = [&ends[0], &ends[1]].map(|end| point_of(crane, end, transforms));
+            let parts = if index + 2 == points.len() { f64::from(*falls) } else { 1.0 };
+            let pull = parts * tension.force * (other - one).normalize();
+            for (end, at, force) in [(&ends[0], one, pull), (&ends[1], other, -pull)] {
+                forces.extend(end.body.map(|body| (body.0, force_at(at, force))));
+            }
         }
     }
     forces

@@ -49,7 +49,7 @@ impl Second {
 pub type Description = fn(&Tree, &mut Rng) -> Option<Second>;
 
 /// All of them, with their names.
-pub const ALL: [(&str, Description); 20] = [
+pub const ALL: [(&str, Description); 22] = [
     ("beam split by a fixed joint", split_boom),
     ("beam given element by element", boom_one_by_one),
     ("rigid beam as a body", rigid_boom_as_body),
@@ -67,6 +67,8 @@ pub const ALL: [(&str, Description); 20] = [
     ("a loop joint holds what hangs", held_by_loop),
     ("branches in another order", branches_exchanged),
     ("rope link by link", rope_link_by_link),
+    ("falls as sheaves", falls_as_sheaves),
+    ("rope from its other end", from_its_other_end),
     ("massless frames between links", massless_frames),
     ("another unit of mass", mass_unit),
     ("loops of generated code", loops),
@@ -301,11 +303,15 @@ fn turned(tree: &Tree, _: &mut Rng) -> Option<Second> {
         }
     }
     for connector in second.get_mut("connectors").and_then(Value::as_array_mut).into_iter().flatten() {
-        for end in ["from", "to"] {
-            if connector[end]["link"].is_null() {
-                connector[end]["at"] = json!(turn(&numbers(&connector[end]["at"])));
+        let turned = |point: &mut Tree| {
+            if point["link"].is_null() {
+                point["at"] = json!(turn(&numbers(&point["at"])));
             }
+        };
+        for end in ["from", "to"] {
+            turned(&mut connector[end]);
         }
+        connector.get_mut("over").and_then(Value::as_array_mut).into_iter().flatten().for_each(turned);
     }
     let points = ["tip_", "middle_", "load_"];
     Some(
@@ -500,6 +506,39 @@ fn weight_as_force(tree: &Tree, _: &mut Rng) -> Option<Second> {
     Some(Second { moves: false, ..Second::of(&second).named(same) })
 }
 
+/// The falls of a rope one by one: back and forth between its last sheave and its end.
+fn falls_as_sheaves(tree: &Tree, _: &mut Rng) -> Option<Second> {
+    let mut second = tree.clone();
+    let rope = entry_mut(&mut second, "connectors", "name", "reeving")?;
+    let falls = rope["falls"].as_u64()?;
+    rope.as_object_mut()?.remove("falls");
+    let mut points = rope["over"].as_array()?.clone();
+    points.push(rope["to"].clone());
+    for _ in 1..falls {
+        points.push(points[points.len() - 2].clone());
+    }
+    rope["to"] = points.pop()?;
+    rope["over"] = json!(points);
+    Some(Second::of(&second).named(without_places_of_rope))
+}
+
+/// A rope from `to` over its sheaves to `from`.
+fn from_its_other_end(tree: &Tree, _: &mut Rng) -> Option<Second> {
+    let mut second = tree.clone();
+    let rope = entry_mut(&mut second, "connectors", "name", "reeving")?;
+    if rope.get("falls").is_some() {
+        return None;
+    }
+    [rope["from"], rope["to"]] = [rope["to"].clone(), rope["from"].clone()];
+    rope["over"].as_array_mut()?.reverse();
+    Some(Second::of(&second))
+}
+
+/// Names without those of places at the rope's ends, which are sheaves in the other description.
+fn without_places_of_rope(name: &str) -> Option<String> {
+    (!name.contains("of reeving")).then(|| name.to_owned())
+}
+
 /// Every link of the rope as two links with a joint each, its mass in three points by Simpson's rule, which is exact for a rod.
 fn rope_link_by_link(tree: &Tree, _: &mut Rng) -> Option<Second> {
     let mut second = tree.clone();
@@ -588,6 +627,7 @@ fn massless_frames(tree: &Tree, _: &mut Rng) -> Option<Second> {
 
 /// Keys whose numbers are proportional to the unit of mass.
 const WITH_MASS: &[&str] = &[
+    "axial_stiffness",
     "mass",
     "Ixx",
     "Iyy",

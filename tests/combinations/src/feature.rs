@@ -51,6 +51,7 @@ features! {
     GasSpring: "gas spring between two links",
     Guy: "rope to the world",
     Winch: "winch",
+    Sheaves: "rope over sheaves on several links, with falls",
     Cylinder: "cylinder between its pins",
     Linkage: "cylinder with rocker and link",
     Valve: "cylinders with valves",

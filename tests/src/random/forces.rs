@@ -92,7 +92,8 @@ impl Writer {
         self.line(&format!("  {last}: {{coulomb: payload, width: 0.4}}"));
     }
 
-    /// A spring across several joints, a gas spring across one, a rope from the world on a winch, and a slack one.
+    /// A spring across several joints, a gas spring across one, a rope from the world on a winch, a slack one, a rope over sheaves on three links
+    /// with a winch and three falls, and one over a sheave in the world.
     pub(super) fn connectors(&mut self) {
         self.line("connectors:");
         for (name, from, to, law) in [
@@ -125,6 +126,18 @@ impl Writer {
                 "{link: arm, at: [0, 0, 0.4]}",
                 "{link: hand, at: [0, 0, 0]}",
                 "{rope: {stiffness: 500, length: 90}}",
+            ),
+            (
+                "reeving",
+                "{link: second, at: [0.1, 0.2, -0.1]}, over: [{link: plate, at: [0.2, -0.3, 0.4]}, {link: arm, at: [0.2, 0.3, 0.5]}]",
+                "{link: first, at: [0.5, 0, 0.2]}, falls: 3",
+                "{rope: {axial_stiffness: 120, damping: 0.15, motion: {cubic: {from: 2, to: 1.4, begin: 0.2, duration: 1.1}}}}",
+            ),
+            (
+                "mast",
+                "{link: arm, at: [0.3, 0, 0.1]}, over: [{at: [-2, 1.5, 6]}, {link: plate, at: [0.1, 0.5, 0]}]",
+                "{link: hand, at: [0, 0.3, 0.2]}",
+                "{rope: {axial_stiffness: 150, damping: 0.1, length: 3}}",
             ),
         ] {
             self.line(&format!("  - {{name: {name}, from: {from}, to: {to}, law: {law}}}"));

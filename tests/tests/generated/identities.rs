@@ -1,6 +1,6 @@
 //! Physical identities on random cranes with fixed seeds, by the interpreter.
 
-use crane_codegen::chain::{BodyId, Chain, CoordinateId, CoordinateKind, Cut, Force, Step};
+use crane_codegen::chain::{BodyId, Chain, CoordinateId, CoordinateKind, Cut, Force, Line, LinePart, Step};
 use crane_codegen::program::{Argument, Inputs};
 use crane_model::nalgebra::{DMatrix, DVector, Rotation2, Vector2};
 use crane_tests::dual::Dual;
@@ -159,7 +159,7 @@ fn forces_between_points(crane: &Interpreted, state: &State) -> DVector<f64> {
     let inputs = crane.inputs(state);
     let (tensions, rows) = (crane.get("connector_tensions", &inputs, 0), crane.get("connector_jacobians", &inputs, 0));
     let elements = tensions.chunks_exact(3).zip(rows.chunks_exact(crane.size())).zip(crane.chain.connectors());
-    let between = elements.filter(|(_, connector)| connector.strain.ends().is_some());
+    let between = elements.filter(|(_, connector)| connector.strain.line().is_some());
     between.fold(DVector::zeros(crane.size()), |sum, ((tension, row), _)| {
         sum - DVector::from_column_slice(row) * tension[0]
     })
@@ -225,7 +225,9 @@ fn wrenches_of_cylinders_and_connectors_follow_from_their_lengths() {
                 let [rows, wrenches] = [rows, wrenches].map(|name| crane.get(name, &crane.inputs(&state), 0));
                 let elements = rows.chunks_exact(crane.size()).zip(wrenches.chunks_exact(6 * cuts.len()));
                 for (index, (row, wrenches)) in elements.enumerate() {
-                    let between = sign > 0.0 || chain.connectors()[index].strain.joins_bodies();
+                    // Of other ropes, the wrenches are those of the parts between two bodies.
+                    let is_within = |line: &Line| line.parts().all(LinePart::joins_bodies);
+                    let between = sign > 0.0 || chain.connectors()[index].strain.line().is_some_and(is_within);
                     // A linkage that does not close.
                     if !between || row.iter().any(|entry| entry.is_nan()) {
                         continue;
