@@ -1,8 +1,8 @@
 //! Strains at the present pose: coordinates, lengths of lines through points, couplings of coordinates.
 //!
 //! Notation
-//! : points p_i of a line in the world, `ℓ = Σ m_i |p_{i+1} − p_i|`, m_i = 1 except for the last part, which counts as often as the line has
-//!   falls; `u_i = m_i (p_{i+1} − p_i)/|p_{i+1} − p_i|`. `J_j = ∂ℓ/∂q_j = Σ u_i · (∂p_{i+1}/∂q_j − ∂p_i/∂q_j)`, summed over the parts of which
+//! : points `p_i` of a line in the world, `ℓ = Σ m_i |p_{i+1} − p_i|`; `m_i` is 1, and of the last part the number of the line's falls;
+//!   `u_i = m_i (p_{i+1} − p_i)/|p_{i+1} − p_i|`. `J_j = ∂ℓ/∂q_j = Σ u_i · (∂p_{i+1}/∂q_j − ∂p_i/∂q_j)`, summed over the parts of which
 //!   j moves only one end: if it moves both, their distance stays the same. `ℓ̇ = J q̇`. For a coupling `ℓ = q_j − r q_i`, `J_j = 1`,
 //!   `J_i = −r`.
 
@@ -21,9 +21,9 @@ pub struct Strained<'g> {
     pub length: Expr<'g>,
     /// Indices and values of the entries of J.
     pub jacobian: Vec<(usize, Expr<'g>)>,
-    /// p_i of a line.
+    /// `p_i` of a line.
     points: Vec<Vec3<'g>>,
-    /// u_i of its parts: a tension of 1 N pulls p_i with u_i, and p_{i+1} with −u_i.
+    /// `u_i` of its parts: a tension of 1 N pulls `p_i` with `u_i`, and `p_{i+1}` with `−u_i`.
     pulls: Vec<Vec3<'g>>,
 }
 

@@ -63,7 +63,7 @@ macro_rules! laws {
         pub enum ConnectorLaw {
             $($(#[$doc])* $law($written),)*
             /// A rope, which pulls while it is taut.
-            Rope(Rope),
+            Rope(Box<Rope>),
         }
 
         $($(#[$doc])*
