@@ -131,13 +131,13 @@ impl Writer {
                 "reeving",
                 "{link: second, at: [0.1, 0.2, -0.1]}, over: [{link: plate, at: [0.2, -0.3, 0.4]}, {link: arm, at: [0.2, 0.3, 0.5]}]",
                 "{link: first, at: [0.5, 0, 0.2]}, falls: 3",
-                "{rope: {axial_stiffness: 120, damping: 0.15, motion: {cubic: {from: 2, to: 1.4, begin: 0.2, duration: 1.1}}}}",
+                "{rope: {axial_stiffness: 8, damping: 0.15, motion: {cubic: {from: 2, to: 1.4, begin: 0.2, duration: 1.1}}}}",
             ),
             (
                 "mast",
                 "{link: arm, at: [0.3, 0, 0.1]}, over: [{at: [-2, 1.5, 6]}, {link: plate, at: [0.1, 0.5, 0]}]",
                 "{link: hand, at: [0, 0.3, 0.2]}",
-                "{rope: {axial_stiffness: 150, damping: 0.1, length: 3}}",
+                "{rope: {axial_stiffness: 10, damping: 0.1, length: 3}}",
             ),
         ] {
             self.line(&format!("  - {{name: {name}, from: {from}, to: {to}, law: {law}}}"));
