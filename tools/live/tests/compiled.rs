@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use crane_codegen::build;
 use crane_codegen::program::{Count, Extent, FunctionId};
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::{DynCrane, DynDerivatives, DynModel, Instance};
+use crane_model::dyn_crane::{DynCrane, DynDerivatives, DynModel, DynMotionDerivatives, Instance};
 use crane_model::dynamics::{InitialState, Settings, ensemble::Member};
 use crane_model::nalgebra::Matrix6;
 use crane_model::{ParameterError, modes, statics};
@@ -85,11 +85,44 @@ fn assert_same_derivatives(live: &LiveCrane, compiled: &dyn DynDerivatives) {
     }
 }
 
+/// Derivatives of the dynamics of both, in that order.
+fn assert_same_derivatives_of_motion(live: &LiveCrane, compiled: &dyn DynMotionDerivatives) {
+    let (t, q, v) = state(live);
+    let n = live.size();
+    let of = |crane: &dyn DynMotionDerivatives| {
+        let lengths = [3 * n * crane.count(Count::Points), n, n, 2 * n * n, 3 * n * n];
+        let mut results = lengths.map(|length| vec![f64::NAN; length]);
+        let [points, required, residual, slopes, accelerations] = &mut results;
+        crane.point_jacobians(&q, points);
+        crane.inverse_dynamics(&q, &v, &v, required);
+        crane.dynamic_residual(t, &q, &v, &v, residual);
+        crane.dynamic_residual_derivatives(t, &q, &v, &v, slopes);
+        crane.forward_dynamics_derivatives(t, &q, &v, accelerations);
+        results
+    };
+    let (live_results, compiled_results) = (of(live), of(compiled));
+    let name = &live.description().name;
+    for (live, compiled) in live_results.iter().zip(&compiled_results).take(4) {
+        assert_same(name, live, compiled);
+    }
+    for (live, compiled) in live_results[4].chunks(n * n).zip(compiled_results[4].chunks(n * n)) {
+        let largest = compiled.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+        for (live, compiled) in live.iter().zip(compiled) {
+            // By recursion and by dense factors: rounding, times the condition of A.
+            assert!((live - compiled).abs() <= 1e-10 * largest, "{name}: {live} live, {compiled} compiled");
+        }
+    }
+}
+
 #[test]
 fn derivatives_give_the_same_bits() {
     macro_rules! check {
         ($($name:ident),*) => {
-            $(assert_same_derivatives(&live(stringify!($name)), &Instance::<{ crane_specs::$name::N }, _>(&crane_specs::$name::Crane::default()));)*
+            $({
+                let (live, compiled) = (live(stringify!($name)), crane_specs::$name::Crane::default());
+                assert_same_derivatives(&live, &Instance::<{ crane_specs::$name::N }, _>(&compiled));
+                assert_same_derivatives_of_motion(&live, &Instance::<{ crane_specs::$name::N }, _>(&compiled));
+            })*
         };
     }
     check!(
