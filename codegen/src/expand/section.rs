@@ -116,7 +116,7 @@ pub(crate) fn hollow_rectangle(height: &Value, width: &Value, thickness: &Value)
     }
 }
 
-/// Hollow rectangle with flanges of thickness t_f and webs of thickness t_w, `h_m = h − t_f` and `b_m = b − t_w` between their middles;
+/// Hollow rectangle with flanges of thickness `t_f` and webs of thickness `t_w`, `h_m = h − t_f` and `b_m = b − t_w` between their middles;
 /// torsion by Bredt's formulas for thin walls, `J_o = 4 (b_m h_m)²/(2b_m/t_f + 2h_m/t_w)` and `W_t = 2 b_m h_m min(t_f, t_w)`.
 ///
 /// Shear by Zhuravskii's formula at the neutral axis, where two webs, or two flanges, carry it: `A_y = 2t_w J_z/S_z`, `A_z = 2t_f J_y/S_y`.

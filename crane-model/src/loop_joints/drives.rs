@@ -43,7 +43,9 @@ pub(super) fn dead_centre_of_drives(crane: &(impl DynModel + ?Sized), loops: &Lo
         let length = direction.norm();
         direction /= if length > ALWAYS { length } else { 1.0 };
     }
-    let least = directions.singular_values().min();
+    // The smallest singular value, as an eigenvalue's root: known to 1e-8.
+    let squares = &directions * directions.transpose();
+    let least = squares.symmetric_eigenvalues().min().max(0.0).sqrt();
     let angle = 2.0 * (least * std::f64::consts::FRAC_1_SQRT_2).min(1.0).asin();
     (least > ALWAYS && angle < DEAD_CENTRE).then_some(angle)
 }

@@ -12,7 +12,7 @@
 //! : from `δẍ = Ω̈_j x + 2 Ω̇_j ẋ + Ω_j ẍ`, with i not beyond j,
 //!   `∂r_i/∂q_j = Ω_i · (Ω̈_j W + 2 Ω̇_j G + Ω_j × F)` and `∂r_j/∂q_i = Ω_j · (Ω̈_i W + 2 Ω̇_i G)`, all sums beyond j; the turn of F is missing in
 //!   the latter, since Ω_j turns with F. From `δẍ = 2 Ω̇_j x + 2 Ω_j ẋ`, `∂r_i/∂q̇_j = 2 Ω_i · (Ω̇_j W + Ω_j G)`, and with i and j exchanged. Gravity
-//!   does not turn with F: the acceleration `ω_j × γ` is added to Ω̈_j.
+//!   does not turn with F: the acceleration `ω_j × γ` is added to `Ω̈_j`.
 
 #[cfg(test)]
 mod tests;
@@ -139,7 +139,7 @@ struct Column<'g> {
 }
 
 impl<'g> Column<'g> {
-    /// `Ω · (Ω_1 W + 2 Ω_2 G)`, ω_2 the rotation of Ω_2.
+    /// `Ω · (Ω_1 W + 2 Ω_2 G)`, `ω_2` the rotation of `Ω_2`.
     fn lower(&self, first: Twist<'g>, second: Vec3<'g>) -> Expr<'g> {
         power(first, self.momenta) + self.gyration.dot(second)
     }
