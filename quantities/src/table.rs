@@ -272,7 +272,7 @@ MotionDerivatives {
     DynamicResidual = dynamic_residual(t, q, v, a) -> vector required
         "Generalized forces r that a motion requires beyond those that act, N and N m."
         "r = A a − e − f, by Newton and Euler" python(q, v, a; t);
-    /// Row i and column j of each matrix: the change of r_i with q_j, and with q̇_j. At rest ∂r/∂q is the tangent stiffness, and ∂r/∂v
+    /// Row i and column j of each matrix: the change of `r_i` with `q_j`, and with `q̇_j`. At rest ∂r/∂q is the tangent stiffness, and ∂r/∂v
     /// the damping matrix.
     DynamicResidualDerivatives = dynamic_residual_derivatives(t, q, v, a) -> [row; residual_rows] required
         "Derivatives ∂r/∂q (N/m, N, N m) and ∂r/∂v (N s/m, N s, N m s) of the residual r = A a − e − f."

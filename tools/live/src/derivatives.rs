@@ -18,9 +18,13 @@ pub fn derivatives_of_accelerations<T: Number>(
                 let unit = if i == j { one } else { zero };
                 *right = if block < 2 { -matrix[i * n + j] } else { unit };
             }
-            prescribed.iter().for_each(|i| right[*i] = zero);
+            for i in prescribed {
+                right[*i] = zero;
+            }
             solve(&right, &mut solution);
-            prescribed.iter().for_each(|i| solution[*i] = zero);
+            for i in prescribed {
+                solution[*i] = zero;
+            }
             solution.iter().enumerate().for_each(|(i, x)| matrix[i * n + j] = *x);
         }
     }

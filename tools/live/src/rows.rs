@@ -297,8 +297,7 @@ impl LiveCrane {
     pub fn shape(&self, quantity: Quantity) -> Vec<usize> {
         let (n, count) = (self.size(), |count: Count| DynModel::count(self, count));
         match quantity {
-            Quantity::ForwardDynamicsDerivatives => vec![3, n, n],
-            Quantity::Of(FunctionId::Linearise) => vec![3, n, n],
+            Quantity::ForwardDynamicsDerivatives | Quantity::Of(FunctionId::Linearise) => vec![3, n, n],
             // Also those of coordinates that do not move a body.
             Quantity::Of(FunctionId::TransformDerivatives) => vec![count(Count::Bodies), n, 4, 4],
             Quantity::Of(id) => match id.extent() {

@@ -167,7 +167,7 @@ class Crane:
         self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise"
     ) -> Array:
         """(..., 3, n, n): derivatives ∂q̈/∂q, ∂q̈/∂v and ∂q̈/∂τ = A⁻¹ of the accelerations of `forward_dynamics`, τ generalized forces;
-        row i and column j of each: the change of q̈_i with q_j, with q̇_j and with τ_j. For coordinates that rigid drives prescribe the
+        row i and column j of each: the change of `q̈_i` with `q_j`, with `q̇_j` and with `τ_j`. For coordinates that rigid drives prescribe the
         rows are zero, and so are their columns of A⁻¹.
         t: s, 0 unless given."""
     def _small_motions(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
@@ -322,6 +322,6 @@ class Crane:
         t: s, 0 unless given."""
     def dynamic_residual_derivatives(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
         """(..., 2, n, n): Derivatives ∂r/∂q (N/m, N, N m) and ∂r/∂v (N s/m, N s, N m s) of the residual r = A a − e − f.
-        Row i and column j of each matrix: the change of r_i with q_j, and with q̇_j. At rest ∂r/∂q is the tangent stiffness, and ∂r/∂v
+        Row i and column j of each matrix: the change of `r_i` with `q_j`, and with `q̇_j`. At rest ∂r/∂q is the tangent stiffness, and ∂r/∂v
         the damping matrix.
         t: s, 0 unless given."""

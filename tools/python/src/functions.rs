@@ -39,6 +39,7 @@ macro_rules! method {
                 $($optional: Given<'_, 'py>,)?
                 invalid: &str,
             ) -> Array<'py> {
+                #[allow(clippy::needless_update, reason = "a row with all arguments leaves none to the default")]
                 let state = State { $($required: Some($required),)* $($optional,)? ..State::default() };
                 self.function(py, FunctionId::$id, state, invalid)
             }
@@ -84,7 +85,7 @@ impl Crane {
     }
 
     /// (..., 3, n, n): derivatives ∂q̈/∂q, ∂q̈/∂v and ∂q̈/∂τ = A⁻¹ of the accelerations of `forward_dynamics`, τ generalized forces; row i and
-    /// column j of each: the change of q̈_i with q_j, with q̇_j and with τ_j. For coordinates that rigid drives prescribe the rows are zero, and so
+    /// column j of each: the change of `q̈_i` with `q_j`, with `q̇_j` and with `τ_j`. For coordinates that rigid drives prescribe the rows are zero, and so
     /// are their columns of A⁻¹.
     /// t: s, 0 unless given.
     #[pyo3(signature = (q, v, t=None, *, invalid="raise"))]
