@@ -16,7 +16,6 @@ import tempfile
 from importlib.metadata import files
 from pathlib import Path
 
-import mujoco
 import numpy as np
 import pinocchio as pin
 from ruamel.yaml import YAML
@@ -27,7 +26,7 @@ from comparison import HEADER, compare
 from crane_model import read_crane
 from evaluate import Evaluate
 from mjcf_import import random_robots_agree
-from mujoco_peer import MuJoCo
+from mujoco_peer import FLAGS, LoadedFile
 from pinocchio_peer import Pinocchio
 from states import States
 
@@ -66,6 +65,7 @@ class Urdf(Pinocchio):
         self.model.gravity.linear = np.array(gravity)
         self.data = self.model.createData()
         self.order = np.arange(self.model.nv) if imported is None else self.order_of(*imported)
+        self.back = np.argsort(self.order)
 
     def order_of(self, spec, coordinates):
         """Which coordinate of the spec each joint is: Pinocchio visits branches by name, the import as they are in the file. The import notes
@@ -74,28 +74,9 @@ class Urdf(Pinocchio):
         names = [coordinate.rpartition("_")[0] for coordinate in coordinates]
         return np.array([names.index(moved[joint]) for joint in list(self.model.names)[1:]])
 
-    def evaluate(self, q, v, force):
-        """A, e and q̈ at a state with generalized forces; to Pinocchio, a continuous joint is a point on a circle."""
-        order, back = self.order, np.argsort(self.order)
-        pose = pin.integrate(self.model, pin.neutral(self.model), q[order])
-        mass_matrix, bias, acceleration = super().evaluate(pose, v[order], force[order])
-        return mass_matrix[np.ix_(back, back)], bias[back], acceleration[back]
-
-
-class Mjcf(MuJoCo):
-    """An MJCF file in MuJoCo, with its own springs and dampers."""
-
-    def __init__(self, path):
-        self.model = mujoco.MjModel.from_xml_path(str(path))
-        # The efforts of rigid drives are applied instead of their equality constraints, which yield slightly.
-        self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_EQUALITY
-        self.data = mujoco.MjData(self.model)
-
-    def passive(self, q, v):
-        """Forces of springs and dampers."""
-        self.data.qpos, self.data.qvel = q, v
-        mujoco.mj_forward(self.model, self.data)
-        return self.data.qfrc_passive.copy()
+    def configuration(self, angles):
+        """To Pinocchio, a continuous joint is a point on a circle."""
+        return pin.integrate(self.model, pin.neutral(self.model), angles)
 
 
 class Springs:
@@ -192,7 +173,8 @@ class Exported:
             said = any(words in written.stderr for words in (b"kinematics: linear", b"remove `one_sided`"))
             return passed and written.returncode == 1 and said
         passed &= self.again(mjcf, springs, rotors=False)
-        library = Mjcf(mjcf)
+        # The efforts of rigid drives are applied instead of their equality constraints, which yield slightly.
+        library = LoadedFile(mjcf, FLAGS.mjDSBL_EQUALITY)
         forces = np.array([library.passive(q, v) for q, v in zip(self.states.q, self.states.v)])
         return self.compare(library, forces + efforts, applied=efforts) and passed
 

@@ -1,31 +1,15 @@
 """Robots in MJCF as the compiler imports them, compared with MuJoCo on the same files."""
 
-import mujoco
 import numpy as np
 
 from agree import compare_all, computed, dense_solution
 from comparison import compare
-from mujoco_peer import DISABLED, MuJoCo
+from mujoco_peer import DISABLED, LoadedFile
 from random_mjcf import RandomRobot
 from states import States
 
 # Random robots, by seed.
 ROBOTS = range(40)
-
-
-class Loaded(MuJoCo):
-    """A file as MuJoCo loads it: bodies, springs, dampers and rotors; no contacts and no limits."""
-
-    def __init__(self, path):
-        self.model = mujoco.MjModel.from_xml_path(str(path))
-        self.model.opt.disableflags |= int(DISABLED)
-        self.data = mujoco.MjData(self.model)
-
-    def passive(self, q, v):
-        """Forces of springs and dampers."""
-        self.data.qpos, self.data.qvel = q, v
-        mujoco.mj_forward(self.model, self.data)
-        return self.data.qfrc_passive.copy()
 
 
 def random_robots_agree(evaluate, folder, options, import_to, told):
@@ -42,7 +26,7 @@ def random_robots_agree(evaluate, folder, options, import_to, told):
 
 def compare_import(path, spec, evaluate, options):
     """Compares A, e, forces and q̈ of a spec imported from an MJCF file with those of that file."""
-    layout, library = evaluate.layout(str(spec)), Loaded(path)
+    layout, library = evaluate.layout(str(spec)), LoadedFile(path, DISABLED)
     rng, shape = np.random.default_rng(options.seed), (options.states, library.model.nv)
     q, v = rng.uniform(-np.pi, np.pi, shape), rng.uniform(-2, 2, shape)
     states = States(np.zeros(options.states), q, v, np.empty((options.states, 0)))

@@ -42,6 +42,23 @@ class MuJoCo:
         return mass_matrix[np.ix_(back, back)], -data.qfrc_bias[back], data.qacc[back]
 
 
+class LoadedFile(MuJoCo):
+    """An MJCF file as MuJoCo loads it, with its own springs, dampers and rotors, and with the order of its joints; what `disabled` flags say
+    is off."""
+
+    def __init__(self, path, disabled):
+        self.model = mujoco.MjModel.from_xml_path(str(path))
+        self.model.opt.disableflags |= int(disabled)
+        self.data = mujoco.MjData(self.model)
+        self.order = np.arange(self.model.nv)
+
+    def passive(self, q, v):
+        """Forces of springs and dampers."""
+        self.data.qpos, self.data.qvel = q, v
+        mujoco.mj_forward(self.model, self.data)
+        return self.data.qfrc_passive.copy()
+
+
 def with_springs(chain, springs, step):
     """The chain with all forces of the crane as springs and dampers, to be integrated by RK4."""
     spec = build(chain)

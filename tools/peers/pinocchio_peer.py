@@ -36,11 +36,16 @@ class Pinocchio:
     def evaluate(self, q, v, force):
         """A, e and q̈ at a state with generalized forces."""
         q, v, force = (numbers[self.order] for numbers in (q, v, force))
+        q = self.configuration(q)
         mass_matrix = np.triu(pin.crba(self.model, self.data, q))
         mass_matrix += np.triu(mass_matrix, 1).T
         bias = -pin.nonLinearEffects(self.model, self.data, q, v)
         accelerations = pin.aba(self.model, self.data, q, v, force)
         return mass_matrix[np.ix_(self.back, self.back)], bias[self.back], accelerations[self.back]
+
+    def configuration(self, angles):
+        """Pinocchio's coordinates of a pose, given the angle or path of every joint."""
+        return angles
 
     def transmitted(self, q, v, acceleration, frames):
         """Force and moment that the part beyond a joint exerts on the part before it, in other frames.

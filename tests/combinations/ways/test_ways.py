@@ -90,7 +90,7 @@ def test_c_computes_what_python_computes(specs, seed, loaded, command, tmp_path)
     # Constants are numbers that depend on parameters alone; no crane here has as many.
     constants = ctypes.create_string_buffer(8 * 100_000)
     header = next(tmp_path.glob("*.h")).read_text()
-    defaults = [parameter["value"] for parameter in crane.info["parameters"]] if crane.info["parameters"] else []
+    defaults = [parameter["default"] for parameter in crane.info["parameters"]]
     if f"{name}_set_params" in header:
         given = (ctypes.c_double * max(1, len(defaults)))(*defaults)
         getattr(functions, f"{name}_set_params")(given, constants)

@@ -196,7 +196,8 @@ impl Rolling<'_> {
             let wanted = |k: usize| u32::try_from(first + step * i64::try_from(k).ok()?).ok();
             let fits = |k: usize| match known[k] {
                 Some(place) => wanted(k).map(i64::from) == Some(place),
-                None => wanted(k).is_some_and(|place| self.is_spare(place)),
+                // A node has one place, so one that comes twice does not move evenly.
+                None => !stream[..k].contains(&stream[k]) && wanted(k).is_some_and(|place| self.is_spare(place)),
             };
             (0..stream.len()).all(fits).then(|| (wanted(0), i32::try_from(step).ok()))
         });

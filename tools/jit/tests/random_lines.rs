@@ -49,8 +49,8 @@ enum Operand {
     Recent(usize),
     /// The same in every iteration.
     Invariant(usize),
-    /// Values that move by a step.
-    Stream(usize, isize),
+    /// Values that move by a step, up to an iteration from which on they stay.
+    Stream(usize, isize, usize),
 }
 
 /// A line in which random steps repeat, some of them twice, on operands that correspond.
@@ -72,13 +72,17 @@ fn repeating_line(rng: &mut Rng) -> Line {
             .map(|_| {
                 let mut of = || match rng.usize(0..12) {
                     0 => Operand::Invariant(rng.usize(0..begin)),
-                    1 => Operand::Stream(rng.usize(given - 80..given - 40), [-3, -1, 1, 2, 3][rng.usize(0..5)]),
+                    1 => {
+                        let first = rng.usize(given - 80..given - 40);
+                        Operand::Stream(first, [-3, -1, 1, 2, 3][rng.usize(0..5)], rng.usize(3..12))
+                    }
                     // Another loop's, forward or backward, also beyond its ends.
                     2 => earlier.map_or(Operand::Recent(3), |(first, period)| {
                         let step = isize::try_from(period).unwrap();
                         let (iteration, step) =
                             if rng.bool() { (rng.usize(0..2), step) } else { (rng.usize(4..6), -step) };
-                        Operand::Stream(first + iteration * period + rng.usize(0..period), step)
+                        let first = first + iteration * period + rng.usize(0..period);
+                        Operand::Stream(first, step, rng.usize(3..12))
                     }),
                     3 => Operand::Recent(rng.usize(1..400.min(3 * period))),
                     _ => Operand::Recent(rng.usize(1..12)),
@@ -91,8 +95,8 @@ fn repeating_line(rng: &mut Rng) -> Line {
                 let [a, b] = operands.map(|operand| match operand {
                     Operand::Recent(ago) => count - ago,
                     Operand::Invariant(at) => at,
-                    Operand::Stream(first, step) => {
-                        let [first, k, begin] = [first, k, begin].map(|number| isize::try_from(number).unwrap());
+                    Operand::Stream(first, step, last) => {
+                        let [first, k, begin] = [first, k.min(last), begin].map(|number| isize::try_from(number).unwrap());
                         usize::try_from((first + step * k).rem_euclid(begin)).unwrap()
                     }
                 });

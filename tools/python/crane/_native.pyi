@@ -166,9 +166,9 @@ class Crane:
     def forward_dynamics_derivatives(
         self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise"
     ) -> Array:
-        """(..., 3, n, n): derivatives ∂q̈/∂q, ∂q̈/∂v and ∂q̈/∂τ = A⁻¹ of the accelerations of `forward_dynamics`, τ generalized forces;
-        row i and column j of each: the change of `q̈_i` with `q_j`, with `q̇_j` and with `τ_j`. For coordinates that rigid drives prescribe the
-        rows are zero, and so are their columns of A⁻¹.
+        """(..., 3, n, n): derivatives ∂q̈/∂q, ∂q̈/∂v and ∂q̈/∂τ = A⁻¹ of the accelerations of `forward_dynamics`, τ generalized forces; row i and
+        column j of each: the change of `q̈_i` with `q_j`, with `q̇_j` and with `τ_j`. For coordinates that rigid drives prescribe the rows are zero, and so
+        are their columns of A⁻¹.
         t: s, 0 unless given."""
     def _small_motions(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., 3, n, n): A, K and D of small motions about poses at rest; `linearise` names them."""
