@@ -96,7 +96,8 @@ fn repeating_line(rng: &mut Rng) -> Line {
                     Operand::Recent(ago) => count - ago,
                     Operand::Invariant(at) => at,
                     Operand::Stream(first, step, last) => {
-                        let [first, k, begin] = [first, k.min(last), begin].map(|number| isize::try_from(number).unwrap());
+                        let [first, k, begin] =
+                            [first, k.min(last), begin].map(|number| isize::try_from(number).unwrap());
                         usize::try_from((first + step * k).rem_euclid(begin)).unwrap()
                     }
                 });

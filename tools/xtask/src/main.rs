@@ -24,11 +24,9 @@ mod step;
 mod units;
 mod workspace;
 
-use std::fmt::Write as _;
 use std::process::ExitCode;
-use std::time::Instant;
 
-use step::Step;
+use step::{ONLY, Step, run_steps};
 
 const USAGE: &str = "cargo xtask TASK [WORD …]
 
@@ -68,6 +66,18 @@ fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
+    if let [_, only, title] = &arguments[..]
+        && only == ONLY
+    {
+        let run = steps.iter().find(|step| step.title == title).map_or(Err("no such step".to_owned()), Step::run);
+        return run.map_or_else(
+            |message| {
+                println!("{message}");
+                ExitCode::FAILURE
+            },
+            |()| ExitCode::SUCCESS,
+        );
+    }
     // A selection, by words in their titles; `performance` has its own options.
     let words: &[String] = if task == "performance" { &[] } else { &arguments[1..] };
     let chosen: Vec<Step> = steps
@@ -78,7 +88,7 @@ fn main() -> ExitCode {
         eprintln!("no step of `{task}` has a title with these words");
         return ExitCode::from(2);
     }
-    run_steps(&chosen)
+    run_steps(task, &chosen)
 }
 
 /// With diffsol for comparison.
@@ -96,32 +106,6 @@ const ERROR_VS_RUNTIME: [&str; 12] = [
     "--out",
     "target/error-vs-runtime",
 ];
-
-/// Runs all steps in order, and says at the end which failed and how long each took.
-fn run_steps(steps: &[Step]) -> ExitCode {
-    let start = Instant::now();
-    let mut summary = String::new();
-    let mut failed = 0;
-    for (number, step) in steps.iter().enumerate() {
-        println!("\n=== {}/{} {}", number + 1, steps.len(), step.title);
-        let begun = Instant::now();
-        let outcome = step.run();
-        let seconds = begun.elapsed().as_secs_f64();
-        match outcome {
-            Ok(()) => {
-                println!("=== {} done, {seconds:.0} s", step.title);
-                let _ = writeln!(summary, "{seconds:>6.0} s  {}", step.title);
-            }
-            Err(message) => {
-                eprintln!("\n{} failed: {message}", step.title);
-                failed += 1;
-                let _ = writeln!(summary, "{seconds:>6.0} s  {}: FAILED, {message}", step.title);
-            }
-        }
-    }
-    println!("\n{summary}\n{failed} of {} steps failed, {:.0} s", steps.len(), start.elapsed().as_secs_f64());
-    if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
-}
 
 /// What is downloaded, before anything is built.
 fn prepare_steps() -> Vec<Step> {
@@ -172,12 +156,6 @@ fn test_steps() -> Vec<Step> {
         Step::check("commands of the manual", manual::check_manual),
         Step::check("commands of the README and of CONTRIBUTING", || commands::check_commands(USAGE)),
         Step::check("commands that pages name", || named::check_named(USAGE)),
-        Step::check("the manual as a site", book::build_site),
-        Step::check("the Python package", package::check_package),
-        Step::check("random cranes by every way to compute them", outside::check_ways),
-        Step::check("pages of the Python package in a browser", report::check_in_notebook),
-        Step::check("functional mock-up units", outside::check_units),
-        Step::check("what the command prints as JSON", outside::check_output),
         // A static library with its own panic handler: no crate that it depends on may link std or need a heap.
         Step::cargo(
             "a crane without std and heap",
@@ -188,6 +166,12 @@ fn test_steps() -> Vec<Step> {
             .concat(),
         ),
         Step::check("cranes without panics", no_panic::check_no_panic),
+        Step::check("the Python package", package::check_package),
+        Step::check("the manual as a site", book::build_site).light(),
+        Step::check("random cranes by every way to compute them", outside::check_ways).light(),
+        Step::check("pages of the Python package in a browser", report::check_in_notebook).light(),
+        Step::check("functional mock-up units", outside::check_units).light(),
+        Step::check("what the command prints as JSON", outside::check_output).light(),
     ]
 }
 
@@ -205,13 +189,13 @@ fn measurement_steps() -> Vec<Step> {
 
 fn oracle_steps() -> Vec<Step> {
     vec![
-        Step::check("CasADi's own checks notice errors", oracles::check_oracles),
-        Step::check("generated code against CasADi", oracles::check_generated_code),
-        Step::check("runs against SciPy's Radau", oracles::check_motion),
-        Step::check("Pinocchio and MuJoCo agree and notice errors", oracles::check_peers),
-        Step::check("generated code against Pinocchio and MuJoCo", oracles::compare_with_peers),
-        Step::check("URDF and MJCF there and back", oracles::check_exchange),
-        Step::check("cylinders against Exudyn", oracles::check_hydraulics),
+        Step::check("CasADi's own checks notice errors", oracles::check_oracles).light(),
+        Step::check("generated code against CasADi", oracles::check_generated_code).light(),
+        Step::check("runs against SciPy's Radau", oracles::check_motion).light(),
+        Step::check("Pinocchio and MuJoCo agree and notice errors", oracles::check_peers).light(),
+        Step::check("generated code against Pinocchio and MuJoCo", oracles::compare_with_peers).light(),
+        Step::check("URDF and MJCF there and back", oracles::check_exchange).light(),
+        Step::check("cylinders against Exudyn", oracles::check_hydraulics).light(),
     ]
 }
 

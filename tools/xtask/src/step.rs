@@ -1,8 +1,17 @@
 //! One step of a task: a command, or a check in Rust.
 
-use std::process::Command;
+use std::fmt::Write as _;
+use std::io::{self, Read};
+use std::process::{Command, ExitCode};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+use std::time::Instant;
 
 use crate::workspace;
+
+/// Before the title of a single step, which runs without headings: how steps beside each other are started.
+pub const ONLY: &str = "--only";
 
 /// A named step.
 #[derive(Clone)]
@@ -10,6 +19,8 @@ pub struct Step {
     /// What it is, for the reader of the output.
     pub title: &'static str,
     action: Action,
+    /// Whether it may run beside its neighbours: it keeps one core busy, and needs nothing that they make.
+    is_light: bool,
 }
 
 #[derive(Clone)]
@@ -23,17 +34,22 @@ impl Step {
     /// Runs cargo at the workspace's root.
     pub fn cargo(title: &'static str, arguments: &[&str]) -> Self {
         let arguments = arguments.iter().map(ToString::to_string).collect();
-        Step { title, action: Action::Cargo { arguments, environment: vec![] } }
+        Step { title, action: Action::Cargo { arguments, environment: vec![] }, is_light: false }
     }
 
     /// Runs a function.
     pub fn check(title: &'static str, check: fn() -> Result<(), String>) -> Self {
-        Step { title, action: Action::Check(check) }
+        Step { title, action: Action::Check(check), is_light: false }
     }
 
     /// Runs a program of the workspace that is already built, at the workspace's root.
     pub fn program(title: &'static str, name: &'static str) -> Self {
-        Step { title, action: Action::Program(name) }
+        Step { title, action: Action::Program(name), is_light: false }
+    }
+
+    /// The same beside its neighbours.
+    pub fn light(self) -> Self {
+        Self { is_light: true, ..self }
     }
 
     /// The same with an environment variable.
@@ -56,6 +72,95 @@ impl Step {
                 let mut command = Command::new(cargo());
                 command.args(arguments).envs(environment.iter().copied()).current_dir(workspace::root());
                 run_to_end(&mut command)
+            }
+        }
+    }
+}
+
+/// Runs all steps of a task in order, and says at the end which failed and how long each took.
+pub fn run_steps(task: &str, steps: &[Step]) -> ExitCode {
+    let start = Instant::now();
+    let summary = Mutex::new(Summary { of: steps.len(), ..Summary::default() });
+    for neighbours in steps.chunk_by(|one, other| one.is_light && other.is_light) {
+        match neighbours {
+            [step] => {
+                summary.lock().expect("no step panics").begin(step);
+                let begun = Instant::now();
+                let outcome = step.run();
+                summary.lock().expect("no step panics").end(step, begun, outcome);
+            }
+            _ => run_beside(task, neighbours, &summary),
+        }
+    }
+    let Summary { text, failed, of, .. } = summary.into_inner().expect("no step panics");
+    println!("\n{text}\n{failed} of {of} steps failed, {:.0} s", start.elapsed().as_secs_f64());
+    if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+/// Runs steps as processes of their own, as many at a time as there are cores; what each prints follows when it is done.
+fn run_beside(task: &str, steps: &[Step], summary: &Mutex<Summary>) {
+    let next = AtomicUsize::new(0);
+    let work = || {
+        while let Some(step) = steps.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let begun = Instant::now();
+            let (printed, outcome) = match run_apart(task, step) {
+                Ok((printed, outcome)) => (printed, outcome),
+                Err(error) => (String::new(), Err(error.to_string())),
+            };
+            let mut summary = summary.lock().expect("no step panics");
+            summary.begin(step);
+            print!("{printed}");
+            summary.end(step, begun, outcome);
+        }
+    };
+    thread::scope(|scope| {
+        for _ in 0..thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(work);
+        }
+    });
+}
+
+/// Runs a step in a process of its own; returns what it printed.
+fn run_apart(task: &str, step: &Step) -> io::Result<(String, Result<(), String>)> {
+    let (mut reader, writer) = io::pipe()?;
+    let mut command = Command::new(std::env::current_exe()?);
+    command.args([task, ONLY, step.title]).stdout(writer.try_clone()?).stderr(writer);
+    let mut child = command.spawn()?;
+    // The ends of the pipe that this process has: the reader would wait for them.
+    drop(command);
+    let mut printed = Vec::new();
+    reader.read_to_end(&mut printed)?;
+    let status = child.wait()?;
+    let outcome = if status.success() { Ok(()) } else { Err("see above".to_owned()) };
+    Ok((String::from_utf8_lossy(&printed).into_owned(), outcome))
+}
+
+/// What is said at the end.
+#[derive(Default)]
+struct Summary {
+    text: String,
+    begun: usize,
+    failed: usize,
+    of: usize,
+}
+
+impl Summary {
+    fn begin(&mut self, step: &Step) {
+        self.begun += 1;
+        println!("\n=== {}/{} {}", self.begun, self.of, step.title);
+    }
+
+    fn end(&mut self, step: &Step, begun: Instant, outcome: Result<(), String>) {
+        let seconds = begun.elapsed().as_secs_f64();
+        match outcome {
+            Ok(()) => {
+                println!("=== {} done, {seconds:.0} s", step.title);
+                let _ = writeln!(self.text, "{seconds:>6.0} s  {}", step.title);
+            }
+            Err(message) => {
+                eprintln!("\n{} failed: {message}", step.title);
+                self.failed += 1;
+                let _ = writeln!(self.text, "{seconds:>6.0} s  {}: FAILED, {message}", step.title);
             }
         }
     }
