@@ -3,23 +3,11 @@
 use std::process::Command;
 use std::{fs, io};
 
+use crate::units::profile_of_kept_programs;
 use crate::{step, workspace};
 
 /// Where the new crate is made, under cargo's target folder.
 const FOLDER: &str = "new-crane";
-
-/// The profile of the workspace, so that what is already built is reused; a user's crate has a simpler one.
-const PROFILE: [&str; 9] = [
-    "build-override.opt-level=3",
-    "build-override.codegen-units=16",
-    "package.\"*\".opt-level=1",
-    "package.nalgebra.opt-level=3",
-    "package.simba.opt-level=3",
-    "package.wide.opt-level=3",
-    "package.serde-saphyr.opt-level=3",
-    "package.crane-codegen.opt-level=3",
-    "package.crane-model.opt-level=2",
-];
 
 /// Makes a crate, runs its tests and its program.
 pub fn check_new_crane() -> Result<(), String> {
@@ -30,11 +18,13 @@ pub fn check_new_crane() -> Result<(), String> {
     }
     let crane = workspace::target().join("release/crane");
     step::run_to_end(Command::new(crane).arg("new").arg(&folder).args(["--from", "knuckle-boom"]))?;
+    // The profile of the workspace, so that what is already built is reused; a user's crate has a simpler one.
+    let profile = workspace::target().join("new-crane.profile.toml");
+    fs::write(&profile, profile_of_kept_programs()?).map_err(|error| format!("{}: {error}", profile.display()))?;
     for task in ["test", "run"] {
         let mut cargo = Command::new(step::cargo());
-        cargo.args([task, "--release"]).env("CARGO_TARGET_DIR", workspace::target()).current_dir(&folder);
-        cargo.args(PROFILE.iter().flat_map(|setting| ["--config".to_owned(), format!("profile.release.{setting}")]));
-        step::run_to_end(&mut cargo)?;
+        cargo.args([task, "--release", "--config"]).arg(&profile);
+        step::run_to_end(cargo.env("CARGO_TARGET_DIR", workspace::target()).current_dir(&folder))?;
     }
     Ok(())
 }

@@ -5,8 +5,24 @@ use std::process::Command;
 
 use crate::{step, workspace};
 
-/// Every unit that a fresh build of the command builds more than once, as a line that names it and what differs.
+/// The manifest of programs that the command keeps, whose builds of dependencies are those of the workspace.
+const KEPT_PROGRAM: &str = "tools/cli/src/compiled/Cargo.toml.template";
+
+/// The profile of programs that the command keeps: that of the workspace, as far as they depend on it.
+pub fn profile_of_kept_programs() -> Result<String, String> {
+    let settings = release_profile(&workspace::read_file(KEPT_PROGRAM)?);
+    let tables: Vec<String> = settings.into_iter().map(|(table, settings)| format!("{table}\n{settings}\n")).collect();
+    Ok(tables.concat())
+}
+
+/// Every unit that a fresh build of the command builds more than once, as a line that names it and what differs; then profiles that
+/// should be the same.
 pub fn check_units() -> Result<(), String> {
+    let [own, copied] = ["Cargo.toml", KEPT_PROGRAM].map(workspace::read_file);
+    let differences = differences(&release_profile(&own?), &release_profile(&copied?));
+    if !differences.is_empty() {
+        return Err(format!("{KEPT_PROGRAM} has another profile than the workspace:\n{}", differences.join("\n")));
+    }
     let mut command = Command::new(step::cargo());
     // The graph is unstable output of a stable cargo.
     command.args(["build", "--release", "--unit-graph", "-Z", "unstable-options"]).env("RUSTC_BOOTSTRAP", "1");
@@ -16,6 +32,26 @@ pub fn check_units() -> Result<(), String> {
     }
     let twice = units_built_twice(&String::from_utf8_lossy(&output.stdout));
     if twice.is_empty() { Ok(()) } else { Err(format!("built twice:\n{}", twice.join("\n"))) }
+}
+
+/// The tables of a manifest's release profile by their headers, without comments; those of a template's placeholders are left out.
+fn release_profile(manifest: &str) -> BTreeMap<String, String> {
+    let tables = manifest.split("\n[").skip(1).filter_map(|table| table.split_once('\n'));
+    let profiles = tables.filter(|(header, _)| header.starts_with("profile.release") && !header.contains('{'));
+    let settings = |text: &str| {
+        let lines = text.lines().filter(|line| !line.is_empty() && !line.starts_with('#'));
+        lines.collect::<Vec<_>>().join("\n")
+    };
+    profiles.map(|(header, text)| (format!("[{header}"), settings(text))).collect()
+}
+
+/// Where a copied profile is not that of the workspace. It names members that the workspace leaves at the level of a release, since they
+/// are none of the copy's.
+fn differences(own: &BTreeMap<String, String>, copied: &BTreeMap<String, String>) -> Vec<String> {
+    let of_members = "opt-level = 3".to_owned();
+    let wanted = copied.iter().map(|(table, settings)| (table, settings, own.get(table).unwrap_or(&of_members)));
+    let different = wanted.filter(|(_, settings, wanted)| settings != wanted);
+    different.map(|(table, settings, wanted)| format!("{table} {settings} instead of {wanted}")).collect()
 }
 
 /// The units of a graph with the same package and target that are built with different settings.
@@ -42,6 +78,21 @@ fn text_between(text: &str, from: &str, to: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn copied_profiles_are_compared() {
+        let own =
+            "\n[profile.release]\ncodegen-units = 16\n\n# Quickly.\n[profile.release.package.specs]\nopt-level = 1\n";
+        let profile = |specs: u32, live: u32| {
+            let specs = format!("\n[profile.release.package.specs]\nopt-level = {specs}\n");
+            release_profile(&format!(
+                "{specs}[profile.release.package.live]\nopt-level = {live}\n[profile.release.package.{{{{x}}}}]\na = 1\n"
+            ))
+        };
+        assert_eq!(profile(1, 3).len(), 2);
+        assert!(differences(&release_profile(own), &profile(1, 3)).is_empty());
+        assert_eq!(differences(&release_profile(own), &profile(2, 2)).len(), 2);
+    }
 
     #[test]
     fn units_of_other_settings_are_built_twice() {
