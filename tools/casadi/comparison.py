@@ -27,10 +27,12 @@ NEGLIGIBLE_ENTRY_OF_ACCELERATION = 0.1
 # An array may vanish in a state (the power of a drive that comes to rest as (1 - τ)², weight in a hanging pose) and is
 # then only round-off of terms that cancel: its error is relative to at least this fraction of its largest value in any state.
 VANISHING_STATE = 1e-3
-# Near the guess, springs of 1e8 N/m along cylinders are stretched by less than a millimetre: the difference of two lengths of metres.
-VANISHING_STATE_OF_SPRINGS = 1e-1
-# Powers that drives put in and take out cancel, and those of rigid drives are solutions with A.
-VANISHING_STATE_OF_POWERS = 1e-2
+VANISHING_STATES = {
+    # Near the guess, springs of 1e8 N/m along cylinders are stretched by less than a millimetre: the difference of two lengths of metres.
+    "drive_forces_at_rest": 1e-1,
+    # What drives put in and take out cancels, and efforts of rigid drives are solutions with A.
+    "drive_power": 1e-2,
+}
 # Or in all states of a group: friction of joints that slide fast does not damp, and 1 - tanh² is 0 or 1e-138.
 VANISHING_GROUP = 1e-12
 
@@ -123,9 +125,7 @@ def negligible_entry(quantity):
 
 def vanishing_state(quantity):
     """The fraction of an array's largest value in any state to which its errors in one state are relative."""
-    if quantity.endswith("_power"):
-        return VANISHING_STATE_OF_POWERS
-    return VANISHING_STATE_OF_SPRINGS if quantity == "drive_forces_at_rest" else VANISHING_STATE
+    return VANISHING_STATES.get(quantity, VANISHING_STATE)
 
 
 def is_solution(quantity):

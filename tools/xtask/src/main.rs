@@ -69,14 +69,12 @@ fn main() -> ExitCode {
     if let [_, only, title] = &arguments[..]
         && only == ONLY
     {
-        let run = steps.iter().find(|step| step.title == title).map_or(Err("no such step".to_owned()), Step::run);
-        return run.map_or_else(
-            |message| {
-                println!("{message}");
-                ExitCode::FAILURE
-            },
-            |()| ExitCode::SUCCESS,
-        );
+        let step = steps.iter().find(|step| step.title == title);
+        if let Err(message) = step.ok_or_else(|| "no such step".to_owned()).and_then(Step::run) {
+            println!("{message}");
+            return ExitCode::FAILURE;
+        }
+        return ExitCode::SUCCESS;
     }
     // A selection, by words in their titles; `performance` has its own options.
     let words: &[String] = if task == "performance" { &[] } else { &arguments[1..] };

@@ -103,10 +103,8 @@ fn run_beside(task: &str, steps: &[Step], summary: &Mutex<Summary>) {
     let work = || {
         while let Some(step) = steps.get(next.fetch_add(1, Ordering::Relaxed)) {
             let begun = Instant::now();
-            let (printed, outcome) = match run_apart(task, step) {
-                Ok((printed, outcome)) => (printed, outcome),
-                Err(error) => (String::new(), Err(error.to_string())),
-            };
+            let (printed, outcome) =
+                run_apart(task, step).unwrap_or_else(|error| (String::new(), Err(error.to_string())));
             let mut summary = summary.lock().expect("no step panics");
             summary.begin(step);
             print!("{printed}");
