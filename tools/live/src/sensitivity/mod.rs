@@ -18,10 +18,12 @@
 //! | `outputs` | what a user reads: positions, efforts, reactions |
 //! | `strength` | stresses of beams, tipping |
 //! | `frequencies` | undamped frequencies |
+//! | `places` | numbers of the spec as live parameters |
 //! | `whole` | what a whole change does that the derivatives do not show |
 
 mod frequencies;
 mod outputs;
+mod places;
 mod rest;
 mod source;
 mod strength;
@@ -34,6 +36,7 @@ use crane_model::statics;
 use crate::LiveCrane;
 use crate::dual::{DIRECTIONS, Dual8};
 use frequencies::Frequencies;
+pub use places::{Refused, label, with_live_numbers};
 use rest::Rest;
 use source::Source;
 use strength::Strength;
@@ -44,6 +47,8 @@ pub use whole::cautions;
 pub enum Group {
     /// Positions of points of interest.
     Points,
+    /// How far these are from where they are with rigid beams.
+    Deflections,
     /// Torques and forces of drives.
     Drives,
     /// Lengths, forces and pressures of cylinders.
@@ -64,8 +69,9 @@ pub enum Group {
 
 impl Group {
     /// All of them.
-    pub const ALL: [Group; 9] = [
+    pub const ALL: [Group; 10] = [
         Group::Points,
+        Group::Deflections,
         Group::Drives,
         Group::Cylinders,
         Group::Connectors,
@@ -81,6 +87,7 @@ impl Group {
     pub const fn name(self) -> &'static str {
         match self {
             Group::Points => "points",
+            Group::Deflections => "deflections",
             Group::Drives => "drives",
             Group::Cylinders => "cylinders",
             Group::Connectors => "connectors",
@@ -133,6 +140,37 @@ impl Sensitivity {
     #[must_use]
     pub fn index_of(&self, name: &str) -> Option<usize> {
         self.outputs.iter().position(|output| output.name == name)
+    }
+
+    /// Adds how far the points of interest are from those of the same crane with rigid beams, whose derivatives are by the same parameters:
+    /// `w = |r − r_rigid|`, `dw = (r − r_rigid)/w · d(r − r_rigid)`.
+    pub fn add_deflections(&mut self, rigid: &Sensitivity) {
+        /// Less is rounding, m.
+        const NOTHING: f64 = 1e-12;
+        let axes: Vec<(String, [usize; 3])> = (0..self.outputs.len())
+            .filter_map(|index| {
+                let output = &self.outputs[index];
+                let point = output.name.strip_suffix("_x").filter(|_| output.group == Group::Points)?;
+                Some((point.to_owned(), [index, index + 1, index + 2]))
+            })
+            .collect();
+        for (point, axes) in axes {
+            let others = axes.map(|index| rigid.index_of(&self.outputs[index].name));
+            let [Some(x), Some(y), Some(z)] = others else { continue };
+            let difference = |own: &[f64], other: &[f64]| [0, 1, 2].map(|k| own[axes[k]] - other[[x, y, z][k]]);
+            let moved = difference(&self.values, &rigid.values);
+            let distance = moved.iter().map(|component| component * component).sum::<f64>().sqrt();
+            if distance < NOTHING {
+                continue;
+            }
+            for (own, other) in self.derivatives.iter_mut().zip(&rigid.derivatives) {
+                let change = difference(own, other);
+                own.push(moved.iter().zip(change).map(|(moved, change)| moved * change).sum::<f64>() / distance);
+            }
+            let name = format!("{point}_deflection");
+            self.outputs.push(Output { name, unit: "m", group: Group::Deflections, place: String::new() });
+            self.values.push(distance);
+        }
     }
 }
 

@@ -11,7 +11,7 @@ use crate::machine::Number;
 
 /// Steps that bring the pose of statics to rounding: each gains ten digits.
 const STEPS: usize = 2;
-/// A step beyond this, in scaled coordinates relative to the largest one possible, is not one of rounding: the pose of statics is kept.
+/// A larger step, m or rad, is not one from the tolerance of statics to rounding: the pose of statics is kept.
 const SMALL: f64 = 1e-4;
 
 /// A crane at rest.

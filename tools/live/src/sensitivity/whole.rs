@@ -2,7 +2,7 @@
 
 use crane_model::dyn_crane::{DynCrane, DynModel};
 
-use super::{Group, Sensitivity, Settings, sensitivity};
+use super::{Group, Sensitivity, Settings, label, sensitivity};
 use crate::LiveCrane;
 
 /// A change differs from that of its derivative if it is so by this fraction of the larger one,
@@ -19,7 +19,7 @@ pub fn cautions(crane: &LiveCrane, found: &Sensitivity, steps: &[f64], settings:
     for ((place, &parameter), step) in found.parameters.iter().enumerate().zip(steps) {
         let info = &crane.description().parameters[parameter];
         let value = crane.parameters()[parameter] + step;
-        let with = format!("with {} at {}", info.name, format!("{} {}", short(value), info.unit).trim_end());
+        let with = format!("with {} at {}", label(info), format!("{} {}", short(value), info.unit).trim_end());
         let mut other = crane.clone();
         if other.set_parameter(parameter, value).is_err() {
             words.push(format!(
