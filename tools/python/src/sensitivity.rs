@@ -149,10 +149,10 @@ impl Rows<'_> {
     }
 
     fn places(&self) -> Vec<Vec<String>> {
-        let place = |found: &Option<&Sensitivity>, output: &Output| match (found, Self::place(*found, output)) {
+        let place = |found: Option<&Sensitivity>, output: &Output| match (found, Self::place(found, output)) {
             (Some(found), Some(index)) => found.outputs[index].place.clone(),
             _ => String::new(),
         };
-        self.found.iter().map(|found| self.outputs.iter().map(|output| place(found, output)).collect()).collect()
+        self.found.iter().map(|found| self.outputs.iter().map(|output| place(*found, output)).collect()).collect()
     }
 }

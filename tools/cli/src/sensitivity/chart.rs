@@ -13,11 +13,11 @@ use crate::{
 };
 
 /// Width of the picture, of its names and of its numbers.
-const WIDTH: i32 = 900 * PIXEL as i32;
-const NAMES: i32 = 330 * PIXEL as i32;
-const NUMBERS: i32 = 170 * PIXEL as i32;
+const WIDTH: i32 = 900 * PIXEL.cast_signed();
+const NAMES: i32 = 330 * PIXEL.cast_signed();
+const NUMBERS: i32 = 170 * PIXEL.cast_signed();
 /// Height of a bar with the space around it, and of the name of an output.
-const ROW: i32 = 22 * PIXEL as i32;
+const ROW: i32 = 22 * PIXEL.cast_signed();
 /// Numbers of an output that have bars.
 const MOST: usize = 6;
 
@@ -51,7 +51,7 @@ pub fn chart(changes: &Changes<'_>, change: f64) -> Outcome<String> {
         let drawn = (|| {
             area.fill(&WHITE)?;
             let title = format!("{}: changes with {:+} % of each number", changes.description.name, 100.0 * change);
-            write(&area, &title, (SPACE as i32, ROW), 1.2 * FONT, HPos::Left)?;
+            write(&area, &title, (SPACE.cast_signed(), ROW), 1.2 * FONT, HPos::Left)?;
             let mut y = 2 * ROW;
             for block in &blocks {
                 draw(&area, block, greatest, &mut y)?;
@@ -88,19 +88,19 @@ fn block(changes: &Changes<'_>, index: usize) -> Option<Block> {
 
 /// Draws a block from y downwards; returns where the next one begins.
 fn draw<'a>(area: &Area<'a>, block: &Block, greatest: f64, y: &mut i32) -> Drawn<'a> {
-    write(area, &block.title, (SPACE as i32, *y + ROW / 2), FONT, HPos::Left)?;
+    write(area, &block.title, (SPACE.cast_signed(), *y + ROW / 2), FONT, HPos::Left)?;
     *y += ROW;
     let (left, right) = (NAMES, WIDTH - NUMBERS);
     let middle = i32::midpoint(left, right);
     for (name, share, number) in &block.bars {
         let centre = *y + ROW / 2;
-        write(area, name, (NAMES - SPACE as i32, centre), 0.87 * FONT, HPos::Right)?;
+        write(area, name, (NAMES - SPACE.cast_signed(), centre), 0.87 * FONT, HPos::Right)?;
         #[expect(clippy::cast_possible_truncation, reason = "a place in a picture")]
         let end = middle + (f64::from(right - middle) * share / greatest).round() as i32;
         let colour = if *share < 0.0 { VERMILLION } else { BLUE };
         let (from, to) = (middle.min(end), middle.max(end));
         area.draw(&Rectangle::new([(from, *y + ROW / 6), (to, *y + ROW - ROW / 6)], colour.filled()))?;
-        write(area, number, (right + SPACE as i32, centre), 0.87 * FONT, HPos::Left)?;
+        write(area, number, (right + SPACE.cast_signed(), centre), 0.87 * FONT, HPos::Left)?;
         *y += ROW;
     }
     area.draw(&PathElement::new(

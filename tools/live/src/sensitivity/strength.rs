@@ -115,17 +115,17 @@ impl Strength {
             let [force, moment] = &external[link.cut];
             let (force, moment) = (turned(force), turned(moment));
             let position = [0, 1, 2].map(|row| frame[4 * row + 3]);
-            [force, sum(moment, cross(position, force))]
+            [force, sum(&moment, &cross(&position, &force))]
         };
         let all: Vec<Twin> = self.links.iter().map(beyond).collect();
-        let along = difference(to, from);
-        let length = dot(along, along).sqrt();
+        let along = difference(&to, &from);
+        let length = dot(&along, &along).sqrt();
         let (mut stabilising, mut overturning) = (Dual8::splat(0.0), Dual8::splat(0.0));
         for (link, own) in self.links.iter().zip(&all) {
             let [force, moment] = link.carried.iter().fold(*own, |[force, moment], &carried| {
-                [difference(force, all[carried][0]), difference(moment, all[carried][1])]
+                [difference(&force, &all[carried][0]), difference(&moment, &all[carried][1])]
             });
-            let held = -(dot(along, difference(moment, cross(from, force))) / length);
+            let held = -(dot(&along, &difference(&moment, &cross(&from, &force))) / length);
             if held.value() > 0.0 {
                 stabilising = stabilising + held;
             } else {
@@ -199,7 +199,7 @@ fn add(sums: &mut [Twin], forces: &[Dual8], rows: &[Dual8], counts: impl Fn(usiz
             continue;
         }
         for (total, wrench) in sums.iter_mut().zip(twins(own)) {
-            *total = std::array::from_fn(|part| sum(total[part], wrench[part].map(|component| *force * component)));
+            *total = std::array::from_fn(|part| sum(&total[part], &wrench[part].map(|component| *force * component)));
         }
     }
 }
@@ -238,18 +238,18 @@ fn twins(numbers: &[Dual8]) -> Vec<Twin> {
     numbers.chunks_exact(6).map(|six| [[six[0], six[1], six[2]], [six[3], six[4], six[5]]]).collect()
 }
 
-fn sum(a: Vector, b: Vector) -> Vector {
+fn sum(a: &Vector, b: &Vector) -> Vector {
     std::array::from_fn(|axis| a[axis] + b[axis])
 }
 
-fn difference(a: Vector, b: Vector) -> Vector {
+fn difference(a: &Vector, b: &Vector) -> Vector {
     std::array::from_fn(|axis| a[axis] - b[axis])
 }
 
-fn dot(a: Vector, b: Vector) -> Dual8 {
-    a.into_iter().zip(b).map(|(a, b)| a * b).sum()
+fn dot(a: &Vector, b: &Vector) -> Dual8 {
+    a.iter().zip(b).map(|(a, b)| *a * *b).sum()
 }
 
-fn cross([a, b, c]: Vector, [x, y, z]: Vector) -> Vector {
+fn cross(&[a, b, c]: &Vector, &[x, y, z]: &Vector) -> Vector {
     [b * z - c * y, c * x - a * z, a * y - b * x]
 }
