@@ -36,7 +36,7 @@ pub fn make_live(options: &mut Sensitivity, registry: &mut Registry) -> Outcome<
         Refused::Place(wrong) => Problem::usage(wrong.title, wrong.help),
         Refused::Mistakes { place, mistakes } => {
             let title = format!("`{place}` cannot change: {}", mistakes.headline());
-            Problem::usage(title, "numbers that docs/SPEC.md marks as fixed determine the structure of the crane")
+            Problem::usage(title, "only numbers that could be live parameters can: docs/SPEC.md marks those as fixed that cannot, and some formulas need constants")
         }
     })?;
     if let Some(changed) = changed {
