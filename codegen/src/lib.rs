@@ -33,7 +33,7 @@ pub mod spec;
 pub mod symbolic;
 mod validate;
 
-pub use diagnostic::{Diagnostics, Located, SourceFile};
+pub use diagnostic::{Diagnostics, Located, SourceFile, WrongPlace};
 pub use emit::GeneratedCode;
 pub use read::read;
 pub use spec::{CraneSpec, json_schema};

@@ -91,37 +91,62 @@ fn line(feet: [usize; 2], places: [Vector3<f64>; 2], loads: &[Wrench]) -> Tippin
     TippingLine { feet, stabilising, overturning }
 }
 
-/// Wrench of the weight, the inertia and the applied loads of every link, in the world frame about the world's origin.
-fn loads_of_links(crane: &dyn DynCrane, t: f64, [q, v, a]: [&[f64]; 3]) -> Vec<(Text, Wrench)> {
+/// Where a link begins, and which links it carries.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinkCut {
+    /// The link.
+    pub link: Text,
+    /// Index of its first body.
+    pub body: usize,
+    /// Index of the cut before that body among [`Description::cuts`](crate::Description::cuts).
+    pub cut: usize,
+    /// The links that are attached to it, by their indices in this list.
+    pub carried: Vec<usize>,
+}
+
+/// The links of a crane, from the base to the tip: what a link carries itself is the wrench at its cut less those at the cuts of the links
+/// that are attached to it.
+pub fn link_cuts(crane: &dyn DynCrane) -> Vec<LinkCut> {
     let description = crane.description();
-    let wrenches = crane.external_forces_at(t, q, v, a);
-    let transforms = crane.transforms_at(q);
-    let beginnings = description.cuts().into_iter().zip(&wrenches).filter_map(|(cut, wrench)| match cut {
-        crate::Cut::Body { body, .. } => Some((body, wrench)),
-        _ => None,
-    });
-    // The first body of each link, and the wrench of the link and everything beyond it.
-    let mut beyond: Vec<(usize, Wrench)> = Vec::new();
-    for (body, wrench) in beginnings {
-        let link = &description.bodies[body].link;
-        if body == 0 || description.bodies[body - 1].link != *link {
-            let (turn, position) =
-                (transforms[body].fixed_view::<3, 3>(0, 0), transforms[body].fixed_view::<3, 1>(0, 3));
-            let force = turn * wrench.force;
-            beyond.push((body, Wrench { force, moment: turn * wrench.moment + position.cross(&force) }));
+    let link_of = |body: usize| &description.bodies[body].link;
+    let mut links: Vec<LinkCut> = Vec::new();
+    for (cut, at) in description.cuts().into_iter().enumerate() {
+        if let crate::Cut::Body { body, .. } = at
+            && (body == 0 || link_of(body - 1) != link_of(body))
+        {
+            links.push(LinkCut { link: link_of(body).clone(), body, cut, carried: Vec::new() });
         }
     }
     let tree = crane.tree();
-    let link_of = |body: usize| &description.bodies[body].link;
-    let of_link = |&(first, all): &(usize, Wrench)| {
-        let carried = beyond.iter().filter(|(body, _)| {
-            *body != first && tree.parent(*body).is_some_and(|carrier| link_of(carrier) == link_of(first))
-        });
-        let own = carried
-            .fold(all, |own, (_, rest)| Wrench { force: own.force - rest.force, moment: own.moment - rest.moment });
-        (link_of(first).clone(), own)
+    for index in 0..links.len() {
+        let link = link_of(links[index].body);
+        let is_carried = |other: &LinkCut| {
+            other.body != links[index].body && tree.parent(other.body).is_some_and(|carrier| link_of(carrier) == link)
+        };
+        links[index].carried = (0..links.len()).filter(|&other| is_carried(&links[other])).collect();
+    }
+    links
+}
+
+/// Wrench of the weight, the inertia and the applied loads of every link, in the world frame about the world's origin.
+fn loads_of_links(crane: &dyn DynCrane, t: f64, [q, v, a]: [&[f64]; 3]) -> Vec<(Text, Wrench)> {
+    let wrenches = crane.external_forces_at(t, q, v, a);
+    let transforms = crane.transforms_at(q);
+    let links = link_cuts(crane);
+    // The link and everything beyond it.
+    let beyond = |link: &LinkCut| {
+        let (frame, wrench) = (&transforms[link.body], &wrenches[link.cut]);
+        let (turn, position) = (frame.fixed_view::<3, 3>(0, 0), frame.fixed_view::<3, 1>(0, 3));
+        let force = turn * wrench.force;
+        Wrench { force, moment: turn * wrench.moment + position.cross(&force) }
     };
-    beyond.iter().map(of_link).collect()
+    let of_link = |link: &LinkCut| {
+        let carried = link.carried.iter().map(|&carried| beyond(&links[carried]));
+        let own = carried
+            .fold(beyond(link), |own, rest| Wrench { force: own.force - rest.force, moment: own.moment - rest.moment });
+        (link.link.clone(), own)
+    };
+    links.iter().map(of_link).collect()
 }
 
 /// Fraction of the polygon's size below which a foot counts as on the line between two others.

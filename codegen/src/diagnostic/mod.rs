@@ -12,7 +12,7 @@ pub use definition::Rule;
 pub(crate) use definition::{catalogue, printable};
 pub use nearest::nearest;
 pub(crate) use nearest::{list, suggest};
-pub use source::{MAX_BYTES, Part, SourceFile, Span};
+pub use source::{MAX_BYTES, Part, SourceFile, Span, WrongPlace};
 
 use std::fmt;
 

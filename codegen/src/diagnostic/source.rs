@@ -22,6 +22,15 @@ pub struct SourceFile {
     pub text: String,
 }
 
+/// What is wrong with the place of a number in a spec, and what to write instead.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WrongPlace {
+    /// What is wrong.
+    pub title: String,
+    /// What to write.
+    pub help: String,
+}
+
 impl SourceFile {
     /// A source file of the given name and text.
     #[must_use]

@@ -7,6 +7,7 @@ mod access;
 mod data;
 mod deserializer;
 mod overlay;
+mod place;
 mod slips;
 mod tree;
 

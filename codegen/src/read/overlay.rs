@@ -58,8 +58,13 @@ impl Node {
     }
 
     /// The value that identifies an entry of a list.
-    fn identity(&self) -> Option<String> {
+    pub(super) fn identity(&self) -> Option<String> {
         self.identity_node().map(Node::key_text)
+    }
+
+    /// The key of that value.
+    pub(super) fn identity_key(&self) -> &'static str {
+        IDENTITIES.iter().find(|key| self.entry(key).is_some()).copied().unwrap_or_default()
     }
 
     fn identity_node(&self) -> Option<&Node> {

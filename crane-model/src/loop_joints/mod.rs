@@ -28,7 +28,7 @@ mod required;
 pub(crate) use curvature::{closed_motions, geometric_stiffness};
 pub use drives::DEAD_CENTRE;
 pub(crate) use drives::prescribed_too_much;
-pub use reactions::{Gap, cautions, gap_at, undetermined};
+pub use reactions::{Gap, cautions, gap_at, independent, undetermined};
 pub(crate) use reactions::{add_to_wrenches, on_rigid_drives};
 pub(crate) use required::{at_rest, generalized, required};
 

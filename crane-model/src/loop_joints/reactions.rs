@@ -69,6 +69,14 @@ pub fn gap_at(crane: &(impl DynModel + ?Sized), q: &[f64]) -> Option<Gap> {
     (widest.gap > OPEN).then(|| Gap::of(crane, widest))
 }
 
+/// Indices of the equations that are independent at a pose, among those of all joints.
+pub fn independent(crane: &(impl DynModel + ?Sized), q: &[f64]) -> Vec<usize> {
+    let mut loops = Loops::new(crane);
+    loops.evaluate(crane, q, &vec![0.0; q.len()]);
+    loops.choose();
+    loops.independent().to_vec()
+}
+
 /// The equations whose forces and moments cannot be determined at a pose, because they depend on others: `pin P along z`.
 pub fn undetermined(crane: &(impl DynModel + ?Sized), q: &[f64]) -> Vec<String> {
     let mut loops = Loops::new(crane);

@@ -417,7 +417,7 @@ fn parameters_written_in(tree: &Tree, _: &mut Rng) -> Option<Second> {
 }
 
 /// Masses, stiffnesses and an angle become live parameters.
-fn numbers_as_parameters(tree: &Tree, _: &mut Rng) -> Option<Second> {
+pub(crate) fn numbers_as_parameters(tree: &Tree, _: &mut Rng) -> Option<Second> {
     let mut second = tree.clone();
     let mut made = serde_json::Map::new();
     let mut live = |name: &str, value: &mut Tree| {

@@ -6,6 +6,7 @@
 // Descriptions and laws that always apply have the type of those that do not; specs are short texts.
 #![allow(clippy::unnecessary_wraps, clippy::format_push_string)]
 
+pub mod changes;
 pub mod check;
 pub mod crane;
 pub mod cuts;

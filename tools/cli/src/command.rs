@@ -11,7 +11,7 @@ use crate::{
     problem::Outcome,
     run, screen,
     selection::Registry,
-    simulate, stability, statics, strength,
+    sensitivity, simulate, stability, statics, strength,
 };
 
 /// Does what the arguments ask for, with the cranes of a registry.
@@ -31,7 +31,11 @@ pub fn execute(mut arguments: Arguments, mut registry: Registry, out: &mut dyn W
         }
         let name = choice.name.clone();
         if let Some(poses) = arguments.action.as_ref().and_then(Action::poses) {
-            poses::hold(poses, &name, &mut registry)?;
+            poses::hold(&poses.held, &poses.ranges, &name, &mut registry)?;
+        }
+        if let Some(Action::Sensitivity(options)) = &mut arguments.action {
+            poses::hold(&options.held, &[], &name, &mut registry)?;
+            sensitivity::make_live(options, &mut registry)?;
         }
     }
     if let Some(Action::Compare(options)) = &mut arguments.action {
@@ -63,6 +67,7 @@ pub fn execute(mut arguments: Arguments, mut registry: Registry, out: &mut dyn W
         Some(Action::Linearise(options)) => linearise::linearise(options, registry, out),
         Some(Action::Stability(options)) => stability::stability(options, registry, out),
         Some(Action::Strength(options)) => strength::strength(options, registry, out),
+        Some(Action::Sensitivity(options)) => sensitivity::sensitivity(options, registry, out),
         Some(Action::Envelope(options)) => envelope::envelope(options, registry, out),
         Some(Action::Report(options)) => page::report(options, registry, out),
         Some(Action::Info(options)) => info::info(options, registry, out),

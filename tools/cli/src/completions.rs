@@ -75,7 +75,7 @@ fn names_of(option: &str) -> Option<fn(&Chain) -> Vec<Named>> {
     Some(match option {
         "set" => |crane| equals(parameters(crane)),
         "input" => |crane| equals(crane.inputs.iter().map(|input| (input.name.clone(), input.unit.clone())).collect()),
-        "load" => parameters,
+        "load" | "with" => parameters,
         "point" => points,
         "deflection" => |crane| equals(points(crane)),
         "effort" => |crane| equals(drives(crane)),

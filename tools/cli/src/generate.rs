@@ -72,6 +72,7 @@ impl Output {
             Output::Simulate => include_str!("../schemas/simulate.json"),
             Output::Ensemble => include_str!("../schemas/ensemble.json"),
             Output::Strength => include_str!("../schemas/strength.json"),
+            Output::Sensitivity => include_str!("../schemas/sensitivity.json"),
             Output::Envelope => include_str!("../schemas/envelope.json"),
             Output::Compare => include_str!("../schemas/compare.json"),
             Output::Run => include_str!("../schemas/run.json"),

@@ -7,7 +7,21 @@ use clap::Command;
 /// Tasks, and the subcommands for each. Subcommands that are not listed come last.
 const GROUPS: [(&str, &[&str]); 4] = [
     ("Describe a crane", &["list", "info", "check", "explain", "example", "new", "import"]),
-    ("Compute", &["run", "compare", "statics", "strength", "envelope", "simulate", "modes", "linearise", "stability"]),
+    (
+        "Compute",
+        &[
+            "run",
+            "compare",
+            "statics",
+            "strength",
+            "sensitivity",
+            "envelope",
+            "simulate",
+            "modes",
+            "linearise",
+            "stability",
+        ],
+    ),
     ("Show and hand on", &["report", "export", "eval"]),
     ("For developers", &["generate", "operations", "schema", "completions"]),
 ];

@@ -44,6 +44,7 @@ pub mod refinement;
 mod run;
 mod screen;
 mod selection;
+mod sensitivity;
 mod simulate;
 mod spec_file;
 mod stability;

@@ -2,7 +2,8 @@
 //!
 //! Eight directions fill the widest registers, so a derivative costs about half as much as a value, and no expressions have to be derived.
 
-use std::ops::{Div, Mul, Neg};
+use std::iter::Sum;
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use crane_codegen::symbolic::Scalar;
 use crane_jit::Width;
@@ -26,6 +27,31 @@ impl Dual8 {
     pub fn along(value: f64, direction: Option<usize>) -> Self {
         let slope = |index: usize| if Some(index) == direction { 1.0 } else { 0.0 };
         Self { value, slopes: f64x8::new(std::array::from_fn(slope)) }
+    }
+
+    /// A number with these slopes.
+    pub fn new(value: f64, slopes: [f64; DIRECTIONS]) -> Self {
+        Self { value, slopes: f64x8::new(slopes) }
+    }
+
+    /// The number itself.
+    pub fn value(&self) -> f64 {
+        self.value
+    }
+
+    /// Whether it and all its slopes are zero.
+    pub fn is_zero(&self) -> bool {
+        self.value == 0.0 && self.slopes.as_array().iter().all(|slope| *slope == 0.0)
+    }
+
+    /// Its magnitude; 0 has the slopes of a positive number.
+    pub fn abs(self) -> Self {
+        if self.value < 0.0 { -self } else { self }
+    }
+
+    /// `√(x² + y²)`. At 0 it has a kink; its slopes there are 0.
+    pub fn hypot(self, other: Self) -> Self {
+        if self.value == 0.0 && other.value == 0.0 { Self::splat(0.0) } else { (self * self + other * other).sqrt() }
     }
 
     /// The derivative in a direction below [`DIRECTIONS`].
@@ -65,6 +91,33 @@ impl Function for Dual8 {
             value: select(self.value, positive.value, other.value),
             slopes: if self.value > 0.0 { positive.slopes } else { other.slopes },
         }
+    }
+}
+
+impl Add for Dual8 {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self { value: self.value + other.value, slopes: self.slopes + other.slopes }
+    }
+}
+
+impl Sub for Dual8 {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Self { value: self.value - other.value, slopes: self.slopes - other.slopes }
+    }
+}
+
+impl Sum for Dual8 {
+    fn sum<I: Iterator<Item = Self>>(numbers: I) -> Self {
+        numbers.fold(Self::splat(0.0), Add::add)
+    }
+}
+
+impl Mul<f64> for Dual8 {
+    type Output = Self;
+    fn mul(self, factor: f64) -> Self {
+        self.chain(self.value * factor, factor)
     }
 }
 

@@ -39,6 +39,7 @@ mod native;
 mod refusal;
 mod routine;
 pub mod rows;
+pub mod sensitivity;
 
 pub use crane::LiveCrane;
 pub use crane_codegen::program::FunctionId;

@@ -141,6 +141,13 @@ impl<T: Number> Evaluation<T> {
         self.width
     }
 
+    /// Other live parameters, all of them.
+    pub(crate) fn set_parameters(&mut self, parameters: &[T]) {
+        for call in self.calls.iter_mut().flatten() {
+            call.set_parameters(&self.library, parameters);
+        }
+    }
+
     /// The results at one state, with the crane's parameters.
     pub(crate) fn at(&mut self, t: T, q: &[T], v: &[T], a: &[T]) -> &[T] {
         let Lanes { t: times, q: poses, v: rates, a: accelerations, .. } = &mut self.lanes;

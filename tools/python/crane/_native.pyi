@@ -118,6 +118,8 @@ class Crane:
         """Largest loads: `Crane.envelope` makes an `Envelope` of them."""
     def _modes(self, q: ArrayLike, invalid: str = "raise") -> dict[str, Any]:
         """Modes about poses: `Crane.modes` names them."""
+    def _sensitivity(self, numbers: list[str], frequencies: int = 3, invalid: str = "raise") -> dict[str, Any]:
+        """Derivatives at rest: `Crane.sensitivity` makes a `Sensitivity` of them."""
     def _stable_steps(self, q: ArrayLike, invalid: str = "raise") -> dict[str, Any]:
         """Largest stable steps about poses: `Crane.stability` names them."""
     def _record(

@@ -21,6 +21,7 @@ from .results import (
     Linearisation,
     Modes,
     Run,
+    Sensitivity,
     Stability,
     SteadyMotion,
     Strength,
@@ -313,6 +314,39 @@ class Crane(_native.Crane):
             lists = [rows[0] for rows in lists]
         eigenvalues = found["real"] + 1j * found["imaginary"]
         return Modes(q, found["omega_squared"], found["shapes"], eigenvalues, *lists)
+
+    def sensitivity(self, numbers: Sequence[str] | None = None, *, frequencies: int = 3, invalid: str = "raise") -> Sensitivity:
+        """Exact derivatives of the crane at rest: of positions, efforts, pressures, reactions, stresses, tipping margin and frequencies.
+
+        numbers: live parameters by name, all of them unless given, and numbers of the spec by their places, as in
+        "links.boom.beam.section.box.height": keys, names of entries of lists, and indices from 0.
+        frequencies: how many of the lowest ones.
+
+        Feet, ropes and stops act as they do at rest, and what governs keeps governing: a derivative ends where one of these changes.
+        Raises NoEquilibrium if a row has no stable one; with invalid="nan" its numbers are NaN.
+        """
+        names = list(numbers) if numbers is not None else [parameter["name"] for parameter in self.info["parameters"]]
+        if not names:
+            raise ValueError(
+                f'{self.name} has no live parameters: name numbers by their places, such as "links.boom.mass", or define `parameters:`'
+            )
+        found = self._sensitivity(names, frequencies, invalid)
+        shape = tuple(found.pop("shape"))
+        places = np.asarray(found["places"], dtype=np.str_).reshape(*shape, len(found["outputs"]))
+        return Sensitivity(
+            tuple(names),
+            tuple(found["number_units"]),
+            found["numbers"],
+            tuple(found["outputs"]),
+            tuple(found["units"]),
+            tuple(found["groups"]),
+            places,
+            found["values"],
+            found["derivatives"],
+            found["q"],
+            found["pose_derivatives"],
+            found["notes"] if shape else found["notes"][0],
+        )
 
     def stability(self, q: ArrayLike | None = None, *, invalid: str = "raise") -> Stability:
         """Largest stable steps of all methods of integration about poses at rest, and what limits them."""

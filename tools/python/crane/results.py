@@ -84,6 +84,48 @@ class SteadyMotion:
 
 
 @dataclass(frozen=True)
+class Sensitivity:
+    """How quantities of a crane at rest change with its numbers, over the leading axes; NaN where there is no equilibrium.
+
+    numbers, number_units: names of live parameters or places in the spec, and units; number_values: (..., numbers).
+    outputs, units, groups: names, units and kinds of the quantities. places: (..., outputs), where a largest or smallest value is,
+    and the coordinates that vibrate; otherwise empty.
+    values: (..., outputs). derivatives: (..., outputs, numbers), exact: in the unit of the output per unit of the number.
+    q: (..., n), the pose at rest, m and rad; pose_derivatives: (..., n, numbers).
+    notes: what is not among the outputs, and what to know about a derivative; a list, or one per row.
+    """
+
+    numbers: tuple[str, ...]
+    number_units: tuple[str, ...]
+    number_values: Array
+    outputs: tuple[str, ...]
+    units: tuple[str, ...]
+    groups: tuple[str, ...]
+    places: Words
+    values: Array
+    derivatives: Array
+    q: Array
+    pose_derivatives: Array
+    notes: list[Any]
+
+    def changes(self, change: float = 0.1) -> Array:
+        """(..., outputs, numbers): change of each output when a number changes by a part of its value, in proportion."""
+        return self.derivatives * change * self.number_values[..., None, :]
+
+    def relative(self, change: float = 0.1) -> Array:
+        """The same, relative to the outputs: of no use for positions, and where an output is zero."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return self.changes(change) / np.abs(self.values)[..., None]
+
+    def derivative(self, output: str, number: str) -> Array:
+        """(...), the derivative of an output by a number, by their names."""
+        for name, known in ((output, self.outputs), (number, self.numbers)):
+            if name not in known:
+                raise KeyError(f"there is no {name!r}: write one of {', '.join(known)}")
+        return self.derivatives[..., self.outputs.index(output), self.numbers.index(number)]
+
+
+@dataclass(frozen=True)
 class Equilibrium:
     """Where a crane rests, over the leading axes.
 

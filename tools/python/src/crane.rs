@@ -343,7 +343,7 @@ fn input(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
 }
 
 /// Index of a live parameter by its name.
-fn parameter_index(description: &Description, name: &str) -> PyResult<usize> {
+pub fn parameter_index(description: &Description, name: &str) -> PyResult<usize> {
     let names = || description.parameters.iter().map(|info| &*info.name);
     names().position(|known| known == name).ok_or_else(|| {
         let known: Vec<String> =

@@ -7,6 +7,7 @@
 //! | `functions` | transforms, points, mass matrix, forces, dynamics, energies: arrays in, arrays out |
 //! | `evaluation` | how: rows of all arguments, eight at a time, on all threads |
 //! | `equilibria`, `vibrations` | statics, modes and stability, row by row |
+//! | `sensitivity` | derivatives at rest by the numbers of a crane |
 //! | `motion` | runs: of one crane, of many, step by step |
 //! | `page` | the crane in 3-D, as HTML |
 //! | `arrays` | arguments as rows, and results as arrays |
@@ -24,6 +25,7 @@ mod mistakes;
 mod motion;
 mod page;
 mod parallel;
+mod sensitivity;
 mod strength;
 mod vibrations;
 

@@ -20,7 +20,7 @@ pub use crane::{
 };
 pub use exchange::{CNumber, Export, Fmi, Import, Language};
 pub use number::seconds;
-pub use poses::{Poses, Statics};
+pub use poses::{Held, Poses, Sensitivity, Statics};
 pub use run::{Compare, ComparePair, Ensemble, Page, Run, Simulate, Step, Timing};
 
 const EXAMPLES: &str = "\
@@ -40,6 +40,8 @@ Examples:
                                        one run per row of a table of parameters
   crane report -o report.html          the crane in 3-D, plots and tables on one page
   crane strength --run                 tipping margin, stresses and joint loads, at rest and during the manoeuvre
+  crane sensitivity --with load_mass,links.boom.beam.section.box.height
+                                       what moves deflection, stresses, tipping and frequencies, and by how much
   crane envelope --range column_psi=0:360deg:25 --range boom_psi=0:70deg:15
                                        load chart and slew diagram: the largest load within limits, pose by pose
   crane compare my.yaml                your own crane, with beams that bend and with rigid ones
@@ -92,6 +94,8 @@ pub enum Action {
     Statics(Statics),
     /// Compute tipping margin, stresses, loads on joints and ground, and the tipping load
     Strength(Strength),
+    /// Compute what moves deflections, forces, stresses, tipping and frequencies, and by how much
+    Sensitivity(Sensitivity),
     /// Find the largest load within limits over ranges of poses: load chart, diagrams, data
     Envelope(Envelope),
     /// Simulate the motion from the static pose; write results and figures to a folder
@@ -154,6 +158,7 @@ impl Action {
             Action::Modes(options) => Some(&mut options.analysis.crane),
             Action::Linearise(options) => Some(&mut options.analysis.crane),
             Action::Strength(options) => Some(&mut options.analysis.crane),
+            Action::Sensitivity(options) => Some(&mut options.analysis.crane),
             Action::Envelope(options) => Some(&mut options.analysis.crane),
             Action::Stability(options) => Some(&mut options.analysis.crane),
             Action::Report(options) => Some(&mut options.crane),
@@ -205,6 +210,8 @@ pub enum Output {
     Ensemble,
     /// Tipping margins, stresses and loads.
     Strength,
+    /// What moves the quantities of a crane at rest.
+    Sensitivity,
     /// Largest loads.
     Envelope,
     /// Two cranes.

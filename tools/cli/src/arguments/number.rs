@@ -35,6 +35,15 @@ pub fn above_zero(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "write a number above 0, such as 0.8".to_owned())
 }
 
+/// A part of something, as a number or in per cent.
+pub fn part(text: &str) -> Result<f64, String> {
+    let (number, scale) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 100.0));
+    finite(number.trim())
+        .map(|number| number / scale)
+        .filter(|part| *part != 0.0 && part.abs() <= 1.0)
+        .ok_or_else(|| "write a part other than 0, at most 1, such as 10% or -0.05".to_owned())
+}
+
 /// A number of things, at least one.
 pub fn count(text: &str) -> Result<NonZeroUsize, String> {
     text.parse().map_err(|_| "write a whole number of 1 or more, such as 4".to_owned())

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
 
-use super::crane::Analysis;
+use super::{crane::Analysis, number::part};
 
 /// Drives that hold a position.
 #[derive(Debug, Args)]
@@ -29,6 +29,32 @@ pub struct Poses {
     /// link]
     #[arg(long, value_name = "POINT", requires = "ranges")]
     pub point: Option<String>,
+}
+
+/// What changes with the numbers of a crane at rest.
+#[derive(Debug, Args)]
+pub struct Sensitivity {
+    #[command(flatten)]
+    pub analysis: Analysis,
+    #[command(flatten)]
+    pub held: Held,
+    /// What to show, separated by commas: outputs such as `hook_z` or `frequency_1`, or groups: points, deflections, drives, cylinders,
+    /// connectors, loops, supports, stresses, tipping, frequencies [default: the most important ones, all with `--all`]
+    #[arg(long = "of", value_delimiter = ',', value_name = "OUTPUTS")]
+    pub outputs: Vec<String>,
+    /// What to change, separated by commas: live parameters, or numbers of the spec by their places, as in
+    /// `links.boom.beam.section.box.height` [default: all live parameters]
+    #[arg(long = "with", value_delimiter = ',', value_name = "NUMBERS")]
+    pub numbers: Vec<String>,
+    /// Change of each number, relative to its value, as in `10%` or `-0.05`
+    #[arg(long, value_name = "PART", default_value = "10%", allow_hyphen_values = true, value_parser = part)]
+    pub change: f64,
+    /// Number of lowest frequencies
+    #[arg(long, value_name = "COUNT", default_value_t = 3)]
+    pub modes: usize,
+    /// File for the changes, CSV with a row per number, or for the chart, SVG
+    #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: Option<PathBuf>,
 }
 
 /// The pose at rest.

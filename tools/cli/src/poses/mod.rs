@@ -13,7 +13,7 @@ use crane_model::{
 use crane_page::tables::Report;
 
 use crate::{
-    arguments::{Action, Analysis, Poses},
+    arguments::{Action, Analysis, Held, Poses},
     envelope::{self, number, read_ranges},
     files,
     integration::batches,
@@ -25,9 +25,9 @@ use quantities::{Quantities, Row, figure, table};
 
 /// Puts the crane whose drives hold their positions in place of the crane. Positions that `--range` varies become live parameters, so
 /// that the crane is derived once.
-pub fn hold(poses: &Poses, name: &str, registry: &mut Registry) -> Outcome<()> {
-    let held = &poses.held.held;
-    if held.is_empty() && poses.ranges.is_empty() {
+pub fn hold(held: &Held, ranges: &[String], name: &str, registry: &mut Registry) -> Outcome<()> {
+    let held = &held.held;
+    if held.is_empty() && ranges.is_empty() {
         return Ok(());
     }
     let crane = registry.crane(name)?;
@@ -57,7 +57,7 @@ pub fn hold(poses: &Poses, name: &str, registry: &mut Registry) -> Outcome<()> {
         }
         changes.drives.push(held_at(description, drive, &format!("{value:?}")));
     }
-    for axis in &read_ranges(&poses.ranges, description)?.0 {
+    for axis in &read_ranges(ranges, description)?.0 {
         if let Varied::Drive(drive) = axis.varied {
             let info = &description.coordinates[description.drives[drive].coordinate];
             let parameter = parameter_of(description, drive);

@@ -51,3 +51,32 @@ fn the_readme_lists_the_shipped_cranes() {
     };
     assert_eq!(table.lines().filter_map(row).collect::<BTreeMap<_, _>>(), known);
 }
+
+#[test]
+fn the_manual_shows_what_moves_what() {
+    let page = include_str!("../../../../docs/manual/sensitivity.md");
+    let strength = include_str!("../../../../docs/manual/strength.md");
+    let spec = strength.split("```yaml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a spec");
+    let place = folder("sensitivity_page");
+    std::fs::create_dir_all(&place).expect("a folder");
+    let file = place.join("truck_crane.yaml");
+    std::fs::write(&file, spec).expect("a file");
+    let command = page.lines().filter(|line| line.starts_with("crane sensitivity")).nth(1).expect("a command");
+    let file = file.to_string_lossy();
+    let arguments: Vec<&str> =
+        command.split_whitespace().skip(1).map(|word| if word == "truck_crane.yaml" { &*file } else { word }).collect();
+    let output = crane(&arguments);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let printed = text(&output.stdout);
+    let words = |line: &str| -> Vec<String> { line.split_whitespace().map(str::to_owned).collect() };
+    let lines: Vec<Vec<String>> = printed.lines().map(words).collect();
+    let block = page.split("```text\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a block");
+    let shown: Vec<&str> = block.lines().filter(|line| !matches!(line.trim(), "" | "…")).collect();
+    assert!(shown.len() > 8, "{block}");
+    for line in shown {
+        let wanted = words(line);
+        let is_it =
+            |line: &Vec<String>| line.len() == wanted.len() && line.iter().zip(&wanted).all(|(a, b)| alike(a, b));
+        assert!(lines.iter().any(is_it), "docs/manual/sensitivity.md shows `{line}`, which is not in\n{printed}");
+    }
+}

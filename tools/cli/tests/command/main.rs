@@ -7,6 +7,7 @@ mod new;
 mod places;
 mod poses;
 mod runs;
+mod sensitivity;
 
 use std::{
     fs,

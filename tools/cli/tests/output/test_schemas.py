@@ -85,6 +85,14 @@ def test_strength(output, crane_name, options):
     assert (found["tipping_margin"] is None) == (crane_name != "eight_link_flexible")
 
 
+@pytest.mark.parametrize("options", [[], ["--with", "links.boom.beam.section.box.height,load_mass", "--of", "stresses,frequencies"]])
+def test_sensitivity(output, options):
+    found = output("sensitivity", "sensitivity", "eight_link_flexible", *options)
+    assert len(found["changes"]) == len(found["outputs"]) * len(found["parameters"])
+    assert found["stable"] is True and found["units"]["changes"]["relative"] == "1"
+    assert {row["group"] for row in found["outputs"]} >= {"stresses", "frequencies"}
+
+
 @pytest.mark.parametrize(
     "more",
     [

@@ -27,6 +27,7 @@ mod loops;
 mod motion_derivatives;
 mod rope;
 mod rows;
+mod sensitivity;
 mod servos;
 mod sheaves;
 mod stresses;

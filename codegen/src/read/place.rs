@@ -1,0 +1,141 @@
+//! Numbers of a spec by their places, `links.boom.beam.section.box.height`: keys, names of entries of lists, and indices from 0.
+
+use std::fmt::Write as _;
+
+use super::overlay::Noticed;
+use super::parts;
+use super::tree::{Content, Node};
+use crate::diagnostic::{SourceFile, WrongPlace, suggest};
+
+impl SourceFile {
+    /// The same crane with a number at a place replaced by a live parameter of the same value, whose description is the place.
+    ///
+    /// # Errors
+    /// There is no number at this place.
+    pub fn with_live_number(&self, place: &str, parameter: &str, unit: &str) -> Result<Self, WrongPlace> {
+        let root = parts(self, &mut Noticed::default()).map_err(|_| WrongPlace {
+            title: format!("{} cannot be read", self.name),
+            help: "check it with `crane check`".to_owned(),
+        })?;
+        let keys: Vec<&str> = place.split('.').collect();
+        if keys[0] == "parameters" {
+            let name = keys.get(1).copied().unwrap_or_default();
+            return Err(WrongPlace {
+                title: format!("`{place}` is a live parameter"),
+                help: format!("write its name, `{name}`"),
+            });
+        }
+        let mut value = String::new();
+        let changed = overlay(&root, &keys, place, parameter, &mut value)?;
+        let entry = format!("{parameter}: {{value: {value}, unit: {unit:?}, about: {place:?}}}");
+        Ok(self.changed(&format!("parameters: {{{entry}}}\n{}\n", &changed[1..changed.len() - 1])))
+    }
+}
+
+/// The changes to lay over a node so that the number at the place becomes a parameter; `value` becomes the number.
+fn overlay(node: &Node, keys: &[&str], place: &str, parameter: &str, value: &mut String) -> Result<String, WrongPlace> {
+    let Some((key, rest)) = keys.split_first() else {
+        *value = number(node, place)?;
+        return Ok(parameter.to_owned());
+    };
+    match &node.content {
+        Content::Mapping(entries) => {
+            let known: Vec<String> = entries.iter().map(|(key, _)| key.key_text()).collect();
+            let inner = node.entry(key).ok_or_else(|| missing(place, key, &known))?;
+            Ok(format!("{{{key}: {}}}", overlay(inner, rest, place, parameter, value)?))
+        }
+        Content::Sequence(items) => {
+            let names: Vec<Option<String>> = items.iter().map(Node::identity).collect();
+            if let Some(index) = names.iter().position(|name| name.as_deref() == Some(*key)) {
+                let inner = overlay(&items[index], rest, place, parameter, value)?;
+                let identity = items[index].identity_key();
+                // The number itself is not an entry of a list with names.
+                return match inner.strip_prefix('{') {
+                    Some(inner) => Ok(format!("[{{{identity}: {key}, {inner}]")),
+                    None => Err(not_a_number(place)),
+                };
+            }
+            let chosen: Option<usize> = key.parse().ok().filter(|index| *index < items.len());
+            let Some(chosen) = chosen else {
+                let known: Vec<String> = names.into_iter().flatten().collect();
+                return Err(missing(place, key, &known));
+            };
+            let mut all = Vec::new();
+            for (index, item) in items.iter().enumerate() {
+                all.push(if index == chosen { replaced(item, rest, place, parameter, value)? } else { written(item) });
+            }
+            Ok(format!("[{}]", all.join(", ")))
+        }
+        _ => Err(not_a_number(place)),
+    }
+}
+
+/// A whole node with the number at the place replaced, where a list without names cannot be laid over.
+fn replaced(
+    node: &Node,
+    keys: &[&str],
+    place: &str,
+    parameter: &str,
+    value: &mut String,
+) -> Result<String, WrongPlace> {
+    match (&node.content, keys) {
+        (Content::Mapping(entries), [key, rest @ ..]) => {
+            let known: Vec<String> = entries.iter().map(|(key, _)| key.key_text()).collect();
+            node.entry(key).ok_or_else(|| missing(place, key, &known))?;
+            let mut all = Vec::new();
+            for (own, inner) in entries {
+                let own = own.key_text();
+                let text = if own == *key { replaced(inner, rest, place, parameter, value)? } else { written(inner) };
+                all.push(format!("{own}: {text}"));
+            }
+            Ok(format!("{{{}}}", all.join(", ")))
+        }
+        _ => overlay(node, keys, place, parameter, value),
+    }
+}
+
+/// A node as YAML on one line.
+fn written(node: &Node) -> String {
+    match &node.content {
+        Content::Null => "~".to_owned(),
+        Content::Boolean(boolean) => boolean.to_string(),
+        Content::Number(number) => format!("{number:?}"),
+        Content::Text(text) => format!("'{}'", text.replace('\'', "''")),
+        Content::Sequence(items) => format!("[{}]", items.iter().map(written).collect::<Vec<_>>().join(", ")),
+        Content::Mapping(entries) => {
+            let mut text = String::new();
+            for (index, (key, value)) in entries.iter().enumerate() {
+                let comma = if index > 0 { ", " } else { "" };
+                let _ = write!(text, "{comma}{}: {}", key.key_text(), written(value));
+            }
+            format!("{{{text}}}")
+        }
+    }
+}
+
+/// A number, or a text such as `30 deg`, which parameters may have too.
+fn number(node: &Node, place: &str) -> Result<String, WrongPlace> {
+    match &node.content {
+        Content::Number(_) => Ok(written(node)),
+        Content::Text(text) if crate::spec::parse_angle(text).is_some() => Ok(text.clone()),
+        Content::Text(text) if text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') => Err(WrongPlace {
+            title: format!("`{place}` is `{text}`, not a number"),
+            help: "if this is a live parameter, write its name; if it is an entry of `materials`, give the place of its number there"
+                .to_owned(),
+        }),
+        _ => Err(not_a_number(place)),
+    }
+}
+
+fn not_a_number(place: &str) -> WrongPlace {
+    WrongPlace {
+        title: format!("`{place}` is not a number"),
+        help: "give the place of one number, as in `links.boom.beam.section.box.height` or `supports.left.stiffness.2`"
+            .to_owned(),
+    }
+}
+
+fn missing(place: &str, key: &str, known: &[String]) -> WrongPlace {
+    let help = suggest(key, known.iter().map(String::as_str));
+    WrongPlace { title: format!("`{place}`: there is no `{key}`"), help }
+}

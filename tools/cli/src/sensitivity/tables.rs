@@ -1,0 +1,136 @@
+//! Tables of what moves what.
+
+use crane_live::sensitivity::{Group, label};
+use crane_page::tables::{Cell, Grid, Heading, number_text};
+
+use super::Changes;
+
+/// Parameters of an output that a table shows unless all are asked for.
+const MOST: usize = 3;
+/// Letters of the longest bar.
+const BAR: usize = 20;
+
+/// The numbers that change, the most influential first.
+pub fn parameters(changes: &Changes<'_>) -> Grid {
+    let title = "Numbers, the most influential first: influence is the largest relative change of an output below";
+    let headings = ["parameter", "value", "unit", "change", "influence [%]"];
+    let mut grid = Grid::new("parameters", title, &headings);
+    for &place in &changes.order {
+        let info = changes.info(place);
+        let numbers = [changes.values[place].into(), info.unit.as_str().into(), changes.steps[place].into()];
+        let row = [label(info).into()].into_iter().chain(numbers).chain([Cell::Change(changes.influence(place))]);
+        grid.row(row.collect::<Vec<Cell>>());
+    }
+    grid
+}
+
+/// The outputs at rest, and where those are that govern.
+pub fn outputs(changes: &Changes<'_>) -> Grid {
+    let mut grid = Grid::new("outputs", "Outputs at rest", &["output", "group", "value", "unit", "place"]);
+    for &index in &changes.shown {
+        let output = &changes.found.outputs[index];
+        let value = Cell::from(changes.found.values[index]);
+        let words: [Cell; 2] = [output.name.as_str().into(), output.group.name().into()];
+        grid.row(
+            words.into_iter().chain([value, output.unit.into(), output.place.as_str().into()]).collect::<Vec<_>>(),
+        );
+    }
+    grid
+}
+
+/// A row per output, a column per number.
+pub fn matrix(changes: &Changes<'_>) -> Grid {
+    let title = "Changes of outputs with each number";
+    let labels = changes.order.iter().map(|&place| Heading::of(label(changes.info(place)), "value"));
+    let headings = ["output".into(), "at rest".into()].into_iter().chain(labels).chain(["unit".into(), "where".into()]);
+    let mut grid = Grid::with_headings("", title, headings.collect());
+    for &index in &changes.shown {
+        let output = &changes.found.outputs[index];
+        let (scale, unit) = readable(output.unit, output.group);
+        let values = changes.order.iter().map(|&place| Cell::from(scale * changes.change(place, index)));
+        let first: [Cell; 2] = [output.name.as_str().into(), (scale * changes.found.values[index]).into()];
+        let last: [Cell; 2] = [unit.into(), output.place.as_str().into()];
+        grid.row(first.into_iter().chain(values).chain(last).collect::<Vec<_>>());
+    }
+    grid
+}
+
+/// Factor and unit in which people read a quantity.
+pub fn readable(unit: &'static str, group: Group) -> (f64, &'static str) {
+    match (unit, group) {
+        ("Pa", Group::Stresses) => (1e-6, "MPa"),
+        ("Pa", _) => (1e-5, "bar"),
+        ("m", _) => (1e3, "mm"),
+        _ => (1.0, unit),
+    }
+}
+
+/// All changes, for programs.
+pub fn changes(changes: &Changes<'_>) -> Grid {
+    let headings = ["output", "parameter", "derivative", "change", "unit", "relative [%]"];
+    let mut grid = Grid::new("changes", "Changes", &headings);
+    for (index, place) in changes.shown.iter().flat_map(|&index| changes.order.iter().map(move |&place| (index, place)))
+    {
+        let output = &changes.found.outputs[index];
+        let numbers = [changes.found.derivatives[place][index], changes.change(place, index)].map(Cell::from);
+        let words: [Cell; 2] = [output.name.as_str().into(), label(changes.info(place)).into()];
+        let relative = changes.relative(place, index).map_or(Cell::Empty, Cell::Change);
+        grid.row(words.into_iter().chain(numbers).chain([output.unit.into(), relative]).collect::<Vec<_>>());
+    }
+    grid
+}
+
+/// What moves what: for every output the numbers that move it most, with bars.
+pub fn bars(changes: &Changes<'_>, all: bool) -> Grid {
+    let title = "What moves what: relative changes, for every output the largest first";
+    let mut grid = Grid::new("bars", title, &["output", "parameter", "relative [%]", ""]);
+    let pairs = || changes.shown.iter().flat_map(|&output| changes.order.iter().map(move |&place| (place, output)));
+    let shares = pairs().filter_map(|(place, output)| changes.relative(place, output));
+    let greatest = shares.fold(f64::MIN_POSITIVE, |size: f64, share| size.max(share.abs()));
+    for &index in &changes.shown {
+        let share = |place: usize| changes.relative(place, index).map(|share| (place, share));
+        let mut shares: Vec<(usize, f64)> = changes.order.iter().filter_map(|&place| share(place)).collect();
+        shares.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+        let mut name = changes.found.outputs[index].name.as_str();
+        for (place, share) in shares.into_iter().take(if all { usize::MAX } else { MOST }) {
+            let parameter = label(changes.info(place)).into();
+            grid.row([name.into(), parameter, Cell::Change(share), bar(share / greatest).into()]);
+            name = "";
+        }
+    }
+    grid
+}
+
+/// A bar for a share from −1 to 1, with its sign.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of letters")]
+fn bar(share: f64) -> String {
+    let eighths = (share.abs() * (8 * BAR) as f64).round() as usize;
+    let part = ["", "▏", "▎", "▍", "▌", "▋", "▊", "▉"][eighths % 8];
+    let sign = if eighths == 0 {
+        ""
+    } else if share < 0.0 {
+        "−"
+    } else {
+        "+"
+    };
+    format!("{sign}{}{part}", "█".repeat(eighths / 8))
+}
+
+/// A header and a row per number for a file, in SI: its name, value, unit and change, then the changes of all outputs.
+pub fn rows(changes: &Changes<'_>) -> (Vec<String>, Vec<Vec<String>>) {
+    let with_unit = |name: &str, unit: &str| if unit.is_empty() { name.to_owned() } else { format!("{name} [{unit}]") };
+    let outputs = changes.shown.iter().map(|&index| &changes.found.outputs[index]);
+    let names = outputs.map(|output| with_unit(&output.name, output.unit));
+    let header = ["parameter", "value", "unit", "change"].map(str::to_owned).into_iter().chain(names).collect();
+    let row = |&place: &usize| {
+        let info = changes.info(place);
+        let own = [
+            label(info).to_owned(),
+            number_text(changes.values[place]),
+            info.unit.to_string(),
+            number_text(changes.steps[place]),
+        ];
+        own.into_iter().chain(changes.shown.iter().map(|&index| number_text(changes.change(place, index)))).collect()
+    };
+    (header, changes.order.iter().map(row).collect())
+}

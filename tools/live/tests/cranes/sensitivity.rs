@@ -1,0 +1,227 @@
+//! Derivatives of a crane at rest by its live parameters, against differences of statics and closed forms.
+
+use crane_codegen::{SourceFile, build};
+use crane_live::LiveCrane;
+use crane_live::sensitivity::{Group, Sensitivity, Settings, sensitivity};
+use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::modes::undamped;
+use crane_model::results::cylinders_at;
+use crane_model::sections::{StressedSection, stressed_sections};
+use crane_model::tipping::{TippingLine, governing, lines};
+
+fn live(source: &SourceFile) -> LiveCrane {
+    LiveCrane::from_spec(source).unwrap_or_else(|mistakes| panic!("\n{mistakes}\n{}", source.text))
+}
+
+fn spec(text: &str) -> LiveCrane {
+    live(&SourceFile::new("crane.yaml", text))
+}
+
+/// A shipped crane whose numbers become live parameters as `changes` writes them.
+fn shipped(name: &str, changes: &str) -> LiveCrane {
+    let path = format!("{}/../../specs/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
+    let source = build::open(path.as_ref()).unwrap();
+    live(&if changes.is_empty() { source } else { source.changed(&format!("name: changed\n{changes}")) })
+}
+
+fn all(crane: &LiveCrane, frequencies: usize) -> Sensitivity {
+    let parameters: Vec<usize> = (0..crane.parameters().len()).collect();
+    sensitivity(crane, &parameters, &Settings { frequencies }).unwrap_or_else(|failed| panic!("{failed}"))
+}
+
+/// Values of all outputs with another value of a parameter, and where they are.
+fn values_at(crane: &LiveCrane, parameter: usize, value: f64, frequencies: usize) -> (Vec<f64>, Vec<String>) {
+    let mut other = crane.clone();
+    other.set_parameter(parameter, value).unwrap();
+    let found = sensitivity(&other, &[], &Settings { frequencies }).unwrap_or_else(|failed| panic!("{failed}"));
+    (found.values, found.outputs.into_iter().map(|output| output.place).collect())
+}
+
+/// Step of differences relative to the parameter. Extrapolated to step 0 they have an error of its sixth power, 1e-12 here, times how fast
+/// the derivatives change; poses that are exact to 1e-13 leave 1e-11 of values, and 1e-8 of those that stiff drives multiply.
+const STEP: f64 = 1e-2;
+/// Forces that symmetry makes zero, N or N m: a rounding of forces of 1e5 N.
+const ROUNDING: f64 = 1e-8;
+
+/// Compares all derivatives of a crane with central differences of its equilibria, to a fraction of the derivative plus a tenth of what
+/// changes the value by as much as the parameter.
+fn assert_derivatives(what: &str, crane: &LiveCrane, frequencies: usize, tolerance: f64) {
+    let found = all(crane, frequencies);
+    assert!(found.outputs.len() > 3, "{what}: {:?}", found.notes);
+    let mut compared = 0;
+    for (place, &parameter) in found.parameters.iter().enumerate() {
+        let value = crane.parameters()[parameter];
+        let step = STEP * if value == 0.0 { 1.0 } else { value.abs() };
+        let (slopes, places): (Vec<_>, Vec<_>) = [1.0, 0.5, 0.25]
+            .map(|share| {
+                let step = share * step;
+                let [(before, first), (after, second)] =
+                    [-step, step].map(|step| values_at(crane, parameter, value + step, frequencies));
+                let slopes: Vec<f64> = before.iter().zip(&after).map(|(a, b)| (b - a) / (2.0 * step)).collect();
+                (slopes, first.into_iter().zip(second).map(|(a, b)| a == b).collect::<Vec<bool>>())
+            })
+            .into_iter()
+            .unzip();
+        for (index, output) in found.outputs.iter().enumerate() {
+            if !places[0][index] && output.group != Group::Frequencies {
+                continue;
+            }
+            let [long, short, shortest] = [0, 1, 2].map(|k: usize| slopes[k][index]);
+            let [first, second] = [(4.0 * short - long) / 3.0, (4.0 * shortest - short) / 3.0];
+            let expected = (16.0 * second - first) / 15.0;
+            let own = found.derivatives[place][index];
+            compared += 1;
+            let of_value = found.values[index].abs() * STEP / step;
+            let name = &crane.description().parameters[parameter].name;
+            assert!(
+                (own - expected).abs() <= tolerance * (expected.abs() + 0.1 * of_value) + ROUNDING * STEP / step,
+                "{what}: {} by {name}: {own:.9e} for {expected:.9e}, of {:.6e}; {long} {short} {shortest}",
+                output.name,
+                found.values[index],
+            );
+        }
+    }
+    assert!(compared >= found.outputs.len(), "{what}: {compared}");
+}
+
+/// Fractions of differences: see [`STEP`].
+const FINE: f64 = 1e-6;
+
+#[test]
+fn shipped_cranes_change_as_their_equilibria_do() {
+    for name in ["cantilever", "knuckle_boom", "eight_link_flexible", "loader_tipping", "two_arms"] {
+        assert_derivatives(name, &shipped(name, ""), 4, FINE);
+    }
+    for name in ["examples/loader_crane", "examples/parallel_harvester"] {
+        assert_derivatives(name, &shipped(name, ""), 3, FINE);
+    }
+}
+
+#[test]
+fn a_crane_with_feet_that_lift_and_valves_changes_as_its_equilibria_do() {
+    let changes = "parameters: {pin: {value: 1.2, unit: m}, truck_mass: {value: 9500, unit: kg}, foot: {value: 1e7, unit: N/m}}\n\
+                   links: [{name: truck, mass: truck_mass}]\nsupports: [{name: s2, stiffness: [3e6, 3e6, foot]}]\n\
+                   cylinders: [{name: boom_cylinder, head: {link: boom, at: [pin, -0.1, 0]}}]\n";
+    assert_derivatives("hydraulic", &shipped("eight_link_hydraulic", changes), 3, FINE);
+}
+
+#[test]
+fn stiffness_sections_and_positions_of_drives_count() {
+    let changes = "parameters:\n  young: {value: 2.1e11, unit: Pa}\n  height: {value: 0.34, unit: m}\n  slew: {value: 2.6, unit: rad}\n  \
+                   lift: {value: 0.9, unit: rad}\n  rear: {value: -4.2, unit: m}\n  spring: {value: 2e7, unit: N m/rad}\nlinks:\n  - {name: boom, beam: \
+                   {material: {E: young, G: 8.1e10, density: 7850, yield_stress: 700e6}, section: {box: {height: height, width: 0.24, thickness: 0.008}}}}\n\
+                   supports: [{name: rear_left, at: [rear, 1.1, -0.9]}]\ndrives:\n  - {coordinate: column_psi, motion: {hold: slew}}\n  \
+                   - {coordinate: boom_psi, rigid: true, stiffness: ~, damping: ~, motion: {hold: lift}}\n  - {coordinate: jib_psi, stiffness: spring}\n";
+    let crane = shipped("loader_tipping", changes);
+    assert_eq!(crane.description().prescribed().len(), 1);
+    assert_derivatives("loader", &crane, 5, FINE);
+}
+
+#[test]
+fn loops_with_rigid_drives_change_as_their_equilibria_do() {
+    let changes = "parameters:\n  lift: {value: 1.1, unit: rad}\n  pin: {value: 2.19, unit: m}\n  arm: {value: 4, unit: m}\nlinks:\n  - {name: jib, \
+                   placement: {transform: {translation: [arm, 0, 0]}}}\nloop_joints: [{name: parallel_pin, from: {link: column, at: [-0.23, 0, pin]}}]\n\
+                   drives:\n  - {coordinate: boom_psi, rigid: true, stiffness: ~, damping: ~, motion: {hold: lift}}\n";
+    assert_derivatives("harvester", &shipped("examples/parallel_harvester", changes), 2, FINE);
+}
+
+/// The numbers themselves, against those of the runtime.
+#[test]
+fn outputs_have_the_values_of_the_runtime() {
+    for name in
+        ["eight_link_flexible", "eight_link_hydraulic", "loader_tipping", "two_arms", "examples/parallel_harvester"]
+    {
+        let live = shipped(name, "");
+        let (found, crane): (_, &dyn DynCrane) = (all(&live, 3), &live);
+        let (description, q, rest) = (crane.description(), &found.q, vec![0.0; found.q.len()]);
+        let mut expected: Vec<(String, f64)> = Vec::new();
+        for (point, place) in description.points.iter().zip(crane.points_at(q)) {
+            expected.extend(["x", "y", "z"].iter().zip(&place).map(|(axis, x)| (format!("{point}_{axis}"), *x)));
+        }
+        for (support, force) in description.supports.iter().zip(crane.support_reactions_at(q, &rest)) {
+            expected.push((format!("{}_reaction_z", support.name), force.z));
+        }
+        let efforts = crane.drive_efforts_at_rest(q);
+        for (cylinder, state) in description.cylinders.iter().zip(cylinders_at(crane, q, &rest, &efforts)) {
+            expected.push((format!("{}_piston_pressure", cylinder.name), state.pressures[0]));
+            expected.push((format!("{}_rod_pressure", cylinder.name), state.pressures[1]));
+            expected.push((format!("{}_force", cylinder.name), state.force));
+        }
+        let wrenches = crane.internal_forces_at(0.0, q, &rest, &rest);
+        let sections = stressed_sections(description, &crane.section_moduli_at(), &wrenches);
+        let stress =
+            sections.iter().max_by(|a, b| StressedSection::by_use(a, b)).map(|section| section.stress.equivalent);
+        expected.extend(stress.map(|stress| ("greatest_equivalent_stress".to_owned(), stress)));
+        let margin = governing(&lines(crane, 0.0, q, &rest, &rest)).map(TippingLine::margin);
+        expected.extend(margin.map(|margin| ("tipping_margin".to_owned(), margin)));
+        let modes = undamped(&crane.small_motions_at(q)).unwrap();
+        let frequencies = modes.iter().take(3).enumerate();
+        expected.extend(frequencies.map(|(k, mode)| (format!("frequency_{}", k + 1), mode.frequency().unwrap())));
+        for (output, expected) in expected {
+            let own =
+                found.values[found.index_of(&output).unwrap_or_else(|| panic!("{name}: {output}, {:?}", found.notes))];
+            // The same formulas on the same pose: rounding, of pressures and margins that of larger numbers.
+            assert!((own - expected).abs() <= 1e-9 * expected.abs().max(1.0), "{name}: {output}: {own} for {expected}");
+        }
+    }
+}
+
+/// A massless beam along x of 8 elements in a circle with E I, stiff enough that it stays straight, and a mass at its end:
+/// `w = m g L³/(3 E I) (1 − 1/(4 n²))`, `f ∝ √E`.
+#[test]
+fn a_cantilever_has_the_derivatives_of_its_formula() {
+    let crane = spec(
+        "format: 1\nname: beam\nparameters: {young: {value: 2.1e15, unit: Pa}, mass: {value: 20, unit: kg}, length: {value: 2, unit: m}}\n\
+         links:\n  - {name: beam, beam: {length: length, sections: 8, material: {E: young, G: 8e14, density: 0.1}, section: {circle: {diameter: \
+         0.1}}}}\n  - {name: weight, mass: mass, com: [0, 0, 0]}\npoints: [{name: tip, link: weight, at: [0, 0, 0]}]\n",
+    );
+    let found = all(&crane, 2);
+    let (e, m, l, n) = (2.1e15, 20.0, 2.0_f64, 8.0);
+    let inertia = std::f64::consts::PI * 0.05_f64.powi(4) / 4.0;
+    let sag = -m * 9.81 * l.powi(3) / (3.0 * e * inertia) * (1.0 - 1.0 / (4.0 * n * n));
+    let z = found.index_of("tip_z").unwrap();
+    let first = found.index_of("frequency_1").unwrap();
+    let frequency = found.values[first];
+    let relative = [[-1.0 / e, 1.0 / m, 3.0 / l], [0.5 / e, -0.5 / m, -1.5 / l]];
+    for (parameter, [of_sag, of_frequency]) in (0..3).map(|k| (k, [relative[0][k], relative[1][k]])) {
+        for (output, expected) in [(z, sag * of_sag), (first, frequency * of_frequency)] {
+            let own = found.derivatives[parameter][output];
+            // The beam weighs 8e-5 of the mass at its end.
+            assert!((own - expected).abs() <= 1e-4 * expected.abs(), "{parameter}, {output}: {own:e} for {expected:e}");
+        }
+    }
+    assert!((found.values[z] - sag).abs() < 1e-4 * sag.abs());
+}
+
+/// A round beam hanging along gravity vibrates alike in both planes, until a parameter makes the mass at its end differ: then only one of the
+/// two frequencies falls.
+#[test]
+fn frequencies_that_coincide_part_in_order() {
+    let crane = spec(
+        "format: 1\nname: beam\ngravity: [9.81, 0, 0]\nparameters: {young: {value: 2.1e9, unit: Pa}, turn: {value: 3, unit: kg m²}}\n\
+         links:\n  - {name: beam, beam: {length: 2, sections: 4, material: {E: young, G: 8e10, density: 7850}, section: {circle: {diameter: \
+         0.1}}}}\n  - {name: weight, mass: 20, com: [0, 0, 0], inertia: {Ixx: 3, Iyy: 3, Izz: turn}}\n",
+    );
+    let found = all(&crane, 2);
+    assert!(found.notes.iter().any(|note| note.starts_with("frequencies 1 to 2 coincide")), "{:?}", found.notes);
+    let [first, second] = ["frequency_1", "frequency_2"].map(|name| found.index_of(name).unwrap());
+    let [by_young, by_turn] = [&found.derivatives[0], &found.derivatives[1]];
+    // Both rise with E alike, to the rounding of modes that coincide.
+    assert!((by_young[first] - by_young[second]).abs() < 1e-6 * by_young[first], "{by_young:?}");
+    let step = 1e-3;
+    let (after, _) = values_at(&crane, 1, 3.0 + step, 2);
+    let expected = (after[first] - found.values[first]) / step;
+    // The error of a forward difference: half of its step times the curvature, here 1e-4 of the slope.
+    assert!((by_turn[first] - expected).abs() < 1e-3 * expected.abs(), "{} for {expected}", by_turn[first]);
+    assert!(expected < 0.0 && by_turn[second].abs() < 1e-6 * expected.abs(), "{by_turn:?}");
+}
+
+/// A crane that does not stand has no derivatives, and says why.
+#[test]
+fn a_crane_that_tips_over_is_refused() {
+    let changes = "parameters: {load: {value: 4000}}\ndrives:\n  - {coordinate: column_psi, motion: {hold: 90 deg}}\n  - {coordinate: boom_psi, motion: \
+                   {hold: 40 deg}}\n  - {coordinate: jib_psi, motion: {hold: -40 deg}}\n  - {coordinate: extension_x, motion: {hold: 1.5}}\n";
+    let crane = shipped("loader_tipping", changes);
+    let failed = sensitivity(&crane, &[0], &Settings::default()).unwrap_err();
+    assert!(failed.to_string().contains("tips over"), "{failed}");
+}

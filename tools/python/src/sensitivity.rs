@@ -1,0 +1,158 @@
+//! Derivatives of a crane at rest by its numbers, row by row.
+
+use crane_live::LiveCrane;
+use crane_live::sensitivity::{Output, Refused, Sensitivity, Settings, sensitivity, with_live_numbers};
+use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::runs::Failed;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::array;
+use crate::crane::{Crane, parameter_index};
+use crate::mistakes::{BadRow, Invalid, NoEquilibrium, describe, spec_error, warn_of_rows};
+use crate::parallel::map_rows;
+
+#[pymethods]
+impl Crane {
+    /// Derivatives over parameters, by numbers of these names or places: `Crane.sensitivity` names them.
+    #[pyo3(name = "_sensitivity", signature = (numbers, frequencies=3, invalid="raise"))]
+    fn sensitivity_rows<'py>(
+        &self,
+        py: Python<'py>,
+        numbers: Vec<String>,
+        frequencies: usize,
+        invalid: &str,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let invalid = Invalid::named(invalid)?;
+        let (with_numbers, names) = self.with_live_numbers(py, &numbers)?;
+        let description = with_numbers.description();
+        let parameters = names.iter().map(|name| parameter_index(description, name)).collect::<PyResult<Vec<_>>>()?;
+        let settings = Settings { frequencies };
+        let shape = &self.parameters.shape;
+        let found: Vec<Option<Result<Sensitivity, Failed>>> = map_rows(py, self.parameters.rows(), |row, _| {
+            if self.bad.iter().any(|bad| bad.row == row) {
+                return None;
+            }
+            let mut crane = with_numbers.clone();
+            // Checked when they were given; the numbers at places keep their values.
+            let _ = crane.set_parameters(self.of_row(row).parameters());
+            Some(sensitivity(&crane, &parameters, &settings))
+        })?;
+        let reason = |row: usize, found: &Option<Result<Sensitivity, Failed>>| match found {
+            Some(Ok(_)) => None,
+            Some(Err(failed)) => Some(failed.to_string()),
+            None => self.bad.iter().find(|bad| bad.row == row).map(|bad| bad.reason.clone()),
+        };
+        let bad: Vec<BadRow> = found
+            .iter()
+            .enumerate()
+            .filter_map(|(row, found)| Some(BadRow { row, reason: reason(row, found)? }))
+            .collect();
+        if let (Some(first), Invalid::Raise) = (bad.first(), invalid) {
+            return Err(NoEquilibrium::new_err(describe(first, shape)));
+        }
+        warn_of_rows(py, &bad, shape)?;
+        let found: Vec<Option<&Sensitivity>> =
+            found.iter().map(|found| found.as_ref().and_then(|found| found.as_ref().ok())).collect();
+        let Some(first) = found.iter().flatten().next() else {
+            return Err(NoEquilibrium::new_err(format!("{}: no row has a stable equilibrium", description.name)));
+        };
+        let rows = Rows { found: &found, outputs: &first.outputs, count: parameters.len(), n: self.live.size() };
+        let (outputs, count, n) = (rows.outputs.len(), rows.count, rows.n);
+        let all = PyDict::new(py);
+        all.set_item("q", array(py, rows.pose(|found| found.q.clone(), n), shape, &[n])?)?;
+        all.set_item("values", array(py, rows.values(), shape, &[outputs])?)?;
+        all.set_item("derivatives", array(py, rows.derivatives(), shape, &[outputs, count])?)?;
+        let transposed = |found: &Sensitivity| (0..n).flat_map(|i| found.pose.iter().map(move |of| of[i])).collect();
+        all.set_item("pose_derivatives", array(py, rows.pose(transposed, n * count), shape, &[n, count])?)?;
+        all.set_item("outputs", rows.words(|output| &output.name))?;
+        all.set_item("groups", rows.words(|output| output.group.name()))?;
+        all.set_item("units", rows.words(|output| output.unit))?;
+        all.set_item("places", rows.places())?;
+        let notes: Vec<Vec<String>> =
+            found.iter().map(|found| found.map_or_else(Vec::new, |found| found.notes.clone())).collect();
+        all.set_item("notes", notes)?;
+        let defaults: Vec<f64> = description.parameters.iter().map(|info| info.default).collect();
+        let value = |row: &LiveCrane, index: usize| row.parameters().get(index).copied().unwrap_or(defaults[index]);
+        let of_numbers = (0..self.parameters.rows()).flat_map(|row| {
+            let row = self.of_row(row);
+            parameters.iter().map(|&index| value(&row, index)).collect::<Vec<f64>>()
+        });
+        let of_numbers = of_numbers.collect();
+        all.set_item("numbers", array(py, of_numbers, shape, &[count])?)?;
+        let units: Vec<&str> = parameters.iter().map(|&index| description.parameters[index].unit.as_str()).collect();
+        all.set_item("number_units", units)?;
+        all.set_item("shape", shape.clone())?;
+        Ok(all)
+    }
+}
+
+impl Crane {
+    /// The crane with the numbers at places of the spec as live parameters, and the names of all.
+    fn with_live_numbers(&self, py: Python<'_>, numbers: &[String]) -> PyResult<(LiveCrane, Vec<String>)> {
+        let mut names = numbers.to_vec();
+        let changed = with_live_numbers(&self.source, &mut names).map_err(|refused| match refused {
+            Refused::Place(wrong) => PyValueError::new_err(format!("{}; {}", wrong.title, wrong.help)),
+            Refused::Mistakes { mistakes, .. } => spec_error(py, &mistakes),
+        })?;
+        let Some(changed) = changed else { return Ok((self.live.clone(), names)) };
+        let live = LiveCrane::from_spec(&changed).map_err(|mistakes| spec_error(py, &mistakes))?;
+        let inputs = (0..self.live.description().inputs.len()).map(|index| self.live.input(index));
+        Ok((live.with_inputs(&inputs.collect::<Vec<_>>()), names))
+    }
+}
+
+/// Results of all rows, with the outputs of the first that has any.
+struct Rows<'a> {
+    found: &'a [Option<&'a Sensitivity>],
+    outputs: &'a [Output],
+    count: usize,
+    n: usize,
+}
+
+impl Rows<'_> {
+    /// Numbers of each row; NaN where there are none.
+    fn pose(&self, numbers: impl Fn(&Sensitivity) -> Vec<f64>, count: usize) -> Vec<f64> {
+        self.found.iter().flat_map(|found| found.map_or_else(|| vec![f64::NAN; count], &numbers)).collect()
+    }
+
+    /// The place of an output in a row.
+    fn place(found: Option<&Sensitivity>, output: &Output) -> Option<usize> {
+        found.and_then(|found| found.index_of(&output.name))
+    }
+
+    fn values(&self) -> Vec<f64> {
+        let value = |found: Option<&Sensitivity>, output| match (found, Self::place(found, output)) {
+            (Some(found), Some(index)) => found.values[index],
+            _ => f64::NAN,
+        };
+        self.found.iter().flat_map(|found| self.outputs.iter().map(move |output| value(*found, output))).collect()
+    }
+
+    fn derivatives(&self) -> Vec<f64> {
+        let mut all = Vec::new();
+        for found in self.found {
+            for output in self.outputs {
+                let place = Self::place(*found, output);
+                all.extend((0..self.count).map(|k| match (found, place) {
+                    (Some(found), Some(index)) => found.derivatives[k][index],
+                    _ => f64::NAN,
+                }));
+            }
+        }
+        all
+    }
+
+    fn words<'b>(&'b self, of: impl Fn(&'b Output) -> &'b str) -> Vec<&'b str> {
+        self.outputs.iter().map(of).collect()
+    }
+
+    fn places(&self) -> Vec<Vec<String>> {
+        let place = |found: Option<&Sensitivity>, output: &Output| match (found, Self::place(found, output)) {
+            (Some(found), Some(index)) => found.outputs[index].place.clone(),
+            _ => String::new(),
+        };
+        self.found.iter().map(|found| self.outputs.iter().map(|output| place(*found, output)).collect()).collect()
+    }
+}
