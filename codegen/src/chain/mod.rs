@@ -3,6 +3,7 @@
 //! // AFTER THIS POINT: no stage knows about links, D-H rows, cross-sections or YAML, and a failure is a bug.
 
 mod beam;
+mod beam_axis;
 mod body;
 mod count;
 mod cut;
@@ -24,6 +25,7 @@ mod tree;
 mod value;
 
 pub use beam::{Beam, Inside, Moduli, Outline, Section, Side};
+pub use beam_axis::BeamAxis;
 pub use body::{Axis, Body, Coordinate, CoordinateKind, Inertia, Part, Step};
 pub use cut::Cut;
 pub use cylinder::{Cylinder, Linkage, Pin, Pump, Valve};

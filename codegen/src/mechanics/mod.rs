@@ -7,6 +7,8 @@
 mod acts;
 mod articulated;
 mod axis_rotation;
+#[cfg(test)]
+mod beam_axis;
 mod columns;
 mod connectors;
 mod contact;
