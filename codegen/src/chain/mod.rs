@@ -39,7 +39,7 @@ pub use loops::Loops;
 pub use parameter::{Bound, Parameter, Refusal, Relation};
 pub use profile::{Profile, Ramp, Segment};
 pub use run::{Analyses, Run};
-pub use strain::{Attachment, Line, LinePart, Strain};
+pub use strain::{Attachment, Line, LinePart, PadDirection, Sliding, Strain};
 pub use support::{Support, SupportKinematics};
 pub use value::{ParameterId, Value};
 

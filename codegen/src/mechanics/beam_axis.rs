@@ -151,8 +151,7 @@ impl<'a, 'g> AxisPoint<'a, 'g> {
                 k if k == n => (before.squared(), self.section * (0.5 + self.past_end.max(self.model.zero()))),
                 _ => (before.squared() - after * (2.0 - after), 0.5 * self.section),
             };
-            let middle = if element == 0 { Value::ZERO } else { 0.5 * self.section_length() };
-            carried.push((Place { body, along: middle }, *origin + x * rotation.axis(Axis::X), weight));
+            carried.push((self.middle(element), *origin + x * rotation.axis(Axis::X), weight));
             if element < n {
                 let end = if element == 0 { 0.5 * self.section_length() } else { self.section_length() };
                 let joint = self.pose(element + 1).origin;
@@ -163,8 +162,14 @@ impl<'a, 'g> AxisPoint<'a, 'g> {
     }
 
     /// The elements that carry a moment at P, and the share that each carries.
-    pub fn turned(&self) -> Vec<(BodyId, Expr<'g>)> {
-        self.axis.elements().enumerate().map(|(element, body)| (body, self.share(element))).collect()
+    pub fn turned(&self) -> Vec<(Place, Expr<'g>)> {
+        (0..=self.axis.sections).map(|element| (self.middle(element), self.share(element))).collect()
+    }
+
+    /// Where an element touches the curve: its middle, and the beginning of the beam.
+    fn middle(&self, element: usize) -> Place {
+        let along = if element == 0 { Value::ZERO } else { 0.5 * self.section_length() };
+        Place { body: BodyId(self.axis.first.0 + element), along }
     }
 
     /// d as a number of the chain.

@@ -7,7 +7,6 @@
 mod acts;
 mod articulated;
 mod axis_rotation;
-#[cfg(test)]
 mod beam_axis;
 mod columns;
 mod connectors;
@@ -33,6 +32,7 @@ mod motion_derivatives;
 mod newton_euler;
 mod omissions;
 mod outward;
+mod pads;
 mod place;
 mod points;
 mod power_limits;

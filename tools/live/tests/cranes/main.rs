@@ -29,5 +29,6 @@ mod rope;
 mod rows;
 mod servos;
 mod sheaves;
+mod sliding_beams;
 mod stresses;
 mod telescopes;
