@@ -11,7 +11,7 @@
 //!                             c_0 = d (min(σ, 1) − τ_0²/2),  c_n = d (τ_{n−1}²/2 + max(0, σ − n))
 //! ```
 //!
-//! r_0 is the beginning of the beam. Beyond both ends the curve continues straight on. A motion of the coordinate j, whose joint is that of
+//! `r_0` is the beginning of the beam. Beyond both ends the curve continues straight on. A motion of the coordinate j, whose joint is that of
 //! element m, moves the point that is fixed to the curve with `Ω_j P` if m = 0, and otherwise with `ω_j × Σ_{k ≥ m} c_k x̂_k`.
 //!
 //! Where a force acts at P(s), each element carries a share of it at a point of its own (de Casteljau's algorithm): `τ_{k−1}² + (1 − τ_k)² − 1`
@@ -37,7 +37,7 @@ pub struct AxisPoint<'a, 'g> {
     before_start: Expr<'g>,
     /// d, m.
     section: Expr<'g>,
-    /// τ_k.
+    /// `τ_k`
     passed: Vec<Expr<'g>>,
 }
 

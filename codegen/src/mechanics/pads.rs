@@ -37,9 +37,9 @@ struct Measured<'g> {
     length: Expr<'g>,
     /// ∂ℓ/∂s
     by_place: Expr<'g>,
-    /// ∂ℓ/∂q_j of the coordinates that move the beam.
+    /// `∂ℓ/∂q_j` of the coordinates that move the beam.
     by_beam: Vec<(usize, Expr<'g>)>,
-    /// ∂ℓ/∂q_j of those that move the pad.
+    /// `∂ℓ/∂q_j` of those that move the pad.
     by_pad: Vec<(usize, Expr<'g>)>,
     on_pad: Pull<'g>,
     on_beam: Vec<(Place, Pull<'g>)>,
