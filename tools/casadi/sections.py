@@ -1,10 +1,10 @@
 """Sections of beams within their elements: at pins, loads, steps and at the end."""
 
-import math
-
 from cuts import Cut
 from transforms import translate
 
+# Farther along than whatever acts beside an element, and nearer than a link on its end.
+BEYOND_ALL_POINTS = 1e300
 # Places of a beam that are closer than this fraction of its length are one place.
 SAME = 1e-9
 
@@ -28,7 +28,7 @@ def add_sections(crane, spans):
                 place, whole = crane.spec.default(distance), crane.spec.default(length)
                 limit = place - SAME * whole if before else place + SAME * whole
                 if not before and place >= whole * (1 - SAME):
-                    limit = math.inf
+                    limit = BEYOND_ALL_POINTS
                 added[index].append(Cut(body.transform @ shift, index, rest, limit))
                 moduli.append(of_section)
         beam.sections = moduli
