@@ -37,6 +37,7 @@ class Coordinate:
     is_element: bool
     is_base: bool
     is_in_vector: bool = False
+    is_held: bool = False
 
 
 @dataclass

@@ -88,6 +88,7 @@ def slide(crane, name):
     motion = crane.move(name, "x")
     for symbol in HELD:
         motion = motion @ crane.move(name, symbol)
+        crane.coordinates[-1].is_held = True
     return motion
 
 
