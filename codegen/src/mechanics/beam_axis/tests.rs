@@ -124,12 +124,11 @@ fn slopes_over_coordinates_are_those_of_differences() {
         for j in 0..q.len() {
             let [before, after] = [-H, 2.0 * H].map(|h| {
                 q[j] += h;
-                let moved = [0, 1].map(|what| {
+                [0, 1].map(|what| {
                     at((&chain, n), &q, s, |point, _| {
                         numbers(if what == 0 { point.position() } else { point.cross_axis(Axis::Y) })
                     })
-                });
-                moved
+                })
             });
             q[j] -= H;
             for what in [0, 1] {
