@@ -11,6 +11,7 @@ include!(concat!(env!("OUT_DIR"), "/cranes.rs"));
 pub const EXAMPLES: &[(&str, &str)] = &[
     ("loader_crane", include_str!("../examples/loader_crane.yaml")),
     ("parallel_harvester", include_str!("../examples/parallel_harvester.yaml")),
+    ("telescopic_loader", include_str!("../examples/telescopic_loader.yaml")),
 ];
 
 /// The spec of a shipped crane (YAML), by its name.

@@ -13,6 +13,7 @@ from inertias import read_pseudo_inertia
 from loop_joints import read_loop_joint
 from profiles import read_profile
 from sections import add_sections
+from telescopes import length_of, read_pads, slide
 from transforms import classic_dh, modified_dh, place, rotate, rotate_by_vector, translate, translate_along
 
 ROTATIONS = {"psi": "z", "theta": "y", "phi": "x"}
@@ -36,6 +37,7 @@ class Coordinate:
     is_element: bool
     is_base: bool
     is_in_vector: bool = False
+    is_held: bool = False
 
 
 @dataclass
@@ -131,6 +133,8 @@ class Connector:
     push: object
     progression: object = 0
     falls: int = 1
+    clearance: object = 0
+    pad: object = None
 
     def pulls(self, within=False):
         """Forces on the points at a tension of 1 N: minus the slopes of the length, `within`: of the parts between two bodies."""
@@ -139,6 +143,15 @@ class Connector:
         slopes = ca.gradient(length_over(moved, self.falls, chosen), ca.vertcat(*moved))
         forces = -ca.densify(ca.substitute(slopes, ca.vertcat(*moved), ca.vertcat(*self.points)))
         return ca.vertsplit(forces, 3)
+
+    def wrenches(self, within=False):
+        """What acts on bodies at a tension of 1: the body, the distance along it, force, moment about the world's origin."""
+        if self.pad is not None:
+            for station, wrench in zip(self.pad.stations, self.pad.wrenches()):
+                yield station.body, station.along, wrench[:3], wrench[3:]
+        elif self.points:
+            for body, point, along, pull in zip(self.bodies, self.points, self.along, self.pulls(within)):
+                yield body, along, pull, ca.cross(point, pull)
 
 
 def length_over(points, falls, chosen=None):
@@ -291,6 +304,11 @@ def read_crane(path):
         crane.connectors.append(read_connector(crane, written, spans))
     for written in spec.get("couplings", []):
         crane.connectors.append(read_coupling(crane, written))
+    for link in spec.keys["links"]:
+        if "slides_in" in link.get("beam", {}):
+            for pad, stiffness, damping, clearance in read_pads(crane, link, spans, index_of):
+                law = (False, stiffness, damping, 0, 0)
+                crane.connectors.append(Connector([], [], [], [], pad.value(), *law, clearance=clearance, pad=pad))
     for written in spec.get("loop_joints", []):
         crane.loop_joints.append(read_loop_joint(spec, written, spans, carrier))
     for written in spec.get("points", []):
@@ -309,7 +327,13 @@ def read_links(crane):
         name = link["name"]
         if "on" in link:
             place = read_place(crane, link["on"], spans)
-        joint, frame = read_joint(crane, link, is_base=index == 0)
+        if "slides_in" in link.get("beam", {}):
+            outer = spans[link["beam"]["slides_in"]["beam"]]
+            place = Place(outer.bodies[0].transform, index_of(crane, outer.bodies[0]), 0.0)
+            behind = length_of(outer) - crane.spec.number(link["beam"]["slides_in"]["overlap"])
+            joint = frame = translate(x=behind) @ slide(crane, name)
+        else:
+            joint, frame = read_joint(crane, link, is_base=index == 0)
         if "rope" in link:
             joint = frame = frame @ swing(crane, f"{name}_1")
         crane.cuts.append(Cut(place.transform @ joint, len(crane.bodies)))

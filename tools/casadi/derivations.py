@@ -24,6 +24,22 @@ def in_cut(cut, force, moment):
     return [turn @ force, turn @ (moment - ca.cross(origin, force))]
 
 
+# Within its clearance, a pad centres the beam with this fraction of its stiffness.
+CENTRING = 1e-3
+
+
+def pressed(length, connector):
+    """How far a connector is beyond its length without force, times its stiffness the force; within the clearance of a pad, a fraction of it."""
+    stretch, clearance = length - connector.length, connector.clearance
+    beyond, below = stretch - (1 - CENTRING) * clearance, stretch + (1 - CENTRING) * clearance
+    return ca.if_else(stretch > clearance, beyond, ca.if_else(stretch < -clearance, below, CENTRING * stretch if connector.pad and not is_zero(clearance) else stretch))
+
+
+def is_zero(number):
+    """Whether a number is 0, not a parameter."""
+    return ca.SX(number).is_zero()
+
+
 class Derivations:
     """The quantities of a crane as named CasADi expressions over (t, q, v, parameters)."""
 
@@ -141,12 +157,10 @@ class Derivations:
             if load.body == place:
                 yield load.along, load.force, load.moment + ca.cross(load.position, load.force)
         for connector in self.crane.connectors:
-            if not connector.points:
-                continue
             tension = self.connector(connector)[2]
-            for end, point, along, pull in zip(connector.bodies, connector.points, connector.along, connector.pulls()):
-                if end == place:
-                    yield along, tension * pull, ca.cross(point, tension * pull)
+            for body, along, force, moment in connector.wrenches():
+                if body == place:
+                    yield along, tension * force, tension * moment
 
     def transmitted(self):
         """What each cylinder and the parts of each connector between two bodies add to the wrench at each cut, with a force of 1 N."""
@@ -156,12 +170,12 @@ class Derivations:
                 force, moment = cylinders.on_part_beyond(cylinder, cut, self.crane.bodies) if self.by_oil else (ca.SX(3, 1), ca.SX(3, 1))
                 of_cylinders += in_cut(cut, force, moment)
         for connector in self.crane.connectors:
-            pulls = connector.pulls(within=True) if connector.points else []
+            wrenches = list(connector.wrenches(within=True))
             for cut in self.crane.cuts:
                 force, moment = ca.SX(3, 1), ca.SX(3, 1)
-                for body, point, along, pull in zip(connector.bodies, connector.points, connector.along, pulls):
+                for body, along, pull, turn in wrenches:
                     if cut.has_beyond(self.crane.bodies, body, along):
-                        force, moment = force + pull, moment + ca.cross(point, pull)
+                        force, moment = force + pull, moment + turn
                 of_connectors += in_cut(cut, force, moment)
         return {"cylinder_wrenches": ca.vertcat(*of_cylinders), "connector_wrenches": ca.vertcat(*of_connectors)}
 
@@ -277,7 +291,7 @@ class Derivations:
         """
         length = connector.strain
         rate = self.rate(length) if moving else ca.SX(0)
-        stretch = length - connector.length
+        stretch = pressed(length, connector)
         if connector.is_rope:
             stretch = ca.if_else(stretch > 0, stretch, 0)
             growth = 1 + connector.damping * (rate - (self.rate(ca.SX(connector.length)) if moving else 0))
@@ -285,8 +299,17 @@ class Derivations:
         else:
             cubic = connector.progression * stretch**3
             force = connector.stiffness * stretch + cubic - connector.push + connector.damping * rate
-        stored = connector.stiffness * stretch**2 / 2 + connector.progression * stretch**4 / 4 - connector.push * stretch
+        stored = connector.stiffness * self.stored_by(stretch, length, connector) + connector.progression * stretch**4 / 4 - connector.push * stretch
         return length, rate, force, stored
+
+    @staticmethod
+    def stored_by(stretch, length, connector):
+        """`½ stretch²`, or its integral where a pad has clearance."""
+        clearance = connector.clearance
+        if connector.pad is None or is_zero(clearance):
+            return stretch**2 / 2
+        depth = ca.fabs(length) - clearance
+        return ca.if_else(depth > 0, depth**2 / 2 + CENTRING * clearance * (depth + clearance / 2), CENTRING * length**2 / 2)
 
     def connector_forces(self):
         """Generalized forces of elements between two points by virtual work, power of winches, energies and damping at rest."""
@@ -312,7 +335,7 @@ class Derivations:
                 growth = 1 + connector.damping * (running - self.rate(ca.SX(connector.length)))
                 law = ca.if_else(taut, connector.stiffness * (stretched - connector.length), 0) * ca.if_else(growth > 0, growth, 0)
             else:
-                stretch = stretched - connector.length
+                stretch = pressed(stretched, connector)
                 law = connector.stiffness * stretch + connector.progression * stretch**3 + connector.damping * running
             slopes = ca.substitute(
                 ca.vertcat(ca.jacobian(law, stretched), ca.jacobian(law, running)),

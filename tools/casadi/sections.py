@@ -1,10 +1,10 @@
 """Sections of beams within their elements: at pins, loads, steps and at the end."""
 
-import math
-
 from cuts import Cut
 from transforms import translate
 
+# Farther along than whatever acts beside an element, and nearer than a link on its end.
+BEYOND_ALL_POINTS = 1e300
 # Places of a beam that are closer than this fraction of its length are one place.
 SAME = 1e-9
 
@@ -28,7 +28,7 @@ def add_sections(crane, spans):
                 place, whole = crane.spec.default(distance), crane.spec.default(length)
                 limit = place - SAME * whole if before else place + SAME * whole
                 if not before and place >= whole * (1 - SAME):
-                    limit = math.inf
+                    limit = BEYOND_ALL_POINTS
                 added[index].append(Cut(body.transform @ shift, index, rest, limit))
                 moduli.append(of_section)
         beam.sections = moduli
@@ -65,9 +65,9 @@ def within(crane, beam, span, element, index):
     for step in beam.steps:
         if start + SAME * whole < step <= start + length + SAME * whole:
             add(step - start, True)
-    for along in pins(crane, index):
+    for along, jumps in pins(crane, index):
         value = spec.default(along)
-        add(0.0 if value <= 0 else beam.lengths[element] if value >= length else along, True)
+        add(0.0 if value <= 0 else beam.lengths[element] if value >= length else along, jumps)
     for value, (distance, jumps) in sorted(places.items()):
         before, after = beam.moduli_beside(start + value)
         if last and value >= length * (1 - SAME):
@@ -83,10 +83,16 @@ def within(crane, beam, span, element, index):
 
 
 def pins(crane, index):
-    """Distances along a body at which something acts on it, or another link begins."""
-    yield from (body.at for body in crane.bodies if body.parent == index and body.at is not None)
-    yield from (load.at for load in crane.loads if load.body == index)
+    """Distances along a body at which something acts on it, or another link begins, and whether forces jump there: what slides on pads carries
+    their forces in the middles of its elements."""
+    yield from ((body.at, True) for body in crane.bodies if body.parent == index and body.at is not None)
+    yield from ((load.at, True) for load in crane.loads if load.body == index)
     for cylinder in crane.cylinders:
-        yield from (at for body, at in cylinder.pins if body == index)
+        yield from ((at, True) for body, at in cylinder.pins if body == index)
     for connector in crane.connectors:
-        yield from (at for body, at in zip(connector.bodies, connector.at) if body == index)
+        yield from ((at, True) for body, at in zip(connector.bodies, connector.at) if body == index)
+        if connector.pad is not None:
+            pad, *beam = connector.pad.stations
+            yield from ((pad.at, True) for _ in range(pad.body == index))
+            middle = connector.pad.length / max(connector.pad.sections, 1) / 2
+            yield from ((middle, False) for station in beam[1 : connector.pad.sections] if station.body == index)

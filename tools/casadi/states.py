@@ -55,11 +55,11 @@ def reach(crane, far):
     """How far each coordinate strays from the guess, m and rad."""
     if not far:
         return np.array([5e-3 if c.is_element or not c.is_rotation else 2e-2 for c in crane.coordinates])
-    # At ±0.5, an element is bent far beyond any practical case; θ of a base within ±1.2 stays clear of its singularity at π/2.
+    # At ±0.5, an element is bent far beyond any practical case; θ of a base, or of a beam on pads, within ±1.2 stays clear of its singularity at π/2.
     return np.array(
         [
             0.5 if c.is_element
-            else 1.2 if c.is_base and c.name.endswith("_theta")
+            else 1.2 if (c.is_base or c.is_held) and c.name.endswith("_theta")
             else np.pi if c.is_rotation
             else 1.0
             for c in crane.coordinates

@@ -40,6 +40,8 @@ macro_rules! laws {
             $($(#[$doc])* $law($law),)*
             /// A rope, which pulls and never pushes.
             Rope(Rope),
+            /// A pad with clearance.
+            Clearance(Clearance),
             /// An end stop.
             Stop(Stop),
             /// Friction of a joint.
@@ -59,7 +61,7 @@ macro_rules! laws {
                 match self {
                     $(Law::$law(law) => Some(law.length.at(parameters)),)*
                     Law::Rope(rope) => Some(rope.length.start(parameters)),
-                    Law::Stop(_) | Law::Friction(_) => None,
+                    Law::Clearance(_) | Law::Stop(_) | Law::Friction(_) => None,
                 }
             }
         }
@@ -77,6 +79,17 @@ pub struct Rope {
     pub damping: Value,
     /// ℓ₀(t), m: its length without force; a winch changes it.
     pub length: Profile,
+}
+
+/// A pad on both sides of what it holds, with clearance: `F = k (s − h + h/1000) + d ṡ` with `h = clamp(s, −c, c)`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Clearance {
+    /// k, N/m or N m/rad.
+    pub stiffness: Value,
+    /// d, N s/m or N m s/rad.
+    pub damping: Value,
+    /// c on each side, m or rad.
+    pub clearance: Value,
 }
 
 /// The stiffness k of a rope.
@@ -164,7 +177,7 @@ impl Force {
     pub fn coordinate(&self) -> Option<CoordinateId> {
         match self.strain {
             Strain::Coordinate(id) => Some(id),
-            Strain::Line(_) | Strain::Coupling { .. } => None,
+            Strain::Line(_) | Strain::Coupling { .. } | Strain::Sliding(_) => None,
         }
     }
 

@@ -3,6 +3,7 @@
 //! // AFTER THIS POINT: no stage knows about links, D-H rows, cross-sections or YAML, and a failure is a bug.
 
 mod beam;
+mod beam_axis;
 mod body;
 mod count;
 mod cut;
@@ -24,6 +25,7 @@ mod tree;
 mod value;
 
 pub use beam::{Beam, Inside, Moduli, Outline, Section, Side};
+pub use beam_axis::BeamAxis;
 pub use body::{Axis, Body, Coordinate, CoordinateKind, Inertia, Part, Step};
 pub use cut::Cut;
 pub use cylinder::{Cylinder, Linkage, Pin, Pump, Valve};
@@ -37,7 +39,7 @@ pub use loops::Loops;
 pub use parameter::{Bound, Parameter, Refusal, Relation};
 pub use profile::{Profile, Ramp, Segment};
 pub use run::{Analyses, Run};
-pub use strain::{Attachment, Line, LinePart, Strain};
+pub use strain::{Attachment, Line, LinePart, PadDirection, Sliding, Strain};
 pub use support::{Support, SupportKinematics};
 pub use value::{ParameterId, Value};
 

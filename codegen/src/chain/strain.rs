@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{BodyId, Chain, CoordinateId, CoordinateKind, Frame, Value};
+use super::{Axis, BeamAxis, BodyId, Chain, CoordinateId, CoordinateKind, Frame, Value};
 
 /// A length or an angle that depends on the pose.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +20,34 @@ pub enum Strain {
         /// r
         ratio: Value,
     },
+    /// Where the axis of a beam passes a pad on which it slides, m, or how far it is twisted against it, rad.
+    Sliding(Box<Sliding>),
+}
+
+/// The axis of a beam as seen from a pad on which the beam slides.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sliding {
+    /// The pad: a point of a body.
+    pub pad: Attachment,
+    /// The beam that slides on it.
+    pub beam: BeamAxis,
+    /// `s₀` in `s = s₀ ± q_j`, the place of the beam at the pad, m from the beginning of the beam.
+    pub start: Value,
+    /// Whether the sign is positive.
+    pub grows: bool,
+    /// j
+    pub coordinate: CoordinateId,
+    /// What is measured.
+    pub direction: PadDirection,
+}
+
+/// A direction in which a pad holds a beam.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PadDirection {
+    /// Along an axis of the body that carries the pad.
+    Along(Axis),
+    /// Against twist: `z · y`, with z of the body that carries the pad and y of the beam, the sine of the angle.
+    Twist,
 }
 
 /// A line through points, straight between them: from one end to the other, for a rope over the sheaves between.
@@ -55,14 +83,37 @@ impl Strain {
     pub fn line(&self) -> Option<&Line> {
         match self {
             Strain::Line(line) => Some(line),
-            Strain::Coordinate(_) | Strain::Coupling { .. } => None,
+            Strain::Coordinate(_) | Strain::Coupling { .. } | Strain::Sliding(_) => None,
         }
     }
 
-    /// Whether it is the length of a line of which some part is between two bodies.
+    /// The points of a line, the point of a pad, or none.
+    #[must_use]
+    pub fn points(&self) -> &[Attachment] {
+        match self {
+            Strain::Line(line) => &line.points,
+            Strain::Sliding(sliding) => std::slice::from_ref(&sliding.pad),
+            Strain::Coordinate(_) | Strain::Coupling { .. } => &[],
+        }
+    }
+
+    /// A beam as seen from a pad, if it is that.
+    #[must_use]
+    pub fn sliding(&self) -> Option<&Sliding> {
+        match self {
+            Strain::Sliding(sliding) => Some(sliding),
+            Strain::Coordinate(_) | Strain::Coupling { .. } | Strain::Line(_) => None,
+        }
+    }
+
+    /// Whether a force pulls or pushes bodies against each other: at a pad, or along a line of which some part is between two bodies.
     #[must_use]
     pub fn joins_bodies(&self) -> bool {
-        self.line().is_some_and(|line| line.parts().any(LinePart::joins_bodies))
+        match self {
+            Strain::Line(line) => line.parts().any(LinePart::joins_bodies),
+            Strain::Sliding(_) => true,
+            Strain::Coordinate(_) | Strain::Coupling { .. } => false,
+        }
     }
 }
 
@@ -102,6 +153,7 @@ impl Chain {
                 of_parts.into_iter().collect()
             }
             Strain::Coupling { coordinate: one, leader: other, .. } => vec![*one.min(other), *one.max(other)],
+            Strain::Sliding(sliding) => self.changing_at(sliding),
         }
     }
 
@@ -111,6 +163,8 @@ impl Chain {
         match strain {
             Strain::Line(line) => line.points.iter().flat_map(|point| self.reach(point)).collect(),
             Strain::Coordinate(_) | Strain::Coupling { .. } => self.spanned(strain),
+            // All that move the pad, the beam or both.
+            Strain::Sliding(sliding) => [self.reach(&sliding.pad), self.coordinates_of(sliding.beam.last())].concat(),
         }
     }
 
@@ -119,6 +173,10 @@ impl Chain {
     pub fn kind_of(&self, strain: &Strain) -> CoordinateKind {
         match strain {
             Strain::Line(_) => CoordinateKind::Translation,
+            Strain::Sliding(sliding) => match sliding.direction {
+                PadDirection::Along(_) => CoordinateKind::Translation,
+                PadDirection::Twist => CoordinateKind::Rotation,
+            },
             Strain::Coordinate(coordinate) | Strain::Coupling { coordinate, .. } => self.coordinates[coordinate.0].kind,
         }
     }
@@ -127,6 +185,17 @@ impl Chain {
     #[must_use]
     pub fn changing(&self, part: LinePart<'_>) -> Vec<CoordinateId> {
         self.between(&part.ends.map(|end| self.reach(end)))
+    }
+
+    /// The coordinates that change what a pad measures, in the order of q: those that move the pad and the whole beam as one body do not.
+    #[must_use]
+    pub fn changing_at(&self, sliding: &Sliding) -> Vec<CoordinateId> {
+        let [first, last] = [sliding.beam.first, sliding.beam.last()].map(|body| self.coordinates_of(body));
+        let mut changing: BTreeSet<CoordinateId> =
+            self.between(&[self.reach(&sliding.pad), last.clone()]).into_iter().collect();
+        changing.extend(self.between(&[first, last]));
+        changing.insert(sliding.coordinate);
+        changing.into_iter().collect()
     }
 
     /// The distance between two points at a pose, m.

@@ -433,6 +433,29 @@ catalogue! {
     E161 wound_up(rope, length) "the free length of rope `{rope}` does not stay above zero", "it reaches {length} m, and EA divided by it is the stiffness",
         "write lengths above 0 m, or a `stiffness` in N/m instead of `axial_stiffness`";
 
+    // Telescopes.
+    /// A beam that slides in another one has a prismatic joint along x.
+    E170 slider_joint(link) "the joint of link `{link}` is not prismatic along x", "its beam slides in another one along its x",
+        "write `joint: {{prismatic: {{axis: x}}}}`: the coordinate is how far the beam has moved out";
+    /// A beam that slides in another one is placed by that.
+    E171 placed_slider(link, key) "link `{link}` slides in a beam, and has `{key}`", "the beam in which it slides and `overlap` place it",
+        "remove `{key}`; `overlap` is how far the beam is in the outer one where its coordinate is 0";
+    /// What a beam slides in is a beam.
+    E172 slides_in_no_beam(link, outer) "link `{link}` slides in `{outer}`, which is not a beam", "only beams hold pads",
+        "give `{outer}` a `beam:`, with `sections: rigid` if it does not bend";
+    /// The outer beam of a telescope is straight and has equal sections.
+    E173 uneven_outer(outer, key) "beam `{outer}`, in which another one slides, has `{key}`", "pads move on straight beams of equal sections",
+        "describe `{outer}` by `sections`, `material` and `section` or `parts`, without `bend`";
+    /// The inner beam of a telescope is straight and has equal sections.
+    E174 uneven_slider(link, key) "beam `{link}` slides in another one, and has `{key}`", "pads move on straight beams of equal sections",
+        "describe it by `sections`, `material` and `section` or `parts`, without `bend`";
+    /// The overlap of two beams of a telescope is within both.
+    E175 overlap(link, overlap, length) "the overlap of `{link}` is {overlap} m, more than a beam of {length} m", "where the coordinate is 0, the inner beam is that far in the outer one",
+        "write an overlap of at most the length of both beams; the coordinate shortens it";
+    /// Pads hold a beam against twist.
+    E176 untwisted(link) "no pad holds `{link}` against twist", "the third number of both stiffnesses is 0",
+        "write the stiffness against twist in N m/rad as the third number of `front`, of `rear` or of both";
+
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.
     W001 modulus(what, subject, given, usual, help) "{what} of {subject} is {given} Pa", "usual: {usual} Pa", "{help}";

@@ -234,7 +234,7 @@ fn connector_info(chain: &Chain, connector: &Force) -> TokenStream {
     let [first, end] = Chain::range(&chain.spanned(&connector.strain)).map(integer);
     let pieces = integer(connector.pieces());
     let line = connector.strain.line();
-    let points = list(line.into_iter().flat_map(|line| &line.points).map(|point| attachment_info(chain, point)));
+    let points = list(connector.strain.points().iter().map(|point| attachment_info(chain, point)));
     let falls = integer(line.map_or(1, |line| line.falls as usize));
     let kind = match chain.kind_of(&connector.strain) {
         CoordinateKind::Translation => quote!(CoordinateKind::Translation),

@@ -4,10 +4,9 @@ use super::elements::{Element, Elements};
 use super::kinematics::Kinematics;
 use super::laws::At;
 use super::model::Model;
-use super::place::Place;
+use super::place::{Place, Pull};
 use super::profile;
 use super::strains::Strained;
-use super::vector::Vec3;
 use crate::chain::{Force, Group, Law, Profile, Strain};
 use crate::symbolic::Expr;
 
@@ -73,22 +72,18 @@ pub fn pieces<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     winches.flat_map(Profile::pieces).flatten().map(|time| model.number(&time)).collect()
 }
 
-/// Forces on the bodies at the ends and at sheaves, in the world: place, point, force.
-pub fn pulls<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<(Place, Vec3<'g>, Vec3<'g>)> {
+/// Forces on the bodies at the ends, at sheaves and at pads, in the world.
+pub fn pulls<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<(Place, Pull<'g>)> {
     let on_bodies =
         |Pulled { element: Element { force: Force { strain, .. }, strained, .. }, force, .. }: Pulled<'_, 'g>| {
             let pulls = strained.pulls(strain, |_| true).into_iter();
-            pulls.map(|(place, point, pull)| (place, point, force * pull)).collect::<Vec<_>>()
+            pulls.map(|(place, pull)| (place, pull.times(force))).collect::<Vec<_>>()
         };
     pulled(model, kinematics).flat_map(on_bodies).collect()
 }
 
-/// The same for a tension of 1 N in those parts of a line that are between two bodies; the others hold to the world.
-pub fn between_bodies<'g>(
-    model: &Model<'g>,
-    kinematics: &Kinematics<'g>,
-    strain: &Strain,
-) -> Vec<(Place, Vec3<'g>, Vec3<'g>)> {
+/// The same for a tension of 1 N at pads and in those parts of a line that are between two bodies; the others hold to the world.
+pub fn between_bodies<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, strain: &Strain) -> Vec<(Place, Pull<'g>)> {
     if !strain.joins_bodies() {
         return Vec::new();
     }

@@ -7,7 +7,7 @@ use super::acts::{Acts, Rest};
 use super::connectors;
 use super::kinematics::Kinematics;
 use super::model::Model;
-use super::place::Place;
+use super::place::{Place, Pull};
 use super::profile;
 use super::twist::Twist;
 use super::vector::{SymmetricMatrix, Vec3};
@@ -118,11 +118,11 @@ pub fn on_bodies<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Vec<
         let moment = along_own_axes(&load.moment) + model.vector(&load.position).cross(force);
         actions[body].push(Action { along: load.position[0].clone(), wrench: [force, moment] });
     }
-    for (Place { body: BodyId(body), along }, point, pull) in connectors::pulls(model, kinematics) {
+    for (Place { body: BodyId(body), along }, Pull { point, force, moment }) in connectors::pulls(model, kinematics) {
         let pose = &kinematics.poses[body];
-        let force = pose.rotation.apply_transposed(pull);
-        let lever = pose.rotation.apply_transposed(point - pose.origin);
-        actions[body].push(Action { along, wrench: [force, lever.cross(force)] });
+        let [force, lever] = [force, point - pose.origin].map(|vector| pose.rotation.apply_transposed(vector));
+        let moment = moment.map(|moment| pose.rotation.apply_transposed(moment));
+        actions[body].push(Action { along, wrench: Pull::wrench(lever, force, moment) });
     }
     actions
 }

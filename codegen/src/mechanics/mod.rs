@@ -7,6 +7,7 @@
 mod acts;
 mod articulated;
 mod axis_rotation;
+mod beam_axis;
 mod columns;
 mod connectors;
 mod contact;
@@ -31,6 +32,7 @@ mod motion_derivatives;
 mod newton_euler;
 mod omissions;
 mod outward;
+mod pads;
 mod place;
 mod points;
 mod power_limits;

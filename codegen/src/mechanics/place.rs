@@ -1,6 +1,8 @@
-//! Places on bodies.
+//! Places on bodies, and what is exerted there.
 
+use super::vector::Vec3;
 use crate::chain::{BodyId, Value};
+use crate::symbolic::Expr;
 
 /// Where a force acts on a body.
 #[derive(Clone, Debug)]
@@ -9,4 +11,38 @@ pub struct Place {
     pub body: BodyId,
     /// Position along it, m.
     pub along: Value,
+}
+
+/// A force on a body, in the world.
+#[derive(Clone, Copy, Debug)]
+pub struct Pull<'g> {
+    /// Where it acts.
+    pub point: Vec3<'g>,
+    /// Force.
+    pub force: Vec3<'g>,
+    /// A moment besides that of the force.
+    pub moment: Option<Vec3<'g>>,
+}
+
+impl<'g> Pull<'g> {
+    /// A force alone.
+    pub fn of_force(point: Vec3<'g>, force: Vec3<'g>) -> Self {
+        Pull { point, force, moment: None }
+    }
+
+    /// As many times as large.
+    pub fn times(self, tension: Expr<'g>) -> Self {
+        Pull { force: tension * self.force, moment: self.moment.map(|moment| tension * moment), ..self }
+    }
+
+    /// Force and moment about the world's origin.
+    pub fn about_origin(self) -> [Vec3<'g>; 2] {
+        Pull::wrench(self.point, self.force, self.moment)
+    }
+
+    /// Force and moment, the force acting with a lever; both vectors in the axes of the lever.
+    pub fn wrench(lever: Vec3<'g>, force: Vec3<'g>, moment: Option<Vec3<'g>>) -> [Vec3<'g>; 2] {
+        let of_force = lever.cross(force);
+        [force, moment.map_or(of_force, |moment| of_force + moment)]
+    }
 }

@@ -5,12 +5,14 @@
 //!   `u_i = m_i (p_{i+1} − p_i)/|p_{i+1} − p_i|`. `J_j = ∂ℓ/∂q_j = Σ u_i · (∂p_{i+1}/∂q_j − ∂p_i/∂q_j)`, summed over the parts of which
 //!   j moves only one end: if it moves both, their distance stays the same. `ℓ̇ = J q̇`. For a coupling `ℓ = q_j − r q_i`, `J_j = 1`,
 //!   `J_i = −r`.
+//! : for a beam as seen from a pad: [`pads`](super::pads).
 
 use std::collections::BTreeMap;
 
 use super::kinematics::{Kinematics, Pose};
 use super::model::Model;
-use super::place::Place;
+use super::pads::AtPad;
+use super::place::{Place, Pull};
 use super::vector::Vec3;
 use crate::chain::{Attachment, BodyId, CoordinateId, Line, LinePart, Strain};
 use crate::symbolic::Expr;
@@ -25,10 +27,12 @@ pub struct Strained<'g> {
     points: Vec<Vec3<'g>>,
     /// `u_i` of its parts: a tension of 1 N pulls `p_i` with `u_i`, and `p_{i+1}` with `−u_i`.
     pulls: Vec<Vec3<'g>>,
+    /// What a tension of 1 N exerts at a pad.
+    at_pad: Vec<(Place, Pull<'g>)>,
 }
 
 /// The position of an end in the world.
-fn point<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, end: &Attachment) -> Vec3<'g> {
+pub(super) fn point<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, end: &Attachment) -> Vec3<'g> {
     let at = model.vector(&end.position);
     match end.body {
         Some(BodyId(body)) => {
@@ -46,6 +50,10 @@ impl<'g> Strained<'g> {
                 Strained::without_points(model.q[*j], vec![(*j, model.graph.constant(1.0))])
             }
             Strain::Line(line) => Strained::of_line(model, kinematics, line),
+            Strain::Sliding(sliding) => {
+                let AtPad { length, jacobian, pulls } = AtPad::new(model, kinematics, sliding);
+                Strained { at_pad: pulls, ..Strained::without_points(length, jacobian) }
+            }
             Strain::Coupling { coordinate: CoordinateId(j), leader: CoordinateId(i), ratio } => {
                 let ratio = model.number(ratio);
                 let mut jacobian = vec![(*j, model.graph.constant(1.0)), (*i, -ratio)];
@@ -56,7 +64,7 @@ impl<'g> Strained<'g> {
     }
 
     fn without_points(length: Expr<'g>, jacobian: Vec<(usize, Expr<'g>)>) -> Self {
-        Strained { length, jacobian, points: Vec::new(), pulls: Vec::new() }
+        Strained { length, jacobian, points: Vec::new(), pulls: Vec::new(), at_pad: Vec::new() }
     }
 
     fn of_line(model: &Model<'g>, kinematics: &Kinematics<'g>, line: &Line) -> Self {
@@ -77,7 +85,7 @@ impl<'g> Strained<'g> {
             length = length + f64::from(part.falls) * distance;
             pulls.push(pull);
         }
-        Strained { length, jacobian: jacobian.into_iter().collect(), points, pulls }
+        Strained { length, jacobian: jacobian.into_iter().collect(), points, pulls, at_pad: Vec::new() }
     }
 
     /// ℓ̇
@@ -94,10 +102,10 @@ impl<'g> Strained<'g> {
         }
     }
 
-    /// The bodies that a tension of 1 N pulls, in the world: place, point, force; of all parts of a line or of some. Without points there are
-    /// none: the force acts on joints, like that of a drive.
-    pub fn pulls(&self, strain: &Strain, counts: impl Fn(&LinePart<'_>) -> bool) -> Vec<(Place, Vec3<'g>, Vec3<'g>)> {
-        let Some(line) = strain.line() else { return Vec::new() };
+    /// The bodies that a tension of 1 N pulls, in the world: of all parts of a line or of some, or at a pad. A strain of coordinates has none:
+    /// its force acts on joints, like that of a drive.
+    pub fn pulls(&self, strain: &Strain, counts: impl Fn(&LinePart<'_>) -> bool) -> Vec<(Place, Pull<'g>)> {
+        let Some(line) = strain.line() else { return self.at_pad.clone() };
         let mut sums: Vec<Option<Vec3<'g>>> = vec![None; self.points.len()];
         for (index, (_, pull)) in line.parts().zip(&self.pulls).enumerate().filter(|(_, (part, _))| counts(part)) {
             for (sum, pull) in sums[index..].iter_mut().zip([*pull, -*pull]) {
@@ -105,7 +113,8 @@ impl<'g> Strained<'g> {
             }
         }
         let of_point = |((end, point), pull): ((&Attachment, &Vec3<'g>), Option<Vec3<'g>>)| {
-            Some((Place { body: end.body?, along: end.position[0].clone() }, *point, pull?))
+            let place = Place { body: end.body?, along: end.position[0].clone() };
+            Some((place, Pull::of_force(*point, pull?)))
         };
         line.points.iter().zip(&self.points).zip(sums).filter_map(of_point).collect()
     }

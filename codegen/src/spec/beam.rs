@@ -7,7 +7,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, Unexpected, Visitor};
 
-use super::{Angle, Either, Inertia, Number, Spanned, Vector};
+use super::{Angle, Either, Inertia, Number, SlidesIn, Spanned, Vector};
 
 /// A beam along x of its link: `sections`, `material` and `section`, or `elements` and `springs` one by one.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -37,6 +37,8 @@ pub struct Beam {
     pub elements: Option<Spanned<Vec<Spanned<Element>>>>,
     /// Springs between the elements, n of them.
     pub springs: Option<Spanned<Vec<Spanned<Spring>>>>,
+    /// The beam in which it slides, for a stage of a telescope. The joint of its link is then `{prismatic: {axis: x}}`.
+    pub slides_in: Option<Spanned<SlidesIn>>,
 }
 
 /// Number of sections of a beam.

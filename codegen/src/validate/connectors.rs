@@ -79,7 +79,7 @@ impl<'a> Check<'a> {
     }
 
     /// Registers the name of a connector or a coupling: like cylinders, they have result columns for length and force.
-    fn register_connector(&mut self, name: &str, span: Span, cylinders: &[Cylinder]) {
+    pub(super) fn register_connector(&mut self, name: &str, span: Span, cylinders: &[Cylinder]) {
         self.register_name("connectors", name, "an earlier connector".into(), span);
         if cylinders.iter().any(|cylinder| cylinder.name == name) {
             self.report(rule::duplicate_name(span, "elements", name, "a cylinder"));

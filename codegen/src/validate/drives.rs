@@ -149,6 +149,7 @@ impl<'a> Check<'a> {
             let Some(id) = coordinate else { continue };
             let owner = match &self.owners[id.0] {
                 Owner::Beam(link) => Some(format!("the springs of beam `{link}`")),
+                Owner::Pads(link) => Some(format!("the pads of beam `{link}`")),
                 _ if drives.iter().any(|drive| drive.coordinate == id) => Some("a drive".into()),
                 _ => None,
             };
@@ -196,6 +197,7 @@ impl<'a> Check<'a> {
             Owner::Joint => None,
             Owner::Base => Some("the free base".into()),
             Owner::Beam(link) => Some(format!("the springs of beam `{link}`")),
+            Owner::Pads(link) => Some(format!("the pads of beam `{link}`")),
         }
     }
 

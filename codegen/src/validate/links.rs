@@ -2,6 +2,7 @@
 
 use super::limits::Limit;
 use super::on::Attached;
+use super::slides_in::{Outer, slides_in};
 use super::{Check, LinkBodies, Owner};
 use crate::chain::{Axis, Body, BodyId, Chain, Coordinate, CoordinateId, CoordinateKind, Step, Value};
 use crate::diagnostic::{Span, rule};
@@ -49,8 +50,15 @@ impl<'a> Check<'a> {
         for (index, link) in links.iter().enumerate() {
             match &link.value {
                 Some(inside) => {
-                    let attached = self.attached(links, index, previous.as_ref());
-                    previous = Some(self.link(inside, index == 0, attached));
+                    previous = Some(if slides_in(inside).is_some() {
+                        let (attached, outer) = self.slid(links, index).unzip();
+                        // What a link is attached to after a mistake matters to no other check.
+                        self.unknown.links |= attached.is_none();
+                        self.link(inside, index == 0, attached.unwrap_or_default(), outer)
+                    } else {
+                        let attached = self.attached(links, index, previous.as_ref());
+                        self.link(inside, index == 0, attached, None)
+                    });
                 }
                 None => self.unknown.links = true,
             }
@@ -72,17 +80,20 @@ impl<'a> Check<'a> {
     }
 
     /// Appends the bodies of a link to the chain; returns where they are.
-    fn link(&mut self, link: &'a Link, is_base: bool, mut attached: Attached) -> LinkBodies {
+    fn link(&mut self, link: &'a Link, is_base: bool, mut attached: Attached, outer: Option<Outer>) -> LinkBodies {
         let name = self.name(&link.name).unwrap_or_else(|| {
             self.unknown.links = true;
             ""
         });
-        let motion = self.joint(link, name, is_base);
+        let coordinate = CoordinateId(self.coordinates.len());
+        let mut motion = self.joint(link, name, is_base);
+        motion.extend(self.held_motions(link));
         attached.path.extend(self.placed(link, motion));
 
         let first = self.bodies.len();
         let (starts, tip) = self.carried(link, name, attached);
         let own = LinkBodies { first, starts, tip };
+        self.note_stage(link, outer, &own, coordinate);
         if !name.is_empty() && self.links.insert(name, own.clone()).is_some() {
             self.report(rule::duplicate_name(link.name.span, "links", name, "an earlier link"));
         }

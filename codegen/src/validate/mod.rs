@@ -25,6 +25,7 @@ mod rope;
 mod run;
 mod section;
 mod sections;
+mod slides_in;
 
 use std::collections::BTreeMap;
 
@@ -38,6 +39,7 @@ use crate::spec::{self, Analysis, Crane, CraneSpec, Lookalike, Spanned};
 use limits::Limit;
 use names::Names;
 use section::Elastic;
+use slides_in::Stage;
 
 /// A crane without mistakes.
 #[derive(Clone, Debug)]
@@ -113,6 +115,8 @@ enum Owner {
     Joint,
     /// The springs of a beam, by link.
     Beam(String),
+    /// The pads on which a beam slides, by link.
+    Pads(String),
 }
 
 /// The position of a link in the chain.
@@ -127,6 +131,11 @@ struct LinkBodies {
 }
 
 impl LinkBodies {
+    /// Its length, m; 0 for a rigid link.
+    fn length(&self) -> Value {
+        self.starts.last().cloned().unwrap_or(Value::ZERO) + self.tip.clone()
+    }
+
     /// Its last body.
     fn last(&self) -> BodyId {
         BodyId(self.first + self.starts.len().saturating_sub(1))
@@ -169,6 +178,8 @@ struct Check<'a> {
     distributions: Vec<Option<Distribution>>,
     base: [Option<CoordinateId>; 6],
     links: BTreeMap<&'a str, LinkBodies>,
+    /// Stages of telescopes.
+    stages: Vec<Stage<'a>>,
     /// Names of bodies and coordinates after expansion.
     expanded: Names,
     /// Kinds of names of which some could not be read.
@@ -209,7 +220,8 @@ impl<'a> Check<'a> {
         let cylinders = self.cylinders(crane, &drives);
         let pump = self.pump(crane);
         self.make_drives_hydraulic(crane, &cylinders, pump.as_ref(), &mut drives);
-        let connectors = self.connectors(crane, &cylinders);
+        let mut connectors = self.connectors(crane, &cylinders);
+        connectors.extend(self.pads(&cylinders));
         let loop_joints = self.loop_joints(crane, &cylinders, &connectors);
         rotors.extend(self.rotors(crane, &drives));
         self.beam_sections(&loads, &cylinders, &connectors, &loop_joints);

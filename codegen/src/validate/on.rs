@@ -1,6 +1,7 @@
 //! What links are attached to.
 
 use super::limits::Limit;
+use super::slides_in::slides_in;
 use super::{Check, LinkBodies};
 use crate::chain::{BodyId, CoordinateId, Step, Value};
 use crate::diagnostic::{Span, rule, suggest};
@@ -30,7 +31,7 @@ impl Default for Attached {
 
 impl Attached {
     /// At a point of a body.
-    fn at(parent: BodyId, along: Value, point: [Value; 3]) -> Self {
+    pub(super) fn at(parent: BodyId, along: Value, point: [Value; 3]) -> Self {
         let mut path = Vec::new();
         translate(&mut path, point);
         Attached { parent: Some(parent), along, path }
@@ -87,7 +88,7 @@ impl<'a> Check<'a> {
     }
 
     /// The bodies of an earlier link.
-    fn earlier_link(
+    pub(super) fn earlier_link(
         &mut self,
         links: &'a [Spanned<Link>],
         index: usize,
@@ -127,7 +128,7 @@ impl<'a> Check<'a> {
         if place.tip.is_zero() {
             return Attached::at(BodyId(place.first), x.clone(), [x, y, z]);
         }
-        let length = place.starts.last().cloned().unwrap_or(Value::ZERO) + place.tip.clone();
+        let length = place.length();
         let (here, whole) = (self.now(&x), self.now(&length));
         let tolerance = WRITTEN * whole;
         let broken = rule::beside_the_beam(span, name, here, whole);
@@ -167,8 +168,11 @@ fn name_of(link: &Spanned<Link>) -> Option<&str> {
     link.value.as_ref()?.name.value.as_deref()
 }
 
-/// The link that `on` names.
+/// The link that `on` names, or in which it slides.
 fn named_on(link: &Link) -> Option<&str> {
+    if let Some(outer) = slides_in(link) {
+        return outer.value.as_ref()?.beam.value.as_deref();
+    }
     match link.on.as_ref()?.value.as_ref()? {
         Either::Short(name) => Some(name),
         Either::Full(on) => on.link.value.as_deref(),

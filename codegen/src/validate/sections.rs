@@ -3,8 +3,13 @@
 //! Forces and moments jump where a force acts on a beam, the shape jumps at a step. There, a section is known on both sides; besides these
 //! at both ends of the beam and where each of its elements begins.
 
+use std::collections::BTreeSet;
+
 use super::Check;
-use crate::chain::{Beam, BodyId, Cylinder, Force, Inside, Load, LoopJoint, Moduli, Outline, Section, Side, Value};
+use crate::chain::{
+    Axis, Beam, BodyId, Cylinder, Force, Inside, Load, LoopJoint, Moduli, Outline, PadDirection, Section, Side,
+    Sliding, Value,
+};
 use crate::expand::beam::Distribution;
 
 /// Places of an element that are closer to each other than this fraction of its beam are one place.
@@ -48,6 +53,7 @@ impl Check<'_> {
         }
         let mut pins = pins(loads, cylinders, connectors, loop_joints);
         pins.extend(self.branches());
+        pins.extend(self.middles(connectors));
         let mut beams = std::mem::take(&mut self.beams);
         for (beam, distribution) in beams.iter_mut().zip(std::mem::take(&mut self.distributions)) {
             beam.sections = self.sections_of(&beam.link, distribution.as_ref(), &pins);
@@ -61,8 +67,21 @@ impl Check<'_> {
             let BodyId(parent) = body.parent?;
             let what = || format!("attachment of {}", body.link);
             let elsewhere = body.link != self.bodies[parent].link && body.along != self.bodies[parent].length;
-            elsewhere.then(|| Pin { body: parent, along: body.along.clone(), what: what() })
+            elsewhere.then(|| Pin { body: parent, along: body.along.clone(), what: what(), jumps: true })
         })
+    }
+
+    /// The middles of the inner elements of beams that slide on pads, which carry their forces.
+    fn middles(&self, connectors: &[Force]) -> Vec<Pin> {
+        let sliding = connectors.iter().filter_map(|connector| connector.strain.sliding());
+        let inner =
+            |sliding: &'_ Sliding| sliding.beam.elements().skip(1).take(sliding.beam.sections.saturating_sub(1));
+        let elements: BTreeSet<BodyId> = sliding.flat_map(inner).collect();
+        let middle = |BodyId(body): BodyId| {
+            let along = 0.5 * self.bodies[body].length.clone();
+            Pin { body, along, what: String::new(), jumps: false }
+        };
+        elements.into_iter().map(middle).collect()
     }
 
     fn sections_of(&self, link: &str, distribution: Option<&Distribution>, pins: &[Pin]) -> Vec<Section> {
@@ -126,12 +145,18 @@ struct Pin {
     /// Position along the body, m.
     along: Value,
     what: String,
+    /// Whether forces jump there.
+    jumps: bool,
 }
 
 /// All places where forces act on bodies.
 fn pins(loads: &[Load], cylinders: &[Cylinder], connectors: &[Force], loop_joints: &[LoopJoint]) -> Vec<Pin> {
-    let pin =
-        |BodyId(body): BodyId, position: &[Value; 3], what: String| Pin { body, along: position[0].clone(), what };
+    let pin = |BodyId(body): BodyId, position: &[Value; 3], what: String| Pin {
+        body,
+        along: position[0].clone(),
+        what,
+        jumps: true,
+    };
     let mut pins: Vec<Pin> = Vec::new();
     pins.extend(loads.iter().map(|load| pin(load.body, &load.position, format!("load {}", load.name))));
     for cylinder in cylinders.iter().filter(|cylinder| cylinder.valve.is_some()) {
@@ -140,6 +165,10 @@ fn pins(loads: &[Load], cylinders: &[Cylinder], connectors: &[Force], loop_joint
         }
     }
     for connector in connectors {
+        if let Some(Sliding { pad, direction: PadDirection::Along(Axis::Y), .. }) = connector.strain.sliding() {
+            let what = format!("pads {}", connector.name.trim_end_matches("_y"));
+            pins.extend(pad.body.map(|body| pin(body, &pad.position, what)));
+        }
         let points = connector.strain.line().map_or(&[][..], |line| &line.points);
         for (index, end) in points.iter().enumerate() {
             let what = if index == 0 || index + 1 == points.len() { "attachment" } else { "sheave" };
@@ -156,7 +185,8 @@ fn pins(loads: &[Load], cylinders: &[Cylinder], connectors: &[Force], loop_joint
 
 /// All that is at one place.
 fn words(group: &[&Mark]) -> String {
-    group.iter().map(|mark| mark.what.as_str()).collect::<Vec<_>>().join(" and ")
+    let named = group.iter().map(|mark| mark.what.as_str()).filter(|what| !what.is_empty());
+    named.collect::<Vec<_>>().join(" and ")
 }
 
 /// The elements of a beam.
@@ -202,7 +232,7 @@ impl Elements<'_, '_> {
             } else {
                 pin.along.clone()
             };
-            marks.push(mark(element, distance, pin.what.clone(), true));
+            marks.push(mark(element, distance, pin.what.clone(), pin.jumps));
         }
         marks.sort_by(|a, b| a.element.cmp(&b.element).then(now(&a.distance).total_cmp(&now(&b.distance))));
         marks

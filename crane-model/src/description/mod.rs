@@ -378,7 +378,7 @@ pub struct InputInfo {
 pub struct ConnectorInfo {
     /// Name.
     pub name: Text,
-    /// Its points: both ends, and between them the sheaves over which a rope runs; none for a coupling.
+    /// Its points: both ends, and between them the sheaves over which a rope runs; the place of a pad on which a beam slides; none for a coupling.
     pub points: List<AttachmentInfo>,
     /// How many parallel parts of a rope run between its last two points.
     pub falls: usize,
@@ -393,6 +393,20 @@ pub struct ConnectorInfo {
 }
 
 impl ConnectorInfo {
+    /// Whether it is a pad on which a beam slides.
+    pub fn is_pad(&self) -> bool {
+        self.points.len() == 1
+    }
+
+    /// What its length is called: that of the line through its points, where the axis of a beam passes a pad, or the slip of a coupling.
+    pub fn length_name(&self) -> &'static str {
+        match self.points.len() {
+            0 => "slip",
+            1 => "offset",
+            _ => "length",
+        }
+    }
+
     /// Whether one of its points is fixed in the world.
     pub fn holds_to_world(&self) -> bool {
         self.points.iter().any(|point| point.body.is_none())

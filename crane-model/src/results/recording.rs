@@ -18,7 +18,7 @@ use crate::{
 /// `_vx`, `_vy`, `_vz`; for a support `<support>_reaction_x`, `_y`, `_z`, and `<support>_gap` if it is one-sided; for a coordinate of an
 /// element `<coordinate>_moment`; for end stops and friction `<coordinate>_stop_torque` or `_stop_force`, `<coordinate>_friction_torque` or
 /// `_friction_force`; for joints that stick `<coordinate>_bristle`; for a connector `<connector>_length`, `<connector>_length_rate` and
-/// `<connector>_force`; for a coupling `<coupling>_slip`, `<coupling>_slip_rate` and `<coupling>_force` or `_torque`; for a joint that closes a loop `<joint>_force` or `<joint>_force_x` and
+/// `<connector>_force`; for a coupling `<coupling>_slip`, `<coupling>_slip_rate` and `<coupling>_force` or `_torque`; for a pad `<pad>_offset` and so on; for a joint that closes a loop `<joint>_force` or `<joint>_force_x` and
 /// `<joint>_moment_x`, as many as it has equations; energies.
 /// `energy_balance` is `E(t) − E(0) − drive_work − load_work + dissipated_energy`, the error of the run if it is audited.
 pub struct Recording<'a> {
@@ -201,7 +201,7 @@ fn quantities_of(description: &Description, loop_joints: &[LoopJointInfo], exten
         table.add(bristles::column(&coordinate.name), coordinate.kind.unit());
     }
     for connector in &description.connectors {
-        let (what, unit) = (length_of(connector), connector.kind.unit());
+        let (what, unit) = (connector.length_name(), connector.kind.unit());
         table.add(format!("{}_{what}", connector.name), unit);
         table.add(format!("{}_{what}_rate", connector.name), format!("{unit}/s"));
         table.add(connector_force(connector), connector.kind.force_unit());
@@ -230,11 +230,6 @@ fn audited(description: &Description) -> Vec<Column> {
 /// Name of the column with the gap under a one-sided support.
 pub fn support_gap(support: &str) -> String {
     format!("{support}_gap")
-}
-
-/// Name of a connector's length: that of the line through its points, or the slip of a coupling.
-fn length_of(connector: &ConnectorInfo) -> &'static str {
-    if connector.points.is_empty() { "slip" } else { "length" }
 }
 
 /// Name of the column with the force or torque of a connector.

@@ -1,4 +1,4 @@
-//! Flexible links that slide in one another: a stage is held where it begins, not at the pads of the link in which it slides.
+//! Flexible links that slide in one another without pads: a stage is held where it begins, not at the end of the link in which it slides.
 
 use super::Table;
 use crate::dyn_crane::DynCrane;
@@ -52,7 +52,7 @@ fn cautions(description: &Description, stages: &[Stage], overlaps: &[f64], up_to
     overlapping.map(caution).collect()
 }
 
-/// Flexible links that slide on the flexible link that carries them.
+/// Flexible links that slide on the flexible link that carries them. A stage on pads has further coordinates, which the pads hold.
 fn stages(crane: &dyn DynCrane) -> Vec<Stage> {
     let (description, tree) = (crane.description(), crane.tree());
     let bodies = &description.bodies;
@@ -63,7 +63,10 @@ fn stages(crane: &dyn DynCrane) -> Vec<Stage> {
         };
         bodies.iter().enumerate().any(deforms)
     };
-    let slides = |stage: &Stage| has(stage.first, |coordinate| coordinate.kind == CoordinateKind::Translation);
+    let slides = |stage: &Stage| {
+        let own = &description.coordinates[tree.own(stage.first)];
+        matches!(own, [only] if only.kind == CoordinateKind::Translation)
+    };
     let carried = (0..bodies.len()).filter_map(|first| Some(Stage { first, outer: tree.parent(first)? }));
     let of_two_links = carried.filter(|stage| bodies[stage.outer].link != bodies[stage.first].link);
     let flexible = |stage: &Stage| [stage.outer, stage.first].iter().all(|body| bends(&bodies[*body].link));

@@ -112,7 +112,9 @@ fn of_lengths(&Equations { crane, t, .. }: &Equations<'_>, q: &DVector<f64>) -> 
         #[allow(clippy::cast_precision_loss)] // at most 100
         let falls = connector.falls as f64;
         let places = connector.points.iter().flat_map(|point| point.position.map(|x| x * falls));
-        let size = places.fold(*length, |size: f64, x| size.max(x.abs()));
+        // At a pad, two positions of a few metres are close to each other.
+        let least = if connector.is_pad() { 1.0 } else { *length };
+        let size = places.fold(least, |size: f64, x| size.max(x.abs()));
         for (sum, slope) in sum.iter_mut().zip(row) {
             *sum += tension.stiffness * slope.abs() * size;
         }

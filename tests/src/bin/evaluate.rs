@@ -3,15 +3,16 @@
 //! `evaluate list` prints the cranes, one per line. `evaluate layout CRANE` describes one as JSON. `evaluate values CRANE` reads records
 //! `t, q[N], v[N], parameters[P]` from standard input until its end, and writes for each all quantities in the order of the layout: 64-bit
 //! little-endian numbers, matrices row by row. A YAML file instead of a crane's name is run by the interpreter, which provides T, A, e,
-//! forces, accelerations, and the residual and stiffness of statics.
+//! forces, accelerations, the residual and stiffness of statics, internal forces, and what there is of connectors.
 
 use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
 use crane_codegen::chain::Chain;
-use crane_codegen::program::Inputs;
+use crane_codegen::program::{Argument, Inputs};
 use crane_codegen::{build, compile};
+use crane_quantities::Count;
 use crane_tests::interpreted::Interpreted;
 use crane_tests::quantities::{State, quantities};
 use crane_tests::registry::{self, Entry};
@@ -116,9 +117,10 @@ fn interpreted(file: &str) -> Result<Interpreted, String> {
 }
 
 /// Functions of an interpreted crane, in order, and the shapes of their results.
-fn functions(chain: &Chain) -> [(&'static str, Vec<usize>); 7] {
+fn functions(chain: &Chain) -> Vec<(&'static str, Vec<usize>)> {
     let (n, bodies) = (chain.coordinates.len(), chain.bodies.len());
-    [
+    let [cuts, connectors] = [Count::Cuts, Count::Connectors].map(|count| chain.count(count));
+    vec![
         ("transforms", vec![bodies, 4, 4]),
         ("mass_matrix", vec![n, n]),
         ("bias", vec![n]),
@@ -126,6 +128,14 @@ fn functions(chain: &Chain) -> [(&'static str, Vec<usize>); 7] {
         ("forward_dynamics", vec![n]),
         ("static_residual", vec![n]),
         ("tangent_stiffness", vec![n, n]),
+        ("internal_forces", vec![cuts, 6]),
+        ("dissipation", vec![1]),
+        ("connector_forces", vec![n]),
+        ("connector_energy", vec![1]),
+        ("connector_lengths", vec![connectors, 2]),
+        ("connector_jacobians", vec![connectors, n]),
+        ("connector_tensions", vec![connectors, 3]),
+        ("connector_wrenches", vec![connectors, cuts, 6]),
     ]
 }
 
@@ -138,12 +148,14 @@ fn layout_of_interpreted(crane: &Interpreted, file: &str) -> serde_json::Value {
         "spec": file,
         "coordinates": coordinates.iter().map(|c| &c.name).collect::<Vec<_>>(),
         "parameters": parameters.iter().map(|p| json!({"name": p.name, "default": p.default})).collect::<Vec<_>>(),
-        "quantities": functions(&crane.chain).map(quantity),
+        "quantities": functions(&crane.chain).into_iter().map(quantity).collect::<Vec<_>>(),
     })
 }
 
 fn evaluate(crane: &Interpreted, state: &State, parameters: &[f64]) -> Vec<f64> {
+    // The rates also serve as accelerations.
     let inputs = Inputs::state(state.t, state.q.clone(), state.v.clone(), parameters.to_vec());
+    let inputs = inputs.with(Argument::Acceleration, state.v.clone());
     let values = |(name, shape): (&str, Vec<usize>)| crane.get(name, &inputs, shape.iter().product());
     functions(&crane.chain).into_iter().flat_map(values).collect()
 }

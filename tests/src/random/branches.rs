@@ -18,6 +18,23 @@ impl Writer {
         self.link_on(&format!("{{link: first, at: [1.2, {y}, {z}]}}"), "spur", "revolute");
         self.link_on(&format!("{{link: third, at: [reach, {z}, {y}]}}"), "hook", "prismatic");
         self.link_on("{link: arm, at: [0.2, -0.1, 0.3]}", "shelf", "fixed");
+        self.telescope();
+    }
+
+    /// A beam that slides in the first one, with something on its tip.
+    fn telescope(&mut self) {
+        self.line("  - name: sleeve");
+        self.line("    joint: {prismatic: {axis: x}}");
+        self.line("    beam:");
+        self.line("      length: 0.9");
+        self.line("      sections: 2");
+        self.line("      material: soft");
+        self.line("      section: {tube: {diameter: 0.05, thickness: 0.006}}");
+        self.line("      damping: {beta: 1.0e-3}");
+        let front = "{stiffness: [400, ground, 20], damping: [3, 2, 0.1], clearance: [0.01, 0, 0.02]}";
+        let rear = "{stiffness: [350, 450, 0], damping: [1, 2, 0]}";
+        self.line(&format!("      slides_in: {{beam: first, overlap: reach, pads: {{front: {front}, rear: {rear}}}}}"));
+        self.line("  - {name: knob, mass: 1.1, com: [0.1, 0.05, 0], inertia: {gyration: [0.1, 0.1, 0.1]}}");
     }
 
     fn link_on(&mut self, on: &str, name: &str, joint: &str) {

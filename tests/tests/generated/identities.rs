@@ -154,19 +154,19 @@ fn wrenches(crane: &Interpreted, state: &State, a: &DVector<f64>) -> Vec<[f64; 6
     crane.get("internal_forces", &inputs, 0).as_chunks().0.to_vec()
 }
 
-/// Generalized forces of connectors between points, `−Jᵀ F`; couplings act along their joints.
+/// Generalized forces of connectors between points and of pads, `−Jᵀ F`; couplings act along their joints.
 fn forces_between_points(crane: &Interpreted, state: &State) -> DVector<f64> {
     let inputs = crane.inputs(state);
     let (tensions, rows) = (crane.get("connector_tensions", &inputs, 0), crane.get("connector_jacobians", &inputs, 0));
     let elements = tensions.chunks_exact(3).zip(rows.chunks_exact(crane.size())).zip(crane.chain.connectors());
-    let between = elements.filter(|(_, connector)| connector.strain.line().is_some());
+    let between = elements.filter(|(_, connector)| !connector.strain.points().is_empty());
     between.fold(DVector::zeros(crane.size()), |sum, ((tension, row), _)| {
         sum - DVector::from_column_slice(row) * tension[0]
     })
 }
 
 /// Along the axis of a joint's last coordinate, a cut transmits the generalized force of that coordinate: `A a − e` without the
-/// rotor, less the forces of loads and of connectors between points.
+/// rotor, less the forces of loads, of connectors between points and of pads.
 #[test]
 fn what_a_joint_transmits_along_its_axis_is_its_effort() {
     for (seed, crane) in cranes() {

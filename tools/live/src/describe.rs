@@ -117,7 +117,7 @@ pub fn describe(chain: &Chain) -> Description {
 
 /// The points of a connector.
 fn points_of(connector: &chain::Force) -> &[chain::Attachment] {
-    connector.strain.line().map_or(&[], |line| &line.points)
+    connector.strain.points()
 }
 
 /// The joints of a chain that close loops.

@@ -22,7 +22,7 @@ const page = await build({ ...options, entryPoints: ["instrument/src/page.js"], 
 
 /** The cranes to start from, simplest first, with the titles of their specs. */
 const EXAMPLES = [
-  "knuckle_boom", "double_pendulum", "cantilever", "loader_tipping", "two_arms", "examples/loader_crane", "examples/parallel_harvester", "eight_link_rigid", "eight_link_flexible", "eight_link_hydraulic",
+  "knuckle_boom", "double_pendulum", "cantilever", "loader_tipping", "two_arms", "examples/loader_crane", "examples/parallel_harvester", "examples/telescopic_loader", "eight_link_rigid", "eight_link_flexible", "eight_link_hydraulic",
   "eight_link_identified", "eight_link_two_flexible",
 ];
 const examples = await Promise.all(EXAMPLES.map(async (name) => ({ name: `${name.split("/").at(-1)}.yaml`, text: await file(`../../../specs/${name}.yaml`) })));

@@ -52,7 +52,7 @@ impl Derivation<'_> {
         let (model, kinematics) = (&self.model, &self.kinematics);
         let of_connector = |connector: &Force| {
             let pulls = connectors::between_bodies(model, kinematics, &connector.strain);
-            let on_bodies = pulls.into_iter().map(|(place, point, pull)| (place, [pull, point.cross(pull)]));
+            let on_bodies = pulls.into_iter().map(|(place, pull)| (place, pull.about_origin()));
             newton_euler::transmitted(model, kinematics, &self.factors, on_bodies.collect())
         };
         let wrenches = model.chain.connectors().iter().flat_map(of_connector).collect();

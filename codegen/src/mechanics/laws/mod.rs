@@ -9,6 +9,7 @@
 //!
 //! A law may state them itself where that takes fewer operations; the tests compare them with these.
 
+mod clearance;
 mod friction;
 mod gas_spring;
 mod progressive_spring;
@@ -100,6 +101,7 @@ macro_rules! dispatch {
             match law {
                 $(chain::Law::$law(law) => law,)*
                 chain::Law::Rope(law) => law,
+                chain::Law::Clearance(law) => law,
                 chain::Law::Stop(law) => law,
                 chain::Law::Friction(law) => law,
             }

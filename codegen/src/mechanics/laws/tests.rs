@@ -2,7 +2,8 @@
 
 use super::{At, Law, derived_slopes, elastic_force, law};
 use crate::chain::{
-    self, Bristle, End, Friction, GasSpring, Profile, ProgressiveSpring, Ramp, Rope, RopeStiffness, Spring, Stop, Value,
+    self, Bristle, Clearance, End, Friction, GasSpring, Profile, ProgressiveSpring, Ramp, Rope, RopeStiffness, Spring,
+    Stop, Value,
 };
 use crate::mechanics::model::Model;
 use crate::mechanics::tests::double_pendulum;
@@ -37,6 +38,10 @@ fn laws() -> Vec<(&'static str, chain::Law)> {
         (
             "winch of a rope with EA",
             chain::Law::Rope(Rope { stiffness: RopeStiffness::Axial(c(500.0)), ..rope(Profile::Quintic(winch)) }),
+        ),
+        (
+            "pad with clearance",
+            chain::Law::Clearance(Clearance { stiffness: c(600.0), damping: c(9.0), clearance: c(0.3) }),
         ),
         ("lower stop", chain::Law::Stop(stop(End::Lower, 0.3))),
         ("upper stop", chain::Law::Stop(stop(End::Upper, -0.2))),

@@ -100,14 +100,14 @@ fn examples_are_printed_and_valid() {
     refused(&["example", "loader_cran"], &["did you mean `loader_crane`?"]);
     let out = folder("example");
     fs::create_dir_all(&out).expect("a folder");
-    for name in ["loader_crane", "parallel_harvester", "knuckle_boom", "eight_link_hydraulic"] {
+    for name in ["loader_crane", "parallel_harvester", "telescopic_loader", "knuckle_boom", "eight_link_hydraulic"] {
         let printed = crane(&["example", name]);
         let spec = out.join(format!("{name}.yaml"));
         fs::write(&spec, &printed.stdout).expect("a spec");
         let spec = spec.to_str().expect("a path");
         let checked = crane(&["check", spec, "--fail-on", "warning"]);
         assert!(checked.status.success(), "{name}: {}", text(&checked.stderr));
-        if ["loader_crane", "parallel_harvester"].contains(&name) {
+        if ["loader_crane", "parallel_harvester", "telescopic_loader"].contains(&name) {
             let found = json(&["statics", spec, "--format", "json"]);
             let steps = found["cranes"][0]["newton_steps"].as_u64().expect("a count");
             assert!(found["stable"] == true && steps <= 5, "{steps} Newton steps");

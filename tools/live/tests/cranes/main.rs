@@ -30,5 +30,6 @@ mod rows;
 mod sensitivity;
 mod servos;
 mod sheaves;
+mod sliding_beams;
 mod stresses;
 mod telescopes;

@@ -252,8 +252,7 @@ fn connectors(cases: &[Case<'_>]) -> Option<Grid> {
             let words = [connector.name.as_str().into(), quantity.into()];
             grid.row(words.into_iter().chain(cells).chain([unit.into()]).collect::<Vec<_>>());
         };
-        let strain = if connector.points.is_empty() { "slip" } else { "length" };
-        row(strain, connector.kind.unit(), |(length, _)| *length);
+        row(connector.length_name(), connector.kind.unit(), |(length, _)| *length);
         row("force", connector.kind.force_unit(), |(_, tension)| tension.force);
     }
     Some(grid)

@@ -1,0 +1,40 @@
+//! Telescopes: beams that slide in beams.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{Number, Spanned, Vector};
+
+/// A beam in which another one slides on two pads: at the front, at the end of the outer beam, and at the rear, at the beginning of the inner one.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `beam`, `overlap` and `pads`")]
+pub struct SlidesIn {
+    /// The link of the outer beam, an earlier one.
+    pub beam: Spanned<String>,
+    /// How far the inner beam is in the outer one where the coordinate of its joint is 0, m. It becomes shorter as the coordinate grows.
+    pub overlap: Spanned<Number>,
+    /// The pads.
+    pub pads: Spanned<Pads>,
+}
+
+/// The two pairs of pads of a telescope.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `front` and `rear`")]
+pub struct Pads {
+    /// At the end of the outer beam, where they hold the inner one.
+    pub front: Spanned<Pad>,
+    /// At the beginning of the inner beam, where they rest in the outer one.
+    pub rear: Spanned<Pad>,
+}
+
+/// Pads on all sides of a beam: springs and dampers along y and z of the beam that carries them, and against twist about its x.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `stiffness`, `damping` and `clearance`")]
+pub struct Pad {
+    /// Stiffness along y and z, N/m, and against twist, N m/rad.
+    pub stiffness: Spanned<Vector>,
+    /// Damping along y and z, N s/m, and against twist, N m s/rad. Default `[0, 0, 0]`.
+    pub damping: Option<Spanned<Vector>>,
+    /// Clearance on each side along y and z, m, and of the twist, rad. Default none: `[0, 0, 0]`.
+    pub clearance: Option<Spanned<Vector>>,
+}

@@ -1,0 +1,138 @@
+"""Telescopes: the axis of a beam as a quadratic B-spline by de Casteljau's algorithm, section by section, and pads on which beams slide."""
+
+from dataclasses import dataclass
+
+import casadi as ca
+
+from transforms import translate
+
+# What holds a stage in addition to its joint.
+HELD = ["y", "z", "psi", "theta", "phi"]
+DIRECTIONS = ["y", "z", "twist"]
+
+
+@dataclass
+class Station:
+    """A point of a body: the index of the body, the distance along it as written and with default parameters, the point's frame in the world."""
+
+    body: int
+    at: object
+    along: float
+    frame: ca.SX
+
+    def moved(self, shift):
+        """Its frame after a small displacement: a translation of its body, then a rotation about the world's origin."""
+        rotation = ca.SX.eye(4)
+        rotation[:3, :3] += ca.skew(shift[3:])
+        return translate(shift[0], shift[1], shift[2]) @ rotation @ self.frame
+
+
+@dataclass
+class Pad:
+    """A pad, the stations of the beam that slides on it, and what is measured there."""
+
+    stations: list
+    sections: int
+    length: object
+    s: ca.SX
+    direction: str
+
+    def strain(self, frames):
+        """How far the axis of the beam is from the pad along y or z of the pad's body, or the sine of the twist."""
+        pad, *beam = frames
+        if self.direction == "twist":
+            return ca.dot(pad[:3, 2], self.across(beam))
+        axis = pad[:3, "xyz".index(self.direction)]
+        return ca.dot(axis, self.axis(beam) - pad[:3, 3])
+
+    def axis(self, frames):
+        """P(s); straight beyond both ends."""
+        middles, joints = frames[: self.sections + 1], frames[self.sections + 1 :]
+        start, end, s = middles[0], middles[-1], self.s
+        if self.sections == 0:
+            return start[:3, 3] + s * start[:3, 0]
+        d = self.length / self.sections
+        curve = end[:3, 3] + (s - self.length) * end[:3, 0]
+        for k in reversed(range(self.sections)):
+            tau = s / d - k
+            first, joint, last = (frame[:3, 3] for frame in (middles[k], joints[k], middles[k + 1]))
+            before, after = first + tau * (joint - first), joint + tau * (last - joint)
+            curve = ca.if_else(s < (k + 1) * d, before + tau * (after - before), curve)
+        return ca.if_else(s < 0, start[:3, 3] + s * start[:3, 0], curve)
+
+    def across(self, frames):
+        """y of the beam at s, evenly from element to element."""
+        middles, s = frames[: self.sections + 1], self.s
+        turned = middles[-1][:3, 1]
+        d = self.length / max(self.sections, 1)
+        for k in reversed(range(self.sections)):
+            tau = s / d - k
+            turned = ca.if_else(s < (k + 1) * d, (1 - tau) * middles[k][:3, 1] + tau * middles[k + 1][:3, 1], turned)
+        return ca.if_else(s < 0, middles[0][:3, 1], turned)
+
+    def value(self):
+        """The strain at the present pose."""
+        return self.strain([station.frame for station in self.stations])
+
+    def wrenches(self):
+        """Force and moment about the world's origin on the body of each station, for a tension of 1: minus the slopes over its displacement."""
+        shifts = [ca.SX.sym("shift", 6) for _ in self.stations]
+        strain = self.strain([station.moved(shift) for station, shift in zip(self.stations, shifts)])
+        every = ca.vertcat(*shifts)
+        slopes = ca.densify(ca.substitute(-ca.gradient(strain, every), every, ca.DM.zeros(every.shape)))
+        return [slopes[6 * k : 6 * k + 6] for k in range(len(shifts))]
+
+
+def slide(crane, name):
+    """The motions of a stage in the frame of the outer beam's beginning: that of its joint, and what the pads hold."""
+    motion = crane.move(name, "x")
+    for symbol in HELD:
+        motion = motion @ crane.move(name, symbol)
+        crane.coordinates[-1].is_held = True
+    return motion
+
+
+def length_of(span):
+    """Length of a beam."""
+    return span.starts[-1] + span.last
+
+
+def stations_of(crane, span, index_of):
+    """Middles of the elements (of the first its beginning, of the last its end), then the joints between them, at the ends of the first ones."""
+    n = len(span.bodies) - 1
+    d = length_of(span) / max(n, 1)
+    middles, joints = [], []
+
+    def station(element, at, x):
+        body = span.bodies[element]
+        return Station(index_of(crane, body), at, crane.spec.default(at), body.transform @ translate(x=x))
+
+    for element in range(n + 1):
+        x = 0 if element == 0 else d / 2
+        middles.append(station(element, x, x))
+        if element < n:
+            end = d / 2 if element == 0 else d
+            joints.append(station(element, end, end))
+    return middles + joints
+
+
+def read_pads(crane, link, spans, index_of):
+    """The pads of a stage, front and rear, each with its name, strain and law as written."""
+    written = link["beam"]["slides_in"]
+    spec = crane.spec
+    outer, inner = spans[written["beam"]], spans[link["name"]]
+    overlap, q = spec.number(written["overlap"]), crane.coordinate(f"{link['name']}_x").q
+    end = length_of(outer) - outer.starts[-1]
+    last, first = index_of(crane, outer.bodies[-1]), index_of(crane, inner.bodies[0])
+    front = Station(last, end, spec.default(end), outer.bodies[-1].transform @ translate(x=end))
+    rear = Station(first, 0, 0.0, inner.bodies[0].transform)
+    sides = [
+        (written["pads"]["front"], front, inner, overlap - q),
+        (written["pads"]["rear"], rear, outer, length_of(outer) - overlap + q),
+    ]
+    for keys, pad, beam, s in sides:
+        stations = [pad, *stations_of(crane, beam, index_of)]
+        vectors = [spec.vector(keys.get(key, [0, 0, 0])) for key in ("stiffness", "damping", "clearance")]
+        for number, direction in enumerate(DIRECTIONS):
+            if spec.default(vectors[0][number]) != 0 or not vectors[0][number].is_constant():
+                yield Pad(stations, len(beam.bodies) - 1, length_of(beam), s, direction), *(v[number] for v in vectors)
