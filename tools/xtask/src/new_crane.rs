@@ -9,11 +9,9 @@ use crate::{step, workspace};
 const FOLDER: &str = "new-crane";
 
 /// The profile of the workspace, so that what is already built is reused; a user's crate has a simpler one.
-const PROFILE: [&str; 11] = [
-    "debug=\"line-tables-only\"",
+const PROFILE: [&str; 9] = [
     "build-override.opt-level=3",
     "build-override.codegen-units=16",
-    "build-override.debug=\"line-tables-only\"",
     "package.\"*\".opt-level=1",
     "package.nalgebra.opt-level=3",
     "package.simba.opt-level=3",
