@@ -86,7 +86,7 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
             let code = screen::working(&chain, || in_c(options, &chain, &parameters, &header))?;
             vec![(file.with_file_name(header), code.header), (file, code.source)]
         }
-        Language::Fmu => return fmu::write_unit(options, &file, chain, &spec, &parameters, out),
+        Language::Fmu => return fmu::write_unit(options, &file, chain, &spec, &parameters, registry.carried(), out),
     };
     for (file, _) in &texts {
         files::check_place(file)?;

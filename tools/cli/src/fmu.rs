@@ -1,6 +1,7 @@
 //! `crane export --format fmu`: the spec, its description and the shared library, of live cranes or of this one, in one archive.
 
 use std::{
+    borrow::Cow,
     env::{consts, current_exe},
     io::{Cursor, Write},
     path::{Path, PathBuf},
@@ -16,12 +17,13 @@ use crate::{
     arguments::{Export, Fmi},
     compiled, files,
     problem::{Outcome, Problem},
+    selection::Carried,
 };
 
 /// A shared library and the system that it is for.
 struct Library {
     system: &'static System,
-    content: Vec<u8>,
+    content: Cow<'static, [u8]>,
 }
 
 /// A system by the ending of its shared libraries; cranes are for computers of 64 bits.
@@ -56,12 +58,13 @@ pub fn write_unit(
     chain: Chain,
     spec: &str,
     parameters: &[f64],
+    carried: &Carried,
     out: &mut dyn Write,
 ) -> Outcome<()> {
     let is_compiled = options.crane.compile;
     let libraries = match options.libraries.as_slice() {
         [] if is_compiled => vec![read_library(&compiled::unit(&chain, spec)?)?],
-        [] => vec![read_library(&beside_the_command()?)?],
+        [] => vec![own_library(carried)?],
         [..] if is_compiled => {
             return Err(Problem::usage(
                 "`--library` names a library that is ready made, `--compile` makes one for this computer",
@@ -119,7 +122,16 @@ fn read_library(path: &Path) -> Outcome<Library> {
         Problem::usage(format!("{} is not a shared library", path.display()), "give a .so, .dll or .dylib file")
     })?;
     let content = files::read_file(path).map_err(|error| Problem::file(path, &error))?;
-    Ok(Library { system, content })
+    Ok(Library { system, content: content.into() })
+}
+
+/// The library for this computer: the one that the command carries, or the file beside it.
+fn own_library(carried: &Carried) -> Outcome<Library> {
+    let of_this_computer = SYSTEMS.iter().find(|system| system.suffix == consts::DLL_EXTENSION);
+    match (carried.unit_library, of_this_computer) {
+        (Some(content), Some(system)) => Ok(Library { system, content: content.into() }),
+        _ => read_library(&beside_the_command()?),
+    }
 }
 
 /// The library in the folder of the command.

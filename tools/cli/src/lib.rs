@@ -59,7 +59,7 @@ use clap::{Command, CommandFactory, FromArgMatches};
 
 use arguments::Arguments;
 use problem::{Outcome, Problem};
-pub use selection::Registry;
+pub use selection::{Carried, Registry};
 
 /// Parts for other commands that work with cranes, with [`files`] and [`refinement`].
 pub mod toolbox {

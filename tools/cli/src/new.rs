@@ -57,7 +57,9 @@ pub fn new(options: &New, registry: &Registry, out: &mut dyn Write) -> Outcome<(
             "name a folder that does not exist yet",
         ));
     }
-    if !compiled::root().join("crane-model").exists() {
+    let carried = registry.carried();
+    let vendor = options.vendor || !carried.sources.is_empty();
+    if carried.sources.is_empty() && !vendored::has_tree() {
         return Err(Problem::failed(
             format!(
                 "the source of `crane`, which the new crate depends on, is no longer at {}",
@@ -68,8 +70,7 @@ pub fn new(options: &New, registry: &Registry, out: &mut dyn Write) -> Outcome<(
     }
     let from_tree = |folder: &str| compiled::root().join(folder).to_string_lossy().into_owned();
     let copied = |folder: &str| format!("{}/{folder}", vendored::FOLDER);
-    let [model, codegen, _] =
-        vendored::CRATES.map(|folder| if options.vendor { copied(folder) } else { from_tree(folder) });
+    let [model, codegen, _] = vendored::CRATES.map(|folder| if vendor { copied(folder) } else { from_tree(folder) });
     let values = [
         ("{{package}}", package.as_str()),
         ("{{name}}", &name),
@@ -86,12 +87,13 @@ pub fn new(options: &New, registry: &Registry, out: &mut dyn Write) -> Outcome<(
     texts.push((SPEC.into(), spec));
     texts.push((SCHEMA.0.into(), SCHEMA.1.to_owned()));
     texts.push(("Cargo.lock".into(), compiled::LOCK.to_owned()));
-    if options.vendor {
-        let inherited = vendored::inherited()?;
+    if vendor {
+        let sources = vendored::Sources::read(carried)?;
+        let inherited = sources.inherited();
         for (_, manifest) in texts.iter_mut().filter(|(file, _)| file == Path::new("Cargo.toml")) {
             *manifest = manifest.replace("[workspace]\n", &inherited);
         }
-        texts.extend(vendored::sources()?);
+        texts.extend(sources.crates());
     }
     write_folder(&options.folder, &texts)?;
     writeln!(

@@ -20,6 +20,16 @@ pub type Specs = &'static [(&'static str, &'static str)];
 pub struct Registry {
     entries: Vec<Entry>,
     shipped: Specs,
+    carried: Carried,
+}
+
+/// What a command carries that is not beside its source tree.
+#[derive(Clone, Copy, Default)]
+pub struct Carried {
+    /// The shared library of functional mock-up units for this computer; otherwise it is the file beside the command.
+    pub unit_library: Option<&'static [u8]>,
+    /// The sources of the crates that a new crate depends on: paths within the source tree, and texts.
+    pub sources: &'static [(&'static str, &'static str)],
 }
 
 /// A crane of the registry.
@@ -68,7 +78,18 @@ impl Registry {
             let compiled = index.map(|index| compiled.swap_remove(index));
             Entry { compiled, ..Entry::new(name, Cow::Borrowed(spec)) }
         };
-        Self { entries: specs.iter().map(entry).collect(), shipped: specs }
+        Self { entries: specs.iter().map(entry).collect(), shipped: specs, carried: Carried::default() }
+    }
+
+    /// The same cranes in a command that carries more.
+    #[must_use]
+    pub fn carrying(self, carried: Carried) -> Self {
+        Self { carried, ..self }
+    }
+
+    /// What the command carries.
+    pub(super) fn carried(&self) -> &Carried {
+        &self.carried
     }
 
     /// Adds a crane by its spec, in place of one of the same name.

@@ -19,6 +19,7 @@ mod outside;
 mod package;
 mod prose;
 mod python;
+mod release;
 mod report;
 mod step;
 mod units;
@@ -42,6 +43,7 @@ With words, only the steps whose titles contain one of them run.
            time methods and numbers of sections of the reference crane, write docs/error-vs-runtime.md
   instrument
            build the page as an instrument, out/instrument.html; needs Node.js, and Rust for wasm32-unknown-unknown, which rustup installs
+  release  what is published, in target/published: the command as one file, the Python wheel, packages of the crates, checksums
   bless    rewrite the files that tests compare with: goldens, snapshots, schema, docs/OPERATIONS.md, the gallery";
 
 fn main() -> ExitCode {
@@ -56,6 +58,14 @@ fn main() -> ExitCode {
         }
         "error-vs-runtime" => vec![Step::cargo("error against run time", &ERROR_VS_RUNTIME)],
         "instrument" => vec![Step::check("the page as an instrument", instrument::build_page)],
+        "release" => vec![
+            Step::check("Python environment", oracles::prepare_python),
+            Step::cargo(
+                "the library of functional mock-up units",
+                &["build", "--release", "--package", "crane-fmu-library"],
+            ),
+            Step::check("what is published", release::build_release),
+        ],
         "bless" => bless_steps(),
         "help" | "--help" | "-h" => {
             println!("{USAGE}");
@@ -165,6 +175,7 @@ fn test_steps() -> Vec<Step> {
         ),
         Step::check("cranes without panics", no_panic::check_no_panic),
         Step::check("the Python package", package::check_package),
+        Step::check("a release, where there is nothing else", release::rehearse_release),
         Step::check("the manual as a site", book::build_site).light(),
         Step::check("random cranes by every way to compute them", outside::check_ways).light(),
         Step::check("pages of the Python package in a browser", report::check_in_notebook).light(),

@@ -1,34 +1,50 @@
 //! The Python package `crane`, in `tools/python`: installed as a user does it, and tested.
 
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::python::CHECKS;
-use crate::{step, workspace};
+use crate::{release, step, workspace};
 
 const FOLDER: &str = "tools/python";
 
-/// Installs the package from the clone into the environment of the checks, and runs its tests there, in a folder that does not hold
-/// its sources.
-pub fn check_package() -> Result<(), String> {
-    let root = workspace::root();
-    let python = |arguments: &[&str]| {
-        let mut command = Command::new(CHECKS.python());
-        command
-            .args(arguments)
-            .current_dir(&root)
-            .env("CARGO", step::cargo())
-            .env("CARGO_TARGET_DIR", workspace::target());
-        // maturin is one of the environment's own programs.
-        let programs = CHECKS.python().parent().map(ToOwned::to_owned).into_iter();
-        let path = std::env::var_os("PATH").unwrap_or_default();
-        if let Ok(path) = std::env::join_paths(programs.chain(std::env::split_paths(&path))) {
-            command.env("PATH", path);
-        }
-        command
+/// Builds the wheel of the package into a folder, in place of others there, and returns its path.
+pub fn build_wheel(folder: &Path) -> Result<PathBuf, String> {
+    let wheels = || -> io::Result<Vec<PathBuf>> {
+        let paths: Vec<PathBuf> = fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<io::Result<_>>()?;
+        Ok(paths.into_iter().filter(|path| path.extension().is_some_and(|ending| ending == "whl")).collect())
     };
-    let install =
-        ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-build-isolation", "--no-deps"];
-    step::run_to_end(python(&install).args(["--force-reinstall", &format!("./{FOLDER}")]))?;
+    let failed = |error: io::Error| format!("{}: {error}", folder.display());
+    fs::create_dir_all(folder).map_err(failed)?;
+    wheels().map_err(failed)?.iter().try_for_each(fs::remove_file).map_err(failed)?;
+    let pip = ["-m", "pip", "wheel", "--quiet", "--disable-pip-version-check", "--no-build-isolation", "--no-deps"];
+    step::run_to_end(python(&pip).arg("--wheel-dir").arg(folder).arg(format!("./{FOLDER}")))?;
+    wheels().map_err(failed)?.pop().ok_or_else(|| format!("pip wrote no wheel to {}", folder.display()))
+}
+
+/// The Python of the checks, with the programs of its environment, of which maturin is one.
+fn python(arguments: &[&str]) -> Command {
+    let mut command = Command::new(CHECKS.python());
+    command
+        .args(arguments)
+        .current_dir(workspace::root())
+        .env("CARGO", step::cargo())
+        .env("CARGO_TARGET_DIR", workspace::target());
+    let programs = CHECKS.python().parent().map(ToOwned::to_owned).into_iter();
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    if let Ok(path) = std::env::join_paths(programs.chain(std::env::split_paths(&path))) {
+        command.env("PATH", path);
+    }
+    command
+}
+
+/// Installs the package's wheel into the environment of the checks, and runs its tests there, in a folder that does not hold its sources.
+pub fn check_package() -> Result<(), String> {
+    let wheel = build_wheel(&release::folder())?;
+    let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps", "--force-reinstall"];
+    step::run_to_end(python(&install).arg(wheel))?;
     let tests = format!("{FOLDER}/tests");
     step::run_to_end(&mut python(&[
         "-m",

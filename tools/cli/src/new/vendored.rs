@@ -1,11 +1,16 @@
 //! The crates that a new crate depends on, copied into it.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::{
+    borrow::Cow,
+    collections::BTreeMap,
+    fs,
+    path::{Path, PathBuf},
+};
 
 use crate::{
     compiled,
     problem::{Outcome, Problem},
+    selection::Carried,
 };
 
 /// Folder of the copies in the new crate.
@@ -16,50 +21,74 @@ pub const CRATES: [&str; 3] = ["crane-model", "codegen", "quantities"];
 const INHERITED: [&str; 4] =
     ["[workspace.package]", "[workspace.dependencies]", "[workspace.lints.rust]", "[workspace.lints.clippy]"];
 
-/// Files of the crates, by their paths in the new crate: sources, and manifests without what only their tests need.
-pub fn sources() -> Outcome<Vec<(PathBuf, String)>> {
-    let mut texts = Vec::new();
-    for name in CRATES {
-        let root = compiled::root().join(name);
-        let manifest = tables(&read_source(&root.join("Cargo.toml"))?, |header| header != "[dev-dependencies]");
-        texts.push((Path::new(FOLDER).join(name).join("Cargo.toml"), manifest));
-        let mut folders = vec![root.join("src")];
-        while let Some(folder) = folders.pop() {
-            let entries = fs::read_dir(&folder).map_err(|error| Problem::file(&folder, &error))?;
-            for entry in entries {
-                let path = entry.map_err(|error| Problem::file(&folder, &error))?.path();
-                if path.is_dir() {
-                    folders.push(path);
-                } else {
-                    let text = read_source(&path)?;
-                    let relative = path.strip_prefix(compiled::root()).unwrap_or(&path);
-                    texts.push((Path::new(FOLDER).join(relative), text));
-                }
-            }
-        }
-    }
-    for licence in ["LICENSE-APACHE", "LICENSE-MIT"] {
-        texts.push((Path::new(FOLDER).join(licence), read_source(&compiled::root().join(licence))?));
-    }
-    texts.sort();
-    Ok(texts)
+/// Files of the workspace that belong to the crates.
+const LICENCES: [&str; 2] = ["LICENSE-APACHE", "LICENSE-MIT"];
+const WORKSPACE: &str = "Cargo.toml";
+
+/// Whether this command was built from a source tree that is still there.
+pub fn has_tree() -> bool {
+    compiled::root().join(CRATES[0]).exists()
 }
 
-/// The tables of the workspace's manifest that the copies inherit from.
-pub fn inherited() -> Outcome<String> {
-    let manifest = read_source(&compiled::root().join("Cargo.toml"))?;
-    let text = tables(&manifest, |header| INHERITED.contains(&header));
-    // Other crates of the source tree are not copied.
-    let needed =
-        |line: &&str| !line.contains("path = ") || CRATES.iter().any(|name| line.contains(&format!("\"{name}\"")));
-    let lines = text.lines().filter(needed).map(|line| {
-        CRATES.iter().fold(line.to_owned(), |line, name| {
-            line.replace(&format!("path = \"{name}\""), &format!("path = \"{FOLDER}/{name}\""))
-        })
-    });
-    let members: Vec<String> = CRATES.iter().map(|name| format!("\"{FOLDER}/{name}\"")).collect();
-    let text = lines.collect::<Vec<_>>().join("\n");
-    Ok(format!("[workspace]\nmembers = [{}]\n\n{}\n", members.join(", "), text.trim_end()))
+/// Sources by their paths within the source tree.
+pub struct Sources(BTreeMap<PathBuf, Cow<'static, str>>);
+
+impl Sources {
+    /// Those that this command carries, otherwise those of the source tree that it was built from.
+    pub fn read(carried: &Carried) -> Outcome<Self> {
+        if !carried.sources.is_empty() {
+            let carried = carried.sources.iter().map(|(path, text)| (PathBuf::from(path), Cow::Borrowed(*text)));
+            return Ok(Self(carried.collect()));
+        }
+        let manifests = CRATES.iter().map(|name| Path::new(name).join("Cargo.toml"));
+        let mut files: Vec<PathBuf> = manifests.chain(LICENCES.map(PathBuf::from)).chain([WORKSPACE.into()]).collect();
+        let mut folders: Vec<PathBuf> = CRATES.iter().map(|name| Path::new(name).join("src")).collect();
+        while let Some(folder) = folders.pop() {
+            let entries =
+                fs::read_dir(compiled::root().join(&folder)).map_err(|error| Problem::file(&folder, &error))?;
+            for entry in entries {
+                let entry = entry.map_err(|error| Problem::file(&folder, &error))?;
+                let path = folder.join(entry.file_name());
+                if entry.path().is_dir() { folders.push(path) } else { files.push(path) }
+            }
+        }
+        let read = |path: PathBuf| {
+            let text =
+                fs::read_to_string(compiled::root().join(&path)).map_err(|error| Problem::file(&path, &error))?;
+            Ok((path, Cow::Owned(text)))
+        };
+        Ok(Self(files.into_iter().map(read).collect::<Outcome<_>>()?))
+    }
+
+    /// Files of the crates, by their paths in the new crate: sources, and manifests without what only their tests need.
+    pub fn crates(&self) -> Vec<(PathBuf, String)> {
+        let copied = self.0.iter().filter(|(path, _)| path.as_path() != Path::new(WORKSPACE));
+        let copy = |(path, text): (&PathBuf, &Cow<'static, str>)| {
+            let text = match path.file_name() {
+                Some(name) if name == "Cargo.toml" => tables(text, |header| header != "[dev-dependencies]"),
+                _ => text.clone().into_owned(),
+            };
+            (Path::new(FOLDER).join(path), text)
+        };
+        copied.map(copy).collect()
+    }
+
+    /// The tables of the workspace's manifest that the copies inherit from.
+    pub fn inherited(&self) -> String {
+        let manifest = self.0.get(Path::new(WORKSPACE)).map_or("", |text| text);
+        let text = tables(manifest, |header| INHERITED.contains(&header));
+        // Other crates of the source tree are not copied.
+        let needed =
+            |line: &&str| !line.contains("path = ") || CRATES.iter().any(|name| line.contains(&format!("\"{name}\"")));
+        let lines = text.lines().filter(needed).map(|line| {
+            CRATES.iter().fold(line.to_owned(), |line, name| {
+                line.replace(&format!("path = \"{name}\""), &format!("path = \"{FOLDER}/{name}\""))
+            })
+        });
+        let members: Vec<String> = CRATES.iter().map(|name| format!("\"{FOLDER}/{name}\"")).collect();
+        let text = lines.collect::<Vec<_>>().join("\n");
+        format!("[workspace]\nmembers = [{}]\n\n{}\n", members.join(", "), text.trim_end())
+    }
 }
 
 /// Some tables of a manifest.
@@ -72,8 +101,4 @@ fn tables(manifest: &str, wanted: impl Fn(&str) -> bool) -> String {
         keep
     });
     lines.collect()
-}
-
-fn read_source(path: &Path) -> Outcome<String> {
-    fs::read_to_string(path).map_err(|error| Problem::file(path, &error))
 }

@@ -1,0 +1,134 @@
+//! What is published: the command as one file, the Python package as a wheel, the crates; made, and tried where there is no Rust and no
+//! source tree.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::{env, fs, io};
+
+use crate::package::build_wheel;
+use crate::{step, workspace};
+
+/// The crates that others build on, each after those that it needs.
+const CRATES: [&str; 5] = ["crane-quantities", "crane-codegen", "crane-jit", "crane-model", "crane-live"];
+/// What belongs beside the command.
+const BESIDE: [&str; 4] = ["LICENSE-APACHE", "LICENSE-MIT", "CHANGELOG.md", "specs/crane.schema.json"];
+/// Uses the package without anything that was not installed with it.
+const TRY_PACKAGE: &str = "import crane, numpy
+loaded = crane.load('knuckle_boom')
+assert loaded.statics().status == 'stable'
+run = loaded.simulate(duration=0.5)
+assert numpy.isfinite(run['t']).all() and run['t'][-1] == 0.5
+print(loaded)";
+
+/// Where everything is put.
+pub fn folder() -> PathBuf {
+    workspace::target().join("published")
+}
+
+/// Makes everything that is published.
+pub fn build_release() -> Result<(), String> {
+    pack_command()?;
+    build_wheel(&folder())?;
+    pack_crates()?;
+    write_checksums()
+}
+
+/// Makes everything that is published, the wheel as it was built for its tests, and tries it in environments that have nothing else.
+pub fn rehearse_release() -> Result<(), String> {
+    let archive = pack_command()?;
+    pack_crates()?;
+    write_checksums()?;
+    let bare = folder().join("bare");
+    clear(&bare)?;
+    try_command(&archive, &bare)?;
+    try_package(&bare)
+}
+
+/// The command with the library of functional mock-up units inside, without symbols, in an archive.
+fn pack_command() -> Result<PathBuf, String> {
+    let library = format!("{}crane_fmu_library{}", env::consts::DLL_PREFIX, env::consts::DLL_SUFFIX);
+    let built = workspace::target().join("release");
+    // All packages together, as the checks build them: alone, a package would select other features of its dependencies.
+    let mut cargo = Command::new(step::cargo());
+    cargo.args(["build", "--release", "--workspace", "--exclude", "crane-bench", "--bins", "--lib"]);
+    step::run_to_end(cargo.env("CRANE_UNIT_LIBRARY", built.join(library)).current_dir(workspace::root()))?;
+
+    let name = format!("crane-{}-{}", env!("CARGO_PKG_VERSION"), workspace::host_triple()?);
+    let packed = folder().join(&name);
+    clear(&packed)?;
+    copy(&built.join(format!("crane-alone{}", env::consts::EXE_SUFFIX)), &packed.join("crane"))?;
+    step::run_to_end(Command::new("strip").arg(packed.join("crane")))?;
+    for file in BESIDE {
+        let path = workspace::root().join(file);
+        copy(&path, &packed.join(path.file_name().unwrap_or_default()))?;
+    }
+    let archive = folder().join(format!("{name}.tar.gz"));
+    step::run_to_end(Command::new("tar").arg("-czf").arg(&archive).arg("-C").arg(folder()).arg(&name))?;
+    Ok(archive)
+}
+
+/// Packages of the crates as registries take them; they are not compiled again.
+fn pack_crates() -> Result<(), String> {
+    let mut cargo = Command::new(step::cargo());
+    cargo.args(["package", "--quiet", "--no-verify", "--allow-dirty", "--target-dir"]).arg(folder().join("crates"));
+    cargo.args(CRATES.iter().flat_map(|name| ["--package", name]));
+    step::run_to_end(cargo.current_dir(workspace::root()))
+}
+
+fn write_checksums() -> Result<(), String> {
+    let list = "cd \"$0\" && sha256sum *.tar.gz *.whl crates/package/*.crate > SHA256SUMS && cat SHA256SUMS";
+    step::run_to_end(Command::new("sh").args(["-c", list]).arg(folder()))
+}
+
+/// The command from its archive, alone in a folder: it checks, computes, and makes a functional mock-up unit that runs, and a crate.
+fn try_command(archive: &Path, bare: &Path) -> Result<(), String> {
+    step::run_to_end(Command::new("tar").arg("-xzf").arg(archive).args(["--strip-components", "1", "-C"]).arg(bare))?;
+    let crane = |arguments: &[&str]| step::run_to_end(alone(bare.join("crane"), bare).args(arguments));
+    crane(&["example", "knuckle_boom", "-o", "boom.yaml"])?;
+    crane(&["check", "boom.yaml"])?;
+    crane(&["statics", "boom.yaml", "-q"])?;
+    crane(&["report", "boom.yaml", "--duration", "0.2", "-o", "boom.html", "-q"])?;
+    crane(&["export", "boom.yaml", "--format", "fmu", "-o", "boom.fmu"])?;
+    let simulate = "import fmpy, sys; print(fmpy.simulate_fmu(sys.argv[1], stop_time=0.5)[-1])";
+    step::run_to_end(Command::new(crate::python::CHECKS.python()).args(["-c", simulate]).arg(bare.join("boom.fmu")))?;
+    // The sources that it carries are those that a command beside the tree copies, which another check compiles.
+    let tree = workspace::target().join("release").join("crane");
+    for (command, folder) in [(bare.join("crane"), "carried"), (tree, "tree")] {
+        let path = bare.join(folder).join("new-crane");
+        fs::create_dir_all(bare.join(folder)).map_err(|error| error.to_string())?;
+        step::run_to_end(alone(command, bare).args(["new", "--vendor", "-q"]).arg(path))?;
+    }
+    step::run_to_end(Command::new("diff").args(["-r", "carried", "tree"]).current_dir(bare))
+}
+
+/// The wheel in an environment of its own.
+fn try_package(bare: &Path) -> Result<(), String> {
+    let environment = bare.join("python");
+    step::run_to_end(Command::new("python3").args(["-m", "venv"]).arg(&environment))?;
+    let python = environment.join("bin/python");
+    let wheels = "set -- \"$1\"/*.whl && \"$0\" -m pip install --quiet --disable-pip-version-check \"$1\"";
+    step::run_to_end(Command::new("sh").args(["-c", wheels]).arg(&python).arg(folder()))?;
+    step::run_to_end(alone(&python, bare).args(["-c", TRY_PACKAGE]))
+}
+
+/// A program without the variables of this process, so without Rust.
+fn alone(program: impl AsRef<OsStr>, folder: &Path) -> Command {
+    let mut command = Command::new(program);
+    command.env_clear().env("HOME", folder).env("PATH", folder).current_dir(folder);
+    command
+}
+
+/// An empty folder.
+fn clear(folder: &Path) -> Result<(), String> {
+    let failed = |error: io::Error| format!("{}: {error}", folder.display());
+    match fs::remove_dir_all(folder) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(failed(error)),
+        _ => {}
+    }
+    fs::create_dir_all(folder).map_err(failed)
+}
+
+fn copy(from: &Path, to: &Path) -> Result<(), String> {
+    fs::copy(from, to).map(|_| ()).map_err(|error| format!("{}: {error}", from.display()))
+}
