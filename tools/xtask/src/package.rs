@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::python::CHECKS;
-use crate::{release, step, workspace};
+use crate::{step, workspace};
 
 const FOLDER: &str = "tools/python";
 
@@ -42,7 +42,7 @@ fn python(arguments: &[&str]) -> Command {
 
 /// Installs the package's wheel into the environment of the checks, and runs its tests there, in a folder that does not hold its sources.
 pub fn check_package() -> Result<(), String> {
-    let wheel = build_wheel(&release::folder())?;
+    let wheel = build_wheel(&workspace::published())?;
     let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps", "--force-reinstall"];
     step::run_to_end(python(&install).arg(wheel))?;
     let tests = format!("{FOLDER}/tests");

@@ -7,7 +7,8 @@ use std::process::Command;
 use std::{env, fs, io};
 
 use crate::package::build_wheel;
-use crate::{step, workspace};
+use crate::step;
+use crate::workspace::{self, published};
 
 /// The crates that others build on, each after those that it needs.
 const CRATES: [&str; 5] = ["crane-quantities", "crane-codegen", "crane-jit", "crane-model", "crane-live"];
@@ -21,15 +22,10 @@ run = loaded.simulate(duration=0.5)
 assert numpy.isfinite(run['t']).all() and run['t'][-1] == 0.5
 print(loaded)";
 
-/// Where everything is put.
-pub fn folder() -> PathBuf {
-    workspace::target().join("published")
-}
-
 /// Makes everything that is published.
 pub fn build_release() -> Result<(), String> {
     pack_command()?;
-    build_wheel(&folder())?;
+    build_wheel(&published())?;
     pack_crates()?;
     write_checksums()
 }
@@ -39,7 +35,7 @@ pub fn rehearse_release() -> Result<(), String> {
     let archive = pack_command()?;
     pack_crates()?;
     write_checksums()?;
-    let bare = folder().join("bare");
+    let bare = published().join("bare");
     clear(&bare)?;
     try_command(&archive, &bare)?;
     try_package(&bare)
@@ -55,7 +51,7 @@ fn pack_command() -> Result<PathBuf, String> {
     step::run_to_end(cargo.env("CRANE_UNIT_LIBRARY", built.join(library)).current_dir(workspace::root()))?;
 
     let name = format!("crane-{}-{}", env!("CARGO_PKG_VERSION"), workspace::host_triple()?);
-    let packed = folder().join(&name);
+    let packed = published().join(&name);
     clear(&packed)?;
     copy(&built.join(format!("crane-alone{}", env::consts::EXE_SUFFIX)), &packed.join("crane"))?;
     step::run_to_end(Command::new("strip").arg(packed.join("crane")))?;
@@ -63,22 +59,22 @@ fn pack_command() -> Result<PathBuf, String> {
         let path = workspace::root().join(file);
         copy(&path, &packed.join(path.file_name().unwrap_or_default()))?;
     }
-    let archive = folder().join(format!("{name}.tar.gz"));
-    step::run_to_end(Command::new("tar").arg("-czf").arg(&archive).arg("-C").arg(folder()).arg(&name))?;
+    let archive = published().join(format!("{name}.tar.gz"));
+    step::run_to_end(Command::new("tar").arg("-czf").arg(&archive).arg("-C").arg(published()).arg(&name))?;
     Ok(archive)
 }
 
 /// Packages of the crates as registries take them; they are not compiled again.
 fn pack_crates() -> Result<(), String> {
     let mut cargo = Command::new(step::cargo());
-    cargo.args(["package", "--quiet", "--no-verify", "--allow-dirty", "--target-dir"]).arg(folder().join("crates"));
+    cargo.args(["package", "--quiet", "--no-verify", "--allow-dirty", "--target-dir"]).arg(published().join("crates"));
     cargo.args(CRATES.iter().flat_map(|name| ["--package", name]));
     step::run_to_end(cargo.current_dir(workspace::root()))
 }
 
 fn write_checksums() -> Result<(), String> {
     let list = "cd \"$0\" && sha256sum *.tar.gz *.whl crates/package/*.crate > SHA256SUMS && cat SHA256SUMS";
-    step::run_to_end(Command::new("sh").args(["-c", list]).arg(folder()))
+    step::run_to_end(Command::new("sh").args(["-c", list]).arg(published()))
 }
 
 /// The command from its archive, alone in a folder: it checks, computes, and makes a functional mock-up unit that runs, and a crate.
@@ -108,7 +104,7 @@ fn try_package(bare: &Path) -> Result<(), String> {
     step::run_to_end(Command::new("python3").args(["-m", "venv"]).arg(&environment))?;
     let python = environment.join("bin/python");
     let wheels = "set -- \"$1\"/*.whl && \"$0\" -m pip install --quiet --disable-pip-version-check \"$1\"";
-    step::run_to_end(Command::new("sh").args(["-c", wheels]).arg(&python).arg(folder()))?;
+    step::run_to_end(Command::new("sh").args(["-c", wheels]).arg(&python).arg(published()))?;
     step::run_to_end(alone(&python, bare).args(["-c", TRY_PACKAGE]))
 }
 

@@ -14,6 +14,11 @@ pub fn target() -> PathBuf {
     env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from)
 }
 
+/// Where everything that is published is put.
+pub fn published() -> PathBuf {
+    target().join("published")
+}
+
 /// A file's text, by its path from the root.
 pub fn read_file(path: &str) -> Result<String, String> {
     fs::read_to_string(root().join(path)).map_err(|error| format!("{path}: {error}"))
