@@ -19,6 +19,8 @@ from springs import read_springs
 
 HERE = Path(__file__).resolve().parent
 OURS = "generated Rust"
+# The others, by the methods of `Arena` that make their contestants.
+LIBRARIES = ["pinocchio", "casadi", "mujoco", "exudyn"]
 PINOCCHIO_BASES = ["revolute", "zyx", "composite", "free_flyer"]
 PINOCCHIO_ELEMENTS = ["revolute", "zyx", "composite"]
 PINOCCHIO_ALGORITHMS = {
@@ -76,8 +78,9 @@ class Contestant:
 class Arena:
     """One crane in the form of every library, and all contestants on it."""
 
-    def __init__(self, coordinates, builds, compilers, bench):
+    def __init__(self, coordinates, builds, compilers, bench, libraries):
         self.coordinates, self.builds, self.compilers, self.bench = coordinates, builds, compilers, bench
+        self.libraries = libraries
         crane = read_crane(builds.write(f"crane_{coordinates}.yaml", self.ask("spec", coordinates)))
         self.states = builds.write(f"states_{coordinates}", self.ask("states", coordinates))
         self.records = np.fromfile(self.states).reshape(-1, 1 + 3 * coordinates)
@@ -93,7 +96,7 @@ class Arena:
 
     def contestants(self):
         """All of them, ours first."""
-        return [*self.ours(), *self.pinocchio(), *self.casadi(), *self.mujoco(), *self.exudyn()]
+        return [*self.ours(), *(found for library in self.libraries for found in getattr(self, library)())]
 
     def ours(self):
         """All kernels of crane-bench."""

@@ -1,6 +1,6 @@
 """Times the generated functions and other libraries on the same cranes, in turns, and writes docs/performance.md.
 
-    python measure.py [--quick] [--rounds 11] [--seconds 0.03]
+    python measure.py [--quick] [--without pinocchio] [--rounds 11] [--seconds 0.03]
     python measure.py --report
 
 First all results are compared: those with an error above 1e-8 are excluded. What has been built once is not built again; results
@@ -17,7 +17,7 @@ from dataclasses import asdict
 
 import machine
 import report
-from contestants import OURS, Arena, Contestant
+from contestants import LIBRARIES, OURS, Arena, Contestant
 from programs import TARGET, WORKSPACE, Builds, compilers, crane_bench
 
 # Sections of the boom; 13 + 3 n coordinates.
@@ -33,8 +33,11 @@ def main():
     """Builds, compares, measures, writes."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument(
-        "--quick", action="store_true", help="13 coordinates, 3 rounds, into the build folder only"
+        "--quick",
+        action="store_true",
+        help="13 coordinates, 3 rounds, without this machine's instructions, into the build folder only",
     )
+    parser.add_argument("--without", nargs="+", choices=LIBRARIES, default=[], help="libraries that do not take part")
     parser.add_argument("--rounds", type=int, help="turns of everybody (11)")
     parser.add_argument("--seconds", type=float, default=0.03, help="length of a turn (0.03)")
     parser.add_argument("--report", action="store_true", help="write the document from the last results")
@@ -52,7 +55,8 @@ def main():
     print(f"written: {document}, {figure}")
     if wrong := report.impossible(content):
         print("More operations than the peak of the core: something was not measured right.", *wrong, sep="\n  ")
-        return 1
+        # A quick measurement beside other work shows that everything runs, not how fast.
+        return 0 if options.quick else 1
     return 0
 
 
@@ -60,10 +64,11 @@ def measure(options, builds, results):
     """Everything up to writing the results file."""
     sections = SECTIONS_QUICK if options.quick else SECTIONS
     print("building", flush=True)
-    bench = crane_bench(sections)
+    bench = crane_bench(sections, native=not options.quick)
     tools = compilers()
-    arenas = [Arena(13 + 3 * count, builds, tools, bench) for count in sections]
-    compile_all(builds, arenas, tools)
+    libraries = [library for library in LIBRARIES if library not in options.without]
+    arenas = [Arena(13 + 3 * count, builds, tools, bench, libraries) for count in sections]
+    compile_all(builds, arenas, tools, libraries)
     taking_part, wrong = [], []
     for arena in arenas:
         right, off = compare(arena)
@@ -88,11 +93,12 @@ def measure(options, builds, results):
         print(f"round {number + 1} of {rounds}, {time.perf_counter() - begun:.0f} s", flush=True)
 
 
-def compile_all(builds, arenas, tools):
+def compile_all(builds, arenas, tools, libraries):
     """Compiles the slow sources on all cores, the slowest first."""
-    sources = [source for arena in reversed(arenas) for _, source in arena.sources()]
+    slow = [library for library in libraries if library == "pinocchio"]
+    sources = [source for arena in reversed(arenas) for _, source in arena.sources()] if "casadi" in libraries else []
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        jobs = [pool.submit(builds.program, "pinocchio", compiler) for compiler in tools]
+        jobs = [pool.submit(builds.program, library, compiler) for library in slow for compiler in tools]
         jobs += [pool.submit(builds.shared_library, source, compiler) for source in sources for compiler in tools]
         for job in jobs:
             job.result()

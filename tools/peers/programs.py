@@ -119,9 +119,10 @@ OPTIONS = {
 }
 
 
-def crane_bench(sections):
-    """The program of crane-bench, for this machine, with the crane of these numbers of sections."""
-    environment = os.environ | NATIVE | {"CRANE_BENCH_SECTIONS": " ".join(map(str, sections))}
+def crane_bench(sections, native):
+    """The program of crane-bench with the crane of these numbers of sections, for this machine's instructions or as everything else is built."""
+    environment = {"CARGO_TARGET_DIR": str(TARGET)} | (NATIVE if native else {})
+    sections = {"CRANE_BENCH_SECTIONS": " ".join(map(str, sections))}
     command = ["cargo", "build", "--release", "--quiet", "--package", "crane-bench"]
-    subprocess.run(command, cwd=WORKSPACE, env=environment, check=True)
-    return TARGET / "native/release/crane-bench"
+    subprocess.run(command, cwd=WORKSPACE, env=os.environ | environment | sections, check=True)
+    return Path(environment["CARGO_TARGET_DIR"]) / "release/crane-bench"

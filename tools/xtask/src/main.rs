@@ -37,7 +37,7 @@ With words, only the steps whose titles contain one of them run.
            Python package
   lint     formatting, clippy, documentation, import rules, docs/EQUATIONS.md
   oracles  generated code against CasADi, Pinocchio and MuJoCo, over all shipped and some random cranes
-  performance [--quick]
+  performance [--quick] [--without LIBRARY …]
            time the generated functions and other libraries in turns, write docs/performance.md; needs g++ or clang
   error-vs-runtime
            time methods and numbers of sections of the reference crane, write docs/error-vs-runtime.md
@@ -193,6 +193,7 @@ fn measurement_steps() -> Vec<Step> {
     vec![
         Step::cargo("every benchmark once", &once).with(SECTIONS, "0"),
         Step::cargo("error against run time, quickly", &quick),
+        Step::check("times beside other libraries, quickly", oracles::rehearse_performance),
     ]
 }
 

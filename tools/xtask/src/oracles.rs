@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use crate::python::{CHECKS, Environment, PERFORMANCE};
+use crate::python::{CHECKS, Environment};
 use crate::{step, workspace};
 
 fn python_script(environment: &Environment, path: &str) -> Command {
@@ -18,6 +18,7 @@ fn run_on_generated_code(path: &str) -> Result<(), String> {
 const CHECK: &str = "tools/casadi/check.py";
 const MOTION: &str = "tools/casadi/motion.py";
 const AGREE: &str = "tools/peers/agree.py";
+const MEASURE: &str = "tools/peers/measure.py";
 
 /// CasADi's derivations obey the laws of mechanics, and an error of 1e-8 in any quantity is noticed.
 pub fn check_oracles() -> Result<(), String> {
@@ -64,6 +65,11 @@ pub fn prepare_python() -> Result<(), String> {
 
 /// Times the generated functions and other libraries, and writes docs/performance.md; the words after the task are options.
 pub fn measure_performance() -> Result<(), String> {
-    PERFORMANCE.prepare()?;
-    step::run_to_end(python_script(&PERFORMANCE, "tools/peers/measure.py").args(std::env::args().skip(2)))
+    CHECKS.prepare()?;
+    step::run_to_end(python_script(&CHECKS, MEASURE).args(std::env::args().skip(2)))
+}
+
+/// The measurement in its quick form, without Pinocchio: its templates compile for four minutes.
+pub fn rehearse_performance() -> Result<(), String> {
+    step::run_to_end(python_script(&CHECKS, MEASURE).args(["--quick", "--without", "pinocchio"]))
 }

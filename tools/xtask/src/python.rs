@@ -18,19 +18,10 @@ pub const CHECKS: Environment = Environment {
     requirements: &[
         "tools/casadi/requirements.txt",
         "tools/peers/requirements.txt",
+        "tools/peers/requirements-performance.txt",
         "tools/python/requirements-test.txt",
         "tools/fmu/requirements-test.txt",
         "tools/cli/tests/output/requirements-test.txt",
-    ],
-};
-
-/// For the measurement against other libraries.
-pub const PERFORMANCE: Environment = Environment {
-    folder: ".venv-performance",
-    requirements: &[
-        "tools/casadi/requirements.txt",
-        "tools/peers/requirements.txt",
-        "tools/peers/requirements-performance.txt",
     ],
 };
 
