@@ -64,7 +64,7 @@ class Body:
 @dataclass
 class Spring:
     """Spring and damper on one coordinate: of an element or, with a motion, of a drive. A rigid drive has neither; a drive by oil
-    has its spring at rest only."""
+    has its spring at rest only. A drive may have an effort besides."""
 
     coordinate: Coordinate
     stiffness: object
@@ -75,8 +75,19 @@ class Spring:
     max_effort: object = None
     max_rate: object = None
     max_power: object = None
+    effort: object = 0
     by_oil: bool = False
     opening: object = 0
+
+    @property
+    def holds(self):
+        """Whether its motion says where the joint is at rest: not with an effort alone."""
+        return self.is_rigid or isinstance(self.effort, int) or self.has_spring
+
+    @property
+    def has_spring(self):
+        """Whether there is a spring: its stiffness is not the number 0."""
+        return not (isinstance(self.stiffness, float) and self.stiffness == 0)
 
 
 @dataclass
@@ -515,13 +526,14 @@ def read_drive(crane, written):
     """A drive: spring and damper between a prescribed motion and its coordinate [Urbaś 2016, Eqs. (19)-(21)], or neither."""
     spec = crane.spec
     coordinate = crane.coordinate(written["coordinate"])
-    motion, interval = read_profile(spec, written["motion"], coordinate.is_rotation, crane.time)
+    motion, interval = read_profile(spec, written.get("motion", {"hold": 0}), coordinate.is_rotation, crane.time)
+    effort = read_profile(spec, written["effort"], False, crane.time)[0] if "effort" in written else 0
     if "offset" in written:
         motion += read_profile(spec, {"input": written["offset"]}, coordinate.is_rotation, crane.time)[0]
     stiffness, damping = (spec.number(written.get(key, 0)) for key in ("stiffness", "damping"))
     limit = spec.number(written["max_effort"]) if "max_effort" in written else None
     most = [spec.number(written[key]) if key in written else None for key in ("max_rate", "max_power")]
-    return Spring(coordinate, stiffness, damping, motion, interval, written.get("rigid", False), limit, *most)
+    return Spring(coordinate, stiffness, damping, motion, interval, written.get("rigid", False), limit, *most, effort)
 
 
 def read_opening(crane, valve):
@@ -650,7 +662,8 @@ def carrier(spec, at, span):
 def read_guess(crane):
     """Where the static solution starts: as written, else at the drive's position at t = 0, else where a coupling has it, else 0."""
     spec, written = crane.spec, crane.spec.get("guess", {})
-    known = {drive.coordinate.name: spec.default(ca.substitute(drive.motion, crane.time, 0)) for drive in crane.drives}
+    holding = [drive for drive in crane.drives if drive.holds]
+    known = {drive.coordinate.name: spec.default(ca.substitute(drive.motion, crane.time, 0)) for drive in holding}
     known |= {c.name: spec.position(written[c.name], c.is_rotation) for c in crane.coordinates if c.name in written}
     couplings = spec.get("couplings", [])
     # A coordinate that follows one that follows another is known one pass later.

@@ -10,7 +10,7 @@ import numpy as np
 import cylinders
 import loop_joints
 from contacts import contact
-from limits import limited_drive, slope_at_rest
+from limits import energy_at_rest, limited_drive, slope_at_rest
 
 
 def row_major(matrix):
@@ -374,7 +374,7 @@ class Derivations:
         # Power of stops and friction that does not go into the stops' energy.
         lost = -ca.dot(stops + friction, v) - ca.jtimes(stop_energy, q, v)
         lost += sum((c.lost for c in self.contacts.values()), ca.SX(0))
-        drives, drive_energy, drive_lost, drive_damping, _ = self.limited_drives()
+        drives, drive_energy, drive_lost, drive_damping, *_ = self.limited_drives()
         by_part["drive"] += drives
         energies["drive"] += drive_energy
         step_damping = sum((c.step_damping for c in self.contacts.values()), damping)
@@ -402,20 +402,22 @@ class Derivations:
         }
 
     def limited_drives(self):
-        """Drives with a limit: their generalized forces, energy, lost power, damping at rest and t = 0, and
-        power that their motions put in beyond the delivered efforts, lost by slipping."""
+        """Drives with a limit or an effort besides: their generalized forces, energy, lost power, damping at rest and t = 0, power that
+        they put in beyond that of their motions with the delivered efforts, and the potential of their forces at rest."""
         places = {coordinate.name: place for place, coordinate in enumerate(self.crane.coordinates)}
         forces, damping = (ca.SX.zeros(self.crane.q.shape) for _ in range(2))
-        energy, lost, slipping = ca.SX(0), ca.SX(0), ca.SX(0)
+        energy, lost, slipping, resting = ca.SX(0), ca.SX(0), ca.SX(0), ca.SX(0)
         for drive in self.crane.drives:
-            if drive.max_effort is None:
+            if drive.max_effort is None and isinstance(drive.effort, int):
                 continue
             effort, stored, own, beyond = limited_drive(drive, self.rate)
             place = places[drive.coordinate.name]
             forces[place] += effort
-            damping[place] += ca.substitute(drive.damping * slope_at_rest(drive), self.crane.time, 0)
+            if drive.max_effort is not None:
+                damping[place] += ca.substitute(drive.damping * slope_at_rest(drive), self.crane.time, 0)
             energy, lost, slipping = energy + stored, lost + own, slipping + beyond
-        return forces, energy, lost, damping, slipping
+            resting += energy_at_rest(drive)
+        return forces, energy, lost, damping, slipping, resting
 
     def contact_forces(self):
         """One-sided supports: their generalized forces, energy, damping at rest."""
@@ -456,7 +458,7 @@ class Derivations:
         """Gradient and Hessian of the whole potential energy, with loads, winches and drives where they are at the time of the state; the
         Hessian also at t = 0 without oil, for small motions."""
         q = self.crane.q
-        springs, oil = self.potentials()["drive"][0] + self.limited_drives()[1], self.holding_energy()
+        springs, oil = self.potentials()["drive"][0] + self.limited_drives()[5], self.holding_energy()
         others = self.gravity_energy() + sum(energy for part, (energy, _) in self.potentials().items() if part != "drive")
         others += self.joint_forces()[2] + self.contact_forces()[1] + self.connector_forces()[0]["connector_energy"]
         loads = self.load_forces()

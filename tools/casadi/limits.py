@@ -1,4 +1,4 @@
-"""Drives whose effort has a limit: spring and damper up to 95 % of it, the limit from 105 % on, and a parabola between."""
+"""Drives whose effort has a limit: linear up to 95 % of it, the limit from 105 % on, and a parabola between; and efforts besides."""
 
 import casadi as ca
 
@@ -39,19 +39,36 @@ def delivered(drive, effort, speed):
 
 
 def limited_drive(drive, rate):
-    """Effort, energy, lost power of a drive with a limit, and power lost by slipping; `rate` takes the time derivative of its motion."""
+    """Effort, energy, lost power of a drive with a limit or an effort besides, and what its power input is beyond that of its motion with
+    the delivered effort; `rate` takes the time derivative of its motion."""
     coordinate = drive.coordinate
     stretch, speed = drive.motion - coordinate.q, rate(ca.SX(drive.motion)) - coordinate.v
-    spring = saturated(drive.stiffness * stretch, drive.max_effort)
-    effort = saturated(drive.stiffness * stretch + drive.damping * speed, drive.max_effort)
+    passive = drive.stiffness * stretch + drive.damping * speed
+    if drive.max_effort is None:
+        # Spring and damper have no limit: they are among the linear ones. The effort acts on the joint, not on the motion.
+        return drive.effort, 0, 0, -drive.effort * speed
+    spring, passive, effort = (
+        saturated(part, drive.max_effort) for part in (drive.stiffness * stretch, passive, passive + drive.effort)
+    )
     own = delivered(drive, effort, coordinate.v)
-    # The far end of the transmission feels the whole effort, the joint what is delivered.
-    slipping = (effort - own) * speed
-    return own, stored(drive.stiffness, stretch, drive.max_effort), (effort - spring) * speed, slipping
+    energy = stored(drive.stiffness, stretch, drive.max_effort) if drive.has_spring else 0
+    # The far end of the transmission feels the whole effort of spring and damper, the joint what is delivered.
+    return own, energy, (passive - spring) * speed, (passive - own) * speed
+
+
+def energy_at_rest(drive):
+    """Potential of the force of such a drive at rest."""
+    stretch = drive.motion - drive.coordinate.q
+    if drive.max_effort is None:
+        return -drive.effort * drive.coordinate.q
+    if not drive.has_spring:
+        return -saturated(ca.SX(drive.effort), drive.max_effort) * drive.coordinate.q
+    # The effort shifts the spring.
+    return stored(drive.stiffness, stretch + drive.effort / drive.stiffness, drive.max_effort)
 
 
 def slope_at_rest(drive):
     """The fraction of an increase in effort that a drive at rest delivers, from 1 down to 0."""
     effort = ca.SX.sym("effort")
     slope = ca.jacobian(saturated(effort, drive.max_effort), effort)
-    return ca.substitute(slope, effort, drive.stiffness * (drive.motion - drive.coordinate.q))
+    return ca.substitute(slope, effort, drive.stiffness * (drive.motion - drive.coordinate.q) + drive.effort)

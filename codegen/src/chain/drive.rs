@@ -16,13 +16,15 @@ pub struct Drive {
 /// The transmission between a prescribed motion and the coordinate.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Transmission {
-    /// A spring and a damper, Eqs. (19)–(21).
+    /// A spring and a damper, Eqs. (19)–(21), and an effort besides.
     Flexible {
-        /// Stiffness, N m/rad or N/m.
+        /// Stiffness, N m/rad or N/m; the constant 0 without a spring.
         stiffness: Value,
         /// Damping, N m s/rad or N s/m.
         damping: Value,
-        /// The maximum effort of both together, N m or N.
+        /// The effort besides, N m or N, over time.
+        effort: Option<Profile>,
+        /// The maximum effort of all together, N m or N.
         max_effort: Option<Value>,
         /// The maximum rate at which it drives, rad/s or m/s.
         max_rate: Option<f64>,
@@ -68,10 +70,26 @@ impl Drive {
         }
     }
 
-    /// Begin and end, s, of the intervals in which its motion and its valve's command are smooth.
+    /// The effort besides those of spring and damper, over time, if it has one.
+    #[must_use]
+    pub fn effort(&self) -> Option<&Profile> {
+        match &self.transmission {
+            Transmission::Flexible { effort, .. } => effort.as_ref(),
+            Transmission::Rigid | Transmission::Oil { .. } => None,
+        }
+    }
+
+    /// Whether its motion says where the joint is at rest: not if it has only an effort and a damper.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.effort().is_none() || self.spring().is_none_or(|(stiffness, _)| !stiffness.is_zero())
+    }
+
+    /// Begin and end, s, of the intervals in which its motion, its effort and its valve's command are smooth.
     #[must_use]
     pub fn pieces(&self) -> Vec<[Value; 2]> {
-        [Some(&self.profile), self.opening()].into_iter().flatten().flat_map(Profile::pieces).collect()
+        let given = [Some(&self.profile), self.effort(), self.opening()];
+        given.into_iter().flatten().flat_map(Profile::pieces).collect()
     }
 
     /// The maximum rate at which it drives, if it is limited.

@@ -211,11 +211,11 @@ catalogue! {
     /// Rotors turn with joints; the rotor of a driven joint belongs to its drive.
     E086 no_rotor(coordinate, owner, help) "coordinate `{coordinate}` has no rotor", "it belongs to {owner}",
         "{help}";
-    /// A drive has a stiffness, or is rigid.
-    E087 no_transmission(coordinate) "drive `{coordinate}` has no stiffness", "neither `stiffness` nor `rigid: true`",
-        "write its `stiffness:`, or `rigid: true` if the coordinate follows the motion exactly";
-    /// A rigid drive has neither stiffness nor damping.
-    E088 rigid_spring(coordinate, key) "drive `{coordinate}` is rigid and has a `{key}`", "a rigid drive has no spring and no damper",
+    /// A drive has a stiffness, is rigid, or has an effort.
+    E087 no_transmission(coordinate) "drive `{coordinate}` has no stiffness", "none of `stiffness`, `rigid: true` and `effort`",
+        "write its `stiffness:`, `rigid: true` if the coordinate follows the motion exactly, or `effort:`, its torque or force";
+    /// A rigid drive has neither stiffness, damping nor effort.
+    E088 rigid_spring(coordinate, key) "drive `{coordinate}` is rigid and has a `{key}`", "a rigid drive has no spring and no damper, and its effort follows from its motion",
         "remove either `{key}` or `rigid: true`";
     /// The speed of a rigid drive does not jump.
     E089 jumps(coordinate, time) "the speed of rigid drive `{coordinate}` jumps at {time}",
@@ -291,7 +291,7 @@ catalogue! {
         "give the drive `stiffness` and `damping`, or a motion without inputs";
     /// Every input is used.
     E114 unused_input(input) "input `{input}` is not used", "no drive, valve, load or rope refers to it",
-        "name it in `motion: {{input: …}}` of a drive or a rope, in `offset` of a drive, in the `opening` of a valve or in `scale: {{input: …}}` of a load, or remove it";
+        "name it in `motion: {{input: …}}` of a drive or a rope, in `offset` or `effort` of a drive, in the `opening` of a valve or in `scale: {{input: …}}` of a load, or remove it";
 
     // Cylinders.
     /// The rod of a cylinder is thinner than its piston.
@@ -316,9 +316,9 @@ catalogue! {
     E121 valve_without_pressure(cylinder) "nothing supplies the valve of cylinder `{cylinder}`", "the spec gives no pressure of a pump",
         "add `pump: {{max_flow: 1.5e-3, pressure: 22e6}}` with the data of your pump, in m³/s and Pa";
     /// A joint that oil moves has a drive with a stiffness and without a limit.
-    E122 valve_of_another_drive(cylinder, coordinate) "cylinder `{cylinder}` has a valve, but the drive of `{coordinate}` is rigid or limited",
+    E122 valve_of_another_drive(cylinder, coordinate) "cylinder `{cylinder}` has a valve, but the drive of `{coordinate}` is rigid, limited or has an `effort`",
         "oil moves this joint: the cylinder's pressures limit its force",
-        "give the drive a `stiffness`, which holds the crane at rest before the run, and neither `rigid` nor `max_effort`";
+        "give the drive a `stiffness`, which holds the crane at rest before the run, and neither `rigid`, `effort` nor `max_effort`";
     /// A valve opens before its spool reaches the end of its travel.
     E123 covered_valve(cylinder, overlap) "the valve of cylinder `{cylinder}` never opens", "an overlap of {overlap} covers the whole travel of the spool",
         "`overlap` is a fraction of the spool's travel below 1, such as 0.05";
@@ -455,6 +455,14 @@ catalogue! {
     /// Pads hold a beam against twist.
     E176 untwisted(link) "no pad holds `{link}` against twist", "the third number of both stiffnesses is 0",
         "write the stiffness against twist in N m/rad as the third number of `front`, of `rear` or of both";
+
+    // Efforts of drives.
+    /// A drive that is rigid or has a spring has a motion.
+    E177 drive_without_motion(coordinate) "drive `{coordinate}` has no motion", "its spring, or its joint, follows a motion",
+        "write `motion:`, for example `motion: {{hold: 0}}`";
+    /// A drive with a motion has a spring or a damper, or is rigid.
+    E178 motion_without_spring(coordinate) "the motion of drive `{coordinate}` has no effect", "it has an `effort`, and neither spring nor damper",
+        "remove `motion`, or write the `stiffness:` or `damping:` through which it acts";
 
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.

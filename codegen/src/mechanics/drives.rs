@@ -1,6 +1,6 @@
-//! Drives: a spring and a damper between a coordinate and its prescribed motion, or that motion itself. A joint that oil moves has neither:
-//! in motion, the force of its cylinder follows from pressures, which are states of the run; at rest it is that of a spring along the
-//! cylinder.
+//! Drives: a spring and a damper between a coordinate and its prescribed motion, and an effort besides; or that motion itself. A joint that
+//! oil moves has none of these: in motion, the force of its cylinder follows from pressures, which are states of the run; at rest it is that
+//! of a spring along the cylinder.
 
 use super::acts::{Acts, Rest, add};
 use super::cylinders;
@@ -24,7 +24,7 @@ impl<'g> Acts<'g> for Drives<'_, 'g> {
 
     /// Those of flexible drives and of cylinders with a valve.
     fn at_rest(&self, rest: &Rest<'g>) -> Vec<Expr<'g>> {
-        let springs = forces_at_rest(self.model, &rest.positions);
+        let springs = forces_at_rest(self.model, rest);
         if !self.model.chain.has_valves() {
             return springs;
         }
@@ -39,18 +39,19 @@ impl<'g> Acts<'g> for Drives<'_, 'g> {
         let twice = linear(model).fold(model.zero(), |sum, (drive, stiffness, _)| {
             sum + model.number(stiffness) * stretch(model, drive, &positions).squared()
         });
-        let limited = saturations(model, &positions).map(|((_, s, _), spring)| spring.integral() / model.number(s));
+        let springs = saturations(model, &positions, None).filter(|((_, s, _), _)| !s.is_zero());
+        let limited = springs.map(|((_, s, _), spring)| spring.integral() / model.number(s));
         Some(limited.fold(0.5 * twice, |sum, energy| sum + energy))
     }
 
-    /// `Σ d (q̇_dr − q̇)²` (2R of [Urbaś 2016, Eq. (19)]); for a drive with a limit `(sat(u) − sat(s e)) ė ≥ 0`.
+    /// `Σ d (q̇_dr − q̇)²` (2R of [Urbaś 2016, Eq. (19)]); for a drive with a limit `(sat(s e + d ė) − sat(s e)) ė ≥ 0`.
     fn dissipation(&self) -> Option<Expr<'g>> {
         let model = self.model;
         let rate = |drive: &Drive| profile::rate(model, &drive.profile, model.t) - model.v[drive.coordinate.0];
         let linear = linear(model)
             .fold(model.zero(), |sum, (drive, _, damping)| sum + model.number(damping) * rate(drive).squared());
-        Some(saturations(model, &positions(model, model.t)).fold(linear, |sum, (drive, spring)| {
-            let damper = limited(model, drive.0, unlimited(model, drive, model.t, &model.v)) - spring.effort();
+        Some(saturations(model, &positions(model, model.t), None).fold(linear, |sum, (drive, spring)| {
+            let damper = limited(model, drive.0, spring_and_damper(model, drive, model.t, &model.v)) - spring.effort();
             sum + damper * rate(drive.0)
         }))
     }
@@ -91,7 +92,7 @@ impl<'g> Drives<'_, 'g> {
         let entry = |(drive, spring): ((&Drive, &Value, &Value), Saturation<'g>)| {
             (drive.0.coordinate.0, spring.slope() * self.model.number(number(drive)))
         };
-        matrix.add_diagonal(saturations(self.model, &rest.positions).map(entry));
+        matrix.add_diagonal(saturations(self.model, &rest.positions, Some(rest.t)).map(entry));
     }
 }
 
@@ -101,7 +102,7 @@ fn flexible<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (&'a Drive, &'a Va
 }
 
 /// `s (q_dr − q) + d (q̇_dr − q̇)`
-fn unlimited<'g>(
+fn spring_and_damper<'g>(
     model: &Model<'g>,
     (drive, stiffness, damping): (&Drive, &Value, &Value),
     t: Expr<'g>,
@@ -113,7 +114,22 @@ fn unlimited<'g>(
     model.number(stiffness) * stretch + model.number(damping) * rate
 }
 
-/// `t_dr = s (q_dr − q) + d (q̇_dr − q̇)` [Urbaś 2016, Eqs. (20)–(21)], within the limits of the drive.
+/// The effort u of spring and damper, and the effort besides at time t: `u + τ(t)`.
+fn with_effort<'g>(model: &Model<'g>, drive: &Drive, effort: Expr<'g>, t: Expr<'g>) -> Expr<'g> {
+    drive.effort().map_or(effort, |given| effort + profile::position(model, given, t))
+}
+
+/// `s (q_dr − q) + d (q̇_dr − q̇) + τ(t)`
+fn unlimited<'g>(
+    model: &Model<'g>,
+    drive: (&Drive, &Value, &Value),
+    t: Expr<'g>,
+    v: &[Expr<'g>],
+) -> Expr<'g> {
+    with_effort(model, drive.0, spring_and_damper(model, drive, t, v), t)
+}
+
+/// `t_dr = s (q_dr − q) + d (q̇_dr − q̇) + τ(t)` [Urbaś 2016, Eqs. (20)–(21), with τ besides], within the limits of the drive.
 fn effort<'g>(model: &Model<'g>, flexible: (&Drive, &Value, &Value), t: Expr<'g>, v: &[Expr<'g>]) -> Expr<'g> {
     let within = limited(model, flexible.0, unlimited(model, flexible, t, v));
     named(model, flexible.0, delivered(model, flexible.0, within, v[flexible.0.coordinate.0]))
@@ -124,14 +140,18 @@ fn limited<'g>(model: &Model<'g>, drive: &Drive, effort: Expr<'g>) -> Expr<'g> {
     drive.max_effort().map_or(effort, |limit| Saturation::new(effort, model.number(limit)).effort())
 }
 
-/// Drives with a limit, and the saturation of the efforts of their springs with the drives at given positions.
+/// Drives with a limit, and the saturation of the efforts of their springs with the drives at given positions; with the efforts besides at
+/// a time, if one is given.
 fn saturations<'a, 'g>(
     model: &'a Model<'g>,
     positions: &'a [Expr<'g>],
+    besides: Option<Expr<'g>>,
 ) -> impl Iterator<Item = ((&'a Drive, &'a Value, &'a Value), Saturation<'g>)> {
     flexible(model).filter_map(move |drive| {
         let limit = model.number(drive.0.max_effort()?);
-        Some((drive, Saturation::new(model.number(drive.1) * stretch(model, drive.0, positions), limit)))
+        let spring = model.number(drive.1) * stretch(model, drive.0, positions);
+        let effort = besides.map_or(spring, |t| with_effort(model, drive.0, spring, t));
+        Some((drive, Saturation::new(effort, limit)))
     })
 }
 
@@ -164,13 +184,14 @@ pub fn forces<'g>(model: &Model<'g>, t: Expr<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g
     forces
 }
 
-/// Generalized forces of the flexible drives' springs with the crane at rest and the drives at given positions: dampers do not act, even if
-/// a motion is in progress.
-fn forces_at_rest<'g>(model: &Model<'g>, positions: &[Expr<'g>]) -> Vec<Expr<'g>> {
+/// Generalized forces of the flexible drives' springs and of the efforts besides, with the crane at rest and the drives at given positions:
+/// dampers do not act, even if a motion is in progress.
+fn forces_at_rest<'g>(model: &Model<'g>, rest: &Rest<'g>) -> Vec<Expr<'g>> {
     let mut forces = model.zeros();
     for (drive, stiffness, _) in flexible(model) {
-        let stretch = stretch(model, drive, positions);
-        forces[drive.coordinate.0] = named(model, drive, limited(model, drive, model.number(stiffness) * stretch));
+        let stretch = stretch(model, drive, &rest.positions);
+        let effort = with_effort(model, drive, model.number(stiffness) * stretch, rest.t);
+        forces[drive.coordinate.0] = named(model, drive, limited(model, drive, effort));
     }
     forces
 }
@@ -261,14 +282,19 @@ pub fn pieces<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     pieces.flatten().map(|time| model.number(&time)).collect()
 }
 
-/// Power of the prescribed motions, `Σ t_dr q̇_dr`, minus the power of the effort that slips in drives at their limits of power and
-/// rate; for rigid drives, whose efforts are given, `τ q̇`.
+/// Power of the prescribed motions and of the efforts besides: with the efforts w of spring and damper and u of the whole drive, both within
+/// its maximum, `Σ w q̇_dr + (u − w) q̇`, minus the power of the effort that slips in drives at their limits of power and rate; for rigid
+/// drives, whose efforts are given, `τ q̇`.
 pub fn power<'g>(model: &Model<'g>, efforts: &[Expr<'g>]) -> Expr<'g> {
     let flexible = flexible(model).fold(model.zero(), |sum, drive| {
         let (motion, rate) = (profile::rate(model, &drive.0.profile, model.t), model.v[drive.0.coordinate.0]);
         let within = limited(model, drive.0, unlimited(model, drive, model.t, &model.v));
         let slipping = within - delivered(model, drive.0, within, rate);
-        sum + (within * motion - slipping * rate)
+        if drive.0.effort().is_none() {
+            return sum + (within * motion - slipping * rate);
+        }
+        let passive = limited(model, drive.0, spring_and_damper(model, drive, model.t, &model.v));
+        sum + (passive * motion + (within - passive - slipping) * rate)
     });
     model.chain.rigid_drives().map(|drive| drive.coordinate.0).fold(flexible, |sum, j| sum + efforts[j] * model.v[j])
 }

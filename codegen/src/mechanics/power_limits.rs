@@ -11,7 +11,7 @@
 //! ```
 //!
 //! The part of u that is not delivered slips in the transmission: with its motion q_dr, the drive's power input is
-//! `u q̇_dr − (u − τ) v`.
+//! `u q̇_dr − (u − τ) v`; an effort besides spring and damper acts on the joint: see [`power`](super::drives::power).
 
 use super::model::Model;
 use super::saturation::Saturation;

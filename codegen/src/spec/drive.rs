@@ -5,22 +5,24 @@ use serde::Deserialize;
 
 use super::{Angle, Constant, FixedAngle, Number, Spanned};
 
-/// A drive: a spring and a damper between a joint and a prescribed motion, or the motion itself.
+/// A drive: a spring and a damper between a joint and a prescribed motion, the motion itself, or a torque or a force.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(
     deny_unknown_fields,
-    expecting = "a mapping of `coordinate`, `stiffness`, `damping` and `motion`, or of `coordinate`, `rigid` and `motion`"
+    expecting = "a mapping of `coordinate`, `stiffness`, `damping` and `motion`, of `coordinate`, `rigid` and `motion`, or of `coordinate` and `effort`"
 )]
 pub struct Drive {
     /// The coordinate it drives, such as `boom_psi`.
     pub coordinate: Spanned<String>,
-    /// Stiffness, N m/rad or N/m; required unless the drive is rigid.
+    /// Stiffness, N m/rad or N/m; required unless the drive is rigid or has an `effort`.
     pub stiffness: Option<Spanned<Number>>,
     /// Damping, N m s/rad or N s/m. Default 0.
     pub damping: Option<Spanned<Number>>,
     /// Whether the coordinate follows the motion exactly. Default false.
     pub rigid: Option<Spanned<bool>>,
-    /// Maximum torque or force that spring and damper deliver together, N m or N. Default: none.
+    /// Torque or force besides that of spring and damper, N m or N: a motion whose positions are efforts, a table, or an input. Default: none.
+    pub effort: Option<Spanned<Motion>>,
+    /// Maximum torque or force of the drive, N m or N: that of spring, damper and `effort` together. Default: none.
     pub max_effort: Option<Spanned<Number>>,
     /// Maximum rate at which it drives, rad/s or m/s: its effort falls to zero over the last tenth. Needs `max_effort`. Default: none.
     pub max_rate: Option<Spanned<Constant>>,
@@ -28,8 +30,8 @@ pub struct Drive {
     pub max_power: Option<Spanned<Constant>>,
     /// Inertia of the drive's rotor, reflected to the joint by the square of the gear ratio, kg m² or kg. Default 0.
     pub armature: Option<Spanned<Number>>,
-    /// Motion of the spring's far end, or of the joint of a rigid drive; exactly one.
-    pub motion: Spanned<Motion>,
+    /// Motion of the spring's far end, or of the joint of a rigid drive; required unless the drive has neither.
+    pub motion: Option<Spanned<Motion>>,
     /// The input that is added to the motion, rad or m. Default: none.
     pub offset: Option<Spanned<String>>,
 }

@@ -82,7 +82,7 @@ impl<'a> Check<'a> {
                 self.report(rule::valve_commanded_twice(valve.span, name, "a drive that moves"));
             }
             match &drive.transmission {
-                Transmission::Flexible { stiffness, max_effort: None, .. } => {
+                Transmission::Flexible { stiffness, effort: None, max_effort: None, .. } => {
                     drive.transmission = Transmission::Oil { stiffness: stiffness.clone(), opening };
                 }
                 Transmission::Flexible { .. } | Transmission::Rigid => {

@@ -47,7 +47,12 @@ impl<'a> Check<'a> {
             let armature = drive.armature.as_ref();
             let subject = format!("the armature of drive `{name}`");
             let armature = self.number_or(armature, 0.0, &subject, units(kind).armature, Limit::NotNegative);
-            let profile = drive.motion.value.as_ref().and_then(|motion| self.motion(motion, kind, drive.motion.span));
+            let motion_span = drive.motion.as_ref().map_or(given.span, |motion| motion.span);
+            let profile = match &drive.motion {
+                Some(motion) => motion.value.as_ref().and_then(|motion| self.motion(motion, kind, motion_span)),
+                None => Some(Profile::Hold(Value::ZERO)),
+            };
+            self.motion_moves(drive, given.span, name);
             let offset = drive.offset.as_ref().map(|offset| self.input(offset));
             let Some(id) = coordinate else {
                 self.unknown_drives = true;
@@ -65,12 +70,12 @@ impl<'a> Check<'a> {
                 None => motion,
             };
             if transmission == Transmission::Rigid && profile.has_input() {
-                self.report(rule::rigid_input(drive.motion.span, name));
+                self.report(rule::rigid_input(motion_span, name));
             }
             if transmission == Transmission::Rigid
                 && let Some(begin) = jump(&profile)
             {
-                self.report(rule::jumps(drive.motion.span, name, begin));
+                self.report(rule::jumps(motion_span, name, begin));
             }
             drives.push(Drive { coordinate: id, transmission, profile });
             if !armature.is_zero() {
@@ -80,7 +85,21 @@ impl<'a> Check<'a> {
         (drives, rotors)
     }
 
-    /// A spring and a damper, or a rigid transmission.
+    /// A motion moves a spring, a damper or the joint itself; a spring and a rigid drive need one.
+    fn motion_moves(&mut self, drive: &spec::Drive, span: Span, name: &str) {
+        let rigid = drive.rigid.as_ref().is_some_and(|rigid| rigid.value != Some(false));
+        match &drive.motion {
+            None if rigid || drive.stiffness.is_some() || drive.effort.is_none() => {
+                self.report(rule::drive_without_motion(span, name));
+            }
+            Some(motion) if drive.effort.is_some() && drive.stiffness.is_none() && drive.damping.is_none() && !rigid => {
+                self.report(rule::motion_without_spring(motion.span, name));
+            }
+            _ => {}
+        }
+    }
+
+    /// A spring and a damper, an effort, or a rigid transmission.
     fn transmission(
         &mut self,
         drive: &spec::Drive,
@@ -98,6 +117,7 @@ impl<'a> Check<'a> {
             for (key, span) in [
                 ("stiffness", drive.stiffness.as_ref().map(|given| given.span)),
                 ("damping", drive.damping.as_ref().map(|given| given.span)),
+                ("effort", drive.effort.as_ref().map(|given| given.span)),
                 ("max_effort", drive.max_effort.as_ref().map(|given| given.span)),
                 ("max_rate", drive.max_rate.as_ref().map(|given| given.span)),
                 ("max_power", drive.max_power.as_ref().map(|given| given.span)),
@@ -109,7 +129,8 @@ impl<'a> Check<'a> {
             return Transmission::Rigid;
         }
         // An invalid value of `rigid` has been reported already.
-        if stiffness.is_none() && drive.rigid.as_ref().is_none_or(|rigid| rigid.value.is_some()) {
+        let unread = drive.rigid.as_ref().is_some_and(|rigid| rigid.value.is_none());
+        if stiffness.is_none() && drive.effort.is_none() && !unread {
             self.report(rule::no_transmission(span, name));
         }
         let max_effort = drive.max_effort.as_ref().map(|given| {
@@ -117,7 +138,13 @@ impl<'a> Check<'a> {
             let unit = if kind == Some(CoordinateKind::Translation) { "N" } else { "N m" };
             self.number(given, &subject, unit, Limit::Positive)
         });
-        let stiffness = stiffness.unwrap_or(f64::NAN.into());
+        // Torques and forces are numbers as they are, like openings: no angles.
+        let effort = drive.effort.as_ref().map(|given| {
+            let motion = given.value.as_ref();
+            let profile = motion.and_then(|motion| self.motion(motion, Some(CoordinateKind::Translation), given.span));
+            profile.unwrap_or(Profile::Hold(f64::NAN.into()))
+        });
+        let stiffness = stiffness.unwrap_or(if effort.is_some() { Value::ZERO } else { f64::NAN.into() });
         // The energy of a drive with an effort limit is the integral of its spring force: it needs a spring.
         if let (Some(given), Some(_)) = (&drive.stiffness, &max_effort) {
             let broken = rule::limited_without_spring(given.span, name);
@@ -135,7 +162,7 @@ impl<'a> Check<'a> {
                 }
                 Some(self.constant(given, &format!("the maximum {what} of drive `{name}`"), unit, Limit::Positive))
             });
-        Transmission::Flexible { stiffness, damping: damping.unwrap_or(Value::ZERO), max_effort, max_rate, max_power }
+        Transmission::Flexible { stiffness, damping: damping.unwrap_or(Value::ZERO), effort, max_effort, max_rate, max_power }
     }
 
     pub(super) fn joint_dampers(&mut self, crane: &'a Crane, drives: &[Drive]) -> Vec<Force> {

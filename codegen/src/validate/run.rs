@@ -53,7 +53,7 @@ impl<'a> Check<'a> {
     /// As written, where drives begin, or where the coordinates are that others follow; otherwise 0.
     pub(super) fn guess(&mut self, crane: &'a Crane, drives: &[Drive], connectors: &[Force]) -> Vec<f64> {
         let mut guess = vec![None; self.coordinates.len()];
-        for drive in drives {
+        for drive in drives.iter().filter(|drive| drive.holds()) {
             guess[drive.coordinate.0] = Some(drive.profile.start(&self.defaults));
         }
         let entries = crane.guess.as_ref().and_then(|guess| guess.value.as_ref());

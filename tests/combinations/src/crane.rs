@@ -270,6 +270,11 @@ impl Writer<'_> {
         if self.has(F::LimitedDrive) {
             drive["max_effort"] = json!(self.between(9e4, 2e5));
         }
+        if self.has(F::Effort) {
+            let [from, to] = [self.between(2e3, 6e3), self.between(-6e3, -2e3)];
+            let rising = json!({"cubic": {"from": from, "to": to, "begin": 0.02, "duration": 0.3}});
+            drive["effort"] = if self.has(F::Input) { json!({"input": "push"}) } else { rising };
+        }
         self.drive("arm_psi", drive, self.angles[2], -0.1);
         if self.has(F::Stop) && !self.has(F::Telescope) {
             self.tree["stops"]["arm_psi"] =
@@ -432,6 +437,9 @@ impl Writer<'_> {
         }
         if self.has(F::Input) {
             self.tree["inputs"] = json!({"trim": {"value": 0.01, "unit": "rad"}, "gust": {"value": 0.7}});
+            if self.has(F::Effort) {
+                self.tree["inputs"]["push"] = json!({"value": self.between(2e3, 6e3), "unit": "N m"});
+            }
             self.push(
                 "loads",
                 json!({"name": "gusts", "link": "arm", "at": [1.0, 0, 0], "force": [100, 400, -100],
@@ -576,8 +584,8 @@ impl Writer<'_> {
                 "head": {"link": links[1], "at": [along(0.24), -0.2, 0]},
                 "linkage": {"pivot": [along(pivot), rise, 0], "rocker": 0.46, "link": 0.52, "side": side},
                 "bore": 0.14, "rod": 0.07, "retracted": 0.6, "stroke": 3}));
-            // A drive with a maximum effort has no oil.
-            if self.has(F::Valve) && !self.has(F::LimitedDrive) {
+            // A drive with a maximum effort, or with an effort besides its spring, has no oil.
+            if self.has(F::Valve) && !self.has(F::LimitedDrive) && !self.has(F::Effort) {
                 knuckle["valve"] = valve();
             }
             self.push("cylinders", knuckle);

@@ -38,6 +38,7 @@ features! {
     Swing: "hook that swings on a universal joint",
     RigidDrive: "slewing prescribed by a rigid drive",
     LimitedDrive: "drive with a maximum effort",
+    Effort: "drive with an effort besides spring and damper",
     Motion: "drives that move",
     Rotor: "rotors in drives",
     Stop: "end stop in contact",

@@ -19,7 +19,7 @@ impl<'a> Plausibility<'a> {
         }
         for drive in items(crane.drives.as_ref()) {
             let name = drive.coordinate.value.as_deref().unwrap_or_default();
-            if let Some(motion) = &drive.motion.value {
+            if let Some(motion) = drive.motion.as_ref().and_then(|motion| motion.value.as_ref()) {
                 self.motion(motion, name);
             }
         }

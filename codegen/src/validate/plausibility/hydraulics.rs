@@ -175,7 +175,7 @@ impl Plausibility<'_> {
         const DIFFERENCE: f64 = 1e-4;
         let chain = self.chain;
         let mut q = chain.guess.clone();
-        for drive in &chain.drives {
+        for drive in chain.drives.iter().filter(|drive| drive.holds()) {
             q[drive.coordinate.0] = drive.profile.start(&self.values);
         }
         for (given, cylinder) in items(self.crane.cylinders.as_ref()).zip(&chain.cylinders) {

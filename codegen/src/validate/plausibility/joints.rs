@@ -62,7 +62,7 @@ impl Plausibility<'_> {
     /// The guess, with the drives where their motions begin.
     fn pose_at_start(&self) -> Vec<f64> {
         let mut q = self.chain.guess.clone();
-        for drive in &self.chain.drives {
+        for drive in self.chain.drives.iter().filter(|drive| drive.holds()) {
             q[drive.coordinate.0] = drive.profile.start(&self.values);
         }
         q
@@ -84,7 +84,7 @@ impl Plausibility<'_> {
                 (first..end).contains(&drive.coordinate.0)
             });
             let sag = self.effort_of_weight(drive.coordinate).abs() / stiffness;
-            if stiffness > 0.0 && sag > SAG && !held && drive.max_effort().is_none() {
+            if stiffness > 0.0 && sag > SAG && !held && drive.max_effort().is_none() && drive.effort().is_none() {
                 self.soft(span, drive.coordinate, sag, stiffness);
             }
         }
