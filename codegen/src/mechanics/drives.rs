@@ -120,12 +120,7 @@ fn with_effort<'g>(model: &Model<'g>, drive: &Drive, effort: Expr<'g>, t: Expr<'
 }
 
 /// `s (q_dr − q) + d (q̇_dr − q̇) + τ(t)`
-fn unlimited<'g>(
-    model: &Model<'g>,
-    drive: (&Drive, &Value, &Value),
-    t: Expr<'g>,
-    v: &[Expr<'g>],
-) -> Expr<'g> {
+fn unlimited<'g>(model: &Model<'g>, drive: (&Drive, &Value, &Value), t: Expr<'g>, v: &[Expr<'g>]) -> Expr<'g> {
     with_effort(model, drive.0, spring_and_damper(model, drive, t, v), t)
 }
 

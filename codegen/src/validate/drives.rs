@@ -89,10 +89,12 @@ impl<'a> Check<'a> {
     fn motion_moves(&mut self, drive: &spec::Drive, span: Span, name: &str) {
         let rigid = drive.rigid.as_ref().is_some_and(|rigid| rigid.value != Some(false));
         match &drive.motion {
-            None if rigid || drive.stiffness.is_some() || drive.effort.is_none() => {
+            None if rigid || drive.stiffness.is_some() => {
                 self.report(rule::drive_without_motion(span, name));
             }
-            Some(motion) if drive.effort.is_some() && drive.stiffness.is_none() && drive.damping.is_none() && !rigid => {
+            Some(motion)
+                if drive.effort.is_some() && drive.stiffness.is_none() && drive.damping.is_none() && !rigid =>
+            {
                 self.report(rule::motion_without_spring(motion.span, name));
             }
             _ => {}
@@ -162,7 +164,14 @@ impl<'a> Check<'a> {
                 }
                 Some(self.constant(given, &format!("the maximum {what} of drive `{name}`"), unit, Limit::Positive))
             });
-        Transmission::Flexible { stiffness, damping: damping.unwrap_or(Value::ZERO), effort, max_effort, max_rate, max_power }
+        Transmission::Flexible {
+            stiffness,
+            damping: damping.unwrap_or(Value::ZERO),
+            effort,
+            max_effort,
+            max_rate,
+            max_power,
+        }
     }
 
     pub(super) fn joint_dampers(&mut self, crane: &'a Crane, drives: &[Drive]) -> Vec<Force> {

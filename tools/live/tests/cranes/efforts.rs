@@ -94,19 +94,29 @@ fn a_limited_effort_moves_a_mass_and_the_energy_balances() {
         ))
     };
     // 3 N are reached at 1.5 s; the rounding of the corner is 5 %.
-    for (drive, until) in [("max_effort: 3", 1.4), ("max_effort: 3, damping: 0.5", 3.0), ("stiffness: 2, damping: 0.1, motion: {speed: {rate: 0.3}}, max_effort: 3", 3.0)] {
+    for (drive, until) in [
+        ("max_effort: 3", 1.4),
+        ("max_effort: 3, damping: 0.5", 3.0),
+        ("stiffness: 2, damping: 0.1, motion: {speed: {rate: 0.3}}, max_effort: 3", 3.0),
+    ] {
         let slide = slide(drive);
         let slide: &dyn DynCrane = &slide;
         let start = InitialState { q: vec![0.0], v: vec![0.0], ..InitialState::default() };
         let begin = slide.energies_at(0.0, &start.q, &start.v).total();
         for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince, Method::Rk4] {
             let defaults = Settings::of(slide.description());
-            let settings = Settings { method, tolerance: 1e-9, duration: 3.0, output: 0.01, step: 1e-3, audit: true, ..defaults };
+            let settings =
+                Settings { method, tolerance: 1e-9, duration: 3.0, output: 0.01, step: 1e-3, audit: true, ..defaults };
             let run = slide.simulate(&start, &settings, &mut |sample: &Sample<'_>| {
                 if sample.t < until && !drive.contains("damping") {
                     let expected = sample.t.powi(3) / 12.0;
                     // Methods to a tolerance of 1e-9, some hundred steps.
-                    assert!((sample.q[0] - expected).abs() < 1e-6, "{drive}, {method:?} at {}: {}", sample.t, sample.q[0]);
+                    assert!(
+                        (sample.q[0] - expected).abs() < 1e-6,
+                        "{drive}, {method:?} at {}: {}",
+                        sample.t,
+                        sample.q[0]
+                    );
                 }
                 let effort = slide.drive_efforts_at(sample.t, sample.q, sample.v)[0];
                 assert!(effort.abs() <= 3.0 + 1e-12, "{drive}, {method:?} at {}: {effort} N", sample.t);
