@@ -62,6 +62,8 @@ pub struct Texts<'a> {
     pub command: Option<String>,
     /// Spec of the last crane.
     pub spec: Option<&'a str>,
+    /// Address of the page as an instrument, in which this spec can be opened; seen from the folder of the page.
+    pub instrument: Option<&'a str>,
 }
 
 /// The page of some cranes; the last one is its subject, the previous one the rigid crane to compare it with.
@@ -80,7 +82,7 @@ pub fn page(subjects: &[Subject<'_>], texts: Texts<'_>, program: Program) -> Res
 /// The modes of a crane could not be computed.
 pub fn data(subjects: &[Subject<'_>], texts: Texts<'_>, program: Program) -> Result<Value, NoModes> {
     let shown = subjects.iter().map(Shown::new).collect::<Result<Vec<_>, _>>()?;
-    let Texts { tables, chart, load_chart, command, spec } = texts;
+    let Texts { tables, chart, load_chart, command, spec, instrument } = texts;
     let tables = tables.map(|report| report.page());
     let (main, rigid) = match shown.as_slice() {
         [] => (None, None),
@@ -100,6 +102,7 @@ pub fn data(subjects: &[Subject<'_>], texts: Texts<'_>, program: Program) -> Res
         "load_chart": load_chart,
         "command": command,
         "spec": spec,
+        "instrument": instrument,
     }))
 }
 

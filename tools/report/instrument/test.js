@@ -1,4 +1,5 @@
-// Uses the instrument in a headless browser: `node instrument/test.js INSTRUMENT.html`; saves pictures next to it.
+// Uses the instrument in a headless browser: `node instrument/test.js INSTRUMENT.html REPORT.html`; saves pictures next to it. The report, of the
+// knuckle boom, links to the instrument.
 import assert from "node:assert/strict";
 import { readFile, stat } from "node:fs/promises";
 import { dirname, join } from "node:path";
@@ -6,7 +7,7 @@ import { pathToFileURL } from "node:url";
 import { deflateRawSync } from "node:zlib";
 import { PATIENCE, launch } from "../browser.js";
 
-const [file] = process.argv.slice(2);
+const [file, report] = process.argv.slice(2);
 const address = pathToFileURL(file).href;
 const picture = (name) => join(dirname(file), `instrument_${name}.png`);
 
@@ -292,6 +293,20 @@ async function patience(page) {
   await eventually(page, async () => assert.match(await state(page), /^At rest/));
 }
 
+/** The report opens its crane in the instrument. */
+async function fromReport(browser) {
+  const page = await browser.newPage();
+  await page.goto(pathToFileURL(report).href);
+  const link = page.locator("#instrument");
+  await link.waitFor();
+  const href = await link.evaluate(({ href }) => href);
+  await page.close();
+  assert(href.startsWith(`${address}#spec=`), href);
+  await open(browser, {}, async (page) => {
+    await eventually(page, async () => assert.equal(await at(page, () => globalThis.instrument.crane?.name), "knuckle_boom"));
+  }, { hash: new URL(href).hash });
+}
+
 const begin = Date.now();
 const bytes = (await stat(file)).size;
 assert(bytes < MOST_BYTES, `${bytes} bytes`);
@@ -336,6 +351,7 @@ await open(browser, phone, async (page) => {
   await page.screenshot({ path: picture("phone_drive") });
 });
 await links(browser);
+await fromReport(browser);
 await browser.close();
 
 // Without 3-D, everything else is there.

@@ -1,6 +1,7 @@
 // The report page: puts viewer, plots and tables together.
 import "uplot/dist/uPlot.min.css";
 import "./style.css";
+import { fragment } from "../instrument/src/link.js";
 import { chart } from "./chart.js";
 import { PULLS, gradient } from "./colours.js";
 import { at, place, read, readable, scaled, spoken } from "./data.js";
@@ -30,6 +31,7 @@ const player = new Player(atRest ? REST : (crane.run.t.at(-1) ?? 0));
 document.title = `${crane.title} · report`;
 $("h1").textContent = crane.title;
 $("#name").textContent = crane.name;
+instrument();
 thinned();
 tables(data);
 tiles(data);
@@ -82,6 +84,13 @@ function navigation() {
       $(link.getAttribute("href")).scrollIntoView();
     });
   }
+}
+
+/** Offers to open the spec in the page as an instrument, if its address is known. */
+async function instrument() {
+  if (!data.instrument || !data.spec) return;
+  const href = data.instrument + (await fragment(data.spec));
+  Object.assign($("#instrument"), { href, hidden: false, title: "The spec as it is written, with its own parameters, in the page as an instrument" });
 }
 
 /** Adds a note if a run has more samples than the page. */

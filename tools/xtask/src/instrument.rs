@@ -69,5 +69,9 @@ pub fn check_instrument() -> Result<(), String> {
     let engine = write_page()?;
     let command = workspace::target().join("release/crane");
     step::run_to_end(report::command_in_folder("node").arg("instrument/numbers.js").args([&engine, &command]))?;
-    step::run_to_end(report::command_in_folder("node").arg("instrument/test.js").arg(workspace::root().join(PAGE)))
+    let page = workspace::root().join(PAGE);
+    let linked = page.with_file_name("to_instrument.html");
+    let options = ["report", "knuckle_boom", "--duration", "0.1", "--instrument", "instrument.html", "-o"];
+    step::run_to_end(Command::new(command).args(options).arg(&linked))?;
+    step::run_to_end(report::command_in_folder("node").arg("instrument/test.js").args([page, linked]))
 }

@@ -165,4 +165,16 @@ pub struct Page {
     /// Show the load charts of an envelope, too: the file `…_envelope.csv` that `crane envelope` wrote
     #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
     pub envelope: Option<PathBuf>,
+    /// Offer to open the crane in the page as an instrument: its address, or where it lies seen from the folder of the report
+    #[arg(long, value_name = "ADDRESS", value_hint = ValueHint::Url, value_parser = page_address)]
+    pub instrument: Option<String>,
+}
+
+/// The address of a page: none that a browser would run as a script.
+fn page_address(text: &str) -> Result<String, String> {
+    let scheme = text.split_once(':').map(|(scheme, _)| scheme.trim().to_ascii_lowercase());
+    match scheme.as_deref() {
+        None | Some("http" | "https" | "file") if !text.contains('#') => Ok(text.to_owned()),
+        _ => Err("write the address of a page, such as `instrument.html` or one with `https:`, without `#`".into()),
+    }
 }

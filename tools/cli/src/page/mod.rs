@@ -34,7 +34,8 @@ pub fn report(options: &Page, registry: &Registry, out: &mut dyn Write) -> Outco
     let cases = cases(crane.as_ref(), twin.as_deref());
     let chart = options.envelope.as_deref().map(|table| chart::read_chart(table, crane.as_ref())).transpose()?;
     let (settings, runs) = runs(&cases, &options.timing, options.crane.limits, Method::RECOMMENDED)?;
-    write_with(&options.file, registry, (&cases, options.crane.limits), &settings, &runs, chart)?;
+    let besides = Besides { chart, instrument: options.instrument.as_deref() };
+    write_with(&options.file, registry, (&cases, options.crane.limits), &settings, &runs, besides)?;
     writeln!(out, "{} written: open it in a browser", options.file.display())?;
     Ok(())
 }
@@ -55,17 +56,24 @@ pub fn write_page(
     settings: &[Settings],
     runs: &[Recorded],
 ) -> Outcome<()> {
-    write_with(file, registry, cases, settings, runs, None)
+    write_with(file, registry, cases, settings, runs, Besides::default())
 }
 
-/// As [`write_page`], with load charts.
+/// What a page has only on request.
+#[derive(Default)]
+struct Besides<'a> {
+    chart: Option<LoadCharts>,
+    instrument: Option<&'a str>,
+}
+
+/// As [`write_page`], with what was asked for.
 fn write_with(
     file: &Path,
     registry: &Registry,
     cases: (&[Case<'_>], Limits),
     settings: &[Settings],
     runs: &[Recorded],
-    chart: Option<LoadCharts>,
+    Besides { chart, instrument }: Besides<'_>,
 ) -> Outcome<()> {
     let (cases, limits) = cases;
     let lives = cases.iter().map(|case| registry.live(case.crane)).collect::<Outcome<Vec<_>>>()?;
@@ -88,6 +96,7 @@ fn write_with(
         load_chart: facts,
         command: Some(compiled::typed()),
         spec: cases.last().and_then(|case| registry.spec(&case.crane.description().name)),
+        instrument,
     };
     files::write_text(file, &page(&subjects, texts, files::PROGRAM)?)
 }
