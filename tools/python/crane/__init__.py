@@ -37,6 +37,7 @@ from .results import (
     Strength,
 )
 from .simulation import Simulation, State
+from .state_space import StateSpace
 
 __all__ = [
     "Crane",
@@ -56,6 +57,7 @@ __all__ = [
     "SpecWarning",
     "Stability",
     "State",
+    "StateSpace",
     "SteadyMotion",
     "Strength",
     "load",

@@ -9,7 +9,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _native
+from . import _native, state_space
 from ._native import NoEquilibrium, real_array
 from .notebook import embed
 from .results import (
@@ -27,6 +27,7 @@ from .results import (
     Strength,
 )
 from .simulation import Simulation
+from .state_space import StateSpace
 
 
 def load(
@@ -167,6 +168,23 @@ class Crane(_native.Crane):
             v, a = (np.zeros(self.n) if rates is None else rates for rates in (v, a))
             matrices = self._small_motions_about(q, v, a, t, invalid=invalid)
         return Linearisation(*(matrices[..., place, :, :] for place in range(3)))
+
+    def state_space(
+        self,
+        q: ArrayLike,
+        v: ArrayLike | None = None,
+        t: ArrayLike | None = None,
+        *,
+        inputs: Sequence[str] | None = None,
+        outputs: Sequence[str] | None = None,
+        invalid: str = "raise",
+    ) -> StateSpace:
+        """A linear model about states q, v at times t, at rest and at t = 0 unless given, which need not be equilibria.
+
+        inputs: names of inputs of the spec, all unless given. outputs: names as the columns of a run have them, of coordinates, of their rates
+        and of points (`tip_x`), all unless given.
+        """
+        return state_space.about(self, q, v, t, inputs, outputs, invalid)
 
     def steady_motion(
         self,
