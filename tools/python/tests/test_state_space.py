@@ -51,7 +51,7 @@ def test_a_flexible_crane_answers_a_small_step_as_its_model():
 extends: knuckle_boom
 name: steered_boom
 inputs: {trim: {unit: rad}}
-drives: {main_boom_theta: {offset: trim}}
+drives: [{coordinate: main_boom_theta, offset: trim}]
 """
     steered = crane.load("steered_boom", text=text)
     rest = steered.statics().q
