@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::dyn_crane::{DynCrane, DynDynamics, DynModel, DynMotionDerivatives, DynStatics};
 use crane_model::dynamics::{InitialState, Method, Sample, Settings};
 
 fn crane(text: &str) -> LiveCrane {
@@ -40,7 +40,9 @@ fn an_effort_is_a_pair_of_moments() {
         assert!(rest.is_stable());
         let mut all = crane.accelerations_at(0.0, &q, &v).as_slice().to_vec();
         all.extend(rest.q.clone());
-        all.extend(crane.tangent_stiffness_at(0.0, &rest.q).as_slice());
+        let mut tangent = vec![f64::NAN; n * n];
+        crane.tangent_stiffness(0.0, &rest.q, &crane.drive_positions_at(0.0), &mut tangent);
+        all.extend(tangent);
         all.push(crane.energies_at(0.0, &q, &v).total());
         // All power comes from the input: the drives hold.
         all.push(crane.drive_power(0.0, &q, &v) + crane.load_power(0.0, &q, &v));
@@ -67,20 +69,20 @@ fn computed_torques_give_their_accelerations() {
          - {name: lower, placement: {transform: {translation: [1, 0, 0]}}, joint: revolute, mass: 10, com: [0.4, 0, 0], inertia: {gyration: [0.1, 0.3, 0.3]}}\n\
          drives:\n- {coordinate: upper_psi, effort: {input: first}}\n- {coordinate: lower_psi, effort: {input: second}, damping: 3}\n",
     );
-    let (q, v, wanted) = ([0.4, -0.9], [0.7, -0.3], [1.5, -2.0]);
+    let (q, v, wanted) = ([0.4, -0.9], [0.7, -0.3], [1.5_f64, -2.0]);
     let mut torques = [0.0; 2];
     arm.dynamic_residual(0.0, &q, &v, &wanted, &mut torques);
     for (index, torque) in torques.into_iter().enumerate() {
         DynCrane::set_input(&mut arm, index, Some(torque));
     }
-    let mut found = [0.0; 2];
+    let mut found = [0.0_f64; 2];
     arm.forward_dynamics(0.0, &q, &v, &mut found);
     for (found, wanted) in found.iter().zip(wanted) {
         // Rounding.
         assert!((found - wanted).abs() < 1e-12, "{found} instead of {wanted}");
     }
     // The damper of the second drive brakes; its effort is the input less that.
-    let efforts = DynCrane::drive_efforts_at(&arm, 0.0, &q, &v);
+    let efforts = (&arm as &dyn DynCrane).drive_efforts_at(0.0, &q, &v);
     assert!((efforts[0] - torques[0]).abs() < 1e-12 && (efforts[1] - (torques[1] + 0.9)).abs() < 1e-12, "{efforts:?}");
 }
 
