@@ -66,8 +66,11 @@ impl Plausibility<'_> {
     /// The positions of a motion, and where a speed leads within the run.
     fn stations(&self, motion: &Motion) -> Vec<(f64, Span)> {
         if let Motion::Input(name) = motion {
-            let unless_set = self.named_input(name).and_then(|input| input.motion.as_ref()?.value.as_ref());
-            return unless_set.map(|motion| self.stations(motion)).unwrap_or_default();
+            let Some(input) = self.named_input(name) else { return Vec::new() };
+            let unless_set = input.motion.as_ref().and_then(|motion| motion.value.as_ref());
+            let value = input.value.as_ref();
+            let value = value.and_then(|given| Some((self.scalar(&given.value.as_ref()?.0), given.span)));
+            return unless_set.map(|motion| self.stations(motion)).into_iter().flatten().chain(value).collect();
         }
         let given = positions(motion).into_iter();
         let mut found: Vec<(f64, Span)> = given.filter_map(|(scalar, at)| Some((self.scalar(scalar?), at))).collect();
