@@ -72,8 +72,8 @@ pub use description::Tree;
 pub use description::{
     AttachmentInfo, BodyInfo, Bound, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole,
     CylinderInfo, Description, DriveInfo, HoldInfo, InputInfo, LARGE_TILT, List, LoadInfo, LoopEquationInfo,
-    LoopJointInfo, NEAR_SINGULAR, ParameterError, ParameterInfo, PumpInfo, Refusal, SectionInfo, Side, SupportInfo,
-    TIPPED, Text, ValveInfo,
+    LoopJointInfo, NEAR_SINGULAR, ParameterError, ParameterInfo, PumpInfo, Refusal, SectionInfo, Side, StageInfo,
+    SupportInfo, TIPPED, Text, ValveInfo,
 };
 pub use methods::Entry;
 pub use model::{

@@ -9,7 +9,7 @@ use crane_quantities::quantities;
 use nalgebra::{Cholesky, Const, DefaultAllocator, Dim, OMatrix, SMatrix, SVector, allocator::Allocator};
 
 use crate::{
-    description::{CoordinateRole, Description, LoopJointInfo, ParameterError},
+    description::{CoordinateRole, Description, LoopJointInfo, ParameterError, StageInfo},
     methods::{Entry, sized_argument, sized_entry, sized_method, sized_methods, sized_result},
     rt::lanes::f64x8,
 };
@@ -56,6 +56,11 @@ pub trait CraneModel<const N: usize>: Send + Sync {
     /// The joints that close loops. Forces, accelerations and equilibria of the traits here are those of the open chain; what takes a crane
     /// on slices closes the loops.
     fn loop_joints(&self) -> &[LoopJointInfo] {
+        &[]
+    }
+
+    /// The beams that slide in others on pads.
+    fn stages(&self) -> &[StageInfo] {
         &[]
     }
 

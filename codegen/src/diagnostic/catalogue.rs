@@ -554,4 +554,11 @@ catalogue! {
     /// The weight that a drive holds turns its joint by less than 0.5 rad, or moves it by less than 0.5 m.
     W041 soft_drive(coordinate, sag, unit, stiffness, stiffness_unit) "the drive of `{coordinate}` is too soft for the weight that it holds",
         "with {stiffness} {stiffness_unit} the weight moves it by about {sag} {unit}", "check the exponent of `stiffness`; drives of cranes have 1e5 to 1e8 {stiffness_unit}";
+    /// A stage of a telescope stays in its outer beam.
+    W042 out_of_beam(stage, outer, overlap, coordinate, position, least) "`{stage}` leaves `{outer}`: with `{coordinate}` at {position} m the overlap is {overlap} m",
+        "nothing holds it there, and results mean nothing", "let `{coordinate}` end at {least} m, or give longer beams and a longer `overlap`";
+    /// A stage of a telescope overlaps its outer beam by at least the height of its section.
+    W043 short_overlap(stage, outer, overlap, coordinate, position, height, least) "`{stage}` overlaps `{outer}` by only {overlap} m with `{coordinate}` at {position} m",
+        "less than the height of its section, {height} m: real pads are too long, and walls too weak, for such a hold",
+        "let `{coordinate}` end at {least} m, or give longer beams and a longer `overlap`";
 }

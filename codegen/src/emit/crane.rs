@@ -175,6 +175,7 @@ fn common_methods(chain: &Chain) -> TokenStream {
             }
         )
     });
+    let stages = stages(chain);
     let parents = chain.has_branches().then(|| {
         let parents = chain.bodies.iter().filter_map(|body| body.parent).map(|BodyId(parent)| integer(parent));
         quote! {
@@ -192,7 +193,30 @@ fn common_methods(chain: &Chain) -> TokenStream {
         #set
         #inputs
         #loop_joints
+        #stages
     }
+}
+
+/// The method that lists the stages of telescopes; `None` without any.
+fn stages(chain: &Chain) -> Option<TokenStream> {
+    let defaults = chain.parameter_defaults();
+    let stages: Vec<TokenStream> = chain
+        .stages()
+        .iter()
+        .map(|stage| {
+            let [first, end] = [stage.outer.first.0, stage.outer.last().0 + 1].map(integer);
+            let [inner, coordinate] = [stage.inner.0, stage.coordinate.0].map(integer);
+            let height = literal(chain.height_of(stage.inner, &defaults).unwrap_or(0.0));
+            quote!(StageInfo { outer: [#first, #end], inner: #inner, coordinate: #coordinate, height: #height })
+        })
+        .collect();
+    (!stages.is_empty()).then(|| {
+        quote! {
+            fn stages(&self) -> &[StageInfo] {
+                &[#(#stages),*]
+            }
+        }
+    })
 }
 
 /// Methods that read and set inputs; `None` if the crane has no inputs.

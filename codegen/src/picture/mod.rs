@@ -58,7 +58,9 @@ pub fn picture(chain: &Chain) -> String {
         let at = sheet.project(first.at);
         sheet.label(at, &if base > 1 { format!("0–{}", base - 1) } else { "0".to_owned() });
     }
-    for joint in numbered.iter().skip(base) {
+    pads(&mut sheet, chain, &frames);
+    let held = chain.held_by_pads();
+    for joint in numbered.iter().skip(base).filter(|joint| !held.contains(&joint.coordinate)) {
         sheet.joint(chain, joint);
     }
     for point in &chain.points {
@@ -168,6 +170,25 @@ fn links(sheet: &mut Sheet, chain: &Chain, frames: &[Frame]) {
     for point in &chain.points {
         let frame = &frames[point.body.0];
         sheet.line(frame.origin, frame.transform_point([0, 1, 2].map(|i| point.position[i].at(&defaults))), GREY, 1.0);
+    }
+}
+
+/// The pads of telescopes: a bar on both sides of the axis, at the end of the outer beam and at the beginning of the inner one.
+fn pads(sheet: &mut Sheet, chain: &Chain, frames: &[Frame]) {
+    /// Half the length of a bar and its distance from the axis, pixels.
+    const BAR: [f64; 2] = [5.0, 7.0];
+    for stage in chain.stages() {
+        let BodyId(last) = stage.outer.last();
+        let front = (&frames[last], end(chain, last, &frames[last]));
+        let rear = &frames[stage.inner.0];
+        for (frame, at) in [front, (rear, rear.origin)] {
+            let [along, across] = BAR.map(|pixels| pixels / sheet.scale);
+            let [x, y, _] = frame.axes;
+            for side in [-across, across] {
+                let place = |along: f64| [0, 1, 2].map(|i| at[i] + along * x[i] + side * y[i]);
+                sheet.line(place(-along), place(along), INK, 4.0);
+            }
+        }
     }
 }
 

@@ -52,6 +52,19 @@ fn every_name_is_shown_and_every_place_in_view() {
     }
 }
 
+/// Two stages with two pads each, a bar on either side; only the joints that a drive, a chain or nothing holds have marks.
+#[test]
+fn pads_of_a_telescope_are_drawn() {
+    let source = build::open(&root().join("specs/examples/telescopic_loader.yaml"))
+        .unwrap_or_else(|failure| panic!("{failure}"));
+    let chain = compile::load(&source).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    let svg = picture::picture(&chain);
+    assert_eq!(svg.matches("stroke-width='4'").count(), 2 * 2 * 2);
+    // Two stages and the hook slide; column, boom and both swings turn.
+    let marks = [svg.matches("<rect x='").count(), svg.matches("r='6'").count()];
+    assert_eq!(marks, [3, 4], "{svg}");
+}
+
 #[test]
 fn a_horizontal_beam_is_drawn_as_long_as_it_is() {
     let cantilever = shipped().into_iter().find(|chain| chain.name == "cantilever").expect("a cantilever");

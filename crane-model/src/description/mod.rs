@@ -5,6 +5,7 @@ mod loop_joint;
 mod parameter;
 mod poses;
 mod shared;
+mod stage;
 #[cfg(feature = "std")]
 mod tree;
 
@@ -12,6 +13,7 @@ pub use loop_joint::{LoopEquationInfo, LoopJointInfo};
 pub use parameter::{Bound, ParameterError, ParameterInfo, Refusal};
 pub use poses::{LARGE_TILT, NEAR_SINGULAR, TIPPED};
 pub use shared::{List, Text};
+pub use stage::StageInfo;
 #[cfg(feature = "std")]
 pub use tree::Tree;
 

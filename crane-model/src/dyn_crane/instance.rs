@@ -12,8 +12,8 @@ use super::{
 };
 use crate::{
     CraneModel, Description, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise,
-    LoopJointInfo, MotionDerivatives, ParameterError, Statics, TransformDerivatives, entry_type, rt::lanes::f64x8,
-    slice_argument,
+    LoopJointInfo, MotionDerivatives, ParameterError, StageInfo, Statics, TransformDerivatives, entry_type,
+    rt::lanes::f64x8, slice_argument,
 };
 
 /// A crane compiled with every analysis except derivatives.
@@ -62,6 +62,10 @@ impl<const N: usize, H: Deref<Target: CraneModel<N>> + Send + Sync> DynModel for
 
     fn loop_joints(&self) -> &[LoopJointInfo] {
         self.0.loop_joints()
+    }
+
+    fn stages(&self) -> &[StageInfo] {
+        self.0.stages()
     }
 
     fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]) {

@@ -37,7 +37,7 @@ pub use quantities::Energies;
 
 use methods::{slice_method, slice_methods};
 
-use crate::{Description, LoopJointInfo, ParameterError, entry_type, rt::lanes::f64x8, slice_argument};
+use crate::{Description, LoopJointInfo, ParameterError, StageInfo, entry_type, rt::lanes::f64x8, slice_argument};
 
 /// Poses, forces and potential energy of a crane: [`CraneModel`](crate::CraneModel) on slices.
 pub trait DynModel: Send + Sync {
@@ -56,6 +56,9 @@ pub trait DynModel: Send + Sync {
 
     /// The joints that close loops.
     fn loop_joints(&self) -> &[LoopJointInfo];
+
+    /// The beams that slide in others on pads.
+    fn stages(&self) -> &[StageInfo];
 
     /// Sets the coordinates that rigid drives prescribe, and their rates, at time t.
     fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]);

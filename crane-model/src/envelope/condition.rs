@@ -7,6 +7,7 @@ use crate::{
     Description,
     dyn_crane::DynCrane,
     hydraulics::{CylinderState, cylinders_at},
+    results::overlaps,
     sections::{StressedSection, stressed_sections},
     tipping::{self, TippingLine},
 };
@@ -30,6 +31,8 @@ pub struct Condition {
     pub stops: Vec<f64>,
     /// Forces of the connectors, N and N m.
     pub connectors: Vec<f64>,
+    /// How far each stage of a telescope is in its outer beam, m, and its first body.
+    pub overlaps: Vec<(usize, f64)>,
     /// Positions of the points of interest, m.
     pub points: Vec<Vector3<f64>>,
     /// Origin of the last body's frame, m.
@@ -51,6 +54,7 @@ impl Condition {
             feet: reactions.map(|(force, gap)| [force.z, gap]).collect(),
             stops: crane.stop_efforts_at(&q, &rest),
             connectors: crane.connector_tensions_at(0.0, &q, &rest).into_iter().map(|tension| tension.force).collect(),
+            overlaps: crane.stages().iter().map(|stage| stage.inner).zip(overlaps::at(crane, &q)).collect(),
             points: crane.points_at(&q),
             end: crane
                 .transforms_at(&q)
@@ -127,7 +131,7 @@ impl Condition {
         }
     }
 
-    /// Stops that are touched, feet that carry nothing, and ropes without tension.
+    /// Stops that are touched, feet that carry nothing, ropes without tension, and stages without overlap.
     fn of_contacts(&self, description: &Description, limits: &Limits, slacks: &mut Vec<(Limit, f64)>) {
         if limits.has(PartLimit::Stops) {
             let driven = |coordinate: usize| description.drives.iter().any(|drive| drive.coordinate == coordinate);
@@ -151,6 +155,9 @@ impl Condition {
             slacks.extend(ropes.map(|(rope, (_, force))| {
                 (Limit::Slack { rope }, if *force > 0.0 { force / UNIT_OF_TENSION } else { -1.0 })
             }));
+        }
+        if limits.has(PartLimit::Overlap) {
+            slacks.extend(self.overlaps.iter().map(|&(body, overlap)| (Limit::Overlap { body }, overlap)));
         }
     }
 }

@@ -26,6 +26,7 @@ impl Coverage {
         found.cylinders(description, limits);
         found.drives(crane, limits);
         found.ropes(description, limits);
+        found.stages(crane, limits);
         for (point, deflection) in
             description.points.iter().zip(&limits.deflections).filter(|(_, deflection)| deflection.is_finite())
         {
@@ -147,6 +148,17 @@ impl Coverage {
             .collect();
         if !ropes.is_empty() {
             self.add(limits.has(PartLimit::SlackRopes), format!("slack of {}", ropes.join(", ")));
+        }
+    }
+
+    fn stages(&mut self, crane: &dyn DynCrane, limits: &Limits) {
+        let stages = crane.stages().iter().map(|stage| crane.description().bodies[stage.inner].link.as_str());
+        let stages: Vec<&str> = stages.collect();
+        if !stages.is_empty() {
+            self.add(
+                limits.has(PartLimit::Overlap),
+                format!("an overlap of {} with the outer beam", stages.join(", ")),
+            );
         }
     }
 }

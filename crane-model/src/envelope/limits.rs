@@ -34,14 +34,25 @@ pub enum PartLimit {
     LiftOff,
     /// Ropes without tension.
     SlackRopes,
+    /// Stages of telescopes that have left their outer beams.
+    Overlap,
 }
 
 impl PartLimit {
     /// Every kind.
-    pub const ALL: [Self; 7] =
-        [Self::Pressure, Self::Pump, Self::Stroke, Self::Stops, Self::MaxEffort, Self::LiftOff, Self::SlackRopes];
+    pub const ALL: [Self; 8] = [
+        Self::Pressure,
+        Self::Pump,
+        Self::Stroke,
+        Self::Stops,
+        Self::MaxEffort,
+        Self::LiftOff,
+        Self::SlackRopes,
+        Self::Overlap,
+    ];
     /// What no crane can exceed. A foot may lift and a rope may be slack in normal work.
-    pub const DEFAULT: [Self; 5] = [Self::Pressure, Self::Pump, Self::Stroke, Self::Stops, Self::MaxEffort];
+    pub const DEFAULT: [Self; 6] =
+        [Self::Pressure, Self::Pump, Self::Stroke, Self::Stops, Self::MaxEffort, Self::Overlap];
 
     /// Its name in options.
     pub fn name(self) -> &'static str {
@@ -53,6 +64,7 @@ impl PartLimit {
             PartLimit::MaxEffort => "max-effort",
             PartLimit::LiftOff => "lift-off",
             PartLimit::SlackRopes => "slack-ropes",
+            PartLimit::Overlap => "overlap",
         }
     }
 
@@ -152,6 +164,11 @@ pub enum Limit {
         /// Index of the connector.
         rope: usize,
     },
+    /// A stage of a telescope that has left its outer beam.
+    Overlap {
+        /// Index of the first body of the stage.
+        body: usize,
+    },
 }
 
 impl Limit {
@@ -169,6 +186,7 @@ impl Limit {
             Limit::Stop { .. } => "stop",
             Limit::LiftOff { .. } => "lift-off",
             Limit::Slack { .. } => "slack",
+            Limit::Overlap { .. } => "overlap",
         }
     }
 
@@ -195,6 +213,7 @@ impl Limit {
             Limit::Stop { coordinate } => description.coordinates[coordinate].name.to_string(),
             Limit::LiftOff { foot } => description.supports[foot].name.to_string(),
             Limit::Slack { rope } => description.connectors[rope].name.to_string(),
+            Limit::Overlap { body } => description.bodies[body].link.to_string(),
         }
     }
 

@@ -1,15 +1,17 @@
 //! Cautions about poses and runs for which the model is not valid.
 
-use super::{Extremes, Table, connectors, cylinders, feet, limits, loads, loops, servos, stop_effort, telescopes};
+use super::{
+    Extremes, Table, connectors, cylinders, feet, limits, loads, loops, overlaps, servos, stop_effort, telescopes,
+};
 use crate::{CylinderInfo, Description, dyn_crane::DynCrane, loop_joints};
 
 /// Default rotation of one section of a beam above which there is a caution, degrees: linear springs and straight elements then
 /// have an error of about 1 %.
 pub const BEND: f64 = 20.0;
 
-/// Cautions about a pose at rest, the most important first: moments that tip the crane over, sections beyond their allowable stress, feet that
-/// pull the crane down or have lifted, drives and cylinders at their limits, joints on their stops, slack ropes, stages of telescopes that overlap, elements bent beyond `bend`
-/// degrees, and angles for which the equations lose accuracy.
+/// Cautions about a pose at rest, the most important first: stages of telescopes that little or nothing holds, moments that tip the crane over,
+/// sections beyond their allowable stress, feet that pull the crane down or have lifted, drives and cylinders at their limits, joints on their
+/// stops, slack ropes, stages without pads that overlap, elements bent beyond `bend` degrees, and angles for which the equations lose accuracy.
 pub fn of_pose(crane: &dyn DynCrane, q: &[f64], bend: f64) -> Vec<String> {
     let description = crane.description();
     let angles = description.coordinates.iter().zip(q).filter(|(coordinate, _)| coordinate.role.is_element());
@@ -19,24 +21,25 @@ pub fn of_pose(crane: &dyn DynCrane, q: &[f64], bend: f64) -> Vec<String> {
         let coordinate = &description.coordinates[coordinate];
         format!("{} rests on its stop with {:.1} {}", coordinate.name, effort.abs(), coordinate.kind.force_unit())
     });
-    loads::of_pose(crane, q)
+    overlaps::of_pose(crane, q)
         .into_iter()
+        .chain(loads::of_pose(crane, q))
         .chain(feet::of_pose(crane, q))
         .chain(limits::of_pose(crane, q))
         .chain(cylinders::of_pose(crane, q))
         .chain(stopped)
         .chain(connectors::of_pose(crane, q))
         .chain(loop_joints::cautions(crane, q))
-        .chain(of_telescopes(crane, q))
+        .chain(telescopes::of_pose(crane, q))
         .chain(bent_beyond(bent, bend))
         .chain(description.near_singular(q))
         .chain(description.large_tilt(q))
         .collect()
 }
 
-/// Stages of a telescope that overlap the link in which they slide, at a pose.
+/// Stages of a telescope, at a pose: those on pads that overlap the beam in which they slide too little, and those without that overlap it.
 pub fn of_telescopes(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
-    telescopes::of_pose(crane, q)
+    [overlaps::of_pose(crane, q), telescopes::of_pose(crane, q)].concat()
 }
 
 /// Servos whose loops with the crane are unstable about a pose at rest at time `t`, s, with the gains that would make them stable.
@@ -59,7 +62,9 @@ pub fn of_run(crane: &dyn DynCrane, table: &Table, bend: f64) -> Vec<String> {
         (coordinate.name.as_str(), if -minimum > maximum { minimum } else { maximum })
     });
     let stopped = description.stops.iter().filter_map(|&coordinate| on_stop(description, table, coordinate));
-    feet::of_run(description, table)
+    overlaps::of_run(crane, table)
+        .into_iter()
+        .chain(feet::of_run(description, table))
         .chain(limits::of_run(crane, table))
         .chain(cylinders::of_run(description, table))
         .chain(stopped)

@@ -22,6 +22,8 @@ pub struct Kind {
     /// The measure of their size, in words.
     pub measure: &'static str,
     size: Size,
+    /// Columns of forces, N, beside which moments may be rounding.
+    beside: Vec<String>,
 }
 
 impl Kind {
@@ -30,7 +32,7 @@ impl Kind {
             Size::Peak => "peak",
             Size::Range => "range",
         };
-        Self { names, unit, measure, size }
+        Self { names, unit, measure, size, beside: Vec::new() }
     }
 
     /// Size of a quantity.
@@ -41,12 +43,18 @@ impl Kind {
         }
     }
 
-    /// Below this a difference is rounding or a negligible motion: a micrometre on a crane of several metres.
+    /// Below this a difference is rounding or a negligible motion: a micrometre on a crane of several metres, or the moment of a billionth of
+    /// the largest force at an arm of 1 m.
     pub fn noise(&self, table: &Table, name: &str) -> f64 {
         /// Fraction of the largest value.
         const NOISE: f64 = 1e-6;
+        /// The same for forces beside moments.
+        const ROUNDING: f64 = 1e-9;
         match self.size {
-            Size::Peak => 0.0,
+            Size::Peak => {
+                let forces = self.beside.iter().map(|name| Extremes::of(table, name).size());
+                ROUNDING * forces.fold(0.0, f64::max)
+            }
             Size::Range => NOISE * Extremes::of(table, name).size(),
         }
     }
@@ -75,6 +83,7 @@ pub fn headlines(description: &Description) -> Vec<Kind> {
         Kind::new(supports.collect(), "N", Size::Peak),
         Kind::new(cylinders::pressures(description), "Pa", Size::Peak),
         Kind::new(connectors("N"), "N", Size::Peak),
-        Kind::new(connectors("N m"), "N m", Size::Peak),
+        // Where nothing twists a telescope, the moments of its pads are zero but for rounding.
+        Kind { beside: connectors("N"), ..Kind::new(connectors("N m"), "N m", Size::Peak) },
     ]
 }

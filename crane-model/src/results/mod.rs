@@ -10,6 +10,7 @@ mod history;
 mod limits;
 mod loads;
 mod loops;
+pub(crate) mod overlaps;
 mod peaks;
 mod recording;
 mod servos;

@@ -25,6 +25,9 @@ const SHARE: f64 = 0.35;
 pub const BOOM: f64 = 3.4;
 /// Length of the arm, m.
 pub const ARM: f64 = 3.0;
+/// Length of a stage, m, and how far it is in the arm or in the other stage with its coordinate at 0.
+const STAGE: f64 = 2.0;
+const OVERLAP: f64 = 1.9;
 /// Height of the boom's joint above the base, m, and its distance from the slewing axis.
 const SHOULDER: [f64; 2] = [-0.1, 2.4];
 
@@ -57,7 +60,7 @@ pub fn crane(seed: u64) -> Case {
 #[must_use]
 pub fn with_features(seed: u64, features: &Features) -> Tree {
     let rng = RefCell::new(Rng::with_seed(seed));
-    let mut writer = Writer { rng, features, tree: json!({}), angles: [0.0; 3] };
+    let mut writer = Writer { rng, features, tree: json!({}), angles: [0.0; 3], stage: None };
     writer.write(seed);
     writer.tree
 }
@@ -68,6 +71,8 @@ struct Writer<'f> {
     tree: Tree,
     /// Angles of column, boom and arm at the start.
     angles: [f64; 3],
+    /// Where the first stage begins on the arm at the start, m, if it is a beam on pads.
+    stage: Option<f64>,
 }
 
 impl Writer<'_> {
@@ -294,19 +299,31 @@ impl Writer<'_> {
         if !self.has(F::Telescope) {
             return;
         }
-        let begin = round(self.end_of_arm() - 1.9);
-        self.link(json!({"name": "stage_one", "placement": {"transform": {"translation": [begin, 0, 0]}},
-            "joint": {"prismatic": {"axis": "x"}}, "mass": self.between(50.0, 70.0), "com": [1.0, 0, 0.01],
-            "inertia": {"Ixx": 0.5, "Iyy": 20, "Izz": 20}}));
+        if self.has(F::Pads) {
+            self.stage_on_pads("stage_one", "arm", 0.17);
+        } else {
+            let begin = round(self.end_of_arm() - OVERLAP);
+            self.link(json!({"name": "stage_one", "placement": {"transform": {"translation": [begin, 0, 0]}},
+                "joint": {"prismatic": {"axis": "x"}}, "mass": self.between(50.0, 70.0), "com": [1.0, 0, 0.01],
+                "inertia": {"Ixx": 0.5, "Iyy": 20, "Izz": 20}}));
+        }
         let out = self.between(0.5, 1.0);
+        self.stage = self.has(F::Pads).then_some(ARM - OVERLAP + out);
         self.drive("stage_one_x", json!({"stiffness": 6e6, "damping": 6e4}), out, 0.2);
         if self.has(F::Stop) {
             self.tree["stops"]["stage_one_x"] = json!({"min": round(out + 0.0005), "stiffness": 5e6, "damping": 0.4});
         }
+        if self.has(F::Friction) {
+            self.tree["friction"]["stage_one_x"] = json!({"coulomb": 200, "viscous": 100});
+        }
         if self.has(F::Coupling) {
-            self.link(json!({"name": "stage_two", "placement": {"transform": {"translation": [0.1, 0, 0]}},
-                "joint": {"prismatic": {"axis": "x"}}, "mass": self.between(30.0, 40.0), "com": [1.1, 0, 0],
-                "inertia": {"Ixx": 0.3, "Iyy": 12, "Izz": 12}}));
+            if self.has(F::Pads) {
+                self.stage_on_pads("stage_two", "stage_one", 0.14);
+            } else {
+                self.link(json!({"name": "stage_two", "placement": {"transform": {"translation": [0.1, 0, 0]}},
+                    "joint": {"prismatic": {"axis": "x"}}, "mass": self.between(30.0, 40.0), "com": [1.1, 0, 0],
+                    "inertia": {"Ixx": 0.3, "Iyy": 12, "Izz": 12}}));
+            }
             self.push(
                 "couplings",
                 json!({"name": "chains", "coordinate": "stage_two_x", "follows": "stage_one_x",
@@ -315,8 +332,31 @@ impl Writer<'_> {
         }
     }
 
+    /// A beam of a height that slides in another one on pads, which may have clearance.
+    fn stage_on_pads(&mut self, name: &str, outer: &str, height: f64) {
+        let clearance = if self.rng.borrow_mut().bool() { 2e-4 } else { 0.0 };
+        let pad = |twist: f64| {
+            json!({"stiffness": [self.between(5e7, 2e8), self.between(5e7, 2e8), twist], "damping": [1e5, 1e5, 2e3],
+                "clearance": [clearance, clearance, 0]})
+        };
+        let pads = json!({"front": pad(self.between(1e6, 4e6)), "rear": pad(if height > 0.15 { 1e6 } else { 0.0 })});
+        let sections = match self.rng.borrow_mut().u8(0..3) {
+            0 => json!("rigid"),
+            sections => json!(sections),
+        };
+        self.link(json!({"name": name, "joint": {"prismatic": {"axis": "x"}},
+            "beam": {"length": STAGE, "sections": sections, "material": "steel", "damping": {"beta": 1.5e-3},
+                "section": {"box": {"height": height, "width": round(0.6 * height), "thickness": 0.005}},
+                "slides_in": {"beam": outer, "overlap": OVERLAP, "pads": pads}}}));
+    }
+
     fn hook(&mut self) {
-        let end = if self.has(F::Telescope) { 2.0 } else { self.end_of_arm() };
+        // After a beam, a link is on its tip.
+        let end = match (self.has(F::Telescope), self.has(F::Pads)) {
+            (true, false) => STAGE,
+            (true, true) => 0.0,
+            (false, _) => self.end_of_arm(),
+        };
         let hangs = json!({"transform": {"translation": [end, 0, 0], "rotation": {"z": "-90 deg"}}});
         let upright = round(-self.angles[1] - self.angles[2]);
         let mass = if self.has(F::Parameters) {
@@ -427,10 +467,11 @@ impl Writer<'_> {
             self.push("loads", load);
         }
         if self.has(F::LinkMoment) {
-            let at = self.random_point(ARM);
+            let (link, length) = if self.has(F::Pads) { ("stage_one", STAGE) } else { ("arm", ARM) };
+            let at = self.random_point(length);
             self.push(
                 "loads",
-                json!({"name": "twist", "link": "arm", "at": at, "axes": "link",
+                json!({"name": "twist", "link": link, "at": at, "axes": "link",
                 "force": [self.between(-200.0, 200.0), 150, self.between(-200.0, 200.0)],
                 "moment": [300, self.between(-300.0, 300.0), self.between(-400.0, 400.0)]}),
             );
@@ -468,10 +509,16 @@ impl Writer<'_> {
         }
         if self.has(F::GasSpring) {
             let (from, to) = (self.random_point(1.5), self.random_point(1.5));
+            // Where the stage is in the arm.
+            let to = if self.has(F::Pads) {
+                json!({"link": "stage_one", "at": [round(0.5 * to[0]), -0.25, -0.1]})
+            } else {
+                json!({"link": "arm", "at": [round(to[0] + 1.0), -0.25, -0.1]})
+            };
             self.push(
                 "connectors",
                 json!({"name": "gas", "from": {"link": "boom", "at": [round(from[0] + 1.0), -0.3, 0.1]},
-                "to": {"link": "arm", "at": [round(to[0] + 1.0), -0.25, -0.1]},
+                "to": to,
                 "law": {"gas_spring": {"force": 3e3, "length": 2.5, "stiffness": 4e3, "damping": 300}}}),
             );
         }
@@ -526,7 +573,12 @@ impl Writer<'_> {
         }
         let on_arm = [self.between(0.8, ARM), self.between(0.1, 0.2), self.between(-0.1, 0.1)];
         let [radius, _, height] = along([BOOM, 0.0, 0.0], SHOULDER, lift);
-        way.push((along(on_arm, [radius, height], lift + bend), json!({"link": "arm", "at": on_arm})));
+        let [x, up, aside] = on_arm;
+        let (link, at) = match self.stage {
+            Some(begin) if x > begin => ("stage_one", [round(x - begin), up, aside]),
+            _ => ("arm", on_arm),
+        };
+        way.push((along(on_arm, [radius, height], lift + bend), json!({"link": link, "at": at})));
         let falls = self.rng.borrow_mut().u8(1..4);
         let distance =
             |pair: &[([f64; 3], Tree)]| (0..3).map(|k| (pair[1].0[k] - pair[0].0[k]).powi(2)).sum::<f64>().sqrt();
@@ -569,6 +621,16 @@ impl Writer<'_> {
                 lift["valve"] = valve();
             }
             self.push("cylinders", lift);
+        }
+        if self.has(F::Cylinder) && self.has(F::Telescope) && self.rng.borrow_mut().bool() {
+            let mut extend = with_oil(json!({"name": "extend", "coordinate": "stage_one_x",
+                "foot": {"link": "arm", "at": [self.between(0.1, 0.5), -0.05, 0.01]},
+                "head": {"link": "stage_one", "at": [self.between(0.1, 0.6), -0.05, 0]},
+                "bore": 0.08, "rod": 0.05, "retracted": 0.5, "stroke": 3}));
+            if self.has(F::Valve) {
+                extend["valve"] = valve();
+            }
+            self.push("cylinders", extend);
         }
         if self.has(F::Linkage) {
             let (foot, pivot) = (self.between(0.9, 1.9), self.between(2.9, 3.2));

@@ -3,7 +3,10 @@
 //! The balance is summed body by body in the world frame, from a chain's frames and masses; the accelerations are second differences of
 //! transforms. The recursion that it checks works in the frames of the bodies, outward and back.
 
-use crane_codegen::chain::{Attachment, BodyId, Cylinder, Inertia, Line, Load, LoadAxes, LoopJointKind, Pin, Value};
+use crane_codegen::chain::{
+    Attachment, Axis, BodyId, Cylinder, Inertia, Line, Load, LoadAxes, LoopJointKind, PadDirection, Pin, Sliding,
+    Strain, Value,
+};
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::nalgebra::{DVector, Matrix3, Matrix4, Vector3, Vector6};
@@ -173,12 +176,15 @@ fn pseudo_inertia(inertia: &Inertia, parameters: &[f64]) -> Matrix4<f64> {
     Matrix4::new(xx, xy, xz, x, xy, yy, yz, y, xz, yz, zz, z, x, y, z, inertia.mass.at(parameters))
 }
 
-/// The forces of springs and ropes on the bodies at their ends and at sheaves.
+/// The forces of springs, ropes and pads on the bodies at their ends and at sheaves.
 fn connectors(crane: &LiveCrane, motion: &Motion, transforms: &[Matrix4<f64>]) -> Vec<(usize, Screw)> {
     let whole: &dyn DynCrane = crane;
     let tensions = whole.connector_tensions_at(motion.t, motion.q, motion.v);
     let mut forces = Vec::new();
     for (connector, tension) in crane.chain().connectors().iter().zip(tensions) {
+        if let Strain::Sliding(sliding) = &connector.strain {
+            forces.extend(pad_forces(crane, sliding, tension.force, (motion.q, transforms)));
+        }
         let Some(Line { points, falls }) = connector.strain.line() else { continue };
         for (index, ends) in points.windows(2).enumerate() {
             let [one, other] = [&ends[0], &ends[1]].map(|end| point_of(crane, end, transforms));
@@ -190,6 +196,58 @@ fn connectors(crane: &LiveCrane, motion: &Motion, transforms: &[Matrix4<f64>]) -
         }
     }
     forces
+}
+
+/// What a pad and the beam that slides on it exert on bodies, by de Casteljau's algorithm: in each section the axis of a beam is the quadratic
+/// curve from the middle of an element over its end to the middle of the next one; it begins and ends where the beam does.
+fn pad_forces(
+    crane: &LiveCrane,
+    Sliding { pad, beam, start, grows, coordinate, direction }: &Sliding,
+    tension: f64,
+    (q, transforms): (&[f64], &[Matrix4<f64>]),
+) -> Vec<(usize, Screw)> {
+    let (chain, parameters) = (crane.chain(), crane.parameters());
+    let Some(BodyId(carrier)) = pad.body else { return Vec::new() };
+    let (first, n, length) = (beam.first.0, beam.sections, beam.length.at(parameters));
+    let slid = q[coordinate.0];
+    let s = start.at(parameters) + if *grows { slid } else { -slid };
+    let section = length / n.max(1) as f64;
+    let k = ((s / section).max(0.0) as usize).min(n.saturating_sub(1));
+    let part = if n == 0 { 0.0 } else { s / section - k as f64 };
+    let axis = |body: usize, index: usize| -> Vector3<f64> { transforms[body].fixed_view::<3, 1>(0, index).into() };
+    let [y, z] = [1, 2].map(|index| axis(carrier, index));
+    if *direction == PadDirection::Twist {
+        let shares = [(first + k, 1.0 - part.clamp(0.0, 1.0)), (first + k + 1, part.clamp(0.0, 1.0))];
+        let shares = shares.into_iter().filter(|(_, share)| *share != 0.0);
+        let turned = |moment: Vector3<f64>| Screw::new(0.0, 0.0, 0.0, moment.x, moment.y, moment.z);
+        return shares
+            .flat_map(|(body, share)| {
+                let moment = tension * share * axis(body, 1).cross(&z);
+                [(carrier, turned(moment)), (body, turned(-moment))]
+            })
+            .collect();
+    }
+    let long = |body: usize| chain.bodies[body].length.at(parameters);
+    let points = if n == 0 || part < 0.0 {
+        vec![(first, s, 1.0)]
+    } else if part > 1.0 {
+        vec![(first + n, long(first + n) + s - length, 1.0)]
+    } else {
+        let (from, to) = (first + k, first + k + 1);
+        let begin = if k == 0 { 0.0 } else { 0.5 * long(from) };
+        let end = if k + 1 == n { long(to) } else { 0.5 * long(to) };
+        let rest = 1.0 - part;
+        vec![(from, begin, rest * rest), (from, long(from), 2.0 * part * rest), (to, end, part * part)]
+    };
+    let normal = if *direction == PadDirection::Along(Axis::Y) { y } else { z };
+    let at = |body: usize, x: f64| transforms[body].transform_point(&Vector3::new(x, 0.0, 0.0).into()).coords;
+    points
+        .into_iter()
+        .flat_map(|(body, x, share)| {
+            let force = force_at(at(body, x), tension * share * normal);
+            [(carrier, force), (body, -force)]
+        })
+        .collect()
 }
 
 /// Forces of 1 N that joints which close loops transmit, force by force: along a rod, or in any direction through a point.

@@ -260,7 +260,7 @@ fn other_names(tree: &Tree, _: &mut Rng) -> Option<Second> {
         link["name"] = json!(renamed(link["name"].as_str()?));
     }
     for_each_key(&mut second, &mut |key, value| {
-        if let (true, Some(name)) = (matches!(key, "link" | "on" | "coordinate" | "follows"), value.as_str()) {
+        if let (true, Some(name)) = (matches!(key, "link" | "on" | "beam" | "coordinate" | "follows"), value.as_str()) {
             *value = json!(renamed(name));
         }
     });

@@ -33,6 +33,7 @@ features! {
     OneByOne: "arm given element by element",
     ExtraMass: "boom with distributed extra mass",
     Telescope: "stage that slides on the arm",
+    Pads: "stages that are beams on pads in the arm and in each other",
     Coupling: "second stage that follows the first",
     Rope: "rope of rigid links to the hook",
     Swing: "hook that swings on a universal joint",
@@ -74,6 +75,7 @@ impl Feature {
             F::ExactSupports | F::OneSidedFeet => &[F::FreeBase],
             F::Taper | F::Bend | F::PaperJoint | F::ExtraMass => &[F::FlexibleBoom],
             F::OneByOne => &[F::FlexibleArm],
+            F::Pads => &[F::Telescope, F::FlexibleArm],
             F::Coupling => &[F::Telescope],
             F::Winch => &[F::Guy],
             F::Valve => &[F::Cylinder],
@@ -88,6 +90,7 @@ impl Feature {
         use Feature as F;
         match self {
             F::Rope => &[(F::Swing, "the hook hangs from one of them")],
+            F::Pads => &[(F::OneByOne, "pads are on beams of equal sections")],
             F::RigidDrive => &[(F::Bristles, "a prescribed joint does not stick, and both are on the slewing joint")],
             _ => &[],
         }

@@ -6,7 +6,7 @@ use crane_codegen::chain::{
 use crane_model::{
     AttachmentInfo, BodyInfo, Bound, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole,
     CylinderInfo, Description, DriveInfo, HoldInfo, InputInfo, LoadInfo, LoopEquationInfo, LoopJointInfo,
-    ParameterInfo, PumpInfo, Refusal, SectionInfo, Side, SupportInfo, ValveInfo,
+    ParameterInfo, PumpInfo, Refusal, SectionInfo, Side, StageInfo, SupportInfo, ValveInfo,
 };
 
 /// What the bodies of a chain with branches are attached to, as the compiler writes it.
@@ -131,6 +131,18 @@ pub fn describe_loop_joints(chain: &Chain) -> Vec<LoopJointInfo> {
         equations: joint.kind.equations().into_iter().map(equation_info).collect(),
     };
     chain.loop_joints.iter().map(joint).collect()
+}
+
+/// The stages of its telescopes.
+pub fn describe_stages(chain: &Chain) -> Vec<StageInfo> {
+    let defaults = chain.parameter_defaults();
+    let stage = |stage: &chain::Stage<'_>| StageInfo {
+        outer: [stage.outer.first.0, stage.outer.last().0 + 1],
+        inner: stage.inner.0,
+        coordinate: stage.coordinate.0,
+        height: chain.height_of(stage.inner, &defaults).unwrap_or(0.0),
+    };
+    chain.stages().iter().map(stage).collect()
 }
 
 fn equation_info(chain::LoopEquation { direction, is_moment }: chain::LoopEquation) -> LoopEquationInfo {

@@ -5,7 +5,7 @@
 //! so that the page can draw any pose, exaggerated and modal ones too. Three coordinates that turn by a rotation vector ρ
 //! share one factor, `exp(ξ_i ρ_1 + ξ_j ρ_2 + ξ_k ρ_3)`, with screws at ρ = 0: q⁰ is the pose with these at zero.
 
-use crane_codegen::chain::{CoordinateId, Cylinder, Linkage, Pin, Value as Number};
+use crane_codegen::chain::{BodyId, CoordinateId, Cylinder, Linkage, Pin, Stage, Value as Number};
 use crane_live::LiveCrane;
 use crane_model::{
     AttachmentInfo, BodyInfo, CoordinateRole, Description, Tree,
@@ -14,7 +14,7 @@ use crane_model::{
 use nalgebra::{Matrix4, Vector3};
 use serde_json::{Value, json};
 
-/// Frames, screws, supports, connectors and points of a crane for pose `q`.
+/// Frames, screws, supports, connectors, pads and points of a crane for pose `q`.
 pub fn scene(live: &LiveCrane, q: &[f64]) -> Value {
     let crane: &dyn DynCrane = live;
     let description = crane.description();
@@ -57,8 +57,21 @@ pub fn scene(live: &LiveCrane, q: &[f64]) -> Value {
     json!({
         "pose": q, "reference": reference, "vectors": is_vector, "bodies": bodies,
         "screws": screws, "supports": supports, "connectors": connectors, "points": points(crane, q),
-        "cylinders": cylinders,
+        "cylinders": cylinders, "pads": pads(live),
     })
+}
+
+/// The pads of telescopes: at the end of the outer beam and at the beginning of the inner one, with the names of both links.
+fn pads(live: &LiveCrane) -> Vec<Value> {
+    let chain = live.chain();
+    let link = |body: BodyId| chain.bodies[body.0].link.as_str();
+    let of_stage = |stage: &Stage<'_>| {
+        let beams = [link(stage.outer.first), link(stage.inner)];
+        let last = stage.outer.last();
+        let end = chain.bodies[last.0].length.at(live.parameters());
+        [(last, end), (stage.inner, 0.0)].map(|(body, x)| json!({"body": body.0, "x": x, "beams": beams}))
+    };
+    chain.stages().iter().flat_map(of_stage).collect()
 }
 
 /// Whether a body is a link of a rope or chain: such links have lengths, as elements of beams do, and do not deform.

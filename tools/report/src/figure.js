@@ -1,6 +1,6 @@
 // A crane in three dimensions, drawn from its chain: links from frame to frame, with a thickness estimated from
 // their mass, flexible links bent, with the outline of their section if the spec gives one, pins at revolute joints, legs at the supports,
-// hydraulic cylinders, and springs and ropes between their points.
+// hydraulic cylinders, pads between the beams of telescopes, and springs and ropes between their points.
 import { BoxGeometry, CylinderGeometry, Group, Matrix4, Mesh, MeshStandardMaterial, Quaternion, SphereGeometry, TorusGeometry, Vector3 } from "three";
 import { BeamGeometry, sizeAt } from "./beam.js";
 import { Cylinder, stretch } from "./cylinders.js";
@@ -28,7 +28,7 @@ const MARGIN = 0.03;
 
 export const COLOURS = {
   base: 0x4a5560, link: 0xe2a32b, flexible: 0x1f7fc0, slide: 0xb9c2cb, load: 0xa5784f, pin: 0x2b3138, passive: 0x8d979f,
-  barrel: 0x59636e, rod: 0xdfe4e8, linkage: 0xc98a1c, rope: 0x2b3138, ghost: 0xd55e00,
+  barrel: 0x59636e, rod: 0xdfe4e8, linkage: 0xc98a1c, rope: 0x2b3138, pad: 0xf2f2ee, ghost: 0xd55e00,
 };
 
 export class Figure {
@@ -42,6 +42,8 @@ export class Figure {
     this.parts = [];
     this.beams = [];
     this.legs = [];
+    /** Heights and widths of the beams as drawn, m, by name. */
+    this.sizes = new Map();
     this.materials = new Map();
     this.kinematics.pose(this.kinematics.reference);
     this.build();
@@ -98,6 +100,7 @@ export class Figure {
       if (carrier.flexible) this.inner(parent, next, frames);
       else this.link(parent, next, frames);
     });
+    this.pads();
     this.ropes();
     this.pins();
     bodies.forEach((_, p) => this.kinematics.carriedBy(p).length || this.end(p));
@@ -123,7 +126,9 @@ export class Figure {
     const total = lengths.reduce((sum, length) => sum + length, 0);
     const mass = elements.reduce((sum, p) => sum + bodies[p].mass, 0);
     const outline = this.crane.outlines[name];
-    const likely = this.thickness(mass, total);
+    // A stage without a shape is narrower than the beam in which it slides.
+    const outer = this.crane.scene.pads.find(({ beams: [, inner] }) => inner === name)?.beams[0];
+    const likely = Math.min(this.thickness(mass, total), 0.8 * (this.sizes.get(outer)?.[0] ?? Infinity));
     const along = outline?.along ?? [[0, likely, 0.8 * likely]];
     const [height, width] = outline?.size ?? along[0].slice(1);
     const side = Math.max(height, width);
@@ -141,7 +146,28 @@ export class Figure {
       // The cylinder's axis is y.
       this.part(p, ring, outline?.round ? new Matrix4().makeRotationZ(Math.PI / 2) : new Matrix4());
     });
+    this.sizes.set(name, [height, width]);
     this.usual ??= side;
+  }
+
+  /**
+   * The pads of telescopes: blocks on the four sides of the inner beam that fill the gap to the outer one. They come a little out of the faces of the outer beam, so
+   * that the rear ones show where they are within it.
+   */
+  pads() {
+    for (const { body, x, beams } of this.crane.scene.pads) {
+      const [outer, inner] = beams.map((name) => this.sizes.get(name));
+      const long = 0.6 * inner[0];
+      for (const [side, across] of [[0, 1], [1, 0]]) {
+        const thick = Math.max(0.54 * outer[side] - 0.5 * inner[side], 0.04 * inner[side]);
+        const size = side === 0 ? [long, thick, 0.6 * inner[across]] : [long, 0.6 * inner[across], thick];
+        for (const sign of [-1, 1]) {
+          const shift = sign * 0.5 * (inner[side] + thick);
+          const local = new Matrix4().setPosition(x, side === 0 ? shift : 0, side === 0 ? 0 : shift);
+          this.part(body, this.mesh(new BoxGeometry(...size), COLOURS.pad), local);
+        }
+      }
+    }
   }
 
   /** From a body's origin to where another one begins that it carries; a sliding one comes out of it. */
@@ -206,6 +232,8 @@ export class Figure {
       if (unit !== "rad" || !["driven", "passive"].includes(role)) return;
       const p = bodies.findIndex((body) => body.moved_by[1] > j);
       if (bodies[p].rope || bodies[bodies[p].parent]?.rope) return;
+      // Pads hold a stage, no pins.
+      if (this.crane.scene.pads.some((pad) => pad.body === p && pad.x === 0)) return;
       const axis = new Vector3(...screws[j].slice(0, 3)).transformDirection(frames[p].clone().invert());
       const upright = Math.abs(screws[j][2]) > 0.9;
       const side = this.thickness(bodies[p].mass, 0);

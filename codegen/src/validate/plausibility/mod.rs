@@ -13,6 +13,7 @@ mod hydraulics;
 mod joints;
 mod lengths;
 mod masses;
+mod telescopes;
 
 use crate::chain::Chain;
 use crate::diagnostic::{Mistake, Span};
@@ -28,6 +29,7 @@ pub(super) fn warnings(crane: &Crane, chain: &Chain, values: Vec<f64>) -> Vec<Mi
     plausibility.slow_drives();
     plausibility.places_of_feet();
     plausibility.couplings();
+    plausibility.overlaps();
     plausibility.stiff_springs();
     // Consequences of such numbers, such as frequencies and masses, would be reported as well.
     if plausibility.warnings.is_empty() {

@@ -1,7 +1,7 @@
 //! A letter for each kind of limit, for the cells of charts.
 
 /// Kinds of limits, their letters, and what they are, in the order of a legend.
-const LETTERS: [(&str, char, &str); 12] = [
+const LETTERS: [(&str, char, &str); 13] = [
     ("tipping", 'T', "tipping"),
     ("utilisation", 'U', "utilisation of a beam"),
     ("pressure", 'P', "relief valve of a cylinder"),
@@ -11,6 +11,7 @@ const LETTERS: [(&str, char, &str); 12] = [
     ("effort", 'E', "effort of a drive"),
     ("lift-off", 'L', "a foot lifts off"),
     ("slack", 'R', "a rope is slack"),
+    ("overlap", 'O', "a stage has left its outer beam"),
     ("deflection", 'D', "deflection"),
     ("equilibrium", 'X', "no equilibrium beyond"),
     ("", 'M', "none up to the maximum load considered"),

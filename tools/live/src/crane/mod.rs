@@ -13,9 +13,9 @@ use crane_codegen::program::{FunctionId, Shape};
 use crane_codegen::{Diagnostics, SourceFile, compile};
 use crane_model::dyn_crane::DynCrane;
 use crane_model::nalgebra::{Matrix4, Matrix6};
-use crane_model::{Description, Entry, LoopJointInfo, ParameterError};
+use crane_model::{Description, Entry, LoopJointInfo, ParameterError, StageInfo};
 
-use crate::describe::{describe, describe_loop_joints, refusal};
+use crate::describe::{describe, describe_loop_joints, describe_stages, refusal};
 use crate::expansion::{mass_matrix, second_derivatives};
 use crate::library::Library;
 use crate::machine::{Arguments, Machine};
@@ -28,6 +28,7 @@ pub struct LiveCrane {
     library: Arc<Library>,
     description: Description,
     loop_joints: Vec<LoopJointInfo>,
+    stages: Vec<StageInfo>,
     parameters: Vec<f64>,
     /// Two numbers per input: its value if it is set, else 0; and 0 if it is set, else 1.
     inputs: Vec<f64>,
@@ -60,10 +61,11 @@ impl LiveCrane {
     #[must_use]
     pub fn new(chain: Chain) -> Self {
         let (description, loop_joints) = (describe(&chain), describe_loop_joints(&chain));
+        let stages = describe_stages(&chain);
         let parameters = chain.parameter_defaults();
         let inputs = not_set(&chain);
         let library = Arc::new(Library::new(chain));
-        Self { library, description, loop_joints, parameters, inputs, rooms: no_rooms() }
+        Self { library, description, loop_joints, stages, parameters, inputs, rooms: no_rooms() }
     }
 
     /// The chain from which it was made.
@@ -108,11 +110,12 @@ impl LiveCrane {
         for (slots, value) in inputs.chunks_mut(Input::SLOTS).zip(values) {
             set(slots, *value);
         }
-        let Self { library, description, loop_joints, parameters, rooms, .. } = self;
+        let Self { library, description, loop_joints, stages, parameters, rooms, .. } = self;
         Self {
             library: Arc::clone(library),
             description: description.clone(),
             loop_joints: loop_joints.clone(),
+            stages: stages.clone(),
             parameters: parameters.clone(),
             inputs,
             rooms: Arc::clone(rooms),
@@ -232,6 +235,7 @@ impl Clone for LiveCrane {
             library: Arc::clone(&self.library),
             description: self.description.clone(),
             loop_joints: self.loop_joints.clone(),
+            stages: self.stages.clone(),
             parameters: self.parameters.clone(),
             inputs: self.inputs.clone(),
             rooms: no_rooms(),

@@ -4,7 +4,7 @@ use crane_codegen::chain::Input;
 use crane_codegen::program::FunctionId;
 use crane_model::dyn_crane::DynModel;
 use crane_model::nalgebra::Matrix4;
-use crane_model::{Description, LoopJointInfo, entry_type, slice_argument};
+use crane_model::{Description, LoopJointInfo, StageInfo, entry_type, slice_argument};
 use crane_quantities::quantities;
 
 use super::LiveCrane;
@@ -31,6 +31,10 @@ impl DynModel for LiveCrane {
 
     fn loop_joints(&self) -> &[LoopJointInfo] {
         &self.loop_joints
+    }
+
+    fn stages(&self) -> &[StageInfo] {
+        &self.stages
     }
 
     fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]) {

@@ -26,6 +26,7 @@ mod loop_cuts;
 mod loop_drives;
 mod loops;
 mod motion_derivatives;
+mod overlaps;
 mod rope;
 mod rows;
 mod sensitivity;

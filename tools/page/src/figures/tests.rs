@@ -306,6 +306,32 @@ fn what_is_drawn_has_the_measures_of_the_spec() {
     assert_eq!(linkage["pivot"]["at"], json!([0.1, 0.0, 1.6]));
 }
 
+/// Along a straight telescope, the front pads of a stage are ahead of its rear pads by the overlap.
+#[test]
+fn pads_are_where_they_are() {
+    let live = live("loader", include_str!("../../../../specs/examples/telescopic_loader.yaml"));
+    let crane: &dyn crane_model::dyn_crane::DynCrane = &live;
+    let equilibrium = crane.equilibrium(&statics::Settings::default());
+    let data = data_of(&Subject { label: "value", crane, live: &live, equilibrium: &equilibrium, run: None });
+    let pads = data["cranes"][0]["scene"]["pads"].as_array().expect("pads").clone();
+    let names = &crane.description().coordinates;
+    for out in [0.2, 1.6] {
+        let places = names.iter().map(|own| if own.name.ends_with("stage_x") { out } else { 0.0 });
+        let frames = crane.transforms_at(&places.collect::<Vec<f64>>());
+        let at = |pad: &Value| {
+            let body = usize::try_from(pad["body"].as_u64().expect("a body")).expect("small");
+            frames[body].transform_point(&nalgebra::Point3::new(pad["x"].as_f64().expect("a place"), 0.0, 0.0))
+        };
+        for (stage, (beams, inside)) in
+            [(["boom", "first_stage"], 3.1), (["first_stage", "second_stage"], 2.9)].iter().enumerate()
+        {
+            let [front, rear] = [&pads[2 * stage], &pads[2 * stage + 1]];
+            assert_eq!((&front["beams"], &rear["beams"]), (&json!(beams), &json!(beams)));
+            assert!(((at(front) - at(rear)).norm() - (inside - out)).abs() < 1e-12);
+        }
+    }
+}
+
 #[test]
 fn a_pose_that_is_not_stable_is_named() {
     let live = live(

@@ -1,0 +1,62 @@
+//! Stages of telescopes: beams that slide in beams.
+
+use super::{Axis, Beam, BeamAxis, BodyId, Chain, CoordinateId, PadDirection, Sliding, Strain, Value};
+
+/// A beam that slides in another one on pads.
+#[derive(Clone, Debug)]
+pub struct Stage<'a> {
+    /// The axis of the outer beam.
+    pub outer: &'a BeamAxis,
+    /// The first element of the inner one.
+    pub inner: BodyId,
+    /// The coordinate along which it slides: the overlap becomes shorter as it grows.
+    pub coordinate: CoordinateId,
+    /// Where the inner beam begins, m from the beginning of the outer one, with its coordinate at 0.
+    pub behind: &'a Value,
+}
+
+impl Stage<'_> {
+    /// The overlap with the coordinate at `x`, m.
+    #[must_use]
+    pub fn overlap(&self, x: f64, parameters: &[f64]) -> f64 {
+        self.outer.length.at(parameters) - self.behind.at(parameters) - x
+    }
+}
+
+impl Chain {
+    /// The stages of telescopes, in the order of the links.
+    #[must_use]
+    pub fn stages(&self) -> Vec<Stage<'_>> {
+        self.connectors().iter().filter_map(|connector| stage(&connector.strain)).collect()
+    }
+
+    /// The coordinates that pads hold: those of stages besides the one along which each slides.
+    #[must_use]
+    pub fn held_by_pads(&self) -> Vec<CoordinateId> {
+        let stages = self.stages();
+        let holds = |id: &CoordinateId| {
+            let body = self.coordinates[id.0].body;
+            stages.iter().any(|stage| stage.inner == body && stage.coordinate != *id)
+        };
+        (0..self.coordinates.len()).map(CoordinateId).filter(holds).collect()
+    }
+
+    /// The height of the section of the beam to which a body belongs, m; `None` if the spec gives no shape.
+    #[must_use]
+    pub fn height_of(&self, BodyId(body): BodyId, parameters: &[f64]) -> Option<f64> {
+        let link = &self.bodies[body].link;
+        let Beam { outlines, .. } = self.beams.iter().find(|beam| beam.link == *link)?;
+        let [height, _] = &outlines.first()?.1.size;
+        Some(height.at(parameters))
+    }
+}
+
+/// The stage of which a strain is that of the rear pad, at the beginning of the inner beam, along y: each stage has one.
+fn stage(strain: &Strain) -> Option<Stage<'_>> {
+    let Strain::Sliding(sliding) = strain else { return None };
+    let Sliding { pad, beam, start, grows: true, coordinate, direction: PadDirection::Along(Axis::Y) } = &**sliding
+    else {
+        return None;
+    };
+    Some(Stage { outer: beam, inner: pad.body?, coordinate: *coordinate, behind: start })
+}

@@ -1,0 +1,86 @@
+//! Telescopes whose beams leave each other.
+
+use super::{Plausibility, angles::positions, items, rounded};
+use crate::chain::{CoordinateId, Stage, Strain};
+use crate::diagnostic::{Span, rule};
+use crate::spec::Motion;
+
+impl Plausibility<'_> {
+    /// Stages that a motion or a guess draws out so far that pads hold them poorly, or not at all: at most one warning each.
+    pub(super) fn overlaps(&mut self) {
+        for stage in self.chain.stages() {
+            let reached = self.reached(stage.coordinate, self.chain.coordinates.len());
+            if let Some((x, at)) = reached.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)) {
+                self.overlap(&stage, x, at);
+            }
+        }
+    }
+
+    fn overlap(&mut self, stage: &Stage<'_>, x: f64, at: Span) {
+        let chain = self.chain;
+        let overlap = stage.overlap(x, &self.values);
+        let height = chain.height_of(stage.inner, &self.values).unwrap_or(0.0);
+        let [inner, outer] = [stage.inner, stage.outer.first].map(|body| &chain.bodies[body.0].link);
+        let name = &chain.coordinates[stage.coordinate.0].name;
+        let least = rounded(stage.overlap(0.0, &self.values) - height);
+        if overlap <= 0.0 {
+            self.warn(rule::out_of_beam(at, inner, outer, rounded(overlap), name, rounded(x), least));
+        } else if overlap < height {
+            self.warn(rule::short_overlap(
+                at,
+                inner,
+                outer,
+                rounded(overlap),
+                name,
+                rounded(x),
+                rounded(height),
+                least,
+            ));
+        }
+    }
+
+    /// Where the motions and the guess of the spec take a coordinate, and where in the text: by its own drive, or by those of coordinates that
+    /// it follows, of which there may be so many.
+    fn reached(&self, coordinate: CoordinateId, leaders: usize) -> Vec<(f64, Span)> {
+        let (crane, chain) = (self.crane, self.chain);
+        let name = &chain.coordinates[coordinate.0].name;
+        let of_drives = items(crane.drives.as_ref()).filter(|drive| drive.coordinate.value.as_ref() == Some(name));
+        let of_drives = of_drives.filter_map(|drive| drive.motion.value.as_ref());
+        let mut found: Vec<(f64, Span)> = of_drives.flat_map(|motion| self.stations(motion)).collect();
+        let guess = crane.guess.as_ref().and_then(|guess| guess.value.as_ref());
+        let guess =
+            guess.into_iter().flat_map(|guess| &guess.0).filter(|(given, _)| given.value.as_ref() == Some(name));
+        found.extend(guess.filter_map(|(_, at)| Some((self.scalar(&at.value.as_ref()?.0), at.span))));
+        let Some(leaders) = leaders.checked_sub(1) else { return found };
+        for connector in chain.connectors() {
+            if let Strain::Coupling { coordinate: follower, leader, ratio } = &connector.strain
+                && *follower == coordinate
+            {
+                let ratio = ratio.at(&self.values);
+                found.extend(self.reached(*leader, leaders).into_iter().map(|(x, at)| (ratio * x, at)));
+            }
+        }
+        found
+    }
+
+    /// The positions of a motion, and where a speed leads within the run.
+    fn stations(&self, motion: &Motion) -> Vec<(f64, Span)> {
+        if let Motion::Input(name) = motion {
+            let Some(input) = self.named_input(name) else { return Vec::new() };
+            let unless_set = input.motion.as_ref().and_then(|motion| motion.value.as_ref());
+            let value = input.value.as_ref();
+            let value = value.and_then(|given| Some((self.scalar(&given.value.as_ref()?.0), given.span)));
+            return unless_set.map(|motion| self.stations(motion)).into_iter().flatten().chain(value).collect();
+        }
+        let given = positions(motion).into_iter();
+        let mut found: Vec<(f64, Span)> = given.filter_map(|(scalar, at)| Some((self.scalar(scalar?), at))).collect();
+        if let Motion::Speed(speed) = motion {
+            let number = |given: &crate::spec::Angle| self.scalar(&given.0);
+            let rate = speed.rate.value.as_ref().map_or(0.0, number);
+            let begin = speed.begin.as_ref().map_or(0.0, |begin| self.number(begin).0);
+            let from = found.first().map_or(0.0, |(from, _)| *from);
+            found.push((from + rate * (self.chain.run.duration - begin).max(0.0), speed.rate.span));
+        }
+        found
+    }
+}
