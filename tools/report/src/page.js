@@ -2,6 +2,7 @@
 import "uplot/dist/uPlot.min.css";
 import "./style.css";
 import { chart } from "./chart.js";
+import { moves } from "./moves.js";
 import { PULLS, gradient } from "./colours.js";
 import { at, place, read, readable, scaled, spoken } from "./data.js";
 import { save, table } from "./download.js";
@@ -35,6 +36,7 @@ tables(data);
 tiles(data);
 if (!atRest) sign(data);
 chart(data);
+moves(data);
 document.documentElement.dataset.theme = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
 const shown = [];
 const { plots, along } = atRest ? { plots: [], along: [] } : panels(data, player);

@@ -165,4 +165,7 @@ pub struct Page {
     /// Show the load charts of an envelope, too: the file `…_envelope.csv` that `crane envelope` wrote
     #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
     pub envelope: Option<PathBuf>,
+    /// Show what moves what at rest, too: live parameters and sizes of beams, as `crane sensitivity` computes it
+    #[arg(long)]
+    pub sensitivity: bool,
 }

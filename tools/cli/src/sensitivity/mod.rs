@@ -1,7 +1,10 @@
 //! `crane sensitivity`: what moves the quantities of a crane at rest, and by how much.
 
 mod chart;
+mod page;
 mod tables;
+
+pub use page::moves_of_page;
 
 use std::{io::Write, path::Path};
 

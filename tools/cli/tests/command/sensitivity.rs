@@ -306,3 +306,40 @@ fn fixed_numbers_change_by_differences() {
     let cautions = found["cautions"].to_string();
     assert!(cautions.contains("differences of whole cranes"), "{cautions}");
 }
+
+/// Bars of a page are the numbers of the command that it names.
+#[test]
+fn what_moves_what_on_a_page_is_what_the_command_prints() {
+    let place = folder("sensitivity_page");
+    fs::create_dir_all(&place).expect("a folder");
+    let page = place.join("two_arms.html");
+    let output = crane(&[
+        "report",
+        "two_arms",
+        "--sensitivity",
+        "--duration",
+        "0.1",
+        "--output",
+        "0.05",
+        "-o",
+        &page.to_string_lossy(),
+    ]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let page = fs::read_to_string(&page).expect("a page");
+    let data = page.split("id=\"data\">").nth(1).and_then(|rest| rest.split("</script>").next()).expect("data");
+    let data: Value = serde_json::from_str(data).expect("JSON");
+    let moves = &data["moves"];
+    let command = moves["command"].as_str().expect("a command");
+    let arguments: Vec<&str> = command.split(' ').skip(1).chain(["--format", "json"]).collect();
+    let found = json(&arguments);
+    let mut compared = 0;
+    for output in moves["outputs"].as_array().expect("outputs") {
+        for bar in output["bars"].as_array().expect("bars") {
+            let name = output["output"].as_str().expect("a name");
+            let row = change(&found, name, bar["number"].as_str().expect("a number"));
+            assert_eq!(bar["relative"], row["relative"], "{name}: {bar:#} {row:#}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 10, "{moves:#}");
+}
