@@ -15,7 +15,9 @@ function shown() {
   const texts = (host, selector) => [...host.querySelectorAll(selector)].map(({ textContent }) => textContent);
   const red = (element) => getComputedStyle(element).color;
   return {
-    written: { figures: data.figures, summary: data.summary, verdict: data.verdict },
+    written: { figures: data.figures, summary: data.summary, verdict: data.verdict, moves: data.moves },
+    bars: [...document.querySelectorAll("#moves .block .move")].map((row) => ({ texts: texts(row, "span.number, span.change"), width: parseFloat(row.querySelector("b").style.width) })),
+    drawn: texts(document, "#moves code").join(""),
     tiles: [...document.querySelectorAll("#tiles > div")].map((tile) => ({ texts: texts(tile, "span, strong"), colour: red(tile.querySelector("strong")) })),
     lines: [...document.querySelectorAll("#sign tr")].map((line) => ({ name: texts(line, "th")[0], texts: texts(line, "td p"), colour: red(line.querySelector("td")) })),
     verdict: document.querySelector("#verdict")?.textContent ?? null,
@@ -36,9 +38,15 @@ for (const file of process.argv.slice(2).map((path) => resolve(path))) {
   const name = basename(file);
   for (const media of ["screen", "print"]) {
     await page.emulateMedia({ media });
-    const { written, tiles, lines, verdict, whole, titles } = await page.evaluate(shown);
+    const { written, tiles, lines, verdict, whole, titles, bars, drawn } = await page.evaluate(shown);
     assert.deepEqual(tiles.map(({ texts }) => texts), written.figures.map(({ title, value, note }) => [title, value, note]), `${name}: tiles`);
     assert.deepEqual(lines.map(({ name, texts }) => [name, texts]), written.summary.map(({ name, texts }) => [name, texts]), `${name}: to sign`);
+    const moved = (written.moves?.outputs ?? []).flatMap((output) => output.bars);
+    const greatest = Math.max(0, ...moved.map(({ relative }) => Math.abs(relative)));
+    assert.deepEqual(bars.map(({ texts }) => texts), moved.map(({ number, text }) => [number, text]), `${name}: what moves what`);
+    // Half of the track is the largest change; the page writes five digits.
+    moved.forEach(({ relative }, index) => assert(Math.abs(bars[index].width - (50 * Math.abs(relative)) / greatest) < 1e-2, `${name}: bar ${index}`));
+    assert.equal(drawn, written.moves?.command ?? "", name);
     if (written.verdict.verdict !== "unlimited") assert.equal(verdict, written.verdict.text, name);
     for (const [shown, all] of [[tiles, written.figures], [lines, written.summary]]) {
       shown.forEach(({ colour }, index) => assert.equal(colour === RED, all[index].verdict === "beyond", `${name}, ${media}: ${JSON.stringify(all[index])} in ${colour}`));

@@ -13,6 +13,51 @@ impl SourceFile {
     /// # Errors
     /// There is no number at this place.
     pub fn with_live_number(&self, place: &str, parameter: &str, unit: &str) -> Result<Self, WrongPlace> {
+        let (changed, value) = self.replaced_at(place, parameter)?;
+        let entry = format!("{parameter}: {{value: {value}, unit: {unit:?}, about: {place:?}}}");
+        Ok(self.changed(&format!("parameters: {{{entry}}}\n{}\n", &changed[1..changed.len() - 1])))
+    }
+
+    /// The number at a place, angles in rad.
+    ///
+    /// # Errors
+    /// There is no number at this place.
+    pub fn number_at(&self, place: &str) -> Result<f64, WrongPlace> {
+        let (_, value) = self.replaced_at(place, "0")?;
+        value.parse().ok().or_else(|| crate::spec::parse_angle(&value)).ok_or_else(|| not_a_number(place))
+    }
+
+    /// The same crane with another number at a place.
+    ///
+    /// # Errors
+    /// There is no number at this place.
+    pub fn with_number(&self, place: &str, value: f64) -> Result<Self, WrongPlace> {
+        let (changed, _) = self.replaced_at(place, &format!("{value:?}"))?;
+        Ok(self.changed(&format!("{}\n", &changed[1..changed.len() - 1])))
+    }
+
+    /// The text at a place; `None` if there is none.
+    #[must_use]
+    pub fn text_at(&self, place: &str) -> Option<String> {
+        let root = parts(self, &mut Noticed::default()).ok()?;
+        let mut node = &root;
+        for key in place.split('.') {
+            node = match &node.content {
+                Content::Sequence(items) => {
+                    let named = items.iter().find(|item| item.identity().as_deref() == Some(key));
+                    named.or_else(|| items.get(key.parse::<usize>().ok()?))?
+                }
+                _ => node.entry(key)?,
+            };
+        }
+        match &node.content {
+            Content::Text(text) => Some(text.clone()),
+            _ => None,
+        }
+    }
+
+    /// The changes to lay over the spec so that a word stands in place of a number, and that number.
+    fn replaced_at(&self, place: &str, word: &str) -> Result<(String, String), WrongPlace> {
         let root = parts(self, &mut Noticed::default()).map_err(|_| WrongPlace {
             title: format!("{} cannot be read", self.name),
             help: "check it with `crane check`".to_owned(),
@@ -26,28 +71,27 @@ impl SourceFile {
             });
         }
         let mut value = String::new();
-        let changed = overlay(&root, &keys, place, parameter, &mut value)?;
-        let entry = format!("{parameter}: {{value: {value}, unit: {unit:?}, about: {place:?}}}");
-        Ok(self.changed(&format!("parameters: {{{entry}}}\n{}\n", &changed[1..changed.len() - 1])))
+        let changed = overlay(&root, &keys, place, word, &mut value)?;
+        Ok((changed, value))
     }
 }
 
-/// The changes to lay over a node so that the number at the place becomes a parameter; `value` becomes the number.
-fn overlay(node: &Node, keys: &[&str], place: &str, parameter: &str, value: &mut String) -> Result<String, WrongPlace> {
+/// The changes to lay over a node so that a word, such as the name of a parameter, replaces the number at the place; `value` becomes the number.
+fn overlay(node: &Node, keys: &[&str], place: &str, word: &str, value: &mut String) -> Result<String, WrongPlace> {
     let Some((key, rest)) = keys.split_first() else {
         *value = number(node, place)?;
-        return Ok(parameter.to_owned());
+        return Ok(word.to_owned());
     };
     match &node.content {
         Content::Mapping(entries) => {
             let known: Vec<String> = entries.iter().map(|(key, _)| key.key_text()).collect();
             let inner = node.entry(key).ok_or_else(|| missing(place, key, &known))?;
-            Ok(format!("{{{key}: {}}}", overlay(inner, rest, place, parameter, value)?))
+            Ok(format!("{{{key}: {}}}", overlay(inner, rest, place, word, value)?))
         }
         Content::Sequence(items) => {
             let names: Vec<Option<String>> = items.iter().map(Node::identity).collect();
             if let Some(index) = names.iter().position(|name| name.as_deref() == Some(*key)) {
-                let inner = overlay(&items[index], rest, place, parameter, value)?;
+                let inner = overlay(&items[index], rest, place, word, value)?;
                 let identity = items[index].identity_key();
                 // The number itself is not an entry of a list with names.
                 return match inner.strip_prefix('{') {
@@ -62,22 +106,34 @@ fn overlay(node: &Node, keys: &[&str], place: &str, parameter: &str, value: &mut
             };
             let mut all = Vec::new();
             for (index, item) in items.iter().enumerate() {
-                all.push(if index == chosen { replaced(item, rest, place, parameter, value)? } else { written(item) });
+                all.push(if index == chosen { replaced(item, rest, place, word, value)? } else { written(item) });
             }
             Ok(format!("[{}]", all.join(", ")))
         }
+        Content::Text(text) if !is_number(text) => Err(not_there(place, keys, text)),
         _ => Err(not_a_number(place)),
     }
 }
 
+/// There is a name where a place goes on.
+fn not_there(place: &str, keys: &[&str], name: &str) -> WrongPlace {
+    let rest = keys.join(".");
+    let before = place.strip_suffix(&rest).unwrap_or(place).trim_end_matches('.');
+    let help = if before.ends_with("material") {
+        format!("give the place of its entry, `materials.{name}.{rest}`")
+    } else {
+        "give the place of one number, as in `links.boom.beam.section.box.height`".to_owned()
+    };
+    WrongPlace { title: format!("`{before}` is `{name}`: there is nothing at `{place}`"), help }
+}
+
+/// Whether a text is an angle.
+fn is_number(text: &str) -> bool {
+    crate::spec::parse_angle(text).is_some()
+}
+
 /// A whole node with the number at the place replaced, where a list without names cannot be laid over.
-fn replaced(
-    node: &Node,
-    keys: &[&str],
-    place: &str,
-    parameter: &str,
-    value: &mut String,
-) -> Result<String, WrongPlace> {
+fn replaced(node: &Node, keys: &[&str], place: &str, word: &str, value: &mut String) -> Result<String, WrongPlace> {
     match (&node.content, keys) {
         (Content::Mapping(entries), [key, rest @ ..]) => {
             let known: Vec<String> = entries.iter().map(|(key, _)| key.key_text()).collect();
@@ -85,12 +141,12 @@ fn replaced(
             let mut all = Vec::new();
             for (own, inner) in entries {
                 let own = own.key_text();
-                let text = if own == *key { replaced(inner, rest, place, parameter, value)? } else { written(inner) };
+                let text = if own == *key { replaced(inner, rest, place, word, value)? } else { written(inner) };
                 all.push(format!("{own}: {text}"));
             }
             Ok(format!("{{{}}}", all.join(", ")))
         }
-        _ => overlay(node, keys, place, parameter, value),
+        _ => overlay(node, keys, place, word, value),
     }
 }
 
@@ -117,7 +173,7 @@ fn written(node: &Node) -> String {
 fn number(node: &Node, place: &str) -> Result<String, WrongPlace> {
     match &node.content {
         Content::Number(_) => Ok(written(node)),
-        Content::Text(text) if crate::spec::parse_angle(text).is_some() => Ok(text.clone()),
+        Content::Text(text) if is_number(text) => Ok(text.clone()),
         Content::Text(text) if text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') => Err(WrongPlace {
             title: format!("`{place}` is `{text}`, not a number"),
             help: "if this is a live parameter, write its name; if it is an entry of `materials`, give the place of its number there"

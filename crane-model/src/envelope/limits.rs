@@ -92,7 +92,8 @@ impl Limits {
     }
 
     /// With the maximum efforts of the crane's own drives, if they are among the limits.
-    pub(super) fn with_max_efforts(&self, crane: &dyn DynCrane) -> Self {
+    #[must_use]
+    pub fn with_max_efforts(&self, crane: &dyn DynCrane) -> Self {
         /// Fraction of its maximum effort at which a drive gives way: the rest is the end of the rounded corner of its law.
         const GIVES_WAY: f64 = 0.999;
         let mut limits = self.clone();

@@ -29,4 +29,4 @@ pub use critical::{Critical, CriticalLoad, NoCriticalLoad, critical_load};
 pub use limits::{Limit, Limits, PartLimit};
 pub use radius::SlewAxis;
 pub use rating::Rating;
-pub use sweep::{Envelope, Execution, PIECE, is_load, only_mass, range_of_loads};
+pub use sweep::{Envelope, Execution, PIECE, UNITS_OF_LOADS, is_load, only_mass, range_of_loads};

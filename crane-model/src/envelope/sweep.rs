@@ -48,7 +48,7 @@ const LEAST_LOAD: f64 = 1e-3;
 const GREATEST_LOAD: f64 = 100.0;
 
 /// Units of loads: of masses, of forces and moments, and of a factor.
-const UNITS_OF_LOADS: [&str; 12] = ["kg", "t", "g", "lb", "N", "kN", "MN", "N m", "kN m", "1", "-", ""];
+pub const UNITS_OF_LOADS: [&str; 12] = ["kg", "t", "g", "lb", "N", "kN", "MN", "N m", "kN m", "1", "-", ""];
 
 /// Whether a live parameter may be a load, by its unit: a mass, a force, a moment, or a factor of one of them.
 pub fn is_load(parameter: &ParameterInfo) -> bool {

@@ -58,6 +58,8 @@ pub struct Texts<'a> {
     pub chart: Value,
     /// Facts and tables of these load charts; none if null.
     pub load_chart: Value,
+    /// What moves the quantities of the last crane at rest; null if it is not known.
+    pub moves: Value,
     /// The command that wrote the page.
     pub command: Option<String>,
     /// Spec of the last crane.
@@ -82,7 +84,7 @@ pub fn page(subjects: &[Subject<'_>], texts: Texts<'_>, program: Program) -> Res
 /// The modes of a crane could not be computed.
 pub fn data(subjects: &[Subject<'_>], texts: Texts<'_>, program: Program) -> Result<Value, NoModes> {
     let shown = subjects.iter().map(Shown::new).collect::<Result<Vec<_>, _>>()?;
-    let Texts { tables, chart, load_chart, command, spec, instrument } = texts;
+    let Texts { tables, chart, load_chart, moves, command, spec, instrument } = texts;
     let tables = tables.map(|report| report.page());
     let (main, rigid) = match shown.as_slice() {
         [] => (None, None),
@@ -100,6 +102,7 @@ pub fn data(subjects: &[Subject<'_>], texts: Texts<'_>, program: Program) -> Res
         "tables": tables,
         "chart": chart,
         "load_chart": load_chart,
+        "moves": moves,
         "command": command,
         "spec": spec,
         "instrument": instrument,

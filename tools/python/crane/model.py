@@ -340,6 +340,8 @@ class Crane(_native.Crane):
         "links.boom.beam.section.box.height": keys, names of entries of lists, and indices from 0.
         frequencies: how many of the lowest ones.
 
+        Numbers that cannot be live parameters have differences of whole cranes, which `notes` says.
+
         Feet, ropes and stops act as they do at rest, and what governs keeps governing: a derivative ends where one of these changes.
         Raises NoEquilibrium if a row has no stable one; with invalid="nan" its numbers are NaN.
         """

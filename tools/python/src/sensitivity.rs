@@ -1,7 +1,10 @@
 //! Derivatives of a crane at rest by its numbers, row by row.
 
+use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
-use crane_live::sensitivity::{Output, Refused, Sensitivity, Settings, sensitivity, with_live_numbers};
+use crane_live::sensitivity::{
+    Differences, FixedNumber, Output, Refused, Sensitivity, Settings, sensitivity, with_live_numbers,
+};
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::runs::Failed;
 use pyo3::exceptions::PyValueError;
@@ -25,9 +28,16 @@ impl Crane {
         invalid: &str,
     ) -> PyResult<Bound<'py, PyDict>> {
         let invalid = Invalid::named(invalid)?;
-        let (with_numbers, names) = self.with_live_numbers(py, &numbers)?;
+        let (with_numbers, source, names) = self.with_live_numbers(py, &numbers)?;
         let description = with_numbers.description();
-        let parameters = names.iter().map(|name| parameter_index(description, name)).collect::<PyResult<Vec<_>>>()?;
+        let (mut parameters, mut fixed) = (Vec::new(), Vec::new());
+        for name in &names {
+            if name.contains('.') {
+                fixed.push(FixedNumber::new(&source, name).map_err(|refused| refusal(py, refused))?);
+            } else {
+                parameters.push(parameter_index(description, name)?);
+            }
+        }
         let settings = Settings { frequencies };
         let shape = &self.parameters.shape;
         let found: Vec<Option<Result<Sensitivity, Failed>>> = map_rows(py, self.parameters.rows(), |row, _| {
@@ -37,7 +47,7 @@ impl Crane {
             let mut crane = with_numbers.clone();
             // Checked when they were given; the numbers at places keep their values.
             let _ = crane.set_parameters(self.of_row(row).parameters());
-            Some(sensitivity(&crane, &parameters, &settings))
+            Some(by_all(&crane, &parameters, &fixed, &names, &settings))
         })?;
         let reason = |row: usize, found: &Option<Result<Sensitivity, Failed>>| match found {
             Some(Ok(_)) => None,
@@ -58,7 +68,7 @@ impl Crane {
         let Some(first) = found.iter().flatten().next() else {
             return Err(NoEquilibrium::new_err(format!("{}: no row has a stable equilibrium", description.name)));
         };
-        let rows = Rows { found: &found, outputs: &first.outputs, count: parameters.len(), n: self.live.size() };
+        let rows = Rows { found: &found, outputs: &first.outputs, count: names.len(), n: self.live.size() };
         let (outputs, count, n) = (rows.outputs.len(), rows.count, rows.n);
         let all = PyDict::new(py);
         all.set_item("q", array(py, rows.pose(|found| found.q.clone(), n), shape, &[n])?)?;
@@ -77,29 +87,65 @@ impl Crane {
         let value = |row: &LiveCrane, index: usize| row.parameters().get(index).copied().unwrap_or(defaults[index]);
         let of_numbers = (0..self.parameters.rows()).flat_map(|row| {
             let row = self.of_row(row);
-            parameters.iter().map(|&index| value(&row, index)).collect::<Vec<f64>>()
+            in_order(
+                &names,
+                parameters.iter().map(|&index| value(&row, index)),
+                fixed.iter().map(|number| number.value),
+            )
         });
         let of_numbers = of_numbers.collect();
         all.set_item("numbers", array(py, of_numbers, shape, &[count])?)?;
-        let units: Vec<&str> = parameters.iter().map(|&index| description.parameters[index].unit.as_str()).collect();
+        let units = parameters.iter().map(|&index| description.parameters[index].unit.as_str());
+        let units: Vec<&str> = in_order(&names, units, fixed.iter().map(|number| number.unit));
         all.set_item("number_units", units)?;
         all.set_item("shape", shape.clone())?;
         Ok(all)
     }
 }
 
+/// Why a number cannot change.
+fn refusal(py: Python<'_>, refused: Refused) -> PyErr {
+    match refused {
+        Refused::Mistakes { mistakes, .. } => spec_error(py, &mistakes),
+        other => PyValueError::new_err(other.words().join("; ")),
+    }
+}
+
+/// What belongs to parameters and to fixed numbers in the order in which both were given; places of fixed numbers have points.
+fn in_order<T>(names: &[String], mut live: impl Iterator<Item = T>, mut fixed: impl Iterator<Item = T>) -> Vec<T> {
+    names.iter().filter_map(|name| if name.contains('.') { fixed.next() } else { live.next() }).collect()
+}
+
+/// Derivatives by parameters, and by fixed numbers as differences, in the order of the names.
+fn by_all(
+    crane: &LiveCrane,
+    parameters: &[usize],
+    fixed: &[FixedNumber],
+    names: &[String],
+    settings: &Settings,
+) -> Result<Sensitivity, Failed> {
+    let mut found = sensitivity(crane, parameters, settings)?;
+    let differences: Vec<Differences> =
+        fixed.iter().map(|number| number.differentiate(crane, &found, settings)).collect::<Result<_, _>>()?;
+    let of_fixed = differences.iter().map(|own| own.derivatives.clone());
+    found.derivatives = in_order(names, std::mem::take(&mut found.derivatives).into_iter(), of_fixed);
+    found.pose =
+        in_order(names, std::mem::take(&mut found.pose).into_iter(), differences.iter().map(|own| own.pose.clone()));
+    found.notes.extend(fixed.iter().map(|number| {
+        format!("{} cannot be a live parameter: its derivatives are differences of whole cranes", number.place)
+    }));
+    Ok(found)
+}
+
 impl Crane {
-    /// The crane with the numbers at places of the spec as live parameters, and the names of all.
-    fn with_live_numbers(&self, py: Python<'_>, numbers: &[String]) -> PyResult<(LiveCrane, Vec<String>)> {
+    /// The crane with the numbers at places of the spec as live parameters, its spec, and the names of all.
+    fn with_live_numbers(&self, py: Python<'_>, numbers: &[String]) -> PyResult<(LiveCrane, SourceFile, Vec<String>)> {
         let mut names = numbers.to_vec();
-        let changed = with_live_numbers(&self.source, &mut names).map_err(|refused| match refused {
-            Refused::Place(wrong) => PyValueError::new_err(format!("{}; {}", wrong.title, wrong.help)),
-            Refused::Mistakes { mistakes, .. } => spec_error(py, &mistakes),
-        })?;
-        let Some(changed) = changed else { return Ok((self.live.clone(), names)) };
+        let changed = with_live_numbers(&self.source, &mut names).map_err(|refused| refusal(py, refused))?;
+        let Some(changed) = changed else { return Ok((self.live.clone(), self.source.clone(), names)) };
         let live = LiveCrane::from_spec(&changed).map_err(|mistakes| spec_error(py, &mistakes))?;
         let inputs = (0..self.live.description().inputs.len()).map(|index| self.live.input(index));
-        Ok((live.with_inputs(&inputs.collect::<Vec<_>>()), names))
+        Ok((live.with_inputs(&inputs.collect::<Vec<_>>()), changed, names))
     }
 }
 

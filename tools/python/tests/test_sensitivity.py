@@ -53,6 +53,32 @@ def test_numbers_of_the_spec_have_derivatives_by_their_places():
     np.testing.assert_allclose(found.relative(0.1)[first, 2], 0.05, rtol=1e-2)
 
 
+SOLID = """
+extends: cantilever.yaml
+name: solid
+links:
+  - {name: beam, beam: {section: {solid: {height: 0.1, width: 0.05}}}}
+"""
+
+
+def test_numbers_that_cannot_be_live_have_differences():
+    here = crane.load("solid.yaml", text=SOLID)
+    height = "links.beam.beam.section.solid.height"
+    found = here.sensitivity([height, "tip_mass"])
+    assert found.number_units == ("m", "kg")
+    np.testing.assert_allclose(found.number_values, [0.1, 20])
+    assert any("differences" in note for note in found.notes)
+    # The exact derivatives do not depend on what else is asked for.
+    np.testing.assert_array_equal(found.derivatives[:, 1], here.sensitivity(["tip_mass"]).derivatives[:, 0])
+    # In the plane in which it is high, the frequency of a beam with a heavy tip rises with the height to the power of 1.5, less what the mass of the
+    # beam adds; between 1 and 1.5.
+    upright = max(range(3), key=lambda k: found.derivative(f"frequency_{k + 1}", height))
+    index = found.outputs.index(f"frequency_{upright + 1}")
+    power = found.derivatives[index, 0] * 0.1 / found.values[index]
+    assert 0.9 < power < 1.5
+    assert np.isfinite(found.pose_derivatives).all()
+
+
 def test_a_batch_is_its_rows():
     here = crane.load("knuckle_boom")
     loads = np.array([[200.0, 500.0], [800.0, 900.0]])

@@ -72,7 +72,7 @@ pub fn check_in_browser() -> Result<(), String> {
 fn write_page(folder: &Path, crane: &str, options: &[&str]) -> Result<PathBuf, String> {
     let page = folder.join(format!("{crane}.html"));
     let mut command = Command::new(workspace::target().join("release/crane"));
-    step::run_to_end(command.args(["report", crane]).args(options).arg("-o").arg(&page))?;
+    step::run_to_end(command.args(["report", crane, "--sensitivity"]).args(options).arg("-o").arg(&page))?;
     Ok(page)
 }
 

@@ -33,15 +33,9 @@ pub struct Strength {
     pub results: Option<PathBuf>,
 }
 
-/// The largest load within limits over ranges of poses.
-#[derive(Debug, Args)]
-pub struct Envelope {
-    #[command(flatten)]
-    pub analysis: Analysis,
-    /// Positions of a drive, or values of a live parameter: from, to and how many, or one value, as in `boom_psi=0:60deg:13` and
-    /// `telescope_z=1.5`; may be given several times
-    #[arg(long = "range", value_name = "NAME=FROM:TO:COUNT", required = true, allow_hyphen_values = true)]
-    pub ranges: Vec<String>,
+/// The load and its limits.
+#[derive(Clone, Debug, Args)]
+pub struct LoadLimits {
     /// Live parameter that is the load [default: the only parameter in kg]
     #[arg(long, value_name = "PARAMETER")]
     pub load: Option<String>,
@@ -73,6 +67,19 @@ pub struct Envelope {
     /// then has the loads without it
     #[arg(long, value_name = "NUMBER", default_value_t = 1.0, value_parser = above_zero)]
     pub load_factor: f64,
+}
+
+/// The largest load within limits over ranges of poses.
+#[derive(Debug, Args)]
+pub struct Envelope {
+    #[command(flatten)]
+    pub analysis: Analysis,
+    /// Positions of a drive, or values of a live parameter: from, to and how many, or one value, as in `boom_psi=0:60deg:13` and
+    /// `telescope_z=1.5`; may be given several times
+    #[arg(long = "range", value_name = "NAME=FROM:TO:COUNT", required = true, allow_hyphen_values = true)]
+    pub ranges: Vec<String>,
+    #[command(flatten)]
+    pub limits: LoadLimits,
     /// Point whose radius and height are shown [default: the only point of interest, otherwise the origin of the last link]
     #[arg(long, value_name = "POINT")]
     pub point: Option<String>,

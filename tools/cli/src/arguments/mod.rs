@@ -13,7 +13,7 @@ use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 
 use crate::screen::Manner;
 
-pub use analysis::{Envelope, Eval, EvalFormat, Linearise, Modes, Quantity, Stability, Strength};
+pub use analysis::{Envelope, Eval, EvalFormat, Linearise, LoadLimits, Modes, Quantity, Stability, Strength};
 pub use crane::{
     Analysis, Check, Choice, DEFAULT_CRANE, Example, Explain, Format, Generate, Limits, List, New, Parameters,
     STANDARD_INPUT, spec_file,

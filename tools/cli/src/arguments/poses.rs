@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
 
-use super::{crane::Analysis, number::part};
+use super::{analysis::LoadLimits, crane::Analysis, number::part};
 
 /// Drives that hold a position.
 #[derive(Debug, Args)]
@@ -39,7 +39,7 @@ pub struct Sensitivity {
     #[command(flatten)]
     pub held: Held,
     /// What to show, separated by commas: outputs such as `hook_z` or `frequency_1`, or groups: points, deflections, drives, cylinders,
-    /// connectors, loops, supports, stresses, tipping, frequencies [default: the most important ones, all with `--all`]
+    /// connectors, loops, supports, stresses, tipping, frequencies, load [default: the most important ones, all with `--all`]
     #[arg(long = "of", value_delimiter = ',', value_name = "OUTPUTS")]
     pub outputs: Vec<String>,
     /// What to change, separated by commas: live parameters, or numbers of the spec by their places, as in
@@ -52,6 +52,15 @@ pub struct Sensitivity {
     /// Number of lowest frequencies
     #[arg(long, value_name = "COUNT", default_value_t = 3)]
     pub modes: usize,
+    /// Compute what moves the largest load within limits in this pose: a point of a load chart; other outputs are then those with this load
+    #[arg(long)]
+    pub largest_load: bool,
+    #[command(flatten, next_help_heading = "Limits, with --largest-load")]
+    pub limits: LoadLimits,
+    /// Point whose radius and height are shown with `--largest-load` [default: the only point of interest, otherwise the origin of the last
+    /// link]
+    #[arg(long, value_name = "POINT", requires = "largest_load")]
+    pub point: Option<String>,
     /// File for the changes, CSV with a row per number, or for the chart, SVG
     #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: Option<PathBuf>,

@@ -165,6 +165,9 @@ pub struct Page {
     /// Show the load charts of an envelope, too: the file `…_envelope.csv` that `crane envelope` wrote
     #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
     pub envelope: Option<PathBuf>,
+    /// Show what moves what at rest, too: live parameters and sizes of beams, as `crane sensitivity` computes it
+    #[arg(long)]
+    pub sensitivity: bool,
     /// Offer to open the crane in the page as an instrument: its address, or where it lies seen from the folder of the report
     #[arg(long, value_name = "ADDRESS", value_hint = ValueHint::Url, value_parser = page_address)]
     pub instrument: Option<String>,

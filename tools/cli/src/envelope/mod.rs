@@ -21,12 +21,12 @@ use std::{
 use crane_model::{
     Description,
     dyn_crane::DynCrane,
-    envelope::{Coverage, Execution, Limits, PartLimit, Rating, range_of_loads},
+    envelope::{Axes, Coverage, Execution, Limits, PartLimit, Rating, range_of_loads},
 };
 use crane_page::tables::Report;
 
 use crate::{
-    arguments::{Envelope, Format},
+    arguments::{Envelope, Format, LoadLimits},
     figures::wrapped,
     files,
     integration::styled,
@@ -115,6 +115,18 @@ fn ask(options: &Envelope, crane: &dyn DynCrane) -> Outcome<(crane_model::envelo
             "write smaller counts in `--range NAME=FROM:TO:COUNT`",
         ));
     }
+    let asked = within(&options.limits, axes, crane)?;
+    let point = ranges::point(options.point.as_deref(), description)?;
+    let layout = Layout::new(&asked, crane, point);
+    Ok((asked, layout))
+}
+
+/// The largest load within limits over some axes.
+///
+/// # Errors
+/// There is no such load, or a limit is not one of the crane.
+pub fn within(options: &LoadLimits, axes: Axes, crane: &dyn DynCrane) -> Outcome<crane_model::envelope::Envelope> {
+    let description = crane.description();
     let load = load_parameter(crane, options.load.as_deref())?.ok_or_else(|| {
         Problem::usage(
             format!("{} does not have exactly one live parameter in kg to vary as the load", description.name),
@@ -145,11 +157,8 @@ fn ask(options: &Envelope, crane: &dyn DynCrane) -> Outcome<(crane_model::envelo
         efforts: ranges::limits(&options.efforts, "effort", "drive", &drives(description))?,
         deflections: ranges::limits(&options.deflections, "deflection", "point", &points(description))?,
     };
-    let point = ranges::point(options.point.as_deref(), description)?;
     let factor = options.load_factor;
-    let asked = crane_model::envelope::Envelope { axes, load, loads: [least, greatest], limits, factor };
-    let layout = Layout::new(&asked, crane, point);
-    Ok((asked, layout))
+    Ok(crane_model::envelope::Envelope { axes, load, loads: [least, greatest], limits, factor })
 }
 
 fn drives(description: &Description) -> Vec<&str> {

@@ -18,6 +18,8 @@ use crane_page::{
     tables::{Case, FLEXIBLE, RIGID, Report, of_page},
 };
 
+use serde_json::Value;
+
 use crate::{
     arguments::{Limits, Page},
     compiled, files,
@@ -25,6 +27,7 @@ use crate::{
     problem::Outcome,
     refinement, screen,
     selection::Registry,
+    sensitivity::moves_of_page,
 };
 
 /// Computes a crane, and its rigid twin if there is one, and writes the page.
@@ -33,11 +36,28 @@ pub fn report(options: &Page, registry: &Registry, out: &mut dyn Write) -> Outco
     let twin = twin::rigid(crane.as_ref(), registry);
     let cases = cases(crane.as_ref(), twin.as_deref());
     let chart = options.envelope.as_deref().map(|table| chart::read_chart(table, crane.as_ref())).transpose()?;
+    let moves = if options.sensitivity { moves(crane.as_ref(), registry)? } else { Value::Null };
+    let extras = Extras { chart: chart.unwrap_or_default(), moves, instrument: options.instrument.as_deref() };
     let (settings, runs) = runs(&cases, &options.timing, options.crane.limits, Method::RECOMMENDED)?;
-    let besides = Besides { chart, instrument: options.instrument.as_deref() };
-    write_with(&options.file, registry, (&cases, options.crane.limits), &settings, &runs, besides)?;
+    write_with(&options.file, registry, (&cases, options.crane.limits), &settings, &runs, extras)?;
     writeln!(out, "{} written: open it in a browser", options.file.display())?;
     Ok(())
+}
+
+/// What a page shows only if it is asked for.
+#[derive(Default)]
+struct Extras<'a> {
+    chart: LoadCharts,
+    /// What moves what.
+    moves: Value,
+    /// Address of the page as an instrument.
+    instrument: Option<&'a str>,
+}
+
+/// What moves what at rest.
+fn moves(crane: &dyn DynCrane, registry: &Registry) -> Outcome<Value> {
+    let spec = registry.spec(&crane.description().name).unwrap_or_default();
+    Ok(moves_of_page(&registry.live(crane)?, spec))
 }
 
 /// A crane and its rigid twin in equilibrium, the twin first.
@@ -56,24 +76,17 @@ pub fn write_page(
     settings: &[Settings],
     runs: &[Recorded],
 ) -> Outcome<()> {
-    write_with(file, registry, cases, settings, runs, Besides::default())
+    write_with(file, registry, cases, settings, runs, Extras::default())
 }
 
-/// What a page has only on request.
-#[derive(Default)]
-struct Besides<'a> {
-    chart: Option<LoadCharts>,
-    instrument: Option<&'a str>,
-}
-
-/// As [`write_page`], with what was asked for.
+/// As [`write_page`], with what is asked for besides.
 fn write_with(
     file: &Path,
     registry: &Registry,
     cases: (&[Case<'_>], Limits),
     settings: &[Settings],
     runs: &[Recorded],
-    Besides { chart, instrument }: Besides<'_>,
+    extras: Extras<'_>,
 ) -> Outcome<()> {
     let (cases, limits) = cases;
     let lives = cases.iter().map(|case| registry.live(case.crane)).collect::<Outcome<Vec<_>>>()?;
@@ -89,8 +102,9 @@ fn write_with(
             run: Some(run),
         })
         .collect();
-    let LoadCharts { figures, facts } = chart.unwrap_or_default();
+    let Extras { chart: LoadCharts { figures, facts }, moves, instrument } = extras;
     let texts = Texts {
+        moves,
         tables: Some(all_tables(registry, cases, limits, runs)?),
         chart: figures,
         load_chart: facts,

@@ -1,6 +1,6 @@
 //! The chart of what moves what: for every output a bar per number, to the right where it grows.
 
-use crane_live::sensitivity::label;
+use crane_page::tables::Cell;
 use plotters::{
     prelude::*,
     style::text_anchor::{HPos, Pos, VPos},
@@ -8,7 +8,7 @@ use plotters::{
 
 use super::{Changes, tables::readable};
 use crate::{
-    figures::{Area, BLUE, Drawn, FONT, PIXEL, SPACE, VERMILLION, font},
+    figures::{Area, BLUE, Drawn, FONT, PIXEL, SPACE, VERMILLION, font, wrapped},
     problem::{Outcome, Problem},
 };
 
@@ -21,6 +21,15 @@ const ROW: i32 = 22 * PIXEL.cast_signed();
 /// Numbers of an output that have bars.
 const MOST: usize = 6;
 
+/// Letters of a name that fit.
+const LETTERS: usize = 60;
+/// A smaller change, relative to the output, has no bar.
+pub const NOTHING: f64 = 5e-4;
+/// Lines of the scale to each side.
+const TICKS: f64 = 4.0;
+/// Colour of its lines.
+const LINES: RGBColor = RGBColor(221, 221, 221);
+
 /// The bars of an output.
 struct Block {
     title: String,
@@ -32,29 +41,50 @@ struct Block {
 ///
 /// # Errors
 /// Nothing that is shown has a relative change.
-pub fn chart(changes: &Changes<'_>, change: f64) -> Outcome<String> {
-    let blocks: Vec<Block> = changes.shown.iter().filter_map(|&index| block(changes, index)).collect();
+pub fn chart(changes: &Changes, change: f64) -> Outcome<String> {
+    let has_change = |index: &&usize| changes.order.iter().any(|&place| changes.relative(place, **index).is_some());
+    let (mut blocks, mut still) = (Vec::new(), Vec::new());
+    for &index in changes.shown.iter().filter(has_change) {
+        match block(changes, index) {
+            Some(block) => blocks.push(block),
+            None => still.push(changes.found.outputs[index].name.as_str()),
+        }
+    }
     if blocks.is_empty() {
         return Err(Problem::usage(
-            "there is nothing to draw: no output that is shown has a relative change",
-            "ask for forces, stresses, tipping or frequencies with `--of`",
+            format!(
+                "there is nothing to draw: no output that is shown changes by {} % of itself or more",
+                100.0 * NOTHING
+            ),
+            "ask for forces, stresses, tipping or frequencies with `--of`, or for another `--change`",
         ));
     }
     let shares = blocks.iter().flat_map(|block| &block.bars).map(|(_, share, _)| share.abs());
     let greatest = shares.fold(f64::MIN_POSITIVE, f64::max);
-    let rows: usize = blocks.iter().map(|block| block.bars.len() + 2).sum();
-    let height = ROW * (2 + i32::try_from(rows).unwrap_or(0));
+    let still = if still.is_empty() {
+        Vec::new()
+    } else {
+        wrapped(&format!("Less than {} %: {}", 100.0 * NOTHING, still.join(", ")), 2 * LETTERS)
+    };
+    let rows: usize = blocks.iter().map(|block| block.bars.len() + 2).sum::<usize>() + still.len();
+    let height = ROW * (4 + i32::try_from(rows).unwrap_or(0));
     let size = (WIDTH.unsigned_abs(), height.unsigned_abs());
     let mut text = String::new();
     {
         let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
         let drawn = (|| {
             area.fill(&WHITE)?;
-            let title = format!("{}: changes with {:+} % of each number", changes.description.name, 100.0 * change);
+            let title = format!("{}: changes with {:+} % of each number", changes.crane, 100.0 * change);
             write(&area, &title, (SPACE.cast_signed(), ROW), 1.2 * FONT, HPos::Left)?;
-            let mut y = 2 * ROW;
+            let end = height - ROW * i32::try_from(still.len() + 1).unwrap_or(0);
+            scale(&area, greatest, [3 * ROW, end])?;
+            let mut y = 3 * ROW;
             for block in &blocks {
                 draw(&area, block, greatest, &mut y)?;
+            }
+            for line in &still {
+                write(&area, line, (SPACE.cast_signed(), y), 0.87 * FONT, HPos::Left)?;
+                y += ROW;
             }
             area.present()
         })();
@@ -65,7 +95,7 @@ pub fn chart(changes: &Changes<'_>, change: f64) -> Outcome<String> {
 }
 
 /// The bars of an output; `None` where nothing moves it.
-fn block(changes: &Changes<'_>, index: usize) -> Option<Block> {
+fn block(changes: &Changes, index: usize) -> Option<Block> {
     let output = &changes.found.outputs[index];
     let (scale, unit) = readable(output.unit, output.group);
     let place = if output.place.is_empty() { String::new() } else { format!(" – {}", output.place) };
@@ -73,30 +103,72 @@ fn block(changes: &Changes<'_>, index: usize) -> Option<Block> {
         .order
         .iter()
         .filter_map(|&place| {
-            let share = changes.relative(place, index)?;
-            let number = format!("{:+.1} %", 100.0 * share).replace('-', "−");
-            Some((label(changes.info(place)).to_owned(), share, number))
+            let share = changes.relative(place, index).filter(|share| share.abs() >= NOTHING)?;
+            Some((abridged(&changes.numbers[place].label), share, change_text(share)))
         })
         .collect();
     bars.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
     bars.truncate(MOST);
-    let value = format!("{:.4}", scale * changes.found.values[index]);
-    let value = value.trim_end_matches('0').trim_end_matches('.');
-    let title = format!("{} {value} {unit}{place}", output.name);
+    let value = Cell::from(scale * changes.found.values[index]).short();
+    let title = format!("{}  {value} {unit}{place}", output.name);
     (!bars.is_empty()).then_some(Block { title, bars })
+}
+
+/// A relative change as people read it.
+pub fn change_text(share: f64) -> String {
+    format!("{:+.1} %", 100.0 * share).replace('-', "−")
+}
+
+/// A name that fits: the end of a long one.
+fn abridged(name: &str) -> String {
+    let letters = name.chars().count();
+    if letters <= LETTERS {
+        name.to_owned()
+    } else {
+        format!("…{}", name.chars().skip(letters - LETTERS + 1).collect::<String>())
+    }
+}
+
+/// Where a share of the largest change is drawn.
+#[expect(clippy::cast_possible_truncation, reason = "a place in a picture")]
+fn place_of(share: f64) -> i32 {
+    let (left, right) = (NAMES, WIDTH - NUMBERS);
+    i32::midpoint(left, right) + (f64::from(right - left) / 2.0 * share).round() as i32
+}
+
+/// The scale above the bars and its lines through them, from one height to another; `greatest`: the largest change.
+fn scale<'a>(area: &Area<'a>, greatest: f64, [from, to]: [i32; 2]) -> Drawn<'a> {
+    let magnitude = 10.0_f64.powf((greatest / TICKS).log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * magnitude);
+    let step = step.into_iter().find(|step| greatest / step <= TICKS).unwrap_or(greatest);
+    write(
+        area,
+        "change of the output, relative to it",
+        (NAMES - SPACE.cast_signed(), from - ROW / 2),
+        0.87 * FONT,
+        HPos::Right,
+    )?;
+    let most = (greatest / step).floor();
+    let mut count = -most;
+    while count <= most {
+        let x = place_of(count * step / greatest);
+        let number = format!("{} %", Cell::from(100.0 * count * step).short()).replace('-', "−");
+        write(area, &number, (x, from - ROW / 2), 0.87 * FONT, HPos::Center)?;
+        area.draw(&PathElement::new([(x, from), (x, to)], LINES.stroke_width(PIXEL)))?;
+        count += 1.0;
+    }
+    Ok(())
 }
 
 /// Draws a block from y downwards; returns where the next one begins.
 fn draw<'a>(area: &Area<'a>, block: &Block, greatest: f64, y: &mut i32) -> Drawn<'a> {
     write(area, &block.title, (SPACE.cast_signed(), *y + ROW / 2), FONT, HPos::Left)?;
     *y += ROW;
-    let (left, right) = (NAMES, WIDTH - NUMBERS);
-    let middle = i32::midpoint(left, right);
+    let (right, middle) = (WIDTH - NUMBERS, place_of(0.0));
     for (name, share, number) in &block.bars {
         let centre = *y + ROW / 2;
         write(area, name, (NAMES - SPACE.cast_signed(), centre), 0.87 * FONT, HPos::Right)?;
-        #[expect(clippy::cast_possible_truncation, reason = "a place in a picture")]
-        let end = middle + (f64::from(right - middle) * share / greatest).round() as i32;
+        let end = place_of(share / greatest);
         let colour = if *share < 0.0 { VERMILLION } else { BLUE };
         let (from, to) = (middle.min(end), middle.max(end));
         area.draw(&Rectangle::new([(from, *y + ROW / 6), (to, *y + ROW - ROW / 6)], colour.filled()))?;

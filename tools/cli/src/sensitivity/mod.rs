@@ -1,26 +1,33 @@
 //! `crane sensitivity`: what moves the quantities of a crane at rest, and by how much.
 
 mod chart;
+mod page;
 mod tables;
 
-use std::io::Write;
+pub use page::moves_of_page;
+
+use std::{io::Write, path::Path};
 
 use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
 use crane_live::sensitivity::{
-    self, Group, Output, Refused, cautions, label, sensitivity as derivatives, with_live_numbers,
+    self, Differences, FixedNumber, Group, LargestLoad, NoLargestLoad, Output, Refused, cautions, label,
+    sensitivity as derivatives, with_live_numbers,
 };
 use crane_model::{
-    Description, ParameterInfo,
+    Description,
     dyn_crane::{DynCrane, DynModel},
+    envelope::{Axes, Envelope, SlewAxis},
 };
-use crane_page::tables::Report;
+use crane_page::tables::{Cell, Report};
+
+use serde_json::json;
 
 use crate::{
     arguments::{Format, Sensitivity},
-    files,
+    envelope, files,
     problem::{Outcome, Problem, nearest},
-    selection::{Registry, find_parameter},
+    selection::{Registry, find_parameter, set_parameters},
     variants,
 };
 
@@ -32,40 +39,66 @@ pub fn make_live(options: &mut Sensitivity, registry: &mut Registry) -> Outcome<
     let name = options.analysis.crane.name.clone();
     let Some(text) = registry.spec(&name) else { return Ok(()) };
     let source = SourceFile::new(format!("{name}.yaml"), text);
-    let changed = with_live_numbers(&source, &mut options.numbers).map_err(|refused| match refused {
-        Refused::Place(wrong) => Problem::usage(wrong.title, wrong.help),
-        Refused::Mistakes { place, mistakes } => {
-            let title = format!("`{place}` cannot change: {}", mistakes.headline());
-            Problem::usage(title, "only numbers that could be live parameters can: docs/SPEC.md marks those as fixed that cannot, and some formulas need constants")
+    // A place that is given twice counts once.
+    let mut numbers: Vec<String> = Vec::new();
+    for number in options.numbers.drain(..) {
+        if !numbers.contains(&number) {
+            numbers.push(number);
         }
-    })?;
+    }
+    options.numbers = numbers;
+    let changed = with_live_numbers(&source, &mut options.numbers).map_err(refusal)?;
     if let Some(changed) = changed {
         registry.add(&name, changed.text);
     }
     Ok(())
 }
 
+/// Why a number cannot change.
+fn refusal(refused: Refused) -> Problem {
+    let [title, help] = refused.words();
+    Problem::usage(title, help)
+}
+
+/// A number that changes.
+struct Number {
+    /// Its name, or its place in the spec.
+    label: String,
+    value: f64,
+    unit: String,
+    step: f64,
+    /// Errors of the derivatives of the outputs, where these are differences.
+    errors: Option<Vec<f64>>,
+    /// Whether it cannot be a live parameter.
+    is_fixed: bool,
+}
+
+impl Number {
+    /// A live parameter, by its index.
+    fn live(crane: &LiveCrane, index: usize) -> Self {
+        let info = &crane.description().parameters[index];
+        let (label, unit) = (label(info).to_owned(), info.unit.to_string());
+        Self { label, value: crane.parameters()[index], unit, step: 0.0, errors: None, is_fixed: false }
+    }
+}
+
 /// Changes of the outputs of a crane with its numbers.
-struct Changes<'a> {
-    description: &'a Description,
+struct Changes {
+    /// Name of the crane.
+    crane: String,
     found: sensitivity::Sensitivity,
-    /// Values of the parameters, one per list of derivatives, and their steps.
-    values: Vec<f64>,
-    steps: Vec<f64>,
-    /// Parameters, the most influential first, by their indices in these lists.
+    /// The numbers, one per list of derivatives.
+    numbers: Vec<Number>,
+    /// Numbers, the most influential first, by their indices in these lists.
     order: Vec<usize>,
     /// Outputs that are asked for, by their indices.
     shown: Vec<usize>,
 }
 
-impl Changes<'_> {
-    fn info(&self, place: usize) -> &ParameterInfo {
-        &self.description.parameters[self.found.parameters[place]]
-    }
-
-    /// Change of an output for the step of a parameter.
+impl Changes {
+    /// Change of an output for the step of a number.
     fn change(&self, place: usize, output: usize) -> f64 {
-        self.found.derivatives[place][output] * self.steps[place]
+        self.found.derivatives[place][output] * self.numbers[place].step
     }
 
     /// The same relative to the value of the output; `None` where zero has no meaning, or for a value of rounding.
@@ -76,15 +109,25 @@ impl Changes<'_> {
         if *group == Group::Points || (*group == Group::Supports && *unit == "m") {
             return None;
         }
-        let alike = self
-            .found
-            .outputs
-            .iter()
-            .zip(&self.found.values)
-            .filter(|(other, _)| other.group == *group && other.unit == *unit);
+        // Forces and moments of all kinds are alike: torques of pads may all be zero up to rounding.
+        let is_force = |unit: &str| unit == "N" || unit == "N m";
+        let is_alike =
+            |other: &Output| (other.group == *group && other.unit == *unit) || (is_force(other.unit) && is_force(unit));
+        let all = self.found.outputs.iter().zip(&self.found.values);
+        let alike = all.filter(|(other, _)| is_alike(other));
         let greatest = alike.fold(0.0, |size: f64, (_, value)| size.max(value.abs()));
         let value = self.found.values[output];
         (value.abs() > SMALL * greatest).then(|| self.change(place, output) / value.abs())
+    }
+
+    /// The largest error of a change, relative to the output, of a number whose derivatives are differences.
+    fn uncertainty(&self, place: usize) -> Option<f64> {
+        let errors = self.numbers[place].errors.as_ref()?;
+        let error = |&output: &usize| {
+            self.relative(place, output)?;
+            Some(errors.get(output)? * self.numbers[place].step.abs() / self.found.values[output].abs())
+        };
+        Some(self.shown.iter().filter_map(error).fold(0.0, f64::max))
     }
 
     /// The largest relative change of an output that is shown and not small among its kind.
@@ -94,92 +137,271 @@ impl Changes<'_> {
     }
 }
 
+/// What is asked for.
+struct Request<'a> {
+    /// Numbers and outputs, as in the options.
+    numbers: &'a [String],
+    outputs: &'a [String],
+    /// Change of each number, relative to its value.
+    change: f64,
+    /// Whether all outputs are shown unless some are named.
+    all: bool,
+    settings: sensitivity::Settings,
+}
+
+/// The largest load and what was asked for.
+type Loaded = (LargestLoad, Envelope);
+
 /// Prints what moves the quantities of a crane at rest.
 pub fn sensitivity(options: &Sensitivity, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let crane = options.analysis.crane.open(registry)?;
     let crane = registry.live(crane.as_ref())?;
     let description = crane.description();
-    let parameters = parameters(options, description)?;
-    let settings = sensitivity::Settings { frequencies: options.modes };
-    let mut found = derivatives(&crane, &parameters, &settings)?;
-    if let Some(rigid) = rigid(&crane, &parameters, registry) {
-        found.add_deflections(&rigid);
-    }
-    let all = options.analysis.all || options.analysis.format == Format::Json;
-    let shown = shown(&options.outputs, &found.outputs, all)?;
-    let values: Vec<f64> = parameters.iter().map(|&index| crane.parameters()[index]).collect();
-    let steps = values.iter().map(|value| if *value == 0.0 { 1.0 } else { options.change * value }).collect();
-    let mut changes = Changes { description, found, values, steps, order: (0..parameters.len()).collect(), shown };
-    let influence: Vec<f64> = changes.order.iter().map(|&place| changes.influence(place)).collect();
-    changes.order.sort_by(|&a, &b| influence[b].total_cmp(&influence[a]));
+    let request = Request {
+        numbers: &options.numbers,
+        outputs: &options.outputs,
+        change: options.change,
+        all: options.analysis.all || options.analysis.format == Format::Json,
+        settings: sensitivity::Settings { frequencies: options.modes },
+    };
+    let loaded = if options.largest_load { Some(loaded(options, &crane)?) } else { None };
+    let text = registry.spec(&description.name).unwrap_or_default();
+    let source = SourceFile::new(format!("{}.yaml", description.name), text);
+    let changes = changes(&request, &source, &crane, loaded.as_ref())?;
+    let steps: Vec<f64> = changes.numbers.iter().map(|number| number.step).collect();
+    let cautions = match &loaded {
+        Some((largest, asked)) => largest.cautions(&changes.found, &crane, asked, &steps),
+        None => cautions(&crane, &changes.found, &steps, &request.settings),
+    };
     let mut report = Report::default();
     report.fact("crane", description.name.as_str(), "");
     report.line("change of each number", format!("{:+}", 100.0 * options.change), "%");
     report.value("change", options.change);
     report.value("stable", true);
-    for note in &changes.found.notes {
-        report.caution(Some(note.as_str()));
+    if let Some(loaded) = &loaded {
+        facts_of_load(&mut report, loaded, &crane, options)?;
     }
-    for (place, value) in changes.values.iter().enumerate().filter(|(_, value)| **value == 0.0) {
-        let info = changes.info(place);
-        report.caution(Some(format!("{} is {value}: its changes are those per {}", label(info), per(info))));
-    }
-    for caution in cautions(&crane, &changes.found, &changes.steps, &settings) {
+    remarks(&mut report, &changes);
+    for caution in cautions {
         report.caution(Some(caution));
     }
     report.grid(tables::parameters(&changes));
     report.excerpt(tables::outputs(&changes), 0);
-    report.shown(tables::matrix(&changes));
+    report.shown(tables::matrix(&changes, options.analysis.all));
     report.shown(tables::bars(&changes, options.analysis.all));
     report.data(tables::changes(&changes));
     report.show_all(options.analysis.all);
     if let Some(file) = &options.file {
-        match file.extension().and_then(|extension| extension.to_str()) {
-            Some("svg") => files::write_text(file, &chart::chart(&changes, options.change)?)?,
-            Some("csv") => {
-                let (header, rows) = tables::rows(&changes);
-                files::write_fields(file, header.into_iter(), rows.into_iter())?;
-            }
-            _ => {
-                let title = format!("cannot write {}", file.display());
-                return Err(Problem::usage(title, "name a file that ends in `.csv` or `.svg`"));
-            }
-        }
+        write(file, &changes, options.change)?;
     }
     options.analysis.format.print(&report, out)
 }
 
-/// The same of the crane with rigid beams, if there is one with the same parameters.
-fn rigid(crane: &LiveCrane, parameters: &[usize], registry: &Registry) -> Option<sensitivity::Sensitivity> {
-    let name = &crane.description().name;
-    let (twin, text) = variants::rigid(name, registry.spec(name)?).ok()??;
-    let mut rigid = LiveCrane::from_spec(&SourceFile::new(twin, text)).ok()?;
+/// Writes the changes as a table or as a chart.
+fn write(file: &Path, changes: &Changes, change: f64) -> Outcome<()> {
+    match file.extension().and_then(|extension| extension.to_str()) {
+        Some("svg") => files::write_text(file, &chart::chart(changes, change)?),
+        Some("csv") => {
+            let (header, rows) = tables::rows(changes);
+            files::write_fields(file, header.into_iter(), rows.into_iter())
+        }
+        _ => {
+            let title = format!("cannot write {}", file.display());
+            Err(Problem::usage(title, "name a file that ends in `.csv` or `.svg`"))
+        }
+    }
+}
+
+/// The largest load of the pose.
+fn loaded(options: &Sensitivity, crane: &LiveCrane) -> Outcome<Loaded> {
+    let mut limits = options.limits.clone();
+    if limits.load.is_none() {
+        // Masses that became parameters to be changed are not the load.
+        let own = crane.description().parameters.iter().filter(|info| label(info) == info.name.as_str());
+        let mut masses = own.filter(|info| info.unit == "kg").map(|info| info.name.to_string());
+        limits.load = masses.next().filter(|_| masses.next().is_none());
+    }
+    let asked = envelope::within(&limits, Axes::default(), crane)?;
+    let largest = LargestLoad::of(crane, &asked).map_err(|none| no_load(&none, crane, &asked))?;
+    Ok((largest, asked))
+}
+
+fn no_load(none: &NoLargestLoad, crane: &LiveCrane, asked: &Envelope) -> Problem {
+    let unit = crane.description().parameters[asked.load].unit.as_str();
+    let title = format!("{} has no largest load in this pose: {}", crane.description().name, none.words(crane, unit));
+    Problem::failed(title, "choose another pose with `--hold`, or other limits")
+}
+
+/// The load, its limit and its place.
+fn facts_of_load(
+    report: &mut Report,
+    (largest, asked): &Loaded,
+    crane: &LiveCrane,
+    options: &Sensitivity,
+) -> Outcome<()> {
+    let description = crane.description();
+    let info = &description.parameters[asked.load];
+    let point = envelope::point(options.point.as_deref(), description)?;
+    let at = point.map_or(largest.condition.end, |point| largest.condition.points[point]);
+    let radius = SlewAxis::of(crane).radius(&at);
+    report.line(format!("largest {}", info.name), largest.load, info.unit.as_str());
+    report.line("limited by", largest.words(crane), "");
+    report.line("at a radius of", format!("{radius:.2}"), "m");
+    report.line("and a height of", format!("{:.2}", at.z), "m");
+    let of = largest.limit.location(description);
+    report.value(
+        "largest_load",
+        json!({
+            "parameter": info.name.as_str(), "load": largest.load, "unit": info.unit.as_str(), "limit": largest.limit.kind(),
+            "of": (!of.is_empty()).then_some(of), "radius": radius, "height": at.z, "load_factor": asked.factor,
+        }),
+    );
+    Ok(())
+}
+
+/// The changes that are asked for.
+fn changes(request: &Request<'_>, source: &SourceFile, crane: &LiveCrane, loaded: Option<&Loaded>) -> Outcome<Changes> {
+    let settings = &request.settings;
+    let own = crane;
+    let description = crane.description();
+    let (parameters, places) = numbers(request.numbers, description, loaded.map(|(_, asked)| asked.load))?;
+    let mut crane = crane.clone();
+    let mut found = match loaded {
+        Some((largest, asked)) => {
+            set_parameters(&mut crane, &[(asked.load, asked.factor * largest.load)])?;
+            let all: Vec<usize> = parameters.iter().copied().chain([asked.load]).collect();
+            sensitivity::sensitivity_near(&crane, &all, settings, &largest.condition.q)?
+        }
+        None => derivatives(&crane, &parameters, settings)?,
+    };
+    let mut numbers: Vec<Number> = parameters.iter().map(|&index| Number::live(&crane, index)).collect();
+    for place in &places {
+        let number = FixedNumber::new(source, place).map_err(refusal)?;
+        let Differences { derivatives, errors, .. } = number.differentiate(&crane, &found, settings)?;
+        found.derivatives.push(derivatives);
+        numbers.push(Number {
+            label: number.place,
+            value: number.value,
+            unit: number.unit.to_owned(),
+            step: 0.0,
+            errors: Some(errors),
+            is_fixed: true,
+        });
+    }
+    if let Some((largest, asked)) = loaded {
+        if largest.add_to(&mut found, &crane, asked, parameters.len()).is_none() {
+            let errors = largest.add_differences(&mut found, own, asked).map_err(|none| no_load(&none, own, asked))?;
+            for (number, error) in numbers.iter_mut().zip(errors) {
+                number.errors = Some(vec![0.0; found.outputs.len() - 1].into_iter().chain([error]).collect());
+            }
+            for derivatives in found.derivatives.iter_mut().skip(parameters.len()) {
+                derivatives.push(f64::NAN);
+            }
+        }
+    }
+    if let Some(rigid) = rigid(&crane, &parameters, &places, source) {
+        found.add_deflections(&rigid);
+    }
+    for number in &mut numbers {
+        number.step = if number.value == 0.0 { 1.0 } else { request.change * number.value };
+    }
+    let shown = shown(request.outputs, &found.outputs, request.all)?;
+    let name = description.name.to_string();
+    let mut changes = Changes { crane: name, found, order: (0..numbers.len()).collect(), numbers, shown };
+    let influence: Vec<f64> = changes.order.iter().map(|&place| changes.influence(place)).collect();
+    changes.order.sort_by(|&a, &b| influence[b].total_cmp(&influence[a]));
+    Ok(changes)
+}
+
+/// What to know about the numbers.
+fn remarks(report: &mut Report, changes: &Changes) {
+    for note in &changes.found.notes {
+        report.caution(Some(note.as_str()));
+    }
+    for number in changes.numbers.iter().filter(|number| number.value == 0.0) {
+        report.caution(Some(format!("{} is 0: its changes are those per {}", number.label, per(number))));
+    }
+    for (place, number) in changes.numbers.iter().enumerate() {
+        let why = if number.is_fixed {
+            "cannot be a live parameter: its changes are differences of whole cranes"
+        } else {
+            "moves a load whose limit is not at the bound of an output: its changes are differences"
+        };
+        let words = |error: f64| {
+            format!("{} {why}, with errors up to {} % of the outputs", number.label, Cell::from(100.0 * error).short())
+        };
+        report.caution(changes.uncertainty(place).map(words));
+    }
+}
+
+/// The same of the crane with rigid beams, if there is one with the same parameters and the same numbers at places.
+fn rigid(
+    crane: &LiveCrane,
+    parameters: &[usize],
+    places: &[String],
+    source: &SourceFile,
+) -> Option<sensitivity::Sensitivity> {
+    let (twin, text) = variants::rigid(&crane.description().name, &source.text).ok()??;
+    let source = SourceFile::new(twin, text);
+    let mut rigid = LiveCrane::from_spec(&source).ok()?;
     rigid.set_parameters(crane.parameters()).ok()?;
     let inputs: Vec<Option<f64>> = (0..crane.description().inputs.len()).map(|index| crane.input(index)).collect();
-    let is_same = rigid.parameters().len() == crane.parameters().len();
-    is_same
-        .then(|| derivatives(&rigid.with_inputs(&inputs), parameters, &sensitivity::Settings { frequencies: 0 }).ok())?
+    if rigid.parameters().len() != crane.parameters().len() {
+        return None;
+    }
+    let (rigid, settings) = (rigid.with_inputs(&inputs), sensitivity::Settings { frequencies: 0 });
+    let mut found = derivatives(&rigid, parameters, &settings).ok()?;
+    for place in places {
+        let differences = FixedNumber::new(&source, place).ok()?.differentiate(&rigid, &found, &settings).ok()?;
+        found.derivatives.push(differences.derivatives);
+    }
+    Some(found)
 }
 
-/// `unit of the parameter`, in words for one without a unit.
-fn per(info: &ParameterInfo) -> String {
-    if info.unit.is_empty() { "1".to_owned() } else { format!("1 {}", info.unit) }
+/// The unit of a number, in words for one without.
+fn per(number: &Number) -> String {
+    if number.unit.is_empty() { "1".to_owned() } else { format!("1 {}", number.unit) }
 }
 
-/// The parameters that are asked for.
-fn parameters(options: &Sensitivity, description: &Description) -> Outcome<Vec<usize>> {
-    if description.parameters.is_empty() {
+/// The parameters that are asked for, and the places of numbers that cannot be parameters; each once, and without the load that is searched.
+fn numbers(asked: &[String], description: &Description, load: Option<usize>) -> Outcome<(Vec<usize>, Vec<String>)> {
+    if asked.is_empty() && description.parameters.is_empty() {
         return Err(Problem::usage(
             format!("{} has no live parameters", description.name),
             "name numbers by their places, as in `--with links.boom.beam.section.box.height`, or define parameters in the spec, as in \
              `parameters: {payload: {value: 500, unit: kg}}`, and write their names in place of numbers",
         ));
     }
-    if options.numbers.is_empty() {
-        return Ok((0..description.parameters.len()).collect());
+    if asked.is_empty() && description.parameters.len() == load.iter().len() {
+        return Err(Problem::usage(
+            format!("{} has no live parameters besides the load", description.name),
+            "name numbers by their places, as in `--with links.boom.beam.section.box.height`",
+        ));
     }
-    let named = |name: &String| find_parameter(name, description).map_err(|(title, help)| Problem::usage(title, help));
-    options.numbers.iter().map(named).collect()
+    if asked.is_empty() {
+        return Ok(((0..description.parameters.len()).filter(|&index| load != Some(index)).collect(), Vec::new()));
+    }
+    let (mut parameters, mut places) = (Vec::new(), Vec::new());
+    for name in asked {
+        if name.contains('.') {
+            if !places.contains(name) {
+                places.push(name.clone());
+            }
+            continue;
+        }
+        let found = find_parameter(name, description).map_err(|(title, help)| {
+            let place = "numbers of the spec are named by their places, as in `links.boom.beam.length`";
+            Problem::usage(title, format!("{help}; {place}"))
+        })?;
+        if load == Some(found) {
+            let title = format!("`{name}` is the load, which is found");
+            return Err(Problem::usage(title, "leave it out of `--with`, or name another load with `--load`"));
+        }
+        if !parameters.contains(&found) {
+            parameters.push(found);
+        }
+    }
+    Ok((parameters, places))
 }
 
 /// The outputs that are asked for, by names or groups; the most important ones if none are.
@@ -191,7 +413,11 @@ fn shown(asked: &[String], outputs: &[Output], all: bool) -> Outcome<Vec<usize>>
             Group::Supports => output.name.ends_with("_reaction_z"),
             Group::Stresses => output.name.starts_with("greatest"),
             Group::Loops => false,
+            Group::Load => true,
         };
+        // With a largest load, this is what was asked for.
+        let has_load = outputs.iter().any(|output| output.group == Group::Load);
+        let is_main = |output: &Output| if has_load { output.group == Group::Load } else { is_main(output) };
         return Ok((0..outputs.len()).filter(|&index| all || is_main(&outputs[index])).collect());
     }
     let mut found = Vec::new();

@@ -1,31 +1,39 @@
 //! Tables of what moves what.
 
-use crane_live::sensitivity::{Group, label};
+use crane_live::sensitivity::Group;
 use crane_page::tables::{Cell, Grid, Heading, number_text};
 
 use super::Changes;
 
 /// Parameters of an output that a table shows unless all are asked for.
 const MOST: usize = 3;
+/// Numbers that have a column unless all are asked for.
+const COLUMNS: usize = 5;
 /// Letters of the longest bar.
 const BAR: usize = 20;
 
 /// The numbers that change, the most influential first.
-pub fn parameters(changes: &Changes<'_>) -> Grid {
+pub fn parameters(changes: &Changes) -> Grid {
     let title = "Numbers, the most influential first: influence is the largest relative change of an output below";
-    let headings = ["parameter", "value", "unit", "change", "influence [%]"];
+    let headings = ["parameter", "value", "unit", "change", "influence [%]", "method"];
     let mut grid = Grid::new("parameters", title, &headings);
     for &place in &changes.order {
-        let info = changes.info(place);
-        let numbers = [changes.values[place].into(), info.unit.as_str().into(), changes.steps[place].into()];
-        let row = [label(info).into()].into_iter().chain(numbers).chain([Cell::Change(changes.influence(place))]);
-        grid.row(row.collect::<Vec<Cell>>());
+        let number = &changes.numbers[place];
+        let method = if number.errors.is_some() { "differences" } else { "exact" };
+        grid.row([
+            Cell::from(number.label.as_str()),
+            number.value.into(),
+            number.unit.as_str().into(),
+            number.step.into(),
+            Cell::Change(changes.influence(place)),
+            method.into(),
+        ]);
     }
     grid
 }
 
 /// The outputs at rest, and where those are that govern.
-pub fn outputs(changes: &Changes<'_>) -> Grid {
+pub fn outputs(changes: &Changes) -> Grid {
     let mut grid = Grid::new("outputs", "Outputs at rest", &["output", "group", "value", "unit", "place"]);
     for &index in &changes.shown {
         let output = &changes.found.outputs[index];
@@ -38,21 +46,47 @@ pub fn outputs(changes: &Changes<'_>) -> Grid {
     grid
 }
 
-/// A row per output, a column per number.
-pub fn matrix(changes: &Changes<'_>) -> Grid {
-    let title = "Changes of outputs with each number";
-    let labels = changes.order.iter().map(|&place| Heading::of(label(changes.info(place)), "value"));
+/// A row per output, a column per number, of which there are few unless all are asked for.
+pub fn matrix(changes: &Changes, all: bool) -> Grid {
+    let most = if all { usize::MAX } else { COLUMNS };
+    let numbers: Vec<usize> = changes.order.iter().copied().take(most).collect();
+    let title = if numbers.len() < changes.order.len() {
+        format!(
+            "Changes of outputs with each of the {} most influential numbers; with `--all` with each",
+            numbers.len()
+        )
+    } else {
+        "Changes of outputs with each number".to_owned()
+    };
+    let names: Vec<&str> = numbers.iter().map(|&place| changes.numbers[place].label.as_str()).collect();
+    let labels = short_labels(&names);
+    let labels = labels.iter().map(|label| Heading::of(label, "value"));
     let headings = ["output".into(), "at rest".into()].into_iter().chain(labels).chain(["unit".into(), "where".into()]);
     let mut grid = Grid::with_headings("", title, headings.collect());
     for &index in &changes.shown {
         let output = &changes.found.outputs[index];
         let (scale, unit) = readable(output.unit, output.group);
-        let values = changes.order.iter().map(|&place| Cell::from(scale * changes.change(place, index)));
+        let values = numbers.iter().map(|&place| Cell::from(scale * changes.change(place, index)));
         let first: [Cell; 2] = [output.name.as_str().into(), (scale * changes.found.values[index]).into()];
         let last: [Cell; 2] = [unit.into(), output.place.as_str().into()];
         grid.row(first.into_iter().chain(values).chain(last).collect::<Vec<_>>());
     }
     grid
+}
+
+/// The shortest ends of places that differ from each other and begin with a word.
+fn short_labels(names: &[&str]) -> Vec<String> {
+    let ends = |name: &str| -> Vec<String> {
+        let keys: Vec<&str> = name.split('.').collect();
+        let begins = (0..keys.len()).rev().filter(|&begin| keys[begin].parse::<usize>().is_err());
+        begins.map(|begin| keys[begin..].join(".")).collect()
+    };
+    let is_of = |name: &str, end: &str| name == end || name.ends_with(&format!(".{end}"));
+    let short = |(index, name): (usize, &&str)| {
+        let is_own = |end: &String| !names.iter().enumerate().any(|(other, name)| other != index && is_of(name, end));
+        ends(name).into_iter().find(is_own).unwrap_or_else(|| (*name).to_owned())
+    };
+    names.iter().enumerate().map(short).collect()
 }
 
 /// Factor and unit in which people read a quantity.
@@ -66,22 +100,29 @@ pub fn readable(unit: &'static str, group: Group) -> (f64, &'static str) {
 }
 
 /// All changes, for programs.
-pub fn changes(changes: &Changes<'_>) -> Grid {
-    let headings = ["output", "parameter", "derivative", "change", "unit", "relative [%]"];
+pub fn changes(changes: &Changes) -> Grid {
+    let headings = ["output", "parameter", "derivative", "error", "change", "unit", "relative [%]"];
     let mut grid = Grid::new("changes", "Changes", &headings);
     for (index, place) in changes.shown.iter().flat_map(|&index| changes.order.iter().map(move |&place| (index, place)))
     {
         let output = &changes.found.outputs[index];
-        let numbers = [changes.found.derivatives[place][index], changes.change(place, index)].map(Cell::from);
-        let words: [Cell; 2] = [output.name.as_str().into(), label(changes.info(place)).into()];
-        let relative = changes.relative(place, index).map_or(Cell::Empty, Cell::Change);
-        grid.row(words.into_iter().chain(numbers).chain([output.unit.into(), relative]).collect::<Vec<_>>());
+        let number = &changes.numbers[place];
+        let error = number.errors.as_ref().and_then(|errors| errors.get(index));
+        grid.row([
+            Cell::from(output.name.as_str()),
+            number.label.as_str().into(),
+            changes.found.derivatives[place][index].into(),
+            error.map_or(Cell::Empty, |error| Cell::Number(*error)),
+            changes.change(place, index).into(),
+            output.unit.into(),
+            changes.relative(place, index).map_or(Cell::Empty, Cell::Change),
+        ]);
     }
     grid
 }
 
 /// What moves what: for every output the numbers that move it most, with bars.
-pub fn bars(changes: &Changes<'_>, all: bool) -> Grid {
+pub fn bars(changes: &Changes, all: bool) -> Grid {
     let title = "What moves what: relative changes, for every output the largest first";
     let mut grid = Grid::new("bars", title, &["output", "parameter", "relative [%]", ""]);
     let pairs = || changes.shown.iter().flat_map(|&output| changes.order.iter().map(move |&place| (place, output)));
@@ -93,7 +134,7 @@ pub fn bars(changes: &Changes<'_>, all: bool) -> Grid {
         shares.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
         let mut name = changes.found.outputs[index].name.as_str();
         for (place, share) in shares.into_iter().take(if all { usize::MAX } else { MOST }) {
-            let parameter = label(changes.info(place)).into();
+            let parameter = changes.numbers[place].label.as_str().into();
             grid.row([name.into(), parameter, Cell::Change(share), bar(share / greatest).into()]);
             name = "";
         }
@@ -117,19 +158,14 @@ fn bar(share: f64) -> String {
 }
 
 /// A header and a row per number for a file, in SI: its name, value, unit and change, then the changes of all outputs.
-pub fn rows(changes: &Changes<'_>) -> (Vec<String>, Vec<Vec<String>>) {
+pub fn rows(changes: &Changes) -> (Vec<String>, Vec<Vec<String>>) {
     let with_unit = |name: &str, unit: &str| if unit.is_empty() { name.to_owned() } else { format!("{name} [{unit}]") };
     let outputs = changes.shown.iter().map(|&index| &changes.found.outputs[index]);
     let names = outputs.map(|output| with_unit(&output.name, output.unit));
     let header = ["parameter", "value", "unit", "change"].map(str::to_owned).into_iter().chain(names).collect();
     let row = |&place: &usize| {
-        let info = changes.info(place);
-        let own = [
-            label(info).to_owned(),
-            number_text(changes.values[place]),
-            info.unit.to_string(),
-            number_text(changes.steps[place]),
-        ];
+        let number = &changes.numbers[place];
+        let own = [number.label.clone(), number_text(number.value), number.unit.clone(), number_text(number.step)];
         own.into_iter().chain(changes.shown.iter().map(|&index| number_text(changes.change(place, index)))).collect()
     };
     (header, changes.order.iter().map(row).collect())

@@ -2,6 +2,12 @@
 
 use std::fs;
 
+use crane_codegen::SourceFile;
+use crane_live::LiveCrane;
+use crane_live::sensitivity::unit_at;
+use crane_model::dyn_crane::DynModel;
+use serde_json::Value;
+
 use super::{crane, folder, json, text};
 
 /// The row of changes of an output with a number.
@@ -109,7 +115,16 @@ fn what_cannot_be_answered_is_said() {
         (&["knuckle_boom", "--with", "links.knuckel.mass"], "there is no `knuckel`", "did you mean `knuckle`?"),
         (&["knuckle_boom", "--with", "parameters.payload.value"], "is a live parameter", "write its name, `payload`"),
         (&["knuckle_boom", "--with", "links.knuckle"], "`links.knuckle` is not a number", "place of one number"),
-        (&["cantilever", "--with", "links.beam.beam.sections"], "`links.beam.beam.sections` cannot change", "fixed"),
+        (&["cantilever", "--with", "links.beam.beam.sections"], "cannot change: ", "small steps"),
+        (
+            &["two_arms", "--with", "links.boom.beam.material.E"],
+            "`links.boom.beam.material` is `steel`",
+            "`materials.steel.E`",
+        ),
+        (&["two_arms", "--with", "run.duration"], "`run.duration` moves nothing", "crane at rest"),
+        (&["two_arms", "--with", "boom"], "no live parameter `boom`", "by their places"),
+        (&["two_arms", "--largest-load"], "no live parameters besides the load", "places"),
+        (&["loader_tipping", "--largest-load", "--with", "load"], "`load` is the load, which is found", "--load"),
         (&["knuckle_boom", "--change", "0"], "0", "such as 10%"),
         (&["knuckle_boom", "-o", "moves.txt"], "cannot write moves.txt", ".csv"),
     ] {
@@ -117,4 +132,214 @@ fn what_cannot_be_answered_is_said() {
         let said = text(&output.stderr);
         assert!(!output.status.success() && said.contains(title) && said.contains(help), "{arguments:?}: {said}");
     }
+}
+
+/// Numbers of a schema by their places, with what is said about them.
+fn numbers(node: &Value, all: &Value, place: &str, said: &str, found: &mut Vec<(String, String)>, depth: usize) {
+    // A section of a joint names joints again.
+    if depth > 24 {
+        return;
+    }
+    let said = match node["description"].as_str() {
+        Some(own) if said.is_empty() => own,
+        _ => said,
+    };
+    let mut deeper = |node: &Value, place: &str, said: &str| numbers(node, all, place, said, found, depth + 1);
+    let below = |key: &str| if place.is_empty() { key.to_owned() } else { format!("{place}.{key}") };
+    if let Some(name) = node["$ref"].as_str().and_then(|name| name.rsplit('/').next()) {
+        deeper(&all["$defs"][name], place, said);
+    }
+    for several in ["anyOf", "oneOf", "allOf"] {
+        node[several].as_array().into_iter().flatten().for_each(|node| deeper(node, place, said));
+    }
+    for (key, node) in node["properties"].as_object().into_iter().flatten() {
+        deeper(node, &below(key), node["description"].as_str().unwrap_or_default());
+    }
+    for node in [&node["items"], &node["prefixItems"][0]].into_iter().filter(|node| node.is_object()) {
+        deeper(node, &below("0"), said);
+    }
+    if node["additionalProperties"].is_object() {
+        deeper(&node["additionalProperties"], &below("x"), said);
+    }
+    let is_number = |kind: &Value| kind == "number" || kind == "integer";
+    if is_number(&node["type"]) || node["type"].as_array().is_some_and(|kinds| kinds.iter().any(is_number)) {
+        found.push((place.to_owned(), said.to_owned()));
+    }
+}
+
+/// Every number of the spec has the unit that the schema says.
+#[test]
+fn numbers_of_the_spec_have_their_units() {
+    /// Ends of places of numbers without a unit, and of parameters and inputs, which have their own.
+    const WITHOUT: [&str; 16] = [
+        "format",
+        "falls",
+        "sections",
+        "rope.links",
+        "safety_factor",
+        "ratio",
+        "valve.overlap",
+        "feed_forward",
+        "axis.0",
+        "to_axis.0",
+        "value",
+        "scale.hold",
+        "opening.hold",
+        "values.0",
+        "from",
+        "to",
+    ];
+    let schema: Value = serde_json::from_str(include_str!("../../../../specs/crane.schema.json")).expect("JSON");
+    let mut found = Vec::new();
+    numbers(&schema, &schema, "", "", &mut found, 0);
+    found.sort();
+    found.dedup_by(|a, b| a.0 == b.0);
+    assert!(found.len() > 200, "{}", found.len());
+    let source = SourceFile::new("two_arms.yaml", include_str!("../../../../specs/two_arms.yaml"));
+    let crane = LiveCrane::from_spec(&source).expect("a crane");
+    for (place, said) in found.iter().filter(|(place, _)| !place.starts_with("inputs.")) {
+        let unit = unit_at(place, &source, crane.description());
+        if unit.is_empty() {
+            assert!(WITHOUT.iter().any(|end| place.ends_with(end)), "{place} has no unit: {said}");
+        } else if said.chars().any(|c| c == ',') && place != "gravity.0" {
+            // Angles are written with their own unit, motions are in m or rad, and some descriptions are those of an axis or of "per m/s".
+            const OTHERWISE: [&str; 5] = [".phi", ".theta", ".psi", "rope.damping", "leakage"];
+            let is_otherwise = OTHERWISE.iter().any(|end| place.ends_with(end));
+            let is_motion = ["motion", "scale"].iter().any(|key| place.contains(key));
+            let is_said = said.contains(unit) || ["rad", "1/s"].contains(&unit) || is_motion || is_otherwise;
+            assert!(is_said, "{place} in {unit}: {said}");
+        }
+    }
+    for (place, unit) in [
+        ("drives.boom_psi.stiffness", "N m/rad"),
+        ("links.0.beam.slides_in.pads.front.stiffness.2", "N m/rad"),
+        ("links.0.beam.slides_in.pads.front.stiffness.1", "N/m"),
+        ("loads.0.scale.speed.rate", "1/s"),
+        ("links.0.beam.damping.beta.psi", "s"),
+        ("links.0.beam.springs.0.stiffness.phi", "N m/rad"),
+        ("connectors.0.law.rope.motion.hold", "m"),
+    ] {
+        assert_eq!(unit_at(place, &source, crane.description()), unit, "{place}");
+    }
+}
+
+/// The largest load of a pose is that of the chart, and its derivative that of two charts.
+#[test]
+fn the_largest_load_is_that_of_the_chart() {
+    let pose = ["--hold", "column_psi=90deg", "--hold", "boom_psi=40deg", "--tipping", "0.2"];
+    let found = json(
+        &[
+            &[
+                "sensitivity",
+                "loader_tipping",
+                "--largest-load",
+                "--with",
+                "links.boom.beam.length,supports.left.at.1",
+                "--format",
+                "json",
+            ],
+            &pose[..],
+        ]
+        .concat(),
+    );
+    let of = &found["largest_load"];
+    assert_eq!((of["parameter"].as_str(), of["unit"].as_str()), (Some("load"), Some("kg")), "{of:#}");
+    let out = folder("sensitivity_chart");
+    let chart = json(&[
+        "envelope",
+        "loader_tipping",
+        "--range",
+        "column_psi=90deg",
+        "--range",
+        "boom_psi=40deg",
+        "--tipping",
+        "0.2",
+        "--format",
+        "json",
+        "--out",
+        &out.to_string_lossy(),
+    ]);
+    let least = &chart["least"];
+    let number = |value: &Value| value.as_f64().expect("a number");
+    // Loads of a chart are exact to 1e-6; poses that are reached in strides differ by that of Newton's method.
+    assert!((number(&of["load"]) - number(&least["load"])).abs() < 3e-6 * number(&of["load"]), "{of:#} {least:#}");
+    assert!((number(&of["radius"]) - number(&least["radius"])).abs() < 1e-5, "{of:#} {least:#}");
+    assert_eq!((&of["limit"], &of["of"]), (&least["limit"], &least["of"]));
+    let length = change(&found, "largest_load", "links.boom.beam.length");
+    assert!(number(&length["derivative"]) < 0.0 && length["error"].is_null(), "{length:#}");
+    let printed = crane(
+        &[&["sensitivity", "loader_tipping", "--largest-load", "--with", "links.boom.beam.length"], &pose[..]].concat(),
+    );
+    let printed = text(&printed.stdout);
+    assert!(
+        printed.contains("limited by") && printed.contains("at a radius of") && printed.contains("largest_load"),
+        "{printed}"
+    );
+}
+
+/// A number that cannot be a live parameter: differences, marked as such.
+#[test]
+fn fixed_numbers_change_by_differences() {
+    let place = folder("sensitivity_fixed");
+    fs::create_dir_all(&place).expect("a folder");
+    fs::write(place.join("two_arms.yaml"), include_str!("../../../../specs/two_arms.yaml")).expect("a file");
+    let file = place.join("solid.yaml");
+    let solid = "extends: two_arms.yaml\nname: solid\nlinks: [{name: boom, beam: {section: {solid: {height: 0.2, width: 0.1}}}}]\n";
+    fs::write(&file, solid).expect("a file");
+    let height = "links.boom.beam.section.solid.height";
+    let with = format!("payload,{height}");
+    let found = json(&["sensitivity", &file.to_string_lossy(), "--with", &with, "--format", "json"]);
+    let methods: Vec<(&str, &str)> = found["parameters"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(|row| Some((row["parameter"].as_str()?, row["method"].as_str()?)))
+        .collect();
+    assert!(methods.contains(&(height, "differences")) && methods.contains(&("payload", "exact")), "{methods:?}");
+    let row = change(&found, "boom_equivalent_stress", height);
+    let [derivative, error] = ["derivative", "error"].map(|key| row[key].as_f64().expect("a number"));
+    // Bending stress falls with the square of the height, 2/h, less what the weight adds.
+    let stress =
+        found["outputs"].as_array().into_iter().flatten().find(|row| row["output"] == "boom_equivalent_stress");
+    let stress = stress.and_then(|row| row["value"].as_f64()).expect("a stress");
+    assert!(derivative < -stress / 0.2 && error < 1e-4 * derivative.abs(), "{row:#}");
+    let cautions = found["cautions"].to_string();
+    assert!(cautions.contains("differences of whole cranes"), "{cautions}");
+}
+
+/// Bars of a page are the numbers of the command that it names.
+#[test]
+fn what_moves_what_on_a_page_is_what_the_command_prints() {
+    let place = folder("sensitivity_page");
+    fs::create_dir_all(&place).expect("a folder");
+    let page = place.join("two_arms.html");
+    let output = crane(&[
+        "report",
+        "two_arms",
+        "--sensitivity",
+        "--duration",
+        "0.1",
+        "--output",
+        "0.05",
+        "-o",
+        &page.to_string_lossy(),
+    ]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let page = fs::read_to_string(&page).expect("a page");
+    let data = page.split("id=\"data\">").nth(1).and_then(|rest| rest.split("</script>").next()).expect("data");
+    let data: Value = serde_json::from_str(data).expect("JSON");
+    let moves = &data["moves"];
+    let command = moves["command"].as_str().expect("a command");
+    let arguments: Vec<&str> = command.split(' ').skip(1).chain(["--format", "json"]).collect();
+    let found = json(&arguments);
+    let mut compared = 0;
+    for output in moves["outputs"].as_array().expect("outputs") {
+        for bar in output["bars"].as_array().expect("bars") {
+            let name = output["output"].as_str().expect("a name");
+            let row = change(&found, name, bar["number"].as_str().expect("a number"));
+            assert_eq!(bar["relative"], row["relative"], "{name}: {bar:#} {row:#}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 10, "{moves:#}");
 }

@@ -85,7 +85,11 @@ def test_strength(output, crane_name, options):
     assert (found["tipping_margin"] is None) == (crane_name != "eight_link_flexible")
 
 
-@pytest.mark.parametrize("options", [[], ["--with", "links.boom.beam.section.box.height,load_mass", "--of", "stresses,frequencies"]])
+# A point of a load chart.
+LARGEST = ["--largest-load", "--tipping", "0.2", "--with", "links.boom.beam.section.box.height"]
+
+
+@pytest.mark.parametrize("options", [[], ["--with", "links.boom.beam.section.box.height,load_mass", "--of", "stresses,frequencies"], LARGEST])
 def test_sensitivity(output, options):
     found = output("sensitivity", "sensitivity", "eight_link_flexible", *options)
     assert len(found["changes"]) == len(found["outputs"]) * len(found["parameters"])

@@ -19,27 +19,36 @@
 //! | `strength` | stresses of beams, tipping |
 //! | `frequencies` | undamped frequencies |
 //! | `places` | numbers of the spec as live parameters |
+//! | `largest_load` | the largest load within limits, as a further output |
+//! | `units` | units of these numbers |
+//! | `differences` | numbers of the spec that cannot be live parameters |
 //! | `whole` | what a whole change does that the derivatives do not show |
 
+mod differences;
 mod frequencies;
+mod largest_load;
 mod outputs;
 mod places;
 mod rest;
 mod source;
 mod strength;
+mod units;
 mod whole;
 
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::runs::{Failed, Reason};
-use crane_model::statics;
+use crane_model::statics::{self, Equilibrium};
 
 use crate::LiveCrane;
 use crate::dual::{DIRECTIONS, Dual8};
+pub use differences::{Differences, FixedNumber};
 use frequencies::Frequencies;
+pub use largest_load::{LargestLoad, NoLargestLoad};
 pub use places::{Refused, label, with_live_numbers};
 use rest::Rest;
 use source::Source;
 use strength::Strength;
+pub use units::unit_at;
 pub use whole::cautions;
 
 /// What kind of quantity an output is.
@@ -65,11 +74,13 @@ pub enum Group {
     Tipping,
     /// Undamped frequencies.
     Frequencies,
+    /// The largest load within limits.
+    Load,
 }
 
 impl Group {
     /// All of them.
-    pub const ALL: [Group; 10] = [
+    pub const ALL: [Group; 11] = [
         Group::Points,
         Group::Deflections,
         Group::Drives,
@@ -80,6 +91,7 @@ impl Group {
         Group::Stresses,
         Group::Tipping,
         Group::Frequencies,
+        Group::Load,
     ];
 
     /// Its name in results and options.
@@ -96,6 +108,7 @@ impl Group {
             Group::Stresses => "stresses",
             Group::Tipping => "tipping",
             Group::Frequencies => "frequencies",
+            Group::Load => "load",
         }
     }
 }
@@ -193,14 +206,38 @@ impl Default for Settings {
 /// The crane has no stable equilibrium.
 pub fn sensitivity(crane: &LiveCrane, parameters: &[usize], settings: &Settings) -> Result<Sensitivity, Failed> {
     let any: &dyn DynCrane = crane;
-    let equilibrium = any.equilibrium(&statics::Settings::default());
+    at_rest(crane, parameters, settings, &any.equilibrium(&statics::Settings::default()))
+}
+
+/// As [`sensitivity`], for a pose at rest near another one.
+///
+/// # Errors
+/// The crane has no stable equilibrium there.
+pub fn sensitivity_near(
+    crane: &LiveCrane,
+    parameters: &[usize],
+    settings: &Settings,
+    q: &[f64],
+) -> Result<Sensitivity, Failed> {
+    let any: &dyn DynCrane = crane;
+    at_rest(crane, parameters, settings, &any.equilibrium_at(0.0, q, &statics::Settings::default()))
+}
+
+/// At an equilibrium that was found.
+fn at_rest(
+    crane: &LiveCrane,
+    parameters: &[usize],
+    settings: &Settings,
+    equilibrium: &Equilibrium,
+) -> Result<Sensitivity, Failed> {
+    let any: &dyn DynCrane = crane;
     let name = &crane.description().name;
     if !equilibrium.is_stable() {
-        return Err(Reason::no_equilibrium(any, &equilibrium).of(name));
+        return Err(Reason::no_equilibrium(any, equilibrium).of(name));
     }
     let mut source = Source::new(crane);
     let Some(rest) = Rest::new(&mut source, equilibrium.q.clone()) else {
-        return Err(Reason::no_equilibrium(any, &equilibrium).of(name));
+        return Err(Reason::no_equilibrium(any, equilibrium).of(name));
     };
     let (mut derivatives, mut pose, mut notes) = (Vec::new(), Vec::new(), Vec::new());
     let strength = Strength::new(&mut source, &rest, &mut notes);
@@ -218,7 +255,9 @@ pub fn sensitivity(crane: &LiveCrane, parameters: &[usize], settings: &Settings)
         source.set_parameters(crane.parameters().iter().enumerate().map(value).collect());
         let (q, multipliers) = rest.moved(&mut source);
         let moved = of(&mut source, &q, &multipliers);
-        for direction in 0..some.len() {
+        for parameter in some {
+            // A parameter that is given twice has the slopes of its first place.
+            let direction = some.iter().position(|own| own == parameter).unwrap_or_default();
             derivatives.push(moved.iter().map(|(_, number)| number.slope(direction)).collect());
             pose.push(q.iter().map(|number| number.slope(direction)).collect());
         }

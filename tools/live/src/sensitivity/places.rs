@@ -2,63 +2,108 @@
 
 use crane_codegen::{Diagnostics, SourceFile, WrongPlace};
 use crane_model::ParameterInfo;
+use crane_model::dyn_crane::DynModel;
 
+use super::differences::FixedNumber;
+use super::units::unit_at;
 use crate::LiveCrane;
 
 /// Begins the name of a live parameter that stands for a place of the spec.
 const PLACE: &str = "number_at_place_";
 
-/// Why a number cannot be a live parameter.
+/// Why a number cannot change.
 #[derive(Debug)]
 pub enum Refused {
     /// There is no number at the place.
     Place(WrongPlace),
-    /// The spec has mistakes if it is one: it determines the structure of the crane, for example.
+    /// The spec has mistakes with another number: it must be an integer, for example.
     Mistakes {
         /// The place.
         place: String,
         /// The mistakes.
         mistakes: Diagnostics,
     },
+    /// The number has nothing to do with a crane at rest.
+    NotAtRest {
+        /// The place.
+        place: String,
+    },
 }
 
+impl Refused {
+    /// What is wrong, and what to do.
+    #[must_use]
+    pub fn words(&self) -> [String; 2] {
+        match self {
+            Refused::Place(wrong) => [wrong.title.clone(), wrong.help.clone()],
+            Refused::Mistakes { place, mistakes } => {
+                let mistake = mistakes.mistakes().first();
+                let [title, help] = mistake.map_or_else(Default::default, |mistake| {
+                    [format!("{} [{}]", mistake.title, mistake.code), mistake.help.clone()]
+                });
+                let help = format!("a number is changed by small steps, and the spec must allow them: {help}");
+                [format!("`{place}` cannot change: {title}"), help]
+            }
+            Refused::NotAtRest { place } => [
+                format!("`{place}` moves nothing: it does not belong to the crane at rest"),
+                "give the place of a number of the crane, as in `links.boom.beam.section.box.height`".to_owned(),
+            ],
+        }
+    }
+}
+
+/// Keys of a spec that do not belong to the crane at rest.
+const NOT_AT_REST: [&str; 6] = ["format", "run", "guess", "name", "title", "analyses"];
+
 /// The spec in which the numbers at places, such as `links.boom.beam.section.box.height`, are live parameters, whose names replace them in
-/// the list; other entries of the list are names of parameters. `None` if the list has no places.
+/// the list; other entries of the list are names of parameters. Places whose numbers cannot be live parameters stay in the list: see
+/// [`FixedNumber`](super::FixedNumber). `None` if nothing has changed.
 ///
 /// # Errors
-/// A number cannot be a live parameter.
+/// There is no number at a place, or it cannot change.
 pub fn with_live_numbers(source: &SourceFile, numbers: &mut [String]) -> Result<Option<SourceFile>, Refused> {
+    if !numbers.iter().any(|number| number.contains('.')) {
+        return Ok(None);
+    }
+    let mistakes = |place: &str, mistakes| Refused::Mistakes { place: place.to_owned(), mistakes };
+    let crane =
+        LiveCrane::from_spec(source).map_err(|wrong| mistakes(numbers.first().map_or("", |name| name), wrong))?;
+    let live = |before: &SourceFile, index: usize, number: &str| {
+        let unit = unit_at(number, source, crane.description());
+        before.with_live_number(number, &format!("{PLACE}{index}"), unit).map_err(Refused::Place)
+    };
+    let places: Vec<usize> = (0..numbers.len()).filter(|&index| numbers[index].contains('.')).collect();
+    if let Some(place) = places.iter().map(|&index| &numbers[index]).find(|place| is_not_at_rest(place)) {
+        return Err(Refused::NotAtRest { place: place.clone() });
+    }
+    // Most often all can.
+    let mut all = source.clone();
+    for &index in &places {
+        all = live(&all, index, &numbers[index])?;
+    }
+    if LiveCrane::from_spec(&all).is_ok() {
+        places.iter().for_each(|&index| numbers[index] = format!("{PLACE}{index}"));
+        return Ok(Some(all));
+    }
     let mut changed = None;
-    for (index, number) in numbers.iter_mut().enumerate().filter(|(_, number)| number.contains('.')) {
-        let parameter = format!("{PLACE}{index}");
-        let before = changed.as_ref().unwrap_or(source);
-        let after = before.with_live_number(number, &parameter, unit_of(number)).map_err(Refused::Place)?;
-        if let Err(mistakes) = LiveCrane::from_spec(&after) {
-            return Err(Refused::Mistakes { place: number.clone(), mistakes });
+    for index in places {
+        let after = live(changed.as_ref().unwrap_or(source), index, &numbers[index])?;
+        if LiveCrane::from_spec(&after).is_ok() {
+            changed = Some(after);
+            numbers[index] = format!("{PLACE}{index}");
+        } else {
+            FixedNumber::new(source, &numbers[index])?;
         }
-        changed = Some(after);
-        *number = parameter;
     }
     Ok(changed)
+}
+
+fn is_not_at_rest(place: &str) -> bool {
+    NOT_AT_REST.iter().any(|key| place.split('.').next() == Some(key))
 }
 
 /// What people call a parameter: its name, or its place in the spec.
 #[must_use]
 pub fn label(info: &ParameterInfo) -> &str {
     if info.name.starts_with(PLACE) { &info.about } else { &info.name }
-}
-
-/// Unit of the number at a place, by the key of the spec; empty where the key has several.
-fn unit_of(place: &str) -> &'static str {
-    let mut keys = place.rsplit('.').skip_while(|key| key.parse::<usize>().is_ok());
-    match keys.next().unwrap_or_default() {
-        "length" | "height" | "width" | "thickness" | "flange" | "web" | "diameter" | "at" | "com" | "translation"
-        | "a" | "d" | "bore" | "rod" | "stroke" | "retracted" | "rest_length" => "m",
-        "mass" => "kg",
-        "extra_mass" => "kg/m",
-        "density" => "kg/m³",
-        "E" | "G" | "yield_stress" | "max_pressure" | "back_pressure" | "bulk_modulus" => "Pa",
-        "Ixx" | "Iyy" | "Izz" | "Ixy" | "Ixz" | "Iyz" => "kg m²",
-        _ => "",
-    }
 }

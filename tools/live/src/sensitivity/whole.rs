@@ -6,7 +6,7 @@ use super::{Group, Sensitivity, Settings, label, sensitivity};
 use crate::LiveCrane;
 
 /// A change differs from that of its derivative if it is so by this fraction of the larger one,
-const CURVED: f64 = 0.25;
+pub(super) const CURVED: f64 = 0.25;
 /// and it matters if it is this fraction of the value.
 const MATTERS: f64 = 0.02;
 /// Outputs that a caution names.
@@ -63,14 +63,22 @@ fn differences<'a>(
         let whole = after.values[index] - value;
         let is_curved = (whole - straight).abs() > CURVED * whole.abs().max(straight.abs());
         let matters = (whole - straight).abs() > MATTERS * value.abs() && output.group >= Group::Stresses;
-        (is_curved && matters)
-            .then(|| format!("{} changes by {} instead of {}", output.name, short(whole), short(straight)))
+        (is_curved && matters).then(|| {
+            let [whole, straight] = [whole, straight].map(|change| in_unit(change, output.unit));
+            format!("{} changes by {whole} instead of {straight}", output.name)
+        })
     });
     feet.chain(governs).chain(curved.take(MOST))
 }
 
+/// A number with its unit, stresses in MPa.
+pub(super) fn in_unit(number: f64, unit: &str) -> String {
+    let (number, unit) = if unit == "Pa" { (1e-6 * number, "MPa") } else { (number, unit) };
+    format!("{} {unit}", short(number)).trim_end().to_owned()
+}
+
 /// A number with four digits.
-fn short(number: f64) -> String {
+pub(super) fn short(number: f64) -> String {
     let rounded: f64 = format!("{number:.3e}").parse().unwrap_or(number);
     if rounded == 0.0 || (1e-4..1e7).contains(&rounded.abs()) { rounded.to_string() } else { format!("{number:.3e}") }
 }

@@ -2,8 +2,11 @@
 
 use crane_codegen::{SourceFile, build};
 use crane_live::LiveCrane;
-use crane_live::sensitivity::{Group, Sensitivity, Settings, sensitivity};
+use crane_live::sensitivity::{
+    FixedNumber, Group, LargestLoad, Refused, Sensitivity, Settings, sensitivity, sensitivity_near, with_live_numbers,
+};
 use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::envelope::{Axes, Envelope, Limit, Limits, PartLimit, range_of_loads};
 use crane_model::modes::undamped;
 use crane_model::results::cylinders_at;
 use crane_model::sections::{StressedSection, stressed_sections};
@@ -224,4 +227,176 @@ fn a_crane_that_tips_over_is_refused() {
     let crane = shipped("loader_tipping", changes);
     let failed = sensitivity(&crane, &[0], &Settings::default()).unwrap_err();
     assert!(failed.to_string().contains("tips over"), "{failed}");
+}
+
+/// A number that can be a live parameter, too, has the same derivatives by differences as without, to their estimated errors.
+#[test]
+fn differences_of_fixed_numbers_are_the_derivatives() {
+    let path = format!("{}/../../specs/two_arms.yaml", env!("CARGO_MANIFEST_DIR"));
+    let source = build::open(path.as_ref()).unwrap();
+    let place = "links.boom.beam.section.box.height";
+    let mut names = vec![place.to_owned()];
+    let changed = with_live_numbers(&source, &mut names).unwrap().unwrap();
+    let with_number = live(&changed);
+    let parameter = with_number.description().parameters.iter().position(|info| info.name == *names[0]).unwrap();
+    let settings = Settings::default();
+    let exact = sensitivity(&with_number, &[parameter], &settings).unwrap();
+    let crane = live(&source);
+    let number = FixedNumber::new(&source, place).unwrap();
+    assert_eq!((number.value, number.unit), (0.26, "m"));
+    let found = sensitivity(&crane, &[], &settings).unwrap();
+    let differences = number.differentiate(&crane, &found, &settings).unwrap();
+    for (index, output) in found.outputs.iter().enumerate() {
+        let (own, expected, error) =
+            (differences.derivatives[index], exact.derivatives[0][index], differences.errors[index]);
+        // Poses that are exact to 1e-13 over a step of 1e-3, relative to what changes the value as much as the number.
+        let rounding = 1e-8 * (found.values[index].abs() + 1.0) / number.value;
+        assert!((own - expected).abs() <= error + rounding, "{}: {own} for {expected} ± {error}", output.name);
+        // The error of the shorter step, of the square: 1e-6 times how fast the derivative changes.
+        assert!(error <= 1e-4 * expected.abs() + rounding, "{}: {error} of {expected}", output.name);
+    }
+}
+
+/// A beam of two parts with the same section is one beam: with the length of a part its own changes.
+#[test]
+fn a_part_of_a_beam_becomes_longer_with_the_beam() {
+    let path = format!("{}/../../specs/two_arms.yaml", env!("CARGO_MANIFEST_DIR"));
+    let source = build::open(path.as_ref()).unwrap();
+    let section = "section: {box: {height: 0.26, width: 0.2, thickness: 0.008}}";
+    let parts = format!(
+        "name: changed\nlinks: [{{name: boom, beam: {{section: ~, parts: [{{length: 2.0, {section}}}, {{length: 1.4, {section}}}]}}}}]\n"
+    );
+    let (settings, place) = (Settings::default(), "links.boom.beam.parts.1.length");
+    let with_parts = source.changed(&parts);
+    let mut names = [place.to_owned()];
+    assert!(with_live_numbers(&with_parts, &mut names).unwrap().is_none() && names[0] == place);
+    let number = FixedNumber::new(&with_parts, place).unwrap();
+    let found = sensitivity(&live(&with_parts), &[], &settings).unwrap();
+    let own = number.differentiate(&live(&with_parts), &found, &settings).unwrap();
+    let mut names = ["links.boom.beam.length".to_owned()];
+    let whole = live(&with_live_numbers(&source, &mut names).unwrap().unwrap());
+    let parameter = whole.description().parameters.iter().position(|info| info.name == *names[0]).unwrap();
+    let whole = sensitivity(&whole, &[parameter], &settings).unwrap();
+    for name in ["log_centre_x", "log_centre_z", "boom_psi_drive_torque", "frequency_3", "tipping_margin"] {
+        let expected = whole.derivatives[0][whole.index_of(name).unwrap()];
+        let own = own.derivatives[found.index_of(name).unwrap()];
+        // Where the parts meet an element has two pieces: its integrals have other roundings, over a step of 1e-3.
+        assert!((own - expected).abs() < 1e-6 * expected.abs(), "{name}: {own} for {expected}");
+    }
+}
+
+/// What must be an integer, or does not belong to the crane at rest, cannot change; a solid section can by differences.
+#[test]
+fn numbers_without_derivatives_are_refused() {
+    let path = format!("{}/../../specs/two_arms.yaml", env!("CARGO_MANIFEST_DIR"));
+    let source = build::open(path.as_ref()).unwrap();
+    let refused = |place: &str| with_live_numbers(&source, &mut [place.to_owned()]).unwrap_err();
+    let sections = refused("links.boom.beam.sections");
+    let [title, help] = sections.words();
+    assert!(matches!(sections, Refused::Mistakes { .. }) && help.contains("integer"), "{title}, {help}");
+    assert!(!title.contains("number_at_place"), "{title}");
+    assert!(matches!(refused("run.duration"), Refused::NotAtRest { .. }));
+    let solid = "name: changed\nlinks: [{name: boom, beam: {section: {solid: {height: 0.2, width: 0.1}}}}]\n";
+    let source = source.changed(solid);
+    let mut names = ["links.boom.beam.section.solid.height".to_owned()];
+    assert!(with_live_numbers(&source, &mut names).unwrap().is_none());
+    assert_eq!(names[0], "links.boom.beam.section.solid.height");
+}
+
+#[test]
+fn a_parameter_that_is_given_twice_has_its_derivatives_twice() {
+    let crane = shipped("knuckle_boom", "");
+    let found = sensitivity(&crane, &[0, 0], &Settings::default()).unwrap();
+    assert_eq!(found.derivatives[0], found.derivatives[1]);
+    assert_eq!(found.pose[0], found.pose[1]);
+}
+
+/// The largest load within limits, and its derivatives by parameters of these names.
+fn largest_load(crane: &LiveCrane, asked: &Envelope, parameters: &[usize]) -> (LargestLoad, Sensitivity) {
+    let largest = LargestLoad::of(crane, asked).unwrap_or_else(|none| panic!("{none:?}"));
+    let mut loaded = crane.clone();
+    loaded.set_parameter(asked.load, asked.factor * largest.load).unwrap();
+    let all: Vec<usize> = parameters.iter().copied().chain([asked.load]).collect();
+    let settings = Settings { frequencies: 0 };
+    let mut found = sensitivity_near(&loaded, &all, &settings, &largest.condition.q).unwrap();
+    largest.add_to(&mut found, &loaded, asked, parameters.len()).unwrap_or_else(|| panic!("{:?}", largest.limit));
+    (largest, found)
+}
+
+/// Derivatives of the largest load against those of charts that were computed with changed numbers.
+fn assert_largest_load(what: &str, crane: &LiveCrane, load: &str, limits: Limits, is_expected: fn(Limit) -> bool) {
+    let description = crane.description();
+    let index = |name: &str| description.parameters.iter().position(|info| info.name == name).unwrap();
+    let load = index(load);
+    let loads = range_of_loads(description, load, None);
+    let asked = Envelope { axes: Axes::default(), load, loads, limits, factor: 1.25 };
+    let parameters: Vec<usize> = (0..description.parameters.len()).filter(|&index| index != load).collect();
+    assert!(parameters.len() > 1, "{what}");
+    let (largest, found) = largest_load(crane, &asked, &parameters);
+    assert!(is_expected(largest.limit), "{what}: {:?}", largest.limit);
+    let output = found.index_of("largest_load").unwrap();
+    // A chart is exact to 1e-6, and stays below.
+    let own = found.values[output];
+    assert!((own - largest.load).abs() <= 2e-6 * own, "{what}: {own} for {}", largest.load);
+    for (place, &parameter) in parameters.iter().enumerate() {
+        let value = crane.parameters()[parameter];
+        let step = 1e-3 * value.abs();
+        let at = |step: f64| {
+            let mut other = crane.clone();
+            other.set_parameter(parameter, value + step).unwrap();
+            let (_, found) = largest_load(&other, &asked, &[]);
+            found.values[found.index_of("largest_load").unwrap()]
+        };
+        let expected = (at(step) - at(-step)) / (2.0 * step);
+        let derivative = found.derivatives[place][output];
+        let name = &description.parameters[parameter].name;
+        // Differences have an error of the square of their step, 1e-6, times how fast the derivative changes.
+        let allowed = 1e-4 * (expected.abs() + 0.1 * own / value.abs());
+        assert!(
+            (derivative - expected).abs() <= allowed,
+            "{what} by {name}: {derivative} for {expected}, {:?}",
+            largest.limit
+        );
+    }
+}
+
+#[test]
+fn largest_loads_change_as_those_of_charts() {
+    let changes = "parameters:\n  height: {value: 0.34, unit: m}\n  rear: {value: -4.2, unit: m}\n  spring: {value: 2e7, unit: N m/rad}\n  yield: {value: \
+                   700e6, unit: Pa}\nlinks:\n  - {name: boom, beam: {material: {E: 2.1e11, G: 8.1e10, density: 7850, yield_stress: yield}, section: {box: \
+                   {height: height, width: 0.24, thickness: 0.008}}}}\nsupports: [{name: rear_left, at: [rear, 1.1, -0.9]}]\ndrives: [{coordinate: jib_psi, \
+                   stiffness: spring}, {coordinate: column_psi, motion: {hold: 2.2}}]\n";
+    // Turned aside, as over the rear two feet lift at the same load.
+    let crane = shipped("loader_tipping", changes);
+    let none = || Limits::none(crane.description());
+    let tipping = Limits { tipping: Some(0.3), ..none() };
+    assert_largest_load("tipping", &crane, "load", tipping, |limit| matches!(limit, Limit::Tipping { .. }));
+    let used = Limits { utilisation: Some(0.6), ..none() };
+    assert_largest_load("use", &crane, "load", used, |limit| matches!(limit, Limit::Utilisation { .. }));
+    let drives = &crane.description().drives;
+    let of = |name: &str| {
+        drives.iter().position(|drive| crane.description().coordinates[drive.coordinate].name == name).unwrap()
+    };
+    let mut efforts = none().efforts;
+    efforts[of("boom_psi")] = 1.5e5;
+    let efforts = Limits { efforts, ..none() };
+    assert_largest_load("effort", &crane, "load", efforts, |limit| matches!(limit, Limit::Effort { .. }));
+    let lift_off = Limits { of_parts: vec![PartLimit::LiftOff], ..none() };
+    assert_largest_load("lift-off", &crane, "load", lift_off, |limit| matches!(limit, Limit::LiftOff { .. }));
+}
+
+#[test]
+fn largest_loads_at_pressures_and_efforts_of_the_spec_change_as_those_of_charts() {
+    // A heavy truck, so that the crane does not tip before.
+    let changes = "parameters: {pin: {value: 0.3, unit: m}, truck_mass: {value: 14000, unit: kg}}\nlinks: [{name: truck, mass: truck_mass}]\n\
+                   cylinders: [{name: outer_boom_cylinder, head: {link: outer_boom, at: [pin, 0.2, 0]}}]\n";
+    let crane = shipped("eight_link_hydraulic", changes);
+    let pressure = Limits { of_parts: vec![PartLimit::Pressure], ..Limits::none(crane.description()) };
+    assert_largest_load("pressure", &crane, "load_mass", pressure, |limit| matches!(limit, Limit::Pressure { .. }));
+    // The bound itself is a live parameter.
+    let changes = "parameters: {most: {value: 1.6e5, unit: N m}, rear: {value: -4.2, unit: m}}\nsupports: [{name: rear_left, at: [rear, 1.1, -0.9]}]\n\
+                   drives: [{coordinate: boom_psi, max_effort: most}]\n";
+    let crane = shipped("loader_tipping", changes);
+    let efforts = Limits { of_parts: vec![PartLimit::MaxEffort], ..Limits::none(crane.description()) };
+    assert_largest_load("max_effort", &crane, "load", efforts, |limit| matches!(limit, Limit::Effort { .. }));
 }

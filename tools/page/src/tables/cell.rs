@@ -155,7 +155,8 @@ impl Cell {
     }
 
     /// The same on a screen, where lists of names are cut off.
-    pub(super) fn short(&self) -> String {
+    #[must_use]
+    pub fn short(&self) -> String {
         /// Names that a line has room for.
         const MOST: usize = 3;
         match self {

@@ -1,0 +1,115 @@
+//! Derivatives by numbers that cannot be live parameters: differences of whole cranes.
+
+use crane_codegen::{SourceFile, WrongPlace};
+use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::runs::Failed;
+
+use super::places::Refused;
+use super::units::unit_at;
+use super::{Sensitivity, Settings, sensitivity_near};
+use crate::LiveCrane;
+
+/// Longer step relative to the number: the error of its differences, of the square, is 1e-6 of how fast derivatives change, and poses that are exact
+/// to 1e-13 leave 1e-10.
+const STEP: f64 = 1e-3;
+/// Longer step of a number that is 0, in its unit.
+const STEP_FROM_ZERO: f64 = 1e-4;
+
+/// A number of a spec that cannot be a live parameter, such as the length of a part of a beam, and the cranes with numbers around it.
+#[derive(Clone)]
+pub struct FixedNumber {
+    /// Its place in the spec.
+    pub place: String,
+    /// Its value, in its unit.
+    pub value: f64,
+    /// Its unit; empty for a number without one.
+    pub unit: &'static str,
+    /// Half the distance of the outer cranes.
+    step: f64,
+    /// With the number less a step, less half of it, plus half of it, plus a step.
+    around: [LiveCrane; 4],
+}
+
+/// Derivatives by a fixed number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Differences {
+    /// Derivatives of the outputs: central differences of two steps, extrapolated, `(4 D(h/2) − D(h))/3`.
+    pub derivatives: Vec<f64>,
+    /// Estimates of their errors, `|D(h/2) − D(h)|`: those of the shorter step without the extrapolation.
+    pub errors: Vec<f64>,
+    /// Derivatives of the pose.
+    pub pose: Vec<f64>,
+}
+
+impl FixedNumber {
+    /// The number at a place, with the cranes around it.
+    ///
+    /// # Errors
+    /// There is no number at this place, or the spec does not allow a number slightly smaller or larger: integers have no derivatives.
+    pub fn new(source: &SourceFile, place: &str) -> Result<Self, Refused> {
+        let value = source.number_at(place).map_err(Refused::Place)?;
+        let step = if value == 0.0 { STEP_FROM_ZERO } else { STEP * value.abs() };
+        let with = |share: f64| {
+            let changed = changed(source, place, value, share * step).map_err(Refused::Place)?;
+            LiveCrane::from_spec(&changed).map_err(|mistakes| Refused::Mistakes { place: place.to_owned(), mistakes })
+        };
+        let around = [with(-1.0)?, with(-0.5)?, with(0.5)?, with(1.0)?];
+        let unit = unit_at(place, source, around[0].description());
+        Ok(Self { place: place.to_owned(), value, unit, step, around })
+    }
+
+    /// Central differences of the outputs of a crane with this number, with its parameters and inputs.
+    ///
+    /// # Errors
+    /// A crane with a slightly smaller or larger number has no stable equilibrium.
+    pub fn differentiate(
+        &self,
+        crane: &LiveCrane,
+        found: &Sensitivity,
+        settings: &Settings,
+    ) -> Result<Differences, Failed> {
+        let inputs: Vec<Option<f64>> = (0..crane.description().inputs.len()).map(|index| crane.input(index)).collect();
+        let at = |other: &LiveCrane| -> Result<Vec<f64>, Failed> {
+            let mut other = other.clone().with_inputs(&inputs);
+            for (index, info) in crane.description().parameters.iter().enumerate() {
+                let own = other.description().parameters.iter().position(|own| own.name == info.name);
+                if let Some(own) = own {
+                    // The crane itself has this value; it is allowed here too, or the crane keeps its own.
+                    let _ = other.set_parameter(own, crane.parameters()[index]);
+                }
+            }
+            let other = sensitivity_near(&other, &[], settings, &found.q)?;
+            let value = |name: &str| other.index_of(name).map_or(f64::NAN, |index| other.values[index]);
+            Ok(found.outputs.iter().map(|output| value(&output.name)).chain(other.q.iter().copied()).collect())
+        };
+        let [first, second, third, fourth] = self.around.each_ref().map(at);
+        let mut all = Differences::central([first?, second?, third?, fourth?], self.step);
+        all.pose = all.derivatives.split_off(found.outputs.len());
+        all.errors.truncate(found.outputs.len());
+        Ok(all)
+    }
+}
+
+/// The spec with another number at a place; a part of a beam that becomes longer makes the beam longer.
+fn changed(source: &SourceFile, place: &str, value: f64, by: f64) -> Result<SourceFile, WrongPlace> {
+    let changed = source.with_number(place, value + by)?;
+    match place.split_once(".parts.") {
+        Some((beam, part)) if part.split('.').nth(1) == Some("length") => {
+            let length = format!("{beam}.length");
+            changed.with_number(&length, source.number_at(&length)? + by)
+        }
+        _ => Ok(changed),
+    }
+}
+
+impl Differences {
+    /// From values at −h, −h/2, h/2 and h.
+    pub(super) fn central([first, second, third, fourth]: [Vec<f64>; 4], step: f64) -> Self {
+        let both = (0..first.len()).map(|k| {
+            let (long, short) = ((fourth[k] - first[k]) / (2.0 * step), (third[k] - second[k]) / step);
+            ((4.0 * short - long) / 3.0, (short - long).abs())
+        });
+        let (derivatives, errors) = both.unzip();
+        Self { derivatives, errors, pose: Vec::new() }
+    }
+}

@@ -1,0 +1,267 @@
+//! The largest load of a pose, and what moves it.
+//!
+//! The largest load L of a pose is that at which a limit is reached, g(L, p) = 0: a utilisation, a tipping margin, a pressure, a length, an effort,
+//! a reaction or a tension less its bound. It moves with a number p by
+//!
+//! ```text
+//! dL/dp = − (∂g/∂p) / (∂g/∂L)
+//! ```
+//!
+//! along the poses at rest, as long as this limit governs. Where none of the outputs is at its bound, because the crane no longer rests, a stop is
+//! touched or a point has moved far, derivatives are differences of largest loads.
+
+use std::sync::{Mutex, PoisonError};
+
+use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::envelope::{Condition, Envelope, Execution, Limit, Rating, UNITS_OF_LOADS};
+use crane_model::results::{connector_force, drive_effort};
+
+use super::whole::{CURVED, in_unit};
+use super::{Differences, Group, Output, Sensitivity, label};
+use crate::LiveCrane;
+
+/// Name of the output.
+const NAME: &str = "largest_load";
+/// Longer step of differences of largest loads, relative to the number: loads are exact to 1e-6.
+const STEP: f64 = 2e-2;
+/// A difference from the change of the derivative matters if it is this fraction of the load.
+const MATTERS: f64 = 5e-3;
+/// A correction of the load by more than this fraction is not one from the accuracy of a chart to rounding.
+const SMALL: f64 = 1e-4;
+
+/// The largest load of a crane in a pose, and what limits it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LargestLoad {
+    /// The load, in the unit of its parameter, without the factor of the chart.
+    pub load: f64,
+    /// What governs.
+    pub limit: Limit,
+    /// The crane at rest with the load and the factor.
+    pub condition: Condition,
+}
+
+/// Why a pose has no largest load.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NoLargestLoad {
+    /// The smallest load is beyond a limit already.
+    Beyond(Limit),
+    /// No limit is reached up to this load.
+    Unlimited(f64),
+    /// The parameters cannot have the values of the smallest load.
+    Refused(String),
+}
+
+impl NoLargestLoad {
+    /// Why there is none, in words; `unit`: that of the load.
+    #[must_use]
+    pub fn words(&self, crane: &LiveCrane, unit: &str) -> String {
+        match self {
+            Self::Beyond(limit) => {
+                format!("the smallest load is beyond a limit already: {}", words(*limit, crane))
+            }
+            Self::Unlimited(load) => format!("no limit is reached up to {}", in_unit(*load, unit)),
+            Self::Refused(why) => why.clone(),
+        }
+    }
+}
+
+/// A limit in words.
+fn words(limit: Limit, crane: &LiveCrane) -> String {
+    let of = limit.location(crane.description());
+    if of.is_empty() { limit.kind().to_owned() } else { format!("{}, {of}", limit.kind()) }
+}
+
+impl LargestLoad {
+    /// The largest load of a crane whose drives are where they begin.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn of(crane: &LiveCrane, asked: &Envelope) -> Result<Self, NoLargestLoad> {
+        let found: Mutex<Option<Rating>> = Mutex::new(None);
+        let done = |_: usize, ratings: &[Rating]| {
+            *found.lock().unwrap_or_else(PoisonError::into_inner) = ratings.first().cloned();
+        };
+        let execution = Execution { threads: 1, done: &done, cancelled: &|| false };
+        asked.run(crane, &[0], &execution).map_err(|refused| NoLargestLoad::Refused(refused.to_string()))?;
+        let rating = found.into_inner().unwrap_or_else(PoisonError::into_inner);
+        match rating {
+            Some(Rating { load: Some(load), governing: Some(limit), loaded: Some(condition), .. }) => {
+                Ok(Self { load, limit, condition })
+            }
+            Some(Rating { load: Some(load), .. }) => Err(NoLargestLoad::Unlimited(load)),
+            rating => {
+                Err(NoLargestLoad::Beyond(rating.and_then(|rating| rating.governing).unwrap_or(Limit::Equilibrium)))
+            }
+        }
+    }
+
+    /// The limit in words.
+    #[must_use]
+    pub fn words(&self, crane: &LiveCrane) -> String {
+        words(self.limit, crane)
+    }
+
+    /// Adds the load to the outputs of the crane that carries it. `place`: the list of derivatives by the load, which is removed.
+    ///
+    /// `None` where no output is at its bound, so that the load has no exact derivatives; nothing is changed then except that list.
+    pub fn add_to(&self, found: &mut Sensitivity, crane: &LiveCrane, asked: &Envelope, place: usize) -> Option<()> {
+        let bound = self.bound(found, crane, asked);
+        let by_load = found.derivatives.remove(place);
+        found.pose.remove(place);
+        found.parameters.remove(place);
+        let Bound { output, sign, limit, slopes } = bound?;
+        let slope = sign * by_load[output] * asked.factor;
+        let correction = -(sign * found.values[output] - limit) / slope;
+        if !slope.is_finite() || slope == 0.0 || correction.abs() > SMALL * self.load.abs() {
+            return None;
+        }
+        for (index, derivatives) in found.derivatives.iter_mut().enumerate() {
+            let of_limit = slopes.get(index).copied().unwrap_or_default();
+            let own = -(sign * derivatives[output] - of_limit) / slope;
+            derivatives.push(own);
+        }
+        found.values.push(self.load + correction);
+        found.outputs.push(self.output(crane, asked));
+        Some(())
+    }
+
+    /// Adds the load with derivatives that are differences of largest loads, and returns the estimates of their errors.
+    ///
+    /// # Errors
+    /// With a number slightly smaller or larger there is no largest load.
+    pub fn add_differences(
+        &self,
+        found: &mut Sensitivity,
+        crane: &LiveCrane,
+        asked: &Envelope,
+    ) -> Result<Vec<f64>, NoLargestLoad> {
+        let mut errors = Vec::new();
+        for (index, &parameter) in found.parameters.iter().enumerate() {
+            let value = crane.parameters()[parameter];
+            let step = STEP * if value == 0.0 { 1.0 } else { value.abs() };
+            let at = |share: f64| {
+                let mut other = crane.clone();
+                let set = other.set_parameter(parameter, value + share * step);
+                set.map_err(|refused| NoLargestLoad::Refused(refused.to_string()))?;
+                Ok(Self::of(&other, asked)?.load)
+            };
+            let Differences { derivatives, errors: own, .. } =
+                Differences::central([at(-1.0)?, at(-0.5)?, at(0.5)?, at(1.0)?].map(|load| vec![load]), step);
+            found.derivatives[index].push(derivatives[0]);
+            errors.push(own[0]);
+        }
+        found.values.push(self.load);
+        found.outputs.push(self.output(crane, asked));
+        Ok(errors)
+    }
+
+    /// What happens to the load when each parameter changes by its whole step, one after the other, that its derivatives do not say. `crane`: with
+    /// its own load; `found`: with the output.
+    #[must_use]
+    pub fn cautions(&self, found: &Sensitivity, crane: &LiveCrane, asked: &Envelope, steps: &[f64]) -> Vec<String> {
+        let mut words = Vec::new();
+        let Some(output) = found.index_of(NAME) else { return words };
+        let unit = found.outputs[output].unit;
+        for ((place, &parameter), step) in found.parameters.iter().enumerate().zip(steps) {
+            let info = &crane.description().parameters[parameter];
+            let value = crane.parameters()[parameter] + step;
+            let with = format!("with {} at {}", label(info), in_unit(value, &info.unit));
+            let mut other = crane.clone();
+            if other.set_parameter(parameter, value).is_err() {
+                words.push(format!("{with} it breaks a rule of the spec"));
+                continue;
+            }
+            let straight = found.derivatives[place][output] * step;
+            match Self::of(&other, asked) {
+                Err(none) => words.push(format!("{with}, {}", none.words(&other, unit))),
+                Ok(then) if then.limit != self.limit => words.push(format!(
+                    "{with}, the largest load is {}, limited by {}: it changes by {} instead of {}",
+                    in_unit(then.load, unit),
+                    then.words(&other),
+                    in_unit(then.load - self.load, unit),
+                    in_unit(straight, unit)
+                )),
+                Ok(then) => {
+                    let whole = then.load - self.load;
+                    let off = (whole - straight).abs();
+                    if off > CURVED * whole.abs().max(straight.abs()) && off > MATTERS * self.load.abs() {
+                        let [whole, straight] = [whole, straight].map(|change| in_unit(change, unit));
+                        words.push(format!("{with}, the largest load changes by {whole} instead of {straight}"));
+                    }
+                }
+            }
+        }
+        words
+    }
+
+    fn output(&self, crane: &LiveCrane, asked: &Envelope) -> Output {
+        let unit = crane.description().parameters[asked.load].unit.as_str();
+        let unit = UNITS_OF_LOADS.into_iter().find(|own| *own == unit).unwrap_or_default();
+        Output { name: NAME.to_owned(), unit, group: Group::Load, place: self.words(crane) }
+    }
+
+    /// The output that is at its bound; `None` if there is none.
+    fn bound(&self, found: &Sensitivity, crane: &LiveCrane, asked: &Envelope) -> Option<Bound> {
+        let description = crane.description();
+        let output = |name: &str| found.index_of(name);
+        let fixed =
+            |output: Option<usize>, limit: f64| Some(Bound { output: output?, sign: 1.0, limit, slopes: Vec::new() });
+        match self.limit {
+            Limit::Tipping { .. } => {
+                let margin = output("tipping_margin")?;
+                let is_same = found.outputs[margin].place == self.limit.location(description);
+                is_same.then(|| fixed(Some(margin), asked.limits.tipping?))?
+            }
+            Limit::Utilisation { .. } => fixed(output("greatest_utilisation"), asked.limits.utilisation?),
+            Limit::Effort { drive } => {
+                let coordinate = &description.coordinates[description.drives[drive].coordinate];
+                let output = output(&drive_effort(&coordinate.name, coordinate.kind))?;
+                let limit = |crane: &LiveCrane| asked.limits.with_max_efforts(crane).efforts[drive];
+                let slope = |&parameter: &usize| slope_of(crane, parameter, limit);
+                let slopes = found.parameters.iter().map(slope).collect();
+                Some(Bound { output, sign: found.values[output].signum(), limit: limit(crane), slopes })
+            }
+            Limit::Pressure { cylinder, rod } | Limit::Pump { cylinder, rod } => {
+                let info = &description.cylinders[cylinder];
+                let is_pump = matches!(self.limit, Limit::Pump { .. });
+                let limit = if is_pump { description.pump.and_then(|pump| pump.pressure) } else { info.max_pressure };
+                fixed(output(&format!("{}_{}_pressure", info.name, if rod { "rod" } else { "piston" })), limit?)
+            }
+            Limit::Stroke { cylinder } => {
+                let info = &description.cylinders[cylinder];
+                let length = output(&format!("{}_length", info.name))?;
+                let ends = [info.retracted, info.retracted + info.stroke];
+                let away = |end: &f64| (found.values[length] - end).abs();
+                fixed(Some(length), ends.into_iter().min_by(|a, b| away(a).total_cmp(&away(b)))?)
+            }
+            Limit::LiftOff { foot } => fixed(output(&format!("{}_reaction_z", description.supports[foot].name)), 0.0),
+            Limit::Slack { rope } => fixed(output(&connector_force(&description.connectors[rope])), 0.0),
+            Limit::Equilibrium | Limit::Deflection { .. } | Limit::Stop { .. } => None,
+        }
+    }
+}
+
+/// An output at its bound: `g = sign · output − limit`.
+struct Bound {
+    output: usize,
+    sign: f64,
+    limit: f64,
+    /// Derivatives of the bound by the parameters, if it moves.
+    slopes: Vec<f64>,
+}
+
+/// Derivative of a number of the crane that is proportional to a parameter, or does not depend on it.
+fn slope_of(crane: &LiveCrane, parameter: usize, number: impl Fn(&LiveCrane) -> f64) -> f64 {
+    const STEP: f64 = 1e-3;
+    let value = crane.parameters()[parameter];
+    let step = STEP * if value == 0.0 { 1.0 } else { value.abs() };
+    let at = |step: f64| {
+        let mut other = crane.clone();
+        other.set_parameter(parameter, value + step).ok()?;
+        Some(number(&other))
+    };
+    match (at(-step), at(step)) {
+        (Some(before), Some(after)) if before.is_finite() && after.is_finite() => (after - before) / (2.0 * step),
+        _ => 0.0,
+    }
+}
