@@ -83,7 +83,7 @@ pub fn headlines(description: &Description) -> Vec<Kind> {
         Kind::new(supports.collect(), "N", Size::Peak),
         Kind::new(cylinders::pressures(description), "Pa", Size::Peak),
         Kind::new(connectors("N"), "N", Size::Peak),
-        // Where nothing twists a telescope, the moments of its pads are zero but for rounding.
+        // Where nothing twists a telescope, the moments of its pads are zero up to rounding.
         Kind { beside: connectors("N"), ..Kind::new(connectors("N m"), "N m", Size::Peak) },
     ]
 }
