@@ -558,7 +558,7 @@ catalogue! {
     W042 out_of_beam(stage, outer, overlap, coordinate, position, least) "`{stage}` leaves `{outer}`: with `{coordinate}` at {position} m the overlap is {overlap} m",
         "nothing holds it there, and results mean nothing", "let `{coordinate}` end at {least} m, or give longer beams and a longer `overlap`";
     /// A stage of a telescope overlaps its outer beam by at least the height of its section.
-    W043 short_overlap(stage, outer, overlap, coordinate, position, height, least) "`{stage}` overlaps `{outer}` by only {overlap} m with `{coordinate}` at {position} m",
+    W043 short_overlap(stage, overlap, coordinate, position, height, least) "the overlap of `{stage}` is only {overlap} m with `{coordinate}` at {position} m",
         "less than the height of its section, {height} m: real pads are too long, and walls too weak, for such a hold",
         "let `{coordinate}` end at {least} m, or give longer beams and a longer `overlap`";
 }

@@ -26,16 +26,8 @@ impl Plausibility<'_> {
         if overlap <= 0.0 {
             self.warn(rule::out_of_beam(at, inner, outer, rounded(overlap), name, rounded(x), least));
         } else if overlap < height {
-            self.warn(rule::short_overlap(
-                at,
-                inner,
-                outer,
-                rounded(overlap),
-                name,
-                rounded(x),
-                rounded(height),
-                least,
-            ));
+            let [overlap, x, height] = [overlap, x, height].map(rounded);
+            self.warn(rule::short_overlap(at, inner, overlap, name, x, height, least));
         }
     }
 
@@ -45,7 +37,7 @@ impl Plausibility<'_> {
         let (crane, chain) = (self.crane, self.chain);
         let name = &chain.coordinates[coordinate.0].name;
         let of_drives = items(crane.drives.as_ref()).filter(|drive| drive.coordinate.value.as_ref() == Some(name));
-        let of_drives = of_drives.filter_map(|drive| drive.motion.value.as_ref());
+        let of_drives = of_drives.filter_map(|drive| drive.motion.as_ref()?.value.as_ref());
         let mut found: Vec<(f64, Span)> = of_drives.flat_map(|motion| self.stations(motion)).collect();
         let guess = crane.guess.as_ref().and_then(|guess| guess.value.as_ref());
         let guess =

@@ -47,17 +47,18 @@ pub fn make_live(options: &mut Sensitivity, registry: &mut Registry) -> Outcome<
         }
     }
     options.numbers = numbers;
-    let changed = with_live_numbers(&source, &mut options.numbers).map_err(refusal)?;
+    let changed = with_live_numbers(&source, &mut options.numbers)?;
     if let Some(changed) = changed {
         registry.add(&name, changed.text);
     }
     Ok(())
 }
 
-/// Why a number cannot change.
-fn refusal(refused: Refused) -> Problem {
-    let [title, help] = refused.words();
-    Problem::usage(title, help)
+impl From<Refused> for Problem {
+    fn from(refused: Refused) -> Self {
+        let [title, help] = refused.words();
+        Problem::usage(title, help)
+    }
 }
 
 /// A number that changes.
@@ -276,7 +277,7 @@ fn changes(request: &Request<'_>, source: &SourceFile, crane: &LiveCrane, loaded
     };
     let mut numbers: Vec<Number> = parameters.iter().map(|&index| Number::live(&crane, index)).collect();
     for place in &places {
-        let number = FixedNumber::new(source, place).map_err(refusal)?;
+        let number = FixedNumber::new(source, place)?;
         let Differences { derivatives, errors, .. } = number.differentiate(&crane, &found, settings)?;
         found.derivatives.push(derivatives);
         numbers.push(Number {

@@ -236,7 +236,7 @@ impl LargestLoad {
             }
             Limit::LiftOff { foot } => fixed(output(&format!("{}_reaction_z", description.supports[foot].name)), 0.0),
             Limit::Slack { rope } => fixed(output(&connector_force(&description.connectors[rope])), 0.0),
-            Limit::Equilibrium | Limit::Deflection { .. } | Limit::Stop { .. } => None,
+            Limit::Equilibrium | Limit::Deflection { .. } | Limit::Stop { .. } | Limit::Overlap { .. } => None,
         }
     }
 }
