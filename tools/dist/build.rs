@@ -28,19 +28,25 @@ fn main() -> io::Result<()> {
     for file in &files {
         println!("cargo::rerun-if-changed={}", file.display());
         let name = file.strip_prefix(&root).map_err(io::Error::other)?;
-        sources += &format!("({name:?}, include_str!({file:?})),\n");
+        let (name, file) = (text(name)?, text(file)?);
+        sources.extend([format!("({name:?}, include_str!({file:?})),\n")]);
     }
     let library = match env::var_os(LIBRARY) {
         Some(path) => {
             let path = Path::new(&path).canonicalize()?;
             println!("cargo::rerun-if-changed={}", path.display());
-            format!("Some(include_bytes!({path:?}))")
+            format!("Some(include_bytes!({:?}))", text(&path)?)
         }
         None => "None".to_owned(),
     };
     let carried = format!("const CARRIED: Carried = Carried {{ unit_library: {library}, sources: &[\n{sources}] }};\n");
     let out = env::var_os("OUT_DIR").ok_or_else(|| io::Error::other("cargo sets OUT_DIR"))?;
     fs::write(Path::new(&out).join("carried.rs"), carried)
+}
+
+/// A path as text, which source code can contain.
+fn text(path: &Path) -> io::Result<&str> {
+    path.to_str().ok_or_else(|| io::Error::other(format!("{}: a path that is not UTF-8", path.display())))
 }
 
 /// All files of a folder.

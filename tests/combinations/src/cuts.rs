@@ -212,7 +212,7 @@ fn pad_forces(
     let slid = q[coordinate.0];
     let s = start.at(parameters) + if *grows { slid } else { -slid };
     let section = length / n.max(1) as f64;
-    let k = ((s / section).max(0.0) as usize).min(n.saturating_sub(1));
+    let k = (1..n).take_while(|&k| k as f64 * section <= s).count();
     let part = if n == 0 { 0.0 } else { s / section - k as f64 };
     let axis = |body: usize, index: usize| -> Vector3<f64> { transforms[body].fixed_view::<3, 1>(0, index).into() };
     let [y, z] = [1, 2].map(|index| axis(carrier, index));

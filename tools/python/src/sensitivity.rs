@@ -47,7 +47,7 @@ impl Crane {
             let mut crane = with_numbers.clone();
             // Checked when they were given; the numbers at places keep their values.
             let _ = crane.set_parameters(self.of_row(row).parameters());
-            Some(by_all(&crane, &parameters, &fixed, &names, &settings))
+            Some(by_all(&crane, &parameters, &fixed, &names, settings))
         })?;
         let reason = |row: usize, found: &Option<Result<Sensitivity, Failed>>| match found {
             Some(Ok(_)) => None,
@@ -122,11 +122,11 @@ fn by_all(
     parameters: &[usize],
     fixed: &[FixedNumber],
     names: &[String],
-    settings: &Settings,
+    settings: Settings,
 ) -> Result<Sensitivity, Failed> {
-    let mut found = sensitivity(crane, parameters, settings)?;
+    let mut found = sensitivity(crane, parameters, &settings)?;
     let differences: Vec<Differences> =
-        fixed.iter().map(|number| number.differentiate(crane, &found, settings)).collect::<Result<_, _>>()?;
+        fixed.iter().map(|number| number.differentiate(crane, &found, &settings)).collect::<Result<_, _>>()?;
     let of_fixed = differences.iter().map(|own| own.derivatives.clone());
     found.derivatives = in_order(names, std::mem::take(&mut found.derivatives).into_iter(), of_fixed);
     found.pose =

@@ -289,15 +289,15 @@ fn changes(request: &Request<'_>, source: &SourceFile, crane: &LiveCrane, loaded
             is_fixed: true,
         });
     }
-    if let Some((largest, asked)) = loaded {
-        if largest.add_to(&mut found, &crane, asked, parameters.len()).is_none() {
-            let errors = largest.add_differences(&mut found, own, asked).map_err(|none| no_load(&none, own, asked))?;
-            for (number, error) in numbers.iter_mut().zip(errors) {
-                number.errors = Some(vec![0.0; found.outputs.len() - 1].into_iter().chain([error]).collect());
-            }
-            for derivatives in found.derivatives.iter_mut().skip(parameters.len()) {
-                derivatives.push(f64::NAN);
-            }
+    if let Some((largest, asked)) = loaded
+        && largest.add_to(&mut found, &crane, asked, parameters.len()).is_none()
+    {
+        let errors = largest.add_differences(&mut found, own, asked).map_err(|none| no_load(&none, own, asked))?;
+        for (number, error) in numbers.iter_mut().zip(errors) {
+            number.errors = Some(vec![0.0; found.outputs.len() - 1].into_iter().chain([error]).collect());
+        }
+        for derivatives in found.derivatives.iter_mut().skip(parameters.len()) {
+            derivatives.push(f64::NAN);
         }
     }
     if let Some(rigid) = rigid(&crane, &parameters, &places, source) {
@@ -409,12 +409,13 @@ fn numbers(asked: &[String], description: &Description, load: Option<usize>) -> 
 fn shown(asked: &[String], outputs: &[Output], all: bool) -> Outcome<Vec<usize>> {
     if asked.is_empty() {
         let is_main = |output: &Output| match output.group {
-            Group::Points | Group::Deflections | Group::Drives | Group::Tipping | Group::Frequencies => true,
+            Group::Points | Group::Deflections | Group::Drives | Group::Tipping | Group::Frequencies | Group::Load => {
+                true
+            }
             Group::Cylinders | Group::Connectors => output.unit == "N" || output.unit == "N m",
             Group::Supports => output.name.ends_with("_reaction_z"),
             Group::Stresses => output.name.starts_with("greatest"),
             Group::Loops => false,
-            Group::Load => true,
         };
         // With a largest load, this is what was asked for.
         let has_load = outputs.iter().any(|output| output.group == Group::Load);

@@ -206,7 +206,7 @@ impl Default for Settings {
 /// The crane has no stable equilibrium.
 pub fn sensitivity(crane: &LiveCrane, parameters: &[usize], settings: &Settings) -> Result<Sensitivity, Failed> {
     let any: &dyn DynCrane = crane;
-    at_rest(crane, parameters, settings, &any.equilibrium(&statics::Settings::default()))
+    at_rest(crane, parameters, *settings, &any.equilibrium(&statics::Settings::default()))
 }
 
 /// As [`sensitivity`], for a pose at rest near another one.
@@ -220,14 +220,14 @@ pub fn sensitivity_near(
     q: &[f64],
 ) -> Result<Sensitivity, Failed> {
     let any: &dyn DynCrane = crane;
-    at_rest(crane, parameters, settings, &any.equilibrium_at(0.0, q, &statics::Settings::default()))
+    at_rest(crane, parameters, *settings, &any.equilibrium_at(0.0, q, &statics::Settings::default()))
 }
 
 /// At an equilibrium that was found.
 fn at_rest(
     crane: &LiveCrane,
     parameters: &[usize],
-    settings: &Settings,
+    settings: Settings,
     equilibrium: &Equilibrium,
 ) -> Result<Sensitivity, Failed> {
     let any: &dyn DynCrane = crane;

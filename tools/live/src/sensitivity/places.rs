@@ -82,7 +82,9 @@ pub fn with_live_numbers(source: &SourceFile, numbers: &mut [String]) -> Result<
         all = live(&all, index, &numbers[index])?;
     }
     if LiveCrane::from_spec(&all).is_ok() {
-        places.iter().for_each(|&index| numbers[index] = format!("{PLACE}{index}"));
+        for &index in &places {
+            numbers[index] = format!("{PLACE}{index}");
+        }
         return Ok(Some(all));
     }
     let mut changed = None;

@@ -26,7 +26,6 @@ pub fn unit_at(place: &str, source: &SourceFile, description: &Description) -> &
             CoordinateKind::Rotation => "s/rad",
             CoordinateKind::Translation => "s/m",
         },
-        "drives" | "stops" | "friction" => of_joint(key, named("coordinate")),
         "damping" => of_joint("damping", named("coordinate")),
         "armature" => of_joint("armature", named("coordinate")),
         "guess" => named("coordinate").unit(),
@@ -36,7 +35,7 @@ pub fn unit_at(place: &str, source: &SourceFile, description: &Description) -> &
             _ => "",
         },
         "couplings" if key == "offset" => named("coordinate").unit(),
-        "couplings" => of_joint(key, named("coordinate")),
+        "drives" | "stops" | "friction" | "couplings" => of_joint(key, named("coordinate")),
         "gravity" => "m/s²",
         "parameters" | "inputs" => "",
         "run" => "s",
@@ -93,15 +92,9 @@ fn of_part(words: &[&str], key: &str, component: Option<usize>) -> &'static str 
         "link" | "rocker" | "pivot" | "length" | "height" | "width" | "thickness" | "flange" | "web" | "diameter"
         | "at" | "com" | "gyration" | "translation" | "a" | "d" | "bore" | "rod" | "stroke" | "retracted"
         | "free_play" | "clearance" => "m",
-        "overlap" => {
-            if is_within("slides_in") {
-                "m"
-            } else {
-                ""
-            }
-        }
+        "overlap" if is_within("slides_in") => "m",
         "area" | "Ay" | "Az" => "m²",
-        "Wy" | "Wz" | "Wt" => "m³",
+        "Wy" | "Wz" | "Wt" | "hose_volumes" | "volume" => "m³",
         "Jy" | "Jz" | "Jo" => "m⁴",
         "mass" => "kg",
         "extra_mass" | "mass_per_length" => "kg/m",
@@ -110,7 +103,6 @@ fn of_part(words: &[&str], key: &str, component: Option<usize>) -> &'static str 
         "E" | "G" | "yield_stress" | "max_pressure" | "back_pressure" | "bulk_modulus" | "pressure"
         | "pressure_drop" => "Pa",
         "flow" | "max_flow" => "m³/s",
-        "hose_volumes" | "volume" => "m³",
         "leakage" => "m³/(s Pa)",
         "gain" => "1/m",
         _ => "",

@@ -71,7 +71,7 @@ fn differences<'a>(
     feet.chain(governs).chain(curved.take(MOST))
 }
 
-/// A number with its unit, stresses in MPa.
+/// A number with its unit, stresses in `MPa`.
 pub(super) fn in_unit(number: f64, unit: &str) -> String {
     let (number, unit) = if unit == "Pa" { (1e-6 * number, "MPa") } else { (number, unit) };
     format!("{} {unit}", short(number)).trim_end().to_owned()
