@@ -675,6 +675,9 @@ fn mass_unit(tree: &Tree, _: &mut Rng) -> Option<Second> {
     if let Some(value) = second["parameters"]["payload"]["value"].as_f64() {
         second["parameters"]["payload"]["value"] = json!(HEAVIER * value);
     }
+    if let Some(push) = second.pointer_mut("/inputs/push/value") {
+        double(push);
+    }
     let factor = |unit: &str| if ["N", "N m", "J", "W", "Pa"].contains(&unit) { HEAVIER } else { 1.0 };
     Some(Second { factor: Box::new(factor), ..Second::of(&second) })
 }
@@ -683,6 +686,15 @@ fn heavier(tree: &mut Tree, within: &str) {
     match tree {
         Value::Object(entries) => {
             for (key, value) in entries.iter_mut() {
+                if key == "effort" {
+                    // Its times stay.
+                    for end in ["/cubic/from", "/cubic/to"] {
+                        if let Some(end) = value.pointer_mut(end) {
+                            double(end);
+                        }
+                    }
+                    continue;
+                }
                 // Where damping is a time over a length or a time, not a force over a rate.
                 let per_length = matches!(within, "rope_law" | "stops");
                 if WITH_MASS.contains(&key.as_str())
