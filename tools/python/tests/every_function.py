@@ -38,7 +38,7 @@ OTHERS = {
 }
 # Functions that take one state, or none, and what else they need.
 ONE_STATE = {"simulate", "simulation", "_record", "_motion"}
-NO_STATE = {"replace", "page", "export", "picture", "_parameter_rows", "_page", "_envelope"}
+NO_STATE = {"replace", "page", "export", "picture", "_parameter_rows", "_page", "_envelope", "sensitivity", "_sensitivity"}
 
 
 @dataclasses.dataclass

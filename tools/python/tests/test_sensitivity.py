@@ -54,7 +54,7 @@ def test_numbers_of_the_spec_have_derivatives_by_their_places():
 
 
 SOLID = """
-extends: cantilever.yaml
+extends: cantilever
 name: solid
 links:
   - {name: beam, beam: {section: {solid: {height: 0.1, width: 0.05}}}}

@@ -11,7 +11,7 @@ inputs: {torque: {value: 3, unit: N m}, gust: {unit: N}}
 links:
   - {name: rod, joint: {revolute: {axis: y}}, mass: 2, com: [0, 0, -1.5], inertia: {Ixx: 0.001, Iyy: 0.05, Izz: 0.05}}
 drives:
-  - {coordinate: rod_psi, effort: {input: torque}, damping: 0.4}
+  - {coordinate: rod_theta, effort: {input: torque}, damping: 0.4}
 loads:
   - {name: wind, link: rod, at: [0, 0, -1.5], force: [1, 0, 0], scale: {input: gust}}
 points:
@@ -28,7 +28,7 @@ def test_a_pendulum_has_the_matrices_of_its_textbook():
     np.testing.assert_allclose(model.A, [[0, 1], [-weight * np.cos(angle) / inertia, -0.4 / inertia]], rtol=1e-12, atol=1e-14)
     np.testing.assert_allclose(np.abs(model.B), [[0, 0], [1 / inertia, arm * np.cos(angle) / inertia]], rtol=1e-8)
     assert model.inputs == ("torque", "gust") and model.input_units == ("N m", "N")
-    assert model.states == ("rod_psi", "rod_psi_rate") and model.state_units == ("rad", "rad/s")
+    assert model.states == ("rod_theta", "rod_theta_rate") and model.state_units == ("rad", "rad/s")
     x = model.C[model.outputs.index("bob_x")]
     np.testing.assert_allclose(np.abs(x), [arm * np.cos(angle), 0], atol=1e-12)
     assert model.D.shape == (5, 2) and not model.D.any()
@@ -37,7 +37,7 @@ def test_a_pendulum_has_the_matrices_of_its_textbook():
 def test_the_frequency_response_is_that_of_an_oscillator():
     """Driven at its frequency, a pendulum at rest answers with `1/(d ω)`."""
     pendulum = crane.load("pendulum", text=PENDULUM, inputs={"torque": 0.0})
-    model = pendulum.state_space([0.0], outputs=["rod_psi"], inputs=["torque"])
+    model = pendulum.state_space([0.0], outputs=["rod_theta"], inputs=["torque"])
     omega = np.sqrt(2 * 9.81 * 1.5 / (0.05 + 2 * 1.5**2))
     response = model.frequency_response([0.0, omega / (2 * np.pi)])
     assert response.shape == (2, 1, 1)

@@ -81,7 +81,9 @@ fn write_checksums() -> Result<(), String> {
 fn try_command(archive: &Path, bare: &Path) -> Result<(), String> {
     step::run_to_end(Command::new("tar").arg("-xzf").arg(archive).args(["--strip-components", "1", "-C"]).arg(bare))?;
     let crane = |arguments: &[&str]| step::run_to_end(alone(bare.join("crane"), bare).args(arguments));
-    crane(&["example", "knuckle_boom", "-o", "boom.yaml"])?;
+    let example = alone(bare.join("crane"), bare).args(["example", "knuckle_boom"]).output();
+    let example = example.map_err(|error| format!("crane example: {error}"))?.stdout;
+    fs::write(bare.join("boom.yaml"), example).map_err(|error| error.to_string())?;
     crane(&["check", "boom.yaml"])?;
     crane(&["statics", "boom.yaml", "-q"])?;
     crane(&["report", "boom.yaml", "--duration", "0.2", "-o", "boom.html", "-q"])?;
