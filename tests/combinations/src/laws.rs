@@ -1,6 +1,6 @@
 //! Laws of mechanics that hold for any crane.
 
-use crane_codegen::chain::{Group, Law as ForceLaw, Profile};
+use crane_codegen::chain::{Group, Law as ForceLaw, Profile, Transmission};
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynDynamics, DynModel, DynStatics};
 use crane_model::dynamics::{Method, Settings};
@@ -327,6 +327,9 @@ fn held(crane: &LiveCrane) -> LiveCrane {
     let start = |profile: &Profile| Profile::Hold(profile.start(parameters).into());
     for drive in &mut chain.drives {
         drive.profile = start(&drive.profile);
+        if let Transmission::Flexible { effort: Some(effort), .. } = &mut drive.transmission {
+            *effort = start(effort);
+        }
     }
     for load in &mut chain.loads {
         load.scale = load.scale.as_ref().map(start);
