@@ -1,7 +1,7 @@
 //! Derivatives at rest by live numbers, against differences of equilibria.
 
 use crane_live::LiveCrane;
-use crane_live::sensitivity::{Group, Sensitivity, Settings, sensitivity};
+use crane_live::sensitivity::{Group, Output, Sensitivity, Settings, sensitivity};
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use fastrand::Rng;
 
@@ -83,8 +83,15 @@ fn differences(
             [before, after].map(|found| found.index_of(name).map_or(f64::NAN, |index| found.values[index]));
         (other - one) / (2.0 * step)
     };
-    let largest = |group: Group, unit: &str| {
-        let alike = found.outputs.iter().enumerate().filter(|(_, output)| output.group == group && output.unit == unit);
+    // Where nothing twists a telescope, rotations and torques of its pads are rounding beside their ways and forces.
+    let kind = |group: Group, unit: &'static str| match (group, unit) {
+        (Group::Connectors, "rad") => "m",
+        (Group::Connectors, "N m") => "N",
+        _ => unit,
+    };
+    let largest = |group: Group, unit: &'static str| {
+        let is_alike = |output: &Output| output.group == group && kind(group, output.unit) == kind(group, unit);
+        let alike = found.outputs.iter().enumerate().filter(|(_, output)| is_alike(output));
         alike.fold(0.0, |size: f64, (index, _)| {
             size.max(found.derivatives[place][index].abs()).max(found.values[index].abs() / per)
         })
