@@ -60,10 +60,7 @@ fn main() -> ExitCode {
         "instrument" => vec![Step::check("the page as an instrument", instrument::build_page)],
         "release" => vec![
             Step::check("Python environment", oracles::prepare_python),
-            Step::cargo(
-                "the library of functional mock-up units",
-                &["build", "--release", "--package", "crane-fmu-library"],
-            ),
+            build_step(),
             Step::check("what is published", release::build_release),
         ],
         "bless" => bless_steps(),

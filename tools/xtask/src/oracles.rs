@@ -2,11 +2,11 @@
 
 use std::process::Command;
 
-use crate::python::{CHECKS, Environment};
+use crate::python::CHECKS;
 use crate::{step, workspace};
 
-fn python_script(environment: &Environment, path: &str) -> Command {
-    let mut command = Command::new(environment.python());
+fn python_script(path: &str) -> Command {
+    let mut command = Command::new(CHECKS.python());
     command.arg(workspace::root().join(path)).current_dir(workspace::root());
     command
 }
@@ -16,7 +16,7 @@ fn run_on_generated_code(path: &str) -> Result<(), String> {
 }
 
 fn on_generated_code(path: &str) -> Command {
-    let mut command = python_script(&CHECKS, path);
+    let mut command = python_script(path);
     command.arg("--evaluate").arg(workspace::target().join("release/evaluate"));
     command
 }
@@ -28,7 +28,7 @@ const MEASURE: &str = "tools/peers/measure.py";
 
 /// CasADi's derivations obey the laws of mechanics, and an error of 1e-8 in any quantity is noticed.
 pub fn check_oracles() -> Result<(), String> {
-    step::run_to_end(python_script(&CHECKS, CHECK).arg("--self-test"))
+    step::run_to_end(python_script(CHECK).arg("--self-test"))
 }
 
 /// Specs that are interpreted, with what no shipped crane has.
@@ -42,7 +42,7 @@ pub fn check_generated_code() -> Result<(), String> {
 
 /// Pinocchio and MuJoCo agree with each other, and an error of 1e-7 in A, e or q̈ is noticed.
 pub fn check_peers() -> Result<(), String> {
-    step::run_to_end(python_script(&CHECKS, AGREE).arg("--self-test"))
+    step::run_to_end(python_script(AGREE).arg("--self-test"))
 }
 
 /// A, e and q̈ of the same cranes.
@@ -53,18 +53,18 @@ pub fn compare_with_peers() -> Result<(), String> {
 /// Exported cranes in Pinocchio and MuJoCo, imported robots in the compiler.
 pub fn check_exchange() -> Result<(), String> {
     let program = |name: &str| workspace::target().join("release").join(name);
-    let mut command = python_script(&CHECKS, "tools/peers/exchange.py");
+    let mut command = python_script("tools/peers/exchange.py");
     step::run_to_end(command.arg("--crane").arg(program("crane")).arg("--evaluate").arg(program("evaluate")))
 }
 
 /// Runs of shipped cranes against `SciPy`'s Radau on `CasADi`'s equations of motion.
 pub fn check_motion() -> Result<(), String> {
-    step::run_to_end(python_script(&CHECKS, MOTION).arg("--command").arg(workspace::target().join("release/crane")))
+    step::run_to_end(python_script(MOTION).arg("--command").arg(workspace::target().join("release/crane")))
 }
 
 /// Arms on hydraulic cylinders, beside Exudyn's.
 pub fn check_hydraulics() -> Result<(), String> {
-    let mut command = python_script(&CHECKS, "tools/peers/hydraulics.py");
+    let mut command = python_script("tools/peers/hydraulics.py");
     step::run_to_end(command.arg("--command").arg(workspace::target().join("release/crane")))
 }
 
@@ -76,10 +76,10 @@ pub fn prepare_python() -> Result<(), String> {
 /// Times the generated functions and other libraries, and writes docs/performance.md; the words after the task are options.
 pub fn measure_performance() -> Result<(), String> {
     CHECKS.prepare()?;
-    step::run_to_end(python_script(&CHECKS, MEASURE).args(std::env::args().skip(2)))
+    step::run_to_end(python_script(MEASURE).args(std::env::args().skip(2)))
 }
 
 /// The measurement in its quick form, without Pinocchio: its templates compile for four minutes.
 pub fn rehearse_performance() -> Result<(), String> {
-    step::run_to_end(python_script(&CHECKS, MEASURE).args(["--quick", "--without", "pinocchio"]))
+    step::run_to_end(python_script(MEASURE).args(["--quick", "--without", "pinocchio"]))
 }
