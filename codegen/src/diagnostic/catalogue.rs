@@ -315,7 +315,7 @@ catalogue! {
     /// A pump supplies the valves with pressure.
     E121 valve_without_pressure(cylinder) "nothing supplies the valve of cylinder `{cylinder}`", "the spec gives no pressure of a pump",
         "add `pump: {{max_flow: 1.5e-3, pressure: 22e6}}` with the data of your pump, in m³/s and Pa";
-    /// A joint that oil moves has a drive with a stiffness and without a limit.
+    /// A joint that oil moves has a drive with a stiffness, and without a limit and an effort.
     E122 valve_of_another_drive(cylinder, coordinate) "cylinder `{cylinder}` has a valve, but the drive of `{coordinate}` is rigid, limited or has an `effort`",
         "oil moves this joint: the cylinder's pressures limit its force",
         "give the drive a `stiffness`, which holds the crane at rest before the run, and neither `rigid`, `effort` nor `max_effort`";
