@@ -1,5 +1,6 @@
 //! Straight-line operations on values: angles first, then everything in the order of its derivation, in which independent
-//! operations are close together. Results are copied in batches, as soon as a batch of them is known.
+//! operations are close together, or result by result, which keeps fewer values at a time. Results are copied in batches, as soon as
+//! a batch of them is known.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -111,9 +112,19 @@ enum Key {
     Node(ExprId, bool),
 }
 
+/// The order of the operations after the angles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// As they were derived.
+    Derivation,
+    /// What the first result needs, then what the second one needs besides, and so on: of a dense matrix of n² results, few are then
+    /// under way at a time.
+    Results,
+}
+
 impl Line {
     /// The line of a selection; `entries` are the results, of `outputs`.
-    pub fn of(graph: &Graph, selection: &Selection, outputs: &[ExprId], entries: &[Entry]) -> Self {
+    pub fn of(graph: &Graph, selection: &Selection, outputs: &[ExprId], entries: &[Entry], order: Order) -> Self {
         let mut writer = Writer {
             graph,
             selection,
@@ -130,9 +141,13 @@ impl Line {
         writer.write_inputs();
         writer.write_angles();
         let mut copies = Copies::of(&writer, &copied);
-        for id in graph.program.ids() {
+        let write = |id| {
             writer.write(id);
             copies.note(&mut writer, id);
+        };
+        match order {
+            Order::Derivation => graph.program.ids().for_each(write),
+            Order::Results => selection.visit_operands_first(&copied, write),
         }
         copies.flush(&mut writer);
         writer.line

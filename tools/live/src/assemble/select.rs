@@ -106,6 +106,29 @@ impl Selection {
         selection
     }
 
+    /// Calls `visit` with every value that some results need, each after its operands, result by result.
+    pub fn visit_operands_first(&self, results: &[Operand], mut visit: impl FnMut(ExprId)) {
+        let mut is_visited = vec![false; self.recipes.len()];
+        let value_of = |operand: &Operand| match operand {
+            Operand::Value(Signed { id, .. }) if self.recipes[id.index()].is_some() => Some(*id),
+            _ => None,
+        };
+        // Values whose operands are to be visited first, and those whose operands are done.
+        let mut waiting: Vec<(ExprId, bool)> = vec![];
+        for result in results {
+            waiting.extend(value_of(result).map(|id| (id, false)));
+            while let Some((id, are_operands_done)) = waiting.pop() {
+                if are_operands_done {
+                    visit(id);
+                } else if !std::mem::replace(&mut is_visited[id.index()], true) {
+                    waiting.push((id, true));
+                    let operands = self.recipes[id.index()].iter().flat_map(|(recipe, _)| recipe.operands());
+                    waiting.extend(operands.filter_map(|operand| value_of(&operand)).map(|id| (id, false)));
+                }
+            }
+        }
+    }
+
     fn want(&mut self, graph: &Graph, operand: Operand) {
         if let Operand::Value(Signed { id, negative }) = operand
             && !graph.is_fixed(id)
