@@ -5,32 +5,39 @@ use std::fs;
 use std::path::{Component, Path, PathBuf};
 
 /// Pages by their paths within the site.
-type Pages = BTreeMap<PathBuf, String>;
+pub type Pages = BTreeMap<PathBuf, String>;
 
-/// Returns the number of pages, or all broken links as an error.
-pub fn check_site(site: &Path) -> Result<usize, String> {
-    let (mut pages, mut files) = (Pages::new(), BTreeSet::new());
-    collect_pages(site, Path::new(""), &mut pages, &mut files)?;
-    let problems: Vec<String> = pages.iter().flat_map(|(page, text)| problems_of_page(page, text, &pages, &files)).collect();
-    if problems.is_empty() { Ok(pages.len()) } else { Err(problems.join("\n")) }
+/// The pages of a site.
+pub fn read_pages(site: &Path) -> Result<Pages, String> {
+    let pages = files_of(site, Path::new(""))?.into_iter().filter(|file| file.extension().is_some_and(|ending| ending == "html"));
+    let read = |page: PathBuf| {
+        let text = fs::read_to_string(site.join(&page)).map_err(|error| format!("{}: {error}", page.display()))?;
+        Ok((page, text))
+    };
+    pages.map(read).collect()
 }
 
-/// All files of a folder, and the text of those that are pages.
-fn collect_pages(site: &Path, folder: &Path, pages: &mut Pages, files: &mut BTreeSet<PathBuf>) -> Result<(), String> {
+/// Returns all broken links of some pages of a site as an error.
+pub fn check_links(site: &Path, pages: &Pages) -> Result<(), String> {
+    let files = files_of(site, Path::new(""))?;
+    let problems: Vec<String> = pages.iter().flat_map(|(page, text)| problems_of_page(page, text, pages, &files)).collect();
+    if problems.is_empty() { Ok(()) } else { Err(problems.join("\n")) }
+}
+
+/// All files below a folder of a site.
+fn files_of(site: &Path, folder: &Path) -> Result<BTreeSet<PathBuf>, String> {
     let failed = |error: std::io::Error| format!("{}: {error}", site.join(folder).display());
+    let mut files = BTreeSet::new();
     for entry in fs::read_dir(site.join(folder)).map_err(failed)? {
         let entry = entry.map_err(failed)?;
         let path = folder.join(entry.file_name());
         if entry.path().is_dir() {
-            collect_pages(site, &path, pages, files)?;
+            files.append(&mut files_of(site, &path)?);
         } else {
-            if path.extension().is_some_and(|extension| extension == "html") {
-                pages.insert(path.clone(), fs::read_to_string(entry.path()).map_err(failed)?);
-            }
             files.insert(path);
         }
     }
-    Ok(())
+    Ok(files)
 }
 
 /// Broken links of a page.

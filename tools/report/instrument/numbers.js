@@ -5,6 +5,7 @@ import { mkdtemp, readFile, readdir, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { basename, join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { start } from "./process.js";
 
 const [wasm, command] = process.argv.slice(2);
 const SPECS = fileURLToPath(new URL("../../../specs", import.meta.url));
@@ -17,22 +18,6 @@ const SAME = 1e-12;
 const SINGLE = 1e-6;
 /** Their length, s. */
 const DURATION = 0.5;
-
-/** An engine in this process. */
-async function start() {
-  const { instance } = await WebAssembly.instantiate(await readFile(wasm), {});
-  const { memory, room, ask, answer } = instance.exports;
-  return (request) => {
-    const bytes = new TextEncoder().encode(JSON.stringify(request));
-    // Each call may move the memory.
-    const place = room(bytes.length);
-    new Uint8Array(memory.buffer, place, bytes.length).set(bytes);
-    const length = ask();
-    const said = JSON.parse(new TextDecoder().decode(new Uint8Array(memory.buffer, answer(), length)));
-    assert(!said.error, said.error);
-    return said;
-  };
-}
 
 /** What the command prints, also where it ends with a failure: a spec with mistakes, a crane that does not rest. */
 function crane(words, input = "") {
@@ -78,7 +63,7 @@ async function differenceOfRun(ask, spec) {
 }
 
 const begin = performance.now();
-const ask = await start();
+const ask = await start(wasm);
 const files = (await readdir(SPECS)).filter((name) => name.endsWith(".yaml"));
 assert(files.length >= 9, "all shipped cranes");
 for (const file of files) {

@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::process::Command;
 
-use crate::{step, workspace};
+use crate::{instrument, report, step, workspace};
 
 const FOLDER: &str = "docs";
 const SUMMARY: &str = "docs/SUMMARY.md";
@@ -32,8 +32,12 @@ pub fn check_manual() -> Result<(), String> {
     if wrong.is_empty() { Ok(()) } else { Err(format!("\n{}", wrong.join("\n"))) }
 }
 
-/// Builds the manual as a site into the folder `book` of the target, and follows every link of its pages.
+/// Builds the manual as a site into the folder `book` of the target, with the page as an instrument and reports of the shipped cranes beside it,
+/// follows every link of its pages, and opens every spec that they link to.
 pub fn build_site() -> Result<(), String> {
+    let [site, reports] = ["book", "book-reports"].map(|name| workspace::target().join(name));
+    let engine = instrument::write_page()?;
+    report::write_reports(&reports)?;
     let builder = |task: &str| {
         let mut command = Command::new(step::cargo());
         let manifest = ["--locked", "--manifest-path", "tools/book/Cargo.toml", "--target-dir"];
@@ -41,7 +45,10 @@ pub fn build_site() -> Result<(), String> {
         command
     };
     step::run_to_end(&mut builder("test"))?;
-    step::run_to_end(builder("run").args(["--", FOLDER]).arg(workspace::target().join("book")))
+    let mut build = builder("run");
+    build.args(["--", FOLDER]).arg(&site).args(["specs", instrument::PAGE]).arg(&reports);
+    step::run_to_end(&mut build)?;
+    step::run_to_end(report::command_in_folder("node").arg("instrument/site.js").arg(engine).arg(site))
 }
 
 /// Pages of the book that its summary does not list exactly once.

@@ -7,7 +7,7 @@ use crate::{report, step, workspace};
 
 const TARGET: &str = "wasm32-unknown-unknown";
 /// The page, below the root.
-const PAGE: &str = "out/instrument.html";
+pub const PAGE: &str = "out/instrument.html";
 /// The engine is small before it is fast, except where `Cargo.toml` says otherwise. Build scripts and macros have settings of their own and are shared
 /// with all other builds; link-time optimisation would not be.
 const SMALL: (&str, &str) = ("CARGO_PROFILE_RELEASE_OPT_LEVEL", "s");
@@ -55,7 +55,7 @@ pub fn build_page() -> Result<(), String> {
 }
 
 /// Builds the page, and returns the engine in it.
-fn write_page() -> Result<PathBuf, String> {
+pub fn write_page() -> Result<PathBuf, String> {
     report::prepare_packages()?;
     let engine = build_engine()?;
     let page = workspace::root().join(PAGE);

@@ -76,6 +76,16 @@ fn write_page(folder: &Path, crane: &str, options: &[&str]) -> Result<PathBuf, S
     Ok(page)
 }
 
+/// Writes a report of every shipped crane into a folder of the site, with a link to the page as an instrument there.
+pub fn write_reports(folder: &Path) -> Result<(), String> {
+    let crane = workspace::target().join("release/crane");
+    shipped_cranes()?.into_iter().try_for_each(|name| {
+        let mut command = Command::new(&crane);
+        command.args(["report", &name, "--quiet", "--instrument", "../instrument.html", "-o"]);
+        step::run_to_end(command.arg(folder.join(name).with_extension("html")))
+    })
+}
+
 /// Names of the shipped cranes.
 fn shipped_cranes() -> Result<Vec<String>, String> {
     let specs = workspace::root().join("specs");
