@@ -210,6 +210,9 @@ fn result(chain: &Chain, Function { id, shape, .. }: &Function) -> String {
         Shape::MassAndBias(_) => format!("out: {n} x {n}, symmetric, then one number per coordinate"),
         Shape::Vectors(_) => format!("out: x, y, z of each of the {}", names()),
         Shape::Pairs(count) => format!("out: {count} pairs"),
+        Shape::Rows { count, n } if *id == FunctionId::DynamicResidualDerivatives => {
+            format!("out: {} matrices of {n} x {n}, row by row, one after the other", count / n)
+        }
         Shape::Rows { count, n } => format!("out: {count} x {n}, row by row, of the {}", names()),
         Shape::Structs(Struct::Tension, _) => {
             format!("out: force and its derivatives with respect to length and rate, of the {}", names())

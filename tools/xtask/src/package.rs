@@ -24,7 +24,7 @@ pub fn build_wheel(folder: &Path) -> Result<PathBuf, String> {
     wheels().map_err(failed)?.pop().ok_or_else(|| format!("pip wrote no wheel to {}", folder.display()))
 }
 
-/// The Python of the checks, with the programs of its environment, of which maturin is one.
+/// The Python of the checks, with the programs of its environment, of which maturin is one, and those of the workspace.
 fn python(arguments: &[&str]) -> Command {
     let mut command = Command::new(CHECKS.python());
     command
@@ -32,7 +32,8 @@ fn python(arguments: &[&str]) -> Command {
         .current_dir(workspace::root())
         .env("CARGO", step::cargo())
         .env("CARGO_TARGET_DIR", workspace::target());
-    let programs = CHECKS.python().parent().map(ToOwned::to_owned).into_iter();
+    let own = workspace::target().join("release");
+    let programs = CHECKS.python().parent().map(ToOwned::to_owned).into_iter().chain([own]);
     let path = std::env::var_os("PATH").unwrap_or_default();
     if let Ok(path) = std::env::join_paths(programs.chain(std::env::split_paths(&path))) {
         command.env("PATH", path);
