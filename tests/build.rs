@@ -10,8 +10,8 @@ use crane_codegen::{SourceFile, build};
 #[path = "src/random/mod.rs"]
 mod random;
 
-/// Random cranes that are compiled; the interpreter runs many more.
-const SEEDS: std::ops::Range<u64> = 0..6;
+/// Random cranes that are compiled: few that have, between them, all that random cranes have. The interpreter runs many more.
+const SEEDS: [u64; 4] = [7, 20, 45, 50];
 
 fn main() -> io::Result<()> {
     println!("cargo::rerun-if-changed=build.rs");

@@ -142,9 +142,12 @@ fn lint_steps() -> Vec<Step> {
 const SECTIONS: &str = "CRANE_BENCH_SECTIONS";
 
 /// All packages together, as the tests build them: alone, a package would select other features of its dependencies. This
-/// includes the library of functional mock-up units.
+/// includes the library of functional mock-up units, but not the crane without std, which its own step builds without them.
+pub const ALL_PROGRAMS: [&str; 9] =
+    ["build", "--release", "--workspace", "--exclude", "crane-bench", "--exclude", "no-std-crane", "--bins", "--lib"];
+
 fn build_step() -> Step {
-    Step::cargo("all programs", &["build", "--release", "--workspace", "--exclude", "crane-bench", "--bins", "--lib"])
+    Step::cargo("all programs", &ALL_PROGRAMS)
 }
 
 fn test_steps() -> Vec<Step> {
@@ -152,15 +155,15 @@ fn test_steps() -> Vec<Step> {
         build_step(),
         Step::cargo("tests", &["test", "--release", "--workspace", "--exclude", "crane-bench", "--no-fail-fast"]),
         Step::check("tests with fused multiply-adds", fused::check_fused),
-        Step::program("the default run", "crane"),
-        Step::check("the report page is current", report::check_current),
-        Step::check("the report page in a browser", report::check_in_browser),
-        Step::check("the instrument in a browser", instrument::check_instrument),
-        Step::program("the example of your own crane", "own-crane"),
-        Step::check("a new crane", new_crane::check_new_crane),
-        Step::check("commands of the manual", manual::check_manual),
-        Step::check("commands of the README and of CONTRIBUTING", || commands::check_commands(USAGE)),
-        Step::check("commands that pages name", || named::check_named(USAGE)),
+        Step::program("the default run", "crane", &[]),
+        Step::check("the report page in a browser", report::check_in_browser).light(),
+        Step::check("the instrument in a browser", instrument::check_instrument).light(),
+        Step::check("the report page is current", report::check_current).light(),
+        Step::program("the example of your own crane", "own-crane", &[]).light(),
+        Step::check("a new crane", new_crane::check_new_crane).light(),
+        Step::check("commands of the manual", manual::check_manual).light(),
+        Step::check("commands of the README and of CONTRIBUTING", || commands::check_commands(USAGE)).light(),
+        Step::check("commands that pages name", || named::check_named(USAGE)).light(),
         // A static library with its own panic handler: no crate that it depends on may link std or need a heap.
         Step::cargo(
             "a crane without std and heap",
@@ -169,8 +172,9 @@ fn test_steps() -> Vec<Step> {
                 &["--crate-type", "staticlib", "--", "-C", "panic=abort"],
             ]
             .concat(),
-        ),
-        Step::check("cranes without panics", no_panic::check_no_panic),
+        )
+        .light(),
+        Step::check("cranes without panics", no_panic::check_no_panic).light(),
         Step::check("the Python package", package::check_package),
         Step::check("a release, where there is nothing else", release::rehearse_release),
         Step::check("the manual as a site", book::build_site).light(),
@@ -185,11 +189,10 @@ fn test_steps() -> Vec<Step> {
 fn measurement_steps() -> Vec<Step> {
     let once = ["bench", "--package", "crane-bench", "--", "--test"];
     let out = "target/error-vs-runtime/quick";
-    let lab = ["run", "--release", "--package", "crane-lab", "--", "work-precision", "knuckle_boom"];
-    let quick = [&lab[..], &["--quick", "--sections", "none", "--duration", "0.5", "--out", out]].concat();
+    let quick = ["work-precision", "knuckle_boom", "--quick", "--sections", "none", "--duration", "0.5", "--out", out];
     vec![
         Step::cargo("every benchmark once", &once).with(SECTIONS, "0"),
-        Step::cargo("error against run time, quickly", &quick),
+        Step::program("error against run time, quickly", "crane-lab", &quick),
         Step::check("times beside other libraries, quickly", oracles::rehearse_performance),
     ]
 }

@@ -45,10 +45,10 @@ pub fn rehearse_release() -> Result<(), String> {
 fn pack_command() -> Result<PathBuf, String> {
     let library = format!("{}crane_fmu_library{}", env::consts::DLL_PREFIX, env::consts::DLL_SUFFIX);
     let built = workspace::target().join("release");
-    // All packages together, as the checks build them: alone, a package would select other features of its dependencies.
     let mut cargo = Command::new(step::cargo());
-    cargo.args(["build", "--release", "--workspace", "--exclude", "crane-bench", "--bins", "--lib"]);
-    step::run_to_end(cargo.env("CRANE_UNIT_LIBRARY", built.join(library)).current_dir(workspace::root()))?;
+    step::run_to_end(
+        cargo.args(crate::ALL_PROGRAMS).env("CRANE_UNIT_LIBRARY", built.join(library)).current_dir(workspace::root()),
+    )?;
 
     let name = format!("crane-{}-{}", env!("CARGO_PKG_VERSION"), workspace::host_triple()?);
     let packed = published().join(&name);

@@ -26,7 +26,7 @@ pub struct Step {
 #[derive(Clone)]
 enum Action {
     Cargo { arguments: Vec<String>, environment: Vec<(&'static str, &'static str)> },
-    Program(&'static str),
+    Program { name: &'static str, arguments: Vec<String> },
     Check(fn() -> Result<(), String>),
 }
 
@@ -43,8 +43,9 @@ impl Step {
     }
 
     /// Runs a program of the workspace that is already built, at the workspace's root.
-    pub fn program(title: &'static str, name: &'static str) -> Self {
-        Step { title, action: Action::Program(name), is_light: false }
+    pub fn program(title: &'static str, name: &'static str, arguments: &[&str]) -> Self {
+        let arguments = arguments.iter().map(ToString::to_string).collect();
+        Step { title, action: Action::Program { name, arguments }, is_light: false }
     }
 
     /// The same beside its neighbours.
@@ -64,9 +65,9 @@ impl Step {
     pub fn run(&self) -> Result<(), String> {
         match &self.action {
             Action::Check(check) => check(),
-            Action::Program(name) => {
+            Action::Program { name, arguments } => {
                 let program = workspace::target().join("release").join(name);
-                run_to_end(Command::new(program).current_dir(workspace::root()))
+                run_to_end(Command::new(program).args(arguments).current_dir(workspace::root()))
             }
             Action::Cargo { arguments, environment } => {
                 let mut command = Command::new(cargo());

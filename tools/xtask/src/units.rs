@@ -1,7 +1,10 @@
-//! Units that cargo builds twice, for programs and for build scripts: each costs a fresh `cargo run --release` its time again.
+//! Units that cargo builds twice: for programs and for build scripts, which costs a fresh `cargo run --release` their time again, or for
+//! programs and for tests that they do not have.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 use std::process::Command;
+use std::{fs, io};
 
 use crate::{step, workspace};
 
@@ -15,23 +18,68 @@ pub fn profile_of_kept_programs() -> Result<String, String> {
     Ok(tables.concat())
 }
 
-/// Every unit that a fresh build of the command builds more than once, as a line that names it and what differs; then profiles that
-/// should be the same.
+/// Finds profiles that should be the same, units that a fresh build of the command builds more than once, with what differs, and units that
+/// are built for tests without having any.
 pub fn check_units() -> Result<(), String> {
     let [own, copied] = ["Cargo.toml", KEPT_PROGRAM].map(workspace::read_file);
     let differences = differences(&release_profile(&own?), &release_profile(&copied?));
     if !differences.is_empty() {
         return Err(format!("{KEPT_PROGRAM} has another profile than the workspace:\n{}", differences.join("\n")));
     }
-    let mut command = Command::new(step::cargo());
-    // The graph is unstable output of a stable cargo.
-    command.args(["build", "--release", "--unit-graph", "-Z", "unstable-options"]).env("RUSTC_BOOTSTRAP", "1");
-    let output = command.current_dir(workspace::root()).output().map_err(|error| format!("cargo: {error}"))?;
-    if !output.status.success() {
-        return Err(format!("cargo --unit-graph: {}", String::from_utf8_lossy(&output.stderr)));
+    let twice = units_built_twice(&unit_graph(&["build"])?);
+    if !twice.is_empty() {
+        return Err(format!("built twice:\n{}", twice.join("\n")));
     }
-    let twice = units_built_twice(&String::from_utf8_lossy(&output.stdout));
-    if twice.is_empty() { Ok(()) } else { Err(format!("built twice:\n{}", twice.join("\n"))) }
+    let idle = without_tests(&unit_graph(&["test", "--workspace", "--exclude", "crane-bench"])?)?;
+    let remedy = "built once more for tests, of which they have none; write `test = false` in their manifests";
+    if idle.is_empty() { Ok(()) } else { Err(format!("{remedy}:\n{}", idle.join("\n"))) }
+}
+
+/// What cargo would build in a release: unstable output of a stable cargo.
+fn unit_graph(task: &[&str]) -> Result<String, String> {
+    let mut command = Command::new(step::cargo());
+    command.args(task).args(["--release", "--unit-graph", "-Z", "unstable-options"]).env("RUSTC_BOOTSTRAP", "1");
+    let output = command.current_dir(workspace::root()).output().map_err(|error| format!("cargo: {error}"))?;
+    if output.status.success() {
+        Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+    } else {
+        Err(format!("cargo --unit-graph: {}", String::from_utf8_lossy(&output.stderr)))
+    }
+}
+
+/// Libraries and programs of the workspace that are built for tests although nothing in their folders is a test. An example that is
+/// there to be copied has a manifest without such settings.
+fn without_tests(graph: &str) -> Result<Vec<String>, String> {
+    let examples = workspace::root().join("examples");
+    let sources = roots_built_for_tests(graph).into_iter().filter(|root| !Path::new(root).starts_with(&examples));
+    let mut idle = vec![];
+    for root in sources {
+        let folder = Path::new(&root).parent().unwrap_or(Path::new("/"));
+        if !has_tests(folder).map_err(|error| format!("{}: {error}", folder.display()))? {
+            idle.push(root);
+        }
+    }
+    Ok(idle)
+}
+
+/// The files with which libraries and programs begin that a graph builds for tests.
+fn roots_built_for_tests(graph: &str) -> BTreeSet<String> {
+    let units = graph.split("{\"pkg_id\":\"").skip(1).filter(|unit| unit.contains("\"mode\":\"test\""));
+    let own = units.filter(|unit| !text_between(unit, "\"kind\":[", "]").contains("\"test\""));
+    own.map(|unit| text_between(unit, "\"src_path\":\"", "\"")).collect()
+}
+
+/// Whether a file below a folder has a test.
+fn has_tests(folder: &Path) -> io::Result<bool> {
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        let found =
+            if path.is_dir() { has_tests(&path)? } else { fs::read(&path)?.windows(7).any(|at| at == b"#[test]") };
+        if found {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 /// The tables of a manifest's release profile by their headers, without comments; those of a template's placeholders are left out.
