@@ -7,6 +7,7 @@ use crane_codegen::build;
 
 fn main() -> io::Result<()> {
     println!("cargo::rerun-if-changed=.");
+    println!("cargo::metadata=folder={}", std::env::current_dir()?.display());
     let mut specs: Vec<PathBuf> = fs::read_dir(".")?.map(|entry| Ok(entry?.path())).collect::<io::Result<_>>()?;
     specs.retain(|path| path.extension().is_some_and(|extension| extension == "yaml"));
     // The order of a folder differs from machine to machine.

@@ -14,6 +14,9 @@ pub const EXAMPLES: &[(&str, &str)] = &[
     ("telescopic_loader", include_str!("../examples/telescopic_loader.yaml")),
 ];
 
+/// The JSON Schema of the spec language.
+pub const SCHEMA: &str = include_str!("../crane.schema.json");
+
 /// The spec of a shipped crane (YAML), by its name.
 #[must_use]
 pub fn spec(name: &str) -> Option<&'static str> {

@@ -22,7 +22,7 @@ use package::{Package, Product};
 /// The crate of the command, from which this program was built and on which the program of a crane depends.
 const CLI: &str = env!("CARGO_MANIFEST_DIR");
 /// The versions of everything that this program was built with.
-pub const LOCK: &str = include_str!("../../../Cargo.lock");
+pub const LOCK: &str = include_str!(concat!(env!("OUT_DIR"), "/Cargo.lock"));
 /// The library of a program of compiled cranes: a crate with a function `main` over a registry; or that of units.
 pub struct Library {
     /// The crate's name.

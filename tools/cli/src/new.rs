@@ -27,7 +27,7 @@ const FILES: [(&str, &str); 6] = [
     ("tests/identities.rs", include_str!("new/identities.rs.template")),
 ];
 const SPEC: &str = "crane.yaml";
-const SCHEMA: (&str, &str) = ("crane.schema.json", include_str!("../../../specs/crane.schema.json"));
+const SCHEMA: (&str, &str) = ("crane.schema.json", crane_specs::SCHEMA);
 
 /// Writes the crate.
 pub fn new(options: &New, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {

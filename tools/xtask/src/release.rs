@@ -10,8 +10,18 @@ use crate::package::build_wheel;
 use crate::step;
 use crate::workspace::{self, published};
 
-/// The crates that others build on, each after those that it needs.
-const CRATES: [&str; 5] = ["crane-quantities", "crane-codegen", "crane-jit", "crane-model", "crane-live"];
+/// The crates that others build on and the command, each after those that it needs.
+const CRATES: [&str; 9] = [
+    "crane-quantities",
+    "crane-codegen",
+    "crane-jit",
+    "crane-model",
+    "crane-live",
+    "crane-specs",
+    "crane-page",
+    "crane-fmu",
+    "crane-cli",
+];
 /// What belongs beside the command.
 const BESIDE: [&str; 4] = ["LICENSE-APACHE", "LICENSE-MIT", "CHANGELOG.md", "specs/crane.schema.json"];
 /// Uses the package without anything that was not installed with it.
