@@ -22,6 +22,7 @@ from ._native import (
     shipped,
     threads,
 )
+from .frames import Frames
 from .model import Crane, load
 from .results import (
     Energies,
@@ -44,6 +45,7 @@ __all__ = [
     "Energies",
     "Ensemble",
     "Envelope",
+    "Frames",
     "Equilibrium",
     "InvalidRowWarning",
     "Linearisation",

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from . import _native, state_space
 from ._native import NoEquilibrium, real_array
+from .frames import Frames
 from .notebook import embed
 from .results import (
     Array,
@@ -185,6 +186,12 @@ class Crane(_native.Crane):
         and of points (`tip_x`), all unless given.
         """
         return state_space.about(self, q, v, t, inputs, outputs, invalid)
+
+    def frames(self, frames: Mapping[str, str | tuple[str, ArrayLike]]) -> Frames:
+        """Frames fixed to links, by names of their own: `{"tool": ("grapple", [0, 0, -0.5])}`, an origin in the frame of a link, m, with the axes of
+        the link (on a beam, of the rigid element there); `{"tool": "grapple"}` is the frame of the link.
+        """
+        return Frames(self, frames)
 
     def steady_motion(
         self,

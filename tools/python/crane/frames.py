@@ -1,0 +1,90 @@
+"""Frames on links, chosen at the call: poses, Jacobians, velocities, accelerations."""
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ._native import real_array
+from .results import Array
+
+if TYPE_CHECKING:
+    from .model import Crane
+
+# Points of a frame, in its axes, m: two axes have the third, and on a beam they stay with the rigid element of the first.
+_OFFSETS = ((0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+class Frames:
+    """Frames fixed to links of a crane: see `Crane.frames`. The functions take batches, as those of `Crane`.
+
+    names: of the frames, in the order of all results. Twists have the velocity of the origin (m/s), then the angular velocity (rad/s), both in the axes of
+    the world; so have Jacobians and accelerations.
+    """
+
+    def __init__(self, crane: "Crane", frames: Mapping[str, str | tuple[str, ArrayLike]]) -> None:
+        self.names = tuple(frames)
+        points = []
+        for name, place in frames.items():
+            link, at = (place, (0.0, 0.0, 0.0)) if isinstance(place, str) else place
+            at = real_array(f"frame {name!r}", at)
+            if at.shape != (3,):
+                raise ValueError(f"frame {name!r}: write (link, [x, y, z]), m in the axes of the link; the place has shape {at.shape}")
+            for corner, offset in enumerate(_OFFSETS):
+                points.append({"name": f"{name}_{corner}", "link": link, "at": [float(x) for x in at + offset]})
+        removed = [{"name": point, "remove": True} for point in crane.info["points"]]
+        changes = f"points: {json.dumps(removed + points)}\n"
+        self._crane = type(crane)(
+            crane.source, text=crane._changed(changes), parameters=crane.parameters, invalid="raise", inputs=crane.inputs
+        )
+
+    def __repr__(self) -> str:
+        return f"Frames({', '.join(self.names)})"
+
+    def _corners(self, numbers: Array, axis: int) -> tuple[Array, Array, Array]:
+        """Origin, and differences of both other points from it, of numbers whose axis `axis` is that of the points."""
+        numbers = np.moveaxis(numbers, axis, 0)
+        origin, one, other = (np.moveaxis(numbers[corner :: len(_OFFSETS)], 0, axis) for corner in range(len(_OFFSETS)))
+        return origin, one - origin, other - origin
+
+    def poses(self, q: ArrayLike) -> Array:
+        """(..., frames, 4, 4): transformations to the world; m."""
+        origin, y, z = self._corners(self._crane.points(q), -2)
+        pose = np.zeros((*origin.shape[:-1], 4, 4))
+        for column, of in enumerate((np.cross(y, z), y, z, origin)):
+            pose[..., :3, column] = of
+        pose[..., 3, 3] = 1.0
+        return pose
+
+    def jacobians(self, q: ArrayLike) -> Array:
+        """(..., frames, 6, n): J of the twists, `twist = J q̇`."""
+        rotation = self.poses(q)[..., :3, :3]
+        origin, y, z = self._corners(self._crane.point_jacobians(q), -3)
+        return np.concatenate([origin, _turning(rotation, y, z)], axis=-2)
+
+    def velocities(self, q: ArrayLike, v: ArrayLike) -> Array:
+        """(..., frames, 6): twists."""
+        rotation = self.poses(q)[..., :3, :3]
+        origin, y, z = self._corners(self._crane.point_velocities(q, v), -2)
+        return np.concatenate([origin, _turning(rotation, y[..., None], z[..., None])[..., 0]], axis=-1)
+
+    def accelerations(self, q: ArrayLike, v: ArrayLike, a: ArrayLike | None = None) -> Array:
+        """(..., frames, 6): accelerations of origins (m/s²) and angular accelerations (rad/s²), `J q̈ + J̇ q̇`; J̇ q̇ without a."""
+        a = np.zeros(self._crane.n) if a is None else a
+        rotation = self.poses(q)[..., :3, :3]
+        omega = np.einsum("...ki,...k->...i", rotation, self.velocities(q, v)[..., 3:])
+        origin, y, z = self._corners(self._crane.point_accelerations(q, v, a), -2)
+        # In the axes of the frame, ë = α × e + ω × (ω × e) for e = e_y and e_z.
+        alpha = np.einsum("...ki,...k->...i", rotation, _turning(rotation, y[..., None], z[..., None])[..., 0])
+        x, y, z = np.moveaxis(omega, -1, 0)
+        alpha = alpha + np.stack([-y * z, -z * x, x * y], axis=-1)
+        return np.concatenate([origin, np.einsum("...ik,...k->...i", rotation, alpha)], axis=-1)
+
+
+def _turning(rotation: Array, y: Array, z: Array) -> Array:
+    """ω in the world's axes, (..., 3, m), of which the rates of two axes of a frame are ω × e_y and ω × e_z, (..., 3, m)."""
+    along = np.einsum("...ki,...km->...im", rotation, y), np.einsum("...ki,...km->...im", rotation, z)
+    omega = np.stack([along[0][..., 2, :], along[1][..., 0, :], -along[0][..., 0, :]], axis=-2)
+    return np.einsum("...ik,...km->...im", rotation, omega)

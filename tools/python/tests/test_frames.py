@@ -1,0 +1,70 @@
+"""Frames on links against transformations of the bodies, whose derivatives the package has."""
+
+import numpy as np
+import pytest
+
+import crane
+
+# An element of a beam with a symmetric joint of sections, a rigid link beyond it, a branch.
+CASES = [
+    ("eight_link_flexible", {"middle": ("boom", [1.3, 0.1, -0.2]), "tool": ("grapple", [0.1, -0.2, -0.5])}, ["boom_1", "grapple"]),
+    ("two_arms", {"basket": ("basket", [0.2, 0.1, 0.3])}, ["basket"]),
+    ("knuckle_boom", {"hook": "hook"}, ["hook"]),
+]
+
+
+def at_random(c, count):
+    generator = np.random.default_rng(5)
+    return c.statics().q + 0.2 * generator.normal(size=(count, c.n)), generator.normal(size=(count, c.n)), generator.normal(size=(count, c.n))
+
+
+@pytest.mark.parametrize("name, places, bodies", CASES)
+def test_frames_are_those_of_their_bodies(name, places, bodies):
+    c = crane.load(name)
+    frames = c.frames(places)
+    q, v, a = at_random(c, 3)
+    poses, jacobians = frames.poses(q), frames.jacobians(q)
+    indices = [[body["name"] for body in c.info["bodies"]].index(body) for body in bodies]
+    transforms, derivatives = c.transforms(q)[:, indices], c.transform_derivatives(q)[:, indices]
+    # Axes are those of the bodies; differences of points some metres away round to 1e-15.
+    np.testing.assert_allclose(poses[..., :3, :3], transforms[..., :3, :3], atol=1e-13)
+    # ∂R/∂q_j = [ω_j] R, and the origin moves with its body.
+    turning = derivatives[..., :3, :3] @ np.swapaxes(transforms[..., None, :3, :3], -1, -2)
+    omega = np.stack([turning[..., 2, 1], turning[..., 0, 2], turning[..., 1, 0]], axis=-2)
+    np.testing.assert_allclose(jacobians[..., 3:, :], omega, atol=1e-12)
+    local = np.einsum("...ki,...k->...i", transforms[..., :3, :3], poses[..., :3, 3] - transforms[..., :3, 3])
+    moved = np.einsum("...jik,...k->...ij", derivatives[..., :3, :3], local) + np.swapaxes(derivatives[..., :3, 3], -1, -2)
+    np.testing.assert_allclose(jacobians[..., :3, :], moved, atol=1e-11)
+    twists = np.einsum("...ij,...j->...i", jacobians, v[:, None])
+    np.testing.assert_allclose(frames.velocities(q, v), twists, atol=1e-11)
+
+
+@pytest.mark.parametrize("name, places, bodies", CASES)
+def test_accelerations_are_rates_of_twists(name, places, bodies):
+    c = crane.load(name)
+    frames = c.frames(places)
+    q, v, a = at_random(c, 3)
+    found = frames.accelerations(q, v, a)
+    # Central differences along the motion q + v h + a h²/2: their error is h² times third derivatives, some 100, and rounding over h.
+    h = 1e-5
+    later, before = (frames.velocities(q + s * h * v + h**2 / 2 * a, v + s * h * a) for s in (1, -1))
+    np.testing.assert_allclose((later - before) / (2 * h), found, rtol=1e-6, atol=1e-6)
+    own = np.einsum("...ij,...j->...i", frames.jacobians(q), a[:, None])
+    np.testing.assert_allclose(found - frames.accelerations(q, v), own, atol=1e-10)
+
+
+def test_the_parameters_and_inputs_are_those_of_the_crane():
+    c = crane.load("knuckle_boom", payload=123.0)
+    frames = c.frames({"hook": "hook"})
+    assert frames._crane.parameters == c.parameters
+    # A point of the spec, without the other points of a frame.
+    q = c.statics().q
+    assert frames.poses(q).shape == (1, 4, 4)
+
+
+def test_places_that_make_no_sense_are_refused():
+    c = crane.load("knuckle_boom")
+    with pytest.raises(ValueError, match="write \\(link, \\[x, y, z\\]\\)"):
+        c.frames({"tool": ("hook", [0.0, 1.0])})
+    with pytest.raises(crane.SpecError, match="hok"):
+        c.frames({"tool": "hok"})
