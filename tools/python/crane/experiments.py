@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ._native import real_array
-from .results import Array
 from .rest_model import FREQUENCY, RestModel
+from .results import Array
 from .run_model import RunModel, following
 from .series import Series, check_noise_names, noise_of, under
 

@@ -14,11 +14,13 @@ from .results import Run as Recorded
 
 if TYPE_CHECKING:
     from .experiments import Run
-    from .series import Series
     from .model import Crane
+    from .series import Series
 
 # Longest interval between results from which a response is interpolated, s: an oscillation of 5 Hz then has an error of 3e-5 of itself.
 INTERVAL = 0.01
+# Time of all runs above which they are computed on all threads, s.
+WORTH_THREADS = 0.1
 # Rows of a table.
 ROWS = 1000
 
@@ -30,7 +32,7 @@ class RunModel:
     accuracy = 1e-5
 
     def __init__(self, experiment: "Run", crane: "Crane", series: list["Series"], delays: dict[str, float | str]) -> None:
-        from .fitting import scipy
+        from .fit_problem import scipy
 
         self._spline = scipy().interpolate.CubicSpline
         self._experiment, self._crane, self._delays = experiment, crane, delays
@@ -49,18 +51,20 @@ class RunModel:
         self.series = [replace(one, unit=first.units[one.column]) for one in series]
 
     def _run(self, numbers: Mapping[str, float]) -> Recorded:
-        """The run with fitted numbers, except those that the experiment sets."""
+        """The run with fitted numbers; the last one is kept."""
         own = {name: value for name, value in numbers.items() if name in self._live}
         if self._known is None or self._known[0] != own:
-            experiment = self._experiment
-            how = {"method": experiment.method, "q": experiment.q, "v": experiment.v}
-            if experiment.method != "rk4":
-                how["tolerance"] = experiment.tolerance
-            else:
-                how["step"] = "auto"
-            crane = self._crane.replace(**own)
-            self._known = own, crane.simulate(duration=self._duration, output=self._output, verify=False, **how)
+            self._known = own, self._compute(own)
         return self._known[1]
+
+    def _compute(self, numbers: Mapping[str, float]) -> Recorded:
+        """The run with fitted numbers, except those that the experiment sets."""
+        experiment = self._experiment
+        how = {"method": experiment.method, "q": experiment.q, "v": experiment.v}
+        # Runs with a constant step have no tolerance.
+        how |= {"step": "auto"} if experiment.method == "rk4" else {"tolerance": experiment.tolerance}
+        own = {name: value for name, value in numbers.items() if name in self._live}
+        return self._crane.replace(**own).simulate(duration=self._duration, output=self._output, verify=False, **how)
 
     def _responses(self, run: Recorded, numbers: Mapping[str, float], order: int = 0) -> list[Array]:
         """Every series of a run at the times of the measurement, or its rate of change: at the start before its dead time."""
@@ -93,17 +97,18 @@ class RunModel:
     def _differences(self, numbers: Mapping[str, float], names: Sequence[str], steps: Mapping[str, tuple[float, float]]) -> Array:
         """(values, names): central differences, one-sided where a bound leaves no room."""
         places = [{**numbers, name: numbers[name] + step} for name in names for step in steps[name]]
-        # A model of its own for every run: runs are kept.
-        def response(place: Mapping[str, float]) -> Array:
-            copy = object.__new__(RunModel)
-            copy.__dict__.update(self.__dict__, _known=None)
-            return np.concatenate(copy._responses(copy._run(place), place))
 
-        pool = ThreadPoolExecutor(max(_native.threads(), 1))
-        try:
-            rows = list(pool.map(response, places))
-        finally:
-            pool.shutdown(cancel_futures=True)
+        def response(place: Mapping[str, float]) -> Array:
+            return np.concatenate(self._responses(self._compute(place), place))
+
+        if len(places) * self._run(numbers).wall_time < WORTH_THREADS:
+            rows = [response(place) for place in places]
+        else:
+            pool = ThreadPoolExecutor(max(_native.threads(), 1))
+            try:
+                rows = list(pool.map(response, places))
+            finally:
+                pool.shutdown(cancel_futures=True)
         slopes = [
             (more - less) / (steps[name][1] - steps[name][0]) for name, less, more in zip(names, rows[::2], rows[1::2], strict=True)
         ]
