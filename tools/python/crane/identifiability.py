@@ -49,9 +49,9 @@ class Directions:
 
 def directions(jacobian: Array, scales: Array, accuracy: float, widening: float) -> Directions:
     """Decomposes a Jacobian. accuracy: relative, of its entries; widening: from standard deviations to half a 95 % interval."""
-    scaled = jacobian * scales
-    _, singular_values, vectors = np.linalg.svd(scaled, full_matrices=True)
-    singular_values = np.concatenate([singular_values, np.zeros(len(scales) - len(singular_values))])
+    # Rows of zeros, where there are fewer values than numbers, so that every combination has its singular value.
+    missing = np.zeros((max(len(scales) - len(jacobian), 0), len(scales)))
+    _, singular_values, vectors = np.linalg.svd(np.vstack([jacobian * scales, missing]), full_matrices=False)
     floor = accuracy * max(singular_values[0], 1e-300) if len(singular_values) else 0.0
     known = (singular_values > floor) & (singular_values * UNKNOWN > widening)
     return Directions(scales, singular_values, vectors.T, known)
