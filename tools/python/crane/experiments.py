@@ -37,8 +37,8 @@ class Model(Protocol):
     def values(self, numbers: Mapping[str, float]) -> Array:
         """All series, one after the other, with these numbers."""
 
-    def derivatives(self, numbers: Mapping[str, float], names: Sequence[str], steps: Mapping[str, tuple[float, float]]) -> Array:
-        """(values, names): their derivatives; `steps` are allowed downward and upward steps of differences."""
+    def derivatives(self, numbers: Mapping[str, float], names: Sequence[str], steps: Mapping[str, float]) -> Array:
+        """(values, names): their derivatives; `steps` are those of differences."""
 
     def cautions(self) -> list[str]:
         """What the last computation says about itself."""

@@ -46,7 +46,7 @@ def fit(
     found need not be the lowest. The others are drawn, with `seed`, within the bounds, and where there are none within a factor of ten.
     evaluations: largest number of evaluations of all experiments from each start, besides those for derivatives.
 
-    Derivatives of values at rest and of frequencies are exact; those of runs are central differences of runs with tolerance 1e-8. Numbers
+    Derivatives of values at rest and of frequencies are exact; those of runs are differences of runs with tolerance 1e-8. Numbers
     are scaled by their values, or by their bounds where they are 0. Where noise is not stated, it is the standard deviation of the residuals of each
     measured quantity. Raises ImportError without SciPy, ValueError for mistakes and where a crane cannot be computed at the start. Everything
     else that is wrong with a fit is in `Fit.status` and `Fit.cautions`.

@@ -101,7 +101,7 @@ class RestModel:
     def values(self, numbers: Mapping[str, float]) -> Array:
         return self._both(numbers, [*numbers])[0]
 
-    def derivatives(self, numbers: Mapping[str, float], names: Sequence[str], steps: Mapping[str, tuple[float, float]]) -> Array:
+    def derivatives(self, numbers: Mapping[str, float], names: Sequence[str], steps: Mapping[str, float]) -> Array:
         slopes = self._both(numbers, [*numbers])[1]
         return slopes[:, [list(numbers).index(name) for name in names]]
 
