@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .notebook import embed
 from .results import Array
 
 if TYPE_CHECKING:
@@ -156,37 +157,56 @@ class Fit(Mapping[str, float]):
     def __str__(self) -> str:
         return "\n".join(self._lines())
 
-    def _lines(self) -> Iterator[str]:
-        values = sum(len(one.measured) for one in self.series)
-        yield f"{self.crane.name}: {len(self.names)} numbers fitted to {values} values: {self.status}"
-        yield ""
-        rows = [("number", "value", "95 % from", "to", "±", "start", "unit")]
+    def page(self) -> str:
+        """The fit as an HTML page that needs no network, to be written to a file: its numbers, and every measured quantity with residuals."""
+        from .fit_page import page
+
+        return page(self)
+
+    def _repr_html_(self) -> str:
+        """The page, for notebooks."""
+        return embed(self.page(), f"fit of {self.crane.name}")
+
+    def tables(self) -> tuple[list[tuple[str, ...]], list[tuple[str, ...]], list[str]]:
+        """What `print` shows, as text: rows of the numbers and of what was measured, each with a head, and what else is to be said."""
+        numbers = [("number", "value", "95 % from", "to", "±", "start", "unit")]
         for place, name in enumerate(self.names):
             low, high = self.intervals[place]
             value, deviation = self.estimates[place], self.quantile * self.deviations[place]
-            width = f"{100 * deviation / abs(value):.2g} %" if np.isfinite(deviation) and value != 0 else ("at a bound" if name in self.at_bound else "unknown")
-            ends = (_shown(low), _shown(high)) if np.isfinite(deviation) else ("", "")
-            rows.append((name, _shown(value), *ends, width, _shown(self.start[place]), self.units[place]))
-        yield from _table(rows)
-        yield ""
-        rows = [("measured", "values", "rms of residuals", "noise", "", "unit")]
+            known = np.isfinite(deviation)
+            width = f"{100 * deviation / abs(value):.2g} %" if known and value != 0 else ("at a bound" if name in self.at_bound else "unknown")
+            ends = (_shown(low), _shown(high)) if known else ("", "")
+            numbers.append((name, _shown(value), *ends, width, _shown(self.start[place]), self.units[place]))
+        measured = [("measured", "values", "rms of residuals", "noise", "", "unit")]
         for one in self.series:
             stated = "stated" if one.noise_stated else "estimated"
-            rows.append((f"{one.experiment}: {one.column}", str(len(one.measured)), f"{one.rms:.2g}", _range(one.noise), stated, one.unit))
-        yield from _table(rows)
-        yield ""
+            measured.append((f"{one.experiment}: {one.column}", str(len(one.measured)), f"{one.rms:.2g}", _range(one.noise), stated, one.unit))
+        words = [self._agreement()]
+        words += [f"correlation of {one} and {other}: {correlation:+.3f}" for one, other, correlation in self._strong()]
+        return numbers, measured, words
+
+    def _agreement(self) -> str:
+        """Whether residuals are as large as the noise."""
+        values = sum(len(one.measured) for one in self.series)
+        known = sum(len(one.measured) for one in self.series if one.noise_stated)
         if self.degrees == 0:
-            yield "no degrees of freedom: as many numbers as values, so nothing tells whether the model is right"
-        elif any(one.noise_stated for one in self.series):
-            known = sum(len(one.measured) for one in self.series if one.noise_stated)
-            over = "" if known == values else f"; χ² is that of the {known} values with a stated noise"
-            yield f"χ² per degree of freedom {self.chi2:.3g}, {self.degrees} degrees of freedom{over}"
-        else:
-            yield f"noise estimated from the residuals, {self.degrees} degrees of freedom"
-        for one, other, correlation in self._strong():
-            yield f"correlation of {one} and {other}: {correlation:+.3f}"
-        for caution in self.cautions:
-            yield f"caution: {caution}"
+            return "no degrees of freedom: as many numbers as values, so nothing tells whether the model is right"
+        if known == 0:
+            return f"noise estimated from the residuals, {self.degrees} degrees of freedom"
+        over = "" if known == values else f"; χ² is that of the {known} values with a stated noise"
+        return f"χ² per degree of freedom {self.chi2:.3g}, {self.degrees} degrees of freedom{over}"
+
+    def _lines(self) -> Iterator[str]:
+        numbers, measured, words = self.tables()
+        values = sum(len(one.measured) for one in self.series)
+        yield f"{self.crane.name}: {len(self.names)} numbers fitted to {values} values: {self.status}"
+        yield ""
+        yield from _table(numbers)
+        yield ""
+        yield from _table(measured)
+        yield ""
+        yield from words
+        yield from (f"caution: {caution}" for caution in self.cautions)
 
     def _strong(self) -> list[tuple[str, str, float]]:
         """Pairs of numbers with a correlation above 0.9."""

@@ -304,6 +304,26 @@ def test_the_table_has_units_and_says_what_was_measured(arm):
     assert found.series[0].unit == "rad" and len(found.series[0].residuals) == len(T)
 
 
+def test_the_page_shows_all_that_is_printed(arm):
+    """Well-formed, without requests and scripts; every number and caution, a dot for every value and residual; names cannot be markup."""
+    from xml.etree import ElementTree
+
+    hostile = crane.load("arm.yaml", text=ARM.replace("unit: N m s/rad", "unit: '<b>&'"))
+    spoilt = measured(1)
+    spoilt[40] += 0.05
+    run = Run(T, {"disc_psi": spoilt}, noise=NOISE, parameters={"inertia": 40.0}, dead_time="delay", name="<script>")
+    found = crane.fit(hostile, {"k": None, "d": None, "delay": (0, 0.2)}, [run, Frequencies([3.2], noise=0.1)])
+    page = found.page()
+    body = page[page.index("<body>") : page.index("</body>") + 7]
+    tree = ElementTree.fromstring(body)
+    text = " ".join(" ".join(tree.itertext()).split())
+    numbers, values, words = found.tables()
+    for cell in [cell for row in numbers + values for cell in row] + words + found.cautions:
+        assert " ".join(cell.split()) in text
+    assert len(tree.findall(".//circle")) == 2 * len(T) and "<script" not in page and "http" not in page.replace("http-equiv", "")
+    assert "default-src 'none'" in page and "iframe" in found._repr_html_()
+
+
 @pytest.mark.parametrize(
     ("numbers", "experiment", "message"),
     [
