@@ -190,7 +190,7 @@ class Fit(Mapping[str, float]):
         values = sum(len(one.measured) for one in self.series)
         known = sum(len(one.measured) for one in self.series if one.noise_stated)
         if self.degrees == 0:
-            return "no degrees of freedom: as many numbers as values, so nothing tells whether the model is right"
+            return "no degrees of freedom: as many numbers as values, so nothing shows whether the model is right"
         if known == 0:
             return f"noise estimated from the residuals, {self.degrees} degrees of freedom"
         over = "" if known == values else f"; χ² is that of the {known} values with a stated noise"
@@ -228,7 +228,7 @@ class Fit(Mapping[str, float]):
         if isinstance(what, str):
             return self._propagated(what, parameters)
         if self.unknown.size:
-            raise ValueError(f"numbers cannot be drawn: {'; '.join(self.indistinct)}: leave out one of them, or measure what tells them apart")
+            raise ValueError(f"numbers cannot be drawn: {'; '.join(self.indistinct)}: leave out one of them, or measure something that distinguishes them")
         rng = np.random.default_rng(seed)
         values, vectors = np.linalg.eigh(self.covariance)
         normal = rng.standard_normal((draws, len(self.names)))

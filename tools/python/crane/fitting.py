@@ -22,7 +22,7 @@ REMAINING = 0.1
 OUTLIER = 6.0
 # χ² per degree of freedom above which residuals are far above the stated noise, if they are so significantly.
 FAR_ABOVE = 1.5
-# Correlation of successive residuals of a run above which they are no noise, and above which that is mentioned.
+# Correlation of successive residuals of a run above which they are not noise, and above which that is mentioned.
 NO_NOISE, MENTIONED = 0.7, 0.3
 # Part of values that must be exceeded by chance for a misfit to be significant.
 BY_CHANCE = 1e-3

@@ -95,7 +95,7 @@ def test_frequencies_by_order_and_by_name(arm):
         found = crane.fit(arm, ["k"], Frequencies(values, noise=0.01))
         assert found["k"] == pytest.approx(1.7e4, rel=1e-8)
         assert found.deviations[0] == pytest.approx(2 * 1.7e4 * 0.01 / frequency, rel=1e-6)
-        assert found.degrees == 0 and "nothing tells whether the model is right" in str(found)
+        assert found.degrees == 0 and "nothing shows whether the model is right" in str(found)
     # The second mode: m l² is the inertia of the arm.
     second = np.sqrt(1e12 / (25.0 * 1.4**2)) / (2 * np.pi)
     for values in ([None, second], {"arm_theta": second}):
