@@ -125,7 +125,12 @@ class Problem:
         # Downward where a bound leaves no room above.
         steps = np.where(p + steps > self.upper, -steps, steps)
         ends = dict(zip(self.names, steps.tolist(), strict=True))
-        return np.concatenate([model.derivatives(numbers, self.names, ends) for model in self.models]) / self.noise[:, None]
+        try:
+            slopes = [model.derivatives(numbers, self.names, ends) for model in self.models]
+        except (ValueError, RuntimeError, ArithmeticError) as failure:
+            listed = ", ".join(f"{name} = {value:.6g}" for name, value in numbers.items())
+            raise type(failure)(f"no derivatives at {listed}: {failure}; give the fit bounds that keep its numbers where they are allowed") from failure
+        return np.concatenate(slopes) / self.noise[:, None]
 
 
 def _bounds(name: str, given: Any, live: bool) -> tuple[float, float]:
