@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .experiments import Experiment
 from .fit_problem import Problem, scipy
@@ -72,7 +73,7 @@ def _result(problem: Problem, solved: Solved, wall_time: float) -> Fit:
     chi2 = float(np.sum(residuals[stated] ** 2)) if stated.any() else float(np.sum(residuals**2))
     own_degrees = own if stated.any() else float(degrees)
     reduced = chi2 / own_degrees if own_degrees > 0 else np.nan
-    significant = own_degrees > 0 and stated.any() and chi2 > special.chdtri(own_degrees, BY_CHANCE)
+    significant = bool(own_degrees > 0 and stated.any() and chi2 > special.chdtri(own_degrees, BY_CHANCE))
     spread = float(np.sqrt(reduced)) if significant else 1.0
     # Deviations are known if the noise was stated and is the one that is there, and estimated otherwise.
     estimated = significant or not stated.all()
@@ -147,7 +148,7 @@ def _judge(
     converged: bool,
     remaining: float,
     indistinct: list[str],
-    at_bound: Array,
+    at_bound: NDArray[np.bool_],
     reduced: float,
     significant: bool,
     series: Sequence[SeriesFit],
@@ -173,10 +174,10 @@ def _judge(
         cautions.append(f"residuals are only {np.sqrt(reduced):.2g} of the stated noise: intervals are wider than need be")
     if len(solved.minima) > 1:
         lowest = min(solved.minima)
-        there = sum(minimum < lowest + 1.0 for minimum in solved.minima)
+        same = sum(minimum < lowest + 1.0 for minimum in solved.minima)
         others = sorted(minimum for minimum in solved.minima if minimum >= lowest + 1.0)
         if others:
-            cautions.append(f"{there} of {len(solved.minima)} starts ended here, the others at minima with χ² higher by {others[0] - lowest:.3g} or more")
+            cautions.append(f"{same} of {len(solved.minima)} starts ended here, the others at minima with χ² higher by {others[0] - lowest:.3g} or more")
     for one in series:
         follows = one.follows
         if follows is not None and follows > MENTIONED:
