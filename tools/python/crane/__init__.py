@@ -12,6 +12,7 @@ Every function takes states as arrays whose last axis holds the coordinates, and
 so do live parameters that are arrays. Batches run on all threads, without Python's global lock.
 """
 
+from . import experiments
 from ._native import (
     InvalidRowWarning,
     NoEquilibrium,
@@ -22,6 +23,8 @@ from ._native import (
     shipped,
     threads,
 )
+from .fit_result import Band, Fit
+from .fitting import fit
 from .frames import Frames
 from .model import Crane, load
 from .results import (
@@ -41,12 +44,14 @@ from .simulation import Simulation, State
 from .state_space import StateSpace
 
 __all__ = [
+    "Band",
     "Crane",
     "Energies",
     "Ensemble",
     "Envelope",
     "Frames",
     "Equilibrium",
+    "Fit",
     "InvalidRowWarning",
     "Linearisation",
     "Modes",
@@ -62,6 +67,8 @@ __all__ = [
     "StateSpace",
     "SteadyMotion",
     "Strength",
+    "experiments",
+    "fit",
     "load",
     "set_threads",
     "shipped",

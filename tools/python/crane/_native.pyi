@@ -73,6 +73,8 @@ class Crane:
     @property
     def spec(self) -> str:
         """Its spec, YAML."""
+    def _changed(self, changes: str) -> str:
+        """Its spec with changes, YAML that extends it without naming it: a spec that `load(text=...)` takes."""
     @property
     def spec_hash(self) -> str:
         """Hash of the spec."""

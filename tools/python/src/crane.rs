@@ -147,6 +147,12 @@ impl Crane {
         &self.source.text
     }
 
+    /// Its spec with changes: a spec that extends it, in one text.
+    #[pyo3(name = "_changed")]
+    fn changed(&self, changes: &str) -> String {
+        self.source.changed(changes).text
+    }
+
     #[getter]
     fn spec_hash(&self) -> &str {
         &self.live.description().spec_hash

@@ -29,6 +29,7 @@ OTHERS = {
     "progress": None,
     "run": None,
     "format": "urdf",
+    "changes": "title: changed",
     "index": 0,
     "x": [],
     "bend": 45.0,
@@ -38,7 +39,7 @@ OTHERS = {
 }
 # Functions that take one state, or none, and what else they need.
 ONE_STATE = {"simulate", "simulation", "_record", "_motion"}
-NO_STATE = {"replace", "page", "export", "picture", "_parameter_rows", "_page", "_envelope", "sensitivity", "_sensitivity"}
+NO_STATE = {"replace", "page", "export", "_changed", "picture", "_parameter_rows", "_page", "_envelope", "sensitivity", "_sensitivity"}
 
 
 @dataclasses.dataclass
