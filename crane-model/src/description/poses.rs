@@ -33,7 +33,10 @@ impl Description {
             self.coordinates.iter().any(|coordinate| coordinate.name == name && coordinate.role == role)
         };
         // The cheap test first: this runs for every row of a result.
-        let near = |(_, angle): &(&CoordinateInfo, &f64)| angle.cos().abs() < NEAR_SINGULAR.sin();
+        let near = |(_, angle): &(&CoordinateInfo, &f64)| {
+            let half_turns = *angle / core::f64::consts::PI - 0.5;
+            (half_turns - half_turns.round()).abs() * core::f64::consts::PI < NEAR_SINGULAR
+        };
         self.coordinates.iter().zip(q).filter(near).find_map(|(coordinate, angle)| {
             let CoordinateInfo { name, role, .. } = coordinate;
             let body = name.strip_suffix("_theta")?;

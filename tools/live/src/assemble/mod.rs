@@ -66,7 +66,7 @@ mod tests {
     use crane_codegen::chain::Analyses;
     use crane_codegen::mechanics;
     use crane_codegen::program::FunctionId;
-    use crane_model::dyn_crane::DynModel;
+    use crane_model::dyn_crane::DynCrane;
 
     use super::*;
     use crate::LiveCrane;
@@ -86,7 +86,7 @@ mod tests {
     fn result_by_result_a_dense_matrix_takes_fewer_registers_for_the_same_bits() {
         let path = format!("{}/../../specs/eight_link_rigid.yaml", env!("CARGO_MANIFEST_DIR"));
         let crane = LiveCrane::from_spec(&build::open(path.as_ref()).unwrap()).unwrap();
-        let q = crane.guess();
+        let q = (&crane as &dyn DynCrane).guess();
         let program = mechanics::derive(crane.chain(), Analyses::ALL);
         for id in [FunctionId::TangentStiffness, FunctionId::DynamicResidualDerivatives] {
             let function = program.function(id).unwrap();
