@@ -112,9 +112,9 @@ def _search(problem: Problem, start: Array, evaluations: int) -> _End:
 
 
 def next_step(problem: Problem, p: Array, jacobian: Array, residuals: Array) -> tuple[Array, Array]:
-    """The next step of Gauss and Newton over what is known, of the numbers, and of their combinations in standard deviations."""
+    """The next step of Gauss and Newton, of the numbers, and of all combinations that move anything, in standard deviations."""
     free = ~problem.at_bound(p, jacobian.T @ residuals)
-    found = directions(jacobian[:, free], problem.sizes(p)[free], problem.accuracy, 1.0)
+    found = directions(jacobian[:, free], problem.sizes(p)[free], problem.accuracy, 0.0)
     root = found.scales[:, None] * found.vectors[:, found.known] / found.singular_values[found.known]
     combinations = -root.T @ (jacobian[:, free].T @ residuals)
     step = np.zeros(len(p))

@@ -85,6 +85,9 @@ def test_one_number_is_that_of_linear_least_squares(arm):
     small = crane.fit(arm, ["reach"], Statics({TORQUE: torques}, noise=0.08, parameters=here))
     assert small.status == "misfit" and small.deviations[0] == pytest.approx(deviation, rel=1e-5)
     assert small.interval("reach") == pytest.approx(estimated.interval("reach"), rel=1e-6)
+    # A number that is hardly known at the start moves all the same.
+    weak = crane.fit(arm, ["reach"], Statics({TORQUE: -4000.0}, noise=800.0))
+    assert weak["reach"] == pytest.approx(4000.0 / (25.0 * G), rel=1e-5) and weak.status == "converged"
     assert not estimated.series[0].noise_stated and estimated.crane.parameters["reach"] == estimated["reach"]
 
 
