@@ -10,6 +10,8 @@ from .results import Array
 
 # The search ends before that, with one more step: where derivatives are exact, and where they are differences of runs.
 SETTLED_EXACT, SETTLED = 1e-4, 0.03
+# A step shorter than this part of the deviations leaves derivatives by differences as they are.
+SAME_SLOPES = 1.0
 # Estimates of noise are repeated until they change by less than this part.
 SAME_NOISE = 0.01
 ROUNDS = 8
@@ -67,27 +69,40 @@ class _End:
 def _search(problem: Problem, start: Array, evaluations: int) -> _End:
     """Least squares from a start, with the present noise: steps of Gauss and Newton within a trust region and bounds."""
     scales, bounds = problem.scales, (problem.lower / problem.scales, problem.upper / problem.scales)
-    settled = SETTLED_EXACT if problem.accuracy < 1e-6 else SETTLED
+    differences = problem.accuracy > 1e-6
+    settled = SETTLED if differences else SETTLED_EXACT
+    # The last evaluation, numbers and residuals; the derivatives in use, and how far the next step with them leads.
     last: list[Array] = []
+    slopes, length = np.zeros(0), np.inf
 
     def residuals(z: Array) -> Array:
         last[:] = z, problem.residuals(z * scales)
         return last[1]
 
     def jacobian(z: Array) -> Array:
+        nonlocal slopes, length
         r = last[1] if np.array_equal(last[0], z) else residuals(z)
-        slopes = problem.jacobian(z * scales)
-        last[:] = z, r, slopes
-        if np.linalg.norm(next_step(problem, z * scales, slopes, r)[1]) < settled:
+        before = length
+        near = differences and before < SAME_SLOPES
+        if not near:
+            slopes = problem.jacobian(z * scales)
+        length = step_length(z, r)
+        if near and length > max(settled, before / 3):
+            slopes = problem.jacobian(z * scales)
+            length = step_length(z, r)
+        if length < settled:
             raise _Settled
         return slopes * scales
+
+    def step_length(z: Array, r: Array) -> float:
+        return float(np.linalg.norm(next_step(problem, z * scales, slopes, r)[1]))
 
     try:
         found = scipy().optimize.least_squares(
             residuals, np.clip(start / scales, *bounds), jacobian, bounds, ftol=1e-6, xtol=1e-9, gtol=1e-12, max_nfev=evaluations
         )
     except _Settled:
-        z, r, slopes = last
+        z, r = last
         step, _ = next_step(problem, z * scales, slopes, r)
         p = np.clip(z * scales + step, problem.lower, problem.upper)
         other = problem.residuals(p)
@@ -97,9 +112,9 @@ def _search(problem: Problem, start: Array, evaluations: int) -> _End:
 
 
 def next_step(problem: Problem, p: Array, jacobian: Array, residuals: Array) -> tuple[Array, Array]:
-    """The next step of Gauss and Newton over what is known, of the numbers, and of their combinations in standard deviations."""
+    """The next step of Gauss and Newton, of the numbers, and of all combinations that move anything, in standard deviations."""
     free = ~problem.at_bound(p, jacobian.T @ residuals)
-    found = directions(jacobian[:, free], problem.sizes(p)[free], problem.accuracy, 1.0)
+    found = directions(jacobian[:, free], problem.sizes(p)[free], problem.accuracy, 0.0)
     root = found.scales[:, None] * found.vectors[:, found.known] / found.singular_values[found.known]
     combinations = -root.T @ (jacobian[:, free].T @ residuals)
     step = np.zeros(len(p))

@@ -66,7 +66,7 @@ def _result(problem: Problem, solved: Solved, wall_time: float) -> Fit:
     at_bound = problem.at_bound(p, jacobian.T @ residuals)
     free = ~at_bound
     scales = problem.sizes(p)
-    found = directions(jacobian[:, free], scales[free], problem.accuracy, 1.0)
+    found = directions(jacobian[:, free], scales[free], problem.accuracy, 0.0)
     degrees = total - int(found.known.sum())
     stated = np.concatenate([np.full(len(one.measured), one.noise is not None) for one in problem.series])
     own = max(degrees * stated.sum() / total, 0.0)

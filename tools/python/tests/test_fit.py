@@ -85,6 +85,9 @@ def test_one_number_is_that_of_linear_least_squares(arm):
     small = crane.fit(arm, ["reach"], Statics({TORQUE: torques}, noise=0.08, parameters=here))
     assert small.status == "misfit" and small.deviations[0] == pytest.approx(deviation, rel=1e-5)
     assert small.interval("reach") == pytest.approx(estimated.interval("reach"), rel=1e-6)
+    # A number that is hardly known at the start moves all the same.
+    weak = crane.fit(arm, ["reach"], Statics({TORQUE: -4000.0}, noise=800.0))
+    assert weak["reach"] == pytest.approx(4000.0 / (25.0 * G), rel=1e-5) and weak.status == "converged"
     assert not estimated.series[0].noise_stated and estimated.crane.parameters["reach"] == estimated["reach"]
 
 
@@ -377,3 +380,16 @@ def test_velocity_steps_of_a_real_crane(capsys, tmp_path, monkeypatch):
     change = shipped.drive_forces(moved, 0 * q, 0.0)[index] - shipped.drive_forces(q, 0 * q, 0.0)[index]
     assert change == pytest.approx(-1e-3 * stiffness, rel=1e-6)
     assert axis["edges"] == 8 and "Geryyy/crane_model" in (ROOT / "examples/python/velocity_steps.json").read_text()
+
+
+def test_drives_found_again():
+    """The study of the manual: at the true numbers the residuals are the noise, 10,000 values of it, and nothing is hidden."""
+    names = runpy.run_path(str(ROOT / "examples/python/found_again.py"))
+    exact = names["crane_with_live_drives"]()
+    run = exact.simulate(duration=20, output=0.002, tolerance=1e-9, verify=False)
+    columns, noise, late = names["measure"](run, np.random.default_rng(1))
+    dead_time = dict.fromkeys(columns, names["DEAD_TIME"])
+    found = crane.fit(exact, {"f_grapple": (0, None), "k_column": None}, Run(names["T"], columns, noise=noise, dead_time=dead_time, output=0.02))
+    assert found.status == "converged" and found.chi2 == pytest.approx(1.0, abs=0.05) and set(late) == set(columns)
+    for name, value in (("f_grapple", 20.0), ("k_column", 3.19e5)):
+        assert abs(found[name] - value) < 3 * found.deviations[found.names.index(name)]
