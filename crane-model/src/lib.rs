@@ -51,6 +51,8 @@ pub mod linear;
 #[cfg(feature = "std")]
 pub mod loop_joints;
 #[cfg(feature = "std")]
+pub mod margins;
+#[cfg(feature = "std")]
 pub mod modes;
 #[cfg(feature = "std")]
 pub mod results;

@@ -10,6 +10,7 @@ mod state_space;
 mod steady;
 mod undamped;
 
+pub(crate) use damped::eigenvalues;
 pub use damped::{ComplexShape, DampedMode, damped, damped_with_shapes};
 pub use decays::decays;
 pub(crate) use held::{stiffen_by_bristles, stiffen_by_oil};
