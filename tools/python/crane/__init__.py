@@ -37,7 +37,7 @@ from .results import (
     Strength,
 )
 from .simulation import Simulation, State
-from .state_space import StateSpace
+from .state_space import Margins, StateSpace
 
 __all__ = [
     "Crane",
@@ -47,6 +47,7 @@ __all__ = [
     "Equilibrium",
     "InvalidRowWarning",
     "Linearisation",
+    "Margins",
     "Modes",
     "NoEquilibrium",
     "ParameterError",
