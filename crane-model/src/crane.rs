@@ -79,7 +79,7 @@ impl dyn DynCrane + '_ {
         let mut motions = SmallMotions::of(self, q);
         modes::stiffen_by_oil(self, q, &mut motions);
         modes::stiffen_by_bristles(self.description(), &mut motions);
-        motions.with_closed_loops(self, q)
+        motions.with_closed_loops(self, 0.0, q)
     }
 
     /// A run: [`dynamics::simulate`].

@@ -265,7 +265,7 @@ pub(crate) struct Motion {
     /// The part of q̈ that closing the loops causes; empty without loops.
     change: Vec<f64>,
     /// Rates of the states of forces.
-    rates: Vec<f64>,
+    pub rates: Vec<f64>,
     loops: Loops,
 }
 

@@ -47,7 +47,11 @@ pub mod hydraulics;
 #[cfg(feature = "std")]
 mod least_squares;
 #[cfg(feature = "std")]
+pub mod linear;
+#[cfg(feature = "std")]
 pub mod loop_joints;
+#[cfg(feature = "std")]
+pub mod margins;
 #[cfg(feature = "std")]
 pub mod modes;
 #[cfg(feature = "std")]

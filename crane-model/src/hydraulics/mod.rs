@@ -42,7 +42,7 @@ use crate::{
 };
 use cylinder::{Command, Pump, ValveCylinder};
 pub(crate) use oil::Oil;
-pub(crate) use servo::{Servo, servos};
+pub(crate) use servo::{Servo, servos, spool};
 pub(crate) use state::unassembled_at;
 pub use state::{CylinderState, cylinders_at};
 use valve::flows;

@@ -1,7 +1,7 @@
 //! Servos: which cylinders have one, and their valves slightly open at rest.
 
 use super::{Hydraulics, STATES, ValveCylinder, valve::flows};
-use crate::Description;
+use crate::{Description, dyn_crane::DynModel, stateful_force::StateAt};
 
 /// How far beyond its overlap a slightly opened valve is open, as a fraction of the spool's travel.
 const SLIGHTLY: f64 = 1e-9;
@@ -29,6 +29,47 @@ pub(crate) fn servos(description: &Description) -> Vec<Servo> {
         })
     };
     oil.cylinders.iter().enumerate().filter_map(servo).collect()
+}
+
+/// How the spool of a drive's valve is moved.
+pub(crate) struct Spool {
+    /// Index of its position among the states of the oil.
+    pub state: usize,
+    /// Lag of the spool, s.
+    pub lag: f64,
+    /// Derivatives of what the servo commands with respect to the position and the rate of the drive's motion; `None` without a servo.
+    pub by_motion: Option<[f64; 2]>,
+}
+
+/// The spool of the valve of a drive, if it has one.
+pub(crate) fn spool(crane: &dyn DynModel, moment: &StateAt<'_>, drive: usize) -> Option<Spool> {
+    /// Differences of the motion, m or rad, and m/s or rad/s.
+    const DIFFERENCE: f64 = 1e-6;
+    let mut oil = Hydraulics::new(crane.description());
+    let place = oil.cylinders.iter().position(|cylinder| cylinder.info.drive == drive)?;
+    oil.measure(crane, moment.t, moment.q, moment.v);
+    let cylinder = oil.cylinders[place].clone();
+    let (x, here) = (moment.x, oil.here[cylinder.index]);
+    let (sides, pump) = ([x[STATES * place], x[STATES * place + 1]], x[oil.len() - 1]);
+    let n = moment.q.len();
+    let command = |motion: [f64; 2]| {
+        let (mut q, mut v) = (vec![0.0; n], vec![0.0; n]);
+        [q[cylinder.coordinate], v[cylinder.coordinate]] = motion;
+        let mut wanted = oil.wanted.clone();
+        crane.cylinder_states(&q, &v, &mut wanted);
+        cylinder.command(here, wanted[cylinder.index], sides, pump).opening
+    };
+    let motion = oil.motions[drive];
+    let by_motion = [0, 1].map(|which| {
+        let [before, after] = [-DIFFERENCE, DIFFERENCE].map(|step| {
+            let mut moved = motion;
+            moved[which] += step;
+            command(moved)
+        });
+        (after - before) / (2.0 * DIFFERENCE)
+    });
+    let by_motion = (!cylinder.valve.commanded).then_some(by_motion);
+    Some(Spool { state: STATES * place + 2, lag: cylinder.valve.lag, by_motion })
 }
 
 impl Hydraulics {

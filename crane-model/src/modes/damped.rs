@@ -81,6 +81,23 @@ fn normalised(shape: ComplexShape, mass: &DMatrix<Complex<f64>>, at: Option<usiz
 /// An eigenvalue and its eigenvector.
 pub(super) type Eigenpair = (Complex<f64>, ComplexShape);
 
+/// The eigenvalues of a state matrix with Im λ ≥ 0.
+///
+/// # Errors
+/// The matrix has numbers that are not finite, or the QR algorithm does not converge.
+pub(crate) fn eigenvalues(mut state: DMatrix<f64>) -> Result<Vec<Complex<f64>>, NoModes> {
+    if state.is_empty() {
+        return Ok(Vec::new());
+    }
+    if !state.iter().all(|x| x.is_finite()) {
+        return Err(NoModes::Eigenvalues);
+    }
+    balancing::balance_parlett_reinsch(&mut state);
+    let iterations = ITERATIONS * state.nrows();
+    let (_, t) = Schur::try_new(state, PRECISION, iterations).ok_or(NoModes::Eigenvalues)?.unpack();
+    Ok(Block::all(&t).iter().map(|block| block.eigenvalue(&t)).collect())
+}
+
 /// The eigenvalues of a state matrix with Im λ ≥ 0, and their eigenvectors, from the Schur form of the balanced matrix.
 ///
 /// # Errors

@@ -10,11 +10,13 @@ mod state_space;
 mod steady;
 mod undamped;
 
+pub(crate) use damped::eigenvalues;
 pub use damped::{ComplexShape, DampedMode, damped, damped_with_shapes};
 pub use decays::decays;
 pub(crate) use held::{stiffen_by_bristles, stiffen_by_oil};
 pub use servos::{UnstableServo, unstable_servos, with_servos};
 pub use small_motions::SmallMotions;
+pub(crate) use small_motions::independent_motions;
 pub use state_space::StateSpace;
 pub use steady::{Held, NotSteady, Steady, steady};
 pub use undamped::{Mode, undamped};

@@ -39,7 +39,7 @@ pub fn with_servos(crane: &dyn DynCrane, t: f64, q: &[f64]) -> Result<StateSpace
     let mut forces = ForceStates::new(crane.description());
     let mut motions = SmallMotions::of(crane, q);
     add_cylinders(crane, q, &mut motions, |_, _| 0.0);
-    let motions = motions.with_closed_loops(crane, q);
+    let motions = motions.with_closed_loops(crane, t, q);
     let v = vec![0.0; q.len()];
     let mut sides = forces.slightly_open(crane, t, q).into_iter().map(|x| {
         let moment = StateAt { t, q, v: &v, x: &x };

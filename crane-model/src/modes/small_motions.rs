@@ -91,17 +91,15 @@ impl SmallMotions {
     }
 
     /// The coefficients of the motions about the pose `q` that leave the loops of a crane closed: on a basis Z of the null space of J, `Zᵀ A Z`,
-    /// `Zᵀ D Z` and `Zᵀ (K + Σ λ_i ∂²φ_i/∂q²) Z`. Coordinates without drives and springs are determined by the others.
-    pub(crate) fn with_closed_loops(self, crane: &dyn DynCrane, q: &[f64]) -> Self {
+    /// `Zᵀ D Z` and `Zᵀ (K + Σ λ_i ∂²φ_i/∂q²) Z`. The motion is at rest at time t.
+    pub(crate) fn with_closed_loops(self, crane: &dyn DynCrane, t: f64, q: &[f64]) -> Self {
         if crane.loop_joints().is_empty() {
             return self;
         }
         let rest = vec![0.0; q.len()];
-        let multipliers = required(crane, 0.0, [q, &rest, &rest]);
+        let multipliers = required(crane, t, [q, &rest, &rest]);
         let geometric = geometric_stiffness(crane, q, &multipliers);
-        let coordinates = &crane.description().coordinates;
-        let preferred = |j: usize| if coordinates[j].role == CoordinateRole::Passive { 1.0 } else { DRIVEN };
-        let (free, basis) = closed_motions(crane, q, preferred);
+        let (free, basis) = independent_motions(crane, q);
         let of_unknowns = basis.select_rows(&self.unknowns);
         let stiffness = &self.stiffness + geometric.select_rows(&self.unknowns).select_columns(&self.unknowns);
         let of = |matrix: &DMatrix<f64>| of_unknowns.tr_mul(&(matrix * &of_unknowns));
@@ -166,6 +164,14 @@ impl SmallMotions {
         dominating.sort_by(|&i, &j| share[j].total_cmp(&share[i]));
         dominating.into_iter().map(|i| self.unknowns[i]).collect()
     }
+}
+
+/// The independent coordinates of a crane with loops, and the motion of all coordinates per unit of each. Coordinates without drives and springs
+/// are determined by the others.
+pub(crate) fn independent_motions(crane: &dyn DynCrane, q: &[f64]) -> (Vec<usize>, DMatrix<f64>) {
+    let coordinates = &crane.description().coordinates;
+    let preferred = |j: usize| if coordinates[j].role == CoordinateRole::Passive { 1.0 } else { DRIVEN };
+    closed_motions(crane, q, preferred)
 }
 
 /// `(X − Xᵀ)/2`

@@ -4,7 +4,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use super::{DampedMode, NoModes, SmallMotions, damped::eigenpairs};
 use crate::{
-    dyn_crane::DynModel,
+    dyn_crane::{DynCrane, DynLineariseMotion, DynModel},
     force_states::ForceStates,
     model::state_blocks,
     stateful_force::{StateAt, StatefulForce},
@@ -64,6 +64,44 @@ impl StateSpace {
         Ok(Self { matrix, motions })
     }
 
+    /// About a state with the accelerations `a`: that of an open chain may move, one with loops rests. Dry friction of joints that rest is left
+    /// out, as in modes.
+    ///
+    /// # Errors
+    /// The mass matrix is not positive definite.
+    pub(crate) fn about<C: DynCrane + DynLineariseMotion>(
+        crane: &C,
+        moment: &StateAt<'_>,
+        a: &[f64],
+        forces: &mut ForceStates,
+    ) -> Result<Self, NoModes> {
+        let mut motions = SmallMotions::about_motion(crane, moment.t, [moment.q, moment.v, a]);
+        leave_out_dry_friction(crane, moment, &mut motions);
+        let turning = turn(crane, moment, &mut motions, forces);
+        let motions = motions.with_closed_loops(crane, moment.t, moment.q);
+        let mut space = Self::at(crane, moment, motions, forces)?;
+        if let Some(turning) = turning.filter(|_| space.motions.basis.is_none()) {
+            let n = space.unknowns().len();
+            let mut rates = space.matrix.view_mut((2 * n, 0), turning.shape());
+            rates += turning;
+        }
+        Ok(space)
+    }
+
+    /// Accelerations of the coordinates in the state due to generalized forces on all coordinates, N and N m.
+    ///
+    /// # Errors
+    /// The mass matrix is not positive definite.
+    pub(crate) fn accelerations_by(&self, forces: &[f64]) -> Result<DVector<f64>, NoModes> {
+        let along = self.motions.along_unknowns(|coordinate| forces[coordinate]);
+        Ok(self.motions.mass.clone().cholesky().ok_or(NoModes::MassMatrix)?.solve(&along))
+    }
+
+    /// With loops: the motion of all coordinates per unit of each in the state.
+    pub(crate) fn basis(&self) -> Option<&DMatrix<f64>> {
+        self.motions.basis.as_ref()
+    }
+
     /// Indices in q of the coordinates in the state.
     pub fn unknowns(&self) -> &[usize] {
         &self.motions.unknowns
@@ -83,4 +121,75 @@ impl StateSpace {
         modes.sort_by(|a, b| a.eigenvalue.norm().total_cmp(&b.eigenvalue.norm()));
         Ok(modes)
     }
+}
+
+/// Takes the dry friction of joints that rest out of D. The slope of its smoothed law at rest, F_b/v₀, only holds for rates far below v₀: a joint
+/// that swings meets a force that hardly depends on its rate.
+fn leave_out_dry_friction(crane: &dyn DynCrane, moment: &StateAt<'_>, motions: &mut SmallMotions) {
+    /// A rate at which only viscous friction is left, m/s or rad/s.
+    const FAST: f64 = 1e6;
+    let frictions = &crane.description().frictions;
+    if frictions.is_empty() {
+        return;
+    }
+    let damping = |v: &[f64]| {
+        let mut all = vec![[0.0; 2]; v.len()];
+        crane.nonlinear_stiffness_and_damping(moment.t, moment.q, v, &mut all);
+        all
+    };
+    let here = damping(moment.v);
+    for &joint in frictions.iter().filter(|&&joint| moment.v[joint] == 0.0) {
+        let Some(place) = motions.unknowns.iter().position(|&unknown| unknown == joint) else { continue };
+        let mut v = moment.v.to_vec();
+        v[joint] = FAST;
+        motions.damping[(place, place)] -= here[joint][1] - damping(&v)[joint][1];
+    }
+}
+
+/// Step of the central differences of the rows of cylinders, m or rad: their relative error is 1e-8.
+const DIFFERENCE: f64 = 1e-4;
+
+/// Adds to K how the forces of cylinders with a valve turn with the pose, and how their speeds change with it:
+///
+/// ```text
+/// K −= F ∂²ℓ/∂q² + ∂ℓ/∂qᵀ F_ℓ̇ ∂ℓ̇/∂q,      ∂ℓ̇/∂q = (∂²ℓ/∂q²) q̇
+/// ```
+///
+/// Returns what the latter contributes to the rates of their states; `None` without valves.
+fn turn(
+    crane: &dyn DynCrane,
+    moment: &StateAt<'_>,
+    motions: &mut SmallMotions,
+    forces: &mut ForceStates,
+) -> Option<DMatrix<f64>> {
+    if !crane.description().has_valves() {
+        return None;
+    }
+    let mut rates = vec![0.0; forces.len()];
+    forces.evaluate(crane, moment, &mut rates, None);
+    let (here, rows) = (forces.forces().to_vec(), forces.rows().to_vec());
+    let mut turning = DMatrix::zeros(forces.len(), motions.unknowns.len());
+    for (column, &by) in motions.unknowns.iter().enumerate() {
+        if rows.iter().all(|row| row.entries.len() < 2 && row.first != by) {
+            continue;
+        }
+        let [before, after] = [-DIFFERENCE, DIFFERENCE].map(|step| {
+            let mut moved = moment.q.to_vec();
+            moved[by] += step;
+            forces.evaluate(crane, &StateAt { q: &moved, ..*moment }, &mut rates, None);
+            forces.rows().to_vec()
+        });
+        for (force, (row, (before, after))) in here.iter().zip(rows.iter().zip(before.iter().zip(&after))) {
+            let curvature = |of: usize| (after.entry(of) - before.entry(of)) / (2.0 * DIFFERENCE);
+            let faster = (after.along(moment.v) - before.along(moment.v)) / (2.0 * DIFFERENCE);
+            for (place, &of) in motions.unknowns.iter().enumerate() {
+                motions.stiffness[(place, column)] -=
+                    force.force * curvature(of) + row.entry(of) * force.by_speed * faster;
+            }
+            for (state, by_speed) in force.rates_by_speed.iter().enumerate().take(force.count) {
+                turning[(force.first + state, column)] += by_speed * faster;
+            }
+        }
+    }
+    Some(turning)
 }

@@ -54,7 +54,7 @@ impl<'a> Recording<'a> {
     pub fn push(&mut self, sample: &Sample<'_>) {
         let &Sample { t, q, v, x, work, dissipated, load_work } = sample;
         let mut row = Vec::with_capacity(self.table.columns.len());
-        let energies = push_quantities(self.crane, self.extent, t, (q, v), x, &mut row);
+        let energies = push_quantities(self.crane, self.extent, &StateAt { t, q, v, x }, &[], &mut row);
         if let Some(energy) = energies.as_ref().map(Energies::total) {
             if self.table.rows.is_empty() {
                 self.energy_at_start = energy;
@@ -78,26 +78,33 @@ impl<'a> Recording<'a> {
 /// [`quantities`].
 pub fn quantities_at(crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> Vec<f64> {
     let mut row = Vec::new();
-    push_quantities(crane, Extent::All, t, (q, v), x, &mut row);
+    push_quantities(crane, Extent::All, &StateAt { t, q, v, x }, &[], &mut row);
     row
 }
 
-/// Appends the quantities at a state to a row; returns the energies if they are recorded.
+/// The same with efforts in addition to those of the drives: what follows from accelerations does not contain them.
+pub(crate) fn quantities_with(crane: &dyn DynCrane, moment: &StateAt<'_>, added: &[f64]) -> Vec<f64> {
+    let mut row = Vec::new();
+    push_quantities(crane, Extent::All, moment, added, &mut row);
+    row
+}
+
+/// Appends the quantities at a state to a row, with efforts added to those of the first drives; returns the energies if they are recorded.
 fn push_quantities(
     crane: &dyn DynCrane,
     extent: Extent,
-    t: f64,
-    (q, v): (&[f64], &[f64]),
-    x: &[f64],
+    moment: &StateAt<'_>,
+    added: &[f64],
     row: &mut Vec<f64>,
 ) -> Option<Energies> {
     let all = extent == Extent::All;
+    let &StateAt { t, q, v, x } = moment;
     row.push(t);
     row.extend_from_slice(q);
     row.extend_from_slice(v);
-    let moment = StateAt { t, q, v, x };
-    let efforts = crane.drive_efforts_with(&moment);
-    let oil = Oil::at(crane, &moment);
+    let mut efforts = crane.drive_efforts_with(moment);
+    efforts.iter_mut().zip(added).for_each(|(effort, added)| *effort += added);
+    let oil = Oil::at(crane, moment);
     for ([position, _], effort) in crane.drive_motions_at(t).into_iter().zip(&efforts) {
         row.extend([position, *effort]);
     }
@@ -140,7 +147,7 @@ fn push_quantities(
         row.push(tension.force);
     }
     if !crane.loop_joints().is_empty() {
-        row.extend(force_states::motion_at(crane, &moment).multipliers());
+        row.extend(force_states::motion_at(crane, moment).multipliers());
     }
     if !all {
         return None;

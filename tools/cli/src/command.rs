@@ -7,7 +7,7 @@ use clap::CommandFactory;
 use crate::{
     arguments::{Action, Arguments},
     check, compare, compiled, completions, ensemble, envelope, eval, example, exchange, explain, generate, help, info,
-    linearise, modes, new, page, poses,
+    linearise, margins, modes, new, page, poses,
     problem::Outcome,
     run, screen,
     selection::Registry,
@@ -32,6 +32,9 @@ pub fn execute(mut arguments: Arguments, mut registry: Registry, out: &mut dyn W
         let name = choice.name.clone();
         if let Some(poses) = arguments.action.as_ref().and_then(Action::poses) {
             poses::hold(&poses.held, &poses.ranges, &name, &mut registry)?;
+        }
+        if let Some(Action::Margins(options)) = &arguments.action {
+            poses::hold(&options.held, &options.ranges, &name, &mut registry)?;
         }
         if let Some(Action::Sensitivity(options)) = &mut arguments.action {
             poses::hold(&options.held, &[], &name, &mut registry)?;
@@ -65,6 +68,7 @@ pub fn execute(mut arguments: Arguments, mut registry: Registry, out: &mut dyn W
         },
         Some(Action::Modes(options)) => modes::modes(options, registry, out),
         Some(Action::Linearise(options)) => linearise::linearise(options, registry, out),
+        Some(Action::Margins(options)) => margins::margins(options, registry, out),
         Some(Action::Stability(options)) => stability::stability(options, registry, out),
         Some(Action::Strength(options)) => strength::strength(options, registry, out),
         Some(Action::Sensitivity(options)) => sensitivity::sensitivity(options, registry, out),

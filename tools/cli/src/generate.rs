@@ -68,6 +68,7 @@ impl Output {
             Output::Statics => include_str!("../schemas/statics.json"),
             Output::Modes => include_str!("../schemas/modes.json"),
             Output::Linearise => include_str!("../schemas/linearise.json"),
+            Output::Margins => include_str!("../schemas/margins.json"),
             Output::Stability => include_str!("../schemas/stability.json"),
             Output::Simulate => include_str!("../schemas/simulate.json"),
             Output::Ensemble => include_str!("../schemas/ensemble.json"),

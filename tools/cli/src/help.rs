@@ -19,6 +19,7 @@ const GROUPS: [(&str, &[&str]); 4] = [
             "simulate",
             "modes",
             "linearise",
+            "margins",
             "stability",
         ],
     ),

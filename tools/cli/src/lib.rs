@@ -33,6 +33,7 @@ mod integration;
 mod journal;
 mod linearisation;
 mod linearise;
+mod margins;
 mod modes;
 mod new;
 mod npz;

@@ -6,19 +6,22 @@ use crane_live::LiveCrane;
 use crane_model::{
     Description,
     dyn_crane::{DynCrane, DynModel},
+    force_states,
+    linear::{About, Forces, Input, LinearModel, Output, linear_model, outputs},
     modes::{ComplexShape, DampedMode, Held, SmallMotions, damped_with_shapes, steady},
+    results::Column,
     statics,
 };
 use crane_page::tables::{Cell, Grid, Report, damped_mode, names};
 use nalgebra::{Complex, DMatrix};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::{
     arguments::Linearise,
     envelope::number,
     files,
     npz::{Array, npz},
-    problem::{Outcome, Problem},
+    problem::{Outcome, Problem, nearest},
     selection::Registry,
     start::{Variable, row},
 };
@@ -40,6 +43,10 @@ struct Motion {
     q: Vec<f64>,
     v: Vec<f64>,
     a: Vec<f64>,
+    /// States of forces; none: those that hold the pose.
+    x: Vec<f64>,
+    /// Whether the accelerations are those of a motion at constant rates, whatever holds it.
+    steady: bool,
     /// Effort that holds each coordinate, N and N m; `None` where it is not held.
     efforts: Vec<Option<f64>>,
     cautions: Vec<String>,
@@ -52,32 +59,29 @@ type Mode = (DampedMode, ComplexShape);
 pub fn linearise(options: &Linearise, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let crane = registry.live(options.analysis.crane.open(registry)?.as_ref())?;
     let description = crane.description();
-    if description.has_force_states() {
+    let is_closed = description.has_force_states() || !crane.loop_joints().is_empty();
+    if is_closed && !options.held.is_empty() {
         return Err(Problem::usage(
             format!(
-                "the forces of {} follow from the pressures of its cylinders or bristles of its joints",
+                "{} has loops, valves or joints that stick: nothing else can hold its coordinates",
                 description.name
             ),
-            "`crane modes` gives the small motions about rest, with shut valves and joints that stick",
-        ));
-    }
-    if let Some(joint) = crane.loop_joints().first() {
-        return Err(Problem::usage(
-            format!(
-                "{} has a loop, which `{}` closes: small motions about a motion are those of open chains",
-                description.name, joint.name
-            ),
-            "`crane modes` gives the small motions about rest, with closed loops",
+            "let its drives hold them, `motion: {hold: 30 deg}` in the spec, or give a moment of a run with `--from`",
         ));
     }
     let motion = match &options.from {
         Some(file) => of_results(&crane, file, options.time)?,
+        None if is_closed => of_rest(&crane, options.time.unwrap_or(0.0))?,
         None => of_steady(&crane, options)?,
     };
-    let small = SmallMotions::about_motion(&crane, motion.t, [&motion.q, &motion.v, &motion.a]);
-    let found = damped_with_shapes(&small)?;
+    let model = model(&crane, &motion, options)?;
+    let small = (!is_closed).then(|| SmallMotions::about_motion(&crane, motion.t, [&motion.q, &motion.v, &motion.a]));
+    let found: Vec<Mode> = match &small {
+        Some(small) => damped_with_shapes(small)?,
+        None => model.modes()?.into_iter().map(|mode| (mode, ComplexShape::zeros(0))).collect(),
+    };
     if let Some(file) = &options.file {
-        write_archive(file, &arrays(&motion, &small, &found))?;
+        write_archive(file, &arrays(&motion, small.as_ref(), &model, &found))?;
     }
     let mut report = Report::default();
     report.fact("crane", description.name.as_str(), "");
@@ -97,12 +101,16 @@ pub fn linearise(options: &Linearise, registry: &Registry, out: &mut dyn Write) 
         report.caution(Some(caution.as_str()));
     }
     report.caution(description.near_singular(&motion.q));
-    for (key, value) in values(description, &small, &found) {
-        report.value(key, value);
+    if let Some(small) = &small {
+        for (key, value) in values(description, small, &found) {
+            report.value(key, value);
+        }
     }
+    report.value("state_space", of_model(&model));
     report.grid(held(description, &motion));
     report.excerpt(modes_of(description, &found), LOWEST);
     report.excerpt(states(description, &motion), 0);
+    report.excerpt(signals(&model), 0);
     report.show_all(options.analysis.all);
     options.analysis.format.print(&report, out)
 }
@@ -111,6 +119,8 @@ pub fn linearise(options: &Linearise, registry: &Registry, out: &mut dyn Write) 
 fn of_results(crane: &dyn DynCrane, file: &Path, at: Option<f64>) -> Outcome<Motion> {
     let found = row(file, crane.description(), at)?;
     let (mut q, mut v) = (crane.guess(), vec![0.0; crane.size()]);
+    let states = force_states::columns(crane.description());
+    let mut x = vec![f64::NAN; states.len()];
     let mut missing: Vec<&str> = crane.description().coordinates.iter().map(|info| info.name.as_str()).collect();
     for (variable, value) in found.values {
         match variable {
@@ -119,9 +129,10 @@ fn of_results(crane: &dyn DynCrane, file: &Path, at: Option<f64>) -> Outcome<Mot
                 missing.retain(|name| **name != *crane.description().coordinates[index].name);
             }
             Variable::Rate(index) => v[index] = value,
-            Variable::ForceState(_) => {}
+            Variable::ForceState(index) => x[index] = value,
         }
     }
+    missing.extend(states.iter().zip(&x).filter(|(_, x)| x.is_nan()).map(|(name, _)| name.as_str()));
     if !missing.is_empty() {
         return Err(Problem::usage(
             format!("{} lacks coordinates of {}: {}", file.display(), crane.description().name, missing.join(", ")),
@@ -129,12 +140,115 @@ fn of_results(crane: &dyn DynCrane, file: &Path, at: Option<f64>) -> Outcome<Mot
         ));
     }
     let t = at.or(found.time).unwrap_or(0.0);
-    let a = crane.accelerations_at(t, &q, &v).as_slice().to_vec();
+    let (a, _) = force_states::accelerations(crane, t, (&q, &v), &x);
     let greatest = a.iter().fold(0.0, |greatest: f64, a| greatest.max(a.abs()));
     let cautions = (greatest > STEADY)
         .then(|| format!("not steady: accelerations reach {greatest:.2e} m/s² or rad/s², so matrices and modes are valid only at this moment"));
     let efforts = vec![None; q.len()];
-    Ok(Motion { about: "a moment of a run", t, q, v, a, efforts, cautions: cautions.into_iter().collect() })
+    let cautions = cautions.into_iter().collect();
+    Ok(Motion { about: "a moment of a run", t, q, v, a, x, steady: false, efforts, cautions })
+}
+
+/// The pose at rest of a crane with loops, valves or joints that stick.
+fn of_rest(crane: &dyn DynCrane, t: f64) -> Outcome<Motion> {
+    let settings = statics::Settings::default();
+    let rest = crane.equilibrium_at(t, &crane.equilibrium(&settings).q, &settings);
+    if !rest.rests() {
+        let title = format!("{}: {}", crane.description().name, rest.status);
+        return Err(Problem::failed(title, "`crane statics` says more, and what to change"));
+    }
+    let n = rest.q.len();
+    let cautions = crane
+        .description()
+        .has_valves()
+        .then(|| "valves are shut, as at rest, so that leakage is a slow drift; what a servo does is a matter of `crane margins` and `crane statics`".to_owned());
+    Ok(Motion {
+        about: "a pose at rest",
+        t,
+        q: rest.q,
+        v: vec![0.0; n],
+        a: vec![0.0; n],
+        x: Vec::new(),
+        steady: true,
+        efforts: vec![None; n],
+        cautions: cautions.into_iter().collect(),
+    })
+}
+
+/// The model A, B, C, D about a motion, with all inputs that act, or those that are asked for.
+fn model(crane: &LiveCrane, motion: &Motion, options: &Linearise) -> Outcome<LinearModel> {
+    let description = crane.description();
+    let about = About {
+        t: motion.t,
+        q: &motion.q,
+        v: &motion.v,
+        x: if motion.x.is_empty() { Forces::Holding } else { Forces::Given(&motion.x) },
+        steady: motion.steady,
+    };
+    let unknown = |what: &str, name: &str, known: Vec<String>| {
+        let guess = nearest(name, known.iter().map(String::as_str));
+        let guess = guess.map_or_else(String::new, |guess| format!("did you mean `{guess}`? "));
+        Problem::usage(format!("there is no {what} `{name}`"), format!("{guess}{what}s: {}", known.join(", ")))
+    };
+    let inputs = match &options.acting {
+        Some(names) => {
+            let known = || Input::all(description).iter().map(|input| input.column(description).name).collect();
+            let of = |name: &String| Input::named(name, description).ok_or_else(|| unknown("input", name, known()));
+            names.iter().map(of).collect::<Outcome<Vec<Input>>>()?
+        }
+        None => {
+            let acts = |input: &Input| linear_model(crane, &about, std::slice::from_ref(input), &[]).is_ok();
+            Input::all(description).into_iter().filter(acts).collect()
+        }
+    };
+    let all = outputs(crane);
+    let wanted = match &options.measured {
+        Some(names) => {
+            let known = || all.iter().map(|output| output.column.name.clone()).collect();
+            let of = |name: &String| {
+                let found = all.iter().find(|output| output.column.name == *name).cloned();
+                found.ok_or_else(|| unknown("output", name, known()))
+            };
+            names.iter().map(of).collect::<Outcome<Vec<Output>>>()?
+        }
+        None => {
+            let of_point = |name: &str| {
+                let point = name.rsplit_once('_').filter(|(_, axis)| matches!(*axis, "x" | "y" | "z"));
+                point.is_some_and(|(point, _)| description.points.iter().any(|known| known.as_str() == point))
+            };
+            let is_shown =
+                |(place, output): &(usize, Output)| *place < 2 * crane.size() || of_point(output.column.name.as_str());
+            all.into_iter().enumerate().filter(is_shown).map(|(_, output)| output).collect()
+        }
+    };
+    linear_model(crane, &about, &inputs, &wanted).map_err(|none| {
+        Problem::failed(format!("{}: {none}", description.name), "name others with `--on` and `--measure`")
+    })
+}
+
+/// Names and units of states, inputs and outputs, and the matrices row by row, for programs.
+fn of_model(model: &LinearModel) -> Value {
+    let names = |columns: &[Column]| columns.iter().map(|column| column.name.as_str().into()).collect::<Vec<Value>>();
+    let units = |columns: &[Column]| columns.iter().map(|column| column.unit.as_str().into()).collect::<Vec<Value>>();
+    let matrix = |name, matrix: &DMatrix<f64>| array(name, matrix).json();
+    json!({
+        "states": names(&model.states), "state_units": units(&model.states),
+        "inputs": names(&model.inputs), "input_units": units(&model.inputs),
+        "outputs": names(&model.outputs), "output_units": units(&model.outputs),
+        "a": matrix("a", &model.a), "b": matrix("b", &model.b), "c": matrix("c", &model.c), "d": matrix("d", &model.d),
+    })
+}
+
+/// What A, B, C and D are about.
+fn signals(model: &LinearModel) -> Grid {
+    let title = "State space, dx/dt = A x + B u, y = C x + D u: `--format json` and `-o FILE.npz` have the matrices";
+    let mut grid = Grid::new("signals", title, &["of", "index", "name", "unit"]);
+    for (of, columns) in [("x", &model.states), ("u", &model.inputs), ("y", &model.outputs)] {
+        for (index, column) in columns.iter().enumerate() {
+            grid.row([of.into(), (index + 1).into(), column.name.as_str().into(), column.unit.as_str().into()]);
+        }
+    }
+    grid
 }
 
 /// The steady motion with the drives as at a given time and some coordinates held.
@@ -181,7 +295,8 @@ fn of_steady(live: &LiveCrane, options: &Linearise) -> Outcome<Motion> {
         efforts[held.coordinate] = Some(found.efforts[held.coordinate]);
     }
     let about = if greatest > 0.0 { "a steady motion" } else { "a pose at rest" };
-    Ok(Motion { about, t, a: vec![0.0; start.len()], q: found.q, v: found.v, efforts, cautions })
+    let a = vec![0.0; start.len()];
+    Ok(Motion { about, t, a, q: found.q, v: found.v, x: Vec::new(), steady: true, efforts, cautions })
 }
 
 /// What `--hold` asks for.
@@ -200,7 +315,7 @@ fn read_held(given: &[String], description: &Description) -> Outcome<Vec<Held>> 
         let (coordinate, position, rate) = match Variable::named(name.trim(), description)? {
             Variable::Position(index) => (index, Some(value), None),
             Variable::Rate(index) => (index, None, Some(value)),
-            // Cranes with force states were refused.
+            // Nothing but drives holds cranes with states of forces.
             Variable::ForceState(_) => continue,
         };
         match held.iter_mut().find(|held| held.coordinate == coordinate) {
@@ -292,10 +407,10 @@ fn values(description: &Description, small: &SmallMotions, found: &[Mode]) -> Ve
 }
 
 /// The same as arrays; pose, rates and accelerations of all coordinates.
-fn arrays(motion: &Motion, small: &SmallMotions, found: &[Mode]) -> Vec<Array> {
+fn arrays(motion: &Motion, small: Option<&SmallMotions>, model: &LinearModel, found: &[Mode]) -> Vec<Array> {
     let list = |name: &'static str, data: Vec<f64>| Array { name: name.into(), shape: vec![data.len()], data };
     let shapes = |name: &'static str, part: fn(&Complex<f64>) -> f64| {
-        let shape = vec![found.len(), small.unknowns.len()];
+        let shape = vec![found.len(), model.coordinates().len()];
         Array { name: name.into(), shape, data: found.iter().flat_map(|(_, shape)| shape.iter().map(part)).collect() }
     };
     let eigenvalues = |part: fn(&Complex<f64>) -> f64| found.iter().map(|(mode, _)| part(&mode.eigenvalue)).collect();
@@ -305,14 +420,19 @@ fn arrays(motion: &Motion, small: &SmallMotions, found: &[Mode]) -> Vec<Array> {
         list("rates", motion.v.clone()),
         list("accelerations", motion.a.clone()),
         list("efforts", motion.efforts.iter().map(|effort| effort.unwrap_or(0.0)).collect()),
-        list("rows", small.unknowns.iter().map(|index| *index as f64).collect()),
+        list("rows", model.coordinates().iter().map(|index| *index as f64).collect()),
     ];
-    arrays.extend(matrices(small).map(|(name, matrix)| array(name, &matrix)));
+    for (name, matrix) in [("A", &model.a), ("B", &model.b), ("C", &model.c), ("D", &model.d)] {
+        arrays.push(array(name, matrix));
+    }
+    arrays.extend(small.into_iter().flat_map(matrices).map(|(name, matrix)| array(name, &matrix)));
     arrays.extend([
         list("eigenvalues_real", eigenvalues(|x| x.re)),
         list("eigenvalues_imaginary", eigenvalues(|x| x.im)),
     ]);
-    arrays.extend([shapes("shapes_real", |x| x.re), shapes("shapes_imaginary", |x| x.im)]);
+    if small.is_some() {
+        arrays.extend([shapes("shapes_real", |x| x.re), shapes("shapes_imaginary", |x| x.im)]);
+    }
     arrays
 }
 

@@ -41,7 +41,7 @@ from .results import (
     Strength,
 )
 from .simulation import Simulation, State
-from .state_space import StateSpace
+from .state_space import Margins, StateSpace
 
 __all__ = [
     "Band",
@@ -54,6 +54,7 @@ __all__ = [
     "Frames",
     "InvalidRowWarning",
     "Linearisation",
+    "Margins",
     "Modes",
     "NoEquilibrium",
     "ParameterError",

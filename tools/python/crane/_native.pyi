@@ -43,6 +43,11 @@ def real_array(name: str, object: ArrayLike) -> Array:
     """A new array of the numbers of anything that NumPy converts to an array of real numbers; masked ones are NaN. TypeError names what
     is none."""
 
+def loop_margins(
+    a: Array, b: Array, c: Array, d: Array, powers: list[int], numbers: list[float], invalid: str
+) -> Array:
+    """(rows, 11): margins of a loop around plants, row by row: `Crane.margins` names them."""
+
 class Motion:
     """A motion that continues from result to result, with the history of its method."""
 
@@ -121,6 +126,22 @@ class Crane:
         self, asked: dict[str, Any], progress: Callable[[int, int], Any] | None = None
     ) -> dict[str, Any]:
         """Largest loads: `Crane.envelope` makes an `Envelope` of them."""
+    def _state_space(
+        self,
+        q: ArrayLike,
+        v: ArrayLike | None = None,
+        t: ArrayLike | None = None,
+        x: ArrayLike | None = None,
+        *,
+        valves: str = "shut",
+        steady: bool = False,
+        inputs: list[str] | None = None,
+        outputs: list[str] | None = None,
+        invalid: str = "raise",
+    ) -> dict[str, Any]:
+        """Linear models: `Crane.state_space` makes a `StateSpace` of them."""
+    def _acting(self, on: str) -> tuple[list[str], list[int], str | None]:
+        """The inputs that a loop moves, the powers of s by which each follows, and the coordinate of its drive."""
     def _modes(self, q: ArrayLike, invalid: str = "raise") -> dict[str, Any]:
         """Modes about poses: `Crane.modes` names them."""
     def _sensitivity(self, numbers: list[str], frequencies: int = 3, invalid: str = "raise") -> dict[str, Any]:

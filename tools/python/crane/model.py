@@ -28,7 +28,7 @@ from .results import (
     Strength,
 )
 from .simulation import Simulation
-from .state_space import StateSpace
+from .state_space import Margins, StateSpace
 
 
 def load(
@@ -175,17 +175,62 @@ class Crane(_native.Crane):
         q: ArrayLike,
         v: ArrayLike | None = None,
         t: ArrayLike | None = None,
+        x: ArrayLike | None = None,
         *,
         inputs: Sequence[str] | None = None,
         outputs: Sequence[str] | None = None,
+        valves: str = "shut",
+        steady: bool = False,
         invalid: str = "raise",
     ) -> StateSpace:
         """A linear model about states q, v at times t, at rest and at t = 0 unless given, which need not be equilibria.
 
-        inputs: names of inputs of the spec, all unless given. outputs: names as the columns of a run have them, of coordinates, of their rates
-        and of points (`tip_x`), all unless given.
+        x: states of forces, (..., their number), as `State.x` has them: pressures, spools, bristles. Unless given, they hold the pose at rest, with
+        valves that are "shut", or "slightly open": then with the mean of the slopes in both directions, which a servo meets about rest.
+        steady: the accelerations are zero, whatever holds the crane, instead of those that follow from the state.
+        inputs: names, those of the spec unless given. Of every drive there are also `<coordinate>_prescribed` and `<coordinate>_prescribed_rate`,
+        position and rate of its motion, each while the other stays, `<coordinate>_drive_torque` or `_drive_force`, an effort in addition, and of a
+        cylinder with a valve `<cylinder>_valve`, its command.
+        outputs: names of columns of a run; coordinates, their rates and points (`tip_x`) unless given.
         """
-        return state_space.about(self, q, v, t, inputs, outputs, invalid)
+        return state_space.about(self, (q, v, t, x), inputs, outputs, invalid, valves=valves, steady=steady)
+
+    def margins(
+        self,
+        on: str,
+        p: float,
+        *,
+        i: float = 0.0,
+        d: float = 0.0,
+        filter: float = 0.0,
+        lead: tuple[float, float] = (0.0, 0.0),
+        delay: float = 0.0,
+        lag: float = 0.0,
+        measure: str | None = None,
+        q: ArrayLike | None = None,
+        t: ArrayLike | None = None,
+        invalid: str = "raise",
+    ) -> Margins:
+        """Stability margins of a control loop about poses at rest, over parameters that are arrays and over poses.
+
+        `C(s) = (p + i/s + d s/(1 + filter s)) (1 + lead[0] s)/(1 + lead[1] s) exp(−delay s)/(1 + lag s)` acts on `on`: a driven coordinate for the motion
+        of its drive, `<coordinate>_rate` for the rate of that motion, or an input as `state_space` names them. It sees the reference minus
+        `measure`, a column of a run, the coordinate of the drive unless given.
+        q: poses; unless given the equilibria with the drives as at times t.
+
+        Raises ArithmeticError if a loop has no margins, because it is open or its gain does not fall at high frequencies.
+        """
+        inputs, powers, coordinate = self._acting(on)
+        measured = measure or coordinate
+        if measured is None:
+            raise ValueError(f"on={on!r} does not say what the loop measures: name a column of a run, as in measure='tip_z'")
+        if q is None:
+            q = self.statics(t=t, invalid=invalid).q
+        model = state_space.about(
+            self, (q, None, t, None), inputs, [measured], invalid, valves="slightly open", steady=True
+        )
+        numbers = [float(number) for number in (p, i, d, filter, *lead, delay, lag)]
+        return state_space.margins(self, model, powers, numbers, invalid)
 
     def frames(self, frames: Mapping[str, str | tuple[str, ArrayLike]]) -> Frames:
         """Frames fixed to links, by names of their own: `{"tool": ("grapple", [0, 0, -0.5])}`, an origin in the frame of a link, m, with the axes of

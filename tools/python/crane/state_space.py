@@ -1,5 +1,6 @@
-"""Linear models about a state, with inputs and outputs by their names."""
+"""Linear models about a state, with inputs and outputs by their names, and margins of loops around them."""
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -7,23 +8,23 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import _native
 from .results import Array
 
 if TYPE_CHECKING:
     from .model import Crane
 
-# An input is changed until accelerations change by this part of their size: rounding and curvature then stay below 1e-9 of an entry.
-_PART = 1e-5
-# Change of an input by which its effect is found first, relative to its value or to 1.
-_PROBE = 1e-6
-
 
 @dataclass(frozen=True)
 class StateSpace:
-    """`d/dt δx = A δx + B δu`, `δy = C δx + D δu` about a state x = (q, q̇), which need not be at rest; over the leading axes.
+    """`d/dt δx = A δx + B δu`, `δy = C δx + D δu` about a state, which need not be at rest; over the leading axes.
 
-    A: (..., 2n, 2n). B: (..., 2n, inputs). C: (..., outputs, 2n). D: (..., outputs, inputs).
+    The state has the coordinates that can move, their rates, and the states of forces: pressures, spools, bristles. Of a crane with loops it has
+    independent coordinates, as many as the crane has degrees of freedom.
+
+    A: (..., states, states). B: (..., states, inputs). C: (..., outputs, states). D: (..., outputs, inputs).
     states, inputs, outputs: names; state_units, input_units, output_units: their units.
+    interval: None, or of a sampled model, `δx[k+1] = A δx[k] + B δu[k]`, the time between samples, s.
 
     It unpacks into A, B, C, D: `scipy.signal.StateSpace(*model)`, `control.ss(*model)`.
     """
@@ -38,98 +39,120 @@ class StateSpace:
     state_units: tuple[str, ...]
     input_units: tuple[str, ...]
     output_units: tuple[str, ...]
+    interval: float | None = None
 
     def __iter__(self) -> Iterator[Array]:
         return iter((self.A, self.B, self.C, self.D))
 
     def frequency_response(self, frequencies: ArrayLike) -> NDArray[np.complex128]:
-        """(..., frequencies, outputs, inputs): `C (iω − A)⁻¹ B + D` at frequencies in Hz: amplitude and phase of each output per unit of each input."""
+        """(..., frequencies, outputs, inputs): `C (iω − A)⁻¹ B + D` at frequencies in Hz: amplitude and phase of each output per unit of each input.
+
+        Of a sampled model `C (exp(iω interval) − A)⁻¹ B + D`."""
         turning = 2j * np.pi * np.atleast_1d(np.asarray(frequencies, dtype=float))
+        if self.interval is not None:
+            turning = np.exp(turning * self.interval)
         unit = np.eye(self.A.shape[-1])
         A, B, C, D = (matrix[..., None, :, :] for matrix in self)
         return C @ np.linalg.solve(turning[:, None, None] * unit - A, B.astype(complex)) + D
 
+    def sampled(self, interval: float) -> "StateSpace":
+        """The model from sample to sample, `interval` s apart, with inputs that are constant between them (zero-order hold)."""
+        if self.interval is not None:
+            raise ValueError("the model is sampled already")
+        if not (interval > 0.0 and math.isfinite(interval)):
+            raise ValueError(f"interval={interval}: write a number of seconds above 0")
+        size, count = self.B.shape[-2:]
+        block = np.zeros((*self.A.shape[:-2], size + count, size + count))
+        block[..., :size, :size], block[..., :size, size:] = self.A, self.B
+        moved = _exponential(block * interval)
+        names = (self.states, self.inputs, self.outputs, self.state_units, self.input_units, self.output_units)
+        return StateSpace(moved[..., :size, :size], moved[..., :size, size:], self.C, self.D, *names, interval)
+
+
+def _exponential(matrix: Array) -> Array:
+    """exp of matrices by scaling, squaring and the Padé approximation of order 13 [Higham 2005], after balancing units by powers of 2."""
+    matrix, scales = _balanced(matrix)
+    norm = np.max(np.sum(np.abs(matrix), axis=-2), initial=0.0)
+    halvings = max(0, math.ceil(math.log2(norm / 5.371920351148152))) if norm > 0.0 else 0
+    matrix = matrix / 2.0**halvings
+    order = 13
+    factors = [1.0]
+    for j in range(1, order + 1):
+        factors.append(factors[-1] * (order + 1 - j) / ((2 * order + 1 - j) * j))
+    power = np.broadcast_to(np.eye(matrix.shape[-1]), matrix.shape)
+    even, odd = np.zeros_like(matrix), np.zeros_like(matrix)
+    for j, factor in enumerate(factors):
+        (odd if j % 2 else even)[...] += factor * power
+        power = power @ matrix
+    result = np.linalg.solve(even - odd, even + odd)
+    for _ in range(halvings):
+        result = result @ result
+    return result * scales[..., :, None] / scales[..., None, :]
+
+
+def _balanced(matrix: Array) -> tuple[Array, Array]:
+    """`S⁻¹ M S` with a diagonal S of powers of 2, whose rows and columns are of one size: pressures in Pa beside angles in rad; and S."""
+    scales = np.ones(matrix.shape[:-1])
+    for _ in range(20):
+        scaled = np.abs(matrix) * scales[..., None, :] / scales[..., :, None]
+        off = scaled * (1.0 - np.eye(matrix.shape[-1]))
+        rows, columns = off.sum(axis=-1), off.sum(axis=-2)
+        both = (rows > 0.0) & (columns > 0.0)
+        change = np.where(both, np.exp2(np.round(0.5 * np.log2(np.where(both, rows / np.where(columns > 0.0, columns, 1.0), 1.0)))), 1.0)
+        if np.all(change == 1.0):
+            break
+        scales = scales * change
+    return matrix * scales[..., None, :] / scales[..., :, None], scales
+
+
+@dataclass(frozen=True)
+class Margins:
+    """Stability margins of a loop, over the leading axes. L: the gain of the open loop; frequencies in rad/s; NaN where there is none.
+
+    stable: whether the closed loop is stable, by Nyquist's count. phase: phase of L + 180°, rad, where |L| = 1 and its size is least; crossover:
+    where that is. gain: smallest factor above 1 with which L passes −1, and its frequency gain_at; reduction: largest factor below 1.
+    distance: of L from −1, the inverse of the largest sensitivity, and its frequency distance_at. bandwidth: where |L/(1 + L)| falls below 1/√2.
+    closed: eigenvalue of the least damped motion of the closed loop on which the loop acts, 1/s. damping: its damping ratio.
+    """
+
+    stable: NDArray[np.bool_]
+    phase: Array
+    crossover: Array
+    gain: Array
+    gain_at: Array
+    reduction: Array
+    distance: Array
+    distance_at: Array
+    bandwidth: Array
+    closed: NDArray[np.complex128]
+
+    @property
+    def damping(self) -> Array:
+        """Damping ratio of the least damped motion of the closed loop; negative if it grows."""
+        return -self.closed.real / np.abs(self.closed)
+
 
 def about(
     crane: "Crane",
-    q: ArrayLike,
-    v: ArrayLike | None,
-    t: ArrayLike | None,
+    state: tuple[ArrayLike, ArrayLike | None, ArrayLike | None, ArrayLike | None],
     inputs: Sequence[str] | None,
     outputs: Sequence[str] | None,
     invalid: str,
+    *,
+    valves: str = "shut",
+    steady: bool = False,
 ) -> StateSpace:
-    """The linear model of a crane about a state: see `Crane.state_space`."""
-    coordinates, n = crane.info["coordinates"], crane.n
-    v = np.zeros(n) if v is None else v
-    of_q, of_v, _ = np.moveaxis(crane.forward_dynamics_derivatives(q, v, t, invalid=invalid), -3, 0)
-    unit = np.broadcast_to(np.eye(n), of_q.shape)
-    A = np.concatenate([np.concatenate([np.zeros_like(of_q), unit], -1), np.concatenate([of_q, of_v], -1)], -2)
-
-    known = {given["name"]: given for given in crane.info["inputs"]}
-    names = tuple(known) if inputs is None else tuple(inputs)
-    columns = [_by_input(crane, (q, v, t), _known(name, known, "input"), invalid) for name in names]
-    accelerations = np.stack(columns, axis=-1) if columns else np.zeros((*of_q.shape[:-1], 0))
-    B = np.concatenate([np.zeros_like(accelerations), accelerations], axis=-2)
-
-    rows, units = _outputs(crane, q, invalid)
-    wanted = tuple(rows) if outputs is None else tuple(outputs)
-    C = np.stack([np.broadcast_to(_known(name, rows, "output"), (*A.shape[:-2], 2 * n)) for name in wanted], axis=-2)
-    states = [(c["name"], c["unit"]) for c in coordinates] + [(f"{c['name']}_rate", f"{c['unit']}/s") for c in coordinates]
-    return StateSpace(
-        A,
-        B,
-        C,
-        np.zeros((*C.shape[:-1], len(names))),
-        tuple(name for name, _ in states),
-        names,
-        wanted,
-        tuple(unit for _, unit in states),
-        tuple(known[name]["unit"] for name in names),
-        tuple(units[name] for name in wanted),
-    )
+    """The linear model of a crane about a state q, v, t, x: see `Crane.state_space`."""
+    lists = (None if names is None else list(names) for names in (inputs, outputs))
+    found = crane._state_space(*state, valves=valves, steady=steady, **dict(zip(("inputs", "outputs"), lists, strict=True)), invalid=invalid)
+    names = ("states", "inputs", "outputs", "state_units", "input_units", "output_units")
+    return StateSpace(*(found[name] for name in "ABCD"), *(tuple(found[name]) for name in names))
 
 
-def _known(name, of, what):
-    if name not in of:
-        raise ValueError(f"there is no {what} {name!r}: write one of {', '.join(of) or 'none: the spec has no inputs'}")
-    return of[name]
-
-
-def _by_input(crane, at, given, invalid):
-    """∂q̈/∂u of one input, (..., n), by central differences; accelerations are linear in most inputs, so their step may be large."""
-    name = given["name"]
-    if name in crane.inputs:
-        value = crane.inputs[name]
-    elif given["moves"]:
-        raise ValueError(f"input {name!r} follows a motion of the spec: set it, as in `c.replace(inputs={{{name!r}: 0.1}})`, or leave it out")
-    else:
-        value = given["default"]
-
-    def accelerations(change):
-        return crane.replace(inputs={name: value + change}).forward_dynamics(*at, invalid=invalid)
-
-    step = _PROBE * max(1.0, abs(value))
-    here = accelerations(0.0)
-    effect = np.nanmax(np.abs(accelerations(step) - here), initial=0.0)
-    if effect > 0.0:
-        step *= _PART * max(1.0, np.nanmax(np.abs(here), initial=0.0)) / effect
-    return (accelerations(step) - accelerations(-step)) / (2.0 * step)
-
-
-def _outputs(crane, q, invalid):
-    """Rows of C and units of everything that can be an output, by the names of the columns of a run."""
-    n = crane.n
-    rows, units = {}, {}
-    for j, coordinate in enumerate(crane.info["coordinates"]):
-        for name, unit, place in (
-            (coordinate["name"], coordinate["unit"], j),
-            (f"{coordinate['name']}_rate", f"{coordinate['unit']}/s", n + j),
-        ):
-            rows[name], units[name] = np.eye(2 * n)[place], unit
-    jacobians = crane.point_jacobians(q, invalid=invalid)
-    for i, point in enumerate(crane.info["points"]):
-        for k, axis in enumerate("xyz"):
-            row = jacobians[..., i, k, :]
-            rows[f"{point}_{axis}"], units[f"{point}_{axis}"] = np.concatenate([row, np.zeros_like(row)], axis=-1), "m"
-    return rows, units
+def margins(crane: "Crane", model: StateSpace, powers: list[int], numbers: list[float], invalid: str) -> Margins:
+    """The margins of a loop around a model with one output: see `Crane.margins`."""
+    axes = model.A.shape[:-2]
+    A, B, C, D = (np.ascontiguousarray(matrix.reshape(-1, *matrix.shape[len(axes) :])) for matrix in model)
+    found = _native.loop_margins(A, B, np.ascontiguousarray(C[:, 0]), np.ascontiguousarray(D[:, 0]), powers, numbers, invalid)
+    columns = [column.reshape(axes) for column in np.moveaxis(found, -1, 0)]
+    return Margins(columns[0] == 1.0, *columns[1:9], columns[9] + 1j * columns[10])

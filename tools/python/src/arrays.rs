@@ -48,6 +48,17 @@ impl Argument {
         Ok(Self { shape, numbers, width })
     }
 
+    /// A number per row for each of `width` things, `of`.
+    pub fn of_width(name: &str, object: &Bound<'_, PyAny>, width: usize, of: &str) -> PyResult<Self> {
+        let (mut shape, numbers) = read_numbers(name, object)?;
+        match shape.pop() {
+            Some(last) if last == width => Ok(Self { shape, numbers, width }),
+            // A list without numbers: not given.
+            Some(0) => Ok(Self::none()),
+            _ => Err(PyValueError::new_err(format!("{name} needs {width} numbers in its last axis: {of}"))),
+        }
+    }
+
     /// Nothing: an argument that was not given.
     pub fn none() -> Self {
         Self::default()

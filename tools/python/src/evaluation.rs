@@ -168,7 +168,7 @@ impl Crane {
     }
 
     /// t, q, v, a; empty if not given, which means t = 0 for the time.
-    fn read(&self, state: State<'_, '_>) -> PyResult<[Argument; 4]> {
+    pub fn read(&self, state: State<'_, '_>) -> PyResult<[Argument; 4]> {
         let description = self.live.description();
         let coordinates = |name: &str, given: Given<'_, '_>| {
             given.map_or_else(|| Ok(Argument::none()), |given| Argument::coordinates(name, given, description))

@@ -7,6 +7,7 @@
 //! | `functions` | transforms, points, mass matrix, forces, dynamics, energies: arrays in, arrays out |
 //! | `evaluation` | how: rows of all arguments, eight at a time, on all threads |
 //! | `equilibria`, `vibrations` | statics, modes and stability, row by row |
+//! | `linear` | linear models, and margins of loops around them |
 //! | `sensitivity` | derivatives at rest by the numbers of a crane |
 //! | `motion` | runs: of one crane, of many, step by step |
 //! | `page` | the crane in 3-D, as HTML |
@@ -21,6 +22,7 @@ mod envelope;
 mod equilibria;
 mod evaluation;
 mod functions;
+mod linear;
 mod mistakes;
 mod motion;
 mod page;
@@ -42,6 +44,8 @@ mod _native {
     use crate::crane::shipped;
     #[pymodule_export]
     use crate::functions::functions;
+    #[pymodule_export]
+    use crate::linear::loop_margins;
     #[pymodule_export]
     use crate::mistakes::{InvalidRowWarning, NoEquilibrium, ParameterError, SpecError, SpecWarning};
     #[pymodule_export]

@@ -35,11 +35,13 @@ OTHERS = {
     "bend": 45.0,
     "verify": False,
     "inputs": None,
+    "on": "main_boom_theta",
+    "p": 0.5,
     "invalid": "raise",
 }
 # Functions that take one state, or none, and what else they need.
 ONE_STATE = {"simulate", "simulation", "_record", "_motion"}
-NO_STATE = {"replace", "page", "export", "_changed", "picture", "_parameter_rows", "_page", "_envelope", "sensitivity", "_sensitivity"}
+NO_STATE = {"_acting", "_changed", "replace", "page", "export", "picture", "_parameter_rows", "_page", "_envelope", "sensitivity", "_sensitivity"}
 
 
 @dataclasses.dataclass

@@ -7,8 +7,8 @@ use crane_live::FunctionId;
 
 use super::{
     crane::{Analysis, Choice},
-    number::{above_zero, count, margin, seconds},
-    poses::Poses,
+    number::{above_zero, angle, count, duration, finite_number, margin, seconds},
+    poses::{Held, Poses},
     run::{Folder, Timing},
 };
 
@@ -153,9 +153,74 @@ pub struct Linearise {
     /// Linearise about the motion in a row of a CSV file of results, the last or that at --time, instead of a steady motion
     #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
     pub from: Option<PathBuf>,
+    /// Inputs of the state space, separated by commas: those of the spec, and of every drive the position and rate of its motion, its torque
+    /// or force, its valve [default: all that act]
+    #[arg(long = "on", value_delimiter = ',', value_name = "NAMES")]
+    pub acting: Option<Vec<String>>,
+    /// Outputs of the state space, separated by commas: columns of a run [default: coordinates, rates, points]
+    #[arg(long = "measure", value_delimiter = ',', value_name = "NAMES")]
+    pub measured: Option<Vec<String>>,
     /// Also write motion, matrices, eigenvalues and shapes to an archive for `numpy.load`
     #[arg(short = 'o', long, value_name = "FILE.npz", value_hint = ValueHint::FilePath)]
     pub file: Option<PathBuf>,
+}
+
+/// Margins of a loop around a crane.
+#[derive(Debug, Args)]
+pub struct Margins {
+    #[command(flatten)]
+    pub analysis: Analysis,
+    #[command(flatten)]
+    pub held: Held,
+    /// Compute one row per value of a drive's position or of a live parameter: from, to and how many, as in `boom_psi=0:60deg:13`;
+    /// may be given several times
+    #[arg(long = "range", value_name = "NAME=FROM:TO:COUNT", allow_hyphen_values = true, help_heading = "Pose")]
+    pub ranges: Vec<String>,
+    /// What the loop acts on: the motion of a drive by its coordinate, `boom_psi`, its rate, `boom_psi_rate`, a torque or force on it,
+    /// `boom_psi_drive_torque`, its valve, `boom_cylinder_valve`, or an input of the spec
+    #[arg(long, value_name = "NAME")]
+    pub on: String,
+    /// What the loop measures: a column of a run [default: the coordinate of the drive on which it acts]
+    #[arg(long, value_name = "NAME")]
+    pub measure: Option<String>,
+    #[command(flatten)]
+    pub controller: Controller,
+    /// Phase margin that poses should have: others are counted
+    #[arg(long, value_name = "ANGLE", default_value = "45deg", value_parser = angle)]
+    pub least: f64,
+    /// Threads [default: all of the machine]
+    #[arg(long, value_name = "COUNT", value_parser = count)]
+    pub threads: Option<NonZeroUsize>,
+    /// File for the table, CSV, or for a map of the phase margin over two ranges, SVG
+    #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: Option<PathBuf>,
+}
+
+/// The controller with its dead time and its lag.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Controller")]
+pub struct Controller {
+    /// Proportional gain, in units of what the loop acts on per unit of what it measures
+    #[arg(long, value_name = "GAIN", default_value_t = 0.0, allow_negative_numbers = true, value_parser = finite_number)]
+    pub p: f64,
+    /// Integral gain, the same per s
+    #[arg(long, value_name = "GAIN", default_value_t = 0.0, allow_negative_numbers = true, value_parser = finite_number)]
+    pub i: f64,
+    /// Derivative gain, the same times s
+    #[arg(long, value_name = "GAIN", default_value_t = 0.0, allow_negative_numbers = true, value_parser = finite_number)]
+    pub d: f64,
+    /// Time constant of a filter of the derivative, s
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = duration)]
+    pub filter: f64,
+    /// Time constants of numerator and denominator of a lead, s, as in `0.3,0.03`
+    #[arg(long, value_name = "SECONDS,SECONDS", value_delimiter = ',', num_args = 2, value_parser = duration)]
+    pub lead: Option<Vec<f64>>,
+    /// Dead time, s
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = duration)]
+    pub delay: f64,
+    /// Time constant of a first-order lag, s
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = duration)]
+    pub lag: f64,
 }
 
 /// Stability of time steps.

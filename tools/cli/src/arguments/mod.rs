@@ -13,7 +13,9 @@ use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 
 use crate::screen::Manner;
 
-pub use analysis::{Envelope, Eval, EvalFormat, Linearise, LoadLimits, Modes, Quantity, Stability, Strength};
+pub use analysis::{
+    Controller, Envelope, Eval, EvalFormat, Linearise, LoadLimits, Margins, Modes, Quantity, Stability, Strength,
+};
 pub use crane::{
     Analysis, Check, Choice, DEFAULT_CRANE, Example, Explain, Format, Generate, Limits, List, New, Parameters,
     STANDARD_INPUT, spec_file,
@@ -47,6 +49,8 @@ Examples:
   crane compare my.yaml                your own crane, with beams that bend and with rigid ones
   crane modes                          frequencies and damping about the static pose
   crane linearise --time 2.5           matrices and modes about the motion in the middle of the manoeuvre
+  crane margins --on boom_psi_rate --p 1.3 --delay 0.065 --range boom_psi=0:60deg:7
+                                       stability margins of a position loop around the boom's drive
   crane stability                      largest stable steps and what limits them, with a figure
   crane check my.yaml; crane run my.yaml
                                        your own crane: find its mistakes, then compute everything
@@ -102,8 +106,10 @@ pub enum Action {
     Simulate(Simulate),
     /// Compute frequencies, damping and dominant coordinates about the static pose
     Modes(Modes),
-    /// Linearise about a pose or a motion: A, D, K with gyroscopic terms, eigenvalues, mode shapes
+    /// Linearise about a pose or a motion: state space A, B, C, D, matrices of small motions, eigenvalues, mode shapes
     Linearise(Linearise),
+    /// Compute stability margins of a control loop over ranges of poses: phase, gain, distance from instability, bandwidth, damping
+    Margins(Margins),
     /// Write statics, motion and modes as one HTML page with the crane in 3-D
     Report(Page),
     /// Compute the largest stable step of every method and what limits it
@@ -157,6 +163,7 @@ impl Action {
             Action::Info(options) => Some(&mut options.crane),
             Action::Modes(options) => Some(&mut options.analysis.crane),
             Action::Linearise(options) => Some(&mut options.analysis.crane),
+            Action::Margins(options) => Some(&mut options.analysis.crane),
             Action::Strength(options) => Some(&mut options.analysis.crane),
             Action::Sensitivity(options) => Some(&mut options.analysis.crane),
             Action::Envelope(options) => Some(&mut options.analysis.crane),
@@ -202,6 +209,8 @@ pub enum Output {
     Modes,
     /// Small motions about a pose or a motion.
     Linearise,
+    /// Margins of a control loop.
+    Margins,
     /// Largest stable steps.
     Stability,
     /// A run.

@@ -14,6 +14,23 @@ pub fn seconds(text: &str) -> Result<f64, String> {
     finite(text).ok_or_else(|| "write a number of seconds, such as 0.5".to_owned())
 }
 
+/// A time of at least zero.
+pub fn duration(text: &str) -> Result<f64, String> {
+    let number = finite(text).filter(|number| *number >= 0.0);
+    number.ok_or_else(|| "write a number of seconds of at least 0, such as 0.065".to_owned())
+}
+
+/// Any finite number.
+pub fn finite_number(text: &str) -> Result<f64, String> {
+    finite(text).ok_or_else(|| "write a number, such as 1.3".to_owned())
+}
+
+/// An angle.
+pub fn angle(text: &str) -> Result<f64, String> {
+    let angle = finite(text).or_else(|| crane_codegen::spec::parse_angle(text));
+    angle.ok_or_else(|| "write an angle, such as 45deg, or radians".to_owned())
+}
+
 /// An error tolerance.
 pub fn tolerance(text: &str) -> Result<f64, String> {
     finite(text).ok_or_else(|| "write a number, such as 1e-4".to_owned())

@@ -38,7 +38,8 @@ use crate::{
 
 use chart::Chart;
 pub use identity::facts as facts_of_chart;
-pub use ranges::{number, point, read_ranges, varied};
+pub use map::{Map, svg as map_svg};
+pub use ranges::{number, point, read_ranges, shown, varied};
 use rows::{Layout, Row};
 
 /// Maximum number of poses: they take some hours.

@@ -180,7 +180,7 @@ pub fn rows(asked: &Asked<'_>, registry: &Registry, out: &mut dyn Write) -> Outc
 }
 
 /// Parameters of a pose, by their indices.
-fn settings(axes: &Axes, pose: usize, description: &Description) -> Outcome<Vec<(usize, f64)>> {
+pub fn settings(axes: &Axes, pose: usize, description: &Description) -> Outcome<Vec<(usize, f64)>> {
     let coordinate_of = |varied| match varied {
         Varied::Parameter(index) => Some(index),
         Varied::Drive(drive) => {

@@ -2,6 +2,7 @@
 
 mod documents;
 mod ensemble;
+mod margins;
 mod messages;
 mod new;
 mod places;
@@ -282,13 +283,24 @@ fn a_moment_of_a_run_is_linearised() {
     );
     refused(&["linearise", "double_pendulum", "--hold", "upper_theta=high"], &["`high` is not a valid value"]);
     refused(&["linearise", "double_pendulum", "-o", "a.json"], &["does not end in .npz"]);
-    refused(&["linearise", "eight_link_hydraulic"], &["pressures of its cylinders", "`crane modes`"]);
+    refused(&["linearise", "eight_link_hydraulic", "--hold", "boom_psi=0"], &["valves", "motion: {hold: 30 deg}"]);
+    refused(
+        &["linearise", "knuckle_boom", "--on", "main_bom_theta_prescribed"],
+        &["did you mean `main_boom_theta_prescribed`"],
+    );
+    refused(&["linearise", "knuckle_boom", "--measure", "speed"], &["no output `speed`", "boom_tip_x"]);
     let sticking = std::path::Path::new(&folder).join("arm.yaml");
     let spec = "format: 1\nname: arm\nlinks: [{name: arm, joint: {revolute: {axis: y}}, mass: 10, com: [0, 0, -1]}]\n\
                 friction: {arm_theta: {coulomb: 5, bristle: {stiffness: 1e4, damping: 30}}}\n";
     fs::write(&sticking, spec).expect("a file");
     let sticking = sticking.to_str().expect("a path");
-    refused(&["linearise", sticking], &["bristles of its joints", "`crane modes`"]);
+    let found = json(&["linearise", sticking, "--format", "json"]);
+    // The bristle is a spring: (k + m g l)/(m l²) = (1e4 + 98.1)/10.
+    let state_space = &found["state_space"];
+    assert_eq!(state_space["states"][2], "arm_theta_bristle");
+    let entry = |row: usize, column: usize| state_space["a"][row][column].as_f64().expect("a number");
+    assert!((entry(1, 2) + 1e3).abs() < 1e-6 && (entry(1, 0) + 9.81).abs() < 1e-6 && (entry(2, 1) - 1.0).abs() < 1e-9);
+    assert!(found.get("mass").is_none() && found["modes"].as_array().is_some_and(|modes| !modes.is_empty()));
     // Nothing holds a turntable in its place.
     let turntable = "format: 1\nname: arm\nlinks: [{name: arm, joint: revolute, mass: 10, com: [1, 0, 0]}]\n";
     fs::write(sticking, turntable).expect("a file");

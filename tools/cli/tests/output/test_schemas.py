@@ -56,6 +56,22 @@ def test_linearise(output, options):
     assert {row["coordinate"] for row in found["held"]} == ({"boom_psi", "column_psi"} if "--hold" in options else set())
 
 
+@pytest.mark.parametrize("crane_name", ["eight_link_hydraulic", "two_arms", "knuckle_boom"])
+def test_state_space(output, crane_name):
+    found = output("linearise", "linearise", crane_name, "--measure", "truck_x_rate" if crane_name != "knuckle_boom" else "hook_theta")
+    model = found["state_space"]
+    assert len(model["a"]) == len(model["b"]) == len(model["states"]) == len(model["state_units"])
+    assert len(model["c"]) == len(model["d"]) == 1 and len(model["d"][0]) == len(model["inputs"])
+    assert ("mass" in found) == (crane_name != "eight_link_hydraulic")
+
+
+@pytest.mark.parametrize("ranges", [[], ["--range", "main_boom_theta=0:60deg:2", "--range", "payload=100:800:2"]])
+def test_margins(output, ranges):
+    found = output("margins", "margins", "knuckle_boom", "--on", "main_boom_theta_rate", "--p", 0.8, "--delay", 0.06, *ranges)
+    assert found["count"] == len(found["margins"]) == (4 if ranges else 1)
+    assert found["units"]["margins"]["phase_margin"] == "rad" and found["loop"]["units"] == "rad/s per rad"
+
+
 @pytest.mark.parametrize("along", [0, 3])
 def test_stability(output, tmp_path, along):
     found = output("stability", "stability", "knuckle_boom", "--along", along, "--out", tmp_path)

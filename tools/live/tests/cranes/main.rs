@@ -18,6 +18,7 @@ mod hydraulics;
 mod inputs;
 mod laws;
 mod limits;
+mod linear;
 mod linearise;
 mod linkages;
 mod load_charts;

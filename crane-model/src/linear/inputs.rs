@@ -1,0 +1,237 @@
+//! Inputs of linear models: those of the spec, and of each drive its motion, its effort and its valve.
+
+use nalgebra::DVector;
+
+use super::{Linearisable, NoModel, Output};
+use crate::{
+    CoordinateRole, Description,
+    dyn_crane::DynCrane,
+    force_states::motion_at,
+    hydraulics,
+    modes::StateSpace,
+    results::{Column, drive_effort, quantities_at, quantities_with},
+    stateful_force::StateAt,
+};
+
+/// What acts on a crane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Input {
+    /// An input of the spec, by its index.
+    Spec(usize),
+    /// Position of the motion of a drive, by its index, while its rate stays: `<coordinate>_prescribed`, m or rad.
+    Motion(usize),
+    /// Rate of the motion of a drive, while its position stays: `<coordinate>_prescribed_rate`, m/s or rad/s.
+    Rate(usize),
+    /// Torque or force on the coordinate of a drive in addition to that of the drive: `<coordinate>_drive_torque` or `_drive_force`, N m or N.
+    Effort(usize),
+    /// Change of the command of the valve of a drive, −1 to 1: `<cylinder>_valve`.
+    Valve(usize),
+}
+
+impl Input {
+    /// Those of a crane: of the spec, then of the drives.
+    pub fn all(description: &Description) -> Vec<Self> {
+        let of_spec = (0..description.inputs.len()).map(Input::Spec);
+        let of_drives = (0..description.drives.len()).flat_map(|drive| {
+            let valve = cylinder_of(description, drive).map(|_| Input::Valve(drive));
+            let is_rigid =
+                description.coordinates[description.drives[drive].coordinate].role == CoordinateRole::Prescribed;
+            let free = [Input::Motion(drive), Input::Rate(drive), Input::Effort(drive)];
+            free.into_iter().filter(move |_| !is_rigid).chain(valve)
+        });
+        of_spec.chain(of_drives).collect()
+    }
+
+    /// The one of this name.
+    pub fn named(name: &str, description: &Description) -> Option<Self> {
+        Self::all(description).into_iter().find(|input| input.column(description).name == name)
+    }
+
+    /// Its name and unit.
+    pub fn column(self, description: &Description) -> Column {
+        let coordinate = |drive: usize| &description.coordinates[description.drives[drive].coordinate];
+        let (name, unit) = match self {
+            Input::Spec(index) => {
+                let info = &description.inputs[index];
+                (info.name.to_string(), info.unit.to_string())
+            }
+            Input::Motion(drive) => {
+                let info = coordinate(drive);
+                (format!("{}_prescribed", info.name), info.kind.unit().to_owned())
+            }
+            Input::Rate(drive) => {
+                let info = coordinate(drive);
+                (format!("{}_prescribed_rate", info.name), format!("{}/s", info.kind.unit()))
+            }
+            Input::Effort(drive) => {
+                let info = coordinate(drive);
+                (drive_effort(&info.name, info.kind), info.kind.force_unit().to_owned())
+            }
+            Input::Valve(drive) => {
+                let cylinder = cylinder_of(description, drive).unwrap_or_default();
+                (format!("{cylinder}_valve"), "1".to_owned())
+            }
+        };
+        Column { name, unit }
+    }
+}
+
+/// Name of the cylinder with a valve that moves a drive's joint.
+fn cylinder_of(description: &Description, drive: usize) -> Option<&str> {
+    let cylinder = description.cylinders.iter().find(|cylinder| cylinder.drive == drive && cylinder.valve.is_some())?;
+    Some(cylinder.name.as_str())
+}
+
+/// What an input does: a column of B and of D.
+pub(super) struct Effect {
+    pub states: DVector<f64>,
+    pub outputs: Vec<f64>,
+}
+
+/// What an input does at a state.
+pub(super) fn effect<C: Linearisable>(
+    crane: &C,
+    moment: &StateAt<'_>,
+    input: Input,
+    space: &StateSpace,
+    outputs: &[Output],
+) -> Result<Effect, NoModel> {
+    let description = crane.description();
+    let refused = |why, help| NoModel::Input(input.column(description).name, why, help);
+    let (drive, which) = match input {
+        Input::Spec(index) => return of_spec(crane, moment, index, space, outputs),
+        Input::Motion(drive) => (drive, 0),
+        Input::Rate(drive) => (drive, 1),
+        Input::Effort(drive) => (drive, 2),
+        Input::Valve(drive) => (drive, 3),
+    };
+    let (j, n) = (description.drives[drive].coordinate, space.unknowns().len());
+    if description.coordinates[j].role == CoordinateRole::Prescribed {
+        return Err(refused("belongs to a rigid drive", "give the drive a `stiffness`"));
+    }
+    let mut effect = Effect { states: DVector::zeros(space.matrix.nrows()), outputs: vec![0.0; outputs.len()] };
+    if let (0 | 1, Some(place)) = (which, prescribed_output(outputs, &description.coordinates[j].name)) {
+        effect.outputs[place] = if which == 0 { 1.0 } else { 0.0 };
+    }
+    let spool = hydraulics::spool(crane, moment, drive);
+    if let Some(spool) = spool.filter(|_| which != 2) {
+        let by = match (which, spool.by_motion) {
+            (3, _) => 1.0,
+            (which, Some(by_motion)) => by_motion[which],
+            (_, None) => return Err(refused("moves nothing: its valve is commanded", "let the loop act on the valve")),
+        };
+        effect.states[2 * n + spool.state] = by / spool.lag;
+        return Ok(effect);
+    }
+    let effort = match which {
+        2 => 1.0,
+        which => drive_slope(crane, moment, j, which),
+    };
+    if effort == 0.0 && which == 0 {
+        return Err(refused("moves nothing: its drive has no stiffness", "let the loop act on its effort"));
+    }
+    let mut forces = vec![0.0; moment.q.len()];
+    forces[j] = effort;
+    effect.states.rows_mut(n, n).copy_from(&space.accelerations_by(&forces)?);
+    let mut added = vec![0.0; description.drives.len()];
+    if effort == 0.0 || outputs.is_empty() {
+        return Ok(effect);
+    }
+    if let Some(output) = outputs.iter().find(|output| follows_from_accelerations(crane, output)) {
+        return Err(NoModel::Output(output.column.name.clone(), input.column(description).name));
+    }
+    let [before, after] = [-1.0, 1.0].map(|sign| {
+        added[drive] = sign * effort;
+        quantities_with(crane, moment, &added)
+    });
+    for (found, output) in effect.outputs.iter_mut().zip(outputs) {
+        *found += 0.5 * (after[output.index] - before[output.index]);
+    }
+    Ok(effect)
+}
+
+/// Where the position of the motion of a coordinate's drive is among outputs.
+fn prescribed_output(outputs: &[Output], coordinate: &str) -> Option<usize> {
+    outputs.iter().position(|output| output.column.name.strip_suffix("_prescribed") == Some(coordinate))
+}
+
+/// How much the force of a drive on its coordinate grows with the position, 0, or the rate, 1, of its motion: it depends on their differences
+/// from those of the coordinate.
+fn drive_slope(crane: &dyn DynCrane, moment: &StateAt<'_>, j: usize, which: usize) -> f64 {
+    /// Most drives are linear: rounding is then 1e-10 of the slope.
+    const STEP: f64 = 1e-5;
+    let [before, after] = [-STEP, STEP].map(|step| {
+        let mut state = [moment.q.to_vec(), moment.v.to_vec()];
+        state[which][j] += step;
+        let mut forces = vec![0.0; moment.q.len()];
+        crane.drive_forces(moment.t, &state[0], &state[1], &mut forces);
+        forces[j]
+    });
+    (before - after) / (2.0 * STEP)
+}
+
+/// Whether an output follows from accelerations: the effort of a rigid drive, or what a joint of a loop transmits.
+fn follows_from_accelerations(crane: &dyn DynCrane, output: &Output) -> bool {
+    let description = crane.description();
+    let name = output.column.name.as_str();
+    let rigid = description.prescribed();
+    let of_drive = rigid.iter().any(|&j| {
+        let info = &description.coordinates[j];
+        drive_effort(&info.name, info.kind) == name
+    });
+    let of_loop = crane
+        .loop_joints()
+        .iter()
+        .any(|joint| joint.equations.iter().any(|equation| equation.column(&joint.name) == name));
+    of_drive || of_loop
+}
+
+/// Change of an input by which its effect is found first, relative to its value or to 1.
+const PROBE: f64 = 1e-6;
+/// An input is changed until accelerations change by this part of their size: rounding and curvature then stay below 1e-9 of an entry.
+const PART: f64 = 1e-5;
+
+/// What an input of the spec does, by central differences.
+fn of_spec<C: Linearisable>(
+    crane: &C,
+    moment: &StateAt<'_>,
+    index: usize,
+    space: &StateSpace,
+    outputs: &[Output],
+) -> Result<Effect, NoModel> {
+    let info = &crane.description().inputs[index];
+    let value = match crane.input(index) {
+        Some(value) => value,
+        None if info.moves => {
+            let (why, help) = ("follows a motion of the spec", "set it to a number, or leave it out");
+            return Err(NoModel::Input(info.name.to_string(), why, help));
+        }
+        None => info.default,
+    };
+    let mut changed = crane.boxed_clone();
+    let mut slopes = |change: f64| {
+        changed.set_input(index, Some(value + change));
+        let motion = motion_at(changed.as_ref(), moment);
+        let free = space.unknowns().iter().map(|&j| motion.accelerations[j]);
+        DVector::from_iterator(space.matrix.nrows() - space.unknowns().len(), free.chain(motion.rates))
+    };
+    let mut step = PROBE * value.abs().max(1.0);
+    let here = slopes(0.0);
+    let effect = (slopes(step) - &here).amax();
+    if effect > 0.0 {
+        step *= PART * here.amax().max(1.0) / effect;
+    }
+    let by = (slopes(step) - slopes(-step)) / (2.0 * step);
+    let n = space.unknowns().len();
+    let mut states = DVector::zeros(space.matrix.nrows());
+    states.rows_mut(n, by.len()).copy_from(&by);
+    if outputs.is_empty() {
+        return Ok(Effect { states, outputs: Vec::new() });
+    }
+    let [before, after] = [-step, step].map(|change| {
+        changed.set_input(index, Some(value + change));
+        quantities_at(changed.as_ref(), moment.t, (moment.q, moment.v), moment.x)
+    });
+    let difference = |output: &Output| (after[output.index] - before[output.index]) / (2.0 * step);
+    Ok(Effect { states, outputs: outputs.iter().map(difference).collect() })
+}

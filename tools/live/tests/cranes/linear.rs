@@ -1,0 +1,369 @@
+//! Linear models of open chains, of loops and of cranes on oil: against modes, differences of the equations of motion, and runs.
+
+use std::ops::ControlFlow;
+
+use crane_codegen::{SourceFile, build};
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::dynamics::{InitialState, Method, Settings};
+use crane_model::force_states::{self, ForceStates};
+use crane_model::linear::{About, Forces, Input, LinearModel, NoModel, Output, linear_model, outputs};
+use crane_model::modes::{DampedMode, damped, with_servos};
+use crane_model::nalgebra::{DMatrix, DVector};
+use crane_model::results::quantities_at;
+use crane_model::statics;
+
+fn crane(text: &str) -> LiveCrane {
+    LiveCrane::from_spec(&SourceFile::new("crane.yaml", text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}\n{text}"))
+}
+
+fn shipped(name: &str) -> LiveCrane {
+    let path = format!("{}/../../specs/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
+    LiveCrane::from_spec(&build::open(path.as_ref()).unwrap()).unwrap()
+}
+
+/// A four-bar with a drive, a force on its coupler and a torque as inputs.
+fn four_bar() -> LiveCrane {
+    let bar = |name: &str, placement: &str, length: f64, mass: f64| {
+        format!(
+            "- {{name: {name}, placement: {{transform: {{{placement}}}}}, joint: revolute, mass: {mass}, com: [{}, 0, 0], inertia: {{gyration: [0.1, {g}, {g}]}}}}\n",
+            0.5 * length,
+            g = 0.3 * length
+        )
+    };
+    crane(&format!(
+        "format: 1\nname: bars\ninputs: {{push: {{unit: N}}, torque: {{unit: N m}}}}\nlinks:\n{}{}{}\
+         loop_joints: [{{name: hinge, from: {{at: [1.2, 0, 0]}}, to: {{link: rocker, at: [0.9, 0, 0]}}, joint: {{slide: {{axis: [0, 1, 0]}}}}}}]\n\
+         drives:\n- {{coordinate: crank_psi, stiffness: 4e3, damping: 60, effort: {{input: torque}}, motion: {{hold: 1.1}}}}\n\
+         loads:\n- {{name: pull, link: coupler, at: [0.5, 0, 0], force: [0, 0, 1], scale: {{input: push}}}}\n\
+         points:\n- {{name: middle, link: coupler, at: [0.5, 0, 0]}}\n",
+        bar("crank", "rotation: {x: 90 deg}", 0.4, 30.0),
+        bar("coupler", "translation: [0.4, 0, 0]", 1.1, 80.0),
+        bar("rocker", "translation: [1.1, 0, 0]", 0.9, 60.0),
+    ))
+}
+
+/// A ram that lifts a mass by a valve; its beam carries the cylinder's foot.
+fn lift(leakage: f64) -> LiveCrane {
+    crane(&format!(
+        "format: 1
+name: lift
+links:
+  - {{name: post, joint: fixed, mass: 50, com: [0, 0, 0]}}
+  - {{name: arm, placement: {{transform: {{rotation: {{x: 90 deg}}}}}}, joint: revolute, mass: 300, com: [1.2, 0, 0], inertia: {{gyration: [0.1, 0.6, 0.6]}}}}
+  - {{name: bob, placement: {{transform: {{translation: [2.2, 0, 0]}}}}, joint: revolute, mass: 80, com: [0, -0.7, 0], inertia: {{gyration: [0.1, 0.1, 0.1]}}}}
+drives:
+  - {{coordinate: arm_psi, stiffness: 1e7, motion: {{hold: 0.3}}}}
+damping: {{bob_psi: 6}}
+cylinders:
+  - name: ram
+    coordinate: arm_psi
+    foot: {{link: post, at: [0.2, 0, -0.9]}}
+    head: {{link: arm, at: [0.9, -0.05, 0]}}
+    bore: 0.08
+    rod: 0.045
+    retracted: 0.8
+    stroke: 0.7
+    back_pressure: 3e5
+    max_pressure: 2.5e7
+    bulk_modulus: 1.3e9
+    hose_volumes: [6e-4, 4e-4]
+    valve: {{flow: 6e-4, pressure_drop: 1e6, lag: 0.03, gain: 20, leakage: {leakage:e}}}
+pump: {{max_flow: 1e-3, pressure: 2e7, volume: 4e-3}}
+points: [{{name: hook, link: bob, at: [0, -0.7, 0]}}]
+"
+    ))
+}
+
+fn at_rest(crane: &LiveCrane) -> Vec<f64> {
+    let rest = (crane as &dyn DynCrane).equilibrium(&statics::Settings::default());
+    assert!(rest.is_stable(), "{}", rest.status);
+    rest.q
+}
+
+fn about<'a>(q: &'a [f64], v: &'a [f64], x: Forces<'a>) -> About<'a> {
+    About { t: 0.0, q, v, x, steady: false }
+}
+
+fn all_inputs(crane: &LiveCrane) -> Vec<Input> {
+    Input::all(crane.description())
+}
+
+fn named(crane: &LiveCrane, names: &[&str]) -> Vec<Output> {
+    let all = outputs(crane);
+    let of = |name: &&str| {
+        all.iter().find(|output| output.column.name == **name).unwrap_or_else(|| panic!("{name}")).clone()
+    };
+    names.iter().map(of).collect()
+}
+
+fn assert_same_modes(what: &str, found: &[DampedMode], expected: &[DampedMode], tolerance: f64) {
+    assert_eq!(found.len(), expected.len(), "{what}");
+    for expected in expected {
+        let size = expected.eigenvalue.norm();
+        let off = found.iter().map(|mode| (mode.eigenvalue - expected.eigenvalue).norm()).fold(f64::INFINITY, f64::min);
+        assert!(off < tolerance * (size + 1e-2), "{what}: {} is off by {off:e}", expected.eigenvalue);
+    }
+}
+
+/// Open chains: K and D of small motions are derived by another function, and eigenvalues of 50 rows amplify rounding.
+#[test]
+fn eigenvalues_are_those_of_modes() {
+    for name in ["knuckle_boom", "eight_link_flexible", "loader_tipping", "eight_link_identified"] {
+        let crane = shipped(name);
+        let q = at_rest(&crane);
+        let v = vec![0.0; q.len()];
+        let model = linear_model(&crane, &about(&q, &v, Forces::Holding), &[], &[]).unwrap();
+        let expected = damped(&(&crane as &dyn DynCrane).small_motions_at(&q)).unwrap();
+        assert_same_modes(name, &model.modes().unwrap(), &expected, 1e-7);
+    }
+    let bars = four_bar();
+    let q = at_rest(&bars);
+    let model = linear_model(&bars, &about(&q, &[0.0; 3], Forces::Holding), &[], &[]).unwrap();
+    assert_eq!(model.states.len(), 2, "one degree of freedom: {:?}", model.states);
+    assert_same_modes(
+        "bars",
+        &model.modes().unwrap(),
+        &damped(&(&bars as &dyn DynCrane).small_motions_at(&q)).unwrap(),
+        1e-8,
+    );
+    // Shut valves: the oil is a spring, and its pressures add eigenvalues of 0 and that of the spool.
+    let lift = lift(0.0);
+    let q = at_rest(&lift);
+    let model = linear_model(&lift, &about(&q, &[0.0; 2], Forces::Holding), &[], &[]).unwrap();
+    let found: Vec<DampedMode> = model.modes().unwrap().into_iter().filter(|mode| mode.eigenvalue.im > 0.0).collect();
+    assert_same_modes("lift", &found, &damped(&(&lift as &dyn DynCrane).small_motions_at(&q)).unwrap(), 1e-6);
+    assert_eq!(model.states.len(), 4 + 4);
+}
+
+/// About rest with valves slightly open: those of the analysis of servos.
+#[test]
+fn slightly_open_valves_are_those_of_servos() {
+    for crane in [lift(2e-13), shipped("eight_link_hydraulic")] {
+        let q = at_rest(&crane);
+        let v = vec![0.0; q.len()];
+        let model =
+            linear_model(&crane, &About { steady: true, ..about(&q, &v, Forces::SlightlyOpen) }, &[], &[]).unwrap();
+        let expected = with_servos(&crane as &dyn DynCrane, 0.0, &q).unwrap();
+        // The directions of cylinders are differences, to 1e-8 of K.
+        let off = (&model.a - &expected.matrix).amax();
+        let scale = DMatrix::from_fn(model.a.nrows(), model.a.ncols(), |i, j| expected.matrix[(i, j)].abs()).max();
+        assert!(off < 1e-6 * scale, "{off:e} of {scale:e}");
+        assert_same_modes("servos", &model.modes().unwrap(), &expected.modes().unwrap(), 1e-4);
+    }
+}
+
+/// A and B about a moving state with an open valve, against central differences of accelerations and rates of the states of forces.
+#[test]
+fn a_moving_crane_on_oil_has_the_derivatives_of_its_equations() {
+    let crane = lift(2e-13);
+    let (q, v) = ([0.35, -0.2], [0.4, -0.9]);
+    let x = [9e6, 4e6, 0.4, 1.8e7];
+    let model = linear_model(
+        &crane,
+        &about(&q, &v, Forces::Given(&x)),
+        &all_inputs(&crane),
+        &named(&crane, &["ram_force", "hook_x", "hook_vz"]),
+    )
+    .unwrap();
+    let slopes = |state: &[f64]| {
+        let (accelerations, rates) = force_states::accelerations(&crane, 0.0, (&state[..2], &state[2..4]), &state[4..]);
+        [&state[2..4], &accelerations, &rates].concat()
+    };
+    let values = |state: &[f64]| {
+        let all = quantities_at(&crane, 0.0, (&state[..2], &state[2..4]), &state[4..]);
+        named(&crane, &["ram_force", "hook_x", "hook_vz"]).iter().map(|output| all[output.index]).collect::<Vec<f64>>()
+    };
+    let here = [&q[..], &v, &x].concat();
+    let scales = [1.0, 1.0, 1.0, 1.0, 2e7, 2e7, 1.0, 2e7];
+    for column in 0..8 {
+        // Errors of 1e-10 of the size of a row: curvature and rounding.
+        let step = 1e-5 * scales[column];
+        let moved = |sign: f64| {
+            let mut state = here.clone();
+            state[column] += sign * step;
+            state
+        };
+        for (matrix, [after, before]) in [
+            (&model.a, [slopes(&moved(1.0)), slopes(&moved(-1.0))]),
+            (&model.c, [values(&moved(1.0)), values(&moved(-1.0))]),
+        ] {
+            for row in 0..matrix.nrows() {
+                let difference = (after[row] - before[row]) / (2.0 * step);
+                let size = (0..8).map(|j| (matrix[(row, j)] * scales[j]).abs()).fold(0.0, f64::max) / scales[column];
+                let off = (matrix[(row, column)] - difference).abs();
+                assert!(
+                    off <= 1e-6 * size + 1e-12,
+                    "row {row}, column {column}: {} for {difference}",
+                    matrix[(row, column)]
+                );
+            }
+        }
+    }
+    // The servo follows its motion with the gain, and its valve lags.
+    let place = |name: &str| model.inputs.iter().position(|column| column.name == name).unwrap();
+    assert!((model.b[(6, place("ram_valve"))] - 1.0 / 0.03).abs() < 1e-9);
+    assert!(model.b[(6, place("arm_psi_prescribed"))].abs() > 1.0);
+}
+
+/// A and C of a loop that moves, and B, against differences of a run's equations on the loop: q(θ) and v(θ, θ̇) by assembling and projecting.
+#[test]
+fn a_moving_loop_has_the_derivatives_of_its_equations() {
+    let bars = four_bar();
+    let n = 3;
+    let onto = |crank: f64, rate: f64| {
+        // A run of no duration closes the loop and projects the rates, in the metric of A; scaled back to the crank's angle and rate.
+        let angles = |theta: f64| {
+            let way = [1.2 - 0.4 * theta.cos(), -0.4 * theta.sin()];
+            let distance = way[0].hypot(way[1]);
+            let at_crank = ((distance * distance + 1.1 * 1.1 - 0.9 * 0.9) / (2.0 * distance * 1.1)).acos();
+            let at_coupler = ((1.1 * 1.1 + 0.9 * 0.9 - distance * distance) / (2.0 * 1.1 * 0.9_f64)).acos();
+            let coupler = way[1].atan2(way[0]) + at_crank;
+            [theta, coupler - theta, at_coupler - std::f64::consts::PI]
+        };
+        let step = 1e-5;
+        let [after, before] = [1.0, -1.0].map(|sign| angles(crank + sign * step));
+        let v: Vec<f64> = (0..n).map(|i| rate * (after[i] - before[i]) / (2.0 * step)).collect();
+        (angles(crank).to_vec(), v)
+    };
+    let (crank, rate) = (1.3, 2.0);
+    let (q, v) = onto(crank, rate);
+    let found = linear_model(
+        &bars,
+        &about(&q, &v, Forces::Holding),
+        &all_inputs(&bars)[..2],
+        &named(&bars, &["middle_z", "rocker_psi_rate", "crank_psi_drive_torque"]),
+    )
+    .unwrap();
+    assert_eq!(found.states[0].name, "crank_psi");
+    let acceleration = |crank: f64, rate: f64| {
+        let (q, v) = onto(crank, rate);
+        let (a, _) = force_states::accelerations(&bars, 0.0, (&q, &v), &[]);
+        let all = quantities_at(&bars, 0.0, (&q, &v), &[]);
+        let values = named(&bars, &["middle_z", "rocker_psi_rate", "crank_psi_drive_torque"]);
+        [vec![a[0]], values.iter().map(|output| all[output.index]).collect()].concat()
+    };
+    let h = 1e-3;
+    for (column, [dq, dv]) in [[h, 0.0], [0.0, h]].into_iter().enumerate() {
+        let [after, before] = [1.0, -1.0].map(|sign| acceleration(crank + sign * dq, rate + sign * dv));
+        for row in 0..4 {
+            // Curvature, h².
+            let difference = (after[row] - before[row]) / (2.0 * h);
+            let entry = if row == 0 { found.a[(1, column)] } else { found.c[(row - 1, column)] };
+            assert!(
+                (entry - difference).abs() < 2e-5 * (1.0 + difference.abs()),
+                "row {row}, column {column}: {entry} for {difference}"
+            );
+        }
+    }
+}
+
+/// The response to a step of an effort is that of the model up to the square of the step: halved, the rest is a quarter.
+#[test]
+fn a_step_differs_from_its_model_by_its_square() {
+    for (crane, coordinate, push) in [(four_bar(), 0, 60.0), (boom(), 1, 2000.0)] {
+        let q = at_rest(&crane);
+        let v = vec![0.0; q.len()];
+        let place = crane.description().inputs.iter().position(|input| input.name == "torque").unwrap();
+        let model = linear_model(&crane, &about(&q, &v, Forces::Holding), &[Input::Spec(place)], &[]).unwrap();
+        let time = 0.25;
+        let expected = held(&model, time);
+        let rest = |push: f64| {
+            let mut changed = crane.clone();
+            DynCrane::set_input(&mut changed, place, Some(push));
+            let end = run(&changed, &q, time);
+            end[coordinate] - q[coordinate] - push * expected[coordinate]
+        };
+        let (whole, half) = (rest(push), rest(0.5 * push));
+        // The third order of the step.
+        assert!(whole.abs() > 1e-5 && (whole / half - 4.0).abs() < 0.2, "{whole:e} and {half:e}");
+    }
+}
+
+/// A boom with an arm that hangs on it, whose weight turns as it swings.
+fn boom() -> LiveCrane {
+    crane(
+        "format: 1\nname: boom\ninputs: {torque: {unit: N m}}\nlinks:\n\
+         - {name: boom, placement: {transform: {rotation: {x: 90 deg}}}, joint: revolute, mass: 200, com: [1.5, 0, 0], inertia: {gyration: [0.1, 0.8, 0.8]}}\n\
+         - {name: bob, placement: {transform: {translation: [3, 0, 0]}}, joint: revolute, mass: 150, com: [0, -1, 0], inertia: {gyration: [0.1, 0.2, 0.2]}}\n\
+         drives:\n- {coordinate: boom_psi, stiffness: 2e5, damping: 4e3, effort: {input: torque}, motion: {hold: 40 deg}}\n",
+    )
+}
+
+/// x(T) of `ẋ = A x + b` from 0, by the Taylor series.
+fn held(model: &LinearModel, time: f64) -> DVector<f64> {
+    let n = model.a.nrows();
+    let mut matrix = DMatrix::zeros(n + 1, n + 1);
+    matrix.view_mut((0, 0), (n, n)).copy_from(&model.a);
+    matrix.view_mut((0, n), (n, 1)).copy_from(&model.b);
+    let exponential = (matrix * time).exp();
+    exponential.view((0, n), (n, 1)).column(0).into_owned()
+}
+
+fn run(crane: &LiveCrane, q: &[f64], time: f64) -> Vec<f64> {
+    let settings = Settings {
+        method: Method::DormandPrince,
+        duration: time,
+        output: time,
+        tolerance: 1e-11,
+        ..Settings::of(crane.description())
+    };
+    let mut end = Vec::new();
+    (crane as &dyn DynCrane)
+        .simulate(&InitialState::at_rest(q.to_vec()), &settings, &mut |sample| {
+            end = sample.q.to_vec();
+            ControlFlow::Continue(())
+        })
+        .unwrap();
+    end
+}
+
+/// Motions, efforts and their outputs: `s (q_dr − q) + d (q̇_dr − q̇) + τ`.
+#[test]
+fn drives_act_with_their_springs() {
+    let crane = boom();
+    let q = at_rest(&crane);
+    let model = linear_model(
+        &crane,
+        &about(&q, &[0.0; 2], Forces::Holding),
+        &all_inputs(&crane),
+        &named(&crane, &["boom_psi_drive_torque", "boom_psi_prescribed"]),
+    )
+    .unwrap();
+    let names: Vec<&str> = model.inputs.iter().map(|column| column.name.as_str()).collect();
+    assert_eq!(names, ["torque", "boom_psi_prescribed", "boom_psi_prescribed_rate", "boom_psi_drive_torque"]);
+    let column = |index: usize| model.b.column(index).into_owned();
+    for (index, factor) in [(0, 1.0), (1, 2e5), (2, 4e3)] {
+        let off = (column(index) - column(3) * factor).amax();
+        assert!(off < 1e-9 * factor * column(3).amax(), "{}: {off:e}", names[index]);
+    }
+    let expected = [[1.0, 2e5, 4e3, 1.0], [0.0, 1.0, 0.0, 0.0]];
+    for (row, expected) in expected.iter().enumerate() {
+        for (index, expected) in expected.iter().enumerate() {
+            let found = model.d[(row, index)];
+            assert!((found - expected).abs() < 1e-6 * expected.abs().max(1.0), "{row} {index}: {found} for {expected}");
+        }
+    }
+    // The spring answers the boom.
+    assert!((model.c[(0, 0)] + 2e5).abs() < 1.0 && (model.c[(0, 2)] + 4e3).abs() < 1e-2);
+}
+
+#[test]
+fn what_cannot_be_linearised_is_named() {
+    let rigid = crane(
+        "format: 1\nname: rigid\nlinks:\n- {name: boom, placement: {transform: {rotation: {x: 90 deg}}}, joint: revolute, mass: 200, com: [1.5, 0, 0], inertia: {gyration: [0.1, 0.8, 0.8]}}\n\
+         - {name: bob, placement: {transform: {translation: [3, 0, 0]}}, joint: revolute, mass: 150, com: [0, -1, 0], inertia: {gyration: [0.1, 0.2, 0.2]}}\n\
+         drives:\n- {coordinate: boom_psi, rigid: true, motion: {hold: 40 deg}}\n",
+    );
+    let q = at_rest(&rigid);
+    let none = linear_model(&rigid, &about(&q, &[0.0; 2], Forces::Holding), &[Input::Motion(0)], &[]).unwrap_err();
+    assert_eq!(
+        none.to_string(),
+        "the input `boom_psi_prescribed` belongs to a rigid drive: give the drive a `stiffness`"
+    );
+    let model = linear_model(&rigid, &about(&q, &[0.0; 2], Forces::Holding), &[], &[]).unwrap();
+    assert_eq!(model.coordinates(), [1]);
+    let wrong = linear_model(&rigid, &about(&q, &[0.0; 2], Forces::Given(&[1.0])), &[], &[]).unwrap_err();
+    assert_eq!(wrong, NoModel::States(1, 0));
+    assert!(ForceStates::new(rigid.description()).is_empty());
+}

@@ -1,0 +1,254 @@
+//! Linear models about states, row by row, and margins of loops around them.
+
+use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::force_states;
+use crane_model::linear::{About, Forces, Input, LinearModel, Output, linear_model, outputs};
+use crane_model::margins::{self, Loop, Margins, Plant, Term};
+use crane_model::nalgebra::{DMatrix, DVector};
+use crane_model::results::Column;
+use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyArithmeticError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::{Argument, Joined, array};
+use crate::crane::Crane;
+use crate::evaluation::{Given, STATE, State};
+use crate::mistakes::{BadRow, Invalid, describe, warn_of_rows};
+use crate::parallel::map_rows;
+
+/// How the states of forces are found that are not given.
+fn forces_named(name: &str) -> PyResult<Forces<'static>> {
+    match name {
+        "shut" => Ok(Forces::Holding),
+        "slightly open" => Ok(Forces::SlightlyOpen),
+        other => Err(PyValueError::new_err(format!("valves={other:?}: write \"shut\" or \"slightly open\""))),
+    }
+}
+
+#[pymethods]
+impl Crane {
+    /// Linear models about states: `Crane.state_space` names them.
+    #[pyo3(name = "_state_space", signature = (q, v=None, t=None, x=None, *, valves="shut", steady=false, inputs=None, outputs=None, invalid="raise"))]
+    #[expect(clippy::too_many_arguments, reason = "named arguments in Python")]
+    fn state_space_rows<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        v: Given<'_, 'py>,
+        t: Given<'_, 'py>,
+        x: Given<'_, 'py>,
+        valves: &str,
+        steady: bool,
+        inputs: Option<Vec<String>>,
+        outputs: Option<Vec<String>>,
+        invalid: &str,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (invalid, forces) = (Invalid::named(invalid)?, forces_named(valves)?);
+        let [t, q, v, _] = self.read(State { t, q: Some(q), v, a: None })?;
+        let names = force_states::columns(self.live.description());
+        let x = x.map_or_else(
+            || Ok(Argument::none()),
+            |x| {
+                Argument::of_width(
+                    "x",
+                    x,
+                    names.len(),
+                    if names.is_empty() { "it has no states of forces" } else { "those of the states of forces" },
+                )
+            },
+        )?;
+        let none = Argument::none();
+        let joined = Joined::new(&[
+            ("t", &t),
+            ("q", &q),
+            ("v", &v),
+            ("a", &none),
+            ("the parameters", &self.parameters),
+            ("x", &x),
+        ])?;
+        let mut bad = self.bad_rows(&joined, STATE, invalid)?;
+        let (inputs, outputs) = (self.inputs_named(inputs)?, self.outputs_named(outputs)?);
+        let n = self.live.size();
+        let rest = vec![0.0; n];
+        let found = map_rows(py, joined.rows(), |row, _| {
+            if let Some(wrong) = bad.iter().find(|wrong| wrong.row == row) {
+                return Err(wrong.reason.clone());
+            }
+            let [t, q, v] = [(0, 1), (1, n), (2, n)].map(|(index, size)| joined.row(index, size, row));
+            let x = joined.row(5, names.len(), row);
+            let about = About {
+                t: t.first().copied().unwrap_or(0.0),
+                q,
+                v: if v.is_empty() { &rest } else { v },
+                x: if x.is_empty() { forces } else { Forces::Given(x) },
+                steady,
+            };
+            linear_model(&self.of_joined_row(&joined, row), &about, &inputs, &outputs).map_err(|none| none.to_string())
+        })?;
+        bad.clear();
+        let refused = |(row, found): (usize, &Result<LinearModel, String>)| {
+            found.as_ref().err().map(|reason| BadRow { row, reason: reason.clone() })
+        };
+        bad.extend(found.iter().enumerate().filter_map(refused));
+        if let (Some(first), Invalid::Raise) = (bad.first(), invalid) {
+            return Err(PyValueError::new_err(describe(first, &joined.shape)));
+        }
+        warn_of_rows(py, &bad, &joined.shape)?;
+        let Some(model) = found.iter().flatten().next() else {
+            let why = bad.first().map_or("there are no states", |bad| bad.reason.as_str());
+            return Err(PyValueError::new_err(format!("there is no linear model: {why}")));
+        };
+        if found.iter().flatten().any(|other| other.states != model.states) {
+            return Err(PyValueError::new_err(
+                "the loops of the crane have other independent coordinates at some of these states: ask about one at a time",
+            ));
+        }
+        let all = PyDict::new(py);
+        for (name, of) in [
+            ("A", (|model| &model.a) as fn(&LinearModel) -> &DMatrix<f64>),
+            ("B", |model| &model.b),
+            ("C", |model| &model.c),
+            ("D", |model| &model.d),
+        ] {
+            let (rows, columns) = of(model).shape();
+            let mut numbers = Vec::with_capacity(found.len() * rows * columns);
+            for found in &found {
+                match found {
+                    Ok(model) => numbers.extend(of(model).transpose().iter()),
+                    Err(_) => numbers.extend(std::iter::repeat_n(f64::NAN, rows * columns)),
+                }
+            }
+            all.set_item(name, array(py, numbers, &joined.shape, &[rows, columns])?)?;
+        }
+        for (name, columns) in [("states", &model.states), ("inputs", &model.inputs), ("outputs", &model.outputs)] {
+            let (names, units): (Vec<&str>, Vec<&str>) =
+                columns.iter().map(|Column { name, unit }| (name.as_str(), unit.as_str())).unzip();
+            all.set_item(name, names)?;
+            all.set_item(format!("{}_units", &name[..name.len() - 1]), units)?;
+        }
+        Ok(all)
+    }
+
+    /// The inputs that a loop on something moves, and the powers of s by which each follows; then the coordinate of its drive.
+    #[pyo3(name = "_acting")]
+    fn acting(&self, on: &str) -> PyResult<(Vec<String>, Vec<i32>, Option<String>)> {
+        let description = self.live.description();
+        let acting = margins::Acting::named(on, description).ok_or_else(|| {
+            let known = margins::Acting::names(description).join(", ");
+            PyValueError::new_err(format!("there is nothing `{on}` on which a loop could act; there are {known}"))
+        })?;
+        let inputs = acting.inputs();
+        let names = inputs.iter().map(|(input, _)| input.column(description).name).collect();
+        let powers = inputs.iter().map(|(_, power)| *power).collect();
+        Ok((names, powers, acting.coordinate(description).map(str::to_owned)))
+    }
+}
+
+impl Crane {
+    /// Inputs by name, all of the spec unless given.
+    fn inputs_named(&self, names: Option<Vec<String>>) -> PyResult<Vec<Input>> {
+        let description = self.live.description();
+        let Some(names) = names else { return Ok((0..description.inputs.len()).map(Input::Spec).collect()) };
+        let known = || Input::all(description).into_iter().map(|input| input.column(description).name);
+        let named = |name: &String| {
+            Input::named(name, description).ok_or_else(|| {
+                let known: Vec<String> = known().collect();
+                let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+                PyValueError::new_err(format!("there is no input '{name}': write one of {known}"))
+            })
+        };
+        names.iter().map(named).collect()
+    }
+
+    /// Outputs by name: coordinates, rates and positions of points unless given.
+    fn outputs_named(&self, names: Option<Vec<String>>) -> PyResult<Vec<Output>> {
+        let (all, n) = (outputs(&self.live as &dyn DynCrane), self.live.size());
+        let Some(names) = names else {
+            let points = &self.live.description().points;
+            let is_point = |name: &str| {
+                name.rsplit_once('_').is_some_and(|(point, axis)| {
+                    matches!(axis, "x" | "y" | "z") && points.iter().any(|known| known.as_str() == point)
+                })
+            };
+            let shown = |(place, output): &(usize, Output)| *place < 2 * n || is_point(&output.column.name);
+            return Ok(all.into_iter().enumerate().filter(shown).map(|(_, output)| output).collect());
+        };
+        let named = |name: &String| {
+            all.iter().find(|output| output.column.name == *name).cloned().ok_or_else(|| {
+                let known: Vec<&str> = all.iter().map(|output| output.column.name.as_str()).collect();
+                PyValueError::new_err(format!("there is no output '{name}': write one of {}", known.join(", ")))
+            })
+        };
+        names.iter().map(named).collect()
+    }
+}
+
+/// Margins of a loop around plants, row by row: `state_space.Margins` names the 11 numbers of a row, NaN where there are none.
+///
+/// a: (rows, n, n), b: (rows, n, k), c: (rows, n), d: (rows, k): state matrices, what follows the input with these powers of s, the output.
+/// numbers: p, i, d, filter, both times of a lead, delay, lag.
+#[pyfunction]
+pub fn loop_margins<'py>(
+    py: Python<'py>,
+    a: &Bound<'py, PyArrayDyn<f64>>,
+    b: &Bound<'py, PyArrayDyn<f64>>,
+    c: &Bound<'py, PyArrayDyn<f64>>,
+    d: &Bound<'py, PyArrayDyn<f64>>,
+    powers: Vec<i32>,
+    numbers: [f64; 8],
+    invalid: &str,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    const WIDTH: usize = 11;
+    let invalid = Invalid::named(invalid)?;
+    let (rows, n, k) = (a.shape()[0], a.shape()[1], powers.len());
+    let [a, b, c, d] = [a.to_vec()?, b.to_vec()?, c.to_vec()?, d.to_vec()?];
+    if numbers.iter().any(|number| !number.is_finite()) || numbers[3..].iter().any(|time| *time < 0.0) {
+        return Err(PyValueError::new_err("gains must be finite numbers, and times at least 0"));
+    }
+    let [p, i, derivative, filter, above, below, delay, lag] = numbers;
+    let of = Loop { p, i, d: derivative, filter, lead: [above, below], delay, lag };
+    let found = map_rows(py, rows, |row, _| {
+        let a = DMatrix::from_row_slice(n, n, &a[row * n * n..][..n * n]);
+        let b = DMatrix::from_row_slice(n, k, &b[row * n * k..][..n * k]);
+        let c = DVector::from_column_slice(&c[row * n..][..n]);
+        let terms = powers.iter().enumerate().map(|(column, &power)| Term {
+            power,
+            b: b.column(column).into_owned(),
+            d: d[row * k + column],
+        });
+        let plant = Plant::new(&a, terms.collect(), &c).map_err(|none| none.to_string())?;
+        margins::margins(&plant, &of).map_err(|none| none.to_string())
+    })?;
+    let refused = |(row, found): (usize, &Result<Margins, String>)| {
+        found.as_ref().err().map(|reason| BadRow { row, reason: reason.clone() })
+    };
+    let bad: Vec<BadRow> = found.iter().enumerate().filter_map(refused).collect();
+    if let (Some(first), Invalid::Raise) = (bad.first(), invalid) {
+        return Err(PyArithmeticError::new_err(describe(first, &[rows])));
+    }
+    warn_of_rows(py, &bad, &[rows])?;
+    let none = (f64::NAN, f64::NAN);
+    let row = |found: &Result<Margins, String>| match found {
+        Err(_) => [f64::NAN; WIDTH],
+        Ok(found) => {
+            let (phase, crossover) = found.phase.unwrap_or(none);
+            let ((gain, gain_at), (reduction, _)) = (found.gain.unwrap_or(none), found.reduction.unwrap_or(none));
+            let closed = found.closed.map_or(none, |root| (root.re, root.im));
+            [
+                if found.stable { 1.0 } else { 0.0 },
+                phase,
+                crossover,
+                gain,
+                gain_at,
+                reduction,
+                found.distance.0,
+                found.distance.1,
+                found.bandwidth.unwrap_or(f64::NAN),
+                closed.0,
+                closed.1,
+            ]
+        }
+    };
+    array(py, found.iter().flat_map(row).collect(), &[rows], &[WIDTH])
+}
