@@ -250,7 +250,7 @@ fn closed_unstable(plant: &Plant, l: &dyn Fn(Complex<f64>) -> Complex<f64>) -> R
     if (count - count.round()).abs() > WHOLE || count < -WHOLE {
         return Err(NoMargins::Count);
     }
-    Ok(count.round().max(0.0) as usize)
+    Ok((1..=u32::MAX).take_while(|&growing| f64::from(growing) < count + 0.5).count())
 }
 
 /// The phase of L + 180° with the least size where |L| = 1.

@@ -118,7 +118,7 @@ fn bandwidth_and_distance() {
 
 /// Velocity loops of a real timber crane, `(p + d s) e^(−0.065 s)/(1 + τ s) k/(s (M s² + d s + k))`, as its authors print them for axes without
 /// stiffness of their own and with the pendulum locked: crossover, phase margin, gain margin in dB, bandwidth, whether it is stable
-/// (Geryyy/crane_model, doc/inner_loop_bandwidth.md).
+/// (`Geryyy/crane_model`, `doc/inner_loop_bandwidth.md`).
 #[test]
 fn margins_of_a_timber_crane_are_those_published() {
     let slew = [3.190_742e5, 7519.87, 0.1, 0.07, 0.004];
@@ -186,11 +186,12 @@ fn by_pade(a: &DMatrix<f64>, b: &DVector<f64>, c: &DVector<f64>, of: &Loop, beyo
     }
     // Controllable form of the approximation, with the last derivative last.
     let factors = pade(ORDER);
-    let scale = of.delay.powi(ORDER as i32) * factors[ORDER];
-    let denominator: Vec<f64> = (0..ORDER).map(|j| factors[j] * of.delay.powi(j as i32) / scale).collect();
-    let through = if ORDER % 2 == 0 { 1.0 } else { -1.0 };
-    let numerator: Vec<f64> =
-        (0..ORDER).map(|j| (if j % 2 == 0 { 1.0 } else { -1.0 } - through) * denominator[j]).collect();
+    let powers: Vec<f64> = std::iter::successors(Some(1.0), |power| Some(power * of.delay)).take(ORDER + 1).collect();
+    let scale = powers[ORDER] * factors[ORDER];
+    let denominator: Vec<f64> = (0..ORDER).map(|j| factors[j] * powers[j] / scale).collect();
+    let sign = |j: usize| if j.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let through = sign(ORDER);
+    let numerator: Vec<f64> = (0..ORDER).map(|j| (sign(j) - through) * denominator[j]).collect();
     for j in 0..ORDER - 1 {
         matrix[(delay + j, delay + j + 1)] = 1.0;
     }

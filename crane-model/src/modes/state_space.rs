@@ -123,7 +123,7 @@ impl StateSpace {
     }
 }
 
-/// Takes the dry friction of joints that rest out of D. The slope of its smoothed law at rest, F_b/v₀, only holds for rates far below v₀: a joint
+/// Takes the dry friction of joints that rest out of D. The slope of its smoothed law at rest, `F_b/v₀`, only holds for rates far below v₀: a joint
 /// that swings meets a force that hardly depends on its rate.
 fn leave_out_dry_friction(crane: &dyn DynCrane, moment: &StateAt<'_>, motions: &mut SmallMotions) {
     /// A rate at which only viscous friction is left, m/s or rad/s.

@@ -79,14 +79,17 @@ fn names_of(option: &str) -> Option<fn(&Chain) -> Vec<Named>> {
         "point" => points,
         "deflection" => |crane| equals(points(crane)),
         "effort" => |crane| equals(drives(crane)),
+        "on" => |crane| {
+            let inputs = crane.inputs.iter().map(|input| (input.name.clone(), input.unit.clone()));
+            with_rates(drives(crane)).into_iter().chain(inputs).collect()
+        },
+        "measure" => |crane| {
+            with_rates(crane.coordinates.iter().map(|coordinate| (coordinate.name.clone(), String::new())).collect())
+        },
         "range" => |crane| equals([drives(crane), parameters(crane)].concat()),
         "start" | "hold" => |crane| {
-            let names = crane.coordinates.iter().map(|coordinate| &coordinate.name);
-            equals(
-                names
-                    .flat_map(|name| [(name.clone(), String::new()), (format!("{name}_rate"), String::new())])
-                    .collect(),
-            )
+            let names = crane.coordinates.iter().map(|coordinate| (coordinate.name.clone(), String::new()));
+            equals(with_rates(names.collect()))
         },
         _ => return None,
     })
@@ -109,6 +112,14 @@ fn points(crane: &Chain) -> Vec<Named> {
 fn drives(crane: &Chain) -> Vec<Named> {
     let name = |index: usize| crane.coordinates[index].name.clone();
     crane.drives.iter().map(|drive| (name(drive.coordinate.0), String::new())).collect()
+}
+
+/// Coordinates, each followed by its rate.
+fn with_rates(names: Vec<Named>) -> Vec<Named> {
+    names
+        .into_iter()
+        .flat_map(|(name, about)| [(name.clone(), about.clone()), (format!("{name}_rate"), about)])
+        .collect()
 }
 
 /// Names before a value: `name=`.

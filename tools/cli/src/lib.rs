@@ -50,6 +50,7 @@ mod simulate;
 mod spec_file;
 mod stability;
 mod start;
+mod state_space;
 mod statics;
 mod strength;
 mod variants;

@@ -5,7 +5,6 @@ use std::path::Path;
 use crane_model::{
     Description,
     modes::{SmallMotions, undamped},
-    nalgebra::DMatrix,
 };
 use serde_json::{Map, Value};
 
@@ -35,21 +34,15 @@ pub fn write_linearisation(file: &Path, description: &Description, q: &[f64], mo
 
 fn arrays(q: &[f64], motions: &SmallMotions) -> Outcome<Vec<Array>> {
     let n = motions.unknowns.len();
-    let square = |name: &'static str, matrix: &DMatrix<f64>| Array {
-        name: name.into(),
-        shape: vec![n, n],
-        // Row by row.
-        data: matrix.transpose().as_slice().to_vec(),
-    };
     let modes = undamped(motions)?;
     let of_unknowns = |shape: &crane_model::nalgebra::DVector<f64>| -> Vec<f64> {
         motions.unknowns.iter().map(|index| shape[*index]).collect()
     };
     Ok(vec![
         Array { name: "pose".into(), shape: vec![q.len()], data: q.to_vec() },
-        square("mass", &motions.mass),
-        square("stiffness", &motions.stiffness),
-        square("damping", &motions.damping),
+        Array::of_matrix("mass", &motions.mass),
+        Array::of_matrix("stiffness", &motions.stiffness),
+        Array::of_matrix("damping", &motions.damping),
         Array {
             name: "omega_squared".into(),
             shape: vec![n],

@@ -7,23 +7,23 @@ use crane_model::{
     Description,
     dyn_crane::{DynCrane, DynModel},
     force_states,
-    linear::{About, Forces, Input, LinearModel, Output, linear_model, outputs},
+    linear::{About, Forces, LinearModel},
     modes::{ComplexShape, DampedMode, Held, SmallMotions, damped_with_shapes, steady},
-    results::Column,
     statics,
 };
 use crane_page::tables::{Cell, Grid, Report, damped_mode, names};
 use nalgebra::{Complex, DMatrix};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use crate::{
     arguments::Linearise,
     envelope::number,
     files,
     npz::{Array, npz},
-    problem::{Outcome, Problem, nearest},
+    problem::{Outcome, Problem},
     selection::Registry,
     start::{Variable, row},
+    state_space,
 };
 
 /// Number of lowest modes that are printed by default.
@@ -74,7 +74,14 @@ pub fn linearise(options: &Linearise, registry: &Registry, out: &mut dyn Write) 
         None if is_closed => of_rest(&crane, options.time.unwrap_or(0.0))?,
         None => of_steady(&crane, options)?,
     };
-    let model = model(&crane, &motion, options)?;
+    let about = About {
+        t: motion.t,
+        q: &motion.q,
+        v: &motion.v,
+        x: if motion.x.is_empty() { Forces::Holding } else { Forces::Given(&motion.x) },
+        steady: motion.steady,
+    };
+    let model = state_space::model(&crane, &about, options)?;
     let small = (!is_closed).then(|| SmallMotions::about_motion(&crane, motion.t, [&motion.q, &motion.v, &motion.a]));
     let found: Vec<Mode> = match &small {
         Some(small) => damped_with_shapes(small)?,
@@ -106,11 +113,11 @@ pub fn linearise(options: &Linearise, registry: &Registry, out: &mut dyn Write) 
             report.value(key, value);
         }
     }
-    report.value("state_space", of_model(&model));
+    report.value("state_space", state_space::value(&model));
     report.grid(held(description, &motion));
     report.excerpt(modes_of(description, &found), LOWEST);
     report.excerpt(states(description, &motion), 0);
-    report.excerpt(signals(&model), 0);
+    report.excerpt(state_space::signals(&model), 0);
     report.show_all(options.analysis.all);
     options.analysis.format.print(&report, out)
 }
@@ -173,82 +180,6 @@ fn of_rest(crane: &dyn DynCrane, t: f64) -> Outcome<Motion> {
         efforts: vec![None; n],
         cautions: cautions.into_iter().collect(),
     })
-}
-
-/// The model A, B, C, D about a motion, with all inputs that act, or those that are asked for.
-fn model(crane: &LiveCrane, motion: &Motion, options: &Linearise) -> Outcome<LinearModel> {
-    let description = crane.description();
-    let about = About {
-        t: motion.t,
-        q: &motion.q,
-        v: &motion.v,
-        x: if motion.x.is_empty() { Forces::Holding } else { Forces::Given(&motion.x) },
-        steady: motion.steady,
-    };
-    let unknown = |what: &str, name: &str, known: Vec<String>| {
-        let guess = nearest(name, known.iter().map(String::as_str));
-        let guess = guess.map_or_else(String::new, |guess| format!("did you mean `{guess}`? "));
-        Problem::usage(format!("there is no {what} `{name}`"), format!("{guess}{what}s: {}", known.join(", ")))
-    };
-    let inputs = match &options.acting {
-        Some(names) => {
-            let known = || Input::all(description).iter().map(|input| input.column(description).name).collect();
-            let of = |name: &String| Input::named(name, description).ok_or_else(|| unknown("input", name, known()));
-            names.iter().map(of).collect::<Outcome<Vec<Input>>>()?
-        }
-        None => {
-            let acts = |input: &Input| linear_model(crane, &about, std::slice::from_ref(input), &[]).is_ok();
-            Input::all(description).into_iter().filter(acts).collect()
-        }
-    };
-    let all = outputs(crane);
-    let wanted = match &options.measured {
-        Some(names) => {
-            let known = || all.iter().map(|output| output.column.name.clone()).collect();
-            let of = |name: &String| {
-                let found = all.iter().find(|output| output.column.name == *name).cloned();
-                found.ok_or_else(|| unknown("output", name, known()))
-            };
-            names.iter().map(of).collect::<Outcome<Vec<Output>>>()?
-        }
-        None => {
-            let of_point = |name: &str| {
-                let point = name.rsplit_once('_').filter(|(_, axis)| matches!(*axis, "x" | "y" | "z"));
-                point.is_some_and(|(point, _)| description.points.iter().any(|known| known.as_str() == point))
-            };
-            let is_shown =
-                |(place, output): &(usize, Output)| *place < 2 * crane.size() || of_point(output.column.name.as_str());
-            all.into_iter().enumerate().filter(is_shown).map(|(_, output)| output).collect()
-        }
-    };
-    linear_model(crane, &about, &inputs, &wanted).map_err(|none| {
-        Problem::failed(format!("{}: {none}", description.name), "name others with `--on` and `--measure`")
-    })
-}
-
-/// Names and units of states, inputs and outputs, and the matrices row by row, for programs.
-fn of_model(model: &LinearModel) -> Value {
-    let names = |columns: &[Column]| columns.iter().map(|column| column.name.as_str().into()).collect::<Vec<Value>>();
-    let units = |columns: &[Column]| columns.iter().map(|column| column.unit.as_str().into()).collect::<Vec<Value>>();
-    let matrix = |name, matrix: &DMatrix<f64>| array(name, matrix).json();
-    json!({
-        "states": names(&model.states), "state_units": units(&model.states),
-        "inputs": names(&model.inputs), "input_units": units(&model.inputs),
-        "outputs": names(&model.outputs), "output_units": units(&model.outputs),
-        "a": matrix("a", &model.a), "b": matrix("b", &model.b), "c": matrix("c", &model.c), "d": matrix("d", &model.d),
-    })
-}
-
-/// What A, B, C and D are about.
-fn signals(model: &LinearModel) -> Grid {
-    let title = "State space, dx/dt = A x + B u, y = C x + D u: `--format json` and `-o FILE.npz` have the matrices";
-    let mut grid = Grid::new("signals", title, &["of", "index", "name", "unit"]);
-    for (of, columns) in [("x", &model.states), ("u", &model.inputs), ("y", &model.outputs)] {
-        for (index, column) in columns.iter().enumerate() {
-            grid.row([of.into(), (index + 1).into(), column.name.as_str().into(), column.unit.as_str().into()]);
-        }
-    }
-    grid
 }
 
 /// The steady motion with the drives as at a given time and some coordinates held.
@@ -385,15 +316,6 @@ fn matrices(small: &SmallMotions) -> [(&'static str, DMatrix<f64>); 5] {
     ]
 }
 
-/// Row by row.
-fn array(name: &'static str, matrix: &DMatrix<f64>) -> Array {
-    Array {
-        name: name.into(),
-        shape: vec![matrix.nrows(), matrix.ncols()],
-        data: matrix.transpose().as_slice().to_vec(),
-    }
-}
-
 /// What programs get besides tables: names and units of the rows, matrices, and shapes as pairs of real and imaginary parts.
 fn values(description: &Description, small: &SmallMotions, found: &[Mode]) -> Vec<(&'static str, Value)> {
     let info = |index: &usize| &description.coordinates[*index];
@@ -401,7 +323,7 @@ fn values(description: &Description, small: &SmallMotions, found: &[Mode]) -> Ve
     let units: Value = small.unknowns.iter().map(|index| info(index).kind.unit()).collect();
     let shape = |shape: &ComplexShape| -> Value { shape.iter().map(|x| Value::from(vec![x.re, x.im])).collect() };
     let mut values = vec![("coordinates", names), ("coordinate_units", units)];
-    values.extend(matrices(small).map(|(name, matrix)| (name, array(name, &matrix).json())));
+    values.extend(matrices(small).map(|(name, matrix)| (name, Array::of_matrix(name, &matrix).json())));
     values.push(("shapes", found.iter().map(|(_, of_mode)| shape(of_mode)).collect()));
     values
 }
@@ -423,9 +345,9 @@ fn arrays(motion: &Motion, small: Option<&SmallMotions>, model: &LinearModel, fo
         list("rows", model.coordinates().iter().map(|index| *index as f64).collect()),
     ];
     for (name, matrix) in [("A", &model.a), ("B", &model.b), ("C", &model.c), ("D", &model.d)] {
-        arrays.push(array(name, matrix));
+        arrays.push(Array::of_matrix(name, matrix));
     }
-    arrays.extend(small.into_iter().flat_map(matrices).map(|(name, matrix)| array(name, &matrix)));
+    arrays.extend(small.into_iter().flat_map(matrices).map(|(name, matrix)| Array::of_matrix(name, &matrix)));
     arrays.extend([
         list("eigenvalues_real", eigenvalues(|x| x.re)),
         list("eigenvalues_imaginary", eigenvalues(|x| x.im)),

@@ -260,7 +260,7 @@ fn table(axes: &Axes, description: &Description, rows: &[Row]) -> Grid {
                     found.distance.0.into(),
                     found.bandwidth.into(),
                     found.damping().into(),
-                    found.closed.map(|root| root.norm()).into(),
+                    found.closed.map(crane_model::nalgebra::Complex::norm).into(),
                     "ok".into(),
                 ]);
             }

@@ -5,6 +5,7 @@ use std::{
     io::{Cursor, Write},
 };
 
+use crane_model::nalgebra::DMatrix;
 use serde_json::Value;
 use zip::{CompressionMethod, ZipWriter, result::ZipError, write::SimpleFileOptions};
 
@@ -20,6 +21,12 @@ pub struct Array {
 }
 
 impl Array {
+    /// A matrix, row by row.
+    pub fn of_matrix(name: &'static str, matrix: &DMatrix<f64>) -> Self {
+        let shape = vec![matrix.nrows(), matrix.ncols()];
+        Self { name: name.into(), shape, data: matrix.transpose().as_slice().to_vec() }
+    }
+
     /// Nested JSON arrays.
     pub fn json(&self) -> Value {
         fn nest(shape: &[usize], data: &[f64]) -> Value {

@@ -189,6 +189,7 @@ impl Crane {
 /// a: (rows, n, n), b: (rows, n, k), c: (rows, n), d: (rows, k): state matrices, what follows the input with these powers of s, the output.
 /// numbers: p, i, d, filter, both times of a lead, delay, lag.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "named arguments in Python")]
 pub fn loop_margins<'py>(
     py: Python<'py>,
     a: &Bound<'py, PyArrayDyn<f64>>,

@@ -221,12 +221,12 @@ impl Crane {
         if self.live.description().has_force_states() {
             let (name, states) = (&self.live.description().name, self.force_states());
             return Err(PyValueError::new_err(format!(
-                "forces of {name} follow from {states}, which are states of a run: use modes(q), about poses at rest"
+                "forces of {name} follow from {states}, which are states of a run: use modes(q), about poses at rest, or state_space"
             )));
         }
         if let Some(joint) = self.live.loop_joints().first() {
             return Err(PyValueError::new_err(format!(
-                "{} has a loop, which {} closes: use modes(q), about poses at rest",
+                "{} has a loop, which {} closes: use modes(q), about poses at rest, or state_space",
                 self.live.description().name,
                 joint.name
             )));

@@ -374,6 +374,10 @@ fn a_shell_asks_for_names_of_cranes_and_of_their_parameters() {
     };
     assert_eq!(answer(&["crane", "statics", "cantil"]).trim(), "cantilever");
     assert_eq!(answer(&["crane", "statics", "cantilever", "--set", "t"]).trim(), "tip_mass=");
+    assert_eq!(
+        answer(&["crane", "margins", "knuckle_boom", "--on", "main_boom_theta_"]).trim(),
+        "main_boom_theta_rate"
+    );
     let script = crane(&["completions", "bash"]);
     let (script, program) = (text(&script.stdout), env!("CARGO_BIN_EXE_crane"));
     assert!(script.contains(program) && script.contains("COMPLETE="), "{script}");
