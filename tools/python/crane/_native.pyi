@@ -103,9 +103,6 @@ class Crane:
         """Coordinates, bodies, drives, supports, points and parameters: names, units and descriptions."""
     def picture(self) -> str:
         """A picture of the chain: its bodies and coordinates at the guess, SVG."""
-    def _changed(self, changes: str) -> str:
-        """The spec with changes, a text in the spec language that extends it."""
-
     def _page(self, run: dict[str, Any] | None = None) -> str:
         """The crane in 3-D and in tables as an HTML page: at rest, or with a run of it."""
     def export(self, format: str) -> str:

@@ -180,12 +180,6 @@ impl Crane {
         Ok(all)
     }
 
-    /// The spec with changes, a text in the spec language that extends it.
-    #[pyo3(name = "_changed")]
-    fn changed(&self, changes: &str) -> String {
-        self.source.changed(changes).text
-    }
-
     /// A picture of the chain: its bodies and coordinates at the guess, SVG.
     fn picture(&self) -> String {
         picture(self.live.chain())
