@@ -26,7 +26,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::{
     dyn_crane::{DynCrane, DynLineariseMotion, DynMotionDerivatives},
     force_states::{self, ForceStates},
-    modes::{DampedMode, NoModes, StateSpace},
+    modes::{DampedMode, NoModes, SmallMotions, StateSpace},
     results::{Column, quantities},
     stateful_force::StateAt,
 };
@@ -153,6 +153,11 @@ impl LinearModel {
     /// Indices in q of the coordinates in the state.
     pub fn coordinates(&self) -> &[usize] {
         self.space.unknowns()
+    }
+
+    /// A, D and K of `A δq̈ + D δq̇ + K δq = 0`, from which the model of an open chain without states of forces is made.
+    pub fn small_motions(&self) -> &SmallMotions {
+        self.space.small_motions()
     }
 
     /// The eigenvalues with Im λ ≥ 0 and the dominant coordinates of their motions, lowest frequency first.

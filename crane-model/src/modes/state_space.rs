@@ -97,6 +97,11 @@ impl StateSpace {
         Ok(self.motions.mass.clone().cholesky().ok_or(NoModes::MassMatrix)?.solve(&along))
     }
 
+    /// A, D and K of the coordinates in the state, with what forces with states contribute directly.
+    pub fn small_motions(&self) -> &SmallMotions {
+        &self.motions
+    }
+
     /// With loops: the motion of all coordinates per unit of each in the state.
     pub(crate) fn basis(&self) -> Option<&DMatrix<f64>> {
         self.motions.basis.as_ref()

@@ -82,13 +82,13 @@ pub fn linearise(options: &Linearise, registry: &Registry, out: &mut dyn Write) 
         steady: motion.steady,
     };
     let model = state_space::model(&crane, &about, options)?;
-    let small = (!is_closed).then(|| SmallMotions::about_motion(&crane, motion.t, [&motion.q, &motion.v, &motion.a]));
-    let found: Vec<Mode> = match &small {
+    let small = (!is_closed).then(|| model.small_motions());
+    let found: Vec<Mode> = match small {
         Some(small) => damped_with_shapes(small)?,
         None => model.modes()?.into_iter().map(|mode| (mode, ComplexShape::zeros(0))).collect(),
     };
     if let Some(file) = &options.file {
-        write_archive(file, &arrays(&motion, small.as_ref(), &model, &found))?;
+        write_archive(file, &arrays(&motion, small, &model, &found))?;
     }
     let mut report = Report::default();
     report.fact("crane", description.name.as_str(), "");
@@ -108,7 +108,7 @@ pub fn linearise(options: &Linearise, registry: &Registry, out: &mut dyn Write) 
         report.caution(Some(caution.as_str()));
     }
     report.caution(description.near_singular(&motion.q));
-    if let Some(small) = &small {
+    if let Some(small) = small {
         for (key, value) in values(description, small, &found) {
             report.value(key, value);
         }

@@ -303,9 +303,22 @@ fn write(file: &Path, grid: &Grid, axes: &Axes, asked: &Asked, description: &Des
         cells[places[y]][places[x]] = if found.stable { margin } else { 0.0 };
         words[places[y]][places[x]] = if found.stable { format!("{margin:.0}") } else { "unstable".to_owned() };
     }
+    let Loop { p, i, d, filter, lead: [above, below], delay, lag } = asked.of;
+    let numbers = [
+        ("p", p),
+        ("i", i),
+        ("d", d),
+        ("filter", filter),
+        ("lead", above),
+        ("over", below),
+        ("dead time", delay),
+        ("lag", lag),
+    ];
+    let given = numbers.iter().filter(|(_, number)| *number != 0.0).map(|(name, number)| format!("{name} {number}"));
     let title = vec![
         "phase margin [°], 0 where the loop is unstable".to_owned(),
         format!("{}: {} → {}", description.name, asked.output.column.name, asked.acting.column(description).name),
+        given.collect::<Vec<String>>().join(", "),
     ];
     let map = Map { title, x: axis(x), y: axis(y), cells, words };
     let picture = map_svg(&map).map_err(|error| Problem::failed(format!("cannot draw the map: {error}"), ""))?;

@@ -69,6 +69,7 @@ fn margins_are_written_as_a_table_and_as_a_map() {
     }
     let map = fs::read_to_string(place.join("margins.svg")).expect("a map");
     assert!(map.contains("phase margin") && map.contains("knuckle_theta [°]"), "{map:.400}");
+    assert!(map.contains("p 0.6, dead time 0.1"), "{map:.400}");
 }
 
 /// A valve's loop about the pose that it holds.
