@@ -38,6 +38,7 @@ from .results import (
 )
 from .simulation import Simulation, State
 from .state_space import StateSpace
+from .vector_simulation import VectorSimulation, VectorState
 
 __all__ = [
     "Crane",
@@ -60,6 +61,8 @@ __all__ = [
     "StateSpace",
     "SteadyMotion",
     "Strength",
+    "VectorSimulation",
+    "VectorState",
     "load",
     "set_threads",
     "shipped",

@@ -32,13 +32,14 @@ OTHERS = {
     "index": 0,
     "x": [],
     "bend": 45.0,
+    "audit": False,
     "verify": False,
     "inputs": None,
     "invalid": "raise",
 }
 # Functions that take one state, or none, and what else they need.
-ONE_STATE = {"simulate", "simulation", "_record", "_motion"}
-NO_STATE = {"replace", "page", "export", "picture", "_parameter_rows", "_page", "_envelope", "sensitivity", "_sensitivity"}
+ONE_STATE = {"simulate", "simulation", "_record", "_motions"}
+NO_STATE = {"replace", "vector_simulation", "_recalled", "_input_bounds", "page", "export", "picture", "_parameter_rows", "_page", "_envelope", "sensitivity", "_sensitivity"}
 
 
 @dataclasses.dataclass
