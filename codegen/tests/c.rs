@@ -84,8 +84,7 @@ fn expected(
     factors: &[f64],
     inputs: &[Option<f64>],
 ) -> Vec<f64> {
-    // Two numbers per input: its value if it is set, otherwise 0; and 0 if it is set, otherwise 1.
-    let slots = inputs.iter().flat_map(|value| value.map_or(Input::NOT_SET, |value| [value, 0.0])).collect();
+    let slots = inputs.iter().flat_map(|value| value.map_or(Input::NOT_SET, Input::set)).collect();
     let inputs = arguments(chain, function).into_iter().fold(
         Inputs::state(0.0, vec![], vec![], chain.parameter_defaults())
             .with(Argument::Factors, factors.to_vec())

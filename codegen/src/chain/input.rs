@@ -20,8 +20,15 @@ pub struct Input {
 }
 
 impl Input {
-    /// Count of the numbers that represent an input: its value while it is set, else 0; and 0 while it is set, else 1.
-    pub const SLOTS: usize = 2;
+    /// Count of the numbers that represent an input: its value at t = 0 while it is set, else 0; 0 while it is set, else 1; and its rate
+    /// while it is set to move, else 0. Set, it is `value + rate t`.
+    pub const SLOTS: usize = 3;
     /// These numbers while it is not set.
-    pub const NOT_SET: [f64; Self::SLOTS] = [0.0, 1.0];
+    pub const NOT_SET: [f64; Self::SLOTS] = [0.0, 1.0, 0.0];
+
+    /// These numbers while it is set to a value that stays.
+    #[must_use]
+    pub const fn set(value: f64) -> [f64; Self::SLOTS] {
+        [value, 0.0, 0.0]
+    }
 }

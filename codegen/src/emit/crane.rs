@@ -26,7 +26,7 @@ pub fn crane(chain: &Chain, lowered: &LoweredProgram) -> Vec<Item> {
         let slots = integer(Input::SLOTS * chain.inputs.len());
         let not_set = chain.inputs.iter().flat_map(|_| Input::NOT_SET).map(literal);
         items.push(parse_quote!(
-            #[doc = " Two numbers per input: its value while it is set, else 0; and 0 while it is set, else 1."]
+            #[doc = " Three numbers per input: its value at t = 0 while it is set, else 0; 0 while it is set, else 1; and its rate."]
             pub type Inputs = [f64; #slots];
         ));
         items.push(parse_quote!(
@@ -221,25 +221,19 @@ fn stages(chain: &Chain) -> Option<TokenStream> {
 
 /// Methods that read and set inputs; `None` if the crane has no inputs.
 fn input_methods(chain: &Chain) -> Option<TokenStream> {
-    let indices: Vec<_> = (0..chain.inputs.len()).map(integer).collect();
-    let slots = |slot: usize| (0..chain.inputs.len()).map(move |index| integer(Input::SLOTS * index + slot));
-    let (values, free): (Vec<_>, Vec<_>) = slots(0).zip(slots(1)).unzip();
     let not_set = Input::NOT_SET.map(literal);
-    (!indices.is_empty()).then(|| {
+    let not_set = quote!([#(#not_set),*]);
+    (!chain.inputs.is_empty()).then(|| {
         quote! {
             fn input(&self, index: usize) -> Option<f64> {
-                let [value, free] = match index {
-                    #(#indices => [self.inputs[#values], self.inputs[#free]],)*
-                    _ => [#(#not_set),*],
-                };
-                if free > 0.0 { None } else { Some(value) }
+                let [value, free, _] = self.inputs.as_chunks().0.get(index).unwrap_or(&#not_set);
+                if *free > 0.0 { None } else { Some(*value) }
             }
 
             fn set_input(&mut self, index: usize, value: Option<f64>) {
-                let slots = value.map_or([#(#not_set),*], |value| [value, 0.0]);
-                match index {
-                    #(#indices => [self.inputs[#values], self.inputs[#free]] = slots,)*
-                    _ => {}
+                let slots = value.map_or(#not_set, |value| [value, 0.0, 0.0]);
+                if let Some(own) = self.inputs.as_chunks_mut().0.get_mut(index) {
+                    *own = slots;
                 }
             }
         }

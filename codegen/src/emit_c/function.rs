@@ -132,17 +132,16 @@ impl Writer<'_> {
         if self.chain.inputs.is_empty() {
             return String::new();
         }
-        let slots = |value: &str, free: f64| {
-            let free = Expression::number(free, self.precision);
-            let slots = Input::SLOTS;
-            format!(
-                "{{\n    u->slots[{slots} * input] = {value};\n    u->slots[{slots} * input + 1] = {};\n}}\n\n",
-                free.text()
-            )
+        let number = |number: f64| Expression::number(number, self.precision).text().to_owned();
+        let body = |numbers: [String; Input::SLOTS]| {
+            let places = numbers.iter().enumerate();
+            let lines =
+                places.map(|(slot, number)| format!("    u->slots[{} * input + {slot}] = {number};\n", Input::SLOTS));
+            format!("{{\n{}}}\n\n", lines.collect::<String>())
         };
         let [set, unset] = self.input_functions();
-        let not_set = Expression::number(Input::NOT_SET[0], self.precision);
-        format!("{set}\n{}{unset}\n{}", slots("value", 0.0), slots(not_set.text(), Input::NOT_SET[1]))
+        let [_, held, still] = Input::set(0.0).map(number);
+        format!("{set}\n{}{unset}\n{}", body(["value".to_owned(), held, still]), body(Input::NOT_SET.map(number)))
     }
 
     /// Signatures of the functions that set an input, and that return it to the value or motion of the spec.

@@ -70,7 +70,10 @@ impl<'g> Model<'g> {
             symbol(format!("base_{}_{}", row + 1, column + 1), Argument::BaseAddedInertia, row + 6 * column)
         });
         let parameters = chain.parameters.iter().enumerate();
-        let inputs = chain.inputs.iter().flat_map(|Input { name, .. }| [name.clone(), format!("{name}_is_free")]);
+        let inputs = chain.inputs.iter().flat_map(|Input { name, .. }| {
+            let named = |suffix: &str| format!("{name}{suffix}");
+            [named(""), named("_is_free"), named("_rate")]
+        });
         [
             vec![symbol("t".into(), Argument::Time, 0)],
             each(Argument::Position, ""),
@@ -143,9 +146,9 @@ impl<'g> Model<'g> {
         }
     }
 
-    /// An input: its value while it is set, else 0; and 0 while it is set, else 1.
+    /// An input: its value at t = 0 while it is set, else 0; 0 while it is set, else 1; and its rate.
     pub fn input(&self, InputId(index): InputId) -> [Expr<'g>; Input::SLOTS] {
-        [0, 1].map(|slot| self.inputs[Input::SLOTS * index + slot])
+        [0, 1, 2].map(|slot| self.inputs[Input::SLOTS * index + slot])
     }
 
     /// Second moments `∫ r rᵀ dm` of a body about its frame's origin.

@@ -45,8 +45,8 @@ pub fn position<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Expr<'
             from + model.number(rate) * way
         }
         Profile::Input(input, unless_set) => {
-            let [value, free] = model.input(*input);
-            value + free * position(model, unless_set, t)
+            let [value, free, rate] = model.input(*input);
+            value + rate * t + free * position(model, unless_set, t)
         }
         Profile::Sum(parts) => {
             let [one, other] = parts.each_ref().map(|part| position(model, part, t));
@@ -88,8 +88,10 @@ pub fn rate<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Expr<'g> {
             let (tau, _) = since(model, begin, ramp.as_ref(), t);
             model.number(rate) * if ramp.is_some() { tau * tau * (3.0 - tau * 2.0) } else { tau }
         }
-        // An input that is set is constant between steps.
-        Profile::Input(input, unless_set) => model.input(*input)[1] * rate(model, unless_set, t),
+        Profile::Input(input, unless_set) => {
+            let [_, free, own] = model.input(*input);
+            own + free * rate(model, unless_set, t)
+        }
         Profile::Sum(parts) => {
             let [one, other] = parts.each_ref().map(|part| rate(model, part, t));
             one + other
@@ -112,7 +114,7 @@ pub fn acceleration<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Ex
     };
     match profile {
         // A speed that jumps does so before a run; otherwise its drive would not be rigid.
-        // An input that is set is constant between steps, and jumps between them: no rigid drive follows it.
+        // An input that is set may jump between steps: no rigid drive follows it.
         Profile::Hold(_) | Profile::Speed { ramp: None, .. } | Profile::Input(..) => model.zero(),
         Profile::Sum(parts) => {
             let [one, other] = parts.each_ref().map(|part| acceleration(model, part, t));

@@ -46,8 +46,8 @@ impl Program {
                 Op::Symbol(id) => {
                     let symbol = self.symbol(id);
                     match inputs.0.get(&symbol.argument) {
-                        // No input is set: 0 and 1 alternate.
-                        None if symbol.argument == Argument::Inputs => S::from_f64((symbol.index % 2) as f64),
+                        // No input is set: value, factor of the spec's, rate.
+                        None if symbol.argument == Argument::Inputs => S::from_f64([0.0, 1.0, 0.0][symbol.index % 3]),
                         None => panic!("`{}` needs {:?}", function.id.name(), symbol.argument),
                         Some(values) => values[symbol.index].clone(),
                     }

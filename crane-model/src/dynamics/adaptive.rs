@@ -3,6 +3,7 @@
 use super::{
     Ahead, Cause, EffortAccuracy, Method, Statistics, Stepper, Stopped,
     equations::Equations,
+    memory::{Visit, visit_count, visit_numbers},
     norm::Norm,
     state::NotFinite,
     step::Step,
@@ -35,6 +36,9 @@ pub(super) trait Formula {
 
     /// Factorisations so far.
     fn factorisations(&self) -> usize;
+
+    /// Visits what further steps depend on.
+    fn visit(&mut self, _visit: Visit<'_>) {}
 }
 
 /// A motion with adaptive steps, which may pass the times of results; results are interpolated.
@@ -90,6 +94,17 @@ impl<'a, F: Formula> Adaptive<'a, F> {
 }
 
 impl<F: Formula> Adaptive<'_, F> {
+    /// Begins at the present motion, with the length of the first step to try, s.
+    fn begin(&mut self, t: f64, next: f64) -> Result<(), Stopped> {
+        (self.step.t, self.step.length, self.next) = (t, 0.0, next);
+        self.switches.start();
+        let Step { end, slopes: [_, slope], .. } = &mut self.step;
+        end.copy_from_slice(&self.motion);
+        self.equations.make_relative(t, end);
+        self.equations.references.step_within(t, t + next);
+        self.equations.slope(t, end, slope).map_err(|NotFinite| self.stuck(t, next))
+    }
+
     /// Moves to the end of a step, onto the loops of the crane.
     fn accept(&mut self, reached: f64) -> Result<(), Stopped> {
         let n = self.equations.n;
@@ -113,15 +128,11 @@ impl<F: Formula> Adaptive<'_, F> {
 
 impl<F: Formula + Send> Stepper for Adaptive<'_, F> {
     fn start(&mut self, t: f64, motion: &[f64]) -> Result<(), Stopped> {
-        (self.step.t, self.step.length, self.next) = (t, 0.0, FIRST);
         self.motion.copy_from_slice(motion);
-        self.switches.start();
-        let Step { end, slopes: [_, slope], .. } = &mut self.step;
-        end.copy_from_slice(motion);
-        self.equations.make_relative(t, end);
-        self.norm.start(&mut self.equations, t, end);
-        self.equations.references.step_within(t, t + FIRST);
-        self.equations.slope(t, end, slope).map_err(|NotFinite| self.stuck(t, FIRST))
+        let mut start = motion.to_vec();
+        self.equations.make_relative(t, &mut start);
+        self.norm.start(&mut self.equations, t, &start);
+        self.begin(t, FIRST)
     }
 
     fn step(&mut self, ahead: &Ahead) -> Result<f64, Stopped> {
@@ -165,6 +176,27 @@ impl<F: Formula + Send> Stepper for Adaptive<'_, F> {
             motion[self.equations.n + coordinate] = self.step.rate_at(t, self.equations.n, coordinate);
         }
         self.equations.make_absolute(t, motion);
+    }
+
+    /// The length of the next step stays as intended; its error decides.
+    fn change(&mut self, t: f64, change: &mut dyn FnMut()) -> Result<(), Stopped> {
+        let mut motion = std::mem::take(&mut self.motion);
+        self.interpolate(t, &mut motion);
+        change();
+        self.motion = motion;
+        self.begin(t, self.next)
+    }
+
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        let Self { formula, equations, norm, next, step, switches, motion, steps, rejections } = self;
+        formula.visit(visit);
+        equations.visit(visit);
+        norm.visit(visit);
+        visit(next);
+        step.visit(visit);
+        switches.visit(visit);
+        visit_numbers(motion, visit);
+        [steps, rejections].into_iter().for_each(|count| visit_count(count, visit));
     }
 
     fn statistics(&self) -> Statistics {

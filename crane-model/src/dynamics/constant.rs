@@ -3,6 +3,7 @@
 use super::{
     Ahead, Cause, Method, Settings, Statistics, Stepper, Stopped,
     equations::Equations,
+    memory::{visit_count, visit_flag, visit_numbers},
     motion::{add, add_all},
     references::References,
     rk4,
@@ -222,6 +223,26 @@ impl Stepper for Rk4<'_> {
         }
         let (pose, rates) = motion.split_at_mut(self.equations.n);
         self.equations.crane.prescribe(t, pose, &mut rates[..self.equations.n]);
+    }
+
+    fn change(&mut self, t: f64, change: &mut dyn FnMut()) -> Result<(), Stopped> {
+        change();
+        self.steps = EqualSteps { begin: t, end: t, count: 0, done: 0 };
+        Ok(())
+    }
+
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        let Self { equations, roughness, motion, before, slope, last_slope, last_known, steps, done, .. } = self;
+        equations.visit(visit);
+        roughness.visit(visit);
+        for numbers in [motion, before, slope, last_slope] {
+            visit_numbers(numbers, visit);
+        }
+        visit_flag(last_known, visit);
+        [&mut steps.begin, &mut steps.end].into_iter().for_each(&mut *visit);
+        for count in [&mut steps.count, &mut steps.done, done] {
+            visit_count(count, visit);
+        }
     }
 
     fn statistics(&self) -> Statistics {

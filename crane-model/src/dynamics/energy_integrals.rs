@@ -5,6 +5,7 @@
 //! agree; where already the midpoint agrees with Gauss's rule, that is enough. A. S. Kronrod, Nodes and Weights of Quadrature Formulas,
 //! Consultants Bureau 1965.
 
+use super::memory::{Visit, visit_numbers};
 use crate::{
     dyn_crane::DynDynamics,
     force_states::{ForceStates, loops_on_rigid_drives},
@@ -55,6 +56,12 @@ impl<'a> EnergyIntegrals<'a> {
         let states = force_states.len();
         let motion = vec![0.0; 2 * crane.size() + states];
         Self { crane, force_states, rates: vec![0.0; states], motion, accuracy, peak: 0.0, t, values: [0.0; INTEGRALS] }
+    }
+
+    /// Visits what further integrals depend on.
+    pub fn visit(&mut self, visit: Visit<'_>) {
+        [&mut self.peak, &mut self.t].into_iter().for_each(&mut *visit);
+        visit_numbers(&mut self.values, visit);
     }
 
     /// Integrates up to a time in the last step.

@@ -1,6 +1,7 @@
 //! The equations of motion in first-order form.
 
 use super::{
+    memory::{Visit, visit_count},
     references::References,
     state::{NotFinite, finite},
 };
@@ -53,6 +54,12 @@ impl<'a> Equations<'a> {
         !self.loops.is_empty()
     }
 
+    /// Visits what further evaluations depend on.
+    pub fn visit(&mut self, visit: Visit<'_>) {
+        visit_count(&mut self.evaluations, visit);
+        self.loops.visit(visit);
+    }
+
     /// The states of forces in a motion.
     pub fn force_states<'m>(&self, motion: &'m [f64]) -> &'m [f64] {
         &motion[2 * self.n..]
@@ -88,6 +95,23 @@ impl<'a> Equations<'a> {
         let n = self.n;
         out[..n].copy_from_slice(&motion[n..2 * n]);
         self.state(t, motion);
+        self.evaluate(t, motion, out)?;
+        self.references.subtract_accelerations(self.crane, t, &mut out[n..2 * n]);
+        finite(&out[n..2 * n])
+    }
+
+    /// Slope of a motion given in full.
+    pub fn slope_in_full(&mut self, t: f64, motion: &[f64], out: &mut [f64]) -> Result<(), NotFinite> {
+        let n = self.n;
+        out[..n].copy_from_slice(&motion[n..2 * n]);
+        self.state.copy_from_slice(&motion[..2 * n]);
+        self.evaluate(t, motion, out)?;
+        finite(&out[n..2 * n])
+    }
+
+    /// Accelerations of the pose and the rates in `self.state`, and rates of the states of forces in `motion`.
+    fn evaluate(&mut self, t: f64, motion: &[f64], out: &mut [f64]) -> Result<(), NotFinite> {
+        let n = self.n;
         self.evaluations += 1;
         let (q, v) = self.state.split_at(n);
         let (_, rest) = out.split_at_mut(n);
@@ -98,8 +122,7 @@ impl<'a> Equations<'a> {
             finite(rest)?;
         }
         self.loops.accelerate(self.crane, q, v, accelerations);
-        self.references.subtract_accelerations(self.crane, t, accelerations);
-        finite(accelerations)
+        Ok(())
     }
 
     /// Moves a motion, given in full, onto the loops of the crane.

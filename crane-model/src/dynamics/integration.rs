@@ -10,6 +10,7 @@ use super::{
     constant::Rk4,
     dormand_prince::DormandPrince,
     energy_integrals::{EnergyIntegrals, INTEGRALS},
+    memory::{Visit, visit_count, visit_flag, visit_numbers},
     rosenbrock::Rosenbrock,
     stopped::{StepContext, without_inertia},
     stops::Stops,
@@ -37,6 +38,8 @@ pub struct Integration<'a> {
     reached: f64,
     /// Steps and rejections when the pace was last measured, and the time reached then, s.
     paced: (usize, f64),
+    /// Whether something was changed at the last result: if so, it may change again at the next one, where a step therefore ends.
+    is_steered: bool,
     /// Time and motion of the last result.
     time: f64,
     motion: Vec<f64>,
@@ -109,6 +112,7 @@ impl<'a> Integration<'a> {
             end,
             reached: begin,
             paced: (0, begin),
+            is_steered: false,
             time: begin,
             motion,
             loops,
@@ -129,7 +133,8 @@ impl<'a> Integration<'a> {
         while self.reached < result {
             let before = self.reached;
             self.integrate_powers(before);
-            self.reached = self.stepper.step(&Ahead { result, stop: self.stops.after(before) })?;
+            let stop = self.stops.after(before).min(if self.is_steered { result } else { f64::INFINITY });
+            self.reached = self.stepper.step(&Ahead { result, stop })?;
             let too_many = self.stepper.statistics().steps >= self.settings.most_steps || self.is_too_slow();
             let q = &self.stepper.motion()[..n];
             let (t, h) = (self.reached, self.reached - before);
@@ -152,8 +157,50 @@ impl<'a> Integration<'a> {
                 StepContext { method: self.settings.method, t: result, h: self.settings.step, q, description };
             return Err(context.open(self.crane, open));
         }
-        self.time = result;
+        (self.time, self.is_steered) = (result, false);
         Ok(ControlFlow::Continue(()))
+    }
+
+    /// Continues from the last result after `change`, which changes forces or the motions of drives of the crane, but neither positions
+    /// nor rates, neither masses nor which drives follow their specs. Not after a motion that was stopped before its result.
+    ///
+    /// # Errors
+    /// [`Stopped`] if accelerations are not finite.
+    pub fn change(&mut self, change: &mut dyn FnMut()) -> Result<(), Stopped> {
+        self.stepper.change(self.time, change)?;
+        (self.reached, self.is_steered) = (self.time, true);
+        Ok(())
+    }
+
+    /// All numbers on which the further motion depends, besides the crane and the settings: the history of the method, too.
+    pub fn memory(&mut self) -> Vec<f64> {
+        let mut memory = Vec::new();
+        self.visit(&mut |number| memory.push(*number));
+        memory
+    }
+
+    /// Continues as the integration of the same crane, from the same beginning and with the same settings, from which `memory` is; returns
+    /// whether it can be from such a one.
+    pub fn recall(&mut self, memory: &[f64]) -> bool {
+        let (mut numbers, mut missing) = (memory.iter(), false);
+        self.visit(&mut |number| match numbers.next() {
+            Some(remembered) => *number = *remembered,
+            None => missing = true,
+        });
+        !missing && numbers.next().is_none()
+    }
+
+    fn visit(&mut self, visit: Visit<'_>) {
+        let Self { stepper, reached, paced: (done, since), is_steered, time, motion, loops, energy, .. } = self;
+        stepper.visit(visit);
+        [reached, since, time].into_iter().for_each(&mut *visit);
+        visit_count(done, visit);
+        visit_flag(is_steered, visit);
+        visit_numbers(motion, visit);
+        loops.visit(visit);
+        if let Some(energy) = energy {
+            energy.visit(visit);
+        }
     }
 
     /// Whether an adaptive method would need more than the maximum number of steps if it went on like this. A wrong unit makes forces that

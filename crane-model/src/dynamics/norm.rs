@@ -1,6 +1,6 @@
 //! The size of an error of a motion, in units of the tolerance.
 
-use super::equations::Equations;
+use super::{equations::Equations, memory::Visit};
 use crate::{
     CoordinateKind,
     dyn_crane::{DynImplicit, DynModel},
@@ -147,6 +147,13 @@ impl Norm {
             let rounding = ROUNDINGS * f64::EPSILON * (stiffness * q[coordinate].abs() + damping * v[coordinate].abs());
             effort.rounding = effort.rounding.max(rounding);
             effort.scale = effort.scale.max(MAGNIFIED * rounding / (EFFORT * self.tolerance));
+        }
+    }
+
+    /// Visits what further steps depend on.
+    pub fn visit(&mut self, visit: Visit<'_>) {
+        for Effort { scale, peak, error, rounding, .. } in &mut self.efforts {
+            [scale, peak, error, rounding].into_iter().for_each(&mut *visit);
         }
     }
 

@@ -25,6 +25,7 @@ use super::{
     EffortAccuracy, Method, Settings, Statistics, Stepper, Stopped,
     adaptive::{Adaptive, Formula},
     equations::Equations,
+    memory::Visit,
     motion::add_all,
     norm::Norm,
     references::References,
@@ -182,5 +183,9 @@ impl Formula for Stages<'_> {
 
     fn factorisations(&self) -> usize {
         self.system.factorisations
+    }
+
+    fn visit(&mut self, visit: Visit<'_>) {
+        self.system.visit(visit);
     }
 }

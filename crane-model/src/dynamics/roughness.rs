@@ -1,5 +1,7 @@
 //! Detection of growth from step to step, long before a run exceeds its bounds.
 
+use super::memory::{Visit, visit_count, visit_numbers, visit_optional};
+
 /// Rates below this, m/s and rad/s, are rounding near rest.
 const REST: f64 = 1e-6;
 /// Growth of the roughness, as an energy, that counts as unstable while it dominates the motion: a decaying mode loses energy
@@ -23,6 +25,15 @@ impl Roughness {
     /// Creates the detector, with the diagonal of the mass matrix at the start as weights.
     pub(super) fn new(weights: Vec<f64>) -> Self {
         Self { weights, outweighs: None }
+    }
+
+    /// Visits what further comparisons depend on.
+    pub(super) fn visit(&mut self, visit: Visit<'_>) {
+        visit_numbers(&mut self.weights, visit);
+        let (mut since, mut roughest) = self.outweighs.map_or((None, 0), |(since, roughest)| (Some(since), roughest));
+        visit_optional(&mut since, visit);
+        visit_count(&mut roughest, visit);
+        self.outweighs = since.map(|since| (since, roughest.min(self.weights.len().saturating_sub(1))));
     }
 
     /// The roughest coordinate, if roughness dominates the motion.

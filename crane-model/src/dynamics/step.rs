@@ -1,6 +1,9 @@
 //! A completed step, and the motion within it.
 
-use super::motion::add;
+use super::{
+    memory::{Visit, visit_numbers},
+    motion::add,
+};
 
 /// A step of an adaptive one-step method.
 #[derive(Clone, Debug)]
@@ -27,6 +30,15 @@ impl Step {
         let zeros = || vec![0.0; len];
         let slopes = [zeros(), zeros()];
         Self { t: 0.0, length: 0.0, start: zeros(), end: zeros(), error: zeros(), slopes, quartic_term: zeros() }
+    }
+
+    /// Visits what further steps depend on.
+    pub fn visit(&mut self, visit: Visit<'_>) {
+        let Self { t, length, start, end, error, slopes: [first, last], quartic_term } = self;
+        [t, length].into_iter().for_each(&mut *visit);
+        for numbers in [start, end, error, first, last, quartic_term] {
+            visit_numbers(numbers, visit);
+        }
     }
 
     /// Time at the end, s.

@@ -24,6 +24,16 @@ pub trait Stepper: Send {
     /// Motion at a time within the last step.
     fn interpolate(&mut self, t: f64, motion: &mut [f64]);
 
+    /// Goes back to the state at a time within the last step, and continues from there after `change`, which changes forces or the motions of
+    /// drives but neither positions nor rates.
+    ///
+    /// # Errors
+    /// [`Stopped`] if the accelerations there are not finite.
+    fn change(&mut self, t: f64, change: &mut dyn FnMut()) -> Result<(), Stopped>;
+
+    /// Visits all numbers on which further steps depend, always in the same order.
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64));
+
     /// Statistics so far.
     fn statistics(&self) -> Statistics;
 
@@ -48,6 +58,14 @@ impl<S: Stepper + ?Sized> Stepper for &mut S {
 
     fn interpolate(&mut self, t: f64, motion: &mut [f64]) {
         (**self).interpolate(t, motion);
+    }
+
+    fn change(&mut self, t: f64, change: &mut dyn FnMut()) -> Result<(), Stopped> {
+        (**self).change(t, change)
+    }
+
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        (**self).visit(visit);
     }
 
     fn statistics(&self) -> Statistics {
@@ -86,6 +104,14 @@ macro_rules! forward {
 
             fn interpolate(&mut self, t: f64, motion: &mut [f64]) {
                 self.0.interpolate(t, motion);
+            }
+
+            fn change(&mut self, t: f64, change: &mut dyn FnMut()) -> Result<(), Stopped> {
+                self.0.change(t, change)
+            }
+
+            fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+                self.0.visit(visit);
             }
 
             fn statistics(&self) -> Statistics {

@@ -5,7 +5,11 @@
 //! drive has long left the limit. Adaptive methods therefore end a step where a contact changes or a drive reaches or leaves its limit, and a
 //! step that failed where any law does.
 
-use super::{contacts::Contacts, equations::Equations};
+use super::{
+    contacts::Contacts,
+    equations::Equations,
+    memory::{Visit, visit_flag, visit_flags},
+};
 use crate::{
     dyn_crane::{DynDynamics, DynModel},
     force_states::ForceStates,
@@ -59,6 +63,13 @@ impl Switches {
             of_limit: false,
             known_at: f64::NAN,
         }
+    }
+
+    /// Visits what further steps depend on.
+    pub fn visit(&mut self, visit: Visit<'_>) {
+        visit_flags(&mut self.branches[0], visit);
+        visit_flag(&mut self.of_limit, visit);
+        visit(&mut self.known_at);
     }
 
     /// Forgets the last step.

@@ -17,6 +17,7 @@ use nalgebra::Matrix6;
 use super::{
     connector_update::{ConnectorUpdate, differs},
     force_state_update::ForceStateUpdate,
+    memory::{Visit, visit_count},
 };
 use crate::{
     Description, SupportInfo,
@@ -86,6 +87,12 @@ impl<'a> System<'a> {
     pub fn with_steeper_bristles(mut self) -> Self {
         self.force_states.steeper_bristles = true;
         self
+    }
+
+    /// Visits what further systems depend on.
+    pub fn visit(&mut self, visit: Visit<'_>) {
+        self.loops.visit(visit);
+        visit_count(&mut self.factorisations, visit);
     }
 
     /// Factorises at a state of the crane and its forces.

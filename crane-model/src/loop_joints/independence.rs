@@ -4,6 +4,8 @@
 //! eliminated with the largest remaining row as pivot; a pivot is the square of the sine of the angle between a row and the space of
 //! those before. Units do not matter, and neither do masses.
 
+use crate::dynamics::memory::{visit_flag, visit_indices};
+
 /// A row shorter than this fraction of what it could be is zero: rounding of the axes leaves 1e-16.
 const NOTHING: f64 = 1e-9;
 /// A row whose pivot is below this depends on others: a sine of 1e-5.
@@ -47,6 +49,15 @@ impl Independence {
     /// For a choice from the beginning.
     pub fn begin_again(&self) -> Self {
         Self::new(self.groups.clone())
+    }
+
+    /// Visits what the next choice depends on.
+    pub fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        let count = self.len();
+        visit_indices(&mut self.kept, count, visit);
+        self.is_kept.iter_mut().for_each(|kept| visit_flag(kept, visit));
+        visit(&mut self.least);
+        visit(&mut self.chosen);
     }
 
     /// Number of equations.

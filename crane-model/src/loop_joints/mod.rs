@@ -119,6 +119,11 @@ impl Loops {
         }
     }
 
+    /// Visits what further solutions depend on.
+    pub fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        self.independence.visit(visit);
+    }
+
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.states.is_empty()

@@ -43,6 +43,24 @@ impl Motion {
         self.0.with_dependent_mut(|_, integration| integration.advance(result, step))
     }
 
+    /// Continues from the last result after `change`, which sets inputs of the crane.
+    ///
+    /// # Errors
+    /// As [`Integration::change`].
+    pub(crate) fn change(&mut self, change: &mut dyn FnMut()) -> Result<(), Stopped> {
+        self.0.with_dependent_mut(|_, integration| integration.change(change))
+    }
+
+    /// All numbers on which the further motion depends, besides the crane and the settings.
+    pub(crate) fn memory(&mut self) -> Vec<f64> {
+        self.0.with_dependent_mut(|_, integration| integration.memory())
+    }
+
+    /// Continues as the motion of the same crane from which `memory` is; returns whether it can be from such a one.
+    pub(crate) fn recall(&mut self, memory: &[f64]) -> bool {
+        self.0.with_dependent_mut(|_, integration| integration.recall(memory))
+    }
+
     /// The state reached.
     #[must_use]
     pub fn sample(&self) -> Sample<'_> {

@@ -129,7 +129,7 @@ impl<T: Number> Evaluation<T> {
             lanes: Lanes::new(),
             prescribed: crane.description().prescribed(),
             driven: crane.description().drives.iter().map(|drive| drive.coordinate).collect(),
-            inputs: crane.inputs().iter().copied().map(T::splat).collect(),
+            inputs: crane.inputs().numbers().map(T::splat).collect(),
             results: vec![T::splat(0.0); width],
             absent: if crane.is_too_large_for(quantity.function()) { f64::NAN } else { 0.0 },
         }

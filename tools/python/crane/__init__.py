@@ -42,6 +42,7 @@ from .results import (
 )
 from .simulation import Simulation, State
 from .state_space import Margins, StateSpace
+from .vector_simulation import VectorSimulation, VectorState
 
 __all__ = [
     "Band",
@@ -68,6 +69,8 @@ __all__ = [
     "StateSpace",
     "SteadyMotion",
     "Strength",
+    "VectorSimulation",
+    "VectorState",
     "experiments",
     "fit",
     "load",

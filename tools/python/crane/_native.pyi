@@ -48,14 +48,28 @@ def loop_margins(
 ) -> Array:
     """(rows, 11): margins of a loop around plants, row by row: `Crane.margins` names them."""
 
-class Motion:
-    """A motion that continues from result to result, with the history of its method."""
+class Motions:
+    """Motions of cranes of one spec; each continues with the history of its method."""
 
-    def advance(self, dt: float) -> tuple[float, Array, Array, Array, tuple[float, float, float]]:
-        """Advances by `dt`, s; returns time, pose, rates, states of forces; work of the drives, dissipated energy and
-        work of the loads since the start, J."""
-    def statistics(self) -> dict[str, int]:
-        """Steps, rejections, evaluations and factorisations so far."""
+    def __len__(self) -> int: ...
+    def advance(self, dt: float, steps: int, inputs: dict[str, Any], linear: bool) -> tuple[Array, Array, Array]:
+        """Advances all by `dt`, s, several times, with new values of inputs by name: numbers, arrays (rows) or (steps, rows), or None for that
+        of the spec. Returns times (steps, rows), and poses and rates (steps, rows, n); rows that fail stay at their last state."""
+    def states(self) -> tuple[Array, Array, Array, Array, Array]:
+        """States reached: times (rows), poses and rates (rows, n), states of forces (rows, states), and work of the drives, dissipated energy
+        and work of the loads since the start, J, (rows, 3)."""
+    def failures(self) -> list[str | None]:
+        """Why each row ended; None for those that go on."""
+    def check(self) -> None:
+        """Raises why the first row that ended has ended."""
+    def can_set(self, name: str) -> bool:
+        """Whether an input can be set, and released, while the motions go on: it does not follow a motion of the spec."""
+    def statistics(self, row: int) -> dict[str, int]:
+        """Steps, rejections, evaluations and factorisations so far, of a row."""
+    def memory(self, row: int) -> Array:
+        """All numbers from which the motion of a row can be made again."""
+    def put(self, rows: list[int], others: Motions) -> None:
+        """Exchanges rows for those of other motions of the same cranes, one after the other."""
 
 class Crane:
     """A crane with its parameters: native part of `crane.Crane`."""
@@ -159,8 +173,21 @@ class Crane:
         inputs: dict[str, ArrayLike | None] | None = None,
     ) -> dict[str, Any]:
         """Runs over parameters, starts and inputs: `Crane.simulate_ensemble` makes an `Ensemble` of them."""
-    def _motion(self, timing: dict[str, Any], t: float, q: ArrayLike, v: ArrayLike, x: ArrayLike) -> Motion:
-        """A motion of the crane from a time, s, a pose, rates and states of forces, with its parameters and inputs."""
+    def _motions(
+        self,
+        timing: dict[str, Any],
+        audit: bool,
+        t: float,
+        q: ArrayLike | None = None,
+        v: ArrayLike | None = None,
+        x: ArrayLike = (),
+        inputs: dict[str, Any] | None = None,
+    ) -> Motions:
+        """Motions from a time, s, for every row of parameters, starts and inputs; from their equilibria at rest unless q and v are given."""
+    def _recalled(self, timing: dict[str, Any], audit: bool, memories: list[ArrayLike]) -> Motions:
+        """The motions from which these memories are: they go on with the same numbers, to the last bit."""
+    def _input_bounds(self) -> dict[str, tuple[float, float]]:
+        """Least and greatest values of inputs that are efforts of drives with a `max_effort`, N m or N, by name."""
     @property
     def inputs(self) -> dict[str, float]:
         """Inputs that are set, by name."""

@@ -29,6 +29,7 @@ from .results import (
 )
 from .simulation import Simulation
 from .state_space import Margins, StateSpace
+from .vector_simulation import VectorSimulation
 
 
 def load(
@@ -74,6 +75,12 @@ class Crane(_native.Crane):
 
     def __reduce__(self) -> tuple:
         return _load_again, (self.source, self.spec, self.parameters, self.inputs)
+
+    def __copy__(self) -> Self:
+        return self
+
+    def __deepcopy__(self, _: Any) -> Self:
+        return self
 
     def __repr__(self) -> str:
         values = ", ".join(f"{name}={value}" for name, value in self.parameters.items() if np.ndim(value) == 0)
@@ -499,6 +506,22 @@ class Crane(_native.Crane):
     def simulation(self, *, method: str | None = None, tolerance: float | None = None, step: float | None = None, **start: Any) -> Simulation:
         """A simulation that is stepped from outside: `Simulation`. `start`: t, q and v; the static equilibrium at rest unless given."""
         return Simulation(self, _timing(method, None, None, tolerance, step, True), **start)
+
+    def vector_simulation(
+        self,
+        count: int | None = None,
+        *,
+        method: str | None = None,
+        tolerance: float | None = None,
+        step: float | None = None,
+        **start: Any,
+    ) -> VectorSimulation:
+        """Simulations of many cranes of this spec that are stepped together: `VectorSimulation`.
+
+        count: how many; unless given, as many as parameters, inputs or start states that are arrays have rows.
+        `start`: t, q, v and inputs; each crane's own static equilibrium at rest unless given.
+        """
+        return VectorSimulation(self, _timing(method, None, None, tolerance, step, True), count, **start)
 
 
 def _timing(

@@ -10,7 +10,7 @@ from ._native import real_array
 from .results import Array
 
 if TYPE_CHECKING:
-    from ._native import Motion
+    from ._native import Motions
     from .model import Crane
 
 
@@ -48,9 +48,10 @@ class Simulation:
 
     Inputs of the spec are set by name, `simulation.step(0.01, inputs={"pull": 300.0})`.
 
-    The method keeps its history across calls, so that short calls cost no more than long ones. A new value of an input or of a
-    parameter, and `restore`, begin a new history from the present state: from then on the same calls give the same numbers, to the
-    last bit. So does a copy, by `copy.deepcopy` or `pickle`, of a simulation: it continues from the present state with a new history.
+    The method keeps its step size and its history across calls, so that short calls cost no more than long ones; it keeps them when inputs
+    change, too. A new value of a parameter, an input that no longer follows a motion of the spec, and `restore` begin a new history
+    from the present state: from then on the same calls give the same numbers, to the last bit. A copy, by `copy.deepcopy` or `pickle`, has
+    the history, too, and goes on as the original does, to the last bit.
     """
 
     def __init__(
@@ -66,26 +67,36 @@ class Simulation:
             raise ValueError("the parameters are arrays: a simulation needs one value of each")
         method = timing["method"] or ("rk4" if timing["step"] else None)
         self._timing = {**timing, "method": method}
-        self.crane = crane
+        self._crane = crane
         q = crane.statics(t=t).q if q is None else q
         v = np.zeros_like(q, dtype=float) if v is None else v
         self._state = _fixed(State(float(real_array("t", t)), q, v, parameters=crane.parameters, inputs=crane.inputs))
         self._counted = dict.fromkeys(("steps", "rejections", "evaluations", "factorisations"), 0)
-        # The running method, and the state from which it began.
-        self._motion: Motion | None = None
+        # The running method, and the energies at its beginning.
+        self._motion: Motions | None = None
         self._begin = self._state
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_counted": self.statistics, "_motion": None}
+        memory = self._motion and self._motion.memory(0)
+        return {**self.__dict__, "_motion": memory}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
         self._state = _fixed(self._state)
+        if self._motion is not None:
+            self._motion = self._crane._recalled(self._timing, True, [self._motion])
+
+    @property
+    def crane(self) -> "Crane":
+        """The crane with its present parameters and inputs."""
+        if self._crane.inputs != self._state.inputs:
+            self._crane = self._with_inputs(self._crane, self._state.inputs)
+        return self._crane
 
     @property
     def statistics(self) -> dict[str, int]:
         """Steps, rejected steps, evaluations of accelerations and factorisations of all calls together."""
-        now = self._motion.statistics() if self._motion else {}
+        now = self._motion.statistics(0) if self._motion is not None else {}
         return {what: count + now.get(what, 0) for what, count in self._counted.items()}
 
     @property
@@ -123,44 +134,72 @@ class Simulation:
         """Work of the loads applied from outside since the start, J."""
         return self._state.load_work
 
-    def step(self, dt: float, inputs: dict[str, float | None] | None = None, **parameters: float) -> State:
+    def step(self, dt: float, inputs: dict[str, float | None] | None = None, hold: str = "constant", **parameters: float) -> State:
         """Advances the crane by dt, s, with new values of inputs and live parameters from now on. Returns the new state.
 
         inputs: by name, in the units that `Crane.info` shows; None lets an input follow the spec again.
+        hold: "constant" sets inputs at the beginning of the step (zero-order hold), "linear" moves them from their last values, which they have
+        at its beginning, to these, which they have at its end (first-order hold), and where they then stay.
 
         If it fails or is interrupted, the simulation stays where it was.
         """
-        if parameters or inputs:
-            self._change(self.crane.replace(inputs=inputs, **parameters))
+        linear = is_linear(hold)
+        if parameters:
+            self._change(self._crane.replace(**parameters))
+        values = self._state.inputs
+        if inputs:
+            values = {name: value for name, value in {**values, **inputs}.items() if value is not None}
+            if self._motion is None or not all(value is not None and self._motion.can_set(name) for name, value in inputs.items()):
+                self._release(inputs, values, linear)
         if self._motion is None:
-            self._motion = self.crane._motion(self._timing, self._state.t, self._state.q, self._state.v, self._state.x)
-            self._begin = self._state
+            state = self._state
+            self._motion = self.crane._motions(self._timing, True, state.t, state.q, state.v, state.x)
+            self._begin = state
         try:
-            t, q, v, x, (work, dissipated, load_work) = self._motion.advance(dt)
+            self._motion.advance(dt, 1, _as_set(inputs or {}, self._motion), linear)
+            self._motion.check()
         except BaseException:
             self._forget()
             raise
+        t, q, v, x, energies = (numbers[0] for numbers in self._motion.states())
+        work, dissipated, load_work = energies.tolist()
         begin = self._begin
         self._state = State(
-            t,
+            float(t),
             q,
             v,
             work=begin.work + work,
             dissipated=begin.dissipated + dissipated,
             parameters=self._state.parameters,
             load_work=begin.load_work + load_work,
-            inputs=self._state.inputs,
+            inputs={name: float(value) for name, value in values.items()} if inputs else values,
             x=x,
         )
         return self._state
 
-    def _change(self, crane: "Crane") -> None:
-        """Takes another crane from now on, unless it has the same parameters and inputs."""
-        changed = {"parameters": crane.parameters, "inputs": crane.inputs}
-        if changed != {"parameters": self._state.parameters, "inputs": self._state.inputs}:
+    def _release(self, inputs: dict[str, float | None], values: dict[str, float], linear: bool) -> None:
+        """Ends the history if an input begins or ceases to follow a motion of the spec."""
+        set_now = self._state.inputs
+        released = [of["name"] for of in self._crane.info["inputs"] if of["moves"] and (of["name"] in values) != (of["name"] in set_now)]
+        crane = self._with_inputs(self._crane, values)
+        if linear and (moving := [name for name in released if name in inputs]):
+            raise ValueError(f'{moving[0]} follows a motion of the spec, or shall follow it again: set it with hold="constant"')
+        if released:
             self._forget()
-            self.crane = crane
-            self._state = replace(self._state, **changed)
+            kept = {name: value for name, value in set_now.items() if name not in released}
+            changed = {name: values[name] for name in released if name in values}
+            self._crane, self._state = crane, replace(self._state, inputs={**kept, **changed})
+
+    def _with_inputs(self, crane: "Crane", inputs: dict[str, float]) -> "Crane":
+        """A crane with these inputs only."""
+        return crane.replace(inputs={**dict.fromkeys(crane.inputs), **inputs})
+
+    def _change(self, crane: "Crane") -> None:
+        """Takes another crane from now on, unless it has the same parameters."""
+        if crane.parameters != self._state.parameters:
+            self._forget()
+            self._crane = crane
+            self._state = replace(self._state, parameters=crane.parameters)
 
     def _forget(self) -> None:
         """Ends the history; its steps are counted."""
@@ -177,10 +216,21 @@ class Simulation:
         for name, numbers in (("q", state.q), ("v", state.v)):
             if np.shape(numbers) != (n,):
                 raise ValueError(f"{name} of the state has shape {np.shape(numbers)}, and the crane has {n} coordinates")
-        unset = dict.fromkeys(self._state.inputs, None)
-        self._change(self.crane.replace(inputs={**unset, **state.inputs}, **state.parameters))
+        crane = self._with_inputs(self._crane.replace(**state.parameters), state.inputs)
         self._forget()
-        self._state = _fixed(state)
+        self._crane, self._state = crane, _fixed(state)
+
+
+def _as_set(inputs: dict[str, float | None], motion: "Motions") -> dict[str, float | None]:
+    """Inputs without those that follow motions of the spec: None is what these do already."""
+    return {name: value for name, value in inputs.items() if value is not None or motion.can_set(name)}
+
+
+def is_linear(hold: str) -> bool:
+    """Whether inputs move linearly over a step."""
+    if hold not in ("constant", "linear"):
+        raise ValueError(f'hold={hold!r}: write "constant" or "linear"')
+    return hold == "linear"
 
 
 def _fixed(state: State) -> State:

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
+use crane_codegen::chain::{Profile, Transmission};
 use crane_codegen::compile::check_with;
 use crane_codegen::picture::picture;
 use crane_codegen::{Checked, SourceFile, build, exchange};
@@ -178,6 +179,22 @@ impl Crane {
             }
         }
         Ok(all)
+    }
+
+    /// Least and greatest values of inputs that are efforts of drives with a `max_effort`, N m or N, by name.
+    #[pyo3(name = "_input_bounds")]
+    fn input_bounds(&self) -> HashMap<String, (f64, f64)> {
+        let chain = self.live.chain();
+        let bounds = chain.drives.iter().filter_map(|drive| {
+            let Transmission::Flexible { effort: Some(Profile::Input(input, _)), max_effort: Some(most), .. } =
+                &drive.transmission
+            else {
+                return None;
+            };
+            let most = most.at(self.live.parameters());
+            Some((chain.inputs[input.0].name.clone(), (-most, most)))
+        });
+        bounds.collect()
     }
 
     /// A picture of the chain: its bodies and coordinates at the guess, SVG.

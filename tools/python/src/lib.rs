@@ -9,7 +9,8 @@
 //! | `equilibria`, `vibrations` | statics, modes and stability, row by row |
 //! | `linear` | linear models, and margins of loops around them |
 //! | `sensitivity` | derivatives at rest by the numbers of a crane |
-//! | `motion` | runs: of one crane, of many, step by step |
+//! | `motion` | runs: of one crane, of many |
+//! | `stepping` | motions that are advanced from outside, one or many |
 //! | `page` | the crane in 3-D, as HTML |
 //! | `arrays` | arguments as rows, and results as arrays |
 //! | `parallel` | rows on threads, while Python's signals are checked |
@@ -28,6 +29,7 @@ mod motion;
 mod page;
 mod parallel;
 mod sensitivity;
+mod stepping;
 mod strength;
 mod vibrations;
 
@@ -49,7 +51,8 @@ mod _native {
     #[pymodule_export]
     use crate::mistakes::{InvalidRowWarning, NoEquilibrium, ParameterError, SpecError, SpecWarning};
     #[pymodule_export]
-    use crate::motion::Motion;
     #[pymodule_export]
     use crate::parallel::{set_threads, threads};
+    #[pymodule_export]
+    use crate::stepping::Motions;
 }

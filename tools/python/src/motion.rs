@@ -1,21 +1,18 @@
-//! Runs: of one crane with all its results, of many with their extremes and final states, and step by step.
+//! Runs: of one crane with all its results, and of many with their extremes and final states.
 
 use std::ops::ControlFlow;
 use std::str::FromStr;
-use std::sync::{Mutex, PoisonError};
 
+use crane_model::Description;
 use crane_model::dyn_crane::{DynCrane, DynModel};
-use crane_model::dynamics::{InitialState, Method, Sample, Settings, Statistics, Stopped};
-use crane_model::force_states::{self, ForceStates};
+use crane_model::dynamics::{InitialState, Method, Settings, Statistics};
 use crane_model::results::{Column, Peaks, cautions};
 use crane_model::runs::ensemble::{self, Case, Execution};
 use crane_model::runs::{Bound as StepBound, Failed, Reason, Recorded, SAFE, Start, record_checked, step_limit};
 use crane_model::stability::cause;
-use crane_model::{Description, Text};
-use numpy::PyArrayMethods;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::PyDict;
 
 use crate::arrays::{Argument, Joined, array};
 use crate::crane::{Crane, input_index};
@@ -44,7 +41,7 @@ pub struct Timing {
 
 impl Timing {
     /// Settings of a run: the spec's unless given here.
-    fn settings(&self, description: &Description) -> PyResult<Settings> {
+    pub fn settings(&self, description: &Description) -> PyResult<Settings> {
         let constant = self.step.is_some() || self.safe_step;
         let method = match &self.method {
             Some(name) => Method::from_str(name).map_err(|unknown| PyValueError::new_err(unknown.to_string()))?,
@@ -120,7 +117,7 @@ impl Timing {
 }
 
 /// A failure as an exception.
-fn raised(failed: &Failed) -> PyErr {
+pub fn raised(failed: &Failed) -> PyErr {
     let words = format!("{failed}; {}", failed.advice());
     match *failed.reason {
         Reason::Equilibrium { .. } => NoEquilibrium::new_err(words),
@@ -133,7 +130,7 @@ fn columns_with_units(columns: &[Column]) -> Vec<(&str, &str)> {
     columns.iter().map(|column| (column.name.as_str(), column.unit.as_str())).collect()
 }
 
-fn statistics<'py>(py: Python<'py>, statistics: &Statistics) -> PyResult<Bound<'py, PyDict>> {
+pub fn statistics<'py>(py: Python<'py>, statistics: &Statistics) -> PyResult<Bound<'py, PyDict>> {
     let all = PyDict::new(py);
     let Statistics { steps, rejections, evaluations, factorisations } = *statistics;
     all.set_item("steps", steps)?;
@@ -144,7 +141,7 @@ fn statistics<'py>(py: Python<'py>, statistics: &Statistics) -> PyResult<Bound<'
 }
 
 /// Continues unless the call has been cancelled.
-fn unless(off: bool) -> ControlFlow<()> {
+pub fn unless(off: bool) -> ControlFlow<()> {
     if off { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
@@ -288,48 +285,11 @@ impl Crane {
         all.set_item("shape", shape.clone())?;
         Ok(all)
     }
-
-    /// A motion of the crane from a time, a pose and rates, with its parameters and inputs.
-    #[pyo3(name = "_motion")]
-    fn motion(
-        &self,
-        py: Python<'_>,
-        timing: Timing,
-        t: f64,
-        q: &Bound<'_, PyAny>,
-        v: &Bound<'_, PyAny>,
-        x: Vec<f64>,
-    ) -> PyResult<Motion> {
-        let description = self.live.description();
-        if !self.is_single() {
-            return Err(PyValueError::new_err("the parameters are arrays: a simulation needs one value of each"));
-        }
-        if !t.is_finite() {
-            return Err(PyValueError::new_err(format!("t is {t}, not a finite number")));
-        }
-        let settings = Settings { duration: f64::INFINITY, most_steps: usize::MAX, ..timing.settings(description)? };
-        let start =
-            InitialState { q: read_coordinates("q", q, description)?, v: read_coordinates("v", v, description)?, x };
-        let states = ForceStates::new(description).len();
-        if let Some(wrong) = force_states::impossible(description, &start.x) {
-            return Err(PyValueError::new_err(wrong));
-        }
-        if !start.x.is_empty() && start.x.len() != states {
-            return Err(PyValueError::new_err(format!(
-                "x has {} numbers: the crane has {states} such states",
-                start.x.len()
-            )));
-        }
-        let moving = py.detach(|| crane_live::Motion::new(Box::new(self.live.clone()), t, &start, &settings));
-        let name = description.name.clone();
-        let moving = moving.map_err(|stopped| failed(stopped, &name))?;
-        Ok(Motion { name, moving: Mutex::new(moving) })
-    }
 }
 
 impl Crane {
     /// Cases over the common axes of parameters, starts and inputs.
-    fn cases(
+    pub fn cases(
         &self,
         q: Option<&Bound<'_, PyAny>>,
         v: Option<&Bound<'_, PyAny>>,
@@ -377,52 +337,4 @@ impl Crane {
         };
         Ok((joined.shape.clone(), (0..joined.rows()).map(case).collect()))
     }
-}
-
-/// A motion that continues from result to result, with the history of its method.
-#[pyclass(frozen, module = "crane._native")]
-pub struct Motion {
-    /// The crane's name.
-    name: Text,
-    moving: Mutex<crane_live::Motion>,
-}
-
-#[pymethods]
-impl Motion {
-    /// Advances by `dt`, s; returns time, pose, rates, states of forces; work of the drives, dissipated energy and
-    /// work of the loads since the start.
-    fn advance<'py>(&self, py: Python<'py>, dt: f64) -> PyResult<Bound<'py, PyTuple>> {
-        let (least, greatest) = Settings::TIMES;
-        if !(least..=greatest).contains(&dt) {
-            return Err(PyValueError::new_err(format!("dt={dt}: write a number from {least:e} to {greatest:e}, in s")));
-        }
-        let watch = Watch::new();
-        let (advanced, t, [q, v, x], integrals) = py.detach(|| {
-            let mut moving = self.moving.lock().unwrap_or_else(PoisonError::into_inner);
-            let result = moving.sample().t + dt;
-            let advanced = moving.advance(result, &mut |_| unless(watch.look()));
-            let Sample { t, q, v, x, work, dissipated, load_work } = moving.sample();
-            (advanced, t, [q, v, x].map(<[f64]>::to_vec), (work, dissipated, load_work))
-        });
-        watch.finish(py)?;
-        let _ = advanced.map_err(|stopped| failed(stopped, &self.name))?;
-        // A state is what the motion has reached: changes of its arrays would not change the motion.
-        let [q, v, x] = [q, v, x].map(|state| {
-            let state = numpy::PyArray1::from_vec(py, state);
-            state.readwrite().make_nonwriteable();
-            state
-        });
-        (t, q, v, x, integrals).into_pyobject(py)
-    }
-
-    /// Steps, rejections, evaluations and factorisations so far.
-    fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let run = self.moving.lock().unwrap_or_else(PoisonError::into_inner).run();
-        statistics(py, &run.statistics)
-    }
-}
-
-/// The failure of a motion, as an exception.
-fn failed(stopped: Stopped, name: &Text) -> PyErr {
-    raised(&Reason::Stopped { stopped, near_singular: None, limit: None }.of(name))
 }

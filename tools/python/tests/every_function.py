@@ -33,6 +33,7 @@ OTHERS = {
     "index": 0,
     "x": [],
     "bend": 45.0,
+    "audit": False,
     "verify": False,
     "inputs": None,
     "on": "main_boom_theta",
@@ -40,8 +41,8 @@ OTHERS = {
     "invalid": "raise",
 }
 # Functions that take one state, or none, and what else they need.
-ONE_STATE = {"simulate", "simulation", "_record", "_motion"}
-NO_STATE = {"_acting", "_changed", "replace", "page", "export", "picture", "_parameter_rows", "_page", "_envelope", "sensitivity", "_sensitivity"}
+ONE_STATE = {"simulate", "simulation", "_record", "_motions"}
+NO_STATE = {"_acting", "_changed", "_recalled", "_input_bounds", "vector_simulation", "replace", "page", "export", "picture", "_parameter_rows", "_page", "_envelope", "sensitivity", "_sensitivity"}
 
 
 @dataclasses.dataclass

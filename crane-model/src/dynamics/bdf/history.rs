@@ -1,7 +1,10 @@
 //! The last states at equal time intervals, as backward differences.
 
 use super::ORDER;
-use crate::dynamics::motion::add;
+use crate::dynamics::{
+    memory::{Visit, visit_count, visit_numbers},
+    motion::add,
+};
 
 /// Weights of the differences up to the highest order.
 pub(super) type Weights = [f64; ORDER + 1];
@@ -59,14 +62,7 @@ impl History {
         for (value, state) in values.iter_mut().zip(past) {
             value.copy_from_slice(state);
         }
-        for m in 1..values.len() {
-            for place in (m..values.len()).rev() {
-                let (before, at) = values.split_at_mut(place);
-                for (at, before) in at[0].iter_mut().zip(&before[place - 1]) {
-                    *at = before - *at;
-                }
-            }
-        }
+        take_differences(values);
     }
 
     /// `Σ weight ∇ᵐy`, m = 0 … k.
@@ -99,20 +95,40 @@ impl History {
         self.sum(&newton_polynomials((t - self.t) / self.h), out);
     }
 
+    /// Adds to the last k + 3 states, the most recent first: to all that the differences describe.
+    pub fn add_to_states(&mut self, mut additions: Vec<Vec<f64>>) {
+        take_differences(&mut additions);
+        for (difference, addition) in self.differences.iter_mut().zip(&additions) {
+            add(difference, 1.0, addition);
+        }
+    }
+
+    /// Goes back to a time within the last step: the polynomial stays the same, the states at its new times are new.
+    pub fn go_back(&mut self, t: f64) {
+        self.take_states((t - self.t) / self.h, 1.0);
+        self.t = t;
+    }
+
     /// Changes to another time interval: the states are new, the polynomial stays the same.
     pub fn rescale(&mut self, factor: f64) {
+        self.take_states(0.0, factor);
+        self.h *= factor;
+    }
+
+    /// Takes the polynomial's states at `part, part − factor, part − 2 factor, …` time intervals after the last one.
+    fn take_states(&mut self, part: f64, factor: f64) {
         let k = self.order;
         // The polynomial's values at the new times, as weights of the old differences, and the differences of these values.
-        let mut weights: [Weights; ORDER + 1] = std::array::from_fn(|m| newton_polynomials(-factor * m as f64));
+        let mut weights: [Weights; ORDER + 1] = std::array::from_fn(|m| newton_polynomials(part - factor * m as f64));
         for m in 1..=k {
             for place in (m..=k).rev() {
                 weights[place] = std::array::from_fn(|i| weights[place - 1][i] - weights[place][i]);
             }
         }
-        for m in 1..=k {
+        for m in 0..=k {
             self.old[m].copy_from_slice(&self.differences[m]);
         }
-        for m in 1..=k {
+        for m in 0..=k {
             let difference = &mut self.differences[m];
             difference.fill(0.0);
             for (weight, old) in weights[m][m..=k].iter().zip(&self.old[m..]) {
@@ -121,7 +137,28 @@ impl History {
                 }
             }
         }
-        self.h *= factor;
+    }
+
+    /// Visits what further steps depend on.
+    pub fn visit(&mut self, visit: Visit<'_>) {
+        for difference in &mut self.differences {
+            visit_numbers(difference, visit);
+        }
+        visit_count(&mut self.order, visit);
+        self.order = self.order.clamp(1, ORDER);
+        [&mut self.t, &mut self.h].into_iter().for_each(visit);
+    }
+}
+
+/// Replaces states, the most recent first, by their backward differences.
+fn take_differences(states: &mut [Vec<f64>]) {
+    for m in 1..states.len() {
+        for place in (m..states.len()).rev() {
+            let (before, at) = states.split_at_mut(place);
+            for (at, before) in at[0].iter_mut().zip(&before[place - 1]) {
+                *at = before - *at;
+            }
+        }
     }
 }
 

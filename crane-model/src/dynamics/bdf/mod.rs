@@ -23,6 +23,8 @@ use super::{
     Ahead, Cause, EffortAccuracy, Method, Settings, Statistics, Stepper, Stopped,
     adaptive::{FIRST, LEAST, LONGEST, SAFETY, SLIVER},
     equations::Equations,
+    memory::{visit_count, visit_flag, visit_numbers, visit_optional},
+    motion::add,
     norm::Norm,
     references::References,
     state::{NotFinite, State},
@@ -52,6 +54,8 @@ const NEWTON_ERROR: f64 = 0.05;
 const RATIO: (f64, f64) = (0.2, 3.0);
 /// Largest ratio of a step to the previous one after repeated failure.
 const RATIO_AFTER_FAILURE: f64 = 0.5;
+/// Relative change of the length of a step below which the differences of higher order stay valid.
+const SAME: f64 = 1e-9;
 /// After this many consecutive failures, the history is discarded: it does not predict the motion, for example because a drive jumped.
 const PATIENCE: usize = 3;
 
@@ -142,6 +146,8 @@ pub struct Bdf<'a> {
     restart: Option<f64>,
     /// A loop that the last step left open.
     open: Option<Open>,
+    /// Whether what follows is changed between steps, which then end where it changes: their lengths differ only by rounding.
+    is_steered: bool,
     /// Motion at the time reached.
     motion: Vec<f64>,
     steps: usize,
@@ -182,6 +188,7 @@ impl<'a> Bdf<'a> {
             switches: Switches::new(crane, len),
             restart: None,
             open: None,
+            is_steered: false,
             motion: vec![0.0; len],
             steps: 0,
             rejections: 0,
@@ -207,7 +214,9 @@ impl<'a> Bdf<'a> {
             let steps = if left <= 1.0 + SLIVER { 1.0 } else { 2.0 };
             if left != steps {
                 self.history.rescale(left / steps);
-                self.control.steps_since_change = 0;
+                if !self.is_steered || (left - steps).abs() > SAME * steps {
+                    self.control.steps_since_change = 0;
+                }
             }
         }
     }
@@ -230,6 +239,17 @@ impl<'a> Bdf<'a> {
         self.history.begin_again(&self.slope);
         self.control.steps_since_change = 0;
         Ok(())
+    }
+
+    /// The references at the last k + 3 states, the most recent first.
+    fn past_references(&mut self) -> Vec<Vec<f64>> {
+        let History { t, h, order, .. } = self.history;
+        let Equations { crane, n, .. } = self.equations;
+        let mut past = vec![vec![0.0; self.motion.len()]; order + 3];
+        for (m, state) in past.iter_mut().enumerate() {
+            self.equations.references.add(crane, t - h * m as f64, 1.0, n, state);
+        }
+        past
     }
 
     /// Tries a step, and chooses order and length of the next, unless the step only has to end where a contact changes. `again`: the step
@@ -338,6 +358,54 @@ impl Stepper for Bdf<'_> {
     fn interpolate(&mut self, t: f64, motion: &mut [f64]) {
         self.history.at(t, motion);
         self.equations.make_absolute(t, motion);
+    }
+
+    /// The past is not that of the motion which follows. But a motion with the same position and rate and the changed acceleration at `t` has
+    /// a past, too, which differs from this one by `½ δq̈ (t′ − t)²` if only accelerations jump: with it the method goes on. The error of the
+    /// next step is large if more than that has changed.
+    fn change(&mut self, t: f64, change: &mut dyn FnMut()) -> Result<(), Stopped> {
+        if (t - self.history.t).abs() > SAME * self.history.h {
+            self.history.go_back(t);
+            self.control.steps_since_change = 0;
+        }
+        self.is_steered = true;
+        self.switches.start();
+        self.accept();
+        let slope_at = |bdf: &mut Self| {
+            let mut slope = vec![0.0; bdf.motion.len()];
+            let found = bdf.equations.slope_in_full(t, &bdf.motion, &mut slope);
+            found.map(|()| slope).map_err(|NotFinite| bdf.stuck())
+        };
+        let before = slope_at(self)?;
+        let mut past = self.past_references();
+        change();
+        let after = slope_at(self)?;
+        let Equations { crane, n, .. } = self.equations;
+        let jumps: Vec<f64> = after.iter().zip(&before).map(|(after, before)| after - before).collect();
+        for (m, state) in past.iter_mut().enumerate() {
+            let back = -self.history.h * m as f64;
+            self.equations.references.add(crane, t + back, -1.0, n, state);
+            add(state, back, &jumps);
+            add(&mut state[..n], 0.5 * back * back, &jumps[n..2 * n]);
+        }
+        self.history.add_to_states(past);
+        Ok(())
+    }
+
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        self.equations.visit(visit);
+        self.history.visit(visit);
+        self.correction.system.visit(visit);
+        let Control { norm, steps_since_change, contraction } = &mut self.control;
+        norm.visit(visit);
+        [&mut contraction.ratio, &mut contraction.h].into_iter().for_each(&mut *visit);
+        self.switches.visit(visit);
+        visit_optional(&mut self.restart, visit);
+        visit_flag(&mut self.is_steered, visit);
+        visit_numbers(&mut self.motion, visit);
+        for count in [steps_since_change, &mut contraction.age, &mut self.steps, &mut self.rejections] {
+            visit_count(count, visit);
+        }
     }
 
     fn statistics(&self) -> Statistics {

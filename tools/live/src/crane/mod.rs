@@ -17,6 +17,7 @@ use crane_model::{Description, Entry, LoopJointInfo, ParameterError, StageInfo};
 
 use crate::describe::{describe, describe_loop_joints, describe_stages, refusal};
 use crate::expansion::{mass_matrix, second_derivatives};
+use crate::inputs::{Inputs, slots_of};
 use crate::library::Library;
 use crate::machine::{Arguments, Machine};
 use crate::routine::Routine;
@@ -30,8 +31,8 @@ pub struct LiveCrane {
     loop_joints: Vec<LoopJointInfo>,
     stages: Vec<StageInfo>,
     parameters: Vec<f64>,
-    /// Two numbers per input: its value if it is set, else 0; and 0 if it is set, else 1.
-    inputs: Vec<f64>,
+    /// The numbers of the inputs, which a motion of this crane may share.
+    inputs: Arc<Inputs>,
     /// Workspaces for calls, one per function, kept from the last call; cranes that differ only in their inputs share them.
     rooms: Arc<[Mutex<Option<Room>>; FunctionId::ALL.len()]>,
 }
@@ -39,6 +40,7 @@ pub struct LiveCrane {
 /// What a call of a function needs besides its arguments.
 struct Room {
     machine: Machine<f64>,
+    inputs: Vec<f64>,
     /// For results that are copied to other positions.
     results: Vec<f64>,
 }
@@ -63,7 +65,7 @@ impl LiveCrane {
         let (description, loop_joints) = (describe(&chain), describe_loop_joints(&chain));
         let stages = describe_stages(&chain);
         let parameters = chain.parameter_defaults();
-        let inputs = not_set(&chain);
+        let inputs = Arc::new(not_set(&chain));
         let library = Arc::new(Library::new(chain));
         Self { library, description, loop_joints, stages, parameters, inputs, rooms: no_rooms() }
     }
@@ -85,7 +87,10 @@ impl LiveCrane {
         let place = &self.rooms[id as usize];
         let kept = place.lock().unwrap_or_else(PoisonError::into_inner).take();
         let mut room = kept.unwrap_or_else(|| self.room(routine));
-        routine.run(&mut room.machine, &Arguments { inputs: &self.inputs, ..*arguments }, &mut room.results);
+        let Room { machine, inputs, results } = &mut room;
+        inputs.clear();
+        inputs.extend(self.inputs.numbers());
+        routine.run(machine, &Arguments { inputs, ..*arguments }, results);
         let shown = show(routine, &mut room.results);
         *place.lock().unwrap_or_else(PoisonError::into_inner) = Some(room);
         Some(shown)
@@ -97,8 +102,8 @@ impl LiveCrane {
         &self.parameters
     }
 
-    /// The inputs, two numbers each: its value if it is set, else 0; and 0 if it is set, else 1.
-    pub(crate) fn inputs(&self) -> &[f64] {
+    /// The numbers of the inputs.
+    pub(crate) fn inputs(&self) -> &Arc<Inputs> {
         &self.inputs
     }
 
@@ -106,9 +111,9 @@ impl LiveCrane {
     /// again, and the workspaces are shared.
     #[must_use]
     pub fn with_inputs(&self, values: &[Option<f64>]) -> Self {
-        let mut inputs = not_set(self.chain());
-        for (slots, value) in inputs.chunks_mut(Input::SLOTS).zip(values) {
-            set(slots, *value);
+        let inputs = Arc::new(not_set(self.chain()));
+        for (index, value) in values.iter().enumerate() {
+            inputs.set(index, slots_of(*value));
         }
         let Self { library, description, loop_joints, stages, parameters, rooms, .. } = self;
         Self {
@@ -156,7 +161,7 @@ impl LiveCrane {
     }
 
     fn room(&self, routine: &Routine) -> Room {
-        Room { machine: routine.machine(&self.parameters), results: vec![0.0; routine.results()] }
+        Room { machine: routine.machine(&self.parameters), inputs: Vec::new(), results: vec![0.0; routine.results()] }
     }
 
     fn scalar(&self, id: FunctionId, arguments: &Arguments<'_, f64>) -> f64 {
@@ -207,13 +212,8 @@ fn no_rooms() -> Arc<[Mutex<Option<Room>>; FunctionId::ALL.len()]> {
 }
 
 /// The inputs if none is set.
-fn not_set(chain: &Chain) -> Vec<f64> {
-    chain.inputs.iter().flat_map(|_| Input::NOT_SET).collect()
-}
-
-/// Sets the numbers of an input, or lets it follow the spec again.
-fn set(slots: &mut [f64], value: Option<f64>) {
-    slots.copy_from_slice(&value.map_or(Input::NOT_SET, |value| [value, 0.0]));
+fn not_set(chain: &Chain) -> Inputs {
+    Inputs::new(chain.inputs.iter().map(|_| Input::NOT_SET))
 }
 
 fn copy(results: &[f64], out: &mut [f64]) {
@@ -237,7 +237,7 @@ impl Clone for LiveCrane {
             loop_joints: self.loop_joints.clone(),
             stages: self.stages.clone(),
             parameters: self.parameters.clone(),
-            inputs: self.inputs.clone(),
+            inputs: Arc::new(self.inputs.copy()),
             rooms: no_rooms(),
         }
     }
@@ -267,9 +267,7 @@ impl DynCrane for LiveCrane {
     }
 
     fn set_input(&mut self, index: usize, value: Option<f64>) {
-        if let Some(slots) = self.inputs.chunks_mut(Input::SLOTS).nth(index) {
-            set(slots, value);
-        }
+        self.inputs.set(index, slots_of(value));
     }
 
     fn boxed_clone(&self) -> Box<dyn DynCrane> {

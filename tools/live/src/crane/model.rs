@@ -1,6 +1,5 @@
 //! Poses, forces, energies and motions of a live crane.
 
-use crane_codegen::chain::Input;
 use crane_codegen::program::FunctionId;
 use crane_model::dyn_crane::DynModel;
 use crane_model::nalgebra::Matrix4;
@@ -9,6 +8,7 @@ use crane_quantities::quantities;
 
 use super::LiveCrane;
 use super::methods::{method, methods};
+use crate::inputs::is_free;
 use crate::machine::Arguments;
 
 impl DynModel for LiveCrane {
@@ -25,8 +25,7 @@ impl DynModel for LiveCrane {
     }
 
     fn input(&self, index: usize) -> Option<f64> {
-        let slots = self.inputs.get(Input::SLOTS * index..)?;
-        slots.first_chunk().and_then(|[value, free]| (*free == 0.0).then_some(*value))
+        self.inputs.get(index).filter(|slots| !is_free(*slots)).map(|[value, ..]| value)
     }
 
     fn loop_joints(&self) -> &[LoopJointInfo] {

@@ -64,7 +64,7 @@ impl DynEnsemble for LiveCrane {
         let routine = self.library.routine(FunctionId::ForwardDynamics);
         Ok(Box::new(Block {
             ready: routine.map(|routine| (routine, routine.machine(&parameters))),
-            inputs: self.inputs.iter().map(|slot| f64x8::splat(*slot)).collect(),
+            inputs: self.inputs.numbers().map(f64x8::splat).collect(),
         }))
     }
 }

@@ -1,0 +1,334 @@
+//! Motions that are advanced from outside, one or many: each with its own parameters, state and inputs.
+
+use std::ops::ControlFlow;
+use std::sync::{Mutex, PoisonError};
+
+use crane_live::{Hold, SteeredMotion};
+use crane_model::Text;
+use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::dynamics::{InitialState, Sample, Settings, Stopped};
+use crane_model::force_states::{self, ForceStates};
+use crane_model::runs::ensemble::Case;
+use crane_model::runs::{Reason, Start};
+use numpy::PyArrayMethods;
+use pyo3::exceptions::{PyIndexError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use crate::arrays::{Argument, array};
+use crate::crane::Crane;
+use crate::mistakes::{BadRow, describe};
+use crate::motion::{Timing, raised, statistics, unless};
+use crate::parallel::map_rows;
+
+/// A motion of one crane, and why it ended if it did.
+struct Row {
+    motion: SteeredMotion,
+    failed: Option<Failure>,
+}
+
+/// Why a motion ended.
+enum Failure {
+    Stopped(Stopped),
+    Interrupted,
+}
+
+impl Failure {
+    fn reason(&self) -> String {
+        match self {
+            Failure::Stopped(stopped) => stopped.to_string(),
+            Failure::Interrupted => "interrupted".to_owned(),
+        }
+    }
+}
+
+/// Motions of cranes of one spec; each continues with the history of its method.
+#[pyclass(frozen, module = "crane._native")]
+pub struct Motions {
+    /// The cranes' name, and numbers of their coordinates and of the states of their forces.
+    name: Text,
+    n: usize,
+    states: usize,
+    inputs: Vec<Text>,
+    rows: Vec<Mutex<Row>>,
+}
+
+/// New values of inputs: index, and values or `None` for that of the spec, over (steps, rows).
+type Changes = Vec<(usize, Option<Vec<f64>>)>;
+
+#[pymethods]
+impl Crane {
+    /// Motions from a time, s, for every row of parameters, starts and inputs; from their equilibria at rest unless q and v are given.
+    #[pyo3(name = "_motions", signature = (timing, audit, t, q=None, v=None, x=Vec::new(), inputs=None))]
+    #[expect(clippy::too_many_arguments, reason = "named arguments in Python")]
+    fn motions(
+        &self,
+        py: Python<'_>,
+        timing: Timing,
+        audit: bool,
+        t: f64,
+        q: Option<&Bound<'_, PyAny>>,
+        v: Option<&Bound<'_, PyAny>>,
+        x: Vec<f64>,
+        inputs: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Motions> {
+        let settings = self.settings_of_steps(&timing, audit)?;
+        if !t.is_finite() {
+            return Err(PyValueError::new_err(format!("t is {t}, not a finite number")));
+        }
+        let (description, states) = (self.live.description(), ForceStates::new(self.live.description()).len());
+        if let Some(wrong) = force_states::impossible(description, &x) {
+            return Err(PyValueError::new_err(wrong));
+        }
+        if !x.is_empty() && x.len() != states {
+            return Err(PyValueError::new_err(format!(
+                "x has {} numbers: the crane has {states} such states",
+                x.len()
+            )));
+        }
+        let (shape, cases) = self.cases(q, v, inputs)?;
+        let begin = |case: &Case| {
+            let mut crane = self.live.clone();
+            crane.set_parameters(&case.parameters).map_err(|refused| PyValueError::new_err(refused.to_string()))?;
+            for (index, input) in case.inputs.iter().enumerate() {
+                crane.set_input(index, *input);
+            }
+            let start = Start::with(&crane, case.q.as_deref(), case.v.as_deref()).map_err(|failed| raised(&failed))?;
+            let start = InitialState { q: start.q, v: start.v, x: if x.is_empty() { start.x } else { x.clone() } };
+            SteeredMotion::new(&crane, t, &start, &settings).map_err(|stopped| failed(stopped, &description.name))
+        };
+        let begun = map_rows(py, cases.len(), |row, _| begin(&cases[row]))?;
+        let with_place = |(row, begun): (usize, PyResult<SteeredMotion>)| {
+            begun.map_err(|error| if shape.is_empty() { error } else { in_row(py, &error, row, &shape) })
+        };
+        let begun = begun.into_iter().enumerate().map(with_place).collect::<PyResult<Vec<_>>>()?;
+        Ok(self.stepping(begun))
+    }
+
+    /// The motions from which these memories are: they go on with the same numbers, to the last bit.
+    #[pyo3(name = "_recalled")]
+    fn recalled(&self, py: Python<'_>, timing: Timing, audit: bool, memories: Vec<Vec<f64>>) -> PyResult<Motions> {
+        let settings = self.settings_of_steps(&timing, audit)?;
+        let recalled = map_rows(py, memories.len(), |row, _| {
+            let crane = self.of_row(row.min(self.parameters.rows().saturating_sub(1)));
+            SteeredMotion::recalled(&crane, &settings, &memories[row])
+        })?;
+        let recalled: Option<Vec<_>> = recalled.into_iter().collect();
+        let name = &self.live.description().name;
+        let wrong = || PyValueError::new_err(format!("this is no saved motion of {name}, or of another version"));
+        Ok(self.stepping(recalled.ok_or_else(wrong)?))
+    }
+}
+
+impl Crane {
+    fn stepping(&self, motions: Vec<SteeredMotion>) -> Motions {
+        let description = self.live.description();
+        Motions {
+            name: description.name.clone(),
+            n: self.live.size(),
+            states: ForceStates::new(description).len(),
+            inputs: description.inputs.iter().map(|info| info.name.clone()).collect(),
+            rows: motions.into_iter().map(|motion| Mutex::new(Row { motion, failed: None })).collect(),
+        }
+    }
+
+    fn settings_of_steps(&self, timing: &Timing, audit: bool) -> PyResult<Settings> {
+        let settings = timing.settings(self.live.description())?;
+        Ok(Settings { duration: f64::INFINITY, most_steps: usize::MAX, audit, ..settings })
+    }
+}
+
+/// An exception with the row that it concerns.
+fn in_row(py: Python<'_>, error: &PyErr, row: usize, shape: &[usize]) -> PyErr {
+    let reason = error.value(py).to_string();
+    PyErr::from_type(error.get_type(py), describe(&BadRow { row, reason }, shape))
+}
+
+#[pymethods]
+impl Motions {
+    fn __len__(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Advances all by `dt`, s, several times, with new values of inputs by name: numbers, arrays (rows) or (steps, rows), or None for that of
+    /// the spec. Returns times (steps, rows), and poses and rates (steps, rows, n); rows that fail stay at their last state.
+    #[pyo3(signature = (dt, steps, inputs, linear))]
+    fn advance<'py>(
+        &self,
+        py: Python<'py>,
+        dt: f64,
+        steps: usize,
+        inputs: &Bound<'py, PyDict>,
+        linear: bool,
+    ) -> PyResult<Bound<'py, PyTuple>> {
+        let (least, greatest) = Settings::TIMES;
+        if !(least..=greatest).contains(&dt) {
+            return Err(PyValueError::new_err(format!("dt={dt}: write a number from {least:e} to {greatest:e}, in s")));
+        }
+        let (changes, count) = (self.changes(inputs, steps)?, self.rows.len());
+        let hold = if linear { Hold::Linear } else { Hold::Constant };
+        let of_row = |row: usize, off: &dyn Fn() -> bool| {
+            let mut now = self.row(row);
+            let Row { motion, failed } = &mut *now;
+            let mut path = Vec::with_capacity(steps * (2 * self.n + 1));
+            for step in 0..steps {
+                if failed.is_none() {
+                    let value = |(index, values): &(usize, Option<Vec<f64>>)| {
+                        (*index, values.as_ref().map(|values| values[step * count + row]))
+                    };
+                    *failed = match motion.advance(dt, changes.iter().map(value), hold, &mut |_| unless(off())) {
+                        Ok(ControlFlow::Continue(())) => None,
+                        Ok(ControlFlow::Break(())) => Some(Failure::Interrupted),
+                        Err(stopped) => Some(Failure::Stopped(stopped)),
+                    };
+                }
+                let Sample { t, q, v, .. } = motion.sample();
+                path.push(t);
+                path.extend_from_slice(q);
+                path.extend_from_slice(v);
+            }
+            path
+        };
+        let paths = map_rows(py, count, of_row)?;
+        let (mut t, mut q, mut v) = (Vec::new(), Vec::new(), Vec::new());
+        let width = 2 * self.n + 1;
+        for step in 0..steps {
+            for path in &paths {
+                let [now, state @ ..] = &path[step * width..(step + 1) * width] else { continue };
+                let (pose, rates) = state.split_at(self.n);
+                t.push(*now);
+                q.extend_from_slice(pose);
+                v.extend_from_slice(rates);
+            }
+        }
+        let shape = [steps, count];
+        let numbers = [array(py, t, &shape, &[])?, array(py, q, &shape, &[self.n])?, array(py, v, &shape, &[self.n])?];
+        PyTuple::new(py, numbers.map(fixed))
+    }
+
+    /// States reached: times (rows), poses and rates (rows, n), states of forces (rows, states), and work of the drives, dissipated energy and
+    /// work of the loads since the start, J, (rows, 3).
+    fn states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let mut all: [Vec<f64>; 5] = Default::default();
+        for row in 0..self.rows.len() {
+            let now = self.row(row);
+            let Sample { t, q, v, x, work, dissipated, load_work } = now.motion.sample();
+            for (all, own) in all.iter_mut().zip([&[t], q, v, x, &[work, dissipated, load_work]]) {
+                all.extend_from_slice(own);
+            }
+        }
+        let (rows, widths) = ([self.rows.len()], [None, Some(self.n), Some(self.n), Some(self.states), Some(3)]);
+        let arrays = all.into_iter().zip(widths).map(|(numbers, width)| {
+            let of_row: Vec<usize> = width.into_iter().collect();
+            array(py, numbers, &rows, &of_row).map(fixed)
+        });
+        PyTuple::new(py, arrays.collect::<PyResult<Vec<_>>>()?)
+    }
+
+    /// Why each row ended; None for those that go on.
+    fn failures(&self) -> Vec<Option<String>> {
+        (0..self.rows.len()).map(|row| self.row(row).failed.as_ref().map(Failure::reason)).collect()
+    }
+
+    /// Raises why the first row that ended has ended.
+    fn check(&self) -> PyResult<()> {
+        for row in 0..self.rows.len() {
+            match &self.row(row).failed {
+                Some(Failure::Stopped(stopped)) => return Err(failed(stopped.clone(), &self.name)),
+                Some(Failure::Interrupted) => {
+                    return Err(PyValueError::new_err(format!("row [{row}] was interrupted: reset it")));
+                }
+                None => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether inputs can be set, and released, while the motions go on: they do not follow motions of the spec.
+    fn can_set(&self, name: &str) -> bool {
+        let index = self.inputs.iter().position(|known| **known == *name);
+        index.is_some_and(|index| (0..self.rows.len()).all(|row| self.row(row).motion.can_set(index)))
+    }
+
+    /// Steps, rejections, evaluations and factorisations so far, of a row.
+    fn statistics<'py>(&self, py: Python<'py>, row: usize) -> PyResult<Bound<'py, PyDict>> {
+        self.check_row(row)?;
+        statistics(py, &self.row(row).motion.run().statistics)
+    }
+
+    /// All numbers from which the motion of a row can be made again.
+    fn memory<'py>(&self, py: Python<'py>, row: usize) -> PyResult<Bound<'py, PyAny>> {
+        self.check_row(row)?;
+        let memory = self.row(row).motion.memory();
+        let length = memory.len();
+        Ok(fixed(array(py, memory, &[], &[length])?).into_any())
+    }
+
+    /// Exchanges rows for those of other motions of the same cranes, one after the other.
+    fn put(&self, rows: Vec<usize>, others: &Motions) -> PyResult<()> {
+        rows.iter().try_for_each(|row| self.check_row(*row))?;
+        if std::ptr::eq(self, others)
+            || rows.len() != others.rows.len()
+            || (self.n, self.states) != (others.n, others.states)
+        {
+            return Err(PyValueError::new_err("other motions have other cranes, or another number of rows"));
+        }
+        for (row, other) in rows.into_iter().zip(0..) {
+            std::mem::swap(&mut *self.row(row), &mut *others.row(other));
+        }
+        Ok(())
+    }
+}
+
+impl Motions {
+    fn row(&self, row: usize) -> std::sync::MutexGuard<'_, Row> {
+        self.rows[row].lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn check_row(&self, row: usize) -> PyResult<()> {
+        let count = self.rows.len();
+        if row < count { Ok(()) } else { Err(PyIndexError::new_err(format!("row {row}: there are {count}"))) }
+    }
+
+    /// Values over (steps, rows) of inputs by name.
+    fn changes(&self, inputs: &Bound<'_, PyDict>, steps: usize) -> PyResult<Changes> {
+        let (count, mut changes) = (self.rows.len(), Changes::new());
+        for (name, value) in inputs {
+            let name: String = name.extract()?;
+            let index = self.inputs.iter().position(|known| **known == *name);
+            let index = index.ok_or_else(|| PyValueError::new_err(format!("{} has no input `{name}`", self.name)))?;
+            if value.is_none() {
+                changes.push((index, None));
+                continue;
+            }
+            let label = format!("inputs['{name}']");
+            let given = Argument::scalars(&label, &value)?;
+            if let Some(wrong) = given.numbers.iter().find(|number| !number.is_finite()) {
+                return Err(PyValueError::new_err(format!("{label} is {wrong}, not a finite number")));
+            }
+            let numbers = match given.shape.as_slice() {
+                [] | [1] => vec![given.numbers[0]; steps * count],
+                [rows] if *rows == count => given.numbers.repeat(steps),
+                [many, rows] if (*many, *rows) == (steps, count) => given.numbers,
+                shape => {
+                    return Err(PyValueError::new_err(format!(
+                        "{label} has shape {shape:?}: give one number, {count} of them, or ({steps}, {count})"
+                    )));
+                }
+            };
+            changes.push((index, Some(numbers)));
+        }
+        Ok(changes)
+    }
+}
+
+/// An array that cannot be changed: a change would not move a crane.
+fn fixed(numbers: Bound<'_, numpy::PyArrayDyn<f64>>) -> Bound<'_, numpy::PyArrayDyn<f64>> {
+    numbers.readwrite().make_nonwriteable();
+    numbers
+}
+
+/// The failure of a motion, as an exception.
+fn failed(stopped: Stopped, name: &Text) -> PyErr {
+    raised(&Reason::Stopped { stopped, near_singular: None, limit: None }.of(name))
+}

@@ -1,0 +1,176 @@
+"""Environments of Gymnasium."""
+
+import copy
+import importlib.util
+import pickle
+import warnings
+
+import crane
+import numpy as np
+import pytest
+from conftest import ROOT
+
+gymnasium = pytest.importorskip("gymnasium")
+
+from crane.gym import CraneEnv, CraneVectorEnv, reach  # noqa: E402
+from test_stepping import STEERED  # noqa: E402
+
+spec = importlib.util.spec_from_file_location("slewing", ROOT / "examples/python/slewing.py")
+slewing = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(slewing)
+
+TASK = {
+    "actions": {"slew": (-0.5, 0.5)},
+    "rates": True,
+    "observations": ["column_psi", "column_psi_rate", "load_x", "load_x_rate", "column_psi_target", "input_slew"],
+    "targets": {"column_psi": (-1.0, 1.0)},
+    "bands": {"load_mass": (200.0, 1500.0)},
+    "starts": {"slew": (-0.2, 0.2)},
+    "reward": reach({"column_psi": 0.5}, swing=["load_phi_rate"], effort={"action_slew": 5.0}),
+    "duration": 0.2,
+}
+
+
+def environment(**changes):
+    return CraneEnv(crane.load("slewing_crane", text=slewing.SPEC), **{**TASK, **changes})
+
+
+def vector(count, **changes):
+    return CraneVectorEnv(crane.load("slewing_crane", text=slewing.SPEC), count, **{**TASK, **changes})
+
+
+def test_the_checker_of_gymnasium_passes():
+    from gymnasium.utils.env_checker import check_env
+
+    with warnings.catch_warnings():
+        # It recommends bounded observations, and environments that are made by name.
+        warnings.simplefilter("ignore")
+        check_env(environment(), skip_render_check=True)
+
+
+def test_the_same_seed_is_the_same_episode():
+    first, second = (environment() for _ in range(2))
+    actions = np.random.default_rng(0).uniform(-1, 1, (12, 1))
+    for seed in (7, 8):
+        paths = []
+        for env in (first, second):
+            observed, info = env.reset(seed=seed)
+            paths.append([observed, *(env.step(action)[0] for action in actions)])
+        np.testing.assert_array_equal(*paths)
+    assert np.abs(first.reset(seed=7)[0] - first.reset(seed=8)[0]).max() > 1e-3
+    assert info["why"] == "" and abs(info["column_psi_target"]) <= 1.0
+
+
+def test_rows_are_single_environments_to_the_last_bit():
+    """Over the end of an episode: rows begin again in the step after it."""
+    together = vector(3)
+    observed, _ = together.reset(seed=20)
+    singles = [environment() for _ in range(3)]
+    for row, env in enumerate(singles):
+        np.testing.assert_array_equal(observed[row], env.reset(seed=20 + row)[0])
+    random, ended = np.random.default_rng(1), False
+    for step in range(15):
+        actions = random.uniform(-1, 1, (3, 1)).astype(np.float32)
+        observed, rewards, terminated, truncated, _ = together.step(actions)
+        assert truncated.tolist() == [step == 9] * 3 and not terminated.any()
+        for row, env in enumerate(singles):
+            if ended:
+                np.testing.assert_array_equal(observed[row], env.reset()[0])
+                assert rewards[row] == 0.0
+            else:
+                expected = env.step(actions[row])
+                np.testing.assert_array_equal(observed[row], expected[0])
+                assert rewards[row] == expected[1] and truncated[row] == expected[3]
+        ended = truncated[0]
+    assert together.observation_space.contains(observed) and together.action_space.contains(actions)
+
+
+def test_states_are_copied_within_an_episode():
+    env = environment()
+    env.reset(seed=3)
+    env.step([0.5])
+    others = [copy.deepcopy(env), pickle.loads(pickle.dumps(env))]
+    expected = [env.step([0.5])[0], env.reset()[0]]
+    for other in others:
+        np.testing.assert_array_equal([other.step([0.5])[0], other.reset()[0]], expected)
+
+
+def test_rewards_are_those_of_the_results():
+    env = environment(starts={}, targets={"column_psi": (0.4, 0.4)})
+    env.reset(seed=1)
+    observed, reward, *_, info = env.step([1.0])
+    swing = env._episodes.results()["load_phi_rate"][0]
+    assert reward == pytest.approx(-(((observed[0] - 0.4) / 0.5) ** 2) - swing**2 - 0.1**2, rel=1e-12)
+    # The greatest rate for one step of 0.02 s, and what the crane is.
+    assert info["input_slew"] == pytest.approx(0.01) and info["column_psi"] == observed[0]
+    masses = set()
+    for seed in range(5):
+        env.reset(seed=seed)
+        masses.add(float(env._episodes._simulation.parameters["load_mass"][0]))
+    assert len(masses) == 5 and all(200 <= mass <= 1500 for mass in masses)
+    own = environment(reward=lambda results: results["load_x"] * results["dt"])
+    observed, _ = own.reset(seed=1)
+    observed, reward, *_ = own.step([0.0])
+    assert reward == pytest.approx(0.02 * observed[2])
+
+
+def test_an_episode_ends_at_limits_and_when_it_fails():
+    env = environment(limits={"column_psi": (-0.1, 0.1)}, starts={}, duration=5.0, penalty=-100.0)
+    env.reset(seed=1)
+    for _ in range(30):
+        *_, reward, terminated, truncated, info = env.step([1.0])
+        if terminated:
+            break
+    assert terminated and not truncated and info["why"] == "column_psi left its limits" and reward < -99
+    failing = environment(tolerance=1e-12, bands={}, starts={})
+    failing.reset(seed=1)
+    failing._episodes._simulation.reset([0], q=failing._episodes._simulation.q, v=np.full((1, 3), 1e9))
+    *_, terminated, _, info = failing.step([0.0])
+    assert terminated and info["why"]
+
+
+def test_bounds_of_efforts_come_from_the_spec():
+    text = STEERED.replace("effort: {input: boom}", "effort: {input: boom}, max_effort: 3e5")
+    c = crane.load("steered.yaml", text=text)
+    env = CraneEnv(c, actions={"boom": None}, reward=reach(["hook_theta"]), targets={"hook_theta": (0, 0)}, observations=["input_boom"])
+    env.reset(seed=0)
+    np.testing.assert_allclose([env.step([1.0])[0][0], env.step([-0.5])[0][0], env.step([7.0])[0][0]], [3e5, -1.5e5, 3e5])
+    with pytest.raises(ValueError, match="no bounds"):
+        CraneEnv(c, actions={"push": None}, reward=reach([]))
+
+
+def test_what_is_refused():
+    for changes, words in [
+        ({"actions": {}}, "at least one input"),
+        ({"actions": {"slow": (0, 1)}}, "no input 'slow': write one of slew"),
+        ({"bands": {"mass": (0, 1)}}, "no live parameter 'mass': write one of load_mass"),
+        ({"targets": {"tip_x": (0, 1)}}, "no result 'tip_x'"),
+        ({"observations": ["colum_psi"]}, "no observation 'colum_psi'"),
+        ({"limits": {"column_psi": (1, 0)}}, "write the least value first"),
+    ]:
+        with pytest.raises(ValueError, match=words):
+            environment(**changes)
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        environment().step([0.0])
+
+
+def test_a_policy_learns_to_damp_the_swing(capsys):
+    """A few rounds of the example already swing less than the untrained policy."""
+    policy = slewing.train(rounds=4, directions=8)
+    assert capsys.readouterr().out.count("mean reward") == 4
+    found = slewing.compare(policy, count=8)
+    assert found["learnt"][0] > found["untrained"][0]
+
+
+def test_an_episode_ends_when_the_crane_tips():
+    """The margin that is asked for is that of a crane at rest with nothing that overturns it: any crane has less."""
+    text = (
+        "format: 1\nextends: loader_tipping\nname: tips\ninputs: {lever: {unit: rad}}\n"
+        "drives: [{coordinate: boom_psi, motion: {hold: 55 deg}, offset: lever}]\n"
+    )
+    c = crane.load("tips.yaml", text=text)
+    for tipping, ends in ((0.0, False), (1.0, True)):
+        env = CraneEnv(c, actions={"lever": (-0.05, 0.05)}, rates=True, reward=reach([]), tipping=tipping)
+        env.reset(seed=0)
+        *_, terminated, _, info = env.step([0.0])
+        assert terminated is ends and info["why"] == ("tipping" if ends else "")
