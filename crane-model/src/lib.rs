@@ -49,6 +49,8 @@ mod least_squares;
 #[cfg(feature = "std")]
 pub mod loop_joints;
 #[cfg(feature = "std")]
+mod memory;
+#[cfg(feature = "std")]
 pub mod modes;
 #[cfg(feature = "std")]
 pub mod results;
