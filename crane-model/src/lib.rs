@@ -53,6 +53,8 @@ pub mod loop_joints;
 #[cfg(feature = "std")]
 pub mod margins;
 #[cfg(feature = "std")]
+mod memory;
+#[cfg(feature = "std")]
 pub mod modes;
 #[cfg(feature = "std")]
 pub mod results;

@@ -3,13 +3,13 @@
 use super::{
     Ahead, Cause, EffortAccuracy, Method, Statistics, Stepper, Stopped,
     equations::Equations,
-    memory::{Visit, visit_count, visit_numbers},
     norm::Norm,
     state::NotFinite,
     step::Step,
     stopped::StepContext,
     switches::{Switches, Watched},
 };
+use crate::memory::{Visit, visit_count, visit_numbers};
 
 /// First step tried, s: a crane starts smoothly, and steps may grow by a factor of three.
 pub(super) const FIRST: f64 = 1e-4;

@@ -3,7 +3,6 @@
 use super::{
     Ahead, Cause, Method, Settings, Statistics, Stepper, Stopped,
     equations::Equations,
-    memory::{visit_count, visit_flag, visit_numbers},
     motion::{add, add_all},
     references::References,
     rk4,
@@ -13,6 +12,7 @@ use super::{
     stopped::StepContext,
 };
 use crate::dyn_crane::DynDynamics;
+use crate::memory::{visit_count, visit_flag, visit_numbers};
 
 /// A motion integrated by [`rk4`].
 pub struct Rk4<'a> {

@@ -5,7 +5,7 @@
 //! agree; where already the midpoint agrees with Gauss's rule, that is enough. A. S. Kronrod, Nodes and Weights of Quadrature Formulas,
 //! Consultants Bureau 1965.
 
-use super::memory::{Visit, visit_numbers};
+use crate::memory::{Visit, visit_numbers};
 use crate::{
     dyn_crane::DynDynamics,
     force_states::{ForceStates, loops_on_rigid_drives},

@@ -1,10 +1,10 @@
 //! The equations of motion in first-order form.
 
 use super::{
-    memory::{Visit, visit_count},
     references::References,
     state::{NotFinite, finite},
 };
+use crate::memory::{Visit, visit_count};
 use crate::{
     dyn_crane::DynDynamics,
     force_states::ForceStates,

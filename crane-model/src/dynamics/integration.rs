@@ -10,11 +10,11 @@ use super::{
     constant::Rk4,
     dormand_prince::DormandPrince,
     energy_integrals::{EnergyIntegrals, INTEGRALS},
-    memory::{Visit, visit_count, visit_flag, visit_numbers},
     rosenbrock::Rosenbrock,
     stopped::{StepContext, without_inertia},
     stops::Stops,
 };
+use crate::memory::{Visit, visit_count, visit_flag, visit_numbers};
 use crate::{
     dyn_crane::{DynDynamics, DynImplicit, DynModel},
     force_states::ForceStates,

@@ -23,8 +23,6 @@ mod force_state_update;
 #[cfg(feature = "std")]
 mod integration;
 #[cfg(feature = "std")]
-pub(crate) mod memory;
-#[cfg(feature = "std")]
 mod method;
 #[cfg(feature = "std")]
 mod motion;

@@ -1,6 +1,7 @@
 //! The size of an error of a motion, in units of the tolerance.
 
-use super::{equations::Equations, memory::Visit};
+use super::equations::Equations;
+use crate::memory::Visit;
 use crate::{
     CoordinateKind,
     dyn_crane::{DynImplicit, DynModel},

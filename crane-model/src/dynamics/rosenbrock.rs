@@ -25,7 +25,6 @@ use super::{
     EffortAccuracy, Method, Settings, Statistics, Stepper, Stopped,
     adaptive::{Adaptive, Formula},
     equations::Equations,
-    memory::Visit,
     motion::add_all,
     norm::Norm,
     references::References,
@@ -35,6 +34,7 @@ use super::{
     system::System,
     typed,
 };
+use crate::memory::Visit;
 use crate::{
     Implicit,
     dyn_crane::{DynImplicit, Instance},

@@ -1,6 +1,6 @@
 //! Detection of growth from step to step, long before a run exceeds its bounds.
 
-use super::memory::{Visit, visit_count, visit_numbers, visit_optional};
+use crate::memory::{Visit, visit_count, visit_numbers, visit_optional};
 
 /// Rates below this, m/s and rad/s, are rounding near rest.
 const REST: f64 = 1e-6;

@@ -1,9 +1,7 @@
 //! A completed step, and the motion within it.
 
-use super::{
-    memory::{Visit, visit_numbers},
-    motion::add,
-};
+use super::motion::add;
+use crate::memory::{Visit, visit_numbers};
 
 /// A step of an adaptive one-step method.
 #[derive(Clone, Debug)]

@@ -5,11 +5,8 @@
 //! drive has long left the limit. Adaptive methods therefore end a step where a contact changes or a drive reaches or leaves its limit, and a
 //! step that failed where any law does.
 
-use super::{
-    contacts::Contacts,
-    equations::Equations,
-    memory::{Visit, visit_flag, visit_flags},
-};
+use super::{contacts::Contacts, equations::Equations};
+use crate::memory::{Visit, visit_flag, visit_flags};
 use crate::{
     dyn_crane::{DynDynamics, DynModel},
     force_states::ForceStates,

@@ -17,8 +17,8 @@ use nalgebra::Matrix6;
 use super::{
     connector_update::{ConnectorUpdate, differs},
     force_state_update::ForceStateUpdate,
-    memory::{Visit, visit_count},
 };
+use crate::memory::{Visit, visit_count};
 use crate::{
     Description, SupportInfo,
     dyn_crane::{DynImplicit, DynSystem},

@@ -4,7 +4,7 @@
 //! eliminated with the largest remaining row as pivot; a pivot is the square of the sine of the angle between a row and the space of
 //! those before. Units do not matter, and neither do masses.
 
-use crate::dynamics::memory::{visit_flag, visit_indices};
+use crate::memory::{visit_flag, visit_indices};
 
 /// A row shorter than this fraction of what it could be is zero: rounding of the axes leaves 1e-16.
 const NOTHING: f64 = 1e-9;

@@ -132,7 +132,7 @@ impl SteeredMotion {
         let (values, rest) = rest.split_at_checked(crane.inputs().len())?;
         let (slots, rest) = rest.split_at_checked(crane.inputs().numbers().count())?;
         let start = InitialState { q: q.to_vec(), v: v.to_vec(), x: x.to_vec() };
-        if !crane_model::force_states::impossible(crane.description(), x).is_none() {
+        if crane_model::force_states::impossible(crane.description(), x).is_some() {
             return None;
         }
         let of_begin = crane.clone();

@@ -1,9 +1,9 @@
 //! The last states at equal time intervals, as backward differences.
 
 use super::ORDER;
-use crate::dynamics::{
+use crate::{
+    dynamics::motion::add,
     memory::{Visit, visit_count, visit_numbers},
-    motion::add,
 };
 
 /// Weights of the differences up to the highest order.

@@ -16,6 +16,7 @@
 //! E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, sections III.1 and V.1; steps of equal length between
 //! changes, and how differences change with it: L. F. Shampine, M. W. Reichelt, The MATLAB ODE Suite, SIAM J. Sci. Comput. 18 (1997) 1.
 
+mod change;
 mod correction;
 mod history;
 
@@ -23,8 +24,6 @@ use super::{
     Ahead, Cause, EffortAccuracy, Method, Settings, Statistics, Stepper, Stopped,
     adaptive::{FIRST, LEAST, LONGEST, SAFETY, SLIVER},
     equations::Equations,
-    memory::{visit_count, visit_flag, visit_numbers, visit_optional},
-    motion::add,
     norm::Norm,
     references::References,
     state::{NotFinite, State},
@@ -32,6 +31,7 @@ use super::{
     switches::{Switches, Watched},
     typed::{motion_of, state_of},
 };
+use crate::memory::{visit_count, visit_flag, visit_numbers, visit_optional};
 use crate::{
     Implicit,
     dyn_crane::{DynImplicit, Instance},
@@ -241,17 +241,6 @@ impl<'a> Bdf<'a> {
         Ok(())
     }
 
-    /// The references at the last k + 3 states, the most recent first.
-    fn past_references(&mut self) -> Vec<Vec<f64>> {
-        let History { t, h, order, .. } = self.history;
-        let Equations { crane, n, .. } = self.equations;
-        let mut past = vec![vec![0.0; self.motion.len()]; order + 3];
-        for (m, state) in past.iter_mut().enumerate() {
-            self.equations.references.add(crane, t - h * m as f64, 1.0, n, state);
-        }
-        past
-    }
-
     /// Tries a step, and chooses order and length of the next, unless the step only has to end where a contact changes. `again`: the step
     /// has been shortened already; `repeats`: how often it was repeated to end where a law changes.
     fn attempt(&mut self, again: bool, repeats: usize) -> Attempt {
@@ -360,36 +349,8 @@ impl Stepper for Bdf<'_> {
         self.equations.make_absolute(t, motion);
     }
 
-    /// The past is not that of the motion which follows. But a motion with the same position and rate and the changed acceleration at `t` has
-    /// a past, too, which differs from this one by `½ δq̈ (t′ − t)²` if only accelerations jump: with it the method goes on. The error of the
-    /// next step is large if more than that has changed.
     fn change(&mut self, t: f64, change: &mut dyn FnMut()) -> Result<(), Stopped> {
-        if (t - self.history.t).abs() > SAME * self.history.h {
-            self.history.go_back(t);
-            self.control.steps_since_change = 0;
-        }
-        self.is_steered = true;
-        self.switches.start();
-        self.accept();
-        let slope_at = |bdf: &mut Self| {
-            let mut slope = vec![0.0; bdf.motion.len()];
-            let found = bdf.equations.slope_in_full(t, &bdf.motion, &mut slope);
-            found.map(|()| slope).map_err(|NotFinite| bdf.stuck())
-        };
-        let before = slope_at(self)?;
-        let mut past = self.past_references();
-        change();
-        let after = slope_at(self)?;
-        let Equations { crane, n, .. } = self.equations;
-        let jumps: Vec<f64> = after.iter().zip(&before).map(|(after, before)| after - before).collect();
-        for (m, state) in past.iter_mut().enumerate() {
-            let back = -self.history.h * m as f64;
-            self.equations.references.add(crane, t + back, -1.0, n, state);
-            add(state, back, &jumps);
-            add(&mut state[..n], 0.5 * back * back, &jumps[n..2 * n]);
-        }
-        self.history.add_to_states(past);
-        Ok(())
+        self.go_on_after(t, change)
     }
 
     fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {

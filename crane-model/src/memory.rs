@@ -4,18 +4,18 @@
 //! for going on from what was saved.
 
 /// Reads a number or replaces it.
-pub(super) type Visit<'a> = &'a mut dyn FnMut(&mut f64);
+pub type Visit<'a> = &'a mut dyn FnMut(&mut f64);
 
 /// Longest list of flags or indices, against memory that was damaged.
 const LONGEST: usize = 1 << 16;
 
 /// Visits numbers.
-pub(crate) fn visit_numbers(numbers: &mut [f64], visit: Visit<'_>) {
+pub fn visit_numbers(numbers: &mut [f64], visit: Visit<'_>) {
     numbers.iter_mut().for_each(visit);
 }
 
 /// Visits a count.
-pub(crate) fn visit_count(count: &mut usize, visit: Visit<'_>) {
+pub fn visit_count(count: &mut usize, visit: Visit<'_>) {
     let mut number = *count as f64;
     visit(&mut number);
     // Saturates if it is not a count.
@@ -25,21 +25,21 @@ pub(crate) fn visit_count(count: &mut usize, visit: Visit<'_>) {
 }
 
 /// Visits a flag.
-pub(crate) fn visit_flag(flag: &mut bool, visit: Visit<'_>) {
+pub fn visit_flag(flag: &mut bool, visit: Visit<'_>) {
     let mut number = f64::from(u8::from(*flag));
     visit(&mut number);
     *flag = number > 0.0;
 }
 
 /// Visits a number that may be missing.
-pub(super) fn visit_optional(number: &mut Option<f64>, visit: Visit<'_>) {
+pub fn visit_optional(number: &mut Option<f64>, visit: Visit<'_>) {
     let mut value = number.unwrap_or(f64::NAN);
     visit(&mut value);
     *number = Some(value).filter(|value| !value.is_nan());
 }
 
 /// Visits flags, whose number may change.
-pub(crate) fn visit_flags(flags: &mut Vec<bool>, visit: Visit<'_>) {
+pub fn visit_flags(flags: &mut Vec<bool>, visit: Visit<'_>) {
     let mut count = flags.len();
     visit_count(&mut count, visit);
     flags.resize(count.min(LONGEST), false);
@@ -47,7 +47,7 @@ pub(crate) fn visit_flags(flags: &mut Vec<bool>, visit: Visit<'_>) {
 }
 
 /// Visits indices below `end`, whose number may change.
-pub(crate) fn visit_indices(indices: &mut Vec<usize>, end: usize, visit: Visit<'_>) {
+pub fn visit_indices(indices: &mut Vec<usize>, end: usize, visit: Visit<'_>) {
     let mut count = indices.len();
     visit_count(&mut count, visit);
     indices.resize(count.min(end), 0);
