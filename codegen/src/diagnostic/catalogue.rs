@@ -276,6 +276,9 @@ catalogue! {
     /// Bristles stick: their friction has no width.
     E105 width_of_bristles(coordinate) "the friction of `{coordinate}` has a `width` and a `bristle`", "bristles stick without creeping",
         "remove `width`, or `bristle`";
+    /// Only joints of the chain have bristles.
+    E106 bristles_in_a_loop(joint) "the friction of loop joint `{joint}` has a `bristle`", "only joints of the chain stick",
+        "remove `bristle`: the pin then creeps at about the rate `width`; or close the loop at another joint, so that this pin is one of the chain";
 
     // Inputs.
     /// An input has a value or follows a motion until it is set.
@@ -396,6 +399,9 @@ catalogue! {
     /// Eight cranes per call cannot have loops.
     E148 ensemble_of_loops() "`ensemble` cannot be combined with loop joints", "eight cranes per call are for open chains",
         "remove `ensemble`: runs of many cranes then compute them one by one";
+    /// Of the joints that close loops, only pins have friction and damping.
+    E149 friction_of_no_pin(joint, key, kind) "loop joint `{joint}` has `{key}`, but is a `{kind}`", "only a `pin` has friction and damping",
+        "remove `{key}`, or write `joint: {{pin: {{axis: …}}}}` with the direction about which it turns";
     // Branches.
     /// The first link stands on the world.
     E150 base_on_link(link) "the first link, `{link}`, cannot be attached to another link", "it stands on the world",

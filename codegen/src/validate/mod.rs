@@ -222,7 +222,8 @@ impl<'a> Check<'a> {
         self.make_drives_hydraulic(crane, &cylinders, pump.as_ref(), &mut drives);
         let mut connectors = self.connectors(crane, &cylinders);
         connectors.extend(self.pads(&cylinders));
-        let loop_joints = self.loop_joints(crane, &cylinders, &connectors);
+        let (loop_joints, in_pins) = self.loop_joints(crane, &cylinders, &connectors);
+        connectors.extend(in_pins);
         rotors.extend(self.rotors(crane, &drives));
         self.beam_sections(&loads, &cylinders, &connectors, &loop_joints);
         let points = self.points(crane, &supports);
