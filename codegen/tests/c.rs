@@ -258,6 +258,20 @@ fn springs_and_ropes_are_the_interpreters() {
     }
 }
 
+/// The four-bar of the manual.
+#[test]
+fn gaps_and_rows_of_loops_are_the_interpreters() {
+    let page = fs::read_to_string(format!("{}/../docs/manual/loops.md", env!("CARGO_MANIFEST_DIR"))).unwrap();
+    let (_, rest) = page.split_once("```yaml\n").unwrap();
+    let (spec, _) = rest.split_once("```").unwrap();
+    let found =
+        differences("four_bar", &load(&SourceFile::new("four_bar.yaml", spec)).unwrap(), Precision::Double, &[]);
+    assert_eq!(found.iter().filter(|(function, _)| function.starts_with("loop_")).count(), 3);
+    for (function, off) in found {
+        assert!(off < 1e-12, "{function} is off by {off:e}");
+    }
+}
+
 #[test]
 fn single_precision_has_the_digits_that_the_manual_says() {
     let off = differences("eight_link_flexible", &shipped("eight_link_flexible"), Precision::Single, &[]);

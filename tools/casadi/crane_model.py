@@ -10,7 +10,7 @@ from crane_spec import CraneSpec
 from cuts import Cut
 from cylinders import Cylinder, pin_of_rocker, turning_axis
 from inertias import read_pseudo_inertia
-from loop_joints import read_loop_joint
+from loop_joints import read_loop_joint, read_pin
 from profiles import read_profile
 from sections import add_sections
 from telescopes import length_of, read_pads, slide
@@ -146,6 +146,7 @@ class Connector:
     falls: int = 1
     clearance: object = 0
     pad: object = None
+    pin: object = None
 
     def pulls(self, within=False):
         """Forces on the points at a tension of 1 N: minus the slopes of the length, `within`: of the parts between two bodies."""
@@ -160,6 +161,8 @@ class Connector:
         if self.pad is not None:
             for station, wrench in zip(self.pad.stations, self.pad.wrenches()):
                 yield station.body, station.along, wrench[:3], wrench[3:]
+        elif self.pin is not None:
+            yield from self.pin.wrenches(within)
         elif self.points:
             for body, point, along, pull in zip(self.bodies, self.points, self.along, self.pulls(within)):
                 yield body, along, pull, ca.cross(point, pull)
@@ -322,6 +325,8 @@ def read_crane(path):
                 crane.connectors.append(Connector([], [], [], [], pad.value(), *law, clearance=clearance, pad=pad))
     for written in spec.get("loop_joints", []):
         crane.loop_joints.append(read_loop_joint(spec, written, spans, carrier))
+        if "friction" in written or "damping" in written:
+            crane.connectors.append(read_friction_of_pin(crane, written, spans))
     for written in spec.get("points", []):
         crane.points[written["name"]] = read_point(spec, written, spans[written["link"]])
     add_sections(crane, [spans[link["name"]] for link in spec.keys["links"] if "beam" in link or "rope" in link])
@@ -640,6 +645,14 @@ def read_coupling(crane, written):
     strain = own.q - spec.number(written["ratio"]) * leader.q
     offset = spec.position(written.get("offset", 0), own.is_rotation)
     return Connector([], [], [], [], strain, False, stiffness, damping, offset, 0)
+
+
+def read_friction_of_pin(crane, written, spans):
+    """Friction and damping of a pin that closes a loop: a force without a spring on the angle by which it has turned."""
+    friction = read_friction(crane.spec, written.get("friction", {"coulomb": 0}), None)
+    friction.viscous += crane.spec.number(written.get("damping", 0))
+    pin = read_pin(crane, written, spans, carrier, read_guess(crane), friction)
+    return Connector([], [], [], [], pin.angle, False, 0, friction.viscous, 0, 0, pin=pin)
 
 
 def read_point(spec, written, span):

@@ -35,6 +35,13 @@ def pressed(length, connector):
     return ca.if_else(stretch > clearance, beyond, ca.if_else(stretch < -clearance, below, CENTRING * stretch if connector.pad and not is_zero(clearance) else stretch))
 
 
+def rubbing(friction, rate):
+    """Friction at a rate; dry friction of bristles depends on an additional state."""
+    more = (friction.breakaway - friction.coulomb) * ca.exp(-((rate / friction.stribeck) ** 2))
+    dry = (friction.coulomb + more) * ca.tanh(rate / friction.width) if friction.bristle is None else 0
+    return dry + friction.viscous * rate
+
+
 def is_zero(number):
     """Whether a number is 0, not a parameter."""
     return ca.SX(number).is_zero()
@@ -265,10 +272,7 @@ class Derivations:
             energy += stop.stiffness * depth**2 / 2
         for friction in crane.frictions:
             place, rate = places[friction.coordinate.name], friction.coordinate.v
-            more = (friction.breakaway - friction.coulomb) * ca.exp(-((rate / friction.stribeck) ** 2))
-            # Dry friction of bristles depends on an additional state.
-            dry = (friction.coulomb + more) * ca.tanh(rate / friction.width) if friction.bristle is None else 0
-            friction_forces[place] -= dry + friction.viscous * rate
+            friction_forces[place] -= rubbing(friction, rate)
             damping[place] += friction.viscous
         return stop_forces, friction_forces, energy, damping
 
@@ -296,6 +300,8 @@ class Derivations:
             stretch = ca.if_else(stretch > 0, stretch, 0)
             growth = 1 + connector.damping * (rate - (self.rate(ca.SX(connector.length)) if moving else 0))
             force = connector.stiffness * stretch * ca.if_else(growth > 0, growth, 0)
+        elif connector.pin is not None:
+            return length, rate, rubbing(connector.pin.friction, rate), ca.SX(0)
         else:
             cubic = connector.progression * stretch**3
             force = connector.stiffness * stretch + cubic - connector.push + connector.damping * rate
@@ -334,6 +340,8 @@ class Derivations:
             if connector.is_rope:
                 growth = 1 + connector.damping * (running - self.rate(ca.SX(connector.length)))
                 law = ca.if_else(taut, connector.stiffness * (stretched - connector.length), 0) * ca.if_else(growth > 0, growth, 0)
+            elif connector.pin is not None:
+                law = rubbing(connector.pin.friction, running)
             else:
                 stretch = pressed(stretched, connector)
                 law = connector.stiffness * stretch + connector.progression * stretch**3 + connector.damping * running

@@ -57,6 +57,51 @@ def read_loop_joint(spec, written, spans, carrier):
     return LoopJoint(written["name"], gaps)
 
 
+@dataclass
+class Pin:
+    """A pin that turns: its angle, its friction, and for both of its ends the index of the body (None for the world), the distance along it, and the
+    moment that a torque of 1 N m exerts on it."""
+
+    angle: ca.SX
+    friction: object
+    ends: list
+
+    def wrenches(self, within=False):
+        """What acts on bodies at a torque of 1 N m; `within`: if it acts between two bodies."""
+        if within and None in [body for body, *_ in self.ends]:
+            return
+        for body, along, moment in self.ends:
+            if body is not None:
+                yield body, along, ca.SX(3, 1), moment
+
+
+def read_pin(crane, written, spans, carrier, guess, friction):
+    """The angle between two directions normal to the axis, one of each link, which are alike at the guess."""
+    spec, keys = crane.spec, written["joint"]["pin"]
+    (one, _), (other, _) = (frame_of(written[key], spans, spec, carrier) for key in ("from", "to"))
+    _, first, second = across(keys["axis"])
+    along, *_ = across(keys.get("to_axis", keys["axis"]))
+    values = lambda rotation: np.array([spec.default(ca.substitute(entry, crane.q, guess)) for entry in ca.vertsplit(ca.vec(rotation))]).reshape(3, 3).T
+    reference = values(other).T @ values(one) @ first
+    reference -= along * (along @ reference)
+    reference /= np.linalg.norm(reference)
+    turned, u, w = other @ ca.SX(reference), one @ ca.SX(first), one @ ca.SX(second)
+    # By virtual work: how the angle changes if the second body turns a little.
+    spin = ca.SX.sym("spin", 3)
+    moved = turned + ca.cross(spin, turned)
+    angle = ca.atan2(ca.dot(w, moved), ca.dot(u, moved))
+    at_rest = lambda expression: ca.substitute(expression, spin, ca.DM.zeros(3))
+    moment = at_rest(ca.gradient(angle, spin))
+    ends = []
+    for key, own in (("from", moment), ("to", -moment)):
+        body, at = None, spec.vector(written[key]["at"])
+        if "link" in written[key]:
+            carried, at = carrier(spec, at, spans[written[key]["link"]])
+            body = next(index for index, known in enumerate(crane.bodies) if known is carried)
+        ends.append((body, at[0], own))
+    return Pin(at_rest(angle), friction, ends)
+
+
 def quantities(joints, q, v):
     """φ, φ̇ and J̇ q̇ of every equation, and J."""
     gaps = ca.vertcat(ca.SX(0, 1), *[gap for joint in joints for gap in joint.gaps])

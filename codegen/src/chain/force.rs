@@ -177,7 +177,7 @@ impl Force {
     pub fn coordinate(&self) -> Option<CoordinateId> {
         match self.strain {
             Strain::Coordinate(id) => Some(id),
-            Strain::Line(_) | Strain::Coupling { .. } | Strain::Sliding(_) => None,
+            Strain::Line(_) | Strain::Coupling { .. } | Strain::Sliding(_) | Strain::Turning(_) => None,
         }
     }
 

@@ -41,7 +41,7 @@ pub use parameter::{Bound, Parameter, Refusal, Relation};
 pub use profile::{Profile, Ramp, Segment};
 pub use run::{Analyses, Run};
 pub use stage::Stage;
-pub use strain::{Attachment, Line, LinePart, PadDirection, Sliding, Strain};
+pub use strain::{Attachment, Line, LinePart, PadDirection, Sliding, Strain, Turning};
 pub use support::{Support, SupportKinematics};
 pub use value::{ParameterId, Value};
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{Axis, BeamAxis, BodyId, Chain, CoordinateId, CoordinateKind, Frame, Value};
+use super::{Axis, BeamAxis, BodyId, Chain, CoordinateId, CoordinateKind, Frame, Value, Vector};
 
 /// A length or an angle that depends on the pose.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,6 +22,19 @@ pub enum Strain {
     },
     /// Where the axis of a beam passes a pad on which it slides, m, or how far it is twisted against it, rad.
     Sliding(Box<Sliding>),
+    /// How far a pin has turned, rad.
+    Turning(Box<Turning>),
+}
+
+/// The angle of the second of two bodies against the first about the pin between them, 0 at the guess.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Turning {
+    /// The pin on both bodies.
+    pub ends: [Attachment; 2],
+    /// Unit vectors u and w of the first body, `u × w` along the pin.
+    pub across: [Vector; 2],
+    /// A unit vector of the second body, normal to the pin, and along u at the guess.
+    pub reference: Vector,
 }
 
 /// The axis of a beam as seen from a pad on which the beam slides.
@@ -83,16 +96,17 @@ impl Strain {
     pub fn line(&self) -> Option<&Line> {
         match self {
             Strain::Line(line) => Some(line),
-            Strain::Coordinate(_) | Strain::Coupling { .. } | Strain::Sliding(_) => None,
+            Strain::Coordinate(_) | Strain::Coupling { .. } | Strain::Sliding(_) | Strain::Turning(_) => None,
         }
     }
 
-    /// The points of a line, the point of a pad, or none.
+    /// The points of a line, the point of a pad, both ends of a pin, or none.
     #[must_use]
     pub fn points(&self) -> &[Attachment] {
         match self {
             Strain::Line(line) => &line.points,
             Strain::Sliding(sliding) => std::slice::from_ref(&sliding.pad),
+            Strain::Turning(turning) => &turning.ends,
             Strain::Coordinate(_) | Strain::Coupling { .. } => &[],
         }
     }
@@ -102,16 +116,17 @@ impl Strain {
     pub fn sliding(&self) -> Option<&Sliding> {
         match self {
             Strain::Sliding(sliding) => Some(sliding),
-            Strain::Coordinate(_) | Strain::Coupling { .. } | Strain::Line(_) => None,
+            Strain::Coordinate(_) | Strain::Coupling { .. } | Strain::Line(_) | Strain::Turning(_) => None,
         }
     }
 
-    /// Whether a force pulls or pushes bodies against each other: at a pad, or along a line of which some part is between two bodies.
+    /// Whether a force acts between bodies: at a pad, in a pin of two bodies, or along a line of which some part is between two bodies.
     #[must_use]
     pub fn joins_bodies(&self) -> bool {
         match self {
             Strain::Line(line) => line.parts().any(LinePart::joins_bodies),
             Strain::Sliding(_) => true,
+            Strain::Turning(turning) => turning.ends.iter().all(|end| end.body.is_some()),
             Strain::Coordinate(_) | Strain::Coupling { .. } => false,
         }
     }
@@ -154,6 +169,7 @@ impl Chain {
             }
             Strain::Coupling { coordinate: one, leader: other, .. } => vec![*one.min(other), *one.max(other)],
             Strain::Sliding(sliding) => self.changing_at(sliding),
+            Strain::Turning(turning) => self.turned_by(turning),
         }
     }
 
@@ -163,6 +179,7 @@ impl Chain {
         match strain {
             Strain::Line(line) => line.points.iter().flat_map(|point| self.reach(point)).collect(),
             Strain::Coordinate(_) | Strain::Coupling { .. } => self.spanned(strain),
+            Strain::Turning(turning) => turning.ends.iter().flat_map(|end| self.reach(end)).collect(),
             // All that move the pad, the beam or both.
             Strain::Sliding(sliding) => [self.reach(&sliding.pad), self.coordinates_of(sliding.beam.last())].concat(),
         }
@@ -173,6 +190,7 @@ impl Chain {
     pub fn kind_of(&self, strain: &Strain) -> CoordinateKind {
         match strain {
             Strain::Line(_) => CoordinateKind::Translation,
+            Strain::Turning(_) => CoordinateKind::Rotation,
             Strain::Sliding(sliding) => match sliding.direction {
                 PadDirection::Along(_) => CoordinateKind::Translation,
                 PadDirection::Twist => CoordinateKind::Rotation,
@@ -185,6 +203,12 @@ impl Chain {
     #[must_use]
     pub fn changing(&self, part: LinePart<'_>) -> Vec<CoordinateId> {
         self.between(&part.ends.map(|end| self.reach(end)))
+    }
+
+    /// The coordinates that turn a pin, in the order of q: those that move only one of its bodies.
+    #[must_use]
+    pub fn turned_by(&self, turning: &Turning) -> Vec<CoordinateId> {
+        self.between(&turning.ends.each_ref().map(|end| self.reach(end)))
     }
 
     /// The coordinates that change what a pad measures, in the order of q: those that move the pad and the whole beam as one body do not.

@@ -215,7 +215,7 @@ catalogue! {
     E087 no_transmission(coordinate) "drive `{coordinate}` has no stiffness", "none of `stiffness`, `rigid: true` and `effort`",
         "write its `stiffness:`, `rigid: true` if the coordinate follows the motion exactly, or `effort:`, its torque or force";
     /// A rigid drive has neither stiffness, damping nor effort.
-    E088 rigid_spring(coordinate, key) "drive `{coordinate}` is rigid and has a `{key}`", "a rigid drive has no spring and no damper, and its effort follows from its motion",
+    E088 rigid_spring(coordinate, key) "drive `{coordinate}` is rigid and has `{key}`", "a rigid drive has no spring and no damper, and its effort follows from its motion",
         "remove either `{key}` or `rigid: true`";
     /// The speed of a rigid drive does not jump.
     E089 jumps(coordinate, time) "the speed of rigid drive `{coordinate}` jumps at {time}",
@@ -276,6 +276,9 @@ catalogue! {
     /// Bristles stick: their friction has no width.
     E105 width_of_bristles(coordinate) "the friction of `{coordinate}` has a `width` and a `bristle`", "bristles stick without creeping",
         "remove `width`, or `bristle`";
+    /// Only joints of the chain have bristles.
+    E106 bristles_in_a_loop(joint) "the friction of loop joint `{joint}` has a `bristle`", "only joints of the chain stick",
+        "remove `bristle`: the pin then creeps at about the rate `width`; or close the loop at another joint, so that this pin is one of the chain";
 
     // Inputs.
     /// An input has a value or follows a motion until it is set.
@@ -396,6 +399,9 @@ catalogue! {
     /// Eight cranes per call cannot have loops.
     E148 ensemble_of_loops() "`ensemble` cannot be combined with loop joints", "eight cranes per call are for open chains",
         "remove `ensemble`: runs of many cranes then compute them one by one";
+    /// Of the joints that close loops, only pins have friction and damping.
+    E149 friction_of_no_pin(joint, key, kind) "loop joint `{joint}` has `{key}`, but is a `{kind}`", "only a `pin` has friction and damping",
+        "remove `{key}`, or write `joint: {{pin: {{axis: …}}}}` with the direction about which it turns";
     // Branches.
     /// The first link stands on the world.
     E150 base_on_link(link) "the first link, `{link}`, cannot be attached to another link", "it stands on the world",
@@ -561,4 +567,25 @@ catalogue! {
     W043 short_overlap(stage, overlap, coordinate, position, height, least) "the overlap of `{stage}` is only {overlap} m with `{coordinate}` at {position} m",
         "less than the height of its section, {height} m: real pads are too long, and walls too weak, for such a hold",
         "let `{coordinate}` end at {least} m, or give longer beams and a longer `overlap`";
+    /// The sides of a loop can form a closed polygon.
+    W044 open_polygon(joint, longest, others) "loop joint `{joint}` cannot close", "one side of its loop is {longest} m, all others together {others} m",
+        "check `at` of both of its points, the lengths of its links and of a `rod`, in m";
+    /// The axes of a pin are within 60° of each other at the guess.
+    W045 crossed_axes(joint, angle) "the axes of pin `{joint}` are {angle}° apart at the guess", "a pin holds them parallel",
+        "write `to_axis`, the direction of the axis in the frame of the link `to`, or a `guess` near a pose in which both are parallel";
+    /// Two loop joints do not hold the same points.
+    W046 held_twice(joint, other) "loop joint `{joint}` holds what `{other}` holds already", "both of its points are those of `{other}`",
+        "remove one of them: how they share a force cannot be determined";
+    /// A point of a loop joint on a beam is not beyond the beam by more than half its length.
+    W047 beyond_beam(joint, x, link, length) "a point of loop joint `{joint}` is at {x} m, beyond beam `{link}` of {length} m", "the last element carries it like a rigid bracket",
+        "check `at`, whose first number is the distance along the beam, in m";
+    /// The clearance of a pad is at most 0.05 m, or 0.2 rad.
+    W048 wide_clearance(stage, clearance, unit) "a pad of `{stage}` has a clearance of {clearance} {unit}", "the beam moves this far before the pad holds it",
+        "write it in m and rad: 2 mm = 2e-3";
+    /// The pads of a telescope have at least 1e4 N/m.
+    W049 soft_pads(stage, stiffness) "a pad of `{stage}` has a stiffness of {stiffness} N/m", "the stage would drop through it",
+        "write it in N/m: 20 kN/mm = 2e7; pads of cranes have 1e6 to 1e9 N/m";
+    /// The effort of a drive stays within its maximum.
+    W050 effort_beyond_limit(coordinate, effort, limit, unit) "the effort of the drive of `{coordinate}` reaches {effort} {unit}", "its `max_effort` is {limit} {unit}, and it delivers no more",
+        "check the exponents of `effort` and `max_effort`";
 }

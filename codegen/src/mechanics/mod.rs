@@ -45,6 +45,7 @@ mod supports;
 #[cfg(test)]
 mod tests;
 mod transforms;
+mod turning;
 mod twist;
 mod vector;
 

@@ -5,7 +5,7 @@
 //!   `u_i = m_i (p_{i+1} − p_i)/|p_{i+1} − p_i|`. `J_j = ∂ℓ/∂q_j = Σ u_i · (∂p_{i+1}/∂q_j − ∂p_i/∂q_j)`, summed over the parts of which
 //!   j moves only one end: if it moves both, their distance stays the same. `ℓ̇ = J q̇`. For a coupling `ℓ = q_j − r q_i`, `J_j = 1`,
 //!   `J_i = −r`.
-//! : for a beam as seen from a pad: [`pads`](super::pads).
+//! : for a beam as seen from a pad: [`pads`](super::pads); for a pin that turns: [`turning`](super::turning).
 
 use std::collections::BTreeMap;
 
@@ -13,6 +13,7 @@ use super::kinematics::{Kinematics, Pose};
 use super::model::Model;
 use super::pads::AtPad;
 use super::place::{Place, Pull};
+use super::turning::Turned;
 use super::vector::Vec3;
 use crate::chain::{Attachment, BodyId, CoordinateId, Line, LinePart, Strain};
 use crate::symbolic::Expr;
@@ -27,8 +28,8 @@ pub struct Strained<'g> {
     points: Vec<Vec3<'g>>,
     /// `u_i` of its parts: a tension of 1 N pulls `p_i` with `u_i`, and `p_{i+1}` with `−u_i`.
     pulls: Vec<Vec3<'g>>,
-    /// What a tension of 1 N exerts at a pad.
-    at_pad: Vec<(Place, Pull<'g>)>,
+    /// What a tension of 1 exerts at a pad, N, or in a pin, N m.
+    on_bodies: Vec<(Place, Pull<'g>)>,
 }
 
 /// The position of an end in the world.
@@ -52,7 +53,11 @@ impl<'g> Strained<'g> {
             Strain::Line(line) => Strained::of_line(model, kinematics, line),
             Strain::Sliding(sliding) => {
                 let AtPad { length, jacobian, pulls } = AtPad::new(model, kinematics, sliding);
-                Strained { at_pad: pulls, ..Strained::without_points(length, jacobian) }
+                Strained { on_bodies: pulls, ..Strained::without_points(length, jacobian) }
+            }
+            Strain::Turning(turning) => {
+                let Turned { angle, jacobian, pulls } = Turned::new(model, kinematics, turning);
+                Strained { on_bodies: pulls, ..Strained::without_points(angle, jacobian) }
             }
             Strain::Coupling { coordinate: CoordinateId(j), leader: CoordinateId(i), ratio } => {
                 let ratio = model.number(ratio);
@@ -64,7 +69,7 @@ impl<'g> Strained<'g> {
     }
 
     fn without_points(length: Expr<'g>, jacobian: Vec<(usize, Expr<'g>)>) -> Self {
-        Strained { length, jacobian, points: Vec::new(), pulls: Vec::new(), at_pad: Vec::new() }
+        Strained { length, jacobian, points: Vec::new(), pulls: Vec::new(), on_bodies: Vec::new() }
     }
 
     fn of_line(model: &Model<'g>, kinematics: &Kinematics<'g>, line: &Line) -> Self {
@@ -85,7 +90,7 @@ impl<'g> Strained<'g> {
             length = length + f64::from(part.falls) * distance;
             pulls.push(pull);
         }
-        Strained { length, jacobian: jacobian.into_iter().collect(), points, pulls, at_pad: Vec::new() }
+        Strained { length, jacobian: jacobian.into_iter().collect(), points, pulls, on_bodies: Vec::new() }
     }
 
     /// ℓ̇
@@ -102,10 +107,10 @@ impl<'g> Strained<'g> {
         }
     }
 
-    /// The bodies that a tension of 1 N pulls, in the world: of all parts of a line or of some, or at a pad. A strain of coordinates has none:
+    /// The bodies that a tension of 1 N pulls, in the world: of all parts of a line or of some, at a pad, or in a pin. A strain of coordinates has none:
     /// its force acts on joints, like that of a drive.
     pub fn pulls(&self, strain: &Strain, counts: impl Fn(&LinePart<'_>) -> bool) -> Vec<(Place, Pull<'g>)> {
-        let Some(line) = strain.line() else { return self.at_pad.clone() };
+        let Some(line) = strain.line() else { return self.on_bodies.clone() };
         let mut sums: Vec<Option<Vec3<'g>>> = vec![None; self.points.len()];
         for (index, (_, pull)) in line.parts().zip(&self.pulls).enumerate().filter(|(_, (part, _))| counts(part)) {
             for (sum, pull) in sums[index..].iter_mut().zip([*pull, -*pull]) {

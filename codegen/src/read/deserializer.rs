@@ -218,6 +218,11 @@ impl<'de> Deserializer<'de> for Reader<'de> {
         visitor: V,
     ) -> Result<V::Value, Unread> {
         match self.content()? {
+            Content::Text(name) if variants.contains(&"input") && !variants.contains(&name.as_str()) => {
+                let choices = list(variants);
+                let help = format!("write `{{input: {name}}}` for an input, or a mapping of one of {choices}");
+                Err(self.report(rule::unknown_choice(self.span, self.subject, name, help)))
+            }
             Content::Text(name) => {
                 let variant = self.variant(name, self.span, variants)?;
                 visitor.visit_enum(Choice { reader: self, variant, node: None })
@@ -241,6 +246,10 @@ impl<'de> Deserializer<'de> for Reader<'de> {
                     "one of {choices} for generated code; joints that close loops belong under `loop_joints:`"
                 )))
             }
+            Content::Number(number) if variants.contains(&"hold") => Err(Unread::Expected(format!(
+                "`{{hold: {number}}}` for a constant, or a mapping of one of {}",
+                list(variants)
+            ))),
             _ => Err(Unread::Expected(format!("one of {}", list(variants)))),
         }
     }
@@ -248,6 +257,9 @@ impl<'de> Deserializer<'de> for Reader<'de> {
     fn deserialize_string<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unread> {
         match self.content()? {
             Content::Text(text) => visitor.visit_borrowed_str(text),
+            _ if self.subject.key() == "on" => {
+                Err(Unread::Expected("the name of a link, or `{link: …, at: …}` with a place on it".into()))
+            }
             _ => Err(Unread::Expected("text".into())),
         }
     }

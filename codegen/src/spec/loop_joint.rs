@@ -3,11 +3,11 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Attachment, Constant, Number, Spanned};
+use super::{Attachment, Constant, Friction, Number, Spanned};
 
 /// A joint that closes a loop: it connects two links that are already connected through others, or a link and the world, exactly.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `name`, `from`, `to` and `joint`")]
+#[serde(deny_unknown_fields, expecting = "a mapping of `name`, `from`, `to`, `joint`, `friction` and `damping`")]
 pub struct LoopJoint {
     /// Name, a `snake_case` identifier.
     pub name: Spanned<String>,
@@ -17,6 +17,10 @@ pub struct LoopJoint {
     pub to: Spanned<Attachment>,
     /// What it holds together; exactly one.
     pub joint: Spanned<LoopJointKind>,
+    /// Friction of a `pin` about its axis. Default: none.
+    pub friction: Option<Spanned<Friction>>,
+    /// Viscous damping of a `pin` about its axis, N m s/rad. Default 0.
+    pub damping: Option<Spanned<Number>>,
 }
 
 /// What a joint that closes a loop holds together: `ball`, `pin`, `rod` or `slide`.

@@ -89,6 +89,25 @@ impl<'g> Expr<'g> {
         self.select(size, -size)
     }
 
+    /// The angle of the point (x, y) in (−π, π], y being this number. Operations that exist make it: it is reduced to tan φ ≤ 1 by symmetry, then
+    /// halved twice by `tan φ/2 = tan φ/(1 + √(1 + tan² φ))`, and Gregory's series ends below rounding.
+    #[must_use]
+    pub fn atan2(self, x: Self) -> Self {
+        use std::f64::consts::{FRAC_PI_2, PI};
+        let (across, along) = (self.max(-self), x.max(-x));
+        let halved = |t: Self| t / (1.0 + (1.0 + t.squared()).sqrt());
+        let t = halved(halved(across.min(along) / across.max(along)));
+        let squared = t.squared();
+        let series = (0..11).rev().fold(self.graph.constant(0.0), |sum, k: i32| {
+            let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+            sign / f64::from(2 * k + 1) + squared * sum
+        });
+        let octant = 4.0 * (t * series);
+        let quadrant = (across - along).select(FRAC_PI_2 - octant, octant);
+        let half = (-x).select(PI - quadrant, quadrant);
+        (-self).select(-half, half)
+    }
+
     /// `positive` if x > 0, otherwise `other`.
     #[must_use]
     pub fn select(self, positive: Self, other: Self) -> Self {

@@ -229,3 +229,15 @@ fn a_hyperbolic_tangent_overflows_nowhere() {
         assert!((found - expected).abs() <= 2.0 * f64::EPSILON, "{x}: {found} for {expected}");
     }
 }
+
+#[test]
+fn the_angle_of_a_point_is_that_of_the_library() {
+    let angle = program(|_, x, y| vec![y.atan2(x)], Graph::simplifying());
+    let mut points: Vec<[f64; 2]> =
+        (-180..=180).map(|degrees| f64::from(degrees).to_radians().sin_cos().into()).collect();
+    points.extend([[0.0, 1.0], [1.0, 0.0], [0.0, -1.0], [1.0, 1.0], [1e-9, 1.0], [1e-9, -1.0], [3e5, -4e5]]);
+    for [y, x] in points {
+        // Rounding of numbers up to π.
+        assert!((values(&angle, x, y)[0] - y.atan2(x)).abs() < 1.5e-15, "{x} {y}");
+    }
+}

@@ -11,7 +11,7 @@ use crate::spec::{self, Crane, Spanned};
 
 /// Default rate at which friction reaches three quarters of its full value, rad/s or m/s: a hundredth of the rates of crane
 /// drives.
-const WIDTH: f64 = 1e-3;
+pub(super) const WIDTH: f64 = 1e-3;
 /// Default rate of the Stribeck decline, rad/s or m/s.
 const STRIBECK: f64 = 1e-2;
 
@@ -32,7 +32,8 @@ impl<'a> Check<'a> {
         for (name, given) in crane.friction.iter().filter_map(|given| given.value.as_ref()).flat_map(|given| &given.0) {
             let coordinate = self.joint_of(name, "friction");
             if let Some(written) = &given.value {
-                let friction = self.friction(written, name.value.as_deref().unwrap_or_default(), coordinate);
+                let kind = self.kind_of(coordinate);
+                let friction = self.friction(written, name.value.as_deref().unwrap_or_default(), kind);
                 let rigid = drives
                     .iter()
                     .find(|drive| Some(drive.coordinate) == coordinate && drive.transmission == Transmission::Rigid);
@@ -90,8 +91,7 @@ impl<'a> Check<'a> {
         stops
     }
 
-    fn friction(&mut self, written: &spec::Friction, name: &str, coordinate: Option<CoordinateId>) -> Friction {
-        let kind = self.kind_of(coordinate);
+    pub(super) fn friction(&mut self, written: &spec::Friction, name: &str, kind: Option<CoordinateKind>) -> Friction {
         let (force, rate) = match kind {
             Some(CoordinateKind::Translation) => ("N", "m/s"),
             _ => ("N m", "rad/s"),

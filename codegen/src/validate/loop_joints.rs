@@ -1,36 +1,80 @@
 //! Joints that close loops.
 
 use super::Check;
+use super::drives::units;
+use super::joints::WIDTH;
 use super::limits::Limit;
-use crate::chain::{Across, Chain, Cylinder, Force, Frame, LoopJoint, LoopJointKind, Vector, normalised};
+use super::regular::cross;
+use crate::chain::{
+    Across, Chain, CoordinateKind, Cylinder, Force, Frame, Friction, Group, Law, LoopJoint, LoopJointKind, Strain,
+    Turning, Value, Vector, normalised,
+};
 use crate::diagnostic::{Span, rule};
 use crate::spec::{self, Crane, Direction, Spanned};
 
 impl<'a> Check<'a> {
+    /// Loop joints, and friction in their pins.
     pub(super) fn loop_joints(
         &mut self,
         crane: &'a Crane,
         cylinders: &[Cylinder],
         connectors: &[Force],
-    ) -> Vec<LoopJoint> {
-        let mut joints: Vec<LoopJoint> = Vec::new();
-        for joint in given(crane) {
-            let name = self.name(&joint.name).unwrap_or_default().to_owned();
+    ) -> (Vec<LoopJoint>, Vec<Force>) {
+        let (mut joints, mut forces) = (Vec::new(), Vec::new());
+        for written in given(crane) {
+            let name = self.name(&written.name).unwrap_or_default().to_owned();
             if !name.is_empty() {
-                self.register_loop_joint(&name, joint.name.span, cylinders, connectors);
+                self.register_loop_joint(&name, written.name.span, cylinders, connectors);
             }
             let what = format!("loop joint `{name}`");
-            let [from, to] = [&joint.from, &joint.to].map(|end| self.attachment(end, &format!("an end of {what}")));
-            let kind = joint.joint.value.as_ref().map(|kind| self.loop_joint_kind(kind, &name));
+            let [from, to] = [&written.from, &written.to].map(|end| self.attachment(end, &format!("an end of {what}")));
+            let kind = written.joint.value.as_ref().map(|kind| self.loop_joint_kind(kind, &name));
             let (Some(from), Some(to), Some(Some(kind))) = (from, to, kind) else { continue };
             if from.body.is_none() && to.body.is_none() {
-                self.report(rule::loop_in_the_world(joint.name.span, &name));
+                self.report(rule::loop_in_the_world(written.name.span, &name));
             } else if self.coordinates_of(from.body) == self.coordinates_of(to.body) {
-                self.report(rule::rigid_loop(joint.name.span, &name));
+                self.report(rule::rigid_loop(written.name.span, &name));
             }
-            joints.push(LoopJoint { name, ends: [from, to], kind });
+            let joint = LoopJoint { name, ends: [from, to], kind };
+            forces.extend(self.friction_in(written, &joint));
+            joints.push(joint);
         }
-        joints
+        (joints, forces)
+    }
+
+    /// Friction and damping of a pin, if it has any.
+    fn friction_in(&mut self, written: &spec::LoopJoint, joint: &LoopJoint) -> Option<Force> {
+        const TURNS: Option<CoordinateKind> = Some(CoordinateKind::Rotation);
+        let LoopJoint { name, ends, kind } = joint;
+        let keys = [
+            ("friction", written.friction.as_ref().map(|friction| friction.span)),
+            ("damping", written.damping.as_ref().map(|damping| damping.span)),
+        ];
+        let (key, span) = keys.into_iter().find_map(|(key, span)| Some((key, span?)))?;
+        let mut friction = Friction {
+            coulomb: Value::ZERO,
+            breakaway: None,
+            width: WIDTH.into(),
+            viscous: Value::ZERO,
+            bristle: None,
+        };
+        if let Some(keys) = written.friction.as_ref().and_then(|friction| friction.value.as_ref()) {
+            if let Some(bristle) = &keys.bristle {
+                self.report(rule::bristles_in_a_loop(bristle.span, name));
+            }
+            friction = self.friction(keys, name, TURNS);
+        }
+        let what = format!("the damping of loop joint `{name}`");
+        let damping = self.number_or(written.damping.as_ref(), 0.0, &what, units(TURNS).damping, Limit::NotNegative);
+        friction.viscous = friction.viscous + damping;
+        let LoopJointKind::Pin { across, to_axis } = kind else {
+            self.report(rule::friction_of_no_pin(span, name, key, kind.name()));
+            return None;
+        };
+        let [reference, _] = Across::to(*to_axis).directions;
+        let turning = Turning { ends: ends.clone(), across: across.directions, reference };
+        let strain = Strain::Turning(Box::new(turning));
+        Some(Force { group: Group::Connectors, name: name.clone(), strain, law: Law::Friction(friction) })
     }
 
     /// Like cylinders and connectors, loop joints have result columns for their forces.
@@ -81,7 +125,8 @@ impl<'a> Check<'a> {
         (size > 0.0).then(|| axis.map(|x| x / size))
     }
 
-    /// Reports loop joints that nothing can move, and rods whose points coincide; makes both axes of a pin point the same way at the guess.
+    /// Reports loop joints that nothing can move, and rods whose points coincide; makes both axes of a pin point the same way at the guess,
+    /// where its angle is 0.
     pub(super) fn loops_move(&mut self, chain: &mut Chain, crane: &Crane) {
         /// Distance below which two points coincide up to rounding, m.
         const NONE: f64 = 1e-9;
@@ -98,6 +143,12 @@ impl<'a> Check<'a> {
                     let (one, other) = (of_first.direction(across.axis), of_second.direction(*to_axis));
                     if (0..3).map(|i| one[i] * other[i]).sum::<f64>() < 0.0 {
                         *to_axis = to_axis.map(|x| -x);
+                    }
+                    let turning = chain.forces.iter_mut().filter(|force| force.name == joint.name);
+                    for force in turning {
+                        if let Strain::Turning(turning) = &mut force.strain {
+                            turning.reference = along_first(across, *to_axis, &of_first, &of_second);
+                        }
                     }
                 }
                 LoopJointKind::Rod { .. }
@@ -118,7 +169,20 @@ impl<'a> Check<'a> {
 }
 
 /// The loop joints as written.
-fn given(crane: &Crane) -> impl Iterator<Item = &spec::LoopJoint> {
+pub(super) fn given(crane: &Crane) -> impl Iterator<Item = &spec::LoopJoint> {
     let given = crane.loop_joints.as_ref().and_then(|joints| joints.value.as_deref()).unwrap_or_default();
     given.iter().filter_map(|joint| joint.value.as_ref())
+}
+
+/// The direction of the second body, normal to its axis, that lies along u of the first; `u = w × a` if u is nearly along that axis.
+fn along_first(across: &Across, axis: Vector, first: &Frame, second: &Frame) -> Vector {
+    let [u, w] = across.directions.map(|across| normal_part(second.local_direction(first.direction(across)), axis));
+    let size = |vector: Vector| vector.iter().map(|x| x * x).sum::<f64>();
+    normalised(if size(u) > size(w) { u } else { cross(w, axis) })
+}
+
+/// What is left of a vector without its part along a unit vector.
+fn normal_part(vector: Vector, axis: Vector) -> Vector {
+    let along: f64 = (0..3).map(|i| vector[i] * axis[i]).sum();
+    [0, 1, 2].map(|i| vector[i] - along * axis[i])
 }

@@ -178,6 +178,8 @@ struct Check<'a> {
     distributions: Vec<Option<Distribution>>,
     base: [Option<CoordinateId>; 6],
     links: BTreeMap<&'a str, LinkBodies>,
+    /// Names of loop joints, as written.
+    loop_names: Vec<&'a str>,
     /// Stages of telescopes.
     stages: Vec<Stage<'a>>,
     /// Names of bodies and coordinates after expansion.
@@ -210,6 +212,7 @@ impl<'a> Check<'a> {
             Some(gravity) => self.vector(gravity, "`gravity`", "m/s²", Limit::Any),
             None => [0.0, 0.0, -9.81].map(Value::from),
         };
+        self.loop_names = loop_joints::given(crane).filter_map(|joint| joint.name.value.as_deref()).collect();
         self.links(&crane.links);
         let supports = self.supports(crane);
         let (mut drives, mut rotors) = self.drives(crane);
@@ -222,7 +225,8 @@ impl<'a> Check<'a> {
         self.make_drives_hydraulic(crane, &cylinders, pump.as_ref(), &mut drives);
         let mut connectors = self.connectors(crane, &cylinders);
         connectors.extend(self.pads(&cylinders));
-        let loop_joints = self.loop_joints(crane, &cylinders, &connectors);
+        let (loop_joints, in_pins) = self.loop_joints(crane, &cylinders, &connectors);
+        connectors.extend(in_pins);
         rotors.extend(self.rotors(crane, &drives));
         self.beam_sections(&loads, &cylinders, &connectors, &loop_joints);
         let points = self.points(crane, &supports);

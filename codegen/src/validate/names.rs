@@ -128,6 +128,10 @@ impl Check<'_> {
             let known = self.coordinates.iter().zip(&self.owners).filter(|(_, owner)| is_offered(owner));
             let known: Vec<&str> = known.map(|(coordinate, _)| coordinate.name.as_str()).collect();
             let help = match of_one_link(name, &known) {
+                _ if self.loop_names.contains(&name) => format!(
+                    "`{name}` is a loop joint, which has no coordinate: a `pin` has `friction` and `damping` in its own entry; what needs a drive or \
+                     stops has to be a joint of the chain"
+                ),
                 Some(meant) => format!("did you mean `{meant}`?"),
                 None => suggest(name, known),
             };

@@ -16,7 +16,7 @@ const VANISHING: f64 = 1e-10;
 type Spatial = [f64; 6];
 type SpatialInertia = [[f64; 6]; 6];
 
-fn cross([a, b, c]: Vector, [x, y, z]: Vector) -> Vector {
+pub(super) fn cross([a, b, c]: Vector, [x, y, z]: Vector) -> Vector {
     [b * z - c * y, c * x - a * z, a * y - b * x]
 }
 

@@ -375,12 +375,13 @@ pub struct InputInfo {
     pub moves: bool,
 }
 
-/// An element between two points, a rope over sheaves, or a coupling of two coordinates.
+/// An element between two points, a rope over sheaves, a coupling of two coordinates, or friction in a pin that closes a loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConnectorInfo {
     /// Name.
     pub name: Text,
-    /// Its points: both ends, and between them the sheaves over which a rope runs; the place of a pad on which a beam slides; none for a coupling.
+    /// Its points: both ends, and between them the sheaves over which a rope runs; the place of a pad on which a beam slides; the place
+    /// of a pin on both bodies; none for a coupling.
     pub points: List<AttachmentInfo>,
     /// How many parallel parts of a rope run between its last two points.
     pub falls: usize,
@@ -400,18 +401,25 @@ impl ConnectorInfo {
         self.points.len() == 1
     }
 
-    /// What its length is called: that of the line through its points, where the axis of a beam passes a pad, or the slip of a coupling.
+    /// Whether it is the friction in a pin: nothing else turns about points.
+    pub fn is_pin(&self) -> bool {
+        self.points.len() == 2 && self.kind == CoordinateKind::Rotation
+    }
+
+    /// What its length is called: that of the line through its points, where the axis of a beam passes a pad, the slip of a coupling, or the
+    /// angle of a pin.
     pub fn length_name(&self) -> &'static str {
         match self.points.len() {
+            _ if self.is_pin() => "angle",
             0 => "slip",
             1 => "offset",
             _ => "length",
         }
     }
 
-    /// Whether one of its points is fixed in the world.
+    /// Whether one of its points is pulled towards the world.
     pub fn holds_to_world(&self) -> bool {
-        self.points.iter().any(|point| point.body.is_none())
+        !self.is_pin() && self.points.iter().any(|point| point.body.is_none())
     }
 }
 

@@ -63,10 +63,10 @@ impl<'a> System<'a> {
         let zeros = || vec![0.0; n];
         let Description { stops, frictions, supports, connectors, .. } = crane.description();
         let one_sided = supports.iter().any(SupportInfo::is_one_sided);
-        let ropes = connectors.iter().any(|connector| connector.is_rope);
+        let ropes_or_pins = connectors.iter().any(|connector| connector.is_rope || connector.is_pin());
         Self {
             crane,
-            switches: one_sided || ropes || !stops.is_empty() || !frictions.is_empty(),
+            switches: one_sided || ropes_or_pins || !stops.is_empty() || !frictions.is_empty(),
             factors: crane.system(),
             joints: linear.clone(),
             linear,

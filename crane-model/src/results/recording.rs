@@ -18,7 +18,8 @@ use crate::{
 /// `_vx`, `_vy`, `_vz`; for a support `<support>_reaction_x`, `_y`, `_z`, and `<support>_gap` if it is one-sided; for a coordinate of an
 /// element `<coordinate>_moment`; for end stops and friction `<coordinate>_stop_torque` or `_stop_force`, `<coordinate>_friction_torque` or
 /// `_friction_force`; for joints that stick `<coordinate>_bristle`; for a connector `<connector>_length`, `<connector>_length_rate` and
-/// `<connector>_force`; for a coupling `<coupling>_slip`, `<coupling>_slip_rate` and `<coupling>_force` or `_torque`; for a pad `<pad>_offset` and so on; for a joint that closes a loop `<joint>_force` or `<joint>_force_x` and
+/// `<connector>_force`; for a coupling `<coupling>_slip`, `<coupling>_slip_rate` and `<coupling>_force` or `_torque`; for a pad `<pad>_offset` and so on; for a loop joint with
+/// friction `<joint>_angle`, `<joint>_angle_rate` and `<joint>_friction_torque`; for a joint that closes a loop `<joint>_force` or `<joint>_force_x` and
 /// `<joint>_moment_x`, as many as it has equations; energies.
 /// `energy_balance` is `E(t) − E(0) − drive_work − load_work + dissipated_energy`, the error of the run if it is audited.
 pub struct Recording<'a> {
@@ -242,6 +243,7 @@ pub fn support_gap(support: &str) -> String {
 /// Name of the column with the force or torque of a connector.
 pub fn connector_force(connector: &ConnectorInfo) -> String {
     match connector.kind {
+        CoordinateKind::Rotation if connector.is_pin() => format!("{}_friction_torque", connector.name),
         CoordinateKind::Translation => format!("{}_force", connector.name),
         CoordinateKind::Rotation => format!("{}_torque", connector.name),
     }

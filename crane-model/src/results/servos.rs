@@ -2,7 +2,7 @@
 
 use super::Table;
 use crate::{
-    Description,
+    ConnectorInfo, Description,
     dyn_crane::DynCrane,
     modes::{UnstableServo, unstable_servos},
     statics::Settings,
@@ -62,7 +62,8 @@ fn sentence(description: &Description, UnstableServo { cylinder, mode, gain }: &
         }
     });
     let (set_gain, overlap) = info.valve.map_or((0.0, 0.0), |valve| (valve.gain, valve.overlap));
-    let rubs = !description.frictions.is_empty() || !description.bristles.is_empty();
+    let pins = description.connectors.iter().any(ConnectorInfo::is_pin);
+    let rubs = pins || !description.frictions.is_empty() || !description.bristles.is_empty();
     let without = if rubs { "; this is without the friction of joints, which may hold it" } else { "" };
     let beyond = if overlap > 0.0 { " once its spool leaves the overlap" } else { "" };
     format!(

@@ -33,12 +33,6 @@ def states(q, count=3):
     return q + 1e-3 * random.standard_normal((count, q.size)), 0.1 * random.standard_normal((count, q.size))
 
 
-def skip_loops(file):
-    """Exported models are open chains; a test of the command sees that the others are refused."""
-    if "loop_joints" in file.read_text():
-        pytest.skip("closed loops are not exported")
-
-
 def functions_of(file):
     """The functions to compare of a crane: accelerations do not follow from pose and rates if oil or bristles have states, and those of
     generated code are of the open chain."""
@@ -64,7 +58,6 @@ def test_the_command_writes_what_python_computes(specs, seed, loaded, command, t
 def test_units_move_as_the_command_does(specs, seed, loaded, command, tmp_path, version):
     """Steps of co-simulation continue the history, so they are the steps of a run."""
     crane, _ = loaded
-    skip_loops(specs(seed))
     unit = tmp_path / "unit.fmu"
     command("export", specs(seed), "--format", "fmu", "--fmi", version, "-o", unit)
     run = crane.simulate(duration=DURATION, output=OUTPUT, verify=False)
@@ -80,7 +73,6 @@ def test_c_computes_what_python_computes(specs, seed, loaded, command, tmp_path)
     crane, q = loaded
     if json.loads(command("info", specs(seed), "--format", "json")).get("inputs"):
         pytest.skip("functions of cranes with inputs take these, too")
-    skip_loops(specs(seed))
     compared = functions_of(specs(seed))
     source, library = tmp_path / "crane.c", tmp_path / "crane.so"
     command("export", specs(seed), "--format", "c", "--functions", ",".join(compared), "-o", source)

@@ -42,10 +42,7 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
     }
     let (chain, spec) = registry.load(&options.crane.name, options.crane.strict)?;
     if let Some(joint) = chain.loop_joints.first() {
-        return Err(Problem::usage(
-            format!("{} has a loop, which `{}` closes; exported models are open chains", chain.name, joint.name),
-            "run it here, in the command or in Python; or export a spec without `loop_joints`, and close the loop in the other program",
-        ));
+        keep_loops(options, &chain.name, &joint.name)?;
     }
     let mut parameters = chain.parameter_defaults();
     let known: Vec<(&str, &str)> = chain.parameters.iter().map(|p| (p.name.as_str(), p.unit.as_str())).collect();
@@ -176,4 +173,26 @@ fn keep_rules(chain: &Chain, values: &[f64]) -> Outcome<()> {
         }),
     };
     refused.map_or(Ok(()), |(title, refusal)| Err(Problem::usage(title, refusal.help.as_str())))
+}
+
+/// A problem if an exported model would lack the loops of a crane.
+fn keep_loops(options: &Export, crane: &str, joint: &str) -> Outcome<()> {
+    /// Functions of the equations of motion that have been solved, or of what follows from them.
+    const SOLVED: [&str; 3] = ["forward_dynamics", "forward_dynamics_derivatives", "linearise"];
+    match options.format {
+        Language::Fmu => Ok(()),
+        Language::Urdf | Language::Mjcf => Err(Problem::usage(
+            format!("{crane} has a loop, which `{joint}` closes; exported models are open chains"),
+            "export a functional mock-up unit (`--format fmu`) for co-simulation, or a spec without `loop_joints`, and close the loop in the other program",
+        )),
+        Language::C => match options.functions.iter().find(|name| SOLVED.contains(&name.as_str())) {
+            None => Ok(()),
+            Some(name) => Err(Problem::usage(
+                format!(
+                    "`{name}` of {crane} in C would be that of the open chain, without `{joint}`, which closes a loop"
+                ),
+                "export `bias`, `forces`, `solve_mass`, `loop_states` and `loop_jacobians` with `--functions`, and solve for the forces of the loop: docs/manual/loops.md has the formula",
+            )),
+        },
+    }
 }

@@ -82,8 +82,9 @@ pub fn write_unit(
     let (file, size) = (file.display(), content.len() as f64 / 1e6);
     Ok(writeln!(
         out,
-        "{file} written: FMI {}, co-simulation and model exchange, {}{}; {size:.1} MB",
+        "{file} written: FMI {}, co-simulation{}, {}{}; {size:.1} MB",
         options.fmi.number(),
+        if crane.chain().loop_joints.is_empty() { " and model exchange" } else { " alone because of its loops" },
         if is_compiled { "compiled, " } else { "" },
         systems.join(", ")
     )?)

@@ -2,7 +2,7 @@
 
 use crane_codegen::SourceFile;
 use crane_model::dynamics::Contacts;
-use crane_model::{CoordinateRole, Description, force_states, results};
+use crane_model::{CoordinateRole, Description, LoopJointInfo, force_states, results};
 
 /// What a variable is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,9 +47,9 @@ pub struct Variable {
 /// The variables of a crane: time, coordinates, rates, derived quantities and states of forces, accelerations,
 /// rates of the forces' states, parameters, inputs, event indicators.
 ///
-/// Poses and rates of joints and of the base are outputs, and so are points, drives and reactions. Deformations of flexible links,
+/// Poses and rates of joints and of the base are outputs, and so are points, drives, reactions and what loop joints transmit. Deformations of flexible links,
 /// their moments, energies and accelerations can be read as well, but are not outputs, because they are many.
-pub fn list(description: &Description) -> Vec<Variable> {
+pub fn list(description: &Description, loop_joints: &[LoopJointInfo]) -> Vec<Variable> {
     let n = description.coordinates.len();
     let moments: Vec<String> = description
         .coordinates
@@ -59,7 +59,7 @@ pub fn list(description: &Description) -> Vec<Variable> {
         .collect();
     let states = force_states::columns(description);
     let mut units = vec![String::new(); states.len()];
-    let quantities = results::quantities(description, &[]).into_iter().enumerate().map(|(index, column)| {
+    let quantities = results::quantities(description, loop_joints).into_iter().enumerate().map(|(index, column)| {
         let source = match index {
             0 => Source::Time,
             _ if index <= n => Source::Position(index - 1),

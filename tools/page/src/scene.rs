@@ -45,7 +45,7 @@ pub fn scene(live: &LiveCrane, q: &[f64]) -> Value {
     let connectors: Vec<Value> = description
         .connectors
         .iter()
-        .filter(|connector| connector.points.len() > 1)
+        .filter(|connector| connector.points.len() > 1 && !connector.is_pin())
         .map(|connector| {
             let point = |point: &AttachmentInfo| json!({"body": point.body, "at": point.position});
             let points: Vec<Value> = connector.points.iter().map(point).collect();

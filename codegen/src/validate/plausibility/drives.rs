@@ -8,6 +8,27 @@ use crate::diagnostic::rule;
 const SLOW: f64 = 0.01;
 
 impl Plausibility<'_> {
+    /// Efforts that a drive cannot deliver at some time.
+    pub(super) fn efforts(&mut self) {
+        let chain = self.chain;
+        for given in items(self.crane.drives.as_ref()) {
+            let Some(span) = given.effort.as_ref().map(|given| given.span) else { continue };
+            let named = |name: &str| given.coordinate.value.as_deref() == Some(name);
+            let Some(drive) = chain.drives.iter().find(|drive| named(&chain.coordinates[drive.coordinate.0].name))
+            else {
+                continue;
+            };
+            let Some((effort, limit)) = drive.effort().zip(drive.max_effort()) else { continue };
+            let limit = limit.at(&self.values);
+            let greatest = effort.stations().iter().map(|value| value.at(&self.values).abs()).fold(0.0, f64::max);
+            if greatest > limit {
+                let coordinate = &chain.coordinates[drive.coordinate.0];
+                let unit = if coordinate.kind == CoordinateKind::Translation { "N" } else { "N m" };
+                self.warn(rule::effort_beyond_limit(span, &coordinate.name, rounded(greatest), rounded(limit), unit));
+            }
+        }
+    }
+
     /// A drive that stays behind its whole motion: where its force falls to nothing, it acts as a damper so stiff that steps become tiny.
     pub(super) fn slow_drives(&mut self) {
         for given in items(self.crane.drives.as_ref()) {

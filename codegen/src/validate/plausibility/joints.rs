@@ -1,7 +1,7 @@
 //! Booms that no drive can raise, and drives that the weight of the crane overcomes.
 
 use super::{Plausibility, items, rounded};
-use crate::chain::{Body, BodyId, Chain, CoordinateId, CoordinateKind, Drive};
+use crate::chain::{Body, BodyId, Chain, CoordinateId, CoordinateKind, Drive, Law};
 use crate::diagnostic::{Span, rule};
 use crate::spec::{Joint, Link};
 
@@ -81,7 +81,7 @@ impl Plausibility<'_> {
             // Other springs, ropes and stops may hold the joint instead.
             let held = chain.connectors().iter().any(|connector| {
                 let [first, end] = Chain::range(&chain.spanned(&connector.strain));
-                (first..end).contains(&drive.coordinate.0)
+                !matches!(connector.law, Law::Friction(_)) && (first..end).contains(&drive.coordinate.0)
             });
             let sag = self.effort_of_weight(drive.coordinate).abs() / stiffness;
             if stiffness > 0.0 && sag > SAG && !held && drive.max_effort().is_none() && drive.effort().is_none() {

@@ -3,7 +3,7 @@
 use super::beams::in_metres;
 use super::{Plausibility, items, rounded};
 use crate::diagnostic::{Span, rule};
-use crate::spec::{Link, Number, Placement, Spanned, Vector};
+use crate::spec::{Either, Link, LoopJointKind, Number, On, Place, Placement, Spanned, Vector};
 
 /// Upper limit of lengths and distances in a crane, m.
 const LONGEST: f64 = 200.0;
@@ -32,6 +32,17 @@ impl Plausibility<'_> {
                 }
             }
         }
+        for joint in items(crane.loop_joints.as_ref()) {
+            let what = format!("loop joint `{}`", joint.name.value.as_deref().unwrap_or_default());
+            for end in [&joint.from, &joint.to].into_iter().filter_map(|end| end.value.as_ref()) {
+                if end.link.is_some() {
+                    self.check_position(Some(&end.at), &what);
+                }
+            }
+            if let Some(LoopJointKind::Rod(rod)) = &joint.joint.value {
+                self.check_length(&rod.length, &format!("the length of {what}"));
+            }
+        }
         for point in items(crane.points.as_ref()) {
             let name = point.name.value.as_deref().unwrap_or_default();
             self.check_position(Some(&point.at), &format!("point `{name}`"));
@@ -45,6 +56,12 @@ impl Plausibility<'_> {
         }
         if let Some(rope) = link.rope.as_ref().and_then(|rope| rope.value.as_ref()) {
             self.check_length(&rope.length, &format!("the length of rope `{name}`"));
+        }
+        if let Some(Either::Full(On { at: Some(at), .. })) = link.on.as_ref().and_then(|on| on.value.as_ref())
+            && let Some(Place::Point(position)) = &at.value
+        {
+            let given = Spanned { value: Some(position.clone()), span: at.span };
+            self.check_position(Some(&given), &format!("the place of link `{name}` on another"));
         }
         self.check_position(link.com.as_ref(), &format!("the centre of mass of link `{name}`"));
         for body in items(link.bodies.as_ref()) {

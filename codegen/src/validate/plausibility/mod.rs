@@ -12,6 +12,7 @@ mod friction;
 mod hydraulics;
 mod joints;
 mod lengths;
+mod loops;
 mod masses;
 mod telescopes;
 
@@ -30,9 +31,12 @@ pub(super) fn warnings(crane: &Crane, chain: &Chain, values: Vec<f64>) -> Vec<Mi
     plausibility.places_of_feet();
     plausibility.couplings();
     plausibility.overlaps();
+    plausibility.pads();
+    plausibility.efforts();
     plausibility.stiff_springs();
     // Consequences of such numbers, such as frequencies and masses, would be reported as well.
     if plausibility.warnings.is_empty() {
+        plausibility.loops();
         plausibility.damping();
         plausibility.masses();
         plausibility.base();

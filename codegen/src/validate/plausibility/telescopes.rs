@@ -5,7 +5,36 @@ use crate::chain::{CoordinateId, Stage, Strain};
 use crate::diagnostic::{Span, rule};
 use crate::spec::Motion;
 
+/// Largest usual clearance of a pad, m, and against twist, rad.
+const WIDEST: [f64; 3] = [0.05, 0.05, 0.2];
+/// Least stiffness of a pad, N/m.
+const SOFTEST: f64 = 1e4;
+
 impl Plausibility<'_> {
+    /// Pads whose clearance or stiffness is in another unit.
+    pub(super) fn pads(&mut self) {
+        for link in items(Some(&self.crane.links)) {
+            let slides = link.beam.as_ref().and_then(|beam| beam.value.as_ref()?.slides_in.as_ref()?.value.as_ref());
+            let Some(pads) = slides.and_then(|slides| slides.pads.value.as_ref()) else { continue };
+            let name = link.name.value.as_deref().unwrap_or_default();
+            for pad in [&pads.front, &pads.rear].into_iter().filter_map(|pad| pad.value.as_ref()) {
+                let clearances = pad.clearance.as_ref().and_then(|given| given.value.as_ref());
+                for ((given, widest), unit) in clearances.into_iter().flatten().zip(WIDEST).zip(["m", "m", "rad"]) {
+                    let (clearance, at) = self.number(given);
+                    if clearance > widest {
+                        self.warn(rule::wide_clearance(at, name, rounded(clearance), unit));
+                    }
+                }
+                for given in pad.stiffness.value.iter().flatten().take(2) {
+                    let (stiffness, at) = self.number(given);
+                    if stiffness < SOFTEST {
+                        self.warn(rule::soft_pads(at, name, rounded(stiffness)));
+                    }
+                }
+            }
+        }
+    }
+
     /// Stages that a motion or a guess draws out so far that pads hold them poorly, or not at all: at most one warning each.
     pub(super) fn overlaps(&mut self) {
         for stage in self.chain.stages() {

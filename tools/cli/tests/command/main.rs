@@ -158,6 +158,27 @@ fn a_crane_goes_to_other_programs_and_comes_back() {
 }
 
 #[test]
+fn what_is_exported_of_closed_loops_says_what_it_lacks() {
+    let out = folder("loops");
+    fs::create_dir_all(&out).expect("a folder");
+    let file = |name: &str| out.join(name).to_str().expect("a path").to_owned();
+    let spec = "../../specs/examples/parallel_harvester.yaml";
+    for format in ["urdf", "mjcf"] {
+        let words = ["has a loop, which `", "exported models are open chains", "`--format fmu`"];
+        refused(&["export", spec, "--format", format, "-o", &file("model.xml")], &words);
+    }
+    let words =
+        ["`forward_dynamics` of", "would be that of the open chain", "`loop_jacobians`", "docs/manual/loops.md"];
+    refused(&["export", spec, "--format", "c", "-o", &file("loops.c")], &words);
+    let functions = ["--functions", "bias,forces,solve_mass,loop_states,loop_jacobians"];
+    assert!(
+        crane(&[&["export", spec, "--format", "c", "-o", &file("loops.c")][..], &functions].concat()).status.success()
+    );
+    let output = crane(&["export", spec, "--format", "fmu", "-o", &file("loops.fmu")]);
+    assert!(text(&output.stdout).contains("co-simulation alone because of its loops"), "{}", text(&output.stderr));
+}
+
+#[test]
 fn the_comparison_writes_figures() {
     let out = folder("comparison");
     let output = crane(&["--duration", "0.02", "--out", out.to_str().expect("a path")]);

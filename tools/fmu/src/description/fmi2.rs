@@ -16,14 +16,16 @@ pub fn write_description(crane: &dyn DynModel) -> String {
     head.push(("numberOfEventIndicators", subject.indicators().len().to_string()));
     xml.open("fmiModelDescription", &head);
     let yes = |name| (name, "true".to_owned());
-    let common = [
+    let mut common = vec![
         ("modelIdentifier", name),
         yes("canNotUseMemoryManagementFunctions"),
         yes("canGetAndSetFMUstate"),
         yes("canSerializeFMUstate"),
-        yes("providesDirectionalDerivative"),
     ];
-    xml.leaf("ModelExchange", &[&common[..], &[yes("completedIntegratorStepNotNeeded")]].concat());
+    if subject.can_be_integrated() {
+        common.push(yes("providesDirectionalDerivative"));
+        xml.leaf("ModelExchange", &[&common[..], &[yes("completedIntegratorStepNotNeeded")]].concat());
+    }
     xml.leaf("CoSimulation", &[&common[..], &[yes("canHandleVariableCommunicationStepSize")]].concat());
     subject.write_units(&mut xml);
     Subject::write_categories(&mut xml);

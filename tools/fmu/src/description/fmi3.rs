@@ -14,14 +14,16 @@ pub fn write_description(crane: &dyn DynModel) -> String {
     head.push(("variableNamingConvention", "flat".to_owned()));
     xml.open("fmiModelDescription", &head);
     let yes = |name| (name, "true".to_owned());
-    let common = [
+    let mut common = vec![
         ("modelIdentifier", crane.description().name.to_string()),
         yes("canGetAndSetFMUState"),
         yes("canSerializeFMUState"),
-        yes("providesDirectionalDerivatives"),
     ];
-    let no_completed_steps = ("needsCompletedIntegratorStep", "false".to_owned());
-    xml.leaf("ModelExchange", &[&common[..], &[no_completed_steps]].concat());
+    if subject.can_be_integrated() {
+        common.push(yes("providesDirectionalDerivatives"));
+        let no_completed_steps = ("needsCompletedIntegratorStep", "false".to_owned());
+        xml.leaf("ModelExchange", &[&common[..], &[no_completed_steps]].concat());
+    }
     xml.leaf("CoSimulation", &[&common[..], &[yes("canHandleVariableCommunicationStepSize")]].concat());
     subject.write_units(&mut xml);
     Subject::write_categories(&mut xml);

@@ -30,7 +30,12 @@ struct Subject<'a> {
 
 impl<'a> Subject<'a> {
     fn new(crane: &'a dyn DynModel) -> Self {
-        Self { crane, variables: variables::list(crane.description()) }
+        Self { crane, variables: variables::list(crane.description(), crane.loop_joints()) }
+    }
+
+    /// Whether an importer may integrate: not the states of a crane with closed loops, which depend on each other.
+    fn can_be_integrated(&self) -> bool {
+        self.crane.loop_joints().is_empty()
     }
 
     fn token(&self) -> String {

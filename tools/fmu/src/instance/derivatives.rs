@@ -32,7 +32,7 @@ impl Instance {
     ///
     /// # Errors
     /// As [`Instance::get`]; a variable of the direction is neither a state nor an input, or it is an input that follows
-    /// the motion of its spec.
+    /// the motion of its spec, or a coordinate or rate of a crane with closed loops.
     pub fn directional_derivative(
         &mut self,
         unknowns: &[u32],
@@ -42,6 +42,19 @@ impl Instance {
     ) -> Result<(), Fault> {
         /// The cube root of the machine epsilon balances truncation and rounding errors of central differences.
         const RELATIVE: f64 = 6e-6;
+        if let Some(joint) = self.crane.loop_joints().first() {
+            let is_state = |reference: &&u32| {
+                self.variable(**reference)
+                    .is_ok_and(|known| matches!(known.source, Source::Position(_) | Source::Rate(_)))
+            };
+            if let Some(&reference) = knowns.iter().find(is_state) {
+                return Err(Fault::Error(format!(
+                    "{} cannot change alone: loop joint {} ties it to others; ask for derivatives with respect to inputs",
+                    self.variable(reference)?.name,
+                    joint.name
+                )));
+            }
+        }
         let scales = ForceStates::new(self.crane.description()).scales();
         let mut greatest = 0.0_f64;
         for (&reference, along) in knowns.iter().zip(direction) {

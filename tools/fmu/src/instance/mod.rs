@@ -62,7 +62,7 @@ impl Instance {
     /// A message, if the spec cannot be read or the description belongs to another version of the library.
     pub fn new(folder: &Path, token: &str, make: Make) -> Result<Self, String> {
         let Opened { crane, parameters, warnings } = resources::open(folder, make)?;
-        let variables = variables::list(crane.description());
+        let variables = variables::list(crane.description(), crane.loop_joints());
         let expected = variables::token(crane.description(), &variables);
         if token != expected {
             return Err(format!(
@@ -320,8 +320,16 @@ impl Instance {
     /// Sets coordinates, rates and states of forces.
     ///
     /// # Errors
-    /// As [`Instance::get`]; the number of values is not the number of states, or one is not finite: a solver may try smaller steps then.
+    /// As [`Instance::get`]; the crane has closed loops; the number of values is not the number of states, or one is not finite: a solver
+    /// may try smaller steps then.
     pub fn set_continuous_states(&mut self, states: &[f64]) -> Result<(), Fault> {
+        if let Some(joint) = self.crane.loop_joints().first() {
+            return Err(Fault::Error(format!(
+                "loop joint {} ties coordinates to each other, and what an importer integrates would drift off the loop: use the unit for \
+                 co-simulation",
+                joint.name
+            )));
+        }
         self.check_states(states.len())?;
         if let Some(index) = states.iter().position(|state| !state.is_finite()) {
             return Err(Fault::Discard(format!("state {index} is {}: choose finite states", states[index])));

@@ -38,8 +38,7 @@ pub(super) fn outputs(source: &mut Source<'_>, rest: &Rest, q: &[Dual8], multipl
     let tensions = source.at(FunctionId::ConnectorTensions, q);
     let both = lengths.chunks_exact(2).zip(tensions.chunks_exact(3));
     for (connector, (length, tension)) in description.connectors.iter().zip(both) {
-        let strain = if connector.points.is_empty() { "slip" } else { "length" };
-        let strain = format!("{}_{strain}", connector.name);
+        let strain = format!("{}_{}", connector.name, connector.length_name());
         all.push((named(strain, connector.kind.unit(), Group::Connectors), length[0]));
         let force = named(connector_force(connector), connector.kind.force_unit(), Group::Connectors);
         all.push((force, tension[0]));

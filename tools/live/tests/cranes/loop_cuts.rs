@@ -14,7 +14,7 @@ use crane_model::dynamics::{Method, Sample, Settings};
 use crane_model::nalgebra::Vector3;
 use crane_model::results::Table;
 use crane_model::runs::{self, Start};
-use crane_model::{Cut as Place, force_states, modes, statics};
+use crane_model::{Cut as Place, force_states, modes, results, statics};
 
 /// Lengths of crank, coupler and rocker, and places of both pins on the column, m.
 const BARS: [(&str, f64); 3] = [("crank", 1.2), ("coupler", 2.0), ("rocker", 1.5)];
@@ -47,6 +47,11 @@ impl Cut {
             AtRocker => ["coupler_psi", "rocker_psi"],
             AtCrank => ["crank_psi", "coupler_psi"],
         }
+    }
+
+    /// The joint of the chain on the column.
+    fn pin_of_chain(self) -> &'static str {
+        if self == AtRocker { "crank_psi" } else { "rocker_psi" }
     }
 
     /// The sign of these coordinates.
@@ -214,6 +219,23 @@ fn slewing_and_forces(cut: Cut) -> String {
     format!("drives:\n{SLEWING}{}", forces(cut))
 }
 
+/// Friction and damping of both pins on the column: of one in its loop joint, of the other in its joint of the chain.
+const RUBBING: &str = "{pin: {axis: [0, 1, 0], to_axis: [0, 0, 1]}}, damping: 15, friction: {coulomb: 60, breakaway: 90, stribeck: 0.05, width: 2e-3, viscous: 20}";
+
+fn rubbing(cut: Cut) -> String {
+    let ([one, _], sign) = (cut.inner(), cut.sign());
+    let [from, to] = [INNER[0], INNER[0] + 0.35].map(|angle| sign * angle);
+    let (_, keys) = RUBBING.split_once("damping: 15, friction: ").expect("keys");
+    let pin = cut.pin_of_chain();
+    format!(
+        "drives:\n{SLEWING}- {{coordinate: {one}, stiffness: 2e6, damping: 2e4, motion: {{quintic: {{from: {from}, to: {to}, duration: 2}}}}}}\n\
+         damping: {{{pin}: 15}}\nfriction: {{{pin}: {keys}}}\n\
+         connectors: [{{name: strut, from: {}, to: {}, law: {{spring: {{stiffness: 2e4, length: 1.2, damping: 300}}}}}}]\n",
+        cut.at("crank", [0.7, -0.1]),
+        cut.at("rocker", [0.5, 0.1]),
+    )
+}
+
 fn valve_and_forces(cut: Cut) -> String {
     valve(cut) + &forces(cut)
 }
@@ -308,13 +330,14 @@ fn on_column_at_end(crane: &dyn DynCrane, method: Method) -> Vector3<f64> {
     force
 }
 
-const CASES: [(&str, Features); 6] = [
+const CASES: [(&str, Features); 7] = [
     ("a valve", Features { feet: false, beam: false, joint: PIN, more: valve }),
     ("forces", Features { feet: false, beam: false, joint: "ball", more: slewing_and_forces }),
     ("a cylinder without a valve", Features { feet: false, beam: false, joint: "ball", more: cylinder }),
     ("rigid drives", Features { feet: false, beam: false, joint: PIN, more: rigid }),
     ("a valve on feet", Features { feet: true, beam: false, joint: PIN, more: valve_and_forces }),
     ("an open valve and a beam on feet", Features { feet: true, beam: true, joint: PIN, more: command_and_forces }),
+    ("friction in pins", Features { feet: false, beam: false, joint: RUBBING, more: rubbing }),
 ];
 
 #[test]
@@ -370,4 +393,70 @@ fn every_method_starts_at_rest_and_agrees() {
     let speed = greatest(&exact, "ram_speed");
     let begin = exact.values("ram_speed").expect("a column").nth(1).expect("a row");
     assert!(begin.abs() < 2e-2 * speed, "{begin} {speed}");
+}
+
+/// Of a pin that is a loop joint in one description and a joint of the chain in the other: its angle from the guess, rate and torque, which has the
+/// opposite sign, because joints of the chain turn about −y.
+#[test]
+fn friction_of_a_loop_joint_is_that_of_a_joint_of_the_chain() {
+    let features = Features { feet: false, beam: false, joint: RUBBING, more: rubbing };
+    let cranes = [AtRocker, AtCrank].map(|cut| crane(cut, features));
+    for method in [Method::Bdf, Method::Rosenbrock] {
+        let tables = cranes.each_ref().map(|crane| run(crane, method));
+        for (of_loop, of_chain, cut) in [(&tables[0], &tables[1], AtCrank), (&tables[1], &tables[0], AtRocker)] {
+            let pin = cut.pin_of_chain();
+            for (own, other) in [
+                ("hinge_angle", pin.to_owned()),
+                ("hinge_angle_rate", format!("{pin}_rate")),
+                ("hinge_friction_torque", format!("{pin}_friction_torque")),
+            ] {
+                let a: Vec<f64> = of_loop.values(own).expect("a column").collect();
+                let mut b: Vec<f64> = of_chain.values(&other).expect("a column").collect();
+                if own == "hinge_friction_torque" {
+                    // That of the joint is without its damping.
+                    let rate = format!("{pin}_rate");
+                    let rates = of_chain.values(&rate).expect("a column");
+                    b.iter_mut().zip(rates).for_each(|(torque, rate)| *torque = -*torque + 15.0 * rate);
+                }
+                // The guess is 1e-2 rad beside the loop.
+                let offset = if own == "hinge_angle" { a[0] + b[0] } else { 0.0 };
+                let size = a.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
+                let off = a.iter().zip(&b).map(|(a, b)| (a + b - offset).abs()).fold(0.0, f64::max);
+                // Both runs have errors of 1e-8 per step; friction rises by 90 N m within 2e-3 rad/s.
+                assert!(size > 0.01 && off <= 1e-4 * size, "{method}, {own}: {off:.1e} of {size:.1e}");
+            }
+        }
+        let lost = greatest(&tables[0], "dissipated_energy");
+        assert!(lost > 20.0, "{lost} J");
+    }
+}
+
+/// A joint without a drive transmits no moment about its axis except its friction: what is beyond the cut includes the friction of the loop joint.
+#[test]
+fn internal_forces_include_the_friction_of_loop_joints() {
+    let features = Features { feet: false, beam: false, joint: RUBBING, more: rubbing };
+    let crane = crane(AtRocker, features);
+    let crane: &dyn DynCrane = &crane;
+    let start = Start::of(crane).expect("it rests");
+    let joints = |name: &str| {
+        let body = crane.description().bodies.iter().position(|body| body.name == name).expect("a body");
+        let is_joint = |cut: &Place| matches!(cut, Place::Joint { body: of } if *of == body);
+        crane.description().cuts().iter().position(is_joint).expect("a cut")
+    };
+    let rocker = joints("rocker");
+    let friction = results::quantities(crane.description(), crane.loop_joints());
+    let friction = friction.iter().position(|column| column.name == "hinge_friction_torque").expect("a column");
+    let mut greatest = [0.0_f64; 2];
+    let mut observe = |&Sample { t, q, v, x, .. }: &Sample<'_>| {
+        let (a, _) = force_states::accelerations(crane, t, (q, v), x);
+        let moment = crane.internal_forces_of(t, [q, v, &a], x)[rocker].moment.z;
+        let torque = results::quantities_at(crane, t, (q, v), x)[friction];
+        greatest = [greatest[0].max(moment.abs()), greatest[1].max(torque.abs())];
+        ControlFlow::Continue(())
+    };
+    crane
+        .simulate(&start.state(), &settings(crane, Method::Bdf), &mut observe)
+        .unwrap_or_else(|stopped| panic!("{stopped}"));
+    // Forces of some kN, and reactions that follow from accelerations.
+    assert!(greatest[1] > 60.0 && greatest[0] < 1e-6, "{greatest:?} N m");
 }

@@ -238,7 +238,7 @@ fn connectors(cases: &[Case<'_>]) -> Option<Grid> {
     let first = cases.iter().find(|case| !case.crane.description().connectors.is_empty())?;
     let mut headings = headings("connector", cases);
     headings.insert(1, "quantity".into());
-    let title = "Connectors: lengths, and forces, positive in tension; slips of couplings";
+    let title = "Connectors: lengths, and forces, positive in tension; slips of couplings, angles of pins";
     let mut grid = Grid::with_headings("connectors", title, headings);
     let at_rest = |case: &Case<'_>| {
         let (q, rest) = (&case.equilibrium.q, case.rest());
@@ -253,7 +253,10 @@ fn connectors(cases: &[Case<'_>]) -> Option<Grid> {
             grid.row(words.into_iter().chain(cells).chain([unit.into()]).collect::<Vec<_>>());
         };
         row(connector.length_name(), connector.kind.unit(), |(length, _)| *length);
-        row("force", connector.kind.force_unit(), |(_, tension)| tension.force);
+        // At rest, nothing rubs.
+        if !connector.is_pin() {
+            row("force", connector.kind.force_unit(), |(_, tension)| tension.force);
+        }
     }
     Some(grid)
 }
