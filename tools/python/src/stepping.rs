@@ -115,7 +115,7 @@ impl Crane {
         })?;
         let recalled: Option<Vec<_>> = recalled.into_iter().collect();
         let name = &self.live.description().name;
-        let wrong = || PyValueError::new_err(format!("this is no saved motion of {name}, or of another version"));
+        let wrong = || PyValueError::new_err(format!("this is not a saved motion of {name}, or of another version"));
         Ok(self.stepping(recalled.ok_or_else(wrong)?))
     }
 }
