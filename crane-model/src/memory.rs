@@ -43,7 +43,9 @@ pub fn visit_flags(flags: &mut Vec<bool>, visit: Visit<'_>) {
     let mut count = flags.len();
     visit_count(&mut count, visit);
     flags.resize(count.min(LONGEST), false);
-    flags.iter_mut().for_each(|flag| visit_flag(flag, visit));
+    for flag in flags {
+        visit_flag(flag, visit);
+    }
 }
 
 /// Visits indices below `end`, whose number may change.

@@ -196,7 +196,9 @@ impl<F: Formula + Send> Stepper for Adaptive<'_, F> {
         step.visit(visit);
         switches.visit(visit);
         visit_numbers(motion, visit);
-        [steps, rejections].into_iter().for_each(|count| visit_count(count, visit));
+        for count in [steps, rejections] {
+            visit_count(count, visit);
+        }
     }
 
     fn statistics(&self) -> Statistics {
