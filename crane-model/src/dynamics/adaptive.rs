@@ -64,8 +64,22 @@ impl<'a, F: Formula> Adaptive<'a, F> {
         Self { formula, equations, norm, next: FIRST, step, switches, motion, steps: 0, rejections: 0 }
     }
 
+    /// The last step, for motions that follow this one: its formula, the equations and the step.
+    pub fn last(&mut self) -> (&mut F, &mut Equations<'a>, &Step) {
+        (&mut self.formula, &mut self.equations, &self.step)
+    }
+
+    /// Shortens the next step to what an error at the end of the last one allows that is not an error of the motion itself.
+    pub fn heed(&mut self, error: &[f64]) {
+        let size = self.norm.size(&self.step.end, error);
+        if size > 1.0 {
+            let ideal = SAFETY * size.powf(-1.0 / F::METHOD.order() as f64);
+            self.next = self.next.min(self.step.length * ideal.max(RATIO.0));
+        }
+    }
+
     /// The error that no further step is possible.
-    fn stuck(&self, t: f64, h: f64) -> Stopped {
+    pub fn stuck(&self, t: f64, h: f64) -> Stopped {
         let Equations { crane, n, .. } = self.equations;
         let q = &self.motion[..n];
         StepContext { method: F::METHOD, t, h, q, description: crane.description() }.failed(Cause::Tolerance, crane)

@@ -234,6 +234,11 @@ impl<'a> Integration<'a> {
         Sample { t: self.time, q, v, x, work, dissipated, load_work }
     }
 
+    /// Derivatives of the last result, of a method that has them.
+    pub(super) fn derivatives(&mut self) -> Vec<Vec<f64>> {
+        self.stepper.derivatives(self.time)
+    }
+
     /// Statistics up to the last result.
     pub fn run(&self) -> Run {
         let statistics = self.stepper.statistics();

@@ -21,6 +21,8 @@ mod equations;
 #[cfg(feature = "std")]
 mod force_state_update;
 #[cfg(feature = "std")]
+pub mod gradients;
+#[cfg(feature = "std")]
 mod integration;
 #[cfg(feature = "std")]
 mod method;

@@ -22,9 +22,9 @@ pub(super) struct References {
 pub(super) struct Reference {
     pub coordinate: usize,
     /// Index of its drive.
-    drive: usize,
+    pub drive: usize,
     /// Whether the drive is rigid.
-    rigid: bool,
+    pub rigid: bool,
 }
 
 impl References {
@@ -70,9 +70,19 @@ impl References {
         self.driven.iter().map(|reference| reference.coordinate)
     }
 
+    /// The references.
+    pub fn all(&self) -> &[Reference] {
+        &self.driven
+    }
+
     /// Sets the step from `begin` to `end`, s.
     pub fn step_within(&mut self, begin: f64, end: f64) {
         self.within = [begin, end];
+    }
+
+    /// Beginning and end of the step, s.
+    pub fn within(&self) -> [f64; 2] {
+        self.within
     }
 
     /// Makes a motion of `n` coordinates relative to the drives' motions.
@@ -102,16 +112,7 @@ impl References {
         if self.driven.is_empty() {
             return;
         }
-        let [begin, end] = self.within;
-        let by = ((end - begin) * Self::DIFFERENCE).max(Self::LEAST);
-        // Weights of the rates at three times; in the middle of the step the first is zero.
-        let (shifts, weights) = if t - by < begin {
-            ([by, 2.0 * by], [-3.0, 4.0, -1.0])
-        } else if t + by > end {
-            ([-by, -2.0 * by], [3.0, -4.0, 1.0])
-        } else {
-            ([by, -by], [0.0, 1.0, -1.0])
-        };
+        let (shifts, weights, by) = self.differences(t);
         crane.drive_motions(t, &mut self.motions);
         for (shift, near) in shifts.iter().zip(&mut self.near) {
             crane.drive_motions(t + shift, near);
@@ -120,8 +121,24 @@ impl References {
             let rates = [&self.motions, &self.near[0], &self.near[1]].map(|motions| motions[reference.drive][1]);
             let sum: f64 = rates.iter().zip(weights).map(|(rate, weight)| rate * weight).sum();
             let acceleration = &mut accelerations[reference.coordinate];
-            *acceleration = if reference.rigid { 0.0 } else { *acceleration - sum / (2.0 * by) };
+            *acceleration = if reference.rigid { 0.0 } else { *acceleration - sum / by };
         }
+    }
+
+    /// How rates are differenced at a time: with those at two further times, whose distances are in s; the weights of the three; and the
+    /// time by which their sum is divided, s.
+    pub fn differences(&self, t: f64) -> ([f64; 2], [f64; 3], f64) {
+        let [begin, end] = self.within;
+        let by = ((end - begin) * Self::DIFFERENCE).max(Self::LEAST);
+        // In the middle of the step the weight of the rate at the time itself is zero.
+        let (shifts, weights) = if t - by < begin {
+            ([by, 2.0 * by], [-3.0, 4.0, -1.0])
+        } else if t + by > end {
+            ([-by, -2.0 * by], [3.0, -4.0, 1.0])
+        } else {
+            ([by, -by], [0.0, 1.0, -1.0])
+        };
+        (shifts, weights, 2.0 * by)
     }
 }
 

@@ -135,7 +135,8 @@ pub(super) struct Stages<'a> {
     system: System<'a>,
     /// uᵢ.
     u: [Vec<f64>; STAGES],
-    place: Vec<f64>,
+    /// Where the rates of each stage are evaluated.
+    places: [Vec<f64>; STAGES],
     rhs: Vec<f64>,
 }
 
@@ -143,9 +144,34 @@ impl<'a> Stages<'a> {
     /// Storage for motions of this many numbers.
     pub fn new(crane: &'a dyn DynImplicit, len: usize) -> Self {
         let zeros = || vec![0.0; len];
-        let u = std::array::from_fn(|_| zeros());
-        Self { system: System::new(crane).with_steeper_bristles(), u, place: zeros(), rhs: zeros() }
+        let [u, places] = std::array::from_fn(|_| std::array::from_fn(|_| zeros()));
+        Self { system: System::new(crane).with_steeper_bristles(), u, places, rhs: zeros() }
     }
+
+    /// Where the rates of a stage of the last step were evaluated: after the start, of a step of length `h`, s.
+    pub fn place(&self, stage: usize, h: f64) -> (f64, &[f64]) {
+        (NODES[stage] * h, &self.places[stage])
+    }
+
+    /// uᵢ of a linear motion that follows this one, with the matrix of the last step, of length `h`, s: from the rates at its place and uⱼ of the
+    /// stages before.
+    pub fn follow(&mut self, stage: usize, h: f64, rates: &[f64], u: &mut [Vec<f64>]) {
+        let (before, rest) = u.split_at_mut(stage);
+        self.rhs.copy_from_slice(rates);
+        add_all(&mut self.rhs, h.recip(), C[stage], before.iter());
+        self.system.solve(&self.rhs, &mut rest[0]);
+    }
+}
+
+/// The end of a step from uᵢ, and the places of stages from those before: adds `Σⱼ aᵢⱼ uⱼ`, or `Σ mᵢ uᵢ` if `stage` is the number of stages.
+pub(super) fn add_stages(stage: usize, u: &[Vec<f64>], place: &mut [f64]) {
+    let weights = A.get(stage).copied().unwrap_or(&WEIGHTS);
+    add_all(place, 1.0, weights, u.iter());
+}
+
+/// Adds the difference from the embedded formula, times a factor, of a step with these uᵢ.
+pub(super) fn add_error(factor: f64, u: &[Vec<f64>], error: &mut [f64]) {
+    add_all(error, factor, &ERROR, u.iter());
 }
 
 impl Formula for Stages<'_> {
@@ -156,10 +182,12 @@ impl Formula for Stages<'_> {
         let x = equations.force_states(&step.start);
         self.system.factorise(step.t, equations.state(step.t, &step.start), x, h * GAMMA);
         self.system.solve(&step.slopes[0], &mut self.u[0]);
+        self.places[0].copy_from_slice(&step.start);
         for i in 1..STAGES {
-            self.place.copy_from_slice(&step.start);
-            add_all(&mut self.place, 1.0, A[i], self.u.iter());
-            equations.slope(step.t + NODES[i] * h, &self.place, &mut self.rhs)?;
+            let place = &mut self.places[i];
+            place.copy_from_slice(&step.start);
+            add_all(place, 1.0, A[i], self.u.iter());
+            equations.slope(step.t + NODES[i] * h, place, &mut self.rhs)?;
             add_all(&mut self.rhs, h.recip(), C[i], self.u.iter());
             self.system.solve(&self.rhs, &mut self.u[i]);
         }

@@ -37,6 +37,11 @@ pub trait Stepper: Send {
     /// Statistics so far.
     fn statistics(&self) -> Statistics;
 
+    /// Derivatives of the motion at a time within the last step, one motion for each direction, if the method has any.
+    fn derivatives(&mut self, _t: f64) -> Vec<Vec<f64>> {
+        Vec::new()
+    }
+
     /// The efforts of the drives so far, if the method monitors them.
     fn efforts(&self) -> Vec<EffortAccuracy> {
         Vec::new()
@@ -70,6 +75,10 @@ impl<S: Stepper + ?Sized> Stepper for &mut S {
 
     fn statistics(&self) -> Statistics {
         (**self).statistics()
+    }
+
+    fn derivatives(&mut self, t: f64) -> Vec<Vec<f64>> {
+        (**self).derivatives(t)
     }
 
     fn efforts(&self) -> Vec<EffortAccuracy> {

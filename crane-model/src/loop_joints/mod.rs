@@ -200,17 +200,23 @@ impl Loops {
         if self.is_empty() {
             return;
         }
-        let Self { n, jacobian, independence, shares, states, .. } = self;
-        for (share, &row) in shares.iter_mut().zip(independence.kept()) {
-            let gamma = if moving { states[row].z } else { 0.0 };
-            *share = dot(&jacobian[row * *n..][..*n], x) + gamma;
-        }
-        self.subtract(x);
+        let states = std::mem::take(&mut self.states);
+        self.correct_by(x, |row| if moving { states[row].z } else { 0.0 });
+        self.states = states;
         let Self { independence, shares, multipliers, .. } = self;
         multipliers.fill(0.0);
         for (share, &row) in shares.iter().zip(independence.kept()) {
             multipliers[row] = *share;
         }
+    }
+
+    /// The same for `J x + γ = 0` with a given γ of each equation; λ stays as it is.
+    pub fn correct_by(&mut self, x: &mut [f64], gamma: impl Fn(usize) -> f64) {
+        let Self { n, jacobian, independence, shares, .. } = self;
+        for (share, &row) in shares.iter_mut().zip(independence.kept()) {
+            *share = dot(&jacobian[row * *n..][..*n], x) + gamma(row);
+        }
+        self.subtract(x);
     }
 
     /// `x − M⁻¹ Jᵀ S⁻¹ shares`; the shares become `S⁻¹ shares`.

@@ -2,11 +2,13 @@
 
 pub mod ensemble;
 mod failed;
+mod gradients;
 mod manoeuvre;
 mod recorded;
 mod start;
 
 pub use failed::{Failed, Reason};
+pub use gradients::{Gradients, record_gradients};
 pub use manoeuvre::{Bound, POSES, Pose, SAFE, limiting_modes, manoeuvre, step_limit};
-pub use recorded::{Recorded, imbalance, record, record_checked};
+pub use recorded::{Recorded, check, imbalance, record, record_checked};
 pub use start::{EQUILIBRIUM, GUESS, Start};

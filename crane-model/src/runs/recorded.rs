@@ -8,7 +8,7 @@ use std::{
 use super::{Bound, Failed, Reason, Start, step_limit};
 use crate::{
     dyn_crane::DynCrane,
-    dynamics::{self, Run, Sample, Watch},
+    dynamics::{self, Run, Sample, Stopped, Watch},
     results::{self, Column, Recording, Table, Verification, cautions, verification},
     stability::cause,
 };
@@ -74,12 +74,12 @@ fn exchanged_within_tolerance(crane: &dyn DynCrane, start: &Start, settings: &dy
 }
 
 /// Records every sample, and asks after every step whether to continue.
-struct Recorder<'a> {
-    recording: Recording<'a>,
+struct Recorder<'a, 'c> {
+    recording: &'a mut Recording<'c>,
     proceed: &'a mut dyn FnMut(f64) -> ControlFlow<()>,
 }
 
-impl Watch for Recorder<'_> {
+impl Watch for Recorder<'_, '_> {
     fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
         self.recording.push(sample);
         ControlFlow::Continue(())
@@ -106,10 +106,23 @@ pub fn record(
     settings: &dynamics::Settings,
     proceed: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Recorded, Failed> {
+    record_by(crane, start, settings, |recording| {
+        let mut recorder = Recorder { recording, proceed };
+        dynamics::simulate_watched(crane, &start.state(), settings, &mut recorder)
+    })
+}
+
+/// The same with a given way to run.
+pub(super) fn record_by(
+    crane: &dyn DynCrane,
+    start: &Start,
+    settings: &dynamics::Settings,
+    run: impl FnOnce(&mut Recording<'_>) -> Result<Run, Stopped>,
+) -> Result<Recorded, Failed> {
     let begin = clock();
-    let mut recorder = Recorder { recording: Recording::new(crane), proceed };
-    let run = dynamics::simulate_watched(crane, &start.state(), settings, &mut recorder);
-    let table = recorder.recording.into_table();
+    let mut recording = Recording::new(crane);
+    let run = run(&mut recording);
+    let table = recording.into_table();
     let singular = cautions::near_singular(crane.description(), &table);
     let run = run.map_err(|stopped| {
         let limit = if settings.method.is_adaptive() { None } else { step_limit(crane, start) };
@@ -154,7 +167,19 @@ pub fn record_checked(
     (verify, bend): (bool, f64),
     proceed: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Recorded, Failed> {
-    let mut recorded = record(crane, start, settings, proceed)?;
+    let recorded = record(crane, start, settings, proceed)?;
+    Ok(check(recorded, crane, start, settings, (verify, bend), proceed))
+}
+
+/// Adds all cautions to a run, and the estimate of its error if `verify`, as [`record_checked`].
+pub fn check(
+    mut recorded: Recorded,
+    crane: &dyn DynCrane,
+    start: &Start,
+    settings: &dynamics::Settings,
+    (verify, bend): (bool, f64),
+    proceed: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Recorded {
     let description = crane.description();
     let [loads, servos] = cautions::of_loads(crane, &recorded.table);
     let grows = !servos.is_empty();
@@ -185,5 +210,5 @@ pub fn record_checked(
             }
         }
     }
-    Ok(recorded)
+    recorded
 }

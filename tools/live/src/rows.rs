@@ -148,6 +148,12 @@ impl<T: Number> Evaluation<T> {
         }
     }
 
+    /// Other inputs, three numbers each.
+    pub(crate) fn set_inputs(&mut self, inputs: &[T]) {
+        self.inputs.clear();
+        self.inputs.extend_from_slice(inputs);
+    }
+
     /// The results at one state, with the crane's parameters.
     pub(crate) fn at(&mut self, t: T, q: &[T], v: &[T], a: &[T]) -> &[T] {
         let Lanes { t: times, q: poses, v: rates, a: accelerations, .. } = &mut self.lanes;

@@ -160,7 +160,13 @@ class Crane:
     def _stable_steps(self, q: ArrayLike, invalid: str = "raise") -> dict[str, Any]:
         """Largest stable steps about poses: `Crane.stability` names them."""
     def _record(
-        self, timing: dict[str, Any], q: ArrayLike | None = None, v: ArrayLike | None = None, verify: bool = True, bend: float = ...
+        self,
+        timing: dict[str, Any],
+        q: ArrayLike | None = None,
+        v: ArrayLike | None = None,
+        verify: bool = True,
+        bend: float = ...,
+        gradients: list[str] | None = None,
     ) -> dict[str, Any]:
         """A run: `Crane.simulate` makes a `Run` of it."""
     def _run_ensemble(

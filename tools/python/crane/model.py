@@ -452,6 +452,7 @@ class Crane(_native.Crane):
         verify: bool = True,
         bend_limit: float | None = None,
         inputs: dict[str, float | None] | None = None,
+        gradients: Sequence[str] | None = None,
     ) -> Run:
         """A run from the static equilibrium at rest, or from pose q and rates v.
 
@@ -462,13 +463,22 @@ class Crane(_native.Crane):
         verify: repeat the run more finely to estimate the error of every column.
         bend_limit: bending or torsion of a beam section, degrees, beyond which there is a caution.
         inputs: of the spec, by name; constant throughout the run.
+        gradients: names of what the run is differentiated by, for `Run.gradient`: live parameters ("payload"), inputs that are set
+        ("inputs.r"), and starts of coordinates and of their rates ("q0.boom_psi", "v0.boom_psi"). The method is then "rosw4".
 
         Ctrl-C ends it with KeyboardInterrupt.
         """
+        names = None
+        if gradients is not None:
+            names = [gradients] if isinstance(gradients, str) else list(gradients)
+            if method not in (None, "rosw4") or step is not None:
+                given = f"step={step!r}" if method in (None, "rosw4") else f"method={method!r}"
+                raise ValueError(f'{given} has no gradients: leave it out, or write method="rosw4"')
+            method = "rosw4"
         timing = _timing(method, duration, output, tolerance, step, force)
         limits = {} if bend_limit is None else {"bend": bend_limit}
         crane = self.replace(inputs=inputs) if inputs else self
-        found = crane._record(timing, q, v, verify, **limits)
+        found = crane._record(timing, q, v, verify, **limits, gradients=names)
         units = dict(found.pop("columns"))
         differences = found.pop("differences")
         errors = None if differences is None else dict(zip(units, differences, strict=True))

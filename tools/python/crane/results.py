@@ -271,6 +271,7 @@ class Run(Mapping[str, Array]):
     divergence: time in which small differences grow by a factor e, s, if the motion is chaotic.
     cautions: where the run was outside the validity of the model or the method.
     crane: the crane with the parameters and inputs of the run.
+    gradients: (times, columns), derivatives of `table` by each name that `simulate(gradients=...)` was given.
     """
 
     units: dict[str, str]
@@ -285,6 +286,7 @@ class Run(Mapping[str, Array]):
     cautions: list[str]
     wall_time: float
     crane: "Crane" = field(repr=False)
+    gradients: dict[str, Array] = field(default_factory=dict, repr=False)
 
     def __repr__(self) -> str:
         """One line: the columns are many."""
@@ -318,6 +320,30 @@ class Run(Mapping[str, Array]):
             "maximum": float(column[greatest]),
             "time_of_maximum": float(t[greatest]),
         }
+
+    def gradient(self, column: str, name: str, of: str = "values") -> Any:
+        """Derivative of a column by a live parameter, an input or a number of the initial state, in their units.
+
+        name: one of those given to `simulate(gradients=...)`. of: "values" (an array over the times), "maximum", "minimum", "peak" (the
+        largest magnitude) or "integral" (over time, by the trapezoidal rule). That of an extreme is the derivative at its first time: to first order the
+        time itself does not matter. Work, dissipated energy and the energy balance of a run have none.
+        """
+        if name not in self.gradients:
+            known = ", ".join(self.gradients) or "none: run simulate(gradients=[...])"
+            raise KeyError(f"the run has no gradients by {name!r}: it has {known}")
+        values, place = self[column], _place(self.units, column)
+        slopes = self.gradients[name][:, place]
+        if np.isnan(slopes).all():
+            raise ValueError(f"{column} has no gradient: it is an integral over the run, by the audit of its energy")
+        if of == "values":
+            return slopes
+        if of == "integral":
+            return float(np.sum(0.5 * np.diff(self.t) * (slopes[1:] + slopes[:-1])))
+        extremes = {"maximum": values, "minimum": -values, "peak": np.abs(values)}
+        if of not in extremes:
+            raise ValueError(f'of={of!r}: write "values", "maximum", "minimum", "peak" or "integral"')
+        index = int(np.argmax(extremes[of]))
+        return float(np.sign(values[index]) * slopes[index] if of == "peak" else slopes[index])
 
     def page(self) -> str:
         """The run in 3-D, in plots and in tables: an HTML page that needs no network, to be written to a file."""

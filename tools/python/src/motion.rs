@@ -3,12 +3,13 @@
 use std::ops::ControlFlow;
 use std::str::FromStr;
 
+use crane_live::sensitivity::runs::{Along, run_with_gradients};
 use crane_model::Description;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::{InitialState, Method, Settings, Statistics};
 use crane_model::results::{Column, Peaks, cautions};
 use crane_model::runs::ensemble::{self, Case, Execution};
-use crane_model::runs::{Bound as StepBound, Failed, Reason, Recorded, SAFE, Start, record_checked, step_limit};
+use crane_model::runs::{Bound as StepBound, Failed, Reason, Recorded, SAFE, Start, check, record_checked, step_limit};
 use crane_model::stability::cause;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -167,7 +168,8 @@ fn check_finite(name: &str, argument: &Argument, description: &Description) -> P
 #[pymethods]
 impl Crane {
     /// A run with all its results.
-    #[pyo3(name = "_record", signature = (timing, q=None, v=None, verify=true, bend=cautions::BEND))]
+    #[pyo3(name = "_record", signature = (timing, q=None, v=None, verify=true, bend=cautions::BEND, gradients=None))]
+    #[expect(clippy::too_many_arguments, reason = "named arguments in Python")]
     fn record<'py>(
         &self,
         py: Python<'py>,
@@ -176,6 +178,7 @@ impl Crane {
         v: Option<&Bound<'py, PyAny>>,
         verify: bool,
         bend: f64,
+        gradients: Option<Vec<String>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let crane: &dyn DynCrane = &self.live;
         let description = crane.description();
@@ -189,15 +192,29 @@ impl Crane {
         let [q, v] = [("q", q), ("v", v)]
             .map(|(name, state)| state.map(|state| read_coordinates(name, state, description)).transpose());
         let (q, v) = (q?, v?);
+        let named =
+            |name: &String| Along::named(&self.live, name).map_err(|not| PyValueError::new_err(not.to_string()));
+        let along =
+            gradients.as_ref().map(|names| names.iter().map(named).collect::<PyResult<Vec<_>>>()).transpose()?;
         let watch = Watch::new();
         let result = py.detach(|| {
             let start = Start::with(crane, q.as_deref(), v.as_deref()).map_err(|failed| raised(&failed))?;
             let settings = timing.stable(crane, &start)?;
-            let recorded = record_checked(crane, &start, &settings, (verify, bend), &mut |_| unless(watch.look()));
+            let proceed = &mut |_: f64| unless(watch.look());
+            let recorded = match &along {
+                Some(along) => {
+                    run_with_gradients(&self.live, &start, &settings, along, proceed).map(|(recorded, found)| {
+                        (check(recorded, crane, &start, &settings, (verify, bend), proceed), found)
+                    })
+                }
+                None => record_checked(crane, &start, &settings, (verify, bend), proceed)
+                    .map(|recorded| (recorded, Vec::new())),
+            };
             Ok::<_, PyErr>((settings, recorded.map_err(|failed| raised(&failed))?))
         });
         watch.finish(py)?;
-        let (settings, Recorded { start, run, table, wall, verification, cautions }) = result?;
+        let (settings, (recorded, found)) = result?;
+        let Recorded { start, run, table, wall, verification, cautions } = recorded;
         let all = PyDict::new(py);
         all.set_item("columns", columns_with_units(&table.columns))?;
         let rows = table.rows.len();
@@ -211,6 +228,13 @@ impl Crane {
         all.set_item("divergence", verification.as_ref().and_then(|found| found.divergence))?;
         all.set_item("cautions", cautions)?;
         all.set_item("wall_time", wall.as_secs_f64())?;
+        if let Some(names) = gradients {
+            let of_names = PyDict::new(py);
+            for (name, rows) in names.iter().zip(found) {
+                of_names.set_item(name, array(py, rows.concat(), &[rows.len()], &[table.columns.len()])?)?;
+            }
+            all.set_item("gradients", of_names)?;
+        }
         Ok(all)
     }
 

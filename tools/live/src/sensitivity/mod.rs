@@ -22,6 +22,7 @@
 //! | `largest_load` | the largest load within limits, as a further output |
 //! | `units` | units of these numbers |
 //! | `differences` | numbers of the spec that cannot be live parameters |
+//! | `runs` | the same over a run |
 //! | `whole` | what a whole change does that the derivatives do not show |
 
 mod differences;
@@ -30,6 +31,7 @@ mod largest_load;
 mod outputs;
 mod places;
 mod rest;
+pub mod runs;
 mod source;
 mod strength;
 mod units;

@@ -15,13 +15,23 @@ pub(super) struct Source<'a> {
     pub crane: &'a LiveCrane,
     evaluations: BTreeMap<FunctionId, Evaluation<Dual8>>,
     parameters: Vec<Dual8>,
+    inputs: Vec<Dual8>,
 }
 
 impl<'a> Source<'a> {
     /// With the parameters of the crane, without slopes.
     pub fn new(crane: &'a LiveCrane) -> Self {
         let parameters = crane.parameters().iter().map(|value| Dual8::splat(*value)).collect();
-        Self { crane, evaluations: BTreeMap::new(), parameters }
+        let inputs = crane.inputs().numbers().map(Dual8::splat).collect();
+        Self { crane, evaluations: BTreeMap::new(), parameters, inputs }
+    }
+
+    /// Other values and slopes of all inputs, three numbers each.
+    pub fn set_inputs(&mut self, inputs: Vec<Dual8>) {
+        for evaluation in self.evaluations.values_mut() {
+            evaluation.set_inputs(&inputs);
+        }
+        self.inputs = inputs;
     }
 
     /// Other values and slopes of all parameters.
@@ -40,10 +50,11 @@ impl<'a> Source<'a> {
 
     /// A function of a pose and rates; zeros if the crane does not need it.
     pub fn with_rates(&mut self, id: FunctionId, q: &[Dual8], v: &[Dual8]) -> Vec<Dual8> {
-        let Self { crane, evaluations, parameters } = self;
+        let Self { crane, evaluations, parameters, inputs } = self;
         let evaluation = evaluations.entry(id).or_insert_with(|| {
             let mut evaluation = Evaluation::new(crane, Quantity::Of(id));
             evaluation.set_parameters(parameters);
+            evaluation.set_inputs(inputs);
             evaluation
         });
         let zeros = vec![Dual8::splat(0.0); q.len()];

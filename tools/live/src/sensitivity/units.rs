@@ -36,11 +36,18 @@ pub fn unit_at(place: &str, source: &SourceFile, description: &Description) -> &
         },
         "couplings" if key == "offset" => named("coordinate").unit(),
         "drives" | "stops" | "friction" | "couplings" => of_joint(key, named("coordinate")),
+        // Of pins that close loops, and their friction.
+        "loop_joints" if is_of_pin(&words, key) => of_joint(key, CoordinateKind::Rotation),
         "gravity" => "m/s²",
         "parameters" | "inputs" => "",
         "run" => "s",
         _ => of_part(&words, key, component),
     }
+}
+
+/// Whether a number of a loop joint is one of its turning.
+fn is_of_pin(words: &[&str], key: &str) -> bool {
+    key == "damping" || words.contains(&"friction")
 }
 
 /// Whether a coordinate, or the only joint of a link, turns or slides.

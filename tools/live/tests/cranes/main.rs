@@ -30,6 +30,7 @@ mod motion_derivatives;
 mod overlaps;
 mod rope;
 mod rows;
+mod run_gradients;
 mod sensitivity;
 mod servos;
 mod sheaves;

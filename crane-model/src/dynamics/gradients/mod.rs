@@ -1,0 +1,202 @@
+//! Derivatives of a motion along directions, in forward mode: by a live parameter, by an input, by a number of the initial state.
+//!
+//! With `ẏ = F(t, y, p)` the derivative `s = dy/dp` obeys the linear equations
+//!
+//! ```text
+//! ṡ = ∂F/∂y s + ∂F/∂p,      s(0) = dy₀/dp
+//! ```
+//!
+//! They are integrated along with the motion by the W-method of [`rosenbrock`](super::rosenbrock): its order holds for any matrix, so each
+//! direction is solved with the factors of the motion's own step, and its stages are evaluated where the stages of the motion are. A step is
+//! followed once the error of the motion allows it; if that of a derivative times its number exceeds the tolerance, the next step is shorter.
+//!
+//! In second-order form, with `r = A a − e − f + Jᵀλ` at the accelerations a and the forces λ of loop joints, held constant, and Q the forces with
+//! states of their own, accelerations change with `(δq, δv, δx, δp)` by
+//!
+//! ```text
+//! [A  Jᵀ] [δa]   [δQ − δr      ]
+//! [J  0 ] [δλ] = [−δ(J a + J̇ v)]
+//! ```
+//!
+//! The functions of the crane are given with exact slopes ([`Slopes`]); Q and the rates of x, whose laws are not among them, are differenced, but
+//! for those of bristles, whose law has a kink where a joint sticks and whose derivatives are known.
+//!
+//! No law of a crane jumps where it changes its branch: contacts begin and end without a force, so s is continuous there. Functions of time may jump,
+//! such as the scale of a load or the acceleration of a drive's motion. If the time t* of a jump from F⁻ to F⁺ depends on p,
+//!
+//! ```text
+//! s⁺ = s⁻ + (F⁻ − F⁺) dt*/dp
+//! ```
+//!
+//! (M. A. Aizerman, F. R. Gantmacher, Determination of stability by linear approximation of a periodic solution of a system of differential
+//! equations with discontinuous right-hand sides, Q. J. Mech. Appl. Math. 11 (1958) 385.)
+//!
+//! | module | content |
+//! |---|---|
+//! | `rates` | F, and its derivative along directions |
+//! | `jump` | where functions of time are not smooth |
+//! | `follower` | the derivatives, step by step |
+
+mod follower;
+mod jump;
+mod rates;
+
+use super::{InitialState, Integration, Run, Sample, Settings, Stopped, settings::divided};
+use crate::{
+    dyn_crane::{DynCrane, DynImplicit},
+    force_states::ForceStates,
+};
+use follower::Follower;
+
+/// A state of a crane at which its functions are given with slopes.
+#[derive(Clone, Copy, Debug)]
+pub struct At<'a> {
+    /// Time, s.
+    pub t: f64,
+    /// Pose, m and rad.
+    pub q: &'a [f64],
+    /// Its rates.
+    pub v: &'a [f64],
+    /// Accelerations, which do not change.
+    pub a: &'a [f64],
+    /// λ of the loop joints, which do not change, N and N m.
+    pub multipliers: &'a [f64],
+}
+
+/// A crane with a number slightly smaller and slightly larger.
+#[derive(Clone, Copy)]
+pub struct Around<'a> {
+    /// With the smaller and with the larger number.
+    pub cranes: [&'a dyn DynCrane; 2],
+    /// How far these numbers are from the number itself.
+    pub steps: [f64; 2],
+}
+
+/// Functions of a crane with their slopes in some directions, in which its parameters and inputs change. `along` has the change of the motion
+/// `[q, v, x]` in each direction; results are direction by direction.
+pub trait Slopes: Send {
+    /// The number of directions.
+    fn count(&self) -> usize;
+
+    /// By how much the number of a direction changes for an error of its derivative to count as an error of the motion.
+    fn scale(&self, direction: usize) -> f64;
+
+    /// Cranes whose number differs slightly in a direction; `None` if only the initial state does.
+    fn around(&self, direction: usize) -> Option<Around<'_>>;
+
+    /// Slopes of `A a − e − f + Jᵀ λ`, N and N m.
+    fn residuals(&mut self, at: &At<'_>, along: &[Vec<f64>], out: &mut [Vec<f64>]);
+
+    /// Slopes of φ, φ̇ and `J a + J̇ v` of every equation of the loop joints.
+    fn loops(&mut self, at: &At<'_>, along: &[Vec<f64>], out: &mut [Vec<[f64; 3]>]);
+
+    /// Slopes of the prescribed position and rate of every drive at a time; `false` if no motion changes in any direction.
+    fn drive_motions(&mut self, t: f64, out: &mut [Vec<[f64; 2]>]) -> bool;
+
+    /// Times at which motions of drives and winches and scales of loads are not smooth, s, with their slopes in every direction.
+    fn stops(&mut self) -> Vec<(f64, Vec<f64>)>;
+}
+
+/// Step of a difference along a direction, in units of m, rad and the scales of states: the error is its square, and rounding leaves 1e-9.
+pub const DIFFERENCE: f64 = 1e-7;
+
+/// The size of a change of a motion `[q, v, x]` of n coordinates; x has these scales.
+#[must_use]
+pub fn size_of(change: &[f64], n: usize, scales: &[f64]) -> f64 {
+    let of_states = change[2 * n..].iter().zip(scales).map(|(x, scale)| x / scale);
+    change[..2 * n].iter().copied().chain(of_states).fold(0.0, |size: f64, entry| size.max(entry.abs()))
+}
+
+/// Motions that move by this much, in the same units, while a number changes by its step, are differenced together with it.
+const TOGETHER: std::ops::Range<f64> = 1e-9..1e-5;
+
+/// A function of a crane at a motion.
+pub type OfMotion<'a> = &'a mut dyn FnMut(&dyn DynCrane, &[f64]) -> Vec<f64>;
+
+/// Derivative of a function at a motion along a change of the motion and a direction of the crane: central differences of both at once, or one
+/// after the other if the steps that suit them are too different.
+pub fn difference(
+    crane: &dyn DynCrane,
+    around: Option<Around<'_>>,
+    (motion, change, size): (&[f64], &[f64], f64),
+    of: OfMotion<'_>,
+) -> Vec<f64> {
+    let moved = |step: f64| motion.iter().zip(change).map(|(x, change)| x + step * change).collect::<Vec<f64>>();
+    let mut between = |[less, more]: [&dyn DynCrane; 2], [from, to]: [f64; 2], width: f64| -> Vec<f64> {
+        let less = of(less, &moved(from));
+        of(more, &moved(to)).iter().zip(less).map(|(more, less)| (more - less) / width).collect()
+    };
+    let alone = DIFFERENCE / size;
+    match around {
+        Some(Around { cranes, steps: [down, up] }) if TOGETHER.contains(&(size * down.max(up))) => {
+            between(cranes, [-down, up], down + up)
+        }
+        Some(Around { cranes, steps: [down, up] }) => {
+            let of_crane = between(cranes, [0.0; 2], down + up);
+            if size == 0.0 {
+                return of_crane;
+            }
+            let of_motion = between([crane; 2], [-alone, alone], 2.0 * alone);
+            of_crane.iter().zip(of_motion).map(|(one, other)| one + other).collect()
+        }
+        None if size == 0.0 => of(crane, motion).iter().map(|_| 0.0).collect(),
+        None => between([crane; 2], [-alone, alone], 2.0 * alone),
+    }
+}
+
+/// Derivatives of the states of forces that hold a start at rest.
+#[must_use]
+pub fn holding(crane: &dyn DynCrane, slopes: &dyn Slopes, q: &[f64], along: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let description = crane.description();
+    if !description.has_force_states() {
+        return vec![Vec::new(); along.len()];
+    }
+    let of = |direction: usize| {
+        let change = &along[direction][..q.len()];
+        let size = change.iter().fold(0.0, |size: f64, entry| size.max(entry.abs()));
+        difference(crane, slopes.around(direction), (q, change, size), &mut |crane, q| {
+            ForceStates::new(crane.description()).holding(crane, 0.0, q)
+        })
+    };
+    (0..along.len()).map(of).collect()
+}
+
+/// A motion from a start at t = 0 with its derivatives along directions. `along`: those of the start `[q, v, x]`. Gives `observe` every sample
+/// with its derivatives, and `proceed` the time after every step, s. The method of the settings is not used.
+///
+/// # Errors
+/// As [`simulate`](super::simulate).
+pub fn simulate(
+    crane: &dyn DynCrane,
+    start: &InitialState,
+    slopes: &mut dyn Slopes,
+    along: Vec<Vec<f64>>,
+    settings: &Settings,
+    watch: &mut dyn WatchDerivatives,
+) -> Result<Run, Stopped> {
+    let any: &dyn DynImplicit = crane;
+    let follower = Follower::new(crane, any, slopes, along, settings);
+    let mut integration = Integration::by(Box::new(follower), any, 0.0, start, settings)?;
+    let intervals = divided(settings.duration, settings.output).0;
+    for interval in 0..=intervals {
+        let derivatives = integration.derivatives();
+        watch.sample(&integration.sample(), &derivatives);
+        if interval == intervals {
+            break;
+        }
+        let result = (settings.output * (interval + 1) as f64).min(settings.duration);
+        if integration.advance(result, &mut |t| watch.step(t))?.is_break() {
+            break;
+        }
+    }
+    Ok(integration.run())
+}
+
+/// An observer of a motion with derivatives.
+pub trait WatchDerivatives {
+    /// Receives a sample with its derivatives `[q, v, x]`, direction by direction.
+    fn sample(&mut self, sample: &Sample<'_>, derivatives: &[Vec<f64>]);
+
+    /// Receives the time after every step, s, and may end the run.
+    fn step(&mut self, t: f64) -> std::ops::ControlFlow<()>;
+}

@@ -1,0 +1,253 @@
+//! Functions of a crane with their slopes in the directions of a run.
+
+use crane_codegen::chain::Input;
+use crane_codegen::program::FunctionId;
+use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::dynamics::gradients::{Around, At, Slopes};
+
+use super::Along;
+use crate::LiveCrane;
+use crate::dual::{DIRECTIONS, Dual8};
+use crate::machine::Number;
+use crate::rows::{Evaluation, Quantity};
+
+/// Relative step of a parameter or an input for what is differenced, and its step from zero.
+const STEP: f64 = 1e-6;
+
+/// A crane with a number slightly smaller and larger.
+struct Beside {
+    cranes: [Option<LiveCrane>; 2],
+    step: f64,
+}
+
+/// Eight directions or fewer.
+pub(super) struct Chunk {
+    /// How many.
+    pub count: usize,
+    /// The parameters and inputs with their slopes.
+    pub parameters: Vec<Dual8>,
+    pub inputs: Vec<Dual8>,
+    residual: Evaluation<Dual8>,
+    motions: Evaluation<Dual8>,
+    /// φ, φ̇ and J̇ v of loop joints, and J, if there are any.
+    loops: Option<[Evaluation<Dual8>; 2]>,
+}
+
+/// The directions of a run.
+pub(super) struct Directions<'a> {
+    crane: &'a LiveCrane,
+    chunks: Vec<Chunk>,
+    beside: Vec<Option<Beside>>,
+    /// The values of the numbers; 1 for those that are zero, and for starts.
+    scales: Vec<f64>,
+    /// Whether any of them is that of a parameter or an input, which the motions of drives may depend on.
+    may_move_drives: bool,
+}
+
+impl<'a> Directions<'a> {
+    /// For some numbers of a crane.
+    pub fn new(crane: &'a LiveCrane, along: &[Along]) -> Self {
+        let beside = |along: &Along| match along {
+            Along::Parameter(index) => {
+                let step = step_of(crane.parameters()[*index]);
+                Some(Beside { cranes: beside(crane, *index), step })
+            }
+            Along::Input(index) => {
+                let value = crane.input(*index).unwrap_or_default();
+                let step = step_of(value);
+                let with = |value: f64| {
+                    let mut other = crane.clone();
+                    other.set_input(*index, Some(value));
+                    Some(other)
+                };
+                Some(Beside { cranes: [with(value - step), with(value + step)], step })
+            }
+            Along::Position(_) | Along::Rate(_) => None,
+        };
+        let scale = |along: &Along| {
+            let value = match along {
+                Along::Parameter(index) => crane.parameters()[*index],
+                Along::Input(index) => crane.input(*index).unwrap_or_default(),
+                Along::Position(_) | Along::Rate(_) => 1.0,
+            };
+            if value == 0.0 { 1.0 } else { value.abs() }
+        };
+        let drives = !crane.description().drives.is_empty();
+        Self {
+            crane,
+            chunks: along.chunks(DIRECTIONS).map(|along| Chunk::new(crane, along)).collect(),
+            beside: along.iter().map(beside).collect(),
+            scales: along.iter().map(scale).collect(),
+            may_move_drives: drives && along.iter().any(|along| matches!(along, Along::Parameter(_) | Along::Input(_))),
+        }
+    }
+
+    /// The directions, eight by eight.
+    pub fn chunks(&self) -> &[Chunk] {
+        &self.chunks
+    }
+}
+
+/// Cranes with a parameter slightly smaller and slightly larger, where the spec allows it.
+pub(super) fn beside(crane: &LiveCrane, parameter: usize) -> [Option<LiveCrane>; 2] {
+    let value = crane.parameters()[parameter];
+    [-1.0, 1.0].map(|sign| {
+        let mut other = crane.clone();
+        other.set_parameter(parameter, value + sign * step_of(value)).is_ok().then_some(other)
+    })
+}
+
+fn step_of(value: f64) -> f64 {
+    if value == 0.0 { STEP } else { STEP * value.abs() }
+}
+
+impl Chunk {
+    fn new(crane: &LiveCrane, along: &[Along]) -> Self {
+        let place = |own: Along| along.iter().position(|along| *along == own);
+        let parameters = crane.parameters().iter().enumerate();
+        let parameters: Vec<Dual8> =
+            parameters.map(|(index, value)| along_all(*value, along, Along::Parameter(index))).collect();
+        let inputs = crane.inputs().numbers().enumerate().map(|(slot, value)| {
+            // The first number of an input is its value; the second says whether it is set.
+            let own = Along::Input(slot / Input::SLOTS);
+            if slot % Input::SLOTS == 0 && place(own).is_some() {
+                along_all(value, along, own)
+            } else {
+                Dual8::splat(value)
+            }
+        });
+        let inputs: Vec<Dual8> = inputs.collect();
+        let evaluation = |id: FunctionId| {
+            let mut evaluation = Evaluation::new(crane, Quantity::Of(id));
+            evaluation.set_parameters(&parameters);
+            evaluation.set_inputs(&inputs);
+            evaluation
+        };
+        let has_loops = !crane.loop_joints().is_empty();
+        let loops = has_loops.then(|| [FunctionId::LoopStates, FunctionId::LoopJacobians].map(evaluation));
+        Self {
+            count: along.len(),
+            residual: evaluation(FunctionId::DynamicResidual),
+            motions: evaluation(FunctionId::DriveMotions),
+            loops,
+            parameters,
+            inputs,
+        }
+    }
+
+    /// J with its slopes.
+    fn jacobian(&mut self, q: &[Dual8]) -> Vec<Dual8> {
+        let zeros = constants(&vec![0.0; q.len()]);
+        self.loops
+            .as_mut()
+            .map_or_else(Vec::new, |[_, jacobians]| jacobians.at(Dual8::splat(0.0), q, &zeros, &zeros).to_vec())
+    }
+}
+
+/// A number with slope 1 in every direction that is its own.
+fn along_all(value: f64, along: &[Along], own: Along) -> Dual8 {
+    Dual8::new(value, std::array::from_fn(|k| if along.get(k) == Some(&own) { 1.0 } else { 0.0 }))
+}
+
+fn constants(numbers: &[f64]) -> Vec<Dual8> {
+    numbers.iter().map(|number| Dual8::splat(*number)).collect()
+}
+
+/// Numbers of a motion, from an index on, with the slopes of some directions.
+fn moved(numbers: &[f64], first: usize, along: &[Vec<f64>]) -> Vec<Dual8> {
+    let slope = |i: usize| std::array::from_fn(|k| along.get(k).map_or(0.0, |along| along[first + i]));
+    numbers.iter().enumerate().map(|(i, number)| Dual8::new(*number, slope(i))).collect()
+}
+
+impl Slopes for Directions<'_> {
+    fn count(&self) -> usize {
+        self.beside.len()
+    }
+
+    fn scale(&self, direction: usize) -> f64 {
+        self.scales[direction]
+    }
+
+    fn around(&self, direction: usize) -> Option<Around<'_>> {
+        let Beside { cranes, step } = self.beside[direction].as_ref()?;
+        let or_own = |crane: &'_ Option<LiveCrane>| crane.as_ref().map_or(0.0, |_| *step);
+        let [less, more] = cranes.each_ref().map(|crane| crane.as_ref().unwrap_or(self.crane) as &dyn DynCrane);
+        Some(Around { cranes: [less, more], steps: cranes.each_ref().map(or_own) })
+    }
+
+    fn residuals(&mut self, at: &At<'_>, along: &[Vec<f64>], out: &mut [Vec<f64>]) {
+        let n = at.q.len();
+        for (number, chunk) in self.chunks.iter_mut().enumerate() {
+            let first = number * DIRECTIONS;
+            let along = &along[first..][..chunk.count];
+            let (q, v, a) = (moved(at.q, 0, along), moved(at.v, n, along), constants(at.a));
+            let rows = chunk.jacobian(&q);
+            let residual = chunk.residual.at(Dual8::splat(at.t), &q, &v, &a);
+            for (direction, out) in out[first..].iter_mut().take(chunk.count).enumerate() {
+                for (out, number) in out.iter_mut().zip(residual) {
+                    *out = number.slope(direction);
+                }
+                for (multiplier, row) in at.multipliers.iter().zip(rows.chunks_exact(n.max(1))) {
+                    out.iter_mut().zip(row).for_each(|(out, entry)| *out += multiplier * entry.slope(direction));
+                }
+            }
+        }
+    }
+
+    fn loops(&mut self, at: &At<'_>, along: &[Vec<f64>], out: &mut [Vec<[f64; 3]>]) {
+        let n = at.q.len();
+        for (number, chunk) in self.chunks.iter_mut().enumerate() {
+            let first = number * DIRECTIONS;
+            let along = &along[first..][..chunk.count];
+            let (q, v, zeros) = (moved(at.q, 0, along), moved(at.v, n, along), constants(at.a));
+            let rows = chunk.jacobian(&q);
+            let Some([states, _]) = &mut chunk.loops else { continue };
+            let states = states.at(Dual8::splat(at.t), &q, &v, &zeros);
+            for (direction, out) in out[first..].iter_mut().take(chunk.count).enumerate() {
+                let equations = states.chunks_exact(3).zip(rows.chunks_exact(n.max(1)));
+                for (out, (state, row)) in out.iter_mut().zip(equations) {
+                    let by_row: f64 = row.iter().zip(at.a).map(|(entry, a)| entry.slope(direction) * a).sum();
+                    let [gap, rate, second] = [0, 1, 2].map(|k| state[k].slope(direction));
+                    *out = [gap, rate, second + by_row];
+                }
+            }
+        }
+    }
+
+    fn drive_motions(&mut self, t: f64, out: &mut [Vec<[f64; 2]>]) -> bool {
+        let mut any = false;
+        if !self.may_move_drives {
+            return any;
+        }
+        for (number, chunk) in self.chunks.iter_mut().enumerate() {
+            let motions = chunk.motions.at(Dual8::splat(t), &[], &[], &[]);
+            for (direction, out) in out[number * DIRECTIONS..].iter_mut().take(chunk.count).enumerate() {
+                for (out, pair) in out.iter_mut().zip(motions.chunks_exact(2)) {
+                    *out = [pair[0].slope(direction), pair[1].slope(direction)];
+                    any |= *out != [0.0; 2];
+                }
+            }
+        }
+        any
+    }
+
+    fn stops(&mut self) -> Vec<(f64, Vec<f64>)> {
+        let mut all: Vec<(f64, Vec<f64>)> = Vec::new();
+        for (number, chunk) in self.chunks.iter().enumerate() {
+            let mut place = 0;
+            for id in [FunctionId::DrivePieces, FunctionId::LoadPieces, FunctionId::WinchPieces] {
+                let mut evaluation = Evaluation::<Dual8>::new(self.crane, Quantity::Of(id));
+                evaluation.set_parameters(&chunk.parameters);
+                evaluation.set_inputs(&chunk.inputs);
+                for time in evaluation.at(Dual8::splat(0.0), &[], &[], &[]) {
+                    if number == 0 {
+                        all.push((time.value(), Vec::new()));
+                    }
+                    all[place].1.extend((0..chunk.count).map(|direction| time.slope(direction)));
+                    place += 1;
+                }
+            }
+        }
+        all
+    }
+}

@@ -1,0 +1,335 @@
+//! Derivatives of runs, against closed forms and against differences of tight runs.
+
+use crane_codegen::{SourceFile, build};
+use crane_live::LiveCrane;
+use crane_live::sensitivity::runs::{Along, run_with_gradients};
+use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::dynamics::{Method, Settings};
+use crane_model::results::Table;
+use crane_model::runs::{Gradients, Start, record};
+use std::ops::ControlFlow;
+
+fn spec(text: &str) -> LiveCrane {
+    LiveCrane::from_spec(&SourceFile::new("crane.yaml", text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}\n{text}"))
+}
+
+/// A shipped crane, whose numbers become live parameters as `changes` writes them.
+fn shipped(name: &str, changes: &str) -> LiveCrane {
+    let path = format!("{}/../../specs/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
+    let source = build::open(path.as_ref()).unwrap();
+    let source = if changes.is_empty() { source } else { source.changed(&format!("name: changed\n{changes}")) };
+    LiveCrane::from_spec(&source).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
+}
+
+fn settings(crane: &LiveCrane, duration: f64, output: f64, tolerance: f64) -> Settings {
+    let own = Settings::of(crane.description());
+    Settings { duration, output, tolerance, audit: false, method: Method::Rosenbrock, ..own }
+}
+
+/// A pose and rates to start from instead of equilibrium.
+type State = Option<(Vec<f64>, Vec<f64>)>;
+
+fn start(crane: &LiveCrane, from: &State) -> Start {
+    match from {
+        Some((q, v)) => Start::with(crane, Some(q), Some(v)),
+        None => Start::of(crane),
+    }
+    .unwrap_or_else(|failed| panic!("{failed}"))
+}
+
+fn gradients(crane: &LiveCrane, names: &[&str], from: &State, settings: &Settings) -> (Table, Gradients) {
+    let along: Vec<Along> =
+        names.iter().map(|name| Along::named(crane, name).unwrap_or_else(|not| panic!("{not}"))).collect();
+    let found = run_with_gradients(crane, &start(crane, from), settings, &along, &mut |_| ControlFlow::Continue(()));
+    let (recorded, gradients) = found.unwrap_or_else(|failed| panic!("{failed}"));
+    (recorded.table, gradients)
+}
+
+/// The run of a crane with a number changed by a step.
+fn changed(crane: &LiveCrane, along: Along, step: f64, from: &State, settings: &Settings) -> Table {
+    let mut crane = crane.clone();
+    let mut start = start(&crane, from);
+    match along {
+        Along::Parameter(index) => {
+            crane.set_parameter(index, crane.parameters()[index] + step).unwrap();
+            start = self::start(&crane, from);
+        }
+        Along::Input(index) => {
+            crane.set_input(index, Some(crane.input(index).unwrap() + step));
+            start = self::start(&crane, from);
+        }
+        Along::Position(coordinate) => start.q[coordinate] += step,
+        Along::Rate(coordinate) => start.v[coordinate] += step,
+    }
+    record(&crane, &start, settings, &mut |_| ControlFlow::Continue(()))
+        .unwrap_or_else(|failed| panic!("{failed}"))
+        .table
+}
+
+/// Compares the derivatives of all columns with central differences of runs of step h and h/2, extrapolated, to a fraction of the largest
+/// derivative of the column.
+fn assert_differences(
+    what: &str,
+    crane: &LiveCrane,
+    (names, steps): (&[&str], &[f64]),
+    from: &State,
+    run: &Settings,
+    tolerance: f64,
+) {
+    let (table, found) = gradients(crane, names, from, run);
+    let tight = Settings { tolerance: 1e-11, ..*run };
+    let (mut compared, mut wrong) = (0, Vec::new());
+    for ((name, step), found) in names.iter().zip(steps).zip(&found) {
+        let along = Along::named(crane, name).unwrap();
+        let [far, near] = [*step, 0.5 * step].map(|step| {
+            let [less, more] = [-step, step].map(|step| changed(crane, along, step, from, &tight));
+            move |row: usize, column: usize| (more.rows[row][column] - less.rows[row][column]) / (2.0 * step)
+        });
+        for (column, info) in table.columns.iter().enumerate().skip(1) {
+            let expected: Vec<f64> =
+                (0..table.rows.len()).map(|row| (4.0 * near(row, column) - far(row, column)) / 3.0).collect();
+            let largest = |numbers: &mut dyn Iterator<Item = f64>| numbers.fold(0.0, |size: f64, x| size.max(x.abs()));
+            let size = largest(&mut expected.iter().copied());
+            // What a number does not change is rounding, and the steps follow the errors of the motion: what the whole number would change by less
+            // than 1e-3 of the column, or of 1 m or rad, is compared with that.
+            let values = largest(&mut table.rows.iter().map(|row| row[column]));
+            let kinematic = info.unit.starts_with("rad") || info.unit == "m" || info.unit == "m/s";
+            let size = size.max(1e-3 * if kinematic { values.max(1.0) } else { values } / (50.0 * step));
+            if found[0][column].is_nan() || size == 0.0 || size * step < 1e-6 * values {
+                continue;
+            }
+            for (row, expected) in expected.iter().enumerate() {
+                let (t, own) = (table.rows[row][0], found[row][column]);
+                let off = (own - expected).abs() / size;
+                compared += 1;
+                if off.is_nan() || off > tolerance {
+                    let column = &info.name;
+                    wrong.push((
+                        off,
+                        format!("d {column}/d {name} at {t} s is {own:e}, not {expected:e}, of {size:e}: {off:.1e}"),
+                    ));
+                }
+            }
+        }
+    }
+    wrong.sort_by(|one, other| other.0.total_cmp(&one.0));
+    let words: Vec<&str> = wrong.iter().take(12).map(|(_, words)| words.as_str()).collect();
+    assert!(wrong.is_empty(), "{what}: {} of {compared}\n{}", wrong.len(), words.join("\n"));
+    assert!(compared > 20, "{what}: {compared}");
+}
+
+const OSCILLATOR: &str = "
+format: 1
+name: oscillator
+parameters: {k: {value: 400}, m: {value: 4}}
+analyses: [dynamics]
+links:
+  - {name: mass, joint: {prismatic: {axis: x}}, mass: m, com: [0, 0, 0]}
+drives: [{coordinate: mass_x, stiffness: k, motion: {hold: 0}}]
+";
+
+/// x = x₀ cos ωt + v₀/ω sin ωt with ω = √(k/m), differentiated by hand.
+#[test]
+fn a_mass_on_a_spring_has_the_derivatives_of_its_formula() {
+    let crane = spec(OSCILLATOR);
+    let [x, v]: [f64; 2] = [0.3, -0.5];
+    let run = settings(&crane, 2.0, 0.1, 1e-9);
+    let names = ["k", "m", "q0.mass_x", "v0.mass_x"];
+    let (table, found) = gradients(&crane, &names, &Some((vec![x], vec![v])), &run);
+    let omega = 10.0_f64;
+    for (row, values) in table.rows.iter().enumerate() {
+        let t = values[0];
+        let (sin, cos) = (omega * t).sin_cos();
+        let by_omega = -x * t * sin + v * (t * cos / omega - sin / (omega * omega));
+        // dω/dk = ω/2k, dω/dm = −ω/2m.
+        let expected = [by_omega * omega / 800.0, -by_omega * omega / 8.0, cos, sin / omega];
+        for ((name, expected), found) in names.iter().zip(expected).zip(&found) {
+            // Sixty periods' worth of steps at 1e-9: errors of some 1e-7.
+            let off = (found[row][1] - expected).abs() / (1.0 + expected.abs());
+            assert!(off < 1e-6, "dx/d{name} at {t} s: {} for {expected}, off by {off:e}", found[row][1]);
+        }
+    }
+}
+
+/// A mass that falls on a foot without a damper.
+///
+/// Until `t₁ = √(2h/g)` it falls freely; then `z = e^(−δτ) (A cos ντ + B sin ντ) − mg/k` with τ = t − t₁.
+#[test]
+fn a_mass_that_falls_on_a_foot_has_the_derivatives_of_its_formula() {
+    let text = "
+format: 1
+name: falling
+parameters: {k: {value: 2e4}, g: {value: -9.81}}
+gravity: [0, 0, g]
+analyses: [dynamics]
+links: [{name: body, joint: free, mass: 20, com: [0, 0, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}}]
+supports: [{name: foot, one_sided: true, at: [0, 0, 0], stiffness: [1e3, 1e3, k], damping: [0, 0, 0]}]
+";
+    let crane = spec(text);
+    let place = crane.description().coordinates.iter().position(|info| info.name == "body_z").unwrap();
+    let height = 0.05;
+    let mut q = vec![0.0; crane.size()];
+    q[place] = height;
+    let run = settings(&crane, 0.16, 0.004, 1e-9);
+    let names = ["k", "g", "q0.body_z", "v0.body_z"];
+    let z = |[k, g, h, v0]: [f64; 4], t: f64| {
+        let (m, d, g) = (20.0, 0.0, -g);
+        let contact = (v0 + (v0 * v0 + 2.0 * g * h).sqrt()) / g;
+        if t < contact {
+            return h + v0 * t - 0.5 * g * t * t;
+        }
+        let (tau, delta, sag) = (t - contact, 0.5 * d / m, m * g / k);
+        let nu = (k / m - delta * delta).sqrt();
+        let (a, speed) = (sag, v0 - g * contact);
+        let b = (speed + delta * a) / nu;
+        (-delta * tau).exp() * (a * (nu * tau).cos() + b * (nu * tau).sin()) - sag
+    };
+    let numbers = [2e4, -9.81, height, 0.0];
+    let zeros = vec![0.0; q.len()];
+    let (table, found) = gradients(&crane, &names, &Some((q, zeros)), &run);
+    let mut touched = 0;
+    for (row, values) in table.rows.iter().enumerate() {
+        let t = values[0];
+        let own = z(numbers, t);
+        assert!((values[1 + place] - own).abs() < 1e-7, "z at {t}: {} for {own}", values[1 + place]);
+        touched += usize::from(own < 0.0);
+        for (index, name) in names.iter().enumerate() {
+            let step = 1e-5 * if numbers[index] == 0.0 { 1.0 } else { numbers[index].abs() };
+            let with = |step: f64| {
+                let mut other = numbers;
+                other[index] += step;
+                z(other, t)
+            };
+            // Of order 4: 1e-11 of rounding.
+            let expected = (8.0 * (with(step) - with(-step)) - (with(2.0 * step) - with(-2.0 * step))) / (12.0 * step);
+            let scale = [1e-6, 0.01, 1.0, 0.1][index];
+            let off = (found[index][row][1 + place] - expected).abs() / scale;
+            assert!(off < 1e-4, "dz/d{name} at {t} s: {} for {expected}, off by {off:e}", found[index][row][1 + place]);
+        }
+    }
+    assert!(touched > 5, "{touched} results on the foot");
+}
+
+/// The path of a mass that meets an end stop by Hunt and Crossley's law, rebounds, and meets it again.
+#[test]
+fn a_mass_that_bounces_on_a_stop_changes_as_its_runs_do() {
+    let text = "
+format: 1
+name: bouncing
+parameters: {m: {value: 4}, k: {value: 1e4}, a: {value: 0.3}, floor: {value: -0.1}}
+analyses: [dynamics]
+links: [{name: ball, joint: {prismatic: {axis: z}}, mass: m, com: [0, 0, 0]}]
+stops: {ball_z: {min: floor, stiffness: k, damping: a}}
+";
+    let crane = spec(text);
+    let run = settings(&crane, 1.0, 0.05, 1e-10);
+    let numbers = (&["m", "k", "a", "floor", "q0.ball_z", "v0.ball_z"][..], &[0.01, 10.0, 1e-3, 1e-4, 1e-4, 1e-3][..]);
+    assert_differences("bouncing", &crane, numbers, &Some((vec![0.1], vec![0.2])), &run, 1e-5);
+}
+
+/// A drive whose prescribed acceleration jumps at times that depend on a parameter.
+#[test]
+fn motions_that_begin_and_end_later_move_the_run() {
+    let crane = spec(
+        "
+format: 1
+name: swinging
+parameters: {far: {value: 0.8}, begin: {value: 0.3}, time: {value: 0.9}}
+analyses: [statics, dynamics]
+links:
+  - {name: arm, placement: {transform: {rotation: {x: 90 deg}}}, joint: revolute, mass: 20, com: [0.5, 0, 0], inertia: {Ixx: 1, Iyy: 2, Izz: 2}}
+  - {name: load, placement: {transform: {translation: [1, 0, 0]}}, joint: revolute, mass: 10, com: [0, -0.5, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}}
+drives: [{coordinate: arm_psi, stiffness: 2e4, damping: 300, motion: {trapezoid: {from: 0.2, to: far, begin: begin, duration: time}}}]
+",
+    );
+    // A jump changes derivatives by all of their size within a step, and is right to 1e-4 of it. No result is at the begin or the end of the
+    // motion, on whose two sides derivatives differ.
+    let run = settings(&crane, 1.96, 0.07, 1e-10);
+    let numbers = (&["far", "begin", "time"][..], &[0.01, 1e-3, 3e-3][..]);
+    assert_differences("trapezoid", &crane, numbers, &None, &run, 3e-4);
+}
+
+#[test]
+fn inputs_move_the_run() {
+    let text = "
+format: 1
+name: steered_arm
+inputs:
+  lever: {motion: {quintic: {from: 0, to: 60 deg, duration: 3}}, unit: rad}
+  gust: {value: 0, unit: N}
+links:
+  - {name: boom, placement: {transform: {rotation: {x: 90 deg}}}, joint: revolute, mass: 200, com: [2, 0, 0], inertia: {gyration: [0.1, 1.2, 1.2]}}
+drives:
+  - {coordinate: boom_psi, stiffness: 2e5, damping: 2e4, motion: {input: lever}}
+loads:
+  - {name: wind, link: boom, at: [4, 0, 0], force: [0, 1, 0], scale: {input: gust}}
+";
+    let mut crane = spec(text);
+    crane.set_input(1, Some(500.0));
+    let run = settings(&crane, 1.0, 0.05, 1e-10);
+    assert_differences("gust", &crane, (&["inputs.gust", "v0.boom_psi"], &[50.0, 0.05]), &None, &run, 1e-5);
+    let refused = Along::named(&crane, "inputs.lever").unwrap_err().to_string();
+    assert!(refused.contains("is not set"), "{refused}");
+    crane.set_input(0, Some(0.4));
+    assert_differences("lever", &crane, (&["inputs.lever"], &[0.02]), &Some((vec![0.1], vec![0.0])), &run, 1e-5);
+}
+
+#[test]
+fn what_a_run_does_not_depend_on_is_refused() {
+    let crane = shipped("knuckle_boom", "");
+    for (name, words) in
+        [("mass", "a live parameter (payload)"), ("q0.nothing", "q0."), ("inputs.r", "differentiate a run by")]
+    {
+        let refused = Along::named(&crane, name).unwrap_err().to_string();
+        assert!(refused.contains(words), "{refused}");
+    }
+}
+
+#[test]
+fn a_stiff_flexible_crane_changes_as_its_runs_do() {
+    let crane = shipped("eight_link_flexible", "");
+    let run = settings(&crane, 1.0, 0.1, 1e-10);
+    // Steps of 1e-10 leave some 5e-5 in what stiff drives and a load that hardly swings magnify.
+    assert_differences("flexible", &crane, (&["load_mass", "q0.boom_psi"], &[25.0, 1e-3]), &None, &run, 1e-4);
+}
+
+/// Beams, their sections, a rigid drive and feet that lift.
+#[test]
+fn stiffness_sections_drives_and_feet_count() {
+    let changes = "parameters:\n  young: {value: 2.1e11, unit: Pa}\n  height: {value: 0.34, unit: m}\n  slew: {value: 2.6, unit: rad}\n  \
+                   lift: {value: 0.9, unit: rad}\n  spring: {value: 2e7, unit: N m/rad}\nlinks:\n  - {name: boom, beam: \
+                   {material: {E: young, G: 8.1e10, density: 7850, yield_stress: 700e6}, section: {box: {height: height, width: 0.24, thickness: 0.008}}}}\n\
+                   drives:\n  - {coordinate: column_psi, motion: {quintic: {from: 180 deg, to: slew, duration: 2}}}\n  \
+                   - {coordinate: boom_psi, rigid: true, stiffness: ~, damping: ~, motion: {quintic: {from: 55 deg, to: lift, duration: 2}}}\n  \
+                   - {coordinate: jib_psi, stiffness: spring}\n";
+    let crane = shipped("loader_tipping", changes);
+    let run = settings(&crane, 1.0, 0.1, 1e-10);
+    let numbers =
+        (&["load", "young", "height", "slew", "lift", "spring"][..], &[11.0, 1e9, 1e-3, 0.01, 0.005, 1e5][..]);
+    assert_differences("loader", &crane, numbers, &None, &run, 3e-5);
+}
+
+#[test]
+fn loops_with_rigid_drives_change_as_their_runs_do() {
+    let changes = "parameters:\n  lift: {value: 1.1, unit: rad}\n  pin: {value: 2.19, unit: m}\nloop_joints: \
+                   [{name: parallel_pin, from: {link: column, at: [-0.23, 0, pin]}}]\n\
+                   drives:\n  - {coordinate: boom_psi, rigid: true, stiffness: ~, damping: ~, motion: {quintic: {from: 60 deg, to: lift, duration: 1}}}\n";
+    let crane = shipped("examples/parallel_harvester", changes);
+    let run = settings(&crane, 0.6, 0.1, 1e-10);
+    assert_differences("harvester", &crane, (&["head_mass", "lift", "pin"], &[12.0, 0.01, 1e-3]), &None, &run, 3e-5);
+}
+
+/// Ropes with falls, a telescope on pads, feet.
+#[test]
+fn a_crane_with_a_telescope_and_a_rope_changes_as_its_runs_do() {
+    let crane = shipped("examples/telescopic_loader", "");
+    let run = settings(&crane, 0.4, 0.1, 1e-10);
+    // The payload hardly changes the lateral forces of the feet, a few mN per kg of kN: this is their accuracy; all others agree to 3e-5.
+    assert_differences("telescope", &crane, (&["payload"], &[4.0]), &None, &run, 1e-3);
+}
+
+#[test]
+fn valves_and_bristles_are_refused() {
+    let refused = Along::named(&shipped("eight_link_hydraulic", ""), "load_mass").unwrap_err().to_string();
+    assert!(refused.contains("valves or joints that stick"), "{refused}");
+}

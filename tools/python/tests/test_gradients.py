@@ -1,0 +1,69 @@
+"""Gradients of runs, against differences of runs."""
+
+import numpy as np
+import pytest
+
+import crane
+
+#: Duration and interval of results, s, and a tolerance at which differences of runs have eight digits.
+RUN = {"duration": 2.0, "output": 0.02, "tolerance": 1e-10, "verify": False}
+
+
+@pytest.fixture(scope="module")
+def run():
+    """A crane that swings, with its gradients."""
+    return crane.load("knuckle_boom").simulate(**RUN, gradients=["payload"])
+
+
+def differences(of):
+    """Central difference of a function of a run by the payload: the error is of the square of the step, 1e-7."""
+    c = crane.load("knuckle_boom")
+    less, more = (of(c.replace(payload=800.0 + step).simulate(**RUN, method="rosw4")) for step in (-0.5, 0.5))
+    return more - less
+
+
+def test_columns_have_the_derivatives_of_differences(run):
+    for column in ("load_centre_x", "load_centre_z", "load_centre_vx"):
+        expected = differences(lambda other: other[column])
+        found = run.gradient(column, "payload")
+        assert np.max(np.abs(found - expected)) < 1e-5 * np.max(np.abs(expected)), column
+    assert run.gradients["payload"].shape == run.table.shape
+    assert run.method == "rosw4"
+
+
+def test_peaks_and_integrals_have_the_derivatives_of_differences(run):
+    column = next(name for name in run if name.endswith("_drive_torque"))
+    ways = {
+        "maximum": lambda other: np.max(other[column]),
+        "minimum": lambda other: np.min(other[column]),
+        "peak": lambda other: np.max(np.abs(other[column])),
+        "integral": lambda other: np.sum(0.5 * np.diff(other.t) * (other[column][1:] + other[column][:-1])),
+    }
+    for of, value in ways.items():
+        # A tenth of the largest: the extreme may be where the payload hardly counts.
+        size = np.max(np.abs(run.gradient(column, "payload"))) * 0.1
+        assert run.gradient(column, "payload", of=of) == pytest.approx(differences(value), rel=1e-4, abs=1e-4 * size), of
+
+
+def test_a_start_may_be_given(run):
+    c = crane.load("knuckle_boom")
+    q = run.table[0, 1 : 1 + c.n]
+    name = c.info["coordinates"][-1]["name"]
+    given = c.simulate(**RUN, q=q, gradients=[f"q0.{name}", f"v0.{name}"])
+    assert given.gradient(name, f"q0.{name}")[0] == 1.0
+    assert given.gradient(f"{name}_rate", f"v0.{name}")[0] == 1.0
+
+
+def test_what_has_no_gradient_is_refused(run):
+    c = crane.load("knuckle_boom")
+    for names, words in [(["mass"], "payload"), (["inputs.r"], "differentiate"), (["q0.r"], "q0.")]:
+        with pytest.raises(ValueError, match=words):
+            c.simulate(**RUN, gradients=names)
+    with pytest.raises(ValueError, match="rosw4"):
+        c.simulate(**RUN, method="bdf", gradients=["payload"])
+    with pytest.raises(KeyError, match="payload"):
+        run.gradient("load_centre_x", "mass")
+    with pytest.raises(ValueError, match="integral"):
+        run.gradient("drive_work", "payload")
+    with pytest.raises(ValueError, match="maximum"):
+        run.gradient("load_centre_x", "payload", of="mean")
