@@ -10,8 +10,8 @@ use crane_codegen::{SourceFile, build};
 #[path = "src/random/mod.rs"]
 mod random;
 
-/// Random cranes that are compiled: few that have, between them, all that random cranes have. The interpreter runs many more.
-const SEEDS: [u64; 4] = [11, 14, 28, 33];
+/// Random cranes that are compiled: few that have, together with the shipped cranes, all that random cranes have. The interpreter runs many more.
+const SEEDS: [u64; 3] = [1, 2, 4];
 
 fn main() -> io::Result<()> {
     println!("cargo::rerun-if-changed=build.rs");

@@ -42,7 +42,7 @@ OTHERS = {
 }
 # Functions that take one state, or none, and what else they need.
 ONE_STATE = {"simulate", "simulation", "_record", "_motions"}
-NO_STATE = {"_acting", "_changed", "_recalled", "_input_bounds", "vector_simulation", "replace", "page", "export", "picture", "_parameter_rows", "_page", "_envelope", "sensitivity", "_sensitivity"}
+NO_STATE = {"_acting", "_changed", "frames", "_recalled", "_input_bounds", "vector_simulation", "replace", "page", "export", "picture", "_parameter_rows", "_page", "_envelope", "sensitivity", "_sensitivity"}
 
 
 @dataclasses.dataclass

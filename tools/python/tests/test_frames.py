@@ -8,7 +8,7 @@ import crane
 # An element of a beam with a symmetric joint of sections, a rigid link beyond it, a branch.
 CASES = [
     ("eight_link_flexible", {"middle": ("boom", [1.3, 0.1, -0.2]), "tool": ("grapple", [0.1, -0.2, -0.5])}, ["boom_1", "grapple"]),
-    ("two_arms", {"basket": ("basket", [0.2, 0.1, 0.3])}, ["basket"]),
+    ("two_arms", {"lamp": ("lamp", [0.2, 0.1, 0.3])}, ["lamp"]),
     ("knuckle_boom", {"hook": "hook"}, ["hook"]),
 ]
 

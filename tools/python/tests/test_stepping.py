@@ -152,7 +152,7 @@ def test_memory_of_another_crane_is_refused():
     memory = simulation._motion.memory(0)
     other = crane.load("eight_link_rigid")
     for wrong in (memory[:-1], np.append(memory, 1.0), memory[:3], np.zeros(0), np.full_like(memory, np.nan)):
-        with pytest.raises(ValueError, match="no saved motion of"):
+        with pytest.raises(ValueError, match="not a saved motion of"):
             simulation.crane._recalled(timing, True, [wrong])
-    with pytest.raises(ValueError, match="no saved motion of"):
+    with pytest.raises(ValueError, match="not a saved motion of"):
         other._recalled(timing, True, [memory])
