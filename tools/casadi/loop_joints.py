@@ -8,19 +8,25 @@ import numpy as np
 
 @dataclass
 class LoopJoint:
-    """A joint, and what is zero while it is closed."""
+    """A joint, what is zero while it is closed, and the links that it holds: body and distance along it of each end on one."""
 
     name: str
     gaps: list
+    ends: list
 
 
 def frame_of(written, spans, spec, carrier):
     """Rotation and point of an end."""
-    at = spec.vector(written["at"])
-    if "link" not in written:
+    body, at = end_of(written, spans, spec, carrier)
+    if body is None:
         return ca.SX.eye(3), at
-    body, local = carrier(spec, at, spans[written["link"]])
-    return body.transform[:3, :3], body.transform[:3, :3] @ local + body.transform[:3, 3]
+    return body.transform[:3, :3], body.transform[:3, :3] @ at + body.transform[:3, 3]
+
+
+def end_of(written, spans, spec, carrier):
+    """Body of an end, None for the world, and its place there."""
+    at = spec.vector(written["at"])
+    return carrier(spec, at, spans[written["link"]]) if "link" in written else (None, at)
 
 
 def across(axis):
@@ -54,7 +60,8 @@ def read_loop_joint(spec, written, spans, carrier):
         along = np.array(keys.get("to_axis", keys["axis"]), float)
         turned = one.T @ (other @ ca.SX(along / np.linalg.norm(along)))
         gaps = [way, -ca.dot(ca.SX(second), turned), ca.dot(ca.SX(first), turned)]
-    return LoopJoint(written["name"], gaps)
+    ends = [end_of(written[key], spans, spec, carrier) for key in ("from", "to")]
+    return LoopJoint(written["name"], gaps, [(body, at[0]) for body, at in ends if body is not None])
 
 
 @dataclass
@@ -79,11 +86,15 @@ def read_pin(crane, written, spans, carrier, guess, friction):
     """The angle between two directions normal to the axis, one of each link, which are alike at the guess."""
     spec, keys = crane.spec, written["joint"]["pin"]
     (one, _), (other, _) = (frame_of(written[key], spans, spec, carrier) for key in ("from", "to"))
-    _, first, second = across(keys["axis"])
+    axis, first, second = across(keys["axis"])
     along, *_ = across(keys.get("to_axis", keys["axis"]))
     values = lambda rotation: np.array([spec.default(ca.substitute(entry, crane.q, guess)) for entry in ca.vertsplit(ca.vec(rotation))]).reshape(3, 3).T
-    reference = values(other).T @ values(one) @ first
-    reference -= along * (along @ reference)
+    seen = values(other).T @ values(one)
+    # Both axes point the same way at the guess.
+    along = along * np.sign(along @ seen @ axis)
+    # Of the two directions normal to the axis of the first link, the one that is less along that of the second.
+    u, w = (direction - along * (along @ direction) for direction in (seen @ first, seen @ second))
+    reference = u if np.linalg.norm(u) > np.linalg.norm(w) else np.cross(w, along)
     reference /= np.linalg.norm(reference)
     turned, u, w = other @ ca.SX(reference), one @ ca.SX(first), one @ ca.SX(second)
     # By virtual work: how the angle changes if the second body turns a little.

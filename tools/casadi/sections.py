@@ -89,6 +89,8 @@ def pins(crane, index):
     yield from ((load.at, True) for load in crane.loads if load.body == index)
     for cylinder in crane.cylinders:
         yield from ((at, True) for body, at in cylinder.pins if body == index)
+    for joint in crane.loop_joints:
+        yield from ((at, True) for body, at in joint.ends if body is crane.bodies[index])
     for connector in crane.connectors:
         yield from ((at, True) for body, at in zip(connector.bodies, connector.at) if body == index)
         if connector.pad is not None:
