@@ -266,7 +266,7 @@ fn gaps_and_rows_of_loops_are_the_interpreters() {
     let (spec, _) = rest.split_once("```").unwrap();
     let found =
         differences("four_bar", &load(&SourceFile::new("four_bar.yaml", spec)).unwrap(), Precision::Double, &[]);
-    assert_eq!(found.iter().filter(|(function, _)| function.starts_with("loop_")).count(), 3);
+    assert_eq!(found.iter().filter(|(function, _)| function.starts_with("loop_")).count(), 4);
     for (function, off) in found {
         assert!(off < 1e-12, "{function} is off by {off:e}");
     }

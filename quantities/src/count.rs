@@ -15,6 +15,8 @@ pub enum Count {
     Coordinates,
     /// Equations of joints that close loops.
     LoopEquations,
+    /// Rows that close loops in the dynamics: accelerations, J̇ q̇ in as many rows as it fills, and two rows for each equation.
+    LoopRows,
     /// Intervals in which the drives move smoothly.
     DrivePieces,
     /// Intervals in which the loads change smoothly.
@@ -56,6 +58,7 @@ impl Count {
             Count::Cuts => "cuts",
             Count::Coordinates => "n",
             Count::LoopEquations => "loop_equations",
+            Count::LoopRows => "loop_rows",
             Count::DrivePieces => "drive_pieces",
             Count::LoadPieces => "load_pieces",
             Count::WinchPieces => "winch_pieces",
@@ -69,6 +72,12 @@ impl Count {
             Count::PosesAndRates => "2",
             Count::ResidualRows => "residual_rows",
         }
+    }
+
+    /// The number of [`LoopRows`](Self::LoopRows) of so many equations and n coordinates.
+    #[must_use]
+    pub const fn loop_rows(equations: usize, n: usize) -> usize {
+        if equations == 0 { 0 } else { 1 + equations.div_ceil(n) + 2 * equations }
     }
 
     /// The counts whose product it is.

@@ -155,6 +155,9 @@ macro_rules! count {
     (loop_equations) => {
         Count::LoopEquations
     };
+    (loop_rows) => {
+        Count::LoopRows
+    };
     (drive_pieces) => {
         Count::DrivePieces
     };

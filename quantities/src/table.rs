@@ -165,6 +165,11 @@ Dynamics {
     SolveMass = solve_mass(q, r) -> vector written
         "Solution x of `A x = r`; r in N and N m, x in m/s² and rad/s²."
         "A x = r, by articulated bodies at rest";
+    /// For all equations of the loop joints in one pass, so that accelerations with closed loops take one call. J̇ q̇ is filled up with zeros to
+    /// whole rows. Cylinders with a valve, as in `forward_dynamics`. Zero rows for a crane without loops.
+    LoopDynamics = loop_dynamics(t, q, v) -> [row; loop_rows] zero
+        "Accelerations of the open chain, and what closes its loops: J̇ q̇ of their equations, their rows J, and A⁻¹ Jᵀ, one row per equation."
+        "q̈ of the open chain, J̇ q̇, J, A⁻¹ Jᵀ";
     /// Symmetric positive definite.
     MassMatrix = mass_matrix(q) -> matrix required
         "Mass matrix A; kg, kg m and kg m²."

@@ -10,7 +10,7 @@ from crane_spec import CraneSpec
 from cuts import Cut
 from cylinders import Cylinder, pin_of_rocker, turning_axis
 from inertias import read_pseudo_inertia
-from loop_joints import read_loop_joint, read_pin
+from loop_joints import LoopJoint, read_loop_joint, read_pin
 from profiles import read_profile
 from sections import add_sections
 from telescopes import length_of, read_pads, slide
@@ -318,15 +318,21 @@ def read_crane(path):
         crane.connectors.append(read_connector(crane, written, spans))
     for written in spec.get("couplings", []):
         crane.connectors.append(read_coupling(crane, written))
+    exact = []
     for link in spec.keys["links"]:
         if "slides_in" in link.get("beam", {}):
-            for pad, stiffness, damping, clearance in read_pads(crane, link, spans, index_of):
+            for pad, law in read_pads(crane, link, spans, index_of):
+                if law is None:
+                    exact.append(LoopJoint(link["name"], [pad.value()], [], pad))
+                    continue
+                stiffness, damping, clearance = law
                 law = (False, stiffness, damping, 0, 0)
                 crane.connectors.append(Connector([], [], [], [], pad.value(), *law, clearance=clearance, pad=pad))
     for written in spec.get("loop_joints", []):
         crane.loop_joints.append(read_loop_joint(spec, written, spans, carrier))
         if "friction" in written or "damping" in written:
             crane.connectors.append(read_friction_of_pin(crane, written, spans))
+    crane.loop_joints += exact
     for written in spec.get("points", []):
         crane.points[written["name"]] = read_point(spec, written, spans[written["link"]])
     add_sections(crane, [spans[link["name"]] for link in spec.keys["links"] if "beam" in link or "rope" in link])

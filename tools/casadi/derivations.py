@@ -555,7 +555,10 @@ class Derivations:
     def sizes(self):
         """How many numbers each quantity has."""
         own = {name: expression.numel() for name, expression in self.quantities.items() if name not in INTERNAL}
-        return own | dict.fromkeys(SOLUTIONS, self.crane.q.numel())
+        n = self.crane.q.numel()
+        equations = own["loop_jacobians"] // n
+        loop_rows = 1 + -(-equations // n) + 2 * equations if equations else 0
+        return own | dict.fromkeys(SOLUTIONS, n) | {"loop_dynamics": loop_rows * n}
 
     def evaluate(self, states):
         """All quantities at all states: name -> array with one row per state."""
@@ -621,7 +624,20 @@ def solutions(values, v, prescribed):
         values[name][:, prescribed] += efforts
     values["drive_power"][:, 0] += np.einsum("si,si->s", efforts, v[:, prescribed])
     found = [accelerations, accelerations, solve_unknown(mass, v, prescribed), solve_unknown(implicit, v, prescribed)]
-    return dict(zip(SOLUTIONS, found))
+    return dict(zip(SOLUTIONS, found)) | {"loop_dynamics": loop_dynamics(values, mass, accelerations, prescribed)}
+
+
+def loop_dynamics(values, mass, accelerations, prescribed):
+    """Accelerations of the open chain, J̇ q̇ of the equations of its loops in rows as long as q, J, and A⁻¹ Jᵀ, row by row."""
+    states, count = accelerations.shape
+    rows = values["loop_jacobians"].reshape(states, -1, count)
+    if rows.shape[1] == 0:
+        return np.zeros((states, 0))
+    curvatures = values["loop_states"].reshape(states, -1, 3)[:, :, 2]
+    filled = np.zeros((states, -(-curvatures.shape[1] // count) * count))
+    filled[:, : curvatures.shape[1]] = curvatures
+    columns = [solve_unknown(mass, rows[:, row], prescribed) for row in range(rows.shape[1])]
+    return np.concatenate([accelerations, filled, rows.reshape(states, -1), *columns], axis=1)
 
 
 def solve_unknown(matrices, right, prescribed):

@@ -8,11 +8,12 @@ import numpy as np
 
 @dataclass
 class LoopJoint:
-    """A joint, what is zero while it is closed, and the links that it holds: body and distance along it of each end on one."""
+    """A joint, what is zero while it is closed, and the links that it holds: body and distance along it of each end on one; or an exact pad."""
 
     name: str
     gaps: list
     ends: list
+    pad: object = None
 
 
 def frame_of(written, spans, spec, carrier):

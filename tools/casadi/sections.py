@@ -93,8 +93,9 @@ def pins(crane, index):
         yield from ((at, True) for body, at in joint.ends if body is crane.bodies[index])
     for connector in crane.connectors:
         yield from ((at, True) for body, at in zip(connector.bodies, connector.at) if body == index)
-        if connector.pad is not None:
-            pad, *beam = connector.pad.stations
+    for held in [*crane.connectors, *crane.loop_joints]:
+        if held.pad is not None:
+            pad, *beam = held.pad.stations
             yield from ((pad.at, True) for _ in range(pad.body == index))
-            middle = connector.pad.length / max(connector.pad.sections, 1) / 2
-            yield from ((middle, False) for station in beam[1 : connector.pad.sections] if station.body == index)
+            middle = held.pad.length / max(held.pad.sections, 1) / 2
+            yield from ((middle, False) for station in beam[1 : held.pad.sections] if station.body == index)

@@ -117,7 +117,7 @@ def stations_of(crane, span, index_of):
 
 
 def read_pads(crane, link, spans, index_of):
-    """The pads of a stage, front and rear, each with its name, strain and law as written."""
+    """The pads of a stage, front and rear, each with its law as written, or None in place of the law of an exact one."""
     written = link["beam"]["slides_in"]
     spec = crane.spec
     outer, inner = spans[written["beam"]], spans[link["name"]]
@@ -134,5 +134,7 @@ def read_pads(crane, link, spans, index_of):
         stations = [pad, *stations_of(crane, beam, index_of)]
         vectors = [spec.vector(keys.get(key, [0, 0, 0])) for key in ("stiffness", "damping", "clearance")]
         for number, direction in enumerate(DIRECTIONS):
-            if spec.default(vectors[0][number]) != 0 or not vectors[0][number].is_constant():
-                yield Pad(stations, len(beam.bodies) - 1, length_of(beam), s, direction), *(v[number] for v in vectors)
+            if direction in keys.get("exact", []):
+                yield Pad(stations, len(beam.bodies) - 1, length_of(beam), s, direction), None
+            elif spec.default(vectors[0][number]) != 0 or not vectors[0][number].is_constant():
+                yield Pad(stations, len(beam.bodies) - 1, length_of(beam), s, direction), [v[number] for v in vectors]

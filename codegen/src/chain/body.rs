@@ -41,6 +41,12 @@ impl Axis {
     pub fn index(self) -> usize {
         self as usize
     }
+
+    /// Its direction.
+    #[must_use]
+    pub fn unit_vector(self) -> super::Vector {
+        [0, 1, 2].map(|i| f64::from(u8::from(i == self.index())))
+    }
 }
 
 /// A body: a rigid link, a rigid finite element, or a massless frame.

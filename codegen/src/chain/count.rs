@@ -20,6 +20,7 @@ impl Chain {
             Count::Cuts => self.cuts().len(),
             Count::Coordinates => self.coordinates.len(),
             Count::LoopEquations => self.loop_equations().count(),
+            Count::LoopRows => Count::loop_rows(self.loop_equations().count(), self.coordinates.len()),
             Count::DrivePieces => self.drives.iter().map(|drive| drive.pieces().len()).sum(),
             Count::LoadPieces => self.loads.iter().map(Load::pieces).sum(),
             Count::WinchPieces => self.connectors().iter().map(Force::pieces).sum(),

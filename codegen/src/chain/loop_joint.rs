@@ -1,13 +1,13 @@
 //! Joints that close loops: equations between two attachments, φ(q) = 0.
 
-use super::{Attachment, Chain, CoordinateId, Value, Vector};
+use super::{Attachment, Axis, Chain, CoordinateId, PadDirection, Sliding, Value, Vector};
 
 /// A joint between two attachments that are already connected through other joints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoopJoint {
     /// Unique name.
     pub name: String,
-    /// Its points; directions are in the axes of the first.
+    /// Its points; directions are in the axes of the first. Of a pad: itself, and the beginning of the beam that slides on it.
     pub ends: [Attachment; 2],
     /// What it holds together.
     pub kind: LoopJointKind,
@@ -34,6 +34,11 @@ pub enum LoopJointKind {
     Slide {
         /// Directions normal to the line, in the axes of the first body.
         across: Across,
+    },
+    /// The axis of a beam on a pad of the first body.
+    Pad {
+        /// The beam, once for each direction in which the pad holds it.
+        held: Vec<Sliding>,
     },
 }
 
@@ -66,6 +71,7 @@ impl LoopJointKind {
             LoopJointKind::Pin { .. } => "pin",
             LoopJointKind::Rod { .. } => "rod",
             LoopJointKind::Slide { .. } => "slide",
+            LoopJointKind::Pad { .. } => "pad",
         }
     }
 
@@ -83,7 +89,29 @@ impl LoopJointKind {
             }
             LoopJointKind::Rod { .. } => forces(&[""]),
             LoopJointKind::Slide { across } => forces(&across.names),
+            LoopJointKind::Pad { held } => held.iter().map(|sliding| at_pad(sliding.direction)).collect(),
         }
+    }
+
+    /// The beam that slides, of a pad.
+    #[must_use]
+    pub fn slides(&self) -> Option<&Sliding> {
+        match self {
+            LoopJointKind::Pad { held } => held.first(),
+            LoopJointKind::Ball
+            | LoopJointKind::Pin { .. }
+            | LoopJointKind::Rod { .. }
+            | LoopJointKind::Slide { .. } => None,
+        }
+    }
+}
+
+/// The equation of a direction in which a pad holds a beam.
+fn at_pad(direction: PadDirection) -> LoopEquation {
+    match direction {
+        PadDirection::Along(Axis::X) | PadDirection::Twist => LoopEquation { direction: "x", is_moment: true },
+        PadDirection::Along(Axis::Y) => LoopEquation { direction: "y", is_moment: false },
+        PadDirection::Along(Axis::Z) => LoopEquation { direction: "z", is_moment: false },
     }
 }
 
@@ -126,7 +154,10 @@ impl Chain {
     /// The coordinates that move the ends of a joint against each other, in the order of q.
     #[must_use]
     pub fn closed_by(&self, joint: &LoopJoint) -> Vec<CoordinateId> {
-        self.between(&joint.ends.each_ref().map(|end| self.reach(end)))
+        match joint.kind.slides() {
+            Some(sliding) => self.changing_at(sliding),
+            None => self.between(&joint.ends.each_ref().map(|end| self.reach(end))),
+        }
     }
 }
 

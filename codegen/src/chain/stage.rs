@@ -1,6 +1,6 @@
 //! Stages of telescopes: beams that slide in beams.
 
-use super::{Axis, Beam, BeamAxis, BodyId, Chain, CoordinateId, PadDirection, Sliding, Strain, Value};
+use super::{Axis, Beam, BeamAxis, BodyId, Chain, CoordinateId, LoopJointKind, PadDirection, Sliding, Value};
 
 /// A beam that slides in another one on pads.
 #[derive(Clone, Debug)]
@@ -27,7 +27,18 @@ impl Chain {
     /// The stages of telescopes, in the order of the links.
     #[must_use]
     pub fn stages(&self) -> Vec<Stage<'_>> {
-        self.connectors().iter().filter_map(|connector| stage(&connector.strain)).collect()
+        let mut stages: Vec<Stage<'_>> = self.pads().filter_map(stage).collect();
+        stages.sort_by_key(|stage| stage.inner);
+        stages
+    }
+
+    /// All directions in which pads hold beams, with springs or exactly.
+    pub fn pads(&self) -> impl Iterator<Item = &Sliding> {
+        let exact = self.loop_joints.iter().flat_map(|joint| match &joint.kind {
+            LoopJointKind::Pad { held } => held.as_slice(),
+            _ => &[],
+        });
+        self.connectors().iter().filter_map(|connector| connector.strain.sliding()).chain(exact)
     }
 
     /// The coordinates that pads hold: those of stages besides the one along which each slides.
@@ -51,11 +62,9 @@ impl Chain {
     }
 }
 
-/// The stage of which a strain is that of the rear pad, at the beginning of the inner beam, along y: each stage has one.
-fn stage(strain: &Strain) -> Option<Stage<'_>> {
-    let Strain::Sliding(sliding) = strain else { return None };
-    let Sliding { pad, beam, start, grows: true, coordinate, direction: PadDirection::Along(Axis::Y) } = &**sliding
-    else {
+/// The stage of a rear pad, at the beginning of the inner beam, along y: each stage has one.
+fn stage(sliding: &Sliding) -> Option<Stage<'_>> {
+    let Sliding { pad, beam, start, grows: true, coordinate, direction: PadDirection::Along(Axis::Y) } = sliding else {
         return None;
     };
     Some(Stage { outer: beam, inner: pad.body?, coordinate: *coordinate, behind: start })

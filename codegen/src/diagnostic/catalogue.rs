@@ -459,8 +459,8 @@ catalogue! {
     E175 overlap(link, overlap, length) "the overlap of `{link}` is {overlap} m, more than a beam of {length} m", "where the coordinate is 0, the inner beam is that far in the outer one",
         "write an overlap of at most the length of both beams; the coordinate shortens it";
     /// Pads hold a beam against twist.
-    E176 untwisted(link) "no pad holds `{link}` against twist", "the third number of both stiffnesses is 0",
-        "write the stiffness against twist in N m/rad as the third number of `front`, of `rear` or of both";
+    E176 untwisted(link) "no pad holds `{link}` against twist", "the third number of `stiffness` is 0 in both, and `exact` lacks `twist`",
+        "write the stiffness against twist in N m/rad as the third number of `front`, of `rear` or of both, or add `twist` to `exact`";
 
     // Efforts of drives.
     /// A drive that is rigid or has a spring has a motion.
@@ -469,6 +469,14 @@ catalogue! {
     /// A drive with a motion has a spring or a damper, or is rigid.
     E178 motion_without_spring(coordinate) "the motion of drive `{coordinate}` has no effect", "it has an `effort`, and neither spring nor damper",
         "remove `motion`, or write the `stiffness:` or `damping:` through which it acts";
+
+    // Exact pads.
+    /// Where a pad holds exactly it has no stiffness, damping or clearance.
+    E179 exact_spring(pad, direction, key) "{pad} is exact along `{direction}` and has `{key}` there", "an exact pad does not give way",
+        "write 0 here, or remove `{direction}` from `exact`";
+    /// A pad without `stiffness` is exact along y and z.
+    E180 loose_pad(pad, direction) "{pad} does not hold along {direction}", "it has no `stiffness`, and `exact` lacks {direction}",
+        "write `exact: [y, z]`, with `twist` if it holds against it, or give the `stiffness`";
 
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.

@@ -118,6 +118,17 @@ impl<'a> Labels<'a> {
                 let name = self.part(first, index / cuts).unwrap_or_default();
                 Some(format!("{name} – {}", self.part(Count::Cuts, index % cuts)?))
             }
+            Count::LoopRows => {
+                let (equations, n) = (chain.count(Count::LoopEquations), chain.coordinates.len());
+                let first = 1 + equations.div_ceil(n);
+                let of = |row: usize| self.part(Count::LoopEquations, row % equations).unwrap_or_default();
+                Some(match index {
+                    0 => "Accelerations of the open chain".to_owned(),
+                    _ if index < first => "J̇ q̇".to_owned(),
+                    _ if index < first + equations => format!("J, {}", of(index - first)),
+                    _ => format!("A⁻¹ Jᵀ, {}", of(index - first)),
+                })
+            }
             Count::PointAxes => self.part(Count::Points, index / 3),
             Count::ResidualRows => self.part(Count::Coordinates, index % chain.coordinates.len()),
             Count::Bodies | Count::Derivatives | Count::SecondDerivatives | Count::Axes | Count::PosesAndRates => None,

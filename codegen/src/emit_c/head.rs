@@ -210,6 +210,9 @@ fn result(chain: &Chain, Function { id, shape, .. }: &Function) -> String {
         Shape::MassAndBias(_) => format!("out: {n} x {n}, symmetric, then one number per coordinate"),
         Shape::Vectors(_) => format!("out: x, y, z of each of the {}", names()),
         Shape::Pairs(count) => format!("out: {count} pairs"),
+        Shape::Rows { count, n } if *id == FunctionId::LoopDynamics => {
+            format!("out: {count} x {n}, row by row: q'' of the open chain, J' q', J, inv(A) J'")
+        }
         Shape::Rows { count, n } if *id == FunctionId::DynamicResidualDerivatives => {
             format!("out: {} matrices of {n} x {n}, row by row, one after the other", count / n)
         }

@@ -35,6 +35,7 @@ pub struct AxisPoint<'a, 'g> {
     past_end: Expr<'g>,
     /// `min(σ, 0)`.
     before_start: Expr<'g>,
+    s: Expr<'g>,
     /// d, m.
     section: Expr<'g>,
     /// `τ_k`
@@ -54,6 +55,7 @@ impl<'a, 'g> AxisPoint<'a, 'g> {
             model,
             kinematics,
             axis,
+            s,
             section,
             passed,
         }
@@ -135,6 +137,32 @@ impl<'a, 'g> AxisPoint<'a, 'g> {
         let moving = self.model.chain.coordinates_of(self.axis.last()).into_iter();
         let first = |CoordinateId(j): CoordinateId| self.model.chain.coordinates[j].body.0;
         moving.map(|id| (id.0, slope(id.0, first(id).saturating_sub(self.axis.first.0)))).collect()
+    }
+
+    /// `∂e_k/∂s` of every element, 1/m.
+    fn share_slopes(&self) -> Vec<Expr<'g>> {
+        let Self { model, kinematics, axis, s, .. } = self;
+        let [free, _] = model.free_symbols();
+        let anywhere = AxisPoint::new(model, kinematics, axis, free);
+        let shares: Vec<_> = (0..=axis.sections).map(|element| anywhere.share(element)).collect();
+        let slopes = model.graph.derivatives(&shares, free);
+        slopes.into_iter().map(|slope| model.graph.substitute(slope, &[(free, *s)])).collect()
+    }
+
+    /// `Σ e_k a_k` over the elements that a generator moves, e its derivative by s if `by_place`; in place of all elements of those that
+    /// move the whole beam.
+    pub fn axis_beyond(&self, axis: Axis, by_place: bool) -> Vec<Vec3<'g>> {
+        if by_place {
+            let slopes = self.share_slopes();
+            self.sums(axis, |k| slopes[k])
+        } else {
+            self.sums(axis, |k| self.share(k))
+        }
+    }
+
+    /// `Σ c_k x̂_k` over the elements from each one on.
+    pub fn ways_beyond(&self) -> Vec<Vec3<'g>> {
+        self.sums(Axis::X, |k| self.way(k))
     }
 
     /// The points of elements that carry a force at P, and the share that each carries.

@@ -14,14 +14,21 @@
 //!
 //! and the same for s with directions in place of points. What is needed of r̈ is its value for q̈ = 0, so that `φ̈ = J q̈ + J̇ q̇`.
 //!
+//! On a pad slides the [axis of a beam](super::beam_axis): p₂ = P(σ) and, against twist, a = y(σ) depend on the place `σ = σ₀ ± q_k`, too.
+//! Then `∂p₂/∂q_k` has the additional term ± P′, and ẍ₂ has `2 σ̇ Σ q̇_j ∂P′/∂q_j + σ̇² P″`.
+//!
 //! λ are the forces and moments that the second body exerts on the first, along the directions of the equations: the generalized forces
 //! are `f = −Jᵀ λ`.
 
+use super::beam_axis::AxisPoint;
 use super::kinematics::{Curvature, Generator, Kinematics, Pose};
 use super::model::Model;
+use super::pads::{self, AtPad};
 use super::place::Place;
 use super::vector::{Rotation, Vec3};
-use crate::chain::{Across, Attachment, BodyId, CoordinateId, LoopJoint, LoopJointKind, Vector};
+use crate::chain::{
+    Across, Attachment, Axis, BodyId, CoordinateId, LoopJoint, LoopJointKind, PadDirection, Sliding, Vector,
+};
 use crate::symbolic::Expr;
 
 /// An equation of a joint.
@@ -46,6 +53,15 @@ fn equations(kind: &LoopJointKind) -> Vec<Equation> {
         }
         LoopJointKind::Rod { .. } => vec![Equation::Rod],
         LoopJointKind::Slide { across } => across.directions.map(Equation::Along).to_vec(),
+        LoopJointKind::Pad { held } => held.iter().map(|sliding| at_pad(sliding.direction)).collect(),
+    }
+}
+
+/// `n · r` or `z · y`
+fn at_pad(direction: PadDirection) -> Equation {
+    match direction {
+        PadDirection::Along(axis) => Equation::Along(axis.unit_vector()),
+        PadDirection::Twist => Equation::Turn(Axis::Z.unit_vector()),
     }
 }
 
@@ -75,7 +91,7 @@ struct Moving<'g> {
 /// A joint at a state.
 struct Closed<'g> {
     gap: Moving<'g>,
-    /// s, of a pin.
+    /// s, of a pin or a pad.
     axis: Option<Moving<'g>>,
     /// L of a rod, otherwise 0.
     length: Expr<'g>,
@@ -92,15 +108,20 @@ impl<'g> Closed<'g> {
         let kinematics = Kinematics::new(&model);
         let bodies = Bodies { model: &model, kinematics: &kinematics, joint };
         let [(frame, one), (of_second, other)] = joint.ends.each_ref().map(|end| placed(&model, &kinematics, end));
-        let gap = bodies.relative(frame, other - one, &|generator| generator.velocity(other));
+        if let Some(sliding) = joint.kind.slides() {
+            return bodies.on_pad((frame, one), sliding);
+        }
+        let carried = |generator: &Generator<'g>| generator.velocity(other);
+        let gap = bodies.relative(frame, other - one, [&carried, &carried], None);
         let (mut axis, mut length) = (None, model.zero());
         match &joint.kind {
             LoopJointKind::Pin { to_axis, .. } => {
                 let along = of_second.apply(direction(&model, *to_axis));
-                axis = Some(bodies.relative(frame, along, &|generator| generator.rotate(along)));
+                let turned = |generator: &Generator<'g>| generator.rotate(along);
+                axis = Some(bodies.relative(frame, along, [&turned, &turned], None));
             }
             LoopJointKind::Rod { length: given } => length = model.number(given),
-            LoopJointKind::Ball | LoopJointKind::Slide { .. } => {}
+            LoopJointKind::Ball | LoopJointKind::Slide { .. } | LoopJointKind::Pad { .. } => {}
         }
         Closed { gap, axis, length }
     }
@@ -155,10 +176,61 @@ struct Bodies<'a, 'g> {
 /// What a generator does to the point or direction whose motion is asked for.
 type Moves<'a, 'g> = &'a dyn Fn(&Generator<'g>) -> Vec3<'g>;
 
+/// How a point or direction of a beam that slides depends on its place σ.
+struct ByPlace<'a, 'g> {
+    /// k
+    coordinate: usize,
+    /// ∂σ/∂q_k
+    sign: Expr<'g>,
+    /// First and second derivative by σ.
+    slopes: [Vec3<'g>; 2],
+    /// What a generator does to the first derivative.
+    moves: Moves<'a, 'g>,
+}
+
 impl<'g> Bodies<'_, 'g> {
-    /// The coordinates that move one of the bodies.
+    /// The coordinates that move one of the bodies, or a part of the beam that slides.
     fn reach(&self, end: usize) -> Vec<CoordinateId> {
-        self.model.chain.reach(&self.joint.ends[end])
+        match self.joint.kind.slides() {
+            Some(sliding) if end == 1 => self.model.chain.coordinates_of(sliding.beam.last()),
+            _ => self.model.chain.reach(&self.joint.ends[end]),
+        }
+    }
+
+    /// A beam at a pad of the frame and the point.
+    fn on_pad(&self, (frame, pad): (Rotation<'g>, Vec3<'g>), sliding: &Sliding) -> Closed<'g> {
+        let Self { model, kinematics, .. } = self;
+        let (sign, s) = pads::place(model, sliding);
+        let beam = AxisPoint::new(model, kinematics, &sliding.beam, s);
+        let (CoordinateId(coordinate), sign) = (sliding.coordinate, model.graph.constant(sign));
+        let (position, y) = (beam.position(), beam.cross_axis(Axis::Y));
+        let ways = beam.ways_beyond();
+        let [along, along_slopes, across, across_slopes] =
+            [(Axis::X, false), (Axis::X, true), (Axis::Y, false), (Axis::Y, true)]
+                .map(|(axis, by_place)| beam.axis_beyond(axis, by_place));
+        // Of a beam, a generator moves what is beyond its element; those before the beam move all of it.
+        let element = |generator: &Generator<'g>| generator.body.saturating_sub(sliding.beam.first.0);
+        let moved = |generator: &Generator<'g>| match element(generator) {
+            0 => generator.velocity(position),
+            element => generator.rotate(ways[element]),
+        };
+        let of_direction = |generator: &Generator<'g>| generator.rotate(along[element(generator)]);
+        let gap = self.relative(
+            frame,
+            position - pad,
+            [&|generator| generator.velocity(position), &moved],
+            Some(&ByPlace { coordinate, sign, slopes: [along[0], along_slopes[0]], moves: &of_direction }),
+        );
+        let turned = |generator: &Generator<'g>| generator.rotate(across[element(generator)]);
+        let of_slope = |generator: &Generator<'g>| generator.rotate(across_slopes[element(generator)]);
+        let flat = Vec3::zero(model.graph);
+        let axis = self.relative(
+            frame,
+            y,
+            [&|generator| generator.rotate(y), &turned],
+            Some(&ByPlace { coordinate, sign, slopes: [across_slopes[0], flat], moves: &of_slope }),
+        );
+        Closed { gap, axis: Some(axis), length: model.zero() }
     }
 
     /// The generators of the coordinates that move one of the bodies, in order.
@@ -167,22 +239,36 @@ impl<'g> Bodies<'_, 'g> {
         self.reach(end).into_iter().map(|CoordinateId(j)| (j, &generators[j]))
     }
 
-    /// A vector of the second body as seen from the first.
-    fn relative(&self, frame: Rotation<'g>, value: Vec3<'g>, moves: Moves<'_, 'g>) -> Moving<'g> {
+    /// A vector of the second body as seen from the first; generators move it as part of either of them.
+    fn relative(
+        &self,
+        frame: Rotation<'g>,
+        value: Vec3<'g>,
+        [of_first, of_second]: [Moves<'_, 'g>; 2],
+        by_place: Option<&ByPlace<'_, 'g>>,
+    ) -> Moving<'g> {
         let Model { v, graph, .. } = self.model;
         let zero = Vec3::zero(graph);
         let mut by_coordinate = vec![zero; v.len()];
         for (j, generator) in self.moving(1) {
-            by_coordinate[j] = moves(generator);
+            by_coordinate[j] = of_second(generator);
         }
         for (j, generator) in self.moving(0) {
-            by_coordinate[j] = by_coordinate[j] - moves(generator);
+            by_coordinate[j] = by_coordinate[j] - of_first(generator);
+        }
+        if let Some(ByPlace { coordinate, sign, slopes: [slope, _], .. }) = by_place {
+            by_coordinate[*coordinate] = by_coordinate[*coordinate] + *sign * *slope;
         }
         let between = self.model.chain.closed_by(self.joint);
         let rate = between.iter().fold(zero, |sum, &CoordinateId(j)| sum + v[j] * by_coordinate[j]);
         let turning = self.moving(0).fold(zero, |sum, (j, generator)| sum + v[j] * generator.omega);
         let coriolis = turning.cross(rate);
-        let second = self.second_rate(1, moves) - self.second_rate(0, moves) - (coriolis + coriolis);
+        let mut second = self.second_rate(1, of_second) - self.second_rate(0, of_first) - (coriolis + coriolis);
+        if let Some(ByPlace { coordinate, sign, slopes: [_, bend], moves }) = by_place {
+            let along = *sign * v[*coordinate];
+            let turning = self.moving(1).fold(zero, |sum, (j, generator)| sum + v[j] * moves(generator));
+            second = second + along * (turning + turning + along * *bend);
+        }
         Moving {
             motion: [value, rate, second].map(|vector| frame.apply_transposed(vector)),
             slopes: between.into_iter().map(|CoordinateId(j)| (j, frame.apply_transposed(by_coordinate[j]))).collect(),
@@ -240,6 +326,13 @@ pub fn actions<'g>(
     joint: &LoopJoint,
 ) -> Vec<Vec<(Place, [Vec3<'g>; 2])>> {
     let zero = Vec3::zero(model.graph);
+    if let LoopJointKind::Pad { held } = &joint.kind {
+        let on_bodies = |sliding: &Sliding| {
+            let pulls = AtPad::new(model, kinematics, sliding).pulls.into_iter();
+            pulls.map(|(place, pull)| (place, pull.about_origin())).collect()
+        };
+        return held.iter().map(on_bodies).collect();
+    }
     let [(frame, one), (of_second, other)] = joint.ends.each_ref().map(|end| placed(model, kinematics, end));
     let on_first = |equation| match equation {
         Equation::Along(along) => {

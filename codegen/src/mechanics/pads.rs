@@ -48,8 +48,7 @@ struct Measured<'g> {
 impl<'g> AtPad<'g> {
     pub fn new(model: &Model<'g>, kinematics: &Kinematics<'g>, sliding: &Sliding) -> Self {
         let CoordinateId(slid) = sliding.coordinate;
-        let sign = if sliding.grows { 1.0 } else { -1.0 };
-        let s = model.number(&sliding.start) + sign * model.q[slid];
+        let (sign, s) = place(model, sliding);
         let Measured { length, by_place, by_beam, by_pad, on_pad, on_beam } = match sliding.direction {
             PadDirection::Along(axis) => along(model, kinematics, sliding, (axis, s)),
             PadDirection::Twist => twist(model, kinematics, sliding, s),
@@ -68,6 +67,13 @@ impl<'g> AtPad<'g> {
         let of_pad = sliding.pad.body.map(|body| (Place { body, along: sliding.pad.position[0].clone() }, on_pad));
         AtPad { length, jacobian, pulls: of_pad.into_iter().chain(on_beam).collect() }
     }
+}
+
+/// The derivative of s by the coordinate along which the beam slides, and s, m.
+pub fn place<'g>(model: &Model<'g>, sliding: &Sliding) -> (f64, Expr<'g>) {
+    let CoordinateId(slid) = sliding.coordinate;
+    let sign = if sliding.grows { 1.0 } else { -1.0 };
+    (sign, model.number(&sliding.start) + sign * model.q[slid])
 }
 
 /// The axes of the body that carries a pad.

@@ -36,7 +36,7 @@ pub use on::{On, Place};
 pub use placement::{AxisName, ClassicDh, ModifiedDh, Placement, Transform, Turn};
 pub use scalar::{Angle, Constant, FixedAngle, Number, Scalar, Vector, parse_angle};
 pub use schema::json_schema;
-pub use slides_in::{Pad, Pads, SlidesIn};
+pub use slides_in::{ExactDirection, Pad, Pads, SlidesIn};
 pub(crate) use spanned::{EITHER, MANY, SPANNED};
 pub use spanned::{Either, Entries, Many, Spanned};
 pub use support::{Kinematics, Point, Support};

@@ -27,14 +27,28 @@ pub struct Pads {
     pub rear: Spanned<Pad>,
 }
 
-/// Pads on all sides of a beam: springs and dampers along y and z of the beam that carries them, and against twist about its x.
+/// Pads on all sides of a beam: springs and dampers along y and z of the beam that carries them, and against twist about its x; or exact.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `stiffness`, `damping` and `clearance`")]
+#[serde(deny_unknown_fields, expecting = "a mapping of `stiffness`, `damping`, `clearance` and `exact`")]
 pub struct Pad {
-    /// Stiffness along y and z, N/m, and against twist, N m/rad.
-    pub stiffness: Spanned<Vector>,
+    /// Stiffness along y and z, N/m, and against twist, N m/rad. Default `[0, 0, 0]`.
+    pub stiffness: Option<Spanned<Vector>>,
     /// Damping along y and z, N s/m, and against twist, N m s/rad. Default `[0, 0, 0]`.
     pub damping: Option<Spanned<Vector>>,
     /// Clearance on each side along y and z, m, and of the twist, rad. Default none: `[0, 0, 0]`.
     pub clearance: Option<Spanned<Vector>>,
+    /// Directions in which the pad does not give way: equations of a loop in place of springs. Default none.
+    pub exact: Option<Spanned<Vec<Spanned<ExactDirection>>>>,
+}
+
+/// A direction in which a pad holds exactly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ExactDirection {
+    /// Along y of the beam that carries the pad.
+    Y,
+    /// Along z of the beam that carries the pad.
+    Z,
+    /// Against twist.
+    Twist,
 }

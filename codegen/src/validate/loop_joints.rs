@@ -78,7 +78,7 @@ impl<'a> Check<'a> {
     }
 
     /// Like cylinders and connectors, loop joints have result columns for their forces.
-    fn register_loop_joint(&mut self, name: &str, span: Span, cylinders: &[Cylinder], connectors: &[Force]) {
+    pub(super) fn register_loop_joint(&mut self, name: &str, span: Span, cylinders: &[Cylinder], connectors: &[Force]) {
         self.register_name("loop joints", name, "an earlier loop joint".into(), span);
         let other = if cylinders.iter().any(|cylinder| cylinder.name == name) {
             "a cylinder"
@@ -156,7 +156,10 @@ impl<'a> Check<'a> {
                 {
                     self.report(rule::meeting_rod(given.name.span, &joint.name));
                 }
-                LoopJointKind::Ball | LoopJointKind::Rod { .. } | LoopJointKind::Slide { .. } => {}
+                LoopJointKind::Ball
+                | LoopJointKind::Rod { .. }
+                | LoopJointKind::Slide { .. }
+                | LoopJointKind::Pad { .. } => {}
             }
         }
         chain.loop_joints = joints;

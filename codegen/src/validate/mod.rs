@@ -224,8 +224,10 @@ impl<'a> Check<'a> {
         let pump = self.pump(crane);
         self.make_drives_hydraulic(crane, &cylinders, pump.as_ref(), &mut drives);
         let mut connectors = self.connectors(crane, &cylinders);
-        connectors.extend(self.pads(&cylinders));
-        let (loop_joints, in_pins) = self.loop_joints(crane, &cylinders, &connectors);
+        let (pads, exact_pads) = self.pads(&cylinders);
+        connectors.extend(pads);
+        let (mut loop_joints, in_pins) = self.loop_joints(crane, &cylinders, &connectors);
+        loop_joints.extend(exact_pads);
         connectors.extend(in_pins);
         rotors.extend(self.rotors(crane, &drives));
         self.beam_sections(&loads, &cylinders, &connectors, &loop_joints);

@@ -53,7 +53,7 @@ impl Check<'_> {
         }
         let mut pins = pins(loads, cylinders, connectors, loop_joints);
         pins.extend(self.branches());
-        pins.extend(self.middles(connectors));
+        pins.extend(self.middles(connectors, loop_joints));
         let mut beams = std::mem::take(&mut self.beams);
         for (beam, distribution) in beams.iter_mut().zip(std::mem::take(&mut self.distributions)) {
             beam.sections = self.sections_of(&beam.link, distribution.as_ref(), &pins);
@@ -72,8 +72,9 @@ impl Check<'_> {
     }
 
     /// The middles of the inner elements of beams that slide on pads, which carry their forces.
-    fn middles(&self, connectors: &[Force]) -> Vec<Pin> {
-        let sliding = connectors.iter().filter_map(|connector| connector.strain.sliding());
+    fn middles(&self, connectors: &[Force], loop_joints: &[LoopJoint]) -> Vec<Pin> {
+        let exact = loop_joints.iter().filter_map(|joint| joint.kind.slides());
+        let sliding = connectors.iter().filter_map(|connector| connector.strain.sliding()).chain(exact);
         let inner =
             |sliding: &'_ Sliding| sliding.beam.elements().skip(1).take(sliding.beam.sections.saturating_sub(1));
         let elements: BTreeSet<BodyId> = sliding.flat_map(inner).collect();
@@ -176,6 +177,11 @@ fn pins(loads: &[Load], cylinders: &[Cylinder], connectors: &[Force], loop_joint
         }
     }
     for joint in loop_joints {
+        if let Some(sliding) = joint.kind.slides() {
+            let what = format!("pads {}", joint.name);
+            pins.extend(sliding.pad.body.map(|body| pin(body, &sliding.pad.position, what)));
+            continue;
+        }
         for end in &joint.ends {
             pins.extend(end.body.map(|body| pin(body, &end.position, format!("joint {}", joint.name))));
         }

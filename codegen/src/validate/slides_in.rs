@@ -5,10 +5,10 @@ use super::on::Attached;
 use super::{Check, LinkBodies, Owner};
 use crate::chain::{
     self, Attachment, Axis, BeamAxis, BodyId, Clearance, CoordinateId, CoordinateKind, Cylinder, Force, Group, Law,
-    PadDirection, Sliding, Spring, Step, Strain, Value,
+    LoopJoint, LoopJointKind, PadDirection, Sliding, Spring, Step, Strain, Value,
 };
 use crate::diagnostic::{Span, rule};
-use crate::spec::{AxisName, Beam, Joint, Link, Pad, SlidesIn, Spanned};
+use crate::spec::{AxisName, Beam, ExactDirection, Joint, Link, Pad, SlidesIn, Spanned, Vector};
 
 /// An overlap may exceed a beam by this fraction of its length, because both are decimal numbers.
 const WRITTEN: f64 = 1e-9;
@@ -22,9 +22,21 @@ const HELD: [(CoordinateKind, Axis); 5] = [
     (CoordinateKind::Rotation, Axis::X),
 ];
 
-/// The directions in which pads hold, and the words for them in names.
-const DIRECTIONS: [(PadDirection, &str); 3] =
-    [(PadDirection::Along(Axis::Y), "y"), (PadDirection::Along(Axis::Z), "z"), (PadDirection::Twist, "twist")];
+/// The directions in which pads hold, and the words for them in specs and names.
+const DIRECTIONS: [(PadDirection, ExactDirection, &str); 3] = [
+    (PadDirection::Along(Axis::Y), ExactDirection::Y, "y"),
+    (PadDirection::Along(Axis::Z), ExactDirection::Z, "z"),
+    (PadDirection::Twist, ExactDirection::Twist, "twist"),
+];
+
+/// How a pad holds a beam in a direction.
+#[derive(Clone, Debug)]
+enum Hold {
+    /// Not at all, against twist.
+    No,
+    With(Law),
+    Exactly,
+}
 
 /// A telescope's stage, of which the pads follow.
 #[derive(Debug)]
@@ -36,8 +48,8 @@ pub(super) struct Stage<'a> {
     /// Where the coordinate is 0, m.
     overlap: Value,
     coordinate: CoordinateId,
-    /// Front and rear: the laws of each direction; `None` for a twist that is not held.
-    pads: [[Option<Law>; 3]; 2],
+    /// Front and rear, in each direction.
+    pads: [[Hold; 3]; 2],
 }
 
 /// The outer beam of a stage and the place of the inner one in it.
@@ -140,13 +152,13 @@ impl<'a> Check<'a> {
     pub(super) fn note_stage(&mut self, link: &'a Link, outer: Option<Outer>, own: &LinkBodies, first: CoordinateId) {
         let Some(given) = slides_in(link).and_then(|given| given.value.as_ref()) else { return };
         let name = link.name.value.as_deref().unwrap_or_default();
-        let laws = given.pads.value.as_ref().map(|pads| {
+        let pads = given.pads.value.as_ref().map(|pads| {
             [(&pads.front, "front"), (&pads.rear, "rear")]
                 .map(|(pad, which)| self.pad(pad, &format!("the {which} pad of `{name}`")))
         });
-        let (Some(Outer { place, overlap }), Some(pads)) = (outer, laws) else { return };
+        let (Some(Outer { place, overlap }), Some(pads)) = (outer, pads) else { return };
         self.keep_overlap(&overlap, [&place, own], name, given.overlap.span);
-        if pads.iter().all(|[.., twist]| twist.is_none()) {
+        if pads.iter().all(|[.., twist]| matches!(twist, Hold::No)) {
             self.report(rule::untwisted(given.pads.span, name));
         }
         let beams = [&place, own].map(axis_of);
@@ -165,43 +177,81 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// The laws of a pad; without any stiffness against twist it does not hold it.
-    fn pad(&mut self, given: &'a Spanned<Pad>, what: &str) -> [Option<Law>; 3] {
+    /// How a pad holds; without any stiffness against twist it does not hold it.
+    fn pad(&mut self, given: &'a Spanned<Pad>, what: &str) -> [Hold; 3] {
         const RATE: &str = "N s/m or N m s/rad";
         let Some(pad) = &given.value else {
-            // A mistake that has been reported; it may have a stiffness against twist.
-            return [None, None, Some(Law::Spring(Spring::new(f64::NAN.into(), Value::ZERO)))];
+            // A mistake that has been reported; it may hold against twist.
+            return [Hold::No, Hold::No, Hold::Exactly];
         };
+        let exact = pad.exact.as_ref().map_or(&[][..], |list| list.value.as_deref().unwrap_or_default());
+        let exact = DIRECTIONS.map(|(_, own, _)| exact.iter().any(|item| item.value == Some(own)));
         let subject = format!("the stiffness of {what}");
         let limits = [(Limit::Positive, "N/m"), (Limit::Positive, "N/m"), (Limit::NotNegative, "N m/rad")];
-        let stiffness: Vec<Value> = match &pad.stiffness.value {
-            Some(numbers) => {
-                let each = numbers.iter().zip(limits);
-                each.map(|(number, (limit, unit))| self.number(number, &subject, unit, limit)).collect()
+        let stiffness: Vec<Value> = match pad.stiffness.as_ref().map(|stiffness| &stiffness.value) {
+            Some(Some(numbers)) => {
+                let each = numbers.iter().zip(limits).zip(exact);
+                let each = each.map(|((number, (limit, unit)), exact)| {
+                    self.number(number, &subject, unit, if exact { Limit::NotNegative } else { limit })
+                });
+                each.collect()
             }
-            None => vec![f64::NAN.into(); 3],
+            Some(None) => vec![f64::NAN.into(); 3],
+            None => vec![Value::ZERO; 3],
         };
+        // A list with a mistake may have had the direction.
+        let is_read = pad
+            .exact
+            .as_ref()
+            .is_none_or(|list| list.value.as_ref().is_some_and(|list| list.iter().all(|item| item.value.is_some())));
+        if pad.stiffness.is_none() && is_read {
+            let loose = exact.into_iter().zip(DIRECTIONS).take(2).filter(|(exact, _)| !exact);
+            let loose: Vec<&str> = loose.map(|(_, (.., word))| word).collect();
+            if !loose.is_empty() {
+                self.report(rule::loose_pad(given.span, what, &loose.join(" and ")));
+            }
+        }
         let damping =
             self.vector_or_zero(pad.damping.as_ref(), &format!("the damping of {what}"), RATE, Limit::NotNegative);
         let clearance = format!("the clearance of {what}");
         let clearance = self.vector_or_zero(pad.clearance.as_ref(), &clearance, "m or rad", Limit::NotNegative);
-        let mut numbers = stiffness.into_iter().zip(damping).zip(clearance);
-        std::array::from_fn(|_| {
-            let ((stiffness, damping), clearance) = numbers.next()?;
-            if stiffness.is_zero() {
-                return None;
+        let stiffness: [Value; 3] = std::array::from_fn(|i| stiffness[i].clone());
+        self.keep_exact("stiffness", pad.stiffness.as_ref(), (&stiffness, exact), what);
+        self.keep_exact("damping", pad.damping.as_ref(), (&damping, exact), what);
+        self.keep_exact("clearance", pad.clearance.as_ref(), (&clearance, exact), what);
+        let mut numbers = exact.into_iter().zip(stiffness).zip(damping).zip(clearance);
+        std::array::from_fn(|_| match numbers.next() {
+            Some((((true, _), _), _)) => Hold::Exactly,
+            Some((((false, stiffness), damping), clearance)) if !stiffness.is_zero() => {
+                Hold::With(if clearance.is_zero() {
+                    Law::Spring(Spring::new(stiffness, damping))
+                } else {
+                    Law::Clearance(Clearance { stiffness, damping, clearance })
+                })
             }
-            Some(if clearance.is_zero() {
-                Law::Spring(Spring::new(stiffness, damping))
-            } else {
-                Law::Clearance(Clearance { stiffness, damping, clearance })
-            })
+            _ => Hold::No,
         })
     }
 
-    /// The pads of all telescopes.
-    pub(super) fn pads(&mut self, cylinders: &[Cylinder]) -> Vec<Force> {
-        let mut forces = Vec::new();
+    /// What is exact has neither stiffness nor damping nor clearance.
+    fn keep_exact(
+        &mut self,
+        key: &str,
+        given: Option<&Spanned<Vector>>,
+        (values, exact): (&[Value; 3], [bool; 3]),
+        what: &str,
+    ) {
+        let numbers = given.and_then(|given| given.value.as_ref()).into_iter().flatten();
+        for (((number, value), exact), (.., word)) in numbers.zip(values).zip(exact).zip(DIRECTIONS) {
+            if exact && !value.is_zero() && !self.now(value).is_nan() {
+                self.report(rule::exact_spring(number.span, what, word, key));
+            }
+        }
+    }
+
+    /// The pads of all telescopes: forces, and joints of those that are exact.
+    pub(super) fn pads(&mut self, cylinders: &[Cylinder]) -> (Vec<Force>, Vec<LoopJoint>) {
+        let (mut forces, mut joints) = (Vec::new(), Vec::new());
         for Stage { link, span, beams: [outer, inner], overlap, coordinate, pads: [front, rear] } in
             std::mem::take(&mut self.stages)
         {
@@ -211,18 +261,30 @@ impl<'a> Check<'a> {
                 ("front", front, on_axis(outer.last(), end), &inner, overlap.clone(), false),
                 ("rear", rear, on_axis(inner.first, Value::ZERO), &outer, outer.length.clone() - overlap, true),
             ];
-            for (which, laws, pad, beam, start, grows) in sides {
-                for ((direction, word), law) in DIRECTIONS.into_iter().zip(laws) {
-                    let Some(law) = law else { continue };
-                    let name = format!("{link}_{which}_{word}");
-                    self.register_connector(&name, span, cylinders);
-                    let (pad, beam, start) = (pad.clone(), beam.clone(), start.clone());
-                    let sliding = Sliding { pad, beam, start, grows, coordinate, direction };
-                    let strain = Strain::Sliding(Box::new(sliding));
-                    forces.push(chain::Force { group: Group::Connectors, name, strain, law });
+            for (which, holds, pad, beam, start, grows) in sides {
+                let mut held = Vec::new();
+                for ((direction, _, word), hold) in DIRECTIONS.into_iter().zip(holds) {
+                    let (of_pad, beam, start) = (pad.clone(), beam.clone(), start.clone());
+                    let sliding = Sliding { pad: of_pad, beam, start, grows, coordinate, direction };
+                    match hold {
+                        Hold::No => {}
+                        Hold::Exactly => held.push(sliding),
+                        Hold::With(law) => {
+                            let name = format!("{link}_{which}_{word}");
+                            self.register_connector(&name, span, cylinders);
+                            let strain = Strain::Sliding(Box::new(sliding));
+                            forces.push(chain::Force { group: Group::Connectors, name, strain, law });
+                        }
+                    }
+                }
+                if !held.is_empty() {
+                    let name = format!("{link}_{which}");
+                    self.register_loop_joint(&name, span, cylinders, &[]);
+                    let ends = [pad, on_axis(beam.first, Value::ZERO)];
+                    joints.push(LoopJoint { name, ends, kind: LoopJointKind::Pad { held } });
                 }
             }
         }
-        forces
+        (forces, joints)
     }
 }

@@ -26,6 +26,7 @@ impl Description {
             }
             Count::Coordinates => self.coordinates.len(),
             Count::LoopEquations => loop_joints.iter().map(|joint| joint.equations.len()).sum(),
+            Count::LoopRows => Count::loop_rows(self.count(loop_joints, Count::LoopEquations), self.coordinates.len()),
             Count::DrivePieces => self.drives.iter().map(|drive| drive.pieces).sum(),
             Count::LoadPieces => self.loads.iter().map(|load| load.pieces).sum(),
             Count::WinchPieces => self.connectors.iter().map(|connector| connector.pieces).sum(),

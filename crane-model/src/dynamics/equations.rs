@@ -85,14 +85,15 @@ impl<'a> Equations<'a> {
     /// Accelerations at a pose and its rates.
     pub fn accelerate(&mut self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]) -> Result<(), NotFinite> {
         self.evaluations += 1;
-        self.crane.forward_dynamics(t, q, v, out);
-        self.loops.accelerate(self.crane, q, v, out);
+        self.loops.open(self.crane, t, (q, v), out);
+        self.loops.close(out);
         finite(out)
     }
 
-    /// Slope of a motion given relative to the references: rates, accelerations, and rates of the states of forces.
+    /// Slope of a motion given relative to the references: rates, accelerations, and rates of the states of forces. At the end of the step
+    /// it is that of the step, whatever changes there.
     pub fn slope(&mut self, t: f64, motion: &[f64], out: &mut [f64]) -> Result<(), NotFinite> {
-        let n = self.n;
+        let (t, n) = (self.references.inside(t), self.n);
         out[..n].copy_from_slice(&motion[n..2 * n]);
         self.state(t, motion);
         self.evaluate(t, motion, out)?;
@@ -102,7 +103,7 @@ impl<'a> Equations<'a> {
 
     /// Slope of a motion given in full.
     pub fn slope_in_full(&mut self, t: f64, motion: &[f64], out: &mut [f64]) -> Result<(), NotFinite> {
-        let n = self.n;
+        let (t, n) = (self.references.inside(t), self.n);
         out[..n].copy_from_slice(&motion[n..2 * n]);
         self.state.copy_from_slice(&motion[..2 * n]);
         self.evaluate(t, motion, out)?;
@@ -116,12 +117,12 @@ impl<'a> Equations<'a> {
         let (q, v) = self.state.split_at(n);
         let (_, rest) = out.split_at_mut(n);
         let (accelerations, rest) = rest.split_at_mut(n);
-        self.crane.forward_dynamics(t, q, v, accelerations);
+        self.loops.open(self.crane, t, (q, v), accelerations);
         if !self.force_states.is_empty() {
             self.force_states.accelerate(self.crane, &StateAt { t, q, v, x: &motion[2 * n..] }, rest, accelerations);
             finite(rest)?;
         }
-        self.loops.accelerate(self.crane, q, v, accelerations);
+        self.loops.close(accelerations);
         Ok(())
     }
 

@@ -7,7 +7,7 @@
 //! A q̈ = f − Jᵀ λ,   J q̈ + γ = 0:      S = J A⁻¹ Jᵀ,    λ = S⁻¹ (J A⁻¹ f + γ),    q̈ = A⁻¹ f − A⁻¹ Jᵀ λ
 //! ```
 //!
-//! so r equations take r + 1 recursions of the open chain and one dense system of size r. Positions and rates that a method has
+//! so r equations take r + 1 recursions of the open chain, which share its articulated inertias, and one dense system of size r. Positions and rates that a method has
 //! integrated are moved back onto the loop after every step: the smallest change in the metric of A,
 //!
 //! ```text
@@ -35,7 +35,7 @@ pub(crate) use required::{at_rest, generalized, required};
 use nalgebra::Vector3;
 
 use crate::{
-    CoordinateKind,
+    CoordinateKind, Count,
     dyn_crane::{DynDynamics, DynModel},
 };
 use independence::Independence;
@@ -44,6 +44,9 @@ use independence::Independence;
 pub(crate) const OPEN: f64 = 1e-6;
 /// Gap that counts as closed up to rounding, m or rad.
 const CLOSED: f64 = 1e-11;
+/// Columns of a pose as near as this, m or rad, move a pose onto the loops: an iteration leaves as large a share of the gap. After a step of a
+/// method they are those of its last evaluation.
+const NEAR: f64 = 1e-3;
 /// Iterations that move a pose back onto the loop: with the matrix of the step each gains several digits.
 const ITERATIONS: usize = 20;
 /// Iterations that assemble a guess.
@@ -80,8 +83,12 @@ pub(crate) struct Loops {
     jacobian: Vec<f64>,
     /// Which equations are independent.
     independence: Independence,
-    /// M⁻¹ Jᵀ of the independent equations, row by row.
+    /// M⁻¹ Jᵀ, row by row; of dependent equations it need not be known.
     columns: Vec<f64>,
+    /// The pose at which the loops were last opened, with the columns of all equations; NaN if others have been written since.
+    opened: Vec<f64>,
+    /// Accelerations of the open chain and what closes its loops, as [`loop_dynamics`](crate::Dynamics::loop_dynamics) orders them.
+    dynamics: Vec<f64>,
     /// S of the independent equations, then its Cholesky factor, row by row.
     schur: Vec<f64>,
     /// Numbers of the independent equations.
@@ -110,6 +117,8 @@ impl Loops {
             jacobian: vec![0.0; count * of_crane],
             independence,
             columns: vec![0.0; count * of_crane],
+            opened: vec![f64::NAN; of_crane],
+            dynamics: vec![0.0; Count::loop_rows(count, n) * of_crane],
             schur: vec![0.0; count * count],
             shares: vec![0.0; count],
             multipliers: vec![0.0; count],
@@ -122,6 +131,7 @@ impl Loops {
     /// Visits what further solutions depend on.
     pub fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
         self.independence.visit(visit);
+        self.opened.iter_mut().chain(&mut self.columns).for_each(visit);
     }
 
     /// Whether there are none.
@@ -180,15 +190,23 @@ impl Loops {
 
     /// Prepares solutions at the state evaluated; `solve` solves the system of the open chain.
     pub fn factorise(&mut self, solve: Solve<'_>) {
+        let Self { n, jacobian, independence, columns, opened, .. } = self;
+        opened.fill(f64::NAN);
+        for &row in independence.kept() {
+            let own = row * *n..(row + 1) * *n;
+            solve(&jacobian[own.clone()], &mut columns[own]);
+        }
+        self.factorise_schur();
+    }
+
+    /// S of the independent equations, from J and M⁻¹ Jᵀ.
+    fn factorise_schur(&mut self) {
         let Self { n, jacobian, independence, columns, schur, .. } = self;
         let (n, kept) = (*n, independence.kept());
-        for (place, &row) in kept.iter().enumerate() {
-            solve(&jacobian[row * n..][..n], &mut columns[place * n..][..n]);
-        }
         let size = kept.len();
         for (i, &row) in kept.iter().enumerate() {
-            for j in 0..=i {
-                schur[i * size + j] = dot(&jacobian[row * n..][..n], &columns[j * n..][..n]);
+            for (j, &column) in kept[..=i].iter().enumerate() {
+                schur[i * size + j] = dot(&jacobian[row * n..][..n], &columns[column * n..][..n]);
             }
         }
         cholesky(&mut schur[..size * size], size);
@@ -224,14 +242,46 @@ impl Loops {
         let Self { n, independence, columns, schur, shares, .. } = self;
         let size = independence.kept().len();
         solve_cholesky(&schur[..size * size], size, &mut shares[..size]);
-        for (share, column) in shares[..size].iter().zip(columns.chunks_exact(*n)) {
-            for (x, entry) in x.iter_mut().zip(column) {
+        for (share, &row) in shares[..size].iter().zip(independence.kept()) {
+            for (x, entry) in x.iter_mut().zip(&columns[row * *n..][..*n]) {
                 *x -= share * entry;
             }
         }
     }
 
-    /// Accelerations with the loops closed, in place of those of the open chain. λ is then known.
+    /// Writes the accelerations of the open chain, and prepares to [`close`](Self::close) its loops.
+    pub fn open(&mut self, crane: &dyn DynDynamics, t: f64, (q, v): (&[f64], &[f64]), accelerations: &mut [f64]) {
+        if self.is_empty() {
+            crane.forward_dynamics(t, q, v, accelerations);
+            return;
+        }
+        let Self { n, dynamics, jacobian, columns, states, opened, .. } = self;
+        crane.loop_dynamics(t, q, v, dynamics);
+        opened.copy_from_slice(q);
+        let (of_chain, rest) = dynamics.split_at(*n);
+        let (curvatures, rest) = rest.split_at(states.len().next_multiple_of(*n));
+        let (rows, responses) = rest.split_at(jacobian.len());
+        accelerations.copy_from_slice(of_chain);
+        jacobian.copy_from_slice(rows);
+        columns.copy_from_slice(responses);
+        for (state, curvature) in states.iter_mut().zip(curvatures) {
+            *state = Vector3::new(f64::NAN, f64::NAN, *curvature);
+        }
+    }
+
+    /// Accelerations with the loops closed, in place of those of the open chain, where they were last [opened](Self::open). λ is then known.
+    pub fn close(&mut self, accelerations: &mut [f64]) {
+        if self.is_empty() {
+            return;
+        }
+        if self.independence.is_unknown() {
+            self.choose();
+        }
+        self.factorise_schur();
+        self.correct(accelerations, true);
+    }
+
+    /// Accelerations with the loops closed, in place of those of the open chain with further forces. λ is then known.
     pub fn accelerate(&mut self, crane: &dyn DynDynamics, q: &[f64], v: &[f64], accelerations: &mut [f64]) {
         if self.is_empty() {
             return;
@@ -275,7 +325,9 @@ impl Loops {
         }
         self.evaluate(crane, q, v);
         self.choose();
-        {
+        if self.opened.iter().zip(&*q).all(|(opened, q)| (opened - q).abs() < NEAR) {
+            self.factorise_schur();
+        } else {
             let q = &*q;
             self.factorise(&mut |r, x| crane.solve_mass(q, r, x));
         }
@@ -296,8 +348,8 @@ impl Loops {
             return Err(open);
         }
         crane.loop_jacobians(q, &mut self.jacobian);
-        // The matrix of the pose before leaves a share of the rates as small as the pose's change.
-        for _ in 0..2 {
+        // The matrix of another pose leaves a share of the rates as small as the difference of the poses.
+        for _ in 0..3 {
             let Self { n, jacobian, independence, shares, .. } = self;
             for (share, &row) in shares.iter_mut().zip(independence.kept()) {
                 *share = dot(&jacobian[row * *n..][..*n], v);

@@ -11,8 +11,9 @@ impl dyn DynCrane + '_ {
     /// Accelerations q̈, with closed loops, m/s² and rad/s².
     pub fn accelerations_at(&self, t: f64, q: &[f64], v: &[f64]) -> DVector<f64> {
         let mut accelerations = vec![0.0; self.size()];
-        self.forward_dynamics(t, q, v, &mut accelerations);
-        Loops::new(self).accelerate(self, q, v, &mut accelerations);
+        let mut loops = Loops::new(self);
+        loops.open(self, t, (q, v), &mut accelerations);
+        loops.close(&mut accelerations);
         accelerations.into()
     }
 
@@ -21,9 +22,9 @@ impl dyn DynCrane + '_ {
         let mut efforts = self.open_drive_efforts(t, q, v);
         let mut loops = Loops::new(self);
         if !loops.is_empty() && !self.description().prescribed().is_empty() {
-            let open = self.numbers(|out| self.forward_dynamics(t, q, v, out));
+            let open = self.numbers(|out| loops.open(self, t, (q, v), out));
             let mut change = open.clone();
-            loops.accelerate(self, q, v, &mut change);
+            loops.close(&mut change);
             change.iter_mut().zip(&open).for_each(|(change, open)| *change -= open);
             for (coordinate, added) in on_rigid_drives(self, q, &loops, &change) {
                 let drives = self.description().drives.iter().zip(&mut efforts);

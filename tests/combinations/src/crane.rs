@@ -332,14 +332,20 @@ impl Writer<'_> {
         }
     }
 
-    /// A beam of a height that slides in another one on pads, which may have clearance.
+    /// A beam of a height that slides in another one on pads, which may have clearance or be exact.
     fn stage_on_pads(&mut self, name: &str, outer: &str, height: f64) {
         let clearance = if self.rng.borrow_mut().bool() { 2e-4 } else { 0.0 };
         let pad = |twist: f64| {
             json!({"stiffness": [self.between(5e7, 2e8), self.between(5e7, 2e8), twist], "damping": [1e5, 1e5, 2e3],
                 "clearance": [clearance, clearance, 0]})
         };
-        let pads = json!({"front": pad(self.between(1e6, 4e6)), "rear": pad(if height > 0.15 { 1e6 } else { 0.0 })});
+        let pads = if self.has(F::ExactPads) {
+            let rear =
+                json!({"exact": ["y", "z"], "stiffness": [0, 0, self.between(1e5, 1e6)], "damping": [0, 0, 2e3]});
+            json!({"front": {"exact": ["y", "z", "twist"]}, "rear": rear})
+        } else {
+            json!({"front": pad(self.between(1e6, 4e6)), "rear": pad(if height > 0.15 { 1e6 } else { 0.0 })})
+        };
         let sections = match self.rng.borrow_mut().u8(0..3) {
             0 => json!("rigid"),
             sections => json!(sections),
@@ -407,7 +413,8 @@ impl Writer<'_> {
             "inertia": {"gyration": [0.1, 0.12, 0.14]}}));
     }
 
-    /// A lever on the column that follows the boom: through a massless rod, or through a bar of its own that a ball joint holds to the boom.
+    /// A lever on the column that follows the boom: through a massless rod, or through a bar of its own that a ball joint, or a pin with friction,
+    /// holds to the boom.
     fn lever(&mut self) {
         if !self.has(F::Loop) {
             return;
@@ -434,7 +441,13 @@ impl Writer<'_> {
                 "mass": self.between(8.0, 15.0), "com": [0.45, 0, 0], "inertia": {"Ixx": 0.05, "Iyy": 0.8, "Izz": 0.8}}));
             self.tree["damping"]["bar_psi"] = json!(10);
             self.tree["guess"]["bar_psi"] = json!(turned);
-            self.push("loop_joints", json!({"name": "end", "from": {"link": "bar", "at": [round(between), 0, 0]}, "to": to, "joint": "ball"}));
+            let mut joint = json!({"name": "end", "from": {"link": "bar", "at": [round(between), 0, 0]}, "to": to, "joint": "ball"});
+            if self.has(F::Friction) && self.rng.borrow_mut().bool() {
+                joint["joint"] = json!({"pin": {"axis": [0, 0, 1]}});
+                joint["friction"] = json!({"coulomb": 40, "breakaway": 60, "viscous": 5});
+                joint["damping"] = json!(3);
+            }
+            self.push("loop_joints", joint);
         } else {
             let length = round(between.hypot(off));
             self.push(

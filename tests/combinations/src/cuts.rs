@@ -69,7 +69,7 @@ fn known_forces(crane: &LiveCrane, motion: &Motion, transforms: &[Matrix4<f64>])
 /// over time.
 fn unknown_forces(crane: &LiveCrane, q: &[f64], transforms: &[Matrix4<f64>]) -> Vec<Vec<(usize, Screw)>> {
     let mut unknown = loads(crane, transforms, true);
-    unknown.extend(loop_forces(crane, transforms));
+    unknown.extend(loop_forces(crane, q, transforms));
     let cylinders = crane.chain().cylinders.iter().filter(|cylinder| cylinder.valve.is_some());
     unknown.extend(cylinders.map(|cylinder| cylinder_forces(crane, cylinder, q, transforms)));
     unknown
@@ -250,10 +250,15 @@ fn pad_forces(
         .collect()
 }
 
-/// Forces of 1 N that joints which close loops transmit, force by force: along a rod, or in any direction through a point.
-fn loop_forces(crane: &LiveCrane, transforms: &[Matrix4<f64>]) -> Vec<Vec<(usize, Screw)>> {
+/// Forces of 1 N that joints which close loops transmit, force by force: along a rod, in any direction through a point, those of a pad; and
+/// moments of a pin in any direction, which include its friction.
+fn loop_forces(crane: &LiveCrane, q: &[f64], transforms: &[Matrix4<f64>]) -> Vec<Vec<(usize, Screw)>> {
     let mut forces = Vec::new();
     for joint in &crane.chain().loop_joints {
+        if let LoopJointKind::Pad { held } = &joint.kind {
+            forces.extend(held.iter().map(|sliding| pad_forces(crane, sliding, 1.0, (q, transforms))));
+            continue;
+        }
         let [one, other] = joint.ends.each_ref().map(|end| point_of(crane, end, transforms));
         let directions = match joint.kind {
             LoopJointKind::Rod { .. } => vec![(other - one).normalize()],
@@ -261,6 +266,13 @@ fn loop_forces(crane: &LiveCrane, transforms: &[Matrix4<f64>]) -> Vec<Vec<(usize
         };
         // A gap is measured in the frame of the first end: also where the loop is open, both forces act at the second point.
         let first = if matches!(joint.kind, LoopJointKind::Rod { .. }) { one } else { other };
+        if matches!(joint.kind, LoopJointKind::Pin { .. }) {
+            let bodies = joint.ends.each_ref().map(|end| end.body);
+            forces.extend([Vector3::x(), Vector3::y(), Vector3::z()].map(|axis: Vector3<f64>| {
+                let on = [(bodies[0], axis), (bodies[1], -axis)].into_iter();
+                on.filter_map(|(body, m)| Some((body?.0, Screw::new(0.0, 0.0, 0.0, m.x, m.y, m.z)))).collect()
+            }));
+        }
         for direction in directions {
             let ends = [(&joint.ends[0], first, direction), (&joint.ends[1], other, -direction)];
             forces.push(

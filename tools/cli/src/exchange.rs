@@ -183,7 +183,7 @@ fn keep_loops(options: &Export, crane: &str, joint: &str) -> Outcome<()> {
         Language::Fmu => Ok(()),
         Language::Urdf | Language::Mjcf => Err(Problem::usage(
             format!("{crane} has a loop, which `{joint}` closes; exported models are open chains"),
-            "export a functional mock-up unit (`--format fmu`) for co-simulation, or a spec without `loop_joints`, and close the loop in the other program",
+            "export a functional mock-up unit (`--format fmu`) for co-simulation, or a spec without `loop_joints` and exact pads, and close the loop in the other program",
         )),
         Language::C => match options.functions.iter().find(|name| SOLVED.contains(&name.as_str())) {
             None => Ok(()),

@@ -3,8 +3,24 @@
 use super::Derivation;
 use crate::mechanics::{loop_joints, newton_euler};
 use crate::program::{Function, FunctionId};
+use crate::symbolic::{Expr, SweepTrace};
 
-impl Derivation<'_> {
+impl<'g> Derivation<'g> {
+    /// Accelerations of the open chain, and what closes its loops; the sweeps share the articulated inertias.
+    pub(super) fn loop_dynamics(&self, accelerations: &[Expr<'g>], trace: &SweepTrace) -> Option<Function> {
+        let model = &self.model;
+        let (n, zero) = (model.size(), model.zero());
+        let mut curvatures: Vec<_> = loop_joints::states(model).into_iter().skip(2).step_by(3).collect();
+        if curvatures.is_empty() {
+            return None;
+        }
+        curvatures.resize(curvatures.len().next_multiple_of(n), zero);
+        let rows = loop_joints::jacobians(model);
+        let responses = rows.chunks(n).flat_map(|row| self.response(row));
+        let outputs = accelerations.iter().copied().chain(curvatures).chain(rows.iter().copied()).chain(responses);
+        Some(self.function(FunctionId::LoopDynamics, outputs.collect()).by(trace.clone()))
+    }
+
     /// The equations of loop joints and their derivatives.
     pub(super) fn loop_joints(&self) -> Vec<Function> {
         let model = &self.model;

@@ -124,14 +124,7 @@ impl<'g> Derivation<'g> {
         let prescribed = drives::accelerations(model);
         let of_motion = DynamicsInputs { v: &model.v, forces: &forces, prescribed: &prescribed, gravity };
         let (accelerations, trace) = model.graph.recorded(|| self.hybrid_dynamics(&of_motion).accelerations);
-        let (rest, still) = (model.zeros(), drives::at_rest(model));
-        let at_rest = DynamicsInputs {
-            v: &rest,
-            forces: &model.right_hand_side,
-            prescribed: &still,
-            gravity: Vec3::zero(model.graph),
-        };
-        let (solution, solution_trace) = model.graph.recorded(|| self.hybrid_dynamics(&at_rest).accelerations);
+        let (solution, solution_trace) = model.graph.recorded(|| self.response(&model.right_hand_side));
         let (columns, mass_trace) = model.graph.recorded(|| columns(model, &self.factors));
         let (bias, bias_trace) = model.graph.recorded(|| newton_euler::bias(model, &self.factors));
         // The loop includes neither rotors nor branches, which leave most of A zero.
@@ -147,14 +140,23 @@ impl<'g> Derivation<'g> {
             (Shape::Symmetric(model.size()), Shape::MassAndBias(model.size()), upper.clone(), upper)
         };
         both.extend(&bias);
-        vec![
+        let mut functions: Vec<Function> = self.loop_dynamics(&accelerations, &trace).into_iter().collect();
+        functions.extend([
             self.function(FunctionId::ForwardDynamics, accelerations).by(trace),
             self.function(FunctionId::SolveMass, solution).by(solution_trace),
             shaped(FunctionId::MassMatrix, mass_shape, mass).by(mass_trace.clone()),
             shaped(FunctionId::MassMatrixAndBias, both_shape, both).by(mass_trace.then(bias_trace.clone())),
             self.function(FunctionId::Bias, bias).by(bias_trace),
             self.function(FunctionId::KineticEnergy, vec![energy::kinetic_energy(model, &self.inertias, &self.twists)]),
-        ]
+        ]);
+        functions
+    }
+
+    /// The response of the chain at rest to forces, `A⁻¹ f`.
+    fn response(&self, forces: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let model = &self.model;
+        let (v, prescribed, gravity) = (&model.zeros(), &drives::at_rest(model), Vec3::zero(model.graph));
+        self.hybrid_dynamics(&DynamicsInputs { v, forces, prescribed, gravity }).accelerations
     }
 
     /// Accelerations, and efforts of rigid drives, at the present state.

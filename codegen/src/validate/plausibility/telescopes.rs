@@ -25,9 +25,9 @@ impl Plausibility<'_> {
                         self.warn(rule::wide_clearance(at, name, rounded(clearance), unit));
                     }
                 }
-                for given in pad.stiffness.value.iter().flatten().take(2) {
+                for given in pad.stiffness.iter().filter_map(|given| given.value.as_ref()).flatten().take(2) {
                     let (stiffness, at) = self.number(given);
-                    if stiffness < SOFTEST {
+                    if stiffness > 0.0 && stiffness < SOFTEST {
                         self.warn(rule::soft_pads(at, name, rounded(stiffness)));
                     }
                 }

@@ -8,7 +8,7 @@ use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::{InitialState, Method, Sample, Settings};
 use crane_model::nalgebra::Vector3;
-use crane_model::{loop_joints, modes, statics};
+use crane_model::{Count, loop_joints, modes, statics};
 
 const GRAVITY: f64 = 9.81;
 
@@ -634,4 +634,35 @@ fn the_parallel_harvester_moves_its_tip_on_a_level() {
     let heights = tips.iter().map(|tip| tip[1]);
     let range = heights.clone().fold(f64::MIN, f64::max) - heights.fold(f64::MAX, f64::min);
     assert!(range < 0.15 && tips[4][0] - tips[0][0] > 3.1, "{tips:?}");
+}
+
+/// What closes loops in one pass, in which the sweeps share articulated inertias, against the functions that compute it one by one.
+#[test]
+fn one_pass_closes_loops_as_separate_solutions_do() {
+    let (_, text) = crane_specs::EXAMPLES.iter().find(|(name, _)| *name == "parallel_harvester").expect("the example");
+    let crane = crane(text);
+    let crane: &dyn DynCrane = &crane;
+    let (n, equations) = (crane.size(), crane.count(Count::LoopEquations));
+    let q: Vec<f64> = crane.description().guess.iter().enumerate().map(|(j, q)| q + 0.05 * (j as f64).sin()).collect();
+    let v: Vec<f64> = (0..n).map(|j| 0.3 * (1.7 * j as f64).cos()).collect();
+    let mut found = vec![0.0; crane.count(Count::LoopRows) * n];
+    crane.loop_dynamics(0.4, &q, &v, &mut found);
+    let (mut expected, mut states) = (vec![0.0; n], vec![Vector3::zeros(); equations]);
+    let mut jacobian = vec![0.0; equations * n];
+    crane.forward_dynamics(0.4, &q, &v, &mut expected);
+    crane.loop_states(&q, &v, &mut states);
+    crane.loop_jacobians(&q, &mut jacobian);
+    expected.extend(states.iter().map(|state| state.z));
+    expected.resize(n + equations.next_multiple_of(n), 0.0);
+    expected.extend(&jacobian);
+    for row in jacobian.chunks(n) {
+        let mut response = vec![0.0; n];
+        crane.solve_mass(&q, row, &mut response);
+        expected.extend(response);
+    }
+    assert_eq!(found.len(), expected.len());
+    // The same sums in another order.
+    for (index, (one, other)) in found.iter().zip(&expected).enumerate() {
+        assert!((one - other).abs() <= 1e-11 * other.abs().max(1e-6), "{index}: {one} {other}");
+    }
 }
