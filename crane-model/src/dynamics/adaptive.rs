@@ -9,7 +9,7 @@ use super::{
     stopped::StepContext,
     switches::{Switches, Watched},
 };
-use crate::memory::{Visit, visit_count, visit_numbers};
+use crate::memory::{Visit, visit_count, visit_flag, visit_numbers};
 
 /// First step tried, s: a crane starts smoothly, and steps may grow by a factor of three.
 pub(super) const FIRST: f64 = 1e-4;
@@ -49,6 +49,8 @@ pub(super) struct Adaptive<'a, F> {
     /// Step to try next, s.
     next: f64,
     step: Step,
+    /// Whether the last step ended where motions are not smooth: its last slope is not the first of the next step.
+    at_stop: bool,
     switches: Switches,
     /// Motion at the time reached.
     motion: Vec<f64>,
@@ -61,7 +63,7 @@ impl<'a, F: Formula> Adaptive<'a, F> {
     pub fn new(formula: F, equations: Equations<'a>, norm: Norm) -> Self {
         let (step, motion) = (Step::new(equations.len()), vec![0.0; equations.len()]);
         let switches = Switches::new(equations.crane, equations.len());
-        Self { formula, equations, norm, next: FIRST, step, switches, motion, steps: 0, rejections: 0 }
+        Self { formula, equations, norm, next: FIRST, step, at_stop: false, switches, motion, steps: 0, rejections: 0 }
     }
 
     /// The last step, for motions that follow this one: its formula, the equations and the step.
@@ -108,9 +110,16 @@ impl<'a, F: Formula> Adaptive<'a, F> {
 }
 
 impl<F: Formula> Adaptive<'_, F> {
+    /// Evaluates the slope at the start of a step after a time at which motions are not smooth.
+    fn start_after_stop(&mut self) -> Result<(), Stopped> {
+        let Self { equations, step: Step { t, start, slopes: [slope, _], .. }, next, .. } = self;
+        equations.references.step_within(*t, *t + *next);
+        equations.slope(*t, start, slope).map_err(|NotFinite| self.stuck(self.step.t, self.next))
+    }
+
     /// Begins at the present motion, with the length of the first step to try, s.
     fn begin(&mut self, t: f64, next: f64) -> Result<(), Stopped> {
-        (self.step.t, self.step.length, self.next) = (t, 0.0, next);
+        (self.step.t, self.step.length, self.next, self.at_stop) = (t, 0.0, next, false);
         self.switches.start();
         let Step { end, slopes: [_, slope], .. } = &mut self.step;
         end.copy_from_slice(&self.motion);
@@ -151,6 +160,9 @@ impl<F: Formula + Send> Stepper for Adaptive<'_, F> {
 
     fn step(&mut self, ahead: &Ahead) -> Result<f64, Stopped> {
         self.step.proceed();
+        if self.at_stop {
+            self.start_after_stop()?;
+        }
         let t = self.step.t;
         let (mut change, mut repeats) = (f64::INFINITY, 0);
         loop {
@@ -168,6 +180,7 @@ impl<F: Formula + Send> Stepper for Adaptive<'_, F> {
             if meets && found.is_none() {
                 self.steps += 1;
                 let reached = if stops { stop } else { self.step.reached() };
+                self.at_stop = stops && stop >= ahead.stop;
                 if change < f64::INFINITY && self.switches.is_of_limit() {
                     self.next = self.next.min(AFRESH);
                 }
@@ -202,12 +215,13 @@ impl<F: Formula + Send> Stepper for Adaptive<'_, F> {
     }
 
     fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        let Self { formula, equations, norm, next, step, switches, motion, steps, rejections } = self;
+        let Self { formula, equations, norm, next, step, at_stop, switches, motion, steps, rejections } = self;
         formula.visit(visit);
         equations.visit(visit);
         norm.visit(visit);
         visit(next);
         step.visit(visit);
+        visit_flag(at_stop, visit);
         switches.visit(visit);
         visit_numbers(motion, visit);
         for count in [steps, rejections] {

@@ -167,6 +167,7 @@ impl Stepper for Rk4<'_> {
         let (t, h) = steps.next();
         let n = equations.n;
         before.copy_from_slice(motion);
+        equations.references.step_within(t, t + h);
         let advanced = if equations.states() > 0 {
             self.first_order.advance(equations, t, h, motion, slope)
         } else {

@@ -5,6 +5,7 @@
 //! stage and wherever a result is interpolated. Then a stiff drive is not forced at all: u is driven by the accelerations `−p̈`,
 //! which do not depend on the stiffness. The deviation of a rigid drive is zero, with every method.
 
+use super::rk4::just_within;
 use crate::{CoordinateRole, Description, dyn_crane::DynModel};
 
 /// Coordinates that are relative to the motions of their drives.
@@ -83,6 +84,11 @@ impl References {
     /// Beginning and end of the step, s.
     pub fn within(&self) -> [f64; 2] {
         self.within
+    }
+
+    /// The time at which functions of time count at `t`: within the step, because what changes at its end belongs to the next one.
+    pub fn inside(&self, t: f64) -> f64 {
+        just_within(t, self.within)
     }
 
     /// Makes a motion of `n` coordinates relative to the drives' motions.

@@ -151,6 +151,14 @@ class Crane:
         invalid: str = "raise",
     ) -> dict[str, Any]:
         """Linear models: `Crane.state_space` makes a `StateSpace` of them."""
+    def _state_derivatives(
+        self, q: ArrayLike, v: ArrayLike, x: ArrayLike | None = None, t: ArrayLike | None = None, *, invalid: str = "raise"
+    ) -> Array:
+        """(..., n + states): `Crane.state_derivatives` separates them."""
+    def _columns_at(
+        self, q: ArrayLike, v: ArrayLike, x: ArrayLike | None = None, t: ArrayLike | None = None, *, invalid: str = "raise"
+    ) -> tuple[Array, list[str]]:
+        """(..., columns), and their names: `Crane.columns_at` names them."""
     def _acting(self, on: str) -> tuple[list[str], list[int], str | None]:
         """The inputs that a loop moves, the powers of s by which each follows, and the coordinate of its drive."""
     def _modes(self, q: ArrayLike, invalid: str = "raise") -> dict[str, Any]:

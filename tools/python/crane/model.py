@@ -202,6 +202,45 @@ class Crane(_native.Crane):
         """
         return state_space.about(self, (q, v, t, x), inputs, outputs, invalid, valves=valves, steady=steady)
 
+    def state_derivatives(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        x: ArrayLike | None = None,
+        t: ArrayLike | None = None,
+        *,
+        invalid: str = "raise",
+    ) -> tuple[Array, Array]:
+        """Accelerations q̈, (..., n), and rates ẋ of the states of forces, (..., their number), at states q, v, x and times t, s, 0 unless given: the
+        right-hand side of the equations of motion, also with valves, joints that stick and closed loops.
+
+        x: states of forces, as `State.x` has them; unless given, they hold the pose at rest.
+        """
+        both = self._state_derivatives(q, v, x, t, invalid=invalid)
+        n = len(self.coordinates)
+        return both[..., :n], both[..., n:]
+
+    def columns_at(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        x: ArrayLike | None = None,
+        t: ArrayLike | None = None,
+        *,
+        names: Sequence[str] | None = None,
+        invalid: str = "raise",
+    ) -> dict[str, Array]:
+        """What the columns of a run are at states q, v, x and times t, s, 0 unless given: forces, pressures, powers, accelerations, by name.
+
+        x: states of forces, as `State.x` has them; unless given, they hold the pose at rest.
+        names: of columns; all unless given.
+        """
+        numbers, known = self._columns_at(q, v, x, t, invalid=invalid)
+        for name in names or ():
+            if name not in known:
+                raise ValueError(f"there is no column {name!r}: write one of {', '.join(known)}")
+        return {name: numbers[..., known.index(name)] for name in (known if names is None else names)}
+
     def margins(
         self,
         on: str,

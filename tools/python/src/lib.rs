@@ -23,6 +23,7 @@ mod envelope;
 mod equilibria;
 mod evaluation;
 mod functions;
+mod force_states;
 mod linear;
 mod mistakes;
 mod motion;

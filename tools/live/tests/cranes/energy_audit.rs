@@ -56,10 +56,11 @@ fn drives_at_their_limits_balance() {
     for limits in ["max_effort: 200", "max_effort: 200, max_power: 150, max_rate: 1.5"] {
         let slide = limited(limits);
         let exact = audit(&slide, Method::DormandPrince, 1e-11);
-        // About twice what each method reaches: its steps do not end where a limit begins, except at those of efforts.
+        // About twice what each method reaches: its steps do not end where a limit begins, except at those of efforts. With a maximum rate, errors of
+        // the W-method scatter from 3e-7 to 1.3e-6 among tolerances from 6e-10 to 1.6e-9.
         for (method, allowed) in [
             (Method::Bdf, [2e-4, 1e-6, 5e-8]),
-            (Method::Rosenbrock, [1.6e-3, 2e-5, 6e-7]),
+            (Method::Rosenbrock, [1.6e-3, 2e-5, 2.5e-6]),
             (Method::DormandPrince, [4.5e-3, 4e-5, 6e-7]),
         ] {
             let errors = [2e-5, 1e-7, 1e-9].into_iter().zip(allowed).map(|(tolerance, allowed)| {

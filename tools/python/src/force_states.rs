@@ -1,0 +1,109 @@
+//! Functions of states that include those of forces: pressures, spools, bristles.
+
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::force_states::{self, ForceStates};
+use crane_model::results::{quantities, quantities_at};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::arrays::{Argument, Joined, array};
+use crate::crane::Crane;
+use crate::evaluation::{Array, Given, STATE, State};
+use crate::mistakes::{Invalid, warn_of_rows};
+use crate::parallel::map_rows;
+
+/// A row of a state: t, q, v and x.
+type Row<'a> = (f64, &'a [f64], &'a [f64], &'a [f64]);
+
+#[pymethods]
+impl Crane {
+    /// (..., n + states): accelerations and rates of the states of forces; `Crane.state_derivatives` separates them.
+    #[pyo3(name = "_state_derivatives", signature = (q, v, x=None, t=None, *, invalid="raise"))]
+    fn state_derivatives_rows<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        v: &Bound<'py, PyAny>,
+        x: Given<'_, 'py>,
+        t: Given<'_, 'py>,
+        invalid: &str,
+    ) -> Array<'py> {
+        let width = self.live.size() + force_states::columns(self.live.description()).len();
+        self.of_states(py, State { t, ..State::moving(q, v) }, (x, invalid), width, |crane, (t, q, v, x)| {
+            let crane: &dyn DynCrane = crane;
+            let (accelerations, rates) = force_states::accelerations(crane, t, (q, v), x);
+            [accelerations, rates].concat()
+        })
+    }
+
+    /// (..., columns): the columns of a run at states, and their names and units; `Crane.columns_at` names them.
+    #[pyo3(name = "_columns_at", signature = (q, v, x=None, t=None, *, invalid="raise"))]
+    fn columns_at_rows<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        v: &Bound<'py, PyAny>,
+        x: Given<'_, 'py>,
+        t: Given<'_, 'py>,
+        invalid: &str,
+    ) -> PyResult<(Bound<'py, PyAny>, Vec<String>)> {
+        let names: Vec<String> = quantities(self.live.description(), self.live.loop_joints())
+            .into_iter()
+            .map(|column| column.name)
+            .collect();
+        let state = State { t, ..State::moving(q, v) };
+        let all = self.of_states(py, state, (x, invalid), names.len(), |crane, (t, q, v, x)| {
+            quantities_at(crane, t, (q, v), x)
+        })?;
+        Ok((all.into_any(), names))
+    }
+}
+
+impl Crane {
+    /// A function of all rows; states of forces that are not given hold the pose at rest.
+    fn of_states<'py>(
+        &self,
+        py: Python<'py>,
+        state: State<'_, 'py>,
+        (x, invalid): (Given<'_, 'py>, &str),
+        width: usize,
+        compute: impl Fn(&LiveCrane, Row<'_>) -> Vec<f64> + Sync,
+    ) -> Array<'py> {
+        let arguments = self.read(state)?;
+        let states = force_states::columns(self.live.description());
+        let x = match x {
+            None => Argument::none(),
+            Some(_) if states.is_empty() => {
+                return Err(PyValueError::new_err(format!(
+                    "{} has no states of forces: leave x out",
+                    self.live.description().name
+                )));
+            }
+            Some(x) => Argument::of_width("x", x, states.len(), &states.join(", "))?,
+        };
+        let [t, q, v, a] = &arguments;
+        let joined =
+            Joined::new(&[("t", t), ("q", q), ("v", v), ("a", a), ("the parameters", &self.parameters), ("x", &x)])?;
+        let bad = self.bad_rows(&joined, STATE, Invalid::named(invalid)?)?;
+        let n = self.live.size();
+        let rows = map_rows(py, joined.rows(), |row, _| {
+            if bad.iter().any(|bad| bad.row == row) {
+                return vec![f64::NAN; width];
+            }
+            let [t, q, v, x] =
+                [(0, 1), (1, n), (2, n), (5, states.len())].map(|(index, size)| joined.row(index, size, row));
+            let (crane, t) = (self.of_joined_row(&joined, row), t.first().copied().unwrap_or(0.0));
+            let holding;
+            let x = if x.is_empty() {
+                holding = ForceStates::new(crane.description()).holding(&crane, t, q);
+                &holding
+            } else {
+                x
+            };
+            compute(&crane, (t, q, v, x))
+        })?;
+        warn_of_rows(py, &bad, &joined.shape)?;
+        array(py, rows.concat(), &joined.shape, &[width])
+    }
+}
