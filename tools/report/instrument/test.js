@@ -76,7 +76,7 @@ async function open(browser, options, use, { hash = "", silent = true } = {}) {
 const example = async (page, name) => {
   const index = await page.evaluate((name) => [...document.querySelectorAll("#example option")].findIndex(({ textContent }) => textContent === name) - 1, name);
   await page.selectOption("#example", String(index));
-  await eventually(page, async () => assert.equal(await at(page, () => globalThis.instrument.crane?.name), name.replaceAll(" ", "_")));
+  await eventually(page, async () => assert.equal(await at(page, () => globalThis.instrument.stage.crane?.name), name.replaceAll(" ", "_")));
   await eventually(page, async () => assert.match(await state(page), /^At rest/));
 };
 
@@ -183,6 +183,35 @@ async function analyses(page) {
   await page.waitForSelector("#load_chart .panel");
   assert((await page.locator("#table_chart tbody tr").count()) > 10);
   await page.screenshot({ path: picture("chart") });
+}
+
+/** Pictures of motions that the processor draws: a few calls instead of one for each part, and the crane where it is, in its colours. */
+async function plainly(page) {
+  await example(page, "eight link hydraulic");
+  const { calls, parts, kept } = await at(page, () => {
+    const { viewer } = globalThis.instrument.stage;
+    const picture = (moves) => {
+      clearTimeout(viewer.quiet);
+      viewer.move(moves);
+      viewer.paint();
+      const { width, height } = viewer.canvas.getBoundingClientRect();
+      const flat = Object.assign(document.createElement("canvas"), { width, height }).getContext("2d", { willReadFrequently: true });
+      flat.drawImage(viewer.canvas, 0, 0, width, height);
+      return { pixels: flat.getImageData(0, 0, width, height).data, calls: viewer.renderer.info.render.calls };
+    };
+    const [fine, plain] = [picture(false), picture(true)];
+    viewer.draw();
+    // The crane has colours, the ground has none.
+    const coloured = [];
+    for (let at = 0; at < fine.pixels.length; at += 4) {
+      const [r, g, b] = fine.pixels.subarray(at, at + 3);
+      if (Math.max(r, g, b) - Math.min(r, g, b) > 90) coloured.push(at);
+    }
+    const alike = coloured.filter((at) => [0, 1, 2].every((part) => Math.abs(fine.pixels[at + part] - plain.pixels[at + part]) < 70));
+    return { calls: plain.calls, parts: viewer.figure.group.children.length, kept: coloured.length > 500 ? alike.length / coloured.length : 0 };
+  });
+  assert(calls < 30 && parts > 40, `${calls} calls for ${parts} parts`);
+  assert(kept > 0.85, `${kept} of the crane looks the same`);
 }
 
 /** Driving by keys: the crane moves in real time, levers spring back, the record is a file. */
@@ -321,6 +350,7 @@ await open(browser, { viewport: { width: 1440, height: 900 }, colorScheme: "ligh
   await schema(page);
   await sliders(page);
   await analyses(page);
+  await plainly(page);
   await drive(page);
   await speeds(page);
   await patience(page);

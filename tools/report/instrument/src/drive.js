@@ -15,9 +15,8 @@ const LAG = 0.5;
 /** Time over which the pace is measured, s, and that of the strip, s. */
 const PACE = 1;
 const STRIP = 20;
-/** Pictures after which the detail is reconsidered, and the time between them beyond which each level of detail is left, s: the last one is coarse. */
+/** Pictures after which the detail is reconsidered. */
 const PICTURES = 15;
-const SLOW = [1 / 50, 1 / 50, 1 / 50, 1 / 20];
 /** Longest record, s. */
 const RECORD = 600;
 /** Interval of the gauges, s: faster numbers cannot be read. */
@@ -141,7 +140,7 @@ export class Drive {
     if ((this.drawn += 1) < PICTURES) return;
     const now = performance.now() / 1000;
     const { viewer } = this.stage;
-    const slow = (now - this.since) / PICTURES > SLOW[viewer?.level] && this.share < SHARE.high;
+    const slow = (now - this.since) / PICTURES > viewer?.slow && this.share < SHARE.high;
     Object.assign(this, { drawn: 0, since: now });
     if (slow) viewer.refine(viewer.level + 1);
   }
