@@ -139,6 +139,17 @@ async function schema(page) {
   await page.locator("#editor .cm-content").getByText("links", { exact: true }).first().hover();
   await page.locator("#editor .cm-help").waitFor();
   await eventually(page, async () => assert.match(await state(page), /^At rest/));
+  // The key of a choice, a word for it, and names as keys.
+  const { key, word, names } = await at(page, () => {
+    const { editor } = globalThis.instrument;
+    const { schema } = editor;
+    const text = "damping:\n  ";
+    const from = { state: editor.view.state.update({ changes: { from: 0, to: editor.view.state.doc.length, insert: text } }).state, pos: text.length, explicit: true };
+    return { key: schema.about(["links", "[]", "joint", "revolute"]), word: schema.values(["links", "[]", "joint"]).get("revolute"), names: editor.complete(from).options.map(({ label }) => label) };
+  });
+  assert.match(key, /Rotates about its axis/);
+  assert.equal(word, key);
+  assert(names.includes("boom_psi"), names.join());
 }
 
 /** Sliders move the crane and its numbers. */
@@ -243,7 +254,9 @@ async function drive(page) {
   await at(page, () => (navigator.getGamepads = () => [{ axes: [0, -1, 0, 0], buttons: [] }]));
   await eventually(page, async () => assert.equal(await page.locator("#levers .track").nth(1).getAttribute("aria-valuenow"), "100"));
   await at(page, () => (navigator.getGamepads = () => []));
-  await page.click("#engage");
+  // What was driven outlasts an edit.
+  await edit(page, "title:", "title: Driven");
+  await eventually(page, async () => assert.match(await page.textContent("#drive_state"), /the spec was changed/));
   const [download] = await Promise.all([page.waitForEvent("download"), page.click("#record")]);
   const csv = await readFile(await download.path(), "utf8");
   const [head, ...lines] = csv.trim().split("\n");

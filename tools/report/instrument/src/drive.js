@@ -36,14 +36,14 @@ export class Drive {
     $("#record").addEventListener("click", () => this.export());
   }
 
+  /** Another spec: what was driven until now can still be saved. */
   open(crane) {
+    const words = this.on ? `ended at ${this.t.toFixed(1)} s: the spec was changed` : "";
     this.stop();
     this.opened = crane;
-    this.rows = null;
     $("#cockpit").hidden = true;
-    $("#record").hidden = true;
     $("#engage").disabled = !crane.drives.length;
-    $("#drive_state").textContent = crane.drives.length ? "" : "This crane has no drives.";
+    $("#drive_state").textContent = crane.drives.length ? words : "This crane has no drives.";
   }
 
   async start() {
