@@ -12,8 +12,11 @@ export function context(text, position) {
   const frames = [];
   let flow = null;
   let scalar = Infinity;
-  for (const line of text.slice(0, position).split("\n")) {
+  const lines = text.slice(0, position).split("\n");
+  for (const [number, line] of lines.entries()) {
     const indent = line.search(/\S/);
+    // Only where something is being written does an empty line stand for anything.
+    if (indent < 0 && number + 1 < lines.length) continue;
     if (flow) {
       flow = inFlow(line, flow);
       continue;
