@@ -241,6 +241,13 @@ async function plainly(page) {
   });
   assert(calls < 30 && parts > 40, `${calls} calls for ${parts} parts`);
   assert(kept > 0.85, `${kept} of the crane looks the same`);
+  // With little room for numbers, the parts are drawn in several calls.
+  const several = await at(page, () => {
+    const { viewer } = globalThis.instrument.stage;
+    const { figure, floor, grid, extent: { size } } = viewer;
+    return new viewer.Plain({ figure, floor, grid, size, vectors: 164 }).batches.map(({ meshes }) => meshes.length);
+  });
+  assert(several.length > 2 && several.every((count) => count <= 20) && several.reduce((sum, count) => sum + count) > 40, several.join());
 }
 
 /** Driving by keys: the crane moves in real time, levers spring back, the record is a file. */
@@ -336,6 +343,11 @@ async function links(browser) {
     // The page still works.
     await example(page, "knuckle boom");
   }, { hash: fragment(deep) });
+  // More links than there is memory for.
+  const many = Array.from({ length: 2900 }, (_, link) => `  - {name: l${link}, placement: {transform: {translation: [0.1, 0, 0], rotation: {x: ${link ? 0 : 90} deg}}}, joint: revolute, mass: 1, com: [0.05, 0, 0]}\n`);
+  await open(browser, small, async (page) => {
+    await eventually(page, async () => assert.match(await state(page), /needs more memory|took longer/));
+  }, { hash: fragment(`format: 1\nname: many\nlinks:\n${many.join("")}`) });
   // A gigabyte of text in a link of a megabyte.
   const zeros = deflateRawSync(Buffer.alloc(1 << 28, "#"));
   await open(browser, small, async (page) => {
