@@ -363,6 +363,20 @@ async function patience(page) {
   assert.match(words, /took longer than 0.5 s/);
   await edit(page, "format: 1", "format: 1 ");
   await eventually(page, async () => assert.match(await state(page), /^At rest/));
+  // What waits is not what takes long.
+  const [long, short] = await at(page, () => {
+    const { engine } = globalThis.instrument;
+    return Promise.all([engine.ask({ ask: "repeat", calls: 2_000_000 }, 20), engine.ask({ ask: "repeat", calls: 1 }, 0.3)]).then((both) => both.map(({ took }) => took));
+  });
+  assert(long > 400 && short < 300, `${long} ms, then ${short} ms`);
+  // An edit ends a run of the spec as it was.
+  await page.getByRole("tab", { name: "Run" }).click();
+  await page.fill("#duration", "9000");
+  await page.click("#start");
+  await at(page, () => (globalThis.instrument.took = null));
+  await edit(page, "format: 1", "format: 1 ");
+  await eventually(page, async () => assert(await at(page, () => globalThis.instrument.took)), 8_000);
+  assert.equal(await page.textContent("#run_state"), "ended: the spec was changed");
 }
 
 /** The report opens its crane in the instrument. */

@@ -94,6 +94,7 @@ async function read() {
   }
   read.busy = true;
   const begin = performance.now();
+  engine.abandon(["run", "chart"], "ended: the spec was changed");
   try {
     const opened = await ask({ ask: "open", name, text: editor.text });
     problems(opened.diagnostics);
