@@ -1,6 +1,6 @@
 // Builds the instrument into one HTML file: `node instrument/build.js ENGINE.wasm TARGET.html`.
 import { readFile, writeFile } from "node:fs/promises";
-import { gzipSync } from "node:zlib";
+import { gzipAsync } from "@gfx/zopfli";
 import { build } from "esbuild";
 import { assemble, output } from "../page.js";
 
@@ -20,6 +20,9 @@ const source = {
 };
 const page = await build({ ...options, entryPoints: ["instrument/src/page.js"], format: "esm", plugins: [source] });
 
+/** Largest compressed engine, bytes: what a page may weigh that is mailed and opened on phones. */
+const MOST = 1.2e6;
+
 /** The cranes to start from, simplest first, with the titles of their specs. */
 const EXAMPLES = [
   "knuckle_boom", "double_pendulum", "cantilever", "loader_tipping", "two_arms", "examples/loader_crane", "examples/parallel_harvester", "examples/telescopic_loader", "eight_link_rigid", "eight_link_flexible", "eight_link_hydraulic",
@@ -27,7 +30,9 @@ const EXAMPLES = [
 ];
 const examples = await Promise.all(EXAMPLES.map(async (name) => ({ name: `${name.split("/").at(-1)}.yaml`, text: await file(`../../../specs/${name}.yaml`) })));
 const given = JSON.stringify({ examples, schema: JSON.parse(await file("../../../specs/crane.schema.json")) }).replaceAll("<", "\\u003c");
-const compressed = gzipSync(await readFile(engine), { level: 9 });
+// A twentieth less than by zlib.
+const compressed = await gzipAsync(await readFile(engine), { numiterations: 1 });
+if (compressed.length > MOST) throw new Error(`the engine has ${compressed.length} bytes, compressed: at most ${MOST}`);
 const version = /^version = "(.*)"/m.exec(await file("../../../Cargo.toml"))[1];
 
 const html = await assemble({
@@ -35,7 +40,7 @@ const html = await assemble({
   packages: ["three", "uplot", "@codemirror/autocomplete", "@codemirror/commands", "@codemirror/lang-yaml", "@codemirror/language", "@codemirror/lint", "@codemirror/search", "@codemirror/state", "@codemirror/view", "@lezer/common", "@lezer/highlight", "@lezer/lr", "@lezer/yaml", "@marijn/find-cluster-break", "crelt", "style-mod", "w3c-keyname"],
   // The engine is compiled, and its worker is text of the page.
   policy: { "script-src": ["'wasm-unsafe-eval'"], "worker-src": ["blob:"] },
-  more: { given, engine: compressed.toString("base64"), version },
+  more: { given, engine: Buffer.from(compressed).toString("base64"), version },
 });
 await writeFile(target, html);
 const megabytes = (bytes) => `${(bytes / 1e6).toFixed(2)} MB`;

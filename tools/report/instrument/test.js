@@ -76,7 +76,7 @@ async function open(browser, options, use, { hash = "", silent = true } = {}) {
 const example = async (page, name) => {
   const index = await page.evaluate((name) => [...document.querySelectorAll("#example option")].findIndex(({ textContent }) => textContent === name) - 1, name);
   await page.selectOption("#example", String(index));
-  await eventually(page, async () => assert.equal(await at(page, () => globalThis.instrument.crane?.name), name.replaceAll(" ", "_")));
+  await eventually(page, async () => assert.equal(await at(page, () => globalThis.instrument.stage.crane?.name), name.replaceAll(" ", "_")));
   await eventually(page, async () => assert.match(await state(page), /^At rest/));
 };
 
@@ -139,6 +139,35 @@ async function schema(page) {
   await page.locator("#editor .cm-content").getByText("links", { exact: true }).first().hover();
   await page.locator("#editor .cm-help").waitFor();
   await eventually(page, async () => assert.match(await state(page), /^At rest/));
+  // The key of a choice, a word for it, and names as keys.
+  const { key, word, names } = await at(page, () => {
+    const { editor } = globalThis.instrument;
+    const { schema } = editor;
+    const text = "damping:\n  ";
+    const from = { state: editor.view.state.update({ changes: { from: 0, to: editor.view.state.doc.length, insert: text } }).state, pos: text.length, explicit: true };
+    return { key: schema.about(["links", "[]", "joint", "revolute"]), word: schema.values(["links", "[]", "joint"]).get("revolute"), names: editor.complete(from).options.map(({ label }) => label) };
+  });
+  assert.match(key, /Rotates about its axis/);
+  assert.equal(word, key);
+  assert(names.includes("boom_psi"), names.join());
+  // Every key of the examples is found, and has a description; those of overlays are not in the schema.
+  const lacking = await at(page, () => {
+    const { editor: { schema }, context } = globalThis.instrument;
+    const found = [];
+    for (const { name, text } of JSON.parse(document.querySelector("#given").textContent).examples) {
+      let begin = 0;
+      for (const line of text.split("\n")) {
+        const code = line.replace(/(^|\s)#.*$/, "").replace(/"[^"]*"|'[^']*'/g, (quoted) => " ".repeat(quoted.length));
+        for (const { index, 1: key } of code.matchAll(/(?<![\w.`])([A-Za-z_]\w*):(?=\s|$)/g)) {
+          const { path, key: isKey } = context(text, begin + index);
+          if (!isKey || !schema.about([...path, key])) found.push(`${name}: ${[...path, key].join(".")}`);
+        }
+        begin += line.length + 1;
+      }
+    }
+    return found;
+  });
+  assert.deepEqual(lacking.filter((one) => !/\.(after|remove)$/.test(one)), []);
 }
 
 /** Sliders move the crane and its numbers. */
@@ -185,6 +214,42 @@ async function analyses(page) {
   await page.screenshot({ path: picture("chart") });
 }
 
+/** Pictures of motions that the processor draws: a few calls instead of one for each part, and the crane where it is, in its colours. */
+async function plainly(page) {
+  await example(page, "eight link hydraulic");
+  const { calls, parts, kept } = await at(page, () => {
+    const { viewer } = globalThis.instrument.stage;
+    const picture = (moves) => {
+      clearTimeout(viewer.quiet);
+      viewer.move(moves);
+      viewer.paint();
+      const { width, height } = viewer.canvas.getBoundingClientRect();
+      const flat = Object.assign(document.createElement("canvas"), { width, height }).getContext("2d", { willReadFrequently: true });
+      flat.drawImage(viewer.canvas, 0, 0, width, height);
+      return { pixels: flat.getImageData(0, 0, width, height).data, calls: viewer.renderer.info.render.calls };
+    };
+    const [fine, plain] = [picture(false), picture(true)];
+    viewer.draw();
+    // The crane has colours, the ground has none.
+    const coloured = [];
+    for (let at = 0; at < fine.pixels.length; at += 4) {
+      const [r, g, b] = fine.pixels.subarray(at, at + 3);
+      if (Math.max(r, g, b) - Math.min(r, g, b) > 90) coloured.push(at);
+    }
+    const alike = coloured.filter((at) => [0, 1, 2].every((part) => Math.abs(fine.pixels[at + part] - plain.pixels[at + part]) < 70));
+    return { calls: plain.calls, parts: viewer.figure.group.children.length, kept: coloured.length > 500 ? alike.length / coloured.length : 0 };
+  });
+  assert(calls < 30 && parts > 40, `${calls} calls for ${parts} parts`);
+  assert(kept > 0.85, `${kept} of the crane looks the same`);
+  // With little room for numbers, the parts are drawn in several calls.
+  const several = await at(page, () => {
+    const { viewer } = globalThis.instrument.stage;
+    const { figure, floor, grid, extent: { size } } = viewer;
+    return new viewer.Plain({ figure, floor, grid, size, vectors: 164 }).batches.map(({ meshes }) => meshes.length);
+  });
+  assert(several.length > 2 && several.every((count) => count <= 20) && several.reduce((sum, count) => sum + count) > 40, several.join());
+}
+
 /** Driving by keys: the crane moves in real time, levers spring back, the record is a file. */
 async function drive(page) {
   await example(page, "eight link hydraulic");
@@ -214,7 +279,9 @@ async function drive(page) {
   await at(page, () => (navigator.getGamepads = () => [{ axes: [0, -1, 0, 0], buttons: [] }]));
   await eventually(page, async () => assert.equal(await page.locator("#levers .track").nth(1).getAttribute("aria-valuenow"), "100"));
   await at(page, () => (navigator.getGamepads = () => []));
-  await page.click("#engage");
+  // What was driven outlasts an edit.
+  await edit(page, "title:", "title: Driven");
+  await eventually(page, async () => assert.match(await page.textContent("#drive_state"), /the spec was changed/));
   const [download] = await Promise.all([page.waitForEvent("download"), page.click("#record")]);
   const csv = await readFile(await download.path(), "utf8");
   const [head, ...lines] = csv.trim().split("\n");
@@ -276,6 +343,11 @@ async function links(browser) {
     // The page still works.
     await example(page, "knuckle boom");
   }, { hash: fragment(deep) });
+  // More links than there is memory for.
+  const many = Array.from({ length: 2900 }, (_, link) => `  - {name: l${link}, placement: {transform: {translation: [0.1, 0, 0], rotation: {x: ${link ? 0 : 90} deg}}}, joint: revolute, mass: 1, com: [0.05, 0, 0]}\n`);
+  await open(browser, small, async (page) => {
+    await eventually(page, async () => assert.match(await state(page), /needs more memory|took longer/));
+  }, { hash: fragment(`format: 1\nname: many\nlinks:\n${many.join("")}`) });
   // A gigabyte of text in a link of a megabyte.
   const zeros = deflateRawSync(Buffer.alloc(1 << 28, "#"));
   await open(browser, small, async (page) => {
@@ -291,6 +363,20 @@ async function patience(page) {
   assert.match(words, /took longer than 0.5 s/);
   await edit(page, "format: 1", "format: 1 ");
   await eventually(page, async () => assert.match(await state(page), /^At rest/));
+  // What waits is not what takes long.
+  const [long, short] = await at(page, () => {
+    const { engine } = globalThis.instrument;
+    return Promise.all([engine.ask({ ask: "repeat", calls: 2_000_000 }, 20), engine.ask({ ask: "repeat", calls: 1 }, 0.3)]).then((both) => both.map(({ took }) => took));
+  });
+  assert(long > 400 && short < 300, `${long} ms, then ${short} ms`);
+  // An edit ends a run of the spec as it was.
+  await page.getByRole("tab", { name: "Run" }).click();
+  await page.fill("#duration", "9000");
+  await page.click("#start");
+  await at(page, () => (globalThis.instrument.took = null));
+  await edit(page, "format: 1", "format: 1 ");
+  await eventually(page, async () => assert(await at(page, () => globalThis.instrument.took)), 8_000);
+  assert.equal(await page.textContent("#run_state"), "ended: the spec was changed");
 }
 
 /** The report opens its crane in the instrument. */
@@ -321,6 +407,7 @@ await open(browser, { viewport: { width: 1440, height: 900 }, colorScheme: "ligh
   await schema(page);
   await sliders(page);
   await analyses(page);
+  await plainly(page);
   await drive(page);
   await speeds(page);
   await patience(page);

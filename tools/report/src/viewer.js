@@ -1,7 +1,7 @@
 // The view in three dimensions: cranes, ground, traces, forces, camera.
 import {
-  ACESFilmicToneMapping, ArrowHelper, CircleGeometry, Color, DirectionalLight, Fog, GridHelper, Group, HemisphereLight, Mesh,
-  MeshBasicMaterial, MeshLambertMaterial, PCFShadowMap, PerspectiveCamera, Scene, SphereGeometry, Vector3, WebGLRenderer,
+  ACESFilmicToneMapping, ArrowHelper, Color, DirectionalLight, Fog, GridHelper, Group, HemisphereLight, Mesh, MeshBasicMaterial,
+  MeshLambertMaterial, PCFShadowMap, PerspectiveCamera, RingGeometry, Scene, SphereGeometry, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { Line2 } from "three/examples/jsm/lines/Line2.js";
@@ -23,8 +23,24 @@ const MARGIN = 0.05;
 const EDGE = 0.97;
 /** Most picture elements per point of the screen. */
 const FINEST = 2;
-/** Levels of detail, from the best: picture elements, of those that the screen has, and those across the map of shadows. */
-const DETAIL = [{ ratio: 1, shadows: 2048 }, { ratio: 1, shadows: 512 }, { ratio: 1, shadows: 0 }, { ratio: 0.7, shadows: 0 }, { ratio: 0.5, shadows: 0 }];
+/**
+ * Levels of detail, from the best, for a graphics card and for a processor that draws: picture elements, of those that the screen has, and those across the
+ * map of shadows; whether materials are plain; and the time between pictures of a motion beyond which the level is left, s.
+ */
+const DETAIL = {
+  card: [
+    { ratio: 1, shadows: 2048, slow: 1 / 50 }, { ratio: 1, shadows: 512, slow: 1 / 50 }, { ratio: 1, shadows: 0, slow: 1 / 50 },
+    { ratio: 0.7, shadows: 0, slow: 1 / 20 }, { ratio: 0.5, shadows: 0, slow: Infinity },
+  ],
+  processor: [
+    { ratio: 1, shadows: 2048, slow: 0 }, { ratio: 1, shadows: 0, plain: true, slow: 1 / 50 }, { ratio: 0.7, shadows: 0, plain: true, slow: 1 / 30 },
+    { ratio: 0.5, shadows: 0, plain: true, slow: Infinity },
+  ],
+};
+/** WebGL's name for the room of shaders for numbers. */
+const VECTORS = 0x8dfb;
+/** Rings of the ground, where haze is computed at their corners. */
+const HAZE = 6;
 /** Time without a change after which a picture is one of the crane at rest, ms. */
 const QUIET = 400;
 /** Length of the largest reaction as drawn, relative to the crane's size. */
@@ -40,15 +56,16 @@ export const VIEWS = {
 };
 
 export class Viewer {
-  /** Without `antialias`, edges are smoothed by more picture elements, and only at rest: pictures of motions then take less time in software. */
-  constructor(canvas, data, player, { antialias = true } = {}) {
-    this.antialias = antialias;
+  /** `Plain`, of `plain.js`: where the processor draws. Then edges are smoothed by more picture elements, and only at rest; motions are drawn plainly. */
+  constructor(canvas, data, player, { Plain = null } = {}) {
+    this.Plain = Plain;
+    this.levels = Plain ? DETAIL.processor : DETAIL.card;
     this.canvas = canvas;
     this.player = player;
     this.factor = 1;
     this.detail = 0;
     this.moves = false;
-    this.renderer = new WebGLRenderer({ canvas, antialias });
+    this.renderer = new WebGLRenderer({ canvas, antialias: !Plain });
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
     this.renderer.toneMapping = ACESFilmicToneMapping;
@@ -92,6 +109,11 @@ export class Viewer {
     this.traces();
     this.forces();
     this.tippingLines();
+    if (this.Plain) {
+      const { figure, floor, grid, renderer } = this;
+      this.plain = new this.Plain({ figure, floor, grid, size, vectors: renderer.getContext().getParameter(VECTORS) });
+      this.content.add(this.plain.group);
+    }
     this.theme();
   }
 
@@ -114,7 +136,7 @@ export class Viewer {
     const { low, size, centre } = this.extent;
     const { supports } = this.crane.scene;
     const level = supports.length ? Math.min(...supports.map(({ at: [, , z] }) => z)) - 0.008 * size : Math.min(low.z, 0);
-    this.floor = new Mesh(new CircleGeometry(6 * size, 64), new MeshLambertMaterial());
+    this.floor = new Mesh(new RingGeometry(0, 6 * size, 48, this.Plain ? HAZE : 1), new MeshLambertMaterial());
     this.floor.position.set(centre.x, centre.y, level);
     this.floor.receiveShadow = true;
     const square = 10 ** Math.round(Math.log10(size / 12));
@@ -235,7 +257,7 @@ export class Viewer {
 
   /** Draws with less detail, or with all of it again, if there is such a level. */
   refine(level) {
-    if (level === this.detail || !DETAIL[level]) return;
+    if (level === this.detail || !this.levels[level]) return;
     this.detail = level;
     this.shade();
     this.resize();
@@ -246,6 +268,11 @@ export class Viewer {
     return Math.max(this.detail, this.moves ? 1 : 0);
   }
 
+  /** Time between pictures of a motion beyond which they should have less detail, s. */
+  get slow() {
+    return this.levels[this.level].slow;
+  }
+
   /** The crane, or what it is seen from, begins to move or came to rest. */
   move(moves) {
     this.moves = moves;
@@ -254,7 +281,7 @@ export class Viewer {
   }
 
   shade() {
-    const { shadows } = DETAIL[this.level];
+    const { shadows } = this.levels[this.level];
     const { sun } = this;
     sun.castShadow = shadows > 0;
     sun.shadow.mapSize.setScalar(Math.max(shadows, 1));
@@ -265,8 +292,8 @@ export class Viewer {
   resize(asked = false) {
     const { clientWidth, clientHeight } = this.canvas;
     if (!clientWidth || !clientHeight) return;
-    const smoothed = this.level === 0 && !this.antialias ? FINEST : Math.min(window.devicePixelRatio, FINEST);
-    this.renderer.setPixelRatio(DETAIL[this.level].ratio * smoothed);
+    const smoothed = this.level === 0 && this.Plain ? FINEST : Math.min(window.devicePixelRatio, FINEST);
+    this.renderer.setPixelRatio(this.levels[this.level].ratio * smoothed);
     this.renderer.setSize(clientWidth, clientHeight, false);
     this.camera.aspect = clientWidth / clientHeight;
     this.camera.updateProjectionMatrix();
@@ -282,6 +309,7 @@ export class Viewer {
     this.grid.material.vertexColors = false;
     this.grid.material.needsUpdate = true;
     this.sky.intensity = isDark() ? 1.1 : 1.7;
+    this.plain?.lit(this.sun, this.sky, this.scene.fog);
     this.paths.forEach(({ index, whole, come, dot }) => {
       for (const { material } of [whole, come, dot]) material.color.set(curve(index));
     });
@@ -374,7 +402,7 @@ export class Viewer {
 
   /** Draws once, however often it is called before the next frame; `asked`: nothing but the level of detail has changed. */
   draw(asked = false) {
-    if (!this.antialias && !asked) {
+    if (this.Plain && !asked) {
       clearTimeout(this.quiet);
       this.quiet = setTimeout(() => this.move(false), QUIET);
       if (!this.moves) this.move(true);
@@ -396,6 +424,10 @@ export class Viewer {
 
   /** Draws at once. */
   paint() {
+    const { plain } = this.levels[this.level];
+    for (const one of [this.figure.group, this.floor, this.grid]) one.visible = !plain;
+    if (this.plain) this.plain.group.visible = Boolean(plain);
+    if (plain) this.plain.follow();
     this.renderer.render(this.scene, this.camera);
     this.stale?.traverse((one) => {
       one.geometry?.dispose();

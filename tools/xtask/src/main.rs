@@ -4,6 +4,7 @@
 
 mod book;
 mod commands;
+mod cross;
 mod cycles;
 mod equations;
 mod fused;
@@ -43,7 +44,9 @@ With words, only the steps whose titles contain one of them run.
            time methods and numbers of sections of the reference crane, write docs/error-vs-runtime.md
   instrument
            build the page as an instrument, out/instrument.html; needs Node.js, and Rust for wasm32-unknown-unknown, which rustup installs
-  release  what is published, in target/published: the command as one file, the Python wheel, packages of the crates, checksums
+  release  what is published, in target/published: the command as one file for this machine and for Linux on aarch64, Python wheels for
+           Linux on x86-64 and aarch64, packages of the crates, checksums
+  aarch64  what is published for Linux on aarch64, tried in an emulator; needs a Debian with qemu-user-static
   bless    rewrite the files that tests compare with: goldens, snapshots, schema, docs/OPERATIONS.md, the gallery";
 
 fn main() -> ExitCode {
@@ -60,8 +63,19 @@ fn main() -> ExitCode {
         "instrument" => vec![Step::check("the page as an instrument", instrument::build_page)],
         "release" => vec![
             Step::check("Python environment", oracles::prepare_python),
+            Step::check("linker for other systems", cross::prepare),
             build_step(),
-            Step::check("what is published", release::build_release),
+            Step::check("command and crates", release::build_release),
+            Step::check("command for aarch64", cross::build_command),
+            Step::check("wheels for x86-64 and aarch64", cross::build_wheels),
+            Step::check("the wheel, where there is nothing else", release::rehearse_wheel),
+            Step::check("checksums", release::write_checksums),
+        ],
+        "aarch64" => vec![
+            Step::check("linker for other systems", cross::prepare),
+            Step::check("command and wheel for aarch64", cross::build_for_aarch64),
+            Step::check("a system for aarch64", cross::unpack_system),
+            Step::check("command and wheel in the emulator", cross::rehearse),
         ],
         "bless" => bless_steps(),
         "help" | "--help" | "-h" => {

@@ -12,16 +12,25 @@ const FOLDER: &str = "tools/python";
 
 /// Builds the wheel of the package into a folder, in place of others there, and returns its path.
 pub fn build_wheel(folder: &Path) -> Result<PathBuf, String> {
-    let wheels = || -> io::Result<Vec<PathBuf>> {
+    clear_wheels(folder)?;
+    let pip = ["-m", "pip", "wheel", "--quiet", "--disable-pip-version-check", "--no-build-isolation", "--no-deps"];
+    step::run_to_end(python(&pip).arg("--wheel-dir").arg(folder).arg(format!("./{FOLDER}")))?;
+    wheels(folder)?.pop().ok_or_else(|| format!("pip wrote no wheel to {}", folder.display()))
+}
+
+/// Removes the wheels in a folder, which need not exist.
+pub fn clear_wheels(folder: &Path) -> Result<(), String> {
+    let failed = |error: io::Error| format!("{}: {error}", folder.display());
+    fs::create_dir_all(folder).map_err(failed)?;
+    wheels(folder)?.iter().try_for_each(fs::remove_file).map_err(failed)
+}
+
+fn wheels(folder: &Path) -> Result<Vec<PathBuf>, String> {
+    let list = || -> io::Result<Vec<PathBuf>> {
         let paths: Vec<PathBuf> = fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<io::Result<_>>()?;
         Ok(paths.into_iter().filter(|path| path.extension().is_some_and(|ending| ending == "whl")).collect())
     };
-    let failed = |error: io::Error| format!("{}: {error}", folder.display());
-    fs::create_dir_all(folder).map_err(failed)?;
-    wheels().map_err(failed)?.iter().try_for_each(fs::remove_file).map_err(failed)?;
-    let pip = ["-m", "pip", "wheel", "--quiet", "--disable-pip-version-check", "--no-build-isolation", "--no-deps"];
-    step::run_to_end(python(&pip).arg("--wheel-dir").arg(folder).arg(format!("./{FOLDER}")))?;
-    wheels().map_err(failed)?.pop().ok_or_else(|| format!("pip wrote no wheel to {}", folder.display()))
+    list().map_err(|error| format!("{}: {error}", folder.display()))
 }
 
 /// The Python of the checks, with the programs of its environment, of which maturin is one, and those of the workspace.

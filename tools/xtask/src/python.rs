@@ -19,16 +19,34 @@ pub const CHECKS: Environment = Environment {
         "tools/casadi/requirements.txt",
         "tools/peers/requirements.txt",
         "tools/peers/requirements-performance.txt",
+        "tools/python/requirements-build.txt",
         "tools/python/requirements-test.txt",
         "tools/fmu/requirements-test.txt",
         "tools/cli/tests/output/requirements-test.txt",
     ],
 };
 
+/// For programs of other processors than that of this machine.
+pub const CROSS: Environment = Environment {
+    folder: ".venv-cross",
+    requirements: &["tools/python/requirements-build.txt", "tools/python/requirements-cross.txt"],
+};
+
 impl Environment {
     /// Its Python interpreter.
     pub fn python(&self) -> PathBuf {
         workspace::root().join(self.folder).join("bin/python")
+    }
+
+    /// A program that finds those of the environment.
+    pub fn command(&self, program: &str) -> Command {
+        let mut command = Command::new(program);
+        let own = workspace::root().join(self.folder).join("bin");
+        let path = std::env::var_os("PATH").unwrap_or_default();
+        if let Ok(path) = std::env::join_paths(std::iter::once(own).chain(std::env::split_paths(&path))) {
+            command.env("PATH", path);
+        }
+        command
     }
 
     /// Makes it, unless it already has what is required.

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs, io};
 
-use crate::package::build_wheel;
 use crate::step;
 use crate::workspace::{self, published};
 
@@ -25,22 +24,27 @@ const CRATES: [&str; 9] = [
 /// What belongs beside the command.
 const BESIDE: [&str; 4] = ["LICENSE-APACHE", "LICENSE-MIT", "CHANGELOG.md", "specs/crane.schema.json"];
 /// Uses the package without anything that was not installed with it.
-const TRY_PACKAGE: &str = "import crane, numpy
+pub const TRY_PACKAGE: &str = "import crane, numpy
 loaded = crane.load('knuckle_boom')
 assert loaded.statics().status == 'stable'
 run = loaded.simulate(duration=0.5)
 assert numpy.isfinite(run['t']).all() and run['t'][-1] == 0.5
 print(loaded)";
 
-/// Makes everything that is published.
+/// Makes the command for this machine and packages of the crates.
 pub fn build_release() -> Result<(), String> {
     pack_command()?;
-    build_wheel(&published())?;
-    pack_crates()?;
-    write_checksums()
+    pack_crates()
 }
 
-/// Makes everything that is published, the wheel as it was built for its tests, and tries it in environments that have nothing else.
+/// Tries the wheel for this machine.
+pub fn rehearse_wheel() -> Result<(), String> {
+    let bare = published().join("bare");
+    clear(&bare)?;
+    try_package(&bare)
+}
+
+/// Makes what is published for this machine, the wheel as it was built for its tests, and tries it in environments that have nothing else.
 pub fn rehearse_release() -> Result<(), String> {
     let archive = pack_command()?;
     pack_crates()?;
@@ -60,11 +64,18 @@ fn pack_command() -> Result<PathBuf, String> {
         cargo.args(crate::ALL_PROGRAMS).env("CRANE_UNIT_LIBRARY", built.join(library)).current_dir(workspace::root()),
     )?;
 
-    let name = format!("crane-{}-{}", env!("CARGO_PKG_VERSION"), workspace::host_triple()?);
+    let program = built.join(format!("crane-alone{}", env::consts::EXE_SUFFIX));
+    let stripped = built.join("crane-stripped");
+    step::run_to_end(Command::new("strip").arg("-o").args([&stripped, &program]))?;
+    pack(&stripped, &workspace::host_triple()?)
+}
+
+/// A command and what belongs beside it, in an archive that is named after a processor and its system.
+pub fn pack(program: &Path, triple: &str) -> Result<PathBuf, String> {
+    let name = format!("crane-{}-{triple}", env!("CARGO_PKG_VERSION"));
     let packed = published().join(&name);
     clear(&packed)?;
-    copy(&built.join(format!("crane-alone{}", env::consts::EXE_SUFFIX)), &packed.join("crane"))?;
-    step::run_to_end(Command::new("strip").arg(packed.join("crane")))?;
+    copy(program, &packed.join("crane"))?;
     for file in BESIDE {
         let path = workspace::root().join(file);
         copy(&path, &packed.join(path.file_name().unwrap_or_default()))?;
@@ -82,7 +93,8 @@ fn pack_crates() -> Result<(), String> {
     step::run_to_end(cargo.current_dir(workspace::root()))
 }
 
-fn write_checksums() -> Result<(), String> {
+/// The list of everything that is published.
+pub fn write_checksums() -> Result<(), String> {
     let list = "cd \"$0\" && sha256sum *.tar.gz *.whl crates/package/*.crate > SHA256SUMS && cat SHA256SUMS";
     step::run_to_end(Command::new("sh").args(["-c", list]).arg(published()))
 }
@@ -115,8 +127,8 @@ fn try_package(bare: &Path) -> Result<(), String> {
     let environment = bare.join("python");
     step::run_to_end(Command::new("python3").args(["-m", "venv"]).arg(&environment))?;
     let python = environment.join("bin/python");
-    let wheels = "set -- \"$1\"/*.whl && \"$0\" -m pip install --quiet --disable-pip-version-check \"$1\"";
-    step::run_to_end(Command::new("sh").args(["-c", wheels]).arg(&python).arg(published()))?;
+    let wheels = "set -- \"$1\"/*_\"$2\".whl && \"$0\" -m pip install --quiet --disable-pip-version-check \"$1\"";
+    step::run_to_end(Command::new("sh").args(["-c", wheels]).arg(&python).arg(published()).arg(env::consts::ARCH))?;
     step::run_to_end(alone(&python, bare).args(["-c", TRY_PACKAGE]))
 }
 
@@ -128,7 +140,7 @@ fn alone(program: impl AsRef<OsStr>, folder: &Path) -> Command {
 }
 
 /// An empty folder.
-fn clear(folder: &Path) -> Result<(), String> {
+pub fn clear(folder: &Path) -> Result<(), String> {
     let failed = |error: io::Error| format!("{}: {error}", folder.display());
     match fs::remove_dir_all(folder) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(failed(error)),

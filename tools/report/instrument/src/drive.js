@@ -15,9 +15,8 @@ const LAG = 0.5;
 /** Time over which the pace is measured, s, and that of the strip, s. */
 const PACE = 1;
 const STRIP = 20;
-/** Pictures after which the detail is reconsidered, and the time between them beyond which each level of detail is left, s: the last one is coarse. */
+/** Pictures after which the detail is reconsidered. */
 const PICTURES = 15;
-const SLOW = [1 / 50, 1 / 50, 1 / 50, 1 / 20];
 /** Longest record, s. */
 const RECORD = 600;
 /** Interval of the gauges, s: faster numbers cannot be read. */
@@ -37,14 +36,14 @@ export class Drive {
     $("#record").addEventListener("click", () => this.export());
   }
 
+  /** Another spec: what was driven until now can still be saved. */
   open(crane) {
+    const words = this.on ? `ended at ${this.t.toFixed(1)} s: the spec was changed` : "";
     this.stop();
     this.opened = crane;
-    this.rows = null;
     $("#cockpit").hidden = true;
-    $("#record").hidden = true;
     $("#engage").disabled = !crane.drives.length;
-    $("#drive_state").textContent = crane.drives.length ? "" : "This crane has no drives.";
+    $("#drive_state").textContent = crane.drives.length ? words : "This crane has no drives.";
   }
 
   async start() {
@@ -141,7 +140,7 @@ export class Drive {
     if ((this.drawn += 1) < PICTURES) return;
     const now = performance.now() / 1000;
     const { viewer } = this.stage;
-    const slow = (now - this.since) / PICTURES > SLOW[viewer?.level] && this.share < SHARE.high;
+    const slow = (now - this.since) / PICTURES > viewer?.slow && this.share < SHARE.high;
     Object.assign(this, { drawn: 0, since: now });
     if (slow) viewer.refine(viewer.level + 1);
   }

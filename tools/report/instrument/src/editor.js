@@ -14,6 +14,8 @@ import { Schema, context } from "./schema.js";
 
 /** Keys whose values are names of the spec itself: of coordinates, links, parameters. */
 const NAMES = { coordinate: "coordinates", follows: "coordinates", link: "links", load: "parameters" };
+/** Mappings at the top of a spec whose keys are such names. */
+const KEYED = { armature: "coordinates", damping: "coordinates", friction: "coordinates", guess: "coordinates", stops: "coordinates" };
 
 const colours = HighlightStyle.define([
   { tag: [tags.definition(tags.propertyName), tags.propertyName], color: "var(--code-key)" },
@@ -132,7 +134,8 @@ export class Editor {
     const { path, key } = context(state.sliceDoc(0, from), from);
     if (key) {
       const follows = state.sliceDoc(pos, pos + 1) === ":";
-      const options = [...this.schema.keys(path)].map(([name, info]) => ({ label: name, apply: follows ? name : `${name}: `, type: "property", info: info || undefined }));
+      const own = path.length === 1 ? (this.names()[KEYED[path[0]]] ?? []) : [];
+      const options = [...own.map((name) => [name]), ...this.schema.keys(path)].map(([name, info]) => ({ label: name, apply: follows ? name : `${name}: `, type: "property", info: info || undefined }));
       return options.length ? { from, options, validFor: /^\w*$/ } : null;
     }
     const words = [...this.schema.values(path)].map(([label, info]) => ({ label, type: "constant", info: info || undefined }));

@@ -36,9 +36,9 @@ export class Engine {
     }
     const id = (this.count += 1);
     const answered = new Promise((resolve, reject) => {
-      const patience = seconds === Infinity ? null : setTimeout(() => this.end(`ended: it took longer than ${seconds} s`), 1000 * (seconds + this.asked.size));
-      this.asked.set(id, { resolve, reject, patience });
+      this.asked.set(id, { resolve, reject, seconds, ask: request.ask });
       this.worker.postMessage({ id, request: JSON.stringify(request) });
+      this.watch();
     });
     if (request.ask !== "open") return answered;
     return answered.then((opened) => {
@@ -47,11 +47,24 @@ export class Engine {
     });
   }
 
+  /** Limits the time of the question that is being answered, not of those that wait behind it. */
+  watch() {
+    const [first] = this.asked.values();
+    if (!first || first.patience || first.seconds === Infinity) return;
+    first.patience = setTimeout(() => this.end(`ended: it took longer than ${first.seconds} s`), 1000 * first.seconds);
+  }
+
+  /** Ends what is being computed if it is one of these, which nobody waits for any more. */
+  abandon(kinds, words) {
+    if ([...this.asked.values()].some(({ ask }) => kinds.includes(ask))) this.end(words);
+  }
+
   hear({ id, answer, failed, took }) {
     const { resolve, reject, patience } = this.asked.get(id) ?? {};
     if (!resolve) return;
     clearTimeout(patience);
     this.asked.delete(id);
+    this.watch();
     if (failed) {
       reject(new Error(failed));
       this.end("ended: the engine was started again");

@@ -13,6 +13,7 @@ import { LoadChart } from "./load_chart.js";
 import { Modes } from "./modes.js";
 import { Rest } from "./rest.js";
 import { Run } from "./run.js";
+import { context } from "./schema.js";
 import { Stage } from "./stage.js";
 
 /** Time after the last key until the spec is read, ms. */
@@ -46,7 +47,7 @@ const chart = new LoadChart($("#load_chart"), { ask, given: () => rest.given });
 const drive = new Drive(stage, { ask, given: () => rest.given, before: () => stage.player.play(false) });
 
 controls();
-globalThis.instrument = { stage, editor, run, drive, chart, rest, get engine() { return engine; }, get crane() { return crane; }, get atRest() { return atRest; } };
+globalThis.instrument = { stage, editor, run, drive, chart, rest, context, get engine() { return engine; }, get crane() { return crane; }, get atRest() { return atRest; } };
 begin();
 
 async function begin() {
@@ -93,6 +94,7 @@ async function read() {
   }
   read.busy = true;
   const begin = performance.now();
+  engine.abandon(["run", "chart"], "ended: the spec was changed");
   try {
     const opened = await ask({ ask: "open", name, text: editor.text });
     problems(opened.diagnostics);

@@ -36,8 +36,10 @@ export class Run {
   }
 
   open(crane) {
+    const { textContent: words } = $("#run_state");
     $("#duration").value = crane.duration;
     this.clear();
+    if (words.startsWith("ended")) $("#run_state").textContent = words;
   }
 
   clear() {

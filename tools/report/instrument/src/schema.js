@@ -12,8 +12,11 @@ export function context(text, position) {
   const frames = [];
   let flow = null;
   let scalar = Infinity;
-  for (const line of text.slice(0, position).split("\n")) {
+  const lines = text.slice(0, position).split("\n");
+  for (const [number, line] of lines.entries()) {
     const indent = line.search(/\S/);
+    // Only where something is being written does an empty line stand for anything.
+    if (indent < 0 && number + 1 < lines.length) continue;
     if (flow) {
       flow = inFlow(line, flow);
       continue;
@@ -120,7 +123,7 @@ export class Schema {
   keys(path) {
     const keys = new Map();
     for (const node of this.at(path)) {
-      for (const [name, property] of Object.entries(node.properties ?? {})) if (!keys.has(name)) keys.set(name, words(property, this));
+      for (const name of Object.keys(node.properties ?? {})) if (!keys.has(name)) keys.set(name, this.words(node, name));
     }
     return keys;
   }
@@ -128,10 +131,13 @@ export class Schema {
   /** Words that a value at a path may be. */
   values(path) {
     const values = new Map();
-    for (const node of this.at(path)) {
+    const nodes = this.at(path);
+    // A word that may also be the key of a choice is described there.
+    const choices = new Map(nodes.filter(isChoice).map((node) => [Object.keys(node.properties)[0], node.description]));
+    for (const node of nodes) {
       for (const value of [...(node.enum ?? []), ...("const" in node ? [node.const] : []), ...(node.type === "boolean" ? [true, false] : [])]) {
         const word = String(value);
-        if (!values.get(word)) values.set(word, node.const === value ? node.description ?? "" : "");
+        if (!values.get(word)) values.set(word, (node.const === value ? node.description : choices.get(word)) ?? "");
       }
     }
     return values;
@@ -139,10 +145,18 @@ export class Schema {
 
   /** What the value at a path is, in the words of the schema. */
   about(path) {
-    const [node] = this.at(path.slice(0, -1)).map((parent) => parent.properties?.[path.at(-1)] ?? parent.additionalProperties).filter((one) => one && typeof one === "object");
-    return node ? words(node, this) : "";
+    const key = path.at(-1);
+    return this.at(path.slice(0, -1)).map((node) => this.words(node, key)).find(Boolean) ?? "";
+  }
+
+  /** The description of a key of a mapping, of the choice that it makes, or of what it refers to. */
+  words(node, key) {
+    const property = node.properties?.[key] ?? node.additionalProperties;
+    if (!property || typeof property !== "object") return "";
+    const own = property.description ?? (isChoice(node) ? node.description : null);
+    return own ?? this.expand(property).find(({ description }) => description)?.description ?? "";
   }
 }
 
-/** The description of a schema, or of what it refers to. */
-const words = (node, schema) => node.description ?? schema.expand(node).find(({ description }) => description)?.description ?? "";
+/** Whether a mapping is one of several choices, with a single key that names it. */
+const isChoice = ({ properties, description }) => Boolean(description) && Object.keys(properties ?? {}).length === 1;

@@ -2,6 +2,7 @@
 import { decoded, readable, scaled } from "../../src/data.js";
 import { gradient } from "../../src/colours.js";
 import { element } from "../../src/element.js";
+import { Plain } from "../../src/plain.js";
 import { Player } from "../../src/player.js";
 import { Viewer } from "../../src/viewer.js";
 
@@ -10,7 +11,7 @@ const WAVES = 10;
 /** Logarithm of the ratio of sizes from which the camera moves to a crane again. */
 const GROWN = 0.2;
 
-/** Whether 3-D is drawn by the processor: then pictures of a motion have less detail than those at rest. */
+/** Whether 3-D is drawn by the processor: then pictures of a motion are plainer than those at rest. */
 function inSoftware() {
   const gl = document.createElement("canvas").getContext("webgl2");
   const name = gl?.getParameter(gl.getExtension("WEBGL_debug_renderer_info")?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER);
@@ -20,7 +21,7 @@ function inSoftware() {
 
 export class Stage {
   constructor() {
-    this.antialias = !inSoftware();
+    this.drawing = inSoftware() ? { Plain } : {};
     this.player = new Player(WAVES);
     this.viewer = null;
     this.crane = null;
@@ -43,7 +44,7 @@ export class Stage {
     this.crane = crane;
     try {
       if (this.viewer) this.viewer.load({ crane, rigid: null });
-      else if (!this.flat) this.viewer = new Viewer(document.querySelector("#view canvas"), { crane, rigid: null }, this.player, { antialias: this.antialias });
+      else if (!this.flat) this.viewer = new Viewer(document.querySelector("#view canvas"), { crane, rigid: null }, this.player, this.drawing);
     } catch (error) {
       this.flat = true;
       const words = `3-D is not available in this browser (${error.message}). Everything else is here.`;

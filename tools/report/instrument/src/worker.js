@@ -25,6 +25,8 @@ onmessage = async ({ data: { module, id, request } }) => {
     postMessage({ id, answer: ask(request), took: performance.now() - begin });
   } catch (error) {
     // The module is not usable after this.
-    postMessage({ id, failed: error instanceof RangeError || /memory|stack/.test(error.message) ? "it needs more memory than there is, or is nested too deeply" : `it failed (${error.message})` });
+    // Where memory ends, the engine stops at an instruction that cannot be reached.
+    const lacks = error instanceof RangeError || /memory|stack|unreachable/.test(error.message);
+    postMessage({ id, failed: lacks ? "it needs more memory than there is, or is nested too deeply" : `it failed (${error.message})` });
   }
 };
