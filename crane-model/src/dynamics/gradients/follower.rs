@@ -81,7 +81,7 @@ impl<'a, 's> Follower<'a, 's> {
         };
         Self {
             crane,
-            motion: Adaptive::new(Stages::new(any, len), equations, norm),
+            motion: Adaptive::new(Stages::new(any, len), equations, norm).watching_all(),
             variation,
             start,
             steps: (0..count).map(|_| Step::new(len)).collect(),
@@ -121,15 +121,17 @@ impl<'a, 's> Follower<'a, 's> {
         }
         variation.project(equations, step.reached(), &step.end, places);
         variation.differentiate(equations, step.reached(), &step.end, places, rates)?;
-        for ((place, rates), own) in places.iter().zip(&*rates).zip(steps) {
+        for ((place, rates), own) in places.iter().zip(&*rates).zip(&mut *steps) {
             own.end.copy_from_slice(place);
             own.slopes[1].copy_from_slice(rates);
         }
-        for (direction, u) in u.iter().enumerate() {
-            let error = &mut places[0];
+        let (error, change) = (&mut vec![0.0; variation.motion.len()], &mut vec![0.0; variation.motion.len()]);
+        for (direction, (u, step)) in u.iter().zip(&*steps).enumerate() {
+            let scale = variation.slopes.scale(direction);
             error.fill(0.0);
-            add_error(variation.slopes.scale(direction), u, error);
-            motion.heed(error);
+            add_error(scale, u, error);
+            change.iter_mut().zip(&step.end).for_each(|(change, slope)| *change = scale * slope);
+            motion.heed(error, change);
         }
         Ok(())
     }
@@ -261,10 +263,12 @@ impl Stepper for Follower<'_, '_> {
         self.motion.start(t, motion)?;
         let Self { motion: own, variation, start, steps, rates, .. } = self;
         let (_, equations, step) = own.last();
-        let end = step.end.clone();
+        let mut end = step.end.clone();
         let mut along = start.clone();
         variation.make_relative(equations, t, &mut along);
         variation.project(equations, t, &end, &mut along);
+        // Where a law changes its branch right at the start, as that of a side at tank pressure, what follows is on the branch to which it goes.
+        add(&mut end, INSIDE * FIRST, &step.slopes[1]);
         let found = variation.differentiate(equations, t, &end, &along, rates);
         for ((own, along), rates) in steps.iter_mut().zip(&along).zip(&*rates) {
             (own.t, own.length) = (t, 0.0);
