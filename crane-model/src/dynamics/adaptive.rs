@@ -1,7 +1,7 @@
 //! Steps as long as a tolerance allows, for one-step methods.
 
 use super::{
-    Ahead, Cause, EffortAccuracy, Method, Statistics, Stepper, Stopped,
+    Ahead, Cause, EffortAccuracy, Method, Statistics, Steered, Stepper, Stopped,
     equations::Equations,
     norm::Norm,
     state::NotFinite,
@@ -215,6 +215,21 @@ impl<F: Formula + Send> Stepper for Adaptive<'_, F> {
         self.equations.make_absolute(t, motion);
     }
 
+    fn statistics(&self) -> Statistics {
+        Statistics {
+            steps: self.steps,
+            rejections: self.rejections,
+            evaluations: self.equations.evaluations,
+            factorisations: self.formula.factorisations(),
+        }
+    }
+
+    fn efforts(&self) -> Vec<EffortAccuracy> {
+        self.norm.efforts().collect()
+    }
+}
+
+impl<F: Formula + Send> Steered for Adaptive<'_, F> {
     /// The length of the next step stays as intended; its error decides.
     fn change(&mut self, t: f64, change: &mut dyn FnMut()) -> Result<(), Stopped> {
         let mut motion = std::mem::take(&mut self.motion);
@@ -236,18 +251,5 @@ impl<F: Formula + Send> Stepper for Adaptive<'_, F> {
         for count in [steps, rejections] {
             visit_count(count, visit);
         }
-    }
-
-    fn statistics(&self) -> Statistics {
-        Statistics {
-            steps: self.steps,
-            rejections: self.rejections,
-            evaluations: self.equations.evaluations,
-            factorisations: self.formula.factorisations(),
-        }
-    }
-
-    fn efforts(&self) -> Vec<EffortAccuracy> {
-        self.norm.efforts().collect()
     }
 }

@@ -93,6 +93,25 @@ impl<'a, 's> Follower<'a, 's> {
         }
     }
 
+    /// Derivatives of the motion at a time within the last step, direction by direction.
+    pub fn derivatives(&mut self, t: f64) -> Vec<Vec<f64>> {
+        let Self { motion: own, variation, steps, places, .. } = self;
+        let mut motion = own.motion().to_vec();
+        own.interpolate(t, &mut motion);
+        let (_, equations, ..) = own.last();
+        let n = variation.n;
+        for (place, step) in places.iter_mut().zip(&*steps) {
+            step.at(t, place);
+            for coordinate in equations.references.coordinates() {
+                place[n + coordinate] = step.rate_at(t, n, coordinate);
+            }
+        }
+        equations.make_relative(t, &mut motion);
+        variation.project(equations, t, &motion, places);
+        variation.complete(equations, t, &motion, places);
+        variation.along.clone()
+    }
+
     /// Follows the last step of the motion.
     fn follow(&mut self) -> Result<(), NotFinite> {
         let Self { motion, variation, steps, u, places, rates, .. } = self;
@@ -299,35 +318,8 @@ impl Stepper for Follower<'_, '_> {
         self.motion.interpolate(t, motion);
     }
 
-    /// Motions that are changed between steps have no derivatives.
-    fn change(&mut self, t: f64, _: &mut dyn FnMut()) -> Result<(), Stopped> {
-        Err(self.motion.stuck(t, FIRST))
-    }
-
-    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        self.motion.visit(visit);
-    }
-
     fn statistics(&self) -> Statistics {
         self.motion.statistics()
-    }
-
-    fn derivatives(&mut self, t: f64) -> Vec<Vec<f64>> {
-        let Self { motion: own, variation, steps, places, .. } = self;
-        let mut motion = own.motion().to_vec();
-        own.interpolate(t, &mut motion);
-        let (_, equations, ..) = own.last();
-        let n = variation.n;
-        for (place, step) in places.iter_mut().zip(&*steps) {
-            step.at(t, place);
-            for coordinate in equations.references.coordinates() {
-                place[n + coordinate] = step.rate_at(t, n, coordinate);
-            }
-        }
-        equations.make_relative(t, &mut motion);
-        variation.project(equations, t, &motion, places);
-        variation.complete(equations, t, &motion, places);
-        variation.along.clone()
     }
 
     fn efforts(&self) -> Vec<EffortAccuracy> {

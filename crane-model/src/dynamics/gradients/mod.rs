@@ -222,7 +222,8 @@ pub fn simulate(
     let mut integration = Integration::by(Box::new(follower), any, 0.0, start, settings)?;
     let intervals = divided(settings.duration, settings.output).0;
     for interval in 0..=intervals {
-        let derivatives = integration.derivatives();
+        let t = integration.sample().t;
+        let derivatives = integration.stepper().derivatives(t);
         watch.sample(&integration.sample(), &derivatives);
         if interval == intervals {
             break;
