@@ -201,6 +201,19 @@ impl<T: Number> Arguments<'_, T> {
         }
     }
 
+    /// Gives those that a function reads after its fixed numbers, each with its register.
+    pub(crate) fn each(&self, code: &Code, mut take: impl FnMut(usize, T)) {
+        let mut register = code.fixed.len();
+        for inputs in &code.inputs {
+            let given = self.of(inputs.argument).get(inputs.first..inputs.first + inputs.count);
+            match given {
+                Some(given) => given.iter().enumerate().for_each(|(place, number)| take(register + place, *number)),
+                None => (0..inputs.count).for_each(|place| take(register + place, T::splat(0.0))),
+            }
+            register += inputs.count;
+        }
+    }
+
     /// Writes those that a function reads after its fixed numbers.
     pub(crate) fn write(&self, code: &Code, registers: &mut [T]) {
         let mut registers = registers.get_mut(code.fixed.len()..).unwrap_or_default();
@@ -291,9 +304,8 @@ impl<T: Number> Machine<T> {
         }
     }
 
-    /// The first registers with the arguments in theirs, the frame of machine code with derivatives, and room for its results.
-    pub(crate) fn with_cells(&mut self, code: &Code, arguments: &Arguments<'_, T>) -> (&[T], &mut [Vec<f64x8>; 2]) {
-        arguments.write(code, self.registers());
+    /// The registers, of which the first have the fixed numbers; the frame of machine code with derivatives, and room for its results.
+    pub(crate) fn with_cells(&mut self) -> (&[T], &mut [Vec<f64x8>; 2]) {
         let Self { file, cells, .. } = self;
         (file.registers(), cells)
     }

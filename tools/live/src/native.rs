@@ -124,19 +124,18 @@ impl Native {
         out: &mut [T],
     ) {
         let [fixed, given] = self.given;
-        let (registers, [frame, results]) = machine.with_cells(code, arguments);
-        let mut first = fixed;
+        let (registers, [frame, results]) = machine.with_cells();
         if frame.is_empty() {
             let zero = f64x8::splat(0.0);
             frame.resize(self.code.places().max(2 * given + self.numbers.len()), zero);
             results.resize(2 * self.results, zero);
             let known = self.numbers.iter().copied().chain(self.code.numbers());
             known.for_each(|(place, number)| frame[place] = f64x8::splat(number));
-            first = 0;
+            for (place, number) in registers.iter().enumerate().take(fixed) {
+                [frame[place], frame[given + place]] = number.cells();
+            }
         }
-        for (place, number) in registers.iter().enumerate().take(given).skip(first) {
-            [frame[place], frame[given + place]] = number.cells();
-        }
+        arguments.each(code, |place, number| [frame[place], frame[given + place]] = number.cells());
         for part in 0..self.code.parts() {
             self.code.run(part, f64x8::flat(frame), f64x8::flat(results));
             if let (Some(pause), Some(kind)) = (self.code.pause(part), self.pauses.get(part)) {

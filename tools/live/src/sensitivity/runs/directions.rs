@@ -1,13 +1,14 @@
 //! Functions of a crane with their slopes in the directions of a run.
 
 use crane_codegen::chain::Input;
-use crane_codegen::program::FunctionId;
+use crane_codegen::program::{Argument, FunctionId};
 use crane_model::Description;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::gradients::{Around, At, CylinderSlopes, Slopes};
 
 use super::Along;
 use crate::LiveCrane;
+use crate::bytecode::{Code, Fixed};
 use crate::dual::{DIRECTIONS, Dual8};
 use crate::machine::Number;
 use crate::rows::{Evaluation, Quantity};
@@ -60,7 +61,7 @@ pub(super) struct Directions<'a> {
     beside: Vec<Option<Beside>>,
     /// The changes of the numbers for which errors count.
     scales: Vec<f64>,
-    /// Whether any of them is that of a parameter or an input, which the motions of drives may depend on.
+    /// Whether any of them is that of a parameter or an input, and the motions of drives depend on any.
     may_move_drives: bool,
 }
 
@@ -92,13 +93,13 @@ impl<'a> Directions<'a> {
             };
             if value == 0.0 { 1.0 } else { CHANGE * value.abs() }
         };
-        let drives = !crane.description().drives.is_empty();
+        let changes = along.iter().any(|along| matches!(along, Along::Parameter(_) | Along::Input(_)));
         Self {
             crane,
             chunks: along.chunks(DIRECTIONS).map(|along| Chunk::new(crane, along)).collect(),
             beside: along.iter().map(beside).collect(),
             scales: along.iter().map(scale).collect(),
-            may_move_drives: drives && along.iter().any(|along| matches!(along, Along::Parameter(_) | Along::Input(_))),
+            may_move_drives: changes && is_live(crane, FunctionId::DriveMotions),
         }
     }
 
@@ -155,7 +156,10 @@ impl Chunk {
             openings: evaluation(FunctionId::ValveOpenings),
             driven,
             drives: cylinders.iter().map(|cylinder| cylinder.drive).collect(),
-            wants_more: along.iter().any(|along| matches!(along, Along::Parameter(_) | Along::Input(_))),
+            wants_more: along.iter().any(|along| matches!(along, Along::Parameter(_) | Along::Input(_)))
+                && [FunctionId::DriveMotions, FunctionId::CylinderStates, FunctionId::ValveOpenings]
+                    .into_iter()
+                    .any(|id| is_live(crane, id)),
         });
         Self {
             count: along.len(),
@@ -170,11 +174,20 @@ impl Chunk {
 
     /// J with its slopes.
     fn jacobian(&mut self, q: &[Dual8]) -> Vec<Dual8> {
+        let Some([_, jacobians]) = &mut self.loops else { return Vec::new() };
         let zeros = constants(&vec![0.0; q.len()]);
-        self.loops
-            .as_mut()
-            .map_or_else(Vec::new, |[_, jacobians]| jacobians.at(Dual8::splat(0.0), q, &zeros, &zeros).to_vec())
+        jacobians.at(Dual8::splat(0.0), q, &zeros, &zeros).to_vec()
     }
+}
+
+/// Whether a function of a crane depends on live parameters or inputs.
+fn is_live(crane: &LiveCrane, id: FunctionId) -> bool {
+    let library = crane.library();
+    library.routine(id).is_some_and(|routine| {
+        let Code { fixed, inputs, .. } = routine.code();
+        fixed.iter().any(|number| !matches!(number, Fixed::Number(_)))
+            || inputs.iter().any(|inputs| inputs.argument == Argument::Inputs)
+    })
 }
 
 /// A number with slope 1 in every direction that is its own.
