@@ -41,7 +41,7 @@ impl Of {
         }
     }
 
-    /// The result at which it is, of a column that is no integral.
+    /// The result at which it is; an integral is not at one.
     fn row(self, values: &[f64]) -> usize {
         let of = |value: f64| match self {
             Self::Minimum => -value,
