@@ -151,7 +151,19 @@ impl ForceStates {
         rates: &mut [f64],
         accelerations: &mut [f64],
     ) {
-        self.evaluate(crane, moment, rates, None);
+        self.accelerate_with_slopes(crane, moment, rates, None, accelerations);
+    }
+
+    /// The same, with the derivatives of the rates with respect to the states, if requested.
+    pub(crate) fn accelerate_with_slopes(
+        &mut self,
+        crane: &dyn DynDynamics,
+        moment: &StateAt<'_>,
+        rates: &mut [f64],
+        by_states: Option<&mut DMatrix<f64>>,
+        accelerations: &mut [f64],
+    ) {
+        self.evaluate(crane, moment, rates, by_states);
         self.add_accelerations(crane, moment.q);
         accelerations.iter_mut().zip(&self.efforts[1]).for_each(|(acceleration, added)| *acceleration += *added);
     }

@@ -103,6 +103,11 @@ pub(crate) struct StatefulForce {
     /// Derivatives of the rates of its states with respect to ℓ and ℓ̇.
     pub rates_by_length: [f64; STATES],
     pub rates_by_speed: [f64; STATES],
+    /// The cylinder that exerts it, by its index among all; `None` for a joint with bristles.
+    pub cylinder: Option<usize>,
+    /// Derivatives of the rate of its last state, a spool, with respect to the wanted length of the cylinder, the rate of this length, and the
+    /// opening that the spec gives over time.
+    pub by_command: [f64; 3],
     /// ℓ̇, m/s or rad/s.
     pub speed: f64,
     /// Flow from the pump, m³/s.

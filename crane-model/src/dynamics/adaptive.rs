@@ -1,7 +1,7 @@
 //! Steps as long as a tolerance allows, for one-step methods.
 
 use super::{
-    Ahead, Cause, EffortAccuracy, Method, Statistics, Stepper, Stopped,
+    Ahead, Cause, EffortAccuracy, Method, Statistics, Steered, Stepper, Stopped,
     equations::Equations,
     norm::Norm,
     state::NotFinite,
@@ -52,6 +52,8 @@ pub(super) struct Adaptive<'a, F> {
     /// Whether the last step ended where motions are not smooth: its last slope is not the first of the next step.
     at_stop: bool,
     switches: Switches,
+    /// The laws at whose changes also a step ends whose error is small.
+    watched: Watched,
     /// Motion at the time reached.
     motion: Vec<f64>,
     steps: usize,
@@ -63,7 +65,26 @@ impl<'a, F: Formula> Adaptive<'a, F> {
     pub fn new(formula: F, equations: Equations<'a>, norm: Norm) -> Self {
         let (step, motion) = (Step::new(equations.len()), vec![0.0; equations.len()]);
         let switches = Switches::new(equations.crane, equations.len());
-        Self { formula, equations, norm, next: FIRST, step, at_stop: false, switches, motion, steps: 0, rejections: 0 }
+        Self {
+            formula,
+            equations,
+            norm,
+            next: FIRST,
+            step,
+            at_stop: false,
+            switches,
+            watched: Watched::Contacts,
+            motion,
+            steps: 0,
+            rejections: 0,
+        }
+    }
+
+    /// Ends steps also where forces with states of their own change their branch.
+    pub fn watching_all(mut self) -> Self {
+        self.watched = Watched::All;
+        self.switches.is_exact = true;
+        self
     }
 
     /// The last step, for motions that follow this one: its formula, the equations and the step.
@@ -71,9 +92,11 @@ impl<'a, F: Formula> Adaptive<'a, F> {
         (&mut self.formula, &mut self.equations, &self.step)
     }
 
-    /// Shortens the next step to what an error at the end of the last one allows that is not an error of the motion itself.
-    pub fn heed(&mut self, error: &[f64]) {
-        let size = self.norm.size(&self.step.end, error);
+    /// Shortens the next step to what an error at the end of the last one allows that is not an error of the motion itself, but of a change of it,
+    /// in proportion to this change if it is large.
+    pub fn heed(&mut self, error: &[f64], change: &[f64]) {
+        let Self { norm, step, .. } = self;
+        let size = norm.size(&step.end, error) / norm.size_of_change(&step.end, change).max(1.0);
         if size > 1.0 {
             let ideal = SAFETY * size.powf(-1.0 / F::METHOD.order() as f64);
             self.next = self.next.min(self.step.length * ideal.max(RATIO.0));
@@ -175,7 +198,7 @@ impl<F: Formula + Send> Stepper for Adaptive<'_, F> {
             self.equations.references.step_within(t, self.step.reached());
             let tried = self.formula.attempt(&mut self.equations, &mut self.step);
             let meets = self.judge(tried);
-            let watched = if meets { Watched::Contacts } else { Watched::All };
+            let watched = if meets { self.watched } else { Watched::All };
             let found = tried.ok().filter(|()| repeats < Switches::REPEATS).and_then(|()| self.change(watched));
             if meets && found.is_none() {
                 self.steps += 1;
@@ -184,6 +207,7 @@ impl<F: Formula + Send> Stepper for Adaptive<'_, F> {
                 if change < f64::INFINITY && self.switches.is_of_limit() {
                     self.next = self.next.min(AFRESH);
                 }
+                self.switches.proceed(change < f64::INFINITY);
                 self.accept(reached)?;
                 return Ok(reached);
             }
@@ -205,30 +229,6 @@ impl<F: Formula + Send> Stepper for Adaptive<'_, F> {
         self.equations.make_absolute(t, motion);
     }
 
-    /// The length of the next step stays as intended; its error decides.
-    fn change(&mut self, t: f64, change: &mut dyn FnMut()) -> Result<(), Stopped> {
-        let mut motion = std::mem::take(&mut self.motion);
-        self.interpolate(t, &mut motion);
-        change();
-        self.motion = motion;
-        self.begin(t, self.next)
-    }
-
-    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        let Self { formula, equations, norm, next, step, at_stop, switches, motion, steps, rejections } = self;
-        formula.visit(visit);
-        equations.visit(visit);
-        norm.visit(visit);
-        visit(next);
-        step.visit(visit);
-        visit_flag(at_stop, visit);
-        switches.visit(visit);
-        visit_numbers(motion, visit);
-        for count in [steps, rejections] {
-            visit_count(count, visit);
-        }
-    }
-
     fn statistics(&self) -> Statistics {
         Statistics {
             steps: self.steps,
@@ -240,5 +240,31 @@ impl<F: Formula + Send> Stepper for Adaptive<'_, F> {
 
     fn efforts(&self) -> Vec<EffortAccuracy> {
         self.norm.efforts().collect()
+    }
+}
+
+impl<F: Formula + Send> Steered for Adaptive<'_, F> {
+    /// The length of the next step stays as intended; its error decides.
+    fn change(&mut self, t: f64, change: &mut dyn FnMut()) -> Result<(), Stopped> {
+        let mut motion = std::mem::take(&mut self.motion);
+        self.interpolate(t, &mut motion);
+        change();
+        self.motion = motion;
+        self.begin(t, self.next)
+    }
+
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        let Self { formula, equations, norm, next, step, at_stop, switches, motion, steps, rejections, .. } = self;
+        formula.visit(visit);
+        equations.visit(visit);
+        norm.visit(visit);
+        visit(next);
+        step.visit(visit);
+        visit_flag(at_stop, visit);
+        switches.visit(visit);
+        visit_numbers(motion, visit);
+        for count in [steps, rejections] {
+            visit_count(count, visit);
+        }
     }
 }

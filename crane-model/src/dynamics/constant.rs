@@ -1,7 +1,7 @@
 //! The classical Runge–Kutta method with constant steps that end at every result.
 
 use super::{
-    Ahead, Cause, Method, Settings, Statistics, Stepper, Stopped,
+    Ahead, Cause, Method, Settings, Statistics, Steered, Stepper, Stopped,
     equations::Equations,
     motion::{add, add_all},
     references::References,
@@ -226,6 +226,12 @@ impl Stepper for Rk4<'_> {
         self.equations.crane.prescribe(t, pose, &mut rates[..self.equations.n]);
     }
 
+    fn statistics(&self) -> Statistics {
+        Statistics { steps: self.done, evaluations: self.equations.evaluations, ..Statistics::default() }
+    }
+}
+
+impl Steered for Rk4<'_> {
     fn change(&mut self, t: f64, change: &mut dyn FnMut()) -> Result<(), Stopped> {
         change();
         self.steps = EqualSteps { begin: t, end: t, count: 0, done: 0 };
@@ -244,9 +250,5 @@ impl Stepper for Rk4<'_> {
         for count in [&mut steps.count, &mut steps.done, done] {
             visit_count(count, visit);
         }
-    }
-
-    fn statistics(&self) -> Statistics {
-        Statistics { steps: self.done, evaluations: self.equations.evaluations, ..Statistics::default() }
     }
 }

@@ -18,7 +18,7 @@
 //! second-order form the stages of q are the rates of the stages, so that no slope of q is computed.
 
 use super::{
-    EffortAccuracy, Method, Settings, Statistics, Stepper, Stopped,
+    EffortAccuracy, Method, Settings, Statistics, Steered, Stepper, Stopped,
     adaptive::{Adaptive, Formula},
     equations::Equations,
     motion::add_all,

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use nalgebra::DMatrix;
 
 use super::{
-    Ahead, Cause, InitialState, Method, Run, Sample, Settings, Stepper, Stopped,
+    Ahead, Cause, InitialState, Method, Run, Sample, Settings, Steered, Stepper, Stopped,
     bdf::Bdf,
     constant::Rk4,
     dormand_prince::DormandPrince,
@@ -26,9 +26,9 @@ use crate::{
 const PACE: usize = 20_000;
 
 /// A run that is advanced from result to result. It keeps its step size and its history from one result to the next.
-pub struct Integration<'a> {
+pub struct Integration<'a, S: Stepper + ?Sized = dyn Steered + 'a> {
     crane: &'a dyn DynDynamics,
-    stepper: Box<dyn Stepper + 'a>,
+    stepper: Box<S>,
     settings: Settings,
     stops: Stops,
     /// Beginning and end of the run, s.
@@ -64,7 +64,7 @@ impl<'a> Integration<'a> {
         start: &InitialState,
         settings: &Settings,
     ) -> Result<Self, Stopped> {
-        let stepper: Box<dyn Stepper + 'a> = match settings.method {
+        let stepper: Box<dyn Steered + 'a> = match settings.method {
             Method::Rk4 => Box::new(Rk4::new(crane, settings)),
             Method::DormandPrince => Box::new(DormandPrince::new(crane, settings)),
             Method::Rosenbrock => Box::new(Rosenbrock::new(crane, settings)),
@@ -72,10 +72,12 @@ impl<'a> Integration<'a> {
         };
         Self::by(stepper, crane, begin, start, settings)
     }
+}
 
+impl<'a, S: Stepper + ?Sized> Integration<'a, S> {
     /// The same with a stepper made for this crane and these settings.
     pub(super) fn by(
-        mut stepper: Box<dyn Stepper + 'a>,
+        mut stepper: Box<S>,
         crane: &'a dyn DynDynamics,
         begin: f64,
         start: &InitialState,
@@ -161,6 +163,54 @@ impl<'a> Integration<'a> {
         Ok(ControlFlow::Continue(()))
     }
 
+    /// Whether an adaptive method would need more than the maximum number of steps if it went on like this. A wrong unit makes forces that
+    /// change within microseconds: the run would take hours to find that out.
+    fn is_too_slow(&mut self) -> bool {
+        let statistics = self.stepper.statistics();
+        let done = statistics.steps + statistics.rejections;
+        let (before, since) = self.paced;
+        if done < before + PACE || !self.settings.method.is_adaptive() {
+            return false;
+        }
+        self.paced = (done, self.reached);
+        let left = (self.end - self.reached) / (self.reached - since) * (done - before) as f64;
+        // A motion without an end has no number of steps left.
+        left.is_finite() && left > self.settings.most_steps as f64
+    }
+
+    /// Integrates work and dissipation up to a time in the last step.
+    fn integrate_powers(&mut self, to: f64) {
+        let Self { energy, stepper, .. } = self;
+        if let Some(energy) = energy {
+            energy.advance(to, &mut |t, motion| stepper.interpolate(t, motion));
+        }
+    }
+
+    /// The last result.
+    pub fn sample(&self) -> Sample<'_> {
+        let (q, rest) = self.motion.split_at(self.crane.size());
+        let (v, x) = rest.split_at(q.len());
+        let [work, dissipated, load_work] = self.energy.as_ref().map_or([0.0; INTEGRALS], |energy| energy.values);
+        Sample { t: self.time, q, v, x, work, dissipated, load_work }
+    }
+
+    /// The motion.
+    pub(super) fn stepper(&mut self) -> &mut S {
+        &mut self.stepper
+    }
+
+    /// Statistics up to the last result.
+    pub fn run(&self) -> Run {
+        let statistics = self.stepper.statistics();
+        let step = match (self.settings.method.is_adaptive(), statistics.steps) {
+            (true, 1..) => (self.time - self.begin) / statistics.steps as f64,
+            _ => self.settings.step_taken(),
+        };
+        Run { statistics, step, time: self.time, efforts: self.stepper.efforts() }
+    }
+}
+
+impl Integration<'_> {
     /// Continues from the last result after `change`, which changes forces or the motions of drives of the crane, but neither positions
     /// nor rates, neither masses nor which drives follow their specs. Not after a motion that was stopped before its result.
     ///
@@ -201,52 +251,6 @@ impl<'a> Integration<'a> {
         if let Some(energy) = energy {
             energy.visit(visit);
         }
-    }
-
-    /// Whether an adaptive method would need more than the maximum number of steps if it went on like this. A wrong unit makes forces that
-    /// change within microseconds: the run would take hours to find that out.
-    fn is_too_slow(&mut self) -> bool {
-        let statistics = self.stepper.statistics();
-        let done = statistics.steps + statistics.rejections;
-        let (before, since) = self.paced;
-        if done < before + PACE || !self.settings.method.is_adaptive() {
-            return false;
-        }
-        self.paced = (done, self.reached);
-        let left = (self.end - self.reached) / (self.reached - since) * (done - before) as f64;
-        // A motion without an end has no number of steps left.
-        left.is_finite() && left > self.settings.most_steps as f64
-    }
-
-    /// Integrates work and dissipation up to a time in the last step.
-    fn integrate_powers(&mut self, to: f64) {
-        let Self { energy, stepper, .. } = self;
-        if let Some(energy) = energy {
-            energy.advance(to, &mut |t, motion| stepper.interpolate(t, motion));
-        }
-    }
-
-    /// The last result.
-    pub fn sample(&self) -> Sample<'_> {
-        let (q, rest) = self.motion.split_at(self.crane.size());
-        let (v, x) = rest.split_at(q.len());
-        let [work, dissipated, load_work] = self.energy.as_ref().map_or([0.0; INTEGRALS], |energy| energy.values);
-        Sample { t: self.time, q, v, x, work, dissipated, load_work }
-    }
-
-    /// Derivatives of the last result, of a method that has them.
-    pub(super) fn derivatives(&mut self) -> Vec<Vec<f64>> {
-        self.stepper.derivatives(self.time)
-    }
-
-    /// Statistics up to the last result.
-    pub fn run(&self) -> Run {
-        let statistics = self.stepper.statistics();
-        let step = match (self.settings.method.is_adaptive(), statistics.steps) {
-            (true, 1..) => (self.time - self.begin) / statistics.steps as f64,
-            _ => self.settings.step_taken(),
-        };
-        Run { statistics, step, time: self.time, efforts: self.stepper.efforts() }
     }
 }
 

@@ -83,7 +83,7 @@ pub use state::{NotFinite, State, acceleration};
 #[cfg(feature = "std")]
 pub use statistics::Statistics;
 #[cfg(feature = "std")]
-pub use stepper::{Ahead, Stepper};
+pub use stepper::{Ahead, Steered, Stepper};
 #[cfg(feature = "std")]
 pub use stopped::{Cause, Stopped};
 #[cfg(feature = "std")]

@@ -131,6 +131,11 @@ impl Norm {
         greatest.value() / self.tolerance
     }
 
+    /// Size of a change of a motion, as that of an error, but 1 for a change of 1 m or rad.
+    pub fn size_of_change(&self, motion: &[f64], change: &[f64]) -> f64 {
+        self.size(motion, change) * self.tolerance
+    }
+
     /// Records the efforts after a completed step, and their errors.
     pub fn note(&mut self, motion: &[f64], error: &[f64]) {
         let n = self.n;

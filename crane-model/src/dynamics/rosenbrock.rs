@@ -22,7 +22,7 @@
 //! of half the size, which the O(n) recursion solves (`system.rs`).
 
 use super::{
-    EffortAccuracy, Method, Settings, Statistics, Stepper, Stopped,
+    EffortAccuracy, Method, Settings, Statistics, Steered, Stepper, Stopped,
     adaptive::{Adaptive, Formula},
     equations::Equations,
     motion::add_all,

@@ -115,8 +115,8 @@ pub fn run(
 }
 
 /// Follows a motion to the end of its run, from result to result.
-fn follow(
-    mut integration: Integration<'_>,
+fn follow<S: Stepper + ?Sized>(
+    mut integration: Integration<'_, S>,
     begin: f64,
     settings: &Settings,
     watch: &mut dyn Watch,

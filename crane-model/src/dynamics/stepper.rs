@@ -24,6 +24,17 @@ pub trait Stepper: Send {
     /// Motion at a time within the last step.
     fn interpolate(&mut self, t: f64, motion: &mut [f64]);
 
+    /// Statistics so far.
+    fn statistics(&self) -> Statistics;
+
+    /// The efforts of the drives so far, if the method monitors them.
+    fn efforts(&self) -> Vec<EffortAccuracy> {
+        Vec::new()
+    }
+}
+
+/// A motion that may be changed between steps, remembered and recalled.
+pub trait Steered: Stepper {
     /// Goes back to the state at a time within the last step, and continues from there after `change`, which changes forces or the motions of
     /// drives but neither positions nor rates.
     ///
@@ -33,19 +44,6 @@ pub trait Stepper: Send {
 
     /// Visits all numbers on which further steps depend, always in the same order.
     fn visit(&mut self, visit: &mut dyn FnMut(&mut f64));
-
-    /// Statistics so far.
-    fn statistics(&self) -> Statistics;
-
-    /// Derivatives of the motion at a time within the last step, one motion for each direction, if the method has any.
-    fn derivatives(&mut self, _t: f64) -> Vec<Vec<f64>> {
-        Vec::new()
-    }
-
-    /// The efforts of the drives so far, if the method monitors them.
-    fn efforts(&self) -> Vec<EffortAccuracy> {
-        Vec::new()
-    }
 }
 
 impl<S: Stepper + ?Sized> Stepper for &mut S {
@@ -65,20 +63,8 @@ impl<S: Stepper + ?Sized> Stepper for &mut S {
         (**self).interpolate(t, motion);
     }
 
-    fn change(&mut self, t: f64, change: &mut dyn FnMut()) -> Result<(), Stopped> {
-        (**self).change(t, change)
-    }
-
-    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        (**self).visit(visit);
-    }
-
     fn statistics(&self) -> Statistics {
         (**self).statistics()
-    }
-
-    fn derivatives(&mut self, t: f64) -> Vec<Vec<f64>> {
-        (**self).derivatives(t)
     }
 
     fn efforts(&self) -> Vec<EffortAccuracy> {
@@ -95,7 +81,7 @@ pub struct Ahead {
     pub stop: f64,
 }
 
-/// Forwards [`Stepper`] to the field of a method's public type.
+/// Forwards [`Stepper`] and [`Steered`] to the field of a method's public type.
 macro_rules! forward {
     ($stepper:ident) => {
         impl Stepper for $stepper<'_> {
@@ -115,20 +101,22 @@ macro_rules! forward {
                 self.0.interpolate(t, motion);
             }
 
-            fn change(&mut self, t: f64, change: &mut dyn FnMut()) -> Result<(), Stopped> {
-                self.0.change(t, change)
-            }
-
-            fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-                self.0.visit(visit);
-            }
-
             fn statistics(&self) -> Statistics {
                 self.0.statistics()
             }
 
             fn efforts(&self) -> Vec<EffortAccuracy> {
                 self.0.efforts()
+            }
+        }
+
+        impl Steered for $stepper<'_> {
+            fn change(&mut self, t: f64, change: &mut dyn FnMut()) -> Result<(), Stopped> {
+                self.0.change(t, change)
+            }
+
+            fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+                self.0.visit(visit);
             }
         }
     };

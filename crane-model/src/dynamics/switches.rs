@@ -30,6 +30,10 @@ pub(super) struct Switches {
     motion: Vec<f64>,
     /// The branch that each law is on: at the beginning of a step, and at a later time.
     branches: [Vec<bool>; 2],
+    /// Whether changes close to the ends of steps are found, too.
+    pub is_exact: bool,
+    /// Whether the last step ended at a change: numbers that differ by rounding may then change at once again, and the next step passes them.
+    after_change: bool,
     /// Whether the last change that was found is that of a drive which reaches or leaves its limit.
     of_limit: bool,
     /// The time at which the first list of branches is known to hold for contacts, s: the end of one step is the beginning of the next.
@@ -42,8 +46,10 @@ impl Switches {
     pub const REPEATS: usize = 3;
     /// Number of bisections, which locate a change to a millionth of the step.
     const BISECTIONS: usize = 20;
-    /// A change closer than this to either end of a step, relative to its length, does not matter.
-    const END_MARGIN: f64 = 1e-3;
+    /// A change closer than this to either end of a step, relative to its length, does not matter to a motion.
+    const END_MARGINS: [f64; 2] = [1e-3; 2];
+    /// To derivatives it matters on which branch the first stage of a step is.
+    const EXACT_MARGINS: [f64; 2] = [1e-9, 1e-4];
 
     /// The laws of a crane, with storage for motions of `len` numbers.
     pub fn new(crane: &dyn DynModel, len: usize) -> Self {
@@ -57,9 +63,16 @@ impl Switches {
             limits,
             states,
             motion: vec![0.0; len],
+            is_exact: false,
+            after_change: false,
             of_limit: false,
             known_at: f64::NAN,
         }
+    }
+
+    /// A step is completed, which may have ended at a change.
+    pub fn proceed(&mut self, at_change: bool) {
+        self.after_change = at_change;
     }
 
     /// Visits what further steps depend on.
@@ -118,8 +131,9 @@ impl Switches {
         branches(after, 1);
         let contacts = self.contacts.len();
         self.of_limit = self.branches[0][..contacts] == self.branches[1][..contacts];
-        let near = Self::END_MARGIN * (end - begin);
-        (after > begin + near && after < end - near).then_some(after)
+        let margins = if self.is_exact && !self.after_change { Self::EXACT_MARGINS } else { Self::END_MARGINS };
+        let near = margins.map(|margin| margin * (end - begin));
+        (after > begin + near[0] && after < end - near[1]).then_some(after)
     }
 
     /// Whether the change that was found last is that of a drive which reaches or leaves its limit: what follows is another motion, over

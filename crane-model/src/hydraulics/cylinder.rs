@@ -27,12 +27,13 @@ pub(super) struct ValveCylinder {
     pub max_pressure: f64,
 }
 
-/// The spool position that a servo commands, and its derivatives with respect to the length, the pressures on both sides and the pump's
-/// pressure.
+/// The spool position that a servo or the spec commands, and its derivatives with respect to the length, to the wanted length, its rate and the
+/// opening over time, to the pressures on both sides and the pump's pressure.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Command {
     pub opening: f64,
     pub by_length: f64,
+    pub by_wanted: [f64; 3],
     pub by_sides: [f64; 2],
     pub by_pump: f64,
 }
@@ -121,6 +122,12 @@ impl ValveCylinder {
         }
     }
 
+    /// The spool position that the spec gives over time.
+    pub(super) fn commanded(opening: f64) -> Command {
+        let inside = if opening.abs() < 1.0 { 1.0 } else { 0.0 };
+        Command { opening: opening.clamp(-1.0, 1.0), by_wanted: [0.0, 0.0, inside], ..Command::default() }
+    }
+
     /// The spool position that the servo commands.
     pub(super) fn command(&self, here: Vector3<f64>, wanted: Vector3<f64>, sides: [f64; 2], pump: f64) -> Command {
         let ValveInfo { flow, pressure_drop, gain, feed_forward, .. } = self.valve;
@@ -128,7 +135,8 @@ impl ValveCylinder {
         let difference = pump - sides[fed];
         let least = LEAST_DROP * pressure_drop;
         let drop = root(difference.max(least));
-        let share = feed_forward * self.info.areas[fed] * wanted.y * root(pressure_drop).value / (flow * drop.value);
+        let (area, nominal) = (self.info.areas[fed], root(pressure_drop).value);
+        let share = feed_forward * area * wanted.y * nominal / (flow * drop.value);
         let opening = gain * (wanted.x - here.x) + share;
         if opening.abs() >= 1.0 {
             return Command { opening: opening.clamp(-1.0, 1.0), ..Command::default() };
@@ -136,6 +144,7 @@ impl ValveCylinder {
         let by_pump = if difference > least { -share * drop.slope / drop.value } else { 0.0 };
         let mut by_sides = [0.0; 2];
         by_sides[fed] = -by_pump;
-        Command { opening, by_length: -gain, by_sides, by_pump }
+        let by_rate = feed_forward * area * nominal / (flow * drop.value);
+        Command { opening, by_length: -gain, by_wanted: [gain, by_rate, 0.0], by_sides, by_pump }
     }
 }

@@ -40,7 +40,7 @@ use crate::{
     loop_joints,
     stateful_force::{Evaluated, ForceState, Row, STATES, StateAt, StatefulForces},
 };
-use cylinder::{Command, Pump, ValveCylinder};
+use cylinder::{Pump, ValveCylinder};
 pub(crate) use oil::Oil;
 pub(crate) use servo::{Servo, servos, spool};
 pub(crate) use state::unassembled_at;
@@ -259,13 +259,15 @@ impl StatefulForces for Hydraulics {
             }
             let command = if cylinder.valve.commanded {
                 let [opening, _] = self.openings[cylinder.info.drive];
-                Command { opening: opening.clamp(-1.0, 1.0), ..Command::default() }
+                ValveCylinder::commanded(opening)
             } else {
                 cylinder.command(here, wanted, [x[first], x[first + 1]], p_s)
             };
             let lag = cylinder.valve.lag;
             rates[first + 2] = (command.opening - u) / lag;
             force.rates_by_length[2] = command.by_length / lag;
+            force.cylinder = Some(cylinder.index);
+            force.by_command = command.by_wanted.map(|slope| slope / lag);
             block[2] = [command.by_sides[0] / lag, command.by_sides[1] / lag, -1.0 / lag];
             if let Some(matrix) = &mut by_states {
                 for (row, numbers) in block.iter().enumerate() {

@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::{Command, Pump, ValveCylinder, valve};
+use super::cylinder::{Command, Pump, ValveCylinder};
+use super::valve;
 use crate::{CylinderInfo, PumpInfo, ValveInfo};
 
 fn cylinder() -> ValveCylinder {
@@ -77,10 +78,13 @@ fn servo_and_stop_have_their_derivatives() {
     let cylinder = cylinder();
     let (here, wanted, sides, pump) = (Vector3::new(0.8, 0.02, 0.3), Vector3::new(0.81, 0.05, 0.3), [9e6, 4e6], 2e7);
     for wanted in [wanted, Vector3::new(0.79, -0.05, 0.3)] {
-        let Command { by_length, by_sides, by_pump, .. } = cylinder.command(here, wanted, sides, pump);
+        let Command { by_length, by_wanted, by_sides, by_pump, .. } = cylinder.command(here, wanted, sides, pump);
         let opening = |l: f64, sides, pump| cylinder.command(Vector3::new(l, 0.02, 0.3), wanted, sides, pump).opening;
         assert!(off(|l| opening(l, sides, pump), 0.8, 1e-6, by_length) < CLOSE);
         assert!(off(|pump| opening(0.8, sides, pump), pump, 1e3, by_pump) < CLOSE);
+        let of_wanted = |l: f64, v: f64| cylinder.command(here, Vector3::new(l, v, 0.3), sides, pump).opening;
+        assert!(off(|l| of_wanted(l, wanted.y), wanted.x, 1e-6, by_wanted[0]) < CLOSE);
+        assert!(off(|v| of_wanted(wanted.x, v), wanted.y, 1e-6, by_wanted[1]) < CLOSE);
         let fed = usize::from(wanted.y <= 0.0);
         let own = |p: f64| {
             let mut sides = sides;

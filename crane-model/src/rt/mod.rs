@@ -9,7 +9,7 @@ mod stumpff;
 pub use lanes::{exp, fma, select, sqrt};
 pub use mass_matrix::{ConcurrentAxes, MassAndBias, MassColumns};
 pub use sin_cos::{sin_cos, sin_cos_lanes};
-pub use stumpff::{stumpff, stumpff_lanes};
+pub use stumpff::{next_stumpff, stumpff, stumpff_lanes};
 
 use nalgebra::{Matrix4, SMatrix, Vector3};
 

@@ -114,6 +114,18 @@ fn with_large<const K: usize>(arguments: &[f64x8; K], mut columns: [[f64x8; 6]; 
     columns
 }
 
+/// c₆ and c₇ of an argument x ≥ 0, on which the derivatives of c₄ and c₅ depend.
+#[inline]
+pub fn next_stumpff(x: f64) -> [f64; 2] {
+    if x <= LARGEST {
+        let horner = |coefficients: &[f64]| coefficients.iter().rev().fold(0.0, |sum, term| sum * x + term);
+        [RECIPROCAL_FACTORIALS[6] - x * horner(&EIGHTH), horner(&SEVENTH)]
+    } else {
+        let [.., fourth, fifth] = of_large(x);
+        [(RECIPROCAL_FACTORIALS[4] - fourth) / x, (RECIPROCAL_FACTORIALS[5] - fifth) / x]
+    }
+}
+
 /// Also false for NaN.
 #[inline]
 fn is_small(x: f64x8) -> bool {

@@ -7,7 +7,7 @@ use crate::{
     dyn_crane::DynCrane,
     dynamics::{
         Sample, Settings,
-        gradients::{self, Slopes, WatchDerivatives, difference, size_of},
+        gradients::{self, Slopes, WatchDerivatives, forward_difference, size_of},
     },
     force_states::ForceStates,
     results::{Recording, quantities_at},
@@ -38,12 +38,12 @@ pub fn record_gradients(
     let columns = recorded.table.columns.len();
     let gradients = (0..slopes.count())
         .map(|direction| {
-            let of_state = |state: &State| {
-                let mut row = columns_along(crane, &*slopes, direction, state);
+            let of_state = |(state, here): (&State, &Vec<f64>)| {
+                let mut row = columns_along(crane, &*slopes, direction, state, here);
                 row.resize(columns, f64::NAN);
                 row
             };
-            states.iter().map(of_state).collect()
+            states.iter().zip(&recorded.table.rows).map(of_state).collect()
         })
         .collect();
     Ok((recorded, gradients))
@@ -56,12 +56,13 @@ struct State {
     derivatives: Vec<Vec<f64>>,
 }
 
-/// Derivatives of the quantities at a state along a direction.
-fn columns_along(crane: &dyn DynCrane, slopes: &dyn Slopes, direction: usize, state: &State) -> Vec<f64> {
+/// Derivatives of the quantities at a state along a direction. `here`: the quantities.
+fn columns_along(crane: &dyn DynCrane, slopes: &dyn Slopes, direction: usize, state: &State, here: &[f64]) -> Vec<f64> {
     let n = crane.size();
     let change = &state.derivatives[direction];
     let size = size_of(change, n, &ForceStates::new(crane.description()).scales());
-    let mut row = difference(crane, slopes.around(direction), (&state.motion, change, size), &mut |crane, motion| {
+    let motion = (&*state.motion, &**change, size);
+    let mut row = forward_difference(crane, slopes.around(direction), motion, here, &mut |crane, motion| {
         let ((q, v), x) = (motion[..2 * n].split_at(n), &motion[2 * n..]);
         quantities_at(crane, state.t, (q, v), x)
     });

@@ -6,7 +6,7 @@ use crate::crane::{Case, with_features};
 use crate::feature::Features;
 use crate::observe::{differences, observe};
 use crate::tree::{Tree, source, text};
-use crate::{changes, descriptions, laws, meshes};
+use crate::{changes, descriptions, laws, meshes, run_changes};
 
 /// A check that failed.
 #[derive(Clone, Debug)]
@@ -36,7 +36,10 @@ pub struct Outcome {
 #[must_use]
 pub fn names() -> Vec<&'static str> {
     let described = descriptions::ALL.iter().map(|(name, _)| *name);
-    described.chain(laws::ALL.iter().map(|(name, _)| *name)).chain([meshes::NAME, changes::NAME]).collect()
+    described
+        .chain(laws::ALL.iter().map(|(name, _)| *name))
+        .chain([meshes::NAME, changes::NAME, run_changes::NAME])
+        .collect()
 }
 
 /// What a check says of a spec: `None` where it does not apply, else what is wrong.
@@ -52,6 +55,9 @@ fn apply(check: &str, tree: &Tree, seed: u64, run: bool) -> Option<Vec<String>> 
     }
     if check == changes::NAME {
         return changes::check_changes(tree, seed);
+    }
+    if check == run_changes::NAME {
+        return run_changes::check_run_changes(tree, seed);
     }
     if check == meshes::NAME {
         return meshes::check_meshes(tree);

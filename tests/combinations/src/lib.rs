@@ -16,4 +16,5 @@ pub mod laws;
 pub mod meshes;
 pub mod observe;
 pub mod pins;
+pub mod run_changes;
 pub mod tree;

@@ -5,12 +5,10 @@
 use std::iter::Sum;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use crane_codegen::symbolic::Scalar;
-use crane_jit::Width;
 use crane_model::rt::lanes::{Function, Fused, f64x8};
-use crane_model::rt::{exp, fma, select, sin_cos, sqrt, stumpff};
+use crane_model::rt::{exp, fma, next_stumpff, select, sin_cos, sqrt, stumpff};
 
-use crate::machine::{ANGLES, Number};
+use crate::machine::{ANGLES, Form, Number};
 
 /// Directions of a number.
 pub const DIRECTIONS: usize = 8;
@@ -144,11 +142,27 @@ impl Neg for Dual8 {
     }
 }
 
+/// Stumpff's functions c₀ to c₇, order by order: c₆ and c₇ are in the derivatives of c₄ and c₅.
+pub(crate) fn eight_orders(arguments: [f64; ANGLES]) -> [[f64; ANGLES]; 8] {
+    let [c0, c1, c2, c3, c4, c5] = stumpff(arguments);
+    let next = arguments.map(next_stumpff);
+    let [c6, c7] = [0, 1].map(|order| next.map(|pair| pair[order]));
+    [c0, c1, c2, c3, c4, c5, c6, c7]
+}
+
 impl Number for Dual8 {
-    const WIDTH: Option<Width> = None;
+    const FORM: Form = Form::Slopes;
 
     fn flat(_: &mut [Self]) -> &mut [f64] {
         &mut []
+    }
+
+    fn cells(self) -> [f64x8; 2] {
+        [f64x8::splat(self.value), self.slopes]
+    }
+
+    fn of_cells([value, slopes]: [f64x8; 2]) -> Self {
+        Self { value: value.as_array()[0], slopes }
     }
 
     fn splat(number: f64) -> Self {
@@ -173,11 +187,7 @@ impl Number for Dual8 {
 
     /// `c_k' = (k c_{k+2} − c_{k+1})/2`
     fn stumpff(arguments: [Self; ANGLES]) -> [[Self; ANGLES]; 6] {
-        let values = arguments.map(|argument| argument.value);
-        let (known, sixth, seventh) =
-            (stumpff(values), values.map(|x| Scalar::stumpff(&x, 6)), values.map(|x| Scalar::stumpff(&x, 7)));
-        let [c0, c1, c2, c3, c4, c5] = &known;
-        let orders = [c0, c1, c2, c3, c4, c5, &sixth, &seventh];
+        let orders = eight_orders(arguments.map(|argument| argument.value));
         std::array::from_fn(|k| {
             let derivative = |index: usize| 0.5 * (k as f64 * orders[k + 2][index] - orders[k + 1][index]);
             std::array::from_fn(|index| arguments[index].chain(orders[k][index], derivative(index)))

@@ -42,9 +42,11 @@ mod routine;
 pub mod rows;
 pub mod sensitivity;
 mod steered;
+mod tangent;
 
 pub use crane::LiveCrane;
 pub use crane_codegen::program::FunctionId;
+pub use dual::{DIRECTIONS, Dual8};
 pub use motion::Motion;
 pub use refusal::Refusal;
 pub use routine::Routine;

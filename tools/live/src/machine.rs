@@ -3,7 +3,6 @@
 use std::ops::{Div, Mul, Neg};
 
 use crane_codegen::program::Argument;
-use crane_jit::Width;
 use crane_model::rt::lanes::{Function, Fused, f64x8};
 use crane_model::rt::{exp, fma, select, sin_cos, sin_cos_lanes, sqrt, stumpff, stumpff_lanes};
 use wide::bytemuck::cast_slice_mut;
@@ -14,10 +13,14 @@ use crate::bytecode::{Code, Fixed, Instruction, Kind};
 pub trait Number:
     Copy + Fused + Function + Div<Output = Self> + Mul<Output = Self> + Neg<Output = Self> + 'static
 {
-    /// How many numbers machine code has for it; none for derivatives, which are always interpreted.
-    const WIDTH: Option<Width>;
-    /// The numbers of several, next to each other; nothing for derivatives.
+    /// The form of machine code for it.
+    const FORM: Form;
+    /// The numbers of several, next to each other; nothing for those with derivatives.
     fn flat(several: &mut [Self]) -> &mut [f64];
+    /// The number and its derivatives, eight each.
+    fn cells(self) -> [f64x8; 2];
+    /// A number of its cells.
+    fn of_cells(cells: [f64x8; 2]) -> Self;
     /// The same number everywhere.
     fn splat(number: f64) -> Self;
     /// The smaller of two.
@@ -30,6 +33,17 @@ pub trait Number:
     fn sin_cos(angles: [Self; ANGLES]) -> ([Self; ANGLES], [Self; ANGLES]);
     /// Stumpff's functions of arguments, order by order.
     fn stumpff(arguments: [Self; ANGLES]) -> [[Self; ANGLES]; 6];
+}
+
+/// The form of machine code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// One number.
+    One,
+    /// Eight numbers of different states.
+    Eight,
+    /// One number eight times, and eight derivatives.
+    Slopes,
 }
 
 /// The number of one state, or numbers of several.
@@ -46,9 +60,15 @@ pub trait Batch: Number {
 pub const ANGLES: usize = 8;
 
 impl Number for f64 {
-    const WIDTH: Option<Width> = Some(Width::One);
+    const FORM: Form = Form::One;
     fn flat(several: &mut [Self]) -> &mut [f64] {
         several
+    }
+    fn cells(self) -> [f64x8; 2] {
+        [f64x8::splat(self), f64x8::splat(0.0)]
+    }
+    fn of_cells([value, _]: [f64x8; 2]) -> Self {
+        value.as_array()[0]
     }
     fn splat(number: f64) -> Self {
         number
@@ -78,9 +98,15 @@ impl Batch for f64 {
 }
 
 impl Number for f64x8 {
-    const WIDTH: Option<Width> = Some(Width::Eight);
+    const FORM: Form = Form::Eight;
     fn flat(several: &mut [Self]) -> &mut [f64] {
         cast_slice_mut(several)
+    }
+    fn cells(self) -> [f64x8; 2] {
+        [self, f64x8::splat(0.0)]
+    }
+    fn of_cells([values, _]: [f64x8; 2]) -> Self {
+        values
     }
     fn splat(number: f64) -> Self {
         f64x8::splat(number)
@@ -175,6 +201,19 @@ impl<T: Number> Arguments<'_, T> {
         }
     }
 
+    /// Gives those that a function reads after its fixed numbers, each with its register.
+    pub(crate) fn each(&self, code: &Code, mut take: impl FnMut(usize, T)) {
+        let mut register = code.fixed.len();
+        for inputs in &code.inputs {
+            let given = self.of(inputs.argument).get(inputs.first..inputs.first + inputs.count);
+            match given {
+                Some(given) => given.iter().enumerate().for_each(|(place, number)| take(register + place, *number)),
+                None => (0..inputs.count).for_each(|place| take(register + place, T::splat(0.0))),
+            }
+            register += inputs.count;
+        }
+    }
+
     /// Writes those that a function reads after its fixed numbers.
     pub(crate) fn write(&self, code: &Code, registers: &mut [T]) {
         let mut registers = registers.get_mut(code.fixed.len()..).unwrap_or_default();
@@ -217,6 +256,8 @@ pub struct Machine<T> {
     file: File<T>,
     /// The frame of machine code, once there is any.
     frame: Vec<T>,
+    /// The same with derivatives in cells of their own, and its results.
+    cells: [Vec<f64x8>; 2],
 }
 
 impl<T: Number> Machine<T> {
@@ -227,7 +268,7 @@ impl<T: Number> Machine<T> {
             count if count <= SIZES[1] => File::Medium(zeros()),
             _ => File::Large(zeros()),
         };
-        Self { file, frame: vec![] }
+        Self { file, frame: vec![], cells: [vec![], vec![]] }
     }
 
     /// Sets the fixed numbers of a function; `parameter` and `stored` return live parameters and the constants computed from them, by index.
@@ -243,7 +284,9 @@ impl<T: Number> Machine<T> {
             *register = if sign { negative(number) } else { number };
         }
         // Machine code has them in the first places of its frame.
-        let Self { file, frame } = self;
+        let Self { file, frame, cells } = self;
+        // Those with derivatives are written again before the next call.
+        cells[0].clear();
         frame.iter_mut().zip(file.registers()).take(code.fixed.len()).for_each(|(place, fixed)| *place = *fixed);
     }
 
@@ -259,6 +302,12 @@ impl<T: Number> Machine<T> {
             File::Medium(file) => run(code, file, out),
             File::Large(file) => run(code, file, out),
         }
+    }
+
+    /// The registers, of which the first have the fixed numbers; the frame of machine code with derivatives, and room for its results.
+    pub(crate) fn with_cells(&mut self) -> (&[T], &mut [Vec<f64x8>; 2]) {
+        let Self { file, cells, .. } = self;
+        (file.registers(), cells)
     }
 
     /// The frame of machine code, made from the fixed numbers if there is none.

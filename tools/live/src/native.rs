@@ -5,9 +5,13 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use crane_jit::{Code as MachineCode, Line, Pause, Rounding, Step, Value, Width};
+use crane_model::rt::lanes::f64x8;
+use crane_model::rt::sin_cos;
 
 use crate::bytecode::{Code, Fixed, Instruction, Kind};
-use crate::machine::{ANGLES, Arguments, Machine, Number};
+use crate::dual::eight_orders;
+use crate::machine::{ANGLES, Arguments, Form, Machine, Number};
+use crate::tangent::tangent;
 
 /// After as many calls of interpreted bytecode as machine code saves the time that it took to make it, about 1 µs per operation.
 const CALLS: u32 = 500;
@@ -25,20 +29,24 @@ pub struct Hot {
 
 impl Hot {
     /// The machine code, if the function was called often enough and there is any.
-    pub fn called(&self, code: &Code, width: Width) -> Option<&Native> {
+    pub fn called(&self, code: &Code, form: Form) -> Option<&Native> {
         if let Some(known) = self.code.get() {
             return known.as_ref();
         }
-        // A call of eight cranes takes as long as three or four of one.
-        let weight = if width == Width::One { 1 } else { 4 };
+        // A call of eight cranes takes as long as three or four of one, a call with derivatives as eight or more.
+        let weight = match form {
+            Form::One => 1,
+            Form::Eight => 4,
+            Form::Slopes => 8,
+        };
         let before = self.calls.fetch_add(weight, Ordering::Relaxed);
         // One call makes the code; calls on other threads go on with bytecode meanwhile, and wait for nothing.
-        (before < CALLS && before + weight >= CALLS).then(|| self.get(code, width)).flatten()
+        (before < CALLS && before + weight >= CALLS).then(|| self.get(code, form)).flatten()
     }
 
     /// The machine code, made now if it was not made before.
-    pub fn get(&self, code: &Code, width: Width) -> Option<&Native> {
-        self.code.get_or_init(|| Native::of(code, width)).as_ref()
+    pub fn get(&self, code: &Code, form: Form) -> Option<&Native> {
+        self.code.get_or_init(|| Native::of(code, form)).as_ref()
     }
 }
 
@@ -51,14 +59,23 @@ pub struct Native {
     pauses: Vec<Kind>,
     /// The number of places of fixed numbers, and the number of all given ones.
     given: [usize; 2],
+    /// Numbers that never change among those given after these, and their places.
+    numbers: Vec<(usize, f64)>,
     results: usize,
 }
 
 impl Native {
-    fn of(code: &Code, width: Width) -> Option<Self> {
+    fn of(code: &Code, form: Form) -> Option<Self> {
         let (line, pauses) = line(code);
         let given = [code.fixed.len(), line.given.len()];
-        Some(Self { code: MachineCode::of(&line, ROUNDING, width)?, pauses, given, results: code.results })
+        let (line, width) = match form {
+            Form::One => (line, Width::One),
+            Form::Eight => (line, Width::Eight),
+            Form::Slopes => (tangent(&line, &pauses), Width::Eight),
+        };
+        let numbers = line.given.iter().enumerate().skip(given[1]);
+        let numbers = numbers.filter_map(|(place, number)| Some((place, (*number)?))).collect();
+        Some(Self { code: MachineCode::of(&line, ROUNDING, width)?, pauses, given, numbers, results: code.results })
     }
 
     /// Bytes of machine code.
@@ -82,6 +99,10 @@ impl Native {
 
     /// Runs it on a machine of its bytecode; there is room for all results.
     pub fn run<T: Number>(&self, code: &Code, machine: &mut Machine<T>, arguments: &Arguments<'_, T>, out: &mut [T]) {
+        if T::FORM == Form::Slopes {
+            self.run_with_slopes(code, machine, arguments, out);
+            return;
+        }
         let frame = machine.frame(|fixed| self.frame(fixed));
         arguments.write(code, frame);
         for part in 0..self.code.parts() {
@@ -89,6 +110,66 @@ impl Native {
             if let (Some(pause), Some(kind)) = (self.code.pause(part), self.pauses.get(part)) {
                 compute(*kind, pause, frame);
             }
+        }
+    }
+}
+
+impl Native {
+    /// The same of numbers with derivatives: cells of given numbers are followed by those of their derivatives, and so are results.
+    fn run_with_slopes<T: Number>(
+        &self,
+        code: &Code,
+        machine: &mut Machine<T>,
+        arguments: &Arguments<'_, T>,
+        out: &mut [T],
+    ) {
+        let [fixed, given] = self.given;
+        let (registers, [frame, results]) = machine.with_cells();
+        if frame.is_empty() {
+            let zero = f64x8::splat(0.0);
+            frame.resize(self.code.places().max(2 * given + self.numbers.len()), zero);
+            results.resize(2 * self.results, zero);
+            let known = self.numbers.iter().copied().chain(self.code.numbers());
+            known.for_each(|(place, number)| frame[place] = f64x8::splat(number));
+            for (place, number) in registers.iter().enumerate().take(fixed) {
+                [frame[place], frame[given + place]] = number.cells();
+            }
+        }
+        arguments.each(code, |place, number| [frame[place], frame[given + place]] = number.cells());
+        for part in 0..self.code.parts() {
+            self.code.run(part, f64x8::flat(frame), f64x8::flat(results));
+            if let (Some(pause), Some(kind)) = (self.code.pause(part), self.pauses.get(part)) {
+                compute_with_slopes(*kind, pause, frame);
+            }
+        }
+        let (values, slopes) = results.split_at(self.results);
+        for ((out, value), slopes) in out.iter_mut().zip(values).zip(slopes) {
+            *out = T::of_cells([*value, *slopes]);
+        }
+    }
+}
+
+/// What is computed in a pause of machine code with derivatives: functions of the numbers, each of which fills its cell. Those of Stumpff have two
+/// more orders.
+fn compute_with_slopes(kind: Kind, pause: Pause, frame: &mut [f64x8]) {
+    let Pause { arguments, reads, values, makes } = pause;
+    let (arguments, values) = frame[arguments..values + makes].split_at_mut(reads);
+    for first in (0..reads).step_by(ANGLES) {
+        let own = first..reads.min(first + ANGLES);
+        let mut eight = [0.0; ANGLES];
+        eight.iter_mut().zip(&arguments[own.clone()]).for_each(|(place, argument)| *place = argument.as_array()[0]);
+        let mut write = |order: usize, computed: &[f64; ANGLES]| {
+            let places = &mut values[order * reads + own.start..order * reads + own.end];
+            places.iter_mut().zip(computed).for_each(|(place, number)| *place = f64x8::splat(*number));
+        };
+        match kind {
+            Kind::Angle => {
+                let (sines, cosines) = sin_cos(eight);
+                write(0, &sines);
+                write(1, &cosines);
+            }
+            Kind::Stumpff => eight_orders(eight).iter().enumerate().for_each(|(order, row)| write(order, row)),
+            _ => write(0, &eight.map(crane_model::rt::exp)),
         }
     }
 }

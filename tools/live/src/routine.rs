@@ -2,11 +2,10 @@
 
 use crane_codegen::lower::Constants;
 use crane_codegen::program::{Function, Program, Shape};
-use crane_jit::Width;
 
 use crate::assemble::{TooLarge, assemble, assemble_constants};
 use crate::bytecode::Code;
-use crate::machine::{Arguments, Machine, Number};
+use crate::machine::{Arguments, Form, Machine, Number};
 use crate::native::{Hot, Native};
 
 /// A function as bytecode, with its constants computed from live parameters; and as machine code, once it was called often.
@@ -15,8 +14,8 @@ pub struct Routine {
     shape: Shape,
     code: Code,
     constants: Code,
-    /// Machine code for one state, and for eight.
-    native: [Hot; 2],
+    /// Machine code for one state, for eight, and for one with derivatives.
+    native: [Hot; 3],
 }
 
 impl Routine {
@@ -76,7 +75,7 @@ impl Routine {
 
     /// Runs it on a machine that it made: from some hundred calls on as machine code, with the same results.
     pub fn run<T: Number>(&self, machine: &mut Machine<T>, arguments: &Arguments<'_, T>, out: &mut [T]) {
-        match self.hot::<T>().and_then(|(hot, width)| hot.called(&self.code, width)) {
+        match self.hot::<T>().called(&self.code, T::FORM) {
             Some(native) if out.len() >= native.results() => native.run(&self.code, machine, arguments, out),
             _ => machine.run(&self.code, arguments, out),
         }
@@ -90,12 +89,15 @@ impl Routine {
     /// Makes its machine code now, instead of after some hundred calls; returns its bytes, or `None` if this processor or
     /// system has none.
     pub fn compile<T: Number>(&self) -> Option<usize> {
-        let (hot, width) = self.hot::<T>()?;
-        hot.get(&self.code, width).map(Native::bytes)
+        self.hot::<T>().get(&self.code, T::FORM).map(Native::bytes)
     }
 
-    fn hot<T: Number>(&self) -> Option<(&Hot, Width)> {
-        let [one, eight] = &self.native;
-        T::WIDTH.map(|width| (if width == Width::One { one } else { eight }, width))
+    fn hot<T: Number>(&self) -> &Hot {
+        let [one, eight, slopes] = &self.native;
+        match T::FORM {
+            Form::One => one,
+            Form::Eight => eight,
+            Form::Slopes => slopes,
+        }
     }
 }

@@ -23,12 +23,14 @@ INTERVAL = 0.01
 WORTH_THREADS = 0.1
 # Rows of a table.
 ROWS = 1000
+# Tolerance of runs with gradients, relative to that of runs without: derivatives need fewer digits than values.
+LOOSER = 10.0
 
 
 class RunModel:
     """What a crane says to the measured columns of a run."""
 
-    # Differences over relative steps of 3e-4 of runs with errors of 1e-8, or better.
+    # Gradients of runs of tolerance 1e-7, differences over relative steps of 3e-4 of runs of tolerance 1e-8, or better.
     accuracy = 1e-5
 
     def __init__(self, experiment: "Run", crane: "Crane", series: list["Series"], delays: dict[str, float | str]) -> None:
@@ -63,18 +65,24 @@ class RunModel:
         how = {"method": experiment.method, "q": experiment.q, "v": experiment.v}
         # Runs with a constant step have no tolerance.
         how |= {"step": "auto"} if experiment.method == "rk4" else {"tolerance": experiment.tolerance}
-        own = {name: value for name, value in numbers.items() if name in self._live}
-        return self._crane.replace(**own).simulate(duration=self._duration, output=self._output, verify=False, **how)
+        return self._with(numbers).simulate(duration=self._duration, output=self._output, verify=False, **how)
+
+    def _with(self, numbers: Mapping[str, float]) -> "Crane":
+        return self._crane.replace(**{name: value for name, value in numbers.items() if name in self._live})
 
     def _responses(self, run: Recorded, numbers: Mapping[str, float], order: int = 0) -> list[Array]:
         """Every series of a run at the times of the measurement, or its rate of change: at the start before its dead time."""
         found = []
         for one in self.series:
-            delay = self._delays[one.column]
-            t = one.at - (numbers[delay] if isinstance(delay, str) else delay)
+            t = self._times(one, numbers)
             response = self._spline(run.t, run[one.column])(np.clip(t, 0.0, run.t[-1]), order)
             found.append(np.where(t > 0, response, 0.0) if order else response)
         return found
+
+    def _times(self, one: "Series", numbers: Mapping[str, float]) -> Array:
+        """Times of the run that were measured later."""
+        delay = self._delays[one.column]
+        return one.at - (numbers[delay] if isinstance(delay, str) else delay)
 
     def values(self, numbers: Mapping[str, float]) -> Array:
         self._last = self._run(numbers)
@@ -83,7 +91,9 @@ class RunModel:
     def derivatives(self, numbers: Mapping[str, float], names: Sequence[str], steps: Mapping[str, float]) -> Array:
         slopes = np.zeros((sum(len(one.at) for one in self.series), len(names)))
         moved = [name for name in names if name in self._live]
-        slopes[:, [names.index(name) for name in moved]] = self._differences(numbers, moved, steps)
+        if moved:
+            found = self._gradients(numbers, moved)
+            slopes[:, [names.index(name) for name in moved]] = self._differences(numbers, moved, steps) if found is None else found
         if any(isinstance(delay, str) for delay in self._delays.values()):
             rates = self._responses(self._run(numbers), numbers, 1)
             first = 0
@@ -93,6 +103,25 @@ class RunModel:
                     slopes[first : first + len(rate), names.index(delay)] = -rate
                 first += len(rate)
         return slopes
+
+    def _gradients(self, numbers: Mapping[str, float], names: Sequence[str]) -> Array | None:
+        """(values, names): derivatives along one run; None where runs have none."""
+        experiment = self._experiment
+        # A start with given rates at rest otherwise moves with the numbers, a given one does not.
+        if experiment.method not in (None, "rosw4") or (experiment.v is not None and experiment.q is None):
+            return None
+        how = {"duration": self._duration, "output": self._output, "q": experiment.q, "v": experiment.v}
+        if experiment.tolerance is not None:
+            how["tolerance"] = LOOSER * experiment.tolerance
+        try:
+            run = self._with(numbers).simulate(verify=False, gradients=names, **how)
+            found = [[run.gradient(one.column, name) for one in self.series] for name in names]
+        except ValueError:
+            return None
+        times = [np.clip(self._times(one, numbers), 0.0, run.t[-1]) for one in self.series]
+        columns = [np.concatenate([self._spline(run.t, slope)(t) for slope, t in zip(own, times, strict=True)]) for own in found]
+        slopes = np.array(columns).T
+        return slopes if np.isfinite(slopes).all() else None
 
     def _differences(self, numbers: Mapping[str, float], names: Sequence[str], steps: Mapping[str, float]) -> Array:
         """(values, names): differences over steps of which the square is far below the noise of runs."""

@@ -125,6 +125,20 @@ def test_derivatives_of_runs_and_dead_times_are_those_of_the_closed_form(arm):
         np.testing.assert_allclose(slopes[:, place], exact, atol=2e-3 * np.abs(exact).max())
 
 
+def test_gradients_of_runs_are_their_differences(arm):
+    """Differences to one side over 3e-4 of a number err by about as much."""
+    names, numbers = ["k", "d"], {name: TRUE[name] for name in ("k", "d", "delay")}
+    model = Run(T, {"disc_psi": 0 * T}, parameters={"inertia": 40.0}, dead_time="delay").model_of(arm, [*names, "delay"])
+    found = model._gradients(numbers, names)
+    differences = model._differences(numbers, names, {name: 3e-4 * TRUE[name] for name in names})
+    np.testing.assert_allclose(found / np.abs(differences).max(axis=0), differences / np.abs(differences).max(axis=0), atol=1e-3)
+    # Another method, or rates with the pose at rest, whose derivatives a given start does not have.
+    for given in ({"method": "bdf"}, {"v": np.zeros(arm.n)}):
+        other = Run(T, {"disc_psi": 0 * T}, parameters={"inertia": 40.0}, **given).model_of(arm, names)
+        assert other._gradients(numbers, names) is None
+        assert other.derivatives(numbers, names, {name: 3e-4 * TRUE[name] for name in names}).shape == (len(T), 2)
+
+
 def test_intervals_hold_what_they_promise(arm):
     """Of 25 repetitions about 24 contain the true number; fewer than 20 have a probability of 1 in 800."""
     inside = np.zeros(3)

@@ -21,7 +21,7 @@ mod correction;
 mod history;
 
 use super::{
-    Ahead, Cause, EffortAccuracy, Method, Settings, Statistics, Stepper, Stopped,
+    Ahead, Cause, EffortAccuracy, Method, Settings, Statistics, Steered, Stepper, Stopped,
     adaptive::{FIRST, LEAST, LONGEST, SAFETY, SLIVER},
     equations::Equations,
     norm::Norm,
@@ -349,6 +349,21 @@ impl Stepper for Bdf<'_> {
         self.equations.make_absolute(t, motion);
     }
 
+    fn statistics(&self) -> Statistics {
+        Statistics {
+            steps: self.steps,
+            rejections: self.rejections,
+            evaluations: self.equations.evaluations,
+            factorisations: self.correction.system.factorisations,
+        }
+    }
+
+    fn efforts(&self) -> Vec<EffortAccuracy> {
+        self.control.norm.efforts().collect()
+    }
+}
+
+impl Steered for Bdf<'_> {
     fn change(&mut self, t: f64, change: &mut dyn FnMut()) -> Result<(), Stopped> {
         self.go_on_after(t, change)
     }
@@ -367,19 +382,6 @@ impl Stepper for Bdf<'_> {
         for count in [steps_since_change, &mut contraction.age, &mut self.steps, &mut self.rejections] {
             visit_count(count, visit);
         }
-    }
-
-    fn statistics(&self) -> Statistics {
-        Statistics {
-            steps: self.steps,
-            rejections: self.rejections,
-            evaluations: self.equations.evaluations,
-            factorisations: self.correction.system.factorisations,
-        }
-    }
-
-    fn efforts(&self) -> Vec<EffortAccuracy> {
-        self.control.norm.efforts().collect()
     }
 }
 

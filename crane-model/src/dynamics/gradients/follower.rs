@@ -81,7 +81,7 @@ impl<'a, 's> Follower<'a, 's> {
         };
         Self {
             crane,
-            motion: Adaptive::new(Stages::new(any, len), equations, norm),
+            motion: Adaptive::new(Stages::new(any, len), equations, norm).watching_all(),
             variation,
             start,
             steps: (0..count).map(|_| Step::new(len)).collect(),
@@ -91,6 +91,25 @@ impl<'a, 's> Follower<'a, 's> {
             stops,
             at_stop: false,
         }
+    }
+
+    /// Derivatives of the motion at a time within the last step, direction by direction.
+    pub fn derivatives(&mut self, t: f64) -> Vec<Vec<f64>> {
+        let Self { motion: own, variation, steps, places, .. } = self;
+        let mut motion = own.motion().to_vec();
+        own.interpolate(t, &mut motion);
+        let (_, equations, ..) = own.last();
+        let n = variation.n;
+        for (place, step) in places.iter_mut().zip(&*steps) {
+            step.at(t, place);
+            for coordinate in equations.references.coordinates() {
+                place[n + coordinate] = step.rate_at(t, n, coordinate);
+            }
+        }
+        equations.make_relative(t, &mut motion);
+        variation.project(equations, t, &motion, places);
+        variation.complete(equations, t, &motion, places);
+        variation.along.clone()
     }
 
     /// Follows the last step of the motion.
@@ -121,15 +140,17 @@ impl<'a, 's> Follower<'a, 's> {
         }
         variation.project(equations, step.reached(), &step.end, places);
         variation.differentiate(equations, step.reached(), &step.end, places, rates)?;
-        for ((place, rates), own) in places.iter().zip(&*rates).zip(steps) {
+        for ((place, rates), own) in places.iter().zip(&*rates).zip(&mut *steps) {
             own.end.copy_from_slice(place);
             own.slopes[1].copy_from_slice(rates);
         }
-        for (direction, u) in u.iter().enumerate() {
-            let error = &mut places[0];
+        let (error, change) = (&mut vec![0.0; variation.motion.len()], &mut vec![0.0; variation.motion.len()]);
+        for (direction, (u, step)) in u.iter().zip(&*steps).enumerate() {
+            let scale = variation.slopes.scale(direction);
             error.fill(0.0);
-            add_error(variation.slopes.scale(direction), u, error);
-            motion.heed(error);
+            add_error(scale, u, error);
+            change.iter_mut().zip(&step.end).for_each(|(change, slope)| *change = scale * slope);
+            motion.heed(error, change);
         }
         Ok(())
     }
@@ -261,10 +282,12 @@ impl Stepper for Follower<'_, '_> {
         self.motion.start(t, motion)?;
         let Self { motion: own, variation, start, steps, rates, .. } = self;
         let (_, equations, step) = own.last();
-        let end = step.end.clone();
+        let mut end = step.end.clone();
         let mut along = start.clone();
         variation.make_relative(equations, t, &mut along);
         variation.project(equations, t, &end, &mut along);
+        // Where a law changes its branch right at the start, as that of a side at tank pressure, what follows is on the branch to which it goes.
+        add(&mut end, INSIDE * FIRST, &step.slopes[1]);
         let found = variation.differentiate(equations, t, &end, &along, rates);
         for ((own, along), rates) in steps.iter_mut().zip(&along).zip(&*rates) {
             (own.t, own.length) = (t, 0.0);
@@ -295,35 +318,8 @@ impl Stepper for Follower<'_, '_> {
         self.motion.interpolate(t, motion);
     }
 
-    /// Motions that are changed between steps have no derivatives.
-    fn change(&mut self, t: f64, _: &mut dyn FnMut()) -> Result<(), Stopped> {
-        Err(self.motion.stuck(t, FIRST))
-    }
-
-    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        self.motion.visit(visit);
-    }
-
     fn statistics(&self) -> Statistics {
         self.motion.statistics()
-    }
-
-    fn derivatives(&mut self, t: f64) -> Vec<Vec<f64>> {
-        let Self { motion: own, variation, steps, places, .. } = self;
-        let mut motion = own.motion().to_vec();
-        own.interpolate(t, &mut motion);
-        let (_, equations, ..) = own.last();
-        let n = variation.n;
-        for (place, step) in places.iter_mut().zip(&*steps) {
-            step.at(t, place);
-            for coordinate in equations.references.coordinates() {
-                place[n + coordinate] = step.rate_at(t, n, coordinate);
-            }
-        }
-        equations.make_relative(t, &mut motion);
-        variation.project(equations, t, &motion, places);
-        variation.complete(equations, t, &motion, places);
-        variation.along.clone()
     }
 
     fn efforts(&self) -> Vec<EffortAccuracy> {

@@ -18,8 +18,8 @@
 //! [J  0 ] [δλ] = [−δ(J a + J̇ v)]
 //! ```
 //!
-//! The functions of the crane are given with exact slopes ([`Slopes`]); Q and the rates of x, whose laws are not among them, are differenced, but
-//! for those of bristles, whose law has a kink where a joint sticks and whose derivatives are known.
+//! The functions of the crane are given with exact slopes ([`Slopes`]), among them the lengths of cylinders and what their servos want; the laws of
+//! Q and of the rates of x have their own derivatives, those of the implicit steps.
 //!
 //! No law of a crane jumps where it changes its branch: contacts begin and end without a force, so s is continuous there. Functions of time may jump,
 //! such as the scale of a load or the acceleration of a drive's motion. If the time t* of a jump from F⁻ to F⁺ depends on p,
@@ -63,6 +63,19 @@ pub struct At<'a> {
     pub multipliers: &'a [f64],
 }
 
+/// Slopes of what a cylinder with a valve depends on besides its states.
+#[derive(Clone, Debug, Default)]
+pub struct CylinderSlopes {
+    /// Of its length, m, and the rate of this length, m/s.
+    pub length_and_rate: [f64; 2],
+    /// Of the same with the drives at the positions that their motions prescribe, and straight beams.
+    pub wanted: [f64; 2],
+    /// Of the opening of its valve that the spec gives over time.
+    pub opening: f64,
+    /// Of the derivatives of its length with respect to the coordinates.
+    pub jacobian: Vec<f64>,
+}
+
 /// A crane with a number slightly smaller and slightly larger.
 #[derive(Clone, Copy)]
 pub struct Around<'a> {
@@ -89,6 +102,9 @@ pub trait Slopes: Send {
 
     /// Slopes of φ, φ̇ and `J a + J̇ v` of every equation of the loop joints.
     fn loops(&mut self, at: &At<'_>, along: &[Vec<f64>], out: &mut [Vec<[f64; 3]>]);
+
+    /// Slopes of every cylinder.
+    fn cylinders(&mut self, at: &At<'_>, along: &[Vec<f64>], out: &mut [Vec<CylinderSlopes>]);
 
     /// Slopes of the prescribed position and rate of every drive at a time; `false` if no motion changes in any direction.
     fn drive_motions(&mut self, t: f64, out: &mut [Vec<[f64; 2]>]) -> bool;
@@ -144,6 +160,33 @@ pub fn difference(
     }
 }
 
+/// The same to one side, given the values at the motion: the error is the step instead of its square.
+pub fn forward_difference(
+    crane: &dyn DynCrane,
+    around: Option<Around<'_>>,
+    (motion, change, size): (&[f64], &[f64], f64),
+    here: &[f64],
+    of: OfMotion<'_>,
+) -> Vec<f64> {
+    let mut between = |crane: &dyn DynCrane, along: f64, width: f64| -> Vec<f64> {
+        let moved: Vec<f64> = motion.iter().zip(change).map(|(x, change)| x + along * change).collect();
+        of(crane, &moved).iter().zip(here).map(|(there, here)| (there - here) / width).collect()
+    };
+    let alone = DIFFERENCE / size;
+    let Some(Around { cranes: [less, more], steps: [down, up] }) = around else {
+        return if size == 0.0 { vec![0.0; here.len()] } else { between(crane, alone, alone) };
+    };
+    let (beside, step) = if up > 0.0 { (more, up) } else { (less, -down) };
+    if TOGETHER.contains(&(size * step.abs())) {
+        return between(beside, step, step);
+    }
+    let of_crane = between(beside, 0.0, step);
+    if size == 0.0 {
+        return of_crane;
+    }
+    of_crane.iter().zip(between(crane, alone, alone)).map(|(one, other)| one + other).collect()
+}
+
 /// Derivatives of the states of forces that hold a start at rest.
 #[must_use]
 pub fn holding(crane: &dyn DynCrane, slopes: &dyn Slopes, q: &[f64], along: &[Vec<f64>]) -> Vec<Vec<f64>> {
@@ -179,7 +222,8 @@ pub fn simulate(
     let mut integration = Integration::by(Box::new(follower), any, 0.0, start, settings)?;
     let intervals = divided(settings.duration, settings.output).0;
     for interval in 0..=intervals {
-        let derivatives = integration.derivatives();
+        let t = integration.sample().t;
+        let derivatives = integration.stepper().derivatives(t);
         watch.sample(&integration.sample(), &derivatives);
         if interval == intervals {
             break;

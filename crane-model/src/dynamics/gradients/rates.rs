@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, Matrix6};
 
-use super::{At, Slopes, difference, size_of};
+use super::{At, CylinderSlopes, Slopes};
 use crate::{
     dyn_crane::{DynCrane, DynDynamics, DynImplicit, DynSystem},
     dynamics::{NotFinite, state::finite},
@@ -17,11 +17,8 @@ pub(super) struct Rates<'a> {
     n: usize,
     system: Box<dyn DynSystem + 'a>,
     force_states: ForceStates,
-    /// The same, at states beside the motion.
-    differenced: ForceStates,
     /// Derivatives of the rates of x by x.
     by_states: DMatrix<f64>,
-    scales: Vec<f64>,
     loops: Loops,
     prescribed: Vec<usize>,
     /// Index of the drive of each prescribed coordinate.
@@ -32,6 +29,7 @@ pub(super) struct Rates<'a> {
     of_states: Vec<f64>,
     residuals: Vec<Vec<f64>>,
     of_loops: Vec<Vec<[f64; 3]>>,
+    of_cylinders: Vec<Vec<CylinderSlopes>>,
 }
 
 impl<'a> Rates<'a> {
@@ -39,6 +37,9 @@ impl<'a> Rates<'a> {
     pub fn new(crane: &'a dyn DynCrane, directions: usize) -> Self {
         let (n, description) = (crane.size(), crane.description());
         let force_states = ForceStates::new(description);
+        let [forces, _] = force_states.coupled();
+        let cylinders = if forces > 0 { description.cylinders.len() } else { 0 };
+        let of_cylinder = CylinderSlopes { jacobian: vec![0.0; n], ..CylinderSlopes::default() };
         let prescribed = description.prescribed();
         let drive = |coordinate: &usize| description.drives.iter().position(|drive| drive.coordinate == *coordinate);
         let loops = Loops::new(crane);
@@ -47,9 +48,7 @@ impl<'a> Rates<'a> {
             crane,
             n,
             system: (crane as &dyn DynImplicit).system(),
-            scales: force_states.scales(),
             of_states: vec![0.0; force_states.len()],
-            differenced: ForceStates::new(description),
             by_states: DMatrix::zeros(force_states.len(), force_states.len()),
             force_states,
             loops,
@@ -59,6 +58,7 @@ impl<'a> Rates<'a> {
             accelerations: vec![0.0; n],
             residuals: vec![vec![0.0; n]; directions],
             of_loops: vec![vec![[0.0; 3]; equations]; directions],
+            of_cylinders: vec![vec![of_cylinder; cylinders]; directions],
         }
     }
 
@@ -69,7 +69,8 @@ impl<'a> Rates<'a> {
         self.crane.forward_dynamics(t, q, v, &mut self.accelerations);
         if !self.force_states.is_empty() {
             let moment = StateAt { t, q, v, x };
-            self.force_states.accelerate(self.crane, &moment, &mut self.of_states, &mut self.accelerations);
+            let Self { force_states, crane, of_states, by_states, accelerations, .. } = self;
+            force_states.accelerate_with_slopes(*crane, &moment, of_states, Some(by_states), accelerations);
         }
         self.loops.accelerate(self.crane, q, v, &mut self.accelerations);
         finite(&self.accelerations)?;
@@ -99,10 +100,8 @@ impl<'a> Rates<'a> {
             self.crane.mass_matrix(q, mass.as_mut_slice());
             mass
         });
-        let mut by_states = std::mem::replace(&mut self.by_states, DMatrix::zeros(0, 0));
-        if !self.force_states.is_empty() {
-            let moment = StateAt { t, q, v, x: &motion[2 * n..] };
-            self.force_states.evaluate(self.crane, &moment, &mut self.of_states, Some(&mut by_states));
+        if self.of_cylinders.first().is_some_and(|cylinders| !cylinders.is_empty()) {
+            slopes.cylinders(&at, along, &mut self.of_cylinders);
         }
         for (direction, out) in out.iter_mut().enumerate() {
             let along = &along[direction];
@@ -112,11 +111,9 @@ impl<'a> Rates<'a> {
                 *entry = -*entry;
             }
             if !self.force_states.is_empty() {
-                let found = self.of_forces(&*slopes, direction, (t, motion), (along, &by_states));
-                self.residuals[direction].iter_mut().zip(&found).for_each(|(right, force)| *right += force);
-                out[2 * n..].copy_from_slice(&found[n..]);
+                let Self { force_states, by_states, of_cylinders, .. } = self;
+                of_forces((force_states, by_states), &of_cylinders[direction], along, (right, &mut out[2 * n..]));
             }
-            let right = &mut self.residuals[direction];
             let prescribed =
                 || self.prescribed.iter().zip(self.drives.iter().map(|drive| of_drives[direction][*drive]));
             if let Some(mass) = &mass {
@@ -134,44 +131,7 @@ impl<'a> Rates<'a> {
             }
             finite(out)?;
         }
-        self.by_states = by_states;
         Ok(())
-    }
-
-    /// Derivatives of the generalized forces Q with states of their own, and of the rates of these states, along a direction. `by_states`: of the
-    /// rates by the states, at the motion.
-    fn of_forces(
-        &mut self,
-        slopes: &dyn Slopes,
-        direction: usize,
-        (t, motion): (f64, &[f64]),
-        (along, by_states): (&[f64], &DMatrix<f64>),
-    ) -> Vec<f64> {
-        let Self { n, force_states, scales, crane, differenced: others, .. } = self;
-        let (n, [forces, states]) = (*n, force_states.coupled());
-        let mut found = vec![0.0; motion.len() - n];
-        // Local forces: each has one state and acts on one coordinate.
-        for (force, row) in force_states.forces().iter().zip(force_states.rows()).skip(forces) {
-            let (speed, state) = (row.along(&along[n..2 * n]), along[2 * n + force.first]);
-            row.add_to(&mut found[..n], force.by_speed * speed + force.by_states[0] * state);
-            found[n + force.first] = force.rates_by_speed[0] * speed + by_states[(force.first, force.first)] * state;
-        }
-        if forces > 0 {
-            let size = size_of(along, n, scales);
-            let coupled = difference(*crane, slopes.around(direction), (motion, along, size), &mut |crane, motion| {
-                let [q, v] = halves(&motion[..2 * n]);
-                let mut all = vec![0.0; motion.len() - n];
-                let (sum, rates) = all.split_at_mut(n);
-                others.evaluate(crane, &StateAt { t, q, v, x: &motion[2 * n..] }, rates, None);
-                for (force, row) in others.forces().iter().zip(others.rows()).take(forces) {
-                    row.add_to(sum, force.force);
-                }
-                all
-            });
-            found[..n].iter_mut().zip(&coupled).for_each(|(found, force)| *found += force);
-            found[n..][..states].copy_from_slice(&coupled[n..][..states]);
-        }
-        found
     }
 
     /// Moves derivatives, given in full, onto the loops of the crane, as a motion is: `J δq = −δφ`, then `J δv = −δφ̇`.
@@ -194,6 +154,40 @@ impl<'a> Rates<'a> {
                 self.loops.correct_by(&mut change, |row| of_loops[row][part]);
                 along[part * n..][..n].iter_mut().zip(&change).for_each(|(entry, change)| *entry += change);
             }
+        }
+    }
+}
+
+/// Adds the derivatives of the generalized forces with states of their own along a direction, and writes those of the rates of these states. The
+/// forces are those last evaluated, with the derivatives of the rates by the states.
+fn of_forces(
+    (forces, by_states): (&ForceStates, &DMatrix<f64>),
+    cylinders: &[CylinderSlopes],
+    along: &[f64],
+    (sum, rates): (&mut [f64], &mut [f64]),
+) {
+    let n = sum.len();
+    let states = &along[2 * n..];
+    for (row, rate) in rates.iter_mut().enumerate() {
+        *rate = states.iter().enumerate().map(|(column, state)| by_states[(row, column)] * state).sum();
+    }
+    for (force, row) in forces.forces().iter().zip(forces.rows()) {
+        let own = force.first..force.first + force.count;
+        let of_cylinder = force.cylinder.map(|cylinder| &cylinders[cylinder]);
+        let [length, speed] = match of_cylinder {
+            Some(slopes) => slopes.length_and_rate,
+            None => [row.along(&along[..n]), row.along(&along[n..2 * n])],
+        };
+        let by_states: f64 = force.by_states.iter().zip(&states[own.clone()]).map(|(slope, x)| slope * x).sum();
+        row.add_to(sum, force.by_length * length + force.by_speed * speed + by_states);
+        for (place, rate) in rates[own.clone()].iter_mut().enumerate() {
+            *rate += force.rates_by_length[place] * length + force.rates_by_speed[place] * speed;
+        }
+        if let Some(CylinderSlopes { wanted, opening, jacobian, .. }) = of_cylinder {
+            sum.iter_mut().zip(jacobian).for_each(|(sum, slope)| *sum += slope * force.force);
+            let command = [wanted[0], wanted[1], *opening];
+            let by_command: f64 = force.by_command.iter().zip(command).map(|(slope, change)| slope * change).sum();
+            rates[own.end - 1] += by_command;
         }
     }
 }

@@ -1,7 +1,8 @@
-//! `crane sensitivity`: what moves the quantities of a crane at rest, and by how much.
+//! `crane sensitivity`: what moves the quantities of a crane at rest or of its run, and by how much.
 
 mod chart;
 mod page;
+mod run;
 mod tables;
 
 pub use page::moves_of_page;
@@ -102,11 +103,19 @@ impl Changes {
         self.found.derivatives[place][output] * self.numbers[place].step
     }
 
+    /// Whether the outputs are those of a run.
+    fn is_of_run(&self) -> bool {
+        self.found.outputs.iter().all(|output| output.group == Group::Run)
+    }
+
     /// The same relative to the value of the output; `None` where zero has no meaning, or for a value of rounding.
     fn relative(&self, place: usize, output: usize) -> Option<f64> {
         /// A value below this fraction of the largest of its kind is zero up to rounding, or close to it.
         const SMALL: f64 = 1e-6;
         let Output { group, unit, .. } = &self.found.outputs[output];
+        if *group == Group::Run && (*unit == "m" || *unit == "rad") {
+            return None;
+        }
         if *group == Group::Points || (*group == Group::Supports && *unit == "m") {
             return None;
         }
@@ -165,6 +174,9 @@ pub fn sensitivity(options: &Sensitivity, registry: &Registry, out: &mut dyn Wri
         all: options.analysis.all || options.analysis.format == Format::Json,
         settings: sensitivity::Settings { frequencies: options.modes },
     };
+    if options.run {
+        return run::sensitivity(options, &request, &crane, out);
+    }
     let loaded = if options.largest_load { Some(loaded(options, &crane)?) } else { None };
     let text = registry.spec(&description.name).unwrap_or_default();
     let source = SourceFile::new(format!("{}.yaml", description.name), text);
@@ -174,10 +186,7 @@ pub fn sensitivity(options: &Sensitivity, registry: &Registry, out: &mut dyn Wri
         Some((largest, asked)) => largest.cautions(&changes.found, &crane, asked, &steps),
         None => cautions(&crane, &changes.found, &steps, &request.settings),
     };
-    let mut report = Report::default();
-    report.fact("crane", description.name.as_str(), "");
-    report.line("change of each number", format!("{:+}", 100.0 * options.change), "%");
-    report.value("change", options.change);
+    let mut report = begin(options, description);
     report.value("stable", true);
     if let Some(loaded) = &loaded {
         facts_of_load(&mut report, loaded, &crane, options)?;
@@ -186,14 +195,28 @@ pub fn sensitivity(options: &Sensitivity, registry: &Registry, out: &mut dyn Wri
     for caution in cautions {
         report.caution(Some(caution));
     }
-    report.grid(tables::parameters(&changes));
-    report.excerpt(tables::outputs(&changes), 0);
-    report.shown(tables::matrix(&changes, options.analysis.all));
-    report.shown(tables::bars(&changes, options.analysis.all));
-    report.data(tables::changes(&changes));
+    print(options, report, &changes, out)
+}
+
+/// A report with what was asked for.
+fn begin(options: &Sensitivity, description: &Description) -> Report {
+    let mut report = Report::default();
+    report.fact("crane", description.name.as_str(), "");
+    report.line("change of each number", format!("{:+}", 100.0 * options.change), "%");
+    report.value("change", options.change);
+    report
+}
+
+/// Prints the changes, and writes them into a file if one is named.
+fn print(options: &Sensitivity, mut report: Report, changes: &Changes, out: &mut dyn Write) -> Outcome<()> {
+    report.grid(tables::parameters(changes));
+    report.excerpt(tables::outputs(changes), 0);
+    report.shown(tables::matrix(changes, options.analysis.all));
+    report.shown(tables::bars(changes, options.analysis.all));
+    report.data(tables::changes(changes));
     report.show_all(options.analysis.all);
     if let Some(file) = &options.file {
-        write(file, &changes, options.change)?;
+        write(file, changes, options.change)?;
     }
     options.analysis.format.print(&report, out)
 }
@@ -303,15 +326,26 @@ fn changes(request: &Request<'_>, source: &SourceFile, crane: &LiveCrane, loaded
     if let Some(rigid) = rigid(&crane, &parameters, &places, source) {
         found.add_deflections(&rigid);
     }
+    let shown = shown(request.outputs, &found.outputs, request.all)?;
+    Ok(ordered(request, description, found, numbers, shown))
+}
+
+/// The changes with their steps, the most influential number first.
+fn ordered(
+    request: &Request<'_>,
+    description: &Description,
+    found: sensitivity::Sensitivity,
+    mut numbers: Vec<Number>,
+    shown: Vec<usize>,
+) -> Changes {
     for number in &mut numbers {
         number.step = if number.value == 0.0 { 1.0 } else { request.change * number.value };
     }
-    let shown = shown(request.outputs, &found.outputs, request.all)?;
     let name = description.name.to_string();
     let mut changes = Changes { crane: name, found, order: (0..numbers.len()).collect(), numbers, shown };
     let influence: Vec<f64> = changes.order.iter().map(|&place| changes.influence(place)).collect();
     changes.order.sort_by(|&a, &b| influence[b].total_cmp(&influence[a]));
-    Ok(changes)
+    changes
 }
 
 /// What to know about the numbers.
@@ -415,7 +449,7 @@ fn shown(asked: &[String], outputs: &[Output], all: bool) -> Outcome<Vec<usize>>
             Group::Cylinders | Group::Connectors => output.unit == "N" || output.unit == "N m",
             Group::Supports => output.name.ends_with("_reaction_z"),
             Group::Stresses => output.name.starts_with("greatest"),
-            Group::Loops => false,
+            Group::Loops | Group::Run => false,
         };
         // With a largest load, this is what was asked for.
         let has_load = outputs.iter().any(|output| output.group == Group::Load);

@@ -34,7 +34,8 @@ pub fn parameters(changes: &Changes) -> Grid {
 
 /// The outputs at rest, and where those are that govern.
 pub fn outputs(changes: &Changes) -> Grid {
-    let mut grid = Grid::new("outputs", "Outputs at rest", &["output", "group", "value", "unit", "place"]);
+    let title = if changes.is_of_run() { "Outputs of the run" } else { "Outputs at rest" };
+    let mut grid = Grid::new("outputs", title, &["output", "group", "value", "unit", "place"]);
     for &index in &changes.shown {
         let output = &changes.found.outputs[index];
         let value = Cell::from(changes.found.values[index]);
@@ -61,7 +62,8 @@ pub fn matrix(changes: &Changes, all: bool) -> Grid {
     let names: Vec<&str> = numbers.iter().map(|&place| changes.numbers[place].label.as_str()).collect();
     let labels = short_labels(&names);
     let labels = labels.iter().map(|label| Heading::of(label, "value"));
-    let headings = ["output".into(), "at rest".into()].into_iter().chain(labels).chain(["unit".into(), "where".into()]);
+    let value = if changes.is_of_run() { "in the run" } else { "at rest" };
+    let headings = ["output".into(), value.into()].into_iter().chain(labels).chain(["unit".into(), "where".into()]);
     let mut grid = Grid::with_headings("", title, headings.collect());
     for &index in &changes.shown {
         let output = &changes.found.outputs[index];

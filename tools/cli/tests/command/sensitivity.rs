@@ -78,6 +78,31 @@ fn what_moves_what_is_drawn_and_written() {
     assert!(svg.starts_with("<svg") && svg.contains("tipping_margin"), "{svg}");
 }
 
+/// Of the peak, the extremes, the end and the integral of columns; the others are central differences of the same runs with another payload.
+#[test]
+fn what_moves_a_run_is_the_difference_of_runs() {
+    const OUTPUTS: &str = "knuckle_theta_drive_torque.peak,load_centre_x.maximum,load_centre_z.minimum,\
+                           load_centre_z.final,main_boom_theta_drive_torque.integral,load_centre_vz.integral";
+    let run = |more: &[&str]| {
+        let run =
+            ["sensitivity", "knuckle_boom", "--run", "--duration", "2", "--interval", "0.01", "--tolerance", "1e-10"];
+        json(&[&run[..], &["--of", OUTPUTS, "--format", "json"], more].concat())
+    };
+    let value = |found: &Value, index: usize| found["outputs"][index]["value"].as_f64().expect("a number");
+    let (found, less, more) = (run(&[]), run(&["--set", "payload=799"]), run(&["--set", "payload=801"]));
+    let outputs: Vec<&str> = OUTPUTS.split(',').collect();
+    for (index, output) in outputs.iter().enumerate() {
+        let own = change(&found, output, "payload")["derivative"].as_f64().expect("a number");
+        let expected = 0.5 * (value(&more, index) - value(&less, index));
+        // Of a pose at rest that hangs straight, and of extremes that lie between two results.
+        assert!((own - expected).abs() < 1e-3 * expected.abs() + 1e-7, "{output}: {own:e} for {expected:e}");
+        let change = change(&found, output, "payload")["change"].as_f64().expect("a number");
+        assert!((change / (80.0 * own) - 1.0).abs() < 1e-12, "{output}: {change:e} for 80 kg");
+    }
+    assert_eq!(found["outputs"][4]["unit"], "N m s");
+    assert!(found["outputs"][0]["place"].as_str().is_some_and(|place| place.starts_with("at ")));
+}
+
 /// A foot that lifts within the change is named.
 #[test]
 fn what_a_whole_change_does_beyond_is_a_caution() {
@@ -116,6 +141,20 @@ fn what_cannot_be_answered_is_said() {
         (&["knuckle_boom", "--with", "parameters.payload.value"], "is a live parameter", "write its name, `payload`"),
         (&["knuckle_boom", "--with", "links.knuckle"], "`links.knuckle` is not a number", "place of one number"),
         (&["cantilever", "--with", "links.beam.beam.sections"], "cannot change: ", "small steps"),
+        (
+            &["knuckle_boom", "--run", "--of", "load_centre_z.mean"],
+            "there is no `mean` of a column",
+            "`load_centre_z.peak`",
+        ),
+        (
+            &["knuckle_boom", "--run", "--of", "load_center_z"],
+            "no column `load_center_z`",
+            "did you mean `load_centre_z`?",
+        ),
+        (&["knuckle_boom", "--run", "--of", "drive_work.final"], "`drive_work` has no derivatives", "another column"),
+        (&["knuckle_boom", "--run", "--duration", "-1"], "`--duration -1` is not a valid", "positive number"),
+        (&["knuckle_boom", "--run", "--largest-load"], "cannot be used with", "Usage"),
+        (&["knuckle_boom", "--duration", "3"], "--run", "Usage"),
         (
             &["two_arms", "--with", "links.boom.beam.material.E"],
             "`links.boom.beam.material` is `steel`",

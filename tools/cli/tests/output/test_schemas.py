@@ -113,6 +113,12 @@ def test_sensitivity(output, options):
     assert {row["group"] for row in found["outputs"]} >= {"stresses", "frequencies"}
 
 
+def test_sensitivity_of_a_run(output):
+    found = output("sensitivity", "sensitivity", "knuckle_boom", "--run", "--duration", "1", "--of", "load_centre_z.final,knuckle_theta_drive_torque")
+    assert [row["output"] for row in found["outputs"]] == ["load_centre_z.final", "knuckle_theta_drive_torque.peak"]
+    assert {row["group"] for row in found["outputs"]} == {"run"} and found["method"] == "rosw4" and found["duration"] == 1
+
+
 @pytest.mark.parametrize(
     "more",
     [

@@ -78,11 +78,13 @@ pub enum Group {
     Frequencies,
     /// The largest load within limits.
     Load,
+    /// Columns of a run.
+    Run,
 }
 
 impl Group {
     /// All of them.
-    pub const ALL: [Group; 11] = [
+    pub const ALL: [Group; 12] = [
         Group::Points,
         Group::Deflections,
         Group::Drives,
@@ -94,6 +96,7 @@ impl Group {
         Group::Tipping,
         Group::Frequencies,
         Group::Load,
+        Group::Run,
     ];
 
     /// Its name in results and options.
@@ -111,6 +114,7 @@ impl Group {
             Group::Tipping => "tipping",
             Group::Frequencies => "frequencies",
             Group::Load => "load",
+            Group::Run => "run",
         }
     }
 }

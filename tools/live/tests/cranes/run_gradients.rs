@@ -77,7 +77,9 @@ fn assert_differences(
     tolerance: f64,
 ) {
     let (table, found) = gradients(crane, names, from, run);
-    let tight = Settings { tolerance: 1e-11, ..*run };
+    // Runs pass the kinks of valves and bristles with larger errors than their derivatives do, whose steps end there.
+    let tight = if crane.description().has_force_states() { 1e-12 } else { 1e-11 };
+    let tight = Settings { tolerance: tight, ..*run };
     let (mut compared, mut wrong) = (0, Vec::new());
     for ((name, step), found) in names.iter().zip(steps).zip(&found) {
         let along = Along::named(crane, name).unwrap();
@@ -224,7 +226,7 @@ stops: {ball_z: {min: floor, stiffness: k, damping: a}}
     let crane = spec(text);
     let run = settings(&crane, 1.0, 0.05, 1e-10);
     let numbers = (&["m", "k", "a", "floor", "q0.ball_z", "v0.ball_z"][..], &[0.01, 10.0, 1e-3, 1e-4, 1e-4, 1e-3][..]);
-    assert_differences("bouncing", &crane, numbers, &Some((vec![0.1], vec![0.2])), &run, 1e-5);
+    assert_differences("bouncing", &crane, numbers, &Some((vec![0.1], vec![0.2])), &run, 3e-5);
 }
 
 /// A drive whose prescribed acceleration jumps at times that depend on a parameter.
@@ -306,7 +308,7 @@ fn stiffness_sections_drives_and_feet_count() {
     let run = settings(&crane, 1.0, 0.1, 1e-10);
     let numbers =
         (&["load", "young", "height", "slew", "lift", "spring"][..], &[11.0, 1e9, 1e-3, 0.01, 0.005, 1e5][..]);
-    assert_differences("loader", &crane, numbers, &None, &run, 3e-5);
+    assert_differences("loader", &crane, numbers, &None, &run, 1e-4);
 }
 
 #[test]
@@ -328,8 +330,105 @@ fn a_crane_with_a_telescope_and_a_rope_changes_as_its_runs_do() {
     assert_differences("telescope", &crane, (&["payload"], &[4.0]), &None, &run, 1e-3);
 }
 
+/// A load on a cylinder that a valve fills.
+fn lift(parameters: &str, inputs: &str, motion: &str, valve: &str) -> LiveCrane {
+    spec(&format!(
+        "
+format: 1
+name: lift
+parameters: {{mass: {{value: 800, unit: kg}}, pin: {{value: -1, unit: m}}{parameters}}}
+{inputs}
+analyses: [statics, dynamics]
+links:
+  - {{name: post, joint: {{prismatic: {{axis: x}}}}, mass: 50, com: [0, 0, 0]}}
+  - {{name: arm, placement: {{transform: {{rotation: {{x: 90 deg}}}}}}, joint: revolute, mass: mass, com: [2, 0, 0], inertia: {{gyration: [0.1, 1, 1]}}}}
+drives:
+  - {{coordinate: post_x, rigid: true, motion: {{hold: 0}}}}
+  - {{coordinate: arm_psi, stiffness: 1e8, motion: {{{motion}}}}}
+cylinders:
+  - name: ram
+    coordinate: arm_psi
+    foot: {{link: post, at: [0.3, 0, pin]}}
+    head: {{link: arm, at: [0.9, -0.1, 0]}}
+    bore: 0.1
+    rod: 0.06
+    retracted: 0.8
+    stroke: 0.7
+    back_pressure: 3e5
+    max_pressure: 2.5e7
+    bulk_modulus: 1.3e9
+    hose_volumes: [6e-4, 4e-4]
+    valve: {{flow: 6e-4, pressure_drop: 1e6, lag: 0.03, {valve}}}
+pump: {{max_flow: 1e-3, pressure: 2e7, volume: 4e-3}}
+"
+    ))
+}
+
 #[test]
-fn valves_and_bristles_are_refused() {
-    let refused = Along::named(&shipped("eight_link_hydraulic", ""), "load_mass").unwrap_err().to_string();
-    assert!(refused.contains("valves or joints that stick"), "{refused}");
+fn a_servo_with_a_valve_changes_as_its_runs_do() {
+    let crane =
+        lift(", far: {value: 0.25}", "", "quintic: {from: 0.1, to: far, duration: 1}", "gain: 6, leakage: 2e-13");
+    let run = settings(&crane, 0.9, 0.05, 1e-11);
+    let numbers = (&["mass", "pin", "far"][..], &[0.1, 1e-4, 1e-3][..]);
+    assert_differences("servo", &crane, numbers, &None, &run, 3e-4);
+    // At rest the rod's side is at the pressure at which its suction valve opens: derivatives by the start differ on both sides.
+    let numbers = (&["mass", "pin", "q0.arm_psi", "v0.arm_psi"][..], &[1.0, 1e-4, 1e-4, 1e-3][..]);
+    assert_differences("servo", &crane, numbers, &Some((vec![0.0, 0.15], vec![0.0, 0.05])), &run, 3e-4);
+}
+
+/// The valve is shut by its overlap, opens within hundredths of a second, or shuts.
+#[test]
+fn a_valve_that_opens_in_a_step_changes_as_its_runs_do() {
+    for (name, [from, to]) in [("opens", ["0", "open"]), ("shuts", ["open", "0"])] {
+        let opening =
+            format!("overlap: 0.05, opening: {{quintic: {{from: {from}, to: {to}, begin: begin, duration: 0.03}}}}");
+        let crane = lift(", begin: {value: 0.2}, open: {value: -0.4}", "", "hold: 0.1", &opening);
+        let run = settings(&crane, 0.7, 0.07, 1e-10);
+        let numbers = (
+            &["mass", "pin", "begin", "open", "q0.arm_psi", "v0.arm_psi"][..],
+            &[1.0, 1e-4, 1e-4, 1e-3, 1e-4, 1e-3][..],
+        );
+        assert_differences(name, &crane, numbers, &Some((vec![0.0, 0.1], vec![0.0, 0.02])), &run, 3e-4);
+    }
+}
+
+#[test]
+fn a_valve_with_a_lever_changes_as_its_runs_do() {
+    let mut crane = lift("", "inputs: {lever: {value: 0}}", "hold: 0.1", "overlap: 0.05, opening: {input: lever}");
+    crane.set_input(0, Some(0.4));
+    let run = settings(&crane, 0.6, 0.05, 1e-10);
+    let numbers = (&["inputs.lever", "mass", "pin"][..], &[1e-3, 1.0, 1e-4][..]);
+    assert_differences("lever", &crane, numbers, &None, &run, 1e-4);
+}
+
+#[test]
+fn a_hydraulic_crane_changes_as_its_runs_do() {
+    let changes = "parameters: {pin: {value: 1.1}, rocker: {value: 0.45}}\ncylinders:\n  - {name: boom_cylinder, foot: {link: column, at: [0.3, 0, pin]}}\n  - {name: outer_boom_cylinder, linkage: {pivot: [3.2, 0.15, 0], rocker: rocker, link: 0.45, side: left}}\n";
+    let crane = shipped("eight_link_hydraulic", changes);
+    let run = settings(&crane, 1.0, 0.1, 1e-10);
+    assert_differences("hydraulic", &crane, (&["load_mass", "pin", "rocker"], &[2.0, 1e-4, 1e-4]), &None, &run, 1e-3);
+}
+
+const SLIDE: &str = "
+format: 1
+name: slide
+parameters: {m: {value: 40}, k: {value: 2000}, push: {value: 200}}
+gravity: [0, 0, 0]
+analyses: [dynamics]
+links: [{name: slide, joint: {prismatic: {axis: x}}, mass: m, com: [0, 0, 0]}]
+drives: [{coordinate: slide_x, stiffness: k, motion: {hold: 0}}]
+loads: [{name: push, link: slide, at: [0, 0, 0], force: [push, 0, 0]}]
+friction:
+  slide_x: {coulomb: 100, breakaway: 150, stribeck: 0.02, viscous: 30, bristle: {stiffness: 2e5, damping: 900}}
+";
+
+#[test]
+fn bristles_that_stick_and_slip_change_as_their_runs_do() {
+    let crane = spec(SLIDE);
+    let run = settings(&crane, 1.0, 0.05, 1e-10);
+    let numbers = (&["m", "k", "push", "q0.slide_x", "v0.slide_x"][..], &[0.01, 0.5, 0.05, 1e-5, 1e-4][..]);
+    // It slips, turns back, and sticks.
+    assert_differences("slip", &crane, numbers, &Some((vec![0.2], vec![0.3])), &run, 3e-4);
+    // It sticks all the time.
+    assert_differences("stick", &crane, numbers, &Some((vec![0.01], vec![0.0])), &run, 1e-4);
 }

@@ -38,17 +38,10 @@ impl Along {
     /// coordinate and of its rate.
     ///
     /// # Errors
-    /// Some forces have states of their own, there is no such number, an input is not set, a rigid drive prescribes the coordinate, or the spec allows neither a slightly smaller
-    /// nor a slightly larger value of a parameter.
+    /// There is no such number, an input is not set, a rigid drive prescribes the coordinate, or the spec allows neither a slightly smaller nor a
+    /// slightly larger value of a parameter.
     pub fn named(crane: &LiveCrane, name: &str) -> Result<Self, NotAlong> {
         let description = crane.description();
-        // Their rates have slopes, too, but differences of runs do not agree with what follows from them for every parameter.
-        if description.has_force_states() {
-            return Err(NotAlong(format!(
-                "{} has valves or joints that stick, whose runs have no gradients: take differences of runs",
-                description.name
-            )));
-        }
         let parameter = description.parameters.iter().position(|parameter| parameter.name == name);
         let along = match (parameter, name.split_once('.')) {
             (Some(parameter), _) => Self::Parameter(parameter),

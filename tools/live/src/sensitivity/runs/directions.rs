@@ -1,18 +1,23 @@
 //! Functions of a crane with their slopes in the directions of a run.
 
 use crane_codegen::chain::Input;
-use crane_codegen::program::FunctionId;
+use crane_codegen::program::{Argument, FunctionId};
+use crane_model::Description;
 use crane_model::dyn_crane::{DynCrane, DynModel};
-use crane_model::dynamics::gradients::{Around, At, Slopes};
+use crane_model::dynamics::gradients::{Around, At, CylinderSlopes, Slopes};
 
 use super::Along;
 use crate::LiveCrane;
+use crate::bytecode::{Code, Fixed};
 use crate::dual::{DIRECTIONS, Dual8};
 use crate::machine::Number;
 use crate::rows::{Evaluation, Quantity};
 
 /// Relative step of a parameter or an input for what is differenced, and its step from zero.
 const STEP: f64 = 1e-6;
+
+/// The change of a number for which errors count, relative to it; of starts in m, rad, m/s and rad/s.
+const CHANGE: f64 = 0.1;
 
 /// A crane with a number slightly smaller and larger.
 struct Beside {
@@ -31,6 +36,22 @@ pub(super) struct Chunk {
     motions: Evaluation<Dual8>,
     /// φ, φ̇ and J̇ v of loop joints, and J, if there are any.
     loops: Option<[Evaluation<Dual8>; 2]>,
+    /// Of cylinders with a valve, if there are any.
+    oil: Option<Oil>,
+}
+
+/// What cylinders with a valve depend on.
+struct Oil {
+    /// ℓ, ℓ̇ and ∂ℓ/∂q_j of every cylinder; ∂ℓ/∂q; commands of valves.
+    states: Evaluation<Dual8>,
+    jacobians: Evaluation<Dual8>,
+    openings: Evaluation<Dual8>,
+    /// Drive and coordinate of every cylinder with a valve.
+    driven: Vec<(usize, usize)>,
+    /// Drive of every cylinder.
+    drives: Vec<usize>,
+    /// Whether a parameter or an input changes, on which what servos want may depend.
+    wants_more: bool,
 }
 
 /// The directions of a run.
@@ -38,9 +59,9 @@ pub(super) struct Directions<'a> {
     crane: &'a LiveCrane,
     chunks: Vec<Chunk>,
     beside: Vec<Option<Beside>>,
-    /// The values of the numbers; 1 for those that are zero, and for starts.
+    /// The changes of the numbers for which errors count.
     scales: Vec<f64>,
-    /// Whether any of them is that of a parameter or an input, which the motions of drives may depend on.
+    /// Whether any of them is that of a parameter or an input, and the motions of drives depend on any.
     may_move_drives: bool,
 }
 
@@ -70,15 +91,15 @@ impl<'a> Directions<'a> {
                 Along::Input(index) => crane.input(*index).unwrap_or_default(),
                 Along::Position(_) | Along::Rate(_) => 1.0,
             };
-            if value == 0.0 { 1.0 } else { value.abs() }
+            if value == 0.0 { 1.0 } else { CHANGE * value.abs() }
         };
-        let drives = !crane.description().drives.is_empty();
+        let changes = along.iter().any(|along| matches!(along, Along::Parameter(_) | Along::Input(_)));
         Self {
             crane,
             chunks: along.chunks(DIRECTIONS).map(|along| Chunk::new(crane, along)).collect(),
             beside: along.iter().map(beside).collect(),
             scales: along.iter().map(scale).collect(),
-            may_move_drives: drives && along.iter().any(|along| matches!(along, Along::Parameter(_) | Along::Input(_))),
+            may_move_drives: changes && is_live(crane, FunctionId::DriveMotions),
         }
     }
 
@@ -125,8 +146,24 @@ impl Chunk {
         };
         let has_loops = !crane.loop_joints().is_empty();
         let loops = has_loops.then(|| [FunctionId::LoopStates, FunctionId::LoopJacobians].map(evaluation));
+        let Description { cylinders, drives, .. } = crane.description();
+        let with_valves = cylinders.iter().filter(|cylinder| cylinder.valve.is_some());
+        let driven: Vec<(usize, usize)> =
+            with_valves.map(|cylinder| (cylinder.drive, drives[cylinder.drive].coordinate)).collect();
+        let oil = (!driven.is_empty()).then(|| Oil {
+            states: evaluation(FunctionId::CylinderStates),
+            jacobians: evaluation(FunctionId::CylinderJacobians),
+            openings: evaluation(FunctionId::ValveOpenings),
+            driven,
+            drives: cylinders.iter().map(|cylinder| cylinder.drive).collect(),
+            wants_more: along.iter().any(|along| matches!(along, Along::Parameter(_) | Along::Input(_)))
+                && [FunctionId::DriveMotions, FunctionId::CylinderStates, FunctionId::ValveOpenings]
+                    .into_iter()
+                    .any(|id| is_live(crane, id)),
+        });
         Self {
             count: along.len(),
+            oil,
             residual: evaluation(FunctionId::DynamicResidual),
             motions: evaluation(FunctionId::DriveMotions),
             loops,
@@ -137,11 +174,20 @@ impl Chunk {
 
     /// J with its slopes.
     fn jacobian(&mut self, q: &[Dual8]) -> Vec<Dual8> {
+        let Some([_, jacobians]) = &mut self.loops else { return Vec::new() };
         let zeros = constants(&vec![0.0; q.len()]);
-        self.loops
-            .as_mut()
-            .map_or_else(Vec::new, |[_, jacobians]| jacobians.at(Dual8::splat(0.0), q, &zeros, &zeros).to_vec())
+        jacobians.at(Dual8::splat(0.0), q, &zeros, &zeros).to_vec()
     }
+}
+
+/// Whether a function of a crane depends on live parameters or inputs.
+fn is_live(crane: &LiveCrane, id: FunctionId) -> bool {
+    let library = crane.library();
+    library.routine(id).is_some_and(|routine| {
+        let Code { fixed, inputs, .. } = routine.code();
+        fixed.iter().any(|number| !matches!(number, Fixed::Number(_)))
+            || inputs.iter().any(|inputs| inputs.argument == Argument::Inputs)
+    })
 }
 
 /// A number with slope 1 in every direction that is its own.
@@ -209,6 +255,42 @@ impl Slopes for Directions<'_> {
                     let by_row: f64 = row.iter().zip(at.a).map(|(entry, a)| entry.slope(direction) * a).sum();
                     let [gap, rate, second] = [0, 1, 2].map(|k| state[k].slope(direction));
                     *out = [gap, rate, second + by_row];
+                }
+            }
+        }
+    }
+
+    fn cylinders(&mut self, at: &At<'_>, along: &[Vec<f64>], out: &mut [Vec<CylinderSlopes>]) {
+        let n = at.q.len();
+        for (number, Chunk { count, motions, oil, .. }) in self.chunks.iter_mut().enumerate() {
+            let Some(oil) = oil else { continue };
+            let first = number * DIRECTIONS;
+            let (along, out) = (&along[first..][..*count], &mut out[first..][..*count]);
+            let (t, zeros) = (Dual8::splat(at.t), constants(&vec![0.0; n]));
+            let (q, v) = (moved(at.q, 0, along), moved(at.v, n, along));
+            let pair = |states: &[Dual8], direction: usize| [0, 1].map(|k| states[k].slope(direction));
+            let (states, jacobians) = (oil.states.at(t, &q, &v, &zeros), oil.jacobians.at(t, &q, &zeros, &zeros));
+            for (direction, out) in out.iter_mut().enumerate() {
+                let own = states.chunks_exact(3).zip(jacobians.chunks_exact(n.max(1)));
+                for (out, (states, row)) in out.iter_mut().zip(own) {
+                    out.length_and_rate = pair(states, direction);
+                    out.jacobian.iter_mut().zip(row).for_each(|(out, entry)| *out = entry.slope(direction));
+                }
+            }
+            if !oil.wants_more {
+                continue;
+            }
+            let motions = motions.at(t, &[], &[], &[]);
+            let [mut wanted_q, mut wanted_v] = [zeros.clone(), zeros.clone()];
+            for (drive, coordinate) in &oil.driven {
+                (wanted_q[*coordinate], wanted_v[*coordinate]) = (motions[2 * drive], motions[2 * drive + 1]);
+            }
+            let openings = oil.openings.at(t, &[], &[], &[]);
+            let wanted = oil.states.at(t, &wanted_q, &wanted_v, &zeros);
+            for (direction, out) in out.iter_mut().enumerate() {
+                for (out, (states, drive)) in out.iter_mut().zip(wanted.chunks_exact(3).zip(&oil.drives)) {
+                    out.wanted = pair(states, direction);
+                    out.opening = openings[2 * drive].slope(direction);
                 }
             }
         }

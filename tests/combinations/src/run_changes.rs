@@ -1,0 +1,149 @@
+//! Derivatives of runs by live numbers and by the start, against differences of tighter runs.
+
+use std::ops::ControlFlow;
+
+use crane_live::LiveCrane;
+use crane_live::sensitivity::runs::{Along, run_with_gradients};
+use crane_model::CoordinateRole;
+use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::dynamics::{Method, Settings};
+use crane_model::runs::{Start, record};
+use fastrand::Rng;
+
+use crate::descriptions::numbers_as_parameters;
+use crate::observe::{equilibrium, live};
+use crate::tree::Tree;
+
+/// The name of the check.
+pub const NAME: &str = "changes of runs with live numbers";
+/// Numbers that are changed, chosen at random.
+const CHANGED: usize = 2;
+/// Length of the run, its interval of results, and initial rates, s, m/s and rad/s.
+const RUN: [f64; 3] = [0.1, 0.02, 0.05];
+/// Tolerance of the run with derivatives, and of those that are differenced.
+const TOLERANCES: [f64; 2] = [1e-9, 1e-11];
+/// Steps relative to the number: with the longer ones differences have an error of their square, with the shorter one that of the steps of the
+/// runs. A foot may let go, or a valve open, within the longer ones.
+const STEPS: [f64; 4] = [3e-3, 3e-4, 3e-5, 3e-6];
+/// Largest error, relative to the largest derivative of the column.
+const OF_COLUMN: f64 = 3e-3;
+/// The same relative to the largest derivative of its kind: positions or rates.
+const OF_LARGEST: f64 = 1e-5;
+/// The same relative to a change of 1 m or rad, or of 1 m/s or rad/s, with the whole number.
+const OF_ONE: f64 = 1e-6;
+
+/// What does not change as its derivative says; `None` for a crane that does not stand, or whose runs end early.
+pub fn check_run_changes(tree: &Tree, seed: u64) -> Option<Vec<String>> {
+    let mut rng = Rng::with_seed(seed);
+    let crane = live(&numbers_as_parameters(tree, &mut rng)?.source).ok()?;
+    let q = equilibrium(&crane).ok()?;
+    // A start that does not close the loops is moved onto them, with the weights of masses that may change.
+    let rate = if crane.loop_joints().is_empty() { RUN[2] } else { 0.0 };
+    let v: Vec<f64> = q.iter().map(|_| rate * (2.0 * rng.f64() - 1.0)).collect();
+    let start = Start { q, v, x: Vec::new(), what: String::new(), rests: false };
+    let mut along: Vec<Along> = (0..crane.parameters().len()).map(Along::Parameter).collect();
+    rng.shuffle(&mut along);
+    along.truncate(CHANGED);
+    let free: Vec<usize> =
+        (0..crane.size()).filter(|j| crane.description().coordinates[*j].role != CoordinateRole::Prescribed).collect();
+    // Loops may be closed by moving other coordinates than the one that is changed.
+    if crane.loop_joints().is_empty() && !free.is_empty() {
+        along.push(Along::Position(free[rng.usize(0..free.len())]));
+        along.push(Along::Rate(free[rng.usize(0..free.len())]));
+    }
+    let [tolerance, tight] = TOLERANCES;
+    let own = Settings::of(crane.description());
+    let settings = Settings {
+        duration: RUN[0],
+        output: RUN[1],
+        method: Method::Rosenbrock,
+        audit: false,
+        most_steps: 60_000,
+        tolerance,
+        ..own
+    };
+    let proceed = &mut |_| ControlFlow::Continue(());
+    let (recorded, found) = run_with_gradients(&crane, &start, &settings, &along, proceed).ok()?;
+    let settings = Settings { tolerance: tight, ..settings };
+    let mut wrong = Vec::new();
+    for (along, found) in along.iter().zip(&found) {
+        let value = match along {
+            Along::Parameter(index) => crane.parameters()[*index],
+            _ => 1.0,
+        };
+        let per = if value == 0.0 { 1.0 } else { value.abs() };
+        let mut fewest: Option<Vec<String>> = None;
+        for step in STEPS {
+            let step = step * per;
+            let [Some(less), Some(more)] = [-step, step].map(|step| run(&crane, &start, &settings, *along, step))
+            else {
+                continue;
+            };
+            let off = differences(&crane, found, [&less, &more], step, per);
+            let off: Vec<String> =
+                off.into_iter().map(|words| format!("{words}, by {}", name(&crane, *along))).collect();
+            if fewest.as_ref().is_none_or(|known| off.len() < known.len()) {
+                fewest = Some(off);
+            }
+        }
+        wrong.extend(fewest.into_iter().flatten());
+    }
+    (!recorded.table.rows.is_empty()).then_some(wrong)
+}
+
+/// The rows of the run of a crane with a number, or a start, that is changed by a step.
+fn run(crane: &LiveCrane, start: &Start, settings: &Settings, along: Along, step: f64) -> Option<Vec<Vec<f64>>> {
+    let (mut crane, mut start) = (crane.clone(), start.clone());
+    match along {
+        Along::Parameter(index) => crane.set_parameter(index, crane.parameters()[index] + step).ok()?,
+        Along::Input(_) => return None,
+        Along::Position(coordinate) => start.q[coordinate] += step,
+        Along::Rate(coordinate) => start.v[coordinate] += step,
+    }
+    Some(record(&crane, &start, settings, &mut |_| ControlFlow::Continue(())).ok()?.table.rows)
+}
+
+/// Positions and rates whose derivative is not their difference.
+fn differences(
+    crane: &LiveCrane,
+    found: &[Vec<f64>],
+    [less, more]: [&[Vec<f64>]; 2],
+    step: f64,
+    per: f64,
+) -> Vec<String> {
+    let n = crane.size();
+    let largest = |columns: &mut dyn Iterator<Item = usize>| {
+        columns.flat_map(|column| found.iter().map(move |row| row[column].abs())).fold(0.0, f64::max)
+    };
+    let kinds = [largest(&mut (1..=n)), largest(&mut (n + 1..=2 * n))];
+    let coordinates = &crane.description().coordinates;
+    let mut wrong = Vec::new();
+    for column in 1..=2 * n {
+        let allowed = OF_COLUMN * largest(&mut std::iter::once(column))
+            + OF_LARGEST * kinds[usize::from(column > n)]
+            + OF_ONE / per;
+        for ((own, less), more) in found.iter().zip(less).zip(more) {
+            let expected = (more[column] - less[column]) / (2.0 * step);
+            let off = (own[column] - expected).abs();
+            if off > allowed || off.is_nan() {
+                let part = if column > n { "rate of " } else { "" };
+                let name = &coordinates[(column - 1) % n].name;
+                wrong.push(format!(
+                    "{part}{name} at {} s: {:.9e} against {expected:.9e}, {off:.1e} of {allowed:.1e}",
+                    less[0], own[column]
+                ));
+            }
+        }
+    }
+    wrong
+}
+
+fn name(crane: &LiveCrane, along: Along) -> String {
+    let description = crane.description();
+    match along {
+        Along::Parameter(index) => description.parameters[index].name.to_string(),
+        Along::Input(index) => description.inputs[index].name.to_string(),
+        Along::Position(index) => format!("q0.{}", description.coordinates[index].name),
+        Along::Rate(index) => format!("v0.{}", description.coordinates[index].name),
+    }
+}

@@ -1,0 +1,221 @@
+//! What moves a run: peaks, extremes, final values and integrals of its columns.
+
+use std::{io::Write, ops::ControlFlow};
+
+use crane_live::LiveCrane;
+use crane_live::sensitivity::runs::{Along, METHOD, run_with_gradients};
+use crane_live::sensitivity::{self, Group, Output};
+use crane_model::{
+    dyn_crane::DynModel,
+    results::{Table, headlines},
+    runs::Start,
+};
+
+use super::{Changes, Number, Request, begin, numbers, ordered, print, remarks};
+use crate::{
+    arguments::{Sensitivity, Timing},
+    integration::progress,
+    problem::{Outcome, Problem, nearest},
+};
+
+/// What is taken of a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Of {
+    Peak,
+    Maximum,
+    Minimum,
+    Final,
+    Integral,
+}
+
+impl Of {
+    const ALL: [Self; 5] = [Self::Peak, Self::Maximum, Self::Minimum, Self::Final, Self::Integral];
+
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Peak => "peak",
+            Self::Maximum => "maximum",
+            Self::Minimum => "minimum",
+            Self::Final => "final",
+            Self::Integral => "integral",
+        }
+    }
+
+    /// The result at which it is; an integral is not at one.
+    fn row(self, values: &[f64]) -> usize {
+        let of = |value: f64| match self {
+            Self::Minimum => -value,
+            Self::Peak => value.abs(),
+            _ => value,
+        };
+        match self {
+            Self::Final => values.len().saturating_sub(1),
+            // The first of equal ones.
+            _ => (0..values.len()).rev().max_by(|&a, &b| of(values[a]).total_cmp(&of(values[b]))).unwrap_or(0),
+        }
+    }
+
+    /// Its value, of a column at these times; derivatives of the column are taken where it is, and with the sign that it has.
+    fn take(self, t: &[f64], values: &[f64], column: &[f64]) -> f64 {
+        match self {
+            Self::Integral => {
+                let pairs = t.windows(2).zip(column.windows(2));
+                pairs.map(|(t, column)| 0.5 * (t[1] - t[0]) * (column[0] + column[1])).sum()
+            }
+            Self::Peak => {
+                let row = self.row(values);
+                column[row] * values[row].signum()
+            }
+            _ => column[self.row(values)],
+        }
+    }
+}
+
+/// A column of a run, and what is taken of it.
+type Asked = (usize, Of);
+
+/// Prints what moves the run of a crane from rest.
+pub fn sensitivity(
+    options: &Sensitivity,
+    request: &Request<'_>,
+    crane: &LiveCrane,
+    out: &mut dyn Write,
+) -> Outcome<()> {
+    let description = crane.description();
+    let (parameters, places) = numbers(request.numbers, description, None)?;
+    if let Some(place) = places.first() {
+        let title = format!("`{place}` cannot be a live parameter, and runs have derivatives by live parameters only");
+        return Err(Problem::usage(
+            title,
+            "leave it out of `--with`, or compare runs of two specs with `crane compare`",
+        ));
+    }
+    let names = parameters.iter().map(|&index| &description.parameters[index].name);
+    let along = names.map(|name| {
+        Along::named(crane, name).map_err(|not| Problem::usage(not.to_string(), "leave it out of `--with`"))
+    });
+    let along = along.collect::<Outcome<Vec<Along>>>()?;
+    let timing = Timing {
+        method: Some(METHOD),
+        tolerance: options.tolerance,
+        step: None,
+        force: false,
+        no_verify: true,
+        duration: options.duration,
+        interval: options.interval,
+        from: None,
+        start: Vec::new(),
+    };
+    let start = Start::of(crane)?;
+    let settings = crane_model::dynamics::Settings { audit: false, ..timing.settings(crane, &start, METHOD)? };
+    let bar = progress(settings.duration);
+    let proceed = &mut |t: f64| {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a length for the eye")]
+        bar.set_position((1e3 * t) as u64);
+        ControlFlow::Continue(())
+    };
+    let (recorded, gradients) = run_with_gradients(crane, &start, &settings, &along, proceed)?;
+    bar.finish_and_clear();
+    let table = &recorded.table;
+    // Integrals by the audit of a run have none.
+    let has_derivatives = |index: usize| gradients.iter().flatten().all(|row| !row[index].is_nan());
+    let asked = asked(request, description, table, &has_derivatives)?;
+    let column = |rows: &[Vec<f64>], index: usize| -> Vec<f64> { rows.iter().map(|row| row[index]).collect() };
+    let t = column(&table.rows, 0);
+    let mut found = sensitivity::Sensitivity {
+        q: start.q.clone(),
+        parameters: parameters.clone(),
+        outputs: Vec::new(),
+        values: Vec::new(),
+        derivatives: vec![Vec::new(); parameters.len()],
+        pose: Vec::new(),
+        notes: Vec::new(),
+    };
+    for &(index, of) in &asked {
+        let info = &table.columns[index];
+        let values = column(&table.rows, index);
+        let place = if of == Of::Integral { String::new() } else { format!("at {:.4} s", t[of.row(&values)]) };
+        let unit = unit(&info.unit, of);
+        found.outputs.push(Output { name: format!("{}.{}", info.name, of.name()), unit, group: Group::Run, place });
+        found.values.push(of.take(&t, &values, &values));
+        for (derivatives, rows) in found.derivatives.iter_mut().zip(&gradients) {
+            derivatives.push(of.take(&t, &values, &column(rows, index)));
+        }
+    }
+    let own: Vec<Number> = parameters.iter().map(|&index| Number::live(crane, index)).collect();
+    let changes: Changes = ordered(request, description, found, own, (0..asked.len()).collect());
+    let mut report = begin(options, description);
+    report.fact("start", recorded.start.as_str(), "");
+    crate::simulate::method(&mut report, &settings);
+    report.fact("duration", settings.duration, "s");
+    remarks(&mut report, &changes);
+    for caution in &recorded.cautions {
+        report.caution(Some(caution.as_str()));
+    }
+    print(options, report, &changes, out)
+}
+
+/// The columns that are asked for; peaks of the most important ones if none are, of all with `--all`.
+fn asked(
+    request: &Request<'_>,
+    description: &crane_model::Description,
+    table: &Table,
+    has_derivatives: &dyn Fn(usize) -> bool,
+) -> Outcome<Vec<Asked>> {
+    if request.outputs.is_empty() {
+        let main: Vec<String> = headlines(description).into_iter().flat_map(|kind| kind.names).collect();
+        let is_main = |name: &String| request.all || main.contains(name);
+        let columns = (1..table.columns.len()).filter(|&index| is_main(&table.columns[index].name));
+        let columns = columns.filter(|&index| has_derivatives(index));
+        return Ok(columns.map(|index| (index, Of::Peak)).collect());
+    }
+    let mut found = Vec::new();
+    for asked in request.outputs {
+        let (name, of) = asked.rsplit_once('.').unwrap_or((asked, Of::Peak.name()));
+        let Some(of) = Of::ALL.into_iter().find(|own| own.name() == of) else {
+            let names = Of::ALL.map(Of::name);
+            let title = format!("there is no `{of}` of a column");
+            return Err(Problem::usage(title, format!("write one of {}, as in `{name}.peak`", names.join(", "))));
+        };
+        let Some(index) = table.columns.iter().skip(1).position(|column| column.name == name) else {
+            let guess = nearest(name, table.columns.iter().skip(1).map(|column| column.name.as_str()));
+            let guess = guess.map_or_else(String::new, |guess| format!("did you mean `{guess}`? "));
+            let names: Vec<&str> = table.columns.iter().skip(1).map(|column| column.name.as_str()).collect();
+            let title = format!("the run has no column `{name}`");
+            return Err(Problem::usage(title, format!("{guess}columns: {}", names.join(", "))));
+        };
+        if !has_derivatives(index + 1) {
+            let title =
+                format!("`{name}` has no derivatives: it is an integral over the run, by the audit of its energy");
+            return Err(Problem::usage(title, "name another column"));
+        }
+        if !found.contains(&(index + 1, of)) {
+            found.push((index + 1, of));
+        }
+    }
+    Ok(found)
+}
+
+/// The unit of a column, or of its integral over time.
+fn unit(unit: &str, of: Of) -> &'static str {
+    /// Units of columns, and of their integrals.
+    const UNITS: [(&str, &str); 10] = [
+        ("m", "m s"),
+        ("rad", "rad s"),
+        ("m/s", "m"),
+        ("rad/s", "rad"),
+        ("N", "N s"),
+        ("N m", "N m s"),
+        ("Pa", "Pa s"),
+        ("J", "J s"),
+        ("W", "J"),
+        ("m³/s", "m³"),
+    ];
+    let known = UNITS.into_iter().find(|(own, _)| *own == unit);
+    match (known, of) {
+        (Some((_, integral)), Of::Integral) => integral,
+        (Some((own, _)), _) => own,
+        (None, Of::Integral) => "s",
+        (None, _) => "",
+    }
+}
