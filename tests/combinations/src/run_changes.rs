@@ -21,7 +21,7 @@ const CHANGED: usize = 2;
 /// Length of the run, its interval of results, and initial rates, s, m/s and rad/s.
 const RUN: [f64; 3] = [0.1, 0.02, 0.05];
 /// Tolerance of the run with derivatives, and of those that are differenced.
-const TOLERANCES: [f64; 2] = [1e-9, 1e-11];
+const TOLERANCES: [f64; 2] = [1e-10, 1e-12];
 /// Steps relative to the number: with the longer ones differences have an error of their square, with the shorter one that of the steps of the
 /// runs. A foot may let go, or a valve open, within the longer ones.
 const STEPS: [f64; 4] = [3e-3, 3e-4, 3e-5, 3e-6];
