@@ -88,8 +88,12 @@ pub fn check_run_changes(tree: &Tree, seed: u64) -> Option<Vec<String>> {
             let off = differences(&crane, found, [&less, &more], step, per);
             let off: Vec<String> =
                 off.into_iter().map(|words| format!("{words}, by {}", name(&crane, *along))).collect();
+            let agrees = off.is_empty();
             if fewest.as_ref().is_none_or(|known| off.len() < known.len()) {
                 fewest = Some(off);
+            }
+            if agrees {
+                break;
             }
         }
         wrong.extend(fewest.into_iter().flatten());
