@@ -21,7 +21,7 @@ const CHANGED: usize = 2;
 /// Length of the run, its interval of results, and initial rates, s, m/s and rad/s.
 const RUN: [f64; 3] = [0.1, 0.02, 0.05];
 /// Tolerance of the run with derivatives, and of those that are differenced.
-const TOLERANCES: [f64; 2] = [1e-9, 1e-11];
+const TOLERANCES: [f64; 2] = [1e-10, 1e-12];
 /// Steps relative to the number: with the longer ones differences have an error of their square, with the shorter one that of the steps of the
 /// runs. A foot may let go, or a valve open, within the longer ones.
 const STEPS: [f64; 4] = [3e-3, 3e-4, 3e-5, 3e-6];
@@ -36,18 +36,20 @@ const OF_ONE: f64 = 1e-6;
 pub fn check_run_changes(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     let mut rng = Rng::with_seed(seed);
     let crane = live(&numbers_as_parameters(tree, &mut rng)?.source).ok()?;
-    let q = equilibrium(&crane).ok()?;
     // A start that does not close the loops is moved onto them, with the weights of masses that may change.
-    let rate = if crane.loop_joints().is_empty() { RUN[2] } else { 0.0 };
-    let v: Vec<f64> = q.iter().map(|_| rate * (2.0 * rng.f64() - 1.0)).collect();
+    if !crane.loop_joints().is_empty() {
+        return None;
+    }
+    let q = equilibrium(&crane).ok()?;
+    // In motion: at rest, shut valves are where their laws have a kink.
+    let v: Vec<f64> = q.iter().map(|_| RUN[2] * (2.0 * rng.f64() - 1.0)).collect();
     let start = Start { q, v, x: Vec::new(), what: String::new(), rests: false };
     let mut along: Vec<Along> = (0..crane.parameters().len()).map(Along::Parameter).collect();
     rng.shuffle(&mut along);
     along.truncate(CHANGED);
     let free: Vec<usize> =
         (0..crane.size()).filter(|j| crane.description().coordinates[*j].role != CoordinateRole::Prescribed).collect();
-    // Loops may be closed by moving other coordinates than the one that is changed.
-    if crane.loop_joints().is_empty() && !free.is_empty() {
+    if !free.is_empty() {
         along.push(Along::Position(free[rng.usize(0..free.len())]));
         along.push(Along::Rate(free[rng.usize(0..free.len())]));
     }
@@ -82,8 +84,12 @@ pub fn check_run_changes(tree: &Tree, seed: u64) -> Option<Vec<String>> {
             let off = differences(&crane, found, [&less, &more], step, per);
             let off: Vec<String> =
                 off.into_iter().map(|words| format!("{words}, by {}", name(&crane, *along))).collect();
+            let agrees = off.is_empty();
             if fewest.as_ref().is_none_or(|known| off.len() < known.len()) {
                 fewest = Some(off);
+            }
+            if agrees {
+                break;
             }
         }
         wrong.extend(fewest.into_iter().flatten());

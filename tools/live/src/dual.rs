@@ -43,11 +43,13 @@ impl Dual8 {
     }
 
     /// Its magnitude; 0 has the slopes of a positive number.
+    #[must_use]
     pub fn abs(self) -> Self {
         if self.value < 0.0 { -self } else { self }
     }
 
     /// `√(x² + y²)`. At 0 it has a kink; its slopes there are 0.
+    #[must_use]
     pub fn hypot(self, other: Self) -> Self {
         if self.value == 0.0 && other.value == 0.0 { Self::splat(0.0) } else { (self * self + other * other).sqrt() }
     }

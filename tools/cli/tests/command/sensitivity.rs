@@ -100,6 +100,12 @@ fn what_moves_a_run_is_the_difference_of_runs() {
         assert!((change / (80.0 * own) - 1.0).abs() < 1e-12, "{output}: {change:e} for 80 kg");
     }
     assert_eq!(found["outputs"][4]["unit"], "N m s");
+    // The integral of a velocity is the way from the place at rest, to the error of the trapezoidal rule.
+    let rest = json(&["statics", "knuckle_boom", "--format", "json"]);
+    let is_it = |row: &&Value| row.as_object().is_some_and(|row| row.values().any(|value| value == "load_centre"));
+    let point = rest["points"].as_array().and_then(|rows| rows.iter().find(is_it)).expect("a point");
+    let way = value(&found, 3) - point["z"].as_f64().expect("a number");
+    assert!(way.abs() > 1e-3 && (value(&found, 5) - way).abs() < 1e-4, "{} for {way}", value(&found, 5));
     assert!(found["outputs"][0]["place"].as_str().is_some_and(|place| place.starts_with("at ")));
 }
 

@@ -42,7 +42,7 @@ pub(super) struct Chunk {
 
 /// What cylinders with a valve depend on.
 struct Oil {
-    /// ℓ, ℓ̇ and ∂ℓ/∂q_j of every cylinder; ∂ℓ/∂q; commands of valves.
+    /// ℓ, ℓ̇ and `∂ℓ/∂q_j` of every cylinder; ∂ℓ/∂q; commands of valves.
     states: Evaluation<Dual8>,
     jacobians: Evaluation<Dual8>,
     openings: Evaluation<Dual8>,
