@@ -37,7 +37,7 @@ def test_columns_are_those_of_a_run(oil):
     run = oil.simulate(duration=0.2, output=0.1, verify=False)
     simulation = oil.simulation()
     state = simulation.step(0.2)
-    names = ["boom_cylinder_piston_pressure", "boom_psi_drive_torque", "tip_z"]
+    names = ["boom_cylinder_piston_pressure", "boom_psi_drive_torque", "log_middle_z"]
     found = oil.columns_at(state.q, state.v, state.x, state.t, names=names)
     for name in names:
         # The same run with steps that end elsewhere, both with the default tolerance.
