@@ -180,7 +180,7 @@ type Moves<'a, 'g> = &'a dyn Fn(&Generator<'g>) -> Vec3<'g>;
 struct ByPlace<'a, 'g> {
     /// k
     coordinate: usize,
-    /// ∂σ/∂q_k
+    /// `∂σ/∂q_k`
     sign: Expr<'g>,
     /// First and second derivative by σ.
     slopes: [Vec3<'g>; 2],

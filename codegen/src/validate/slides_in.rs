@@ -208,7 +208,7 @@ impl<'a> Check<'a> {
             let loose = exact.into_iter().zip(DIRECTIONS).take(2).filter(|(exact, _)| !exact);
             let loose: Vec<&str> = loose.map(|(_, (.., word))| word).collect();
             if !loose.is_empty() {
-                self.report(rule::loose_pad(given.span, what, &loose.join(" and ")));
+                self.report(rule::loose_pad(given.span, what, loose.join(" and ")));
             }
         }
         let damping =

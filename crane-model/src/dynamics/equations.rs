@@ -103,7 +103,7 @@ impl<'a> Equations<'a> {
 
     /// Slope of a motion given in full.
     pub fn slope_in_full(&mut self, t: f64, motion: &[f64], out: &mut [f64]) -> Result<(), NotFinite> {
-        let (t, n) = (self.references.inside(t), self.n);
+        let n = self.n;
         out[..n].copy_from_slice(&motion[n..2 * n]);
         self.state.copy_from_slice(&motion[..2 * n]);
         self.evaluate(t, motion, out)?;

@@ -154,11 +154,11 @@ class Crane:
     def _state_derivatives(
         self, q: ArrayLike, v: ArrayLike, x: ArrayLike | None = None, t: ArrayLike | None = None, *, invalid: str = "raise"
     ) -> Array:
-        """(..., n + states): `Crane.state_derivatives` separates them."""
+        """(..., n + states): accelerations and rates of the states of forces; `Crane.state_derivatives` separates them."""
     def _columns_at(
         self, q: ArrayLike, v: ArrayLike, x: ArrayLike | None = None, t: ArrayLike | None = None, *, invalid: str = "raise"
     ) -> tuple[Array, list[str]]:
-        """(..., columns), and their names: `Crane.columns_at` names them."""
+        """(..., columns): the columns of a run at states, and their names; `Crane.columns_at` names them."""
     def _acting(self, on: str) -> tuple[list[str], list[int], str | None]:
         """The inputs that a loop moves, the powers of s by which each follows, and the coordinate of its drive."""
     def _modes(self, q: ArrayLike, invalid: str = "raise") -> dict[str, Any]:

@@ -37,7 +37,7 @@ impl Crane {
         })
     }
 
-    /// (..., columns): the columns of a run at states, and their names and units; `Crane.columns_at` names them.
+    /// (..., columns): the columns of a run at states, and their names; `Crane.columns_at` names them.
     #[pyo3(name = "_columns_at", signature = (q, v, x=None, t=None, *, invalid="raise"))]
     fn columns_at_rows<'py>(
         &self,
