@@ -133,7 +133,8 @@ impl Div for Dual8 {
     type Output = Self;
     fn div(self, other: Self) -> Self {
         let value = self.value / other.value;
-        Self { value, slopes: (self.slopes - other.slopes * f64x8::splat(value)) / f64x8::splat(other.value) }
+        let above = fma(-other.slopes, f64x8::splat(value), self.slopes);
+        Self { value, slopes: above / f64x8::splat(other.value) }
     }
 }
 
@@ -191,7 +192,7 @@ impl Number for Dual8 {
     fn stumpff(arguments: [Self; ANGLES]) -> [[Self; ANGLES]; 6] {
         let orders = eight_orders(arguments.map(|argument| argument.value));
         std::array::from_fn(|k| {
-            let derivative = |index: usize| 0.5 * (k as f64 * orders[k + 2][index] - orders[k + 1][index]);
+            let derivative = |index: usize| 0.5 * fma(k as f64, orders[k + 2][index], -orders[k + 1][index]);
             std::array::from_fn(|index| arguments[index].chain(orders[k][index], derivative(index)))
         })
     }
