@@ -368,6 +368,11 @@ fn planes_exchanged(tree: &Tree, _: &mut Rng) -> Option<Second> {
             cylinder["linkage"]["pivot"] = json!(quarter(&numbers(&cylinder["linkage"]["pivot"])));
         }
     }
+    for joint in second.get_mut("loop_joints").and_then(Value::as_array_mut).into_iter().flatten() {
+        if joint["joint"]["pin"].is_object() && joint["to"]["link"] == "boom" {
+            joint["joint"]["pin"]["to_axis"] = json!(quarter(&numbers(&joint["joint"]["pin"]["axis"])));
+        }
+    }
     for_each_key(&mut second, &mut |key, value| {
         if key == "coordinate" && value == "boom_psi" {
             *value = json!("boom_theta");
