@@ -86,7 +86,7 @@ fn differences(
     // Where nothing twists a telescope, rotations and torques of its pads are rounding beside their ways and forces.
     let kind = |group: Group, unit: &'static str| match (group, unit) {
         (Group::Connectors, "rad") => "m",
-        (Group::Connectors, "N m") => "N",
+        (Group::Connectors | Group::Loops, "N m") => "N",
         _ => unit,
     };
     let largest = |group: Group, unit: &'static str| {
