@@ -292,15 +292,16 @@ impl Motion {
 pub(crate) fn motion_at(crane: &dyn DynDynamics, moment: &StateAt<'_>) -> Motion {
     let &StateAt { t, q, v, x } = moment;
     let (mut accelerations, mut rates) = (vec![0.0; q.len()], vec![0.0; x.len()]);
-    crane.forward_dynamics(t, q, v, &mut accelerations);
+    let mut loops = Loops::new(crane);
+    loops.open(crane, t, (q, v), &mut accelerations);
     let mut states = ForceStates::new(crane.description());
     if !states.is_empty() && x.len() >= states.len() {
         states.accelerate(crane, moment, &mut rates, &mut accelerations);
     }
-    let (mut loops, mut change) = (Loops::new(crane), Vec::new());
+    let mut change = Vec::new();
     if !loops.is_empty() {
         change.clone_from(&accelerations);
-        loops.accelerate(crane, q, v, &mut accelerations);
+        loops.close(&mut accelerations);
         change.iter_mut().zip(&accelerations).for_each(|(change, closed)| *change = closed - *change);
     }
     Motion { accelerations, change, rates, loops }

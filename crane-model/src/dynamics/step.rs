@@ -16,7 +16,7 @@ pub(super) struct Step {
     pub end: Vec<f64>,
     /// Difference from the embedded formula.
     pub error: Vec<f64>,
-    /// Slopes at the start and at the end; the latter is the first of the next step.
+    /// Slopes at the start and at the end; the latter is the first of the next step, unless functions of time are not smooth there.
     pub slopes: [Vec<f64>; 2],
     /// The term that a method adds to Hermite's cubic, `θ²(1−θ)² quartic_term`.
     pub quartic_term: Vec<f64>,

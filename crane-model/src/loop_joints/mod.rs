@@ -281,19 +281,6 @@ impl Loops {
         self.correct(accelerations, true);
     }
 
-    /// Accelerations with the loops closed, in place of those of the open chain with further forces. λ is then known.
-    pub fn accelerate(&mut self, crane: &dyn DynDynamics, q: &[f64], v: &[f64], accelerations: &mut [f64]) {
-        if self.is_empty() {
-            return;
-        }
-        self.evaluate(crane, q, v);
-        if self.independence.is_unknown() {
-            self.choose();
-        }
-        self.factorise(&mut |r, x| crane.solve_mass(q, r, x));
-        self.correct(accelerations, true);
-    }
-
     /// The independent equation with the largest gap.
     fn greatest(&self) -> Open {
         self.worst(|row| self.independence.is_kept(row))

@@ -66,13 +66,13 @@ impl<'a> Rates<'a> {
     pub fn at(&mut self, t: f64, motion: &[f64]) -> Result<Vec<f64>, NotFinite> {
         let n = self.n;
         let ([q, v], x) = (halves(&motion[..2 * n]), &motion[2 * n..]);
-        self.crane.forward_dynamics(t, q, v, &mut self.accelerations);
+        self.loops.open(self.crane, t, (q, v), &mut self.accelerations);
         if !self.force_states.is_empty() {
             let moment = StateAt { t, q, v, x };
             let Self { force_states, crane, of_states, by_states, accelerations, .. } = self;
             force_states.accelerate_with_slopes(*crane, &moment, of_states, Some(by_states), accelerations);
         }
-        self.loops.accelerate(self.crane, q, v, &mut self.accelerations);
+        self.loops.close(&mut self.accelerations);
         finite(&self.accelerations)?;
         Ok([v, &self.accelerations, &self.of_states].concat())
     }

@@ -7,7 +7,7 @@ use crane_model::dynamics::Method;
 use crane_model::modes;
 use crane_model::nalgebra::Vector3;
 
-use super::sliding_beams::{LENGTH, LOAD, OVERLAP, Telescope, closed_form, rest, run};
+use super::sliding_beams::{LENGTH, LOAD, OVERLAP, Telescope, assert_section_forces, closed_form, rest, run};
 
 /// Equations of both pads.
 const EQUATIONS: usize = 5;
@@ -176,27 +176,7 @@ fn pads_carry_what_levers_say() {
         // Slopes of up to 2e-3 turn the forces.
         assert!((found - expected).abs() < 1e-5 * front, "{found} instead of {expected}");
     }
-    let description = crane.description();
-    let still = vec![0.0; q.len()];
-    let wrenches = crane.internal_forces_at(0.0, &q, &still, &still);
-    let d = LENGTH / 8.0;
-    let mut checked = 0;
-    for (cut, wrench) in description.cuts().into_iter().zip(&wrenches) {
-        let Some(section) = cut.section() else { continue };
-        let info = &description.sections[section];
-        let is_inner = description.bodies[info.body].link.as_str() == "inner";
-        let (shear, moment) = match (is_inner, info.x) {
-            (true, x) if x > 1e-9 && x < b - d => (-rear, rear * x),
-            (true, x) if x > b + d && x < LENGTH - 1e-9 => (LOAD, LOAD * (LENGTH - x)),
-            (false, x) if x < LENGTH - b - d => (LOAD, LOAD * (LENGTH - x + a)),
-            (false, x) if x > LENGTH - b + d && x < LENGTH - 1e-9 => (front, front * (LENGTH - x)),
-            _ => continue,
-        };
-        checked += 1;
-        let off = (-wrench.force.z - shear).abs().max((wrench.moment.y - moment).abs());
-        assert!(off < 1e-5 * LOAD * (a + b), "inner {is_inner}, x = {}", info.x);
-    }
-    assert!(checked > 20, "{checked}");
+    assert_section_forces(crane, &q);
 }
 
 /// A beam that extends under load over borders of sections: two methods agree, and the energy balances.
