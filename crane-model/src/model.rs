@@ -5,12 +5,13 @@
 //!
 //! Throughout: `N` coordinates, `q` in m and rad, `v = q̇` in m/s and rad/s, `t` in s, world frame with z up.
 
-use crane_quantities::quantities;
+use crane_quantities::{Count, quantities};
 use nalgebra::{Cholesky, Const, DefaultAllocator, Dim, OMatrix, SMatrix, SVector, allocator::Allocator};
 
 use crate::{
-    description::{CoordinateRole, Description, LoopJointInfo, ParameterError, StageInfo},
+    description::{Description, LoopJointInfo, ParameterError, StageInfo, fill_links},
     methods::{Entry, sized_argument, sized_entry, sized_method, sized_methods, sized_result},
+    rt::derivatives::{self, Columns, Link, Sixteen, Workspace},
     rt::lanes::f64x8,
 };
 
@@ -196,48 +197,80 @@ pub trait TransformDerivatives<const N: usize>: CraneModel<N> {
 
 /// Derivatives of the dynamics, for controllers, optimization and identification.
 pub trait MotionDerivatives<const N: usize>: Dynamics<N> {
+    /// Derivatives ∂r/∂q (N/m, N, N m) and ∂r/∂v (N s/m, N s, N m s) of the residual r = A a − e − f of
+    /// [`dynamic_residual`](Self::dynamic_residual), row by row. `out`: 2 N rows.
+    ///
+    /// `Ω_i · (Ω̈_j W + 2 Ω̇_j G + Ω_j × F) − ∂f_i/∂q_j, 2 Ω_i · (Ω̇_j W + Ω_j G) − ∂f_i/∂q̇_j`
+    fn dynamic_residual_derivatives(
+        &self,
+        t: f64,
+        q: &SVector<f64, N>,
+        v: &SVector<f64, N>,
+        a: &SVector<f64, N>,
+        out: &mut [[f64; N]],
+    ) {
+        let mut factors = [[0.0; N]; Count::RESIDUAL_FACTORS];
+        self.residual_factors(q, v, a, &mut factors);
+        self.force_derivatives(t, q, v, out);
+        with_workspace(self, |links, workspace| {
+            derivatives::residual_derivatives(links, factors.as_flattened(), workspace, out.as_flattened_mut());
+        });
+    }
+
+    /// Inverse A⁻¹ of the mass matrix, accelerations per generalized force; 1/kg, 1/(kg m) and 1/(kg m²). Zero in rows and columns of coordinates
+    /// that rigid drives prescribe. Of the open chain.
+    ///
+    /// `A⁻¹ = Lᵀ D⁻¹ L`, by articulated bodies
+    fn inverse_mass_matrix(&self, q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
+        let mut factors = [[0.0; N]; Count::MASS_FACTORS];
+        self.mass_factors(q, &mut factors);
+        let mut inverse = SMatrix::<f64, N, N>::zeros();
+        // A⁻¹ is symmetric: its rows are its columns.
+        let rows = inverse.data.0.as_flattened_mut();
+        with_workspace(self, |links, workspace| {
+            derivatives::inverse_mass_matrix(links, factors.as_flattened(), workspace, rows);
+        });
+        inverse
+    }
+
     /// Derivatives of the accelerations q̈ of [`forward_dynamics`](Dynamics::forward_dynamics) of the open chain: rows of ∂q̈/∂q, then of ∂q̈/∂v,
     /// then of ∂q̈/∂τ = A⁻¹ with generalized forces τ. `out`: 3 N rows. For coordinates that rigid drives prescribe the rows are zero, and so are
-    /// their columns of A⁻¹. NaN unless A is positive definite.
+    /// their columns of A⁻¹.
     ///
-    /// `−A⁻¹ ∂r/∂q, −A⁻¹ ∂r/∂v, A⁻¹`, at a = q̈, by Cholesky's factors of A
+    /// `−A⁻¹ ∂r/∂q, −A⁻¹ ∂r/∂v, A⁻¹`, at a = q̈, A⁻¹ by articulated bodies
     fn forward_dynamics_derivatives(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>, out: &mut [[f64; N]]) {
         let a = self.forward_dynamics(t, q, v);
-        let (rows, rest) = out.split_at_mut(out.len().min(2 * N));
-        self.dynamic_residual_derivatives(t, q, v, &a, rows);
-        let mut mass = self.mass_matrix(q);
-        let prescribed = |j: usize| {
-            self.description().coordinates.get(j).is_some_and(|info| info.role == CoordinateRole::Prescribed)
-        };
-        separate(&mut mass, prescribed);
-        let Some(factors) = Cholesky::new(mass) else {
-            rows.iter_mut().chain(rest).for_each(|row| row.fill(f64::NAN));
-            return;
-        };
-        for block in rows.chunks_mut(N.max(1)) {
-            let of_block = |i: usize, j: usize| block.get(i).and_then(|row| row.get(j)).copied().unwrap_or(0.0);
-            let right = SMatrix::<f64, N, N>::from_fn(|i, j| if prescribed(i) { 0.0 } else { -of_block(i, j) });
-            write_rows(&factors.solve(&right), block);
-        }
-        let unit = |i: usize, j: usize| if i == j && !prescribed(i) { 1.0 } else { 0.0 };
-        write_rows(&factors.solve(&SMatrix::<f64, N, N>::from_fn(unit)), rest);
+        let (mut of_residual, mut of_mass) = ([[0.0; N]; Count::RESIDUAL_FACTORS], [[0.0; N]; Count::MASS_FACTORS]);
+        self.residual_factors(q, v, &a, &mut of_residual);
+        self.mass_factors(q, &mut of_mass);
+        self.force_derivatives(t, q, v, out);
+        let factors = [of_residual.as_flattened(), of_mass.as_flattened()];
+        with_workspace(self, |links, workspace| {
+            derivatives::forward_dynamics_derivatives(links, factors, workspace, out.as_flattened_mut());
+        });
     }
 
     quantities! { sized_methods of MotionDerivatives }
 }
 
-/// Writes a matrix row by row.
-fn write_rows<const N: usize>(matrix: &SMatrix<f64, N, N>, rows: &mut [[f64; N]]) {
-    for (out, row) in rows.iter_mut().zip(matrix.row_iter()) {
-        out.iter_mut().zip(row.iter()).for_each(|(out, entry)| *out = *entry);
+/// Calls `compute` with the coordinates of a crane and a workspace for derivatives.
+fn with_workspace<const N: usize>(
+    crane: &(impl CraneModel<N> + ?Sized),
+    compute: impl FnOnce(&[Link], Workspace<'_, Sixteen>),
+) {
+    let mut links = [Link::default(); N];
+    fill_links(crane.description(), crane.parents(), &mut links);
+    let zero = <Sixteen as Columns>::splat(0.0);
+    let (mut joints, mut rows, mut by_q, mut by_v) = ([([0.0; 16], false); N], [[0.0; 16]; N], [zero; N], [zero; N]);
+    let work = |states: &mut [_], paths: &mut [_]| {
+        let columns = [by_q.as_mut_slice(), by_v.as_mut_slice()];
+        compute(&links, Workspace { joints: &mut joints, rows: &mut rows, columns, states, paths });
+    };
+    if crane.parents().is_empty() {
+        work(&mut [], &mut []);
+    } else {
+        work(&mut [[[zero; 3]; 2]; N], [[0.0; N]; N].as_flattened_mut());
     }
-}
-
-/// Makes the rows and columns of some coordinates those of the unit matrix.
-fn separate<const N: usize>(matrix: &mut SMatrix<f64, N, N>, is_separate: impl Fn(usize) -> bool) {
-    let unit = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
-    let entry = |i: usize, j: usize, entry: f64| if is_separate(i) || is_separate(j) { unit(i, j) } else { entry };
-    *matrix = matrix.map_with_location(entry);
 }
 
 /// Coefficients of small motions about a pose at rest.

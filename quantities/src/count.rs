@@ -41,6 +41,10 @@ pub enum Count {
     PosesAndRates,
     /// Entries of a residual, for poses and for rates.
     ResidualRows,
+    /// Numbers of each coordinate that derivatives of a residual are products of.
+    ResidualFactors,
+    /// Numbers of each coordinate of which the inverse mass matrix is a product.
+    MassFactors,
 }
 
 impl Count {
@@ -71,8 +75,16 @@ impl Count {
             Count::PointAxes => "point_axes",
             Count::PosesAndRates => "2",
             Count::ResidualRows => "residual_rows",
+            Count::ResidualFactors => "residual_factors",
+            Count::MassFactors => "mass_factors",
         }
     }
+
+    /// The number of [`ResidualFactors`](Self::ResidualFactors): twenty vectors, a mass, and five diagonals.
+    pub const RESIDUAL_FACTORS: usize = 3 * 20 + 1 + 5;
+
+    /// The number of [`MassFactors`](Self::MassFactors): four vectors, and a reciprocal.
+    pub const MASS_FACTORS: usize = 3 * 4 + 1;
 
     /// The number of [`LoopRows`](Self::LoopRows) of so many equations and n coordinates.
     #[must_use]

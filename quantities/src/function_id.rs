@@ -188,6 +188,12 @@ macro_rules! count {
     (residual_rows) => {
         Count::ResidualRows
     };
+    (residual_factors) => {
+        Count::ResidualFactors
+    };
+    (mass_factors) => {
+        Count::MassFactors
+    };
 }
 
 macro_rules! python {

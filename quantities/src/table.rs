@@ -279,9 +279,25 @@ MotionDerivatives {
         "r = A a − e − f, by Newton and Euler" python(q, v, a; t);
     /// Row i and column j of each matrix: the change of `r_i` with `q_j`, and with `q̇_j`. At rest ∂r/∂q is the tangent stiffness, and ∂r/∂v
     /// the damping matrix.
-    DynamicResidualDerivatives = dynamic_residual_derivatives(t, q, v, a) -> [row; residual_rows] required
+    DynamicResidualDerivatives = dynamic_residual_derivatives(t, q, v, a) -> [row; residual_rows] written
         "Derivatives ∂r/∂q (N/m, N, N m) and ∂r/∂v (N s/m, N s, N m s) of the residual r = A a − e − f."
         "Ω_i · (Ω̈_j W + 2 Ω̇_j G + Ω_j × F) − ∂f_i/∂q_j, 2 Ω_i · (Ω̇_j W + Ω_j G) − ∂f_i/∂q̇_j" python(q, v, a; t);
+    /// Row i and column j of each matrix: the change of `f_i` with `q_j`, and with `q̇_j`.
+    ForceDerivatives = force_derivatives(t, q, v) -> [row; residual_rows] required
+        "Derivatives ∂f/∂q (N/m, N, N m) and ∂f/∂v (N s/m, N s, N m s) of the generalized forces f of `forces`."
+        "∂f_i/∂q_j, ∂f_i/∂q̇_j" python(q, v; t);
+    /// The runtime multiplies them in loops, see [`rt::derivatives`](crate::rt::derivatives).
+    ResidualFactors = residual_factors(q, v, a) -> [row; residual_factors] required
+        "What the derivatives of the generalized forces that a motion requires are products of, coordinate by coordinate."
+        "Ω, Ω̇, V, V̇ − γ, W, G, F";
+    /// Of a prescribed coordinate κ, λ and 1/D are zero. The runtime multiplies them in loops, see [`rt::derivatives`](crate::rt::derivatives).
+    MassFactors = mass_factors(q) -> [row; mass_factors] required
+        "Factors of the inverse mass matrix, coordinate by coordinate: axes, articulated forces and moments, offsets, reciprocal inertias."
+        "A⁻¹ = Lᵀ D⁻¹ L [Featherstone 2008, chapter 7]";
+    /// Zero in rows and columns of coordinates that rigid drives prescribe. Of the open chain.
+    InverseMassMatrix = inverse_mass_matrix(q) -> matrix written
+        "Inverse A⁻¹ of the mass matrix: accelerations per generalized force; 1/kg, 1/(kg m) and 1/(kg m²)."
+        "A⁻¹ = Lᵀ D⁻¹ L, by articulated bodies" python(q);
     /// About a moving state, δq̈ = ∂q̈/∂q δq + ∂q̈/∂v δq̇ + A⁻¹ δτ. For coordinates that rigid drives prescribe the rows are zero, and so are their
     /// columns of A⁻¹. Of the open chain.
     ForwardDynamicsDerivatives = forward_dynamics_derivatives(t, q, v) -> other written
@@ -322,6 +338,8 @@ macro_rules! axes {
     ([pair; coordinates]) => { ", n, 2" };
     ([row; point_axes]) => { ", points, 3, n" };
     ([row; residual_rows]) => { ", 2, n, n" };
+    ([row; residual_factors]) => { ", 66, n" };
+    ([row; mass_factors]) => { ", 13, n" };
     ([$item:ident; $count:ident]) => { concat!(", ", stringify!($count), $crate::axes!(@ $item)) };
     (@ vector) => { ", 3" };
     (@ pair) => { ", 2" };

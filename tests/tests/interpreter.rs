@@ -65,6 +65,10 @@ fn implicit_solution(crane: &Interpreted, inputs: &Inputs<Runtime>) -> Vec<Runti
 /// to the largest value, and allows for the magnified rounding of accelerations; where all terms cancel, it is relative to 1.
 const FUSED: Option<f64> = if cfg!(any(target_feature = "fma", target_arch = "aarch64")) { Some(1e-11) } else { None };
 
+/// What the runtime multiplies of generated factors, by the same loops for all cranes:
+/// `tests/tests/generated/motion_derivatives.rs`.
+const MULTIPLIED: [&str; 2] = ["dynamic_residual_derivatives", "inverse_mass_matrix"];
+
 #[test]
 fn generated_code_equals_the_interpreter_to_the_bit() {
     for entry in registry::all() {
@@ -81,6 +85,9 @@ fn generated_code_equals_the_interpreter_to_the_bit() {
             for quantity in quantities(entry.description) {
                 let (first, others) = rest.split_at(quantity.len());
                 rest = others;
+                if MULTIPLIED.contains(&quantity.name) {
+                    continue;
+                }
                 let expected = interpret(&crane, &quantity, &inputs);
                 assert_eq!(first.len(), expected.len(), "{} {}", entry.name, quantity.name);
                 let size = expected.iter().fold(0.0, |size: f64, x| size.max(x.0.abs()));

@@ -28,7 +28,6 @@ fn main() -> io::Result<()> {
             modes: false,
             internal_forces: false,
             derivatives,
-            motion_derivatives: false,
             ensemble: true,
             ..Analyses::ALL
         };

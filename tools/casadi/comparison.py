@@ -130,7 +130,7 @@ def vanishing_state(quantity):
 
 def is_solution(quantity):
     """Whether a quantity is the solution of a linear system with A."""
-    return quantity.endswith(("forward_dynamics", "_solution", "solve_mass", "loop_dynamics"))
+    return quantity.endswith(("forward_dynamics", "_solution", "solve_mass", "loop_dynamics", "inverse_mass_matrix"))
 
 
 def ratio(error, size):

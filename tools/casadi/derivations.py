@@ -98,7 +98,7 @@ class Derivations:
         }
 
     def motion_derivatives(self):
-        """`A a - e`, `r = A a - e - f` and ∂r/∂q, ∂r/∂v at given a, for which the rates are used, too; derivatives of the points.
+        """`A a - e`, `r = A a - e - f`, and derivatives of r and f by q and v, at given a, for which the rates are used, too; those of the points.
 
         The forces of rigid drives are not part of f.
         """
@@ -106,10 +106,15 @@ class Derivations:
         a = ca.SX.sym("a", q.numel())
         required = ca.reshape(known["mass_matrix"], q.numel(), q.numel()) @ a - known["bias"]
         residual = required - known["forces"]
-        slopes = [row_major(ca.densify(ca.jacobian(residual, x))) for x in (q, v)]
+        slopes, of_forces = (
+            [row_major(ca.densify(ca.jacobian(of, x))) for x in (q, v)] for of in (residual, known["forces"])
+        )
         found = [ca.substitute(expression, a, v) for expression in (required, residual, ca.vertcat(*slopes))]
         names = ["inverse_dynamics", "dynamic_residual", "dynamic_residual_derivatives"]
-        return dict(zip(names, found)) | {"point_jacobians": row_major(ca.densify(ca.jacobian(known["points"], q)))}
+        return dict(zip(names, found)) | {
+            "force_derivatives": ca.vertcat(*of_forces),
+            "point_jacobians": row_major(ca.densify(ca.jacobian(known["points"], q))),
+        }
 
     def internal_forces(self):
         """What the part beyond each cut exerts on the part before it: its weight and the loads on it, minus the rate of its momenta.
@@ -558,7 +563,7 @@ class Derivations:
         n = self.crane.q.numel()
         equations = own["loop_jacobians"] // n
         loop_rows = 1 + -(-equations // n) + 2 * equations if equations else 0
-        return own | dict.fromkeys(SOLUTIONS, n) | {"loop_dynamics": loop_rows * n}
+        return own | dict.fromkeys(SOLUTIONS, n) | {"loop_dynamics": loop_rows * n, "inverse_mass_matrix": n * n}
 
     def evaluate(self, states):
         """All quantities at all states: name -> array with one row per state."""
@@ -590,8 +595,8 @@ PRESCRIBED = "prescribed_acceleration"
 # The damping in implicit steps, likewise.
 LINEAR_DAMPING = "linear_damping"
 INTERNAL = [SPRINGS, PRESCRIBED, LINEAR_DAMPING]
-# What is not derived a second time: numbers of the spec, blocks of matrices that implicit solutions contain, and the wrenches of loop joints,
-# which no compiled crane has.
+# What is not derived a second time: numbers of the spec, blocks of matrices that implicit solutions contain, factors of matrices that are
+# compared, and the wrenches of loop joints, which no compiled crane has.
 NOT_DERIVED = [
     "base_damping",
     "base_stiffness",
@@ -599,6 +604,8 @@ NOT_DERIVED = [
     "joint_stiffness_and_damping",
     "load_pieces",
     "loop_wrenches",
+    "mass_factors",
+    "residual_factors",
     "winch_pieces",
 ]
 
@@ -624,7 +631,15 @@ def solutions(values, v, prescribed):
         values[name][:, prescribed] += efforts
     values["drive_power"][:, 0] += np.einsum("si,si->s", efforts, v[:, prescribed])
     found = [accelerations, accelerations, solve_unknown(mass, v, prescribed), solve_unknown(implicit, v, prescribed)]
-    return dict(zip(SOLUTIONS, found)) | {"loop_dynamics": loop_dynamics(values, mass, accelerations, prescribed)}
+    units = np.delete(np.eye(count), prescribed, axis=0)
+    inverse = np.zeros_like(mass)
+    inverse[:, np.delete(np.arange(count), prescribed)] = np.stack(
+        [solve_unknown(mass, np.broadcast_to(unit, v.shape), prescribed) for unit in units], axis=1
+    )
+    return dict(zip(SOLUTIONS, found)) | {
+        "loop_dynamics": loop_dynamics(values, mass, accelerations, prescribed),
+        "inverse_mass_matrix": inverse.reshape(len(v), -1),
+    }
 
 
 def loop_dynamics(values, mass, accelerations, prescribed):

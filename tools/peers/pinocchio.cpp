@@ -9,9 +9,12 @@
 //     dense_local, dense_world             crba, nonLinearEffects, Pinocchio's Cholesky: q̈
 //     llt_local, llt_world                 the same with Eigen's: q̈
 //     terms_local, terms_world             crba and nonLinearEffects: A, e
+//     derivatives_of_aba                   computeABADerivatives: derivatives of q̈ with respect to q, q̇ and forces
+// Those of a free flyer are in its tangent space; of its values only A⁻¹ is converted.
 #include <memory>
 #include <sstream>
 
+#include <pinocchio/algorithm/aba-derivatives.hpp>
 #include <pinocchio/algorithm/aba.hpp>
 #include <pinocchio/algorithm/cholesky.hpp>
 #include <pinocchio/algorithm/crba.hpp>
@@ -201,6 +204,33 @@ static Kernel open(const std::string &chain, const std::string &states_path, con
                     const auto bias = numbers(VectorXd(-s.J.transpose() * (room->data.nle + full * s.c)));
                     both.insert(both.end(), bias.begin(), bias.end());
                     return both;
+                }};
+    }
+    if (method == "derivatives") {
+        auto derivatives = [=](std::size_t i) {
+            const Converted &s = room->states[i];
+            pin::computeABADerivatives(room->model, room->data, s.q, s.v, s.f);
+            keep(room->data.ddq_dq.data());
+            keep(room->data.ddq_dv.data());
+            keep(room->data.Minv.data());
+        };
+        const bool is_free_flyer = base == "free_flyer" && has_free_base(steps);
+        return {room->states.size(), derivatives, [=](std::size_t i) {
+                    derivatives(i);
+                    const Converted &s = room->states[i];
+                    const MatrixXd inverse = room->data.Minv.template selfadjointView<Eigen::Upper>();
+                    const auto back = s.J.partialPivLu();
+                    std::vector<double> all;
+                    auto append = [&](const MatrixXd &matrix) {
+                        const MatrixXd rows = matrix.transpose();
+                        all.insert(all.end(), rows.data(), rows.data() + rows.size());
+                    };
+                    if (!is_free_flyer) {
+                        append(room->data.ddq_dq);
+                        append(room->data.ddq_dv);
+                    }
+                    append(back.solve(back.solve(inverse).transpose()));
+                    return all;
                 }};
     }
     if (method != "aba" && method != "dense" && method != "llt") throw std::runtime_error("no kernel " + name);

@@ -286,15 +286,10 @@ fn method(code: &LoweredFunction) -> TokenStream {
                 }
             }
         }
-        Shape::Vectors(_)
-        | Shape::Pairs(_)
-        | Shape::Rows { .. }
-        | Shape::Structs(..)
-        | Shape::Transforms { corner: 1, .. } => {
+        Shape::Vectors(_) | Shape::Pairs(_) | Shape::Structs(..) | Shape::Transforms { corner: 1, .. } => {
             let element = match function.shape {
                 Shape::Vectors(_) => quote!(Vector3<f64>),
                 Shape::Pairs(_) => quote!([f64; 2]),
-                Shape::Rows { .. } => quote!([f64; N]),
                 Shape::Structs(of, _) => struct_name(of),
                 _ => quote!(Matrix4<f64>),
             };
@@ -304,10 +299,13 @@ fn method(code: &LoweredFunction) -> TokenStream {
                 }
             }
         }
-        Shape::Transforms { .. } | Shape::TransformFactors { .. } => {
-            let total = integer(function.shape.matrices());
+        Shape::Rows { .. } | Shape::Transforms { .. } | Shape::TransformFactors { .. } => {
+            let (item, total) = match function.shape {
+                Shape::Rows { count, .. } => (quote!([f64; N]), integer(count)),
+                _ => (quote!(Matrix4<f64>), integer(function.shape.matrices())),
+            };
             quote! {
-                fn #name(&self, #(#names: #types,)* out: &mut [Matrix4<f64>]) {
+                fn #name(&self, #(#names: #types,)* out: &mut [#item]) {
                     if let Some(out) = out.first_chunk_mut::<#total>() {
                         #name(#(#arguments,)* out);
                     }

@@ -45,7 +45,8 @@ impl Writer<'_> {
     /// The storage with its initial values.
     fn begin(&self) -> Stmt {
         if matches!(self.storage.handover(), Handover::OutArgument) {
-            return parse_quote!(out.fill(Matrix4::zeros()););
+            let zero = self.storage.blank_item();
+            return parse_quote!(out.fill(#zero););
         }
         let name = format_ident!("{}", self.storage.storage_name());
         let (storage, blank) = (self.storage.storage_type(), self.storage.blank());

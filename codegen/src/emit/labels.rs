@@ -130,6 +130,41 @@ impl<'a> Labels<'a> {
                 })
             }
             Count::PointAxes => self.part(Count::Points, index / 3),
+            Count::ResidualFactors => {
+                const VECTORS: [&str; 20] = [
+                    "ω",
+                    "υ",
+                    "ω̇",
+                    "υ̇",
+                    "V, angular",
+                    "V, linear",
+                    "V̇ − γ, angular",
+                    "V̇ − γ, linear",
+                    "Added to ω̈",
+                    "Added to ϋ",
+                    "First moments",
+                    "Inertia, x",
+                    "Inertia, y",
+                    "Inertia, z",
+                    "tr(G) 1 − G, x",
+                    "tr(G) 1 − G, y",
+                    "tr(G) 1 − G, z",
+                    "Momentum",
+                    "Force",
+                    "Moment",
+                ];
+                let axis = ["x", "y", "z"][index % 3];
+                Some(match VECTORS.get(index / 3) {
+                    Some(vector) => format!("{vector}, {axis}"),
+                    None if index == 60 => "Mass".to_owned(),
+                    None => "Diagonal".to_owned(),
+                })
+            }
+            Count::MassFactors => {
+                const VECTORS: [&str; 4] = ["Axis", "Force over D", "Moment over D", "Offset"];
+                let axis = ["x", "y", "z"][index % 3];
+                Some(VECTORS.get(index / 3).map_or("1/D".to_owned(), |vector| format!("{vector}, {axis}")))
+            }
             Count::ResidualRows => self.part(Count::Coordinates, index % chain.coordinates.len()),
             Count::Bodies | Count::Derivatives | Count::SecondDerivatives | Count::Axes | Count::PosesAndRates => None,
         }

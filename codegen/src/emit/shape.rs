@@ -34,7 +34,7 @@ impl<'f> Storage<'f> {
 
     pub fn handover(&self) -> Handover {
         match self.shape {
-            Shape::Transforms { corner: 0, .. } => Handover::OutArgument,
+            Shape::Transforms { corner: 0, .. } | Shape::Rows { .. } => Handover::OutArgument,
             Shape::TransformFactors { .. } => Handover::FromFactors,
             Shape::MassAndBias(_) | Shape::Columns { bias: true, .. } => Handover::Both,
             _ => Handover::Return,
@@ -109,7 +109,6 @@ impl<'f> Storage<'f> {
             Shape::Factors(n) => array(&quote!(0.0), *n),
             Shape::Vectors(n) => array(&quote!(Vector3::zeros()), *n),
             Shape::Pairs(n) => array(&quote!([0.0; 2]), *n),
-            Shape::Rows { count, .. } => array(&quote!([0.0; N]), *count),
             Shape::Structs(of, n) => {
                 let of = struct_name(*of);
                 array(&quote!(#of::ZERO), *n)
@@ -120,7 +119,13 @@ impl<'f> Storage<'f> {
             }
             Shape::TransformFactors { .. } => quote!(TransformFactors::zeros()),
             Shape::Record(_, fields) => array(&quote!([[0.0; N]; N]), fields.len()),
+            Shape::Rows { .. } => unreachable!("written to the caller's array"),
         }
+    }
+
+    /// An item of a storage that the caller has.
+    pub fn blank_item(&self) -> TokenStream {
+        if let Shape::Rows { .. } = self.shape { quote!([0.0; N]) } else { quote!(Matrix4::zeros()) }
     }
 
     /// The result from its storage.
@@ -176,6 +181,9 @@ impl<'f> Storage<'f> {
             let slots = isize::try_from(of.len()).expect("a few");
             let which = at(Progression { first: first / of.len(), step: step / slots });
             return struct_slot(*of, place(out, &which), first % of.len());
+        }
+        if let Shape::Rows { n, .. } = self.shape {
+            return place(element(out, first / n), &at(Progression { first: first % n, step }));
         }
         let Shape::Columns { n, .. } = self.shape else { return place(out, &at(slots)) };
         if let Some(first) = first.checked_sub(12 * n) {

@@ -213,7 +213,12 @@ fn result(chain: &Chain, Function { id, shape, .. }: &Function) -> String {
         Shape::Rows { count, n } if *id == FunctionId::LoopDynamics => {
             format!("out: {count} x {n}, row by row: q'' of the open chain, J' q', J, inv(A) J'")
         }
-        Shape::Rows { count, n } if *id == FunctionId::DynamicResidualDerivatives => {
+        Shape::Rows { count, n } if matches!(id, FunctionId::MassFactors | FunctionId::ResidualFactors) => {
+            format!("out: {count} x {n}, row by row, one number per coordinate in each")
+        }
+        Shape::Rows { count, n }
+            if matches!(id, FunctionId::DynamicResidualDerivatives | FunctionId::ForceDerivatives) =>
+        {
             format!("out: {} matrices of {n} x {n}, row by row, one after the other", count / n)
         }
         Shape::Rows { count, n } => format!("out: {count} x {n}, row by row, of the {}", names()),

@@ -41,6 +41,8 @@ pub struct Effort<'g> {
 #[derive(Clone, Copy, Debug)]
 pub struct Response<'g> {
     pub rest: Expr<'g>,
+    /// 1/D
+    pub reciprocal: Expr<'g>,
     pub angular: Vec3<'g>,
     pub linear: Vec3<'g>,
 }
@@ -166,7 +168,7 @@ impl<'g> Articulated<'g> {
             }));
         self.force = self.force + free * linear;
         // α of the response does not include the gyration: its moment is already in n₀.
-        Response { rest: free, angular: scaled_angular, linear: scaled_linear }
+        Response { rest: free, reciprocal, angular: scaled_angular, linear: scaled_linear }
     }
 
     /// Releases the translation along an axis. `D = M_kk + d̂`, `q̈ = (τ − f₀_k − H_kᵀ α − M_k a) / D`.
@@ -194,7 +196,7 @@ impl<'g> Articulated<'g> {
                 if i == k { effort.applied - effort.added_inertia * free } else { own[i] + linear[i] * free }
             }));
         self.moment = self.moment + free * angular;
-        Response { rest: free, angular: scaled_angular, linear: scaled_linear }
+        Response { rest: free, reciprocal, angular: scaled_angular, linear: scaled_linear }
     }
 
     /// Prescribes `q̈` of a rotation about an axis, in the frame after it; `gyration` is `ω × e q̇`.

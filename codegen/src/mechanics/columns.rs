@@ -115,7 +115,7 @@ pub fn columns<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Columns<'g> {
 }
 
 /// The axes of the frame before each rotation and each translation, from the base to the tips.
-fn frames<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Rotation<'g>> {
+pub fn frames<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Rotation<'g>> {
     let mut frame = Rotation::identity(model.graph);
     let mut frames = Vec::new();
     let mut reached = Reached::new();

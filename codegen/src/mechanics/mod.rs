@@ -27,6 +27,7 @@ mod kinematics;
 mod laws;
 mod loads;
 mod loop_joints;
+mod mass_factors;
 mod model;
 mod motion_derivatives;
 mod newton_euler;

@@ -34,6 +34,8 @@ impl Description {
             Count::SecondDerivatives => degrees.map(|n| n * (n + 1) / 2).sum(),
             Count::Axes => 3,
             Count::PosesAndRates => 2,
+            Count::ResidualFactors => Count::RESIDUAL_FACTORS,
+            Count::MassFactors => Count::MASS_FACTORS,
             Count::CylinderCuts | Count::ConnectorCuts | Count::LoopCuts | Count::PointAxes | Count::ResidualRows => {
                 count.factors().iter().map(|factor| self.count(loop_joints, *factor)).product()
             }

@@ -1,6 +1,7 @@
 //! Metadata of a crane.
 
 mod count;
+mod links;
 mod loop_joint;
 mod parameter;
 mod poses;
@@ -9,6 +10,7 @@ mod stage;
 #[cfg(feature = "std")]
 mod tree;
 
+pub use links::fill_links;
 pub use loop_joint::{LoopEquationInfo, LoopJointInfo};
 pub use parameter::{Bound, ParameterError, ParameterInfo, Refusal};
 pub use poses::{LARGE_TILT, NEAR_SINGULAR, TIPPED};

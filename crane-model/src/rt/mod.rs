@@ -1,5 +1,6 @@
 //! Functions that generated code calls, in addition to nalgebra.
 
+pub mod derivatives;
 mod fused;
 pub mod lanes;
 mod mass_matrix;

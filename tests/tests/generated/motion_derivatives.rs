@@ -1,6 +1,10 @@
-//! Derivatives of the residual and of accelerations on random cranes and on those shipped, against dual numbers through the functions themselves.
+//! Derivatives of the residual and of accelerations on random cranes and on those shipped, against dual numbers through the functions themselves:
+//! those that the runtime multiplies in loops, and those of straight-line code for C.
 
+use crane_codegen::chain::{Chain, Loops};
 use crane_codegen::program::{Argument, Inputs};
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::DynMotionDerivatives;
 use crane_model::nalgebra::{DMatrix, DVector};
 use crane_tests::dual::Dual;
 use crane_tests::interpreted::Interpreted;
@@ -33,12 +37,17 @@ fn along(crane: &Interpreted, state: &State, a: &[f64], (of_rates, j): (bool, us
 fn derivatives_are_those_of_dual_numbers() {
     for (name, crane) in cranes() {
         let n = crane.size();
+        let live = LiveCrane::new(crane.chain.clone());
+        let straight = Interpreted::new(Chain { loops: Loops::Never, ..crane.chain.clone() });
         for state in states::far(&crane.chain, 1, 7) {
             let a = crane.acceleration(&state);
             let inputs = crane.inputs(&state).with(Argument::Acceleration, a.as_slice().to_vec());
-            let found = crane.get("dynamic_residual_derivatives", &inputs, 0);
-            for (of_rates, found) in [false, true].into_iter().zip(found.chunks_exact(n * n)) {
-                let found = DMatrix::from_row_slice(n, n, found);
+            let written_out = straight.get("dynamic_residual_derivatives", &inputs, 0);
+            let (mut of_residual, mut of_motion) = (vec![f64::NAN; 2 * n * n], vec![f64::NAN; 3 * n * n]);
+            live.dynamic_residual_derivatives(state.t, &state.q, &state.v, a.as_slice(), &mut of_residual);
+            live.forward_dynamics_derivatives(state.t, &state.q, &state.v, &mut of_motion);
+            for (block, of_rates) in [false, true].into_iter().enumerate() {
+                let matrix = |rows: &[f64]| DMatrix::from_row_slice(n, n, &rows[block * n * n..(block + 1) * n * n]);
                 let by_duals = |function: &str| {
                     let column = |j: usize| {
                         let slopes = crane.get(function, &along(&crane, &state, a.as_slice(), (of_rates, j)), n);
@@ -47,19 +56,24 @@ fn derivatives_are_those_of_dual_numbers() {
                     DMatrix::from_columns(&(0..n).map(column).collect::<Vec<_>>())
                 };
                 let expected = by_duals("dynamic_residual");
-                let (off, size) = ((&found - &expected).amax(), expected.amax());
-                // Rounding of the largest entry; positions of some metres and accelerations of some hundred cancel.
-                assert!(off <= 1e-12 * size, "{name}, r, rates {of_rates}: off by {off:e} of {size:e}");
+                for (way, found) in [("loops", &of_residual), ("straight", &written_out)] {
+                    let (off, size) = ((matrix(found) - &expected).amax(), expected.amax());
+                    // Rounding of the largest entry; positions of some metres and accelerations of some hundred cancel.
+                    assert!(off <= 1e-12 * size, "{name}, r, {way}, rates {of_rates}: off by {off:e} of {size:e}");
+                }
                 let expected = by_duals("forward_dynamics");
-                let column = |j: usize| {
-                    let (mass, right) =
-                        crane.unknowns(crane.matrix("mass_matrix", &state), -found.column(j).into_owned());
-                    mass.cholesky().expect("A is positive definite").solve(&right)
-                };
-                let solved = DMatrix::from_columns(&(0..n).map(column).collect::<Vec<_>>());
-                let (off, size) = ((&solved - &expected).amax(), expected.amax());
-                // The same, times the condition of A, for which the dense solution loses six digits on random cranes.
+                let (off, size) = ((matrix(&of_motion) - &expected).amax(), expected.amax());
+                // The same, times the condition of A.
                 assert!(off <= 1e-9 * size, "{name}, q̈, rates {of_rates}: off by {off:e} of {size:e}");
+            }
+            let mass = crane.matrix("mass_matrix", &state);
+            let inverse = DMatrix::from_row_slice(n, n, &of_motion[2 * n * n..]);
+            for j in (0..n).filter(|j| !crane.prescribed().contains(j)) {
+                let unit = DVector::from_fn(n, |i, _| if i == j { 1.0 } else { 0.0 });
+                let (unknowns, right) = crane.unknowns(mass.clone(), unit);
+                let product = unknowns * inverse.column(j);
+                // A⁻¹ without what is prescribed, to rounding times the condition of A.
+                assert!((product - right).amax() <= 1e-9, "{name}, A⁻¹, column {j}");
             }
         }
     }

@@ -115,6 +115,16 @@ impl<const N: usize> Numbers for Lower<N> {
     }
 }
 
+/// Rows of square matrices, one after the other.
+pub struct Rows<const N: usize>(pub Vec<[f64; N]>);
+
+impl<const N: usize> Numbers for Rows<N> {
+    /// Row by row.
+    fn append_to(&self, numbers: &mut Vec<f64>) {
+        numbers.extend(self.0.iter().flatten());
+    }
+}
+
 impl<const N: usize> Numbers for SVector<f64x8, N> {
     /// Crane by crane.
     fn append_to(&self, numbers: &mut Vec<f64>) {

@@ -3,9 +3,9 @@
 use crane_model::dynamics::rk4;
 use crane_model::nalgebra::{Cholesky, Matrix4, Matrix6, SMatrix, SVector};
 use crane_model::rt::lanes::f64x8;
-use crane_model::{Ensemble, Implicit, LaneDynamics, TransformDerivatives};
+use crane_model::{Ensemble, Implicit, LaneDynamics, MotionDerivatives, TransformDerivatives};
 
-use crate::kernel::{Kernel, Lower};
+use crate::kernel::{Kernel, Lower, Rows};
 use crate::states::{self, State};
 use crate::triple_sum::TripleSum;
 
@@ -14,7 +14,10 @@ pub const STEP: f64 = 1e-8;
 
 /// Kernels of any crane.
 #[must_use]
-pub fn all<const N: usize, C: Implicit<N> + Ensemble<N> + Default + Copy + 'static>(_spec: &str) -> Vec<Kernel> {
+pub fn all<const N: usize, C>(_spec: &str) -> Vec<Kernel>
+where
+    C: Implicit<N> + Ensemble<N> + MotionDerivatives<N> + Default + Copy + 'static,
+{
     let crane = C::default();
     let lanes = C::lanes([&crane; 8]);
     let states = &states::near_guess::<N>(crane.description());
@@ -49,6 +52,13 @@ pub fn all<const N: usize, C: Implicit<N> + Ensemble<N> + Default + Copy + 'stat
         Kernel::new("factorise_and_solve", 1, states, vector, move |s, out| {
             *out = crane.solve(&crane.factorise(&s.q, &SVector::repeat(1.0), &Matrix6::identity()), &s.v);
         }),
+        Kernel::new("inverse_mass_matrix", 1, states, square, move |s, out| *out = crane.inverse_mass_matrix(&s.q)),
+        Kernel::new("dynamic_residual_derivatives", 1, states, Rows(vec![[0.0; N]; 2 * N]), move |s, out| {
+            crane.dynamic_residual_derivatives(s.t, &s.q, &s.v, &s.v, &mut out.0);
+        }),
+        Kernel::new("forward_dynamics_derivatives", 1, states, Rows(vec![[0.0; N]; 3 * N]), move |s, out| {
+            crane.forward_dynamics_derivatives(s.t, &s.q, &s.v, &mut out.0);
+        }),
         Kernel::new("rk4_step", 1, states, (vector, vector), move |s, out| {
             let mut state = rk4::State { q: s.q, v: s.v };
             if rk4::step(&crane, s.t, STEP, &mut state).is_ok() {
@@ -62,7 +72,7 @@ pub fn all<const N: usize, C: Implicit<N> + Ensemble<N> + Default + Copy + 'stat
 #[must_use]
 pub fn all_of_small<const N: usize, C>(spec: &str) -> Vec<Kernel>
 where
-    C: Implicit<N> + Ensemble<N> + TransformDerivatives<N> + Default + Copy + 'static,
+    C: Implicit<N> + Ensemble<N> + MotionDerivatives<N> + TransformDerivatives<N> + Default + Copy + 'static,
 {
     let crane = C::default();
     let states = &states::near_guess::<N>(crane.description());

@@ -6,7 +6,7 @@ use std::{
 };
 
 use crane_codegen::program::Argument;
-use crane_live::rows::{self, Evaluation, Rows};
+use crane_live::rows::{Evaluation, Rows};
 use crane_live::{FunctionId, LiveCrane, Refusal};
 use crane_model::{
     Description, Tree,
@@ -167,13 +167,12 @@ fn evaluate(quantity: Quantity, live: &LiveCrane, t: f64, q: &[f64], v: &[f64]) 
             matrices(&derivatives.transform_second_derivatives_at(q))
         }
         Quantity::Of(id) => {
-            let quantity = rows::Quantity::Of(id);
-            let mut evaluation = Evaluation::<f64>::new(live, quantity);
+            let mut evaluation = Evaluation::<f64>::new(live, id);
             let mut numbers = vec![0.0; evaluation.width()];
             // Those of the motion from this state.
             let a = if takes_accelerations(id) { crane.accelerations_at(t, q, v).as_slice().to_vec() } else { vec![] };
             evaluation.run(&Rows { t: &[t], q, v, a: &a, ..Rows::default() }, 0..1, &mut numbers);
-            (live.shape(quantity), numbers)
+            (live.shape(id), numbers)
         }
         Quantity::Accelerations => list(crane.accelerations_at(t, q, v).as_slice()),
         Quantity::Energies => {

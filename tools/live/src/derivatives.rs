@@ -1,40 +1,21 @@
-//! Derivatives of accelerations from those of the residual.
+//! Derivatives of the dynamics from their factors.
 
-use crane_model::rt::fma;
+use crane_model::rt::derivatives::{Columns, Constant, Link, Workspace};
 
-use crate::machine::Number;
-
-/// `−A⁻¹ ∂r/∂q`, `−A⁻¹ ∂r/∂v` and `A⁻¹` in place of ∂r/∂q, ∂r/∂v and whatever is in the third matrix, each row by row. A⁻¹ has as columns the
-/// solutions of `A x = r` for units r, each in O(n); the products take n³ operations, which cost less than 2 n solutions more up to some
-/// hundred coordinates. Prescribed coordinates do not accelerate further: their rows are zero, and so are their columns of A⁻¹.
-pub fn derivatives_of_accelerations<T: Number>(
-    n: usize,
-    prescribed: &[usize],
-    out: &mut [T],
-    mut solve: impl FnMut(&[T], &mut [T]),
-) {
-    let (zero, one) = (T::splat(0.0), T::splat(1.0));
-    let (of_residual, inverse) = out.split_at_mut(2 * n * n);
-    let (mut right, mut solution) = (vec![zero; n], vec![zero; n]);
-    inverse.fill(zero);
-    for j in (0..n).filter(|j| !prescribed.contains(j)) {
-        right.fill(zero);
-        right[j] = one;
-        solve(&right, &mut solution);
-        for i in (0..n).filter(|i| !prescribed.contains(i)) {
-            inverse[i * n + j] = solution[i];
-        }
-    }
-    let mut old = vec![zero; n * n];
-    for matrix in of_residual.chunks_exact_mut((n * n).max(1)) {
-        old.copy_from_slice(matrix);
-        for (new, inverse) in matrix.chunks_exact_mut(n).zip(inverse.chunks_exact(n)) {
-            new.fill(zero);
-            for (old, inverse) in old.chunks_exact(n).zip(inverse) {
-                new.iter_mut().zip(old).for_each(|(new, old)| *new = fma(-*inverse, *old, *new));
-            }
-        }
-    }
+/// Calls `compute` with a workspace for these coordinates.
+pub fn with_workspace<C: Columns>(links: &[Link], compute: impl FnOnce(&[Link], Workspace<'_, C>)) {
+    let (n, nought) = (links.len(), C::Number::constant(0.0));
+    let zero = C::splat(nought);
+    let has_branches = links.iter().enumerate().any(|(place, link)| link.before != place.checked_sub(1));
+    let of_branches = if has_branches { n } else { 0 };
+    let workspace = Workspace {
+        joints: &mut vec![([nought; 16], false); n],
+        rows: &mut vec![[nought; 16]; n],
+        columns: [&mut vec![zero; n], &mut vec![zero; n]],
+        states: &mut vec![[[zero; 3]; 2]; of_branches],
+        paths: &mut vec![nought; n * of_branches],
+    };
+    compute(links, workspace);
 }
 
 #[cfg(test)]
@@ -46,7 +27,7 @@ mod tests {
     use crate::LiveCrane;
     use crate::dual::{DIRECTIONS, Dual8};
     use crate::machine::Number;
-    use crate::rows::{Evaluation, Quantity};
+    use crate::rows::Evaluation;
 
     /// Prescribed coordinates, feet, stops, friction, branches, both section joints, cylinders.
     const NAMES: [&str; 8] = [
@@ -68,7 +49,7 @@ mod tests {
     /// Derivatives of a function with respect to pose and rates, row by row, by dual numbers.
     fn by_duals(crane: &LiveCrane, id: FunctionId, t: f64, [q, v, a]: [&[f64]; 3]) -> Vec<f64> {
         let n = q.len();
-        let mut evaluation = Evaluation::<Dual8>::new(crane, Quantity::Of(id));
+        let mut evaluation = Evaluation::<Dual8>::new(crane, id);
         let mut out = vec![0.0; 2 * n * n];
         for (block, of_block) in out.chunks_exact_mut(n * n).enumerate() {
             for first in (0..n).step_by(DIRECTIONS) {

@@ -5,6 +5,7 @@
 use std::iter::Sum;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use crane_model::rt::derivatives::Constant;
 use crane_model::rt::lanes::{Function, Fused, f64x8};
 use crane_model::rt::{exp, fma, next_stumpff, select, sin_cos, sqrt, stumpff};
 
@@ -37,11 +38,6 @@ impl Dual8 {
         self.value
     }
 
-    /// Whether it and all its slopes are zero.
-    pub fn is_zero(&self) -> bool {
-        self.value == 0.0 && self.slopes.as_array().iter().all(|slope| *slope == 0.0)
-    }
-
     /// Its magnitude; 0 has the slopes of a positive number.
     #[must_use]
     pub fn abs(self) -> Self {
@@ -62,6 +58,17 @@ impl Dual8 {
     /// A function of this number, from its value and its derivative here.
     fn chain(self, value: f64, derivative: f64) -> Self {
         Self { value, slopes: self.slopes * f64x8::splat(derivative) }
+    }
+}
+
+impl Constant for Dual8 {
+    fn constant(number: f64) -> Self {
+        Self::along(number, None)
+    }
+
+    /// And all its slopes.
+    fn is_zero(&self) -> bool {
+        self.value == 0.0 && self.slopes.as_array().iter().all(|slope| *slope == 0.0)
     }
 }
 

@@ -6,7 +6,7 @@ use crane_model::dyn_crane::{DynDynamics, DynLineariseMotion, DynModel};
 use crate::LiveCrane;
 use crate::dual::{DIRECTIONS, Dual8};
 use crate::machine::Number;
-use crate::rows::{Evaluation, Quantity};
+use crate::rows::Evaluation;
 
 impl DynLineariseMotion for LiveCrane {
     fn linearise_motion(
@@ -20,7 +20,7 @@ impl DynLineariseMotion for LiveCrane {
         let n = self.size();
         self.mass_matrix(q, mass);
         // A a − e, and f.
-        let quantities = [FunctionId::InverseDynamics, FunctionId::Forces].map(Quantity::Of);
+        let quantities = [FunctionId::InverseDynamics, FunctionId::Forces];
         let mut forces = quantities.map(|quantity| Evaluation::<Dual8>::new(self, quantity));
         let numbers = |values: &[f64], first: Option<usize>| -> Vec<Dual8> {
             let along =

@@ -1,8 +1,9 @@
 //! Runs bytecode, for one state or for eight at a time, or for one state with its derivatives.
 
-use std::ops::{Div, Mul, Neg};
+use std::ops::{Add, Div, Mul, Neg};
 
 use crane_codegen::program::Argument;
+use crane_model::rt::derivatives::Constant;
 use crane_model::rt::lanes::{Function, Fused, f64x8};
 use crane_model::rt::{exp, fma, select, sin_cos, sin_cos_lanes, sqrt, stumpff, stumpff_lanes};
 use wide::bytemuck::cast_slice_mut;
@@ -11,7 +12,15 @@ use crate::bytecode::{Code, Fixed, Instruction, Kind};
 
 /// One number, eight of different states, or one with its derivatives.
 pub trait Number:
-    Copy + Fused + Function + Div<Output = Self> + Mul<Output = Self> + Neg<Output = Self> + 'static
+    Copy
+    + Fused
+    + Function
+    + Constant
+    + Add<Output = Self>
+    + Div<Output = Self>
+    + Mul<Output = Self>
+    + Neg<Output = Self>
+    + 'static
 {
     /// The form of machine code for it.
     const FORM: Form;

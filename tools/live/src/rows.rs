@@ -8,33 +8,14 @@ use std::sync::Arc;
 
 use crane_codegen::program::{Argument, Count, Extent, FunctionId, Shape};
 use crane_model::dyn_crane::DynModel;
+use crane_model::rt::derivatives::{self, Link, One};
 
 use crate::LiveCrane;
-use crate::derivatives::derivatives_of_accelerations;
+use crate::derivatives::with_workspace;
 use crate::expansion::mass_matrix;
 use crate::library::Library;
 use crate::machine::{Arguments, Batch, Machine, Number};
 use crate::routine::Routine;
-
-/// The quantity computed for every row. Matrices are written row by row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Quantity {
-    /// A function of the compiler.
-    Of(FunctionId),
-    /// Derivatives of the accelerations with respect to q, v and generalized forces: 3 × n × n.
-    ForwardDynamicsDerivatives,
-}
-
-impl Quantity {
-    /// Its row of the table.
-    #[must_use]
-    pub fn function(self) -> FunctionId {
-        match self {
-            Quantity::Of(id) => id,
-            Quantity::ForwardDynamicsDerivatives => FunctionId::ForwardDynamicsDerivatives,
-        }
-    }
-}
 
 /// States and parameters, row after row. A list of one row applies to all rows; missing parameters are those of the crane.
 #[derive(Clone, Copy, Debug, Default)]
@@ -51,22 +32,22 @@ pub struct Rows<'a> {
     pub parameters: &'a [f64],
 }
 
-/// Workspace to compute a quantity of many rows, as many at a time as `T` has lanes.
+/// Workspace to compute a function of many rows, as many at a time as `T` has lanes. Matrices are written row by row.
 #[derive(Debug)]
 pub struct Evaluation<T> {
     library: Arc<Library>,
-    quantity: Quantity,
+    function: FunctionId,
     width: usize,
     /// Numbers of coordinates and of live parameters.
     sizes: [usize; 2],
-    /// The functions that the quantity needs.
+    /// The routines that it needs.
     calls: [Option<Call<T>>; 4],
     /// The states that are evaluated.
     lanes: Lanes<T>,
     /// The coordinates of the drives.
     driven: Vec<usize>,
-    /// The coordinates that rigid drives prescribe.
-    prescribed: Vec<usize>,
+    /// What the coordinates are attached to.
+    links: Vec<Link>,
     /// The crane's inputs.
     inputs: Vec<T>,
     /// The results of the states.
@@ -84,11 +65,6 @@ struct Lanes<T> {
     a: Vec<T>,
     /// Positions of the drives, by coordinate, for functions at rest.
     positions: Vec<T>,
-    /// Right-hand side of a system and its factors.
-    r: Vec<T>,
-    factors: Vec<T>,
-    /// As many zeros as a coordinate or the base has numbers.
-    zeros: Vec<T>,
     parameters: Vec<T>,
 }
 
@@ -103,35 +79,33 @@ struct Call<T> {
 }
 
 impl<T: Number> Evaluation<T> {
-    /// Workspace for a quantity of a crane, with its parameters.
+    /// Workspace for a function of a crane, with its parameters.
     #[must_use]
-    pub fn new(crane: &LiveCrane, quantity: Quantity) -> Self {
-        let ids = match quantity {
-            // The drives are where they are at the state's time.
-            Quantity::Of(id) if id.arguments().contains(&Argument::DrivePositions) => {
-                [Some(id), Some(FunctionId::DriveMotions), None, None]
+    pub fn new(crane: &LiveCrane, function: FunctionId) -> Self {
+        use FunctionId as F;
+        let ids = match function {
+            F::DynamicResidualDerivatives => [Some(F::ForceDerivatives), Some(F::ResidualFactors), None, None],
+            F::InverseMassMatrix => [Some(F::MassFactors), None, None, None],
+            F::ForwardDynamicsDerivatives => {
+                [F::ForwardDynamics, F::ForceDerivatives, F::ResidualFactors, F::MassFactors].map(Some)
             }
-            Quantity::Of(id) => [Some(id), None, None, None],
-            Quantity::ForwardDynamicsDerivatives => [
-                Some(FunctionId::ForwardDynamics),
-                Some(FunctionId::DynamicResidualDerivatives),
-                Some(FunctionId::Factorise),
-                Some(FunctionId::Solve),
-            ],
+            // The drives are where they are at the state's time.
+            id if id.arguments().contains(&Argument::DrivePositions) => [Some(id), Some(F::DriveMotions), None, None],
+            id => [Some(id), None, None, None],
         };
-        let width = width(crane, quantity);
+        let width = crane.shape(function).iter().product();
         Self {
             library: crane.library(),
-            quantity,
+            function,
             width,
             sizes: [crane.size(), crane.parameters().len()],
             calls: ids.map(|id| Call::new(crane, id?)),
             lanes: Lanes::new(),
-            prescribed: crane.description().prescribed(),
+            links: crane.links(),
             driven: crane.description().drives.iter().map(|drive| drive.coordinate).collect(),
             inputs: crane.inputs().numbers().map(T::splat).collect(),
             results: vec![T::splat(0.0); width],
-            absent: if crane.is_too_large_for(quantity.function()) { f64::NAN } else { 0.0 },
+            absent: if crane.is_too_large_for(function) { f64::NAN } else { 0.0 },
         }
     }
 
@@ -167,10 +141,41 @@ impl<T: Number> Evaluation<T> {
 
     /// Computes the results of the states taken.
     fn evaluate(&mut self) {
-        let Self { calls, lanes, driven, prescribed, inputs, results, library, absent, .. } = self;
+        let Self { calls, lanes, driven, links, inputs, results, library, absent, .. } = self;
         let n = lanes.q.len();
-        match (self.quantity, calls) {
-            (Quantity::Of(_), [Some(call), motions, ..]) => {
+        match (self.function, calls) {
+            (FunctionId::DynamicResidualDerivatives, [Some(slopes), Some(residual), ..]) => {
+                slopes.run(library, lanes, inputs, results);
+                let factors = residual.factors(library, lanes, inputs);
+                with_workspace::<One<T>>(links, |links, workspace| {
+                    derivatives::residual_derivatives(links, &factors, workspace, results);
+                });
+            }
+            (FunctionId::InverseMassMatrix, [Some(mass), ..]) => {
+                let factors = mass.factors(library, lanes, inputs);
+                with_workspace::<One<T>>(links, |links, workspace| {
+                    derivatives::inverse_mass_matrix(links, &factors, workspace, results);
+                });
+            }
+            (
+                FunctionId::ForwardDynamicsDerivatives,
+                [Some(accelerations), Some(slopes), Some(residual), Some(mass)],
+            ) => {
+                lanes.a = accelerations.factors(library, lanes, inputs);
+                slopes.run(library, lanes, inputs, &mut results[..2 * n * n]);
+                let [of_residual, of_mass] = [residual, mass].map(|call| call.factors(library, lanes, inputs));
+                with_workspace::<One<T>>(links, |links, workspace| {
+                    let factors = [&*of_residual, &*of_mass];
+                    derivatives::forward_dynamics_derivatives(links, factors, workspace, results);
+                });
+            }
+            (
+                FunctionId::DynamicResidualDerivatives
+                | FunctionId::InverseMassMatrix
+                | FunctionId::ForwardDynamicsDerivatives,
+                _,
+            ) => results.fill(T::splat(*absent)),
+            (_, [Some(call), motions, ..]) => {
                 lanes.positions.clear();
                 lanes.positions.resize(n, T::splat(0.0));
                 if let Some(motions) = motions {
@@ -179,25 +184,6 @@ impl<T: Number> Evaluation<T> {
                     driven.iter().zip(pairs.chunks_exact(2)).for_each(|(j, pair)| lanes.positions[*j] = pair[0]);
                 }
                 call.run(library, lanes, inputs, results);
-            }
-            (
-                Quantity::ForwardDynamicsDerivatives,
-                [Some(accelerations), Some(slopes), Some(factorise), Some(solve)],
-            ) => {
-                let mut a = vec![T::splat(0.0); n];
-                accelerations.run(library, lanes, inputs, &mut a);
-                lanes.a = a;
-                slopes.run(library, lanes, inputs, &mut results[..2 * n * n]);
-                // No inertia is added.
-                lanes.zeros.resize(n.max(36), T::splat(0.0));
-                let mut factors = vec![T::splat(0.0); factorise.factors.len()];
-                factorise.run(library, lanes, inputs, &mut factors);
-                lanes.factors = factors;
-                derivatives_of_accelerations(n, prescribed, results, |right, solution| {
-                    lanes.r.clear();
-                    lanes.r.extend_from_slice(right);
-                    solve.run(library, lanes, inputs, solution);
-                });
             }
             _ => results.fill(T::splat(*absent)),
         }
@@ -230,17 +216,7 @@ impl<T: Batch> Evaluation<T> {
 
 impl<T> Lanes<T> {
     fn new() -> Self {
-        Self {
-            t: vec![],
-            q: vec![],
-            v: vec![],
-            a: vec![],
-            positions: vec![],
-            r: vec![],
-            factors: vec![],
-            zeros: vec![],
-            parameters: vec![],
-        }
+        Self { t: vec![], q: vec![], v: vec![], a: vec![], positions: vec![], parameters: vec![] }
     }
 }
 
@@ -277,12 +253,18 @@ impl<T: Number> Call<T> {
         }
     }
 
+    /// All numbers of a result in the function's order.
+    fn factors(&mut self, library: &Library, lanes: &Lanes<T>, inputs: &[T]) -> Vec<T> {
+        let mut factors = vec![T::splat(0.0); self.factors.len()];
+        self.run(library, lanes, inputs, &mut factors);
+        factors
+    }
+
     fn run(&mut self, library: &Library, lanes: &Lanes<T>, inputs: &[T], out: &mut [T]) {
         let Some(routine) = library.routine(self.id) else { return };
         let t = lanes.t.first().copied().unwrap_or(T::splat(0.0));
-        let Lanes { q, v, a, positions, r, factors, zeros, .. } = lanes;
-        let of_system = Arguments { r, factors, added_inertia: zeros, base: zeros, ..Arguments::none() };
-        let arguments = Arguments { t, q, v, a, positions, inputs, ..of_system };
+        let Lanes { q, v, a, positions, .. } = lanes;
+        let arguments = Arguments { t, q, v, a, positions, inputs, ..Arguments::none() };
         match (routine.shape(), &self.places) {
             (Shape::Columns { points, .. }, _) => {
                 routine.run(&mut self.machine, &arguments, &mut self.factors);
@@ -299,21 +281,16 @@ impl<T: Number> Call<T> {
     }
 }
 
-/// How many numbers a quantity has for one state.
-fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
-    crane.shape(quantity).iter().product()
-}
-
 impl LiveCrane {
-    /// Extent of each index of a quantity for one state; of functions that leave factors, their number.
+    /// Extent of each index of a function's result for one state; of functions that leave factors, their number.
     #[must_use]
-    pub fn shape(&self, quantity: Quantity) -> Vec<usize> {
+    pub fn shape(&self, function: FunctionId) -> Vec<usize> {
         let (n, count) = (self.size(), |count: Count| DynModel::count(self, count));
-        match quantity {
-            Quantity::ForwardDynamicsDerivatives | Quantity::Of(FunctionId::Linearise) => vec![3, n, n],
+        match function {
+            FunctionId::ForwardDynamicsDerivatives | FunctionId::Linearise => vec![3, n, n],
             // Also those of coordinates that do not move a body.
-            Quantity::Of(FunctionId::TransformDerivatives) => vec![count(Count::Bodies), n, 4, 4],
-            Quantity::Of(id) => match id.extent() {
+            FunctionId::TransformDerivatives => vec![count(Count::Bodies), n, 4, 4],
+            id => match id.extent() {
                 Extent::List(_, Count::SecondDerivatives) | Extent::Other => {
                     vec![self.library().routine(id).map_or(0, Routine::results)]
                 }

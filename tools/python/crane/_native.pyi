@@ -391,3 +391,10 @@ class Crane:
         Row i and column j of each matrix: the change of `r_i` with `q_j`, and with `q̇_j`. At rest ∂r/∂q is the tangent stiffness, and ∂r/∂v
         the damping matrix.
         t: s, 0 unless given."""
+    def force_derivatives(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(..., 2, n, n): Derivatives ∂f/∂q (N/m, N, N m) and ∂f/∂v (N s/m, N s, N m s) of the generalized forces f of `forces`.
+        Row i and column j of each matrix: the change of `f_i` with `q_j`, and with `q̇_j`.
+        t: s, 0 unless given."""
+    def inverse_mass_matrix(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., n, n): Inverse A⁻¹ of the mass matrix: accelerations per generalized force; 1/kg, 1/(kg m) and 1/(kg m²).
+        Zero in rows and columns of coordinates that rigid drives prescribe. Of the open chain."""

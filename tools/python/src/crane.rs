@@ -9,9 +9,10 @@ use crane_codegen::compile::check_with;
 use crane_codegen::picture::picture;
 use crane_codegen::{Checked, SourceFile, build, exchange};
 use crane_live::LiveCrane;
-use crane_live::rows::{Evaluation, Quantity};
+use crane_live::rows::Evaluation;
 use crane_model::Description;
 use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_quantities::FunctionId;
 use crane_specs::SPECS;
 use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -32,7 +33,7 @@ pub struct Crane {
     /// Rows whose parameters break a rule.
     pub bad: Vec<BadRow>,
     /// Workspaces for single states, by quantity.
-    workspaces: Mutex<HashMap<Quantity, Evaluation<f64>>>,
+    workspaces: Mutex<HashMap<FunctionId, Evaluation<f64>>>,
 }
 
 /// Names of the cranes that come with the package.
@@ -328,12 +329,12 @@ impl Crane {
         self.parameters.shape.is_empty()
     }
 
-    /// Runs `call` with the workspace for a quantity of one state, kept from the last call.
-    pub fn with_workspace<R>(&self, quantity: Quantity, call: impl FnOnce(&mut Evaluation<f64>) -> R) -> R {
-        let kept = self.workspaces.lock().unwrap_or_else(PoisonError::into_inner).remove(&quantity);
-        let mut evaluation = kept.unwrap_or_else(|| Evaluation::new(&self.live, quantity));
+    /// Runs `call` with the workspace for a function of one state, kept from the last call.
+    pub fn with_workspace<R>(&self, function: FunctionId, call: impl FnOnce(&mut Evaluation<f64>) -> R) -> R {
+        let kept = self.workspaces.lock().unwrap_or_else(PoisonError::into_inner).remove(&function);
+        let mut evaluation = kept.unwrap_or_else(|| Evaluation::new(&self.live, function));
         let result = call(&mut evaluation);
-        self.workspaces.lock().unwrap_or_else(PoisonError::into_inner).insert(quantity, evaluation);
+        self.workspaces.lock().unwrap_or_else(PoisonError::into_inner).insert(function, evaluation);
         result
     }
 }

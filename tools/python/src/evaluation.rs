@@ -1,6 +1,6 @@
 //! How a function is computed of states: rows of all arguments, eight at a time or one by one, on all threads.
 
-use crane_live::rows::{Evaluation, Quantity, Rows};
+use crane_live::rows::{Evaluation, Rows};
 use crane_live::{FunctionId, Refusal};
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::rt::lanes::f64x8;
@@ -61,16 +61,16 @@ pub struct Moment {
 }
 
 impl Crane {
-    /// A quantity of all rows.
+    /// A function of all rows.
     pub fn compute<'py>(
         &self,
         py: Python<'py>,
-        quantity: Quantity,
+        function: FunctionId,
         state: State<'_, 'py>,
         invalid: &str,
     ) -> Array<'py> {
-        let of_row = &*self.live.shape(quantity);
-        self.refuse(quantity)?;
+        let of_row = &*self.live.shape(function);
+        self.refuse(function)?;
         let arguments = self.read(state)?;
         let joined = self.joined(&arguments)?;
         let bad = self.bad_rows(&joined, STATE, Invalid::named(invalid)?)?;
@@ -80,13 +80,13 @@ impl Crane {
         let (count, width) = (joined.rows(), of_row.iter().product::<usize>());
         if joined.shape.is_empty() && bad.is_empty() {
             let out = zeros(py, &[], of_row);
-            self.with_workspace(quantity, |evaluation| {
+            self.with_workspace(function, |evaluation| {
                 evaluation.run(&rows, 0..1, out.readwrite().as_slice_mut().unwrap_or_default());
             });
             return Ok(out);
         }
         let mut out = vec![0.0; count * width];
-        let make = || Evaluation::<f64x8>::new(&self.live, quantity);
+        let make = || Evaluation::<f64x8>::new(&self.live, function);
         for_rows(py, (PIECE, width), &mut out, make, |evaluation, range, out| evaluation.run(&rows, range, out))?;
         forget(&mut out, &bad, width);
         warn_of_rows(py, &bad, &joined.shape)?;
@@ -123,8 +123,7 @@ impl Crane {
     }
 
     /// Refuses functions that do not follow from pose, rates and time, or that closed loops change.
-    fn refuse(&self, quantity: Quantity) -> PyResult<()> {
-        let function = quantity.function();
+    fn refuse(&self, function: FunctionId) -> PyResult<()> {
         let refusal = self.live.refusal(function);
         let why = match refusal {
             None => return Ok(()),

@@ -1,7 +1,6 @@
 //! Functions of a state: arrays in, arrays out.
 
 use crane_live::FunctionId;
-use crane_live::rows::Quantity;
 use crane_model::dyn_crane::{DynCrane, DynDerivatives, DynModel};
 use crane_quantities::{axes, quantities};
 use pyo3::prelude::*;
@@ -97,13 +96,13 @@ impl Crane {
         t: Given<'_, 'py>,
         invalid: &str,
     ) -> Array<'py> {
-        self.compute(py, Quantity::ForwardDynamicsDerivatives, State { t, ..State::moving(q, v) }, invalid)
+        self.compute(py, FunctionId::ForwardDynamicsDerivatives, State { t, ..State::moving(q, v) }, invalid)
     }
 
     /// (..., 3, n, n): A, K and D of small motions about poses at rest; `linearise` names them.
     #[pyo3(name = "_small_motions", signature = (q, *, invalid="raise"))]
     fn small_motions<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
-        self.compute(py, Quantity::Of(FunctionId::Linearise), State::pose(q), invalid)
+        self.compute(py, FunctionId::Linearise, State::pose(q), invalid)
     }
 }
 
@@ -117,6 +116,6 @@ impl Crane {
                 out.copy_from_slice(crane.accelerations_at(at.t, &at.q, &at.v).as_slice());
             });
         }
-        self.compute(py, Quantity::Of(id), state, invalid)
+        self.compute(py, id, state, invalid)
     }
 }

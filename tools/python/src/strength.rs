@@ -2,7 +2,6 @@
 
 use crane_live::FunctionId;
 use crane_live::LiveCrane;
-use crane_live::rows::Quantity;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::sections::stressed_sections;
 use crane_model::{Stress, tipping};
@@ -37,7 +36,7 @@ impl Crane {
         if self.live.description().has_valves() {
             return self.one_by_one(py, state, &of_row, invalid, write_wrenches);
         }
-        self.compute(py, Quantity::Of(FunctionId::InternalForces), state, invalid)
+        self.compute(py, FunctionId::InternalForces, state, invalid)
     }
 
     /// (..., 5 sections + 5): stresses and utilisation of every section of beams, then margin, moments and supports of the governing

@@ -167,7 +167,7 @@ impl Rerolling<'_> {
     /// outside.
     pub(super) fn return_rows_from_loops(&mut self, function: &Function) {
         let mut rows: HashMap<(usize, ExprId), Vec<(usize, usize)>> = HashMap::new();
-        if matches!(function.shape, Shape::Vector(_) | Shape::Factors(_) | Shape::Columns { .. }) {
+        if matches!(function.shape, Shape::Vector(_) | Shape::Factors(_) | Shape::Columns { .. } | Shape::Rows { .. }) {
             for (slot, value) in function.outputs.iter().enumerate() {
                 if let Some(&(of, template, iteration)) = self.places.get(value) {
                     rows.entry((of, template)).or_default().push((iteration, slot));
@@ -181,7 +181,13 @@ impl Rerolling<'_> {
             slots.sort_unstable();
             let iterations = self.rerolled.loops[of].iterations;
             let complete = slots.iter().map(|(iteration, _)| *iteration).eq(0..iterations);
-            if let Some(places) = progression(slots.iter().map(|(_, slot)| Some(*slot))).filter(|_| complete) {
+            // An index of a loop runs along one row.
+            let in_a_row = match function.shape {
+                Shape::Rows { n, .. } => slots.iter().all(|(_, slot)| slot / n == slots[0].1 / n),
+                _ => true,
+            };
+            let places = progression(slots.iter().map(|(_, slot)| Some(*slot)));
+            if let Some(places) = places.filter(|_| complete && in_a_row) {
                 for (_, slot) in &slots {
                     in_loops[*slot] = true;
                 }

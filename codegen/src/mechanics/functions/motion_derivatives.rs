@@ -1,8 +1,10 @@
 //! What a motion requires beyond the forces that act, and derivatives.
 
 use super::Derivation;
-use crate::chain::Chain;
-use crate::mechanics::{motion_derivatives, newton_euler, points};
+use crate::chain::{Chain, Loops};
+use crate::mechanics::columns::columns;
+use crate::mechanics::mass_factors::mass_factors;
+use crate::mechanics::{drives, motion_derivatives, newton_euler, points};
 use crate::program::{Function, FunctionId};
 
 impl Derivation<'_> {
@@ -19,10 +21,24 @@ impl Derivation<'_> {
         let residual = required.iter().zip(&forces).map(|(required, force)| *required - *force).collect();
         functions.push(self.function(FunctionId::InverseDynamics, required).by(trace.clone()));
         functions.push(self.function(FunctionId::DynamicResidual, residual).by(trace));
-        if model.size() <= Chain::MOST_COORDINATES_OF_DERIVATIVES {
-            let derivatives = motion_derivatives::of_residual(model, kinematics, &self.inertias, &forces);
+        if model.size() > Chain::MOST_COORDINATES_OF_DERIVATIVES {
+            return functions;
+        }
+        let slopes = motion_derivatives::of_forces(model, &forces);
+        if model.chain.loops == Loops::Never {
+            // The runtime makes them of the factors, in loops.
+            let derivatives = motion_derivatives::of_residual(model, kinematics, &self.inertias, &slopes);
             functions.push(self.function(FunctionId::DynamicResidualDerivatives, derivatives));
         }
+        let is_prescribed: Vec<_> = drives::accelerations(model).iter().map(Option::is_some).collect();
+        let (mass, trace) =
+            model.graph.recorded(|| mass_factors(model, &self.factors, &columns(model, &self.factors), &is_prescribed));
+        let of_residual = motion_derivatives::factors_of_residual(model, kinematics, &self.inertias);
+        functions.extend([
+            self.function(FunctionId::MassFactors, mass).by(trace),
+            self.function(FunctionId::ResidualFactors, of_residual),
+            self.function(FunctionId::ForceDerivatives, slopes),
+        ]);
         functions
     }
 }

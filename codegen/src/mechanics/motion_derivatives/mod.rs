@@ -28,27 +28,20 @@ use super::vector::{Matrix3, Vec3};
 use crate::chain::{BodyId, CoordinateId, Step};
 use crate::symbolic::Expr;
 
-/// `∂r/∂q` and `∂r/∂v`, row by row, of generalized forces `r = A a − e − f`; `forces`: f.
+/// `∂r/∂q` and `∂r/∂v`, row by row, of generalized forces `r = A a − e − f`; `slopes`: [`of_forces`].
 pub fn of_residual<'g>(
     model: &Model<'g>,
     kinematics: &Kinematics<'g>,
     inertias: &Inertias<'g>,
-    forces: &[Expr<'g>],
+    slopes: &[Expr<'g>],
 ) -> Vec<Expr<'g>> {
     let n = model.size();
-    let mut rows: [Vec<Expr<'g>>; 2] = [vec![model.zero(); n * n], vec![model.zero(); n * n]];
-    for (rows, inputs) in rows.iter_mut().zip([&model.q, &model.v]) {
-        for (j, input) in inputs.iter().enumerate() {
-            for (i, slope) in model.graph.derivatives(forces, *input).into_iter().enumerate() {
-                rows[i * n + j] = -slope;
-            }
-        }
-    }
-    let [by_q, by_v] = &mut rows;
+    let mut rows: Vec<_> = slopes.iter().map(|slope| -*slope).collect();
+    let (by_q, by_v) = rows.split_at_mut(n * n);
     let moving = Moving::new(model, kinematics);
     let beyond = moving.beyond(model, inertias);
     let columns = moving.columns(kinematics, inertias, &beyond);
-    let add = |matrix: &mut Vec<Expr<'g>>, i: usize, j: usize, x: Expr<'g>| {
+    let add = |matrix: &mut [Expr<'g>], i: usize, j: usize, x: Expr<'g>| {
         matrix[i * n + j] = matrix[i * n + j] + x;
     };
     for (j, column) in columns.iter().enumerate() {
@@ -66,6 +59,82 @@ pub fn of_residual<'g>(
             }
         }
     }
+    for (i, j, effort) in within_rotation_vectors(kinematics, &moving, &beyond) {
+        add(by_q, i, j, effort);
+    }
+    rows
+}
+
+/// `∂f/∂q` and `∂f/∂v`, row by row, of forces f.
+pub fn of_forces<'g>(model: &Model<'g>, forces: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    let n = model.size();
+    let mut rows: Vec<Expr<'g>> = Vec::new();
+    for inputs in [&model.q, &model.v] {
+        let columns: Vec<_> = inputs.iter().map(|input| model.graph.derivatives(forces, *input)).collect();
+        rows.extend((0..n * n).map(|place| columns[place % n][place / n]));
+    }
+    rows
+}
+
+/// What the derivatives of `A a − e` are products of, row by row: x, y and z of vectors of all coordinates, their masses, and entries to be added to
+/// ∂r/∂q, on five diagonals from the second below the main one; in the order of `crane_model::rt::derivatives`.
+pub fn factors_of_residual<'g>(
+    model: &Model<'g>,
+    kinematics: &Kinematics<'g>,
+    inertias: &Inertias<'g>,
+) -> Vec<Expr<'g>> {
+    let n = model.size();
+    let moving = Moving::new(model, kinematics);
+    let beyond = moving.beyond(model, inertias);
+    let gravity = model.vector(&model.chain.gravity);
+    let vectors = moving.axes.iter().zip(&kinematics.generators).map(|(axis, generator)| {
+        let Axis { generator: Twist { omega, upsilon }, first, before: Motion { velocity, rate }, added, .. } = axis;
+        let inertia = &inertias.composites[generator.body];
+        let Beyond { turning, momentum, required: [force, moment] } = &beyond[generator.body];
+        let [ix, iy, iz] = [0, 1, 2].map(|row| inertia.tensor.row(row));
+        let [gx, gy, gz] = [0, 1, 2].map(|row| turning.row(row));
+        [
+            *omega,
+            *upsilon,
+            first.omega,
+            first.upsilon,
+            velocity.omega,
+            velocity.upsilon,
+            rate.omega,
+            rate.upsilon - gravity,
+            added.omega,
+            added.upsilon,
+            inertia.first,
+            ix,
+            iy,
+            iz,
+            gx,
+            gy,
+            gz,
+            *momentum,
+            *force,
+            *moment,
+        ]
+    });
+    let vectors: Vec<_> = vectors.collect();
+    let kinds = vectors.first().map_or(0, |vectors| vectors.len());
+    let mut rows: Vec<_> = (0..3 * kinds).flat_map(|row| vectors.iter().map(move |of| of[row / 3][row % 3])).collect();
+    rows.extend(kinematics.generators.iter().map(|generator| inertias.composites[generator.body].mass));
+    let mut diagonals = vec![model.zero(); 5 * n];
+    for (i, j, effort) in within_rotation_vectors(kinematics, &moving, &beyond) {
+        diagonals[(j + 2 - i) * n + i] = effort;
+    }
+    rows.extend(diagonals);
+    rows
+}
+
+/// What a rotation vector, whose axes depend on its coordinates, adds to ∂r/∂q: row, column and effort.
+fn within_rotation_vectors<'g>(
+    kinematics: &Kinematics<'g>,
+    moving: &Moving<'g>,
+    beyond: &[Beyond<'g>],
+) -> Vec<(usize, usize, Expr<'g>)> {
+    let mut added = Vec::new();
     for curvature in &kinematics.curvatures {
         let wrench = beyond[curvature.body].required;
         for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
@@ -75,10 +144,10 @@ pub fn of_residual<'g>(
             if i < j {
                 effort = effort - power(moving.axes[row].generator, turned(moving.axes[column].generator, wrench));
             }
-            add(by_q, row, column, effort);
+            added.push((row, column, effort));
         }
     }
-    rows.concat()
+    added
 }
 
 /// `A a − e` with rotors: `required`, which the bodies require, and `I a`.
@@ -98,6 +167,10 @@ struct Axis<'g> {
     first: Twist<'g>,
     /// Ω̈, and what gravity adds to it.
     second: Twist<'g>,
+    /// The motion of the frame before it.
+    before: Motion<'g>,
+    /// What a change within this frame adds to Ω̈.
+    added: Twist<'g>,
 }
 
 /// Motion of a frame in the world: V and V̇.
@@ -253,9 +326,9 @@ fn axis<'g>(before: Motion<'g>, generator: &Generator<'g>, own: [Twist<'g>; 2]) 
     let [own_first, own_second] = own;
     let generator = twist(generator);
     let first = sum(commutator(before.velocity, generator), own_first);
-    let of_first = commutator(before.velocity, sum(first, own_first));
-    let second = sum(sum(commutator(before.rate, generator), of_first), own_second);
-    Axis { generator, first, second }
+    let added = sum(commutator(before.velocity, own_first), own_second);
+    let second = sum(sum(commutator(before.rate, generator), commutator(before.velocity, first)), added);
+    Axis { generator, first, second, before, added }
 }
 
 /// First and second derivatives of the generators of a rotation vector in the frame before it, coordinate by coordinate, in the world.

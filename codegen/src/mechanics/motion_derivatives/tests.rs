@@ -28,7 +28,8 @@ fn derive(chain: &Chain) -> Program {
                 (0..model.size()).flat_map(|i| columns.iter().map(move |column| column[i]).collect::<Vec<_>>()),
             );
         }
-        [super::of_residual(&model, &kinematics, &inertias, &forces), plain].map(|outputs| function(chain, outputs))
+        [super::of_residual(&model, &kinematics, &inertias, &super::of_forces(&model, &forces)), plain]
+            .map(|outputs| function(chain, outputs))
     };
     Program::new(graph, Model::symbols(chain), functions.to_vec())
 }

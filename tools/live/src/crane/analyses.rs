@@ -2,15 +2,16 @@
 
 use crane_codegen::program::FunctionId;
 use crane_model::dyn_crane::{
-    DynDerivatives, DynDynamics, DynImplicit, DynInternalForces, DynLinearise, DynMotionDerivatives, DynStatics,
+    DynDerivatives, DynDynamics, DynInternalForces, DynLinearise, DynMotionDerivatives, DynStatics,
 };
-use crane_model::nalgebra::{Matrix4, Matrix6};
+use crane_model::nalgebra::Matrix4;
+use crane_model::rt::derivatives::{self, Sixteen};
 use crane_model::{entry_type, slice_argument};
-use crane_quantities::quantities;
+use crane_quantities::{Count, quantities};
 
 use super::methods::{method, methods};
 use super::{LiveCrane, at, copy};
-use crate::derivatives::derivatives_of_accelerations;
+use crate::derivatives::with_workspace;
 use crate::machine::Arguments;
 
 impl DynStatics for LiveCrane {
@@ -43,15 +44,35 @@ impl DynDerivatives for LiveCrane {
 }
 
 impl DynMotionDerivatives for LiveCrane {
+    fn dynamic_residual_derivatives(&self, t: f64, q: &[f64], v: &[f64], a: &[f64], out: &mut [f64]) {
+        let mut factors = vec![0.0; Count::RESIDUAL_FACTORS * q.len()];
+        self.residual_factors(q, v, a, &mut factors);
+        self.force_derivatives(t, q, v, out);
+        with_workspace::<Sixteen>(&self.links(), |links, workspace| {
+            derivatives::residual_derivatives(links, &factors, workspace, out);
+        });
+    }
+
+    fn inverse_mass_matrix(&self, q: &[f64], out: &mut [f64]) {
+        let mut factors = vec![0.0; Count::MASS_FACTORS * q.len()];
+        self.mass_factors(q, &mut factors);
+        with_workspace::<Sixteen>(&self.links(), |links, workspace| {
+            derivatives::inverse_mass_matrix(links, &factors, workspace, out);
+        });
+    }
+
     fn forward_dynamics_derivatives(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]) {
         let n = q.len();
         let mut a = vec![0.0; n];
         self.forward_dynamics(t, q, v, &mut a);
-        self.dynamic_residual_derivatives(t, q, v, &a, &mut out[..2 * n * n]);
-        let mut system = self.system();
-        system.factorise(q, &vec![0.0; n], &Matrix6::zeros());
-        let solve = |right: &[f64], solution: &mut [f64]| system.solve(right, solution);
-        derivatives_of_accelerations(n, &self.description.prescribed(), out, solve);
+        let [mut of_residual, mut of_mass] =
+            [Count::RESIDUAL_FACTORS, Count::MASS_FACTORS].map(|count| vec![0.0; count * n]);
+        self.residual_factors(q, v, &a, &mut of_residual);
+        self.mass_factors(q, &mut of_mass);
+        self.force_derivatives(t, q, v, &mut out[..2 * n * n]);
+        with_workspace::<Sixteen>(&self.links(), |links, workspace| {
+            derivatives::forward_dynamics_derivatives(links, [&of_residual, &of_mass], workspace, out);
+        });
     }
 
     quantities! { methods of MotionDerivatives }

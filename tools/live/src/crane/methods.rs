@@ -14,6 +14,9 @@ macro_rules! methods {
 /// A method.
 macro_rules! method {
     (other $($row:tt)*) => {};
+    // Written by hand, of their factors.
+    ($result:tt DynamicResidualDerivatives $($row:tt)*) => {};
+    ($result:tt InverseMassMatrix $($row:tt)*) => {};
     ([transform; $count:ident] $id:ident $name:ident($($argument:ident),*)) => {
         fn $name(&self, $($argument: slice_argument!($argument),)* out: &mut [Matrix4<f64>]) {
             self.matrices(FunctionId::$id, &Arguments { $($argument,)* ..Arguments::none() }, out);

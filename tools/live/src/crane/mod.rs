@@ -11,9 +11,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 use crane_codegen::chain::{Chain, Input};
 use crane_codegen::program::{FunctionId, Shape};
 use crane_codegen::{Diagnostics, SourceFile, compile};
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::nalgebra::{Matrix4, Matrix6};
-use crane_model::{Description, Entry, LoopJointInfo, ParameterError, StageInfo};
+use crane_model::rt::derivatives::Link;
+use crane_model::{Description, Entry, LoopJointInfo, ParameterError, StageInfo, fill_links};
 
 use crate::describe::{describe, describe_loop_joints, describe_stages, refusal};
 use crate::expansion::{mass_matrix, second_derivatives};
@@ -179,9 +180,22 @@ impl LiveCrane {
         }
     }
 
+    /// What its coordinates are attached to.
+    pub(crate) fn links(&self) -> Vec<Link> {
+        let mut links = vec![Link::default(); self.size()];
+        fill_links(&self.description, DynModel::parents(self), &mut links);
+        links
+    }
+
     /// Whether the crane has too many coordinates for a function.
     pub(crate) fn is_too_large_for(&self, id: FunctionId) -> bool {
-        let grows = matches!(id, FunctionId::DynamicResidualDerivatives | FunctionId::ForwardDynamicsDerivatives);
+        let grows = matches!(
+            id,
+            FunctionId::DynamicResidualDerivatives
+                | FunctionId::ForwardDynamicsDerivatives
+                | FunctionId::ForceDerivatives
+                | FunctionId::InverseMassMatrix
+        );
         grows && self.chain().coordinates.len() > Self::MOST_COORDINATES_OF_DERIVATIVES
     }
 

@@ -7,7 +7,7 @@ use crane_codegen::program::FunctionId;
 use crate::LiveCrane;
 use crate::dual::Dual8;
 use crate::machine::Number;
-use crate::rows::{Evaluation, Quantity};
+use crate::rows::Evaluation;
 
 /// The functions of a crane at t = 0, with live parameters that may have slopes.
 pub(super) struct Source<'a> {
@@ -52,7 +52,7 @@ impl<'a> Source<'a> {
     pub fn with_rates(&mut self, id: FunctionId, q: &[Dual8], v: &[Dual8]) -> Vec<Dual8> {
         let Self { crane, evaluations, parameters, inputs } = self;
         let evaluation = evaluations.entry(id).or_insert_with(|| {
-            let mut evaluation = Evaluation::new(crane, Quantity::Of(id));
+            let mut evaluation = Evaluation::new(crane, id);
             evaluation.set_parameters(parameters);
             evaluation.set_inputs(inputs);
             evaluation

@@ -4,6 +4,7 @@
 use crane_codegen::program::FunctionId;
 use crane_model::Wrench;
 use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::rt::derivatives::Constant;
 use crane_model::rt::lanes::Function;
 use crane_model::sections::{StressedSection, stressed_sections};
 use crane_model::tipping::{LinkCut, TippingLine, governing, lines, link_cuts};

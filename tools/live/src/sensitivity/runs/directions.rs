@@ -11,7 +11,7 @@ use crate::LiveCrane;
 use crate::bytecode::{Code, Fixed};
 use crate::dual::{DIRECTIONS, Dual8};
 use crate::machine::Number;
-use crate::rows::{Evaluation, Quantity};
+use crate::rows::Evaluation;
 
 /// Relative step of a parameter or an input for what is differenced, and its step from zero.
 const STEP: f64 = 1e-6;
@@ -139,7 +139,7 @@ impl Chunk {
         });
         let inputs: Vec<Dual8> = inputs.collect();
         let evaluation = |id: FunctionId| {
-            let mut evaluation = Evaluation::new(crane, Quantity::Of(id));
+            let mut evaluation = Evaluation::new(crane, id);
             evaluation.set_parameters(&parameters);
             evaluation.set_inputs(&inputs);
             evaluation
@@ -318,7 +318,7 @@ impl Slopes for Directions<'_> {
         for (number, chunk) in self.chunks.iter().enumerate() {
             let mut place = 0;
             for id in [FunctionId::DrivePieces, FunctionId::LoadPieces, FunctionId::WinchPieces] {
-                let mut evaluation = Evaluation::<Dual8>::new(self.crane, Quantity::Of(id));
+                let mut evaluation = Evaluation::<Dual8>::new(self.crane, id);
                 evaluation.set_parameters(&chunk.parameters);
                 evaluation.set_inputs(&chunk.inputs);
                 for time in evaluation.at(Dual8::splat(0.0), &[], &[], &[]) {
