@@ -26,13 +26,22 @@ PINOCCHIO_ELEMENTS = ["revolute", "zyx", "composite"]
 PINOCCHIO_ALGORITHMS = {
     "forward_dynamics": ["aba_local", "aba_world", "dense_local", "dense_world", "llt_local", "llt_world"],
     "mass_matrix_and_bias": ["terms_local", "terms_world"],
+    "forward_dynamics_derivatives": ["derivatives_of_aba"],
 }
+DERIVATIVES = "forward_dynamics_derivatives"
+# Derivatives are compared at so many states, with differences of 80-bit recursions over these steps of q, of v, in which accelerations are
+# quadratic, and of forces, in which they are linear: errors are some 1e-11.
+DERIVATIVE_STATES, STEPS = 2, [1e-6, 0.1, 1e3]
 # Maximum number of coordinates; with 73, a step takes 5 ms.
 EXUDYN_UP_TO = 25
 # Our kernels that compute the same quantities as the others.
 SHARED = {
     "forward_dynamics": "forward_dynamics",
     "forward_dynamics_lanes": "forward_dynamics",
+    "forward_dynamics_machine_code": "forward_dynamics",
+    "forward_dynamics_bytecode": "forward_dynamics",
+    "forward_dynamics_derivatives": DERIVATIVES,
+    "forward_dynamics_derivatives_live": "forward_dynamics_derivatives_live",
     "dense_forward_dynamics": "forward_dynamics",
     "mass_matrix_and_bias": "mass_matrix_and_bias",
     "triple_sum": "mass_matrix_and_bias",
@@ -165,8 +174,25 @@ class Arena:
             function.name(): np.hstack(extended.evaluate(function, *(q, v, f)[: function.n_in()]))
             for function in self.functions
         }
+        right[DERIVATIVES] = self.derivatives()
         step = Contestant("rk4_step", OURS, "rk4_step", n, [self.bench], [n, "rk4_step"])
         return right | {"rk4_step": step.values(len(self.records)) - self.records[:, 1 : 1 + 2 * n]}
+
+    def derivatives(self):
+        """∂q̈/∂q, ∂q̈/∂v and A⁻¹ at the first states, row by row, by differences in 80-bit numbers."""
+        n = self.coordinates
+        function = next(function for function in self.functions if function.name() == "forward_dynamics")
+        sizes = np.repeat(np.array(STEPS, dtype=np.longdouble), n)
+        found = []
+        for record in self.records[:DERIVATIVE_STATES]:
+            state = record[1:].astype(np.longdouble)
+            ahead, behind = (
+                extended.evaluate(function, *np.split(state + sign * np.diag(sizes), 3, axis=1))[0] for sign in (1, -1)
+            )
+            slopes = (ahead - behind) / (2 * sizes[:, None])
+            # One row for each number that changes.
+            found.append(np.concatenate([block.T.ravel() for block in np.split(slopes, 3)]))
+        return np.array(found)
 
     def error(self, contestant, reference):
         """The maximum over the states of the largest error over the largest entry; None if no other program computes the same."""
@@ -174,6 +200,15 @@ class Arena:
             return None
         right = reference[contestant.quantity]
         values = contestant.values(len(self.records))
+        if contestant.quantity == DERIVATIVES:
+            return self.error_of_derivatives(values[:DERIVATIVE_STATES], right)
         if contestant.quantity == "rk4_step":
             values = values - self.records[:, 1 : 1 + 2 * self.coordinates]
         return float((np.abs(values - right).max(axis=1) / np.abs(right).max(axis=1)).max())
+
+    def error_of_derivatives(self, values, right):
+        """The maximum over states and matrices; of a free flyer, whose derivatives are in its tangent space, of A⁻¹ alone."""
+        square = self.coordinates**2
+        right = right[:, right.shape[1] - values.shape[1] :].reshape(len(right), -1, square)
+        off = np.abs(values.reshape(right.shape) - right).max(axis=2)
+        return float((off / np.abs(right).max(axis=2)).max())

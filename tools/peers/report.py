@@ -18,8 +18,11 @@ BEST_OF_OURS = {
     "forward_dynamics": ["forward_dynamics", "dense_forward_dynamics"],
     "mass_matrix_and_bias": ["mass_matrix_and_bias"],
     "rk4_step": ["rk4_step"],
+    "forward_dynamics_derivatives": ["forward_dynamics_derivatives"],
 }
 LANES_SUFFIX = "_lanes"
+# Kernels of one state most of whose operations are loops over eight columns.
+IN_VECTORS = ["mass_matrix", "mass_matrix_and_bias"]
 LANES = "forward_dynamics" + LANES_SUFFIX
 
 
@@ -96,6 +99,18 @@ parameters; the time is per crane.
 The last column is [Urbaś 2016, Eq. (5)] as printed, a sum over bodies and triples of coordinates, on generated derivatives of the
 transforms.
 
+## Derivatives of q̈
+{times_table(times, "forward_dynamics_derivatives", ["Pinocchio, gcc", "Pinocchio, clang"], "forward_dynamics_derivatives_live")}
+
+∂q̈/∂q, ∂q̈/∂v and A⁻¹ of one state: 3 n² numbers. {derivative_ratios(times)} The last column is a live crane:
+its factors come from machine code made at run time, its products are compiled for this machine.
+
+## Without a compiler
+{live_table(times)}
+
+Forward dynamics of one state by a live crane: by machine code that it makes at run time, for any processor with AVX, and by its bytecode; in
+brackets, how many times longer than compiled for this machine.
+
 ## One RK4 step with all forces
 {times_table(times, "rk4_step", ["MuJoCo", "Exudyn"])}
 
@@ -104,6 +119,9 @@ transforms.
 * **Pinocchio**: `aba`, or `crba`, `nonLinearEffects` and a Cholesky factorisation, whichever is fastest; forces are given. All of its
   joint models of a base and of a rigid finite element are included: elementary joints, angles ψ θ φ as one joint, composite joints, a
   free flyer with a quaternion, whose conversion is not timed. Only headers are used, so that all code is compiled for this machine.
+  Derivatives are `computeABADerivatives`; forces are given, while ours include the derivatives of supports, elements and drives. With joints
+  of three angles and composite joints, whose axes depend on their coordinates, they are not the derivatives, so they are excluded. Those of
+  a free flyer are with respect to its tangent space, so only A⁻¹ is compared.
 * **CasADi C**: an articulated-body recursion, and composite bodies with Newton's and Euler's equations, in the same coordinates,
   with the crane's numbers and zeros folded in; forces are given. It does not pay the cost of generality that a library pays, so it differs
   from ours only in algorithm, trigonometry and compiler.
@@ -123,8 +141,8 @@ Times in ns per call for one crane{counters_heading(results)}.
 {kernels(times)}
 
 The next table shows the operations per call for one crane, as the compiler counts them (sine and cosine of an angle together count as
-one), and their share of the peak performance of one core: {peak["scalar"]:.1f} scalar operations per nanosecond and, for eight cranes at once, {peak["vector"]:.0f} vector
-operations per nanosecond, if every multiplication is fused with an addition.
+one), and their share of the peak performance of one core: {peak["scalar"]:.1f} scalar operations per nanosecond and, for eight cranes at once and for mass matrices, which are filled eight columns at
+a time, {peak["vector"]:.0f} vector operations per nanosecond, if every multiplication is fused with an addition.
 {operations(results, times)}
 
 {counters(results)}
@@ -170,7 +188,7 @@ def ratio_table(times):
 
     rows = []
     for n in times.coordinates:
-        ours, terms, step = (times.of_quantity(n, quantity) for quantity in BEST_OF_OURS)
+        ours, terms, step = (times.of_quantity(n, q) for q in ("forward_dynamics", "mass_matrix_and_bias", "rk4_step"))
         rows.append(
             [
                 str(n),
@@ -187,11 +205,40 @@ def ratio_table(times):
     return table(["coordinates", *forward, *further], rows)
 
 
+def derivative_ratios(times):
+    """How much longer Pinocchio takes for derivatives."""
+    quantity = "forward_dynamics_derivatives"
+    ratios = [
+        (n, theirs / ours)
+        for n in times.coordinates
+        if (theirs := times.fastest(n, quantity=quantity, library="Pinocchio")[0]) and (ours := times.of_quantity(n, quantity))
+    ]
+    if not ratios:
+        return ""
+    words = ", ".join(f"{ratio:.2g} × at {n}" for n, ratio in ratios)
+    return f"Pinocchio's best takes {words} coordinates."
+
+
+def live_table(times):
+    """Forward dynamics without a compiler."""
+
+    def cell(n, kernel):
+        time, compiled = times.ours(n, kernel), times.ours(n, "forward_dynamics")
+        return f"{microseconds(time)} ({time / compiled:.2g} ×)" if time and compiled else ""
+
+    kernels = ["forward_dynamics_machine_code", "forward_dynamics_bytecode"]
+    rows = [
+        [str(n), microseconds(times.ours(n, "forward_dynamics")), *(cell(n, kernel) for kernel in kernels)]
+        for n in times.coordinates
+    ]
+    return table(["coordinates", "compiled, µs", "machine code", "bytecode"], rows)
+
+
 def winners(times):
     """Which variant of Pinocchio was the fastest."""
     rows = []
     for n in times.coordinates:
-        for quantity in ("forward_dynamics", "mass_matrix_and_bias"):
+        for quantity in ("forward_dynamics", "mass_matrix_and_bias", "forward_dynamics_derivatives"):
             for name in ("Pinocchio, gcc", "Pinocchio, clang"):
                 library, compiler = SERIES[name]
                 time, best = times.fastest(n, quantity=quantity, library=library, compiler=compiler)
@@ -235,10 +282,10 @@ def kernels(times):
 def shares(results, times):
     """Operations per call of each of our kernels, and their share of the peak, by number of coordinates.
 
-    The share is of the vector peak for eight cranes at once, else of the scalar one.
+    The share is of the vector peak for eight cranes at once and for loops over columns, else of the scalar one.
     """
     for kernel in dict.fromkeys(c["variant"] for c in times.contestants if c["library"] == OURS):
-        peak = results["peak"]["vector" if kernel.endswith(LANES_SUFFIX) else "scalar"]
+        peak = results["peak"]["vector" if kernel.endswith(LANES_SUFFIX) or kernel in IN_VECTORS else "scalar"]
         for n in times.coordinates:
             count = results["operations"][str(n)].get(kernel.removesuffix(LANES_SUFFIX))
             time = times.ours(n, kernel)

@@ -15,6 +15,8 @@ pub struct Kernel {
     pub lanes: usize,
     calls: usize,
     work: Box<dyn Work>,
+    /// What is compared with other libraries, if they compute something else.
+    compared: Option<Box<dyn Work>>,
 }
 
 impl Kernel {
@@ -27,12 +29,18 @@ impl Kernel {
         function: impl Fn(&S, &mut R) + 'static,
     ) -> Self {
         let work = OnStates { states: states.to_vec(), result, function };
-        Self { name, lanes, calls: states.len(), work: Box::new(work) }
+        Self { name, lanes, calls: states.len(), work: Box::new(work), compared: None }
+    }
+
+    /// Values of another function are compared with those of other libraries, which do not compute the same.
+    #[must_use]
+    pub fn compared_by(self, other: Kernel) -> Self {
+        Self { compared: Some(other.work), ..self }
     }
 
     /// What it computes at all states, one after the other.
     pub fn values(&mut self) -> Vec<f64> {
-        self.work.values()
+        self.compared.as_mut().unwrap_or(&mut self.work).values()
     }
 
     /// Time that this many calls take.
@@ -116,6 +124,7 @@ impl<const N: usize> Numbers for Lower<N> {
 }
 
 /// Rows of square matrices, one after the other.
+#[derive(Clone, Debug)]
 pub struct Rows<const N: usize>(pub Vec<[f64; N]>);
 
 impl<const N: usize> Numbers for Rows<N> {

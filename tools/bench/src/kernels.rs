@@ -1,5 +1,13 @@
 //! What is timed: one entry per kernel.
 
+use std::cell::RefCell;
+
+use crane_codegen::chain::Analyses;
+use crane_codegen::program::FunctionId;
+use crane_codegen::{SourceFile, compile, mechanics};
+use crane_live::machine::Arguments;
+use crane_live::{LiveCrane, Routine};
+use crane_model::dyn_crane::{DynDynamics, DynMotionDerivatives};
 use crane_model::dynamics::rk4;
 use crane_model::nalgebra::{Cholesky, Matrix4, Matrix6, SMatrix, SVector};
 use crane_model::rt::lanes::f64x8;
@@ -13,8 +21,11 @@ use crate::triple_sum::TripleSum;
 pub const STEP: f64 = 1e-8;
 
 /// Kernels of any crane.
+///
+/// # Panics
+/// If `spec` is not the text that the crane was compiled from.
 #[must_use]
-pub fn all<const N: usize, C>(_spec: &str) -> Vec<Kernel>
+pub fn all<const N: usize, C>(spec: &str) -> Vec<Kernel>
 where
     C: Implicit<N> + Ensemble<N> + MotionDerivatives<N> + Default + Copy + 'static,
 {
@@ -22,6 +33,8 @@ where
     let lanes = C::lanes([&crane; 8]);
     let states = &states::near_guess::<N>(crane.description());
     let poses = vec![Matrix4::zeros(); crane.description().bodies.len()];
+    let live = LiveCrane::from_spec(&SourceFile::new("crane.yaml", spec)).expect("a spec that was compiled");
+    let three = Rows(vec![[0.0; N]; 3 * N]);
     let (vector, square) = (SVector::<f64, N>::zeros(), SMatrix::<f64, N, N>::zeros());
     vec![
         Kernel::new("transforms", 1, states, poses, move |s, out| crane.transforms(&s.q, out)),
@@ -56,9 +69,15 @@ where
         Kernel::new("dynamic_residual_derivatives", 1, states, Rows(vec![[0.0; N]; 2 * N]), move |s, out| {
             crane.dynamic_residual_derivatives(s.t, &s.q, &s.v, &s.v, &mut out.0);
         }),
-        Kernel::new("forward_dynamics_derivatives", 1, states, Rows(vec![[0.0; N]; 3 * N]), move |s, out| {
+        Kernel::new("forward_dynamics_derivatives", 1, states, three.clone(), move |s, out| {
             crane.forward_dynamics_derivatives(s.t, &s.q, &s.v, &mut out.0);
+        })
+        .compared_by(Kernel::new("", 1, states, three.clone(), move |s, out| at_given_forces(&crane, s, &mut out.0))),
+        Kernel::new("forward_dynamics_machine_code", 1, states, vector, accelerations(live.clone())),
+        Kernel::new("forward_dynamics_derivatives_live", 1, states, three, move |s, out| {
+            live.forward_dynamics_derivatives(s.t, s.q.as_slice(), s.v.as_slice(), out.0.as_flattened_mut());
         }),
+        Kernel::new("forward_dynamics_bytecode", 1, states, vector, interpreted(spec)),
         Kernel::new("rk4_step", 1, states, (vector, vector), move |s, out| {
             let mut state = rk4::State { q: s.q, v: s.v };
             if rk4::step(&crane, s.t, STEP, &mut state).is_ok() {
@@ -68,7 +87,47 @@ where
     ]
 }
 
+/// Accelerations by machine code, made before the first call.
+fn accelerations<const N: usize>(live: LiveCrane) -> impl Fn(&State<N>, &mut SVector<f64, N>) {
+    live.compile(FunctionId::ForwardDynamics);
+    move |s, out| live.forward_dynamics(s.t, s.q.as_slice(), s.v.as_slice(), out.as_mut_slice())
+}
+
+/// Accelerations by bytecode.
+fn interpreted<const N: usize>(spec: &str) -> impl Fn(&State<N>, &mut SVector<f64, N>) + use<N> {
+    let chain = compile::load(&SourceFile::new("crane.yaml", spec)).expect("a spec that was compiled");
+    let program = mechanics::derive(&chain, Analyses::ALL);
+    let function = program.function(FunctionId::ForwardDynamics).expect("a function of every crane");
+    let routine = Routine::new(&program, function).expect("a crane of moderate size");
+    let machine = RefCell::new(routine.machine(&chain.parameter_defaults()));
+    // No input is set: they follow the spec.
+    let inputs = [0.0, 1.0].repeat(chain.inputs.len());
+    move |s, out| {
+        let (t, q, v) = (s.t, s.q.as_slice(), s.v.as_slice());
+        let arguments = Arguments { t, q, v, inputs: &inputs, ..Arguments::none() };
+        routine.interpret(&mut machine.borrow_mut(), &arguments, out.as_mut_slice());
+    }
+}
+
+/// Derivatives of accelerations while the forces keep their values, as other libraries have them: `∂q̈/∂q − A⁻¹ ∂f/∂q`, and with v.
+fn at_given_forces<const N: usize>(crane: &impl MotionDerivatives<N>, s: &State<N>, out: &mut [[f64; N]]) {
+    crane.forward_dynamics_derivatives(s.t, &s.q, &s.v, out);
+    let mut forces = vec![[0.0; N]; 2 * N];
+    crane.force_derivatives(s.t, &s.q, &s.v, &mut forces);
+    let (slopes, inverse) = out.split_at_mut(2 * N);
+    for (slopes, forces) in slopes.chunks_mut(N).zip(forces.chunks(N)) {
+        for (slopes, inverse) in slopes.iter_mut().zip(&*inverse) {
+            for (j, slope) in slopes.iter_mut().enumerate() {
+                *slope -= inverse.iter().zip(forces).map(|(inverse, force)| inverse * force[j]).sum::<f64>();
+            }
+        }
+    }
+}
+
 /// These, and those of a crane with derivatives of its transforms.
+///
+/// # Panics
+/// If `spec` is not the text that the crane was compiled from.
 #[must_use]
 pub fn all_of_small<const N: usize, C>(spec: &str) -> Vec<Kernel>
 where

@@ -5,7 +5,7 @@
 use std::iter::Sum;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use crane_model::rt::derivatives::Constant;
+use crane_model::rt::derivatives::{Constant, One};
 use crane_model::rt::lanes::{Function, Fused, f64x8};
 use crane_model::rt::{exp, fma, next_stumpff, select, sin_cos, sqrt, stumpff};
 
@@ -161,6 +161,7 @@ pub(crate) fn eight_orders(arguments: [f64; ANGLES]) -> [[f64; ANGLES]; 8] {
 }
 
 impl Number for Dual8 {
+    type Columns = One<Dual8>;
     const FORM: Form = Form::Slopes;
 
     fn flat(_: &mut [Self]) -> &mut [f64] {

@@ -3,7 +3,7 @@
 use std::ops::{Add, Div, Mul, Neg};
 
 use crane_codegen::program::Argument;
-use crane_model::rt::derivatives::Constant;
+use crane_model::rt::derivatives::{Columns, Constant, One, Sixteen};
 use crane_model::rt::lanes::{Function, Fused, f64x8};
 use crane_model::rt::{exp, fma, select, sin_cos, sin_cos_lanes, sqrt, stumpff, stumpff_lanes};
 use wide::bytemuck::cast_slice_mut;
@@ -22,6 +22,8 @@ pub trait Number:
     + Neg<Output = Self>
     + 'static
 {
+    /// How many columns of a matrix of it are computed together.
+    type Columns: Columns<Number = Self>;
     /// The form of machine code for it.
     const FORM: Form;
     /// The numbers of several, next to each other; nothing for those with derivatives.
@@ -69,6 +71,7 @@ pub trait Batch: Number {
 pub const ANGLES: usize = 8;
 
 impl Number for f64 {
+    type Columns = Sixteen;
     const FORM: Form = Form::One;
     fn flat(several: &mut [Self]) -> &mut [f64] {
         several
@@ -107,6 +110,7 @@ impl Batch for f64 {
 }
 
 impl Number for f64x8 {
+    type Columns = One<f64x8>;
     const FORM: Form = Form::Eight;
     fn flat(several: &mut [Self]) -> &mut [f64] {
         cast_slice_mut(several)

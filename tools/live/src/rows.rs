@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crane_codegen::program::{Argument, Count, Extent, FunctionId, Shape};
 use crane_model::dyn_crane::DynModel;
-use crane_model::rt::derivatives::{self, Link, One};
+use crane_model::rt::derivatives::{self, Link};
 
 use crate::LiveCrane;
 use crate::derivatives::with_workspace;
@@ -147,13 +147,13 @@ impl<T: Number> Evaluation<T> {
             (FunctionId::DynamicResidualDerivatives, [Some(slopes), Some(residual), ..]) => {
                 slopes.run(library, lanes, inputs, results);
                 let factors = residual.factors(library, lanes, inputs);
-                with_workspace::<One<T>>(links, |links, workspace| {
+                with_workspace::<T::Columns>(links, |links, workspace| {
                     derivatives::residual_derivatives(links, &factors, workspace, results);
                 });
             }
             (FunctionId::InverseMassMatrix, [Some(mass), ..]) => {
                 let factors = mass.factors(library, lanes, inputs);
-                with_workspace::<One<T>>(links, |links, workspace| {
+                with_workspace::<T::Columns>(links, |links, workspace| {
                     derivatives::inverse_mass_matrix(links, &factors, workspace, results);
                 });
             }
@@ -164,7 +164,7 @@ impl<T: Number> Evaluation<T> {
                 lanes.a = accelerations.factors(library, lanes, inputs);
                 slopes.run(library, lanes, inputs, &mut results[..2 * n * n]);
                 let [of_residual, of_mass] = [residual, mass].map(|call| call.factors(library, lanes, inputs));
-                with_workspace::<One<T>>(links, |links, workspace| {
+                with_workspace::<T::Columns>(links, |links, workspace| {
                     let factors = [&*of_residual, &*of_mass];
                     derivatives::forward_dynamics_derivatives(links, factors, workspace, results);
                 });
