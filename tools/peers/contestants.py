@@ -207,8 +207,8 @@ class Arena:
         return float((np.abs(values - right).max(axis=1) / np.abs(right).max(axis=1)).max())
 
     def error_of_derivatives(self, values, right):
-        """The maximum over states and matrices; of a free flyer, whose derivatives are in its tangent space, of A⁻¹ alone."""
-        square = self.coordinates**2
-        right = right[:, right.shape[1] - values.shape[1] :].reshape(len(right), -1, square)
-        off = np.abs(values.reshape(right.shape) - right).max(axis=2)
+        """The maximum over states and matrices. A free flyer, whose derivatives are in its tangent space, has NaN for those of the base."""
+        shape = len(right), 3, self.coordinates**2
+        values, right = values.reshape(shape), right.reshape(shape)
+        off = np.nanmax(np.abs(values - right), axis=2)
         return float((off / np.abs(right).max(axis=2)).max())

@@ -70,7 +70,7 @@ class Exudyn:
         )
         self.system.Assemble()
 
-    def run(self, q, v, steps):
+    def run(self, q, v, steps, solver=exu.DynamicSolverType.RK44):
         """State after this many steps, and the seconds that they took."""
         system, settings = self.system, exu.SimulationSettings()
         system.systemData.SetODE2Coordinates(q, configuration=exu.ConfigurationType.Initial)
@@ -82,7 +82,7 @@ class Exudyn:
         settings.solution.recordImagesInterval = -1
         settings.show.computationTime = False
         start = time.perf_counter()
-        system.SolveDynamic(settings, solverType=exu.DynamicSolverType.RK44, storeSolver=False)
+        system.SolveDynamic(settings, solverType=solver, storeSolver=False)
         seconds = time.perf_counter() - start
         return system.systemData.GetODE2Coordinates(), system.systemData.GetODE2Coordinates_t(), seconds
 

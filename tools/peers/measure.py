@@ -17,11 +17,14 @@ from dataclasses import asdict
 
 import machine
 import report
+import runs
 from contestants import LIBRARIES, OURS, Arena, Contestant
 from programs import TARGET, WORKSPACE, Builds, compilers, crane_bench
 
 # Sections of the boom; 13 + 3 n coordinates.
 SECTIONS, SECTIONS_QUICK = [0, 4, 10, 20, 30], [0]
+# Coordinates of the crane of whole runs.
+RUNS = 25
 # Contestants with larger errors are excluded.
 RIGHT = 1e-8
 # This many variants per library and compiler take part in the rounds: the fastest in a short trial.
@@ -82,6 +85,9 @@ def measure(options, builds, results):
         "wrong": [asdict_of(contestant) for contestant in wrong],
         "right": RIGHT,
     }
+    print("whole runs", flush=True)
+    of_runs = next((arena for arena in arenas if arena.coordinates == RUNS), arenas[0])
+    facts["runs"] = {"coordinates": of_runs.coordinates, "runs": runs.measure(of_runs, libraries, options.quick)}
     rounds = options.rounds or (3 if options.quick else 11)
     begun = time.perf_counter()
     for number in range(rounds):

@@ -10,7 +10,8 @@
 //     llt_local, llt_world                 the same with Eigen's: q̈
 //     terms_local, terms_world             crba and nonLinearEffects: A, e
 //     derivatives_of_aba                   computeABADerivatives: derivatives of q̈ with respect to q, q̇ and forces
-// Those of a free flyer are in its tangent space; of its values only A⁻¹ is converted.
+// Those of a free flyer are in its tangent space: of its values A⁻¹ is converted, rows and columns of the base of the others are NaN.
+#include <cmath>
 #include <memory>
 #include <sstream>
 
@@ -225,9 +226,12 @@ static Kernel open(const std::string &chain, const std::string &states_path, con
                         const MatrixXd rows = matrix.transpose();
                         all.insert(all.end(), rows.data(), rows.data() + rows.size());
                     };
-                    if (!is_free_flyer) {
-                        append(room->data.ddq_dq);
-                        append(room->data.ddq_dv);
+                    for (MatrixXd slopes : {MatrixXd(room->data.ddq_dq), MatrixXd(room->data.ddq_dv)}) {
+                        if (is_free_flyer) {
+                            slopes.topRows(6).setConstant(std::nan(""));
+                            slopes.leftCols(6).setConstant(std::nan(""));
+                        }
+                        append(slopes);
                     }
                     append(back.solve(back.solve(inverse).transpose()));
                     return all;

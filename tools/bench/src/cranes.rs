@@ -1,6 +1,10 @@
 //! The reference crane with several numbers of sections, compiled by the build script.
 
+use crane_model::CraneModel;
+use crane_model::dynamics::Method;
+
 use crate::kernel::Kernel;
+use crate::runs::{self, Plan};
 use crate::{kernels, states};
 
 /// A crane and its kernels to be timed.
@@ -11,6 +15,10 @@ pub struct Entry {
     pub spec: &'static str,
     /// Its kernels.
     pub kernels: fn() -> Vec<Kernel>,
+    /// The start and the times of its run.
+    pub plan: fn() -> Plan,
+    /// Its [`run`](runs::run).
+    pub run: fn(Method, f64, usize) -> Result<Vec<f64>, String>,
     /// Its states as records `t, q, v, f`, `f` being the generalized forces.
     pub records: fn() -> Vec<f64>,
 }
@@ -59,6 +67,8 @@ macro_rules! entry {
             coordinates: $name::N,
             spec: SPEC,
             kernels: || kernels::$kernels::<{ $name::N }, $name::Crane>(SPEC),
+            plan: || runs::plan($name::Crane::default().description()),
+            run: runs::run::<{ $name::N }, $name::Crane>,
             records: || states::records::<{ $name::N }, $name::Crane>(),
         }
     }};

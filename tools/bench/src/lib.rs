@@ -6,5 +6,6 @@
 pub mod cranes;
 pub mod kernel;
 pub mod kernels;
+pub mod runs;
 pub mod states;
 pub mod triple_sum;

@@ -9,6 +9,8 @@
 //! crane-bench states N                 states as records t, q, v, f: 64-bit little-endian numbers
 //! crane-bench values N KERNEL          what a kernel computes at these states, in the same form
 //! crane-bench time N KERNEL SECONDS    nanoseconds per call, measured for this long
+//! crane-bench plan N                   a run: duration and interval of results, s, and the coordinates at the start
+//! crane-bench run N METHOD X REPEAT    shortest time of this run, s, with a step or tolerance X, and the coordinates at its results
 //! ```
 
 use std::io::Write as _;
@@ -18,6 +20,7 @@ use std::time::Duration;
 use crane_bench::cranes::{self, Entry};
 use crane_bench::kernel::Kernel;
 use crane_bench::kernels;
+use crane_bench::runs::Plan;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -49,6 +52,16 @@ fn run_command(words: &[&str]) -> Result<Vec<u8>, String> {
             let seconds: f64 = seconds.parse().map_err(|error| format!("{seconds}: {error}"))?;
             let budget = Duration::try_from_secs_f64(seconds).map_err(|error| format!("{seconds}: {error}"))?;
             Ok(lines([kernel(n, name)?.nanoseconds(budget).to_string()].into_iter()))
+        }
+        ["plan", n] => {
+            let Plan { start, duration, output } = (crane(n)?.plan)();
+            Ok(bytes(&[vec![duration, output], start].concat()))
+        }
+        ["run", n, method, accuracy, repeat] => {
+            let method = method.parse().map_err(|error| format!("{method}: {error}"))?;
+            let accuracy = accuracy.parse().map_err(|error| format!("{accuracy}: {error}"))?;
+            let repeat = repeat.parse().map_err(|error| format!("{repeat}: {error}"))?;
+            Ok(bytes(&(crane(n)?.run)(method, accuracy, repeat)?))
         }
         ["repeat", n, name, calls] => {
             kernel(n, name)?.time(calls.parse().map_err(|error| format!("{calls}: {error}"))?);
