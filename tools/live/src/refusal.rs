@@ -30,6 +30,7 @@ impl LiveCrane {
             | FunctionId::ForwardDynamicsDerivatives
             | FunctionId::DynamicResidual
             | FunctionId::DynamicResidualDerivatives
+            | FunctionId::ForceDerivatives
             | FunctionId::Forces
             | FunctionId::DriveForces
             | FunctionId::DrivePower

@@ -108,7 +108,7 @@ fn assert_same_derivatives_of_motion(live: &LiveCrane, compiled: &dyn DynMotionD
     for (live, compiled) in live_results[4].chunks(n * n).zip(compiled_results[4].chunks(n * n)) {
         let largest = compiled.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
         for (live, compiled) in live.iter().zip(compiled) {
-            // By recursion and by dense factors: rounding, times the condition of A.
+            // By the same loops of factors that may differ where the target fuses multiply-adds: rounding, times the condition of A.
             assert!((live - compiled).abs() <= 1e-10 * largest, "{name}: {live} live, {compiled} compiled");
         }
     }

@@ -432,6 +432,7 @@ def test_forces_with_states_say_what_to_use_instead():
     for name, call in [
         ("forward_dynamics", lambda: boom.forward_dynamics(q, v)),
         ("forces", lambda: boom.forces(q, v)),
+        ("force_derivatives", lambda: boom.force_derivatives(q, v)),
         ("drive_forces", lambda: boom.drive_forces(q, v)),
         ("drive_power", lambda: boom.drive_power(q, v)),
         ("dissipation", lambda: boom.dissipation(q, v)),
