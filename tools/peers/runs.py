@@ -16,7 +16,7 @@ import numpy as np
 from exudyn_peer import Exudyn
 from mujoco_peer import with_springs
 
-# Time of a run: the shortest of so many; ours take a millisecond.
+# Time of a run: the shortest of so many; ours take a millisecond, and Exudyn's, of seconds, are timed once.
 REPEAT, REPEAT_OURS = 3, 30
 # Steps per interval of results; of explicit methods, from the largest that is stable.
 STEPS = [5, 10, 20, 50, 100, 200, 400, 800]

@@ -11,9 +11,9 @@ use crane_codegen::SourceFile;
 use crane_codegen::chain::Analyses;
 use crane_codegen::mechanics;
 use crane_codegen::program::FunctionId;
-use crane_live::machine::{Arguments, Number};
+use crane_live::machine::Number;
 use crane_live::{LiveCrane, Routine};
-use crane_model::dyn_crane::{DynBlock, DynDynamics, DynEnsemble, DynModel};
+use crane_model::dyn_crane::{DynBlock, DynEnsemble};
 use crane_model::rt::lanes::f64x8;
 
 /// Number of alternating rounds.
@@ -42,13 +42,14 @@ fn main() {
     for entry in cranes::all() {
         let live = LiveCrane::from_spec(&SourceFile::new("crane.yaml", entry.spec)).expect("a spec that was compiled");
         let states = states(&entry);
-        let mut singly = compiled(&entry, "forward_dynamics");
-        let routine = routine(&live);
+        let [mut singly, mut by_machine_code, mut by_bytecode] =
+            ["forward_dynamics", "forward_dynamics_machine_code", "forward_dynamics_bytecode"]
+                .map(|name| kernel(&entry, name));
         let [single, machine_code, bytecode] =
-            medians([&mut |calls| singly.time(calls), &mut |calls| one_by_one(&live, &states, calls), &mut |calls| {
-                interpreted(&routine, &live, &states, calls)
+            medians([&mut |calls| singly.time(calls), &mut |calls| by_machine_code.time(calls), &mut |calls| {
+                by_bytecode.time(calls)
             }]);
-        let mut lanes = compiled(&entry, "forward_dynamics_lanes");
+        let mut lanes = kernel(&entry, "forward_dynamics_lanes");
         let parameters = live.parameters().to_vec();
         let mut block = live.block(&vec![parameters.as_slice(); live.lanes()]).expect("the crane's own parameters");
         let width = live.lanes() / 8;
@@ -104,7 +105,7 @@ fn median(mut numbers: Vec<f64>) -> f64 {
     numbers[numbers.len() / 2]
 }
 
-fn compiled(entry: &Entry, name: &str) -> Kernel {
+fn kernel(entry: &Entry, name: &str) -> Kernel {
     entry.kernel(name).expect("a kernel of every crane")
 }
 
@@ -112,30 +113,6 @@ fn states(entry: &Entry) -> Vec<State> {
     let n = entry.coordinates;
     let state = |record: &[f64]| State { t: record[0], q: record[1..=n].to_vec(), v: record[n + 1..=2 * n].to_vec() };
     (entry.records)().chunks_exact(1 + 3 * n).map(state).collect()
-}
-
-fn one_by_one(live: &LiveCrane, states: &[State], calls: u64) -> Duration {
-    let mut out = vec![0.0; live.size()];
-    let begin = Instant::now();
-    for (_, State { t, q, v }) in (0..calls).zip(states.iter().cycle()) {
-        live.forward_dynamics(black_box(*t), black_box(q), black_box(v), &mut out);
-        black_box(&out);
-    }
-    begin.elapsed()
-}
-
-fn interpreted(routine: &Routine, live: &LiveCrane, states: &[State], calls: u64) -> Duration {
-    let mut out = vec![0.0; routine.results()];
-    let mut machine = routine.machine(live.parameters());
-    // No input is set: they follow the spec.
-    let inputs = [0.0, 1.0].repeat(live.chain().inputs.len());
-    let begin = Instant::now();
-    for (_, State { t, q, v }) in (0..calls).zip(states.iter().cycle()) {
-        let arguments = Arguments { t: black_box(*t), q: black_box(q), v, inputs: &inputs, ..Arguments::none() };
-        routine.interpret(&mut machine, &arguments, &mut out);
-        black_box(&out);
-    }
-    begin.elapsed()
 }
 
 fn in_block(block: &mut (dyn DynBlock + '_), width: usize, states: &[State], calls: u64) -> Duration {

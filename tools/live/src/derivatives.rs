@@ -1,13 +1,12 @@
 //! Derivatives of the dynamics from their factors.
 
-use crane_model::rt::derivatives::{Columns, Constant, Link, Workspace};
+use crane_model::rt::derivatives::{Columns, Constant, Link, Workspace, has_branches};
 
 /// Calls `compute` with a workspace for these coordinates.
 pub fn with_workspace<C: Columns>(links: &[Link], compute: impl FnOnce(&[Link], Workspace<'_, C>)) {
     let (n, nought) = (links.len(), C::Number::constant(0.0));
     let zero = C::splat(nought);
-    let has_branches = links.iter().enumerate().any(|(place, link)| link.before != place.checked_sub(1));
-    let of_branches = if has_branches { n } else { 0 };
+    let of_branches = if has_branches(links) { n } else { 0 };
     let workspace = Workspace {
         joints: &mut vec![([nought; 16], false); n],
         rows: &mut vec![[nought; 16]; n],

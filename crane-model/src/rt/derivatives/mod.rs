@@ -88,7 +88,8 @@ fn store<C: Columns>(columns: &[C::Block], first: usize, matrix: &mut [C::Number
     }
 }
 
-fn has_branches(links: &[Link]) -> bool {
+/// Whether some coordinate is not attached to the one in front of it.
+pub fn has_branches(links: &[Link]) -> bool {
     links.iter().enumerate().any(|(place, link)| !link.continues(place))
 }
 

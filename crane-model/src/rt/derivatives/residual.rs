@@ -227,7 +227,9 @@ impl<'a, C: Columns> Slopes<'a, C> {
         let n = self.links.len();
         let diagonals = self.factors.get(rows::DIAGONALS * n..).unwrap_or_default();
         for (diagonal, row) in diagonals.chunks_exact(n.max(1)).enumerate() {
-            for (i, (added, column)) in row.iter().zip(&mut *by_q).enumerate() {
+            // The rows in which this diagonal crosses the columns.
+            let begin = (first + 2).saturating_sub(diagonal);
+            for (i, (added, column)) in row.iter().zip(&mut *by_q).enumerate().skip(begin).take(C::WIDTH) {
                 let lane = (i + diagonal).checked_sub(first + 2).filter(|lane| *lane < C::WIDTH);
                 if let Some(lane) = lane {
                     *column = fma(C::splat(-*added), C::unit(lane), *column);
