@@ -3,6 +3,7 @@
 mod count;
 mod expansion;
 mod interpret;
+mod pull_back;
 mod shape;
 
 use std::collections::HashMap;
@@ -12,6 +13,7 @@ use crate::symbolic::{ExprId, Graph, Nodes, Op, SweepTrace, SymbolId};
 pub use count::OperationCount;
 pub use crane_quantities::{Argument, Count, Extent, FunctionId, Item, RuntimeTrait};
 pub use interpret::Inputs;
+pub use pull_back::PULLED_BACK;
 pub use shape::{ConcurrentAxes, Shape, Struct};
 
 /// Functions that share one graph of expressions.

@@ -1,17 +1,14 @@
 //! Derivatives of expressions with respect to a symbol, operation by operation.
 
-use super::Expr;
 use super::graph::Graph;
 use super::op::{ExprId, Op};
+use super::{Expr, stumpff};
 
 impl Graph {
     /// `∂f/∂x` of expressions with respect to an input x, forward along the graph: one derivative per node between x and an expression.
     ///
     /// Where a minimum, a maximum or a choice changes branches, the result is the derivative on the side that [`Op::Select`] takes.
-    /// For Stumpff's functions `c_k' = (k c_{k+2} − c_{k+1})/2`, up to [`Op::STUMPFF_ORDERS`].
-    ///
-    /// # Panics
-    /// If a function `c_k` with k > 3 depends on x: its derivative would need an order that has no operation.
+    /// For Stumpff's functions `c_k' = (k c_{k+2} − c_{k+1})/2`.
     pub fn derivatives<'g>(&'g self, of: &[Expr<'g>], by: Expr<'g>) -> Vec<Expr<'g>> {
         let zero = self.constant(0.0);
         let last = of.iter().map(|f| f.id().0).max().unwrap_or(0);
@@ -52,7 +49,7 @@ impl Graph {
             Op::Div(a, b) => (of(a) - itself * of(b)) / x(b),
             Op::Sin(a) => of(a) * x(a).cos(),
             Op::Cos(a) => -(of(a) * x(a).sin()),
-            Op::Stumpff(k, a) => of(a) * 0.5 * (f64::from(k) * x(a).stumpff(k + 2) - x(a).stumpff(k + 1)),
+            Op::Stumpff(k, a) => of(a) * 0.5 * self.twice_stumpff_slope(k, x(a)),
             Op::Min(a, b) => (x(b) - x(a)).select(of(a), of(b)),
             Op::Max(a, b) => (x(a) - x(b)).select(of(a), of(b)),
             // Infinite where a is 0: laws with a root keep its argument above 0.
@@ -60,5 +57,22 @@ impl Graph {
             Op::Exp(a) => of(a) * itself,
             Op::Select(a, b, c) => x(a).select(of(b), of(c)),
         }
+    }
+
+    /// Twice the derivative of Stumpff's function of an order.
+    pub(super) fn twice_stumpff_slope<'g>(&'g self, k: u8, x: Expr<'g>) -> Expr<'g> {
+        f64::from(k) * self.any_stumpff(k + 2, x) - self.any_stumpff(k + 1, x)
+    }
+
+    /// Stumpff's functions c₀ to c₇; those that have no operation as Taylor polynomials up to the argument from which
+    /// `c_k = (1/(k−2)! − c_{k−2})/x` keeps its digits.
+    fn any_stumpff<'g>(&'g self, k: u8, x: Expr<'g>) -> Expr<'g> {
+        if usize::from(k) < Op::STUMPFF_ORDERS {
+            return x.stumpff(k);
+        }
+        let number = |number: f64| self.constant(number);
+        let polynomial = stumpff::taylor(k).into_iter().rev().fold(number(0.0), |sum, term| sum * x + term);
+        let upward = (stumpff::reciprocal_factorial(k - 2) - x.stumpff(k - 2)) / x;
+        (x - stumpff::SERIES).select(upward, polynomial)
     }
 }

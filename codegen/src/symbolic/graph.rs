@@ -53,7 +53,7 @@ impl Graph {
     }
 
     /// The expression of an operation, simplified if the graph simplifies.
-    pub(super) fn build(&self, op: Op) -> Expr<'_> {
+    pub(crate) fn build(&self, op: Op) -> Expr<'_> {
         let id = if self.simplify { rules::simplify(self, op) } else { self.intern(op) };
         self.expr(id)
     }

@@ -4,6 +4,7 @@ mod derivative;
 mod expr;
 mod graph;
 mod op;
+mod pull_back;
 mod rules;
 mod scalar;
 mod stage;

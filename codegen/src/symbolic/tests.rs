@@ -159,31 +159,31 @@ fn stumpff_functions_are_sines_and_cosines() {
     assert_eq!([0, 1, 2, 3, 4, 5].map(|k| of(k, 0.0)), [1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0]);
 }
 
+/// An expression for every rule of differentiation.
+fn with_derivatives<'g>(x: Expr<'g>, y: Expr<'g>) -> Vec<Expr<'g>> {
+    vec![
+        -x,
+        x + y * x,
+        x * y - y / x,
+        (x * y).sin() * x.cos(),
+        (x * x).stumpff(0) + (x * y + 4.0).stumpff(3) * y,
+        (x * x + y * y).stumpff(4) * (9.0 * x * x + 4.0).stumpff(5) * 100.0,
+        x.min(y) + (x * x).max(y),
+        (x * x + y * y).sqrt(),
+        (y * x).exp() / (1.0 + x.exp()),
+        (x * y).tanh(),
+        (x - y).select(x * x * y, x / y),
+        y.squared(),
+    ]
+}
+
 /// Every rule of differentiation against a difference quotient, whose error is of second order in 1e-5: 1e-9 for numbers of
 /// order 1 to 10, such as the third derivatives here.
 #[test]
 fn derivatives_are_those_of_differences() {
-    let expressions = |g: &Graph, x: Expr<'_>, y: Expr<'_>| {
-        let _ = g;
-        [
-            -x,
-            x + y * x,
-            x * y - y / x,
-            (x * y).sin() * x.cos(),
-            (x * x).stumpff(0) + (x * y + 4.0).stumpff(3) * y,
-            x.min(y) + (x * x).max(y),
-            (x * x + y * y).sqrt(),
-            (y * x).exp() / (1.0 + x.exp()),
-            (x * y).tanh(),
-            (x - y).select(x * x * y, x / y),
-            y.squared(),
-        ]
-        .map(Expr::id)
-        .to_vec()
-    };
     let graph = Graph::simplifying();
     let symbols = [graph.symbol(SymbolId(0)), graph.symbol(SymbolId(1))];
-    let of: Vec<Expr<'_>> = expressions(&graph, symbols[0], symbols[1]).into_iter().map(|id| graph.expr(id)).collect();
+    let of = with_derivatives(symbols[0], symbols[1]);
     let count = of.len();
     let mut outputs: Vec<_> = of.iter().map(|f| f.id()).collect();
     for by in symbols {
@@ -205,6 +205,50 @@ fn derivatives_are_those_of_differences() {
             }
         }
     }
+}
+
+/// Both are sums of the same numbers of order 1 to 100, in another order.
+#[test]
+fn what_is_pulled_back_is_the_weighted_sum_of_derivatives() {
+    let graph = Graph::simplifying();
+    let symbols = [graph.symbol(SymbolId(0)), graph.symbol(SymbolId(1))];
+    let of = with_derivatives(symbols[0], symbols[1]);
+    let weight = |i: usize| 0.3 + (i as f64).sin();
+    let weights: Vec<Expr<'_>> = (0..of.len()).map(|i| graph.constant(weight(i))).collect();
+    let mut outputs: Vec<_> = graph.pull_back(&of, &weights, &symbols).into_iter().map(Expr::id).collect();
+    for by in symbols {
+        outputs.extend(graph.derivatives(&of, by).into_iter().map(Expr::id));
+    }
+    let count = of.len();
+    let p = program(|g, _, _| outputs.iter().map(|id| g.expr(*id)).collect(), graph);
+    for (x, y) in [(0.7, -1.2), (-1.3, 0.4), (1.6, 1.1)] {
+        let all = values(&p, x, y);
+        let (found, derivatives) = all.split_at(2);
+        for (found, derivatives) in found.iter().zip(derivatives.chunks(count)) {
+            let expected: f64 = derivatives.iter().enumerate().map(|(i, slope)| weight(i) * slope).sum();
+            assert!((found - expected).abs() < 1e-13 * (1.0 + expected.abs()), "{x}, {y}: {found} for {expected}");
+        }
+    }
+}
+
+#[test]
+fn what_a_choice_leaves_out_may_have_an_infinite_slope() {
+    let graph = Graph::simplifying();
+    let (x, y) = (graph.symbol(SymbolId(0)), graph.symbol(SymbolId(1)));
+    let zero = graph.constant(0.0);
+    let f = [x.select(y / x, y), x.max(y / x), x.squared().sqrt(), (x - 1.0).select(x.sqrt(), x.squared())];
+    let weights = f.map(|_| graph.constant(1.0));
+    let found: Vec<_> = f
+        .iter()
+        .zip(&weights)
+        .flat_map(|(f, weight)| graph.pull_back(&[*f], &[*weight], &[x, y]))
+        .map(Expr::id)
+        .collect();
+    assert!(graph.pull_back(&[zero], &weights[..1], &[x])[0].is_zero());
+    let p = program(|g, _, _| found.iter().map(|id| g.expr(*id)).collect(), graph);
+    let found = values(&p, 0.0, -2.0);
+    assert_eq!([found[0], found[1], found[2], found[3]], [0.0, 1.0, 1.0, 0.0]);
+    assert_eq!([found[4], found[6]], [0.0, 0.0]);
 }
 
 #[test]

@@ -92,6 +92,27 @@ impl<'a, F: Formula> Adaptive<'a, F> {
         (&mut self.formula, &mut self.equations, &self.step)
     }
 
+    /// Takes a step again, from its start and the slope there: its formula and its motion within are then those of the step.
+    pub fn repeat(&mut self, [t, length]: [f64; 2], [start, slope]: [&[f64]; 2], end: &[f64]) -> Result<(), NotFinite> {
+        let Self { formula, equations, step, .. } = self;
+        (step.t, step.length) = (t, length);
+        step.start.copy_from_slice(start);
+        step.slopes[0].copy_from_slice(slope);
+        equations.references.step_within(t, step.reached());
+        formula.attempt(equations, step)?;
+        step.end.copy_from_slice(end);
+        Ok(())
+    }
+
+    /// Goes back to the beginning of the first step.
+    pub fn go_back(&mut self, t: f64, start: &[f64]) -> Result<(), NotFinite> {
+        let Self { equations, step, .. } = self;
+        (step.t, step.length) = (t, 0.0);
+        step.end.copy_from_slice(start);
+        equations.references.step_within(t, t + FIRST);
+        equations.slope(t, start, &mut step.slopes[1])
+    }
+
     /// Shortens the next step to what an error at the end of the last one allows that is not an error of the motion itself, but of a change of it,
     /// in proportion to this change if it is large.
     pub fn heed(&mut self, error: &[f64], change: &[f64]) {

@@ -133,6 +133,19 @@ impl ConnectorUpdate {
         }
     }
 
+    /// The transpose of [`add_to`](Self::add_to): adds the weights of G and P, given those of what it adds to.
+    pub fn pull_back(&self, weights: &[f64], c: f64, (g, p): (&mut [f64], &mut [f64])) {
+        for row in &self.rows {
+            let [stiffness, damping] = row.stiffness_and_damping;
+            let force = row.along(weights);
+            for (sum, factor) in [(&mut *g, damping + stiffness * c), (&mut *p, stiffness)] {
+                for (sum, column) in sum[row.spanned[0]..].iter_mut().zip(&row.jacobian) {
+                    *sum += force * factor * column;
+                }
+            }
+        }
+    }
+
     /// Turns the solution of the system without connectors into that of the system with them.
     pub fn correct(&mut self, solution: &mut [f64]) {
         let Some(schur) = &self.schur else { return };

@@ -175,6 +175,60 @@ impl ForceStateUpdate {
         }
     }
 
+    /// The transpose of [`correct`](Self::correct), in place.
+    pub fn pull_back_correction(&mut self, weights: &mut [f64]) {
+        for (share, inverse_column) in self.shares.iter_mut().zip(&self.inverse_columns) {
+            *share = inverse_column.iter().zip(&*weights).map(|(entry, weight)| entry * weight).sum();
+        }
+        self.correction.solve_transposed(&mut self.shares);
+        for (column, row) in self.force_states.rows().iter().enumerate().take(self.shares.len()) {
+            let share: f64 = self.shares.iter().enumerate().map(|(of, share)| self.added_inertia[(of, column)] * share).sum();
+            row.add_to(weights, -share);
+        }
+    }
+
+    /// The transpose of [`add_to`](Self::add_to): adds the weights of G, P and R, given those of what it adds to.
+    pub fn pull_back_right(&mut self, weights: &[f64], c: f64, (g, p): (&mut [f64], &mut [f64]), r: &mut [f64]) {
+        let [coupled, states] = self.force_states.coupled();
+        let (forces, rows) = (&self.force_states.forces()[..coupled], &self.force_states.rows()[..coupled]);
+        for (share, row) in self.shares.iter_mut().zip(rows) {
+            *share = -row.along(weights);
+        }
+        self.of_states.fill(0.0);
+        for (column, (force, row)) in forces.iter().zip(rows).enumerate() {
+            let share = self.shares[column];
+            let pulls = self.of_states[force.first..].iter_mut().zip(&force.by_states).take(force.count);
+            pulls.for_each(|(sum, slope)| *sum += slope * share / c);
+            let [mut of_g, mut of_p] = [0.0; 2];
+            for (of, share) in self.shares.iter().enumerate() {
+                of_g += (self.delta[(of, column)] + self.kappa[(of, column)] * c) * share;
+                of_p += self.kappa[(of, column)] * share;
+            }
+            row.add_to(g, of_g);
+            row.add_to(p, of_p);
+        }
+        self.of_coupled.solve_transposed(&mut self.of_states[..states]);
+        r.iter_mut().zip(&self.of_states).take(states).for_each(|(sum, weight)| *sum += weight);
+        for (inverse, (force, row)) in self.of_local.iter().zip(local(&self.force_states)) {
+            r[force.first] -= force.by_states[0] * inverse * weights[row.first] / c;
+        }
+    }
+
+    /// The transpose of [`states`](Self::states): the weights of R, given those of the increments of the states; adds those of the increments
+    /// of pose and rates.
+    pub fn pull_back_states(&self, weights: &[f64], (p, w): (&mut [f64], &mut [f64]), r: &mut [f64]) {
+        r.copy_from_slice(weights);
+        let (of_coupled, of_local) = r.split_at_mut(self.force_states.coupled()[1]);
+        self.of_coupled.solve_transposed(of_coupled);
+        of_local.iter_mut().zip(&self.of_local).for_each(|(weight, inverse)| *weight *= inverse);
+        for (force, row) in self.force_states.forces().iter().zip(self.force_states.rows()) {
+            let part = &r[force.first..force.first + force.count];
+            let sum = |slopes: &[f64]| slopes.iter().zip(part).map(|(slope, weight)| slope * weight).sum();
+            row.add_to(p, sum(&force.rates_by_length));
+            row.add_to(w, sum(&force.rates_by_speed));
+        }
+    }
+
     /// The increments of the states, `W (R + g_ℓ U p + g_ℓ̇ U w)`, given those of pose and rates.
     pub fn states(&self, (p, w): (&[f64], &[f64]), r: &[f64], out: &mut [f64]) {
         out.copy_from_slice(r);
@@ -255,6 +309,23 @@ impl Factors {
             }
         }
     }
+
+    /// The solution with the transposed matrix, in place of the right-hand side.
+    fn solve_transposed(&self, x: &mut [f64]) {
+        let Self { matrix, exchanged } = self;
+        let size = x.len();
+        for row in 0..size {
+            let known: f64 = (0..row).map(|k| matrix[(k, row)] * x[k]).sum();
+            x[row] = (x[row] - known) / matrix[(row, row)];
+        }
+        for row in (0..size).rev() {
+            let known: f64 = (row + 1..size).map(|k| matrix[(k, row)] * x[k]).sum();
+            x[row] -= known;
+        }
+        for (row, &other) in exchanged.iter().enumerate().rev() {
+            x.swap(row, other);
+        }
+    }
 }
 
 impl StatefulForce {
@@ -283,7 +354,13 @@ mod tests {
             factors.solve(&mut x);
             // A few rounding errors of numbers below 10.
             assert!(x.iter().zip(expected).all(|(x, expected)| (x - expected).abs() < 1e-14), "{x:?}");
+            let mut x: Vec<f64> = (0..4)
+                .map(|column| scale * matrix.column(column).dot(&DMatrix::from_column_slice(4, 1, &expected).column(0)))
+                .collect();
+            factors.solve_transposed(&mut x);
+            assert!(x.iter().zip(expected).all(|(x, expected)| (x - expected).abs() < 1e-14), "{x:?}");
         }
         Factors::new(0).solve(&mut []);
+        Factors::new(0).solve_transposed(&mut []);
     }
 }

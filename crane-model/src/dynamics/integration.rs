@@ -210,6 +210,13 @@ impl<'a, S: Stepper + ?Sized> Integration<'a, S> {
     }
 }
 
+impl<S: Stepper> Integration<'_, S> {
+    /// The motion, once the run has ended.
+    pub(super) fn into_stepper(self) -> S {
+        *self.stepper
+    }
+}
+
 impl Integration<'_> {
     /// Continues from the last result after `change`, which changes forces or the motions of drives of the crane, but neither positions
     /// nor rates, neither masses nor which drives follow their specs. Not after a motion that was stopped before its result.

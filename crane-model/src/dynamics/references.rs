@@ -8,6 +8,9 @@
 use super::rk4::just_within;
 use crate::{CoordinateRole, Description, dyn_crane::DynModel};
 
+/// Distance from either end of a step at which derivatives of functions of time are evaluated there, relative to its length.
+pub(super) const INSIDE: f64 = 1e-7;
+
 /// Coordinates that are relative to the motions of their drives.
 pub(super) struct References {
     driven: Vec<Reference>,
@@ -81,9 +84,11 @@ impl References {
         self.within = [begin, end];
     }
 
-    /// Beginning and end of the step, s.
-    pub fn within(&self) -> [f64; 2] {
-        self.within
+    /// A time within the step, slightly away from its ends, where functions of time may have another branch.
+    pub fn strictly_inside(&self, t: f64) -> f64 {
+        let [begin, end] = self.within;
+        let inside = INSIDE * (end - begin);
+        if end > begin { t.clamp(begin + inside, end - inside) } else { t }
     }
 
     /// The time at which functions of time count at `t`: within the step, because what changes at its end belongs to the next one.

@@ -64,7 +64,7 @@ pub const A: [&[f64]; STAGES] = [
     ],
 ];
 /// cᵢⱼ.
-const C: [&[f64]; STAGES] = [
+pub(super) const C: [&[f64]; STAGES] = [
     &[],
     &[-2.661_294_105_131_369],
     &[-3.128_450_202_373_838, 0.0],
@@ -73,7 +73,7 @@ const C: [&[f64]; STAGES] = [
     &[9.799_818_678_097_4, 11.935_792_886_603_18, 3.673_874_929_013_201, 14.807_828_541_095_5, 0.831_858_399_869_068],
 ];
 /// mᵢ.
-const WEIGHTS: [f64; STAGES] = [
+pub(super) const WEIGHTS: [f64; STAGES] = [
     6.456_217_074_653_235,
     -4.853_141_317_768_053,
     9.765_318_334_069_26,
@@ -160,6 +160,11 @@ impl<'a> Stages<'a> {
         self.rhs.copy_from_slice(rates);
         add_all(&mut self.rhs, h.recip(), C[stage], before.iter());
         self.system.solve(&self.rhs, &mut rest[0]);
+    }
+
+    /// The transpose of a stage's solution, with the matrix of the last step: from the weights of uᵢ to those of its right-hand side.
+    pub fn pull_back(&mut self, weights: &[f64], of_rates: &mut [f64]) {
+        self.system.pull_back(weights, of_rates);
     }
 }
 

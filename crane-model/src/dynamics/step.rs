@@ -82,4 +82,29 @@ impl Step {
             + (1.0 - 4.0 * theta + 3.0 * theta * theta) * rates[0]
             + (3.0 * theta * theta - 2.0 * theta) * rates[1]
     }
+
+    /// The transpose of [`at`](Self::at), for methods without a quartic term: adds the weights of the start and the end, and of the slopes there.
+    pub fn pull_back(&self, t: f64, weights: &[f64], [start, end]: [&mut [f64]; 2], [first, last]: [&mut [f64]; 2]) {
+        let theta = if self.length > 0.0 { (t - self.t) / self.length } else { 1.0 };
+        let rest = 1.0 - theta;
+        let of_end = theta * theta * (1.0 + 2.0 * rest);
+        add(start, 1.0 - of_end, weights);
+        add(end, of_end, weights);
+        add(first, theta * rest * rest * self.length, weights);
+        add(last, -theta * theta * rest * self.length, weights);
+    }
+
+    /// The transpose of [`rate_at`](Self::rate_at).
+    pub fn pull_back_rate(&self, t: f64, n: usize, coordinate: usize, weight: f64, [start, end]: [&mut [f64]; 2]) {
+        if self.length <= 0.0 {
+            end[n + coordinate] += weight;
+            return;
+        }
+        let theta = (t - self.t) / self.length;
+        let of_change = 6.0 * theta * (1.0 - theta) / self.length * weight;
+        start[coordinate] -= of_change;
+        end[coordinate] += of_change;
+        start[n + coordinate] += (1.0 - 4.0 * theta + 3.0 * theta * theta) * weight;
+        end[n + coordinate] += (3.0 * theta * theta - 2.0 * theta) * weight;
+    }
 }

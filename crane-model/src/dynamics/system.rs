@@ -50,6 +50,7 @@ pub(super) struct System<'a> {
     added_inertia: Vec<f64>,
     right: Vec<f64>,
     solution: Vec<f64>,
+    of_loops: Vec<f64>,
     /// Factorisations so far.
     pub factorisations: usize,
 }
@@ -61,6 +62,7 @@ impl<'a> System<'a> {
         let mut linear = vec![[0.0; 2]; n];
         crane.joint_stiffness_and_damping(&mut linear);
         let zeros = || vec![0.0; n];
+        let loops = Loops::new(crane);
         let Description { stops, frictions, supports, connectors, .. } = crane.description();
         let one_sided = supports.iter().any(SupportInfo::is_one_sided);
         let ropes_or_pins = connectors.iter().any(|connector| connector.is_rope || connector.is_pin());
@@ -74,7 +76,8 @@ impl<'a> System<'a> {
             base: [Matrix6::zeros(); 2],
             connectors: ConnectorUpdate::new(crane),
             force_states: ForceStateUpdate::new(crane),
-            loops: Loops::new(crane),
+            of_loops: vec![0.0; loops.multipliers().len()],
+            loops,
             c: f64::NAN,
             added_inertia: zeros(),
             right: zeros(),
@@ -183,5 +186,42 @@ impl<'a> System<'a> {
             of_q[i] = c * (of_v[i] + p[i]);
         }
         self.force_states.states((of_q, of_v), r, of_x);
+    }
+
+    /// The weights of a right-hand side, given those of u: the solution with the transposed matrix.
+    pub fn pull_back(&mut self, weights: &[f64], rhs: &mut [f64]) {
+        let (c, n) = (self.c, self.joints.len());
+        let (p, rest) = rhs.split_at_mut(n);
+        let (g, r) = rest.split_at_mut(n);
+        p.copy_from_slice(&weights[..n]);
+        g.copy_from_slice(&weights[n..2 * n]);
+        self.force_states.pull_back_states(&weights[2 * n..], (p, g), r);
+        for ((p, g), z) in p.iter_mut().zip(g).zip(&mut self.right) {
+            *p *= c;
+            *z = *g + *p;
+            *g = c * *z;
+        }
+        self.loops.pull_back(&mut self.right, &mut self.of_loops);
+        self.force_states.pull_back_correction(&mut self.right);
+        self.factors.solve(&self.right, &mut self.solution);
+        self.connectors.correct(&mut self.solution);
+        for weight in &mut self.solution {
+            *weight *= -c * c;
+        }
+        let (p, rest) = rhs.split_at_mut(n);
+        let (g, r) = rest.split_at_mut(n);
+        for (i, [stiffness, damping]) in self.joints.iter().enumerate() {
+            g[i] += (damping + stiffness * c) * self.solution[i];
+            p[i] += stiffness * self.solution[i];
+        }
+        let [stiffness, damping] = &self.base;
+        for (column, (g, p)) in g.iter_mut().zip(&mut *p).enumerate().take(6) {
+            for (row, weight) in self.solution.iter().enumerate().take(6) {
+                *g += (damping[(row, column)] + stiffness[(row, column)] * c) * weight;
+                *p += stiffness[(row, column)] * weight;
+            }
+        }
+        self.connectors.pull_back(&self.solution, c, (g, p));
+        self.force_states.pull_back_right(&self.solution, c, (g, p), r);
     }
 }

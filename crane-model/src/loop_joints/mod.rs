@@ -237,6 +237,24 @@ impl Loops {
         self.subtract(x);
     }
 
+    /// The transpose of [`correct_by`](Self::correct_by): weights of its result become those of x, and `gammas` receives those of γ, equation by
+    /// equation.
+    pub fn pull_back(&mut self, weights: &mut [f64], gammas: &mut [f64]) {
+        let Self { n, jacobian, independence, columns, schur, shares, .. } = self;
+        let (n, kept) = (*n, independence.kept());
+        for (share, &row) in shares.iter_mut().zip(kept) {
+            *share = dot(&columns[row * n..][..n], weights);
+        }
+        solve_cholesky(&schur[..kept.len() * kept.len()], kept.len(), &mut shares[..kept.len()]);
+        gammas.fill(0.0);
+        for (share, &row) in shares.iter().zip(kept) {
+            gammas[row] = -share;
+            for (weight, entry) in weights.iter_mut().zip(&jacobian[row * n..][..n]) {
+                *weight -= share * entry;
+            }
+        }
+    }
+
     /// `x − M⁻¹ Jᵀ S⁻¹ shares`; the shares become `S⁻¹ shares`.
     fn subtract(&mut self, x: &mut [f64]) {
         let Self { n, independence, columns, schur, shares, .. } = self;

@@ -1,14 +1,18 @@
 //! Complete runs of one crane or many: from the equilibrium, recorded, with an estimate of their error and with cautions.
 
+mod adjoint;
 pub mod ensemble;
 mod failed;
 mod gradients;
 mod manoeuvre;
+mod measure;
 mod recorded;
 mod start;
 
+pub use adjoint::record_adjoint;
 pub use failed::{Failed, Reason};
 pub use gradients::{Gradients, record_gradients};
 pub use manoeuvre::{Bound, POSES, Pose, SAFE, limiting_modes, manoeuvre, step_limit};
+pub use measure::Measure;
 pub use recorded::{Recorded, check, imbalance, record, record_checked};
 pub use start::{EQUILIBRIUM, GUESS, Start};

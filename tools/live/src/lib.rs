@@ -39,6 +39,7 @@ mod motion;
 mod native;
 mod refusal;
 mod routine;
+pub mod products;
 pub mod rows;
 pub mod sensitivity;
 mod steered;

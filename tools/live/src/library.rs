@@ -74,13 +74,14 @@ pub struct Library {
     parents: Vec<usize>,
     programs: [OnceLock<Program>; Group::COUNT],
     routines: [OnceLock<Option<Routine>>; FunctionId::COUNT],
+    pulled_back: [OnceLock<Option<Routine>>; FunctionId::COUNT],
 }
 
 impl Library {
     /// The functions of a chain, none of them derived yet.
     pub fn new(chain: Chain) -> Self {
-        let routines = std::array::from_fn(|_| OnceLock::new());
-        Self { parents: parents(&chain), chain, programs: Default::default(), routines }
+        let [routines, pulled_back] = [0, 1].map(|_| std::array::from_fn(|_| OnceLock::new()));
+        Self { parents: parents(&chain), chain, programs: Default::default(), routines, pulled_back }
     }
 
     /// The chain.
@@ -101,10 +102,26 @@ impl Library {
         self.routines[id as usize].get_or_init(|| self.assemble(id)).as_ref()
     }
 
+    /// The products of weights and the derivatives of a function, see [`Program::pull_back`]; `None` if the crane does not need it, or it does not
+    /// fit into the registers.
+    pub fn pulled_back(&self, id: FunctionId) -> Option<&Routine> {
+        let derive = || {
+            let program = self.program(id);
+            let pulled_back = program.pull_back(program.function(id)?);
+            pulled_back.functions.first().and_then(|function| Routine::new(&pulled_back, function).ok())
+        };
+        self.pulled_back[id as usize].get_or_init(derive).as_ref()
+    }
+
     fn assemble(&self, id: FunctionId) -> Option<Routine> {
-        let group = Group::of(id);
-        let program = self.programs[group as usize].get_or_init(|| mechanics::derive(&self.chain, group.analyses()));
+        let program = self.program(id);
         let routine = Routine::new(program, program.function(id)?);
         Some(routine.expect("functions of MOST_COORDINATES coordinates fit into the registers"))
+    }
+
+    /// The program with a function.
+    fn program(&self, id: FunctionId) -> &Program {
+        let group = Group::of(id);
+        self.programs[group as usize].get_or_init(|| mechanics::derive(&self.chain, group.analyses()))
     }
 }

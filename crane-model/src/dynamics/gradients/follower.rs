@@ -1,6 +1,6 @@
 //! The derivatives of a motion, step by step behind the motion itself.
 
-use super::{Slopes, jump::of_functions_of_time, rates::Rates};
+use super::{SAME, Slopes, jump::of_functions_of_time, rates::Rates};
 use crate::{
     dyn_crane::{DynCrane, DynImplicit},
     dynamics::{
@@ -9,17 +9,11 @@ use crate::{
         equations::Equations,
         motion::add,
         norm::Norm,
-        references::References,
+        references::{INSIDE, References},
         rosenbrock::{STAGES, Stages, add_error, add_stages},
         step::Step,
     },
 };
-
-/// Distance from either end of a step at which functions of time are evaluated there, relative to its length: at the ends themselves they may
-/// have another branch.
-const INSIDE: f64 = 1e-7;
-/// Times closer than this are the same stop, s.
-const SAME: f64 = 1e-9;
 
 /// A motion integrated by the W-method, and its derivatives along directions.
 pub(super) struct Follower<'a, 's> {
@@ -186,9 +180,7 @@ impl<'a, 's> Follower<'a, 's> {
 impl Variation<'_, '_> {
     /// Derivatives of the drives' motions at a time, slightly inside the present step; whether there are any.
     fn drives_at(&mut self, equations: &Equations<'_>, t: f64) -> (f64, bool) {
-        let [begin, end] = equations.references.within();
-        let inside = INSIDE * (end - begin);
-        let t = if end > begin { t.clamp(begin + inside, end - inside) } else { t };
+        let t = equations.references.strictly_inside(t);
         (t, self.slopes.drive_motions(t, &mut self.motions[0]))
     }
 

@@ -1,6 +1,6 @@
 //! Times at which functions of time are not smooth: how the derivatives jump if these times depend on the directions.
 
-use super::{Around, Slopes, rates::Rates};
+use super::{Around, Numbers, rates::Rates};
 use crate::{dyn_crane::DynCrane, dynamics::NotFinite};
 
 /// How the derivatives jump at a time at which functions of time are not smooth, at a motion `[q, v, x]`: if a motion of a drive changes later in
@@ -11,14 +11,14 @@ use crate::{dyn_crane::DynCrane, dynamics::NotFinite};
 /// ```
 pub(super) fn of_functions_of_time(
     crane: &dyn DynCrane,
-    slopes: &dyn Slopes,
+    numbers: &dyn Numbers,
     stops: &[&[f64]],
     (t, motion): (f64, &[f64]),
 ) -> Result<Vec<Vec<f64>>, NotFinite> {
     let mut own = Rates::new(crane, 0);
-    let mut all = vec![vec![0.0; motion.len()]; slopes.count()];
+    let mut all = vec![vec![0.0; motion.len()]; numbers.count()];
     for (direction, jump) in all.iter_mut().enumerate() {
-        let Some(Around { cranes, steps }) = slopes.around(direction) else { continue };
+        let Some(Around { cranes, steps }) = numbers.around(direction) else { continue };
         let (beside, step) = if steps[1] > 0.0 { (cranes[1], steps[1]) } else { (cranes[0], -steps[0]) };
         let mut times: Vec<f64> = stops.iter().map(|slopes| step * slopes[direction]).collect();
         if times.iter().all(|time| *time == 0.0) {

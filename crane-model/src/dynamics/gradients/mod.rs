@@ -1,4 +1,5 @@
-//! Derivatives of a motion along directions, in forward mode: by a live parameter, by an input, by a number of the initial state.
+//! Derivatives of a motion by live parameters, by inputs, by numbers of the initial state: in forward mode, those of everything along a few directions;
+//! in adjoint mode, those of one number in any number of directions.
 //!
 //! With `ẏ = F(t, y, p)` the derivative `s = dy/dp` obeys the linear equations
 //!
@@ -36,9 +37,13 @@
 //! | `rates` | F, and its derivative along directions |
 //! | `jump` | where functions of time are not smooth |
 //! | `follower` | the derivatives, step by step |
+//! | `pull_back` | the transpose of `rates` |
+//! | `adjoint` | the derivatives of one number by any number of others, step by step from the end |
 
+mod adjoint;
 mod follower;
 mod jump;
+mod pull_back;
 mod rates;
 
 use super::{InitialState, Integration, Run, Sample, Settings, Stopped, settings::divided};
@@ -46,6 +51,7 @@ use crate::{
     dyn_crane::{DynCrane, DynImplicit},
     force_states::ForceStates,
 };
+pub use adjoint::Trace;
 use follower::Follower;
 
 /// A state of a crane at which its functions are given with slopes.
@@ -85,17 +91,23 @@ pub struct Around<'a> {
     pub steps: [f64; 2],
 }
 
-/// Functions of a crane with their slopes in some directions, in which its parameters and inputs change. `along` has the change of the motion
-/// `[q, v, x]` in each direction; results are direction by direction.
-pub trait Slopes: Send {
+/// The numbers of a crane and its start by which a motion is differentiated; a direction is that of one number.
+pub trait Numbers: Send {
     /// The number of directions.
     fn count(&self) -> usize;
 
-    /// By how much the number of a direction changes for an error of its derivative to count as an error of the motion.
-    fn scale(&self, direction: usize) -> f64;
-
     /// Cranes whose number differs slightly in a direction; `None` if only the initial state does.
     fn around(&self, direction: usize) -> Option<Around<'_>>;
+
+    /// Times at which motions of drives and winches and scales of loads are not smooth, s, with their slopes in every direction.
+    fn stops(&mut self) -> Vec<(f64, Vec<f64>)>;
+}
+
+/// Functions of a crane with their slopes in some directions, in which its parameters and inputs change. `along` has the change of the motion
+/// `[q, v, x]` in each direction; results are direction by direction.
+pub trait Slopes: Numbers {
+    /// By how much the number of a direction changes for an error of its derivative to count as an error of the motion.
+    fn scale(&self, direction: usize) -> f64;
 
     /// Slopes of `A a − e − f + Jᵀ λ`, N and N m.
     fn residuals(&mut self, at: &At<'_>, along: &[Vec<f64>], out: &mut [Vec<f64>]);
@@ -108,10 +120,42 @@ pub trait Slopes: Send {
 
     /// Slopes of the prescribed position and rate of every drive at a time; `false` if no motion changes in any direction.
     fn drive_motions(&mut self, t: f64, out: &mut [Vec<[f64; 2]>]) -> bool;
-
-    /// Times at which motions of drives and winches and scales of loads are not smooth, s, with their slopes in every direction.
-    fn stops(&mut self) -> Vec<(f64, Vec<f64>)>;
 }
+
+/// The derivative of one number, with respect to a motion and to the numbers of all directions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Covector {
+    /// With respect to `[q, v, x]`.
+    pub motion: Vec<f64>,
+    /// Direction by direction, at a constant motion.
+    pub numbers: Vec<f64>,
+}
+
+impl Covector {
+    /// Zero, for motions of `len` numbers.
+    #[must_use]
+    pub fn zero(len: usize, directions: usize) -> Self {
+        Self { motion: vec![0.0; len], numbers: vec![0.0; directions] }
+    }
+}
+
+/// The transpose of [`Slopes`]: each function adds the derivative of the sum of its results, times weights, to a covector.
+pub trait PullBacks: Numbers {
+    /// Of `A a − e − f + Jᵀ λ`, N and N m.
+    fn residuals(&mut self, at: &At<'_>, weights: &[f64], sum: &mut Covector);
+
+    /// Of φ, φ̇ and `J a + J̇ v` of every equation of the loop joints.
+    fn loops(&mut self, at: &At<'_>, weights: &[[f64; 3]], sum: &mut Covector);
+
+    /// Of what cylinders with a valve depend on.
+    fn cylinders(&mut self, at: &At<'_>, weights: &[CylinderSlopes], sum: &mut Covector);
+
+    /// Of the prescribed position and rate of every drive at a time.
+    fn drive_motions(&mut self, t: f64, weights: &[[f64; 2]], sum: &mut Covector);
+}
+
+/// Times closer than this are the same stop, s.
+const SAME: f64 = 1e-9;
 
 /// Step of a difference along a direction, in units of m, rad and the scales of states: the error is its square, and rounding leaves 1e-9.
 pub const DIFFERENCE: f64 = 1e-7;
@@ -189,7 +233,7 @@ pub fn forward_difference(
 
 /// Derivatives of the states of forces that hold a start at rest.
 #[must_use]
-pub fn holding(crane: &dyn DynCrane, slopes: &dyn Slopes, q: &[f64], along: &[Vec<f64>]) -> Vec<Vec<f64>> {
+pub fn holding(crane: &dyn DynCrane, numbers: &dyn Numbers, q: &[f64], along: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let description = crane.description();
     if !description.has_force_states() {
         return vec![Vec::new(); along.len()];
@@ -197,7 +241,7 @@ pub fn holding(crane: &dyn DynCrane, slopes: &dyn Slopes, q: &[f64], along: &[Ve
     let of = |direction: usize| {
         let change = &along[direction][..q.len()];
         let size = change.iter().fold(0.0, |size: f64, entry| size.max(entry.abs()));
-        difference(crane, slopes.around(direction), (q, change, size), &mut |crane, q| {
+        difference(crane, numbers.around(direction), (q, change, size), &mut |crane, q| {
             ForceStates::new(crane.description()).holding(crane, 0.0, q)
         })
     };

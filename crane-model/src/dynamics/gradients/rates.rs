@@ -13,19 +13,19 @@ use crate::{
 
 /// F of a crane: of a motion `[q, v, x]` in full, not relative to the motions of drives.
 pub(super) struct Rates<'a> {
-    crane: &'a dyn DynCrane,
-    n: usize,
-    system: Box<dyn DynSystem + 'a>,
-    force_states: ForceStates,
+    pub(super) crane: &'a dyn DynCrane,
+    pub(super) n: usize,
+    pub(super) system: Box<dyn DynSystem + 'a>,
+    pub(super) force_states: ForceStates,
     /// Derivatives of the rates of x by x.
-    by_states: DMatrix<f64>,
-    loops: Loops,
-    prescribed: Vec<usize>,
+    pub(super) by_states: DMatrix<f64>,
+    pub(super) loops: Loops,
+    pub(super) prescribed: Vec<usize>,
     /// Index of the drive of each prescribed coordinate.
-    drives: Vec<usize>,
-    zeros: Vec<f64>,
+    pub(super) drives: Vec<usize>,
+    pub(super) zeros: Vec<f64>,
     /// a, and the rates of x.
-    accelerations: Vec<f64>,
+    pub(super) accelerations: Vec<f64>,
     of_states: Vec<f64>,
     residuals: Vec<Vec<f64>>,
     of_loops: Vec<Vec<[f64; 3]>>,
@@ -134,6 +134,14 @@ impl<'a> Rates<'a> {
         Ok(())
     }
 
+    /// Prepares the loop joints to move derivatives onto the loops.
+    pub(super) fn choose_loops(&mut self, q: &[f64], v: &[f64]) {
+        let crane = self.crane;
+        self.loops.evaluate(crane, q, v);
+        self.loops.choose();
+        self.loops.factorise(&mut |r, x| (crane as &dyn DynDynamics).solve_mass(q, r, x));
+    }
+
     /// Moves derivatives, given in full, onto the loops of the crane, as a motion is: `J δq = −δφ`, then `J δv = −δφ̇`.
     pub fn project(&mut self, slopes: &mut dyn Slopes, (t, motion): (f64, &[f64]), along: &mut [Vec<f64>]) {
         if self.loops.is_empty() {
@@ -141,10 +149,7 @@ impl<'a> Rates<'a> {
         }
         let n = self.n;
         let [q, v] = halves(&motion[..2 * n]);
-        let crane = self.crane;
-        self.loops.evaluate(crane, q, v);
-        self.loops.choose();
-        self.loops.factorise(&mut |r, x| (crane as &dyn DynDynamics).solve_mass(q, r, x));
+        self.choose_loops(q, v);
         let at = At { t, q, v, a: &self.zeros, multipliers: &[] };
         for part in 0..2 {
             slopes.loops(&at, along, &mut self.of_loops);

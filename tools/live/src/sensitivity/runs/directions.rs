@@ -4,7 +4,7 @@ use crane_codegen::chain::Input;
 use crane_codegen::program::{Argument, FunctionId};
 use crane_model::Description;
 use crane_model::dyn_crane::{DynCrane, DynModel};
-use crane_model::dynamics::gradients::{Around, At, CylinderSlopes, Slopes};
+use crane_model::dynamics::gradients::{Around, At, CylinderSlopes, Numbers, Slopes};
 
 use super::Along;
 use crate::LiveCrane;
@@ -101,6 +101,16 @@ impl<'a> Directions<'a> {
             scales: along.iter().map(scale).collect(),
             may_move_drives: changes && is_live(crane, FunctionId::DriveMotions),
         }
+    }
+
+    /// Whether motions of drives may change.
+    pub fn may_move_drives(&self) -> bool {
+        self.may_move_drives
+    }
+
+    /// Whether what servos want may change.
+    pub fn may_change_servos(&self) -> bool {
+        self.chunks.iter().filter_map(|chunk| chunk.oil.as_ref()).any(|oil| oil.wants_more)
     }
 
     /// The directions, eight by eight.
@@ -205,13 +215,9 @@ fn moved(numbers: &[f64], first: usize, along: &[Vec<f64>]) -> Vec<Dual8> {
     numbers.iter().enumerate().map(|(i, number)| Dual8::new(*number, slope(i))).collect()
 }
 
-impl Slopes for Directions<'_> {
+impl Numbers for Directions<'_> {
     fn count(&self) -> usize {
         self.beside.len()
-    }
-
-    fn scale(&self, direction: usize) -> f64 {
-        self.scales[direction]
     }
 
     fn around(&self, direction: usize) -> Option<Around<'_>> {
@@ -219,6 +225,32 @@ impl Slopes for Directions<'_> {
         let or_own = |crane: &'_ Option<LiveCrane>| crane.as_ref().map_or(0.0, |_| *step);
         let [less, more] = cranes.each_ref().map(|crane| crane.as_ref().unwrap_or(self.crane) as &dyn DynCrane);
         Some(Around { cranes: [less, more], steps: cranes.each_ref().map(or_own) })
+    }
+
+    fn stops(&mut self) -> Vec<(f64, Vec<f64>)> {
+        let mut all: Vec<(f64, Vec<f64>)> = Vec::new();
+        for (number, chunk) in self.chunks.iter().enumerate() {
+            let mut place = 0;
+            for id in [FunctionId::DrivePieces, FunctionId::LoadPieces, FunctionId::WinchPieces] {
+                let mut evaluation = Evaluation::<Dual8>::new(self.crane, id);
+                evaluation.set_parameters(&chunk.parameters);
+                evaluation.set_inputs(&chunk.inputs);
+                for time in evaluation.at(Dual8::splat(0.0), &[], &[], &[]) {
+                    if number == 0 {
+                        all.push((time.value(), Vec::new()));
+                    }
+                    all[place].1.extend((0..chunk.count).map(|direction| time.slope(direction)));
+                    place += 1;
+                }
+            }
+        }
+        all
+    }
+}
+
+impl Slopes for Directions<'_> {
+    fn scale(&self, direction: usize) -> f64 {
+        self.scales[direction]
     }
 
     fn residuals(&mut self, at: &At<'_>, along: &[Vec<f64>], out: &mut [Vec<f64>]) {
@@ -313,23 +345,4 @@ impl Slopes for Directions<'_> {
         any
     }
 
-    fn stops(&mut self) -> Vec<(f64, Vec<f64>)> {
-        let mut all: Vec<(f64, Vec<f64>)> = Vec::new();
-        for (number, chunk) in self.chunks.iter().enumerate() {
-            let mut place = 0;
-            for id in [FunctionId::DrivePieces, FunctionId::LoadPieces, FunctionId::WinchPieces] {
-                let mut evaluation = Evaluation::<Dual8>::new(self.crane, id);
-                evaluation.set_parameters(&chunk.parameters);
-                evaluation.set_inputs(&chunk.inputs);
-                for time in evaluation.at(Dual8::splat(0.0), &[], &[], &[]) {
-                    if number == 0 {
-                        all.push((time.value(), Vec::new()));
-                    }
-                    all[place].1.extend((0..chunk.count).map(|direction| time.slope(direction)));
-                    place += 1;
-                }
-            }
-        }
-        all
-    }
 }

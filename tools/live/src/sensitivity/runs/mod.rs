@@ -6,22 +6,29 @@
 //! |---|---|
 //! | `along` | what a run is differentiated by |
 //! | `directions` | functions of the crane with their slopes |
+//! | `transposed` | products of weights with these slopes |
 
 mod along;
 mod directions;
+#[cfg(test)]
+mod tests;
+mod transposed;
 
 use std::ops::ControlFlow;
 
 use crane_model::dyn_crane::{DynCrane, DynModel};
-use crane_model::dynamics::gradients::{self, Slopes};
+use crane_model::dynamics::gradients::{self, Numbers};
 use crane_model::dynamics::{Method, Settings};
-use crane_model::runs::{EQUILIBRIUM, Failed, GUESS, Gradients, Recorded, Start, record_gradients};
+use crane_model::runs::{
+    EQUILIBRIUM, Failed, GUESS, Gradients, Measure, Recorded, Start, record_adjoint, record_gradients,
+};
 
 use super::rest::Rest;
 use super::source::Source;
 use crate::LiveCrane;
 pub use along::{Along, NotAlong};
 use directions::Directions;
+use transposed::Transposed;
 
 /// The method that integrates derivatives along with a motion.
 pub const METHOD: Method = Method::Rosenbrock;
@@ -42,6 +49,25 @@ pub fn run_with_gradients(
     let mut directions = Directions::new(crane, along);
     let start_along = of_start(crane, &directions, start, along);
     record_gradients(crane, start, &settings, &mut directions, start_along, proceed)
+}
+
+/// The same run with the derivatives of measures of a few columns, given by their indices, in adjoint mode: the cost does not grow with the number of
+/// directions. Gradients are measure by measure, direction by direction; NaN for what has none.
+///
+/// # Errors
+/// The run ends early.
+pub fn run_with_adjoint(
+    crane: &LiveCrane,
+    start: &Start,
+    settings: &Settings,
+    along: &[Along],
+    asked: &[(usize, Measure)],
+    proceed: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Result<(Recorded, Vec<Vec<f64>>), Failed> {
+    let settings = Settings { method: METHOD, ..*settings };
+    let mut functions = Transposed::new(crane, along);
+    let start_along = of_start(crane, functions.directions(), start, along);
+    record_adjoint(crane, start, &settings, &mut functions, &start_along, asked, proceed)
 }
 
 /// Derivatives of the start `[q, v, x]`.

@@ -1,0 +1,440 @@
+//! The derivatives of one number of a motion with respect to any number of others: from the end of the motion to its start.
+//!
+//! The steps of [`follower`](super::follower) are linear maps of derivatives. Transposed, and in reverse order, they carry the derivative of one
+//! number by the motion at the end of a step to that by the motion at its start, and collect the derivatives by parameters and inputs on the way:
+//! the result is that of the forward mode with the same steps, up to rounding (A. Griewank, A. Walther, Evaluating Derivatives, SIAM 2008,
+//! chapter 3). Steps are kept as their starts and are taken a second time, so that memory grows by two motions per step.
+
+use std::ops::ControlFlow;
+
+use super::{Covector, Numbers, PullBacks, SAME, jump::of_functions_of_time, rates::Rates};
+use crate::{
+    dyn_crane::{DynCrane, DynImplicit},
+    dynamics::{
+        Ahead, EffortAccuracy, InitialState, Integration, NotFinite, Run, Settings, Statistics, Stepper, Stopped, Watch,
+        adaptive::{Adaptive, FIRST},
+        equations::Equations,
+        motion::add,
+        norm::Norm,
+        references::{INSIDE, References},
+        rosenbrock::{A, C, STAGES, Stages, WEIGHTS},
+        settings::divided,
+        step::Step,
+    },
+};
+
+/// A step that was taken.
+struct Kept {
+    t: f64,
+    length: f64,
+    start: Vec<f64>,
+    /// The slope at its start.
+    slope: Vec<f64>,
+    /// Whether it ended where functions of time are not smooth.
+    at_stop: bool,
+}
+
+/// A motion that keeps its steps.
+struct Keeper<'a> {
+    motion: Adaptive<'a, Stages<'a>>,
+    kept: Vec<Kept>,
+}
+
+impl Keeper<'_> {
+    fn keep(&mut self, at_stop: bool) {
+        let (.., step) = self.motion.last();
+        let [slope, _] = &step.slopes;
+        self.kept.push(Kept { t: step.t, length: step.length, start: step.start.clone(), slope: slope.clone(), at_stop });
+    }
+}
+
+impl Stepper for Keeper<'_> {
+    fn start(&mut self, t: f64, motion: &[f64]) -> Result<(), Stopped> {
+        self.motion.start(t, motion)?;
+        self.keep(false);
+        Ok(())
+    }
+
+    fn step(&mut self, ahead: &Ahead) -> Result<f64, Stopped> {
+        let reached = self.motion.step(ahead)?;
+        self.keep(reached >= ahead.stop);
+        Ok(reached)
+    }
+
+    fn motion(&self) -> &[f64] {
+        self.motion.motion()
+    }
+
+    fn interpolate(&mut self, t: f64, motion: &mut [f64]) {
+        self.motion.interpolate(t, motion);
+    }
+
+    fn statistics(&self) -> Statistics {
+        self.motion.statistics()
+    }
+
+    fn efforts(&self) -> Vec<EffortAccuracy> {
+        self.motion.efforts()
+    }
+}
+
+/// A motion whose numbers can be differentiated.
+pub struct Trace<'a> {
+    crane: &'a dyn DynCrane,
+    motion: Adaptive<'a, Stages<'a>>,
+    kept: Vec<Kept>,
+    /// The motion at its end.
+    end: Vec<f64>,
+    /// The step in which each sample is, and its time, s.
+    samples: Vec<(usize, f64)>,
+    run: Run,
+}
+
+impl<'a> Trace<'a> {
+    /// A motion from a start at t = 0, by the W-method; the method of the settings is not used.
+    ///
+    /// # Errors
+    /// As [`simulate`](crate::dynamics::simulate).
+    pub fn new(
+        crane: &'a dyn DynCrane,
+        start: &InitialState,
+        settings: &Settings,
+        watch: &mut dyn Watch,
+    ) -> Result<Self, Stopped> {
+        let any: &dyn DynImplicit = crane;
+        let equations = Equations::new(any, References::of(any));
+        let (len, norm) = (equations.len(), Norm::with_efforts(any, settings.tolerance));
+        let motion = Adaptive::new(Stages::new(any, len), equations, norm).watching_all();
+        let keeper = Keeper { motion, kept: Vec::new() };
+        let mut integration = Integration::by(Box::new(keeper), any, 0.0, start, settings)?;
+        let mut samples = Vec::new();
+        let intervals = divided(settings.duration, settings.output).0;
+        for interval in 0..=intervals {
+            let sample = integration.sample();
+            let (t, ended) = (sample.t, watch.sample(&sample).is_break());
+            samples.push((integration.stepper().kept.len() - 1, t));
+            if interval == intervals || ended {
+                break;
+            }
+            let result = (settings.output * (interval + 1) as f64).min(settings.duration);
+            if integration.advance(result, &mut |t| watch.step(t))?.is_break() {
+                break;
+            }
+        }
+        let run = integration.run();
+        let Keeper { mut motion, kept } = integration.into_stepper();
+        let end = motion.last().2.end.clone();
+        Ok(Self { crane, motion, kept, end, samples, run })
+    }
+
+    /// Statistics of the run.
+    #[must_use]
+    pub fn run(&self) -> Run {
+        self.run.clone()
+    }
+
+    /// The derivative of a number with respect to the start and all numbers, from its derivatives with respect to the motion at samples, given by their
+    /// indices in increasing order. `proceed` receives the time of every step and may end the way back.
+    ///
+    /// # Errors
+    /// A derivative is not finite, or not known because `proceed` has ended the way back.
+    pub fn pull_back(
+        &mut self,
+        functions: &mut dyn PullBacks,
+        by_samples: &[(usize, Covector)],
+        proceed: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<Covector, NotFinite> {
+        let Self { crane, motion, kept, end, samples, .. } = self;
+        let (len, directions) = (end.len(), functions.count());
+        let mut sum = Covector::zero(len, directions);
+        let mut sweep = Sweep::new(*crane, functions);
+        // Weights of the slope at the end of a step.
+        let mut of_slope = vec![0.0; len];
+        let mut ahead = by_samples.len();
+        for index in (0..kept.len()).rev() {
+            let end = kept.get(index + 1).map_or(&*end, |next| &next.start);
+            let own = &kept[index];
+            if index > 0 {
+                motion.repeat([own.t, own.length], [&own.start, &own.slope], end)?;
+            } else {
+                motion.go_back(own.t, end)?;
+            }
+            let mut before = Before::zero(len);
+            while let Some((sample, covector)) = ahead.checked_sub(1).map(|last| &by_samples[last]) {
+                let (step, t) = samples[*sample];
+                if step != index {
+                    break;
+                }
+                ahead -= 1;
+                add(&mut sum.numbers, 1.0, &covector.numbers);
+                sweep.add_sample(motion, t, covector, &mut sum, &mut of_slope, &mut before);
+            }
+            if index == 0 {
+                sweep.to_start(motion, &of_slope, &mut sum)?;
+                break;
+            }
+            let (stages, equations, step) = motion.last();
+            sweep.pull_back(equations, (step.reached(), &step.end), &of_slope, &mut sum)?;
+            sweep.project(equations, (step.reached(), &step.end), &mut sum);
+            sweep.through(stages, equations, step, &mut sum, &mut before)?;
+            of_slope = before.slope;
+            if kept[index - 1].at_stop {
+                let before = &kept[index - 1];
+                sweep.jump(equations, (own.t, &own.start), [before.t, before.length], &of_slope, &mut sum)?;
+                of_slope.fill(0.0);
+            }
+            if proceed(own.t).is_break() {
+                return Err(NotFinite);
+            }
+        }
+        Ok(sum)
+    }
+}
+
+/// Weights of the start of a step and of the slope there.
+struct Before {
+    start: Vec<f64>,
+    slope: Vec<f64>,
+}
+
+impl Before {
+    fn zero(len: usize) -> Self {
+        Self { start: vec![0.0; len], slope: vec![0.0; len] }
+    }
+}
+
+/// Transposed maps of derivatives; motions and their weights are relative to those of the drives' motions, unless they are in full.
+struct Sweep<'a, 'f> {
+    crane: &'a dyn DynCrane,
+    functions: &'f mut dyn PullBacks,
+    rates: Rates<'a>,
+    n: usize,
+    /// Times at which functions of time are not smooth, with their derivatives.
+    stops: Vec<(f64, Vec<f64>)>,
+    /// The motion in full.
+    motion: Vec<f64>,
+    /// Weights of the drives' motions, and of their accelerations.
+    motions: Vec<[f64; 2]>,
+    of_drives: Vec<f64>,
+}
+
+impl<'a, 'f> Sweep<'a, 'f> {
+    fn new(crane: &'a dyn DynCrane, functions: &'f mut dyn PullBacks) -> Self {
+        let drives = crane.description().drives.len();
+        let rates = Rates::new(crane, 0);
+        Self {
+            n: crane.size(),
+            motion: Vec::new(),
+            motions: vec![[0.0; 2]; drives],
+            of_drives: vec![0.0; drives],
+            stops: functions.stops(),
+            crane,
+            functions,
+            rates,
+        }
+    }
+
+    /// Writes the motion in full.
+    fn complete(&mut self, equations: &mut Equations<'_>, (t, motion): (f64, &[f64])) {
+        self.motion.clear();
+        self.motion.extend_from_slice(motion);
+        equations.make_absolute(t, &mut self.motion);
+    }
+
+    /// From weights in full to relative ones: adds what the drives' motions contribute.
+    fn make_relative(&mut self, equations: &Equations<'_>, t: f64, sum: &mut Covector) {
+        self.add_motions(equations, t, 1.0, |_| true, sum);
+        for reference in equations.references.all().iter().filter(|reference| reference.rigid) {
+            (sum.motion[reference.coordinate], sum.motion[self.n + reference.coordinate]) = (0.0, 0.0);
+        }
+    }
+
+    /// From relative weights to weights in full; those of prescribed coordinates are zero.
+    fn make_absolute(&mut self, equations: &Equations<'_>, t: f64, sum: &mut Covector) {
+        for reference in equations.references.all().iter().filter(|reference| reference.rigid) {
+            (sum.motion[reference.coordinate], sum.motion[self.n + reference.coordinate]) = (0.0, 0.0);
+        }
+        self.add_motions(equations, t, -1.0, |rigid| !rigid, sum);
+    }
+
+    fn add_motions(
+        &mut self,
+        equations: &Equations<'_>,
+        t: f64,
+        sign: f64,
+        counts: impl Fn(bool) -> bool,
+        sum: &mut Covector,
+    ) {
+        let t = equations.references.strictly_inside(t);
+        self.motions.fill([0.0; 2]);
+        for reference in equations.references.all().iter().filter(|reference| counts(reference.rigid)) {
+            for (weight, place) in self.motions[reference.drive].iter_mut().zip([0, self.n]) {
+                *weight += sign * sum.motion[place + reference.coordinate];
+            }
+        }
+        self.functions.drive_motions(t, &self.motions, sum);
+    }
+
+    /// Adds the weights of a motion, from those of its slope.
+    fn pull_back(
+        &mut self,
+        equations: &mut Equations<'_>,
+        (t, motion): (f64, &[f64]),
+        weights: &[f64],
+        sum: &mut Covector,
+    ) -> Result<(), NotFinite> {
+        if weights.iter().all(|weight| *weight == 0.0) {
+            return Ok(());
+        }
+        self.complete(equations, (t, motion));
+        let (t, n) = (equations.references.strictly_inside(t), self.n);
+        let mut weights = weights.to_vec();
+        self.of_drives.fill(0.0);
+        self.motions.fill([0.0; 2]);
+        for reference in equations.references.all() {
+            let [position, rate] = [reference.coordinate, n + reference.coordinate];
+            if reference.rigid {
+                (weights[position], weights[rate]) = (0.0, 0.0);
+            }
+            self.motions[reference.drive][1] -= weights[position];
+            self.of_drives[reference.drive] -= weights[rate];
+        }
+        let mut own = Covector::zero(sum.motion.len(), sum.numbers.len());
+        self.rates.pull_back(self.functions, (t, &self.motion), &weights, &mut self.of_drives, &mut own)?;
+        for reference in equations.references.all() {
+            let [position, rate] = [reference.coordinate, n + reference.coordinate].map(|place| own.motion[place]);
+            let motions = &mut self.motions[reference.drive];
+            *motions = [motions[0] + position, motions[1] + rate];
+            if reference.rigid {
+                (own.motion[reference.coordinate], own.motion[n + reference.coordinate]) = (0.0, 0.0);
+            }
+        }
+        add(&mut sum.motion, 1.0, &own.motion);
+        add(&mut sum.numbers, 1.0, &own.numbers);
+        self.functions.drive_motions(t, &self.motions, sum);
+        let (shifts, factors, by) = equations.references.differences(t);
+        for (shift, factor) in [0.0, shifts[0], shifts[1]].into_iter().zip(factors) {
+            for (motions, of_drive) in self.motions.iter_mut().zip(&self.of_drives) {
+                *motions = [0.0, of_drive * factor / by];
+            }
+            self.functions.drive_motions(t + shift, &self.motions, sum);
+        }
+        Ok(())
+    }
+
+    /// The transpose of moving derivatives onto the loops of the crane.
+    fn project(&mut self, equations: &mut Equations<'_>, (t, motion): (f64, &[f64]), sum: &mut Covector) {
+        if !equations.has_loops() {
+            return;
+        }
+        self.complete(equations, (t, motion));
+        self.make_absolute(equations, t, sum);
+        self.rates.pull_back_projection(self.functions, (t, &self.motion), sum);
+        self.make_relative(equations, t, sum);
+    }
+
+    /// From the weights of the end of a step to those of its start, and of the slope there.
+    fn through(
+        &mut self,
+        stages: &mut Stages<'_>,
+        equations: &mut Equations<'_>,
+        step: &Step,
+        sum: &mut Covector,
+        before: &mut Before,
+    ) -> Result<(), NotFinite> {
+        let len = sum.motion.len();
+        let mut of_u: Vec<Vec<f64>> =
+            WEIGHTS.iter().map(|weight| sum.motion.iter().map(|of_end| weight * of_end).collect()).collect();
+        add(&mut before.start, 1.0, &sum.motion);
+        let mut of_rates = vec![0.0; len];
+        for stage in (0..STAGES).rev() {
+            let (earlier, own) = of_u.split_at_mut(stage);
+            stages.pull_back(&own[0], &mut of_rates);
+            for (of_u, factor) in earlier.iter_mut().zip(C[stage]) {
+                add(of_u, factor / step.length, &of_rates);
+            }
+            if stage == 0 {
+                add(&mut before.slope, 1.0, &of_rates);
+                break;
+            }
+            let (after, place) = stages.place(stage, step.length);
+            sum.motion.fill(0.0);
+            self.pull_back(equations, (step.t + after, place), &of_rates, sum)?;
+            add(&mut before.start, 1.0, &sum.motion);
+            for (of_u, factor) in earlier.iter_mut().zip(A[stage]) {
+                add(of_u, *factor, &sum.motion);
+            }
+        }
+        sum.motion.copy_from_slice(&before.start);
+        Ok(())
+    }
+
+    /// Adds what a sample at a time within the last step contributes: to the weights of its end and of the slope there, and of its start.
+    fn add_sample(
+        &mut self,
+        own: &mut Adaptive<'_, Stages<'_>>,
+        t: f64,
+        by_sample: &Covector,
+        sum: &mut Covector,
+        of_slope: &mut [f64],
+        before: &mut Before,
+    ) {
+        let n = self.n;
+        let mut motion = vec![0.0; by_sample.motion.len()];
+        own.interpolate(t, &mut motion);
+        let (_, equations, step) = own.last();
+        equations.make_relative(t, &mut motion);
+        let mut sample = Covector { motion: by_sample.motion.clone(), numbers: vec![0.0; sum.numbers.len()] };
+        self.make_relative(equations, t, &mut sample);
+        self.project(equations, (t, &motion), &mut sample);
+        add(&mut sum.numbers, 1.0, &sample.numbers);
+        let mut weights = sample.motion;
+        for coordinate in equations.references.coordinates() {
+            let weight = std::mem::take(&mut weights[n + coordinate]);
+            step.pull_back_rate(t, n, coordinate, weight, [&mut before.start, &mut sum.motion]);
+        }
+        step.pull_back(t, &weights, [&mut before.start, &mut sum.motion], [&mut before.slope, of_slope]);
+    }
+
+    /// From the weights of the slope and the motion after a time at which functions of time are not smooth to those of the motion before.
+    fn jump(
+        &mut self,
+        equations: &mut Equations<'_>,
+        (t, motion): (f64, &[f64]),
+        [begin, length]: [f64; 2],
+        of_slope: &[f64],
+        sum: &mut Covector,
+    ) -> Result<(), NotFinite> {
+        equations.references.step_within(t, t + length);
+        self.pull_back(equations, (t, motion), of_slope, sum)?;
+        self.make_absolute(equations, t, sum);
+        equations.references.step_within(begin, t);
+        self.complete(equations, (t, motion));
+        let here = self.stops.iter().filter(|(time, _)| (time - t).abs() <= SAME * (1.0 + t));
+        let here: Vec<&[f64]> = here.map(|(_, times)| times.as_slice()).collect();
+        let numbers: &dyn Numbers = &*self.functions;
+        let jumps = of_functions_of_time(self.crane, numbers, &here, (t, &self.motion))?;
+        for (number, jump) in sum.numbers.iter_mut().zip(&jumps) {
+            *number += jump.iter().zip(&sum.motion).map(|(jump, weight)| jump * weight).sum::<f64>();
+        }
+        self.make_relative(equations, t, sum);
+        Ok(())
+    }
+
+    /// From the weights of the slope and the motion at the beginning to those of the start in full.
+    fn to_start(
+        &mut self,
+        own: &mut Adaptive<'_, Stages<'_>>,
+        of_slope: &[f64],
+        sum: &mut Covector,
+    ) -> Result<(), NotFinite> {
+        let (_, equations, step) = own.last();
+        let (t, end) = (step.t, step.end.clone());
+        let mut beside = end.clone();
+        add(&mut beside, INSIDE * FIRST, &step.slopes[1]);
+        self.pull_back(equations, (t, &beside), of_slope, sum)?;
+        self.project(equations, (t, &end), sum);
+        self.make_absolute(equations, t, sum);
+        Ok(())
+    }
+}
