@@ -1,4 +1,5 @@
-"""What gradients of a run by ten parameters cost, as a multiple of the run: alternating rounds in one process, by the time of its core.
+"""What gradients of a run cost, as multiples of the run: of all columns by ten parameters, and of one number by these and all starts. Alternating
+rounds in one process, by the time of its core.
 
     python gradient_cost.py 5        # rounds
 """
@@ -35,24 +36,29 @@ CRANES = {
 
 
 def measure(name: str, rounds: int) -> str:
-    """Times of a run of 10 s and of the same with gradients."""
+    """Times of a run of 10 s, and of the same with gradients."""
     parameters, changes = CRANES[name]
     text = f"format: 1\nextends: {name}\nname: changed\nparameters: {parameters}\n{changes}"
     c = crane.load("changed.yaml", text=text)
     names = list(c.parameters)
     how = {"duration": 10.0, "output": 0.02, "method": "rosw4", "verify": False}
+    ways = {"run": {}, "forward": {"gradients": names}, "adjoint": {"adjoint": f"{c.coordinates[-1]}.final"}}
 
     def timed(**more):
         begin = time.process_time()
         run = c.simulate(**how, **more)
-        return time.process_time() - begin, run.statistics["steps"]
+        return time.process_time() - begin, run
 
     # The first calls make machine code.
-    timed(), timed(gradients=names)
-    pairs = [(timed(), timed(gradients=names)) for _ in range(rounds)]
-    ratio = statistics.median(other[0] / own[0] for own, other in pairs)
-    own, other = pairs[-1]
-    return f"{name}: {len(names)} parameters, {ratio:.1f} times the run ({1e3 * own[0]:.0f} ms, {own[1]} steps; {1e3 * other[0]:.0f} ms, {other[1]} steps)"
+    first = {way: timed(**more)[1] for way, more in ways.items()}
+    rounds = [{way: timed(**more)[0] for way, more in ways.items()} for _ in range(rounds)]
+    ratio = {way: statistics.median(times[way] / times["run"] for times in rounds) for way in ways}
+    (by_all,) = first["adjoint"].adjoint.values()
+    own = statistics.median(times["run"] for times in rounds)
+    return (
+        f"{name}: {ratio['forward']:.1f} times the run by {len(names)} parameters, {ratio['adjoint']:.1f} times of one number by {len(by_all)} "
+        f"({1e3 * own:.0f} ms, {first['run'].statistics['steps']} steps; {first['forward'].statistics['steps']} forward)"
+    )
 
 
 if __name__ == "__main__":

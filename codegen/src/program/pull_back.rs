@@ -49,12 +49,8 @@ impl Program {
                 .collect();
             graph.pull_back(&of, &weights, &by).into_iter().map(Expr::id).collect::<Vec<ExprId>>()
         };
-        let function = Function {
-            shape: Shape::Vector(outputs.len()),
-            outputs,
-            trace: SweepTrace::default(),
-            ..function.clone()
-        };
+        let function =
+            Function { shape: Shape::Vector(outputs.len()), outputs, trace: SweepTrace::default(), ..function.clone() };
         Program::new(graph, symbols, vec![function])
     }
 }

@@ -60,7 +60,7 @@ impl Graph {
                 [Some((a, to_a, is_chosen)), Some((b, to_b, is_chosen))]
             },
         );
-        // Zero times an infinite slope is no number.
+        // Zero times an infinite slope would be NaN.
         let unless_zero = |slope: Expr<'g>| if is_chosen { w.max(-w).select(slope, zero) } else { slope };
         match self.op(id) {
             Op::Constant(_) | Op::Symbol(_) => [None, None],

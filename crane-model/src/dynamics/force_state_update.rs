@@ -182,7 +182,8 @@ impl ForceStateUpdate {
         }
         self.correction.solve_transposed(&mut self.shares);
         for (column, row) in self.force_states.rows().iter().enumerate().take(self.shares.len()) {
-            let share: f64 = self.shares.iter().enumerate().map(|(of, share)| self.added_inertia[(of, column)] * share).sum();
+            let share: f64 =
+                self.shares.iter().enumerate().map(|(of, share)| self.added_inertia[(of, column)] * share).sum();
             row.add_to(weights, -share);
         }
     }

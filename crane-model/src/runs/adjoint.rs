@@ -7,7 +7,7 @@ use crate::{
     dyn_crane::DynCrane,
     dynamics::{
         Sample, Settings, Watch,
-        gradients::{Covector, PullBacks, Trace, forward_difference, size_of},
+        gradients::{Around, Covector, PullBacks, Trace, forward_difference, size_of},
     },
     force_states::ForceStates,
     results::{Recording, quantities_at},
@@ -86,26 +86,29 @@ fn derivatives(
     if columns.iter().all(|column| is_of_motion(*column)) {
         return all;
     }
-    let mut of = |crane: &dyn DynCrane, motion: &[f64]| {
-        let ((q, v), x) = (motion[..2 * n].split_at(n), &motion[2 * n..]);
-        quantities_at(crane, *t, (q, v), x)
-    };
-    let at = |row: &[f64], column: usize| row.get(column).copied().unwrap_or(f64::NAN);
     let scales = ForceStates::new(crane.description()).scales();
-    for place in 0..len + directions {
-        let mut change = vec![0.0; len];
-        let (around, size) = match place.checked_sub(len) {
-            Some(direction) => (functions.around(direction), 0.0),
-            None => {
-                change[place] = 1.0;
-                (None, size_of(&change, n, &scales))
-            }
-        };
-        let row = forward_difference(crane, around, (motion, &change, size), here, &mut of);
-        for (covector, column) in all.iter_mut().zip(columns).filter(|(_, column)| !is_of_motion(**column)) {
-            let entry = covector.motion.iter_mut().chain(&mut covector.numbers).nth(place);
-            entry.into_iter().for_each(|entry| *entry = at(&row, *column));
-        }
+    let row = |around: Option<Around<'_>>, change: &[f64]| {
+        let size = size_of(change, n, &scales);
+        forward_difference(crane, around, (motion, change, size), here, &mut |crane, motion| {
+            let ((q, v), x) = (motion[..2 * n].split_at(n), &motion[2 * n..]);
+            quantities_at(crane, *t, (q, v), x)
+        })
+    };
+    let nothing = vec![0.0; len];
+    let by_motion: Vec<Vec<f64>> = (0..len)
+        .map(|place| {
+            let mut change = nothing.clone();
+            change[place] = 1.0;
+            row(None, &change)
+        })
+        .collect();
+    let by_numbers: Vec<Vec<f64>> =
+        (0..directions).map(|direction| row(functions.around(direction), &nothing)).collect();
+    for (covector, column) in all.iter_mut().zip(columns).filter(|(_, column)| !is_of_motion(**column)) {
+        // What only the audit of a run has is no quantity of a state.
+        let of_rows =
+            |rows: &[Vec<f64>]| rows.iter().map(|row| row.get(*column).copied().unwrap_or(f64::NAN)).collect();
+        (covector.motion, covector.numbers) = (of_rows(&by_motion), of_rows(&by_numbers));
     }
     all
 }

@@ -1,13 +1,13 @@
-//! Derivatives of runs by live numbers and by the start, against differences of tighter runs.
+//! Derivatives of runs by live numbers and by the start: against differences of tighter runs, and by the adjoint mode against the forward mode.
 
 use std::ops::ControlFlow;
 
 use crane_live::LiveCrane;
-use crane_live::sensitivity::runs::{Along, run_with_gradients};
+use crane_live::sensitivity::runs::{Along, run_with_adjoint, run_with_gradients};
 use crane_model::CoordinateRole;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::{Method, Settings};
-use crane_model::runs::{Start, record};
+use crane_model::runs::{Measure, Start, record};
 use fastrand::Rng;
 
 use crate::descriptions::numbers_as_parameters;
@@ -36,10 +36,6 @@ const OF_ONE: f64 = 1e-6;
 pub fn check_run_changes(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     let mut rng = Rng::with_seed(seed);
     let crane = live(&numbers_as_parameters(tree, &mut rng)?.source).ok()?;
-    // A start that does not close the loops is moved onto them, with the weights of masses that may change.
-    if !crane.loop_joints().is_empty() {
-        return None;
-    }
     let q = equilibrium(&crane).ok()?;
     // In motion: at rest, shut valves are where their laws have a kink.
     let v: Vec<f64> = q.iter().map(|_| RUN[2] * (2.0 * rng.f64() - 1.0)).collect();
@@ -66,14 +62,14 @@ pub fn check_run_changes(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     };
     let proceed = &mut |_| ControlFlow::Continue(());
     let (recorded, found) = run_with_gradients(&crane, &start, &settings, &along, proceed).ok()?;
+    let mut wrong = not_transposed(&crane, &start, &settings, &along, &found);
+    // A start that does not close the loops is moved onto them, with the weights of masses that may change.
+    if !crane.loop_joints().is_empty() {
+        return Some(wrong);
+    }
     let settings = Settings { tolerance: tight, ..settings };
-    let mut wrong = Vec::new();
     for (along, found) in along.iter().zip(&found) {
-        let value = match along {
-            Along::Parameter(index) => crane.parameters()[*index],
-            _ => 1.0,
-        };
-        let per = if value == 0.0 { 1.0 } else { value.abs() };
+        let per = size_of(&crane, *along);
         let mut fewest: Option<Vec<String>> = None;
         for step in STEPS {
             let step = step * per;
@@ -95,6 +91,50 @@ pub fn check_run_changes(tree: &Tree, seed: u64) -> Option<Vec<String>> {
         wrong.extend(fewest.into_iter().flatten());
     }
     (!recorded.table.rows.is_empty()).then_some(wrong)
+}
+
+/// Final positions and rates whose derivatives by adjoint mode are not those of the forward mode.
+fn not_transposed(
+    crane: &LiveCrane,
+    start: &Start,
+    settings: &Settings,
+    along: &[Along],
+    forward: &[Vec<Vec<f64>>],
+) -> Vec<String> {
+    let n = crane.size();
+    let asked: Vec<(usize, Measure)> =
+        [1, n.div_ceil(2), n, n + 1, 2 * n].map(|column| (column, Measure::Final)).to_vec();
+    let proceed = &mut |_| ControlFlow::Continue(());
+    let Ok((_, found)) = run_with_adjoint(crane, start, settings, along, &asked, proceed) else {
+        return vec!["the run ends early in adjoint mode".to_owned()];
+    };
+    let mut wrong = Vec::new();
+    for ((column, _), found) in asked.iter().zip(&found) {
+        for ((along, found), rows) in along.iter().zip(found).zip(forward) {
+            let expected = rows[rows.len() - 1][*column];
+            let largest = |columns: std::ops::RangeInclusive<usize>| {
+                rows.iter().flat_map(|row| &row[columns.clone()]).fold(0.0, |size: f64, x| size.max(x.abs()))
+            };
+            let kind = if *column > n { n + 1..=2 * n } else { 1..=n };
+            let allowed =
+                OF_COLUMN * largest(*column..=*column) + OF_LARGEST * largest(kind) + OF_ONE / size_of(crane, *along);
+            let off = (found - expected).abs();
+            if off > allowed || off.is_nan() {
+                let name = name(crane, *along);
+                wrong.push(format!("column {column} by {name}: {found:.9e} backward, {expected:.9e} forward, {off:.1e} of {allowed:.1e}"));
+            }
+        }
+    }
+    wrong
+}
+
+/// The size of a number.
+fn size_of(crane: &LiveCrane, along: Along) -> f64 {
+    let value = match along {
+        Along::Parameter(index) => crane.parameters()[index],
+        _ => 1.0,
+    };
+    if value == 0.0 { 1.0 } else { value.abs() }
 }
 
 /// The rows of the run of a crane with a number, or a start, that is changed by a step.

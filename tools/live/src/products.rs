@@ -1,19 +1,24 @@
 //! Products of vectors with the derivatives of a function, without these derivatives.
 //!
+//! Vectors over all numbers that a function depends on have them in this order: t; q, v and a; the live parameters; the values of the inputs.
+//!
 //! | product | cost |
 //! |---|---|
-//! | `wᵀ J`, backward along the function ([`PullBack`]) | a few times that of the function, for all its arguments, parameters and inputs |
-//! | `J x`, forward along the function ([`push_forward`]) | about three times that of the function, for up to eight x |
+//! | `wᵀ J`, backward along the function ([`PullBack`]) | a few times that of the function, for all numbers at once |
+//! | `J x`, forward along the function ([`PushForward`]) | a few times that of the function |
 
 use std::ops::Range;
 use std::sync::Arc;
 
+use crane_codegen::chain::Input;
 use crane_codegen::program::{Argument, FunctionId, PULLED_BACK, Shape};
 use crane_model::dyn_crane::DynModel;
 
 use crate::LiveCrane;
+use crate::dual::{DIRECTIONS, Dual8};
 use crate::library::Library;
 use crate::machine::{Arguments, Machine};
+use crate::rows::Evaluation;
 
 /// A state at which a function is differentiated.
 #[derive(Clone, Copy, Debug)]
@@ -26,6 +31,40 @@ pub struct State<'a> {
     pub v: &'a [f64],
     /// Accelerations.
     pub a: &'a [f64],
+}
+
+/// Names of all numbers that functions of a crane depend on, and how many each has.
+#[must_use]
+pub fn numbers(crane: &LiveCrane) -> Vec<(String, usize)> {
+    let description = crane.description();
+    let n = crane.size();
+    let own = [("t", 1), ("q", n), ("v", n), ("a", n)].map(|(name, count)| (name.to_owned(), count));
+    let parameters = description.parameters.iter().map(|parameter| (parameter.name.to_string(), 1));
+    let inputs = description.inputs.iter().map(|input| (format!("inputs.{}", input.name), 1));
+    own.into_iter().chain(parameters).chain(inputs).collect()
+}
+
+/// Whether a function has products: its results are numbers of their own, which follow from the state alone.
+#[must_use]
+pub fn has_products(crane: &LiveCrane, function: FunctionId) -> bool {
+    use FunctionId as F;
+    let others = [Argument::RightHandSide, Argument::DrivePositions, Argument::AddedInertia, Argument::Factors];
+    let of_factors =
+        matches!(function, F::DynamicResidualDerivatives | F::ForwardDynamicsDerivatives | F::InverseMassMatrix);
+    let is_plain = |shape: &Shape| {
+        matches!(
+            shape,
+            Shape::Scalar
+                | Shape::Vector(_)
+                | Shape::Vectors(_)
+                | Shape::Pairs(_)
+                | Shape::Rows { .. }
+                | Shape::Structs(..)
+        )
+    };
+    !of_factors
+        && !others.iter().any(|other| function.arguments().contains(other))
+        && crane.library().routine(function).is_none_or(|routine| is_plain(routine.shape()))
 }
 
 /// `wᵀ J` of a function of a crane, with a workspace for its calls.
@@ -77,26 +116,14 @@ impl PullBack {
             begin..end
         });
         let (machine, results) = (routine.machine(parameters), vec![0.0; routine.results()]);
-        Some(Self { function, machine, results, places, inputs, library })
+        Some(Self { library, function, machine, inputs, results, places })
     }
 
-    /// Whether the results of a function are numbers of their own, each with a weight.
-    #[must_use]
-    pub fn has_weights(crane: &LiveCrane, function: FunctionId) -> bool {
-        let arguments = function.arguments();
-        let others = [Argument::RightHandSide, Argument::DrivePositions, Argument::AddedInertia, Argument::Factors];
-        !others.iter().any(|other| arguments.contains(other))
-            && crane.library().routine(function).is_none_or(|routine| {
-                matches!(
-                    routine.shape(),
-                    Shape::Scalar
-                        | Shape::Vector(_)
-                        | Shape::Vectors(_)
-                        | Shape::Pairs(_)
-                        | Shape::Rows { .. }
-                        | Shape::Structs(..)
-                )
-            })
+    /// Other live parameters, all of them.
+    pub fn set_parameters(&mut self, parameters: &[f64]) {
+        if let Some(routine) = self.library.pulled_back(self.function) {
+            routine.set_parameters(&mut self.machine, parameters);
+        }
     }
 
     /// The product at a state, with a weight for each result of the function, in their order.
@@ -109,5 +136,58 @@ impl PullBack {
         }
         let [t, q, v, a, parameters, inputs] = places.each_ref().map(|place| &results[place.clone()]);
         Pulled { t: t[0], q, v, a, parameters, inputs }
+    }
+}
+
+impl Pulled<'_> {
+    /// All of it, in the order of [`numbers`].
+    pub fn write(&self, out: &mut [f64]) {
+        let inputs = self.inputs.iter().step_by(Input::SLOTS);
+        let all = [self.t].into_iter().chain([self.q, self.v, self.a, self.parameters].concat()).chain(inputs.copied());
+        out.iter_mut().zip(all).for_each(|(out, number)| *out = number);
+    }
+}
+
+/// `J x` of a function of a crane, with a workspace for its calls.
+#[derive(Debug)]
+pub struct PushForward {
+    evaluation: Evaluation<Dual8>,
+    n: usize,
+    inputs: Vec<f64>,
+}
+
+impl PushForward {
+    /// Of a function of a crane with its inputs.
+    #[must_use]
+    pub fn new(crane: &LiveCrane, function: FunctionId) -> Self {
+        let (evaluation, inputs) = (Evaluation::new(crane, function), crane.inputs().numbers().collect());
+        Self { evaluation, n: crane.size(), inputs }
+    }
+
+    /// The product at a state and with live parameters, with the changes of all [`numbers`]; one number for each result of the function.
+    pub fn at(&mut self, state: &State<'_>, parameters: &[f64], changes: &[f64], out: &mut [f64]) {
+        let mut changes = changes.iter().copied();
+        let mut next = |number: f64| {
+            let mut slopes = [0.0; DIRECTIONS];
+            slopes[0] = changes.next().unwrap_or_default();
+            Dual8::new(number, slopes)
+        };
+        let t = next(state.t);
+        let mut all = |numbers: &[f64]| -> Vec<Dual8> {
+            (0..self.n).map(|i| next(numbers.get(i).copied().unwrap_or_default())).collect()
+        };
+        let [q, v, a] = [state.q, state.v, state.a].map(&mut all);
+        let parameters: Vec<Dual8> = parameters.iter().map(|number| next(*number)).collect();
+        let inputs = self.inputs.iter().enumerate();
+        let inputs = inputs.map(
+            |(slot, number)| {
+                if slot % Input::SLOTS == 0 { next(*number) } else { Dual8::along(*number, None) }
+            },
+        );
+        let inputs: Vec<Dual8> = inputs.collect();
+        self.evaluation.set_parameters(&parameters);
+        self.evaluation.set_inputs(&inputs);
+        let results = self.evaluation.at(t, &q, &v, &a);
+        out.iter_mut().zip(results).for_each(|(out, number)| *out = number.slope(0));
     }
 }

@@ -155,6 +155,34 @@ class Crane:
         self, q: ArrayLike, v: ArrayLike, x: ArrayLike | None = None, t: ArrayLike | None = None, *, invalid: str = "raise"
     ) -> Array:
         """(..., n + states): accelerations and rates of the states of forces; `Crane.state_derivatives` separates them."""
+    def _product_numbers(self) -> list[tuple[str, int]]:
+        """Names of all numbers that functions depend on, and how many each has."""
+    def _product_shape(self, function: str) -> list[int]:
+        """Axes of the results of a function that has products."""
+    def _vjp(
+        self,
+        function: str,
+        weights: ArrayLike,
+        q: ArrayLike | None = None,
+        v: ArrayLike | None = None,
+        a: ArrayLike | None = None,
+        t: ArrayLike | None = None,
+        *,
+        invalid: str = "raise",
+    ) -> Array:
+        """(..., numbers): weights of the results of a function, times its derivatives; `Crane.vjp` names them."""
+    def _jvp(
+        self,
+        function: str,
+        changes: ArrayLike,
+        q: ArrayLike | None = None,
+        v: ArrayLike | None = None,
+        a: ArrayLike | None = None,
+        t: ArrayLike | None = None,
+        *,
+        invalid: str = "raise",
+    ) -> Array:
+        """(..., results): derivatives of a function, times changes of all numbers."""
     def _columns_at(
         self, q: ArrayLike, v: ArrayLike, x: ArrayLike | None = None, t: ArrayLike | None = None, *, invalid: str = "raise"
     ) -> tuple[Array, list[str]]:
@@ -175,6 +203,7 @@ class Crane:
         verify: bool = True,
         bend: float = ...,
         gradients: list[str] | None = None,
+        adjoint: list[str] | None = None,
     ) -> dict[str, Any]:
         """A run: `Crane.simulate` makes a `Run` of it."""
     def _run_ensemble(

@@ -220,6 +220,62 @@ class Crane(_native.Crane):
         n = len(self.coordinates)
         return both[..., :n], both[..., n:]
 
+    def vjp(
+        self,
+        function: str,
+        weights: ArrayLike,
+        q: ArrayLike | None = None,
+        v: ArrayLike | None = None,
+        a: ArrayLike | None = None,
+        t: ArrayLike | None = None,
+        *,
+        invalid: str = "raise",
+    ) -> dict[str, Array]:
+        """Vector-Jacobian product wᵀ ∂f/∂x of a function, by its name as "dynamic_residual", at states q, v, a and times t, s, 0 unless given: by
+        "t", "q", "v", "a", every live parameter ("payload") and every input ("inputs.r"), for a few times the cost of f.
+
+        weights: w, (..., and the axes of f).
+        """
+        axes = self._product_shape(function)
+        flat = real_array("weights", weights)
+        if list(flat.shape[flat.ndim - len(axes) :]) != axes:
+            raise ValueError(f"weights have shape {flat.shape}, but {function} has {tuple(axes)} results, which are the last axes")
+        flat = flat.reshape(*flat.shape[: flat.ndim - len(axes)], -1)
+        all_numbers = self._vjp(function, flat, q, v, a, t, invalid=invalid)
+        found, first = {}, 0
+        for name, count in self._product_numbers():
+            is_vector = name in ("q", "v", "a")
+            found[name] = all_numbers[..., first : first + count] if is_vector else all_numbers[..., first]
+            first += count
+        return found
+
+    def jvp(
+        self,
+        function: str,
+        changes: Mapping[str, ArrayLike],
+        q: ArrayLike | None = None,
+        v: ArrayLike | None = None,
+        a: ArrayLike | None = None,
+        t: ArrayLike | None = None,
+        *,
+        invalid: str = "raise",
+    ) -> Array:
+        """Jacobian-vector product ∂f/∂x δx of a function, by its name as "forward_dynamics", at states q, v, a and times t, s, 0 unless given.
+
+        changes: δx by name: "t", "q", "v", "a", live parameters ("payload"), inputs ("inputs.r"); what is not named does not change.
+        """
+        self._product_shape(function)
+        numbers = self._product_numbers()
+        names = [name for name, _ in numbers]
+        for name in changes:
+            if name not in names:
+                raise KeyError(f"nothing is called {name!r}: write one of {', '.join(names)}")
+        given = {name: real_array(name, change) for name, change in changes.items()}
+        given = {name: change if name in ("q", "v", "a") else change[..., None] for name, change in given.items()}
+        shape = np.broadcast_shapes(*(change.shape[:-1] for change in given.values()))
+        flat = [np.broadcast_to(given.get(name, np.zeros(count)), (*shape, count)) for name, count in numbers]
+        return self._jvp(function, np.concatenate(flat, axis=-1), q, v, a, t, invalid=invalid)
+
     def columns_at(
         self,
         q: ArrayLike,
@@ -492,6 +548,7 @@ class Crane(_native.Crane):
         bend_limit: float | None = None,
         inputs: dict[str, float | None] | None = None,
         gradients: Sequence[str] | None = None,
+        adjoint: Sequence[str] | None = None,
     ) -> Run:
         """A run from the static equilibrium at rest, or from pose q and rates v.
 
@@ -504,12 +561,15 @@ class Crane(_native.Crane):
         inputs: of the spec, by name; constant throughout the run.
         gradients: names of what the run is differentiated by, for `Run.gradient`: live parameters ("payload"), inputs that are set
         ("inputs.r"), and starts of coordinates and of their rates ("q0.boom_psi", "v0.boom_psi"). The method is then "rosw4".
+        adjoint: instead, names of what is differentiated by all these numbers at once: "boom_psi_drive_torque.peak", or another measure of
+        a column: "maximum", "minimum", "final", "integral".
 
         Ctrl-C ends it with KeyboardInterrupt.
         """
-        names = None
-        if gradients is not None:
-            names = [gradients] if isinstance(gradients, str) else list(gradients)
+        names, asked = ([given] if isinstance(given, str) else given and list(given) for given in (gradients, adjoint))
+        if names is not None and asked is not None:
+            raise ValueError("gradients and adjoint are two runs: give one of them")
+        if names is not None or asked is not None:
             if method not in (None, "rosw4") or step is not None:
                 given = f"step={step!r}" if method in (None, "rosw4") else f"method={method!r}"
                 raise ValueError(f'{given} has no gradients: leave it out, or write method="rosw4"')
@@ -517,7 +577,7 @@ class Crane(_native.Crane):
         timing = _timing(method, duration, output, tolerance, step, force)
         limits = {} if bend_limit is None else {"bend": bend_limit}
         crane = self.replace(inputs=inputs) if inputs else self
-        found = crane._record(timing, q, v, verify, **limits, gradients=names)
+        found = crane._record(timing, q, v, verify, **limits, gradients=names, adjoint=asked)
         units = dict(found.pop("columns"))
         differences = found.pop("differences")
         errors = None if differences is None else dict(zip(units, differences, strict=True))

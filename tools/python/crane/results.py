@@ -272,6 +272,8 @@ class Run(Mapping[str, Array]):
     cautions: where the run was outside the validity of the model or the method.
     crane: the crane with the parameters and inputs of the run.
     gradients: (times, columns), derivatives of `table` by each name that `simulate(gradients=...)` was given.
+    adjoint: derivatives of each number that `simulate(adjoint=...)` was given, as "boom_psi_drive_torque.peak", by all live parameters, inputs that
+    are set, and starts, by their names.
     """
 
     units: dict[str, str]
@@ -287,6 +289,7 @@ class Run(Mapping[str, Array]):
     wall_time: float
     crane: "Crane" = field(repr=False)
     gradients: dict[str, Array] = field(default_factory=dict, repr=False)
+    adjoint: dict[str, dict[str, float]] = field(default_factory=dict, repr=False)
 
     def __repr__(self) -> str:
         """One line: the columns are many."""
@@ -325,11 +328,15 @@ class Run(Mapping[str, Array]):
         """Derivative of a column by a live parameter, an input or a number of the initial state, in their units.
 
         name: one of those given to `simulate(gradients=...)`. of: "values" (an array over the times), "maximum", "minimum", "peak" (the
-        largest magnitude) or "integral" (over time, by the trapezoidal rule). That of an extreme is the derivative at its first time: to first order the
-        time itself does not matter. Work, dissipated energy and the energy balance of a run have none.
+        largest magnitude), "final" (at the end) or "integral" (over time, by the trapezoidal rule). That of an extreme is the derivative at its first
+        time: to first order the time itself does not matter. Of what was given to `simulate(adjoint=...)` there are derivatives by all
+        names. Work, dissipated energy and the energy balance of a run have none.
         """
+        by_all = self.adjoint.get(f"{column}.{of}", {})
+        if name in by_all:
+            return by_all[name]
         if name not in self.gradients:
-            known = ", ".join(self.gradients) or "none: run simulate(gradients=[...])"
+            known = ", ".join(by_all or self.gradients) or "none: run simulate(gradients=[...])"
             raise KeyError(f"the run has no gradients by {name!r}: it has {known}")
         values, place = self[column], _place(self.units, column)
         slopes = self.gradients[name][:, place]
@@ -339,9 +346,11 @@ class Run(Mapping[str, Array]):
             return slopes
         if of == "integral":
             return float(np.sum(0.5 * np.diff(self.t) * (slopes[1:] + slopes[:-1])))
+        if of == "final":
+            return float(slopes[-1])
         extremes = {"maximum": values, "minimum": -values, "peak": np.abs(values)}
         if of not in extremes:
-            raise ValueError(f'of={of!r}: write "values", "maximum", "minimum", "peak" or "integral"')
+            raise ValueError(f'of={of!r}: write "values", "maximum", "minimum", "peak", "final" or "integral"')
         index = int(np.argmax(extremes[of]))
         return float(np.sign(values[index]) * slopes[index] if of == "peak" else slopes[index])
 

@@ -123,7 +123,7 @@ impl Crane {
     }
 
     /// Refuses functions that do not follow from pose, rates and time, or that closed loops change.
-    fn refuse(&self, function: FunctionId) -> PyResult<()> {
+    pub fn refuse(&self, function: FunctionId) -> PyResult<()> {
         let refusal = self.live.refusal(function);
         let why = match refusal {
             None => return Ok(()),
@@ -225,7 +225,7 @@ impl Crane {
 }
 
 /// Makes the numbers of bad rows NaN.
-fn forget(out: &mut [f64], bad: &[BadRow], width: usize) {
+pub fn forget(out: &mut [f64], bad: &[BadRow], width: usize) {
     for bad in bad {
         out[bad.row * width..(bad.row + 1) * width].fill(f64::NAN);
     }

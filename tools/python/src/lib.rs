@@ -6,6 +6,7 @@
 //! | `description` | its names and units |
 //! | `functions` | transforms, points, mass matrix, forces, dynamics, energies: arrays in, arrays out |
 //! | `evaluation` | how: rows of all arguments, eight at a time, on all threads |
+//! | `products` | products of vectors with their derivatives |
 //! | `equilibria`, `vibrations` | statics, modes and stability, row by row |
 //! | `linear` | linear models, and margins of loops around them |
 //! | `sensitivity` | derivatives at rest by the numbers of a crane |
@@ -29,6 +30,7 @@ mod mistakes;
 mod motion;
 mod page;
 mod parallel;
+mod products;
 mod sensitivity;
 mod stepping;
 mod strength;

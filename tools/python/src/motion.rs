@@ -3,13 +3,16 @@
 use std::ops::ControlFlow;
 use std::str::FromStr;
 
-use crane_live::sensitivity::runs::{Along, run_with_gradients};
+use crane_live::LiveCrane;
+use crane_live::sensitivity::runs::{self, Along, run_with_adjoint, run_with_gradients};
 use crane_model::Description;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::{InitialState, Method, Settings, Statistics};
-use crane_model::results::{Column, Peaks, cautions};
+use crane_model::results::{Column, Peaks, Recording, cautions, quantities};
 use crane_model::runs::ensemble::{self, Case, Execution};
-use crane_model::runs::{Bound as StepBound, Failed, Reason, Recorded, SAFE, Start, check, record_checked, step_limit};
+use crane_model::runs::{
+    Bound as StepBound, Failed, Measure, Reason, Recorded, SAFE, Start, check, record_checked, step_limit,
+};
 use crane_model::stability::cause;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -165,10 +168,18 @@ fn check_finite(name: &str, argument: &Argument, description: &Description) -> P
     Err(PyValueError::new_err(describe(&BadRow { row, reason }, &argument.shape)))
 }
 
+/// Columns, by their indices, and their measures of names as `boom_psi_drive_torque.peak`.
+fn asked_of(crane: &LiveCrane, names: &[String]) -> PyResult<Vec<(usize, Measure)>> {
+    let columns = Recording::new(crane).into_table().columns;
+    let with_derivatives = quantities(crane.description(), crane.loop_joints()).len();
+    let asked = |name: &String| runs::asked(&columns, name, &|column| column < with_derivatives);
+    names.iter().map(|name| asked(name).map_err(|not| PyValueError::new_err(not.to_string()))).collect()
+}
+
 #[pymethods]
 impl Crane {
     /// A run with all its results.
-    #[pyo3(name = "_record", signature = (timing, q=None, v=None, verify=true, bend=cautions::BEND, gradients=None))]
+    #[pyo3(name = "_record", signature = (timing, q=None, v=None, verify=true, bend=cautions::BEND, gradients=None, adjoint=None))]
     #[expect(clippy::too_many_arguments, reason = "named arguments in Python")]
     fn record<'py>(
         &self,
@@ -179,6 +190,7 @@ impl Crane {
         verify: bool,
         bend: f64,
         gradients: Option<Vec<String>>,
+        adjoint: Option<Vec<String>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let crane: &dyn DynCrane = &self.live;
         let description = crane.description();
@@ -196,25 +208,33 @@ impl Crane {
             |name: &String| Along::named(&self.live, name).map_err(|not| PyValueError::new_err(not.to_string()));
         let along =
             gradients.as_ref().map(|names| names.iter().map(named).collect::<PyResult<Vec<_>>>()).transpose()?;
+        let asked = adjoint.as_ref().map(|names| asked_of(&self.live, names)).transpose()?;
+        let all = if asked.is_some() { Along::all(&self.live) } else { Vec::new() };
         let watch = Watch::new();
         let result = py.detach(|| {
             let start = Start::with(crane, q.as_deref(), v.as_deref()).map_err(|failed| raised(&failed))?;
             let settings = timing.stable(crane, &start)?;
             let proceed = &mut |_: f64| unless(watch.look());
-            let recorded = match &along {
-                Some(along) => {
-                    run_with_gradients(&self.live, &start, &settings, along, proceed).map(|(recorded, found)| {
-                        (check(recorded, crane, &start, &settings, (verify, bend), proceed), found)
-                    })
+            let checked = |recorded, proceed: &mut dyn FnMut(f64) -> ControlFlow<()>| {
+                check(recorded, crane, &start, &settings, (verify, bend), proceed)
+            };
+            let recorded = match (&along, &asked) {
+                (Some(along), _) => run_with_gradients(&self.live, &start, &settings, along, proceed)
+                    .map(|(recorded, found)| (checked(recorded, proceed), found, Vec::new())),
+                (None, Some(asked)) => {
+                    let along: Vec<Along> = all.iter().map(|(_, along)| *along).collect();
+                    run_with_adjoint(&self.live, &start, &settings, &along, asked, proceed)
+                        .map(|(recorded, found)| (checked(recorded, proceed), Vec::new(), found))
                 }
-                None => record_checked(crane, &start, &settings, (verify, bend), proceed)
-                    .map(|recorded| (recorded, Vec::new())),
+                (None, None) => record_checked(crane, &start, &settings, (verify, bend), proceed)
+                    .map(|recorded| (recorded, Vec::new(), Vec::new())),
             };
             Ok::<_, PyErr>((settings, recorded.map_err(|failed| raised(&failed))?))
         });
         watch.finish(py)?;
-        let (settings, (recorded, found)) = result?;
+        let (settings, (recorded, found, of_asked)) = result?;
         let Recorded { start, run, table, wall, verification, cautions } = recorded;
+        let names: Vec<String> = all.into_iter().map(|(name, _)| name).collect();
         let all = PyDict::new(py);
         all.set_item("columns", columns_with_units(&table.columns))?;
         let rows = table.rows.len();
@@ -234,6 +254,15 @@ impl Crane {
                 of_names.set_item(name, array(py, rows.concat(), &[rows.len()], &[table.columns.len()])?)?;
             }
             all.set_item("gradients", of_names)?;
+        }
+        if let Some(asked) = asked {
+            let of_measures = PyDict::new(py);
+            for ((column, measure), found) in asked.into_iter().zip(of_asked) {
+                let by_names = PyDict::new(py);
+                names.iter().zip(found).try_for_each(|(name, by)| by_names.set_item(name, by))?;
+                of_measures.set_item(format!("{}.{}", table.columns[column].name, measure.name()), by_names)?;
+            }
+            all.set_item("adjoint", of_measures)?;
         }
         Ok(all)
     }

@@ -90,6 +90,44 @@ def test_small_motions_about_any_motion(name):
             np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
 
 
+@pytest.mark.parametrize("name", ["eight_link_rigid", "knuckle_boom"])
+def test_products_with_derivatives(name):
+    """wᵀ ∂r/∂(q, v, a, p) and ∂r/∂(q, v, a, p) x of `r = A a − e − f`, by CasADi's own backward and forward mode on its own A, e and f."""
+    import casadi as ca
+    from crane_model import read_crane
+    from derivations import Derivations
+    from states import random_states
+
+    derived_crane = read_crane(ROOT / f"specs/{name}.yaml")
+    derivations = Derivations(derived_crane)
+    states = random_states(derived_crane, NEAR_AND_FAR, 5)
+    time, q, v, parameters = derivations.arguments
+    count = q.numel()
+    a, weights = ca.SX.sym("a", count), ca.SX.sym("w", count)
+    mass = ca.reshape(derivations.quantities["mass_matrix"], count, count)
+    residual = mass @ a - derivations.quantities["bias"] - derivations.quantities["forces"]
+    numbers = ca.vertcat(q, v, a, parameters)
+    change = ca.SX.sym("x", numbers.numel())
+    products = [ca.jtimes(residual, numbers, weights, True), ca.jtimes(residual, numbers, change)]
+    products = ca.Function("products", [time, q, v, parameters, a, weights, change], products)
+    c = crane.load(name, **dict(zip(derived_crane.spec.defaults, states.parameters.T, strict=True)))
+    rng = np.random.default_rng(6)
+    accelerations, w = rng.normal(size=states.q.shape), rng.normal(size=states.q.shape)
+    x = rng.normal(size=(NEAR_AND_FAR, numbers.numel()))
+    state = {"q": states.q, "v": states.v, "a": accelerations, "t": states.time}
+    backward = c.vjp("dynamic_residual", w, **state)
+    backward = np.concatenate([backward[key] for key in "qva"] + [backward[key][:, None] for key in c.parameters], axis=1)
+    parts = np.split(x, [count, 2 * count, 3 * count], axis=1)
+    changes = dict(zip("qva", parts, strict=False)) | dict(zip(c.parameters, parts[3].T, strict=True))
+    forward = c.jvp("dynamic_residual", changes, **state)
+    for row in range(NEAR_AND_FAR):
+        given = (states.time[row], states.q[row], states.v[row], states.parameters[row], accelerations[row], w[row], x[row])
+        for found, expected in zip((backward[row], forward[row]), products(*given), strict=True):
+            expected = expected.full().ravel()
+            # Some hundred roundings of the largest entry, a support's stiffness or that of the inertia of all masses.
+            np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+
+
 def test_accelerations_of_closed_loops(tmp_path):
     """The four-bar of the manual on a slewing column, with friction in its loop joint: accelerations in a run compared with those by Lagrange's
     multipliers, from CasADi's own A, e, f, rows and curvatures of the gaps."""

@@ -46,6 +46,26 @@ def test_peaks_and_integrals_have_the_derivatives_of_differences(run):
         assert run.gradient(column, "payload", of=of) == pytest.approx(differences(value), rel=1e-4, abs=1e-4 * size), of
 
 
+def test_the_adjoint_mode_finds_the_same_by_everything(run):
+    c = crane.load("knuckle_boom")
+    column = next(name for name in run if name.endswith("_drive_torque"))
+    asked = [f"{column}.peak", "load_centre_x.final", "load_centre_z.integral", "load_centre_z.minimum"]
+    found = c.simulate(**RUN, adjoint=asked)
+    assert list(found.adjoint) == asked
+    starts = [f"{part}.{name}" for part in ("q0", "v0") for name in c.coordinates]
+    forward = c.simulate(**RUN, gradients=["payload", *starts])
+    for number in asked:
+        name, of = number.split(".")
+        by_all = found.adjoint[number]
+        assert list(by_all) == ["payload", *starts]
+        size = max(abs(forward.gradient(name, start, of=of)) for start in starts)
+        for key in by_all:
+            expected = forward.gradient(name, key, of=of)
+            # The steps of both modes differ; columns are differenced along other directions.
+            assert by_all[key] == pytest.approx(expected, rel=1e-4, abs=1e-7 * size), (number, key)
+            assert found.gradient(name, key, of=of) == by_all[key]
+
+
 def test_a_start_may_be_given(run):
     c = crane.load("knuckle_boom")
     q = run.table[0, 1 : 1 + c.n]
@@ -68,3 +88,11 @@ def test_what_has_no_gradient_is_refused(run):
         run.gradient("drive_work", "payload")
     with pytest.raises(ValueError, match="maximum"):
         run.gradient("load_centre_x", "payload", of="mean")
+    with pytest.raises(ValueError, match="peak, maximum"):
+        c.simulate(**RUN, adjoint=["load_centre_x.mean"])
+    with pytest.raises(ValueError, match="did you mean `load_centre_x`"):
+        c.simulate(**RUN, adjoint=["load_center_x.peak"])
+    with pytest.raises(ValueError, match="has no derivatives"):
+        c.simulate(**RUN, adjoint=["drive_work.final"])
+    with pytest.raises(ValueError, match="two runs"):
+        c.simulate(**RUN, adjoint=["load_centre_x.peak"], gradients=["payload"])

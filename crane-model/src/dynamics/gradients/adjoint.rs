@@ -11,7 +11,8 @@ use super::{Covector, Numbers, PullBacks, SAME, jump::of_functions_of_time, rate
 use crate::{
     dyn_crane::{DynCrane, DynImplicit},
     dynamics::{
-        Ahead, EffortAccuracy, InitialState, Integration, NotFinite, Run, Settings, Statistics, Stepper, Stopped, Watch,
+        Ahead, EffortAccuracy, InitialState, Integration, NotFinite, Run, Settings, Statistics, Stepper, Stopped,
+        Watch,
         adaptive::{Adaptive, FIRST},
         equations::Equations,
         motion::add,
@@ -44,7 +45,13 @@ impl Keeper<'_> {
     fn keep(&mut self, at_stop: bool) {
         let (.., step) = self.motion.last();
         let [slope, _] = &step.slopes;
-        self.kept.push(Kept { t: step.t, length: step.length, start: step.start.clone(), slope: slope.clone(), at_stop });
+        self.kept.push(Kept {
+            t: step.t,
+            length: step.length,
+            start: step.start.clone(),
+            slope: slope.clone(),
+            at_stop,
+        });
     }
 }
 
@@ -170,7 +177,7 @@ impl<'a> Trace<'a> {
                 sweep.add_sample(motion, t, covector, &mut sum, &mut of_slope, &mut before);
             }
             if index == 0 {
-                sweep.to_start(motion, &of_slope, &mut sum)?;
+                sweep.begin(motion, &of_slope, &mut sum)?;
                 break;
             }
             let (stages, equations, step) = motion.last();
@@ -422,7 +429,7 @@ impl<'a, 'f> Sweep<'a, 'f> {
     }
 
     /// From the weights of the slope and the motion at the beginning to those of the start in full.
-    fn to_start(
+    fn begin(
         &mut self,
         own: &mut Adaptive<'_, Stages<'_>>,
         of_slope: &[f64],

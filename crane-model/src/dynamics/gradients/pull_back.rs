@@ -57,15 +57,17 @@ impl Rates<'_> {
         }
         let at = At { t, q, v, a: &self.accelerations, multipliers: self.loops.multipliers() };
         if !self.force_states.is_empty() {
-            let cylinders = if self.force_states.coupled()[0] > 0 { self.crane.description().cylinders.len() } else { 0 };
-            let mut of_cylinders = vec![CylinderSlopes { jacobian: vec![0.0; n], ..CylinderSlopes::default() }; cylinders];
+            let cylinders =
+                if self.force_states.coupled()[0] > 0 { self.crane.description().cylinders.len() } else { 0 };
+            let mut of_cylinders =
+                vec![CylinderSlopes { jacobian: vec![0.0; n], ..CylinderSlopes::default() }; cylinders];
             let states = (&self.force_states, &self.by_states);
             of_forces(states, (&forces, of_x), &mut of_cylinders, &mut sum.motion);
             if cylinders > 0 {
                 functions.cylinders(&at, &of_cylinders, sum);
             }
         }
-        forces.iter_mut().for_each(|force| *force = -*force);
+        let forces: Vec<f64> = forces.iter().map(|force| -force).collect();
         functions.residuals(&at, &forces, sum);
         if !self.loops.is_empty() {
             let weights: Vec<[f64; 3]> = gammas.iter().map(|gamma| [0.0, 0.0, *gamma]).collect();

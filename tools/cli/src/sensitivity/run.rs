@@ -3,76 +3,23 @@
 use std::{io::Write, ops::ControlFlow};
 
 use crane_live::LiveCrane;
-use crane_live::sensitivity::runs::{Along, METHOD, run_with_gradients};
+use crane_live::sensitivity::runs::{self, Along, METHOD, NotAsked, run_with_gradients};
 use crane_live::sensitivity::{self, Group, Output};
 use crane_model::{
     dyn_crane::DynModel,
     results::{Table, headlines},
-    runs::Start,
+    runs::{Measure, Start},
 };
 
 use super::{Changes, Number, Request, begin, numbers, ordered, print, remarks};
 use crate::{
     arguments::{Sensitivity, Timing},
     integration::progress,
-    problem::{Outcome, Problem, nearest},
+    problem::{Outcome, Problem},
 };
 
-/// What is taken of a column.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Of {
-    Peak,
-    Maximum,
-    Minimum,
-    Final,
-    Integral,
-}
-
-impl Of {
-    const ALL: [Self; 5] = [Self::Peak, Self::Maximum, Self::Minimum, Self::Final, Self::Integral];
-
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Peak => "peak",
-            Self::Maximum => "maximum",
-            Self::Minimum => "minimum",
-            Self::Final => "final",
-            Self::Integral => "integral",
-        }
-    }
-
-    /// The result at which it is; an integral is not at one.
-    fn row(self, values: &[f64]) -> usize {
-        let of = |value: f64| match self {
-            Self::Minimum => -value,
-            Self::Peak => value.abs(),
-            _ => value,
-        };
-        match self {
-            Self::Final => values.len().saturating_sub(1),
-            // The first of equal ones.
-            _ => (0..values.len()).rev().max_by(|&a, &b| of(values[a]).total_cmp(&of(values[b]))).unwrap_or(0),
-        }
-    }
-
-    /// Its value, of a column at these times; derivatives of the column are taken where it is, and with the sign that it has.
-    fn take(self, t: &[f64], values: &[f64], column: &[f64]) -> f64 {
-        match self {
-            Self::Integral => {
-                let pairs = t.windows(2).zip(column.windows(2));
-                pairs.map(|(t, column)| 0.5 * (t[1] - t[0]) * (column[0] + column[1])).sum()
-            }
-            Self::Peak => {
-                let row = self.row(values);
-                column[row] * values[row].signum()
-            }
-            _ => column[self.row(values)],
-        }
-    }
-}
-
 /// A column of a run, and what is taken of it.
-type Asked = (usize, Of);
+type Asked = (usize, Measure);
 
 /// Prints what moves the run of a crane from rest.
 pub fn sensitivity(
@@ -134,7 +81,7 @@ pub fn sensitivity(
     for &(index, of) in &asked {
         let info = &table.columns[index];
         let values = column(&table.rows, index);
-        let place = if of == Of::Integral { String::new() } else { format!("at {:.4} s", t[of.row(&values)]) };
+        let place = of.row(&values).map_or_else(String::new, |row| format!("at {:.4} s", t[row]));
         let unit = unit(&info.unit, of);
         found.outputs.push(Output { name: format!("{}.{}", info.name, of.name()), unit, group: Group::Run, place });
         found.values.push(of.take(&t, &values, &values));
@@ -167,37 +114,21 @@ fn asked(
         let is_main = |name: &String| request.all || main.contains(name);
         let columns = (1..table.columns.len()).filter(|&index| is_main(&table.columns[index].name));
         let columns = columns.filter(|&index| has_derivatives(index));
-        return Ok(columns.map(|index| (index, Of::Peak)).collect());
+        return Ok(columns.map(|index| (index, Measure::Peak)).collect());
     }
     let mut found = Vec::new();
     for asked in request.outputs {
-        let (name, of) = asked.rsplit_once('.').unwrap_or((asked, Of::Peak.name()));
-        let Some(of) = Of::ALL.into_iter().find(|own| own.name() == of) else {
-            let names = Of::ALL.map(Of::name);
-            let title = format!("there is no `{of}` of a column");
-            return Err(Problem::usage(title, format!("write one of {}, as in `{name}.peak`", names.join(", "))));
-        };
-        let Some(index) = table.columns.iter().skip(1).position(|column| column.name == name) else {
-            let guess = nearest(name, table.columns.iter().skip(1).map(|column| column.name.as_str()));
-            let guess = guess.map_or_else(String::new, |guess| format!("did you mean `{guess}`? "));
-            let names: Vec<&str> = table.columns.iter().skip(1).map(|column| column.name.as_str()).collect();
-            let title = format!("the run has no column `{name}`");
-            return Err(Problem::usage(title, format!("{guess}columns: {}", names.join(", "))));
-        };
-        if !has_derivatives(index + 1) {
-            let title =
-                format!("`{name}` has no derivatives: it is an integral over the run, by the audit of its energy");
-            return Err(Problem::usage(title, "name another column"));
-        }
-        if !found.contains(&(index + 1, of)) {
-            found.push((index + 1, of));
+        let own = runs::asked(&table.columns, asked, has_derivatives);
+        let own = own.map_err(|NotAsked { title, hint }| Problem::usage(title, hint))?;
+        if !found.contains(&own) {
+            found.push(own);
         }
     }
     Ok(found)
 }
 
 /// The unit of a column, or of its integral over time.
-fn unit(unit: &str, of: Of) -> &'static str {
+fn unit(unit: &str, of: Measure) -> &'static str {
     /// Units of columns, and of their integrals.
     const UNITS: [(&str, &str); 10] = [
         ("m", "m s"),
@@ -213,9 +144,9 @@ fn unit(unit: &str, of: Of) -> &'static str {
     ];
     let known = UNITS.into_iter().find(|(own, _)| *own == unit);
     match (known, of) {
-        (Some((_, integral)), Of::Integral) => integral,
+        (Some((_, integral)), Measure::Integral) => integral,
         (Some((own, _)), _) => own,
-        (None, Of::Integral) => "s",
+        (None, Measure::Integral) => "s",
         (None, _) => "",
     }
 }

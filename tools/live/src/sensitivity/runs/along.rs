@@ -34,6 +34,20 @@ impl fmt::Display for NotAlong {
 impl Error for NotAlong {}
 
 impl Along {
+    /// All numbers that a run of a crane depends on, with their names: live parameters, inputs that are set, and the starts of all coordinates and
+    /// rates that no rigid drive prescribes.
+    #[must_use]
+    pub fn all(crane: &LiveCrane) -> Vec<(String, Self)> {
+        let Description { parameters, inputs, coordinates, .. } = crane.description();
+        let parameters = parameters.iter().map(|parameter| parameter.name.to_string());
+        let inputs = inputs.iter().map(|input| format!("inputs.{}", input.name));
+        let starts = ["q0", "v0"]
+            .into_iter()
+            .flat_map(|part| coordinates.iter().map(move |coordinate| format!("{part}.{}", coordinate.name)));
+        let names = parameters.chain(inputs).chain(starts);
+        names.filter_map(|name| Self::named(crane, &name).ok().map(|own| (name, own))).collect()
+    }
+
     /// The number of a name: `payload` for a live parameter, `inputs.r` for an input, `q0.boom_psi` and `v0.boom_psi` for the start of a
     /// coordinate and of its rate.
     ///

@@ -344,5 +344,4 @@ impl Slopes for Directions<'_> {
         }
         any
     }
-
 }

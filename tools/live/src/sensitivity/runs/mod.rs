@@ -5,10 +5,12 @@
 //! | module | content |
 //! |---|---|
 //! | `along` | what a run is differentiated by |
+//! | `asked` | which of its numbers are differentiated |
 //! | `directions` | functions of the crane with their slopes |
 //! | `transposed` | products of weights with these slopes |
 
 mod along;
+mod asked;
 mod directions;
 #[cfg(test)]
 mod tests;
@@ -27,11 +29,16 @@ use super::rest::Rest;
 use super::source::Source;
 use crate::LiveCrane;
 pub use along::{Along, NotAlong};
+pub use asked::{NotAsked, asked};
 use directions::Directions;
 use transposed::Transposed;
 
 /// The method that integrates derivatives along with a motion.
 pub const METHOD: Method = Method::Rosenbrock;
+
+/// Tolerance of the steps in adjoint mode, relative to that of the run: on the way forward derivatives are not known, so steps cannot follow their errors.
+/// At a tenth, derivatives are at least as accurate as those of the forward mode, whose steps do.
+const STRICTER: f64 = 0.1;
 
 /// Runs from `start`, as [`record`](crane_model::runs::record), with the derivatives of all columns. A start at rest or from the guess moves
 /// with the parameters and inputs; one whose pose is given does not.
@@ -52,7 +59,7 @@ pub fn run_with_gradients(
 }
 
 /// The same run with the derivatives of measures of a few columns, given by their indices, in adjoint mode: the cost does not grow with the number of
-/// directions. Gradients are measure by measure, direction by direction; NaN for what has none.
+/// directions. Gradients are measure by measure, direction by direction; NaN for what has none. Steps have a tenth of the tolerance.
 ///
 /// # Errors
 /// The run ends early.
@@ -64,7 +71,7 @@ pub fn run_with_adjoint(
     asked: &[(usize, Measure)],
     proceed: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<(Recorded, Vec<Vec<f64>>), Failed> {
-    let settings = Settings { method: METHOD, ..*settings };
+    let settings = Settings { method: METHOD, tolerance: STRICTER * settings.tolerance, ..*settings };
     let mut functions = Transposed::new(crane, along);
     let start_along = of_start(crane, functions.directions(), start, along);
     record_adjoint(crane, start, &settings, &mut functions, &start_along, asked, proceed)

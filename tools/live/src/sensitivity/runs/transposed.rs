@@ -100,8 +100,11 @@ impl PullBacks for Transposed<'_> {
             places.add(&residual.at(&state, weights), sum);
         }
         if let Some(jacobians) = loop_jacobians.as_mut().filter(|_| !at.multipliers.is_empty()) {
-            let weights: Vec<f64> =
-                at.multipliers.iter().flat_map(|multiplier| weights.iter().map(move |weight| multiplier * weight)).collect();
+            let weights: Vec<f64> = at
+                .multipliers
+                .iter()
+                .flat_map(|multiplier| weights.iter().map(move |weight| multiplier * weight))
+                .collect();
             places.add(&jacobians.at(&state, &weights), sum);
         }
     }

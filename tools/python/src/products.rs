@@ -1,0 +1,169 @@
+//! Products of vectors with the derivatives of functions, over rows of states.
+
+use std::ops::Range;
+
+use crane_live::FunctionId;
+use crane_live::products::{self, PullBack, PushForward};
+use crane_model::dyn_crane::DynModel;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::arrays::{Argument, Joined, array};
+use crate::crane::Crane;
+use crate::evaluation::{Array, Given, STATE, State, forget};
+use crate::mistakes::{Invalid, warn_of_rows};
+use crate::parallel::for_rows;
+
+/// Rows that a thread takes at a time.
+const PIECE: usize = 32;
+
+/// A state of a row.
+type Row<'a> = (products::State<'a>, &'a [f64], &'a [f64]);
+
+#[pymethods]
+impl Crane {
+    /// Names of all numbers that functions depend on, and how many each has.
+    fn _product_numbers(&self) -> Vec<(String, usize)> {
+        products::numbers(&self.live)
+    }
+
+    /// Axes of the results of a function that has products.
+    fn _product_shape(&self, function: &str) -> PyResult<Vec<usize>> {
+        Ok(self.live.shape(self.with_products(function)?).to_vec())
+    }
+
+    /// (..., numbers): weights of the results of a function, times its derivatives; `Crane.vjp` names them.
+    #[pyo3(name = "_vjp", signature = (function, weights, q=None, v=None, a=None, t=None, *, invalid="raise"))]
+    #[expect(clippy::too_many_arguments, reason = "named arguments in Python")]
+    fn pull_back<'py>(
+        &self,
+        py: Python<'py>,
+        function: &str,
+        weights: &Bound<'py, PyAny>,
+        q: Given<'_, 'py>,
+        v: Given<'_, 'py>,
+        a: Given<'_, 'py>,
+        t: Given<'_, 'py>,
+        invalid: &str,
+    ) -> Array<'py> {
+        let id = self.with_products(function)?;
+        let results: usize = self.live.shape(id).iter().product();
+        let weights = Argument::of_width("weights", weights, results, "one for each result")?;
+        let numbers = self.product_numbers();
+        let make = || PullBack::new(&self.live, id);
+        let single = self.is_single();
+        self.products(
+            py,
+            State { t, q, v, a },
+            (&weights, "weights"),
+            (numbers, &[numbers]),
+            invalid,
+            make,
+            |pull, row, out| {
+                let (state, parameters, weights) = row;
+                match pull {
+                    Some(pull) => {
+                        if !single {
+                            pull.set_parameters(parameters);
+                        }
+                        pull.at(&state, weights).write(out);
+                    }
+                    None => out.fill(0.0),
+                }
+            },
+        )
+    }
+
+    /// (..., results): derivatives of a function, times changes of all numbers.
+    #[pyo3(name = "_jvp", signature = (function, changes, q=None, v=None, a=None, t=None, *, invalid="raise"))]
+    #[expect(clippy::too_many_arguments, reason = "named arguments in Python")]
+    fn push_forward<'py>(
+        &self,
+        py: Python<'py>,
+        function: &str,
+        changes: &Bound<'py, PyAny>,
+        q: Given<'_, 'py>,
+        v: Given<'_, 'py>,
+        a: Given<'_, 'py>,
+        t: Given<'_, 'py>,
+        invalid: &str,
+    ) -> Array<'py> {
+        let id = self.with_products(function)?;
+        let of_row = self.live.shape(id).to_vec();
+        let changes = Argument::of_width("changes", changes, self.product_numbers(), "one for each number")?;
+        let make = || PushForward::new(&self.live, id);
+        let width = of_row.iter().product();
+        self.products(
+            py,
+            State { t, q, v, a },
+            (&changes, "changes"),
+            (width, &of_row),
+            invalid,
+            make,
+            |push, row, out| {
+                let (state, parameters, changes) = row;
+                push.at(&state, parameters, changes, out);
+            },
+        )
+    }
+}
+
+impl Crane {
+    /// The number of all numbers that functions depend on.
+    fn product_numbers(&self) -> usize {
+        products::numbers(&self.live).iter().map(|(_, count)| count).sum()
+    }
+
+    /// A function that has products, by its name.
+    fn with_products(&self, name: &str) -> PyResult<FunctionId> {
+        let offered = |id: &&FunctionId| id.python().is_some() && products::has_products(&self.live, **id);
+        let known = || FunctionId::ALL.iter().filter(offered);
+        let id = known().find(|id| id.name() == name).ok_or_else(|| {
+            let known: Vec<&str> = known().map(|id| id.name()).collect();
+            PyValueError::new_err(format!("there are no products of {name:?}: write one of {}", known.join(", ")))
+        })?;
+        self.refuse(*id)?;
+        Ok(*id)
+    }
+
+    /// Products at all rows, each with a vector.
+    #[expect(clippy::too_many_arguments, reason = "two kinds of products share all of them")]
+    fn products<'py, R>(
+        &self,
+        py: Python<'py>,
+        state: State<'_, 'py>,
+        (vectors, name): (&Argument, &str),
+        (width, of_row): (usize, &[usize]),
+        invalid: &str,
+        make: impl Fn() -> R + Sync,
+        write: impl Fn(&mut R, Row<'_>, &mut [f64]) + Sync,
+    ) -> Array<'py> {
+        let arguments = self.read(state)?;
+        let [t, q, v, a] = &arguments;
+        let joined = Joined::new(&[
+            ("t", t),
+            ("q", q),
+            ("v", v),
+            ("a", a),
+            ("the parameters", &self.parameters),
+            (name, vectors),
+        ])?;
+        let bad = self.bad_rows(&joined, STATE, Invalid::named(invalid)?)?;
+        let n = self.live.size();
+        let mut out = vec![0.0; joined.rows() * width];
+        let work = |workspace: &mut R, rows: Range<usize>, out: &mut [f64]| {
+            for (row, out) in rows.zip(out.chunks_mut(width.max(1))) {
+                let [t, q, v, a, parameters, vector] =
+                    [(0, 1), (1, n), (2, n), (3, n), (4, self.parameters.width), (5, vectors.width)]
+                        .map(|(index, size)| joined.row(index, size, row));
+                let parameters = if self.is_single() { self.live.parameters() } else { parameters };
+                let state = products::State { t: t.first().copied().unwrap_or(0.0), q, v, a };
+                write(workspace, (state, parameters, vector), out);
+            }
+        };
+        for_rows(py, (PIECE, width), &mut out, make, work)?;
+        forget(&mut out, &bad, width);
+        warn_of_rows(py, &bad, &joined.shape)?;
+        array(py, out, &joined.shape, of_row)
+    }
+}

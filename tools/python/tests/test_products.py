@@ -1,0 +1,99 @@
+"""Products of vectors with the derivatives of functions."""
+
+import crane
+import numpy as np
+import pytest
+
+#: Functions of all kinds of results: vectors, points, pairs, rows, tensions, numbers.
+FUNCTIONS = [
+    "dynamic_residual",
+    "forward_dynamics",
+    "inverse_dynamics",
+    "forces",
+    "bias",
+    "points",
+    "point_accelerations",
+    "point_jacobians",
+    "connector_tensions",
+    "loop_states",
+    "drive_motions",
+    "support_reactions",
+    "gravity_energy",
+    "dissipation",
+]
+CRANES = ["knuckle_boom", "eight_link_flexible", "loader_tipping", "two_arms", "eight_link_hydraulic"]
+
+
+def given(c, function, rows, rng):
+    """Random states with the arguments that a function has."""
+    takes = next(takes for name, takes, _ in crane._native.functions() if name == function)
+    every = {
+        "q": c.guess + 0.01 * rng.normal(size=(rows, c.n)),
+        "v": 0.1 * rng.normal(size=(rows, c.n)),
+        "a": rng.normal(size=(rows, c.n)),
+        "t": rng.uniform(0, 5, rows),
+    }
+    return {name: every[name] for name in takes}
+
+
+def offered(c, function):
+    """Whether a crane has products of a function, which then has results."""
+    try:
+        return 0 not in c._product_shape(function)
+    except ValueError as refused:
+        # What follows from pressures or bristles.
+        assert "follows from" in str(refused)
+        return False
+
+
+@pytest.mark.parametrize("name", CRANES)
+@pytest.mark.parametrize("function", FUNCTIONS)
+def test_both_products_are_of_one_matrix_which_is_that_of_differences(name, function):
+    c, rng = crane.load(name), np.random.default_rng(3)
+    if not offered(c, function):
+        return
+    state = given(c, function, 3, rng)
+    weights = rng.normal(size=(3, *c._product_shape(function)))
+    changes = {key: rng.normal(size=c.n if key in "qva" else ()) for key, _ in c._product_numbers()}
+    by_all = c.vjp(function, weights, **state)
+    along = c.jvp(function, changes, **state)
+    assert set(by_all) == set(changes)
+    of_weights = sum(by_all[key] @ change if key in "qva" else by_all[key] * change for key, change in changes.items())
+    of_changes = (weights * along).reshape(3, -1).sum(axis=1)
+    # Sums of the same numbers in another order; accelerations of a base on stiff feet are differences of much larger ones.
+    size = np.abs(weights * along).reshape(3, -1).sum(axis=1)
+    np.testing.assert_allclose(of_weights, of_changes, rtol=0, atol=1e-11 * size.max())
+
+    def moved(step):
+        other = c.replace(**{key: value + step * changes[key] for key, value in c.parameters.items()})
+        return getattr(other, function)(**{key: value + step * changes[key] for key, value in state.items()})
+
+    step = 1e-6
+    differences = (moved(step) - moved(-step)) / (2 * step)
+    # Rounding over the step, and the square of the step.
+    np.testing.assert_allclose(along, differences, rtol=0, atol=1e-7 * np.abs(along).max() + 1e-12)
+
+
+def test_parameters_may_be_arrays():
+    c, rng = crane.load("knuckle_boom"), np.random.default_rng(4)
+    payloads = np.array([100.0, 900.0])
+    state = given(c, "dynamic_residual", 2, rng)
+    weights = rng.normal(size=c.n)
+    both = c.replace(payload=payloads).vjp("dynamic_residual", weights, **state)
+    changes = {"payload": 1.0, "q": rng.normal(size=c.n)}
+    along = c.replace(payload=payloads).jvp("dynamic_residual", changes, **state)
+    for row, payload in enumerate(payloads):
+        alone, own = c.replace(payload=float(payload)), {key: value[row] for key, value in state.items()}
+        for key, found in alone.vjp("dynamic_residual", weights, **own).items():
+            np.testing.assert_array_equal(both[key][row], found)
+        np.testing.assert_array_equal(along[row], alone.jvp("dynamic_residual", changes, **own))
+
+
+def test_what_has_no_products_is_refused():
+    c = crane.load("knuckle_boom")
+    with pytest.raises(ValueError, match="write one of points"):
+        c.vjp("mass_matrix", 1.0, c.guess)
+    with pytest.raises(ValueError, match="last axes"):
+        c.vjp("dynamic_residual", np.ones(c.n + 1), c.guess, c.guess, c.guess)
+    with pytest.raises(KeyError, match="payload"):
+        c.jvp("points", {"mass": 1.0}, c.guess)
