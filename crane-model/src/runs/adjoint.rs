@@ -105,7 +105,7 @@ fn derivatives(
     let by_numbers: Vec<Vec<f64>> =
         (0..directions).map(|direction| row(functions.around(direction), &nothing)).collect();
     for (covector, column) in all.iter_mut().zip(columns).filter(|(_, column)| !is_of_motion(**column)) {
-        // What only the audit of a run has is no quantity of a state.
+        // What only the audit of a run has does not follow from a state.
         let of_rows =
             |rows: &[Vec<f64>]| rows.iter().map(|row| row.get(*column).copied().unwrap_or(f64::NAN)).collect();
         (covector.motion, covector.numbers) = (of_rows(&by_motion), of_rows(&by_numbers));

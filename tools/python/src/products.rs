@@ -29,7 +29,7 @@ impl Crane {
 
     /// Axes of the results of a function that has products.
     fn _product_shape(&self, function: &str) -> PyResult<Vec<usize>> {
-        Ok(self.live.shape(self.with_products(function)?).to_vec())
+        Ok(self.live.shape(self.with_products(function)?).clone())
     }
 
     /// (..., numbers): weights of the results of a function, times its derivatives; `Crane.vjp` names them.
@@ -89,7 +89,7 @@ impl Crane {
         invalid: &str,
     ) -> Array<'py> {
         let id = self.with_products(function)?;
-        let of_row = self.live.shape(id).to_vec();
+        let of_row = self.live.shape(id).clone();
         let changes = Argument::of_width("changes", changes, self.product_numbers(), "one for each number")?;
         let make = || PushForward::new(&self.live, id);
         let width = of_row.iter().product();
