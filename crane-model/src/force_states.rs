@@ -228,6 +228,9 @@ impl ForceStates {
 /// and N.
 pub(crate) fn add_to_rigid_drives(crane: &dyn DynDynamics, moment: &StateAt<'_>, efforts: &mut [f64]) {
     let description = crane.description();
+    if description.prescribed().is_empty() {
+        return;
+    }
     let mut states = ForceStates::new(description);
     let mut all = loops_on_rigid_drives(crane, moment);
     if !states.is_empty() && moment.x.len() >= states.len() {

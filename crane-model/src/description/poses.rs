@@ -29,16 +29,29 @@ impl Description {
     /// The caution about a pose in which θ of a base or an element is near ±90°, where ψ and φ rotate about the same axis and the
     /// equations are singular.
     pub fn near_singular(&self, q: &[f64]) -> Option<String> {
+        self.near_singular_in(core::iter::once(q))
+    }
+
+    /// The same of the first of some poses that is near one.
+    pub fn near_singular_in<'q>(&self, mut poses: impl Iterator<Item = &'q [f64]>) -> Option<String> {
+        let angles = self.singular_angles();
+        poses.find_map(|q| {
+            let near = |(index, _): &&(usize, String)| {
+                let half_turns = q[*index] / core::f64::consts::PI - 0.5;
+                (half_turns - half_turns.round()).abs() * core::f64::consts::PI < NEAR_SINGULAR
+            };
+            let (index, lost) = angles.iter().find(near)?;
+            let (name, angle) = (&self.coordinates[*index].name, q[*index].to_degrees());
+            Some(format!("{name} is {angle:.2}°: near ±90° {lost} and accuracy is lost"))
+        })
+    }
+
+    /// The coordinates that must not be near ±90°, and what happens there.
+    fn singular_angles(&self) -> Vec<(usize, String)> {
         let turns = |name: &str, role| {
             self.coordinates.iter().any(|coordinate| coordinate.name == name && coordinate.role == role)
         };
-        // The cheap test first: this runs for every row of a result.
-        let near = |(_, angle): &(&CoordinateInfo, &f64)| {
-            let half_turns = *angle / core::f64::consts::PI - 0.5;
-            (half_turns - half_turns.round()).abs() * core::f64::consts::PI < NEAR_SINGULAR
-        };
-        self.coordinates.iter().zip(q).filter(near).find_map(|(coordinate, angle)| {
-            let CoordinateInfo { name, role, .. } = coordinate;
+        let angle = |(index, CoordinateInfo { name, role, .. }): (usize, &CoordinateInfo)| {
             let body = name.strip_suffix("_theta")?;
             let turns = |symbol: &str| turns(&format!("{body}_{symbol}"), *role);
             let lost = match role {
@@ -49,8 +62,9 @@ impl Description {
                 CoordinateRole::Passive if turns("psi") => format!("{body}_psi turns {body} about its own axis"),
                 _ => return None,
             };
-            Some(format!("{name} is {:.2}°: near ±90° {lost} and accuracy is lost", angle.to_degrees()))
-        })
+            Some((index, lost))
+        };
+        self.coordinates.iter().enumerate().filter_map(angle).collect()
     }
 
     /// Whether the base has tipped over between two poses: rotated about a horizontal axis by more than [`TIPPED`].

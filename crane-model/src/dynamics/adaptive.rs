@@ -270,6 +270,7 @@ impl<F: Formula + Send> Steered for Adaptive<'_, F> {
         let mut motion = std::mem::take(&mut self.motion);
         self.interpolate(t, &mut motion);
         change();
+        self.equations.references.forget();
         self.motion = motion;
         self.begin(t, self.next)
     }

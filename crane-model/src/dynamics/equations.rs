@@ -56,6 +56,7 @@ impl<'a> Equations<'a> {
 
     /// Visits what further evaluations depend on.
     pub fn visit(&mut self, visit: Visit<'_>) {
+        self.references.forget();
         visit_count(&mut self.evaluations, visit);
         self.loops.visit(visit);
     }

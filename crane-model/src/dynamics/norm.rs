@@ -115,19 +115,17 @@ impl Norm {
     /// Size of an error of a motion: the largest of `|δq|` in m and rad, `|δv|/(1 + |v|)` times [`RATE`], and of states of forces
     /// and efforts divided by [`OIL`] and [`EFFORT`] times their scales; all relative to the tolerance. Infinite if one is not finite.
     pub fn size(&self, motion: &[f64], error: &[f64]) -> f64 {
+        let n = self.n;
         let mut greatest = Greatest::default();
-        for error in &error[..self.n] {
-            greatest.note(error.abs());
-        }
-        for (error, rate) in error[self.n..2 * self.n].iter().zip(&motion[self.n..2 * self.n]) {
-            greatest.note(error.abs() * RATE / (1.0 + rate.abs()));
-        }
-        for (error, scale) in error[2 * self.n..].iter().zip(&self.states) {
-            greatest.note(error.abs() / (OIL * scale));
-        }
-        for effort in &self.efforts {
-            greatest.note(effort.of(self.n, error, f64::abs) / (EFFORT * effort.scale));
-        }
+        let (of_q, of_v, of_x) = (&error[..n], &error[n..2 * n], &error[2 * n..]);
+        let rates = &motion[n..2 * n];
+        greatest.note(n, |i| of_q[i].abs());
+        greatest.note(n, |i| of_v[i].abs() * RATE / (1.0 + rates[i].abs()));
+        greatest.note(self.states.len(), |i| of_x[i].abs() / (OIL * self.states[i]));
+        greatest.note(self.efforts.len(), |i| {
+            let effort = &self.efforts[i];
+            effort.of(n, error, f64::abs) / (EFFORT * effort.scale)
+        });
         greatest.value() / self.tolerance
     }
 
@@ -182,32 +180,38 @@ impl Effort {
 }
 
 /// The largest of some sizes; comparisons in several lanes compile to vector instructions.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Greatest {
     lanes: [f64; Greatest::LANES],
-    finite: [bool; Greatest::LANES],
-    next: usize,
-}
-
-impl Default for Greatest {
-    fn default() -> Self {
-        Self { lanes: [0.0; Self::LANES], finite: [true; Self::LANES], next: 0 }
-    }
+    /// NaN if a size was not finite.
+    spoilt: [f64; Greatest::LANES],
 }
 
 impl Greatest {
     const LANES: usize = 8;
 
+    /// Compares with as many sizes.
     #[inline]
-    fn note(&mut self, size: f64) {
-        let lane = self.next % Self::LANES;
-        self.next += 1;
+    fn note(&mut self, count: usize, size: impl Fn(usize) -> f64) {
+        let whole = count - count % Self::LANES;
+        for first in (0..whole).step_by(Self::LANES) {
+            for lane in 0..Self::LANES {
+                self.note_in(lane, size(first + lane));
+            }
+        }
+        for i in whole..count {
+            self.note_in(i - whole, size(i));
+        }
+    }
+
+    #[inline]
+    fn note_in(&mut self, lane: usize, size: f64) {
         self.lanes[lane] = if size > self.lanes[lane] { size } else { self.lanes[lane] };
-        self.finite[lane] &= size < f64::INFINITY;
+        self.spoilt[lane] += size * 0.0;
     }
 
     fn value(&self) -> f64 {
         let greatest = self.lanes.into_iter().fold(0.0, f64::max);
-        if self.finite.into_iter().all(|finite| finite) { greatest } else { f64::INFINITY }
+        if self.spoilt.into_iter().any(f64::is_nan) { f64::INFINITY } else { greatest }
     }
 }

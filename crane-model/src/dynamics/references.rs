@@ -14,8 +14,9 @@ pub(super) const INSIDE: f64 = 1e-7;
 /// Coordinates that are relative to the motions of their drives.
 pub(super) struct References {
     driven: Vec<Reference>,
-    /// `p`, `ṗ` of all drives at the last evaluated time, and at two times near it.
+    /// `p`, `ṗ` of all drives at the last evaluated time, which is NaN if they are not known, and at two times near it.
     motions: Vec<[f64; 2]>,
+    at: f64,
     near: [Vec<[f64; 2]>; 2],
     /// The current step, s.
     within: [f64; 2],
@@ -66,7 +67,7 @@ impl References {
             .filter(|reference| has_reference(reference.drive, reference.rigid) && !by_oil(reference.drive))
             .collect();
         let motions = vec![[0.0; 2]; drives.len()];
-        Self { driven, near: [motions.clone(), motions.clone()], motions, within: [0.0; 2] }
+        Self { driven, near: [motions.clone(), motions.clone()], motions, at: f64::NAN, within: [0.0; 2] }
     }
 
     /// The coordinates that are relative to a motion.
@@ -96,6 +97,19 @@ impl References {
         just_within(t, self.within)
     }
 
+    /// Motions change: those of the last time are not known any more.
+    pub fn forget(&mut self) {
+        self.at = f64::NAN;
+    }
+
+    /// The motions at a time; a step asks for those at its end several times.
+    fn evaluate(&mut self, crane: &dyn DynModel, t: f64) {
+        if self.at.to_bits() != t.to_bits() {
+            crane.drive_motions(t, &mut self.motions);
+            self.at = t;
+        }
+    }
+
     /// Makes a motion of `n` coordinates relative to the drives' motions.
     pub fn make_relative(&mut self, crane: &dyn DynModel, t: f64, n: usize, motion: &mut [f64]) {
         self.add(crane, t, -1.0, n, motion);
@@ -110,7 +124,7 @@ impl References {
         if self.driven.is_empty() {
             return;
         }
-        crane.drive_motions(t, &mut self.motions);
+        self.evaluate(crane, t);
         for reference in &self.driven {
             let [position, rate] = self.motions[reference.drive];
             motion[reference.coordinate] += sign * position;
@@ -124,7 +138,7 @@ impl References {
             return;
         }
         let (shifts, weights, by) = self.differences(t);
-        crane.drive_motions(t, &mut self.motions);
+        self.evaluate(crane, t);
         for (shift, near) in shifts.iter().zip(&mut self.near) {
             crane.drive_motions(t + shift, near);
         }

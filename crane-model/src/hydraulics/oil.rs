@@ -18,6 +18,9 @@ impl Oil {
     /// At a state of the crane and its oil.
     pub fn at(crane: &dyn DynModel, moment: &StateAt<'_>) -> Option<Self> {
         let x = moment.x;
+        if !crane.description().has_valves() {
+            return None;
+        }
         let mut hydraulics = Hydraulics::new(crane.description());
         if hydraulics.is_empty() || x.len() < hydraulics.len() {
             return None;

@@ -104,7 +104,7 @@ pub fn of_strength(crane: &dyn DynCrane) -> Vec<String> {
 
 /// The first pose of a run near which the equations are singular.
 pub fn near_singular(description: &Description, table: &Table) -> Option<String> {
-    table.poses(description).find_map(|q| description.near_singular(q))
+    description.near_singular_in(table.poses(description))
 }
 
 /// The first pose of a run at which a base that is limited to small rotations has rotated further.

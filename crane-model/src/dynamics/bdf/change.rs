@@ -25,6 +25,7 @@ impl Bdf<'_> {
         let before = slope_at(self)?;
         let mut past = self.past_references();
         change();
+        self.equations.references.forget();
         let after = slope_at(self)?;
         let Equations { crane, n, .. } = self.equations;
         let jumps: Vec<f64> = after.iter().zip(&before).map(|(after, before)| after - before).collect();

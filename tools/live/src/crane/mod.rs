@@ -6,7 +6,7 @@ mod model;
 mod systems;
 
 use std::fmt;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use crane_codegen::chain::{Chain, Input};
 use crane_codegen::program::{FunctionId, Shape};
@@ -35,8 +35,11 @@ pub struct LiveCrane {
     /// The numbers of the inputs, which a motion of this crane may share.
     inputs: Arc<Inputs>,
     /// Workspaces for calls, one per function, kept from the last call; cranes that differ only in their inputs share them.
-    rooms: Arc<[Mutex<Option<Room>>; FunctionId::ALL.len()]>,
+    rooms: Rooms,
 }
+
+/// A workspace for each function, if there is one: a pointer, which every call takes and gives back.
+type Rooms = Arc<[Mutex<Option<Box<Room>>>; FunctionId::ALL.len()]>;
 
 /// What a call of a function needs besides its arguments.
 struct Room {
@@ -85,16 +88,15 @@ impl LiveCrane {
         show: impl FnOnce(&Routine, &mut [f64]) -> R,
     ) -> Option<R> {
         let routine = self.library.routine(id)?;
-        let place = &self.rooms[id as usize];
-        let kept = place.lock().unwrap_or_else(PoisonError::into_inner).take();
-        let mut room = kept.unwrap_or_else(|| self.room(routine));
-        let Room { machine, inputs, results } = &mut room;
+        let mut kept = self.rooms[id as usize].try_lock();
+        // Another thread is in it, or a call has panicked.
+        let mut own = None;
+        let room = kept.as_deref_mut().unwrap_or(&mut own).get_or_insert_with(|| Box::new(self.room(routine)));
+        let Room { machine, inputs, results } = &mut **room;
         inputs.clear();
         inputs.extend(self.inputs.numbers());
         routine.run(machine, &Arguments { inputs, ..*arguments }, results);
-        let shown = show(routine, &mut room.results);
-        *place.lock().unwrap_or_else(PoisonError::into_inner) = Some(room);
-        Some(shown)
+        Some(show(routine, results))
     }
 
     /// The live parameters, in the order of the description.
@@ -221,7 +223,7 @@ impl LiveCrane {
     }
 }
 
-fn no_rooms() -> Arc<[Mutex<Option<Room>>; FunctionId::ALL.len()]> {
+fn no_rooms() -> Rooms {
     Arc::new(std::array::from_fn(|_| Mutex::new(None)))
 }
 
