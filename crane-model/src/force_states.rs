@@ -89,6 +89,11 @@ impl ForceStates {
         both
     }
 
+    /// Motions and commands change: what is kept of the last time does not hold any more.
+    pub(crate) fn forget(&mut self) {
+        self.kinds.iter_mut().for_each(|(kind, _)| kind.forget());
+    }
+
     /// Number of forces with states.
     pub(crate) fn count(&self) -> usize {
         self.forces.len()

@@ -51,10 +51,10 @@ def measure(name: str, rounds: int) -> str:
 
     # The first calls make machine code.
     first = {way: timed(**more)[1] for way, more in ways.items()}
-    rounds = [{way: timed(**more)[0] for way, more in ways.items()} for _ in range(rounds)]
-    ratio = {way: statistics.median(times[way] / times["run"] for times in rounds) for way in ways}
+    measured = [{way: timed(**more)[0] for way, more in ways.items()} for _ in range(rounds)]
+    ratio = {way: statistics.median(times[way] / times["run"] for times in measured) for way in ways}
     (by_all,) = first["adjoint"].adjoint.values()
-    own = statistics.median(times["run"] for times in rounds)
+    own = statistics.median(times["run"] for times in measured)
     return (
         f"{name}: {ratio['forward']:.1f} times the run by {len(names)} parameters, {ratio['adjoint']:.1f} times of one number by {len(by_all)} "
         f"({1e3 * own:.0f} ms, {first['run'].statistics['steps']} steps; {first['forward'].statistics['steps']} forward)"

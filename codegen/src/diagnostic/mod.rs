@@ -10,8 +10,8 @@ pub use catalogue::CATALOGUE;
 pub(crate) use catalogue::rule;
 pub use definition::Rule;
 pub(crate) use definition::{catalogue, printable};
-pub use nearest::nearest;
 pub(crate) use nearest::{list, suggest};
+pub use nearest::{nearest, similar};
 pub use source::{MAX_BYTES, Part, SourceFile, Span, WrongPlace};
 
 use std::fmt;

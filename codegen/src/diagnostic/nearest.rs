@@ -24,6 +24,13 @@ pub fn nearest<'a>(word: &str, offered: impl IntoIterator<Item = &'a str>) -> Op
         .map(|(_, known)| known)
 }
 
+/// The most similar of the valid words, or else the first that contains the word.
+pub fn similar<'a>(word: &str, offered: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let offered: Vec<&str> = offered.into_iter().collect();
+    let contains = |known: &&str| !word.is_empty() && known.contains(word);
+    nearest(word, offered.iter().copied()).or_else(|| offered.iter().copied().find(contains))
+}
+
 /// A list of words: `a`, `b`, `c`.
 pub(crate) fn list(words: &[&str]) -> String {
     words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")

@@ -75,7 +75,7 @@ impl<'g> RotationVector<'g> {
     /// `σ = ρ·ρ̇`, `d_k = k c_{k+2} − c_{k+1}` and `d_k' = k (k + 2) c_{k+4} − (2k + 1) c_{k+3} + c_{k+2}`.
     pub fn jacobian_rates(&self, rates: Vec3<'g>, seconds: Vec3<'g>) -> [[Vec3<'g>; 3]; 2] {
         let (rho, [_, _, c2, c3, c4, c5]) = (self.rho, self.c);
-        let [c6, c7] = self.beyond_fifth();
+        let [c6, c7] = [6, 7].map(|k| rho.dot(rho).stumpff(k));
         let (sigma, sigma_rate) = (rho.dot(rates), rates.dot(rates) + rho.dot(seconds));
         let slopes = [c3 - c2, 2.0 * c4 - c3, 3.0 * c5 - c4];
         let curvatures = [3.0 * c5 - 3.0 * c4 + c3, 8.0 * c6 - 5.0 * c5 + c4, 15.0 * c7 - 7.0 * c6 + c5];
@@ -95,25 +95,6 @@ impl<'g> RotationVector<'g> {
             own + mixed + mixed + last + (2.0 * c3 * rates[k]) * rates
         };
         [[0, 1, 2].map(of_first), [0, 1, 2].map(of_second)]
-    }
-
-    /// c₆ and c₇, which have no operation: `c_k = (1/(k−2)! − c_{k−2})/x`, and for `x ≤ 1`, where this cancels, their series.
-    fn beyond_fifth(&self) -> [Expr<'g>; 2] {
-        let [.., c4, c5] = self.c;
-        let x = self.rho.dot(self.rho);
-        let graph = x.graph();
-        let away = 1.0 / x.max(graph.constant(1.0));
-        let of = |k: u32, factorial: f64, lower: Expr<'g>| {
-            // The first term left out is below 1e-17 of the first.
-            let series = (0..8).rev().fold(graph.constant(1.0), |sum, i| {
-                let next = f64::from((2 * i + k + 1) * (2 * i + k + 2));
-                1.0 - (x * (1.0 / next)) * sum
-            });
-            let below = (1.0 / factorial) * series;
-            let lowest = factorial / f64::from(k * (k - 1));
-            (x - 1.0).select((1.0 / lowest - lower) * away, below)
-        };
-        [of(6, 720.0, c4), of(7, 5040.0, c5)]
     }
 
     /// f and g.

@@ -14,8 +14,8 @@ pub const PULLED_BACK: [Argument; 6] = [
 ];
 
 impl Program {
-    /// A program with one function, `wᵀ ∂f/∂x` of a function f: of its numbers with as many weights w, which are the argument
-    /// [`RightHandSide`](Argument::RightHandSide), with respect to all numbers x of the arguments [`PULLED_BACK`], in this order.
+    /// A program with one function, `wᵀ ∂f/∂x` of a function f: of its numbers with as many weights w, which are read as
+    /// [`RightHandSide`](Argument::RightHandSide) in addition to the arguments of f, with respect to all numbers x of the arguments [`PULLED_BACK`], in this order.
     ///
     /// # Panics
     /// If the function belongs to another program, or has a right-hand side itself.

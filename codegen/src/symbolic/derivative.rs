@@ -1,8 +1,8 @@
 //! Derivatives of expressions with respect to a symbol, operation by operation.
 
+use super::Expr;
 use super::graph::Graph;
 use super::op::{ExprId, Op};
-use super::{Expr, stumpff};
 
 impl Graph {
     /// `∂f/∂x` of expressions with respect to an input x, forward along the graph: one derivative per node between x and an expression.
@@ -49,7 +49,7 @@ impl Graph {
             Op::Div(a, b) => (of(a) - itself * of(b)) / x(b),
             Op::Sin(a) => of(a) * x(a).cos(),
             Op::Cos(a) => -(of(a) * x(a).sin()),
-            Op::Stumpff(k, a) => of(a) * 0.5 * self.twice_stumpff_slope(k, x(a)),
+            Op::Stumpff(k, a) => of(a) * 0.5 * twice_stumpff_slope(k, x(a)),
             Op::Min(a, b) => (x(b) - x(a)).select(of(a), of(b)),
             Op::Max(a, b) => (x(a) - x(b)).select(of(a), of(b)),
             // Infinite where a is 0: laws with a root keep its argument above 0.
@@ -58,21 +58,9 @@ impl Graph {
             Op::Select(a, b, c) => x(a).select(of(b), of(c)),
         }
     }
+}
 
-    /// Twice the derivative of Stumpff's function of an order.
-    pub(super) fn twice_stumpff_slope<'g>(&'g self, k: u8, x: Expr<'g>) -> Expr<'g> {
-        f64::from(k) * self.any_stumpff(k + 2, x) - self.any_stumpff(k + 1, x)
-    }
-
-    /// Stumpff's functions c₀ to c₇; those that have no operation as Taylor polynomials up to the argument from which
-    /// `c_k = (1/(k−2)! − c_{k−2})/x` keeps its digits.
-    fn any_stumpff<'g>(&'g self, k: u8, x: Expr<'g>) -> Expr<'g> {
-        if usize::from(k) < Op::STUMPFF_ORDERS {
-            return x.stumpff(k);
-        }
-        let number = |number: f64| self.constant(number);
-        let polynomial = stumpff::taylor(k).into_iter().rev().fold(number(0.0), |sum, term| sum * x + term);
-        let upward = (stumpff::reciprocal_factorial(k - 2) - x.stumpff(k - 2)) / x;
-        (x - stumpff::SERIES).select(upward, polynomial)
-    }
+/// Twice the derivative of Stumpff's function of an order.
+pub(super) fn twice_stumpff_slope(k: u8, x: Expr<'_>) -> Expr<'_> {
+    f64::from(k) * x.stumpff(k + 2) - x.stumpff(k + 1)
 }

@@ -114,14 +114,28 @@ impl<'g> Expr<'g> {
         self.graph.build(Op::Select(self.id, positive.id, other.id))
     }
 
-    /// Stumpff's function cₖ(x), x ≥ 0.
+    /// Stumpff's function cₖ(x), x ≥ 0. c₆ and c₇ have no operation: they are `c_k = (1/(k−2)! − c_{k−2})/x`, and for `x ≤ 1`, where this cancels,
+    /// their series.
     ///
     /// # Panics
-    /// If there is no operation of this order.
+    /// If k > 7.
     #[must_use]
     pub fn stumpff(self, k: u8) -> Self {
-        assert!(usize::from(k) < Op::STUMPFF_ORDERS, "Stumpff's functions end at c_5");
-        self.graph.build(Op::Stumpff(k, self.id))
+        if usize::from(k) < Op::STUMPFF_ORDERS {
+            return self.graph.build(Op::Stumpff(k, self.id));
+        }
+        assert!(k < 8, "Stumpff's functions end at c_7");
+        let k = u32::from(k);
+        let factorial = f64::from((1..=k).product::<u32>());
+        let lower = self.graph.build(Op::Stumpff(if k == 6 { 4 } else { 5 }, self.id));
+        let away = 1.0 / self.max(self.graph.constant(1.0));
+        // The first term left out is below 1e-17 of the first.
+        let series = (0..8).rev().fold(self.graph.constant(1.0), |sum, i| {
+            let next = f64::from((2 * i + k + 1) * (2 * i + k + 2));
+            1.0 - (self * (1.0 / next)) * sum
+        });
+        let (below, lowest) = ((1.0 / factorial) * series, factorial / f64::from(k * (k - 1)));
+        (self - 1.0).select((1.0 / lowest - lower) * away, below)
     }
 
     /// The nearest number to x in [low, high].

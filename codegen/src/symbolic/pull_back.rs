@@ -1,6 +1,7 @@
 //! Derivatives of weighted sums of expressions with respect to all symbols at once, from the expressions back to the symbols.
 
 use super::Expr;
+use super::derivative::twice_stumpff_slope;
 use super::graph::Graph;
 use super::op::{ExprId, Op};
 
@@ -67,14 +68,14 @@ impl Graph {
             Op::Neg(a) => one(a, -w),
             Op::Add(a, b) => both([a, b], [w, w], false),
             Op::Sub(a, b) => both([a, b], [w, -w], false),
-            Op::Mul(a, b) => both([a, b], [w * x(b), w * x(a)], false),
+            Op::Mul(a, b) => both([a, b], [unless_zero(w * x(b)), unless_zero(w * x(a))], false),
             Op::Div(a, b) => {
                 let of_first = unless_zero(w / x(b));
                 both([a, b], [of_first, unless_zero(-(of_first * itself))], false)
             }
             Op::Sin(a) => one(a, w * x(a).cos()),
             Op::Cos(a) => one(a, -(w * x(a).sin())),
-            Op::Stumpff(k, a) => one(a, w * 0.5 * self.twice_stumpff_slope(k, x(a))),
+            Op::Stumpff(k, a) => one(a, w * 0.5 * twice_stumpff_slope(k, x(a))),
             Op::Min(a, b) => {
                 let first = x(b) - x(a);
                 both([a, b], [first.select(w, zero), first.select(zero, w)], true)
@@ -84,7 +85,7 @@ impl Graph {
                 both([a, b], [first.select(w, zero), first.select(zero, w)], true)
             }
             Op::Sqrt(a) => one(a, itself.select(w * 0.5 / itself, zero)),
-            Op::Exp(a) => one(a, w * itself),
+            Op::Exp(a) => one(a, unless_zero(w * itself)),
             Op::Select(a, b, c) => both([b, c], [x(a).select(w, zero), x(a).select(zero, w)], true),
         }
     }

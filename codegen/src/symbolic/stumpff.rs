@@ -6,7 +6,7 @@
 use super::Scalar;
 
 /// Largest argument for which the series is used; beyond it, sines and cosines are more accurate.
-pub(super) const SERIES: f64 = 10.0;
+const SERIES: f64 = 10.0;
 /// Order from which the series is summed directly; for lower orders, its cancellation error becomes negligible in
 /// `1/k! − x c_{k+2}`.
 const HIGHEST: u8 = 12;
@@ -33,7 +33,7 @@ fn by_angles(k: u8, x: f64) -> f64 {
     }
 }
 
-pub(super) fn reciprocal_factorial(k: u8) -> f64 {
+fn reciprocal_factorial(k: u8) -> f64 {
     (1..=k).map(f64::from).product::<f64>().recip()
 }
 
@@ -47,16 +47,4 @@ pub(super) fn series<S: Scalar>(k: u8, x: &S) -> S {
         one() - x.clone() * rest / (number(below + 1) * number(below + 2))
     });
     (1..=u32::from(k)).fold(nested, |value, n| value / number(n))
-}
-
-/// Coefficients of the Taylor polynomial of `c_k` by powers of x, k ≥ 6: at [`SERIES`] what is left out is below 1e-17 of the first.
-pub(super) fn taylor(k: u8) -> [f64; 13] {
-    let mut term = reciprocal_factorial(k);
-    let mut below = f64::from(k);
-    std::array::from_fn(|_| {
-        let own = term;
-        term /= -(below + 1.0) * (below + 2.0);
-        below += 2.0;
-        own
-    })
 }

@@ -34,37 +34,36 @@ impl Description {
 
     /// The same of the first of some poses that is near one.
     pub fn near_singular_in<'q>(&self, mut poses: impl Iterator<Item = &'q [f64]>) -> Option<String> {
-        let angles = self.singular_angles();
+        // The cheap tests first: this runs for every row of a result.
+        let named = |(_, info): &(usize, &CoordinateInfo)| info.name.ends_with("_theta");
+        let angles: Vec<(usize, &CoordinateInfo)> = self.coordinates.iter().enumerate().filter(named).collect();
         poses.find_map(|q| {
-            let near = |(index, _): &&(usize, String)| {
+            let near = |(index, _): &&(usize, &CoordinateInfo)| {
                 let half_turns = q[*index] / core::f64::consts::PI - 0.5;
                 (half_turns - half_turns.round()).abs() * core::f64::consts::PI < NEAR_SINGULAR
             };
-            let (index, lost) = angles.iter().find(near)?;
-            let (name, angle) = (&self.coordinates[*index].name, q[*index].to_degrees());
-            Some(format!("{name} is {angle:.2}°: near ±90° {lost} and accuracy is lost"))
+            angles.iter().filter(near).find_map(|(index, info)| {
+                let (name, angle, lost) = (&info.name, q[*index].to_degrees(), self.lost_at_90_degrees(info)?);
+                Some(format!("{name} is {angle:.2}°: near ±90° {lost} and accuracy is lost"))
+            })
         })
     }
 
-    /// The coordinates that must not be near ±90°, and what happens there.
-    fn singular_angles(&self) -> Vec<(usize, String)> {
-        let turns = |name: &str, role| {
-            self.coordinates.iter().any(|coordinate| coordinate.name == name && coordinate.role == role)
+    /// What happens where a coordinate is ±90°, if anything does.
+    fn lost_at_90_degrees(&self, CoordinateInfo { name, role, .. }: &CoordinateInfo) -> Option<String> {
+        let body = name.strip_suffix("_theta")?;
+        let turns = |symbol: &str| {
+            let name = format!("{body}_{symbol}");
+            self.coordinates.iter().any(|coordinate| *coordinate.name == *name && coordinate.role == *role)
         };
-        let angle = |(index, CoordinateInfo { name, role, .. }): (usize, &CoordinateInfo)| {
-            let body = name.strip_suffix("_theta")?;
-            let turns = |symbol: &str| turns(&format!("{body}_{symbol}"), *role);
-            let lost = match role {
-                CoordinateRole::Base | CoordinateRole::Element if turns("psi") && turns("phi") => {
-                    format!("{body}_psi and {body}_phi turn about the same axis")
-                }
-                // A link of a rope.
-                CoordinateRole::Passive if turns("psi") => format!("{body}_psi turns {body} about its own axis"),
-                _ => return None,
-            };
-            Some((index, lost))
-        };
-        self.coordinates.iter().enumerate().filter_map(angle).collect()
+        match role {
+            CoordinateRole::Base | CoordinateRole::Element if turns("psi") && turns("phi") => {
+                Some(format!("{body}_psi and {body}_phi turn about the same axis"))
+            }
+            // A link of a rope.
+            CoordinateRole::Passive if turns("psi") => Some(format!("{body}_psi turns {body} about its own axis")),
+            _ => None,
+        }
     }
 
     /// Whether the base has tipped over between two poses: rotated about a horizontal axis by more than [`TIPPED`].

@@ -37,6 +37,9 @@ pub(super) trait Formula {
     /// Factorisations so far.
     fn factorisations(&self) -> usize;
 
+    /// Motions and commands change: what is kept of the last time does not hold any more.
+    fn forget(&mut self) {}
+
     /// Visits what further steps depend on.
     fn visit(&mut self, _visit: Visit<'_>) {}
 }
@@ -270,7 +273,8 @@ impl<F: Formula + Send> Steered for Adaptive<'_, F> {
         let mut motion = std::mem::take(&mut self.motion);
         self.interpolate(t, &mut motion);
         change();
-        self.equations.references.forget();
+        self.equations.forget();
+        self.formula.forget();
         self.motion = motion;
         self.begin(t, self.next)
     }

@@ -234,7 +234,7 @@ impl Stepper for Rk4<'_> {
 impl Steered for Rk4<'_> {
     fn change(&mut self, t: f64, change: &mut dyn FnMut()) -> Result<(), Stopped> {
         change();
-        self.equations.references.forget();
+        self.equations.forget();
         self.steps = EqualSteps { begin: t, end: t, count: 0, done: 0 };
         Ok(())
     }

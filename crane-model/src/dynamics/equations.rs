@@ -54,9 +54,15 @@ impl<'a> Equations<'a> {
         !self.loops.is_empty()
     }
 
+    /// Motions and commands change: what is kept of the last time does not hold any more.
+    pub fn forget(&mut self) {
+        self.references.forget();
+        self.force_states.forget();
+    }
+
     /// Visits what further evaluations depend on.
     pub fn visit(&mut self, visit: Visit<'_>) {
-        self.references.forget();
+        self.forget();
         visit_count(&mut self.evaluations, visit);
         self.loops.visit(visit);
     }

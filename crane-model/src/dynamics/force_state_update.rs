@@ -73,6 +73,11 @@ impl ForceStateUpdate {
         }
     }
 
+    /// Motions and commands change: what is kept of the last time does not hold any more.
+    pub fn forget(&mut self) {
+        self.force_states.forget();
+    }
+
     /// Evaluates the forces at a state, and adds stiffness and damping of local forces to those of their coordinates.
     pub fn evaluate(&mut self, crane: &dyn DynModel, moment: &StateAt<'_>, c: f64, joints: &mut [[f64; 2]]) {
         if self.force_states.is_empty() {

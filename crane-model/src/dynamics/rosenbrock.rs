@@ -218,6 +218,10 @@ impl Formula for Stages<'_> {
         self.system.factorisations
     }
 
+    fn forget(&mut self) {
+        self.system.forget();
+    }
+
     fn visit(&mut self, visit: Visit<'_>) {
         self.system.visit(visit);
     }

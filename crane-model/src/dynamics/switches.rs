@@ -77,6 +77,7 @@ impl Switches {
 
     /// Visits what further steps depend on.
     pub fn visit(&mut self, visit: Visit<'_>) {
+        self.states.forget();
         visit_flags(&mut self.branches[0], visit);
         visit_flag(&mut self.of_limit, visit);
         visit(&mut self.known_at);
@@ -84,6 +85,7 @@ impl Switches {
 
     /// Forgets the last step.
     pub fn start(&mut self) {
+        self.states.forget();
         self.known_at = f64::NAN;
     }
 

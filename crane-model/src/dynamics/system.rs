@@ -92,8 +92,14 @@ impl<'a> System<'a> {
         self
     }
 
+    /// Motions and commands change: what is kept of the last time does not hold any more.
+    pub fn forget(&mut self) {
+        self.force_states.forget();
+    }
+
     /// Visits what further systems depend on.
     pub fn visit(&mut self, visit: Visit<'_>) {
+        self.forget();
         self.loops.visit(visit);
         visit_count(&mut self.factorisations, visit);
     }

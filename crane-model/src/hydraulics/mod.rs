@@ -174,6 +174,10 @@ impl StatefulForces for Hydraulics {
         false
     }
 
+    fn forget(&mut self) {
+        self.t = None;
+    }
+
     fn supplies_power(&self) -> bool {
         true
     }

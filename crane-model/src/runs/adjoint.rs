@@ -41,7 +41,12 @@ pub fn record_adjoint(
         .map(|(column, measure)| measure.weights(&t, &rows.iter().map(|row| row[*column]).collect::<Vec<f64>>()))
         .collect();
     let mut by_samples: Vec<Vec<(usize, Covector)>> = vec![Vec::new(); asked.len()];
+    let mut is_off = false;
     for (sample, state) in states.iter().enumerate() {
+        is_off |= proceed(state.0).is_break();
+        if is_off {
+            break;
+        }
         let here: Vec<(usize, f64)> = weights
             .iter()
             .enumerate()
@@ -56,7 +61,8 @@ pub fn record_adjoint(
     }
     let mut gradients = Vec::new();
     for own in &by_samples {
-        let found = trace.as_mut().and_then(|trace| trace.pull_back(functions, own, proceed).ok());
+        let found = trace.as_mut().filter(|_| !is_off);
+        let found = found.and_then(|trace| trace.pull_back(functions, own, proceed).ok());
         let by = |direction: usize| {
             found.as_ref().map_or(f64::NAN, |Covector { motion, numbers }| {
                 let of_start: f64 = along[direction].iter().zip(motion).map(|(along, by)| along * by).sum();

@@ -2,7 +2,8 @@
 
 use std::{io, path::Path};
 
-use crane_codegen::{Diagnostics, diagnostic};
+use crane_codegen::Diagnostics;
+pub use crane_codegen::diagnostic::similar as nearest;
 use crane_model::{
     dynamics::{Method, Stopped},
     modes::NoModes,
@@ -135,11 +136,4 @@ impl From<NoModes> for Problem {
     fn from(error: NoModes) -> Self {
         Problem::failed(error.to_string(), "check masses and inertias in the spec")
     }
-}
-
-/// The word of `known` that is most similar to `word`, or else one that contains it.
-pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let known: Vec<&str> = known.into_iter().collect();
-    let contains = |candidate: &&str| !word.is_empty() && candidate.contains(word);
-    diagnostic::nearest(word, known.iter().copied()).or_else(|| known.iter().copied().find(contains))
 }

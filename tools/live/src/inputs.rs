@@ -7,7 +7,7 @@ use crane_codegen::chain::Input;
 /// The numbers of one input.
 pub type Slots = [f64; Input::SLOTS];
 
-/// The numbers of all inputs of a crane, [`Input::SLOTS`] each. Whoever shares them can set them during a run, between two calls.
+/// The numbers of all inputs of a crane, [`Input::SLOTS`] each. Whoever shares them can set them during a run, while it is [changed](crane_model::dynamics::Integration::change).
 #[derive(Debug)]
 pub struct Inputs(Vec<AtomicU64>);
 

@@ -6,6 +6,7 @@ use crane_codegen::chain::{Analyses, Chain};
 use crane_codegen::mechanics;
 use crane_codegen::program::{FunctionId, Program, RuntimeTrait};
 
+use crate::assemble::TooLarge;
 use crate::describe::parents;
 use crate::routine::Routine;
 
@@ -74,13 +75,14 @@ pub struct Library {
     parents: Vec<usize>,
     programs: [OnceLock<Program>; Group::COUNT],
     routines: [OnceLock<Option<Routine>>; FunctionId::COUNT],
-    pulled_back: [OnceLock<Option<Routine>>; FunctionId::COUNT],
+    pulled_back: [OnceLock<Result<Option<Routine>, TooLarge>>; FunctionId::COUNT],
 }
 
 impl Library {
     /// The functions of a chain, none of them derived yet.
     pub fn new(chain: Chain) -> Self {
-        let [routines, pulled_back] = [0, 1].map(|_| std::array::from_fn(|_| OnceLock::new()));
+        let routines = std::array::from_fn(|_| OnceLock::new());
+        let pulled_back = std::array::from_fn(|_| OnceLock::new());
         Self { parents: parents(&chain), chain, programs: Default::default(), routines, pulled_back }
     }
 
@@ -102,15 +104,18 @@ impl Library {
         self.routines[id as usize].get_or_init(|| self.assemble(id)).as_ref()
     }
 
-    /// The products of weights and the derivatives of a function, see [`Program::pull_back`]; `None` if the crane does not need it, or it does not
-    /// fit into the registers.
-    pub fn pulled_back(&self, id: FunctionId) -> Option<&Routine> {
+    /// The products of weights and the derivatives of a function, see [`Program::pull_back`]; `None` if the crane does not need it.
+    ///
+    /// # Errors
+    /// They need too many registers: the numbers of the function are all kept until they are used on the way back.
+    pub fn pulled_back(&self, id: FunctionId) -> Result<Option<&Routine>, TooLarge> {
         let derive = || {
             let program = self.program(id);
-            let pulled_back = program.pull_back(program.function(id)?);
-            pulled_back.functions.first().and_then(|function| Routine::new(&pulled_back, function).ok())
+            let pulled_back = program.function(id).map(|function| program.pull_back(function));
+            let routine = pulled_back.map(|pulled_back| Routine::new(&pulled_back, &pulled_back.functions[0]));
+            routine.transpose()
         };
-        self.pulled_back[id as usize].get_or_init(derive).as_ref()
+        self.pulled_back[id as usize].get_or_init(derive).as_ref().map(Option::as_ref).map_err(|large| *large)
     }
 
     fn assemble(&self, id: FunctionId) -> Option<Routine> {

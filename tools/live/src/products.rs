@@ -11,10 +11,11 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crane_codegen::chain::Input;
-use crane_codegen::program::{Argument, FunctionId, PULLED_BACK, Shape};
+use crane_codegen::program::{Argument, Extent, FunctionId, Item, PULLED_BACK};
 use crane_model::dyn_crane::DynModel;
 
 use crate::LiveCrane;
+use crate::assemble::TooLarge;
 use crate::dual::{DIRECTIONS, Dual8};
 use crate::library::Library;
 use crate::machine::{Arguments, Machine};
@@ -33,38 +34,35 @@ pub struct State<'a> {
     pub a: &'a [f64],
 }
 
-/// Names of all numbers that functions of a crane depend on, and how many each has.
+/// Names of all numbers that functions of a crane depend on, and how many each has. A live parameter that is called as one of the first four is
+/// `parameters.q`.
 #[must_use]
 pub fn numbers(crane: &LiveCrane) -> Vec<(String, usize)> {
     let description = crane.description();
     let n = crane.size();
-    let own = [("t", 1), ("q", n), ("v", n), ("a", n)].map(|(name, count)| (name.to_owned(), count));
-    let parameters = description.parameters.iter().map(|parameter| (parameter.name.to_string(), 1));
+    let own = [("t", 1), ("q", n), ("v", n), ("a", n)];
+    let parameters = description.parameters.iter().map(|parameter| {
+        let is_taken = own.iter().any(|(name, _)| *name == &*parameter.name);
+        (if is_taken { format!("parameters.{}", parameter.name) } else { parameter.name.to_string() }, 1)
+    });
     let inputs = description.inputs.iter().map(|input| (format!("inputs.{}", input.name), 1));
-    own.into_iter().chain(parameters).chain(inputs).collect()
+    own.map(|(name, count)| (name.to_owned(), count)).into_iter().chain(parameters).chain(inputs).collect()
 }
 
-/// Whether a function has products: its results are numbers of their own, which follow from the state alone.
+/// Whether a function has products: its results are numbers of their own, which follow from the state alone. With closed loops, accelerations are not
+/// those of the function.
 #[must_use]
 pub fn has_products(crane: &LiveCrane, function: FunctionId) -> bool {
     use FunctionId as F;
     let others = [Argument::RightHandSide, Argument::DrivePositions, Argument::AddedInertia, Argument::Factors];
-    let of_factors =
-        matches!(function, F::DynamicResidualDerivatives | F::ForwardDynamicsDerivatives | F::InverseMassMatrix);
-    let is_plain = |shape: &Shape| {
-        matches!(
-            shape,
-            Shape::Scalar
-                | Shape::Vector(_)
-                | Shape::Vectors(_)
-                | Shape::Pairs(_)
-                | Shape::Rows { .. }
-                | Shape::Structs(..)
-        )
+    let of_factors = matches!(function, F::DynamicResidualDerivatives | F::ResidualFactors | F::MassFactors);
+    let is_plain = match function.extent() {
+        Extent::Number | Extent::Vector => true,
+        Extent::List(item, _) => item != Item::Transform,
+        Extent::Matrix | Extent::Base | Extent::Other => false,
     };
-    !of_factors
-        && !others.iter().any(|other| function.arguments().contains(other))
-        && crane.library().routine(function).is_none_or(|routine| is_plain(routine.shape()))
+    let is_open = function == F::ForwardDynamics && !crane.loop_joints().is_empty();
+    is_plain && !of_factors && !is_open && !others.iter().any(|other| function.arguments().contains(other))
 }
 
 /// `wᵀ J` of a function of a crane, with a workspace for its calls.
@@ -97,11 +95,13 @@ pub struct Pulled<'r> {
 }
 
 impl PullBack {
-    /// Of a function of a crane with its parameters and inputs; `None` if the crane does not need it, or if its products are too long for the registers.
-    #[must_use]
-    pub fn new(crane: &LiveCrane, function: FunctionId) -> Option<Self> {
+    /// Of a function of a crane with its parameters and inputs; `None` if the crane does not need it.
+    ///
+    /// # Errors
+    /// It needs too many registers.
+    pub fn new(crane: &LiveCrane, function: FunctionId) -> Result<Option<Self>, TooLarge> {
         let library = crane.library();
-        let routine = library.pulled_back(function)?;
+        let Some(routine) = library.pulled_back(function)? else { return Ok(None) };
         let (n, parameters) = (crane.size(), crane.parameters());
         let mut end = 0;
         let inputs: Vec<f64> = crane.inputs().numbers().collect();
@@ -116,12 +116,12 @@ impl PullBack {
             begin..end
         });
         let (machine, results) = (routine.machine(parameters), vec![0.0; routine.results()]);
-        Some(Self { library, function, machine, inputs, results, places })
+        Ok(Some(Self { library, function, machine, inputs, results, places }))
     }
 
     /// Other live parameters, all of them.
     pub fn set_parameters(&mut self, parameters: &[f64]) {
-        if let Some(routine) = self.library.pulled_back(self.function) {
+        if let Ok(Some(routine)) = self.library.pulled_back(self.function) {
             routine.set_parameters(&mut self.machine, parameters);
         }
     }
@@ -131,7 +131,7 @@ impl PullBack {
         let Self { library, function, machine, inputs, results, places } = self;
         let &State { t, q, v, a } = state;
         let arguments = Arguments { t, q, v, a, r: weights, inputs, ..Arguments::none() };
-        if let Some(routine) = library.pulled_back(*function) {
+        if let Ok(Some(routine)) = library.pulled_back(*function) {
             routine.run(machine, &arguments, results);
         }
         let [t, q, v, a, parameters, inputs] = places.each_ref().map(|place| &results[place.clone()]);
@@ -154,6 +154,8 @@ pub struct PushForward {
     evaluation: Evaluation<Dual8>,
     n: usize,
     inputs: Vec<f64>,
+    /// The live parameters that the evaluation has, if they do not change along the last direction.
+    parameters: Option<Vec<f64>>,
 }
 
 impl PushForward {
@@ -161,7 +163,7 @@ impl PushForward {
     #[must_use]
     pub fn new(crane: &LiveCrane, function: FunctionId) -> Self {
         let (evaluation, inputs) = (Evaluation::new(crane, function), crane.inputs().numbers().collect());
-        Self { evaluation, n: crane.size(), inputs }
+        Self { evaluation, n: crane.size(), inputs, parameters: Some(crane.parameters().to_vec()) }
     }
 
     /// The product at a state and with live parameters, with the changes of all [`numbers`]; one number for each result of the function.
@@ -177,7 +179,8 @@ impl PushForward {
             (0..self.n).map(|i| next(numbers.get(i).copied().unwrap_or_default())).collect()
         };
         let [q, v, a] = [state.q, state.v, state.a].map(&mut all);
-        let parameters: Vec<Dual8> = parameters.iter().map(|number| next(*number)).collect();
+        let along: Vec<Dual8> = parameters.iter().map(|number| next(*number)).collect();
+        let rests = along.iter().all(|number| number.slope(0) == 0.0);
         let inputs = self.inputs.iter().enumerate();
         let inputs = inputs.map(
             |(slot, number)| {
@@ -185,7 +188,10 @@ impl PushForward {
             },
         );
         let inputs: Vec<Dual8> = inputs.collect();
-        self.evaluation.set_parameters(&parameters);
+        if !rests || self.parameters.as_deref() != Some(parameters) {
+            self.evaluation.set_parameters(&along);
+            self.parameters = rests.then(|| parameters.to_vec());
+        }
         self.evaluation.set_inputs(&inputs);
         let results = self.evaluation.at(t, &q, &v, &a);
         out.iter_mut().zip(results).for_each(|(out, number)| *out = number.slope(0));

@@ -1,6 +1,7 @@
 """A crane: a spec with live parameters."""
 
 import html
+import math
 import os
 import warnings
 from collections.abc import Mapping, Sequence
@@ -30,6 +31,10 @@ from .results import (
 from .simulation import Simulation
 from .state_space import Margins, StateSpace
 from .vector_simulation import VectorSimulation
+
+
+# Numbers of a state that have one entry per coordinate.
+STATE = ("q", "v", "a")
 
 
 def load(
@@ -240,12 +245,11 @@ class Crane(_native.Crane):
         flat = real_array("weights", weights)
         if list(flat.shape[flat.ndim - len(axes) :]) != axes:
             raise ValueError(f"weights have shape {flat.shape}, but {function} has {tuple(axes)} results, which are the last axes")
-        flat = flat.reshape(*flat.shape[: flat.ndim - len(axes)], -1)
+        flat = flat.reshape(*flat.shape[: flat.ndim - len(axes)], math.prod(axes))
         all_numbers = self._vjp(function, flat, q, v, a, t, invalid=invalid)
         found, first = {}, 0
         for name, count in self._product_numbers():
-            is_vector = name in ("q", "v", "a")
-            found[name] = all_numbers[..., first : first + count] if is_vector else all_numbers[..., first]
+            found[name] = all_numbers[..., first : first + count] if name in STATE else all_numbers[..., first]
             first += count
         return found
 
@@ -271,7 +275,10 @@ class Crane(_native.Crane):
             if name not in names:
                 raise KeyError(f"nothing is called {name!r}: write one of {', '.join(names)}")
         given = {name: real_array(name, change) for name, change in changes.items()}
-        given = {name: change if name in ("q", "v", "a") else change[..., None] for name, change in given.items()}
+        for name in STATE:
+            if name in given and given[name].shape[-1:] != (self.n,):
+                raise ValueError(f"the change of {name} has shape {given[name].shape}: its last axis has the {self.n} coordinates of {self.name}")
+        given = {name: change if name in STATE else change[..., None] for name, change in given.items()}
         shape = np.broadcast_shapes(*(change.shape[:-1] for change in given.values()))
         flat = [np.broadcast_to(given.get(name, np.zeros(count)), (*shape, count)) for name, count in numbers]
         return self._jvp(function, np.concatenate(flat, axis=-1), q, v, a, t, invalid=invalid)
@@ -566,7 +573,7 @@ class Crane(_native.Crane):
 
         Ctrl-C ends it with KeyboardInterrupt.
         """
-        names, asked = ([given] if isinstance(given, str) else given and list(given) for given in (gradients, adjoint))
+        names, asked = (None if given is None else [given] if isinstance(given, str) else list(given) for given in (gradients, adjoint))
         if names is not None and asked is not None:
             raise ValueError("gradients and adjoint are two runs: give one of them")
         if names is not None or asked is not None:

@@ -332,11 +332,12 @@ class Run(Mapping[str, Array]):
         time: to first order the time itself does not matter. Of what was given to `simulate(adjoint=...)` there are derivatives by all
         names. Work, dissipated energy and the energy balance of a run have none.
         """
-        by_all = self.adjoint.get(f"{column}.{of}", {})
+        by_all = self.adjoint.get(f"{column}.{of}") or self.adjoint.get(column if of == "peak" else "", {})
         if name in by_all:
             return by_all[name]
         if name not in self.gradients:
-            known = ", ".join(by_all or self.gradients) or "none: run simulate(gradients=[...])"
+            asked = f"only those of {', '.join(self.adjoint)}" if self.adjoint else "none: run simulate(gradients=[...])"
+            known = ", ".join(by_all or self.gradients) or asked
             raise KeyError(f"the run has no gradients by {name!r}: it has {known}")
         values, place = self[column], _place(self.units, column)
         slopes = self.gradients[name][:, place]
@@ -352,7 +353,7 @@ class Run(Mapping[str, Array]):
         if of not in extremes:
             raise ValueError(f'of={of!r}: write "values", "maximum", "minimum", "peak", "final" or "integral"')
         index = int(np.argmax(extremes[of]))
-        return float(np.sign(values[index]) * slopes[index] if of == "peak" else slopes[index])
+        return float(np.copysign(1.0, values[index]) * slopes[index] if of == "peak" else slopes[index])
 
     def page(self) -> str:
         """The run in 3-D, in plots and in tables: an HTML page that needs no network, to be written to a file."""

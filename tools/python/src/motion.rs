@@ -214,6 +214,7 @@ impl Crane {
         let result = py.detach(|| {
             let start = Start::with(crane, q.as_deref(), v.as_deref()).map_err(|failed| raised(&failed))?;
             let settings = timing.stable(crane, &start)?;
+            let settings = if asked.is_some() { runs::adjoint_settings(&settings) } else { settings };
             let proceed = &mut |_: f64| unless(watch.look());
             let checked = |recorded, proceed: &mut dyn FnMut(f64) -> ControlFlow<()>| {
                 check(recorded, crane, &start, &settings, (verify, bend), proceed)
@@ -255,12 +256,12 @@ impl Crane {
             }
             all.set_item("gradients", of_names)?;
         }
-        if let Some(asked) = asked {
+        if asked.is_some() {
             let of_measures = PyDict::new(py);
-            for ((column, measure), found) in asked.into_iter().zip(of_asked) {
+            for (number, found) in adjoint.into_iter().flatten().zip(of_asked) {
                 let by_names = PyDict::new(py);
                 names.iter().zip(found).try_for_each(|(name, by)| by_names.set_item(name, by))?;
-                of_measures.set_item(format!("{}.{}", table.columns[column].name, measure.name()), by_names)?;
+                of_measures.set_item(number, by_names)?;
             }
             all.set_item("adjoint", of_measures)?;
         }

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use crane_live::FunctionId;
+use crane_live::assemble::TooLarge;
 use crane_live::products::{self, PullBack, PushForward};
 use crane_model::dyn_crane::DynModel;
 use pyo3::exceptions::PyValueError;
@@ -11,7 +12,7 @@ use pyo3::prelude::*;
 use crate::arrays::{Argument, Joined, array};
 use crate::crane::Crane;
 use crate::evaluation::{Array, Given, STATE, State, forget};
-use crate::mistakes::{Invalid, warn_of_rows};
+use crate::mistakes::{BadRow, Invalid, describe, warn_of_rows};
 use crate::parallel::for_rows;
 
 /// Rows that a thread takes at a time.
@@ -50,7 +51,14 @@ impl Crane {
         let results: usize = self.live.shape(id).iter().product();
         let weights = Argument::of_width("weights", weights, results, "one for each result")?;
         let numbers = self.product_numbers();
-        let make = || PullBack::new(&self.live, id);
+        let too_large = |TooLarge { registers }| {
+            let name = &self.live.description().name;
+            PyValueError::new_err(format!(
+                "{function} of {name} is too large for vjp, with {registers} numbers at once: use jvp"
+            ))
+        };
+        PullBack::new(&self.live, id).map_err(too_large)?;
+        let make = || PullBack::new(&self.live, id).unwrap_or_default();
         let single = self.is_single();
         self.products(
             py,
@@ -118,12 +126,22 @@ impl Crane {
     fn with_products(&self, name: &str) -> PyResult<FunctionId> {
         let offered = |id: &&FunctionId| id.python().is_some() && products::has_products(&self.live, **id);
         let known = || FunctionId::ALL.iter().filter(offered);
-        let id = known().find(|id| id.name() == name).ok_or_else(|| {
+        if let Some(id) = known().find(|id| id.name() == name) {
+            self.refuse(*id)?;
+            return Ok(*id);
+        }
+        let description = self.live.description();
+        let is_closed = name == FunctionId::ForwardDynamics.name() && !self.live.loop_joints().is_empty();
+        let words = if is_closed {
+            format!(
+                "{name} of {} depends on its closed loops: use the products of dynamic_residual, loop_states and loop_jacobians",
+                description.name
+            )
+        } else {
             let known: Vec<&str> = known().map(|id| id.name()).collect();
-            PyValueError::new_err(format!("there are no products of {name:?}: write one of {}", known.join(", ")))
-        })?;
-        self.refuse(*id)?;
-        Ok(*id)
+            format!("there are no products of {name:?}: write one of {}", known.join(", "))
+        };
+        Err(PyValueError::new_err(words))
     }
 
     /// Products at all rows, each with a vector.
@@ -148,7 +166,17 @@ impl Crane {
             ("the parameters", &self.parameters),
             (name, vectors),
         ])?;
-        let bad = self.bad_rows(&joined, STATE, Invalid::named(invalid)?)?;
+        let invalid = Invalid::named(invalid)?;
+        let mut bad = self.bad_rows(&joined, STATE, invalid)?;
+        for row in 0..joined.rows() {
+            let vector = joined.row(5, vectors.width, row);
+            let Some(index) = vector.iter().position(|x| !x.is_finite()) else { continue };
+            let reason = format!("{name} contains {}, not a finite number", vector[index]);
+            if invalid == Invalid::Raise {
+                return Err(PyValueError::new_err(describe(&BadRow { row, reason }, &joined.shape)));
+            }
+            bad.push(BadRow { row, reason });
+        }
         let n = self.live.size();
         let mut out = vec![0.0; joined.rows() * width];
         let work = |workspace: &mut R, rows: Range<usize>, out: &mut [f64]| {

@@ -66,6 +66,15 @@ def test_the_adjoint_mode_finds_the_same_by_everything(run):
             assert found.gradient(name, key, of=of) == by_all[key]
 
 
+def test_an_adjoint_run_has_a_tenth_of_the_tolerance_and_estimates_its_errors():
+    c = crane.load("knuckle_boom")
+    found = c.simulate(duration=1.0, output=0.1, adjoint="load_centre_x.final")
+    assert found.tolerance == pytest.approx(2e-6)
+    assert 0 < found.errors["load_centre_x"] < 1e-3
+    assert found.gradient("load_centre_x", "payload", of="final") == found.adjoint["load_centre_x.final"]["payload"]
+    assert c.simulate(duration=0.1, output=0.1, verify=False, adjoint="load_centre_x").gradient("load_centre_x", "payload", of="peak")
+
+
 def test_a_start_may_be_given(run):
     c = crane.load("knuckle_boom")
     q = run.table[0, 1 : 1 + c.n]

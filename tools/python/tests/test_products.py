@@ -4,6 +4,8 @@ import crane
 import numpy as np
 import pytest
 
+from conftest import ROOT
+
 #: Functions of all kinds of results: vectors, points, pairs, rows, tensions, numbers.
 FUNCTIONS = [
     "dynamic_residual",
@@ -89,6 +91,35 @@ def test_parameters_may_be_arrays():
         np.testing.assert_array_equal(along[row], alone.jvp("dynamic_residual", changes, **own))
 
 
+def test_a_batch_may_be_empty_and_a_row_may_be_bad():
+    c = crane.load("knuckle_boom")
+    by_all = c.vjp("dynamic_residual", np.zeros((0, c.n)), c.guess, c.guess, c.guess)
+    assert by_all["q"].shape == (0, c.n) and by_all["payload"].shape == (0,)
+    assert c.jvp("points", {}, c.guess).shape == tuple(c._product_shape("points"))
+    assert not c.jvp("points", {}, c.guess).any()
+    weights = np.ones((2, c.n))
+    weights[1, 0] = np.nan
+    with pytest.raises(ValueError, match="weights contains"):
+        c.vjp("bias", weights, c.guess, c.guess)
+    with pytest.warns(crane.InvalidRowWarning):
+        by_all = c.vjp("bias", weights, c.guess, c.guess, invalid="nan")
+    assert np.isfinite(by_all["q"][0]).all() and np.isnan(by_all["q"][1]).all()
+
+
+def test_a_parameter_may_be_called_as_a_state():
+    text = (
+        "format: 1\nname: p\nparameters: {a: {value: 0.4}, m: {value: 3}}\n"
+        "links: [{name: rod, joint: {revolute: {axis: y}}, mass: m, com: [a, 0, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}}]\n"
+    )
+    c = crane.load("p.yaml", text=text)
+    by_all = c.vjp("inverse_dynamics", [1.0], [0.3], [0.0], [2.0])
+    # r = (I + m a²) q̈ − m g a cos q with q̈ = 2.
+    assert by_all["a"] == pytest.approx([1 + 3 * 0.16])
+    assert by_all["parameters.a"] == pytest.approx(2 * 3 * 0.4 * 2 - 3 * 9.81 * np.cos(0.3))
+    along = c.jvp("inverse_dynamics", {"parameters.a": 1.0}, [0.3], [0.0], [2.0])
+    assert along == pytest.approx(float(by_all["parameters.a"]))
+
+
 def test_what_has_no_products_is_refused():
     c = crane.load("knuckle_boom")
     with pytest.raises(ValueError, match="write one of points"):
@@ -97,3 +128,9 @@ def test_what_has_no_products_is_refused():
         c.vjp("dynamic_residual", np.ones(c.n + 1), c.guess, c.guess, c.guess)
     with pytest.raises(KeyError, match="payload"):
         c.jvp("points", {"mass": 1.0}, c.guess)
+    with pytest.raises(ValueError, match="4 coordinates"):
+        c.jvp("points", {"q": 1.0}, c.guess)
+    harvester = crane.load(str(ROOT / "specs/examples/parallel_harvester.yaml"))
+    with pytest.raises(ValueError, match="closed loops"):
+        harvester.vjp("forward_dynamics", np.ones(harvester.n), harvester.guess, harvester.guess)
+    assert harvester.vjp("loop_states", np.ones(harvester._product_shape("loop_states")), harvester.guess, harvester.guess)["q"].any()

@@ -15,7 +15,6 @@ impl Bdf<'_> {
             self.control.steps_since_change = 0;
         }
         self.is_steered = true;
-        self.switches.start();
         self.accept();
         let slope_at = |bdf: &mut Self| {
             let mut slope = vec![0.0; bdf.motion.len()];
@@ -25,7 +24,9 @@ impl Bdf<'_> {
         let before = slope_at(self)?;
         let mut past = self.past_references();
         change();
-        self.equations.references.forget();
+        self.equations.forget();
+        self.correction.system.forget();
+        self.switches.start();
         let after = slope_at(self)?;
         let Equations { crane, n, .. } = self.equations;
         let jumps: Vec<f64> = after.iter().zip(&before).map(|(after, before)| after - before).collect();

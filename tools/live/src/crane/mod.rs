@@ -6,7 +6,7 @@ mod model;
 mod systems;
 
 use std::fmt;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, TryLockError};
 
 use crane_codegen::chain::{Chain, Input};
 use crane_codegen::program::{FunctionId, Shape};
@@ -38,8 +38,8 @@ pub struct LiveCrane {
     rooms: Rooms,
 }
 
-/// A workspace for each function, if there is one: a pointer, which every call takes and gives back.
-type Rooms = Arc<[Mutex<Option<Box<Room>>>; FunctionId::ALL.len()]>;
+/// A workspace for each function, once it was called: a call holds its lock, and has a workspace of its own while another thread does.
+type Rooms = Arc<[Mutex<Option<Room>>; FunctionId::ALL.len()]>;
 
 /// What a call of a function needs besides its arguments.
 struct Room {
@@ -88,11 +88,15 @@ impl LiveCrane {
         show: impl FnOnce(&Routine, &mut [f64]) -> R,
     ) -> Option<R> {
         let routine = self.library.routine(id)?;
-        let mut kept = self.rooms[id as usize].try_lock();
-        // Another thread is in it, or a call has panicked.
-        let mut own = None;
-        let room = kept.as_deref_mut().unwrap_or(&mut own).get_or_insert_with(|| Box::new(self.room(routine)));
-        let Room { machine, inputs, results } = &mut **room;
+        let kept = match self.rooms[id as usize].try_lock() {
+            Ok(kept) => Some(kept),
+            Err(TryLockError::Poisoned(kept)) => Some(kept.into_inner()),
+            // Another thread is in it.
+            Err(TryLockError::WouldBlock) => None,
+        };
+        let (mut kept, mut own) = (kept, None);
+        let room = kept.as_deref_mut().unwrap_or(&mut own);
+        let Room { machine, inputs, results } = room.get_or_insert_with(|| self.room(routine));
         inputs.clear();
         inputs.extend(self.inputs.numbers());
         routine.run(machine, &Arguments { inputs, ..*arguments }, results);

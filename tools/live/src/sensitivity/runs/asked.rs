@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::fmt;
 
-use crane_codegen::diagnostic::nearest;
+use crane_codegen::diagnostic::similar;
 use crane_model::results::Column;
 use crane_model::runs::Measure;
 
@@ -42,8 +42,8 @@ pub fn asked(
     // The first is the time.
     let names = || columns.iter().skip(1).map(|column| column.name.as_str());
     let Some(index) = names().position(|own| own == column).map(|place| place + 1) else {
-        let similar = nearest(column, names()).or_else(|| names().find(|own| own.contains(column)));
-        let similar = similar.map_or_else(String::new, |similar| format!("did you mean `{similar}`? "));
+        let similar =
+            similar(column, names()).map_or_else(String::new, |similar| format!("did you mean `{similar}`? "));
         let hint = format!("{similar}columns: {}", names().collect::<Vec<_>>().join(", "));
         return Err(NotAsked { title: format!("the run has no column `{column}`"), hint });
     };

@@ -22,7 +22,7 @@ use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::gradients::{self, Numbers};
 use crane_model::dynamics::{Method, Settings};
 use crane_model::runs::{
-    EQUILIBRIUM, Failed, GUESS, Gradients, Measure, Recorded, Start, record_adjoint, record_gradients,
+    EQUILIBRIUM, Failed, GUESS, Gradients, Measure, Recorded, Start, record, record_adjoint, record_gradients,
 };
 
 use super::rest::Rest;
@@ -36,9 +36,16 @@ use transposed::Transposed;
 /// The method that integrates derivatives along with a motion.
 pub const METHOD: Method = Method::Rosenbrock;
 
-/// Tolerance of the steps in adjoint mode, relative to that of the run: on the way forward derivatives are not known, so steps cannot follow their errors.
-/// At a tenth, derivatives are at least as accurate as those of the forward mode, whose steps do.
+/// Tolerance of the steps in adjoint mode, relative to that of a run without derivatives.
 const STRICTER: f64 = 0.1;
+
+/// The settings of a run in adjoint mode: with a tenth of the tolerance. On the way forward derivatives are not known, so steps cannot follow their errors;
+/// with a tenth they are at least as accurate as those of the forward mode, whose steps do.
+#[must_use]
+pub fn adjoint_settings(settings: &Settings) -> Settings {
+    let tolerance = (STRICTER * settings.tolerance).max(Settings::TOLERANCES.0);
+    Settings { method: METHOD, tolerance, ..*settings }
+}
 
 /// Runs from `start`, as [`record`](crane_model::runs::record), with the derivatives of all columns. A start at rest or from the guess moves
 /// with the parameters and inputs; one whose pose is given does not.
@@ -58,8 +65,9 @@ pub fn run_with_gradients(
     record_gradients(crane, start, &settings, &mut directions, start_along, proceed)
 }
 
-/// The same run with the derivatives of measures of a few columns, given by their indices, in adjoint mode: the cost does not grow with the number of
-/// directions. Gradients are measure by measure, direction by direction; NaN for what has none. Steps have a tenth of the tolerance.
+/// The same run with the derivatives of measures of a few columns, given by their indices, in adjoint mode: the cost of those of coordinates and rates
+/// hardly grows with the number of directions. Gradients are measure by measure, direction by direction; NaN for what has none, and where the crane is too large for the way back.
+/// The settings are those of [`adjoint_settings`].
 ///
 /// # Errors
 /// The run ends early.
@@ -71,8 +79,11 @@ pub fn run_with_adjoint(
     asked: &[(usize, Measure)],
     proceed: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<(Recorded, Vec<Vec<f64>>), Failed> {
-    let settings = Settings { method: METHOD, tolerance: STRICTER * settings.tolerance, ..*settings };
-    let mut functions = Transposed::new(crane, along);
+    let settings = Settings { method: METHOD, ..*settings };
+    let Ok(mut functions) = Transposed::new(crane, along) else {
+        let nothing = vec![vec![f64::NAN; along.len()]; asked.len()];
+        return record(crane, start, &settings, proceed).map(|recorded| (recorded, nothing));
+    };
     let start_along = of_start(crane, functions.directions(), start, along);
     record_adjoint(crane, start, &settings, &mut functions, &start_along, asked, proceed)
 }

@@ -8,6 +8,7 @@ use crane_model::dynamics::gradients::{Around, At, Covector, CylinderSlopes, Num
 use super::Along;
 use super::directions::Directions;
 use crate::LiveCrane;
+use crate::assemble::TooLarge;
 use crate::products::{PullBack, Pulled, State};
 
 /// The transposed functions of a crane.
@@ -26,27 +27,30 @@ pub(super) struct Transposed<'a> {
 
 impl<'a> Transposed<'a> {
     /// For some numbers of a crane.
-    pub fn new(crane: &'a LiveCrane, along: &[Along]) -> Self {
+    ///
+    /// # Errors
+    /// A function needs too many registers.
+    pub fn new(crane: &'a LiveCrane, along: &[Along]) -> Result<Self, TooLarge> {
         let place = |own: Along| along.iter().position(|along| *along == own);
-        let with = |needed: bool, id: FunctionId| needed.then(|| PullBack::new(crane, id)).flatten();
+        let with = |needed: bool, id: FunctionId| if needed { PullBack::new(crane, id) } else { Ok(None) };
         let description = crane.description();
         let has_loops = !crane.loop_joints().is_empty();
         let has_oil = description.cylinders.iter().any(|cylinder| cylinder.valve.is_some());
-        Self {
+        Ok(Self {
             crane,
             directions: Directions::new(crane, along),
             places: Places {
                 parameters: (0..crane.parameters().len()).map(|index| place(Along::Parameter(index))).collect(),
                 inputs: (0..description.inputs.len()).map(|index| place(Along::Input(index))).collect(),
             },
-            residual: with(true, FunctionId::DynamicResidual),
-            motions: with(true, FunctionId::DriveMotions),
-            loop_states: with(has_loops, FunctionId::LoopStates),
-            loop_jacobians: with(has_loops, FunctionId::LoopJacobians),
-            cylinder_states: with(has_oil, FunctionId::CylinderStates),
-            cylinder_jacobians: with(has_oil, FunctionId::CylinderJacobians),
-            openings: with(has_oil, FunctionId::ValveOpenings),
-        }
+            residual: with(true, FunctionId::DynamicResidual)?,
+            motions: with(true, FunctionId::DriveMotions)?,
+            loop_states: with(has_loops, FunctionId::LoopStates)?,
+            loop_jacobians: with(has_loops, FunctionId::LoopJacobians)?,
+            cylinder_states: with(has_oil, FunctionId::CylinderStates)?,
+            cylinder_jacobians: with(has_oil, FunctionId::CylinderJacobians)?,
+            openings: with(has_oil, FunctionId::ValveOpenings)?,
+        })
     }
 
     /// The same directions, forward.
