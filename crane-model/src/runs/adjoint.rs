@@ -2,20 +2,32 @@
 
 use std::ops::ControlFlow;
 
-use super::{Failed, Measure, Recorded, Start, recorded::record_by};
+use super::{
+    Failed, Measure, Recorded, Start,
+    recorded::{clock, record_by},
+};
 use crate::{
     dyn_crane::DynCrane,
     dynamics::{
         Sample, Settings, Watch,
-        gradients::{Around, Covector, PullBacks, Trace, forward_difference, size_of},
+        gradients::{Around, Covector, PullBacks, Slopes, Trace, difference, size_of},
     },
     force_states::ForceStates,
     results::{Recording, quantities_at},
 };
 
-/// As [`record`](super::record), by the method with derivatives, with the derivatives of measures of columns, given by their indices, in all directions of
-/// `functions`. `along`: the derivatives of the start `[q, v, x]`, direction by direction. `proceed` also receives the times of the way back; if it ends the
-/// run there, derivatives are NaN, as they are where they are not finite.
+/// What a run in adjoint mode needs of its crane.
+pub struct Transposed<'a> {
+    /// Its functions, in all directions.
+    pub functions: &'a mut dyn PullBacks,
+    /// The derivatives of the start `[q, v, x]`, direction by direction.
+    pub along: &'a [Vec<f64>],
+    /// Its functions along a few directions, sums of the others, whose errors the steps allow, and the derivatives of the start along them.
+    pub probes: (&'a mut dyn Slopes, Vec<Vec<f64>>),
+}
+
+/// As [`record`](super::record), by the method with derivatives, with the derivatives of measures of columns, given by their indices, in all directions.
+/// `proceed` also receives the times of the way back; if it ends the run there, derivatives are NaN, as they are where they are not finite.
 ///
 /// # Errors
 /// [`Reason::Stopped`](super::Reason::Stopped).
@@ -23,15 +35,15 @@ pub fn record_adjoint(
     crane: &dyn DynCrane,
     start: &Start,
     settings: &Settings,
-    functions: &mut dyn PullBacks,
-    along: &[Vec<f64>],
+    Transposed { functions, along, probes }: Transposed<'_>,
     asked: &[(usize, Measure)],
     proceed: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<(Recorded, Vec<Vec<f64>>), Failed> {
+    let begin = clock();
     let (mut states, mut trace) = (Vec::new(), None);
-    let recorded = record_by(crane, start, settings, |recording| {
+    let mut recorded = record_by(crane, start, settings, |recording| {
         let mut recorder = Recorder { recording, states: &mut states, proceed: &mut *proceed };
-        let found = Trace::new(crane, &start.state(), settings, &mut recorder)?;
+        let found = Trace::new(crane, &start.state(), probes, settings, &mut recorder)?;
         Ok(trace.insert(found).run())
     })?;
     let rows = &recorded.table.rows;
@@ -53,7 +65,7 @@ pub fn record_adjoint(
             .filter_map(|(index, of)| of.iter().find(|(row, _)| *row == sample).map(|(_, weight)| (index, *weight)))
             .collect();
         let columns: Vec<usize> = here.iter().map(|(index, _)| asked[*index].0).collect();
-        let found = derivatives(crane, &*functions, state, &rows[sample], &columns);
+        let found = derivatives(crane, &*functions, state, &columns);
         for ((index, weight), mut covector) in here.into_iter().zip(found) {
             covector.motion.iter_mut().chain(&mut covector.numbers).for_each(|entry| *entry *= weight);
             by_samples[index].push((sample, covector));
@@ -71,15 +83,15 @@ pub fn record_adjoint(
         };
         gradients.push((0..along.len()).map(by).collect());
     }
+    recorded.wall = begin.map_or(recorded.wall, |begin| begin.elapsed());
     Ok((recorded, gradients))
 }
 
-/// Derivatives of columns at a state, each with respect to the motion and to the numbers of all directions. `here`: all columns there.
+/// Derivatives of columns at a state, each with respect to the motion and to the numbers of all directions.
 fn derivatives(
     crane: &dyn DynCrane,
     functions: &dyn PullBacks,
     (t, motion): &(f64, Vec<f64>),
-    here: &[f64],
     columns: &[usize],
 ) -> Vec<Covector> {
     let (n, len, directions) = (crane.size(), motion.len(), functions.count());
@@ -95,7 +107,8 @@ fn derivatives(
     let scales = ForceStates::new(crane.description()).scales();
     let row = |around: Option<Around<'_>>, change: &[f64]| {
         let size = size_of(change, n, &scales);
-        forward_difference(crane, around, (motion, change, size), here, &mut |crane, motion| {
+        // To both sides: energies of stiff springs are squares of small numbers.
+        difference(crane, around, (motion, change, size), &mut |crane, motion| {
             let ((q, v), x) = (motion[..2 * n].split_at(n), &motion[2 * n..]);
             quantities_at(crane, *t, (q, v), x)
         })

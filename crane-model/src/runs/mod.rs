@@ -9,10 +9,10 @@ mod measure;
 mod recorded;
 mod start;
 
-pub use adjoint::record_adjoint;
+pub use adjoint::{Transposed, record_adjoint};
 pub use failed::{Failed, Reason};
 pub use gradients::{Gradients, record_gradients};
 pub use manoeuvre::{Bound, POSES, Pose, SAFE, limiting_modes, manoeuvre, step_limit};
 pub use measure::Measure;
 pub use recorded::{Recorded, check, imbalance, record, record_checked};
-pub use start::{EQUILIBRIUM, GUESS, Start};
+pub use start::{EQUILIBRIUM, EQUILIBRIUM_MOVING, GUESS, GUESS_MOVING, Start};

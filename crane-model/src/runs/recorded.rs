@@ -91,7 +91,7 @@ impl Watch for Recorder<'_, '_> {
 }
 
 /// The time now; none in WebAssembly, where the standard library has no clock and would panic.
-fn clock() -> Option<Instant> {
+pub(super) fn clock() -> Option<Instant> {
     (!cfg!(all(target_family = "wasm", target_os = "unknown"))).then(Instant::now)
 }
 

@@ -12,7 +12,12 @@ pub const EQUILIBRIUM: &str = "static equilibrium, at rest";
 /// Start of a crane whose spec does not.
 pub const GUESS: &str = "guess, at rest";
 
-/// Start of a crane whose pose or rates are given.
+/// The same with given rates.
+pub const EQUILIBRIUM_MOVING: &str = "static equilibrium, with given rates";
+/// The same with given rates.
+pub const GUESS_MOVING: &str = "guess, with given rates";
+
+/// Start of a crane whose pose is given.
 pub const GIVEN: &str = "as given";
 
 /// Pose and rates from which a run starts.
@@ -55,7 +60,14 @@ impl Start {
             None => Self::of(crane)?,
         };
         Ok(match v {
-            Some(v) => Self { v: v.to_vec(), what: GIVEN.to_owned(), rests: false, ..start },
+            Some(v) => {
+                let what = match start.what.as_str() {
+                    EQUILIBRIUM => EQUILIBRIUM_MOVING,
+                    GUESS => GUESS_MOVING,
+                    _ => GIVEN,
+                };
+                Self { v: v.to_vec(), what: what.to_owned(), rests: false, ..start }
+            }
             None => start,
         })
     }

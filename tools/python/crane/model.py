@@ -1,5 +1,6 @@
 """A crane: a spec with live parameters."""
 
+import difflib
 import html
 import math
 import os
@@ -236,8 +237,8 @@ class Crane(_native.Crane):
         *,
         invalid: str = "raise",
     ) -> dict[str, Array]:
-        """Vector-Jacobian product wᵀ ∂f/∂x of a function, by its name as "dynamic_residual", at states q, v, a and times t, s, 0 unless given: by
-        "t", "q", "v", "a", every live parameter ("payload") and every input ("inputs.r"), for a few times the cost of f.
+        """Vector-Jacobian product wᵀ ∂f/∂x of a function, by its name as "dynamic_residual", at those of q, v, a that it takes, and times t, s, 0 unless
+        given: by "t", "q", "v", "a", every live parameter ("payload") and every input ("inputs.r"), for a few times the cost of f.
 
         weights: w, (..., and the axes of f).
         """
@@ -264,22 +265,30 @@ class Crane(_native.Crane):
         *,
         invalid: str = "raise",
     ) -> Array:
-        """Jacobian-vector product ∂f/∂x δx of a function, by its name as "forward_dynamics", at states q, v, a and times t, s, 0 unless given.
+        """Jacobian-vector product ∂f/∂x δx of a function, by its name as "forward_dynamics", at those of q, v, a that it takes, and times t, s, 0 unless given.
 
         changes: δx by name: "t", "q", "v", "a", live parameters ("payload"), inputs ("inputs.r"); what is not named does not change.
         """
         self._product_shape(function)
         numbers = self._product_numbers()
         names = [name for name, _ in numbers]
+        if not isinstance(changes, Mapping):
+            raise TypeError(f'changes are arrays or numbers by name, as {{"q": dq}}, not {type(changes).__name__}')
         for name in changes:
             if name not in names:
-                raise KeyError(f"nothing is called {name!r}: write one of {', '.join(names)}")
+                similar = difflib.get_close_matches(str(name).split(".")[-1], names + [known.split(".")[-1] for known in names], n=1)
+                meant = next((f"did you mean {known}? " for known in names for close in similar if known.split(".")[-1] == close), "")
+                raise KeyError(f"nothing is called {name!r}: {meant}write one of {', '.join(names)}")
         given = {name: real_array(name, change) for name, change in changes.items()}
         for name in STATE:
             if name in given and given[name].shape[-1:] != (self.n,):
                 raise ValueError(f"the change of {name} has shape {given[name].shape}: its last axis has the {self.n} coordinates of {self.name}")
         given = {name: change if name in STATE else change[..., None] for name, change in given.items()}
-        shape = np.broadcast_shapes(*(change.shape[:-1] for change in given.values()))
+        try:
+            shape = np.broadcast_shapes(*(change.shape[:-1] for change in given.values()))
+        except ValueError:
+            shapes = ", ".join(f"{name} {change.shape[:-1]}" for name, change in given.items())
+            raise ValueError(f"the leading axes of the changes do not broadcast: {shapes}") from None
         flat = [np.broadcast_to(given.get(name, np.zeros(count)), (*shape, count)) for name, count in numbers]
         return self._jvp(function, np.concatenate(flat, axis=-1), q, v, a, t, invalid=invalid)
 
@@ -555,7 +564,7 @@ class Crane(_native.Crane):
         bend_limit: float | None = None,
         inputs: dict[str, float | None] | None = None,
         gradients: Sequence[str] | None = None,
-        adjoint: Sequence[str] | None = None,
+        adjoint: Sequence[str] | Mapping[str, str] | None = None,
     ) -> Run:
         """A run from the static equilibrium at rest, or from pose q and rates v.
 
@@ -568,19 +577,23 @@ class Crane(_native.Crane):
         inputs: of the spec, by name; constant throughout the run.
         gradients: names of what the run is differentiated by, for `Run.gradient`: live parameters ("payload"), inputs that are set
         ("inputs.r"), and starts of coordinates and of their rates ("q0.boom_psi", "v0.boom_psi"). The method is then "rosw4".
-        adjoint: instead, names of what is differentiated by all these numbers at once: "boom_psi_drive_torque.peak", or another measure of
-        a column: "maximum", "minimum", "final", "integral".
+        adjoint: names of what is differentiated, by those numbers or by all of them, back from the end of the run: "boom_psi_drive_torque.peak", or
+        another measure of a column: "maximum", "minimum", "final", "integral". `Run.adjoint` has the derivatives.
 
         Ctrl-C ends it with KeyboardInterrupt.
         """
+        if isinstance(adjoint, Mapping):
+            adjoint = [f"{column}.{of}" for column, of in adjoint.items()]
         names, asked = (None if given is None else [given] if isinstance(given, str) else list(given) for given in (gradients, adjoint))
-        if names is not None and asked is not None:
-            raise ValueError("gradients and adjoint are two runs: give one of them")
+        if not all(isinstance(name, str) for name in [*(names or ()), *(asked or ())]):
+            raise TypeError('gradients and adjoint are names: write "payload", or "boom_psi_drive_torque.peak"')
         if names is not None or asked is not None:
             if method not in (None, "rosw4") or step is not None:
                 given = f"step={step!r}" if method in (None, "rosw4") else f"method={method!r}"
                 raise ValueError(f'{given} has no gradients: leave it out, or write method="rosw4"')
             method = "rosw4"
+            if self.shape:
+                raise ValueError("the parameters are arrays, and runs of many cranes have no derivatives: run the cranes one by one")
         timing = _timing(method, duration, output, tolerance, step, force)
         limits = {} if bend_limit is None else {"bend": bend_limit}
         crane = self.replace(inputs=inputs) if inputs else self

@@ -336,8 +336,9 @@ class Run(Mapping[str, Array]):
         if name in by_all:
             return by_all[name]
         if name not in self.gradients:
-            asked = f"only those of {', '.join(self.adjoint)}" if self.adjoint else "none: run simulate(gradients=[...])"
-            known = ", ".join(by_all or self.gradients) or asked
+            known = ", ".join(by_all or self.gradients) or "none: run simulate(gradients=[...])"
+            if self.adjoint and not by_all:
+                raise KeyError(f"there are no gradients of {column}.{of}, only of {', '.join(self.adjoint)}, which simulate(adjoint=...) was given")
             raise KeyError(f"the run has no gradients by {name!r}: it has {known}")
         values, place = self[column], _place(self.units, column)
         slopes = self.gradients[name][:, place]

@@ -209,20 +209,23 @@ impl Crane {
         let along =
             gradients.as_ref().map(|names| names.iter().map(named).collect::<PyResult<Vec<_>>>()).transpose()?;
         let asked = adjoint.as_ref().map(|names| asked_of(&self.live, names)).transpose()?;
-        let all = if asked.is_some() { Along::all(&self.live) } else { Vec::new() };
+        let all = match (&gradients, &along) {
+            (Some(names), Some(along)) if asked.is_some() => names.iter().cloned().zip(along.iter().copied()).collect(),
+            _ if asked.is_some() => Along::all(&self.live),
+            _ => Vec::new(),
+        };
         let watch = Watch::new();
         let result = py.detach(|| {
             let start = Start::with(crane, q.as_deref(), v.as_deref()).map_err(|failed| raised(&failed))?;
             let settings = timing.stable(crane, &start)?;
-            let settings = if asked.is_some() { runs::adjoint_settings(&settings) } else { settings };
             let proceed = &mut |_: f64| unless(watch.look());
             let checked = |recorded, proceed: &mut dyn FnMut(f64) -> ControlFlow<()>| {
                 check(recorded, crane, &start, &settings, (verify, bend), proceed)
             };
             let recorded = match (&along, &asked) {
-                (Some(along), _) => run_with_gradients(&self.live, &start, &settings, along, proceed)
+                (Some(along), None) => run_with_gradients(&self.live, &start, &settings, along, proceed)
                     .map(|(recorded, found)| (checked(recorded, proceed), found, Vec::new())),
-                (None, Some(asked)) => {
+                (_, Some(asked)) => {
                     let along: Vec<Along> = all.iter().map(|(_, along)| *along).collect();
                     run_with_adjoint(&self.live, &start, &settings, &along, asked, proceed)
                         .map(|(recorded, found)| (checked(recorded, proceed), Vec::new(), found))
@@ -249,7 +252,7 @@ impl Crane {
         all.set_item("divergence", verification.as_ref().and_then(|found| found.divergence))?;
         all.set_item("cautions", cautions)?;
         all.set_item("wall_time", wall.as_secs_f64())?;
-        if let Some(names) = gradients {
+        if let (Some(names), None) = (gradients, &asked) {
             let of_names = PyDict::new(py);
             for (name, rows) in names.iter().zip(found) {
                 of_names.set_item(name, array(py, rows.concat(), &[rows.len()], &[table.columns.len()])?)?;

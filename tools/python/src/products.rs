@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crane_codegen::diagnostic::similar;
 use crane_live::FunctionId;
 use crane_live::assemble::TooLarge;
 use crane_live::products::{self, PullBack, PushForward};
@@ -49,6 +50,8 @@ impl Crane {
     ) -> Array<'py> {
         let id = self.with_products(function)?;
         let results: usize = self.live.shape(id).iter().product();
+        let state = State { t, q, v, a };
+        check_arguments(id, &state)?;
         let weights = Argument::of_width("weights", weights, results, "one for each result")?;
         let numbers = self.product_numbers();
         let too_large = |TooLarge { registers }| {
@@ -60,26 +63,18 @@ impl Crane {
         PullBack::new(&self.live, id).map_err(too_large)?;
         let make = || PullBack::new(&self.live, id).unwrap_or_default();
         let single = self.is_single();
-        self.products(
-            py,
-            State { t, q, v, a },
-            (&weights, "weights"),
-            (numbers, &[numbers]),
-            invalid,
-            make,
-            |pull, row, out| {
-                let (state, parameters, weights) = row;
-                match pull {
-                    Some(pull) => {
-                        if !single {
-                            pull.set_parameters(parameters);
-                        }
-                        pull.at(&state, weights).write(out);
+        self.products(py, state, (&weights, "weights"), (numbers, &[numbers]), invalid, make, |pull, row, out| {
+            let (state, parameters, weights) = row;
+            match pull {
+                Some(pull) => {
+                    if !single {
+                        pull.set_parameters(parameters);
                     }
-                    None => out.fill(0.0),
+                    pull.at(&state, weights).write(out);
                 }
-            },
-        )
+                None => out.fill(0.0),
+            }
+        })
     }
 
     /// (..., results): derivatives of a function, times changes of all numbers.
@@ -98,21 +93,15 @@ impl Crane {
     ) -> Array<'py> {
         let id = self.with_products(function)?;
         let of_row = self.live.shape(id).clone();
+        let state = State { t, q, v, a };
+        check_arguments(id, &state)?;
         let changes = Argument::of_width("changes", changes, self.product_numbers(), "one for each number")?;
         let make = || PushForward::new(&self.live, id);
         let width = of_row.iter().product();
-        self.products(
-            py,
-            State { t, q, v, a },
-            (&changes, "changes"),
-            (width, &of_row),
-            invalid,
-            make,
-            |push, row, out| {
-                let (state, parameters, changes) = row;
-                push.at(&state, parameters, changes, out);
-            },
-        )
+        self.products(py, state, (&changes, "changes"), (width, &of_row), invalid, make, |push, row, out| {
+            let (state, parameters, changes) = row;
+            push.at(&state, parameters, changes, out);
+        })
     }
 }
 
@@ -139,7 +128,9 @@ impl Crane {
             )
         } else {
             let known: Vec<&str> = known().map(|id| id.name()).collect();
-            format!("there are no products of {name:?}: write one of {}", known.join(", "))
+            let guess = similar(name, known.iter().copied());
+            let guess = guess.map_or_else(String::new, |guess| format!("did you mean {guess}? "));
+            format!("there are no products of {name:?}: {guess}write one of {}", known.join(", "))
         };
         Err(PyValueError::new_err(words))
     }
@@ -193,5 +184,25 @@ impl Crane {
         forget(&mut out, &bad, width);
         warn_of_rows(py, &bad, &joined.shape)?;
         array(py, out, &joined.shape, of_row)
+    }
+}
+
+/// Refuses arguments that a function does not have, and a lack of those that it needs.
+fn check_arguments(function: FunctionId, state: &State<'_, '_>) -> PyResult<()> {
+    let Some(own) = function.python() else { return Ok(()) };
+    let given = [("q", state.q), ("v", state.v), ("a", state.a), ("t", state.t)];
+    let takes: Vec<&str> = own.names().collect();
+    let name = function.name();
+    let listed = takes.join(", ");
+    for (argument, _) in given.iter().filter(|(_, value)| value.is_some()) {
+        if !takes.contains(argument) {
+            let instead = if *argument == "a" && takes.contains(&"t") { "; times are t=..." } else { "" };
+            return Err(PyValueError::new_err(format!("{name} has no {argument}: it depends on {listed}{instead}")));
+        }
+    }
+    let missing = own.required.iter().find(|needed| given.iter().any(|(own, value)| own == *needed && value.is_none()));
+    match missing {
+        Some(missing) => Err(PyValueError::new_err(format!("{name} needs {missing}: it depends on {listed}"))),
+        None => Ok(()),
     }
 }

@@ -134,3 +134,15 @@ def test_what_has_no_products_is_refused():
     with pytest.raises(ValueError, match="closed loops"):
         harvester.vjp("forward_dynamics", np.ones(harvester.n), harvester.guess, harvester.guess)
     assert harvester.vjp("loop_states", np.ones(harvester._product_shape("loop_states")), harvester.guess, harvester.guess)["q"].any()
+    with pytest.raises(ValueError, match="no a: it depends on q, v, t; times are t="):
+        c.vjp("forward_dynamics", np.ones(c.n), c.guess, c.guess, c.guess)
+    with pytest.raises(ValueError, match="bias needs v"):
+        c.vjp("bias", np.ones(c.n), c.guess)
+    with pytest.raises(ValueError, match="did you mean dynamic_residual"):
+        c.vjp("dynamic_residuals", np.ones(c.n), c.guess, c.guess, c.guess)
+    with pytest.raises(TypeError, match="by name"):
+        c.jvp("bias", "q", c.guess, c.guess)
+    with pytest.raises(KeyError, match="did you mean payload"):
+        c.jvp("bias", {"paylod": 1.0}, c.guess, c.guess)
+    with pytest.raises(ValueError, match="do not broadcast: payload"):
+        c.jvp("bias", {"payload": [1.0, 2.0, 3.0], "q": np.ones((2, c.n))}, c.guess, c.guess)

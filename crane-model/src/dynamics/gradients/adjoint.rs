@@ -7,7 +7,7 @@
 
 use std::ops::ControlFlow;
 
-use super::{Covector, Numbers, PullBacks, SAME, jump::of_functions_of_time, rates::Rates};
+use super::{Covector, Numbers, PullBacks, SAME, Slopes, follower::Follower, jump::of_functions_of_time, rates::Rates};
 use crate::{
     dyn_crane::{DynCrane, DynImplicit},
     dynamics::{
@@ -16,8 +16,7 @@ use crate::{
         adaptive::{Adaptive, FIRST},
         equations::Equations,
         motion::add,
-        norm::Norm,
-        references::{INSIDE, References},
+        references::INSIDE,
         rosenbrock::{A, C, STAGES, Stages, WEIGHTS},
         settings::divided,
         step::Step,
@@ -36,14 +35,14 @@ struct Kept {
 }
 
 /// A motion that keeps its steps.
-struct Keeper<'a> {
-    motion: Adaptive<'a, Stages<'a>>,
+struct Keeper<'a, 's> {
+    follower: Follower<'a, 's>,
     kept: Vec<Kept>,
 }
 
-impl Keeper<'_> {
+impl Keeper<'_, '_> {
     fn keep(&mut self, at_stop: bool) {
-        let (.., step) = self.motion.last();
+        let (.., step) = self.follower.motion.last();
         let [slope, _] = &step.slopes;
         self.kept.push(Kept {
             t: step.t,
@@ -55,40 +54,40 @@ impl Keeper<'_> {
     }
 }
 
-impl Stepper for Keeper<'_> {
+impl Stepper for Keeper<'_, '_> {
     fn start(&mut self, t: f64, motion: &[f64]) -> Result<(), Stopped> {
-        self.motion.start(t, motion)?;
+        self.follower.start(t, motion)?;
         self.keep(false);
         Ok(())
     }
 
     fn step(&mut self, ahead: &Ahead) -> Result<f64, Stopped> {
-        let reached = self.motion.step(ahead)?;
+        let reached = self.follower.step(ahead)?;
         self.keep(reached >= ahead.stop);
         Ok(reached)
     }
 
     fn motion(&self) -> &[f64] {
-        self.motion.motion()
+        self.follower.motion()
     }
 
     fn interpolate(&mut self, t: f64, motion: &mut [f64]) {
-        self.motion.interpolate(t, motion);
+        self.follower.interpolate(t, motion);
     }
 
     fn statistics(&self) -> Statistics {
-        self.motion.statistics()
+        self.follower.statistics()
     }
 
     fn efforts(&self) -> Vec<EffortAccuracy> {
-        self.motion.efforts()
+        self.follower.efforts()
     }
 }
 
 /// A motion whose numbers can be differentiated.
-pub struct Trace<'a> {
+pub struct Trace<'a, 's> {
     crane: &'a dyn DynCrane,
-    motion: Adaptive<'a, Stages<'a>>,
+    follower: Follower<'a, 's>,
     kept: Vec<Kept>,
     /// The motion at its end.
     end: Vec<f64>,
@@ -97,22 +96,21 @@ pub struct Trace<'a> {
     run: Run,
 }
 
-impl<'a> Trace<'a> {
-    /// A motion from a start at t = 0, by the W-method; the method of the settings is not used.
+impl<'a, 's> Trace<'a, 's> {
+    /// A motion from a start at t = 0, by the W-method; the method of the settings is not used. Its steps also allow the errors of a few derivatives,
+    /// `probes`, whose start is `along`: what is differentiated may change faster than the motion itself.
     ///
     /// # Errors
     /// As [`simulate`](crate::dynamics::simulate).
     pub fn new(
         crane: &'a dyn DynCrane,
         start: &InitialState,
+        (probes, along): (&'s mut dyn Slopes, Vec<Vec<f64>>),
         settings: &Settings,
         watch: &mut dyn Watch,
     ) -> Result<Self, Stopped> {
         let any: &dyn DynImplicit = crane;
-        let equations = Equations::new(any, References::of(any));
-        let (len, norm) = (equations.len(), Norm::with_efforts(any, settings.tolerance));
-        let motion = Adaptive::new(Stages::new(any, len), equations, norm).watching_all();
-        let keeper = Keeper { motion, kept: Vec::new() };
+        let keeper = Keeper { follower: Follower::new(crane, any, probes, along, settings), kept: Vec::new() };
         let mut integration = Integration::by(Box::new(keeper), any, 0.0, start, settings)?;
         let mut samples = Vec::new();
         let intervals = divided(settings.duration, settings.output).0;
@@ -129,9 +127,9 @@ impl<'a> Trace<'a> {
             }
         }
         let run = integration.run();
-        let Keeper { mut motion, kept } = integration.into_stepper();
-        let end = motion.last().2.end.clone();
-        Ok(Self { crane, motion, kept, end, samples, run })
+        let Keeper { mut follower, kept } = integration.into_stepper();
+        let end = follower.motion.last().2.end.clone();
+        Ok(Self { crane, follower, kept, end, samples, run })
     }
 
     /// Statistics of the run.
@@ -151,7 +149,7 @@ impl<'a> Trace<'a> {
         by_samples: &[(usize, Covector)],
         proceed: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Covector, NotFinite> {
-        let Self { crane, motion, kept, end, samples, .. } = self;
+        let Self { crane, follower: Follower { motion, .. }, kept, end, samples, .. } = self;
         let (len, directions) = (end.len(), functions.count());
         let mut sum = Covector::zero(len, directions);
         let mut sweep = Sweep::new(*crane, functions);

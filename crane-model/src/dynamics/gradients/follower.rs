@@ -18,7 +18,7 @@ use crate::{
 /// A motion integrated by the W-method, and its derivatives along directions.
 pub(super) struct Follower<'a, 's> {
     crane: &'a dyn DynCrane,
-    motion: Adaptive<'a, Stages<'a>>,
+    pub motion: Adaptive<'a, Stages<'a>>,
     variation: Variation<'a, 's>,
     /// The derivatives of the start.
     start: Vec<Vec<f64>>,

@@ -39,7 +39,10 @@ pub fn asked(
         let hint = format!("write one of {}, as in `{column}.peak`", Measure::ALL.map(Measure::name).join(", "));
         return Err(NotAsked { title: format!("there is no `{of}` of a column"), hint });
     };
-    // The first is the time.
+    if columns.first().is_some_and(|first| first.name == column) {
+        let title = format!("`{column}` is the time, on which nothing depends");
+        return Err(NotAsked { title, hint: "name another column".into() });
+    }
     let names = || columns.iter().skip(1).map(|column| column.name.as_str());
     let Some(index) = names().position(|own| own == column).map(|place| place + 1) else {
         let similar =

@@ -19,6 +19,9 @@ const STEP: f64 = 1e-6;
 /// The change of a number for which errors count, relative to it; of starts in m, rad, m/s and rad/s.
 const CHANGE: f64 = 0.1;
 
+/// How many sums of directions are followed in adjoint mode.
+const PROBES: usize = 4;
+
 /// A crane with a number slightly smaller and larger.
 struct Beside {
     cranes: [Option<LiveCrane>; 2],
@@ -93,14 +96,38 @@ impl<'a> Directions<'a> {
             };
             if value == 0.0 { 1.0 } else { CHANGE * value.abs() }
         };
-        let changes = along.iter().any(|along| matches!(along, Along::Parameter(_) | Along::Input(_)));
         Self {
             crane,
             chunks: along.chunks(DIRECTIONS).map(|along| Chunk::new(crane, along)).collect(),
             beside: along.iter().map(beside).collect(),
             scales: along.iter().map(scale).collect(),
-            may_move_drives: changes && is_live(crane, FunctionId::DriveMotions),
+            may_move_drives: is_any_live(along) && is_live(crane, FunctionId::DriveMotions),
         }
+    }
+
+    /// A few directions, each a sum of changes for which errors count, with either sign, of many of these numbers; and the derivatives of the start along
+    /// them, from those in these directions.
+    pub fn probes(&self, along: &[Along], of_start: &[Vec<f64>]) -> (Self, Vec<Vec<f64>>) {
+        // Bits of multiples of the golden ratio, in place of random signs.
+        let sign = |number: usize| if (0.618_033_988_75 * number as f64).fract() < 0.5 { 1.0 } else { -1.0 };
+        let share = |number: usize| (number % PROBES, sign(number) * self.scales[number]);
+        let mut starts = vec![vec![0.0; of_start.first().map_or(0, Vec::len)]; PROBES];
+        for (number, own) in of_start.iter().enumerate() {
+            let (probe, share) = share(number);
+            starts[probe].iter_mut().zip(own).for_each(|(sum, slope)| *sum += share * slope);
+        }
+        let slopes = |own: Along| {
+            let mut slopes = [0.0; DIRECTIONS];
+            if let Some(number) = along.iter().position(|along| *along == own) {
+                let (probe, share) = share(number);
+                slopes[probe] = share;
+            }
+            slopes
+        };
+        let chunk = Chunk::along(self.crane, PROBES, is_any_live(along), &slopes);
+        let beside = (0..PROBES).map(|_| None).collect();
+        let Self { crane, may_move_drives, .. } = *self;
+        (Self { crane, chunks: vec![chunk], beside, scales: vec![1.0; PROBES], may_move_drives }, starts)
     }
 
     /// Whether motions of drives may change.
@@ -133,16 +160,22 @@ fn step_of(value: f64) -> f64 {
 }
 
 impl Chunk {
+    /// Of eight numbers or fewer.
     fn new(crane: &LiveCrane, along: &[Along]) -> Self {
-        let place = |own: Along| along.iter().position(|along| *along == own);
+        Self::along(crane, along.len(), is_any_live(along), &|own| {
+            std::array::from_fn(|k| if along.get(k) == Some(&own) { 1.0 } else { 0.0 })
+        })
+    }
+
+    /// Of `count` directions, in which numbers have these slopes; whether any of them is a parameter or an input.
+    fn along(crane: &LiveCrane, count: usize, changes: bool, slopes: &dyn Fn(Along) -> [f64; DIRECTIONS]) -> Self {
         let parameters = crane.parameters().iter().enumerate();
         let parameters: Vec<Dual8> =
-            parameters.map(|(index, value)| along_all(*value, along, Along::Parameter(index))).collect();
+            parameters.map(|(index, value)| Dual8::new(*value, slopes(Along::Parameter(index)))).collect();
         let inputs = crane.inputs().numbers().enumerate().map(|(slot, value)| {
             // The first number of an input is its value; the second says whether it is set.
-            let own = Along::Input(slot / Input::SLOTS);
-            if slot % Input::SLOTS == 0 && place(own).is_some() {
-                along_all(value, along, own)
+            if slot % Input::SLOTS == 0 {
+                Dual8::new(value, slopes(Along::Input(slot / Input::SLOTS)))
             } else {
                 Dual8::splat(value)
             }
@@ -166,13 +199,13 @@ impl Chunk {
             openings: evaluation(FunctionId::ValveOpenings),
             driven,
             drives: cylinders.iter().map(|cylinder| cylinder.drive).collect(),
-            wants_more: along.iter().any(|along| matches!(along, Along::Parameter(_) | Along::Input(_)))
+            wants_more: changes
                 && [FunctionId::DriveMotions, FunctionId::CylinderStates, FunctionId::ValveOpenings]
                     .into_iter()
                     .any(|id| is_live(crane, id)),
         });
         Self {
-            count: along.len(),
+            count,
             oil,
             residual: evaluation(FunctionId::DynamicResidual),
             motions: evaluation(FunctionId::DriveMotions),
@@ -200,9 +233,9 @@ fn is_live(crane: &LiveCrane, id: FunctionId) -> bool {
     })
 }
 
-/// A number with slope 1 in every direction that is its own.
-fn along_all(value: f64, along: &[Along], own: Along) -> Dual8 {
-    Dual8::new(value, std::array::from_fn(|k| if along.get(k) == Some(&own) { 1.0 } else { 0.0 }))
+/// Whether any number is a parameter or an input.
+fn is_any_live(along: &[Along]) -> bool {
+    along.iter().any(|along| matches!(along, Along::Parameter(_) | Along::Input(_)))
 }
 
 fn constants(numbers: &[f64]) -> Vec<Dual8> {

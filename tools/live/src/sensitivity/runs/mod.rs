@@ -22,7 +22,8 @@ use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::gradients::{self, Numbers};
 use crane_model::dynamics::{Method, Settings};
 use crane_model::runs::{
-    EQUILIBRIUM, Failed, GUESS, Gradients, Measure, Recorded, Start, record, record_adjoint, record_gradients,
+    self, EQUILIBRIUM, EQUILIBRIUM_MOVING, Failed, GUESS, GUESS_MOVING, Gradients, Measure, Recorded, Start, record,
+    record_adjoint, record_gradients,
 };
 
 use super::rest::Rest;
@@ -36,19 +37,8 @@ use transposed::Transposed;
 /// The method that integrates derivatives along with a motion.
 pub const METHOD: Method = Method::Rosenbrock;
 
-/// Tolerance of the steps in adjoint mode, relative to that of a run without derivatives.
-const STRICTER: f64 = 0.1;
-
-/// The settings of a run in adjoint mode: with a tenth of the tolerance. On the way forward derivatives are not known, so steps cannot follow their errors;
-/// with a tenth they are at least as accurate as those of the forward mode, whose steps do.
-#[must_use]
-pub fn adjoint_settings(settings: &Settings) -> Settings {
-    let tolerance = (STRICTER * settings.tolerance).max(Settings::TOLERANCES.0);
-    Settings { method: METHOD, tolerance, ..*settings }
-}
-
-/// Runs from `start`, as [`record`](crane_model::runs::record), with the derivatives of all columns. A start at rest or from the guess moves
-/// with the parameters and inputs; one whose pose is given does not.
+/// Runs from `start`, as [`record`](crane_model::runs::record), with the derivatives of all columns. A pose at rest or of the guess moves
+/// with the parameters and inputs; one that is given does not.
 ///
 /// # Errors
 /// The run ends early.
@@ -67,7 +57,7 @@ pub fn run_with_gradients(
 
 /// The same run with the derivatives of measures of a few columns, given by their indices, in adjoint mode: the cost of those of coordinates and rates
 /// hardly grows with the number of directions. Gradients are measure by measure, direction by direction; NaN for what has none, and where the crane is too large for the way back.
-/// The settings are those of [`adjoint_settings`].
+/// Steps also allow the errors of a few sums of all directions.
 ///
 /// # Errors
 /// The run ends early.
@@ -85,7 +75,10 @@ pub fn run_with_adjoint(
         return record(crane, start, &settings, proceed).map(|recorded| (recorded, nothing));
     };
     let start_along = of_start(crane, functions.directions(), start, along);
-    record_adjoint(crane, start, &settings, &mut functions, &start_along, asked, proceed)
+    let (mut probes, of_probes) = functions.directions().probes(along, &start_along);
+    let transposed =
+        runs::Transposed { functions: &mut functions, along: &start_along, probes: (&mut probes, of_probes) };
+    record_adjoint(crane, start, &settings, transposed, asked, proceed)
 }
 
 /// Derivatives of the start `[q, v, x]`.
@@ -93,8 +86,8 @@ fn of_start(crane: &LiveCrane, directions: &Directions<'_>, start: &Start, along
     let any: &dyn DynCrane = crane;
     let n = crane.size();
     let mut all = match start.what.as_str() {
-        EQUILIBRIUM => of_rest(crane, directions, start),
-        GUESS => {
+        EQUILIBRIUM | EQUILIBRIUM_MOVING => of_rest(crane, directions, start),
+        GUESS | GUESS_MOVING => {
             let of_guess = |direction: usize| {
                 let guess = &mut |crane: &dyn DynCrane, _: &[f64]| crane.guess();
                 gradients::difference(any, directions.around(direction), (&[], &[], 0.0), guess)

@@ -8,10 +8,11 @@ use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::gradients::{Around, At, CylinderSlopes, Numbers, Slopes};
 use crane_model::dynamics::{Method, Settings};
 use crane_model::results::quantities;
-use crane_model::runs::{Measure, Start, record_gradients};
+use crane_model::runs::{self, Measure, Start, record_adjoint, record_gradients};
 
 use super::directions::Directions;
-use super::{Along, of_start, run_with_adjoint};
+use super::transposed::Transposed;
+use super::{Along, of_start};
 use crate::LiveCrane;
 
 /// Slopes whose errors do not shorten steps: the forward mode then takes those of the motion alone, as the adjoint mode does.
@@ -91,7 +92,12 @@ fn assert_transposed(what: &str, crane: &LiveCrane, duration: f64, moves: bool) 
     let mut asked: Vec<(usize, Measure)> = of_motion.clone().map(|column| (column, Measure::Final)).collect();
     asked.extend([(1, Measure::Integral), (n, Measure::Peak), (2 * n, Measure::Integral)]);
     asked.extend((2 * n + 1..columns).step_by(7).map(|column| (column, Measure::Maximum)));
-    let (recorded, found) = run_with_adjoint(crane, &start, &settings, &along, &asked, proceed).unwrap();
+    let mut functions = Transposed::new(crane, &along).unwrap();
+    let start_along = of_start(crane, functions.directions(), &start, &along);
+    let (probes, of_probes) = functions.directions().probes(&along, &start_along);
+    let transposed =
+        runs::Transposed { functions: &mut functions, along: &start_along, probes: (&mut Unheeded(probes), of_probes) };
+    let (recorded, found) = record_adjoint(crane, &start, &settings, transposed, &asked, proceed).unwrap();
     assert_eq!(recorded.table.rows, forward.table.rows, "{what}");
     let t: Vec<f64> = recorded.table.rows.iter().map(|row| row[0]).collect();
     let mut wrong = Vec::new();
