@@ -156,7 +156,9 @@ impl<'a, 's> Trace<'a, 's> {
         // Weights of the slope at the end of a step.
         let mut of_slope = vec![0.0; len];
         let mut ahead = by_samples.len();
-        for index in (0..kept.len()).rev() {
+        // The number does not depend on what comes after the last of these samples.
+        let last = by_samples.last().map_or(0, |(sample, _)| samples[*sample].0);
+        for index in (0..=last).rev() {
             let end = kept.get(index + 1).map_or(&*end, |next| &next.start);
             let own = &kept[index];
             if index > 0 {

@@ -37,7 +37,7 @@ use transposed::Transposed;
 /// The method that integrates derivatives along with a motion.
 pub const METHOD: Method = Method::Rosenbrock;
 
-/// Runs from `start`, as [`record`](crane_model::runs::record), with the derivatives of all columns. A pose at rest or of the guess moves
+/// Runs from `start`, as [`record`], with the derivatives of all columns. A pose at rest or of the guess moves
 /// with the parameters and inputs; one that is given does not.
 ///
 /// # Errors
