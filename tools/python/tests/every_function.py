@@ -18,6 +18,8 @@ ARRAYS = {
     "start": lambda s: s.q,
     "rates": lambda s: s.v,
     "positions": lambda s: s.q,
+    "weights": lambda s: s.v,
+    "changes": lambda s: {"q": s.v},
     "ranges": lambda s: {"main_boom_theta": s.t[0] / 16, "knuckle_theta": -s.t[1] / 8},
 }
 TIMING = {"method": None, "duration": 0.1, "output": None, "tolerance": None, "step": None, "safe_step": False, "force": False}
@@ -29,7 +31,7 @@ OTHERS = {
     "progress": None,
     "run": None,
     "format": "urdf",
-    "changes": "title: changed",
+    "function": "dynamic_residual",
     "index": 0,
     "x": [],
     "bend": 45.0,
@@ -42,7 +44,7 @@ OTHERS = {
 }
 # Functions that take one state, or none, and what else they need.
 ONE_STATE = {"simulate", "simulation", "_record", "_motions"}
-NO_STATE = {"_acting", "_changed", "frames", "_recalled", "_input_bounds", "vector_simulation", "replace", "page", "export", "picture", "_parameter_rows", "_page", "_envelope", "sensitivity", "_sensitivity"}
+NO_STATE = {"_acting", "_changed", "frames", "_recalled", "_input_bounds", "vector_simulation", "replace", "page", "export", "picture", "_parameter_rows", "_page", "_envelope", "sensitivity", "_sensitivity", "_vjp", "_jvp", "_product_shape", "_product_numbers"}
 
 
 @dataclasses.dataclass
