@@ -1,6 +1,8 @@
 //! Metadata of a crane.
 
 mod count;
+#[cfg(feature = "std")]
+mod fleet;
 mod links;
 mod loop_joint;
 mod parameter;

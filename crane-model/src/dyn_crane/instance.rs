@@ -105,8 +105,9 @@ struct System<'a, const N: usize, C: Implicit<N>> {
 }
 
 impl<const N: usize, C: Implicit<N>> DynSystem for System<'_, N, C> {
-    fn factorise(&mut self, q: &[f64], added_inertia: &[f64], base: &Matrix6<f64>) {
-        self.factors = Some(self.crane.factorise(&vector(q), &vector(added_inertia), base));
+    fn factorise(&mut self, q: &[f64], added_inertia: &[f64], base: &[f64]) {
+        let base = Matrix6::from_column_slice(base);
+        self.factors = Some(self.crane.factorise(&vector(q), &vector(added_inertia), &base));
     }
 
     fn solve(&mut self, r: &[f64], out: &mut [f64]) {

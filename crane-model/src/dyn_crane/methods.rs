@@ -31,7 +31,8 @@ macro_rules! slice_method {
     };
     (base [$($about:tt)*] $name:ident($($argument:ident),*)) => {
         $($about)*
-        fn $name(&self, $($argument: slice_argument!($argument)),*) -> Matrix6<f64>;
+        #[doc = "\n`out`: 36 numbers, column by column."]
+        fn $name(&self, $($argument: slice_argument!($argument),)* out: &mut [f64]);
     };
     ($numbers:ident [$($about:tt)*] $name:ident($($argument:ident),*)) => {
         $($about)*
@@ -75,11 +76,6 @@ macro_rules! instance_method {
     };
     (number $name:ident($($argument:ident),*)) => {
         fn $name(&self, $($argument: slice_argument!($argument)),*) -> f64 {
-            self.0.$name($(sized!($argument $argument)),*)
-        }
-    };
-    (base $name:ident($($argument:ident),*)) => {
-        fn $name(&self, $($argument: slice_argument!($argument)),*) -> Matrix6<f64> {
             self.0.$name($(sized!($argument $argument)),*)
         }
     };

@@ -29,8 +29,6 @@ mod methods;
 mod quantities;
 
 use crane_quantities::{Count, quantities};
-use nalgebra::Matrix6;
-
 pub(crate) use instance::Block;
 pub use instance::{Crane, Instance, boxed};
 pub use quantities::Energies;
@@ -78,6 +76,11 @@ pub trait DynModel: Send + Sync {
         self.description().coordinates.len()
     }
 
+    /// How many cranes it is: a [fleet](DynEnsemble::fleet) is several.
+    fn cranes(&self) -> usize {
+        1
+    }
+
     /// Positions of the drives' motions at time t, by coordinate.
     fn drive_positions_at(&self, t: f64) -> Vec<f64> {
         let mut motions = vec![[0.0; 2]; self.description().drives.len()];
@@ -110,8 +113,8 @@ pub trait DynImplicit: DynDynamics {
 
 /// Systems `(A(q) + D̂) x = r` of a crane, one after the other.
 pub trait DynSystem: Send {
-    /// Factorises `A(q) + D̂`, like [`Implicit::factorise`](crate::Implicit::factorise).
-    fn factorise(&mut self, q: &[f64], added_inertia: &[f64], base: &Matrix6<f64>);
+    /// Factorises `A(q) + D̂`, like [`Implicit::factorise`](crate::Implicit::factorise); `base` column by column.
+    fn factorise(&mut self, q: &[f64], added_inertia: &[f64], base: &[f64]);
 
     /// The solution x of the system that was factorised last; NaN before the first factorisation.
     fn solve(&mut self, r: &[f64], out: &mut [f64]);
@@ -156,6 +159,15 @@ pub trait DynEnsemble: DynDynamics {
     /// # Errors
     /// The parameters of a lane break a rule of the spec language.
     fn block(&self, parameters: &[&[f64]]) -> Result<Box<dyn DynBlock + '_>, ParameterError>;
+
+    /// A fleet: cranes that differ from this one in their parameters and inputs, as one crane. Each of its lists has the items of all, the same item of
+    /// each crane next to each other: coordinate i of crane k of m is coordinate m i + k. Its description is [`Description::of_fleet`]. Energies are
+    /// those of all; matrices over the coordinates are NaN.
+    ///
+    /// `None` if one crane after the other is not slower. The fleet may have more cranes: copies of the last one.
+    fn fleet(&self, _cranes: &[&dyn DynModel]) -> Option<Box<dyn DynCrane>> {
+        None
+    }
 }
 
 /// Several cranes that are evaluated together.

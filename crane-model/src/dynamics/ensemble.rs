@@ -1,15 +1,16 @@
-//! Many cranes at a time: the classical Runge–Kutta method over lanes, one crane per lane.
+//! Many cranes at a time, one crane per lane, with the same steps.
 //!
-//! All lanes take the same step. Lane by lane the operations are those of [`rk4`], in the same order, with the accelerations of
-//! [`LaneDynamics`] or [`DynBlock`]: a crane's motion does not depend on the other lanes.
+//! With the classical Runge–Kutta method, the operations of a lane are those of [`rk4`], in the same order, with the accelerations of
+//! [`LaneDynamics`] or [`DynBlock`]: a crane's motion does not depend on the other lanes. With adaptive methods the cranes are a
+//! [fleet](crate::dyn_crane::DynEnsemble::fleet), one crane with the coordinates of all: the crane with the largest error decides on each step.
 
 use std::convert::Infallible;
 
 use nalgebra::SVector;
 
 use super::{
-    Cause, InitialState, Method, Run, Sample, Settings, State, Statistics, Stopped, rk4, settings::divided,
-    stopped::StepContext, stops::Stops,
+    Cause, EffortAccuracy, InitialState, Method, Run, Sample, Settings, State, Statistics, Stopped, Watch,
+    integration::check_inertia, rk4, settings::divided, simulate_watched, stopped::StepContext, stops::Stops,
 };
 use crate::{
     CoordinateRole, Description, Ensemble, LaneDynamics, ParameterError,
@@ -112,6 +113,39 @@ pub fn simulate_dyn(
         results.extend(batch.run(settings, &mut |lane, sample| observe(index * lanes + lane, sample)));
     }
     Ok(results)
+}
+
+/// Runs cranes with an adaptive method as one crane, a fleet, whose steps are so short that each crane meets the tolerance. `watch` receives
+/// samples of the fleet. Returns the run of each crane, with the steps of all.
+///
+/// # Errors
+/// [`Stopped`] if one of the cranes does not reach the end.
+pub(crate) fn simulate_fleet(
+    fleet: &dyn DynCrane,
+    cranes: &[(&dyn DynCrane, InitialState)],
+    settings: &Settings,
+    watch: &mut dyn Watch,
+) -> Result<Vec<Run>, Stopped> {
+    let count = fleet.cranes();
+    let start_of = |lane: usize| &cranes[lane.min(cranes.len() - 1)].1;
+    for (crane, start) in cranes {
+        check_inertia(*crane, &start.q).map_err(|index| {
+            let description = crane.description();
+            StepContext { method: settings.method, t: 0.0, h: settings.step, q: &start.q, description }
+                .stopped(Cause::MassMatrix, index)
+        })?;
+    }
+    let joined = |of: fn(&InitialState) -> &Vec<f64>| -> Vec<f64> {
+        (0..fleet.size()).map(|place| of(start_of(place % count))[place / count]).collect()
+    };
+    let start = InitialState { q: joined(|start| &start.q), v: joined(|start| &start.v), x: Vec::new() };
+    let run = simulate_watched(fleet, &start, settings, watch)?;
+    let of_lane = |lane: usize| {
+        let own = run.efforts.iter().filter(|effort| effort.coordinate % count == lane);
+        let efforts = own.map(|effort| EffortAccuracy { coordinate: effort.coordinate / count, ..*effort }).collect();
+        Run { efforts, ..run.clone() }
+    };
+    Ok((0..cranes.len()).map(of_lane).collect())
 }
 
 /// A crane with other parameters.

@@ -269,7 +269,12 @@ fn close(crane: &dyn DynDynamics, loops: &mut Loops, q: &mut [f64], v: &mut [f64
 
 /// Checks that the mass matrix at a pose is positive definite: the O(n) recursion divides by inertias one by one and would
 /// continue with negative ones. Otherwise returns the coordinate that is the cause.
-fn check_inertia(crane: &dyn DynDynamics, q: &[f64]) -> Result<(), usize> {
+///
+/// The cranes of a fleet are checked one by one, before they are one.
+pub(super) fn check_inertia(crane: &dyn DynDynamics, q: &[f64]) -> Result<(), usize> {
+    if crane.cranes() > 1 {
+        return Ok(());
+    }
     let mut mass = DMatrix::zeros(q.len(), q.len());
     crane.mass_matrix(q, mass.as_mut_slice());
     without_inertia(&mass).map_or(Ok(()), Err)

@@ -12,8 +12,6 @@
 //! The contribution of connectors, `Σ Jᵀ (c d + c² k) J`, has low rank: [`ConnectorUpdate`]. So has that of forces with
 //! states of their own, which are eliminated: [`ForceStateUpdate`]. Loop joints are connectors without compliance: [`Loops`].
 
-use nalgebra::Matrix6;
-
 use super::{
     connector_update::{ConnectorUpdate, differs},
     force_state_update::ForceStateUpdate,
@@ -35,8 +33,7 @@ pub(super) struct System<'a> {
     joints: Vec<[f64; 2]>,
     /// Those of nonlinear laws, at the state of the factorisation and at a state compared with it.
     nonlinear: [Vec<[f64; 2]>; 2],
-    /// Stiffness and damping over the base's coordinates.
-    base: [Matrix6<f64>; 2],
+    base: Base,
     /// Whether some law acts at some states and not at others.
     switches: bool,
     /// Stiffness and damping of connectors.
@@ -73,7 +70,7 @@ impl<'a> System<'a> {
             joints: linear.clone(),
             linear,
             nonlinear: [vec![[0.0; 2]; n], vec![[0.0; 2]; n]],
-            base: [Matrix6::zeros(); 2],
+            base: Base::new(crane),
             connectors: ConnectorUpdate::new(crane),
             force_states: ForceStateUpdate::new(crane),
             of_loops: vec![0.0; loops.multipliers().len()],
@@ -113,12 +110,12 @@ impl<'a> System<'a> {
             *joint = [linear[0] + nonlinear[0], linear[1] + nonlinear[1]];
         }
         self.force_states.evaluate(self.crane, &StateAt { t, q, v, x }, c, &mut self.joints);
-        self.base = [self.crane.base_stiffness(q, v), self.crane.base_damping(q, v)];
+        let [base, _] = &mut self.base.matrices;
+        base.evaluate(self.crane, q, v);
         for (added_inertia, [stiffness, damping]) in self.added_inertia.iter_mut().zip(&self.joints) {
             *added_inertia = damping * c + stiffness * (c * c);
         }
-        let [stiffness, damping] = &self.base;
-        self.factors.factorise(q, &self.added_inertia, &(damping * c + stiffness * (c * c)));
+        self.factors.factorise(q, &self.added_inertia, self.base.added_inertia(c));
         self.connectors.factorise(self.crane, t, (q, v), c, self.factors.as_mut());
         let Self { factors, connectors, .. } = self;
         self.force_states.factorise(c, &mut |right, solution| {
@@ -153,11 +150,8 @@ impl<'a> System<'a> {
         let [before, now] = &mut self.nonlinear;
         self.crane.nonlinear_stiffness_and_damping(t, q, v, now);
         let mut of_joints = before.as_flattened().iter().zip(now.as_flattened());
-        let base = [self.crane.base_stiffness(q, v), self.crane.base_damping(q, v)];
-        let diagonal = |matrix: &Matrix6<f64>| matrix.diagonal();
-        let mut of_base = self.base.iter().zip(&base).map(|(before, now)| (diagonal(before), diagonal(now)));
         of_joints.any(|(before, now)| differs(*before, *now))
-            || of_base.any(|(before, now)| before.iter().zip(&now).any(|(before, now)| differs(*before, *now)))
+            || self.base.switched(self.crane, q, v)
             || self.connectors.switched(self.crane, t, (q, v))
     }
 
@@ -169,12 +163,9 @@ impl<'a> System<'a> {
         for (i, [stiffness, damping]) in self.joints.iter().enumerate() {
             self.right[i] = damping * g[i] + stiffness * (c * g[i] + p[i]);
         }
-        let [stiffness, damping] = &self.base;
-        for (column, (g, p)) in g.iter().zip(p).enumerate().take(6) {
-            for (row, right) in self.right.iter_mut().enumerate().take(6) {
-                *right += damping[(row, column)] * g + stiffness[(row, column)] * (c * g + p);
-            }
-        }
+        self.base.each(n, |row, column, [stiffness, damping]| {
+            self.right[row] += damping * g[column] + stiffness * (c * g[column] + p[column]);
+        });
         self.connectors.add_to((g, p), c, &mut self.right);
         let r = &rhs[2 * n..];
         self.force_states.add_to((g, p), r, c, &mut self.right);
@@ -220,14 +211,88 @@ impl<'a> System<'a> {
             g[i] += (damping + stiffness * c) * self.solution[i];
             p[i] += stiffness * self.solution[i];
         }
-        let [stiffness, damping] = &self.base;
-        for (column, (g, p)) in g.iter_mut().zip(&mut *p).enumerate().take(6) {
-            for (row, weight) in self.solution.iter().enumerate().take(6) {
-                *g += (damping[(row, column)] + stiffness[(row, column)] * c) * weight;
-                *p += stiffness[(row, column)] * weight;
-            }
-        }
+        self.base.each(n, |row, column, [stiffness, damping]| {
+            g[column] += (damping + stiffness * c) * self.solution[row];
+            p[column] += stiffness * self.solution[row];
+        });
         self.connectors.pull_back(&self.solution, c, (g, p));
         self.force_states.pull_back_right(&self.solution, c, (g, p), r);
+    }
+}
+
+/// Stiffness and damping over the base's coordinates, of each crane of a fleet.
+struct Base {
+    /// Number of cranes.
+    cranes: usize,
+    /// At the state of the factorisation and at a state compared with it.
+    matrices: [BaseMatrices; 2],
+    added_inertia: Vec<f64>,
+}
+
+/// Matrices of all cranes, column by column: the same number of each crane next to each other.
+#[derive(Clone)]
+struct BaseMatrices {
+    stiffness: Vec<f64>,
+    damping: Vec<f64>,
+}
+
+impl BaseMatrices {
+    fn evaluate(&mut self, crane: &dyn DynImplicit, q: &[f64], v: &[f64]) {
+        crane.base_stiffness(q, v, &mut self.stiffness);
+        crane.base_damping(q, v, &mut self.damping);
+    }
+}
+
+impl Base {
+    /// Coordinates of a base.
+    const SIZE: usize = 6;
+
+    fn new(crane: &dyn DynImplicit) -> Self {
+        let cranes = crane.cranes();
+        let zeros = || vec![0.0; Self::SIZE * Self::SIZE * cranes];
+        let matrices = BaseMatrices { stiffness: zeros(), damping: zeros() };
+        Self { cranes, matrices: [matrices.clone(), matrices], added_inertia: zeros() }
+    }
+
+    /// `c D̂ + c² K̂`.
+    fn added_inertia(&mut self, c: f64) -> &[f64] {
+        let [BaseMatrices { stiffness, damping }, _] = &self.matrices;
+        for ((added_inertia, stiffness), damping) in self.added_inertia.iter_mut().zip(stiffness).zip(damping) {
+            *added_inertia = damping * c + stiffness * (c * c);
+        }
+        &self.added_inertia
+    }
+
+    /// Gives `take` the rows and columns among `n` coordinates, with the stiffness and the damping there.
+    #[inline]
+    fn each(&self, n: usize, mut take: impl FnMut(usize, usize, [f64; 2])) {
+        let cranes = self.cranes;
+        let size = Self::SIZE.min(n / cranes);
+        let [BaseMatrices { stiffness, damping }, _] = &self.matrices;
+        for column in 0..size {
+            for row in 0..size {
+                let place = (Self::SIZE * column + row) * cranes;
+                let numbers = stiffness[place..place + cranes].iter().zip(&damping[place..place + cranes]);
+                for (crane, (stiffness, damping)) in numbers.enumerate() {
+                    take(row * cranes + crane, column * cranes + crane, [*stiffness, *damping]);
+                }
+            }
+        }
+    }
+
+    /// Whether a number of a diagonal at a state [differs] from that where the system was factorised.
+    fn switched(&mut self, crane: &dyn DynImplicit, q: &[f64], v: &[f64]) -> bool {
+        let [before, now] = &mut self.matrices;
+        now.evaluate(crane, q, v);
+        let diagonal = |numbers: &[f64], crane: usize| -> [f64; Self::SIZE] {
+            std::array::from_fn(|i| numbers[(Self::SIZE + 1) * i * self.cranes + crane])
+        };
+        let differ = |before: &[f64], now: &[f64]| {
+            (0..self.cranes).any(|crane| {
+                let pairs = diagonal(before, crane).into_iter().zip(diagonal(now, crane));
+                pairs.into_iter().any(|(before, now)| differs(before, now))
+            })
+        };
+        differ(&before.stiffness, &now.stiffness) || differ(&before.damping, &now.damping)
     }
 }

@@ -15,11 +15,23 @@ const LITRE_PER_MINUTE: f64 = 1e-3 / 60.0;
 const STIFFER: f64 = 2.0;
 
 /// Flow that the pump delivers to all cylinders, m³/s, and its power, W: one pump at the maximum of their supply pressures.
-pub fn pump(cylinders: &[CylinderState]) -> [f64; 2] {
-    let flow: f64 = cylinders.iter().map(|cylinder| cylinder.flow).sum();
-    let moving = cylinders.iter().filter(|cylinder| cylinder.flow > 0.0);
+pub fn pump<'c>(cylinders: impl IntoIterator<Item = &'c CylinderState> + Clone) -> [f64; 2] {
+    let flow: f64 = cylinders.clone().into_iter().map(|cylinder| cylinder.flow).sum();
+    let moving = cylinders.into_iter().filter(|cylinder| cylinder.flow > 0.0);
     let pressure = moving.map(CylinderState::supply_pressure).fold(0.0, f64::max);
     [flow, flow * pressure]
+}
+
+/// The same for the pump of each crane of a fleet.
+pub(super) fn pumps(description: &Description, cylinders: &[CylinderState]) -> impl Iterator<Item = f64> {
+    let cranes = with_cylinders(description);
+    (0..cranes).flat_map(move |crane| pump(cylinders.iter().skip(crane).step_by(cranes)))
+}
+
+/// The number of cranes that have cylinders: in a fleet, those of all cranes have the same names.
+fn with_cylinders(description: &Description) -> usize {
+    let cylinders = &description.cylinders;
+    cylinders.first().map_or(0, |first| cylinders.iter().filter(|cylinder| cylinder.name == first.name).count())
 }
 
 /// The first cylinder of a run whose linkage cannot be assembled, and when, s.
@@ -56,7 +68,7 @@ pub(super) fn add_columns(description: &Description, table: &mut Table) {
     for (name, unit) in description.cylinders.iter().flat_map(|cylinder| columns(&cylinder.name)) {
         table.add(name, unit);
     }
-    if !description.cylinders.is_empty() {
+    for _ in 0..with_cylinders(description) {
         table.add("pump_flow", "m³/s");
         table.add("pump_power", "W");
     }

@@ -25,7 +25,7 @@ pub use feet::{Lift, Pull, TipsOver, lifts, pulls, tips_over};
 pub use headlines::{Kind, headlines};
 pub use history::{Instant, instants};
 pub use peaks::Peaks;
-pub(crate) use recording::quantities_with;
+pub(crate) use recording::{FleetRecording, quantities_with};
 pub use recording::{Recording, connector_force, drive_effort, quantities, quantities_at, stop_effort, support_gap};
 pub use table::{Column, Table};
 pub use verification::Verification;

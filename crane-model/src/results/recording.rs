@@ -1,5 +1,7 @@
 //! Recording of a run in columns.
 
+use std::collections::HashMap;
+
 use crate::{
     ConnectorInfo, CoordinateKind, Description, LoopJointInfo, bristles,
     dyn_crane::{DynCrane, Energies},
@@ -75,6 +77,57 @@ impl<'a> Recording<'a> {
     }
 }
 
+/// Records the samples of a run of a fleet, for each crane what peaks and cautions need.
+pub(crate) struct FleetRecording<'a> {
+    fleet: &'a dyn DynCrane,
+    /// The crane and the column of each number of a sample.
+    places: Vec<[usize; 2]>,
+    row: Vec<f64>,
+    tables: Vec<Table>,
+}
+
+impl<'a> FleetRecording<'a> {
+    /// A recording without samples.
+    pub fn new(fleet: &'a dyn DynCrane, crane: &dyn DynCrane) -> Self {
+        let columns = quantities_of(crane.description(), &[], Extent::Peaks);
+        let tables = vec![Table { columns: columns.clone(), rows: Vec::new() }; fleet.cranes()];
+        // Columns of all cranes have the same names, those of the first crane first.
+        let mut seen: HashMap<String, usize> = HashMap::new();
+        let places =
+            quantities_of(fleet.description(), &[], Extent::Peaks).into_iter().map(|Column { name, .. }| {
+                let column = columns.iter().position(|own| own.name == name).unwrap_or_default();
+                let before = seen.entry(name).or_default();
+                *before += 1;
+                [*before - 1, column]
+            });
+        Self { fleet, places: places.collect(), row: Vec::new(), tables }
+    }
+
+    /// Adds a sample.
+    pub fn push(&mut self, sample: &Sample<'_>) {
+        let &Sample { t, q, v, x, .. } = sample;
+        let Self { fleet, places, row, tables } = self;
+        row.clear();
+        push_quantities(*fleet, Extent::Peaks, &StateAt { t, q, v, x }, &[], row);
+        for table in &mut *tables {
+            // Only the time is one for all.
+            let mut own = vec![0.0; table.columns.len()];
+            own[0] = t;
+            table.rows.push(own);
+        }
+        for (number, [crane, column]) in row.iter().zip(places) {
+            if let Some(own) = tables[*crane].rows.last_mut() {
+                own[*column] = *number;
+            }
+        }
+    }
+
+    /// The samples of each crane so far.
+    pub fn into_tables(self) -> Vec<Table> {
+        self.tables
+    }
+}
+
 /// The quantities at a state of the crane and its oil: all columns of a [`Recording`] except those of its audit, in the order of
 /// [`quantities`].
 pub fn quantities_at(crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> Vec<f64> {
@@ -116,8 +169,7 @@ fn push_quantities(
     row.extend(cylinders.iter().flat_map(cylinders::values));
     match &oil {
         Some(oil) => row.extend(oil.pump_and_spools()),
-        None if cylinders.is_empty() => (),
-        None => row.extend(cylinders::pump(&cylinders)),
+        None => row.extend(cylinders::pumps(crane.description(), &cylinders)),
     }
     if all {
         for (position, velocity) in crane.points_at(q).iter().zip(crane.point_velocities_at(q, v)) {

@@ -12,6 +12,11 @@ pub use mass_matrix::{ConcurrentAxes, MassAndBias, MassColumns};
 pub use sin_cos::{sin_cos, sin_cos_lanes};
 pub use stumpff::{next_stumpff, stumpff, stumpff_lanes};
 
+/// Numbers of sines and cosines, for code that is made at run time.
+pub mod sines {
+    pub use super::sin_cos::{COSINE, HALF_PI, LARGEST, ROUND, SINE};
+}
+
 use nalgebra::{Matrix4, SMatrix, Vector3};
 
 /// A symmetric matrix from its upper triangle: `upper[column][row]` with row ≤ column; entries below the diagonal are ignored.

@@ -10,15 +10,15 @@ use wide::{bytemuck::cast, f64x8, i64x8};
 use super::fused::fma;
 
 /// Parts of π/2: three of 33 bits, whose products with n are exact, and the rest.
-const HALF_PI: [f64; 4] =
+pub const HALF_PI: [f64; 4] =
     [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_711_166_5e-21, 8.478_427_660_368_9e-32];
 /// Up to this angle n has 20 bits.
-const LARGEST: f64 = 1_048_576.0 * core::f64::consts::FRAC_PI_2;
+pub const LARGEST: f64 = 1_048_576.0 * core::f64::consts::FRAC_PI_2;
 /// Added to a number below 2⁵¹ it rounds it to an integer, which is then in the lowest bits.
-const ROUND: f64 = 6_755_399_441_055_744.0;
+pub const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// Coefficients of `sin y = y + y³ (S₁ + S₂ y² + …)`.
-const SIN: [f64; 6] = [
+pub const SINE: [f64; 6] = [
     -1.666_666_666_666_663_2e-1,
     8.333_333_333_322_49e-3,
     -1.984_126_982_985_795e-4,
@@ -27,7 +27,7 @@ const SIN: [f64; 6] = [
     1.589_690_995_211_55e-10,
 ];
 /// Coefficients of `cos y = 1 − y²/2 + y⁴ (C₁ + C₂ y² + …)`.
-const COS: [f64; 6] = [
+pub const COSINE: [f64; 6] = [
     4.166_666_666_666_66e-2,
     -1.388_888_888_887_411e-3,
     2.480_158_728_947_673e-5,
@@ -142,9 +142,9 @@ fn reduced(x: f64x8, n: f64x8) -> (f64x8, f64x8) {
 fn sine(y: f64x8, tail: f64x8) -> f64x8 {
     let z = y * y;
     let cubed = z * y;
-    let higher = polynomial(z, [SIN[1], SIN[2], SIN[3], SIN[4], SIN[5]]);
+    let higher = polynomial(z, [SINE[1], SINE[2], SINE[3], SINE[4], SINE[5]]);
     let correction = fma(z, fma(tail, f64x8::splat(0.5), -(cubed * higher)), -tail);
-    y - fma(cubed, f64x8::splat(-SIN[0]), correction)
+    y - fma(cubed, f64x8::splat(-SINE[0]), correction)
 }
 
 /// cos(y + tail)
@@ -153,7 +153,7 @@ fn cosine(y: f64x8, tail: f64x8) -> f64x8 {
     let z = y * y;
     let half = z * 0.5;
     let leading = f64x8::splat(1.0) - half;
-    let higher = z * polynomial(z, COS);
+    let higher = z * polynomial(z, COSINE);
     leading + (((f64x8::splat(1.0) - leading) - half) + fma(z, higher, -(y * tail)))
 }
 

@@ -1,7 +1,8 @@
 //! Runs of many cranes that differ in their parameters, with any method, on several threads.
 //!
-//! With adaptive methods every crane runs separately; with [`Method::Rk4`] several run together in the lanes of
-//! [`dynamics::ensemble`]. The result of a row does not depend on the other rows or on the number of threads.
+//! Several cranes run together, with common steps, in the lanes of [`dynamics::ensemble`]: with [`Method::Rk4`], or as a fleet, if the crane has
+//! fleets. The others run separately. Results do not depend on the number of threads; those of a fleet depend on its other rows, within the
+//! tolerance.
 
 use std::{
     ops::ControlFlow,
@@ -12,9 +13,9 @@ use std::{
 use super::{self as runs, Failed, Start};
 use crate::{
     ParameterError,
-    dyn_crane::DynCrane,
-    dynamics::{self, InitialState, Method, Run, Sample, Settings, Watch, ensemble::Member},
-    results::{self, Peaks, Recording, cautions},
+    dyn_crane::{DynCrane, DynModel},
+    dynamics::{self, InitialState, Run, Sample, Settings, Watch, ensemble::Member},
+    results::{self, FleetRecording, Peaks, Recording, Table, cautions},
 };
 
 /// What distinguishes a row from the others.
@@ -106,11 +107,12 @@ pub fn run_ensemble(
     settings: &Settings,
     execution: &Execution<'_>,
 ) -> Vec<Outcome> {
-    // Lanes support neither states of forces nor different inputs nor loops.
-    let same_inputs = rows.iter().all(|row| row.inputs.is_empty());
-    let in_lanes = settings.method == Method::Rk4 && same_inputs && !crane.description().has_force_states();
-    let in_lanes = in_lanes && crane.loop_joints().is_empty();
-    let piece = if in_lanes { crane.lanes() } else { 1 };
+    let way = Way::of(crane, rows, settings);
+    let piece = match way {
+        Way::Alone => 1,
+        Way::InLanes => crane.lanes(),
+        Way::AsFleet { cranes } => cranes,
+    };
     let waiting = Mutex::new(rows.chunks(piece).enumerate());
     let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
     let finished = Mutex::new(Vec::with_capacity(rows.len()));
@@ -119,8 +121,11 @@ pub fn run_ensemble(
         while let Some((index, rows)) = next() {
             let outcomes = match rows {
                 _ if off() => rows.iter().map(|_| Outcome::without_run(Reason::Cancelled)).collect(),
-                [row] if !in_lanes => vec![alone(crane, row, settings, &off)],
-                rows => side_by_side(crane, rows, settings),
+                rows => match way {
+                    Way::Alone => rows.iter().map(|row| alone(crane, row, settings, &off)).collect(),
+                    Way::InLanes => side_by_side(crane, rows, settings),
+                    Way::AsFleet { cranes } => as_fleet(crane, (rows, cranes), settings, &off),
+                },
             };
             for (position, outcome) in outcomes.into_iter().enumerate() {
                 let row = index * piece + position;
@@ -140,6 +145,31 @@ pub fn run_ensemble(
     let mut finished = finished.into_inner().unwrap_or_else(PoisonError::into_inner);
     finished.sort_by_key(|(row, _)| *row);
     finished.into_iter().map(|(_, outcome)| outcome).collect()
+}
+
+/// How rows run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Way {
+    /// One by one.
+    Alone,
+    /// Side by side, with constant steps.
+    InLanes,
+    /// As many cranes as one, with steps that all allow.
+    AsFleet { cranes: usize },
+}
+
+impl Way {
+    /// The fastest way.
+    fn of(crane: &dyn DynCrane, rows: &[Case], settings: &Settings) -> Self {
+        if settings.method.is_adaptive() {
+            let fleet = if settings.audit { None } else { crane.fleet(&[crane]) };
+            return fleet.map_or(Way::Alone, |fleet| Way::AsFleet { cranes: fleet.cranes() });
+        }
+        // Lanes support neither states of forces nor different inputs nor loops.
+        let same_inputs = rows.iter().all(|row| row.inputs.is_empty());
+        let is_plain = !crane.description().has_force_states() && crane.loop_joints().is_empty();
+        if same_inputs && is_plain { Way::InLanes } else { Way::Alone }
+    }
 }
 
 /// The crane of a row, and the start of its run.
@@ -184,26 +214,31 @@ impl<'a> Gathering<'a> {
         if self.cancelled {
             return Outcome::without_run(Reason::Cancelled);
         }
-        let (description, table) = (self.crane.description(), self.recording.into_table());
-        let near_singular = cautions::near_singular(description, &table);
-        let tilted = cautions::large_tilt(description, &table).into_iter();
-        let unassembled = || {
-            let (cylinder, time) = results::unassembled(description, &table)?;
-            Some(runs::Reason::Unassembled { cylinder, time })
-        };
-        let failed = match run {
-            Ok(run) => unassembled().map_or(Ok(run), Err),
-            Err(stopped) => Err(runs::Reason::Stopped { stopped, near_singular: near_singular.clone(), limit: None }),
-        };
-        match failed {
-            Ok(run) => {
-                let of_run = cautions::of_run(self.crane, &table, cautions::BEND);
-                Outcome { peaks: Some(Peaks::of(description, &table)), end: self.end, cautions: of_run, run: Ok(run) }
-            }
-            Err(reason) => {
-                let run = Err(Reason::Failed(reason.of(&description.name)));
-                Outcome { peaks: None, end: self.end, cautions: tilted.collect(), run }
-            }
+        outcome_of(self.crane, &self.recording.into_table(), self.end, run)
+    }
+}
+
+/// The outcome of a run, from what was recorded of it and the motion at its end.
+fn outcome_of(crane: &dyn DynCrane, table: &Table, end: InitialState, run: Result<Run, dynamics::Stopped>) -> Outcome {
+    let description = crane.description();
+    let near_singular = cautions::near_singular(description, table);
+    let unassembled = || {
+        let (cylinder, time) = results::unassembled(description, table)?;
+        Some(runs::Reason::Unassembled { cylinder, time })
+    };
+    let failed = match run {
+        Ok(run) => unassembled().map_or(Ok(run), Err),
+        Err(stopped) => Err(runs::Reason::Stopped { stopped, near_singular, limit: None }),
+    };
+    match failed {
+        Ok(run) => {
+            let of_run = cautions::of_run(crane, table, cautions::BEND);
+            Outcome { peaks: Some(Peaks::of(description, table)), end, cautions: of_run, run: Ok(run) }
+        }
+        Err(reason) => {
+            let tilted = cautions::large_tilt(description, table).into_iter();
+            let run = Err(Reason::Failed(reason.of(&description.name)));
+            Outcome { peaks: None, end, cautions: tilted.collect(), run }
         }
     }
 }
@@ -222,13 +257,83 @@ impl Watch for Gathering<'_> {
 
 /// Runs the crane of one row.
 fn alone(crane: &dyn DynCrane, row: &Case, settings: &Settings, off: &dyn Fn() -> bool) -> Outcome {
-    let (row_crane, start) = match ready(crane, row) {
-        Ok(ready) => ready,
-        Err(reason) => return Outcome::without_run(reason),
-    };
-    let mut gathering = Gathering::new(row_crane.as_ref(), off);
-    let run = dynamics::simulate_watched(row_crane.as_ref(), &start.state(), settings, &mut gathering);
+    match ready(crane, row) {
+        Ok((crane, start)) => alone_from(crane.as_ref(), &start, settings, off),
+        Err(reason) => Outcome::without_run(reason),
+    }
+}
+
+/// Runs a crane from its start.
+fn alone_from(crane: &dyn DynCrane, start: &Start, settings: &Settings, off: &dyn Fn() -> bool) -> Outcome {
+    let mut gathering = Gathering::new(crane, off);
+    let run = dynamics::simulate_watched(crane, &start.state(), settings, &mut gathering);
     gathering.finish(run)
+}
+
+/// The record of a run of a fleet in progress.
+struct OfFleet<'a> {
+    recording: FleetRecording<'a>,
+    /// Poses and rates of all cranes.
+    end: [Vec<f64>; 2],
+    off: &'a dyn Fn() -> bool,
+    cancelled: bool,
+}
+
+impl Watch for OfFleet<'_> {
+    fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
+        self.recording.push(sample);
+        self.end = [sample.q.to_vec(), sample.v.to_vec()];
+        ControlFlow::Continue(())
+    }
+
+    fn step(&mut self, _: f64) -> ControlFlow<()> {
+        self.cancelled = (self.off)();
+        if self.cancelled { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+impl OfFleet<'_> {
+    /// The outcome of each crane.
+    fn finish(self, cranes: &[(&dyn DynCrane, InitialState)], runs: Vec<Run>) -> Vec<Outcome> {
+        let Self { recording, end: [q, v], cancelled, .. } = self;
+        let tables = recording.into_tables();
+        let count = tables.len();
+        let of_crane = |lane: usize, ((table, run), (crane, _)): ((&Table, Run), &(&dyn DynCrane, InitialState))| {
+            let own = |all: &[f64]| all.iter().skip(lane).step_by(count).copied().collect();
+            outcome_of(*crane, table, InitialState { q: own(&q), v: own(&v), x: Vec::new() }, Ok(run))
+        };
+        let each = tables.iter().zip(runs).zip(cranes).enumerate();
+        each.map(|(lane, of)| if cancelled { Outcome::without_run(Reason::Cancelled) } else { of_crane(lane, of) })
+            .collect()
+    }
+}
+
+/// Runs the cranes of some rows as a fleet, if they fill more than half of it and all of them reach the end; otherwise one by one.
+fn as_fleet(
+    crane: &dyn DynCrane,
+    (rows, cranes): (&[Case], usize),
+    settings: &Settings,
+    off: &dyn Fn() -> bool,
+) -> Vec<Outcome> {
+    let ready: Vec<_> = rows.iter().map(|row| ready(crane, row)).collect();
+    let members: Vec<_> = ready.iter().flatten().map(|(crane, start)| (crane.as_ref(), start.state())).collect();
+    let models: Vec<&dyn DynModel> = members.iter().map(|(crane, _)| *crane as &dyn DynModel).collect();
+    let fleet = if 2 * members.len() > cranes { crane.fleet(&models) } else { None };
+    let together = fleet.and_then(|fleet| {
+        let recording = FleetRecording::new(fleet.as_ref(), crane);
+        let mut records = OfFleet { recording, end: Default::default(), off, cancelled: false };
+        let runs = dynamics::ensemble::simulate_fleet(fleet.as_ref(), &members, settings, &mut records).ok()?;
+        Some(records.finish(&members, runs))
+    });
+    let mut together = together.map(Vec::into_iter);
+    let outcome = |ready: &Result<(Box<dyn DynCrane>, Start), Reason>| match ready {
+        Err(reason) => Outcome::without_run(reason.clone()),
+        Ok((crane, start)) => {
+            let of_fleet = together.as_mut().and_then(Iterator::next);
+            of_fleet.unwrap_or_else(|| alone_from(crane.as_ref(), start, settings, off))
+        }
+    };
+    ready.iter().map(outcome).collect()
 }
 
 /// Runs the cranes of some rows together, except those that cannot start.

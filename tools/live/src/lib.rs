@@ -42,6 +42,7 @@ mod refusal;
 mod routine;
 pub mod rows;
 pub mod sensitivity;
+mod sines;
 mod steered;
 mod tangent;
 

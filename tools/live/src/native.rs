@@ -11,13 +11,14 @@ use crane_model::rt::sin_cos;
 use crate::bytecode::{Code, Fixed, Instruction, Kind};
 use crate::dual::eight_orders;
 use crate::machine::{ANGLES, Arguments, Form, Machine, Number};
+use crate::sines::{MOST, with_sines};
 use crate::tangent::tangent;
 
 /// After as many calls of interpreted bytecode as machine code saves the time that it took to make it, about 1 µs per operation.
 const CALLS: u32 = 500;
 
 /// How products and sums round in this build, in which bytecode and machine code agree.
-const ROUNDING: Rounding =
+pub const ROUNDING: Rounding =
     if cfg!(any(target_feature = "fma", target_arch = "aarch64")) { Rounding::Fused } else { Rounding::Separate };
 
 /// The machine code of a function, from some call on.
@@ -55,7 +56,7 @@ impl Hot {
 #[derive(Debug)]
 pub struct Native {
     code: MachineCode,
-    /// What is computed in each pause.
+    /// What is computed in each pause; after them there may be one that checks angles.
     pauses: Vec<Kind>,
     /// The number of places of fixed numbers, and the number of all given ones.
     given: [usize; 2],
@@ -68,10 +69,13 @@ impl Native {
     fn of(code: &Code, form: Form) -> Option<Self> {
         let (line, pauses) = line(code);
         let given = [code.fixed.len(), line.given.len()];
-        let (line, width) = match form {
-            Form::One => (line, Width::One),
-            Form::Eight => (line, Width::Eight),
-            Form::Slopes => (tangent(&line, &pauses), Width::Eight),
+        let (line, pauses, width) = match form {
+            Form::One => (line, pauses, Width::One),
+            Form::Eight => {
+                let (line, pauses) = with_sines(&line, &pauses);
+                (line, pauses, Width::Eight)
+            }
+            Form::Slopes => (tangent(&line, &pauses), pauses, Width::Eight),
         };
         let numbers = line.given.iter().enumerate().skip(given[1]);
         let numbers = numbers.filter_map(|(place, number)| Some((place, (*number)?))).collect();
@@ -91,26 +95,39 @@ impl Native {
     /// A frame with these fixed numbers.
     fn frame<T: Number>(&self, fixed: &[T]) -> Vec<T> {
         let [fixed_places, given] = self.given;
-        let mut frame = vec![T::splat(0.0); self.code.places().max(given)];
+        let mut frame = vec![T::splat(0.0); self.code.places().max(given + self.numbers.len())];
         frame.iter_mut().zip(fixed).take(fixed_places).for_each(|(place, number)| *place = *number);
-        self.code.numbers().for_each(|(place, number)| frame[place] = T::splat(number));
+        let known = self.numbers.iter().copied().chain(self.code.numbers());
+        known.for_each(|(place, number)| frame[place] = T::splat(number));
         frame
     }
 
-    /// Runs it on a machine of its bytecode; there is room for all results.
-    pub fn run<T: Number>(&self, code: &Code, machine: &mut Machine<T>, arguments: &Arguments<'_, T>, out: &mut [T]) {
+    /// Runs it on a machine of its bytecode; there is room for all results. Returns whether they count: the sines of large angles are not in the code.
+    pub fn run<T: Number>(
+        &self,
+        code: &Code,
+        machine: &mut Machine<T>,
+        arguments: &Arguments<'_, T>,
+        out: &mut [T],
+    ) -> bool {
         if T::FORM == Form::Slopes {
             self.run_with_slopes(code, machine, arguments, out);
-            return;
+            return true;
         }
         let frame = machine.frame(|fixed| self.frame(fixed));
         arguments.write(code, frame);
         for part in 0..self.code.parts() {
             self.code.run(part, T::flat(frame), T::flat(out));
-            if let (Some(pause), Some(kind)) = (self.code.pause(part), self.pauses.get(part)) {
-                compute(*kind, pause, frame);
+            match (self.code.pause(part), self.pauses.get(part)) {
+                (Some(pause), Some(kind)) => compute(*kind, pause, frame),
+                (Some(Pause { arguments, .. }), None) => {
+                    let squares = T::flat(&mut frame[arguments..=arguments]);
+                    return squares.iter().all(|square| *square <= MOST);
+                }
+                (None, _) => {}
             }
         }
+        true
     }
 }
 

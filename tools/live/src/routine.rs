@@ -75,9 +75,9 @@ impl Routine {
 
     /// Runs it on a machine that it made: from some hundred calls on as machine code, with the same results.
     pub fn run<T: Number>(&self, machine: &mut Machine<T>, arguments: &Arguments<'_, T>, out: &mut [T]) {
-        match self.hot::<T>().called(&self.code, T::FORM) {
-            Some(native) if out.len() >= native.results() => native.run(&self.code, machine, arguments, out),
-            _ => machine.run(&self.code, arguments, out),
+        let native = self.hot::<T>().called(&self.code, T::FORM).filter(|native| out.len() >= native.results());
+        if !native.is_some_and(|native| native.run(&self.code, machine, arguments, out)) {
+            machine.run(&self.code, arguments, out);
         }
     }
 

@@ -38,7 +38,7 @@ fn a_second_call_allocates_nothing() {
     let lanes = |x: &[f64]| -> Vec<f64x8> { x.iter().map(|x| f64x8::splat(*x)).collect() };
     let (q8, v8, mut out8) = (lanes(&q), lanes(&v), lanes(&out));
     let mut calls = || {
-        system.factorise(&q, &v, &Matrix6::identity());
+        system.factorise(&q, &v, Matrix6::identity().as_slice());
         system.solve(&v, &mut out);
         block.forward_dynamics(0.1, &q8, &v8, &mut out8);
     };

@@ -61,7 +61,7 @@ fn everything(crane: &dyn DynCrane) -> Vec<(&'static str, Vec<f64>)> {
     let [mut mass, mut stiffness, mut damping] = [f64::NAN; 3].map(|number| vec![number; n * n]);
     crane.linearise(&q, &mut mass, &mut stiffness, &mut damping);
     let (mut system, mut solution) = (crane.system(), vec![f64::NAN; n]);
-    system.factorise(&q, &vec![3.0; n], &Matrix6::from_diagonal_element(5.0));
+    system.factorise(&q, &vec![3.0; n], Matrix6::from_diagonal_element(5.0).as_slice());
     system.solve(&r, &mut solution);
     all.extend([
         ("prescribed motions", prescribed(crane)),

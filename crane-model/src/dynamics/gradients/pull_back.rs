@@ -9,7 +9,7 @@
 //!
 //! take one solution, however many numbers there are.
 
-use nalgebra::{DMatrix, Matrix6};
+use nalgebra::DMatrix;
 
 use super::{
     At, Covector, CylinderSlopes, PullBacks,
@@ -44,7 +44,7 @@ impl Rates<'_> {
         for (j, drive) in self.prescribed.iter().zip(&self.drives) {
             of_drives[*drive] += std::mem::take(&mut right[*j]);
         }
-        self.system.factorise(q, &self.zeros, &Matrix6::zeros());
+        self.system.factorise(q, &self.zeros, &[0.0; 36]);
         let mut forces = vec![0.0; n];
         self.system.solve(&right, &mut forces);
         if !self.prescribed.is_empty() {

@@ -1,6 +1,6 @@
 //! The rates of a motion, and their derivatives along directions.
 
-use nalgebra::{DMatrix, Matrix6};
+use nalgebra::DMatrix;
 
 use super::{At, CylinderSlopes, Slopes};
 use crate::{
@@ -94,7 +94,7 @@ impl<'a> Rates<'a> {
         if !self.loops.is_empty() {
             slopes.loops(&at, along, &mut self.of_loops);
         }
-        self.system.factorise(q, &self.zeros, &Matrix6::zeros());
+        self.system.factorise(q, &self.zeros, &[0.0; 36]);
         let mass = (!self.prescribed.is_empty()).then(|| {
             let mut mass = DMatrix::zeros(n, n);
             self.crane.mass_matrix(q, mass.as_mut_slice());

@@ -32,11 +32,6 @@ macro_rules! method {
             self.scalar(FunctionId::$id, &Arguments { $($argument,)* ..Arguments::none() })
         }
     };
-    (base $id:ident $name:ident($($argument:ident),*)) => {
-        fn $name(&self, $($argument: slice_argument!($argument)),*) -> Matrix6<f64> {
-            self.over_the_base(FunctionId::$id, &Arguments { $($argument,)* ..Arguments::none() })
-        }
-    };
     ($numbers:ident $id:ident $name:ident($($argument:ident),*)) => {
         fn $name(&self, $($argument: slice_argument!($argument),)* out: &mut [f64]) {
             self.numbers(FunctionId::$id, &Arguments { $($argument,)* ..Arguments::none() }, out);

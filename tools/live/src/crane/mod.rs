@@ -1,6 +1,7 @@
 //! A crane from a chain that implements the traits of all algorithms.
 
 mod analyses;
+mod fleet;
 mod methods;
 mod model;
 mod systems;
@@ -12,7 +13,7 @@ use crane_codegen::chain::{Chain, Input};
 use crane_codegen::program::{FunctionId, Shape};
 use crane_codegen::{Diagnostics, SourceFile, compile};
 use crane_model::dyn_crane::{DynCrane, DynModel};
-use crane_model::nalgebra::{Matrix4, Matrix6};
+use crane_model::nalgebra::Matrix4;
 use crane_model::rt::derivatives::Link;
 use crane_model::{Description, Entry, LoopJointInfo, ParameterError, StageInfo, fill_links};
 
@@ -220,10 +221,6 @@ impl LiveCrane {
             }
             _ => copy_entries(results, out),
         });
-    }
-
-    fn over_the_base(&self, id: FunctionId, arguments: &Arguments<'_, f64>) -> Matrix6<f64> {
-        self.call(id, arguments, |_, results| Matrix6::from_column_slice(results)).unwrap_or_default()
     }
 }
 

@@ -1,12 +1,12 @@
 //! Computations that keep numbers between calls: linear systems of implicit steps, and eight cranes at a time.
 
 use crane_codegen::program::FunctionId;
-use crane_model::dyn_crane::{DynBlock, DynEnsemble, DynImplicit, DynSystem};
-use crane_model::nalgebra::Matrix6;
+use crane_model::dyn_crane::{DynBlock, DynCrane, DynEnsemble, DynImplicit, DynModel, DynSystem};
 use crane_model::rt::lanes::f64x8;
 use crane_model::{ParameterError, entry_type, slice_argument};
 use crane_quantities::quantities;
 
+use super::fleet::Fleet;
 use super::methods::{method, methods};
 use super::{LiveCrane, at};
 use crate::machine::{Arguments, Machine};
@@ -40,9 +40,9 @@ struct System<'a> {
 }
 
 impl DynSystem for System<'_> {
-    fn factorise(&mut self, q: &[f64], added_inertia: &[f64], base: &Matrix6<f64>) {
+    fn factorise(&mut self, q: &[f64], added_inertia: &[f64], base: &[f64]) {
         if let Some((routine, machine)) = &mut self.factorise {
-            let arguments = Arguments { added_inertia, base: base.as_slice(), ..at(q) };
+            let arguments = Arguments { added_inertia, base, ..at(q) };
             routine.run(machine, &arguments, &mut self.factors);
         }
     }
@@ -55,6 +55,11 @@ impl DynSystem for System<'_> {
 }
 
 impl DynEnsemble for LiveCrane {
+    fn fleet(&self, cranes: &[&dyn DynModel]) -> Option<Box<dyn DynCrane>> {
+        let has_fleets = self.description.has_fleets() && self.loop_joints.is_empty() && !cranes.is_empty();
+        has_fleets.then(|| -> Box<dyn DynCrane> { Box::new(Fleet::new(self, cranes)) })
+    }
+
     fn block(&self, parameters: &[&[f64]]) -> Result<Box<dyn DynBlock + '_>, ParameterError> {
         let lanes = parameters.iter().map(|values| self.with_first(values)).collect::<Result<Vec<_>, _>>()?;
         // Unused lanes are copies of this crane.

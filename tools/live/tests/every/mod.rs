@@ -24,11 +24,6 @@ macro_rules! call {
         $run(FunctionId::$id, &mut || number = $crane.$name($($argument),*));
         $take(FunctionId::$id, vec![number]);
     };
-    (base $crane:ident $run:ident $take:ident $id:ident $name:ident($($argument:expr),*)) => {
-        let mut matrix = None;
-        $run(FunctionId::$id, &mut || matrix = Some($crane.$name($($argument),*)));
-        $take(FunctionId::$id, matrix.iter().flatten().copied().collect());
-    };
     ($list:tt $crane:ident $run:ident $take:ident $id:ident $name:ident($($argument:expr),*)) => {
         let mut list = list($crane, FunctionId::$id);
         $run(FunctionId::$id, &mut || $crane.$name($($argument,)* &mut list));

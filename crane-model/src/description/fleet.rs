@@ -1,0 +1,56 @@
+//! Several cranes as one.
+
+use super::{
+    BodyInfo, CoordinateInfo, CylinderInfo, Description, DriveInfo, InputInfo, List, LoadInfo, ParameterInfo,
+    SectionInfo, SupportInfo, Text,
+};
+
+impl Description {
+    /// Whether several cranes can be one: no force couples coordinates apart from those of the base or has states.
+    pub fn has_fleets(&self) -> bool {
+        !self.has_force_states() && self.connectors.is_empty()
+    }
+
+    /// The description of several cranes as one: every list has each of its items once for each crane, next to each other and with the same name.
+    #[must_use]
+    pub fn of_fleet(&self, cranes: usize) -> Self {
+        let joined = |index: usize, crane: usize| index * cranes + crane;
+        let indices = |list: &List<usize>| repeat(list, cranes, |index, crane| *index = joined(*index, crane));
+        Self {
+            parameters: repeat(&self.parameters, cranes, |_: &mut ParameterInfo, _| {}),
+            coordinates: repeat(&self.coordinates, cranes, |_: &mut CoordinateInfo, _| {}),
+            bodies: repeat(&self.bodies, cranes, |body: &mut BodyInfo, _| body.degrees_of_freedom *= cranes),
+            sections: repeat(&self.sections, cranes, |section: &mut SectionInfo, crane| {
+                section.body = joined(section.body, crane);
+            }),
+            supports: repeat(&self.supports, cranes, |_: &mut SupportInfo, _| {}),
+            drives: repeat(&self.drives, cranes, |drive: &mut DriveInfo, crane| {
+                drive.coordinate = joined(drive.coordinate, crane);
+            }),
+            stops: indices(&self.stops),
+            frictions: indices(&self.frictions),
+            loads: repeat(&self.loads, cranes, |_: &mut LoadInfo, _| {}),
+            inputs: repeat(&self.inputs, cranes, |_: &mut InputInfo, _| {}),
+            cylinders: repeat(&self.cylinders, cranes, |cylinder: &mut CylinderInfo, crane| {
+                cylinder.drive = joined(cylinder.drive, crane);
+                cylinder.spanned = cylinder.spanned.map(|coordinate| coordinate * cranes);
+            }),
+            points: repeat(&self.points, cranes, |_: &mut Text, _| {}),
+            guess: repeat(&self.guess, cranes, |_: &mut f64, _| {}),
+            ..self.clone()
+        }
+    }
+}
+
+/// A list in which each item is repeated, and changed for each crane.
+fn repeat<T: Clone>(list: &List<T>, cranes: usize, change: impl Fn(&mut T, usize)) -> List<T> {
+    let change = &change;
+    let each = list.iter().flat_map(|item| {
+        (0..cranes).map(move |crane| {
+            let mut item = item.clone();
+            change(&mut item, crane);
+            item
+        })
+    });
+    each.collect()
+}

@@ -1,0 +1,200 @@
+//! Eight cranes as one against the same cranes one by one: every function, and runs.
+
+mod every;
+
+use crane_codegen::build;
+use crane_codegen::program::{Count, Extent, FunctionId, Item};
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::{DynCrane, DynEnsemble, DynModel};
+use crane_model::dynamics::{Method, Settings};
+use crane_model::results::Peaks;
+use crane_model::runs::ensemble::{Case, Execution, Outcome, run_ensemble};
+use every::{At, call_every};
+
+const CRANES: usize = 8;
+/// Shipped cranes that have fleets.
+const SHIPPED: [&str; 7] = [
+    "cantilever",
+    "double_pendulum",
+    "eight_link_flexible",
+    "eight_link_rigid",
+    "eight_link_two_flexible",
+    "knuckle_boom",
+    "loader_tipping",
+];
+
+fn shipped(name: &str) -> LiveCrane {
+    let path = format!("{}/../../specs/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
+    let source = build::open(path.as_ref()).unwrap_or_else(|failure| panic!("{failure}"));
+    LiveCrane::from_spec(&source).unwrap()
+}
+
+/// Parameters of the cranes of a fleet: those of the spec, some of them changed by some per cent.
+fn parameters(crane: &LiveCrane, lane: usize) -> Vec<f64> {
+    let mut parameters = crane.parameters().to_vec();
+    for (index, info) in crane.description().parameters.iter().enumerate() {
+        let before = parameters[index];
+        parameters[index] = info.default * (1.0 + 0.004 * (lane as f64 - 3.0));
+        if crane.check(&parameters).is_err() {
+            parameters[index] = before;
+        }
+    }
+    parameters
+}
+
+fn members(crane: &LiveCrane) -> Vec<LiveCrane> {
+    let member = |lane: usize| {
+        let mut member = crane.clone();
+        member.set_parameters(&parameters(crane, lane)).unwrap();
+        if !crane.description().inputs.is_empty() && lane.is_multiple_of(2) {
+            member.set_input(0, Some(0.01 * lane as f64));
+        }
+        member
+    };
+    (0..CRANES).map(member).collect()
+}
+
+/// Numbers of cranes, one after the other, as those of a fleet: of parts with some items each, which have some numbers.
+fn joined(each: &[Vec<f64>], parts: &[usize], len: usize) -> Vec<f64> {
+    let mut first = 0;
+    let mut all = Vec::new();
+    for part in parts {
+        let own = first * len..(first + part) * len;
+        each.iter().for_each(|numbers| all.extend_from_slice(&numbers[own.clone()]));
+        first += part;
+    }
+    all
+}
+
+/// How many numbers each item of a list has.
+fn length(item: Item) -> usize {
+    match item {
+        Item::Row => 1,
+        Item::Pair => 2,
+        Item::Vector | Item::Tension => 3,
+        Item::Wrench => 6,
+        Item::Moduli => 8,
+        Item::Transform => 16,
+    }
+}
+
+/// Every number and list of a crane at a state.
+fn everything(crane: &dyn DynCrane, (q, v): (&[f64], &[f64])) -> Vec<(FunctionId, Vec<f64>)> {
+    let r: Vec<f64> = v.iter().map(|v| 100.0 * v).collect();
+    let at = At { t: 0.7, q, v, a: &r, r: &r, positions: q };
+    let mut all = Vec::new();
+    call_every(crane, at, &mut |_, call| call(), &mut |id, numbers| all.push((id, numbers)));
+    all
+}
+
+#[test]
+fn the_lists_of_a_fleet_are_those_of_its_cranes() {
+    for name in SHIPPED {
+        let crane = shipped(name);
+        let members = members(&crane);
+        let models: Vec<&dyn DynModel> = members.iter().map(|member| member as &dyn DynModel).collect();
+        let fleet = crane.fleet(&models).unwrap_or_else(|| panic!("{name} has fleets"));
+        let n = crane.size();
+        let wave = |lane: usize, scale: f64| move |i: usize| scale * (1.3 * (i + 3 * lane) as f64 + 1.0).sin();
+        let state = |lane: usize| {
+            let q: Vec<f64> =
+                crane.description().guess.iter().zip((0..n).map(wave(lane, 0.03))).map(|(q, d)| q + d).collect();
+            (q, (0..n).map(wave(lane, 0.4)).collect::<Vec<_>>())
+        };
+        let each: Vec<_> = members.iter().enumerate().map(|(lane, member)| (member, state(lane))).collect();
+        let states: [Vec<_>; 2] =
+            [each.iter().map(|(_, (q, _))| q.clone()).collect(), each.iter().map(|(_, (_, v))| v.clone()).collect()];
+        let ones = vec![1; n];
+        let [q, v] = states.map(|each| joined(&each, &ones, 1));
+        let of_members: Vec<_> = each.iter().map(|(member, (q, v))| everything(*member, (q, v))).collect();
+        for (at, (id, numbers)) in everything(fleet.as_ref(), (&q, &v)).into_iter().enumerate() {
+            let each: Vec<Vec<f64>> = of_members.iter().map(|all| all[at].1.clone()).collect();
+            let expected = match id.extent() {
+                Extent::Number => vec![each.iter().flatten().sum()],
+                Extent::Vector => joined(&each, &ones, 1),
+                Extent::List(item, count) if item != Item::Row => {
+                    let len = length(item);
+                    let parts = match count {
+                        Count::DrivePieces => crane.description().drives.iter().map(|drive| drive.pieces).collect(),
+                        Count::LoadPieces => crane.description().loads.iter().map(|load| load.pieces).collect(),
+                        _ => vec![1; each[0].len() / len],
+                    };
+                    joined(&each, &parts, len)
+                }
+                _ => continue,
+            };
+            assert_eq!(numbers.len(), expected.len(), "{name}, {}", id.name());
+            let largest = expected.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+            for (number, expected) in numbers.iter().zip(&expected) {
+                // The sum of energies is rounded, all else has the bits of a single crane.
+                let allowed = if id.extent() == Extent::Number { 1e-14 * largest } else { 0.0 };
+                let equal = (number - expected).abs() <= allowed || number.is_nan() && expected.is_nan();
+                assert!(equal, "{name}, {}: {number} of a fleet, {expected} of a crane", id.name());
+            }
+        }
+    }
+}
+
+/// Runs rows, in as many pieces as given.
+fn runs(crane: &LiveCrane, rows: &[Case], piece: usize, settings: &Settings) -> Vec<Outcome> {
+    let execution = Execution { threads: 1, done: &|_, _| {}, cancelled: &|_| false };
+    rows.chunks(piece).flat_map(|rows| run_ensemble(crane, rows, settings, &execution)).collect()
+}
+
+#[test]
+fn the_runs_of_a_fleet_are_those_of_its_cranes() {
+    for name in SHIPPED {
+        let crane = shipped(name);
+        for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince] {
+            let tolerance = 1e-7;
+            let settings =
+                Settings { method, duration: 1.5, tolerance, audit: false, ..Settings::of(crane.description()) };
+            let input = |lane: usize| {
+                crane
+                    .description()
+                    .inputs
+                    .iter()
+                    .map(|_| (lane.is_multiple_of(2)).then_some(0.01 * lane as f64))
+                    .collect()
+            };
+            let case = |lane: usize| Case { inputs: input(lane), ..parameters(&crane, lane).into() };
+            let rows: Vec<Case> = (0..CRANES).map(case).collect();
+            let (together, alone) = (runs(&crane, &rows, CRANES, &settings), runs(&crane, &rows, 1, &settings));
+            let steps = |outcomes: &[Outcome]| {
+                outcomes.iter().map(|row| row.run.as_ref().map_or(0, |run| run.statistics.steps)).collect::<Vec<_>>()
+            };
+            println!("{name}, {method:?}: {:?} {:?}", steps(&together), steps(&alone));
+            assert!(
+                steps(&together).iter().all(|count| *count == steps(&together)[0]),
+                "{name}: all have the same steps"
+            );
+            for (lane, (together, alone)) in together.iter().zip(&alone).enumerate() {
+                for (of, [together, alone]) in
+                    [("pose", [&together.end.q, &alone.end.q]), ("rates", [&together.end.v, &alone.end.v])]
+                {
+                    for (i, (together, alone)) in together.iter().zip(alone).enumerate() {
+                        let error = (together - alone).abs() / (1.0 + alone.abs());
+                        assert!(
+                            error < 1e3 * tolerance,
+                            "{name}, {method:?}, crane {lane}, {of} {i}: {together} in a fleet, {alone} alone"
+                        );
+                    }
+                }
+                assert_eq!(together.cautions, alone.cautions, "{name}, {method:?}, crane {lane}");
+                let values = |outcome: &Outcome| {
+                    outcome.peaks.as_ref().expect("it reaches the end").values().collect::<Vec<_>>()
+                };
+                let columns = Peaks::columns(crane.description());
+                for (column, (together, alone)) in columns.iter().zip(values(together).into_iter().zip(values(alone))) {
+                    // Which of two equal peaks is the larger is rounding.
+                    let error = (together - alone).abs() / (1.0 + alone.abs());
+                    let is_time = column.name.ends_with("_time");
+                    assert!(
+                        is_time || error < 1e-4,
+                        "{name}, {method:?}, crane {lane}, {column}: {together} in a fleet, {alone} alone"
+                    );
+                }
+            }
+        }
+    }
+}
