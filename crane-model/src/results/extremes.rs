@@ -26,6 +26,24 @@ impl Extremes {
         found
     }
 
+    /// Extremes of several columns, in one pass.
+    pub(super) fn of_all<'n>(table: &Table, names: impl Iterator<Item = &'n str>) -> Vec<Self> {
+        let Some((first, rest)) = table.rows.split_first() else { return names.map(|_| Self::default()).collect() };
+        let place = |name: &str| table.columns.iter().position(|column| column.name == name);
+        let places: Vec<Option<usize>> = names.map(place).collect();
+        let begin =
+            |place: &Option<usize>| place.map_or_else(Self::default, |column| Self::at(first[0], first[column]));
+        let mut found: Vec<Self> = places.iter().map(begin).collect();
+        for row in rest {
+            for (found, place) in found.iter_mut().zip(&places) {
+                if let Some(column) = place {
+                    found.widen(row[0], row[*column]);
+                }
+            }
+        }
+        found
+    }
+
     /// The largest absolute value.
     pub fn size(&self) -> f64 {
         self.minimum.abs().max(self.maximum.abs())

@@ -33,7 +33,7 @@ impl Peaks {
     pub(crate) fn of(description: &Description, table: &Table) -> Self {
         let last = |name: &str| table.values(name).and_then(Iterator::last).unwrap_or(f64::NAN);
         Self {
-            extremes: tracked(description).iter().map(|column| Extremes::of(table, &column.name)).collect(),
+            extremes: Extremes::of_all(table, tracked(description).iter().map(|column| column.name.as_str())),
             last: places(description).map(|point| last(&point)).collect(),
         }
     }

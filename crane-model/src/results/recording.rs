@@ -109,16 +109,14 @@ impl<'a> FleetRecording<'a> {
         let Self { fleet, places, row, tables } = self;
         row.clear();
         push_quantities(*fleet, Extent::Peaks, &StateAt { t, q, v, x }, &[], row);
-        for table in &mut *tables {
+        let mut rows: Vec<Vec<f64>> = tables.iter().map(|table| vec![0.0; table.columns.len()]).collect();
+        for (number, [crane, column]) in row.iter().zip(places) {
+            rows[*crane][*column] = *number;
+        }
+        for (table, mut own) in tables.iter_mut().zip(rows) {
             // Only the time is one for all.
-            let mut own = vec![0.0; table.columns.len()];
             own[0] = t;
             table.rows.push(own);
-        }
-        for (number, [crane, column]) in row.iter().zip(places) {
-            if let Some(own) = tables[*crane].rows.last_mut() {
-                own[*column] = *number;
-            }
         }
     }
 

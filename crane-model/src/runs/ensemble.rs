@@ -221,14 +221,16 @@ impl<'a> Gathering<'a> {
 /// The outcome of a run, from what was recorded of it and the motion at its end.
 fn outcome_of(crane: &dyn DynCrane, table: &Table, end: InitialState, run: Result<Run, dynamics::Stopped>) -> Outcome {
     let description = crane.description();
-    let near_singular = cautions::near_singular(description, table);
     let unassembled = || {
         let (cylinder, time) = results::unassembled(description, table)?;
         Some(runs::Reason::Unassembled { cylinder, time })
     };
     let failed = match run {
         Ok(run) => unassembled().map_or(Ok(run), Err),
-        Err(stopped) => Err(runs::Reason::Stopped { stopped, near_singular, limit: None }),
+        Err(stopped) => {
+            let near_singular = cautions::near_singular(description, table);
+            Err(runs::Reason::Stopped { stopped, near_singular, limit: None })
+        }
     };
     match failed {
         Ok(run) => {

@@ -6,7 +6,7 @@ use crate::crane::{Case, with_features};
 use crate::feature::Features;
 use crate::observe::{differences, observe};
 use crate::tree::{Tree, source, text};
-use crate::{changes, descriptions, laws, meshes, run_changes};
+use crate::{changes, descriptions, fleets, laws, meshes, run_changes};
 
 /// A check that failed.
 #[derive(Clone, Debug)]
@@ -38,7 +38,7 @@ pub fn names() -> Vec<&'static str> {
     let described = descriptions::ALL.iter().map(|(name, _)| *name);
     described
         .chain(laws::ALL.iter().map(|(name, _)| *name))
-        .chain([meshes::NAME, changes::NAME, run_changes::NAME])
+        .chain([meshes::NAME, changes::NAME, run_changes::NAME, fleets::NAME])
         .collect()
 }
 
@@ -58,6 +58,9 @@ fn apply(check: &str, tree: &Tree, seed: u64, run: bool) -> Option<Vec<String>> 
     }
     if check == run_changes::NAME {
         return run_changes::check_run_changes(tree, seed);
+    }
+    if check == fleets::NAME {
+        return fleets::check_fleets(tree, seed);
     }
     if check == meshes::NAME {
         return meshes::check_meshes(tree);

@@ -12,6 +12,7 @@ pub mod crane;
 pub mod cuts;
 pub mod descriptions;
 pub mod feature;
+mod fleets;
 pub mod laws;
 pub mod meshes;
 pub mod observe;

@@ -1,7 +1,7 @@
 //! A line as machine code.
 
 use crate::allocate::{Allocated, Processor, allocate};
-use crate::line::{Line, Rounding, Width};
+use crate::line::{Lanes, Line, Rounding, Width};
 use crate::memory::Functions;
 use crate::operations::Operations;
 use crate::places::Pause;
@@ -16,7 +16,6 @@ pub struct Code {
     pauses: Vec<Option<Pause>>,
     /// Places of numbers that the code needs.
     numbers: Vec<(usize, f64)>,
-    width: Width,
 }
 
 impl Code {
@@ -27,10 +26,23 @@ impl Code {
     /// If a step reads a value that is not made before it.
     #[must_use]
     pub fn of(line: &Line, rounding: Rounding, width: Width) -> Option<Self> {
-        let processor = processor(rounding, width)?;
+        processors(rounding, width).next().and_then(|processor| Self::on(line, rounding, width, processor))
+    }
+
+    /// The machine code of a line with each set of instructions that this processor has, the widest first.
+    ///
+    /// # Panics
+    /// As [`of`](Self::of).
+    #[must_use]
+    pub fn each(line: &Line, rounding: Rounding, width: Width) -> Vec<Self> {
+        processors(rounding, width).filter_map(|processor| Self::on(line, rounding, width, processor)).collect()
+    }
+
+    fn on(line: &Line, rounding: Rounding, width: Width, (processor, lanes): (Processor, Lanes)) -> Option<Self> {
         let Allocated { parts, numbers } = allocate(Operations::of(line, rounding), processor);
-        let functions = Functions::new(parts.iter().map(|part| part.instructions.as_slice()), width).ok()?;
-        Some(Self { functions, pauses: parts.iter().map(|part| part.pause).collect(), numbers, width })
+        let functions = parts.iter().map(|part| part.instructions.as_slice());
+        let functions = Functions::new(functions, width, lanes).ok()?;
+        Some(Self { functions, pauses: parts.iter().map(|part| part.pause).collect(), numbers })
     }
 
     /// The number of places in a frame.
@@ -75,30 +87,30 @@ impl Code {
     /// # Panics
     /// If the frame has fewer [`places`](Self::places), or there is less room for results than the line has.
     pub fn run(&self, part: usize, frame: &mut [f64], results: &mut [f64]) {
-        match self.width {
-            Width::One => self.functions.call(part, frame, results, 0),
-            // Four of eight at a time: the widest registers that all processors with AVX have.
-            Width::Eight => (0..2).for_each(|half| self.functions.call(part, frame, results, 4 * half)),
-        }
+        self.functions.call(part, frame, results);
     }
 }
 
-/// This processor, if there is code for it.
+/// What this processor is with each of its sets of instructions, and how many numbers these compute.
 #[cfg(target_arch = "x86_64")]
-fn processor(rounding: Rounding, _: Width) -> Option<Processor> {
-    let fuses = || std::arch::is_x86_feature_detected!("fma");
-    let is_known = std::arch::is_x86_feature_detected!("avx") && (rounding == Rounding::Separate || fuses());
-    is_known.then_some(Processor { registers: 16, operands_in_memory: true })
+fn processors(rounding: Rounding, width: Width) -> impl Iterator<Item = (Processor, Lanes)> {
+    use std::arch::is_x86_feature_detected as has;
+    let is_known = has!("avx") && (rounding == Rounding::Separate || has!("fma"));
+    let eight = (width == Width::Eight && has!("avx512f")).then_some((32, Lanes::Eight));
+    let others = (16, if width == Width::One { Lanes::One } else { Lanes::Four });
+    let all = eight.into_iter().chain([others]).filter(move |_| is_known);
+    all.map(|(registers, lanes)| (Processor { registers, operands_in_memory: true }, lanes))
 }
 
-/// This processor, if there is code for it.
+/// What this processor is with each of its sets of instructions, and how many numbers these compute.
 #[cfg(target_arch = "aarch64")]
-fn processor(_: Rounding, width: Width) -> Option<Processor> {
-    (width == Width::One).then_some(Processor { registers: 32, operands_in_memory: false })
+fn processors(_: Rounding, width: Width) -> impl Iterator<Item = (Processor, Lanes)> {
+    let one = (Processor { registers: 32, operands_in_memory: false }, Lanes::One);
+    (width == Width::One).then_some(one).into_iter()
 }
 
 /// No processor for which there is code.
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-fn processor(_: Rounding, _: Width) -> Option<Processor> {
-    None
+fn processors(_: Rounding, _: Width) -> impl Iterator<Item = (Processor, Lanes)> {
+    std::iter::empty()
 }

@@ -73,3 +73,25 @@ impl Width {
         }
     }
 }
+
+/// How many numbers an instruction computes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lanes {
+    /// One.
+    One,
+    /// Four of eight.
+    Four,
+    /// Eight.
+    Eight,
+}
+
+impl Lanes {
+    /// The number of numbers.
+    pub fn numbers(self) -> usize {
+        match self {
+            Lanes::One => 1,
+            Lanes::Four => 4,
+            Lanes::Eight => 8,
+        }
+    }
+}

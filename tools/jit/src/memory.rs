@@ -13,7 +13,7 @@ use memmap2::{Mmap, MmapMut};
 
 use crate::encode::encode;
 use crate::instruction::Instruction;
-use crate::line::Width;
+use crate::line::{Lanes, Width};
 
 /// A function of two pointers: the frame and the results.
 #[cfg(target_arch = "x86_64")]
@@ -32,6 +32,7 @@ pub struct Functions {
     /// Where each begins, bytes.
     begins: Vec<usize>,
     width: Width,
+    lanes: Lanes,
     places: usize,
     results: usize,
     bytes: usize,
@@ -43,7 +44,12 @@ impl Functions {
     ///
     /// # Errors
     /// The system has no memory, or does not permit to execute it; or a displacement would not reach all places.
-    pub fn new<'a>(functions: impl Iterator<Item = &'a [Instruction]> + Clone, width: Width) -> std::io::Result<Self> {
+    pub fn new<'a>(
+        functions: impl Iterator<Item = &'a [Instruction]> + Clone,
+        width: Width,
+        lanes: Lanes,
+    ) -> std::io::Result<Self> {
+        assert!(width.numbers().is_multiple_of(lanes.numbers()), "all numbers of a place are computed");
         let (mut places, mut results, mut iterations) = (0, 0, 1u32);
         for instruction in functions.clone().flatten() {
             instruction.reach(&mut places, &mut results, &mut iterations);
@@ -53,7 +59,7 @@ impl Functions {
         }
         let is_loop = |instruction: &&Instruction| matches!(instruction, Instruction::Begin(_));
         let loops = functions.clone().flatten().filter(is_loop).count();
-        let functions: Vec<Vec<u8>> = functions.map(|instructions| encode(instructions, width)).collect();
+        let functions: Vec<Vec<u8>> = functions.map(|instructions| encode(instructions, lanes)).collect();
         let (mut begins, mut size) = (vec![], 0);
         for code in &functions {
             begins.push(size);
@@ -66,7 +72,8 @@ impl Functions {
         }
         let pages = pages.make_exec()?;
         synchronise(&pages);
-        Ok(Self { pages, begins, width, places, results, bytes: functions.iter().map(Vec::len).sum(), loops })
+        let bytes = functions.iter().map(Vec::len).sum();
+        Ok(Self { pages, begins, width, lanes, places, results, bytes, loops })
     }
 
     /// The number of places in the frame.
@@ -84,19 +91,20 @@ impl Functions {
         self.loops
     }
 
-    /// Calls a function with the frame and the results; `lane`: the first of the numbers of each place that it computes.
-    pub fn call(&self, function: usize, frame: &mut [f64], results: &mut [f64], lane: usize) {
+    /// Calls a function with the frame and the results, for all numbers of each place.
+    pub fn call(&self, function: usize, frame: &mut [f64], results: &mut [f64]) {
         let numbers = self.width.numbers();
         assert!(frame.len() >= self.places * numbers, "a frame has {} places", self.places);
         assert!(results.len() >= self.results * numbers, "there are {} results", self.results);
-        assert!(lane.is_multiple_of(4) && lane < numbers, "four numbers at a time, or one");
         let begin = &raw const self.pages[self.begins[function]];
         // SAFETY: `new` put the code of a function of this type there, in pages that are executable as long as `self` lives.
         let entry = unsafe { std::mem::transmute::<*const u8, Entry>(begin) };
-        let [frame, results] = [frame, results].map(|numbers| numbers.as_mut_ptr().wrapping_add(lane));
-        // SAFETY: the code takes one number of each place, or four, from number `lane` on: the last of them is within both slices,
-        // which the assertions above compare with the places that it names. Both are borrowed for this call alone.
-        unsafe { entry(frame, results) }
+        for lane in (0..numbers).step_by(self.lanes.numbers()) {
+            let [frame, results] = [&mut *frame, &mut *results].map(|numbers| numbers.as_mut_ptr().wrapping_add(lane));
+            // SAFETY: the code takes as many numbers of each place as `lanes` says, from number `lane` on: the last of them is within both slices,
+            // which the assertions above compare with the places that it names. Both are borrowed for this call alone.
+            unsafe { entry(frame, results) }
+        }
     }
 }
 

@@ -67,11 +67,23 @@ impl History {
 
     /// `Σ weight ∇ᵐy`, m = 0 … k.
     pub fn sum(&self, weights: &Weights, out: &mut [f64]) {
-        out.fill(0.0);
-        for (weight, difference) in weights[..=self.order].iter().zip(&self.differences) {
-            if *weight != 0.0 {
-                add(out, *weight, difference);
+        match self.order {
+            1 => self.sum_of::<2>(weights, out),
+            2 => self.sum_of::<3>(weights, out),
+            3 => self.sum_of::<4>(weights, out),
+            _ => self.sum_of::<{ ORDER + 1 }>(weights, out),
+        }
+    }
+
+    /// Of the first differences, in one pass that compiles to vector instructions.
+    fn sum_of<const COUNT: usize>(&self, weights: &Weights, out: &mut [f64]) {
+        let terms: [&[f64]; COUNT] = std::array::from_fn(|m| &self.differences[m][..out.len()]);
+        for (i, out) in out.iter_mut().enumerate() {
+            let mut sum = 0.0;
+            for (weight, term) in weights.iter().zip(&terms) {
+                sum += weight * term[i];
             }
+            *out = sum;
         }
     }
 

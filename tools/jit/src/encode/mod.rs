@@ -6,22 +6,22 @@ mod aarch64;
 mod x86_64;
 
 use crate::instruction::Instruction;
-use crate::line::Width;
+use crate::line::Lanes;
 
 /// The code of a function: for x86-64 with the convention `sysv64`, otherwise with that of C.
-pub fn encode(instructions: &[Instruction], width: Width) -> Vec<u8> {
+pub fn encode(instructions: &[Instruction], lanes: Lanes) -> Vec<u8> {
     #[cfg(target_arch = "x86_64")]
     {
-        x86_64::encode(instructions, width)
+        x86_64::encode(instructions, lanes)
     }
     #[cfg(target_arch = "aarch64")]
     {
-        assert!(width == Width::One, "eight numbers at a time are for x86-64");
+        assert!(lanes == Lanes::One, "eight numbers at a time are for x86-64");
         aarch64::encode(instructions)
     }
     #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
     {
-        let _ = (instructions, width);
+        let _ = (instructions, lanes);
         unreachable!("`Code::of` asks for no code on other processors")
     }
 }

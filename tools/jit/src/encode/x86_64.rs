@@ -1,5 +1,5 @@
 //! Instructions of x86-64 with AVX, and FMA where sums are fused (Intel 64 and IA-32 Architectures Software Developer's Manual,
-//! volume 2: the VEX prefix in 2.3, each instruction under its name).
+//! volume 2: the VEX prefix in 2.3, each instruction under its name). With AVX-512, eight numbers are one register of 32 (the EVEX prefix, 2.7).
 //!
 //! A displacement of one byte reaches 256 bytes, 32 numbers. So the frame is seen through up to thirteen windows, each with a
 //! register of its own: where nearly all numbers are within the windows, an instruction takes six bytes instead of nine, and the
@@ -9,7 +9,7 @@ use std::collections::{BTreeSet, HashMap};
 
 use super::loops;
 use crate::instruction::{Instruction, Operand, Place, Register};
-use crate::line::Width;
+use crate::line::Lanes;
 use crate::operations::{Kind, Signs};
 
 /// A general register.
@@ -23,6 +23,8 @@ const RESULTS: General = 6;
 const WINDOWS: [General; 11] = [0, 1, 2, 8, 9, 10, 11, 3, 5, 13, 14];
 /// Registers of [`WINDOWS`] before those that must be kept.
 const CHANGEABLE: usize = 7;
+/// The mask register of comparisons.
+const MASK: u8 = 1;
 /// Counts iterations; it must be kept.
 const COUNTER: General = 15;
 /// Numbers in a window.
@@ -47,9 +49,9 @@ enum Map {
 }
 
 /// The code of instructions: a function of the frame and the results, `extern "sysv64"`.
-pub fn encode(instructions: &[Instruction], width: Width) -> Vec<u8> {
+pub fn encode(instructions: &[Instruction], lanes: Lanes) -> Vec<u8> {
     let mut encoder =
-        Encoder { bytes: vec![], width, windows: HashMap::new(), moving: HashMap::new(), kept: vec![], begin: 0 };
+        Encoder { bytes: vec![], lanes, windows: HashMap::new(), moving: HashMap::new(), kept: vec![], begin: 0 };
     let loops = loops(instructions);
     let most = loops.iter().map(BTreeSet::len).max().unwrap_or_default();
     let (windows, moving) = WINDOWS.split_at(WINDOWS.len() - most);
@@ -71,7 +73,7 @@ pub fn encode(instructions: &[Instruction], width: Width) -> Vec<u8> {
 
 struct Encoder {
     bytes: Vec<u8>,
-    width: Width,
+    lanes: Lanes,
     /// Within a loop: the register for each step by which places move.
     moving: HashMap<i32, General>,
     /// Where the present loop begins.
@@ -85,9 +87,9 @@ struct Encoder {
 impl Encoder {
     /// Bytes from place to place.
     fn stride(&self) -> i32 {
-        match self.width {
-            Width::One => 8,
-            Width::Eight => 64,
+        match self.lanes {
+            Lanes::One => 8,
+            Lanes::Four | Lanes::Eight => 64,
         }
     }
 
@@ -98,7 +100,7 @@ impl Encoder {
             *accesses.entry(place.at / WINDOW).or_default() += 1;
         }
         // With eight numbers, a window would hold four places.
-        let is_worth_it = |(_, count): &(i32, usize)| *count >= LEAST_ACCESSES && self.width == Width::One;
+        let is_worth_it = |(_, count): &(i32, usize)| *count >= LEAST_ACCESSES && self.lanes == Lanes::One;
         let mut accesses: Vec<(i32, usize)> = accesses.into_iter().filter(is_worth_it).collect();
         accesses.sort_by_key(|(window, count)| (std::cmp::Reverse(*count), *window));
         let windows: Vec<(General, i32)> =
@@ -168,7 +170,7 @@ impl Encoder {
 
     /// Gives registers back, and returns.
     fn close(&mut self) {
-        if self.width == Width::Eight {
+        if self.lanes != Lanes::One {
             // vzeroupper
             self.bytes.extend([0xc5, 0xf8, 0x77]);
         }
@@ -207,18 +209,22 @@ impl Encoder {
             Instruction::Result(from, to) => {
                 self.arithmetic(0x11, from, None, Last::Memory(RESULTS, to.at * self.stride()));
             }
-            // vmovaps
+            // vmovaps, vmovapd
+            Instruction::Move(to, from) if self.lanes == Lanes::Eight => {
+                self.evex(Map::Of0F, 0x28, [to, 0], Last::Register(from), 0);
+            }
             Instruction::Move(to, from) => self.vex(Map::Of0F, [0, 0], 0x28, [to, 0], Last::Register(from)),
             Instruction::Compute { kind, out, operands, spare } => self.compute(kind, out, operands, spare),
             Instruction::Begin(_) | Instruction::End => {}
         }
     }
 
-    /// An instruction of map 0F on one number or on four: `out = a ∘ last`.
+    /// An instruction of map 0F on one number, on four or on eight: `out = a ∘ last`.
     fn arithmetic(&mut self, opcode: u8, out: Register, a: Option<Register>, last: Last) {
-        let prefix = match self.width {
-            Width::One => 3,
-            Width::Eight => 1,
+        let prefix = match self.lanes {
+            Lanes::One => 3,
+            Lanes::Four => 1,
+            Lanes::Eight => return self.evex(Map::Of0F, opcode, [out, a.unwrap_or_default()], last, 0),
         };
         self.vex(Map::Of0F, [prefix, 0], opcode, [out, a.unwrap_or_default()], last);
     }
@@ -244,9 +250,9 @@ impl Encoder {
             Kind::Quotient => self.arithmetic(0x5e, out, register(a), self.operand(b)),
             Kind::Root => {
                 // On one number, the upper half of the result is that of the first operand.
-                let first = match self.width {
-                    Width::One => register(a).or(Some(out)),
-                    Width::Eight => None,
+                let first = match self.lanes {
+                    Lanes::One => register(a).or(Some(out)),
+                    Lanes::Four | Lanes::Eight => None,
                 };
                 self.arithmetic(0x51, out, first, self.operand(a));
             }
@@ -257,7 +263,13 @@ impl Encoder {
                 }
             }
             Kind::Choice => {
-                if let (Some(b), Some(c)) = (register(b), register(c)) {
+                if let (Some(b), Some(c), Lanes::Eight) = (register(b), register(c), self.lanes) {
+                    // vpxorq, then 0 < a without a signal for NaN, then vblendmpd
+                    self.evex(Map::Of0F, 0xef, [out, out], Last::Register(out), 0);
+                    self.evex(Map::Of0F, 0xc2, [MASK, out], self.operand(a), 0);
+                    self.bytes.push(0x11);
+                    self.evex(Map::Of0F38, 0x65, [out, c], Last::Register(b), MASK);
+                } else if let (Some(b), Some(c)) = (register(b), register(c)) {
                     // vxorps, then 0 < a without a signal for NaN, then vblendvpd
                     self.vex(Map::Of0F, [0, 0], 0x57, [out, out], Last::Register(out));
                     self.arithmetic(0xc2, out, Some(out), self.operand(a));
@@ -272,11 +284,18 @@ impl Encoder {
     /// As `f64::min`: NaN gives way to a number. The instruction returns its last operand if one is NaN or both are zero; one
     /// number and eight differ in which of two zeros they return.
     fn extremum(&mut self, opcode: u8, out: Register, [a, b]: [Register; 2], spare: Register) {
-        let [a, b] = match self.width {
-            Width::One => [b, a],
-            Width::Eight => [a, b],
+        let [a, b] = match self.lanes {
+            Lanes::One => [b, a],
+            Lanes::Four | Lanes::Eight => [a, b],
         };
         self.arithmetic(opcode, spare, Some(a), Last::Register(b));
+        if self.lanes == Lanes::Eight {
+            // b is NaN, then vblendmpd
+            self.evex(Map::Of0F, 0xc2, [MASK, b], Last::Register(b), 0);
+            self.bytes.push(3);
+            self.evex(Map::Of0F38, 0x65, [out, spare], Last::Register(a), MASK);
+            return;
+        }
         // b is NaN.
         self.arithmetic(0xc2, out, Some(b), Last::Register(b));
         self.bytes.push(3);
@@ -307,13 +326,17 @@ impl Encoder {
             Signs::Minus => 2,
             Signs::Reverse => 4,
         };
-        let scalar = u8::from(self.width == Width::One);
+        if self.lanes == Lanes::Eight {
+            self.evex(Map::Of0F38, form + signs, [out, first], self.operand(last), 0);
+            return;
+        }
+        let scalar = u8::from(self.lanes == Lanes::One);
         self.vex(Map::Of0F38, [1, 1], form + signs + scalar, [out, first], self.operand(last));
     }
 
     /// A VEX prefix, an opcode and operands; `prefix`: the implied prefix (none, 66, F3, F2), and the bit W.
     fn vex(&mut self, map: Map, [prefix, wide]: [u8; 2], opcode: u8, [out, first]: [Register; 2], last: Last) {
-        let long = u8::from(self.width == Width::Eight);
+        let long = u8::from(self.lanes == Lanes::Four);
         let high = |register: u8| register >> 3 & 1;
         let number = match last {
             Last::Register(number) | Last::Memory(number, _) => number,
@@ -329,6 +352,31 @@ impl Encoder {
         match last {
             Last::Register(number) => self.bytes.push(0xc0 | (out & 7) << 3 | number & 7),
             Last::Memory(base, displacement) => self.address(out, base, displacement),
+        }
+    }
+
+    /// An EVEX prefix, an opcode and operands, of eight numbers of 64 bits; `mask`: the register that chooses among them, or 0. A displacement of one
+    /// byte counts in operands.
+    fn evex(&mut self, map: Map, opcode: u8, [out, first]: [Register; 2], last: Last, mask: u8) {
+        let bit = |register: u8, bit: u8| register >> bit & 1 ^ 1;
+        let [x, b] = match last {
+            Last::Register(number) => [bit(number, 4), bit(number, 3)],
+            Last::Memory(base, _) => [1, bit(base, 3)],
+        };
+        let registers = bit(out, 3) << 7 | x << 6 | b << 5 | bit(out, 4) << 4;
+        self.bytes.extend([0x62, registers | map as u8, 1 << 7 | (first & 15 ^ 15) << 3 | 1 << 2 | 1]);
+        self.bytes.extend([2 << 5 | bit(first, 4) << 3 | mask, opcode]);
+        match last {
+            Last::Register(number) => self.bytes.push(0xc0 | (out & 7) << 3 | number & 7),
+            Last::Memory(base, displacement) => match i8::try_from(displacement / 64) {
+                Ok(short) if displacement % 64 == 0 => {
+                    self.bytes.extend([0x40 | (out & 7) << 3 | base & 7, short.cast_unsigned()]);
+                }
+                _ => {
+                    self.bytes.push(0x80 | (out & 7) << 3 | base & 7);
+                    self.bytes.extend(displacement.to_le_bytes());
+                }
+            },
         }
     }
 
