@@ -6,6 +6,7 @@ use crate::{
     CoordinateKind,
     dyn_crane::{DynImplicit, DynModel},
     force_states::ForceStates,
+    rt::lanes::f64x8,
 };
 
 /// Weight of an error of a rate relative to one of its coordinate, s: 1/ω of the slow swinging of a load, about 5 rad/s.
@@ -116,16 +117,13 @@ impl Norm {
     /// and efforts divided by [`OIL`] and [`EFFORT`] times their scales; all relative to the tolerance. Infinite if one is not finite.
     pub fn size(&self, motion: &[f64], error: &[f64]) -> f64 {
         let n = self.n;
-        let mut greatest = Greatest::default();
+        let mut greatest = Greatest::none();
         let (of_q, of_v, of_x) = (&error[..n], &error[n..2 * n], &error[2 * n..]);
         let rates = &motion[n..2 * n];
-        greatest.note(n, |i| of_q[i].abs());
-        greatest.note(n, |i| of_v[i].abs() * RATE / (1.0 + rates[i].abs()));
-        greatest.note(self.states.len(), |i| of_x[i].abs() / (OIL * self.states[i]));
-        greatest.note(self.efforts.len(), |i| {
-            let effort = &self.efforts[i];
-            effort.of(n, error, f64::abs) / (EFFORT * effort.scale)
-        });
+        greatest.note_all(of_q, of_q, |error, _| error.abs());
+        greatest.note_all(of_v, rates, |error, rate| error.abs() * RATE / (rate.abs() + 1.0));
+        greatest.note_each(of_x.iter().zip(&self.states), |(error, scale)| error.abs() / (OIL * scale));
+        greatest.note_each(self.efforts.iter(), |effort| effort.of(n, error, f64::abs) / (EFFORT * effort.scale));
         greatest.value() / self.tolerance
     }
 
@@ -179,39 +177,57 @@ impl Effort {
     }
 }
 
-/// The largest of some sizes; comparisons in several lanes compile to vector instructions.
-#[derive(Clone, Copy, Debug, Default)]
+/// The largest of some sizes.
+#[derive(Clone, Copy, Debug)]
 struct Greatest {
-    lanes: [f64; Greatest::LANES],
+    sizes: f64x8,
     /// NaN if a size was not finite.
-    spoilt: [f64; Greatest::LANES],
+    spoilt: f64x8,
 }
 
 impl Greatest {
-    const LANES: usize = 8;
+    fn none() -> Self {
+        Self { sizes: f64x8::splat(0.0), spoilt: f64x8::splat(0.0) }
+    }
 
-    /// Compares with as many sizes.
+    /// Compares with the sizes of errors, which may depend on numbers beside them, eight at a time.
     #[inline]
-    fn note(&mut self, count: usize, size: impl Fn(usize) -> f64) {
-        let whole = count - count % Self::LANES;
-        for first in (0..whole).step_by(Self::LANES) {
-            for lane in 0..Self::LANES {
-                self.note_in(lane, size(first + lane));
-            }
+    fn note_all(&mut self, errors: &[f64], beside: &[f64], size: impl Fn(f64x8, f64x8) -> f64x8) {
+        let ([eights, rest], [beside_eights, beside_rest]) = (parts(errors), parts(beside));
+        for (error, beside) in eights.as_chunks().0.iter().zip(beside_eights.as_chunks().0) {
+            self.note_eight(size(f64x8::new(*error), f64x8::new(*beside)));
         }
-        for i in whole..count {
-            self.note_in(i - whole, size(i));
-        }
+        let (mut error, mut number) = ([0.0; 8], [0.0; 8]);
+        error[..rest.len()].copy_from_slice(rest);
+        number[..beside_rest.len()].copy_from_slice(beside_rest);
+        self.note_eight(size(f64x8::new(error), f64x8::new(number)));
     }
 
     #[inline]
-    fn note_in(&mut self, lane: usize, size: f64) {
-        self.lanes[lane] = if size > self.lanes[lane] { size } else { self.lanes[lane] };
-        self.spoilt[lane] += size * 0.0;
+    fn note_eight(&mut self, sizes: f64x8) {
+        self.sizes = self.sizes.fast_max(sizes);
+        self.spoilt += sizes * f64x8::splat(0.0);
+    }
+
+    /// Compares with the sizes of some things, one by one.
+    #[inline]
+    fn note_each<T>(&mut self, mut all: impl ExactSizeIterator<Item = T>, size: impl Fn(T) -> f64) {
+        while all.len() > 0 {
+            let mut eight = [0.0; 8];
+            eight.iter_mut().zip(all.by_ref()).for_each(|(place, next)| *place = size(next));
+            self.note_eight(f64x8::new(eight));
+        }
     }
 
     fn value(&self) -> f64 {
-        let greatest = self.lanes.into_iter().fold(0.0, f64::max);
-        if self.spoilt.into_iter().any(f64::is_nan) { f64::INFINITY } else { greatest }
+        if self.spoilt.to_array().into_iter().any(f64::is_nan) {
+            return f64::INFINITY;
+        }
+        self.sizes.to_array().into_iter().fold(0.0, f64::max)
     }
+}
+
+/// Whole eights, and the rest.
+fn parts(numbers: &[f64]) -> [&[f64]; 2] {
+    numbers.split_at(numbers.len() - numbers.len() % 8).into()
 }

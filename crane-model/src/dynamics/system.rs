@@ -12,6 +12,8 @@
 //! The contribution of connectors, `Σ Jᵀ (c d + c² k) J`, has low rank: [`ConnectorUpdate`]. So has that of forces with
 //! states of their own, which are eliminated: [`ForceStateUpdate`]. Loop joints are connectors without compliance: [`Loops`].
 
+use std::ops::Range;
+
 use super::{
     connector_update::{ConnectorUpdate, differs},
     force_state_update::ForceStateUpdate,
@@ -31,6 +33,9 @@ pub(super) struct System<'a> {
     /// Stiffness and damping on single coordinates: of linear springs and dampers, and with those of nonlinear laws added.
     linear: Vec<[f64; 2]>,
     joints: Vec<[f64; 2]>,
+    /// The latter one by one.
+    stiffness: Vec<f64>,
+    damping: Vec<f64>,
     /// Those of nonlinear laws, at the state of the factorisation and at a state compared with it.
     nonlinear: [Vec<[f64; 2]>; 2],
     base: Base,
@@ -69,6 +74,8 @@ impl<'a> System<'a> {
             factors: crane.system(),
             joints: linear.clone(),
             linear,
+            stiffness: zeros(),
+            damping: zeros(),
             nonlinear: [vec![[0.0; 2]; n], vec![[0.0; 2]; n]],
             base: Base::new(crane),
             connectors: ConnectorUpdate::new(crane),
@@ -112,8 +119,9 @@ impl<'a> System<'a> {
         self.force_states.evaluate(self.crane, &StateAt { t, q, v, x }, c, &mut self.joints);
         let [base, _] = &mut self.base.matrices;
         base.evaluate(self.crane, q, v);
-        for (added_inertia, [stiffness, damping]) in self.added_inertia.iter_mut().zip(&self.joints) {
-            *added_inertia = damping * c + stiffness * (c * c);
+        for (i, [stiffness, damping]) in self.joints.iter().enumerate() {
+            (self.stiffness[i], self.damping[i]) = (*stiffness, *damping);
+            self.added_inertia[i] = damping * c + stiffness * (c * c);
         }
         self.factors.factorise(q, &self.added_inertia, self.base.added_inertia(c));
         self.connectors.factorise(self.crane, t, (q, v), c, self.factors.as_mut());
@@ -160,11 +168,16 @@ impl<'a> System<'a> {
         let (c, n) = (self.c, self.joints.len());
         let (p, g) = rhs[..2 * n].split_at(n);
         // D̂ G + K̂ (c G + P), first for single coordinates, then for the base.
-        for (i, [stiffness, damping]) in self.joints.iter().enumerate() {
-            self.right[i] = damping * g[i] + stiffness * (c * g[i] + p[i]);
+        let coordinates = self.stiffness.iter().zip(&self.damping).zip(g.iter().zip(p));
+        for (right, ((stiffness, damping), (g, p))) in self.right.iter_mut().zip(coordinates) {
+            *right = damping * g + stiffness * (c * g + p);
         }
-        self.base.each(n, |row, column, [stiffness, damping]| {
-            self.right[row] += damping * g[column] + stiffness * (c * g[column] + p[column]);
+        self.base.each(n, |[row, column], [stiffness, damping]| {
+            let (g, p) = (&g[column.clone()], &p[column]);
+            let numbers = stiffness.iter().zip(damping).zip(g.iter().zip(p));
+            for (right, ((stiffness, damping), (g, p))) in self.right[row].iter_mut().zip(numbers) {
+                *right += damping * g + stiffness * (c * g + p);
+            }
         });
         self.connectors.add_to((g, p), c, &mut self.right);
         let r = &rhs[2 * n..];
@@ -178,9 +191,10 @@ impl<'a> System<'a> {
         self.loops.correct(&mut self.solution, false);
         let (of_q, rest) = u.split_at_mut(n);
         let (of_v, of_x) = rest.split_at_mut(n);
-        for i in 0..n {
-            of_v[i] = c * g[i] + self.solution[i];
-            of_q[i] = c * (of_v[i] + p[i]);
+        let of_coordinates = of_q.iter_mut().zip(&mut *of_v);
+        for ((of_q, of_v), ((g, p), z)) in of_coordinates.zip(g.iter().zip(p).zip(&self.solution)) {
+            *of_v = c * g + z;
+            *of_q = c * (*of_v + p);
         }
         self.force_states.states((of_q, of_v), r, of_x);
     }
@@ -211,9 +225,13 @@ impl<'a> System<'a> {
             g[i] += (damping + stiffness * c) * self.solution[i];
             p[i] += stiffness * self.solution[i];
         }
-        self.base.each(n, |row, column, [stiffness, damping]| {
-            g[column] += (damping + stiffness * c) * self.solution[row];
-            p[column] += stiffness * self.solution[row];
+        self.base.each(n, |[row, column], [stiffness, damping]| {
+            let (g, p) = (&mut g[column.clone()], &mut p[column]);
+            let numbers = stiffness.iter().zip(damping).zip(&self.solution[row]);
+            for ((g, p), ((stiffness, damping), weight)) in g.iter_mut().zip(p).zip(numbers) {
+                *g += (damping + stiffness * c) * weight;
+                *p += stiffness * weight;
+            }
         });
         self.connectors.pull_back(&self.solution, c, (g, p));
         self.force_states.pull_back_right(&self.solution, c, (g, p), r);
@@ -263,19 +281,17 @@ impl Base {
         &self.added_inertia
     }
 
-    /// Gives `take` the rows and columns among `n` coordinates, with the stiffness and the damping there.
+    /// Gives `take` the rows and columns among `n` coordinates, one for each crane, with the stiffness and the damping there.
     #[inline]
-    fn each(&self, n: usize, mut take: impl FnMut(usize, usize, [f64; 2])) {
+    fn each(&self, n: usize, mut take: impl FnMut([Range<usize>; 2], [&[f64]; 2])) {
         let cranes = self.cranes;
         let size = Self::SIZE.min(n / cranes);
         let [BaseMatrices { stiffness, damping }, _] = &self.matrices;
         for column in 0..size {
             for row in 0..size {
-                let place = (Self::SIZE * column + row) * cranes;
-                let numbers = stiffness[place..place + cranes].iter().zip(&damping[place..place + cranes]);
-                for (crane, (stiffness, damping)) in numbers.enumerate() {
-                    take(row * cranes + crane, column * cranes + crane, [*stiffness, *damping]);
-                }
+                let [place, row, column] =
+                    [Self::SIZE * column + row, row, column].map(|index| index * cranes..(index + 1) * cranes);
+                take([row, column], [&stiffness[place.clone()], &damping[place]]);
             }
         }
     }

@@ -57,10 +57,11 @@ pub fn of_loads(crane: &dyn DynCrane, table: &Table) -> [Vec<String>; 2] {
 pub fn of_run(crane: &dyn DynCrane, table: &Table, bend: f64) -> Vec<String> {
     let description = crane.description();
     let elements = description.coordinates.iter().filter(|coordinate| coordinate.role.is_element());
-    let bent = elements.map(|coordinate| {
-        let Extremes { minimum, maximum, .. } = Extremes::of(table, &coordinate.name);
-        (coordinate.name.as_str(), if -minimum > maximum { minimum } else { maximum })
-    });
+    let elements = elements.map(|coordinate| coordinate.name.as_str());
+    let extremes = Extremes::of_all(table, elements.clone());
+    let bent = elements
+        .zip(extremes)
+        .map(|(name, Extremes { minimum, maximum, .. })| (name, if -minimum > maximum { minimum } else { maximum }));
     let stopped = description.stops.iter().filter_map(|&coordinate| on_stop(description, table, coordinate));
     overlaps::of_run(crane, table)
         .into_iter()

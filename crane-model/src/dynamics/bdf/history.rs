@@ -89,16 +89,30 @@ impl History {
 
     /// Moves to the next state, which differs from its prediction by `d`.
     pub fn push(&mut self, d: &[f64]) {
-        let k = self.order;
         self.t += self.h;
-        let (before, next) = self.differences.split_at_mut(k + 2);
-        for ((next, before), d) in next[0].iter_mut().zip(&mut before[k + 1]).zip(d) {
-            *next = d - *before;
-            *before = *d;
+        match self.order {
+            1 => self.push_to::<1>(d),
+            2 => self.push_to::<2>(d),
+            3 => self.push_to::<3>(d),
+            _ => self.push_to::<ORDER>(d),
         }
-        for m in (0..=k).rev() {
-            let (lower, higher) = self.differences.split_at_mut(m + 1);
-            add(&mut lower[m], 1.0, &higher[0]);
+    }
+
+    /// Of order K, in one pass.
+    fn push_to<const K: usize>(&mut self, d: &[f64]) {
+        let (before, next) = self.differences.split_at_mut(K + 2);
+        let Some((last, lower)) = before.split_last_mut() else { return };
+        let [next, last] = [&mut next[0], last].map(|difference| &mut difference[..d.len()]);
+        let mut lower = lower.iter_mut().map(|difference| &mut difference[..d.len()]);
+        let mut lower: [&mut [f64]; ORDER + 1] = std::array::from_fn(|_| lower.next().unwrap_or_default());
+        for (i, d) in d.iter().enumerate() {
+            next[i] = d - last[i];
+            last[i] = *d;
+            let mut sum = *d;
+            for difference in lower[..=K].iter_mut().rev() {
+                sum += difference[i];
+                difference[i] = sum;
+            }
         }
     }
 

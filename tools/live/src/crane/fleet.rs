@@ -51,8 +51,8 @@ impl Given {
     fn take<'g>(&'g mut self, arguments: &Arguments<'_, f64>, inputs: &'g [f64x8]) -> Arguments<'g, f64x8> {
         let &Arguments { t, q, v, a, r, positions, added_inertia, base, factors, .. } = arguments;
         for (vectors, numbers) in self.0.iter_mut().zip([q, v, a, r, positions, added_inertia, base, factors]) {
-            vectors.clear();
-            vectors.extend(numbers.as_chunks().0.iter().map(|eight| f64x8::new(*eight)));
+            vectors.resize(numbers.len() / CRANES, f64x8::splat(0.0));
+            cast_slice_mut(vectors).copy_from_slice(numbers);
         }
         let [q, v, a, r, positions, added_inertia, base, factors] = self.0.each_ref().map(Vec::as_slice);
         let t = f64x8::splat(t);
