@@ -621,8 +621,8 @@ class Crane(_native.Crane):
         """A run for every row of the parameters, each from its own static equilibrium, on all threads.
 
         Arguments are those of `simulate`. Poses q and rates v at the start, (..., n), and inputs may be arrays: their leading axes and those of
-        the parameters broadcast as in NumPy. Adaptive methods run every crane as it would run alone. `progress(done, all)` is called
-        from time to time. With invalid="nan" runs that fail leave NaN, and `status` says why.
+        the parameters broadcast as in NumPy. Adaptive methods run up to eight cranes as one, with steps that are short enough for each: results are
+        those of single runs within the tolerance. `progress(done, all)` is called from time to time. With invalid="nan" runs that fail leave NaN, and `status` says why.
         """
         inputs = None if inputs is None else dict(inputs)
         found = self._run_ensemble(_timing(method, duration, output, tolerance, step, force), invalid, progress, q, v, inputs)
