@@ -108,11 +108,7 @@ pub fn run_ensemble(
     execution: &Execution<'_>,
 ) -> Vec<Outcome> {
     let way = Way::of(crane, rows, settings);
-    let piece = match way {
-        Way::Alone => 1,
-        Way::InLanes => crane.lanes(),
-        Way::AsFleet { cranes } => cranes,
-    };
+    let piece = if way == Way::InLanes { crane.lanes() } else { rows_together(crane, settings) };
     let waiting = Mutex::new(rows.chunks(piece).enumerate());
     let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
     let finished = Mutex::new(Vec::with_capacity(rows.len()));
@@ -145,6 +141,14 @@ pub fn run_ensemble(
     let mut finished = finished.into_inner().unwrap_or_else(PoisonError::into_inner);
     finished.sort_by_key(|(row, _)| *row);
     finished.into_iter().map(|(_, outcome)| outcome).collect()
+}
+
+/// How many rows, one after the other, run as a fleet: the digits of their results depend on each other. Otherwise 1.
+pub fn rows_together(crane: &dyn DynCrane, settings: &Settings) -> usize {
+    match Way::of(crane, &[], settings) {
+        Way::AsFleet { cranes } => cranes,
+        Way::Alone | Way::InLanes => 1,
+    }
 }
 
 /// How rows run.

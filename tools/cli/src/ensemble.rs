@@ -61,7 +61,13 @@ pub fn simulate(options: &Simulate, given: &Path, registry: &Registry, out: &mut
     let (journal, records) =
         Journal::open(&path.with_extension("part.csv"), &request(crane, &settings, &table), *restart)?;
     let header = header(description, &table);
-    let kept = kept_rows(&records, table.rows.len(), header.len());
+    let mut kept = kept_rows(&records, table.rows.len(), header.len());
+    // Rows that run together depend on each other, so that the others of an incomplete piece would become different ones.
+    for piece in kept.chunks_mut(ensemble::rows_together(crane, &settings)) {
+        if piece.iter().any(Option::is_none) {
+            piece.fill(None);
+        }
+    }
     let fresh: Vec<usize> = (0..kept.len()).filter(|row| kept[*row].is_none()).collect();
     let bar = batches(kept.len());
     bar.inc((kept.len() - fresh.len()) as u64);
