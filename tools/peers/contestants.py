@@ -39,6 +39,7 @@ SHARED = {
     "forward_dynamics": "forward_dynamics",
     "forward_dynamics_lanes": "forward_dynamics",
     "forward_dynamics_machine_code": "forward_dynamics",
+    "forward_dynamics_machine_code_lanes": "forward_dynamics",
     "forward_dynamics_bytecode": "forward_dynamics",
     "forward_dynamics_derivatives": DERIVATIVES,
     "forward_dynamics_derivatives_live": "forward_dynamics_derivatives_live",

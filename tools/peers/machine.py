@@ -59,6 +59,12 @@ def operations(builds, coordinates):
     return {row[0]: int(row[1]) for row in rows if row[1].isdigit()}
 
 
+def limits(bench, coordinates):
+    """Operations of each generated function, angles among them, and the time of its longest chain of operations, ns."""
+    rows = [line.split() for line in output_of(bench, "limits", coordinates).splitlines()]
+    return {name: [int(operations), int(angles), float(chain)] for name, operations, angles, chain in rows}
+
+
 def counters(bench, coordinates):
     """Instructions and L1 misses per call of our kernels; empty where the machine does not count them."""
     kernels = output_of(bench, "kernels", coordinates)

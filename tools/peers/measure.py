@@ -81,6 +81,7 @@ def measure(options, builds, results):
         "machine": machine.describe(tools),
         "peak": machine.peak([builds.program("peak", compiler) for compiler in tools]),
         "operations": {arena.coordinates: machine.operations(builds, arena.coordinates) for arena in arenas},
+        "limits": {arena.coordinates: machine.limits(bench, arena.coordinates) for arena in arenas},
         "counters": {arena.coordinates: machine.counters(bench, arena.coordinates) for arena in arenas},
         "wrong": [asdict_of(contestant) for contestant in wrong],
         "right": RIGHT,

@@ -108,8 +108,8 @@ its factors come from machine code made at run time, its products are compiled f
 ## Without a compiler
 {live_table(times)}
 
-Forward dynamics of one state by a live crane: by machine code that it makes at run time, for any processor with AVX, and by its bytecode; in
-brackets, how many times longer than compiled for this machine.
+Forward dynamics by a live crane: by machine code that it makes at run time, of one state for any processor with AVX, of eight with AVX-512 where there is
+any, and by its bytecode; in brackets, how many times longer than compiled for this machine.
 
 ## One RK4 step with all forces
 {times_table(times, "rk4_step", ["MuJoCo", "Exudyn"])}
@@ -147,6 +147,12 @@ The next table shows the operations per call for one crane, as the compiler coun
 one), and their share of the peak performance of one core: {peak["scalar"]:.1f} scalar operations per nanosecond and, for eight cranes at once and for mass matrices, which are filled eight columns at
 a time, {peak["vector"]:.0f} vector operations per nanosecond, if every multiplication is fused with an addition.
 {operations(results, times)}
+
+The next table shows what limits each kernel. No processor computes it in less time than the longest chain of operations of which each waits for
+the one before, with the latencies of this one; and its units for arithmetic need a time for all operations, if every
+multiplication is fused with an addition, a sine and a cosine taking {ANGLE}. The share is that of the larger of both in the time measured. What remains are loads
+and stores, operations that do not fuse, and the time to find independent ones.
+{limits(results, times)}
 
 {counters(results)}
 """
@@ -225,16 +231,17 @@ def derivative_ratios(times):
 def live_table(times):
     """Forward dynamics without a compiler."""
 
-    def cell(n, kernel):
-        time, compiled = times.ours(n, kernel), times.ours(n, "forward_dynamics")
+    def cell(n, kernel, compiled):
+        time = times.ours(n, kernel)
         return f"{microseconds(time)} ({time / compiled:.2g} ×)" if time and compiled else ""
 
-    kernels = ["forward_dynamics_machine_code", "forward_dynamics_bytecode"]
-    rows = [
-        [str(n), microseconds(times.ours(n, "forward_dynamics")), *(cell(n, kernel) for kernel in kernels)]
-        for n in times.coordinates
-    ]
-    return table(["coordinates", "compiled, µs", "machine code", "bytecode"], rows)
+    def row(n):
+        one, eight = times.ours(n, "forward_dynamics"), times.ours(n, LANES)
+        of_one = [cell(n, kernel, one) for kernel in ("forward_dynamics_machine_code", "forward_dynamics_bytecode")]
+        return [str(n), microseconds(one), *of_one, microseconds(eight), cell(n, "forward_dynamics_machine_code_lanes", eight)]
+
+    heading = ["coordinates", "compiled, µs", "machine code", "bytecode", "8 lanes: compiled, µs", "machine code"]
+    return table(heading, [row(n) for n in times.coordinates])
 
 
 def runs_table(runs):
@@ -295,6 +302,33 @@ def wrong(results):
     return "Excluded because of their errors:\n" + table(
         ["coordinates", "library", "algorithm", "variants", "worst error", "joints of elements"], lines
     )
+
+
+# Operations of a sine and a cosine of one angle: `crane_model::rt::sin_cos`.
+ANGLE = 59
+
+
+def limits(results, times):
+    """What each of our kernels is limited by: the longest chain of operations, or how many there are."""
+    peak = results["peak"]
+    rows = []
+    for kernel in dict.fromkeys(c["variant"] for c in times.contestants if c["library"] == OURS):
+        in_lanes = kernel.endswith(LANES_SUFFIX)
+        cells = []
+        for n in times.coordinates:
+            found, time = results["limits"][str(n)].get(kernel.removesuffix(LANES_SUFFIX)), times.ours(n, kernel)
+            if found is None or time is None or kernel in IN_VECTORS:
+                cells.append("")
+                continue
+            operations, angles, chain = found
+            # A call of eight cranes has one chain; sines of one crane are computed eight at a time.
+            chain /= 8 if in_lanes else 1
+            arithmetic = (operations - angles) / peak["vector" if in_lanes else "scalar"] + ANGLE * angles / peak["vector"]
+            limit, name = max((chain, "chain"), (arithmetic, "operations"))
+            cells.append(f"{number(chain)}, {number(arithmetic)}: {100 * limit / time:.0f} % ({name})")
+        if any(cells):
+            rows.append([f"`{kernel}`", *cells])
+    return table(["chain, operations in ns: share of the larger", *map(str, times.coordinates)], rows)
 
 
 def kernels(times):

@@ -3,6 +3,7 @@
 mod count;
 mod expansion;
 mod interpret;
+mod longest_chain;
 mod pull_back;
 mod shape;
 
@@ -13,6 +14,7 @@ use crate::symbolic::{ExprId, Graph, Nodes, Op, SweepTrace, SymbolId};
 pub use count::OperationCount;
 pub use crane_quantities::{Argument, Count, Extent, FunctionId, Item, RuntimeTrait};
 pub use interpret::Inputs;
+pub use longest_chain::Latencies;
 pub use pull_back::PULLED_BACK;
 pub use shape::{ConcurrentAxes, Shape, Struct};
 

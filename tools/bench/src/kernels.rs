@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use crane_codegen::chain::Analyses;
+use crane_codegen::chain::{Analyses, Input};
 use crane_codegen::program::FunctionId;
 use crane_codegen::{SourceFile, compile, mechanics};
 use crane_live::machine::Arguments;
@@ -14,7 +14,7 @@ use crane_model::rt::lanes::f64x8;
 use crane_model::{Ensemble, Implicit, LaneDynamics, MotionDerivatives, TransformDerivatives};
 
 use crate::kernel::{Kernel, Lower, Rows};
-use crate::states::{self, State};
+use crate::states::{self, EightStates, State};
 use crate::triple_sum::TripleSum;
 
 /// Step size, s: stable for all numbers of sections, so that one step agrees with another library's.
@@ -74,6 +74,13 @@ where
         })
         .compared_by(Kernel::new("", 1, states, three.clone(), move |s, out| at_given_forces(&crane, s, &mut out.0))),
         Kernel::new("forward_dynamics_machine_code", 1, states, vector, accelerations(live.clone())),
+        Kernel::new(
+            "forward_dynamics_machine_code_lanes",
+            8,
+            &states::by_eight(states),
+            SVector::<f64x8, N>::repeat(f64x8::splat(0.0)),
+            accelerations_of_eight(spec),
+        ),
         Kernel::new("forward_dynamics_derivatives_live", 1, states, three, move |s, out| {
             live.forward_dynamics_derivatives(s.t, s.q.as_slice(), s.v.as_slice(), out.0.as_flattened_mut());
         }),
@@ -93,15 +100,32 @@ fn accelerations<const N: usize>(live: LiveCrane) -> impl Fn(&State<N>, &mut SVe
     move |s, out| live.forward_dynamics(s.t, s.q.as_slice(), s.v.as_slice(), out.as_mut_slice())
 }
 
-/// Accelerations by bytecode.
-fn interpreted<const N: usize>(spec: &str) -> impl Fn(&State<N>, &mut SVector<f64, N>) + use<N> {
+/// Forward dynamics of the crane of a spec, with its live parameters, and its inputs, none of which is set: they follow the spec.
+fn forward_dynamics(spec: &str) -> (Routine, Vec<f64>, Vec<f64>) {
     let chain = compile::load(&SourceFile::new("crane.yaml", spec)).expect("a spec that was compiled");
     let program = mechanics::derive(&chain, Analyses::ALL);
     let function = program.function(FunctionId::ForwardDynamics).expect("a function of every crane");
     let routine = Routine::new(&program, function).expect("a crane of moderate size");
-    let machine = RefCell::new(routine.machine(&chain.parameter_defaults()));
-    // No input is set: they follow the spec.
-    let inputs = [0.0, 1.0].repeat(chain.inputs.len());
+    (routine, chain.parameter_defaults(), Input::NOT_SET.repeat(chain.inputs.len()))
+}
+
+/// Accelerations of eight cranes by machine code, made before the first call.
+fn accelerations_of_eight<const N: usize>(spec: &str) -> impl Fn(&EightStates<N>, &mut SVector<f64x8, N>) + use<N> {
+    let (routine, parameters, inputs) = forward_dynamics(spec);
+    let [parameters, inputs] = [parameters, inputs].map(|all| all.into_iter().map(f64x8::splat).collect::<Vec<_>>());
+    routine.compile::<f64x8>();
+    let machine = RefCell::new(routine.machine(&parameters));
+    move |s, out| {
+        let arguments =
+            Arguments { t: s.t, q: s.q.as_slice(), v: s.v.as_slice(), inputs: &inputs, ..Arguments::none() };
+        routine.run(&mut machine.borrow_mut(), &arguments, out.as_mut_slice());
+    }
+}
+
+/// Accelerations by bytecode.
+fn interpreted<const N: usize>(spec: &str) -> impl Fn(&State<N>, &mut SVector<f64, N>) + use<N> {
+    let (routine, parameters, inputs) = forward_dynamics(spec);
+    let machine = RefCell::new(routine.machine(&parameters));
     move |s, out| {
         let (t, q, v) = (s.t, s.q.as_slice(), s.v.as_slice());
         let arguments = Arguments { t, q, v, inputs: &inputs, ..Arguments::none() };

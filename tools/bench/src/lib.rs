@@ -6,6 +6,7 @@
 pub mod cranes;
 pub mod kernel;
 pub mod kernels;
+pub mod limits;
 pub mod runs;
 pub mod states;
 pub mod triple_sum;

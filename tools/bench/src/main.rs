@@ -9,6 +9,7 @@
 //! crane-bench states N                 states as records t, q, v, f: 64-bit little-endian numbers
 //! crane-bench values N KERNEL          what a kernel computes at these states, in the same form
 //! crane-bench time N KERNEL SECONDS    nanoseconds per call, measured for this long
+//! crane-bench limits N                 functions: operations, angles among them, and the time of the longest chain of operations, ns
 //! crane-bench plan N                   a run: duration and interval of results, s, and the coordinates at the start
 //! crane-bench run N METHOD X REPEAT    shortest time of this run, s, with a step or tolerance X, and the coordinates at its results
 //! ```
@@ -19,8 +20,8 @@ use std::time::Duration;
 
 use crane_bench::cranes::{self, Entry};
 use crane_bench::kernel::Kernel;
-use crane_bench::kernels;
 use crane_bench::runs::Plan;
+use crane_bench::{kernels, limits};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -53,6 +54,7 @@ fn run_command(words: &[&str]) -> Result<Vec<u8>, String> {
             let budget = Duration::try_from_secs_f64(seconds).map_err(|error| format!("{seconds}: {error}"))?;
             Ok(lines([kernel(n, name)?.nanoseconds(budget).to_string()].into_iter()))
         }
+        ["limits", n] => Ok(lines(limits::lines(crane(n)?.spec).into_iter())),
         ["plan", n] => {
             let Plan { start, duration, output } = (crane(n)?.plan)();
             Ok(bytes(&[vec![duration, output], start].concat()))

@@ -249,7 +249,9 @@ impl DynSystem for System<'_> {
 
 impl DynLinearise for Fleet {
     fn linearise(&self, _: &[f64], mass: &mut [f64], stiffness: &mut [f64], damping: &mut [f64]) {
-        [mass, stiffness, damping].into_iter().for_each(|matrix| matrix.fill(f64::NAN));
+        for matrix in [mass, stiffness, damping] {
+            matrix.fill(f64::NAN);
+        }
     }
 }
 
