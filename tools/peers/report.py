@@ -149,7 +149,7 @@ a time, {peak["vector"]:.0f} vector operations per nanosecond, if every multipli
 {operations(results, times)}
 
 The next table shows what limits each kernel. No processor computes it in less time than the longest chain of operations of which each waits for
-the one before, with the latencies of this one; and its units for arithmetic need a time for all operations, if every
+the previous one, with the latencies of this one; and its units for arithmetic need a time for all operations, if every
 multiplication is fused with an addition, a sine and a cosine taking {ANGLE}. The share is that of the larger of both in the time measured. What remains are loads
 and stores, operations that do not fuse, and the time to find independent ones.
 {limits(results, times)}

@@ -1,4 +1,4 @@
-//! The longest chain of operations of a function of which each waits for the one before.
+//! The longest chain of operations of a function of which each waits for the previous one.
 
 use super::{Argument, Function, Program};
 use crate::symbolic::{ExprId, Op};

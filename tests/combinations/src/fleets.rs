@@ -81,7 +81,9 @@ pub fn check_fleets(tree: &Tree, seed: u64) -> Option<Vec<String>> {
 fn without_couplings(tree: &Tree) -> Tree {
     let mut tree = tree.clone();
     if let Some(entries) = tree.as_object_mut() {
-        ["connectors", "couplings", "loop_joints"].into_iter().for_each(|list| drop(entries.remove(list)));
+        for list in ["connectors", "couplings", "loop_joints"] {
+            entries.remove(list);
+        }
     }
     let cylinders = tree.get_mut("cylinders").and_then(Tree::as_array_mut).into_iter().flatten();
     cylinders.filter_map(Tree::as_object_mut).for_each(|cylinder| drop(cylinder.remove("valve")));

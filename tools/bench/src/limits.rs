@@ -1,4 +1,4 @@
-//! What limits a kernel: the longest chain of operations of which each waits for the one before, and how many operations there are.
+//! What limits a kernel: the longest chain of operations of which each waits for the previous one, and how many operations there are.
 
 use std::hint::black_box;
 use std::time::Instant;

@@ -5,6 +5,11 @@
 //! the sign of a zero. So the inner loop has no branches to predict except the few ends of runs.
 
 use crane_codegen::program::Argument;
+use crane_jit::Rounding;
+
+/// How products and sums round in this build, in which bytecode and machine code agree.
+pub const ROUNDING: Rounding =
+    if cfg!(any(target_feature = "fma", target_arch = "aarch64")) { Rounding::Fused } else { Rounding::Separate };
 
 /// Number of a register.
 pub type Register = u16;

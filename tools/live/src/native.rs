@@ -4,11 +4,11 @@ use std::ops::Range;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use crane_jit::{Code as MachineCode, Line, Pause, Rounding, Step, Value, Width};
+use crane_jit::{Code as MachineCode, Line, Pause, Step, Value, Width};
 use crane_model::rt::lanes::f64x8;
 use crane_model::rt::sin_cos;
 
-use crate::bytecode::{Code, Fixed, Instruction, Kind};
+use crate::bytecode::{Code, Fixed, Instruction, Kind, ROUNDING};
 use crate::dual::eight_orders;
 use crate::machine::{ANGLES, Arguments, Form, Machine, Number};
 use crate::sines::{MOST, with_sines};
@@ -16,10 +16,6 @@ use crate::tangent::tangent;
 
 /// After as many calls of interpreted bytecode as machine code saves the time that it took to make it, about 1 µs per operation.
 const CALLS: u32 = 500;
-
-/// How products and sums round in this build, in which bytecode and machine code agree.
-pub const ROUNDING: Rounding =
-    if cfg!(any(target_feature = "fma", target_arch = "aarch64")) { Rounding::Fused } else { Rounding::Separate };
 
 /// The machine code of a function, from some call on.
 #[derive(Debug, Default)]

@@ -238,7 +238,7 @@ mod tests {
     use crane_model::rt::sin_cos_lanes;
 
     use super::*;
-    use crate::native::ROUNDING;
+    use crate::bytecode::ROUNDING;
 
     #[test]
     fn sines_in_a_line_have_the_bits_of_the_runtime() {

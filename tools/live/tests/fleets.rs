@@ -60,7 +60,9 @@ fn joined(each: &[Vec<f64>], parts: &[usize], len: usize) -> Vec<f64> {
     let mut all = Vec::new();
     for part in parts {
         let own = first * len..(first + part) * len;
-        each.iter().for_each(|numbers| all.extend_from_slice(&numbers[own.clone()]));
+        for numbers in each {
+            all.extend_from_slice(&numbers[own.clone()]);
+        }
         first += part;
     }
     all
