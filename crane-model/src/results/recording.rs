@@ -80,49 +80,43 @@ impl<'a> Recording<'a> {
 /// Records the samples of a run of a fleet, for each crane what peaks and cautions need.
 pub(crate) struct FleetRecording<'a> {
     fleet: &'a dyn DynCrane,
-    /// The crane and the column of each number of a sample.
-    places: Vec<[usize; 2]>,
     row: Vec<f64>,
-    tables: Vec<Table>,
+    /// The samples of each crane, and where each of its columns is in a row of all.
+    tables: Vec<(Table, Vec<usize>)>,
 }
 
 impl<'a> FleetRecording<'a> {
     /// A recording without samples.
     pub fn new(fleet: &'a dyn DynCrane, crane: &dyn DynCrane) -> Self {
         let columns = quantities_of(crane.description(), &[], Extent::Peaks);
-        let tables = vec![Table { columns: columns.clone(), rows: Vec::new() }; fleet.cranes()];
-        // Columns of all cranes have the same names, those of the first crane first.
-        let mut seen: HashMap<String, usize> = HashMap::new();
-        let places =
-            quantities_of(fleet.description(), &[], Extent::Peaks).into_iter().map(|Column { name, .. }| {
-                let column = columns.iter().position(|own| own.name == name).unwrap_or_default();
-                let before = seen.entry(name).or_default();
-                *before += 1;
-                [*before - 1, column]
-            });
-        Self { fleet, places: places.collect(), row: Vec::new(), tables }
+        // Columns of all cranes have the same names, those of the first crane first; the time is one for all.
+        let mut places: HashMap<String, Vec<usize>> = HashMap::new();
+        for (place, Column { name, .. }) in
+            quantities_of(fleet.description(), &[], Extent::Peaks).into_iter().enumerate()
+        {
+            places.entry(name).or_default().push(place);
+        }
+        let of_crane = |crane: usize| {
+            let place = |column: &Column| places[&column.name].get(crane).copied().unwrap_or_default();
+            (Table { columns: columns.clone(), rows: Vec::new() }, columns.iter().map(place).collect())
+        };
+        Self { fleet, row: Vec::new(), tables: (0..fleet.cranes()).map(of_crane).collect() }
     }
 
     /// Adds a sample.
     pub fn push(&mut self, sample: &Sample<'_>) {
         let &Sample { t, q, v, x, .. } = sample;
-        let Self { fleet, places, row, tables } = self;
+        let Self { fleet, row, tables } = self;
         row.clear();
         push_quantities(*fleet, Extent::Peaks, &StateAt { t, q, v, x }, &[], row);
-        let mut rows: Vec<Vec<f64>> = tables.iter().map(|table| vec![0.0; table.columns.len()]).collect();
-        for (number, [crane, column]) in row.iter().zip(places) {
-            rows[*crane][*column] = *number;
-        }
-        for (table, mut own) in tables.iter_mut().zip(rows) {
-            // Only the time is one for all.
-            own[0] = t;
-            table.rows.push(own);
+        for (table, places) in tables {
+            table.rows.push(places.iter().map(|place| row[*place]).collect());
         }
     }
 
     /// The samples of each crane so far.
     pub fn into_tables(self) -> Vec<Table> {
-        self.tables
+        self.tables.into_iter().map(|(table, _)| table).collect()
     }
 }
 

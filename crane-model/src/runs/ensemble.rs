@@ -288,7 +288,10 @@ struct OfFleet<'a> {
 impl Watch for OfFleet<'_> {
     fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
         self.recording.push(sample);
-        self.end = [sample.q.to_vec(), sample.v.to_vec()];
+        for (end, now) in self.end.iter_mut().zip([sample.q, sample.v]) {
+            end.clear();
+            end.extend_from_slice(now);
+        }
         ControlFlow::Continue(())
     }
 
