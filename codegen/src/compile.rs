@@ -1,14 +1,15 @@
 //! The pipeline, one stage per line.
 
+use std::mem;
 use std::path::Path;
 
 use crate::chain::{Analyses, Chain, Loops};
 use crate::diagnostic::{Diagnostics, SourceFile};
 use crate::emit::{GeneratedCode, emit};
-use crate::emit_c::{CCode, Precision, emit_c};
+use crate::emit_c::{CCode, Precision, emit_c, variables};
 use crate::lower::{LoweredProgram, lower};
 use crate::mechanics::{derive, derive_verbatim, left_out};
-use crate::program::{Function, FunctionId, RuntimeTrait, Shape};
+use crate::program::{Function, FunctionId, Product, RuntimeTrait, Shape, has_products};
 use crate::read::read;
 use crate::report::Report;
 use crate::validate::{self, Checked};
@@ -67,11 +68,11 @@ pub fn generate(chain: &Chain, analyses: Analyses, spec_file: &str) -> Generated
     emit(chain, analyses, &lowered, report_on(&lowered, chain, analyses), spec_file)
 }
 
-/// Compiles the named functions of a chain to C; `parameters` are the initial values of the live parameters, `header` is the name of the
-/// header's file, which the source includes.
+/// Compiles the named functions of a chain to C, and [products](Product) with their derivatives by their names; `parameters` are the
+/// initial values of the live parameters, `header` is the name of the header's file, which the source includes.
 ///
 /// # Errors
-/// A function that the crane does not have.
+/// A function that the crane does not have, or that has no products.
 pub fn generate_c(
     chain: &Chain,
     functions: &[impl AsRef<str>],
@@ -79,7 +80,8 @@ pub fn generate_c(
     precision: Precision,
     header: &str,
 ) -> Result<CCode, NoFunction> {
-    let is_chosen = |id: FunctionId| functions.iter().any(|chosen| chosen.as_ref() == id.name());
+    let chosen: Vec<(&str, Option<Product>)> = functions.iter().map(|name| Product::split(name.as_ref())).collect();
+    let is_chosen = |id: FunctionId| chosen.iter().any(|(name, _)| *name == id.name());
     let analyses = Analyses {
         statics: true,
         dynamics: true,
@@ -95,23 +97,40 @@ pub fn generate_c(
     let is_straight =
         |function: &&Function| !matches!(function.shape, Shape::Columns { .. } | Shape::TransformFactors { .. });
     let known: Vec<FunctionId> = program.functions.iter().filter(is_straight).map(|function| function.id).collect();
-    let unknown = |name: &&str| !known.iter().any(|id| id.name() == *name);
-    if let Some(name) = functions.iter().map(AsRef::as_ref).find(unknown) {
-        return Err(NoFunction { name: name.to_owned(), known: known.into_iter().map(FunctionId::name).collect() });
+    let closes_loops = !chain.loop_joints.is_empty();
+    let with_products: Vec<FunctionId> = known.iter().copied().filter(|id| has_products(*id, closes_loops)).collect();
+    let is_missing = |(name, product): &(&str, Option<Product>)| {
+        let ids = if product.is_some() { &with_products } else { &known };
+        !ids.iter().any(|id| id.name() == *name)
+    };
+    if let Some(missing) = chosen.iter().position(is_missing) {
+        let names = |ids: Vec<FunctionId>| ids.into_iter().map(FunctionId::name).collect();
+        let name = functions[missing].as_ref().to_owned();
+        return Err(NoFunction { name, known: names(known), with_products: names(with_products) });
     }
-    // `solve` needs the factors from `factorise`.
-    let is_wanted = |id: FunctionId| is_chosen(id) || id == FunctionId::Factorise && is_chosen(FunctionId::Solve);
-    program.functions.retain(|function| is_wanted(function.id));
+    let by = variables(&program);
+    for function in mem::take(&mut program.functions) {
+        let is_named = |id: FunctionId, product| chosen.contains(&(id.name(), product));
+        let products = Product::ALL.into_iter().filter(|product| is_named(function.id, Some(*product)));
+        let products: Vec<Function> = products.map(|product| program.product(&function, product, &by)).collect();
+        // `solve` needs the factors from `factorise`.
+        if is_named(function.id, None) || function.id == FunctionId::Factorise && is_named(FunctionId::Solve, None) {
+            program.functions.push(function);
+        }
+        program.functions.extend(products);
+    }
     Ok(emit_c(&chain, &lower(&program, None), parameters, precision, header))
 }
 
-/// A function that a crane does not have.
+/// A function that a crane does not have, or that has no products.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NoFunction {
     /// Its name.
     pub name: String,
     /// The functions that the crane has.
     pub known: Vec<&'static str>,
+    /// Those that have products with their derivatives.
+    pub with_products: Vec<&'static str>,
 }
 
 /// The cost of the functions of a chain and what is left out, without writing them.

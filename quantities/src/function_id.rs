@@ -15,6 +15,8 @@ pub enum Argument {
     Acceleration,
     /// A generalized force, the right-hand side `r` of a linear system.
     RightHandSide,
+    /// What a product with derivatives multiplies them with: weights of results, or changes of what the function depends on.
+    Multiplier,
     /// Positions at which drives are held, at the places of their coordinates.
     DrivePositions,
     /// Added inertias of single coordinates, a diagonal.

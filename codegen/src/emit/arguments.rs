@@ -35,6 +35,7 @@ pub fn argument_name(argument: Argument, number: Number) -> (&'static str, Token
         Argument::Parameters => ("c", quote!(&Constants)),
         Argument::Inputs => ("u", quote!(&Inputs)),
         Argument::LoopVarying | Argument::LiveOut => unreachable!("loops take from themselves"),
+        Argument::Multiplier => unreachable!("Rust has no products with derivatives"),
     }
 }
 
@@ -44,7 +45,7 @@ impl Writer<'_> {
         let mut used = Used::new();
         self.code.pieces.iter().for_each(|piece| self.use_inputs(piece, &mut used));
         let mut inputs: Vec<TokenStream> = Vec::new();
-        for argument in self.code.function.arguments {
+        for argument in &self.code.function.arguments {
             let (name, of) = argument_name(*argument, self.number);
             let name = if used.contains(argument) { format_ident!("{name}") } else { format_ident!("_{name}") };
             inputs.push(quote!(#name: #of));

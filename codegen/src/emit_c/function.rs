@@ -9,7 +9,7 @@ use super::words::{comment, field, not_for_variables};
 use crate::chain::{Chain, Input};
 use crate::emit::{Labels, Names, field_of, row_of_triangle};
 use crate::lower::{LoweredFunction, LoweredProgram, Statement};
-use crate::program::{Argument, Function, Shape};
+use crate::program::{Argument, Function, Product, Shape};
 use crate::symbolic::{ExprId, Op};
 
 /// Writes functions.
@@ -33,6 +33,8 @@ impl Writer<'_> {
         let scalar = code.function.shape == Shape::Scalar;
         let blank = if scalar {
             format!("    {number} out[1] = {{0}};\n")
+        } else if is_of_variables(code.function) {
+            format!("    *out = ({}){{0}};\n", self.name("variables"))
         } else {
             format!("    for (int k = 0; k < {numbers}; k++) {{\n        out[k] = 0;\n    }}\n")
         };
@@ -46,7 +48,7 @@ impl Writer<'_> {
     /// A long function: pieces that pass values on in an array provided by their caller.
     fn in_pieces(&self, code: &LoweredFunction, blank: &str, end: &str) -> String {
         let (function, number) = (code.function, self.precision.name());
-        let (name, count, kept) = (self.name(function.id.name()), numbers(&function.shape), code.kept.max(1));
+        let (name, kept) = (self.name(&function.name()), code.kept.max(1));
         let arguments = self.arguments(function);
         let (mut pieces, mut calls) = (String::new(), String::new());
         for (index, piece) in code.pieces.iter().enumerate() {
@@ -54,7 +56,7 @@ impl Writer<'_> {
             let (body, used) = self.piece(code, piece);
             let ignored = self.ignored(function, &used);
             let declared: Vec<&str> = arguments.iter().map(|(_, declared)| declared.as_str()).collect();
-            let declared = [declared.join(", "), format!("{number} kept[{kept}], {number} out[{count}]")].join(", ");
+            let declared = [declared.join(", "), format!("{number} kept[{kept}], {}", self.out(function))].join(", ");
             let unused = "    (void)kept;\n    (void)out;\n";
             let _ = write!(pieces, "static void {part}({declared})\n{{\n{ignored}{unused}{body}}}\n\n");
             let names: Vec<&str> = arguments.iter().map(|(name, _)| *name).collect();
@@ -76,11 +78,19 @@ impl Writer<'_> {
         let returned = if function.shape == Shape::Scalar {
             number
         } else {
-            arguments.push(format!("{number} out[{}]", numbers(&function.shape)));
+            arguments.push(self.out(function));
             "void"
         };
         let arguments = if arguments.is_empty() { "void".to_owned() } else { arguments.join(", ") };
-        format!("{returned} {}({arguments})", self.name(function.id.name()))
+        format!("{returned} {}({arguments})", self.name(&function.name()))
+    }
+
+    /// Declaration of the result.
+    fn out(&self, function: &Function) -> String {
+        if is_of_variables(function) {
+            return format!("{} *out", self.name("variables"));
+        }
+        format!("{} out[{}]", self.precision.name(), numbers(&function.shape))
     }
 
     /// Names and declarations of the arguments of a function.
@@ -92,16 +102,25 @@ impl Writer<'_> {
             Argument::Time => ("t", format!("{number} t")),
             Argument::BaseAddedInertia => array("base", 36),
             Argument::Factors => array("f", self.factors()),
-            vector => array(argument_name(*vector), n),
+            Argument::Multiplier => match function.product {
+                Some(Product::Jvp) => ("dx", format!("const {} *dx", self.name("variables"))),
+                _ => array("w", self.results(function)),
+            },
+            vector => array(argument_name(function, *vector), n),
         };
         let live = (!self.chain.parameters.is_empty()).then_some(("c", constants));
         let inputs = self.reads_inputs(function).then(|| ("u", format!("const {} *u", self.name("inputs"))));
         live.into_iter().chain(inputs).chain(function.arguments.iter().map(of)).collect()
     }
 
+    /// The number of results of a function that has products.
+    fn results(&self, function: &Function) -> usize {
+        function.id.extent().shape(self.chain.coordinates.len(), |count| self.chain.count(count)).product()
+    }
+
     /// Whether a function depends on inputs.
     fn reads_inputs(&self, function: &Function) -> bool {
-        self.lowered.functions.iter().any(|code| code.function.id == function.id && code.reads_inputs)
+        self.lowered.functions.iter().any(|code| std::ptr::eq(code.function, function) && code.reads_inputs)
     }
 
     /// The number of factors that `solve` takes from `factorise`.
@@ -112,7 +131,7 @@ impl Writer<'_> {
 
     /// Marks arguments that nothing reads as intentionally unused.
     fn ignored(&self, function: &Function, used: &Used) -> String {
-        let reads = |name: &str| used.iter().any(|argument| argument_name(*argument) == name);
+        let reads = |name: &str| used.iter().any(|argument| argument_name(function, *argument) == name);
         let unread = self.arguments(function).into_iter().filter(|(name, _)| !reads(name));
         unread.map(|(name, _)| format!("    (void){name};\n")).collect::<Vec<_>>().concat()
     }
@@ -120,7 +139,8 @@ impl Writer<'_> {
     /// Statements of a piece, and what they read.
     fn piece(&self, code: &LoweredFunction, piece: &[Statement]) -> (String, Used) {
         let names = Names::new(&self.lowered.program, 0).avoiding(&not_for_variables());
-        let mut body = Body { writer: self, code, names, used: Used::new(), text: String::new() };
+        let mut body =
+            Body { writer: self, code, names, fields: self.fields(), used: Used::new(), text: String::new() };
         for statement in piece {
             body.statement(statement);
         }
@@ -189,6 +209,8 @@ struct Body<'a> {
     writer: &'a Writer<'a>,
     code: &'a LoweredFunction<'a>,
     names: Names<'a>,
+    /// Of the [`variables`](super::variables).
+    fields: Vec<String>,
     used: Used,
     text: String,
 }
@@ -243,7 +265,11 @@ impl Body<'_> {
             &Statement::Output { slot, value } => {
                 let value = self.expression(value);
                 let places = places(&self.code.function.shape, slot);
-                let written = places.iter().map(|target| format!("out[{target}] = ")).collect::<Vec<_>>().concat();
+                let out = |place: &usize| match self.fields.get(*place) {
+                    Some(field) if is_of_variables(self.code.function) => format!("out->{field} = "),
+                    _ => format!("out[{place}] = "),
+                };
+                let written = places.iter().map(out).collect::<Vec<_>>().concat();
                 self.line(&format!("{written}{};", value.text()));
             }
             &Statement::Keep { slot, value } => {
@@ -306,10 +332,13 @@ impl Body<'_> {
         let Op::Symbol(symbol) = self.writer.lowered.program.op(id) else { unreachable!("inputs are symbols") };
         let symbol = self.writer.lowered.program.symbol(symbol);
         self.used.insert(symbol.argument);
-        let name = argument_name(symbol.argument);
+        let name = argument_name(self.code.function, symbol.argument);
         match symbol.argument {
             Argument::Time => name.to_owned(),
             Argument::Inputs => format!("{name}->slots[{}]", symbol.index),
+            Argument::Multiplier if self.code.function.product == Some(Product::Jvp) => {
+                format!("{name}->{}", self.fields[symbol.index])
+            }
             _ => format!("{name}[{}]", symbol.index),
         }
     }
@@ -337,14 +366,21 @@ fn operation(op: Op, precision: Precision, of: &mut dyn FnMut(ExprId) -> Express
     }
 }
 
+/// Whether the result is one number for each of the [`variables`](super::variables).
+fn is_of_variables(function: &Function) -> bool {
+    function.product == Some(Product::Vjp)
+}
+
 /// The name of an argument.
-fn argument_name(argument: Argument) -> &'static str {
+fn argument_name(function: &Function, argument: Argument) -> &'static str {
     match argument {
         Argument::Time => "t",
         Argument::Position => "q",
         Argument::Velocity => "v",
         Argument::Acceleration => "a",
         Argument::RightHandSide => "r",
+        Argument::Multiplier if function.product == Some(Product::Jvp) => "dx",
+        Argument::Multiplier => "w",
         Argument::DrivePositions => "positions",
         Argument::AddedInertia => "added_inertia",
         Argument::BaseAddedInertia => "base",

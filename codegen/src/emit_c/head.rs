@@ -6,7 +6,7 @@ use super::Precision;
 use super::function::{Writer, numbers};
 use super::words::{comment, field};
 use crate::chain::{Chain, CoordinateKind, Input};
-use crate::program::{Argument, Count, Extent, Function, FunctionId, Shape, Struct};
+use crate::program::{Argument, Count, Extent, Function, FunctionId, Product, Shape, Struct};
 
 /// The beginning of the source.
 pub fn source(chain: &Chain, header: &str) -> String {
@@ -29,6 +29,7 @@ pub fn header(writer: &Writer) -> String {
     text += "#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n";
     text += &parameters(writer);
     text += &inputs(writer);
+    text += &writer.variables();
     for code in &lowered.functions {
         text += &documentation(writer, code.function, code.count.total());
         let _ = write!(text, "{};\n\n", writer.signature(code.function));
@@ -148,21 +149,37 @@ fn macro_name(chain: &Chain) -> String {
 
 /// What a function computes, from which arguments, and the shape of its result.
 fn documentation(writer: &Writer, function: &Function, operations: usize) -> String {
-    let mut text = format!("/* {}\n   {}\n", comment(function.doc), comment(function.equation));
-    for argument in function.arguments {
-        let _ = writeln!(text, "   {}", of_argument(*argument));
+    let mut text = format!("/* {}{}\n   {}\n", product(function), comment(function.doc), comment(function.equation));
+    for argument in &function.arguments {
+        let _ = writeln!(text, "   {}", of_argument(function, *argument));
     }
     let _ = writeln!(text, "   {}; {operations} operations. */", result(writer.chain, function));
     text
 }
 
-fn of_argument(argument: Argument) -> &'static str {
+/// What a product is, before the documentation of the function.
+fn product(function: &Function) -> String {
+    let name = function.id.name();
+    match function.product {
+        None => String::new(),
+        Some(Product::Vjp) => format!("w' J, derivatives of the results of {name}, weighted and summed:\n   "),
+        Some(Product::Jvp) => {
+            format!("J dx, changes of the results of {name} with changes of all that it depends on:\n   ")
+        }
+    }
+}
+
+fn of_argument(function: &Function, argument: Argument) -> &'static str {
     match argument {
         Argument::Time => "t: time, s",
         Argument::Position => "q: coordinates, m and rad",
         Argument::Velocity => "v: their rates, m/s and rad/s",
         Argument::Acceleration => "a: their accelerations, m/s2 and rad/s2",
         Argument::RightHandSide => "r: generalized forces, N and N m",
+        Argument::Multiplier => match function.product {
+            Some(Product::Jvp) => "dx: changes, in the units of what changes",
+            _ => "w: weights of the results, in their order",
+        },
         Argument::DrivePositions => {
             "positions: at which the drives are held, at the places of their coordinates, m and rad"
         }
@@ -190,13 +207,16 @@ fn names_of(chain: &Chain, of: Count) -> String {
 }
 
 /// The shape of a result in words.
-fn result(chain: &Chain, Function { id, shape, .. }: &Function) -> String {
+fn result(chain: &Chain, Function { id, product, shape, .. }: &Function) -> String {
     let n = chain.coordinates.len();
     let names = || match id.extent() {
         Extent::List(_, count) => names_of(chain, count.factors().first().copied().unwrap_or(count)),
         _ => String::new(),
     };
     match shape {
+        _ if *product == Some(Product::Vjp) => {
+            "out: derivatives by all that the function depends on, of an input by its value; units of w' f over those of each".to_owned()
+        }
         Shape::Vectors(_) if *id == FunctionId::CylinderStates => {
             format!("out: length, its rate and its derivative by the joint's coordinate, of the {}", names())
         }

@@ -7,12 +7,15 @@ mod arithmetic;
 mod function;
 mod head;
 mod rt;
+mod variables;
 mod words;
 
 use crate::chain::Chain;
 use crate::emit::Labels;
 use crate::lower::LoweredProgram;
 use function::Writer;
+
+pub use variables::variables;
 
 /// The type of all numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -22,9 +22,10 @@ fn program(build: impl for<'g> FnOnce(&'g Graph, [Expr<'g>; 5]) -> Vec<Expr<'g>>
     });
     let function = Function {
         id: FunctionId::Forces,
+        product: None,
         doc: "",
         equation: "",
-        arguments: &[Argument::Position],
+        arguments: vec![Argument::Position],
         shape: Shape::Vector(outputs.len()),
         outputs,
         trace,

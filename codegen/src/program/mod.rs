@@ -4,7 +4,7 @@ mod count;
 mod expansion;
 mod interpret;
 mod longest_chain;
-mod pull_back;
+mod product;
 mod shape;
 
 use std::collections::HashMap;
@@ -15,7 +15,7 @@ pub use count::OperationCount;
 pub use crane_quantities::{Argument, Count, Extent, FunctionId, Item, RuntimeTrait};
 pub use interpret::Inputs;
 pub use longest_chain::Latencies;
-pub use pull_back::PULLED_BACK;
+pub use product::{PULLED_BACK, Product, has_products};
 pub use shape::{ConcurrentAxes, Shape, Struct};
 
 /// Functions that share one graph of expressions.
@@ -49,12 +49,14 @@ pub struct Symbol {
 pub struct Function {
     /// Which one it is.
     pub id: FunctionId,
+    /// The product with its derivatives, if it is not the function itself.
+    pub product: Option<Product>,
     /// First line of its documentation: what it returns, with units.
     pub doc: &'static str,
     /// Equations it implements, and their source.
     pub equation: &'static str,
     /// Arguments in addition to the live parameters and the inputs, in order.
-    pub arguments: &'static [Argument],
+    pub arguments: Vec<Argument>,
     /// Shape of the result.
     pub shape: Shape,
     /// Expressions of the result's slots, as many as [`Shape::len`], in its order.
@@ -64,6 +66,12 @@ pub struct Function {
 }
 
 impl Function {
+    /// Its name, an identifier.
+    #[must_use]
+    pub fn name(&self) -> String {
+        format!("{}{}", self.id.name(), self.product.map_or("", Product::suffix))
+    }
+
     /// The function with the sweeps that derived it.
     #[must_use]
     pub fn by(self, trace: SweepTrace) -> Self {
@@ -156,7 +164,9 @@ impl Program {
         let mut moved: Vec<Option<ExprId>> = vec![None; self.operations.len()];
         for id in self.ids().filter(|id| needed[id.index()]) {
             let op = self.op(id).map(|operand| moved[operand.index()].expect("operands come before their users"));
-            moved[id.index()] = Some(alone.append(op));
+            let copy = alone.append(op);
+            alone.index.entry(op).or_insert(copy);
+            moved[id.index()] = Some(copy);
         }
         let outputs = function.outputs.iter().filter_map(|id| moved[id.index()]).collect();
         alone.functions = vec![Function { outputs, trace: SweepTrace::default(), ..function.clone() }];

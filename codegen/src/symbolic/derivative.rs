@@ -4,36 +4,63 @@ use super::Expr;
 use super::graph::Graph;
 use super::op::{ExprId, Op};
 
+/// What makes the change of a node from those of its operands.
+type Rule<'r, 'g> = &'r dyn Fn(ExprId, &dyn Fn(ExprId) -> Expr<'g>) -> Expr<'g>;
+
 impl Graph {
     /// `∂f/∂x` of expressions with respect to an input x, forward along the graph: one derivative per node between x and an expression.
     ///
     /// Where a minimum, a maximum or a choice changes branches, the result is the derivative on the side that [`Op::Select`] takes.
     /// For Stumpff's functions `c_k' = (k c_{k+2} − c_{k+1})/2`.
     pub fn derivatives<'g>(&'g self, of: &[Expr<'g>], by: Expr<'g>) -> Vec<Expr<'g>> {
+        self.forward(of, &[by], &[self.constant(1.0)], &|id, of| self.derivative(id, of))
+    }
+
+    /// `Σ ∂f/∂x δx` of expressions f, with a change δx of each input x of a list: forward along the graph, so that the number of inputs hardly
+    /// matters.
+    ///
+    /// At kinks the derivative is that of [`derivatives`](Self::derivatives), and zero for a root at 0.
+    pub fn push_forward<'g>(&'g self, of: &[Expr<'g>], by: &[Expr<'g>], changes: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let zero = self.constant(0.0);
-        let last = of.iter().map(|f| f.id().0).max().unwrap_or(0);
-        let mut needed = vec![false; last as usize + 1];
+        self.forward(of, by, changes, &|id, of| match self.op(id) {
+            Op::Sqrt(_) => self.expr(id).select(self.derivative(id, of), zero),
+            _ => self.derivative(id, of),
+        })
+    }
+
+    /// Changes of expressions from those of inputs, with a rule that makes the change of a node from those of its operands.
+    fn forward<'g>(
+        &'g self,
+        of: &[Expr<'g>],
+        by: &[Expr<'g>],
+        changes: &[Expr<'g>],
+        rule: Rule<'_, 'g>,
+    ) -> Vec<Expr<'g>> {
+        let zero = self.constant(0.0);
+        // Expressions with a smaller id than all inputs cannot depend on them.
+        let first = by.iter().map(|x| x.id().index()).min().unwrap_or(0);
+        let last = of.iter().map(|f| f.id().index() + 1).max().unwrap_or(0);
+        let mut needed = vec![false; last];
         for f in of {
             needed[f.id().index()] = true;
         }
-        for id in (0..=last).rev().map(ExprId).filter(|id| id.0 > by.id().0) {
+        for id in (first..last).rev().map(ExprId::at) {
             if needed[id.index()] {
                 self.op(id).operands().for_each(|operand| needed[operand.index()] = true);
             }
         }
-        // Expressions with a smaller id than x cannot depend on x.
-        let mut derivatives: Vec<Option<Expr<'g>>> = vec![None; last as usize + 1];
-        for id in (by.id().0..=last).map(ExprId).filter(|id| needed[id.index()]) {
-            let of = |operand: ExprId| derivatives[operand.index()];
-            let depends = id == by.id() || self.op(id).operands().any(|operand| of(operand).is_some());
-            if depends {
-                let one = || self.constant(1.0);
-                let slope =
-                    if id == by.id() { one() } else { self.derivative(id, &|operand| of(operand).unwrap_or(zero)) };
-                derivatives[id.index()] = (!slope.is_zero()).then_some(slope);
+        let mut known: Vec<Option<Expr<'g>>> = vec![None; last];
+        for (x, change) in by.iter().zip(changes).filter(|(x, _)| x.id().index() < last) {
+            known[x.id().index()] = (!change.is_zero()).then_some(*change);
+        }
+        for id in (first..last).map(ExprId::at).filter(|id| needed[id.index()]) {
+            let of = |operand: ExprId| known[operand.index()];
+            if self.op(id).operands().any(|operand| of(operand).is_some()) {
+                let change = rule(id, &|operand| of(operand).unwrap_or(zero));
+                known[id.index()] = (!change.is_zero()).then_some(change);
             }
         }
-        of.iter().map(|f| derivatives[f.id().index()].unwrap_or(zero)).collect()
+        of.iter().map(|f| known[f.id().index()].unwrap_or(zero)).collect()
     }
 
     /// The derivative of a node from those of its operands.

@@ -42,6 +42,12 @@ impl Graph {
         Graph { nodes: RefCell::default(), recorder: RefCell::default(), simplify: false }
     }
 
+    /// A graph that simplifies, with the nodes of another.
+    #[must_use]
+    pub fn resumed(nodes: Nodes) -> Self {
+        Graph { nodes: RefCell::new(nodes), ..Self::simplifying() }
+    }
+
     /// The number `value`.
     pub fn constant(&self, value: f64) -> Expr<'_> {
         self.expr(self.intern(Op::Constant(Constant::new(value))))
@@ -95,7 +101,7 @@ impl Graph {
     }
 
     /// A node as an expression.
-    pub(super) fn expr(&self, id: ExprId) -> Expr<'_> {
+    pub(crate) fn expr(&self, id: ExprId) -> Expr<'_> {
         Expr::new(self, id)
     }
 }

@@ -12,9 +12,10 @@ fn program(build: impl for<'g> Fn(&'g Graph, Expr<'g>, Expr<'g>) -> Vec<Expr<'g>
     let shape = Shape::Vector(outputs.len());
     let function = Function {
         id: FunctionId::Forces,
+        product: None,
         doc: "",
         equation: "",
-        arguments: &[Argument::Position],
+        arguments: vec![Argument::Position],
         shape,
         outputs,
         trace: SweepTrace::default(),
@@ -229,6 +230,33 @@ fn what_is_pulled_back_is_the_weighted_sum_of_derivatives() {
             assert!((found - expected).abs() < 1e-13 * (1.0 + expected.abs()), "{x}, {y}: {found} for {expected}");
         }
     }
+}
+
+/// As above.
+#[test]
+fn what_is_pushed_forward_is_the_sum_of_derivatives_and_changes() {
+    let graph = Graph::simplifying();
+    let symbols = [graph.symbol(SymbolId(0)), graph.symbol(SymbolId(1))];
+    let of = with_derivatives(symbols[0], symbols[1]);
+    let changes = [0.7, -1.9];
+    let given = changes.map(|change| graph.constant(change));
+    let mut outputs: Vec<_> = graph.push_forward(&of, &symbols, &given).into_iter().map(Expr::id).collect();
+    for by in symbols {
+        outputs.extend(graph.derivatives(&of, by).into_iter().map(Expr::id));
+    }
+    let root = symbols[0].squared().sqrt();
+    outputs.push(graph.push_forward(&[root], &symbols, &given)[0].id());
+    let count = of.len();
+    let p = program(|g, _, _| outputs.iter().map(|id| g.expr(*id)).collect(), graph);
+    for (x, y) in [(0.7, -1.2), (-1.3, 0.4), (1.6, 1.1)] {
+        let all = values(&p, x, y);
+        for i in 0..count {
+            let (found, expected) = (all[i], changes[0] * all[count + i] + changes[1] * all[2 * count + i]);
+            assert!((found - expected).abs() < 1e-13 * (1.0 + expected.abs()), "{x}, {y}: {found} for {expected}");
+        }
+    }
+    // A root at 0 has no slope.
+    assert_eq!(values(&p, 0.0, 1.0).last(), Some(&0.0));
 }
 
 #[test]

@@ -10,7 +10,7 @@ use crate::observe::{equilibrium, live};
 use crate::tree::Tree;
 
 /// The name of the check.
-pub const NAME: &str = "eight cranes as one";
+pub const NAME: &str = "runs of a fleet";
 const CRANES: usize = 8;
 /// Length of the run, its interval of results, and initial rates, s, m/s and rad/s.
 const RUN: [f64; 3] = [0.3, 0.05, 0.05];

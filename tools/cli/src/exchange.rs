@@ -12,6 +12,7 @@ use crane_codegen::{
     emit_c::{CCode, Precision},
     exchange,
     exchange::Imported,
+    program::Product,
 };
 
 use crate::{
@@ -68,7 +69,7 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
         }
         Language::C => {
             let by_forces = ["forces", "forward_dynamics"];
-            if let Some(name) = options.functions.iter().find(|name| by_forces.contains(&name.as_str()))
+            if let Some(name) = options.functions.iter().find(|name| by_forces.contains(&Product::split(name).0))
                 && chain.has_force_states()
             {
                 return Err(Problem::usage(
@@ -120,8 +121,12 @@ fn in_c(options: &Export, chain: &Chain, parameters: &[f64], header: &str) -> Ou
         CNumber::Single => Precision::Single,
     };
     compile::generate_c(chain, &options.functions, parameters, precision, header).map_err(
-        |NoFunction { name, known }| {
-            let help = format!("it has {}", known.join(", "));
+        |NoFunction { name, known, with_products }| {
+            let products = format!("products with derivatives, `_vjp` and `_jvp`, of {}", with_products.join(", "));
+            let help = match Product::split(&name) {
+                (_, Some(_)) => format!("it has {products}"),
+                _ => format!("it has {}; and {products}", known.join(", ")),
+            };
             Problem::usage(format!("{} has no function `{name}` in C", chain.name), help)
         },
     )
@@ -185,7 +190,7 @@ fn keep_loops(options: &Export, crane: &str, joint: &str) -> Outcome<()> {
             format!("{crane} has a loop, which `{joint}` closes; exported models are open chains"),
             "export a functional mock-up unit (`--format fmu`) for co-simulation, or a spec without `loop_joints` and exact pads, and close the loop in the other program",
         )),
-        Language::C => match options.functions.iter().find(|name| SOLVED.contains(&name.as_str())) {
+        Language::C => match options.functions.iter().find(|name| SOLVED.contains(&Product::split(name).0)) {
             None => Ok(()),
             Some(name) => Err(Problem::usage(
                 format!(

@@ -20,17 +20,16 @@ pub mod instance;
 pub mod resources;
 pub mod variables;
 
-use crane_codegen::chain::Chain;
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
 
 pub use instance::Instance;
 
-/// What makes the crane of a shared library: of any spec, as [`live`], or a compiled one, which is that of one spec.
-pub type Make = fn(Chain) -> Box<dyn DynCrane>;
+/// What makes the crane of a shared library from the live one of the spec in a unit: that one, as [`live`], or a compiled one, which is that of one spec.
+pub type Make = fn(&LiveCrane) -> Box<dyn DynCrane>;
 
-/// A live crane of any spec.
+/// The live crane itself, which can be that of any spec.
 #[must_use]
-pub fn live(chain: Chain) -> Box<dyn DynCrane> {
-    Box::new(LiveCrane::new(chain))
+pub fn live(crane: &LiveCrane) -> Box<dyn DynCrane> {
+    Box::new(crane.clone())
 }

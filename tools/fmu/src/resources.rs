@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crane_codegen::{Checked, SourceFile, compile};
+use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 
 use crate::Make;
@@ -18,6 +19,8 @@ pub const PARAMETERS: &str = "parameters.csv";
 pub struct Opened {
     /// The crane, with the parameters of its spec.
     pub crane: Box<dyn DynCrane>,
+    /// The live crane of the spec.
+    pub live: LiveCrane,
     /// Values of its live parameters at the start, in the order of the description.
     pub parameters: Vec<f64>,
     /// Warnings as rendered text; empty if there are none.
@@ -43,7 +46,8 @@ pub fn open(folder: &Path, make: Make) -> Result<Opened, String> {
     let source = SourceFile::from_bytes(SPEC, &bytes).map_err(|mistakes| mistakes.to_string())?;
     let Checked { chain, warnings } = compile::check(&source).map_err(|mistakes| mistakes.to_string())?;
     let spec_hash = chain.spec_hash.clone();
-    let crane = make(chain);
+    let live = LiveCrane::new(chain);
+    let crane = make(&live);
     let compiled_from = &crane.description().spec_hash;
     if *compiled_from != *spec_hash {
         return Err(format!(
@@ -62,7 +66,7 @@ pub fn open(folder: &Path, make: Make) -> Result<Opened, String> {
         let name = &crane.description().parameters[parameter].name;
         return Err(format!("{PARAMETERS} has no value of `{name}`: export the unit again"));
     }
-    Ok(Opened { crane, parameters, warnings: warnings.lines().collect::<Vec<_>>().join("; ") })
+    Ok(Opened { crane, live, parameters, warnings: warnings.lines().collect::<Vec<_>>().join("; ") })
 }
 
 /// A file of the folder.

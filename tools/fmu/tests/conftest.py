@@ -92,6 +92,12 @@ def simulate(crane, tmp_path_factory):
     return run
 
 
+def states_and_rates(file):
+    """Names of all states of a unit, and of their derivatives."""
+    pairs = [(variable.derivative.name, variable.name) for variable in read_model_description(file).modelVariables if variable.derivative]
+    return [list(names) for names in zip(*pairs)]
+
+
 class Slave:
     """A unit in co-simulation: variables by name, messages in a list; everything else is FMPy's."""
 

@@ -45,7 +45,7 @@ def test_parameters_and_inputs_change_under_way(units, steered, slave):
     np.testing.assert_allclose(compiled.get(*names), live.get(*names), rtol=1e-9, atol=1e-9)
     references = [compiled.references[name] for name in names]
     directions = [unit.getDirectionalDerivative(references, [unit.references["gust"]], [1.0]) for unit in (compiled, live)]
-    # Central differences with steps of 6e-6 of values whose rounding is 1e-15.
+    # Of outputs central differences with steps of 6e-6 of values whose rounding is 1e-15.
     np.testing.assert_allclose(*directions, rtol=1e-8, atol=1e-8)
     compiled.reset()
     compiled.begin()

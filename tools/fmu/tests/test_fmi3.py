@@ -10,6 +10,7 @@ from fmpy import extract, read_model_description, simulate_fmu
 from fmpy.fmi3 import FMU3Slave
 from fmpy.validation import validate_fmu
 
+from conftest import states_and_rates
 from test_units import CRANES, FLEXIBLE, HYDRAULIC, PENDULUM, acceleration
 
 VERSION = ("--fmi", "3.0")
@@ -126,8 +127,28 @@ def test_parameters_states_and_derivatives(export, open_unit, tmp_path):
     unknowns, knowns = ([unit.references[name] for name in those] for those in names)
     found = unit.getDirectionalDerivative(unknowns, knowns, [2.0, 3.0])
     expected = [2 * acceleration(np.pi / 2 - here, 50), 2 * 1.5 * np.sin(here), 3.0]
-    # Central differences with steps of 6e-6: truncation 1e-11, rounding 1e-10.
-    assert np.abs(np.array(found) - expected).max() < 1e-7
+    off = np.abs(np.array(found) - expected)
+    # Of outputs central differences with steps of 6e-6: truncation 1e-11, rounding 1e-10.
+    assert off[1] < 1e-7 and max(off[0], off[2]) < 1e-12
+    # With weights 1, 4, 5: the transpose, of the same numbers.
+    columns = np.array([unit.getDirectionalDerivative(unknowns, [known], [1.0]) for known in knowns])
+    back = unit.getAdjointDerivative(unknowns, knowns, [1.0, 4.0, 5.0], nSensitivity=2)
+    assert np.abs(np.array(back) - columns @ [1.0, 4.0, 5.0]).max() < 1e-12
+
+
+def test_adjoint_derivatives_are_the_transpose_of_directional_ones(export, open_unit):
+    """With valves, their states, joints that stick and feet, in motion: of all rates, and of an output, which both difference."""
+    file = export("eight_link_hydraulic", *VERSION, name="3")
+    unit = open_unit(file)
+    follow(unit, 0, 0.2, 4)
+    states, rates = states_and_rates(file)
+    unknowns = [unit.references[name] for name in [*rates, *states[:3], "log_middle_z"]]
+    knowns = [unit.references[name] for name in states]
+    columns = np.array([unit.getDirectionalDerivative(unknowns, [known], [1.0]) for known in knowns])
+    weights = np.cos(np.arange(len(unknowns))) / np.maximum(np.abs(columns).max(axis=0), 1.0)
+    back = np.array(unit.getAdjointDerivative(unknowns, knowns, weights, nSensitivity=len(knowns)))
+    for found, column, name in zip(back, columns, states):
+        assert abs(found - column @ weights) <= 1e-11 * np.abs(column * weights).max(), name
 
 
 def test_mistakes_of_the_importer_are_refused_with_words(export, open_unit):
@@ -149,7 +170,9 @@ def test_mistakes_of_the_importer_are_refused_with_words(export, open_unit):
     refused(lambda: unit.getInt32([0]), "Int32", "Float64")
     refused(lambda: unit.getClock([0]), "Clock")
     refused(lambda: unit.doStep(0.5, 0.1), "t = 0.5", "is at t = 0")
-    refused(lambda: unit.getAdjointDerivative(payload, payload, [1.0]), "directional")
+    refused(lambda: unit.getAdjointDerivative(payload, payload, [1.0]), "payload", "neither a state nor an input")
+    hook = [unit.references["hook_theta"]]
+    refused(lambda: unit.getAdjointDerivative(hook, hook, [float("nan")]), "weight of hook_theta is NaN")
     # None of this has damaged the crane.
     assert get(unit, "payload") == [800]
     follow(unit, 0, 0.1, 1)

@@ -161,6 +161,8 @@ pub struct Arguments<'a, T> {
     pub a: &'a [T],
     /// Right-hand side of a linear system.
     pub r: &'a [T],
+    /// Weights of the results of the function of a product.
+    pub multiplier: &'a [T],
     /// Positions at which drives are held.
     pub positions: &'a [T],
     /// Added inertias of single coordinates.
@@ -186,6 +188,7 @@ impl<T: Number> Arguments<'_, T> {
             v: &[],
             a: &[],
             r: &[],
+            multiplier: &[],
             positions: &[],
             added_inertia: &[],
             base: &[],
@@ -203,6 +206,7 @@ impl<T: Number> Arguments<'_, T> {
             Argument::Velocity => self.v,
             Argument::Acceleration => self.a,
             Argument::RightHandSide => self.r,
+            Argument::Multiplier => self.multiplier,
             Argument::DrivePositions => self.positions,
             Argument::AddedInertia => self.added_inertia,
             Argument::BaseAddedInertia => self.base,

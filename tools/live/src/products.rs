@@ -11,7 +11,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crane_codegen::chain::Input;
-use crane_codegen::program::{Argument, Extent, FunctionId, Item, PULLED_BACK};
+use crane_codegen::program::{self, Argument, FunctionId, PULLED_BACK};
 use crane_model::dyn_crane::DynModel;
 
 use crate::LiveCrane;
@@ -49,20 +49,10 @@ pub fn numbers(crane: &LiveCrane) -> Vec<(String, usize)> {
     own.map(|(name, count)| (name.to_owned(), count)).into_iter().chain(parameters).chain(inputs).collect()
 }
 
-/// Whether a function has products: its results are numbers of their own, which follow from the state alone. With closed loops, accelerations are not
-/// those of the function.
+/// Whether a function has products, see [`program::has_products`].
 #[must_use]
 pub fn has_products(crane: &LiveCrane, function: FunctionId) -> bool {
-    use FunctionId as F;
-    let others = [Argument::RightHandSide, Argument::DrivePositions, Argument::AddedInertia, Argument::Factors];
-    let of_factors = matches!(function, F::DynamicResidualDerivatives | F::ResidualFactors | F::MassFactors);
-    let is_plain = match function.extent() {
-        Extent::Number | Extent::Vector => true,
-        Extent::List(item, _) => item != Item::Transform,
-        Extent::Matrix | Extent::Base | Extent::Other => false,
-    };
-    let is_open = function == F::ForwardDynamics && !crane.loop_joints().is_empty();
-    is_plain && !of_factors && !is_open && !others.iter().any(|other| function.arguments().contains(other))
+    program::has_products(function, !crane.loop_joints().is_empty())
 }
 
 /// `wᵀ J` of a function of a crane, with a workspace for its calls.
@@ -130,7 +120,7 @@ impl PullBack {
     pub fn at(&mut self, state: &State<'_>, weights: &[f64]) -> Pulled<'_> {
         let Self { library, function, machine, inputs, results, places } = self;
         let &State { t, q, v, a } = state;
-        let arguments = Arguments { t, q, v, a, r: weights, inputs, ..Arguments::none() };
+        let arguments = Arguments { t, q, v, a, multiplier: weights, inputs, ..Arguments::none() };
         if let Ok(Some(routine)) = library.pulled_back(*function) {
             routine.run(machine, &arguments, results);
         }

@@ -99,6 +99,7 @@ fn results<T: Parts>(
         v: &waves(n, zero, 0.4, 0.7),
         a: &waves(n, zero, 0.4, 2.9),
         r: &waves(n, zero, 100.0, 2.1),
+        multiplier: &[],
         positions: &waves(n, guess, 0.05, 1.1),
         added_inertia: &waves(n, |_| 2.0, 0.5, 0.9),
         base: &base,

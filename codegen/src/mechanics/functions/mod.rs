@@ -273,6 +273,6 @@ fn shape(chain: &Chain, extent: Extent) -> Shape {
 fn shaped(id: FunctionId, shape: Shape, outputs: Vec<Expr<'_>>) -> Function {
     assert_eq!(shape.len(), outputs.len(), "{id:?}");
     let outputs = outputs.into_iter().map(Expr::id).collect();
-    let (doc, equation, arguments) = (id.doc(), id.equation(), id.arguments());
-    Function { id, doc, equation, arguments, shape, outputs, trace: SweepTrace::default() }
+    let (doc, equation, arguments) = (id.doc(), id.equation(), id.arguments().to_vec());
+    Function { id, product: None, doc, equation, arguments, shape, outputs, trace: SweepTrace::default() }
 }

@@ -37,9 +37,10 @@ fn derive(chain: &Chain) -> Program {
 fn function(chain: &Chain, outputs: Vec<Expr<'_>>) -> Function {
     let (id, n) = (FunctionId::DynamicResidualDerivatives, chain.coordinates.len());
     let outputs = outputs.into_iter().map(Expr::id).collect();
-    let (doc, equation, arguments) = (id.doc(), id.equation(), id.arguments());
+    let (doc, equation, arguments) = (id.doc(), id.equation(), id.arguments().to_vec());
     Function {
         id,
+        product: None,
         doc,
         equation,
         arguments,

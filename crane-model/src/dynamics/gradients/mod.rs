@@ -35,6 +35,7 @@
 //! | module | content |
 //! |---|---|
 //! | `rates` | F, and its derivative along directions |
+//! | `moment` | the same for a moment without a motion |
 //! | `jump` | where functions of time are not smooth |
 //! | `follower` | the derivatives, step by step |
 //! | `pull_back` | the transpose of `rates` |
@@ -43,6 +44,7 @@
 mod adjoint;
 mod follower;
 mod jump;
+mod moment;
 mod pull_back;
 mod rates;
 
@@ -53,6 +55,7 @@ use crate::{
 };
 pub use adjoint::Trace;
 use follower::Follower;
+pub use moment::{pull_rates, push_rates};
 
 /// A state of a crane at which its functions are given with slopes.
 #[derive(Clone, Copy, Debug)]

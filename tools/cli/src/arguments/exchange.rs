@@ -62,7 +62,7 @@ pub struct Export {
     /// File to write [default: the crane's name with .urdf, .xml, .c or .fmu]
     #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: Option<PathBuf>,
-    /// Functions to write in C, separated by commas; a wrong name lists all
+    /// Functions to write in C, separated by commas, with `_vjp` or `_jvp` products with their derivatives; a wrong name lists all
     #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "mass_matrix,bias,forward_dynamics")]
     pub functions: Vec<String>,
     /// Type of numbers in C

@@ -150,6 +150,14 @@ fn a_crane_goes_to_other_programs_and_comes_back() {
         &["export", "knuckle_boom", "--format", "c", "--input", "pull=3"],
         &["`--input`", "where the exported crane runs"],
     );
+    refused(
+        &["export", "knuckle_boom", "--format", "c", "--functions", "bias_vjp,mass_matrix_vjp"],
+        &["no function `mass_matrix_vjp` in C", "`_vjp` and `_jvp`, of ", "forward_dynamics"],
+    );
+    refused(
+        &["export", "eight_link_hydraulic", "--format", "c", "--functions", "forward_dynamics_jvp"],
+        &["`forward_dynamics_jvp` of", "would lack the forces that have states"],
+    );
     refused(&["export", "knuckle_bom", "--format", "urdf"], &["there is no crane `knuckle_bom`", "`knuckle_boom`"]);
     refused(
         &["export", "knuckle_boom", "--format", "mjcf", "--set", "load=1"],
@@ -170,7 +178,9 @@ fn what_is_exported_of_closed_loops_says_what_it_lacks() {
     let words =
         ["`forward_dynamics` of", "would be that of the open chain", "`loop_jacobians`", "docs/manual/loops.md"];
     refused(&["export", spec, "--format", "c", "-o", &file("loops.c")], &words);
-    let functions = ["--functions", "bias,forces,solve_mass,loop_states,loop_jacobians"];
+    let product = ["export", spec, "--format", "c", "--functions", "forward_dynamics_vjp", "-o", &file("loops.c")];
+    refused(&product, &["`forward_dynamics_vjp` of", "would be that of the open chain"]);
+    let functions = ["--functions", "bias,forces,forces_vjp,solve_mass,loop_states,loop_jacobians"];
     assert!(
         crane(&[&["export", spec, "--format", "c", "-o", &file("loops.c")][..], &functions].concat()).status.success()
     );

@@ -289,18 +289,27 @@ unsafe extern "C" fn fmi3GetDirectionalDerivative(
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3GetAdjointDerivative(
     component: Component,
-    _unknowns: *const c_uint,
-    _unknown_count: usize,
-    _knowns: *const c_uint,
-    _known_count: usize,
-    _seed: *const c_double,
-    _seed_count: usize,
-    _sensitivity: *mut c_double,
-    _sensitivity_count: usize,
+    unknowns: *const c_uint,
+    unknown_count: usize,
+    knowns: *const c_uint,
+    known_count: usize,
+    seed: *const c_double,
+    seed_count: usize,
+    sensitivity: *mut c_double,
+    sensitivity_count: usize,
 ) -> Status {
     // SAFETY: as the FMI standard guarantees.
     unsafe {
-        with(component, |_| Err(Fault::Error("a crane has no adjoint derivatives: use directional ones".to_owned())))
+        with(component, |unit| {
+            as_many(unknown_count, seed_count)?;
+            as_many(known_count, sensitivity_count)?;
+            unit.instance.adjoint_derivative(
+                array(unknowns, unknown_count)?,
+                array(knowns, known_count)?,
+                array(seed, unknown_count)?,
+                array_mut(sensitivity, known_count)?,
+            )
+        })
     }
 }
 

@@ -21,6 +21,7 @@ pub fn write_description(crane: &dyn DynModel) -> String {
     ];
     if subject.can_be_integrated() {
         common.push(yes("providesDirectionalDerivatives"));
+        common.push(yes("providesAdjointDerivatives"));
         let no_completed_steps = ("needsCompletedIntegratorStep", "false".to_owned());
         xml.leaf("ModelExchange", &[&common[..], &[no_completed_steps]].concat());
     }

@@ -7,7 +7,7 @@ mod state;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use crane_live::Motion;
+use crane_live::{LiveCrane, Motion};
 use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::{Contacts, InitialState, Settings, next_stop};
 use crane_model::force_states::{self, ForceStates};
@@ -18,6 +18,7 @@ use crane_model::statics;
 use crate::Make;
 use crate::resources::{self, Opened};
 use crate::variables::{self, Source, Variable};
+use derivatives::Jacobian;
 pub use fault::Fault;
 use state::Moment;
 pub use state::State;
@@ -27,6 +28,8 @@ pub use state::State;
 /// A crane begins where its runs begin: in the static equilibrium if the spec asks for statics, otherwise at the guess.
 pub struct Instance {
     crane: Box<dyn DynCrane>,
+    /// The live crane of the same spec, for exact derivatives.
+    live: LiveCrane,
     /// What identifies the crane and its variables.
     token: String,
     variables: Vec<Variable>,
@@ -50,6 +53,7 @@ pub struct Instance {
     quantities: Option<Vec<f64>>,
     /// Accelerations, and the rates of the forces' states.
     accelerations: Option<(Vec<f64>, Vec<f64>)>,
+    jacobian: Jacobian,
     /// Messages to report, and cautions that have been reported once.
     messages: Vec<String>,
     cautions: Vec<&'static str>,
@@ -61,7 +65,7 @@ impl Instance {
     /// # Errors
     /// A message, if the spec cannot be read or the description belongs to another version of the library.
     pub fn new(folder: &Path, token: &str, make: Make) -> Result<Self, String> {
-        let Opened { crane, parameters, warnings } = resources::open(folder, make)?;
+        let Opened { crane, live, parameters, warnings } = resources::open(folder, make)?;
         let variables = variables::list(crane.description(), crane.loop_joints());
         let expected = variables::token(crane.description(), &variables);
         if token != expected {
@@ -76,6 +80,7 @@ impl Instance {
             inputs,
             settings: Settings { duration: f64::INFINITY, most_steps: usize::MAX, ..Settings::of(crane.description()) },
             crane,
+            live,
             variables,
             first: parameters.clone(),
             parameters,
@@ -87,6 +92,7 @@ impl Instance {
             motion: None,
             quantities: None,
             accelerations: None,
+            jacobian: Jacobian::Unknown,
             messages: Some(warnings).into_iter().filter(|words| !words.is_empty()).collect(),
             cautions: Vec::new(),
         })
@@ -160,7 +166,7 @@ impl Instance {
     }
 
     fn forget(&mut self) {
-        (self.quantities, self.accelerations) = (None, None);
+        (self.quantities, self.accelerations, self.jacobian) = (None, None, Jacobian::Unknown);
     }
 
     /// Applies the parameters and inputs last set to the crane, and computes its initial state if it has none yet.
@@ -168,6 +174,8 @@ impl Instance {
         if !self.is_current {
             self.crane.set_parameters(&self.parameters).map_err(Fault::error)?;
             give_inputs(self.crane.as_mut(), &self.inputs);
+            self.live.set_parameters(&self.parameters).map_err(Fault::error)?;
+            give_inputs(&mut self.live, &self.inputs);
             self.is_current = true;
             self.motion = None;
             self.forget();

@@ -73,6 +73,7 @@ impl State {
             v: &self.v,
             a: &self.right,
             r: &self.right,
+            multiplier: &[],
             positions: &self.q,
             added_inertia: &self.added_inertia,
             base: &self.base,
@@ -135,6 +136,7 @@ fn a_lane_computes_what_one_state_does() {
             v: &v,
             a: &right,
             r: &right,
+            multiplier: &[],
             positions: &q,
             added_inertia: &added_inertia,
             base: &base,
@@ -173,9 +175,10 @@ fn functions_of_one_number_and_choices_are_the_interpreters() {
     let outputs: Vec<_> = values.into_iter().flat_map(|value| [value, -value]).map(Expr::id).collect();
     let function = Function {
         id: FunctionId::Forces,
+        product: None,
         doc: "",
         equation: "",
-        arguments: &[Argument::Position],
+        arguments: vec![Argument::Position],
         shape: Shape::Vector(outputs.len()),
         outputs,
         trace: SweepTrace::default(),

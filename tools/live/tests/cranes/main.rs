@@ -30,6 +30,7 @@ mod loop_drives;
 mod loops;
 mod motion_derivatives;
 mod overlaps;
+mod rates;
 mod rope;
 mod rows;
 mod run_gradients;

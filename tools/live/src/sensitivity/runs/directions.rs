@@ -105,6 +105,24 @@ impl<'a> Directions<'a> {
         }
     }
 
+    /// For directions in each of which all inputs change.
+    pub fn with_inputs(crane: &'a LiveCrane, changes: &[&[f64]]) -> Self {
+        let any = changes.iter().any(|changes| changes.iter().any(|change| *change != 0.0));
+        let chunk = |changes: &[&[f64]]| {
+            Chunk::along(crane, changes.len(), any, &|own| match own {
+                Along::Input(index) => std::array::from_fn(|k| changes.get(k).map_or(0.0, |changes| changes[index])),
+                _ => [0.0; DIRECTIONS],
+            })
+        };
+        Self {
+            crane,
+            chunks: changes.chunks(DIRECTIONS).map(chunk).collect(),
+            beside: changes.iter().map(|_| None).collect(),
+            scales: vec![1.0; changes.len()],
+            may_move_drives: any && is_live(crane, FunctionId::DriveMotions),
+        }
+    }
+
     /// A few directions, each a sum of changes for which errors count, with either sign, of many of these numbers; and the derivatives of the start along
     /// them, from those in these directions.
     pub fn probes(&self, along: &[Along], of_start: &[Vec<f64>]) -> (Self, Vec<Vec<f64>>) {

@@ -6,12 +6,14 @@
 //! |---|---|
 //! | `along` | what a run is differentiated by |
 //! | `asked` | which of its numbers are differentiated |
+//! | `moment` | derivatives of rates, without a run |
 //! | `directions` | functions of the crane with their slopes |
 //! | `transposed` | products of weights with these slopes |
 
 mod along;
 mod asked;
 mod directions;
+mod moment;
 #[cfg(test)]
 mod tests;
 mod transposed;
@@ -32,6 +34,7 @@ use crate::LiveCrane;
 pub use along::{Along, NotAlong};
 pub use asked::{NotAsked, asked};
 use directions::Directions;
+pub use moment::{Change, pull_rates, push_rates};
 use transposed::Transposed;
 
 /// The method that integrates derivatives along with a motion.

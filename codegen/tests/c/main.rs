@@ -1,9 +1,12 @@
 //! Cranes in C: the system's C compiler compiles them without warnings, and their results equal the interpreter's.
 
+mod compiler;
+mod dual;
+mod products;
+
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
-use std::process::Command;
-use std::{env, fs};
+use std::fs;
+use std::path::PathBuf;
 
 use crane_codegen::chain::{Analyses, Chain, Input, Loops};
 use crane_codegen::compile::{generate_c, load};
@@ -11,6 +14,8 @@ use crane_codegen::emit_c::{CCode, Precision};
 use crane_codegen::mechanics::derive;
 use crane_codegen::program::{Argument, Function, Inputs, Program, Shape};
 use crane_codegen::{SourceFile, build};
+
+use compiler::run_program;
 
 const EVERYTHING: Analyses = Analyses {
     statics: true,
@@ -34,6 +39,12 @@ fn shipped(name: &str) -> Chain {
     load(&build::open(path.as_ref()).unwrap()).unwrap()
 }
 
+/// The knuckle-boom crane with a strut and ropes.
+fn connected() -> Chain {
+    let path = format!("{}/../specs/knuckle_boom.yaml", env!("CARGO_MANIFEST_DIR"));
+    load(&build::open(path.as_ref()).unwrap().changed(CONNECTORS)).unwrap()
+}
+
 /// A boom whose drive follows one input and is offset by another, with a load that is scaled by a third.
 const STEERED: &str = "format: 1
 name: steered
@@ -48,6 +59,17 @@ links:
 drives: [{coordinate: boom_psi, stiffness: 2e5, damping: 2e4, motion: {input: lever}, offset: trim}]
 loads: [{name: wind, link: boom, at: [4, 0, 0], force: [0, 1, 2], scale: {input: gust}}]
 ";
+
+/// Values of its inputs, of which none, some or all are set.
+const SET: [(&str, [Option<f64>; 3]); 3] = [
+    ("none_set", [None, None, None]),
+    ("some_set", [Some(0.4), None, Some(-300.0)]),
+    ("all_set", [Some(-0.2), Some(0.3), Some(50.0)]),
+];
+
+fn steered() -> Chain {
+    load(&SourceFile::new("steered.yaml", STEERED)).unwrap()
+}
 
 /// Numbers between −1 and 1, the same on every run.
 fn numbers(count: usize, seed: f64) -> Vec<f64> {
@@ -128,8 +150,8 @@ fn in_full(shape: &Shape, slots: &[f64]) -> Vec<f64> {
     }
 }
 
-/// A program that calls all functions and prints their numbers, one per line.
-fn caller(code: &CCode, chain: &Chain, functions: &[&Function], number: &str, inputs: &[Option<f64>]) -> String {
+/// The beginning of a program that calls functions: parameters and inputs.
+fn begin(code: &CCode, chain: &Chain, inputs: &[Option<f64>]) -> String {
     let name = &code.name;
     let mut text = format!("#include <stdio.h>\n#include \"{name}.h\"\n\nint main(void)\n{{\n");
     if !chain.parameters.is_empty() {
@@ -147,17 +169,28 @@ fn caller(code: &CCode, chain: &Chain, functions: &[&Function], number: &str, in
             }
         }
     }
+    text
+}
+
+/// What a function takes before its own arguments: the header says which functions depend on inputs.
+fn takes(code: &CCode, function: &str) -> Vec<String> {
+    let name = &code.name;
+    let declared = code.header.split(&format!(" {name}_{function}(")).nth(1).unwrap();
+    let declared = declared.split(')').next().unwrap();
+    let taken = [("constants *c", "&c"), ("inputs *u", "&u")];
+    let taken = taken.into_iter().filter(|(of, _)| declared.contains(&format!("const {name}_{of}")));
+    taken.map(|(_, given)| given.to_owned()).collect()
+}
+
+/// A program that calls all functions and prints their numbers, one per line.
+fn caller(code: &CCode, chain: &Chain, functions: &[&Function], number: &str, inputs: &[Option<f64>]) -> String {
+    let (name, mut text) = (&code.name, begin(code, chain, inputs));
     let _ = writeln!(text, "    static {number} f[100000];");
     for function in functions {
-        let live = (!chain.parameters.is_empty()).then(|| "&c".to_owned());
-        // The header says which functions depend on inputs.
-        let declared = code.header.split(&format!(" {name}_{}(", function.id.name())).nth(1).unwrap();
-        let declared = declared.split(')').next().unwrap();
-        let steered = declared.contains(&format!("const {name}_inputs *u")).then(|| "&u".to_owned());
-        let mut given: Vec<String> = live.into_iter().chain(steered).collect();
+        let mut given = takes(code, function.id.name());
         text += "    {\n";
         let mut values = arguments(chain, function).into_iter();
-        for argument in function.arguments {
+        for argument in &function.arguments {
             if *argument == Argument::Factors {
                 given.push("f".to_owned());
                 continue;
@@ -184,28 +217,6 @@ fn caller(code: &CCode, chain: &Chain, functions: &[&Function], number: &str, in
             writeln!(text, "        for (int k = 0; k < {count}; k++) printf(\"%.17g\\n\", (double)out[k]);\n    }}");
     }
     text + "    return 0;\n}\n"
-}
-
-/// Compiles and runs a program; returns the numbers that it prints.
-fn run_program(folder: &Path, code: &CCode, main: &str) -> Vec<f64> {
-    fs::create_dir_all(folder).unwrap();
-    for (file, text) in [(format!("{}.h", code.name), &code.header), (format!("{}.c", code.name), &code.source)] {
-        fs::write(folder.join(file), text).unwrap();
-    }
-    fs::write(folder.join("main.c"), main).unwrap();
-    let program = folder.join("main");
-    let compiler = env::var("CC").unwrap_or_else(|_| "cc".to_owned());
-    let strict = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O1", "-ffp-contract=off"];
-    let compile = |arguments: &[&str]| {
-        let done = Command::new(&compiler).args(arguments).current_dir(folder).output().unwrap();
-        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
-    };
-    compile(&[&strict[..], &["-c", &format!("{}.c", code.name), "-o", "crane.o"]].concat());
-    // The numbers in the caller's source are doubles; in single precision the caller rounds them.
-    compile(&["-std=c99", "-O0", "main.c", "crane.o", "-lm", "-o", "main"]);
-    let printed = Command::new(program).output().unwrap();
-    assert!(printed.status.success());
-    String::from_utf8(printed.stdout).unwrap().lines().map(|line| line.parse().unwrap()).collect()
 }
 
 /// Maximum difference of each function from the interpreter's result, relative to the largest number of that result.
@@ -249,9 +260,7 @@ fn every_function_of_every_kind_of_crane_is_the_interpreters() {
 
 #[test]
 fn springs_and_ropes_are_the_interpreters() {
-    let path = format!("{}/../specs/knuckle_boom.yaml", env!("CARGO_MANIFEST_DIR"));
-    let chain = load(&build::open(path.as_ref()).unwrap().changed(CONNECTORS)).unwrap();
-    let found = differences("connected", &chain, Precision::Double, &[]);
+    let found = differences("connected", &connected(), Precision::Double, &[]);
     assert_eq!(found.iter().filter(|(function, _)| function.starts_with("connector_")).count(), 6);
     for (function, off) in found {
         assert!(off < 1e-12, "{function} is off by {off:e}");
@@ -259,13 +268,16 @@ fn springs_and_ropes_are_the_interpreters() {
 }
 
 /// The four-bar of the manual.
-#[test]
-fn gaps_and_rows_of_loops_are_the_interpreters() {
+fn four_bar() -> Chain {
     let page = fs::read_to_string(format!("{}/../docs/manual/loops.md", env!("CARGO_MANIFEST_DIR"))).unwrap();
     let (_, rest) = page.split_once("```yaml\n").unwrap();
     let (spec, _) = rest.split_once("```").unwrap();
-    let found =
-        differences("four_bar", &load(&SourceFile::new("four_bar.yaml", spec)).unwrap(), Precision::Double, &[]);
+    load(&SourceFile::new("four_bar.yaml", spec)).unwrap()
+}
+
+#[test]
+fn gaps_and_rows_of_loops_are_the_interpreters() {
+    let found = differences("four_bar", &four_bar(), Precision::Double, &[]);
     assert_eq!(found.iter().filter(|(function, _)| function.starts_with("loop_")).count(), 4);
     for (function, off) in found {
         assert!(off < 1e-12, "{function} is off by {off:e}");
@@ -284,12 +296,8 @@ fn single_precision_has_the_digits_that_the_manual_says() {
 
 #[test]
 fn inputs_are_arguments() {
-    let steered = load(&SourceFile::new("steered.yaml", STEERED)).unwrap();
-    for (name, inputs) in [
-        ("none_set", [None, None, None]),
-        ("some_set", [Some(0.4), None, Some(-300.0)]),
-        ("all_set", [Some(-0.2), Some(0.3), Some(50.0)]),
-    ] {
+    let steered = steered();
+    for (name, inputs) in SET {
         for (function, off) in differences(name, &steered, Precision::Double, &inputs) {
             assert!(off < 1e-12, "{name}: {function} is off by {off:e}");
         }
