@@ -56,7 +56,7 @@ impl Given {
         }
         let [q, v, a, r, positions, added_inertia, base, factors] = self.0.each_ref().map(Vec::as_slice);
         let t = f64x8::splat(t);
-        Arguments { t, q, v, a, r, positions, added_inertia, base, factors, inputs, parameters: &[] }
+        Arguments { t, q, v, a, r, positions, added_inertia, base, factors, inputs, ..Arguments::none() }
     }
 }
 
