@@ -31,7 +31,7 @@ pub enum Argument {
     LiveOut,
     /// Live parameters.
     Parameters,
-    /// Inputs that are set between steps, two numbers each: the value while it is set, else 0; and 0 while it is set, else 1.
+    /// Inputs that are set between steps, three numbers each: the value while it is set, else 0; 0 while it is set, else 1; and its rate.
     Inputs,
 }
 

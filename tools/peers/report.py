@@ -108,8 +108,8 @@ its factors come from machine code made at run time, its products are compiled f
 ## Without a compiler
 {live_table(times)}
 
-Forward dynamics by a live crane: by machine code that it makes at run time, of one state for any processor with AVX, of eight with AVX-512 where there is
-any, and by its bytecode; in brackets, how many times longer than compiled for this machine.
+Forward dynamics by a live crane: by machine code that it makes at run time, of one state and of eight, the latter with AVX-512 where there is any,
+and by its bytecode; in brackets, how many times longer than compiled for this machine.
 
 ## One RK4 step with all forces
 {times_table(times, "rk4_step", ["MuJoCo", "Exudyn"])}
@@ -316,7 +316,7 @@ def limits(results, times):
         in_lanes = kernel.endswith(LANES_SUFFIX)
         cells = []
         for n in times.coordinates:
-            found, time = results["limits"][str(n)].get(kernel.removesuffix(LANES_SUFFIX)), times.ours(n, kernel)
+            found, time = results.get("limits", {}).get(str(n), {}).get(kernel.removesuffix(LANES_SUFFIX)), times.ours(n, kernel)
             if found is None or time is None or kernel in IN_VECTORS:
                 cells.append("")
                 continue

@@ -12,7 +12,7 @@ const KEYWORDS: &str = "alignas alignof auto bool break case char const constexp
     min max isnan isinf isfinite isnormal fpclassify interrupt";
 
 /// Functions that the code calls, and arguments: variables have other names.
-const CALLED: &str = "sin cos sqrt exp sinf cosf sqrtf expf smaller larger choose positions a";
+const CALLED: &str = "sin cos sqrt exp sinf cosf sqrtf expf smaller larger choose positions a w dx";
 
 /// Words that a variable cannot have as its name.
 pub fn not_for_variables() -> Vec<&'static str> {

@@ -21,28 +21,39 @@ pub struct Latencies {
 }
 
 impl Program {
-    /// The time of the longest chain of a function: no processor computes it in less, however many operations it executes at once. What depends
-    /// only on live parameters is known before.
+    /// Which expressions of a function are known before a call: they depend on live parameters alone.
+    pub fn known_before(&self, function: &Function) -> impl Fn(ExprId) -> bool + use<> {
+        let needed = self.needed(function.outputs.iter().copied());
+        let mut known = vec![false; self.operations.len()];
+        for id in self.ids().filter(|id| needed[id.index()]) {
+            known[id.index()] = match self.op(id) {
+                Op::Symbol(symbol) => self.symbols[symbol.0 as usize].argument == Argument::Parameters,
+                op => op.operands().all(|operand| known[operand.index()]),
+            };
+        }
+        move |id| known[id.index()]
+    }
+
+    /// The time of the longest chain of a function: no processor computes it in less, however many operations it executes at once.
     #[must_use]
     pub fn longest_chain(&self, function: &Function, latencies: &Latencies) -> f64 {
+        let known = self.known_before(function);
         let needed = self.needed(function.outputs.iter().copied());
-        // When the operands of each operation are known, and its result; `None` if they are before the call.
-        let mut known: Vec<Option<[f64; 2]>> = vec![None; self.operations.len()];
-        for id in self.ids().filter(|id| needed[id.index()]) {
+        // When the operands of each operation are there, and its result.
+        let mut times = vec![[0.0; 2]; self.operations.len()];
+        for id in self.ids().filter(|id| needed[id.index()] && !known(*id)) {
             let op = self.op(id);
-            if let Op::Symbol(symbol) = op {
-                let argument = self.symbols[symbol.0 as usize].argument;
-                known[id.index()] = (argument != Argument::Parameters).then_some([0.0; 2]);
-                continue;
-            }
-            let begin = op.operands().filter_map(|operand| known[operand.index()]).map(|[_, end]| end).reduce(f64::max);
-            let Some(begin) = begin else { continue };
+            let begin = op.operands().map(|operand| times[operand.index()][1]).fold(0.0, f64::max);
             let end = match op {
                 Op::Add(a, b) | Op::Sub(a, b) => {
-                    let of = |operand: ExprId| match (self.op(operand), known[operand.index()]) {
-                        (Op::Mul(..), Some([begin, _])) => begin + latencies.fused,
-                        (_, Some([_, end])) => end + latencies.addition,
-                        (_, None) => 0.0,
+                    let of = |operand: ExprId| {
+                        let positive = if let Op::Neg(operand) = self.op(operand) { operand } else { operand };
+                        let [begin, end] = times[positive.index()];
+                        match self.op(positive) {
+                            _ if known(positive) => 0.0,
+                            Op::Mul(..) => begin + latencies.fused,
+                            _ => end + latencies.addition,
+                        }
                     };
                     of(a).max(of(b))
                 }
@@ -54,10 +65,9 @@ impl Program {
                 // A sign changes in the operation that follows.
                 Op::Neg(_) | Op::Constant(_) | Op::Symbol(_) => begin,
             };
-            known[id.index()] = Some([begin, end]);
+            times[id.index()] = [begin, end];
         }
-        let ends = function.outputs.iter().filter_map(|id| known[id.index()]).map(|[_, end]| end);
-        ends.fold(0.0, f64::max)
+        function.outputs.iter().map(|id| times[id.index()][1]).fold(0.0, f64::max)
     }
 }
 

@@ -100,13 +100,15 @@ impl Norm {
         let (q, v) = equations.state(t, motion);
         crane.bias(q, &vec![0.0; n], &mut weight);
         let (q, v) = (q.to_vec(), v.to_vec());
-        let coordinates = &crane.description().coordinates;
-        let greatest = |kind: CoordinateKind| {
-            let alike = coordinates.iter().zip(&weight).filter(|(coordinate, _)| coordinate.kind == kind);
+        let (coordinates, cranes) = (&crane.description().coordinates, crane.cranes());
+        // Of the same crane of a fleet.
+        let greatest = |kind: CoordinateKind, of_crane: usize| {
+            let own = coordinates.iter().zip(&weight).skip(of_crane).step_by(cranes);
+            let alike = own.filter(|(coordinate, _)| coordinate.kind == kind);
             alike.map(|(_, force)| force.abs()).fold(0.0, f64::max)
         };
         for effort in &mut self.efforts {
-            let least = LEAST * greatest(coordinates[effort.coordinate].kind);
+            let least = LEAST * greatest(coordinates[effort.coordinate].kind, effort.coordinate % cranes);
             effort.scale = if least > 0.0 { least } else { effort.stiffness / UNKNOWN };
         }
         self.note(motion, &vec![0.0; motion.len()]);

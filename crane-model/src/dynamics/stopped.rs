@@ -84,6 +84,10 @@ impl StepContext<'_> {
     /// A run that stopped at a failed step: because of missing inertia if the mass matrix at its start is not positive definite,
     /// otherwise for the given cause.
     pub fn failed(&self, cause: Cause, crane: &dyn DynDynamics) -> Stopped {
+        // The cranes of a fleet were checked one by one.
+        if crane.cranes() > 1 {
+            return self.furthest(cause);
+        }
         let n = self.q.len();
         let mut mass = DMatrix::zeros(n, n);
         crane.mass_matrix(self.q, mass.as_mut_slice());

@@ -15,7 +15,7 @@ const LITRE_PER_MINUTE: f64 = 1e-3 / 60.0;
 const STIFFER: f64 = 2.0;
 
 /// Flow that the pump delivers to all cylinders, m³/s, and its power, W: one pump at the maximum of their supply pressures.
-pub fn pump<'c>(cylinders: impl IntoIterator<Item = &'c CylinderState> + Clone) -> [f64; 2] {
+fn pump<'c>(cylinders: impl IntoIterator<Item = &'c CylinderState> + Clone) -> [f64; 2] {
     let flow: f64 = cylinders.clone().into_iter().map(|cylinder| cylinder.flow).sum();
     let moving = cylinders.into_iter().filter(|cylinder| cylinder.flow > 0.0);
     let pressure = moving.map(CylinderState::supply_pressure).fold(0.0, f64::max);

@@ -324,7 +324,7 @@ fn as_fleet(
     settings: &Settings,
     off: &dyn Fn() -> bool,
 ) -> Vec<Outcome> {
-    let ready: Vec<_> = rows.iter().map(|row| ready(crane, row)).collect();
+    let ready: Vec<_> = rows.iter().map(|row| if off() { Err(Reason::Cancelled) } else { ready(crane, row) }).collect();
     let members: Vec<_> = ready.iter().flatten().map(|(crane, start)| (crane.as_ref(), start.state())).collect();
     let models: Vec<&dyn DynModel> = members.iter().map(|(crane, _)| *crane as &dyn DynModel).collect();
     let fleet = if 2 * members.len() > cranes { crane.fleet(&models) } else { None };

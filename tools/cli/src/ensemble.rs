@@ -37,6 +37,15 @@ use crate::{
 /// Status of a run that reached its end.
 const DONE: &str = "done";
 
+/// The crane, or the live one of its spec if that runs as fleets, which are faster than what rustc compiled.
+fn as_fleets(crane: Box<dyn DynCrane>, settings: &dynamics::Settings, registry: &Registry) -> Box<dyn DynCrane> {
+    let together = |crane: &dyn DynCrane| ensemble::rows_together(crane, settings);
+    match registry.live(crane.as_ref()) {
+        Ok(live) if together(&live) > together(crane.as_ref()) => Box::new(live),
+        _ => crane,
+    }
+}
+
 /// Runs all cranes of the table and writes a row for each.
 pub fn simulate(options: &Simulate, given: &Path, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     if options.run.timing.from.is_some() || !options.run.timing.start.is_empty() {
@@ -46,10 +55,11 @@ pub fn simulate(options: &Simulate, given: &Path, registry: &Registry, out: &mut
         ));
     }
     let crane = options.run.analysis.crane.open(registry)?;
+    let table = ParameterTable::read(given, crane.description())?;
+    let (settings, step) = settings(&options.run.timing, crane.as_ref(), &table)?;
+    let crane = as_fleets(crane, &settings, registry);
     let crane = crane.as_ref();
     let description = crane.description();
-    let table = ParameterTable::read(given, description)?;
-    let (settings, step) = settings(&options.run.timing, crane, &table)?;
     let Ensemble { threads, results, restart, .. } = &options.ensemble;
     let threads = threads.map_or_else(thread::available_parallelism, Ok).map_or(1, NonZeroUsize::get);
     let path =

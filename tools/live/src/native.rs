@@ -17,6 +17,16 @@ use crate::tangent::tangent;
 /// After as many calls of interpreted bytecode as machine code saves the time that it took to make it, about 1 µs per operation.
 const CALLS: u32 = 500;
 
+/// Whether this processor has machine code of one number, but not of eight: bytecode of eight then takes longer than eight calls.
+pub fn is_slower_in_lanes() -> bool {
+    static SLOWER: OnceLock<bool> = OnceLock::new();
+    *SLOWER.get_or_init(|| {
+        let line = Line { given: vec![None], steps: vec![Step::Store { place: 0, value: 0 }], results: 1 };
+        let has = |width| MachineCode::of(&line, ROUNDING, width).is_some();
+        has(Width::One) && !has(Width::Eight)
+    })
+}
+
 /// The machine code of a function, from some call on.
 #[derive(Debug, Default)]
 pub struct Hot {

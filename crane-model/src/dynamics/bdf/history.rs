@@ -6,6 +6,8 @@ use crate::{
     memory::{Visit, visit_count, visit_numbers},
 };
 
+const _: () = assert!(ORDER == 4, "one case for each order in `sum` and `push`");
+
 /// Weights of the differences up to the highest order.
 pub(super) type Weights = [f64; ORDER + 1];
 

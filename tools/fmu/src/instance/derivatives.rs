@@ -169,10 +169,13 @@ impl Instance {
 
     /// Changes of all rates; `None` if one is not finite.
     fn pushed(&mut self, change: &Change) -> Result<Option<Vec<f64>>, Fault> {
+        /// With more states and inputs, the Jacobian takes too much memory to be kept for a few columns.
+        const MOST: usize = 1000;
         let Moment { t, q, v, x } = self.moment()?;
         let (t, motion) = (*t, [&q[..], v, x].concat());
+        let is_large = motion.len() + self.inputs.len() > MOST;
         let known = match mem::replace(&mut self.jacobian, Jacobian::Asked) {
-            Jacobian::Unknown => {
+            found if is_large || matches!(found, Jacobian::Unknown) => {
                 let along = push_rates(&self.live, (t, &motion), std::slice::from_ref(change));
                 return Ok(along.ok().and_then(|mut along| along.pop()));
             }
@@ -187,6 +190,7 @@ impl Instance {
                 push_rates(&self.live, (t, &motion), &along).ok()
             }
             Jacobian::Known(columns) => columns,
+            Jacobian::Unknown => None,
         };
         let sum = known.as_ref().map(|columns| {
             let mut sum = vec![0.0; motion.len()];

@@ -100,10 +100,13 @@ impl Fleet {
 
     /// Numbers of all cranes; NaN instead of matrices, whose sizes are other ones.
     fn numbers(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [f64]) {
-        let called = self.call(id, arguments, |results| match cast_slice(results) {
-            numbers if numbers.len() == out.len() => out.copy_from_slice(numbers),
-            _ => out.fill(f64::NAN),
-        });
+        let called = match id.extent() {
+            Extent::Matrix => Some(out.fill(f64::NAN)),
+            _ => self.call(id, arguments, |results| match cast_slice(results) {
+                numbers if numbers.len() == out.len() => out.copy_from_slice(numbers),
+                _ => out.fill(f64::NAN),
+            }),
+        };
         if called.is_none() {
             out.fill(0.0);
         }
@@ -112,8 +115,10 @@ impl Fleet {
     /// A list, zeros if the cranes do not need the function; NaN instead of rows over the coordinates.
     fn list<T: Entry>(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [T]) {
         let Description { drives, loads, .. } = &self.crane.description;
+        if let Extent::List(Item::Row, _) = id.extent() {
+            return out.fill(T::from_numbers(&[f64::NAN; 16]));
+        }
         let called = self.call(id, arguments, |results| match id.extent() {
-            Extent::List(Item::Row, _) => out.fill(T::from_numbers(&[f64::NAN; 16])),
             Extent::List(_, Count::DrivePieces) => spread(results, drives.iter().map(|drive| drive.pieces), out),
             Extent::List(_, Count::LoadPieces) => spread(results, loads.iter().map(|load| load.pieces), out),
             _ => spread(results, std::iter::repeat(1), out),
@@ -138,9 +143,6 @@ fn spread<T: Entry>(results: &[f64x8], parts: impl Iterator<Item = usize>, out: 
         let items = results.get(first * T::LEN..(first + count) * T::LEN);
         let places = out.get_mut(CRANES * first..CRANES * (first + count));
         let (Some(items), Some(places)) = (items, places) else { break };
-        if items.is_empty() && results.len() <= first * T::LEN {
-            break;
-        }
         for (place, entry) in places.iter_mut().enumerate() {
             let mut numbers = [0.0; 16];
             let item = &items[place % count * T::LEN..][..T::LEN];
@@ -217,7 +219,11 @@ impl DynImplicit for Fleet {
             let routine = self.crane.library.routine(id)?;
             Some((routine, self.room(routine)))
         };
-        Box::new(System { factorise: ready(FunctionId::Factorise), solve: ready(FunctionId::Solve) })
+        let mut factorise = ready(FunctionId::Factorise);
+        if let Some((_, Room { results, .. })) = &mut factorise {
+            results.fill(f64x8::splat(f64::NAN));
+        }
+        Box::new(System { factorise, solve: ready(FunctionId::Solve) })
     }
 
     quantities! { methods of Implicit }

@@ -10,6 +10,7 @@ use super::fleet::Fleet;
 use super::methods::{method, methods};
 use super::{LiveCrane, at};
 use crate::machine::{Arguments, Machine};
+use crate::native::is_slower_in_lanes;
 use crate::routine::Routine;
 
 impl DynImplicit for LiveCrane {
@@ -57,6 +58,7 @@ impl DynSystem for System<'_> {
 impl DynEnsemble for LiveCrane {
     fn fleet(&self, cranes: &[&dyn DynModel]) -> Option<Box<dyn DynCrane>> {
         let has_fleets = self.description.has_fleets() && self.loop_joints.is_empty() && !cranes.is_empty();
+        let has_fleets = has_fleets && !is_slower_in_lanes();
         has_fleets.then(|| -> Box<dyn DynCrane> { Box::new(Fleet::new(self, cranes)) })
     }
 
