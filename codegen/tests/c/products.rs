@@ -3,15 +3,16 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
+use crane_codegen::SourceFile;
 use crane_codegen::chain::{Chain, Input, Loops};
-use crane_codegen::compile::generate_c;
+use crane_codegen::compile::{generate_c, load};
 use crane_codegen::emit_c::{CCode, Precision};
 use crane_codegen::mechanics::derive;
 use crane_codegen::program::{Argument, Function, FunctionId, Inputs, Product, Program, has_products};
 
 use crate::compiler::run_program;
 use crate::dual::Dual;
-use crate::{EVERYTHING, SET, arguments, begin, connected, four_bar, numbers, shipped, steered, takes};
+use crate::{EVERYTHING, SET, STEERED, arguments, begin, connected, four_bar, numbers, shipped, steered, takes};
 
 /// The parts of the variables: as they are given to a function, and how many numbers of each are variables.
 fn parts(chain: &Chain, function: &Function, inputs: &[Option<f64>]) -> Vec<(Argument, Vec<f64>)> {
@@ -184,6 +185,15 @@ fn products_have_derivatives_by_values_of_inputs() {
                      const double v[2], const double w[2], steered_variables *out)";
     assert!(code.header.contains(signature), "{}", code.header);
     assert!(code.header.contains("    double inputs[3]; /* values */\n} steered_variables;"));
+}
+
+/// The weights of a product are called `w`, and its changes `dx`.
+#[test]
+fn inputs_may_be_called_as_the_arguments_of_products() {
+    let text = STEERED.replace("lever", "w").replace("gust", "dx");
+    let chain = load(&SourceFile::new("steered.yaml", text)).unwrap();
+    let [.., (_, all_set)] = SET;
+    assert_small("called_as_arguments", differences("called_as_arguments", &chain, &all_set, Some(FunctionId::Forces)));
 }
 
 #[test]
