@@ -1,6 +1,6 @@
 //! Runs of many cranes that differ in their parameters, with any method, on several threads.
 //!
-//! Several cranes run together, with common steps, in the lanes of [`dynamics::ensemble`]: with [`Method::Rk4`], or as a fleet, if the crane has
+//! Several cranes run together, with common steps, in the lanes of [`dynamics::ensemble`]: with [`dynamics::Method::Rk4`], or as a fleet, if the crane has
 //! fleets. The others run separately. Results do not depend on the number of threads; those of a fleet depend on its other rows, within the
 //! tolerance.
 
