@@ -100,13 +100,13 @@ impl Fleet {
 
     /// Numbers of all cranes; NaN instead of matrices, whose sizes are other ones.
     fn numbers(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [f64]) {
-        let called = match id.extent() {
-            Extent::Matrix => Some(out.fill(f64::NAN)),
-            _ => self.call(id, arguments, |results| match cast_slice(results) {
-                numbers if numbers.len() == out.len() => out.copy_from_slice(numbers),
-                _ => out.fill(f64::NAN),
-            }),
-        };
+        if id.extent() == Extent::Matrix {
+            return out.fill(f64::NAN);
+        }
+        let called = self.call(id, arguments, |results| match cast_slice(results) {
+            numbers if numbers.len() == out.len() => out.copy_from_slice(numbers),
+            _ => out.fill(f64::NAN),
+        });
         if called.is_none() {
             out.fill(0.0);
         }
