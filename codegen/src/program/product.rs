@@ -68,15 +68,15 @@ impl Program {
         PULLED_BACK.into_iter().flat_map(of).map(|(id, _)| SymbolId(id))
     }
 
-    /// A program with one function, the product `wᵀ J` of a function, by [all numbers](Self::differentiated_by).
+    /// A program with one function, a product of a function, by [all numbers](Self::differentiated_by).
     ///
     /// # Panics
     /// If the function belongs to another program.
     #[must_use]
-    pub fn pull_back(&self, function: &Function) -> Program {
+    pub fn product_alone(&self, function: &Function, product: Product) -> Program {
         let mut alone = self.alone(function);
         let by: Vec<SymbolId> = alone.differentiated_by().collect();
-        let product = alone.product(&alone.functions[0].clone(), Product::Vjp, &by);
+        let product = alone.product(&alone.functions[0].clone(), product, &by);
         alone.functions = vec![product];
         alone
     }

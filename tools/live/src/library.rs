@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use crane_codegen::chain::{Analyses, Chain};
 use crane_codegen::mechanics;
-use crane_codegen::program::{FunctionId, Program, RuntimeTrait};
+use crane_codegen::program::{FunctionId, Product, Program, RuntimeTrait};
 
 use crate::assemble::TooLarge;
 use crate::describe::parents;
@@ -75,15 +75,16 @@ pub struct Library {
     parents: Vec<usize>,
     programs: [OnceLock<Program>; Group::COUNT],
     routines: [OnceLock<Option<Routine>>; FunctionId::COUNT],
-    pulled_back: [OnceLock<Result<Option<Routine>, TooLarge>>; FunctionId::COUNT],
+    /// For each of [`Product::ALL`].
+    products: [[OnceLock<Result<Option<Routine>, TooLarge>>; FunctionId::COUNT]; Product::ALL.len()],
 }
 
 impl Library {
     /// The functions of a chain, none of them derived yet.
     pub fn new(chain: Chain) -> Self {
         let routines = std::array::from_fn(|_| OnceLock::new());
-        let pulled_back = std::array::from_fn(|_| OnceLock::new());
-        Self { parents: parents(&chain), chain, programs: Default::default(), routines, pulled_back }
+        let products = std::array::from_fn(|_| std::array::from_fn(|_| OnceLock::new()));
+        Self { parents: parents(&chain), chain, programs: Default::default(), routines, products }
     }
 
     /// The chain.
@@ -104,18 +105,19 @@ impl Library {
         self.routines[id as usize].get_or_init(|| self.assemble(id)).as_ref()
     }
 
-    /// The products of weights and the derivatives of a function, see [`Program::pull_back`]; `None` if the crane does not need it.
+    /// A product of a function, see [`Program::product_alone`]; `None` if the crane does not need it.
     ///
     /// # Errors
-    /// They need too many registers: the numbers of the function are all kept until they are used on the way back.
-    pub fn pulled_back(&self, id: FunctionId) -> Result<Option<&Routine>, TooLarge> {
+    /// It needs too many registers: the numbers of the function are all kept until they are used on the way back.
+    pub fn product(&self, id: FunctionId, product: Product) -> Result<Option<&Routine>, TooLarge> {
         let derive = || {
             let program = self.program(id);
-            let pulled_back = program.function(id).map(|function| program.pull_back(function));
-            let routine = pulled_back.map(|pulled_back| Routine::new(&pulled_back, &pulled_back.functions[0]));
+            let alone = program.function(id).map(|function| program.product_alone(function, product));
+            let routine = alone.map(|alone| Routine::new(&alone, &alone.functions[0]));
             routine.transpose()
         };
-        self.pulled_back[id as usize].get_or_init(derive).as_ref().map(Option::as_ref).map_err(|large| *large)
+        let kept = &self.products[product as usize][id as usize];
+        kept.get_or_init(derive).as_ref().map(Option::as_ref).map_err(|large| *large)
     }
 
     fn assemble(&self, id: FunctionId) -> Option<Routine> {

@@ -6,32 +6,34 @@
 //! |---|---|
 //! | `wᵀ J`, backward along the function ([`PullBack`]) | a few times that of the function, for all numbers at once |
 //! | `J x`, forward along the function ([`PushForward`]) | a few times that of the function |
+//!
+//! Both are for one state or for eight. Functions with too many operations for them have [`PushForwardOfLarge`].
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use crane_codegen::chain::Input;
-use crane_codegen::program::{self, Argument, FunctionId, PULLED_BACK};
+use crane_codegen::program::{self, Argument, FunctionId, PULLED_BACK, Product};
 use crane_model::dyn_crane::DynModel;
 
 use crate::LiveCrane;
 use crate::assemble::TooLarge;
 use crate::dual::{DIRECTIONS, Dual8};
 use crate::library::Library;
-use crate::machine::{Arguments, Machine};
+use crate::machine::{Arguments, Machine, Number};
 use crate::rows::Evaluation;
 
-/// A state at which a function is differentiated.
+/// A state at which a function is differentiated, or eight.
 #[derive(Clone, Copy, Debug)]
-pub struct State<'a> {
+pub struct State<'a, T = f64> {
     /// Time, s.
-    pub t: f64,
+    pub t: T,
     /// Pose, m and rad.
-    pub q: &'a [f64],
+    pub q: &'a [T],
     /// Its rates.
-    pub v: &'a [f64],
+    pub v: &'a [T],
     /// Accelerations.
-    pub a: &'a [f64],
+    pub a: &'a [T],
 }
 
 /// Names of all numbers that functions of a crane depend on, and how many each has. A live parameter that is called as one of the first four is
@@ -55,46 +57,27 @@ pub fn has_products(crane: &LiveCrane, function: FunctionId) -> bool {
     program::has_products(function, !crane.loop_joints().is_empty())
 }
 
-/// `wᵀ J` of a function of a crane, with a workspace for its calls.
+/// A product of a function of a crane, with a workspace for its calls.
 #[derive(Debug)]
-pub struct PullBack {
+struct Calls<T> {
     library: Arc<Library>,
     function: FunctionId,
-    machine: Machine<f64>,
-    inputs: Vec<f64>,
-    results: Vec<f64>,
-    /// Where each of [`PULLED_BACK`] is among the results.
+    product: Product,
+    machine: Machine<T>,
+    inputs: Vec<T>,
+    results: Vec<T>,
+    /// Where each of [`PULLED_BACK`] is among all numbers.
     places: [Range<usize>; PULLED_BACK.len()],
 }
 
-/// The derivatives of a weighted sum of the results of a function.
-#[derive(Clone, Copy, Debug)]
-pub struct Pulled<'r> {
-    /// By time.
-    pub t: f64,
-    /// By the pose.
-    pub q: &'r [f64],
-    /// By its rates.
-    pub v: &'r [f64],
-    /// By accelerations.
-    pub a: &'r [f64],
-    /// By the live parameters.
-    pub parameters: &'r [f64],
-    /// By the numbers of the inputs, of which the first of each is its value.
-    pub inputs: &'r [f64],
-}
-
-impl PullBack {
-    /// Of a function of a crane with its parameters and inputs; `None` if the crane does not need it.
-    ///
-    /// # Errors
-    /// It needs too many registers.
-    pub fn new(crane: &LiveCrane, function: FunctionId) -> Result<Option<Self>, TooLarge> {
+impl<T: Number> Calls<T> {
+    fn new(crane: &LiveCrane, function: FunctionId, product: Product) -> Result<Option<Self>, TooLarge> {
         let library = crane.library();
-        let Some(routine) = library.pulled_back(function)? else { return Ok(None) };
-        let (n, parameters) = (crane.size(), crane.parameters());
+        let Some(routine) = library.product(function, product)? else { return Ok(None) };
+        let splat = |number: &f64| T::splat(*number);
+        let (n, parameters) = (crane.size(), crane.parameters().iter().map(splat).collect::<Vec<T>>());
         let mut end = 0;
-        let inputs: Vec<f64> = crane.inputs().numbers().collect();
+        let inputs: Vec<T> = crane.inputs().numbers().map(T::splat).collect();
         let places = PULLED_BACK.map(|argument| {
             let begin = end;
             end += match argument {
@@ -105,42 +88,120 @@ impl PullBack {
             };
             begin..end
         });
-        let (machine, results) = (routine.machine(parameters), vec![0.0; routine.results()]);
-        Ok(Some(Self { library, function, machine, inputs, results, places }))
+        let (machine, results) = (routine.machine(&parameters), vec![T::splat(0.0); routine.results()]);
+        Ok(Some(Self { library, function, product, machine, inputs, results, places }))
     }
 
-    /// Other live parameters, all of them.
-    pub fn set_parameters(&mut self, parameters: &[f64]) {
-        if let Ok(Some(routine)) = self.library.pulled_back(self.function) {
+    fn set_parameters(&mut self, parameters: &[T]) {
+        if let Ok(Some(routine)) = self.library.product(self.function, self.product) {
             routine.set_parameters(&mut self.machine, parameters);
         }
     }
 
-    /// The product at a state, with a weight for each result of the function, in their order.
-    pub fn at(&mut self, state: &State<'_>, weights: &[f64]) -> Pulled<'_> {
-        let Self { library, function, machine, inputs, results, places } = self;
+    fn run(&mut self, state: &State<'_, T>, multiplier: &[T]) {
+        let Self { library, function, product, machine, inputs, results, .. } = self;
         let &State { t, q, v, a } = state;
-        let arguments = Arguments { t, q, v, a, multiplier: weights, inputs, ..Arguments::none() };
-        if let Ok(Some(routine)) = library.pulled_back(*function) {
+        let arguments = Arguments { t, q, v, a, multiplier, inputs, ..Arguments::none() };
+        if let Ok(Some(routine)) = library.product(*function, *product) {
             routine.run(machine, &arguments, results);
         }
+    }
+}
+
+/// `wᵀ J` of a function of a crane, with a workspace for its calls.
+#[derive(Debug)]
+pub struct PullBack<T = f64>(Calls<T>);
+
+/// The derivatives of a weighted sum of the results of a function.
+#[derive(Clone, Copy, Debug)]
+pub struct Pulled<'r, T = f64> {
+    /// By time.
+    pub t: T,
+    /// By the pose.
+    pub q: &'r [T],
+    /// By its rates.
+    pub v: &'r [T],
+    /// By accelerations.
+    pub a: &'r [T],
+    /// By the live parameters.
+    pub parameters: &'r [T],
+    /// By the numbers of the inputs, of which the first of each is its value.
+    pub inputs: &'r [T],
+}
+
+impl<T: Number> PullBack<T> {
+    /// Of a function of a crane with its parameters and inputs; `None` if the crane does not need it.
+    ///
+    /// # Errors
+    /// It needs too many registers.
+    pub fn new(crane: &LiveCrane, function: FunctionId) -> Result<Option<Self>, TooLarge> {
+        Ok(Calls::new(crane, function, Product::Vjp)?.map(Self))
+    }
+
+    /// Other live parameters, all of them.
+    pub fn set_parameters(&mut self, parameters: &[T]) {
+        self.0.set_parameters(parameters);
+    }
+
+    /// The product at a state, with a weight for each result of the function, in their order.
+    pub fn at(&mut self, state: &State<'_, T>, weights: &[T]) -> Pulled<'_, T> {
+        self.0.run(state, weights);
+        let Calls { results, places, .. } = &self.0;
         let [t, q, v, a, parameters, inputs] = places.each_ref().map(|place| &results[place.clone()]);
         Pulled { t: t[0], q, v, a, parameters, inputs }
     }
 }
 
-impl Pulled<'_> {
+impl<T: Copy> Pulled<'_, T> {
     /// All of it, in the order of [`numbers`].
-    pub fn write(&self, out: &mut [f64]) {
+    pub fn all(&self) -> impl Iterator<Item = T> {
         let inputs = self.inputs.iter().step_by(Input::SLOTS);
-        let all = [self.t].into_iter().chain([self.q, self.v, self.a, self.parameters].concat()).chain(inputs.copied());
-        out.iter_mut().zip(all).for_each(|(out, number)| *out = number);
+        [self.t].into_iter().chain([self.q, self.v, self.a, self.parameters].concat()).chain(inputs.copied())
     }
 }
 
 /// `J x` of a function of a crane, with a workspace for its calls.
 #[derive(Debug)]
-pub struct PushForward {
+pub struct PushForward<T = f64> {
+    calls: Calls<T>,
+    /// Changes of all numbers, with those of the numbers of inputs.
+    changes: Vec<T>,
+}
+
+impl<T: Number> PushForward<T> {
+    /// Of a function of a crane with its parameters and inputs; `None` if the crane does not need it.
+    ///
+    /// # Errors
+    /// It needs too many registers.
+    pub fn new(crane: &LiveCrane, function: FunctionId) -> Result<Option<Self>, TooLarge> {
+        let calls = Calls::new(crane, function, Product::Jvp)?;
+        Ok(calls.map(|calls| {
+            let numbers = calls.places.iter().map(|place| place.end).max().unwrap_or_default();
+            Self { calls, changes: vec![T::splat(0.0); numbers] }
+        }))
+    }
+
+    /// Other live parameters, all of them.
+    pub fn set_parameters(&mut self, parameters: &[T]) {
+        self.calls.set_parameters(parameters);
+    }
+
+    /// The product at a state, with the changes of all [`numbers`]; one number for each result of the function.
+    pub fn at(&mut self, state: &State<'_, T>, changes: &[T]) -> &[T] {
+        let [.., inputs] = &self.calls.places;
+        let (own, of_inputs) = changes.split_at(inputs.start.min(changes.len()));
+        self.changes[..own.len()].copy_from_slice(own);
+        // Of the numbers of an input, only its value changes.
+        let values = self.changes[inputs.start..].iter_mut().step_by(Input::SLOTS);
+        values.zip(of_inputs).for_each(|(place, change)| *place = *change);
+        self.calls.run(state, &self.changes);
+        &self.calls.results
+    }
+}
+
+/// `J x` of a function with any number of operations, at one state, with a workspace for its calls.
+#[derive(Debug)]
+pub struct PushForwardOfLarge {
     evaluation: Evaluation<Dual8>,
     n: usize,
     inputs: Vec<f64>,
@@ -148,7 +209,7 @@ pub struct PushForward {
     parameters: Option<Vec<f64>>,
 }
 
-impl PushForward {
+impl PushForwardOfLarge {
     /// Of a function of a crane with its inputs.
     #[must_use]
     pub fn new(crane: &LiveCrane, function: FunctionId) -> Self {

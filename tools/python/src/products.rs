@@ -5,8 +5,10 @@ use std::ops::Range;
 use crane_codegen::diagnostic::similar;
 use crane_live::FunctionId;
 use crane_live::assemble::TooLarge;
-use crane_live::products::{self, PullBack, PushForward};
+use crane_live::machine::Batch;
+use crane_live::products::{self, PullBack, PushForward, PushForwardOfLarge};
 use crane_model::dyn_crane::DynModel;
+use crane_model::rt::lanes::f64x8;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -19,8 +21,53 @@ use crate::parallel::for_rows;
 /// Rows that a thread takes at a time.
 const PIECE: usize = 32;
 
-/// A state of a row.
-type Row<'a> = (products::State<'a>, &'a [f64], &'a [f64]);
+/// Products of a function at one state or at eight; nothing for a function that the crane does not need.
+trait Multiply<T> {
+    /// Other live parameters, all of them.
+    fn set_parameters(&mut self, parameters: &[T]);
+    /// The product with a vector, number by number.
+    fn multiply(&mut self, state: &products::State<'_, T>, vector: &[T], take: &mut dyn FnMut(usize, T));
+}
+
+impl<T: Batch> Multiply<T> for Option<PullBack<T>> {
+    fn set_parameters(&mut self, parameters: &[T]) {
+        self.iter_mut().for_each(|own| own.set_parameters(parameters));
+    }
+    fn multiply(&mut self, state: &products::State<'_, T>, weights: &[T], take: &mut dyn FnMut(usize, T)) {
+        let pulled = self.as_mut().map(|own| own.at(state, weights));
+        pulled.iter().flat_map(products::Pulled::all).enumerate().for_each(|(place, number)| take(place, number));
+    }
+}
+
+impl<T: Batch> Multiply<T> for Option<PushForward<T>> {
+    fn set_parameters(&mut self, parameters: &[T]) {
+        self.iter_mut().for_each(|own| own.set_parameters(parameters));
+    }
+    fn multiply(&mut self, state: &products::State<'_, T>, changes: &[T], take: &mut dyn FnMut(usize, T)) {
+        let pushed = self.as_mut().map(|own| own.at(state, changes));
+        pushed.into_iter().flatten().enumerate().for_each(|(place, number)| take(place, *number));
+    }
+}
+
+/// A large function, with its parameters.
+struct Large {
+    push: PushForwardOfLarge,
+    parameters: Vec<f64>,
+    results: Vec<f64>,
+}
+
+impl Multiply<f64> for Large {
+    fn set_parameters(&mut self, parameters: &[f64]) {
+        self.parameters = parameters.to_vec();
+    }
+    fn multiply(&mut self, state: &products::State<'_>, changes: &[f64], take: &mut dyn FnMut(usize, f64)) {
+        self.push.at(state, &self.parameters, changes, &mut self.results);
+        self.results.iter().enumerate().for_each(|(place, number)| take(place, *number));
+    }
+}
+
+/// From so many rows on, eight are computed together.
+const TOGETHER: usize = 4;
 
 #[pymethods]
 impl Crane {
@@ -60,21 +107,10 @@ impl Crane {
                 "{function} of {name} is too large for vjp, with {registers} numbers at once: use jvp"
             ))
         };
-        PullBack::new(&self.live, id).map_err(too_large)?;
-        let make = || PullBack::new(&self.live, id).unwrap_or_default();
-        let single = self.is_single();
-        self.products(py, state, (&weights, "weights"), (numbers, &[numbers]), invalid, make, |pull, row, out| {
-            let (state, parameters, weights) = row;
-            match pull {
-                Some(pull) => {
-                    if !single {
-                        pull.set_parameters(parameters);
-                    }
-                    pull.at(&state, weights).write(out);
-                }
-                None => out.fill(0.0),
-            }
-        })
+        PullBack::<f64>::new(&self.live, id).map_err(too_large)?;
+        let one = || PullBack::<f64>::new(&self.live, id).unwrap_or_default();
+        let eight = || Some(PullBack::<f64x8>::new(&self.live, id).unwrap_or_default());
+        self.products(py, state, (&weights, "weights"), (numbers, &[numbers]), invalid, (one, eight))
     }
 
     /// (..., results): derivatives of a function, times changes of all numbers.
@@ -96,12 +132,18 @@ impl Crane {
         let state = State { t, q, v, a };
         check_arguments(id, &state)?;
         let changes = Argument::of_width("changes", changes, self.product_numbers(), "one for each number")?;
-        let make = || PushForward::new(&self.live, id);
         let width = of_row.iter().product();
-        self.products(py, state, (&changes, "changes"), (width, &of_row), invalid, make, |push, row, out| {
-            let (state, parameters, changes) = row;
-            push.at(&state, parameters, changes, out);
-        })
+        let (vectors, of_row) = ((&changes, "changes"), (width, of_row.as_slice()));
+        if PushForward::<f64>::new(&self.live, id).is_err() {
+            let large = || {
+                let (push, parameters) = (PushForwardOfLarge::new(&self.live, id), self.live.parameters().to_vec());
+                Large { push, parameters, results: vec![0.0; width] }
+            };
+            return self.products(py, state, vectors, of_row, invalid, (large, || None::<Option<PushForward<f64x8>>>));
+        }
+        let one = || PushForward::<f64>::new(&self.live, id).unwrap_or_default();
+        let eight = || Some(PushForward::<f64x8>::new(&self.live, id).unwrap_or_default());
+        self.products(py, state, vectors, of_row, invalid, (one, eight))
     }
 }
 
@@ -135,17 +177,15 @@ impl Crane {
         Err(PyValueError::new_err(words))
     }
 
-    /// Products at all rows, each with a vector.
-    #[expect(clippy::too_many_arguments, reason = "two kinds of products share all of them")]
-    fn products<'py, R>(
+    /// Products at all rows, each with a vector; `make`: products of one state, and of eight if there are any.
+    fn products<'py, R: Multiply<f64>, S: Multiply<f64x8>>(
         &self,
         py: Python<'py>,
         state: State<'_, 'py>,
         (vectors, name): (&Argument, &str),
         (width, of_row): (usize, &[usize]),
         invalid: &str,
-        make: impl Fn() -> R + Sync,
-        write: impl Fn(&mut R, Row<'_>, &mut [f64]) + Sync,
+        (one, eight): (impl Fn() -> R + Sync, impl Fn() -> Option<S> + Sync),
     ) -> Array<'py> {
         let arguments = self.read(state)?;
         let [t, q, v, a] = &arguments;
@@ -170,14 +210,21 @@ impl Crane {
         }
         let n = self.live.size();
         let mut out = vec![0.0; joined.rows() * width];
-        let work = |workspace: &mut R, rows: Range<usize>, out: &mut [f64]| {
-            for (row, out) in rows.zip(out.chunks_mut(width.max(1))) {
-                let [t, q, v, a, parameters, vector] =
-                    [(0, 1), (1, n), (2, n), (3, n), (4, self.parameters.width), (5, vectors.width)]
-                        .map(|(index, size)| joined.row(index, size, row));
-                let parameters = if self.is_single() { self.live.parameters() } else { parameters };
-                let state = products::State { t: t.first().copied().unwrap_or(0.0), q, v, a };
-                write(workspace, (state, parameters, vector), out);
+        let widths = [1, n, n, n, self.parameters.width, vectors.width];
+        let numbers = |index: usize, row: usize| joined.row(index, widths[index], row);
+        let parameters = (!self.is_single()).then_some(4);
+        let make = || (None, None);
+        let work = |(of_one, of_eight): &mut (Option<R>, Option<Option<S>>), rows: Range<usize>, out: &mut [f64]| {
+            let mut row = rows.start;
+            while row < rows.end {
+                let count = (rows.end - row).min(<f64x8 as Batch>::LANES);
+                let own = &mut out[(row - rows.start) * width..];
+                let together = if count < TOGETHER { None } else { of_eight.get_or_insert_with(&eight).as_mut() };
+                row += if let Some(products) = together {
+                    at_rows::<f64x8, _>(products, &numbers, parameters, row, count, (own, width))
+                } else {
+                    at_rows::<f64, _>(of_one.get_or_insert_with(&one), &numbers, parameters, row, 1, (own, width))
+                };
             }
         };
         for_rows(py, (PIECE, width), &mut out, make, work)?;
@@ -185,6 +232,33 @@ impl Crane {
         warn_of_rows(py, &bad, &joined.shape)?;
         array(py, out, &joined.shape, of_row)
     }
+}
+
+/// Products at some rows, the last of which fills the other places; returns how many rows. `numbers`: those of t, q, v, a, live parameters and vectors in
+/// a row; `parameters`: which of them changes from row to row.
+fn at_rows<'r, T: Batch, M: Multiply<T>>(
+    products: &mut M,
+    numbers: &impl Fn(usize, usize) -> &'r [f64],
+    parameters: Option<usize>,
+    first: usize,
+    count: usize,
+    (out, width): (&mut [f64], usize),
+) -> usize {
+    let lanes = |index: usize| -> Vec<T> {
+        let row = |lane: usize| numbers(index, first + lane.min(count - 1));
+        (0..row(0).len()).map(|place| T::from_lanes(|lane| row(lane)[place])).collect()
+    };
+    let [t, q, v, a, vector] = [0, 1, 2, 3, 5].map(lanes);
+    if let Some(index) = parameters {
+        products.set_parameters(&lanes(index));
+    }
+    let t = t.first().copied().unwrap_or(T::splat(0.0));
+    products.multiply(&crane_live::products::State { t, q: &q, v: &v, a: &a }, &vector, &mut |place, number| {
+        for lane in 0..count {
+            out[lane * width + place] = number.lane(lane);
+        }
+    });
+    count
 }
 
 /// Refuses arguments that a function does not have, and a lack of those that it needs.
