@@ -68,6 +68,9 @@ impl Group {
     }
 }
 
+/// A product of a function, once it was asked for.
+type OfFunction = OnceLock<Result<Option<Routine>, TooLarge>>;
+
 /// The functions of a chain.
 #[derive(Debug)]
 pub struct Library {
@@ -76,7 +79,7 @@ pub struct Library {
     programs: [OnceLock<Program>; Group::COUNT],
     routines: [OnceLock<Option<Routine>>; FunctionId::COUNT],
     /// For each of [`Product::ALL`].
-    products: [[OnceLock<Result<Option<Routine>, TooLarge>>; FunctionId::COUNT]; Product::ALL.len()],
+    products: [[OfFunction; FunctionId::COUNT]; Product::ALL.len()],
 }
 
 impl Library {

@@ -31,7 +31,9 @@ trait Multiply<T> {
 
 impl<T: Batch> Multiply<T> for Option<PullBack<T>> {
     fn set_parameters(&mut self, parameters: &[T]) {
-        self.iter_mut().for_each(|own| own.set_parameters(parameters));
+        if let Some(own) = self {
+            own.set_parameters(parameters);
+        }
     }
     fn multiply(&mut self, state: &products::State<'_, T>, weights: &[T], take: &mut dyn FnMut(usize, T)) {
         let pulled = self.as_mut().map(|own| own.at(state, weights));
@@ -41,7 +43,9 @@ impl<T: Batch> Multiply<T> for Option<PullBack<T>> {
 
 impl<T: Batch> Multiply<T> for Option<PushForward<T>> {
     fn set_parameters(&mut self, parameters: &[T]) {
-        self.iter_mut().for_each(|own| own.set_parameters(parameters));
+        if let Some(own) = self {
+            own.set_parameters(parameters);
+        }
     }
     fn multiply(&mut self, state: &products::State<'_, T>, changes: &[T], take: &mut dyn FnMut(usize, T)) {
         let pushed = self.as_mut().map(|own| own.at(state, changes));
