@@ -247,11 +247,7 @@ impl<'a> Bdf<'a> {
         let Self { equations, history, correction, control, switches, slope, open, .. } = self;
         let order = history.order;
         correction.predict(equations, history);
-        let error = if control.converges(equations, history.h, correction) {
-            control.error(&correction.end, &correction.d, order)
-        } else {
-            f64::INFINITY
-        };
+        let error = control.solve(equations, history, correction);
         let watched = if error > 1.0 { Watched::All } else { Watched::Contacts };
         let span = [history.t, history.t + history.h];
         let mut find = || switches.find_change(equations, watched, span, &|t, motion| history.at(t, motion));
@@ -386,25 +382,28 @@ impl Steered for Bdf<'_> {
 }
 
 impl Control {
-    /// Whether Newton's iteration finds the end of a step of length `h`.
-    fn converges(&mut self, equations: &mut Equations<'_>, h: f64, correction: &mut Correction<'_>) -> bool {
+    /// Newton's iteration for the end of the next step: the error of this step, infinite if the iteration does not converge. It ends early if the
+    /// error is too large whatever else it finds.
+    fn solve(&mut self, equations: &mut Equations<'_>, history: &History, correction: &mut Correction<'_>) -> f64 {
+        let History { h, order, .. } = *history;
         let mut before = None;
         for _ in 0..MAX_NEWTON_STEPS {
-            let Ok(()) = correction.improve(equations) else { return false };
+            let Ok(()) = correction.improve(equations) else { return f64::INFINITY };
             let size = self.norm.size(&correction.end, &correction.improvement);
             let ratio = before.map_or(self.contraction.expected(h), |before| size / before);
             if before.is_some() {
                 self.contraction = Contraction { ratio, h, age: 0 };
             }
-            if ratio * size < NEWTON_ERROR {
-                return true;
+            let error = self.error(&correction.end, &correction.d, order);
+            if ratio * size < NEWTON_ERROR || error > 1.0 + ratio * size / (order + 1) as f64 {
+                return error;
             }
             if !size.is_finite() || before.is_some() && ratio >= 1.0 {
-                return false;
+                return f64::INFINITY;
             }
             before = Some(size);
         }
-        false
+        f64::INFINITY
     }
 
     /// Error of a step of order k that ends at `end`, with `∇ᵏ⁺¹y` in `next`, in units of the allowed error.
