@@ -25,7 +25,7 @@ impl Bdf<'_> {
         let mut past = self.past_references();
         change();
         self.equations.forget();
-        self.correction.system.forget();
+        self.correction.forget();
         self.switches.start();
         let after = slope_at(self)?;
         let Equations { crane, n, .. } = self.equations;

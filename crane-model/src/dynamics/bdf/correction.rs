@@ -1,14 +1,23 @@
 //! Newton's iteration for the next state.
 
-use super::{GAMMAS, ORDER, history::History};
+use super::{GAMMAS, ORDER, SAME, history::History};
 use crate::{
     dyn_crane::DynImplicit,
     dynamics::{equations::Equations, motion::add, state::NotFinite, system::System},
+    memory::{Visit, visit_numbers},
 };
+
+/// Distance of a coordinate from the pose of factors up to which they serve again, m or rad: the mass matrix changes by about as large a share, which
+/// is how much of an error an iteration leaves.
+const NEAR: f64 = 0.015;
 
 /// Newton's iteration for the next state.
 pub(super) struct Correction<'a> {
     pub system: System<'a>,
+    /// Where the system was factorised.
+    factors: Place,
+    /// Whether the last prediction took the factors of another state.
+    reuses_factors: bool,
     /// Time of the next state, s.
     t: f64,
     /// c, s.
@@ -24,12 +33,24 @@ pub(super) struct Correction<'a> {
     rhs: Vec<f64>,
 }
 
+/// A motion, given in full, and the c of a step.
+struct Place {
+    t: f64,
+    motion: Vec<f64>,
+    /// NaN if nothing was factorised.
+    c: f64,
+    /// Whether it was read from a memory: the factors are those of another place.
+    is_restored: bool,
+}
+
 impl<'a> Correction<'a> {
     /// Storage for motions of this many numbers.
     pub fn new(crane: &'a dyn DynImplicit, len: usize) -> Self {
         let zeros = || vec![0.0; len];
         Self {
             system: System::new(crane),
+            factors: Place { t: 0.0, motion: zeros(), c: f64::NAN, is_restored: false },
+            reuses_factors: false,
             t: 0.0,
             c: f64::NAN,
             past: zeros(),
@@ -48,8 +69,40 @@ impl<'a> Correction<'a> {
         self.t = history.t + history.h;
         self.c = history.h / GAMMAS[history.order];
         equations.references.step_within(history.t, self.t);
-        let x = equations.force_states(&self.end);
-        self.system.factorise(self.t, equations.state(self.t, &self.end), x, self.c);
+        let n = equations.n;
+        let (q, v) = equations.state(self.t, &self.end);
+        if std::mem::take(&mut self.factors.is_restored) {
+            self.factors.factorise(&mut self.system, n);
+        }
+        self.reuses_factors = self.factors.serve(q, self.c) && !self.system.switched(self.t, (q, v));
+        if !self.reuses_factors {
+            let Place { t, motion, c, .. } = &mut self.factors;
+            (*t, *c) = (self.t, self.c);
+            motion[..n].copy_from_slice(q);
+            motion[n..2 * n].copy_from_slice(v);
+            motion[2 * n..].copy_from_slice(&self.end[2 * n..]);
+            self.factors.factorise(&mut self.system, n);
+        }
+    }
+
+    /// Whether the last prediction took the factors of another state.
+    pub fn reuses_factors(&self) -> bool {
+        self.reuses_factors
+    }
+
+    /// Motions and commands change, or the factors are too far away: the next step needs new ones.
+    pub fn forget(&mut self) {
+        self.system.forget();
+        self.factors.c = f64::NAN;
+    }
+
+    /// Visits what further steps depend on.
+    pub fn visit(&mut self, visit: Visit<'_>) {
+        self.system.visit(visit);
+        let Place { t, motion, c, is_restored } = &mut self.factors;
+        [t, c].into_iter().for_each(&mut *visit);
+        visit_numbers(motion, visit);
+        *is_restored = c.is_finite();
     }
 
     /// One step of the iteration.
@@ -63,5 +116,19 @@ impl<'a> Correction<'a> {
         add(end, 1.0, improvement);
         add(d, 1.0, improvement);
         Ok(())
+    }
+}
+
+impl Place {
+    /// Whether factors of this place serve for a step with this c that ends at about this pose.
+    fn serve(&self, q: &[f64], c: f64) -> bool {
+        let is_near = |(q, at): (&f64, &f64)| (q - at).abs() <= NEAR;
+        (c - self.c).abs() <= SAME * c && q.iter().zip(&self.motion).all(is_near)
+    }
+
+    /// Factorises the system of a crane with n coordinates.
+    fn factorise(&self, system: &mut System<'_>, n: usize) {
+        let (state, x) = self.motion.split_at(2 * n);
+        system.factorise(self.t, state.split_at(n), x, self.c);
     }
 }

@@ -10,7 +10,8 @@
 //! Newton's iteration uses stiffness and damping of springs and dampers as its Jacobian: one structured system of half the size. The
 //! neglected terms are `c²` times the square of the load's swing frequency, so usually the first iterate suffices and a step costs
 //! one evaluation. The error of a step is `d/(k+1)`; those of the neighbouring orders are available as well, and the order with
-//! the longest step is chosen. Orders 1 and 2 are L-stable, order 3 is A(α)-stable with α = 86.0°, order 4 with 73.4°: for modes
+//! the longest step is chosen; where it is hardly longer, the length stays. As long as the length and the pose stay about the same, so do the
+//! factors of the system. Orders 1 and 2 are L-stable, order 3 is A(α)-stable with α = 86.0°, order 4 with 73.4°: for modes
 //! with little damping that are not resolved, the error estimate selects the lower orders.
 //!
 //! E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, sections III.1 and V.1; steps of equal length between
@@ -52,6 +53,8 @@ const MAX_NEWTON_STEPS: usize = 4;
 const NEWTON_ERROR: f64 = 0.05;
 /// Smallest and largest ratio of a step to the previous one.
 const RATIO: (f64, f64) = (0.2, 3.0);
+/// Smallest ratio by which a step is lengthened: steps of the same length share factors.
+const WORTHWHILE: f64 = 1.3;
 /// Largest ratio of a step to the previous one after repeated failure.
 const RATIO_AFTER_FAILURE: f64 = 0.5;
 /// Relative change of the length of a step below which the differences of higher order stay valid.
@@ -247,7 +250,12 @@ impl<'a> Bdf<'a> {
         let Self { equations, history, correction, control, switches, slope, open, .. } = self;
         let order = history.order;
         correction.predict(equations, history);
-        let error = control.solve(equations, history, correction);
+        let mut error = control.solve(equations, history, correction);
+        if error.is_infinite() && correction.reuses_factors() {
+            correction.forget();
+            correction.predict(equations, history);
+            error = control.solve(equations, history, correction);
+        }
         let watched = if error > 1.0 { Watched::All } else { Watched::Contacts };
         let span = [history.t, history.t + history.h];
         let mut find = || switches.find_change(equations, watched, span, &|t, motion| history.at(t, motion));
@@ -270,12 +278,16 @@ impl<'a> Bdf<'a> {
             if control.steps_since_change <= order {
                 return Attempt::Accepted;
             }
+            control.steps_since_change = 0;
             let orders = (order.max(2) - 1..=(order + 1).min(ORDER)).map(|order| {
                 let error = control.error(&correction.end, &history.differences[order + 1], order);
                 (ideal(error, order), order)
             });
             let ratio;
             (ratio, history.order) = orders.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((1.0, order));
+            if history.order == order && (1.0..WORTHWHILE).contains(&ratio) {
+                return Attempt::Accepted;
+            }
             ratio.min(RATIO.1).min(LONGEST / history.h)
         };
         history.rescale(ratio);
@@ -367,7 +379,7 @@ impl Steered for Bdf<'_> {
     fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
         self.equations.visit(visit);
         self.history.visit(visit);
-        self.correction.system.visit(visit);
+        self.correction.visit(visit);
         let Control { norm, steps_since_change, contraction } = &mut self.control;
         norm.visit(visit);
         [&mut contraction.ratio, &mut contraction.h].into_iter().for_each(&mut *visit);
