@@ -159,6 +159,12 @@ impl ForceStates {
         self.accelerate_with_slopes(crane, moment, rates, None, accelerations);
     }
 
+    /// Adds the generalized forces, and writes the rates of the states.
+    pub(crate) fn push(&mut self, crane: &dyn DynModel, moment: &StateAt<'_>, rates: &mut [f64], forces: &mut [f64]) {
+        self.evaluate(crane, moment, rates, None);
+        self.add_forces(forces);
+    }
+
     /// The same, with the derivatives of the rates with respect to the states, if requested.
     pub(crate) fn accelerate_with_slopes(
         &mut self,
@@ -196,12 +202,18 @@ impl ForceStates {
 
     /// Generalized forces of the forces as last evaluated, and the accelerations that they add.
     fn add_accelerations(&mut self, crane: &dyn DynDynamics, q: &[f64]) {
-        let [efforts, added] = &mut self.efforts;
+        let mut efforts = std::mem::take(&mut self.efforts[0]);
         efforts.fill(0.0);
+        self.add_forces(&mut efforts);
+        crane.solve_mass(q, &efforts, &mut self.efforts[1]);
+        self.efforts[0] = efforts;
+    }
+
+    /// Adds the generalized forces of the forces as last evaluated.
+    fn add_forces(&self, forces: &mut [f64]) {
         for (force, row) in self.forces.iter().zip(&self.rows) {
-            row.add_to(efforts, force.force);
+            row.add_to(forces, force.force);
         }
-        crane.solve_mass(q, efforts, added);
     }
 
     /// Appends which branch of its law each force is on.

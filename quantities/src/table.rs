@@ -193,6 +193,12 @@ Implicit {
     Solve = solve(f, r) -> other written
         "Solution x of `(A + D̂) x = r` from the factors of `A + D̂`."
         "(A + D̂) x = r";
+    /// What a drive or another force would have to add: positive where it pushes towards larger coordinates; zero in all coordinates that
+    /// move freely with a = q̈. For coordinates that rigid drives prescribe, f contains no force of these drives, and r is the effort that they
+    /// need. The forces of cylinders with a valve, of bristles and of joints that close loops are not part of f.
+    DynamicResidual = dynamic_residual(t, q, v, a) -> vector required
+        "Generalized forces r that a motion requires beyond those that act, N and N m."
+        "r = A a − e − f, by Newton and Euler" python(q, v, a; t);
     JointStiffnessAndDamping = joint_stiffness_and_damping() -> [pair; coordinates] required
         "Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) on single coordinates, without those of the base."
         "s, d [Urbaś 2016, Eqs. (14), (19)]";
@@ -271,12 +277,6 @@ MotionDerivatives {
     InverseDynamics = inverse_dynamics(q, v, a) -> vector required
         "Generalized forces that a motion requires in total, N and N m."
         "A a − e = A a + h + g, by Newton and Euler" python(q, v, a);
-    /// What a drive or another force would have to add: positive where it pushes towards larger coordinates; zero in all coordinates that
-    /// move freely with a = q̈. For coordinates that rigid drives prescribe, f contains no force of these drives, and r is the effort that they
-    /// need. The forces of cylinders with a valve, of bristles and of joints that close loops are not part of f.
-    DynamicResidual = dynamic_residual(t, q, v, a) -> vector required
-        "Generalized forces r that a motion requires beyond those that act, N and N m."
-        "r = A a − e − f, by Newton and Euler" python(q, v, a; t);
     /// Row i and column j of each matrix: the change of `r_i` with `q_j`, and with `q̇_j`. At rest ∂r/∂q is the tangent stiffness, and ∂r/∂v
     /// the damping matrix.
     DynamicResidualDerivatives = dynamic_residual_derivatives(t, q, v, a) -> [row; residual_rows] written

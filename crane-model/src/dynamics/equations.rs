@@ -6,7 +6,7 @@ use super::{
 };
 use crate::memory::{Visit, visit_count};
 use crate::{
-    dyn_crane::DynDynamics,
+    dyn_crane::{DynDynamics, DynImplicit},
     force_states::ForceStates,
     loop_joints::{Loops, Open},
     stateful_force::StateAt,
@@ -23,6 +23,8 @@ pub(super) struct Equations<'a> {
     pub evaluations: usize,
     /// Pose and rates of the last evaluated motion.
     state: Vec<f64>,
+    /// Accelerations in full.
+    accelerations: Vec<f64>,
     force_states: ForceStates,
     loops: Loops,
     /// Number of their states.
@@ -36,7 +38,7 @@ impl<'a> Equations<'a> {
         let force_states = ForceStates::new(crane.description());
         let states = force_states.len();
         let loops = Loops::new(crane);
-        Self { crane, n, references, evaluations: 0, state: vec![0.0; 2 * n], force_states, loops, states }
+        Self { crane, n, references, evaluations: 0, state: vec![0.0; 2 * n], accelerations: vec![0.0; n], force_states, loops, states }
     }
 
     /// The number of components of a motion: coordinates, rates and states of forces.
@@ -106,6 +108,35 @@ impl<'a> Equations<'a> {
         self.evaluate(t, motion, out)?;
         self.references.subtract_accelerations(self.crane, t, &mut out[n..2 * n]);
         finite(&out[n..2 * n])
+    }
+
+    /// What a rate of change lacks to be the slope of a motion given relative to the references: forces `e + f − A q̈` instead of accelerations, which
+    /// take half as long. Of a crane without loops.
+    pub fn shortfall(
+        &mut self,
+        crane: &dyn DynImplicit,
+        t: f64,
+        motion: &[f64],
+        rate: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), NotFinite> {
+        let (t, n) = (self.references.inside(t), self.n);
+        self.evaluations += 1;
+        self.state(t, motion);
+        let (q, v) = self.state.split_at(n);
+        let (of_q, rest) = out.split_at_mut(n);
+        let (forces, of_x) = rest.split_at_mut(n);
+        self.accelerations.copy_from_slice(&rate[n..2 * n]);
+        self.references.add_accelerations(crane, t, &mut self.accelerations);
+        crane.dynamic_residual(t, q, v, &self.accelerations, forces);
+        forces.iter_mut().for_each(|force| *force = -*force);
+        if !self.force_states.is_empty() {
+            self.force_states.push(crane, &StateAt { t, q, v, x: &motion[2 * n..] }, of_x, forces);
+            finite(of_x)?;
+        }
+        of_q.iter_mut().zip(motion[n..2 * n].iter().zip(rate)).for_each(|(out, (v, rate))| *out = v - rate);
+        of_x.iter_mut().zip(&rate[2 * n..]).for_each(|(out, rate)| *out -= rate);
+        finite(forces)
     }
 
     /// Slope of a motion given in full.

@@ -18,6 +18,9 @@ pub(super) struct References {
     motions: Vec<[f64; 2]>,
     at: f64,
     near: [Vec<[f64; 2]>; 2],
+    /// `p̈` of the driven coordinates at the last time at which they were asked for within a step: the time and the step, s.
+    accelerations: Vec<f64>,
+    accelerated_at: [f64; 3],
     /// The current step, s.
     within: [f64; 2],
 }
@@ -63,11 +66,19 @@ impl References {
         // A joint that is moved by oil does not follow its drive's motion closely.
         let by_oil =
             |drive: usize| cylinders.iter().any(|cylinder| cylinder.drive == drive && cylinder.valve.is_some());
-        let driven = driven
+        let driven: Vec<_> = driven
             .filter(|reference| has_reference(reference.drive, reference.rigid) && !by_oil(reference.drive))
             .collect();
         let motions = vec![[0.0; 2]; drives.len()];
-        Self { driven, near: [motions.clone(), motions.clone()], motions, at: f64::NAN, within: [0.0; 2] }
+        Self {
+            accelerations: vec![0.0; driven.len()],
+            accelerated_at: [f64::NAN; 3],
+            driven,
+            near: [motions.clone(), motions.clone()],
+            motions,
+            at: f64::NAN,
+            within: [0.0; 2],
+        }
     }
 
     /// The coordinates that are relative to a motion.
@@ -100,6 +111,7 @@ impl References {
     /// Motions change: those of the last time are not known any more.
     pub fn forget(&mut self) {
         self.at = f64::NAN;
+        self.accelerated_at = [f64::NAN; 3];
     }
 
     /// The motions at a time; a step asks for those at its end several times.
@@ -132,21 +144,39 @@ impl References {
         }
     }
 
-    /// Subtracts `p̈` from accelerations. Rates are differenced within the step, because a motion may be less smooth at its ends.
+    /// Subtracts `p̈` from accelerations.
     pub fn subtract_accelerations(&mut self, crane: &dyn DynModel, t: f64, accelerations: &mut [f64]) {
-        if self.driven.is_empty() {
+        self.evaluate_accelerations(crane, t);
+        for (reference, of_motion) in self.driven.iter().zip(&self.accelerations) {
+            let acceleration = &mut accelerations[reference.coordinate];
+            *acceleration = if reference.rigid { 0.0 } else { *acceleration - of_motion };
+        }
+    }
+
+    /// Adds `p̈` to accelerations.
+    pub fn add_accelerations(&mut self, crane: &dyn DynModel, t: f64, accelerations: &mut [f64]) {
+        self.evaluate_accelerations(crane, t);
+        for (reference, of_motion) in self.driven.iter().zip(&self.accelerations) {
+            accelerations[reference.coordinate] += of_motion;
+        }
+    }
+
+    /// `p̈` at a time. Rates are differenced within the step, because a motion may be less smooth at its ends.
+    fn evaluate_accelerations(&mut self, crane: &dyn DynModel, t: f64) {
+        let [begin, end] = self.within;
+        let at = [t, begin, end];
+        if self.driven.is_empty() || self.accelerated_at.map(f64::to_bits) == at.map(f64::to_bits) {
             return;
         }
+        self.accelerated_at = at;
         let (shifts, weights, by) = self.differences(t);
         self.evaluate(crane, t);
         for (shift, near) in shifts.iter().zip(&mut self.near) {
             crane.drive_motions(t + shift, near);
         }
-        for reference in &self.driven {
+        for (reference, acceleration) in self.driven.iter().zip(&mut self.accelerations) {
             let rates = [&self.motions, &self.near[0], &self.near[1]].map(|motions| motions[reference.drive][1]);
-            let sum: f64 = rates.iter().zip(weights).map(|(rate, weight)| rate * weight).sum();
-            let acceleration = &mut accelerations[reference.coordinate];
-            *acceleration = if reference.rigid { 0.0 } else { *acceleration - sum / by };
+            *acceleration = rates.iter().zip(weights).map(|(rate, weight)| rate * weight).sum::<f64>() / by;
         }
     }
 

@@ -52,6 +52,8 @@ pub(super) struct System<'a> {
     added_inertia: Vec<f64>,
     right: Vec<f64>,
     solution: Vec<f64>,
+    /// No accelerations.
+    none: Vec<f64>,
     of_loops: Vec<f64>,
     /// Factorisations so far.
     pub factorisations: usize,
@@ -86,6 +88,7 @@ impl<'a> System<'a> {
             added_inertia: zeros(),
             right: zeros(),
             solution: zeros(),
+            none: zeros(),
             factorisations: 0,
         }
     }
@@ -165,8 +168,34 @@ impl<'a> System<'a> {
 
     /// u for a right-hand side `(P, G, R)`.
     pub fn solve(&mut self, rhs: &[f64], u: &mut [f64]) {
+        let (p, rest) = rhs.split_at(self.joints.len());
+        let (g, r) = rest.split_at(self.joints.len());
+        self.gather((g, p), r);
+        self.eliminate();
+        self.write((g, p), r, u);
+    }
+
+    /// u for a right-hand side `(P, A G, R)` with forces instead of accelerations, of a crane without loops:
+    ///
+    /// ```text
+    /// (A + cD̂ + c²K̂) w = c A G − c² K̂ P,     p = c (w + P)
+    /// ```
+    pub fn solve_forces(&mut self, rhs: &[f64], u: &mut [f64]) {
+        let (p, rest) = rhs.split_at(self.joints.len());
+        let (forces, r) = rest.split_at(self.joints.len());
+        let none = std::mem::take(&mut self.none);
+        self.gather((&none, p), r);
+        for (right, force) in self.right.iter_mut().zip(forces) {
+            *right += self.c * force;
+        }
+        self.eliminate();
+        self.write((&none, p), r, u);
+        self.none = none;
+    }
+
+    /// The right-hand side `−c² ((D̂ + cK̂) G + K̂ P)`, with what forces with states add.
+    fn gather(&mut self, (g, p): (&[f64], &[f64]), r: &[f64]) {
         let (c, n) = (self.c, self.joints.len());
-        let (p, g) = rhs[..2 * n].split_at(n);
         // D̂ G + K̂ (c G + P), first for single coordinates, then for the base.
         let coordinates = self.stiffness.iter().zip(&self.damping).zip(g.iter().zip(p));
         for (right, ((stiffness, damping), (g, p))) in self.right.iter_mut().zip(coordinates) {
@@ -180,15 +209,23 @@ impl<'a> System<'a> {
             }
         });
         self.connectors.add_to((g, p), c, &mut self.right);
-        let r = &rhs[2 * n..];
         self.force_states.add_to((g, p), r, c, &mut self.right);
         for right in &mut self.right {
             *right *= -c * c;
         }
+    }
+
+    /// z.
+    fn eliminate(&mut self) {
         self.factors.solve(&self.right, &mut self.solution);
         self.connectors.correct(&mut self.solution);
         self.force_states.correct(&mut self.solution);
         self.loops.correct(&mut self.solution, false);
+    }
+
+    /// `w = c G + z`, `p = c (w + P)`, and the increments of the states of forces.
+    fn write(&self, (g, p): (&[f64], &[f64]), r: &[f64], u: &mut [f64]) {
+        let (c, n) = (self.c, self.joints.len());
         let (of_q, rest) = u.split_at_mut(n);
         let (of_v, of_x) = rest.split_at_mut(n);
         let of_coordinates = of_q.iter_mut().zip(&mut *of_v);

@@ -20,6 +20,7 @@ use super::forward::{self, ForwardInputs, Motion};
 use super::inertia::Inertias;
 use super::kinematics::Kinematics;
 use super::model::Model;
+use super::motion_derivatives::with_rotors;
 use super::twist::{Twist, twists};
 use super::vector::{SymmetricMatrix, Vec3};
 use super::{cylinders, drives, effective_mass, energy, newton_euler, points, rotors, transforms};
@@ -181,7 +182,14 @@ impl<'g> Derivation<'g> {
         )
     }
 
-    /// Functions for implicit integration: structured stiffness and damping, and systems with them.
+    /// The generalized forces that a motion requires, and how they are computed.
+    fn inverse_dynamics(&self) -> (Vec<Expr<'g>>, SweepTrace) {
+        let model = &self.model;
+        let (required, trace) = model.graph.recorded(|| newton_euler::inverse_dynamics(model, &self.factors));
+        (with_rotors(model, required), trace)
+    }
+
+    /// Functions for implicit integration: what a motion requires beyond the forces that act, structured stiffness and damping, and systems with them.
     fn implicit(&self, symbols: &mut Vec<Symbol>) -> Vec<Function> {
         let model = &self.model;
         let solve = || effective_mass::solution(model, &self.kinematics, &self.factors);
@@ -196,9 +204,12 @@ impl<'g> Derivation<'g> {
             argument: Argument::Factors,
             index,
         }));
+        let (required, required_trace) = self.inverse_dynamics();
+        let residual = required.iter().zip(&self.forces().all()).map(|(required, force)| *required - *force).collect();
         let mut functions = vec![
             shaped(FunctionId::Factorise, Shape::Factors(factors.len()), factors).by(trace),
             shaped(FunctionId::Solve, Shape::Vector(model.size()), results).by(late_trace),
+            self.function(FunctionId::DynamicResidual, residual).by(required_trace),
         ];
         let [stiffness, damping] = self.forces().step_matrices();
         let base: Vec<usize> = model.chain.base.iter().flatten().map(|id| id.0).collect();

@@ -1,4 +1,4 @@
-//! What a motion requires beyond the forces that act, and derivatives.
+//! What a motion requires, and derivatives.
 
 use super::Derivation;
 use crate::chain::{Chain, Loops};
@@ -15,16 +15,12 @@ impl Derivation<'_> {
         if !model.chain.points.is_empty() {
             functions.push(self.function(FunctionId::PointJacobians, points::jacobians(model, kinematics)));
         }
-        let (required, trace) = model.graph.recorded(|| newton_euler::inverse_dynamics(model, &self.factors));
-        let required = motion_derivatives::with_rotors(model, required);
-        let forces = self.forces().all();
-        let residual = required.iter().zip(&forces).map(|(required, force)| *required - *force).collect();
-        functions.push(self.function(FunctionId::InverseDynamics, required).by(trace.clone()));
-        functions.push(self.function(FunctionId::DynamicResidual, residual).by(trace));
+        let (required, trace) = self.inverse_dynamics();
+        functions.push(self.function(FunctionId::InverseDynamics, required).by(trace));
         if model.size() > Chain::MOST_COORDINATES_OF_DERIVATIVES {
             return functions;
         }
-        let slopes = motion_derivatives::of_forces(model, &forces);
+        let slopes = motion_derivatives::of_forces(model, &self.forces().all());
         if model.chain.loops == Loops::Never {
             // The runtime makes them of the factors, in loops.
             let derivatives = motion_derivatives::of_residual(model, kinematics, &self.inertias, &slopes);

@@ -13,6 +13,7 @@ const NEAR: f64 = 0.015;
 
 /// Newton's iteration for the next state.
 pub(super) struct Correction<'a> {
+    crane: &'a dyn DynImplicit,
     pub system: System<'a>,
     /// Where the system was factorised.
     factors: Place,
@@ -30,6 +31,7 @@ pub(super) struct Correction<'a> {
     pub d: Vec<f64>,
     /// The last increment of the iteration.
     pub improvement: Vec<f64>,
+    rate: Vec<f64>,
     rhs: Vec<f64>,
 }
 
@@ -48,6 +50,7 @@ impl<'a> Correction<'a> {
     pub fn new(crane: &'a dyn DynImplicit, len: usize) -> Self {
         let zeros = || vec![0.0; len];
         Self {
+            crane,
             system: System::new(crane),
             factors: Place { t: 0.0, motion: zeros(), c: f64::NAN, is_restored: false },
             reuses_factors: false,
@@ -57,6 +60,7 @@ impl<'a> Correction<'a> {
             end: zeros(),
             d: zeros(),
             improvement: zeros(),
+            rate: zeros(),
             rhs: zeros(),
         }
     }
@@ -107,12 +111,18 @@ impl<'a> Correction<'a> {
 
     /// One step of the iteration.
     pub fn improve(&mut self, equations: &mut Equations<'_>) -> Result<(), NotFinite> {
-        let Self { past, end, d, rhs, improvement, .. } = self;
-        equations.slope(self.t, end, rhs)?;
-        // f − (ψ + d)/c
-        add(rhs, -1.0, past);
-        add(rhs, -self.c.recip(), d);
-        self.system.solve(rhs, improvement);
+        let Self { crane, system, past, end, d, rate, rhs, improvement, .. } = self;
+        // (ψ + d)/c
+        rate.copy_from_slice(past);
+        add(rate, self.c.recip(), d);
+        if equations.has_loops() {
+            equations.slope(self.t, end, rhs)?;
+            add(rhs, -1.0, rate);
+            system.solve(rhs, improvement);
+        } else {
+            equations.shortfall(*crane, self.t, end, rate, rhs)?;
+            system.solve_forces(rhs, improvement);
+        }
         add(end, 1.0, improvement);
         add(d, 1.0, improvement);
         Ok(())
