@@ -46,5 +46,5 @@ mod repeats;
 mod roll;
 
 pub use code::Code;
-pub use line::{Line, Rounding, Step, Value, Width};
+pub use line::{Line, Rounding, Step, Value, Width, value};
 pub use places::Pause;

@@ -3,6 +3,12 @@
 /// Number of a value: first those that are given, then those that steps make, in order.
 pub type Value = u32;
 
+/// The value with this number. No line has as many as there are numbers.
+#[must_use]
+pub fn value(number: usize) -> Value {
+    Value::try_from(number).unwrap_or(Value::MAX)
+}
+
 /// A straight line of operations.
 #[derive(Clone, Debug, Default)]
 pub struct Line {

@@ -171,6 +171,8 @@ pub struct Arguments<'a, T> {
     pub base: &'a [T],
     /// Results of an earlier function.
     pub factors: &'a [T],
+    /// A number that the same machine was given with no other factors: those of the last call are not copied again. 0 if it is not known.
+    pub version: u64,
     /// Live parameters.
     pub parameters: &'a [T],
     /// Inputs.
@@ -193,6 +195,7 @@ impl<T: Number> Arguments<'_, T> {
             added_inertia: &[],
             base: &[],
             factors: &[],
+            version: 0,
             parameters: &[],
             inputs: &[],
         }
@@ -231,17 +234,21 @@ impl<T: Number> Arguments<'_, T> {
         }
     }
 
-    /// Writes those that a function reads after its fixed numbers.
-    pub(crate) fn write(&self, code: &Code, registers: &mut [T]) {
+    /// Writes those that a function reads after its fixed numbers, into places with the factors of a version.
+    pub(crate) fn write(&self, code: &Code, registers: &mut [T], version: u64) {
+        let has_factors = version > 0 && version == self.version;
         let mut registers = registers.get_mut(code.fixed.len()..).unwrap_or_default();
         for inputs in &code.inputs {
             let given = self.of(inputs.argument);
             let (own, rest) = registers.split_at_mut(inputs.count.min(registers.len()));
+            registers = rest;
+            if has_factors && inputs.argument == Argument::Factors {
+                continue;
+            }
             match given.get(inputs.first..inputs.first + inputs.count) {
                 Some(given) => own.copy_from_slice(given),
                 None => own.fill(T::splat(0.0)),
             }
-            registers = rest;
         }
     }
 }
@@ -273,6 +280,8 @@ pub struct Machine<T> {
     file: File<T>,
     /// The frame of machine code, once there is any.
     frame: Vec<T>,
+    /// The version of the factors in it.
+    version: u64,
     /// The same with derivatives in cells of their own, and its results.
     cells: [Vec<f64x8>; 2],
 }
@@ -285,7 +294,7 @@ impl<T: Number> Machine<T> {
             count if count <= SIZES[1] => File::Medium(zeros()),
             _ => File::Large(zeros()),
         };
-        Self { file, frame: vec![], cells: [vec![], vec![]] }
+        Self { file, frame: vec![], version: 0, cells: [vec![], vec![]] }
     }
 
     /// Sets the fixed numbers of a function; `parameter` and `stored` return live parameters and the constants computed from them, by index.
@@ -301,7 +310,7 @@ impl<T: Number> Machine<T> {
             *register = if sign { negative(number) } else { number };
         }
         // Machine code has them in the first places of its frame.
-        let Self { file, frame, cells } = self;
+        let Self { file, frame, cells, .. } = self;
         // Those with derivatives are written again before the next call.
         cells[0].clear();
         frame.iter_mut().zip(file.registers()).take(code.fixed.len()).for_each(|(place, fixed)| *place = *fixed);
@@ -313,7 +322,7 @@ impl<T: Number> Machine<T> {
 
     /// Runs the function for which the machine was made. Arguments that are not given are zero.
     pub fn run(&mut self, code: &Code, arguments: &Arguments<'_, T>, out: &mut [T]) {
-        arguments.write(code, self.registers());
+        arguments.write(code, self.registers(), 0);
         match &mut self.file {
             File::Small(file) => run(code, file, out),
             File::Medium(file) => run(code, file, out),
@@ -327,12 +336,12 @@ impl<T: Number> Machine<T> {
         (file.registers(), cells)
     }
 
-    /// The frame of machine code, made from the fixed numbers if there is none.
-    pub(crate) fn frame(&mut self, make: impl FnOnce(&[T]) -> Vec<T>) -> &mut [T] {
+    /// The frame of machine code, made from the fixed numbers if there is none, and the version of the factors in it.
+    pub(crate) fn frame(&mut self, make: impl FnOnce(&[T]) -> Vec<T>) -> (&mut [T], &mut u64) {
         if self.frame.is_empty() {
             self.frame = make(self.registers());
         }
-        &mut self.frame
+        (&mut self.frame, &mut self.version)
     }
 }
 

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use crane_jit::{Code as MachineCode, Line, Pause, Step, Value, Width};
+use crane_jit::{Code as MachineCode, Line, Pause, Step, Value, Width, value};
 use crane_model::rt::lanes::f64x8;
 use crane_model::rt::sin_cos;
 
@@ -120,8 +120,8 @@ impl Native {
             self.run_with_slopes(code, machine, arguments, out);
             return true;
         }
-        let frame = machine.frame(|fixed| self.frame(fixed));
-        arguments.write(code, frame);
+        let (frame, version) = machine.frame(|fixed| self.frame(fixed));
+        arguments.write(code, frame, std::mem::replace(version, arguments.version));
         for part in 0..self.code.parts() {
             self.code.run(part, T::flat(frame), T::flat(out));
             match (self.code.pause(part), self.pauses.get(part)) {
@@ -306,8 +306,4 @@ impl Writer {
         self.line.steps.push(Step::Pause { arguments, makes: self.count - first });
         self.pauses.push(kind);
     }
-}
-
-fn value(at: usize) -> Value {
-    Value::try_from(at).unwrap_or(Value::MAX)
 }

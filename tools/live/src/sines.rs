@@ -4,7 +4,7 @@
 //! that are positive for some of these choose between sine and cosine and their signs. The last pause reads the sum of all squares of angles: if it is
 //! larger than [`MOST`], or NaN, an angle may be too large, and the results do not count.
 
-use crane_jit::{Line, Step, Value};
+use crane_jit::{Line, Step, Value, value};
 use crane_model::rt::sines::{COSINE, HALF_PI, LARGEST, ROUND, SINE};
 
 use crate::bytecode::Kind;
@@ -225,10 +225,6 @@ impl Writer {
         self.of.extend(all.iter().map(|[sine, _]| sine));
         self.of.extend(all.iter().map(|[_, cosine]| cosine));
     }
-}
-
-fn value(at: usize) -> Value {
-    Value::try_from(at).unwrap_or(Value::MAX)
 }
 
 #[cfg(all(test, target_arch = "x86_64"))]

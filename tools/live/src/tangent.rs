@@ -3,7 +3,7 @@
 //! A value is in all eight places of its cell, its derivatives are in those of another one, if it has any. A product then takes two
 //! operations more, or one if one of its factors is a number.
 
-use crane_jit::{Line, Step, Value};
+use crane_jit::{Line, Step, Value, value};
 
 use crate::bytecode::Kind;
 
@@ -199,8 +199,4 @@ impl Writer {
             }
         }
     }
-}
-
-fn value(at: usize) -> Value {
-    Value::try_from(at).unwrap_or(Value::MAX)
 }

@@ -4,7 +4,7 @@ use super::Derivation;
 use crate::chain::{Chain, Loops};
 use crate::mechanics::columns::columns;
 use crate::mechanics::mass_factors::mass_factors;
-use crate::mechanics::{drives, motion_derivatives, newton_euler, points};
+use crate::mechanics::{drives, motion_derivatives, points};
 use crate::program::{Function, FunctionId};
 
 impl Derivation<'_> {

@@ -223,7 +223,7 @@ impl DynImplicit for Fleet {
         if let Some((_, Room { results, .. })) = &mut factorise {
             results.fill(f64x8::splat(f64::NAN));
         }
-        Box::new(System { factorise, solve: ready(FunctionId::Solve) })
+        Box::new(System { factorise, solve: ready(FunctionId::Solve), version: 1 })
     }
 
     quantities! { methods of Implicit }
@@ -233,6 +233,8 @@ impl DynImplicit for Fleet {
 struct System<'a> {
     factorise: Option<(&'a Routine, Room)>,
     solve: Option<(&'a Routine, Room)>,
+    /// The number of the factors.
+    version: u64,
 }
 
 impl DynSystem for System<'_> {
@@ -240,6 +242,7 @@ impl DynSystem for System<'_> {
         if let Some((routine, Room { machine, given, results })) = &mut self.factorise {
             let arguments = Arguments { q, added_inertia, base, ..Arguments::none() };
             routine.run(machine, &given.take(&arguments, &[]), results);
+            self.version += 1;
         }
     }
 
@@ -247,7 +250,8 @@ impl DynSystem for System<'_> {
         if let Some((routine, Room { machine, given, results })) = &mut self.solve {
             let factors = self.factorise.as_ref().map_or(&[][..], |(_, room)| &room.results);
             let arguments = Arguments { r, ..Arguments::none() };
-            routine.run(machine, &Arguments { factors, ..given.take(&arguments, &[]) }, results);
+            let own = given.take(&arguments, &[]);
+            routine.run(machine, &Arguments { factors, version: self.version, ..own }, results);
             out.copy_from_slice(cast_slice(results));
         }
     }

@@ -24,6 +24,7 @@ impl DynImplicit for LiveCrane {
             factorise: ready(FunctionId::Factorise),
             solve: ready(FunctionId::Solve),
             factors: vec![f64::NAN; factors],
+            version: 1,
         })
     }
 
@@ -38,6 +39,8 @@ struct System<'a> {
     factorise: Ready<'a, f64>,
     solve: Ready<'a, f64>,
     factors: Vec<f64>,
+    /// Their number.
+    version: u64,
 }
 
 impl DynSystem for System<'_> {
@@ -45,12 +48,14 @@ impl DynSystem for System<'_> {
         if let Some((routine, machine)) = &mut self.factorise {
             let arguments = Arguments { added_inertia, base, ..at(q) };
             routine.run(machine, &arguments, &mut self.factors);
+            self.version += 1;
         }
     }
 
     fn solve(&mut self, r: &[f64], out: &mut [f64]) {
         if let Some((routine, machine)) = &mut self.solve {
-            routine.run(machine, &Arguments { factors: &self.factors, r, ..Arguments::none() }, out);
+            let Self { factors, version, .. } = self;
+            routine.run(machine, &Arguments { factors, version: *version, r, ..Arguments::none() }, out);
         }
     }
 }
