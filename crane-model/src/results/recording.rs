@@ -36,7 +36,7 @@ pub struct Recording<'a> {
 pub(crate) enum Extent {
     /// Everything.
     All,
-    /// What peaks and cautions need: no velocities of points, moments of elements or energies.
+    /// What peaks and cautions need: of the rates those of drives, no velocities of points, moments of elements or energies.
     Peaks,
 }
 
@@ -80,43 +80,45 @@ impl<'a> Recording<'a> {
 /// Records the samples of a run of a fleet, for each crane what peaks and cautions need.
 pub(crate) struct FleetRecording<'a> {
     fleet: &'a dyn DynCrane,
-    row: Vec<f64>,
-    /// The samples of each crane, and where each of its columns is in a row of all.
-    tables: Vec<(Table, Vec<usize>)>,
+    /// The samples of all, row by row.
+    numbers: Vec<f64>,
+    /// Columns of a crane, and where each of those of every crane is in a row of all.
+    columns: Vec<Column>,
+    places: Vec<Vec<usize>>,
+    width: usize,
 }
 
 impl<'a> FleetRecording<'a> {
     /// A recording without samples.
     pub fn new(fleet: &'a dyn DynCrane, crane: &dyn DynCrane) -> Self {
         let columns = quantities_of(crane.description(), &[], Extent::Peaks);
+        let of_all = quantities_of(fleet.description(), &[], Extent::Peaks);
+        let width = of_all.len();
         // Columns of all cranes have the same names, those of the first crane first; the time is one for all.
-        let mut places: HashMap<String, Vec<usize>> = HashMap::new();
-        for (place, Column { name, .. }) in
-            quantities_of(fleet.description(), &[], Extent::Peaks).into_iter().enumerate()
-        {
-            places.entry(name).or_default().push(place);
+        let mut named: HashMap<String, Vec<usize>> = HashMap::new();
+        for (place, Column { name, .. }) in of_all.into_iter().enumerate() {
+            named.entry(name).or_default().push(place);
         }
         let of_crane = |crane: usize| {
-            let place = |column: &Column| places[&column.name].get(crane).copied().unwrap_or_default();
-            (Table { columns: columns.clone(), rows: Vec::new() }, columns.iter().map(place).collect())
+            let place = |column: &Column| named[&column.name].get(crane).copied().unwrap_or_default();
+            columns.iter().map(place).collect()
         };
-        Self { fleet, row: Vec::new(), tables: (0..fleet.cranes()).map(of_crane).collect() }
+        let places = (0..fleet.cranes()).map(of_crane).collect();
+        Self { fleet, numbers: Vec::new(), columns, places, width }
     }
 
     /// Adds a sample.
     pub fn push(&mut self, sample: &Sample<'_>) {
         let &Sample { t, q, v, x, .. } = sample;
-        let Self { fleet, row, tables } = self;
-        row.clear();
-        push_quantities(*fleet, Extent::Peaks, &StateAt { t, q, v, x }, &[], row);
-        for (table, places) in tables {
-            table.rows.push(places.iter().map(|place| row[*place]).collect());
-        }
+        push_quantities(self.fleet, Extent::Peaks, &StateAt { t, q, v, x }, &[], &mut self.numbers);
     }
 
     /// The samples of each crane so far.
-    pub fn into_tables(self) -> Vec<Table> {
-        self.tables.into_iter().map(|(table, _)| table).collect()
+    pub fn tables(&self) -> impl Iterator<Item = Table> {
+        self.places.iter().map(|places| {
+            let rows = self.numbers.chunks(self.width).map(|row| places.iter().map(|place| row[*place]).collect());
+            Table { columns: self.columns.clone(), rows: rows.collect() }
+        })
     }
 }
 
@@ -147,7 +149,11 @@ fn push_quantities(
     let &StateAt { t, q, v, x } = moment;
     row.push(t);
     row.extend_from_slice(q);
-    row.extend_from_slice(v);
+    if all {
+        row.extend_from_slice(v);
+    } else {
+        row.extend(crane.description().drives.iter().map(|drive| v[drive.coordinate]));
+    }
     let mut efforts = crane.drive_efforts_with(moment);
     efforts.iter_mut().zip(added).for_each(|(effort, added)| *effort += added);
     let oil = Oil::at(crane, moment);
@@ -214,7 +220,9 @@ fn quantities_of(description: &Description, loop_joints: &[LoopJointInfo], exten
     for coordinate in &description.coordinates {
         table.add(coordinate.name.as_str(), coordinate.kind.unit());
     }
-    for coordinate in &description.coordinates {
+    let of_drives = description.drives.iter().map(|drive| drive.coordinate);
+    let rates: Vec<usize> = if all { (0..description.coordinates.len()).collect() } else { of_drives.collect() };
+    for coordinate in rates.into_iter().map(|index| &description.coordinates[index]) {
         table.add(format!("{}_rate", coordinate.name), format!("{}/s", coordinate.kind.unit()));
     }
     for drive in &description.drives {

@@ -279,7 +279,8 @@ fn alone_from(crane: &dyn DynCrane, start: &Start, settings: &Settings, off: &dy
 /// The record of a run of a fleet in progress.
 struct OfFleet<'a> {
     recording: FleetRecording<'a>,
-    /// Poses and rates of all cranes.
+    /// Number of cranes, and poses and rates of all.
+    count: usize,
     end: [Vec<f64>; 2],
     off: &'a dyn Fn() -> bool,
     cancelled: bool,
@@ -304,14 +305,12 @@ impl Watch for OfFleet<'_> {
 impl OfFleet<'_> {
     /// The outcome of each crane.
     fn finish(self, cranes: &[(&dyn DynCrane, InitialState)], runs: Vec<Run>) -> Vec<Outcome> {
-        let Self { recording, end: [q, v], cancelled, .. } = self;
-        let tables = recording.into_tables();
-        let count = tables.len();
-        let of_crane = |lane: usize, ((table, run), (crane, _)): ((&Table, Run), &(&dyn DynCrane, InitialState))| {
+        let Self { recording, end: [q, v], cancelled, count, .. } = self;
+        let of_crane = |lane: usize, ((table, run), (crane, _)): ((Table, Run), &(&dyn DynCrane, InitialState))| {
             let own = |all: &[f64]| all.iter().skip(lane).step_by(count).copied().collect();
-            outcome_of(*crane, table, InitialState { q: own(&q), v: own(&v), x: Vec::new() }, Ok(run))
+            outcome_of(*crane, &table, InitialState { q: own(&q), v: own(&v), x: Vec::new() }, Ok(run))
         };
-        let each = tables.iter().zip(runs).zip(cranes).enumerate();
+        let each = recording.tables().zip(runs).zip(cranes).enumerate();
         each.map(|(lane, of)| if cancelled { Outcome::without_run(Reason::Cancelled) } else { of_crane(lane, of) })
             .collect()
     }
@@ -330,7 +329,7 @@ fn as_fleet(
     let fleet = if 2 * members.len() > cranes { crane.fleet(&models) } else { None };
     let together = fleet.and_then(|fleet| {
         let recording = FleetRecording::new(fleet.as_ref(), crane);
-        let mut records = OfFleet { recording, end: Default::default(), off, cancelled: false };
+        let mut records = OfFleet { recording, count: fleet.cranes(), end: Default::default(), off, cancelled: false };
         let runs = dynamics::ensemble::simulate_fleet(fleet.as_ref(), &members, settings, &mut records).ok()?;
         Some(records.finish(&members, runs))
     });

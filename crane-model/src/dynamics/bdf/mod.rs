@@ -280,7 +280,10 @@ impl<'a> Bdf<'a> {
             }
             control.steps_since_change = 0;
             let orders = (order.max(2) - 1..=(order + 1).min(ORDER)).map(|order| {
-                let error = control.error(&correction.end, &history.differences[order + 1], order);
+                let error = match order {
+                    _ if order == history.order => error,
+                    _ => control.error(&correction.end, &history.differences[order + 1], order),
+                };
                 (ideal(error, order), order)
             });
             let ratio;
@@ -406,7 +409,11 @@ impl Control {
             if before.is_some() {
                 self.contraction = Contraction { ratio, h, age: 0 };
             }
-            let error = self.error(&correction.end, &correction.d, order);
+            let error = match before {
+                // d is the first increment.
+                None => size / (order + 1) as f64,
+                Some(_) => self.error(&correction.end, &correction.d, order),
+            };
             if ratio * size < NEWTON_ERROR || error > 1.0 + ratio * size / (order + 1) as f64 {
                 return error;
             }
