@@ -18,7 +18,7 @@ const AFRESH: f64 = 1e-3;
 /// Longest step, s: ten steps per period for a load that swings once per second.
 pub(super) const LONGEST: f64 = 0.1;
 /// Safety factor on the step size at which the error would equal the tolerance.
-pub(super) const SAFETY: f64 = 0.9;
+const SAFETY: f64 = 0.9;
 /// Smallest and largest ratio of a step to the previous one.
 const RATIO: (f64, f64) = (0.2, 3.0);
 /// A step as short as this, relative to the time of the next result, makes no progress.
