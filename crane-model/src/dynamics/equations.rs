@@ -129,7 +129,9 @@ impl<'a> Equations<'a> {
         self.accelerations.copy_from_slice(&rate[n..2 * n]);
         self.references.add_accelerations(crane, t, &mut self.accelerations);
         crane.dynamic_residual(t, q, v, &self.accelerations, forces);
-        forces.iter_mut().for_each(|force| *force = -*force);
+        for force in &mut *forces {
+            *force = -*force;
+        }
         if !self.force_states.is_empty() {
             self.force_states.push(crane, &StateAt { t, q, v, x: &motion[2 * n..] }, of_x, forces);
             finite(of_x)?;
