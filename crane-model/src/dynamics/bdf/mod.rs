@@ -7,8 +7,8 @@
 //! c f(tₙ₊₁, y⁰ + d) = ψ + d,     c = h/γₖ,     γₖ = Σ 1/j  (j = 1 … k),     γₖ ψ = Σ γₘ ∇ᵐyₙ  (m = 1 … k)
 //! ```
 //!
-//! Newton's iteration uses stiffness and damping of springs and dampers as its Jacobian: one structured system of half the size. The
-//! neglected terms are `c²` times the square of the load's swing frequency, so usually the first iterate suffices and a step costs
+//! Newton's iteration uses stiffness and damping of springs and dampers as its Jacobian: one structured system of half the size, of which the
+//! right-hand side needs the forces that a motion lacks instead of its accelerations. The neglected terms are `c²` times the square of the load's swing frequency, so usually the first iterate suffices and a step costs
 //! one evaluation. The error of a step is `d/(k+1)`; those of the neighbouring orders are available as well, and the order with
 //! the longest step is chosen; where it is hardly longer, the length stays. As long as the length and the pose stay about the same, so do the
 //! factors of the system. Orders 1 and 2 are L-stable, order 3 is A(α)-stable with α = 86.0°, order 4 with 73.4°: for modes
