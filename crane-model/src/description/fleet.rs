@@ -1,14 +1,14 @@
 //! Several cranes as one.
 
 use super::{
-    BodyInfo, CoordinateInfo, CylinderInfo, Description, DriveInfo, InputInfo, List, LoadInfo, ParameterInfo,
+    AttachmentInfo, BodyInfo, ConnectorInfo, CoordinateInfo, CylinderInfo, Description, DriveInfo, InputInfo, List, LoadInfo, ParameterInfo,
     SectionInfo, SupportInfo, Text,
 };
 
 impl Description {
-    /// Whether several cranes can be one: no force couples coordinates apart from those of the base or has states.
+    /// Whether several cranes can be one: no force has states.
     pub fn has_fleets(&self) -> bool {
-        !self.has_force_states() && self.connectors.is_empty()
+        !self.has_force_states()
     }
 
     /// The description of several cranes as one: every list has each of its items once for each crane, next to each other and with the same name.
@@ -34,6 +34,12 @@ impl Description {
             cylinders: repeat(&self.cylinders, cranes, |cylinder: &mut CylinderInfo, crane| {
                 cylinder.drive = joined(cylinder.drive, crane);
                 cylinder.spanned = cylinder.spanned.map(|coordinate| coordinate * cranes);
+            }),
+            connectors: repeat(&self.connectors, cranes, |connector: &mut ConnectorInfo, crane| {
+                connector.spanned = connector.spanned.map(|coordinate| coordinate * cranes);
+                connector.points = repeat(&connector.points, 1, |point: &mut AttachmentInfo, _| {
+                    point.body = point.body.map(|body| joined(body, crane));
+                });
             }),
             points: repeat(&self.points, cranes, |_: &mut Text, _| {}),
             guess: repeat(&self.guess, cranes, |_: &mut f64, _| {}),

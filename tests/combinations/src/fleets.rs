@@ -81,7 +81,7 @@ pub fn check_fleets(tree: &Tree, seed: u64) -> Option<Vec<String>> {
 fn without_couplings(tree: &Tree) -> Tree {
     let mut tree = tree.clone();
     if let Some(entries) = tree.as_object_mut() {
-        for list in ["connectors", "couplings", "loop_joints"] {
+        for list in ["loop_joints"] {
             entries.remove(list);
         }
     }

@@ -112,13 +112,16 @@ impl Fleet {
         }
     }
 
-    /// A list, zeros if the cranes do not need the function; NaN instead of rows over the coordinates.
+    /// A list, zeros if the cranes do not need the function.
     fn list<T: Entry>(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [T]) {
-        let Description { drives, loads, .. } = &self.crane.description;
-        if let Extent::List(Item::Row, _) = id.extent() {
-            return out.fill(T::from_numbers(&[f64::NAN; 16]));
-        }
+        let Description { drives, loads, connectors, .. } = &self.crane.description;
         let called = self.call(id, arguments, |results| match id.extent() {
+            Extent::List(Item::Row, _) => {
+                out.iter_mut().zip(cast_slice(results)).for_each(|(out, number)| *out = T::from_numbers(&[*number]));
+            }
+            Extent::List(_, Count::WinchPieces) => {
+                spread(results, connectors.iter().map(|connector| connector.pieces), out);
+            }
             Extent::List(_, Count::DrivePieces) => spread(results, drives.iter().map(|drive| drive.pieces), out),
             Extent::List(_, Count::LoadPieces) => spread(results, loads.iter().map(|load| load.pieces), out),
             _ => spread(results, std::iter::repeat(1), out),
