@@ -23,7 +23,7 @@ pub(super) struct ConnectorUpdate {
     /// Number of cranes.
     cranes: usize,
     rows: Vec<Row>,
-    /// `U W` of all cranes.
+    /// The lower triangle of `U W` of all cranes.
     products: Vec<f64>,
     /// S of each crane.
     schur: Vec<Option<Cholesky<f64, Dyn>>>,
@@ -69,7 +69,7 @@ impl ConnectorUpdate {
         Self {
             cranes,
             rows: connectors.iter().step_by(cranes).map(|connector| row(connector.spanned)).collect(),
-            products: zeros(count * count * cranes),
+            products: zeros(count * (count + 1) / 2 * cranes),
             schur: vec![None; cranes],
             shares: zeros(count * cranes),
             of_crane: DVector::zeros(count),
@@ -110,23 +110,23 @@ impl ConnectorUpdate {
         }
     }
 
-    /// `U W`
+    /// The lower triangle of `U W`, row by row.
     fn multiply(&mut self) {
         let mut products = self.products.chunks_exact_mut(self.cranes);
-        for one in &self.rows {
-            for (other, product) in self.rows.iter().zip(&mut products) {
+        for (i, one) in self.rows.iter().enumerate() {
+            for (other, product) in self.rows[..=i].iter().zip(&mut products) {
                 one.along(&other.inverse_column, product);
             }
         }
     }
 
-    /// S of a crane; a connector that does not resist has 1 on the diagonal.
+    /// The lower triangle of S of a crane; a connector that does not resist has 1 on the diagonal.
     fn fill_schur(&self, crane: usize, mut schur: DMatrix<f64>) -> DMatrix<f64> {
-        let products = interleaved::of_crane(&self.products, crane, self.cranes);
-        for (place, product) in products.enumerate() {
-            schur[(place / self.rows.len(), place % self.rows.len())] = *product;
-        }
+        let mut products = interleaved::of_crane(&self.products, crane, self.cranes);
         for (i, row) in self.rows.iter().enumerate() {
+            for (j, product) in (0..=i).zip(&mut products) {
+                schur[(i, j)] = *product;
+            }
             let added_inertia = row.added_inertia[crane];
             schur[(i, i)] += if added_inertia > 0.0 { 1.0 / added_inertia } else { 1.0 };
         }
