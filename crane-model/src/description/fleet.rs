@@ -1,14 +1,15 @@
 //! Several cranes as one.
 
 use super::{
-    AttachmentInfo, BodyInfo, ConnectorInfo, CoordinateInfo, CylinderInfo, Description, DriveInfo, InputInfo, List, LoadInfo, ParameterInfo,
-    SectionInfo, SupportInfo, Text,
+    AttachmentInfo, BodyInfo, BristleInfo, ConnectorInfo, CoordinateInfo, CylinderInfo, Description, DriveInfo,
+    InputInfo, List, LoadInfo, ParameterInfo, SectionInfo, SupportInfo, Text,
 };
 
 impl Description {
-    /// Whether several cranes can be one: no force has states.
+    /// Whether several cranes run faster as one: none has valves, each of which shortens the steps of all, nor rigid drives together with joints
+    /// that stick, whose efforts follow from a mass matrix, which a fleet has not.
     pub fn has_fleets(&self) -> bool {
-        !self.has_force_states()
+        !self.has_force_states() || !self.has_valves() && self.prescribed().is_empty()
     }
 
     /// The description of several cranes as one: every list has each of its items once for each crane, next to each other and with the same name.
@@ -29,6 +30,9 @@ impl Description {
             }),
             stops: indices(&self.stops),
             frictions: indices(&self.frictions),
+            bristles: repeat(&self.bristles, cranes, |joint: &mut BristleInfo, crane| {
+                joint.coordinate = joined(joint.coordinate, crane);
+            }),
             loads: repeat(&self.loads, cranes, |_: &mut LoadInfo, _| {}),
             inputs: repeat(&self.inputs, cranes, |_: &mut InputInfo, _| {}),
             cylinders: repeat(&self.cylinders, cranes, |cylinder: &mut CylinderInfo, crane| {

@@ -279,8 +279,8 @@ fn alone_from(crane: &dyn DynCrane, start: &Start, settings: &Settings, off: &dy
 /// The record of a run of a fleet in progress.
 struct OfFleet<'a> {
     recording: FleetRecording<'a>,
-    /// Poses and rates of all cranes.
-    end: [Vec<f64>; 2],
+    /// Poses, rates and states of forces of all cranes.
+    end: [Vec<f64>; 3],
     off: &'a dyn Fn() -> bool,
     cancelled: bool,
 }
@@ -288,7 +288,7 @@ struct OfFleet<'a> {
 impl Watch for OfFleet<'_> {
     fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
         self.recording.push(sample);
-        for (end, now) in self.end.iter_mut().zip([sample.q, sample.v]) {
+        for (end, now) in self.end.iter_mut().zip([sample.q, sample.v, sample.x]) {
             end.clear();
             end.extend_from_slice(now);
         }
@@ -304,12 +304,12 @@ impl Watch for OfFleet<'_> {
 impl OfFleet<'_> {
     /// The outcome of each crane.
     fn finish(self, cranes: &[(&dyn DynCrane, InitialState)], runs: Vec<Run>) -> Vec<Outcome> {
-        let Self { recording, end: [q, v], cancelled, .. } = self;
+        let Self { recording, end: [q, v, x], cancelled, .. } = self;
         let tables = recording.into_tables();
         let count = tables.len();
         let of_crane = |lane: usize, ((table, run), (crane, _)): ((&Table, Run), &(&dyn DynCrane, InitialState))| {
             let own = |all: &[f64]| all.iter().skip(lane).step_by(count).copied().collect();
-            outcome_of(*crane, table, InitialState { q: own(&q), v: own(&v), x: Vec::new() }, Ok(run))
+            outcome_of(*crane, table, InitialState { q: own(&q), v: own(&v), x: own(&x) }, Ok(run))
         };
         let each = tables.iter().zip(runs).zip(cranes).enumerate();
         each.map(|(lane, of)| if cancelled { Outcome::without_run(Reason::Cancelled) } else { of_crane(lane, of) })
