@@ -48,6 +48,12 @@ pub(crate) fn of_crane(numbers: &[f64], crane: usize, cranes: usize) -> impl Ite
     numbers.iter().skip(crane).step_by(cranes)
 }
 
+/// Copies the numbers of a crane from those of all.
+#[inline]
+pub(crate) fn gather(numbers: &[f64], crane: usize, cranes: usize, own: &mut [f64]) {
+    own.iter_mut().zip(of_crane(numbers, crane, cranes)).for_each(|(own, number)| *own = *number);
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,14 +2,15 @@
 
 use super::{
     AttachmentInfo, BodyInfo, BristleInfo, ConnectorInfo, CoordinateInfo, CylinderInfo, Description, DriveInfo,
-    InputInfo, List, LoadInfo, ParameterInfo, SectionInfo, SupportInfo, Text,
+    InputInfo, List, LoadInfo, LoopEquationInfo, LoopJointInfo, ParameterInfo, SectionInfo, SupportInfo, Text,
 };
 
 impl Description {
-    /// Whether several cranes run faster as one: none has valves, each of which shortens the steps of all, nor rigid drives together with joints
-    /// that stick, whose efforts follow from a mass matrix, which a fleet has not.
-    pub fn has_fleets(&self) -> bool {
-        !self.has_force_states() || !self.has_valves() && self.prescribed().is_empty()
+    /// Whether several cranes with such joints that close loops run faster as one: valves of each would shorten the steps of all, and the efforts of
+    /// rigid drives follow from a mass matrix where joints stick or loops close, which a fleet has not.
+    pub fn has_fleets(&self, loop_joints: &[LoopJointInfo]) -> bool {
+        let needs_mass = !self.prescribed().is_empty() && (self.has_force_states() || !loop_joints.is_empty());
+        !self.has_valves() && !needs_mass
     }
 
     /// The description of several cranes as one: every list has each of its items once for each crane, next to each other and with the same name.
@@ -47,6 +48,18 @@ impl Description {
             }),
             points: repeat(&self.points, cranes, |_: &mut Text, _| {}),
             guess: repeat(&self.guess, cranes, |_: &mut f64, _| {}),
+            ..self.clone()
+        }
+    }
+}
+
+impl LoopJointInfo {
+    /// The same joint of several cranes as one, with the equations of all, each next to each other.
+    #[must_use]
+    pub fn of_fleet(&self, cranes: usize) -> Self {
+        Self {
+            spanned: self.spanned.map(|coordinate| coordinate * cranes),
+            equations: repeat(&self.equations, cranes, |_: &mut LoopEquationInfo, _| {}),
             ..self.clone()
         }
     }

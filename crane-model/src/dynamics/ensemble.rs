@@ -10,12 +10,18 @@ use nalgebra::SVector;
 
 use super::{
     Cause, EffortAccuracy, InitialState, Method, Run, Sample, Settings, State, Statistics, Stopped, Watch,
-    integration::check_inertia, rk4, settings::divided, simulate_watched, stopped::StepContext, stops::Stops,
+    integration::{check_inertia, close},
+    rk4,
+    settings::divided,
+    simulate_watched,
+    stopped::StepContext,
+    stops::Stops,
 };
 use crate::{
     CoordinateRole, Description, Ensemble, LaneDynamics, ParameterError,
     dyn_crane::{Block, DynBlock, DynCrane, DynModel, Instance},
     force_states::ForceStates,
+    loop_joints::Loops,
     rt::lanes::f64x8,
 };
 
@@ -144,13 +150,14 @@ pub(crate) fn simulate_fleet(
     Ok((0..cranes.len()).map(of_lane).collect())
 }
 
-/// The start of a crane of a fleet, checked, with the states of its forces: a fleet does not do this crane by crane.
+/// The start of a crane of a fleet, checked, with the states of its forces and its loops closed: a fleet does not do this crane by crane.
 fn own_start(crane: &dyn DynCrane, start: &InitialState, settings: &Settings) -> Result<InitialState, Stopped> {
     let description = crane.description();
     let context = StepContext { method: settings.method, t: 0.0, h: settings.step, q: &start.q, description };
     check_inertia(crane, &start.q).map_err(|index| context.stopped(Cause::MassMatrix, index))?;
-    let InitialState { q, v, x } = start.clone();
+    let InitialState { mut q, mut v, x } = start.clone();
     let x = ForceStates::new(description).start(crane, 0.0, &q, &x);
+    close(crane, &mut Loops::new(crane), &mut q, &mut v).map_err(|open| context.open(crane, open))?;
     Ok(InitialState { q, v, x })
 }
 

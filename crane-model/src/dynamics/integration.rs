@@ -262,7 +262,7 @@ impl Integration<'_> {
 }
 
 /// Moves a start onto the loops of a crane, by the smallest change in the metric of its mass matrix.
-fn close(crane: &dyn DynDynamics, loops: &mut Loops, q: &mut [f64], v: &mut [f64]) -> Result<(), Open> {
+pub(super) fn close(crane: &dyn DynDynamics, loops: &mut Loops, q: &mut [f64], v: &mut [f64]) -> Result<(), Open> {
     loops.assemble(crane, q, &mut |q, r, x| crane.solve_mass(q, r, x))?;
     loops.project(crane, q, v)
 }

@@ -88,11 +88,11 @@ pub(crate) struct FleetRecording<'a> {
 impl<'a> FleetRecording<'a> {
     /// A recording without samples.
     pub fn new(fleet: &'a dyn DynCrane, crane: &dyn DynCrane) -> Self {
-        let columns = quantities_of(crane.description(), &[], Extent::Peaks);
+        let columns = quantities_of(crane.description(), crane.loop_joints(), Extent::Peaks);
         // Columns of all cranes have the same names, those of the first crane first; the time is one for all.
         let mut places: HashMap<String, Vec<usize>> = HashMap::new();
         for (place, Column { name, .. }) in
-            quantities_of(fleet.description(), &[], Extent::Peaks).into_iter().enumerate()
+            quantities_of(fleet.description(), fleet.loop_joints(), Extent::Peaks).into_iter().enumerate()
         {
             places.entry(name).or_default().push(place);
         }

@@ -25,7 +25,7 @@ const MOST_STEPS: usize = 20_000;
 /// What is different; `None` for a crane without fleets, or which does not stand, or whose runs end early.
 pub fn check_fleets(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     let mut rng = Rng::with_seed(seed);
-    let tree = without_valves_and_loops(tree);
+    let tree = without_valves(tree);
     let crane = live(&numbers_as_parameters(&tree, &mut rng)?.source).ok()?;
     crane.fleet(&[&crane])?;
     let q = equilibrium(&crane).ok()?;
@@ -77,12 +77,9 @@ pub fn check_fleets(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     Some(wrong)
 }
 
-/// A crane without what fleets do not have: valves and loops.
-fn without_valves_and_loops(tree: &Tree) -> Tree {
+/// A crane without what fleets do not have.
+fn without_valves(tree: &Tree) -> Tree {
     let mut tree = tree.clone();
-    if let Some(entries) = tree.as_object_mut() {
-        entries.remove("loop_joints");
-    }
     let cylinders = tree.get_mut("cylinders").and_then(Tree::as_array_mut).into_iter().flatten();
     cylinders.filter_map(Tree::as_object_mut).for_each(|cylinder| drop(cylinder.remove("valve")));
     tree

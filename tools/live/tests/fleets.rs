@@ -16,7 +16,7 @@ use every::{At, call_every};
 
 const CRANES: usize = 8;
 /// Cranes that have fleets, the last one with inputs.
-const CRANES_WITH_FLEETS: [&str; 10] = [
+const CRANES_WITH_FLEETS: [&str; 11] = [
     "specs/cantilever",
     "specs/double_pendulum",
     "specs/eight_link_flexible",
@@ -26,6 +26,7 @@ const CRANES_WITH_FLEETS: [&str; 10] = [
     "specs/loader_tipping",
     "specs/examples/telescopic_loader",
     "tools/live/tests/specs/sticking",
+    "specs/examples/parallel_harvester",
     "examples/python/slewing_crane",
 ];
 

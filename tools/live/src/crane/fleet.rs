@@ -28,6 +28,7 @@ pub(super) struct Fleet {
     /// The functions of all, and what is not of a fleet.
     crane: LiveCrane,
     description: Description,
+    loop_joints: Vec<LoopJointInfo>,
     /// The live parameters and the numbers of the inputs.
     parameters: Vec<f64x8>,
     inputs: Vec<f64x8>,
@@ -71,6 +72,7 @@ impl Fleet {
         });
         Self {
             description: crane.description.of_fleet(CRANES),
+            loop_joints: crane.loop_joints.iter().map(|joint| joint.of_fleet(CRANES)).collect(),
             parameters: parameters.collect(),
             inputs: inputs.collect(),
             crane: crane.clone(),
@@ -184,7 +186,7 @@ impl DynModel for Fleet {
     }
 
     fn loop_joints(&self) -> &[LoopJointInfo] {
-        &[]
+        &self.loop_joints
     }
 
     fn stages(&self) -> &[StageInfo] {
@@ -309,9 +311,15 @@ impl DynCrane for Fleet {
     }
 
     fn boxed_clone(&self) -> Box<dyn DynCrane> {
-        let Self { crane, description, parameters, inputs, .. } = self;
-        let (crane, description) = (crane.clone(), description.clone());
-        Box::new(Self { crane, description, parameters: parameters.clone(), inputs: inputs.clone(), rooms: no_rooms() })
+        let Self { crane, description, loop_joints, parameters, inputs, .. } = self;
+        Box::new(Self {
+            crane: crane.clone(),
+            description: description.clone(),
+            loop_joints: loop_joints.clone(),
+            parameters: parameters.clone(),
+            inputs: inputs.clone(),
+            rooms: no_rooms(),
+        })
     }
 }
 
