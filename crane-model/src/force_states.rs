@@ -80,6 +80,11 @@ impl ForceStates {
         self.kinds.iter_mut().flat_map(|(kind, _)| kind.holding(crane, t, q)).collect()
     }
 
+    /// The states of a start at a pose: those given, or, if there are none, those that hold it at rest.
+    pub(crate) fn start(&mut self, crane: &dyn DynDynamics, t: f64, q: &[f64], given: &[f64]) -> Vec<f64> {
+        if given.is_empty() { self.holding(crane, t, q) } else { given.to_vec() }
+    }
+
     /// As [`holding`](Self::holding), with valves that a servo has opened slightly, in either direction.
     pub(crate) fn slightly_open(&mut self, crane: &dyn DynDynamics, t: f64, q: &[f64]) -> [Vec<f64>; 2] {
         let mut both = [Vec::new(), Vec::new()];

@@ -45,6 +45,8 @@ pub mod force_states;
 #[cfg(feature = "std")]
 pub mod hydraulics;
 #[cfg(feature = "std")]
+mod interleaved;
+#[cfg(feature = "std")]
 mod least_squares;
 #[cfg(feature = "std")]
 pub mod linear;

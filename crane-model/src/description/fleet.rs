@@ -1,14 +1,16 @@
 //! Several cranes as one.
 
 use super::{
-    BodyInfo, CoordinateInfo, CylinderInfo, Description, DriveInfo, InputInfo, List, LoadInfo, ParameterInfo,
-    SectionInfo, SupportInfo, Text,
+    AttachmentInfo, BodyInfo, BristleInfo, ConnectorInfo, CoordinateInfo, CylinderInfo, Description, DriveInfo,
+    InputInfo, List, LoadInfo, LoopEquationInfo, LoopJointInfo, ParameterInfo, SectionInfo, SupportInfo, Text,
 };
 
 impl Description {
-    /// Whether several cranes can be one: no force couples coordinates apart from those of the base or has states.
-    pub fn has_fleets(&self) -> bool {
-        !self.has_force_states() && self.connectors.is_empty()
+    /// Whether several cranes with such joints that close loops run faster as one: valves of each would shorten the steps of all, and the efforts of
+    /// rigid drives follow from a mass matrix where joints stick or loops close, which a fleet has not.
+    pub fn has_fleets(&self, loop_joints: &[LoopJointInfo]) -> bool {
+        let needs_mass = !self.prescribed().is_empty() && (self.has_force_states() || !loop_joints.is_empty());
+        !self.has_valves() && !needs_mass
     }
 
     /// The description of several cranes as one: every list has each of its items once for each crane, next to each other and with the same name.
@@ -29,14 +31,35 @@ impl Description {
             }),
             stops: indices(&self.stops),
             frictions: indices(&self.frictions),
+            bristles: repeat(&self.bristles, cranes, |joint: &mut BristleInfo, crane| {
+                joint.coordinate = joined(joint.coordinate, crane);
+            }),
             loads: repeat(&self.loads, cranes, |_: &mut LoadInfo, _| {}),
             inputs: repeat(&self.inputs, cranes, |_: &mut InputInfo, _| {}),
             cylinders: repeat(&self.cylinders, cranes, |cylinder: &mut CylinderInfo, crane| {
                 cylinder.drive = joined(cylinder.drive, crane);
                 cylinder.spanned = cylinder.spanned.map(|coordinate| coordinate * cranes);
             }),
+            connectors: repeat(&self.connectors, cranes, |connector: &mut ConnectorInfo, crane| {
+                connector.spanned = connector.spanned.map(|coordinate| coordinate * cranes);
+                connector.points = repeat(&connector.points, 1, |point: &mut AttachmentInfo, _| {
+                    point.body = point.body.map(|body| joined(body, crane));
+                });
+            }),
             points: repeat(&self.points, cranes, |_: &mut Text, _| {}),
             guess: repeat(&self.guess, cranes, |_: &mut f64, _| {}),
+            ..self.clone()
+        }
+    }
+}
+
+impl LoopJointInfo {
+    /// The same joint of several cranes as one, with the equations of all, each next to each other.
+    #[must_use]
+    pub fn of_fleet(&self, cranes: usize) -> Self {
+        Self {
+            spanned: self.spanned.map(|coordinate| coordinate * cranes),
+            equations: repeat(&self.equations, cranes, |_: &mut LoopEquationInfo, _| {}),
             ..self.clone()
         }
     }

@@ -162,7 +162,8 @@ pub trait DynEnsemble: DynDynamics {
 
     /// A fleet: cranes that differ from this one in their parameters and inputs, as one crane. Each of its lists has the items of all, the same item of
     /// each crane next to each other: coordinate i of crane k of m is coordinate m i + k. Its description is [`Description::of_fleet`]. Energies are
-    /// those of all; matrices and rows over the coordinates are NaN, and its parents are those of one crane: a fleet has no tree, no cuts and no derivatives.
+    /// those of all. A row over the coordinates is that of the same item of all cranes: the number of rows is that of one crane. Matrices are NaN, and its
+    /// parents are those of one crane: a fleet has no tree, no cuts and no derivatives.
     ///
     /// `None` if one crane after the other is not slower. The fleet may have more cranes: copies of the last one.
     fn fleet(&self, _cranes: &[&dyn DynModel]) -> Option<Box<dyn DynCrane>> {

@@ -15,21 +15,30 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use crate::{
     Tension,
     dyn_crane::{DynImplicit, DynSystem},
+    interleaved,
 };
 
-/// The connectors of a crane at a state.
+/// The connectors of a crane at a state, of each crane of a fleet.
 pub(super) struct ConnectorUpdate {
+    /// Number of cranes.
+    cranes: usize,
     rows: Vec<Row>,
-    /// S.
-    schur: Option<Cholesky<f64, Dyn>>,
-    /// S⁻¹ U y.
-    shares: DVector<f64>,
+    /// The lower triangle of `U W` of all cranes.
+    products: Vec<f64>,
+    /// S of each crane.
+    schur: Vec<Option<Cholesky<f64, Dyn>>>,
+    /// `−S⁻¹ U y` of all cranes.
+    shares: Vec<f64>,
+    /// The same of one crane.
+    of_crane: DVector<f64>,
     /// Rows J of all connectors.
     jacobians: Vec<f64>,
     tensions: Vec<Tension>,
+    /// Workspace: two numbers of each crane.
+    along: [Vec<f64>; 2],
 }
 
-/// A connector; J is 0 while it does not resist.
+/// A connector of each crane; J of a crane is 0 while it does not resist there.
 struct Row {
     /// The coordinates that change its length: the first, and the one after the last.
     spanned: [usize; 2],
@@ -38,29 +47,35 @@ struct Row {
     /// M⁻¹ Jᵀ.
     inverse_column: Vec<f64>,
     /// k, N/m, and d, N s/m.
-    stiffness_and_damping: [f64; 2],
+    stiffness_and_damping: Vec<[f64; 2]>,
     /// `c d + c² k`
-    added_inertia: f64,
+    added_inertia: Vec<f64>,
 }
 
 impl ConnectorUpdate {
     /// Storage for the connectors of a crane.
     pub fn new(crane: &dyn DynImplicit) -> Self {
-        let n = crane.size();
+        let (n, cranes) = (crane.size(), crane.cranes());
         let connectors = &crane.description().connectors;
+        let count = connectors.len() / cranes;
+        let zeros = |len: usize| vec![0.0; len];
         let row = |spanned @ [first, end]: [usize; 2]| Row {
             spanned,
-            jacobian: vec![0.0; end - first],
-            inverse_column: vec![0.0; n],
-            stiffness_and_damping: [0.0; 2],
-            added_inertia: 0.0,
+            jacobian: zeros(end - first),
+            inverse_column: zeros(n),
+            stiffness_and_damping: vec![[0.0; 2]; cranes],
+            added_inertia: zeros(cranes),
         };
         Self {
-            rows: connectors.iter().map(|connector| row(connector.spanned)).collect(),
-            schur: None,
-            shares: DVector::zeros(connectors.len()),
-            jacobians: vec![0.0; connectors.len() * n],
+            cranes,
+            rows: connectors.iter().step_by(cranes).map(|connector| row(connector.spanned)).collect(),
+            products: zeros(count * (count + 1) / 2 * cranes),
+            schur: vec![None; cranes],
+            shares: zeros(count * cranes),
+            of_crane: DVector::zeros(count),
+            jacobians: zeros(count * n),
             tensions: vec![Tension::ZERO; connectors.len()],
+            along: [zeros(cranes), zeros(cranes)],
         }
     }
 
@@ -73,36 +88,47 @@ impl ConnectorUpdate {
         c: f64,
         factors: &mut dyn DynSystem,
     ) {
-        let (count, n) = (self.rows.len(), q.len());
-        if count == 0 {
+        if self.rows.is_empty() {
             return;
         }
         crane.connector_tensions(t, q, v, &mut self.tensions);
         crane.connector_jacobians(q, &mut self.jacobians);
-        for ((row, tension), jacobian) in self.rows.iter_mut().zip(&self.tensions).zip(self.jacobians.chunks_exact(n)) {
-            row.stiffness_and_damping = tension.stiffness_and_damping();
-            let [stiffness, damping] = row.stiffness_and_damping;
-            row.added_inertia = damping * c + stiffness * (c * c);
-            if row.added_inertia > 0.0 {
-                let [first, end] = row.spanned;
-                row.jacobian.copy_from_slice(&jacobian[first..end]);
+        let evaluated = self.tensions.chunks_exact(self.cranes).zip(self.jacobians.chunks_exact_mut(q.len()));
+        for (row, (tensions, jacobian)) in self.rows.iter_mut().zip(evaluated) {
+            row.take(tensions, jacobian, c);
+            if row.resists() {
                 factors.solve(jacobian, &mut row.inverse_column);
             } else {
-                row.jacobian.fill(0.0);
                 row.inverse_column.fill(0.0);
             }
         }
-        let room = self.schur.take().map_or_else(|| DMatrix::zeros(count, count), Cholesky::unpack_dirty);
-        self.schur = Cholesky::new(self.fill_schur(room));
+        self.multiply();
+        for crane in 0..self.cranes {
+            let count = self.rows.len();
+            let room = self.schur[crane].take().map_or_else(|| DMatrix::zeros(count, count), Cholesky::unpack_dirty);
+            self.schur[crane] = Cholesky::new(self.fill_schur(crane, room));
+        }
     }
 
-    /// S; a connector that does not resist has 1 on the diagonal.
-    fn fill_schur(&self, mut schur: DMatrix<f64>) -> DMatrix<f64> {
+    /// The lower triangle of `U W`, row by row.
+    fn multiply(&mut self) {
+        let mut products = self.products.chunks_exact_mut(self.cranes);
         for (i, one) in self.rows.iter().enumerate() {
-            for (j, other) in self.rows.iter().enumerate() {
-                schur[(i, j)] = one.along(&other.inverse_column);
+            for (other, product) in self.rows[..=i].iter().zip(&mut products) {
+                one.along(&other.inverse_column, product);
             }
-            schur[(i, i)] += if one.added_inertia > 0.0 { 1.0 / one.added_inertia } else { 1.0 };
+        }
+    }
+
+    /// The lower triangle of S of a crane; a connector that does not resist has 1 on the diagonal.
+    fn fill_schur(&self, crane: usize, mut schur: DMatrix<f64>) -> DMatrix<f64> {
+        let mut products = interleaved::of_crane(&self.products, crane, self.cranes);
+        for (i, row) in self.rows.iter().enumerate() {
+            for (j, product) in (0..=i).zip(&mut products) {
+                schur[(i, j)] = *product;
+            }
+            let added_inertia = row.added_inertia[crane];
+            schur[(i, i)] += if added_inertia > 0.0 { 1.0 / added_inertia } else { 1.0 };
         }
         schur
     }
@@ -113,58 +139,93 @@ impl ConnectorUpdate {
             return false;
         }
         crane.connector_tensions(t, q, v, &mut self.tensions);
-        let mut pairs = self
-            .rows
-            .iter()
-            .zip(&self.tensions)
-            .map(|(row, now)| (row.stiffness_and_damping, now.stiffness_and_damping()));
+        let before = self.rows.iter().flat_map(|row| &row.stiffness_and_damping);
+        let mut pairs = before.zip(&self.tensions).map(|(before, now)| (before, now.stiffness_and_damping()));
         pairs.any(|(before, now)| before.iter().zip(now).any(|(before, now)| differs(*before, now)))
     }
 
     /// Adds `D̂ G + K̂ (c G + P)` of the connectors.
-    pub fn add_to(&self, (g, p): (&[f64], &[f64]), c: f64, right: &mut [f64]) {
+    pub fn add_to(&mut self, (g, p): (&[f64], &[f64]), c: f64, right: &mut [f64]) {
+        let [forces, of_p] = &mut self.along;
         for row in &self.rows {
-            let [stiffness, damping] = row.stiffness_and_damping;
-            let (g, p) = (row.along(g), row.along(p));
-            let force = damping * g + stiffness * (c * g + p);
-            for (right, column) in right[row.spanned[0]..].iter_mut().zip(&row.jacobian) {
-                *right += force * column;
+            row.along(g, forces);
+            row.along(p, of_p);
+            for ((force, p), [stiffness, damping]) in forces.iter_mut().zip(&*of_p).zip(&row.stiffness_and_damping) {
+                *force = damping * *force + stiffness * (c * *force + p);
             }
+            row.add_to(right, forces);
         }
     }
 
     /// The transpose of [`add_to`](Self::add_to): adds the weights of G and P, given those of what it adds to.
-    pub fn pull_back(&self, weights: &[f64], c: f64, (g, p): (&mut [f64], &mut [f64])) {
+    pub fn pull_back(&mut self, weights: &[f64], c: f64, (g, p): (&mut [f64], &mut [f64])) {
+        let [of_g, of_p] = &mut self.along;
         for row in &self.rows {
-            let [stiffness, damping] = row.stiffness_and_damping;
-            let force = row.along(weights);
-            for (sum, factor) in [(&mut *g, damping + stiffness * c), (&mut *p, stiffness)] {
-                for (sum, column) in sum[row.spanned[0]..].iter_mut().zip(&row.jacobian) {
-                    *sum += force * factor * column;
-                }
+            row.along(weights, of_p);
+            for ((g, p), [stiffness, damping]) in of_g.iter_mut().zip(&mut *of_p).zip(&row.stiffness_and_damping) {
+                (*g, *p) = (*p * (damping + stiffness * c), *p * stiffness);
             }
+            row.add_to(g, of_g);
+            row.add_to(p, of_p);
         }
     }
 
     /// Turns the solution of the system without connectors into that of the system with them.
     pub fn correct(&mut self, solution: &mut [f64]) {
-        let Some(schur) = &self.schur else { return };
-        for (share, row) in self.shares.iter_mut().zip(&self.rows) {
-            *share = row.along(solution);
+        let Self { cranes, rows, schur, shares, of_crane, .. } = self;
+        if rows.is_empty() || schur.iter().all(Option::is_none) {
+            return;
         }
-        schur.solve_mut(&mut self.shares);
-        for (row, share) in self.rows.iter().zip(&self.shares) {
-            for (x, entry) in solution.iter_mut().zip(&row.inverse_column) {
-                *x -= share * entry;
+        for (row, shares) in rows.iter().zip(shares.chunks_exact_mut(*cranes)) {
+            row.along(solution, shares);
+        }
+        for (crane, schur) in schur.iter().enumerate() {
+            for (own, share) in of_crane.iter_mut().zip(interleaved::of_crane(shares, crane, *cranes)) {
+                *own = *share;
             }
+            if let Some(schur) = schur {
+                schur.solve_mut(of_crane);
+            }
+            for (share, own) in shares.iter_mut().skip(crane).step_by(*cranes).zip(&*of_crane) {
+                *share = -own;
+            }
+        }
+        for (row, shares) in rows.iter().zip(shares.chunks_exact(*cranes)) {
+            interleaved::add(shares, &row.inverse_column, solution);
         }
     }
 }
 
 impl Row {
-    /// J x
-    fn along(&self, x: &[f64]) -> f64 {
-        self.jacobian.iter().zip(&x[self.spanned[0]..]).map(|(column, x)| column * x).sum()
+    /// Takes k and d of each crane, and J, which becomes 0 where they do not resist.
+    fn take(&mut self, tensions: &[Tension], jacobian: &mut [f64], c: f64) {
+        let of_cranes = self.stiffness_and_damping.iter_mut().zip(&mut self.added_inertia);
+        for (crane, ((stiffness_and_damping, added_inertia), tension)) in of_cranes.zip(tensions).enumerate() {
+            *stiffness_and_damping = tension.stiffness_and_damping();
+            let [stiffness, damping] = *stiffness_and_damping;
+            *added_inertia = damping * c + stiffness * (c * c);
+            let resists = *added_inertia > 0.0;
+            if !resists {
+                jacobian.iter_mut().skip(crane).step_by(tensions.len()).for_each(|entry| *entry = 0.0);
+            }
+        }
+        let [first, end] = self.spanned;
+        self.jacobian.copy_from_slice(&jacobian[first..end]);
+    }
+
+    /// Whether it resists in any crane.
+    fn resists(&self) -> bool {
+        self.added_inertia.iter().any(|added_inertia| *added_inertia > 0.0)
+    }
+
+    /// `J x` of each crane.
+    fn along(&self, x: &[f64], out: &mut [f64]) {
+        interleaved::dot(&self.jacobian, &x[self.spanned[0]..], out);
+    }
+
+    /// Adds `Jᵀ F` of each crane.
+    fn add_to(&self, generalized: &mut [f64], forces: &[f64]) {
+        interleaved::add(forces, &self.jacobian, &mut generalized[self.spanned[0]..]);
     }
 }
 

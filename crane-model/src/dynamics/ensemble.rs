@@ -10,11 +10,18 @@ use nalgebra::SVector;
 
 use super::{
     Cause, EffortAccuracy, InitialState, Method, Run, Sample, Settings, State, Statistics, Stopped, Watch,
-    integration::check_inertia, rk4, settings::divided, simulate_watched, stopped::StepContext, stops::Stops,
+    integration::{check_inertia, close},
+    rk4,
+    settings::divided,
+    simulate_watched,
+    stopped::StepContext,
+    stops::Stops,
 };
 use crate::{
     CoordinateRole, Description, Ensemble, LaneDynamics, ParameterError,
     dyn_crane::{Block, DynBlock, DynCrane, DynModel, Instance},
+    force_states::ForceStates,
+    loop_joints::Loops,
     rt::lanes::f64x8,
 };
 
@@ -127,18 +134,13 @@ pub(crate) fn simulate_fleet(
     watch: &mut dyn Watch,
 ) -> Result<Vec<Run>, Stopped> {
     let count = fleet.cranes();
-    let start_of = |lane: usize| &cranes[lane.min(cranes.len() - 1)].1;
-    for (crane, start) in cranes {
-        check_inertia(*crane, &start.q).map_err(|index| {
-            let description = crane.description();
-            StepContext { method: settings.method, t: 0.0, h: settings.step, q: &start.q, description }
-                .stopped(Cause::MassMatrix, index)
-        })?;
-    }
+    let starts =
+        cranes.iter().map(|(crane, start)| own_start(*crane, start, settings)).collect::<Result<Vec<_>, _>>()?;
     let joined = |of: fn(&InitialState) -> &Vec<f64>| -> Vec<f64> {
-        (0..fleet.size()).map(|place| of(start_of(place % count))[place / count]).collect()
+        let of_lane = |lane: usize| of(&starts[lane.min(starts.len() - 1)]);
+        (0..count * of_lane(0).len()).map(|place| of_lane(place % count)[place / count]).collect()
     };
-    let start = InitialState { q: joined(|start| &start.q), v: joined(|start| &start.v), x: Vec::new() };
+    let start = InitialState { q: joined(|start| &start.q), v: joined(|start| &start.v), x: joined(|start| &start.x) };
     let run = simulate_watched(fleet, &start, settings, watch)?;
     let of_lane = |lane: usize| {
         let own = run.efforts.iter().filter(|effort| effort.coordinate % count == lane);
@@ -146,6 +148,17 @@ pub(crate) fn simulate_fleet(
         Run { efforts, ..run.clone() }
     };
     Ok((0..cranes.len()).map(of_lane).collect())
+}
+
+/// The start of a crane of a fleet, checked, with the states of its forces and its loops closed: a fleet does not do this crane by crane.
+fn own_start(crane: &dyn DynCrane, start: &InitialState, settings: &Settings) -> Result<InitialState, Stopped> {
+    let description = crane.description();
+    let context = StepContext { method: settings.method, t: 0.0, h: settings.step, q: &start.q, description };
+    check_inertia(crane, &start.q).map_err(|index| context.stopped(Cause::MassMatrix, index))?;
+    let InitialState { mut q, mut v, x } = start.clone();
+    let x = ForceStates::new(description).start(crane, 0.0, &q, &x);
+    close(crane, &mut Loops::new(crane), &mut q, &mut v).map_err(|open| context.open(crane, open))?;
+    Ok(InitialState { q, v, x })
 }
 
 /// A crane with other parameters.

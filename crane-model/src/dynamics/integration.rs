@@ -90,7 +90,7 @@ impl<'a, S: Stepper + ?Sized> Integration<'a, S> {
             context.stopped(Cause::MassMatrix, index)
         })?;
         let mut force_states = ForceStates::new(crane.description());
-        let states = if start.x.is_empty() { force_states.holding(crane, begin, &start.q) } else { start.x.clone() };
+        let states = force_states.start(crane, begin, &start.q, &start.x);
         assert_eq!(states.len(), force_states.len(), "one number for each state of a force");
         let mut motion = [start.q.as_slice(), &start.v, &states].concat();
         let (pose, rates) = motion[..2 * n].split_at_mut(n);
@@ -262,7 +262,7 @@ impl Integration<'_> {
 }
 
 /// Moves a start onto the loops of a crane, by the smallest change in the metric of its mass matrix.
-fn close(crane: &dyn DynDynamics, loops: &mut Loops, q: &mut [f64], v: &mut [f64]) -> Result<(), Open> {
+pub(super) fn close(crane: &dyn DynDynamics, loops: &mut Loops, q: &mut [f64], v: &mut [f64]) -> Result<(), Open> {
     loops.assemble(crane, q, &mut |q, r, x| crane.solve_mass(q, r, x))?;
     loops.project(crane, q, v)
 }

@@ -21,6 +21,7 @@
 mod curvature;
 mod drives;
 mod independence;
+mod of_crane;
 mod quantities;
 mod reactions;
 mod required;
@@ -35,10 +36,11 @@ pub(crate) use required::{at_rest, generalized, required};
 use nalgebra::Vector3;
 
 use crate::{
-    CoordinateKind, Count,
+    CoordinateKind, Count, LoopJointInfo,
     dyn_crane::{DynDynamics, DynModel},
+    interleaved,
 };
-use independence::Independence;
+use of_crane::OfCrane;
 
 /// Gap beyond which a loop that should be closed is open, m or rad: a thousandth of a millimetre.
 pub(crate) const OPEN: f64 = 1e-6;
@@ -71,30 +73,36 @@ pub(crate) type Solve<'a> = &'a mut dyn FnMut(&[f64], &mut [f64]);
 /// Solves a linear system of a pose, `x = M(q)⁻¹ r`: q, r, x.
 pub(crate) type SolveAt<'a> = &'a mut dyn FnMut(&[f64], &[f64], &mut [f64]);
 
-/// The loop joints of a crane at a state, with storage that is reused.
+/// The loop joints of a crane at a state, or of each crane of a fleet, with storage that is reused.
 pub(crate) struct Loops {
     /// Number of coordinates.
     n: usize,
-    /// Coordinates that rigid drives prescribe: no force moves them.
+    /// Number of cranes.
+    cranes: usize,
+    /// Coordinates that rigid drives prescribe: no force moves them. A fleet has none.
     prescribed: Vec<usize>,
-    /// φ, φ̇ and J̇ q̇, equation by equation.
+    /// φ, φ̇ and J̇ q̇, equation by equation, of all cranes next to each other.
     states: Vec<Vector3<f64>>,
-    /// J, row by row.
+    /// J, row by row, each of all cranes.
     jacobian: Vec<f64>,
-    /// Which equations are independent.
-    independence: Independence,
+    /// What is separate for each crane.
+    each: Vec<OfCrane>,
+    /// The rows of equations that are independent in any crane.
+    rows: Vec<usize>,
     /// M⁻¹ Jᵀ, row by row; of dependent equations it need not be known.
     columns: Vec<f64>,
     /// The pose at which the loops were last opened, with the columns of all equations; NaN if others have been written since.
     opened: Vec<f64>,
     /// Accelerations of the open chain and what closes its loops, as [`loop_dynamics`](crate::Dynamics::loop_dynamics) orders them.
     dynamics: Vec<f64>,
-    /// S of the independent equations, then its Cholesky factor, row by row.
-    schur: Vec<f64>,
-    /// Numbers of the independent equations.
+    /// `J M⁻¹ Jᵀ` of `rows`, the lower triangle row by row.
+    products: Vec<f64>,
+    /// Numbers of the equations.
     shares: Vec<f64>,
     /// λ, equation by equation; 0 for dependent ones.
     multipliers: Vec<f64>,
+    /// J of a crane.
+    own: Vec<f64>,
     /// A pose that is tried, and a change of the pose.
     trial: Vec<f64>,
     step: Vec<f64>,
@@ -104,33 +112,39 @@ pub(crate) struct Loops {
 impl Loops {
     /// Storage for the loop joints of a crane.
     pub fn new(crane: &(impl DynModel + ?Sized)) -> Self {
-        let n = crane.size();
-        let joints = crane.loop_joints();
-        let groups = joints.iter().map(|joint| joint.equations.iter().map(|equation| equation.is_moment).collect());
-        let independence = Independence::new(groups.collect());
-        let count = independence.len();
-        let of_crane = if count == 0 { 0 } else { n };
+        let (n, cranes) = (crane.size(), crane.cranes());
+        let moments = |joint: &LoopJointInfo| {
+            joint.equations.iter().step_by(cranes).map(|equation| equation.is_moment).collect::<Vec<_>>()
+        };
+        let groups: Vec<Vec<bool>> = crane.loop_joints().iter().map(moments).collect();
+        let count = groups.iter().map(Vec::len).sum();
+        let zeros = |len: usize| vec![0.0; len];
+        let of_cranes = if count == 0 { 0 } else { n };
         Self {
-            n: of_crane,
+            n: of_cranes,
+            cranes,
             prescribed: crane.description().prescribed(),
-            states: vec![Vector3::zeros(); count],
-            jacobian: vec![0.0; count * of_crane],
-            independence,
-            columns: vec![0.0; count * of_crane],
-            opened: vec![f64::NAN; of_crane],
-            dynamics: vec![0.0; Count::loop_rows(count, n) * of_crane],
-            schur: vec![0.0; count * count],
-            shares: vec![0.0; count],
-            multipliers: vec![0.0; count],
-            trial: vec![0.0; of_crane],
-            step: vec![0.0; of_crane],
-            rest: vec![0.0; of_crane],
+            states: vec![Vector3::zeros(); count * cranes],
+            jacobian: zeros(count * of_cranes),
+            each: (0..cranes).map(|crane| OfCrane::new(crane, groups.clone())).collect(),
+            rows: Vec::with_capacity(count),
+            columns: zeros(count * of_cranes),
+            opened: vec![f64::NAN; of_cranes],
+            dynamics: zeros(Count::loop_rows(count, n / cranes) * of_cranes),
+            products: zeros(count * count * cranes),
+            shares: zeros(count * cranes),
+            multipliers: zeros(count * cranes),
+            own: zeros(count * of_cranes / cranes),
+            trial: zeros(of_cranes),
+            step: zeros(of_cranes),
+            rest: zeros(of_cranes),
         }
     }
 
     /// Visits what further solutions depend on.
     pub fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        self.independence.visit(visit);
+        self.each.iter_mut().for_each(|own| own.independence.visit(visit));
+        self.order_rows();
         self.opened.iter_mut().chain(&mut self.columns).for_each(visit);
     }
 
@@ -159,14 +173,19 @@ impl Loops {
         self.states[equation].x
     }
 
-    /// Indices of the independent equations, as last chosen.
+    /// Indices of the independent equations of the first crane, as last chosen.
     pub fn independent(&self) -> &[usize] {
-        self.independence.kept()
+        self.each[0].independence.kept()
     }
 
-    /// How far the independent equations are from depending on each other, 0 to 1: a sine, 0 at a dead centre.
+    /// Whether an equation, by its index among those of all cranes, is independent.
+    fn is_independent(&self, equation: usize) -> bool {
+        self.each[equation % self.cranes].independence.is_kept(equation / self.cranes)
+    }
+
+    /// How far the independent equations of the first crane are from depending on each other, 0 to 1: a sine, 0 at a dead centre.
     pub fn distance_to_dead_centre(&self) -> f64 {
-        self.independence.least()
+        self.each[0].independence.least()
     }
 
     /// φ, φ̇ and J̇ q̇ of every equation, and J.
@@ -177,22 +196,32 @@ impl Loops {
 
     /// Chooses independent equations at the state evaluated; those chosen before remain if they are still good.
     pub fn choose(&mut self) {
-        let Self { independence, jacobian, n, prescribed, .. } = self;
-        independence.choose(jacobian, *n, prescribed);
+        let Self { each, jacobian, n, cranes, prescribed, own, .. } = self;
+        for of_crane in each {
+            interleaved::gather(jacobian, of_crane.crane, *cranes, own);
+            of_crane.independence.choose(own, *n / *cranes, prescribed);
+        }
+        self.order_rows();
+    }
+
+    /// Lists the rows of equations that are independent in any crane: those of the first crane first.
+    fn order_rows(&mut self) {
+        self.rows.clear();
+        self.each.iter_mut().for_each(|own| own.order(&mut self.rows));
     }
 
     /// Number of equations that are independent while some coordinates rest, and how far they are from depending on each other.
     fn independent_without(&self, held: &[usize]) -> (usize, f64) {
-        let mut independence = self.independence.begin_again();
+        let mut independence = self.each[0].independence.begin_again();
         independence.choose(&self.jacobian, self.n, held);
         (independence.kept().len(), independence.least())
     }
 
     /// Prepares solutions at the state evaluated; `solve` solves the system of the open chain.
     pub fn factorise(&mut self, solve: Solve<'_>) {
-        let Self { n, jacobian, independence, columns, opened, .. } = self;
+        let Self { n, jacobian, rows, columns, opened, .. } = self;
         opened.fill(f64::NAN);
-        for &row in independence.kept() {
+        for &row in &*rows {
             let own = row * *n..(row + 1) * *n;
             solve(&jacobian[own.clone()], &mut columns[own]);
         }
@@ -201,15 +230,18 @@ impl Loops {
 
     /// S of the independent equations, from J and M⁻¹ Jᵀ.
     fn factorise_schur(&mut self) {
-        let Self { n, jacobian, independence, columns, schur, .. } = self;
-        let (n, kept) = (*n, independence.kept());
-        let size = kept.len();
-        for (i, &row) in kept.iter().enumerate() {
-            for (j, &column) in kept[..=i].iter().enumerate() {
-                schur[i * size + j] = dot(&jacobian[row * n..][..n], &columns[column * n..][..n]);
+        let Self { n, cranes, jacobian, rows, columns, products, each, .. } = self;
+        let (n, cranes) = (*n, *cranes);
+        for (i, &row) in rows.iter().enumerate() {
+            for (j, &column) in rows[..=i].iter().enumerate() {
+                let product = &mut products[(i * rows.len() + j) * cranes..][..cranes];
+                interleaved::dot(&jacobian[row * n..][..n], &columns[column * n..][..n], product);
             }
         }
-        cholesky(&mut schur[..size * size], size);
+        for own in each {
+            let crane = own.crane;
+            own.factorise(|i, j| products[(i * rows.len() + j) * cranes + crane]);
+        }
     }
 
     /// Turns the solution of the open chain, `x = M⁻¹ r`, into that with the loops closed, for which `J x + γ = 0`; γ is J̇ q̇ of the
@@ -221,49 +253,60 @@ impl Loops {
         let states = std::mem::take(&mut self.states);
         self.correct_by(x, |row| if moving { states[row].z } else { 0.0 });
         self.states = states;
-        let Self { independence, shares, multipliers, .. } = self;
+        let Self { cranes, rows, shares, multipliers, .. } = self;
         multipliers.fill(0.0);
-        for (share, &row) in shares.iter().zip(independence.kept()) {
-            multipliers[row] = *share;
+        for equation in equations(rows, *cranes) {
+            multipliers[equation] = -shares[equation];
         }
     }
 
     /// The same for `J x + γ = 0` with a given γ of each equation; λ stays as it is.
     pub fn correct_by(&mut self, x: &mut [f64], gamma: impl Fn(usize) -> f64) {
-        let Self { n, jacobian, independence, shares, .. } = self;
-        for (share, &row) in shares.iter_mut().zip(independence.kept()) {
-            *share = dot(&jacobian[row * *n..][..*n], x) + gamma(row);
+        self.take_along(x);
+        for equation in equations(&self.rows, self.cranes) {
+            self.shares[equation] += gamma(equation);
         }
         self.subtract(x);
+    }
+
+    /// `J x` of the independent equations as shares.
+    fn take_along(&mut self, x: &[f64]) {
+        let Self { n, cranes, jacobian, rows, shares, .. } = self;
+        for &row in &*rows {
+            interleaved::dot(&jacobian[row * *n..][..*n], x, &mut shares[row * *cranes..][..*cranes]);
+        }
     }
 
     /// The transpose of [`correct_by`](Self::correct_by): weights of its result become those of x, and `gammas` receives those of γ, equation by
     /// equation.
     pub fn pull_back(&mut self, weights: &mut [f64], gammas: &mut [f64]) {
-        let Self { n, jacobian, independence, columns, schur, shares, .. } = self;
-        let (n, kept) = (*n, independence.kept());
-        for (share, &row) in shares.iter_mut().zip(kept) {
-            *share = dot(&columns[row * n..][..n], weights);
+        let Self { n, cranes, rows, columns, shares, .. } = self;
+        for &row in &*rows {
+            interleaved::dot(&columns[row * *n..][..*n], weights, &mut shares[row * *cranes..][..*cranes]);
         }
-        solve_cholesky(&schur[..kept.len() * kept.len()], kept.len(), &mut shares[..kept.len()]);
+        self.solve_shares();
         gammas.fill(0.0);
-        for (share, &row) in shares.iter().zip(kept) {
-            gammas[row] = -share;
-            for (weight, entry) in weights.iter_mut().zip(&jacobian[row * n..][..n]) {
-                *weight -= share * entry;
-            }
+        for &row in &self.rows {
+            let shares = &self.shares[row * self.cranes..][..self.cranes];
+            gammas[row * self.cranes..][..self.cranes].copy_from_slice(shares);
+            interleaved::add(shares, &self.jacobian[row * self.n..][..self.n], weights);
         }
     }
 
-    /// `x − M⁻¹ Jᵀ S⁻¹ shares`; the shares become `S⁻¹ shares`.
+    /// `x − M⁻¹ Jᵀ S⁻¹ shares`; the shares become `−S⁻¹ shares`.
     fn subtract(&mut self, x: &mut [f64]) {
-        let Self { n, independence, columns, schur, shares, .. } = self;
-        let size = independence.kept().len();
-        solve_cholesky(&schur[..size * size], size, &mut shares[..size]);
-        for (share, &row) in shares[..size].iter().zip(independence.kept()) {
-            for (x, entry) in x.iter_mut().zip(&columns[row * *n..][..*n]) {
-                *x -= share * entry;
-            }
+        self.solve_shares();
+        for &row in &self.rows {
+            let shares = &self.shares[row * self.cranes..][..self.cranes];
+            interleaved::add(shares, &self.columns[row * self.n..][..self.n], x);
+        }
+    }
+
+    /// `−S⁻¹ shares` in place of the shares; 0 for equations that are dependent in a crane.
+    fn solve_shares(&mut self) {
+        let Self { cranes, each, rows, shares, .. } = self;
+        for own in each {
+            own.solve(rows, *cranes, shares);
         }
     }
 
@@ -292,7 +335,7 @@ impl Loops {
         if self.is_empty() {
             return;
         }
-        if self.independence.is_unknown() {
+        if self.each[0].independence.is_unknown() {
             self.choose();
         }
         self.factorise_schur();
@@ -301,7 +344,7 @@ impl Loops {
 
     /// The independent equation with the largest gap.
     fn greatest(&self) -> Open {
-        self.worst(|row| self.independence.is_kept(row))
+        self.worst(|equation| self.is_independent(equation))
     }
 
     /// The equation with the largest gap, as last evaluated.
@@ -355,10 +398,7 @@ impl Loops {
         crane.loop_jacobians(q, &mut self.jacobian);
         // The matrix of another pose leaves a share of the rates as small as the difference of the poses.
         for _ in 0..3 {
-            let Self { n, jacobian, independence, shares, .. } = self;
-            for (share, &row) in shares.iter_mut().zip(independence.kept()) {
-                *share = dot(&jacobian[row * *n..][..*n], v);
-            }
+            self.take_along(v);
             self.subtract(v);
         }
         let widest = self.widest();
@@ -372,9 +412,9 @@ impl Loops {
 
     /// The gaps of the independent equations as shares.
     fn take_gaps(&mut self) {
-        let Self { independence, shares, states, .. } = self;
-        for (share, &row) in shares.iter_mut().zip(independence.kept()) {
-            *share = states[row].x;
+        let Self { cranes, rows, shares, states, .. } = self;
+        for equation in equations(rows, *cranes) {
+            shares[equation] = states[equation].x;
         }
     }
 
@@ -433,6 +473,11 @@ impl Loops {
     }
 }
 
+/// The equations of all cranes with these rows.
+fn equations(rows: &[usize], cranes: usize) -> impl Iterator<Item = usize> {
+    rows.iter().flat_map(move |row| row * cranes..(row + 1) * cranes)
+}
+
 /// Shortens a step so that no coordinate rotates by more than [`GREATEST_ROTATION`].
 fn limit(step: &mut [f64], crane: &(impl DynModel + ?Sized)) {
     let coordinates = &crane.description().coordinates;
@@ -447,27 +492,4 @@ fn limit(step: &mut [f64], crane: &(impl DynModel + ?Sized)) {
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// Replaces the lower triangle of a symmetric matrix by its Cholesky factor; not finite unless the matrix is positive definite.
-fn cholesky(matrix: &mut [f64], size: usize) {
-    for i in 0..size {
-        for j in 0..=i {
-            let sum: f64 = (0..j).map(|k| matrix[i * size + k] * matrix[j * size + k]).sum();
-            let rest = matrix[i * size + j] - sum;
-            matrix[i * size + j] = if i == j { rest.sqrt() } else { rest / matrix[j * size + j] };
-        }
-    }
-}
-
-/// The solution in place of the right-hand side, from a Cholesky factor.
-fn solve_cholesky(factor: &[f64], size: usize, x: &mut [f64]) {
-    for i in 0..size {
-        let known: f64 = (0..i).map(|k| factor[i * size + k] * x[k]).sum();
-        x[i] = (x[i] - known) / factor[i * size + i];
-    }
-    for i in (0..size).rev() {
-        let known: f64 = (i + 1..size).map(|k| factor[k * size + i] * x[k]).sum();
-        x[i] = (x[i] - known) / factor[i * size + i];
-    }
 }

@@ -82,7 +82,7 @@ pub fn undetermined(crane: &(impl DynModel + ?Sized), q: &[f64]) -> Vec<String> 
     let mut loops = Loops::new(crane);
     loops.evaluate(crane, q, &vec![0.0; q.len()]);
     loops.choose();
-    let dependent = (0..loops.states.len()).filter(|row| !loops.independence.is_kept(*row));
+    let dependent = (0..loops.states.len()).filter(|row| !loops.is_independent(*row));
     let name = |row| {
         let (joint, LoopEquationInfo { direction, is_moment }) = equation_of(crane.loop_joints(), row);
         let way = if *is_moment { "about" } else { "along" };

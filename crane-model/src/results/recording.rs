@@ -91,8 +91,8 @@ pub(crate) struct FleetRecording<'a> {
 impl<'a> FleetRecording<'a> {
     /// A recording without samples.
     pub fn new(fleet: &'a dyn DynCrane, crane: &dyn DynCrane) -> Self {
-        let columns = quantities_of(crane.description(), &[], Extent::Peaks);
-        let of_all = quantities_of(fleet.description(), &[], Extent::Peaks);
+        let columns = quantities_of(crane.description(), crane.loop_joints(), Extent::Peaks);
+        let of_all = quantities_of(fleet.description(), fleet.loop_joints(), Extent::Peaks);
         let width = of_all.len();
         // Columns of all cranes have the same names, those of the first crane first; the time is one for all.
         let mut named: HashMap<String, Vec<usize>> = HashMap::new();

@@ -279,9 +279,9 @@ fn alone_from(crane: &dyn DynCrane, start: &Start, settings: &Settings, off: &dy
 /// The record of a run of a fleet in progress.
 struct OfFleet<'a> {
     recording: FleetRecording<'a>,
-    /// Number of cranes, and poses and rates of all.
+    /// Number of cranes, and poses, rates and states of forces of all.
     count: usize,
-    end: [Vec<f64>; 2],
+    end: [Vec<f64>; 3],
     off: &'a dyn Fn() -> bool,
     cancelled: bool,
 }
@@ -289,7 +289,7 @@ struct OfFleet<'a> {
 impl Watch for OfFleet<'_> {
     fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
         self.recording.push(sample);
-        for (end, now) in self.end.iter_mut().zip([sample.q, sample.v]) {
+        for (end, now) in self.end.iter_mut().zip([sample.q, sample.v, sample.x]) {
             end.clear();
             end.extend_from_slice(now);
         }
@@ -305,10 +305,10 @@ impl Watch for OfFleet<'_> {
 impl OfFleet<'_> {
     /// The outcome of each crane.
     fn finish(self, cranes: &[(&dyn DynCrane, InitialState)], runs: Vec<Run>) -> Vec<Outcome> {
-        let Self { recording, end: [q, v], cancelled, count, .. } = self;
+        let Self { recording, end: [q, v, x], cancelled, count, .. } = self;
         let of_crane = |lane: usize, ((table, run), (crane, _)): ((Table, Run), &(&dyn DynCrane, InitialState))| {
             let own = |all: &[f64]| all.iter().skip(lane).step_by(count).copied().collect();
-            outcome_of(*crane, &table, InitialState { q: own(&q), v: own(&v), x: Vec::new() }, Ok(run))
+            outcome_of(*crane, &table, InitialState { q: own(&q), v: own(&v), x: own(&x) }, Ok(run))
         };
         let each = recording.tables().zip(runs).zip(cranes).enumerate();
         each.map(|(lane, of)| if cancelled { Outcome::without_run(Reason::Cancelled) } else { of_crane(lane, of) })

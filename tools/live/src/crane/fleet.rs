@@ -28,6 +28,7 @@ pub(super) struct Fleet {
     /// The functions of all, and what is not of a fleet.
     crane: LiveCrane,
     description: Description,
+    loop_joints: Vec<LoopJointInfo>,
     /// The live parameters and the numbers of the inputs.
     parameters: Vec<f64x8>,
     inputs: Vec<f64x8>,
@@ -71,6 +72,7 @@ impl Fleet {
         });
         Self {
             description: crane.description.of_fleet(CRANES),
+            loop_joints: crane.loop_joints.iter().map(|joint| joint.of_fleet(CRANES)).collect(),
             parameters: parameters.collect(),
             inputs: inputs.collect(),
             crane: crane.clone(),
@@ -112,13 +114,16 @@ impl Fleet {
         }
     }
 
-    /// A list, zeros if the cranes do not need the function; NaN instead of rows over the coordinates.
+    /// A list, zeros if the cranes do not need the function.
     fn list<T: Entry>(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [T]) {
-        let Description { drives, loads, .. } = &self.crane.description;
-        if let Extent::List(Item::Row, _) = id.extent() {
-            return out.fill(T::from_numbers(&[f64::NAN; 16]));
-        }
+        let Description { drives, loads, connectors, .. } = &self.crane.description;
         let called = self.call(id, arguments, |results| match id.extent() {
+            Extent::List(Item::Row, _) => {
+                out.iter_mut().zip(cast_slice(results)).for_each(|(out, number)| *out = T::from_numbers(&[*number]));
+            }
+            Extent::List(_, Count::WinchPieces) => {
+                spread(results, connectors.iter().map(|connector| connector.pieces), out);
+            }
             Extent::List(_, Count::DrivePieces) => spread(results, drives.iter().map(|drive| drive.pieces), out),
             Extent::List(_, Count::LoadPieces) => spread(results, loads.iter().map(|load| load.pieces), out),
             _ => spread(results, std::iter::repeat(1), out),
@@ -181,7 +186,7 @@ impl DynModel for Fleet {
     }
 
     fn loop_joints(&self) -> &[LoopJointInfo] {
-        &[]
+        &self.loop_joints
     }
 
     fn stages(&self) -> &[StageInfo] {
@@ -310,9 +315,15 @@ impl DynCrane for Fleet {
     }
 
     fn boxed_clone(&self) -> Box<dyn DynCrane> {
-        let Self { crane, description, parameters, inputs, .. } = self;
-        let (crane, description) = (crane.clone(), description.clone());
-        Box::new(Self { crane, description, parameters: parameters.clone(), inputs: inputs.clone(), rooms: no_rooms() })
+        let Self { crane, description, loop_joints, parameters, inputs, .. } = self;
+        Box::new(Self {
+            crane: crane.clone(),
+            description: description.clone(),
+            loop_joints: loop_joints.clone(),
+            parameters: parameters.clone(),
+            inputs: inputs.clone(),
+            rooms: no_rooms(),
+        })
     }
 }
 

@@ -62,8 +62,7 @@ impl DynSystem for System<'_> {
 
 impl DynEnsemble for LiveCrane {
     fn fleet(&self, cranes: &[&dyn DynModel]) -> Option<Box<dyn DynCrane>> {
-        let has_fleets = self.description.has_fleets() && self.loop_joints.is_empty() && !cranes.is_empty();
-        let has_fleets = has_fleets && !is_slower_in_lanes();
+        let has_fleets = self.description.has_fleets(&self.loop_joints) && !cranes.is_empty() && !is_slower_in_lanes();
         has_fleets.then(|| -> Box<dyn DynCrane> { Box::new(Fleet::new(self, cranes)) })
     }
 

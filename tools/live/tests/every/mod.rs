@@ -1,6 +1,6 @@
 //! Calls of every method of the table of quantities.
 
-use crane_codegen::program::FunctionId;
+use crane_codegen::program::{Extent, FunctionId, Item};
 use crane_model::Entry;
 use crane_model::dyn_crane::DynCrane;
 use crane_quantities::quantities;
@@ -57,6 +57,10 @@ pub fn call_every(
 
 /// A list for the results of a function, with other contents.
 fn list<T: Entry>(crane: &dyn DynCrane, id: FunctionId) -> Vec<T> {
-    let numbers: usize = id.extent().shape(crane.size(), |count| crane.count(count)).product();
+    let mut numbers: usize = id.extent().shape(crane.size(), |count| crane.count(count)).product();
+    if let Extent::List(Item::Row, _) = id.extent() {
+        // A row of a fleet is one of all its cranes.
+        numbers /= crane.cranes();
+    }
     vec![T::from_numbers(&[f64::NAN; 16][..T::LEN]); numbers / T::LEN]
 }
