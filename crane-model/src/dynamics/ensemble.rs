@@ -10,11 +10,11 @@ use nalgebra::SVector;
 
 use super::{
     Cause, EffortAccuracy, InitialState, Method, Run, Sample, Settings, State, Statistics, Stopped, Watch,
-    integration::{check_inertia, close},
+    integration::close,
     rk4,
     settings::divided,
     simulate_watched,
-    stopped::StepContext,
+    stopped::{StepContext, check_inertia},
     stops::Stops,
 };
 use crate::{

@@ -38,7 +38,17 @@ impl<'a> Equations<'a> {
         let force_states = ForceStates::new(crane.description());
         let states = force_states.len();
         let loops = Loops::new(crane);
-        Self { crane, n, references, evaluations: 0, state: vec![0.0; 2 * n], accelerations: vec![0.0; n], force_states, loops, states }
+        Self {
+            crane,
+            n,
+            references,
+            evaluations: 0,
+            state: vec![0.0; 2 * n],
+            accelerations: vec![0.0; n],
+            force_states,
+            loops,
+            states,
+        }
     }
 
     /// The number of components of a motion: coordinates, rates and states of forces.

@@ -2,8 +2,6 @@
 
 use std::ops::ControlFlow;
 
-use nalgebra::DMatrix;
-
 use super::{
     Ahead, Cause, InitialState, Method, Run, Sample, Settings, Steered, Stepper, Stopped,
     bdf::Bdf,
@@ -11,7 +9,7 @@ use super::{
     dormand_prince::DormandPrince,
     energy_integrals::{EnergyIntegrals, INTEGRALS},
     rosenbrock::Rosenbrock,
-    stopped::{StepContext, without_inertia},
+    stopped::{StepContext, check_inertia},
     stops::Stops,
 };
 use crate::memory::{Visit, visit_count, visit_flag, visit_numbers};
@@ -265,17 +263,4 @@ impl Integration<'_> {
 pub(super) fn close(crane: &dyn DynDynamics, loops: &mut Loops, q: &mut [f64], v: &mut [f64]) -> Result<(), Open> {
     loops.assemble(crane, q, &mut |q, r, x| crane.solve_mass(q, r, x))?;
     loops.project(crane, q, v)
-}
-
-/// Checks that the mass matrix at a pose is positive definite: the O(n) recursion divides by inertias one by one and would
-/// continue with negative ones. Otherwise returns the coordinate that is the cause.
-///
-/// The cranes of a fleet are checked one by one, before they are one.
-pub(super) fn check_inertia(crane: &dyn DynDynamics, q: &[f64]) -> Result<(), usize> {
-    if crane.cranes() > 1 {
-        return Ok(());
-    }
-    let mut mass = DMatrix::zeros(q.len(), q.len());
-    crane.mass_matrix(q, mass.as_mut_slice());
-    without_inertia(&mass).map_or(Ok(()), Err)
 }

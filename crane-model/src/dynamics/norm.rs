@@ -122,7 +122,7 @@ impl Norm {
         let mut greatest = Greatest::none();
         let (of_q, of_v, of_x) = (&error[..n], &error[n..2 * n], &error[2 * n..]);
         let rates = &motion[n..2 * n];
-        greatest.note_all(of_q, of_q, |error, _| error.abs());
+        greatest.note_all(of_q, rates, |error, _| error.abs());
         greatest.note_all(of_v, rates, |error, rate| error.abs() * RATE / (rate.abs() + 1.0));
         greatest.note_each(of_x.iter().zip(&self.states), |(error, scale)| error.abs() / (OIL * scale));
         greatest.note_each(self.efforts.iter(), |effort| effort.of(n, error, f64::abs) / (EFFORT * effort.scale));

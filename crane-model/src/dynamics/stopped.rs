@@ -84,19 +84,28 @@ impl StepContext<'_> {
     /// A run that stopped at a failed step: because of missing inertia if the mass matrix at its start is not positive definite,
     /// otherwise for the given cause.
     pub fn failed(&self, cause: Cause, crane: &dyn DynDynamics) -> Stopped {
-        // The cranes of a fleet were checked one by one.
-        if crane.cranes() > 1 {
-            return self.furthest(cause);
+        match check_inertia(crane, self.q) {
+            Ok(()) => self.furthest(cause),
+            Err(index) => self.stopped(Cause::MassMatrix, index),
         }
-        let n = self.q.len();
-        let mut mass = DMatrix::zeros(n, n);
-        crane.mass_matrix(self.q, mass.as_mut_slice());
-        without_inertia(&mass).map_or_else(|| self.furthest(cause), |index| self.stopped(Cause::MassMatrix, index))
     }
 }
 
+/// Checks that the mass matrix at a pose is positive definite: the O(n) recursion divides by inertias one by one and would
+/// continue with negative ones. Otherwise returns the coordinate that is the cause.
+///
+/// The cranes of a fleet are checked one by one, before they are one.
+pub(super) fn check_inertia(crane: &dyn DynDynamics, q: &[f64]) -> Result<(), usize> {
+    if crane.cranes() > 1 {
+        return Ok(());
+    }
+    let mut mass = DMatrix::zeros(q.len(), q.len());
+    crane.mass_matrix(q, mass.as_mut_slice());
+    without_inertia(&mass).map_or(Ok(()), Err)
+}
+
 /// The first coordinate that moves nothing with inertia: all leading blocks before it are positive definite.
-pub(super) fn without_inertia(mass: &DMatrix<f64>) -> Option<usize> {
+fn without_inertia(mass: &DMatrix<f64>) -> Option<usize> {
     let regular = |size: usize| size == 0 || mass.view((0, 0), (size, size)).into_owned().cholesky().is_some();
     if regular(mass.nrows()) { None } else { (0..mass.nrows()).find(|&index| !regular(index + 1)) }
 }
