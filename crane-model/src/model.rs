@@ -158,6 +158,17 @@ pub trait Implicit<const N: usize>: Dynamics<N> {
     /// x of `(A + D̂) x = r`.
     fn solve(&self, f: &Self::Factors, r: &SVector<f64, N>) -> SVector<f64, N>;
 
+    /// Generalized forces r that a motion requires beyond those that act, N and N m: `r = A a − e − f`.
+    fn dynamic_residual(
+        &self,
+        t: f64,
+        q: &SVector<f64, N>,
+        v: &SVector<f64, N>,
+        a: &SVector<f64, N>,
+    ) -> SVector<f64, N> {
+        self.mass_matrix(q) * a - self.bias(q, v) - self.forces(t, q, v)
+    }
+
     quantities! { sized_methods of Implicit }
 }
 

@@ -196,7 +196,7 @@ Implicit {
     /// What a drive or another force would have to add: positive where it pushes towards larger coordinates; zero in all coordinates that
     /// move freely with a = q̈. For coordinates that rigid drives prescribe, f contains no force of these drives, and r is the effort that they
     /// need. The forces of cylinders with a valve, of bristles and of joints that close loops are not part of f.
-    DynamicResidual = dynamic_residual(t, q, v, a) -> vector required
+    DynamicResidual = dynamic_residual(t, q, v, a) -> vector written
         "Generalized forces r that a motion requires beyond those that act, N and N m."
         "r = A a − e − f, by Newton and Euler" python(q, v, a; t);
     JointStiffnessAndDamping = joint_stiffness_and_damping() -> [pair; coordinates] required

@@ -145,7 +145,7 @@ fn a_motion_after_a_rest_is_not_stepped_over() {
     }
 }
 
-/// A crane that counts how often it is asked for its accelerations and for factors.
+/// A crane that counts how often it is asked for its accelerations or for what a motion requires, and for factors.
 struct Counted<C> {
     crane: C,
     evaluations: AtomicUsize,
@@ -183,6 +183,16 @@ impl<const N: usize, C: Implicit<N>> Implicit<N> for Counted<C> {
     }
     fn solve(&self, factors: &C::Factors, r: &SVector<f64, N>) -> SVector<f64, N> {
         self.crane.solve(factors, r)
+    }
+    fn dynamic_residual(
+        &self,
+        t: f64,
+        q: &SVector<f64, N>,
+        v: &SVector<f64, N>,
+        a: &SVector<f64, N>,
+    ) -> SVector<f64, N> {
+        self.evaluations.fetch_add(1, Ordering::Relaxed);
+        self.crane.dynamic_residual(t, q, v, a)
     }
     fn joint_stiffness_and_damping(&self, out: &mut [[f64; 2]]) {
         self.crane.joint_stiffness_and_damping(out);

@@ -104,6 +104,7 @@ fn results<T: Parts>(
         added_inertia: &waves(n, |_| 2.0, 0.5, 0.9),
         base: &base,
         factors: &waves(factors, |_| 1.5, 1.0, 0.37),
+        version: 0,
         parameters: &[],
         inputs: &waves(2 * chain.inputs.len(), |_| 0.5, 0.2, 1.0),
     };

@@ -78,6 +78,7 @@ impl State {
             added_inertia: &self.added_inertia,
             base: &self.base,
             factors: &self.factors,
+            version: 0,
             parameters: &[],
             inputs: &[],
         }
@@ -141,6 +142,7 @@ fn a_lane_computes_what_one_state_does() {
             added_inertia: &added_inertia,
             base: &base,
             factors: &factors,
+            version: 0,
             parameters: &[],
             inputs: &[],
         };
