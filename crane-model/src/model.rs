@@ -209,7 +209,7 @@ pub trait TransformDerivatives<const N: usize>: CraneModel<N> {
 /// Derivatives of the dynamics, for controllers, optimization and identification.
 pub trait MotionDerivatives<const N: usize>: Dynamics<N> {
     /// Derivatives ∂r/∂q (N/m, N, N m) and ∂r/∂v (N s/m, N s, N m s) of the residual r = A a − e − f of
-    /// [`dynamic_residual`](Self::dynamic_residual), row by row. `out`: 2 N rows.
+    /// [`dynamic_residual`](Implicit::dynamic_residual), row by row. `out`: 2 N rows.
     ///
     /// `Ω_i · (Ω̈_j W + 2 Ω̇_j G + Ω_j × F) − ∂f_i/∂q_j, 2 Ω_i · (Ω̇_j W + Ω_j G) − ∂f_i/∂q̇_j`
     fn dynamic_residual_derivatives(

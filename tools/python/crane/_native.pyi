@@ -384,6 +384,12 @@ class Crane:
         MuJoCo's `qfrc_bias`, which are on the left-hand side."""
     def kinetic_energy(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
         """(...): Kinetic energy, J."""
+    def dynamic_residual(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(..., n): Generalized forces r that a motion requires beyond those that act, N and N m.
+        What a drive or another force would have to add: positive where it pushes towards larger coordinates; zero in all coordinates that
+        move freely with a = q̈. For coordinates that rigid drives prescribe, f contains no force of these drives, and r is the effort that they
+        need. The forces of cylinders with a valve, of bristles and of joints that close loops are not part of f.
+        t: s, 0 unless given."""
     def static_residual(self, q: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
         """(..., n): Gradient of the potential energy with the drives at given positions, zero in equilibrium; N and N m.
         In Python, the drives are where they are at times t.
@@ -409,12 +415,6 @@ class Crane:
         """(..., n): Generalized forces that a motion requires in total, N and N m.
         The torque of robotics, with inertia and gravity alone: what all forces together must be. `crane eval` takes the accelerations q̈ from
         the equations of motion."""
-    def dynamic_residual(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
-        """(..., n): Generalized forces r that a motion requires beyond those that act, N and N m.
-        What a drive or another force would have to add: positive where it pushes towards larger coordinates; zero in all coordinates that
-        move freely with a = q̈. For coordinates that rigid drives prescribe, f contains no force of these drives, and r is the effort that they
-        need. The forces of cylinders with a valve, of bristles and of joints that close loops are not part of f.
-        t: s, 0 unless given."""
     def dynamic_residual_derivatives(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
         """(..., 2, n, n): Derivatives ∂r/∂q (N/m, N, N m) and ∂r/∂v (N s/m, N s, N m s) of the residual r = A a − e − f.
         Row i and column j of each matrix: the change of `r_i` with `q_j`, and with `q̇_j`. At rest ∂r/∂q is the tangent stiffness, and ∂r/∂v
