@@ -280,7 +280,6 @@ impl<'a> Bdf<'a> {
             if control.steps_since_change <= order {
                 return Attempt::Accepted;
             }
-            control.steps_since_change = 0;
             let orders = (order.max(2) - 1..=(order + 1).min(ORDER)).map(|order| {
                 let error = match order {
                     _ if order == history.order => error,
