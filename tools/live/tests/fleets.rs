@@ -177,8 +177,10 @@ fn the_runs_of_a_fleet_are_those_of_its_cranes() {
             assert!(together.iter().all(|row| steps(row) == steps(&together[0])), "{name}: all have the same steps");
             let evaluations = |row: &Outcome| row.run.as_ref().map_or(0, |run| run.statistics.evaluations);
             let most = alone.iter().map(evaluations).max().unwrap_or_default();
-            // An implicit step with a wrong matrix also converges, but in many more evaluations.
-            assert!(2 * evaluations(&together[0]) < 3 * most, "{name}, {method:?}: {most} evaluations alone");
+            // An implicit step with a wrong matrix also converges, but in ten times as many evaluations. Joints that stick change their branch at
+            // other times in each crane, each of which shortens the steps of all.
+            let all = evaluations(&together[0]);
+            assert!(all < 3 * most, "{name}, {method:?}: {all} evaluations together, {most} alone");
             for (lane, pair) in together.iter().zip(&alone).enumerate() {
                 assert_close(&format!("{name}, {method:?}, crane {lane}"), pair, 1e3 * tolerance, crane.description());
             }
