@@ -56,12 +56,9 @@ impl<const N: usize, const E: usize> MassColumns<N, E> {
         let mut matrix = SMatrix::zeros();
         let columns: &mut [[f64; N]; N] = &mut matrix.data.0;
         self.fill(points, columns);
-        // Eight columns at a time: the numbers that are read lie in eight lines of the cache.
-        for first in (0..N).step_by(8) {
-            for row in first..N {
-                for column in first..row.min(first + 8) {
-                    columns[row][column] = columns[column][row];
-                }
+        for column in 0..N {
+            for row in 0..column {
+                columns[column][row] = columns[row][column];
             }
         }
         matrix
