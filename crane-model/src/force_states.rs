@@ -170,7 +170,7 @@ impl ForceStates {
         self.add_forces(forces);
     }
 
-    /// The same, with the derivatives of the rates with respect to the states, if requested.
+    /// As `accelerate`, with the derivatives of the rates with respect to the states, if requested.
     pub(crate) fn accelerate_with_slopes(
         &mut self,
         crane: &dyn DynDynamics,

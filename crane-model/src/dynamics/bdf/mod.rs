@@ -8,8 +8,8 @@
 //! ```
 //!
 //! Newton's iteration uses stiffness and damping of springs and dampers as its Jacobian: one structured system of half the size, of which the
-//! right-hand side needs the forces that a motion lacks instead of its accelerations. The neglected terms are `c²` times the square of the load's swing frequency, so usually the first iterate suffices and a step costs
-//! one evaluation. The error of a step is `d/(k+1)`; those of the neighbouring orders are available as well, and the order with
+//! right-hand side needs the forces that a motion lacks instead of its accelerations. The neglected terms are `c²` times the square of the
+//! load's swing frequency, so usually the first iterate suffices and a step costs one evaluation. The error of a step is `d/(k+1)`; those of the neighbouring orders are available as well, and the order with
 //! the longest step is chosen; where it is hardly longer, the length stays. As long as the length and the pose stay about the same, so do the
 //! factors of the system. Orders 1 and 2 are L-stable, order 3 is A(α)-stable with α = 86.0°, order 4 with 73.4°: for modes
 //! with little damping that are not resolved, the error estimate selects the lower orders.
