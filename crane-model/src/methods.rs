@@ -110,7 +110,6 @@ macro_rules! sized_argument {
 macro_rules! sized_result {
     (number) => { f64 };
     (vector) => { SVector<f64, N> };
-    (matrix) => { SMatrix<f64, N, N> };
     (base) => { SMatrix<f64, 6, 6> };
 }
 
@@ -140,6 +139,11 @@ macro_rules! sized_method {
         fn $name(&self, $($argument: sized_argument!($argument),)* out: &mut [sized_entry!($item)]) {
             out.fill(Entry::ZERO);
         }
+    };
+    (required matrix [$($about:tt)*] $name:ident($($argument:ident),*)) => {
+        $($about)*
+        #[doc = "\n`out`: the whole matrix, whatever it was before."]
+        fn $name(&self, $($argument: sized_argument!($argument),)* out: &mut SMatrix<f64, N, N>);
     };
     (required $result:ident [$($about:tt)*] $name:ident($($argument:ident),*)) => {
         $($about)*

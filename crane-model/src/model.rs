@@ -86,7 +86,7 @@ pub trait Dynamics<const N: usize>: CraneModel<N> {
         v: &SVector<f64, N>,
         mass: &mut SMatrix<f64, N, N>,
     ) -> SVector<f64, N> {
-        *mass = self.mass_matrix(q);
+        self.mass_matrix(q, mass);
         self.bias(q, v)
     }
 
@@ -100,7 +100,9 @@ pub trait Dynamics<const N: usize>: CraneModel<N> {
     ///
     /// The default for models written by hand uses Cholesky's factors of A; the result is NaN unless A is positive definite.
     fn solve_mass(&self, q: &SVector<f64, N>, r: &SVector<f64, N>) -> SVector<f64, N> {
-        Cholesky::new(self.mass_matrix(q)).map_or(SVector::repeat(f64::NAN), |factors| factors.solve(r))
+        let mut mass = SMatrix::zeros();
+        self.mass_matrix(q, &mut mass);
+        Cholesky::new(mass).map_or(SVector::repeat(f64::NAN), |factors| factors.solve(r))
     }
 
     quantities! { sized_methods of Dynamics }
@@ -166,7 +168,9 @@ pub trait Implicit<const N: usize>: Dynamics<N> {
         v: &SVector<f64, N>,
         a: &SVector<f64, N>,
     ) -> SVector<f64, N> {
-        self.mass_matrix(q) * a - self.bias(q, v) - self.forces(t, q, v)
+        let mut mass = SMatrix::zeros();
+        self.mass_matrix(q, &mut mass);
+        mass * a - self.bias(q, v) - self.forces(t, q, v)
     }
 
     quantities! { sized_methods of Implicit }
@@ -232,16 +236,16 @@ pub trait MotionDerivatives<const N: usize>: Dynamics<N> {
     /// that rigid drives prescribe. Of the open chain.
     ///
     /// `A⁻¹ = Lᵀ D⁻¹ L`, by articulated bodies
-    fn inverse_mass_matrix(&self, q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
+    ///
+    /// `out`: the whole matrix, whatever it was before.
+    fn inverse_mass_matrix(&self, q: &SVector<f64, N>, out: &mut SMatrix<f64, N, N>) {
         let mut factors = [[0.0; N]; Count::MASS_FACTORS];
         self.mass_factors(q, &mut factors);
-        let mut inverse = SMatrix::<f64, N, N>::zeros();
         // A⁻¹ is symmetric: its rows are its columns.
-        let rows = inverse.data.0.as_flattened_mut();
+        let rows = out.data.0.as_flattened_mut();
         with_workspace(self, |links, workspace| {
             derivatives::inverse_mass_matrix(links, factors.as_flattened(), workspace, rows);
         });
-        inverse
     }
 
     /// Derivatives of the accelerations q̈ of [`forward_dynamics`](Dynamics::forward_dynamics) of the open chain: rows of ∂q̈/∂q, then of ∂q̈/∂v,

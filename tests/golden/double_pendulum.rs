@@ -44,7 +44,7 @@
 //   joint_stiffness_and_damping          0         0
 
 use ::crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
-use ::crane_model::rt::{MassAndBias, fill, fma, sin_cos, symmetric};
+use ::crane_model::rt::{MassAndBias, fill, fma, mirror, sin_cos};
 use ::crane_model::{
     BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, CraneModel, Description,
     Dynamics, Ensemble, Implicit, List, OneByOne, ParameterError, Text,
@@ -444,9 +444,10 @@ pub fn solve_mass(q: &SVector<f64, N>, r: &SVector<f64, N>) -> SVector<f64, N> {
 /// [Urbaś 2016, Eq. (5)]
 ///
 /// 37 operations: 17 add, 18 mul, 0 div, 2 sin_cos.
-pub fn mass_matrix(q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
+pub fn mass_matrix(q: &SVector<f64, N>, out: &mut SMatrix<f64, N, N>) {
     let q = &q.data.0[0];
-    let mut out: [[f64; N]; N] = [[0.0; N]; N];
+    let out = &mut out.data.0;
+    out.fill([0.0; N]);
     let upper_theta = q[0];
     let lower_theta = q[1];
     // Sines and cosines
@@ -477,13 +478,13 @@ pub fn mass_matrix(q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
     );
     out[0][0] = second_from_upper_zz - t007 + (second_from_upper_xx + t007);
     // Row of upper_theta
-    out[1][0] = t006
+    out[0][1] = t006
         + fma(
             sin_upper_theta,
             fma(sin_upper_theta, t001, cos_upper_theta * t002),
             -(cos_upper_theta * fma(-cos_upper_theta, t001, sin_upper_theta * t002)),
         );
-    symmetric(out)
+    mirror(out);
 }
 
 /// Mass matrix A, its lower triangle, and bias e; kg, kg m, kg m², N, N m.
@@ -881,8 +882,8 @@ impl Dynamics<N> for Crane {
     fn solve_mass(&self, q: &SVector<f64, N>, r: &SVector<f64, N>) -> SVector<f64, N> {
         solve_mass(q, r)
     }
-    fn mass_matrix(&self, q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
-        mass_matrix(q)
+    fn mass_matrix(&self, q: &SVector<f64, N>, out: &mut SMatrix<f64, N, N>) {
+        mass_matrix(q, out);
     }
     fn mass_matrix_and_bias(
         &self,

@@ -51,7 +51,7 @@
 //   linearise                          165       808
 
 use ::crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
-use ::crane_model::rt::{MassAndBias, fill, fma, sin_cos, symmetric};
+use ::crane_model::rt::{MassAndBias, fill, fma, mirror, sin_cos, symmetric};
 use ::crane_model::{
     BodyInfo, Bound, CoordinateInfo, CoordinateKind, CoordinateRole, CraneModel,
     Description, DriveInfo, Dynamics, Ensemble, Implicit, Linearisation, Linearise, List,
@@ -1558,9 +1558,10 @@ pub fn solve_mass(
 /// [Urbaś 2016, Eq. (5)]
 ///
 /// 127 operations: 59 add, 65 mul, 0 div, 3 sin_cos.
-pub fn mass_matrix(q: &SVector<f64, N>, c: &Constants) -> SMatrix<f64, N, N> {
+pub fn mass_matrix(q: &SVector<f64, N>, c: &Constants, out: &mut SMatrix<f64, N, N>) {
     let q = &q.data.0[0];
-    let mut out: [[f64; N]; N] = [[0.0; N]; N];
+    let out = &mut out.data.0;
+    out.fill([0.0; N]);
     let main_boom_theta = q[0];
     let knuckle_theta = q[1];
     let hook_theta = q[3];
@@ -1661,23 +1662,23 @@ pub fn mass_matrix(q: &SVector<f64, N>, c: &Constants) -> SMatrix<f64, N, N> {
     );
     out[0][0] = second_from_main_boom_zz - t024 + (second_from_main_boom_xx + t024);
     // Row of main_boom_theta
-    out[1][0] = t022
+    out[0][1] = t022
         + fma(
             upsilon_knuckle_theta_z,
             fma(cos_main_boom_theta, t014, sin_main_boom_theta * t013),
             -(t023 * fma(-sin_main_boom_theta, t014, cos_main_boom_theta * t013)),
         );
     let t025 = first_from_extension_z + fma(t009, t011, -(t008 * t012));
-    out[2][0] = t025 + fma(upsilon_knuckle_theta_z, t009, -(t023 * t008));
+    out[0][2] = t025 + fma(upsilon_knuckle_theta_z, t009, -(t023 * t008));
     let t026 = t005 + fma(t007, t011, -(t006 * t012));
-    out[3][0] = t026 + fma(upsilon_knuckle_theta_z, t007, -(t023 * t006));
+    out[0][3] = t026 + fma(upsilon_knuckle_theta_z, t007, -(t023 * t006));
     // Row of knuckle_theta
-    out[2][1] = t025;
-    out[3][1] = t026;
+    out[1][2] = t025;
+    out[1][3] = t026;
     // Row of extension_x
     out[2][2] = fma(knuckle_axis_z_x, t009, knuckle_axis_x_x * t008);
-    out[3][2] = fma(knuckle_axis_z_x, t007, knuckle_axis_x_x * t006);
-    symmetric(out)
+    out[2][3] = fma(knuckle_axis_z_x, t007, knuckle_axis_x_x * t006);
+    mirror(out);
 }
 
 /// Mass matrix A, its lower triangle, and bias e; kg, kg m, kg m², N, N m.
@@ -2770,9 +2771,11 @@ pub fn tangent_stiffness(
     q: &SVector<f64, N>,
     _positions: &SVector<f64, N>,
     c: &Constants,
-) -> SMatrix<f64, N, N> {
+    out: &mut SMatrix<f64, N, N>,
+) {
     let q = &q.data.0[0];
-    let mut out: [[f64; N]; N] = [[0.0; N]; N];
+    let out = &mut out.data.0;
+    out.fill([0.0; N]);
     let main_boom_theta = q[0];
     let knuckle_theta = q[1];
     let hook_theta = q[3];
@@ -2822,21 +2825,21 @@ pub fn tangent_stiffness(
     out[0][0] = fma(-9.81, first_from_main_boom_z - c.c015, 4000000.0);
     let upsilon_knuckle_theta_x = fma(3.2, sin_main_boom_theta, -2.0);
     let t002 = 9.81 * fma(upsilon_knuckle_theta_x, c.c007, first_from_knuckle_z);
-    out[1][0] = -t002;
+    out[0][1] = -t002;
     let t003 = -9.81 * (knuckle_axis_x_x * c.c006);
-    out[2][0] = t003;
+    out[0][2] = t003;
     let upsilon_hook_theta_x = fma(extension_x, knuckle_axis_z_x, -t001);
     let t004 = -9.81 * fma(upsilon_hook_theta_x, c.c001, first_hook_z);
-    out[3][0] = t004;
+    out[0][3] = t004;
     // Row of knuckle_theta
     out[1][1] = 2000000.0 - t002;
-    out[2][1] = t003;
-    out[3][1] = t004;
+    out[1][2] = t003;
+    out[1][3] = t004;
     // Row of extension_x
     out[2][2] = 8000000.0;
     // Row of hook_theta
     out[3][3] = t004;
-    symmetric(out)
+    mirror(out);
 }
 
 /// Generalized forces of the drives that hold the crane at rest at given positions, N and N m.
@@ -2955,7 +2958,7 @@ pub fn linearise(q: &SVector<f64, N>, c: &Constants) -> Linearisation<N> {
     let t016 = t011 + t012;
     let upsilon_knuckle_theta_z = 3.2 * cos_main_boom_theta;
     let t017 = 3.2 * sin_main_boom_theta;
-    out[0][1][0] = t016
+    out[0][0][1] = t016
         + fma(
             upsilon_knuckle_theta_z,
             fma(cos_main_boom_theta, t013, sin_main_boom_theta * t014),
@@ -2977,19 +2980,19 @@ pub fn linearise(q: &SVector<f64, N>, c: &Constants) -> Linearisation<N> {
     let t021 = extension_x * knuckle_axis_z_x;
     let t022 = fma(2.6, knuckle_axis_z_x, t021);
     let t023 = first_from_extension_z + fma(t018, t019, -(t020 * t022));
-    out[0][2][0] = t023 + fma(upsilon_knuckle_theta_z, t018, -(t017 * t020));
+    out[0][0][2] = t023 + fma(upsilon_knuckle_theta_z, t018, -(t017 * t020));
     let t024 = t002 + t004;
     let t025 = fma(knuckle_axis_x_x, t005, knuckle_axis_z_x * first_from_extension_z);
     let t026 = fma(-knuckle_axis_z_x, t005, knuckle_axis_x_x * first_from_extension_z);
     let t027 = t024 + fma(t025, t019, -(t026 * t022));
-    out[0][3][0] = t027 + fma(upsilon_knuckle_theta_z, t025, -(t017 * t026));
+    out[0][0][3] = t027 + fma(upsilon_knuckle_theta_z, t025, -(t017 * t026));
     // Mass, row of knuckle_theta
     out[0][1][1] = t016;
-    out[0][2][1] = t023;
-    out[0][3][1] = t027;
+    out[0][1][2] = t023;
+    out[0][1][3] = t027;
     // Mass, row of extension_x
     out[0][2][2] = fma(knuckle_axis_z_x, t018, knuckle_axis_x_x * t020);
-    out[0][3][2] = fma(knuckle_axis_z_x, t025, knuckle_axis_x_x * t026);
+    out[0][2][3] = fma(knuckle_axis_z_x, t025, knuckle_axis_x_x * t026);
     // Mass, row of hook_theta
     out[0][3][3] = t024;
     // Stiffness, row of main_boom_theta
@@ -3016,16 +3019,16 @@ pub fn linearise(q: &SVector<f64, N>, c: &Constants) -> Linearisation<N> {
     out[1][0][0] = fma(-9.81, first_from_main_boom_z - c.c015, 4000000.0);
     let upsilon_knuckle_theta_x = t017 - 2.0;
     let t029 = 9.81 * fma(upsilon_knuckle_theta_x, c.c007, first_from_knuckle_z_2);
-    out[1][1][0] = -t029;
+    out[1][0][1] = -t029;
     let t030 = -9.81 * t020;
-    out[1][2][0] = t030;
+    out[1][0][2] = t030;
     let upsilon_hook_theta_x = t021 - t028;
     let t031 = -9.81 * fma(upsilon_hook_theta_x, c.c001, first_hook_z);
-    out[1][3][0] = t031;
+    out[1][0][3] = t031;
     // Stiffness, row of knuckle_theta
     out[1][1][1] = 2000000.0 - t029;
-    out[1][2][1] = t030;
-    out[1][3][1] = t031;
+    out[1][1][2] = t030;
+    out[1][1][3] = t031;
     // Stiffness, row of extension_x
     out[1][2][2] = 8000000.0;
     // Stiffness, row of hook_theta
@@ -3182,8 +3185,8 @@ impl Dynamics<N> for Crane {
     fn solve_mass(&self, q: &SVector<f64, N>, r: &SVector<f64, N>) -> SVector<f64, N> {
         solve_mass(q, r, &self.constants)
     }
-    fn mass_matrix(&self, q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
-        mass_matrix(q, &self.constants)
+    fn mass_matrix(&self, q: &SVector<f64, N>, out: &mut SMatrix<f64, N, N>) {
+        mass_matrix(q, &self.constants, out);
     }
     fn mass_matrix_and_bias(
         &self,
@@ -3242,8 +3245,9 @@ impl Statics<N> for Crane {
         t: f64,
         q: &SVector<f64, N>,
         positions: &SVector<f64, N>,
-    ) -> SMatrix<f64, N, N> {
-        tangent_stiffness(t, q, positions, &self.constants)
+        out: &mut SMatrix<f64, N, N>,
+    ) {
+        tangent_stiffness(t, q, positions, &self.constants, out);
     }
     fn drive_forces_at_rest(
         &self,

@@ -131,6 +131,12 @@ macro_rules! call {
     (number $crane:ident $lists:ident $visit:ident $id:ident $name:ident($($argument:expr),*)) => {
         $visit(FunctionId::$id, &mut std::iter::once($crane.$name($($argument),*)));
     };
+    (matrix $crane:ident $lists:ident $visit:ident $id:ident $name:ident($($argument:expr),*)) => {
+        // With other contents.
+        let mut matrix = SMatrix::<f64, N, N>::repeat(f64::NAN);
+        $crane.$name($($argument,)* &mut matrix);
+        $visit(FunctionId::$id, &mut matrix.transpose().iter().copied());
+    };
     ($numbers:ident $crane:ident $lists:ident $visit:ident $id:ident $name:ident($($argument:expr),*)) => {
         $visit(FunctionId::$id, &mut $crane.$name($($argument),*).transpose().iter().copied());
     };

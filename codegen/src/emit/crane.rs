@@ -279,6 +279,13 @@ fn method(code: &LoweredFunction) -> TokenStream {
                 }
             }
         }
+        Shape::Symmetric(_) | Shape::Columns { bias: false, .. } => {
+            quote! {
+                fn #name(&self, #(#names: #types,)* out: &mut SMatrix<f64, N, N>) {
+                    #name(#(#arguments,)* out);
+                }
+            }
+        }
         Shape::Factors(_) => {
             quote! {
                 fn #name(&self, #(#names: #types),*) -> Factors {

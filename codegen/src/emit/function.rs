@@ -28,7 +28,7 @@ impl Writer<'_> {
         let mut statements = Self::unpack(&used);
         // A single number needs no storage.
         if !self.is_scalar() {
-            statements.push(self.begin());
+            statements.extend(self.begin());
         }
         statements.append(&mut body);
         if !self.is_scalar() {
@@ -43,24 +43,21 @@ impl Writer<'_> {
     }
 
     /// The storage with its initial values.
-    fn begin(&self) -> Stmt {
+    fn begin(&self) -> Vec<Stmt> {
         if matches!(self.storage.handover(), Handover::OutArgument) {
             let zero = self.storage.blank_item();
-            return parse_quote!(out.fill(#zero););
+            return self.storage.open().into_iter().chain([parse_quote!(out.fill(#zero);)]).collect();
         }
         let name = format_ident!("{}", self.storage.storage_name());
         let (storage, blank) = (self.storage.storage_type(), self.storage.blank());
         // If no statement writes a slot, the storage is not mutable.
         let written = self.code.pieces.iter().flatten().any(|s| matches!(s, Statement::Output { .. }));
         let mutable = written.then(|| quote!(mut));
-        parse_quote!(let #mutable #name: #storage = #blank;)
+        vec![parse_quote!(let #mutable #name: #storage = #blank;)]
     }
 
     /// The result from its storage.
     fn finish(&self) -> Vec<Stmt> {
-        if matches!(self.storage.handover(), Handover::OutArgument) {
-            return vec![];
-        }
         let finish = self.storage.finish();
         let block: syn::Block = parse_quote!({ #finish });
         block.stmts
@@ -71,7 +68,7 @@ impl Writer<'_> {
         let storage = self.storage.storage_type();
         let kept = integer(self.code.kept);
         let (number, zero) = (self.number.of(), self.number.literal(0.0));
-        let mut statements: Vec<Stmt> = vec![self.begin()];
+        let mut statements = self.begin();
         if self.code.kept > 0 {
             statements.push(parse_quote!(let mut kept = [#zero; #kept];));
         }

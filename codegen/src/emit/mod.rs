@@ -106,6 +106,7 @@ fn imports(items: &[syn::Item]) -> String {
                 "exp",
                 "fill",
                 "fma",
+                "mirror",
                 "select",
                 "sin_cos",
                 "sqrt",

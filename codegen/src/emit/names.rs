@@ -32,6 +32,7 @@ const TAKEN: &[&str] = &[
     "sqrt",
     "exp",
     "select",
+    "mirror",
     "symmetric",
     "max",
     "min",

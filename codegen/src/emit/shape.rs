@@ -2,7 +2,7 @@
 
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
-use syn::{Expr, parse_quote};
+use syn::{Expr, Stmt, parse_quote};
 
 use super::arithmetic::{at, element, field, integer, place, variable};
 use super::number::Number;
@@ -13,9 +13,9 @@ use crate::program::{ConcurrentAxes, Function, Shape, Struct};
 pub enum Handover {
     /// Returned by value.
     Return,
-    /// Written to the caller's array, because it may be larger than a stack.
+    /// Written to the caller's place, because it may be larger than a stack.
     OutArgument,
-    /// Computed from factors into the caller's array.
+    /// Computed from factors into the caller's place.
     FromFactors,
     /// A vector returned by value, a matrix written to the caller's matrix.
     Both,
@@ -34,8 +34,8 @@ impl<'f> Storage<'f> {
 
     pub fn handover(&self) -> Handover {
         match self.shape {
-            Shape::Transforms { corner: 0, .. } | Shape::Rows { .. } => Handover::OutArgument,
-            Shape::TransformFactors { .. } => Handover::FromFactors,
+            Shape::Transforms { corner: 0, .. } | Shape::Rows { .. } | Shape::Symmetric(_) => Handover::OutArgument,
+            Shape::TransformFactors { .. } | Shape::Columns { bias: false, .. } => Handover::FromFactors,
             Shape::MassAndBias(_) | Shape::Columns { bias: true, .. } => Handover::Both,
             _ => Handover::Return,
         }
@@ -102,7 +102,6 @@ impl<'f> Storage<'f> {
         match self.shape {
             Shape::Scalar => quote!(0.0),
             Shape::Vector(_) => quote!([#zero; N]),
-            Shape::Symmetric(_) => quote!([[0.0; N]; N]),
             Shape::Base => quote!([[0.0; 6]; 6]),
             Shape::Columns { .. } => quote!(MassColumns::zeros()),
             Shape::MassAndBias(_) => quote!(MassAndBias::zeros()),
@@ -119,23 +118,34 @@ impl<'f> Storage<'f> {
             }
             Shape::TransformFactors { .. } => quote!(TransformFactors::zeros()),
             Shape::Record(_, fields) => array(&quote!([[0.0; N]; N]), fields.len()),
-            Shape::Rows { .. } => unreachable!("written to the caller's array"),
+            Shape::Rows { .. } | Shape::Symmetric(_) => unreachable!("written to the caller's array"),
         }
+    }
+
+    /// The storage that the caller has, if it is part of the argument.
+    pub fn open(&self) -> Option<Stmt> {
+        matches!(self.shape, Shape::Symmetric(_)).then(|| parse_quote!(let out = &mut out.data.0;))
     }
 
     /// An item of a storage that the caller has.
     pub fn blank_item(&self) -> TokenStream {
-        if let Shape::Rows { .. } = self.shape { quote!([0.0; N]) } else { quote!(Matrix4::zeros()) }
+        if let Shape::Rows { .. } | Shape::Symmetric(_) = self.shape {
+            quote!([0.0; N])
+        } else {
+            quote!(Matrix4::zeros())
+        }
     }
 
     /// The result from its storage.
     pub fn finish(&self) -> TokenStream {
         match self.shape {
             Shape::Vector(_) => quote!(SVector::from(out)),
-            Shape::Symmetric(_) | Shape::Base => quote!(symmetric(out)),
+            Shape::Symmetric(_) => quote!(mirror(out);),
+            Shape::Transforms { corner: 0, .. } | Shape::Rows { .. } => TokenStream::new(),
+            Shape::Base => quote!(symmetric(out)),
             Shape::Columns { points, bias: false, .. } => {
                 let points = points.iter().map(concurrent_axes);
-                quote!(columns.mass_matrix(&[#(#points),*]))
+                quote!(columns.mass_matrix(&[#(#points),*], &mut out.data.0);)
             }
             Shape::Columns { points, bias: true, .. } => {
                 let points = points.iter().map(concurrent_axes);
@@ -300,7 +310,7 @@ fn slot_of(shape: &Shape, slot: usize, out: Expr) -> Expr {
         }
         Shape::Symmetric(n) => {
             let (row, column) = row_of_triangle(*n, slot);
-            element(element(out, column), row)
+            element(element(out, row), column)
         }
         Shape::Vectors(_) => field(element(out, slot / 3), ["x", "y", "z"][slot % 3]),
         Shape::Pairs(_) => element(element(out, slot / 2), slot % 2),

@@ -79,6 +79,14 @@ macro_rules! instance_method {
             self.0.$name($(sized!($argument $argument)),*)
         }
     };
+    (matrix $name:ident($($argument:ident),*)) => {
+        fn $name(&self, $($argument: slice_argument!($argument),)* out: &mut [f64]) {
+            // Matrices without rows have no size to cast to.
+            for out in bytemuck::try_cast_slice_mut::<f64, SMatrix<f64, N, N>>(out).into_iter().flatten() {
+                self.0.$name($(sized!($argument $argument),)* out);
+            }
+        }
+    };
     ($numbers:ident $name:ident($($argument:ident),*)) => {
         fn $name(&self, $($argument: slice_argument!($argument),)* out: &mut [f64]) {
             out.copy_from_slice(self.0.$name($(sized!($argument $argument)),*).as_slice());

@@ -1,8 +1,7 @@
 //! Mass matrices filled in a loop, and mass matrix and bias together.
 
-use nalgebra::SMatrix;
-
 use super::lanes::{f64x8, fma};
+use super::mirror;
 
 /// The factors of a mass matrix, coordinate by coordinate, in the world's axes: `a_ij = n_i · L_j` if coordinate i rotates and
 /// `n_i · P_j` if it translates, i ≤ j, with L_j about the point of i. `E` groups of eight hold `N` columns.
@@ -50,18 +49,11 @@ impl<const N: usize, const E: usize> MassColumns<N, E> {
         }
     }
 
-    /// The matrix.
+    /// The matrix, column by column.
     #[inline]
-    pub fn mass_matrix(mut self, points: &[ConcurrentAxes]) -> SMatrix<f64, N, N> {
-        let mut matrix = SMatrix::zeros();
-        let columns: &mut [[f64; N]; N] = &mut matrix.data.0;
+    pub fn mass_matrix(&mut self, points: &[ConcurrentAxes], columns: &mut [[f64; N]; N]) {
         self.fill(points, columns);
-        for column in 0..N {
-            for row in 0..column {
-                columns[column][row] = columns[row][column];
-            }
-        }
-        matrix
+        mirror(columns);
     }
 
     /// The lower triangle, column by column: row i of the upper triangle is column i of the lower one. The entries above

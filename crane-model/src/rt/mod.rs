@@ -19,15 +19,21 @@ pub mod sines {
 
 use nalgebra::{Matrix4, SMatrix, Vector3};
 
-/// A symmetric matrix from its upper triangle: `upper[column][row]` with row ≤ column; entries below the diagonal are ignored.
+/// Completes a symmetric matrix, of whose columns only the entries from the diagonal down are known.
 #[inline]
-pub fn symmetric<const N: usize>(mut upper: [[f64; N]; N]) -> SMatrix<f64, N, N> {
+pub fn mirror<const N: usize>(columns: &mut [[f64; N]; N]) {
     for column in 0..N {
-        for row in column + 1..N {
-            upper[column][row] = upper[row][column];
+        for row in 0..column {
+            columns[column][row] = columns[row][column];
         }
     }
-    SMatrix::from(upper)
+}
+
+/// A symmetric matrix from its columns from the diagonal down; entries above the diagonal are ignored.
+#[inline]
+pub fn symmetric<const N: usize>(mut lower: [[f64; N]; N]) -> SMatrix<f64, N, N> {
+    mirror(&mut lower);
+    SMatrix::from(lower)
 }
 
 /// Copies results into the caller's slice, as many as fit.

@@ -34,9 +34,7 @@ impl CraneModel<0> for Fixed {
 }
 
 impl Dynamics<0> for Fixed {
-    fn mass_matrix(&self, _: &SVector<f64, 0>) -> SMatrix<f64, 0, 0> {
-        SMatrix::zeros()
-    }
+    fn mass_matrix(&self, _: &SVector<f64, 0>, _: &mut SMatrix<f64, 0, 0>) {}
 
     fn bias(&self, _: &SVector<f64, 0>, _: &SVector<f64, 0>) -> SVector<f64, 0> {
         SVector::zeros()
@@ -52,9 +50,7 @@ impl Statics<0> for Fixed {
         SVector::zeros()
     }
 
-    fn tangent_stiffness(&self, _: f64, _: &SVector<f64, 0>, _: &SVector<f64, 0>) -> SMatrix<f64, 0, 0> {
-        SMatrix::zeros()
-    }
+    fn tangent_stiffness(&self, _: f64, _: &SVector<f64, 0>, _: &SVector<f64, 0>, _: &mut SMatrix<f64, 0, 0>) {}
 }
 
 impl Linearise<0> for Fixed {

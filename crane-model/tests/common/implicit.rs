@@ -5,6 +5,13 @@ use nalgebra::{Cholesky, Const, SMatrix, SVector};
 
 use super::{DoublePendulum, Fixed, Lift, Sledge};
 
+/// A at a pose.
+pub fn mass_matrix<const N: usize, C: Dynamics<N>>(crane: &C, q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
+    let mut mass = SMatrix::zeros();
+    crane.mass_matrix(q, &mut mass);
+    mass
+}
+
 /// Factors of `A + D̂`.
 pub type Factors<const N: usize> = Option<Cholesky<f64, Const<N>>>;
 
@@ -14,7 +21,7 @@ pub fn factorise<const N: usize, C: Dynamics<N>>(
     q: &SVector<f64, N>,
     added_inertia: &SVector<f64, N>,
 ) -> Factors<N> {
-    Cholesky::new(crane.mass_matrix(q) + SMatrix::from_diagonal(added_inertia))
+    Cholesky::new(mass_matrix(crane, q) + SMatrix::from_diagonal(added_inertia))
 }
 
 /// x of `(A + D̂) x = r`; NaN if A + D̂ is not positive definite.

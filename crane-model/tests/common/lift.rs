@@ -157,8 +157,8 @@ impl CraneModel<1> for Lift {
 }
 
 impl Dynamics<1> for Lift {
-    fn mass_matrix(&self, _: &Vector1<f64>) -> Matrix1<f64> {
-        Matrix1::new(self.mass)
+    fn mass_matrix(&self, _: &Vector1<f64>, out: &mut Matrix1<f64>) {
+        *out = Matrix1::new(self.mass);
     }
 
     fn bias(&self, _: &Vector1<f64>, _: &Vector1<f64>) -> Vector1<f64> {
@@ -175,8 +175,8 @@ impl Statics<1> for Lift {
         -self.bias(q, &Vector1::zeros()) - self.drive_forces_at_rest(t, q, positions)
     }
 
-    fn tangent_stiffness(&self, _: f64, _: &Vector1<f64>, _: &Vector1<f64>) -> Matrix1<f64> {
-        Matrix1::new(self.stiffness)
+    fn tangent_stiffness(&self, _: f64, _: &Vector1<f64>, _: &Vector1<f64>, out: &mut Matrix1<f64>) {
+        *out = Matrix1::new(self.stiffness);
     }
 
     fn drive_forces_at_rest(&self, _: f64, q: &Vector1<f64>, positions: &Vector1<f64>) -> Vector1<f64> {
@@ -185,11 +185,8 @@ impl Statics<1> for Lift {
 }
 
 impl Linearise<1> for Lift {
-    fn linearise(&self, q: &Vector1<f64>) -> Linearisation<1> {
-        Linearisation {
-            mass: self.mass_matrix(q),
-            stiffness: self.tangent_stiffness(0.0, q, q),
-            damping: Matrix1::new(self.damping),
-        }
+    fn linearise(&self, _: &Vector1<f64>) -> Linearisation<1> {
+        let [mass, stiffness, damping] = [self.mass, self.stiffness, self.damping].map(Matrix1::new);
+        Linearisation { mass, stiffness, damping }
     }
 }

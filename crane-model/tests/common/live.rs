@@ -62,10 +62,8 @@ impl<const N: usize> CraneModel<N> for Live<N> {
 }
 
 impl<const N: usize> Dynamics<N> for Live<N> {
-    fn mass_matrix(&self, q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
-        let mut out = SMatrix::<f64, N, N>::zeros();
+    fn mass_matrix(&self, q: &SVector<f64, N>, out: &mut SMatrix<f64, N, N>) {
         self.0.mass_matrix(q.as_slice(), out.as_mut_slice());
-        out
     }
 
     fn bias(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {

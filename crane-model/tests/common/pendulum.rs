@@ -7,7 +7,7 @@ use crane_model::{
 };
 use nalgebra::{Matrix2, Matrix4, Vector2};
 
-use super::{GRAVITY, coordinate, description};
+use super::{GRAVITY, coordinate, description, implicit::mass_matrix};
 
 const COORDINATES: &[CoordinateInfo] =
     &[coordinate("upper", Rotation, Passive), coordinate("lower", Rotation, Passive)];
@@ -104,10 +104,10 @@ impl CraneModel<2> for DoublePendulum {
 }
 
 impl Dynamics<2> for DoublePendulum {
-    fn mass_matrix(&self, q: &Vector2<f64>) -> Matrix2<f64> {
+    fn mass_matrix(&self, q: &Vector2<f64>, out: &mut Matrix2<f64>) {
         let [upper, lower] = self.static_moments();
         let coupling = self.coupling() * (q.x - q.y).cos();
-        Matrix2::new(upper * self.length[0], coupling, coupling, lower * self.length[1])
+        *out = Matrix2::new(upper * self.length[0], coupling, coupling, lower * self.length[1]);
     }
 
     fn bias(&self, q: &Vector2<f64>, v: &Vector2<f64>) -> Vector2<f64> {
@@ -120,7 +120,7 @@ impl Dynamics<2> for DoublePendulum {
     }
 
     fn kinetic_energy(&self, q: &Vector2<f64>, v: &Vector2<f64>) -> f64 {
-        0.5 * v.dot(&(self.mass_matrix(q) * v))
+        0.5 * v.dot(&(mass_matrix(self, q) * v))
     }
 }
 
@@ -131,21 +131,20 @@ impl Statics<2> for DoublePendulum {
             - self.forces(0.0, q, &Vector2::zeros())
     }
 
-    fn tangent_stiffness(&self, _: f64, q: &Vector2<f64>, _: &Vector2<f64>) -> Matrix2<f64> {
+    fn tangent_stiffness(&self, _: f64, q: &Vector2<f64>, _: &Vector2<f64>, out: &mut Matrix2<f64>) {
         let [upper, lower] = self.static_moments();
-        Matrix2::from_diagonal(&Vector2::new(
+        *out = Matrix2::from_diagonal(&Vector2::new(
             self.gravity * upper * q.x.cos() + self.stiffness,
             self.gravity * lower * q.y.cos(),
-        ))
+        ));
     }
 }
 
 impl Linearise<2> for DoublePendulum {
     fn linearise(&self, q: &Vector2<f64>) -> Linearisation<2> {
-        Linearisation {
-            mass: self.mass_matrix(q),
-            stiffness: self.tangent_stiffness(0.0, q, q),
-            damping: Matrix2::zeros(),
-        }
+        let [mut mass, mut stiffness, damping] = [Matrix2::zeros(); 3];
+        self.mass_matrix(q, &mut mass);
+        self.tangent_stiffness(0.0, q, q, &mut stiffness);
+        Linearisation { mass, stiffness, damping }
     }
 }

@@ -93,8 +93,8 @@ impl CraneModel<2> for Sledge {
 }
 
 impl Dynamics<2> for Sledge {
-    fn mass_matrix(&self, _: &Vector2<f64>) -> Matrix2<f64> {
-        Matrix2::identity() * MASS
+    fn mass_matrix(&self, _: &Vector2<f64>, out: &mut Matrix2<f64>) {
+        *out = Matrix2::identity() * MASS;
     }
 
     fn bias(&self, _: &Vector2<f64>, _: &Vector2<f64>) -> Vector2<f64> {
@@ -111,18 +111,15 @@ impl Statics<2> for Sledge {
         STIFFNESS * q - self.bias(q, &Vector2::zeros())
     }
 
-    fn tangent_stiffness(&self, _: f64, _: &Vector2<f64>, _: &Vector2<f64>) -> Matrix2<f64> {
-        Matrix2::identity() * STIFFNESS
+    fn tangent_stiffness(&self, _: f64, _: &Vector2<f64>, _: &Vector2<f64>, out: &mut Matrix2<f64>) {
+        *out = Matrix2::identity() * STIFFNESS;
     }
 }
 
 impl Linearise<2> for Sledge {
-    fn linearise(&self, q: &Vector2<f64>) -> Linearisation<2> {
-        Linearisation {
-            mass: self.mass_matrix(q),
-            stiffness: self.tangent_stiffness(0.0, q, q),
-            damping: Matrix2::zeros(),
-        }
+    fn linearise(&self, _: &Vector2<f64>) -> Linearisation<2> {
+        let [mass, stiffness, damping] = [MASS, STIFFNESS, 0.0].map(|entry| Matrix2::identity() * entry);
+        Linearisation { mass, stiffness, damping }
     }
 }
 

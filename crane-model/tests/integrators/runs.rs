@@ -160,8 +160,8 @@ impl_model_as_in_crane! {
 }
 
 impl<const N: usize, C: Dynamics<N>> Dynamics<N> for Counted<C> {
-    fn mass_matrix(&self, q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
-        self.crane.mass_matrix(q)
+    fn mass_matrix(&self, q: &SVector<f64, N>, out: &mut SMatrix<f64, N, N>) {
+        self.crane.mass_matrix(q, out);
     }
     fn bias(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
         self.crane.bias(q, v)

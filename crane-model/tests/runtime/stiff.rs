@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crate::common::{
     GRAVITY, coordinate, description,
-    implicit::{Factors, factorise, solve},
+    implicit::{Factors, factorise, mass_matrix, solve},
 };
 use crane_model::{
     CoordinateInfo,
@@ -48,8 +48,8 @@ impl CraneModel<2> for ElasticPendulum {
 }
 
 impl Dynamics<2> for ElasticPendulum {
-    fn mass_matrix(&self, q: &Vector2<f64>) -> Matrix2<f64> {
-        Matrix2::from_diagonal(&Vector2::new(1.0, (1.0 + q.x).powi(2)))
+    fn mass_matrix(&self, q: &Vector2<f64>, out: &mut Matrix2<f64>) {
+        *out = Matrix2::from_diagonal(&Vector2::new(1.0, (1.0 + q.x).powi(2)));
     }
     fn bias(&self, q: &Vector2<f64>, v: &Vector2<f64>) -> Vector2<f64> {
         let length = 1.0 + q.x;
@@ -57,7 +57,7 @@ impl Dynamics<2> for ElasticPendulum {
         Vector2::new(length * v.y * v.y + GRAVITY * cos, -2.0 * length * v.x * v.y - GRAVITY * length * sin)
     }
     fn kinetic_energy(&self, q: &Vector2<f64>, v: &Vector2<f64>) -> f64 {
-        0.5 * v.dot(&(self.mass_matrix(q) * v))
+        0.5 * v.dot(&(mass_matrix(self, q) * v))
     }
 }
 

@@ -32,9 +32,6 @@ macro_rules! result {
     (vector) => {
         Vector
     };
-    (matrix) => {
-        Matrix
-    };
     (base) => {
         BaseMatrix
     };
@@ -66,6 +63,9 @@ macro_rules! export {
     (other $($row:tt)*) => {};
     ([$item:ident; $count:ident] $name:ident($($argument:ident),*)) => {
         exported_by_hand! { $name($($argument: argument!($argument),)* out: &mut [entry!($item)]); }
+    };
+    (matrix $name:ident($($argument:ident),*)) => {
+        exported_by_hand! { $name($($argument: argument!($argument),)* out: &mut Matrix); }
     };
     ($result:ident $name:ident($($argument:ident),*)) => {
         exported_by_hand! { $name($($argument: argument!($argument)),*) -> result!($result); }

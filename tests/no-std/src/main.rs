@@ -25,6 +25,11 @@ macro_rules! call {
         $($name)*($($argument,)* &mut list);
         black_box(list);
     };
+    (matrix $length:ident $id:ident ($($name:tt)*) ($($argument:expr),*)) => {
+        let mut matrix = Default::default();
+        $($name)*($($argument,)* &mut matrix);
+        black_box(matrix);
+    };
     ($result:ident $length:ident $id:ident ($($name:tt)*) ($($argument:expr),*)) => {
         black_box($($name)*($($argument),*));
     };

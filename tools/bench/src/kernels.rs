@@ -38,7 +38,7 @@ where
     let (vector, square) = (SVector::<f64, N>::zeros(), SMatrix::<f64, N, N>::zeros());
     vec![
         Kernel::new("transforms", 1, states, poses, move |s, out| crane.transforms(&s.q, out)),
-        Kernel::new("mass_matrix", 1, states, square, move |s, out| *out = crane.mass_matrix(&s.q)),
+        Kernel::new("mass_matrix", 1, states, square, move |s, out| crane.mass_matrix(&s.q, out)),
         Kernel::new("bias", 1, states, vector, move |s, out| *out = crane.bias(&s.q, &s.v)),
         Kernel::new("forces", 1, states, vector, move |s, out| *out = crane.forces(s.t, &s.q, &s.v)),
         Kernel::new("mass_matrix_and_bias", 1, states, (Lower(square), vector), move |s, out| {
@@ -57,7 +57,9 @@ where
             },
         ),
         Kernel::new("dense_forward_dynamics", 1, states, vector, move |s, out| {
-            if let Some(factors) = Cholesky::new(crane.mass_matrix(&s.q)) {
+            let mut mass = SMatrix::zeros();
+            crane.mass_matrix(&s.q, &mut mass);
+            if let Some(factors) = Cholesky::new(mass) {
                 *out = factors.solve(&(crane.bias(&s.q, &s.v) + crane.forces(s.t, &s.q, &s.v)));
             }
         }),
@@ -65,7 +67,7 @@ where
         Kernel::new("factorise_and_solve", 1, states, vector, move |s, out| {
             *out = crane.solve(&crane.factorise(&s.q, &SVector::repeat(1.0), &Matrix6::identity()), &s.v);
         }),
-        Kernel::new("inverse_mass_matrix", 1, states, square, move |s, out| *out = crane.inverse_mass_matrix(&s.q)),
+        Kernel::new("inverse_mass_matrix", 1, states, square, move |s, out| crane.inverse_mass_matrix(&s.q, out)),
         Kernel::new("dynamic_residual_derivatives", 1, states, Rows(vec![[0.0; N]; 2 * N]), move |s, out| {
             crane.dynamic_residual_derivatives(s.t, &s.q, &s.v, &s.v, &mut out.0);
         }),
