@@ -167,7 +167,7 @@ impl ForceStates {
     /// Adds the generalized forces, and writes the rates of the states.
     pub(crate) fn push(&mut self, crane: &dyn DynModel, moment: &StateAt<'_>, rates: &mut [f64], forces: &mut [f64]) {
         self.evaluate(crane, moment, rates, None);
-        self.add_forces(forces);
+        add_forces(&self.forces, &self.rows, forces);
     }
 
     /// As `accelerate`, with the derivatives of the rates with respect to the states, if requested.
@@ -207,18 +207,10 @@ impl ForceStates {
 
     /// Generalized forces of the forces as last evaluated, and the accelerations that they add.
     fn add_accelerations(&mut self, crane: &dyn DynDynamics, q: &[f64]) {
-        let mut efforts = std::mem::take(&mut self.efforts[0]);
+        let Self { forces, rows, efforts: [efforts, added], .. } = self;
         efforts.fill(0.0);
-        self.add_forces(&mut efforts);
-        crane.solve_mass(q, &efforts, &mut self.efforts[1]);
-        self.efforts[0] = efforts;
-    }
-
-    /// Adds the generalized forces of the forces as last evaluated.
-    fn add_forces(&self, forces: &mut [f64]) {
-        for (force, row) in self.forces.iter().zip(&self.rows) {
-            row.add_to(forces, force.force);
-        }
+        add_forces(forces, rows, efforts);
+        crane.solve_mass(q, efforts, added);
     }
 
     /// Appends which branch of its law each force is on.
@@ -339,4 +331,11 @@ pub(crate) fn loops_on_rigid_drives(crane: &dyn DynDynamics, moment: &StateAt<'_
     }
     let Motion { change, loops, .. } = motion_at(crane, moment);
     loop_joints::on_rigid_drives(crane, moment.q, &loops, &change)
+}
+
+/// Adds the generalized forces of forces along their rows.
+fn add_forces(forces: &[StatefulForce], rows: &[Row], generalized: &mut [f64]) {
+    for (force, row) in forces.iter().zip(rows) {
+        row.add_to(generalized, force.force);
+    }
 }

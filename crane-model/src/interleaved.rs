@@ -48,6 +48,12 @@ pub(crate) fn of_crane(numbers: &[f64], crane: usize, cranes: usize) -> impl Ite
     numbers.iter().skip(crane).step_by(cranes)
 }
 
+/// The same, to be changed.
+#[inline]
+pub(crate) fn of_crane_mut(numbers: &mut [f64], crane: usize, cranes: usize) -> impl Iterator<Item = &mut f64> {
+    numbers.iter_mut().skip(crane).step_by(cranes)
+}
+
 /// Copies the numbers of a crane from those of all.
 #[inline]
 pub(crate) fn gather(numbers: &[f64], crane: usize, cranes: usize, own: &mut [f64]) {

@@ -180,15 +180,12 @@ impl ConnectorUpdate {
             row.along(solution, shares);
         }
         for (crane, schur) in schur.iter().enumerate() {
-            for (own, share) in of_crane.iter_mut().zip(interleaved::of_crane(shares, crane, *cranes)) {
-                *own = *share;
-            }
+            interleaved::gather(shares, crane, *cranes, of_crane.as_mut_slice());
             if let Some(schur) = schur {
                 schur.solve_mut(of_crane);
             }
-            for (share, own) in shares.iter_mut().skip(crane).step_by(*cranes).zip(&*of_crane) {
-                *share = -own;
-            }
+            let own = interleaved::of_crane_mut(shares, crane, *cranes);
+            own.zip(&*of_crane).for_each(|(share, own)| *share = -own);
         }
         for (row, shares) in rows.iter().zip(shares.chunks_exact(*cranes)) {
             interleaved::add(shares, &row.inverse_column, solution);
@@ -206,7 +203,7 @@ impl Row {
             *added_inertia = damping * c + stiffness * (c * c);
             let resists = *added_inertia > 0.0;
             if !resists {
-                jacobian.iter_mut().skip(crane).step_by(tensions.len()).for_each(|entry| *entry = 0.0);
+                interleaved::of_crane_mut(jacobian, crane, tensions.len()).for_each(|entry| *entry = 0.0);
             }
         }
         let [first, end] = self.spanned;

@@ -107,6 +107,11 @@ impl<'a> FleetRecording<'a> {
         Self { fleet, numbers: Vec::new(), columns, places, width }
     }
 
+    /// Number of cranes.
+    pub fn cranes(&self) -> usize {
+        self.places.len()
+    }
+
     /// Adds a sample.
     pub fn push(&mut self, sample: &Sample<'_>) {
         let &Sample { t, q, v, x, .. } = sample;

@@ -15,6 +15,7 @@ use crate::{
     ParameterError,
     dyn_crane::{DynCrane, DynModel},
     dynamics::{self, InitialState, Run, Sample, Settings, Watch, ensemble::Member},
+    interleaved,
     results::{self, FleetRecording, Peaks, Recording, Table, cautions},
 };
 
@@ -195,27 +196,48 @@ struct Gathering<'a> {
     crane: &'a dyn DynCrane,
     recording: Recording<'a>,
     end: InitialState,
-    off: &'a dyn Fn() -> bool,
+    off: Off<'a>,
+}
+
+/// Whether a run has been cancelled.
+struct Off<'a> {
+    asked: &'a dyn Fn() -> bool,
     cancelled: bool,
+}
+
+impl<'a> Off<'a> {
+    fn new(asked: &'a dyn Fn() -> bool) -> Self {
+        Self { asked, cancelled: false }
+    }
+
+    fn ask(&mut self) -> ControlFlow<()> {
+        self.cancelled = (self.asked)();
+        if self.cancelled { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+/// Takes the state of a sample.
+fn take_state(end: &mut InitialState, sample: &Sample<'_>) {
+    let InitialState { q, v, x } = end;
+    for (end, now) in [(q, sample.q), (v, sample.v), (x, sample.x)] {
+        end.clear();
+        end.extend_from_slice(now);
+    }
 }
 
 impl<'a> Gathering<'a> {
     fn new(crane: &'a dyn DynCrane, off: &'a dyn Fn() -> bool) -> Self {
         let (recording, end) = (Recording::of_peaks(crane), InitialState::default());
-        Self { crane, recording, end, off, cancelled: false }
+        Self { crane, recording, end, off: Off::new(off) }
     }
 
     fn take(&mut self, sample: &Sample<'_>) {
         self.recording.push(sample);
-        let InitialState { q, v, x } = &mut self.end;
-        for (end, now) in [(q, sample.q), (v, sample.v), (x, sample.x)] {
-            end.clear();
-            end.extend_from_slice(now);
-        }
+        take_state(&mut self.end, sample);
     }
 
     fn finish(self, run: Result<Run, dynamics::Stopped>) -> Outcome {
-        if self.cancelled {
+        if self.off.cancelled {
             return Outcome::without_run(Reason::Cancelled);
         }
         outcome_of(self.crane, &self.recording.into_table(), self.end, run)
@@ -256,8 +278,7 @@ impl Watch for Gathering<'_> {
     }
 
     fn step(&mut self, _: f64) -> ControlFlow<()> {
-        self.cancelled = (self.off)();
-        if self.cancelled { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        self.off.ask()
     }
 }
 
@@ -279,35 +300,30 @@ fn alone_from(crane: &dyn DynCrane, start: &Start, settings: &Settings, off: &dy
 /// The record of a run of a fleet in progress.
 struct OfFleet<'a> {
     recording: FleetRecording<'a>,
-    /// Number of cranes, and poses, rates and states of forces of all.
-    count: usize,
-    end: [Vec<f64>; 3],
-    off: &'a dyn Fn() -> bool,
-    cancelled: bool,
+    /// Poses, rates and states of forces of all.
+    end: InitialState,
+    off: Off<'a>,
 }
 
 impl Watch for OfFleet<'_> {
     fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
         self.recording.push(sample);
-        for (end, now) in self.end.iter_mut().zip([sample.q, sample.v, sample.x]) {
-            end.clear();
-            end.extend_from_slice(now);
-        }
+        take_state(&mut self.end, sample);
         ControlFlow::Continue(())
     }
 
     fn step(&mut self, _: f64) -> ControlFlow<()> {
-        self.cancelled = (self.off)();
-        if self.cancelled { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        self.off.ask()
     }
 }
 
 impl OfFleet<'_> {
     /// The outcome of each crane.
     fn finish(self, cranes: &[(&dyn DynCrane, InitialState)], runs: Vec<Run>) -> Vec<Outcome> {
-        let Self { recording, end: [q, v, x], cancelled, count, .. } = self;
+        let Self { recording, end: InitialState { q, v, x }, off: Off { cancelled, .. } } = self;
+        let count = recording.cranes();
         let of_crane = |lane: usize, ((table, run), (crane, _)): ((Table, Run), &(&dyn DynCrane, InitialState))| {
-            let own = |all: &[f64]| all.iter().skip(lane).step_by(count).copied().collect();
+            let own = |all: &[f64]| interleaved::of_crane(all, lane, count).copied().collect();
             outcome_of(*crane, &table, InitialState { q: own(&q), v: own(&v), x: own(&x) }, Ok(run))
         };
         let each = recording.tables().zip(runs).zip(cranes).enumerate();
@@ -329,7 +345,7 @@ fn as_fleet(
     let fleet = if 2 * members.len() > cranes { crane.fleet(&models) } else { None };
     let together = fleet.and_then(|fleet| {
         let recording = FleetRecording::new(fleet.as_ref(), crane);
-        let mut records = OfFleet { recording, count: fleet.cranes(), end: Default::default(), off, cancelled: false };
+        let mut records = OfFleet { recording, end: InitialState::default(), off: Off::new(off) };
         let runs = dynamics::ensemble::simulate_fleet(fleet.as_ref(), &members, settings, &mut records).ok()?;
         Some(records.finish(&members, runs))
     });

@@ -17,8 +17,6 @@ pub(super) struct Correction<'a> {
     pub system: System<'a>,
     /// Where the system was factorised.
     factors: Place,
-    /// Whether the last prediction took the factors of another state.
-    reuses_factors: bool,
     /// Time of the next state, s.
     t: f64,
     /// c, s.
@@ -53,7 +51,6 @@ impl<'a> Correction<'a> {
             crane,
             system: System::new(crane),
             factors: Place { t: 0.0, motion: zeros(), c: f64::NAN, is_restored: false },
-            reuses_factors: false,
             t: 0.0,
             c: f64::NAN,
             past: zeros(),
@@ -65,8 +62,8 @@ impl<'a> Correction<'a> {
         }
     }
 
-    /// Starts with the prediction.
-    pub fn predict(&mut self, equations: &mut Equations<'_>, history: &History) {
+    /// Starts with the prediction; returns whether it takes the factors of another state.
+    pub fn predict(&mut self, equations: &mut Equations<'_>, history: &History) -> bool {
         history.sum(&[1.0; ORDER + 1], &mut self.end);
         history.sum(&GAMMAS.map(|gamma| gamma / history.h), &mut self.past);
         self.d.fill(0.0);
@@ -78,8 +75,8 @@ impl<'a> Correction<'a> {
         if std::mem::take(&mut self.factors.is_restored) {
             self.factors.factorise(&mut self.system, n);
         }
-        self.reuses_factors = self.factors.serve(q, self.c) && !self.system.switched(self.t, (q, v));
-        if !self.reuses_factors {
+        let reuses_factors = self.factors.serve(q, self.c) && !self.system.switched(self.t, (q, v));
+        if !reuses_factors {
             let Place { t, motion, c, .. } = &mut self.factors;
             (*t, *c) = (self.t, self.c);
             motion[..n].copy_from_slice(q);
@@ -87,11 +84,7 @@ impl<'a> Correction<'a> {
             motion[2 * n..].copy_from_slice(&self.end[2 * n..]);
             self.factors.factorise(&mut self.system, n);
         }
-    }
-
-    /// Whether the last prediction took the factors of another state.
-    pub fn reuses_factors(&self) -> bool {
-        self.reuses_factors
+        reuses_factors
     }
 
     /// Motions and commands change, or the factors are too far away: the next step needs new ones.

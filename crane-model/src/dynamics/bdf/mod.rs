@@ -251,9 +251,9 @@ impl<'a> Bdf<'a> {
     fn attempt(&mut self, again: bool, repeats: usize) -> Attempt {
         let Self { equations, history, correction, control, switches, slope, open, .. } = self;
         let order = history.order;
-        correction.predict(equations, history);
+        let reuses_factors = correction.predict(equations, history);
         let mut error = control.solve(equations, history, correction);
-        if error.is_infinite() && correction.reuses_factors() {
+        if error.is_infinite() && reuses_factors {
             correction.forget();
             correction.predict(equations, history);
             error = control.solve(equations, history, correction);
