@@ -107,23 +107,29 @@ impl<'a> FleetRecording<'a> {
         Self { fleet, numbers: Vec::new(), columns, places, width }
     }
 
-    /// Number of cranes.
-    pub fn cranes(&self) -> usize {
-        self.places.len()
-    }
-
     /// Adds a sample.
     pub fn push(&mut self, sample: &Sample<'_>) {
         let &Sample { t, q, v, x, .. } = sample;
         push_quantities(self.fleet, Extent::Peaks, &StateAt { t, q, v, x }, &[], &mut self.numbers);
     }
 
-    /// The samples of each crane so far.
-    pub fn tables(&self) -> impl Iterator<Item = Table> {
-        self.places.iter().map(|places| {
-            let rows = self.numbers.chunks(self.width).map(|row| places.iter().map(|place| row[*place]).collect());
-            Table { columns: self.columns.clone(), rows: rows.collect() }
-        })
+    /// Number of cranes.
+    pub fn cranes(&self) -> usize {
+        self.places.len()
+    }
+
+    /// What `of_table` makes of the samples so far of each of the first cranes. One table holds them crane by crane: rows of their own for each would
+    /// take longer than what is done with them.
+    pub fn each<T>(&self, cranes: usize, mut of_table: impl FnMut(usize, &Table) -> T) -> Vec<T> {
+        let rows = vec![vec![0.0; self.columns.len()]; self.numbers.len() / self.width];
+        let mut table = Table { columns: self.columns.clone(), rows };
+        let mut of_crane = |(crane, places): (usize, &Vec<usize>)| {
+            for (row, of_all) in table.rows.iter_mut().zip(self.numbers.chunks_exact(self.width)) {
+                row.iter_mut().zip(places).for_each(|(number, place)| *number = of_all[*place]);
+            }
+            of_table(crane, &table)
+        };
+        self.places.iter().take(cranes).enumerate().map(&mut of_crane).collect()
     }
 }
 

@@ -109,13 +109,13 @@ pub fn run_ensemble(
     execution: &Execution<'_>,
 ) -> Vec<Outcome> {
     let way = Way::of(crane, rows, settings);
-    let piece = if way == Way::InLanes { crane.lanes() } else { rows_together(crane, settings) };
-    let waiting = Mutex::new(rows.chunks(piece).enumerate());
+    let pieces = way.pieces(crane, rows);
+    let waiting = Mutex::new(pieces.iter());
     let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
     let finished = Mutex::new(Vec::with_capacity(rows.len()));
     let work = |caller: bool| {
         let off = || (execution.cancelled)(caller);
-        while let Some((index, rows)) = next() {
+        while let Some(&(first, rows)) = next() {
             let outcomes = match rows {
                 _ if off() => rows.iter().map(|_| Outcome::without_run(Reason::Cancelled)).collect(),
                 rows => match way {
@@ -125,7 +125,7 @@ pub fn run_ensemble(
                 },
             };
             for (position, outcome) in outcomes.into_iter().enumerate() {
-                let row = index * piece + position;
+                let row = first + position;
                 if !matches!(outcome.run, Err(Reason::Cancelled)) {
                     (execution.done)(row, &outcome);
                 }
@@ -134,7 +134,7 @@ pub fn run_ensemble(
         }
     };
     thread::scope(|scope| {
-        for _ in 1..execution.threads.min(rows.len().div_ceil(piece)) {
+        for _ in 1..execution.threads.min(pieces.len()) {
             scope.spawn(|| work(false));
         }
         work(true);
@@ -174,6 +174,21 @@ impl Way {
         let same_inputs = rows.iter().all(|row| row.inputs.is_empty());
         let is_plain = !crane.description().has_force_states() && crane.loop_joints().is_empty();
         if same_inputs && is_plain { Way::InLanes } else { Way::Alone }
+    }
+
+    /// The rows that run together, with the index of the first: those left over by fleets, too few for one, run one by one, on as many threads.
+    fn pieces<'r>(self, crane: &dyn DynCrane, rows: &'r [Case]) -> Vec<(usize, &'r [Case])> {
+        let (together, left) = match self {
+            Way::Alone => (1, 0),
+            Way::InLanes => (crane.lanes(), 0),
+            Way::AsFleet { cranes } => {
+                let last = rows.len() % cranes;
+                (cranes, if is_worth_a_fleet(last, cranes) { 0 } else { last })
+            }
+        };
+        let (rows, left) = rows.split_at(rows.len() - left);
+        let firsts = (0..rows.len()).step_by(together).chain(rows.len()..);
+        firsts.zip(rows.chunks(together).chain(left.chunks(1))).collect()
     }
 }
 
@@ -319,17 +334,27 @@ impl Watch for OfFleet<'_> {
 
 impl OfFleet<'_> {
     /// The outcome of each crane.
-    fn finish(self, cranes: &[(&dyn DynCrane, InitialState)], runs: Vec<Run>) -> Vec<Outcome> {
+    fn finish(self, cranes: &[(&dyn DynCrane, InitialState)], runs: &[Run]) -> Vec<Outcome> {
         let Self { recording, end: InitialState { q, v, x }, off: Off { cancelled, .. } } = self;
-        let count = recording.cranes();
-        let of_crane = |lane: usize, ((table, run), (crane, _)): ((Table, Run), &(&dyn DynCrane, InitialState))| {
-            let own = |all: &[f64]| interleaved::of_crane(all, lane, count).copied().collect();
-            outcome_of(*crane, &table, InitialState { q: own(&q), v: own(&v), x: own(&x) }, Ok(run))
-        };
-        let each = recording.tables().zip(runs).zip(cranes).enumerate();
-        each.map(|(lane, of)| if cancelled { Outcome::without_run(Reason::Cancelled) } else { of_crane(lane, of) })
-            .collect()
+        let all = recording.cranes();
+        recording.each(cranes.len(), |lane, table| {
+            if cancelled {
+                return Outcome::without_run(Reason::Cancelled);
+            }
+            let own = |numbers: &[f64]| interleaved::of_crane(numbers, lane, all).copied().collect();
+            outcome_of(
+                cranes[lane].0,
+                table,
+                InitialState { q: own(&q), v: own(&v), x: own(&x) },
+                Ok(runs[lane].clone()),
+            )
+        })
     }
+}
+
+/// Whether some cranes take less time as a fleet than one by one.
+fn is_worth_a_fleet(members: usize, cranes: usize) -> bool {
+    2 * members > cranes
 }
 
 /// Runs the cranes of some rows as a fleet, if they fill more than half of it and all of them reach the end; otherwise one by one.
@@ -342,12 +367,12 @@ fn as_fleet(
     let ready: Vec<_> = rows.iter().map(|row| if off() { Err(Reason::Cancelled) } else { ready(crane, row) }).collect();
     let members: Vec<_> = ready.iter().flatten().map(|(crane, start)| (crane.as_ref(), start.state())).collect();
     let models: Vec<&dyn DynModel> = members.iter().map(|(crane, _)| *crane as &dyn DynModel).collect();
-    let fleet = if 2 * members.len() > cranes { crane.fleet(&models) } else { None };
+    let fleet = if is_worth_a_fleet(members.len(), cranes) { crane.fleet(&models) } else { None };
     let together = fleet.and_then(|fleet| {
         let recording = FleetRecording::new(fleet.as_ref(), crane);
         let mut records = OfFleet { recording, end: InitialState::default(), off: Off::new(off) };
         let runs = dynamics::ensemble::simulate_fleet(fleet.as_ref(), &members, settings, &mut records).ok()?;
-        Some(records.finish(&members, runs))
+        Some(records.finish(&members, &runs))
     });
     let mut together = together.map(Vec::into_iter);
     let outcome = |ready: &Result<(Box<dyn DynCrane>, Start), Reason>| match ready {
