@@ -12,9 +12,9 @@
 /// ```
 ///
 /// * *arguments*: `t`, `q`, `v`, accelerations `a`, right-hand side `r`, `positions` of the drives, in this order.
-/// * *result*: `number`; per coordinate `vector`; n × n `matrix`; over the base's coordinates `base`; a list `[item; count]`, whose items
-///   are those of [`Item`](crate::Item) and whose count is one of [`Count`](crate::Count); `other`: everything about the method is written
-///   by hand.
+/// * *result*: `number`; per coordinate `vector`; over the base's coordinates `base`; n × n `matrix` and a list `[item; count]`, which are written
+///   into the caller's: items are those of [`Item`](crate::Item), the count is one of [`Count`](crate::Count); `other`: everything about the
+///   method is written by hand.
 /// * *rule* for cranes without such a part: the result is `zero`; it is `required` of every crane; `written`: the default of the trait
 ///   is written by hand.
 /// * *python*: offered by the Python package, with these arguments, the one after the semicolon optional.

@@ -118,7 +118,7 @@ impl<'f> Storage<'f> {
             }
             Shape::TransformFactors { .. } => quote!(TransformFactors::zeros()),
             Shape::Record(_, fields) => array(&quote!([[0.0; N]; N]), fields.len()),
-            Shape::Rows { .. } | Shape::Symmetric(_) => unreachable!("written to the caller's array"),
+            Shape::Rows { .. } | Shape::Symmetric(_) => unreachable!("written to the caller's place"),
         }
     }
 

@@ -123,13 +123,13 @@ impl<'a> FleetRecording<'a> {
     pub fn each<T>(&self, cranes: usize, mut of_table: impl FnMut(usize, &Table) -> T) -> Vec<T> {
         let rows = vec![vec![0.0; self.columns.len()]; self.numbers.len() / self.width];
         let mut table = Table { columns: self.columns.clone(), rows };
-        let mut of_crane = |(crane, places): (usize, &Vec<usize>)| {
+        let of_crane = |(crane, places): (usize, &Vec<usize>)| {
             for (row, of_all) in table.rows.iter_mut().zip(self.numbers.chunks_exact(self.width)) {
                 row.iter_mut().zip(places).for_each(|(number, place)| *number = of_all[*place]);
             }
             of_table(crane, &table)
         };
-        self.places.iter().take(cranes).enumerate().map(&mut of_crane).collect()
+        self.places.iter().take(cranes).enumerate().map(of_crane).collect()
     }
 }
 
