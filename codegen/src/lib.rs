@@ -25,6 +25,7 @@ pub mod explain;
 pub mod files;
 pub mod lower;
 pub mod mechanics;
+mod node;
 pub mod picture;
 pub mod program;
 mod read;

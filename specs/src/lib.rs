@@ -1,11 +1,6 @@
-//! The shipped cranes: a module for each file of `specs/`, compiled by the build script, and their specs.
-//!
-//! Without the feature `compiled` the crate contains only the specs. A spec that extends another is merged with it into one text.
+//! The specs of the shipped cranes and of the examples, as text. A spec that extends another is merged with it into one text.
 
-#[cfg(all(doctest, feature = "compiled"))]
-mod manual;
-
-include!(concat!(env!("OUT_DIR"), "/cranes.rs"));
+include!(concat!(env!("OUT_DIR"), "/specs.rs"));
 
 /// Names and specs (YAML) of commented examples, to copy and change; they are not among the shipped cranes.
 pub const EXAMPLES: &[(&str, &str)] = &[

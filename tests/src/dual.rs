@@ -1,52 +1,74 @@
 //! Dual numbers through the interpreter: derivatives independent of the compiler's own rules.
 
-use crane_codegen::symbolic::Scalar;
-use num_dual::{Dual64, DualNum};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number with one derivative.
+use crane_codegen::symbolic::Scalar;
+
+/// A number with one derivative: `a + a′ε` with `ε² = 0`.
 #[derive(Clone, Copy, Debug)]
-pub struct Dual(pub Dual64);
+pub struct Dual {
+    value: f64,
+    derivative: f64,
+}
 
 impl Dual {
     /// A value and its derivative.
     #[must_use]
     pub fn new(value: f64, derivative: f64) -> Self {
-        Dual(Dual64::new(value, derivative))
+        Dual { value, derivative }
     }
 
     /// The value.
     #[must_use]
     pub fn value(self) -> f64 {
-        self.0.re
+        self.value
     }
 
     /// The derivative.
     #[must_use]
     pub fn derivative(self) -> f64 {
-        self.0.eps
+        self.derivative
+    }
+
+    /// A function of it, by its value and its slope there.
+    fn chain(self, value: f64, slope: f64) -> Self {
+        Dual::new(value, slope * self.derivative)
     }
 }
 
-macro_rules! operator {
-    ($trait:ident, $method:ident) => {
-        impl std::ops::$trait for Dual {
-            type Output = Dual;
-            fn $method(self, other: Dual) -> Dual {
-                Dual(std::ops::$trait::$method(self.0, other.0))
-            }
-        }
-    };
+impl Add for Dual {
+    type Output = Dual;
+    fn add(self, other: Dual) -> Dual {
+        Dual::new(self.value + other.value, self.derivative + other.derivative)
+    }
 }
 
-operator!(Add, add);
-operator!(Sub, sub);
-operator!(Mul, mul);
-operator!(Div, div);
+impl Sub for Dual {
+    type Output = Dual;
+    fn sub(self, other: Dual) -> Dual {
+        Dual::new(self.value - other.value, self.derivative - other.derivative)
+    }
+}
 
-impl std::ops::Neg for Dual {
+impl Mul for Dual {
+    type Output = Dual;
+    fn mul(self, other: Dual) -> Dual {
+        Dual::new(self.value * other.value, self.derivative * other.value + self.value * other.derivative)
+    }
+}
+
+impl Div for Dual {
+    type Output = Dual;
+    fn div(self, other: Dual) -> Dual {
+        let value = self.value / other.value;
+        Dual::new(value, (self.derivative - value * other.derivative) / other.value)
+    }
+}
+
+impl Neg for Dual {
     type Output = Dual;
     fn neg(self) -> Dual {
-        Dual(-self.0)
+        Dual::new(-self.value, -self.derivative)
     }
 }
 
@@ -55,22 +77,24 @@ impl Scalar for Dual {
         Dual::new(value, 0.0)
     }
     fn sin_cos(&self) -> (Self, Self) {
-        let (sin, cos) = self.0.sin_cos();
-        (Dual(sin), Dual(cos))
+        let (sin, cos) = self.value.sin_cos();
+        (self.chain(sin, cos), self.chain(cos, -sin))
     }
     fn min(self, other: Self) -> Self {
-        if other.0.re < self.0.re { other } else { self }
+        if other.value < self.value { other } else { self }
     }
     fn max(self, other: Self) -> Self {
-        if other.0.re > self.0.re { other } else { self }
+        if other.value > self.value { other } else { self }
     }
     fn sqrt(&self) -> Self {
-        Dual(self.0.sqrt())
+        let root = self.value.sqrt();
+        self.chain(root, 0.5 / root)
     }
     fn exp(&self) -> Self {
-        Dual(self.0.exp())
+        let exponential = self.value.exp();
+        self.chain(exponential, exponential)
     }
     fn select(&self, positive: Self, other: Self) -> Self {
-        if self.0.re > 0.0 { positive } else { other }
+        if self.value > 0.0 { positive } else { other }
     }
 }

@@ -71,7 +71,7 @@ macro_rules! registry {
         /// All generated cranes: the shipped ones, then the random ones.
         #[must_use]
         pub fn all() -> Vec<Entry> {
-            let shipped = [$(entry!(crane_specs::$shipped, $shipped, false)),*];
+            let shipped = [$(entry!(crane_shipped::$shipped, $shipped, false)),*];
             #[cfg(any(clippy, doc))]
             let random = [];
             #[cfg(not(any(clippy, doc)))]

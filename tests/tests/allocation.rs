@@ -8,7 +8,7 @@ use crane_model::dynamics::{InitialState, Method, Settings};
 use crane_model::nalgebra::{Matrix6, SMatrix, SVector};
 use crane_model::rt::lanes::splat;
 use crane_model::{Ensemble, LaneDynamics, MotionDerivatives, TransformDerivatives};
-use crane_specs as cranes;
+use crane_shipped as cranes;
 use crane_tests::exact;
 use crane_tests::quantities::{At, Lists, call_every};
 

@@ -13,12 +13,9 @@ fn main() -> io::Result<()> {
     let lock = LOCKS.into_iter().find(|lock| Path::new(lock).is_file()).ok_or(io::ErrorKind::NotFound)?;
     println!("cargo::rerun-if-changed={lock}");
     fs::write(build::out_dir().join("Cargo.lock"), fs::read(lock)?)?;
-    // A program with its own cranes compiles those instead.
-    if env::var_os("CARGO_FEATURE_SHIPPED").is_some() {
-        let specs = env::var_os("DEP_CRANE_SPECS_FOLDER").ok_or(io::ErrorKind::NotFound)?;
-        for name in ["eight_link_flexible", "eight_link_rigid"] {
-            build::compile_spec_for(Path::new(&specs).join(name).with_extension("yaml"), Some(Analyses::COMMAND));
-        }
+    let specs = env::var_os("DEP_CRANE_SPECS_FOLDER").ok_or(io::ErrorKind::NotFound)?;
+    for name in ["eight_link_flexible", "eight_link_rigid"] {
+        build::compile_spec_for(Path::new(&specs).join(name).with_extension("yaml"), Some(Analyses::COMMAND));
     }
     Ok(())
 }

@@ -5,15 +5,8 @@ use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
 /// Crates that a new crate depends on, and files of the workspace that belong to them.
-const FOLDERS: [&str; 3] = ["crane-model", "codegen", "quantities"];
-const FILES: [&str; 6] = [
-    "Cargo.toml",
-    "LICENSE-APACHE",
-    "LICENSE-MIT",
-    "crane-model/Cargo.toml",
-    "codegen/Cargo.toml",
-    "quantities/Cargo.toml",
-];
+const FOLDERS: [&str; 4] = ["crane-model", "codegen", "codegen/keys", "quantities"];
+const FILES: [&str; 3] = ["Cargo.toml", "LICENSE-APACHE", "LICENSE-MIT"];
 const LIBRARY: &str = "CRANE_UNIT_LIBRARY";
 
 fn main() -> io::Result<()> {
@@ -21,6 +14,7 @@ fn main() -> io::Result<()> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize()?;
     let mut files: Vec<PathBuf> = FILES.iter().map(|file| root.join(file)).collect();
     for folder in FOLDERS {
+        files.push(root.join(folder).join("Cargo.toml"));
         collect(&root.join(folder).join("src"), &mut files)?;
     }
     files.sort();

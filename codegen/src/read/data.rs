@@ -2,8 +2,8 @@
 
 use csv::{ReaderBuilder, StringRecord, Trim};
 
-use super::tree::{Content, Node};
 use crate::diagnostic::{Mistake, Part, SourceFile, Span, rule};
+use crate::node::{Content, Node};
 
 /// Maximum number of rows: each becomes a polynomial that is evaluated at every step.
 const MOST: usize = 1000;

@@ -1,25 +1,17 @@
 //! `SourceFile ─read→ CraneSpec`: text to the types of [`spec`](crate::spec).
 //!
-//! The text becomes a [`tree`] that keeps locations and duplicate keys; a [`deserializer`] reads the derived types from that
-//! tree, notes every mistake and continues.
+//! The text becomes a tree of [nodes](crate::node); specs that extend each other are merged, and tables from files are put in their place.
 
-mod access;
 mod data;
-mod deserializer;
 mod overlay;
 mod place;
-mod slips;
-mod tree;
 
 use std::cell::RefCell;
 
-use serde::Deserialize;
-
 use crate::diagnostic::{Diagnostics, MAX_BYTES, Mistake, SourceFile, Span, rule};
+use crate::node::{FromNode, Node, Reader, parse, slips};
 use crate::spec::{Crane, CraneSpec};
-use deserializer::Reader;
 use overlay::Noticed;
-use tree::Node;
 
 /// Reads a spec as far as possible. Mistakes of keys and forms do not stop it: they are stored with the spec, and
 /// [`validate`](crate::validate()) reports them together with its own.
@@ -35,7 +27,7 @@ pub fn read(source: &SourceFile) -> Result<CraneSpec, Diagnostics> {
     let mut noticed = Noticed::default();
     let root = parts(source, &mut noticed).map_err(|mistake| refuse(vec![mistake]))?;
     let mistakes = RefCell::new(noticed.mistakes);
-    match Crane::deserialize(Reader::root(&root, &mistakes)) {
+    match Crane::from_node(Reader::root(&root, &mistakes)) {
         Ok(crane) => Ok(CraneSpec { crane, mistakes: mistakes.into_inner(), lookalikes: noticed.lookalikes }),
         Err(_) => Err(refuse(mistakes.into_inner())),
     }
@@ -49,7 +41,7 @@ fn parts(source: &SourceFile, noticed: &mut Noticed) -> Result<Node, Mistake> {
             mistake.span = Span { start: mistake.span.start + part.start, end: mistake.span.end + part.start };
             mistake
         };
-        let mut tree = tree::parse(part.text).map_err(shifted)?;
+        let mut tree = parse(part.text).map_err(shifted)?;
         let mut undashed = Vec::new();
         slips::split_entries(&mut tree, "", part.text, &mut undashed);
         noticed.mistakes.extend(undashed.into_iter().map(shifted));
@@ -77,14 +69,14 @@ fn parts(source: &SourceFile, noticed: &mut Noticed) -> Result<Node, Mistake> {
 pub(crate) fn base(source: &SourceFile) -> Option<(String, Span)> {
     // A file of several parts was already assembled.
     let [part] = source.parts()[..] else { return None };
-    let tree = tree::parse(part.text).ok()?.shifted(part.start);
+    let tree = parse(part.text).ok()?.shifted(part.start);
     tree.base().map(|(name, span)| (name.to_owned(), span))
 }
 
 /// The data files that a spec refers to, with the locations of their names.
 #[must_use]
 pub(crate) fn data_files(source: &SourceFile) -> Vec<(String, Span)> {
-    let tree = tree::parse(&source.text);
+    let tree = parse(&source.text);
     let files = tree.as_ref().map(data::files).unwrap_or_default();
     files.into_iter().map(|(name, span)| (name.to_owned(), span)).collect()
 }

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::tree::{Content, Node};
 use crate::diagnostic::{Mistake, Span, nearest, rule, suggest};
+use crate::node::{Content, Node};
 use crate::spec::Lookalike;
 
 /// Key of the spec to start from.

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use super::overlay::Noticed;
 use super::parts;
-use super::tree::{Content, Node};
 use crate::diagnostic::{SourceFile, WrongPlace, suggest};
+use crate::node::{Content, Node};
 
 impl SourceFile {
     /// The same crane with a number at a place replaced by a live parameter of the same value, whose description is the place.

@@ -1,17 +1,11 @@
 //! Beams: flexible links of rigid finite elements.
 
-use std::borrow::Cow;
-use std::fmt;
-
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::Deserialize;
-use serde::de::{Deserializer, Error, Unexpected, Visitor};
+use crate::node::{Content, Definition, Form, FromNode, Reader, Unread};
 
 use super::{Angle, Either, Inertia, Number, SlidesIn, Spanned, Vector};
 
 /// A beam along x of its link: `sections`, `material` and `section`, or `elements` and `springs` one by one.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `length`, `sections`, `material`, `section`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Beam {
     /// Length, m.
     pub length: Spanned<Number>,
@@ -50,40 +44,25 @@ pub enum Sections {
     Rigid,
 }
 
-impl<'de> Deserialize<'de> for Sections {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct SectionsVisitor;
-        impl Visitor<'_> for SectionsVisitor {
-            type Value = Sections;
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("an integer from 1 to 1000, or `rigid`")
-            }
-            fn visit_f64<E: Error>(self, count: f64) -> Result<Sections, E> {
-                Ok(Sections::Count(count))
-            }
-            fn visit_str<E: Error>(self, word: &str) -> Result<Sections, E> {
-                match word {
-                    "rigid" => Ok(Sections::Rigid),
-                    _ => Err(E::invalid_value(Unexpected::Str(word), &self)),
-                }
-            }
+impl FromNode for Sections {
+    const FORM: Form = Form::Defined {
+        definition: &Definition {
+            name: "Sections",
+            about: "",
+            form: Form::AnyOf { forms: &[Form::Integer { least: 1, most: 1000 }, Form::Words { words: &["rigid"] }] },
+        },
+    };
+    fn from_node(reader: Reader) -> Result<Self, Unread> {
+        match reader.content()? {
+            Content::Number(count) => Ok(Sections::Count(*count)),
+            Content::Text(word) if word == "rigid" => Ok(Sections::Rigid),
+            _ => Err(Unread::Expected("an integer from 1 to 1000, or `rigid`".into())),
         }
-        deserializer.deserialize_any(SectionsVisitor)
-    }
-}
-
-impl JsonSchema for Sections {
-    fn schema_name() -> Cow<'static, str> {
-        "Sections".into()
-    }
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({ "anyOf": [{ "type": "integer", "minimum": 1, "maximum": 1000 }, { "const": "rigid" }] })
     }
 }
 
 /// A part of a beam with its own section.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `length`, `section` and `to`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct BeamPart {
     /// Length, m.
     pub length: Spanned<Number>,
@@ -94,8 +73,7 @@ pub struct BeamPart {
 }
 
 /// Angles between the beginning and the tip of a curved beam at rest, an arc.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `psi` and `theta`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Bend {
     /// About z: curved in the x–y plane, rad.
     pub psi: Option<Spanned<Angle>>,
@@ -104,8 +82,7 @@ pub struct Bend {
 }
 
 /// Rotation between two rigid elements of a beam.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, FromNode)]
 pub enum SectionJoint {
     /// By the rotation vector (phi, theta, psi), which treats both directions of bending equally.
     Symmetric,
@@ -114,14 +91,13 @@ pub enum SectionJoint {
 }
 
 /// An isotropic elastic material.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `E`, `G`, `density` and `yield_stress`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Material {
     /// Young's modulus, Pa.
-    #[serde(rename = "E")]
+    #[key("E")]
     pub youngs_modulus: Spanned<Number>,
     /// Shear modulus, Pa.
-    #[serde(rename = "G")]
+    #[key("G")]
     pub shear_modulus: Spanned<Number>,
     /// Density, kg/m³.
     pub density: Spanned<Number>,
@@ -130,8 +106,7 @@ pub struct Material {
 }
 
 /// Cross-section of a beam: height along y, width along z.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", rename_all_fields = "snake_case", deny_unknown_fields)]
+#[derive(Clone, Debug, FromNode)]
 pub enum Section {
     /// Hollow rectangle with walls of one thickness.
     Box {
@@ -177,13 +152,13 @@ pub enum Section {
         /// Area, m².
         area: Spanned<Number>,
         /// Second moment of area ∫ z² dA, for bending in the x–z plane, m⁴.
-        #[serde(rename = "Jy")]
+        #[key("Jy")]
         jy: Spanned<Number>,
         /// Second moment of area ∫ y² dA, for bending in the x–y plane, m⁴.
-        #[serde(rename = "Jz")]
+        #[key("Jz")]
         jz: Spanned<Number>,
         /// Torsion constant, m⁴.
-        #[serde(rename = "Jo")]
+        #[key("Jo")]
         jo: Spanned<Number>,
         /// Moduli for stresses. Default none: no stresses are computed.
         moduli: Option<Box<Spanned<Moduli>>>,
@@ -191,29 +166,27 @@ pub enum Section {
 }
 
 /// Moduli of a section that is given by its properties.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `Wy`, `Wz`, `Wt`, `Ay` and `Az`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Moduli {
     /// Section modulus for bending about y, m³.
-    #[serde(rename = "Wy")]
+    #[key("Wy")]
     pub wy: Spanned<Number>,
     /// Section modulus for bending about z, m³.
-    #[serde(rename = "Wz")]
+    #[key("Wz")]
     pub wz: Spanned<Number>,
     /// Section modulus for torsion, m³.
-    #[serde(rename = "Wt")]
+    #[key("Wt")]
     pub wt: Spanned<Number>,
     /// Shear area along y, m²: the force divided by the maximum shear stress.
-    #[serde(rename = "Ay")]
+    #[key("Ay")]
     pub ay: Spanned<Number>,
     /// Shear area along z, m².
-    #[serde(rename = "Az")]
+    #[key("Az")]
     pub az: Spanned<Number>,
 }
 
 /// Damping of the springs of a beam, exactly one of these.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Debug, FromNode)]
 pub enum BeamDamping {
     /// Kelvin–Voigt: damping = beta × stiffness, s; one number, or one per direction.
     Beta(Spanned<Either<Number, Directions>>),
@@ -222,8 +195,7 @@ pub enum BeamDamping {
 }
 
 /// One number per direction of a spring.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `psi`, `theta`, `phi`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Directions {
     /// Bending in the x–y plane, about z.
     pub psi: Spanned<Number>,
@@ -234,8 +206,7 @@ pub struct Directions {
 }
 
 /// A rigid element of a beam.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `length`, `mass`, `com` and `inertia`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Element {
     /// Length along x, m.
     pub length: Spanned<Number>,
@@ -248,8 +219,7 @@ pub struct Element {
 }
 
 /// A spring between two rigid elements.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `stiffness` and `damping`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Spring {
     /// Stiffness, N m/rad.
     pub stiffness: Spanned<Directions>,

@@ -1,13 +1,10 @@
 //! Connectors: elements between two points.
 
-use schemars::JsonSchema;
-use serde::Deserialize;
-
 use super::{Angle, Constant, Motion, Number, Spanned, Vector};
+use crate::node::FromNode;
 
 /// A spring, gas spring or rope between two points, which pulls or pushes them along the line between them. A rope may run over sheaves.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `name`, `from`, `to` and `law`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Connector {
     /// Name, a `snake_case` identifier.
     pub name: Spanned<String>,
@@ -24,8 +21,7 @@ pub struct Connector {
 }
 
 /// A point of a link, or of the world.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `link` and `at`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Attachment {
     /// The link. Default: the world.
     pub link: Option<Spanned<String>>,
@@ -34,8 +30,7 @@ pub struct Attachment {
 }
 
 /// A coupling: one coordinate follows another through a spring and a damper.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `name`, `coordinate`, `follows`, `ratio` and `stiffness`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Coupling {
     /// Name, a `snake_case` identifier.
     pub name: Spanned<String>,
@@ -58,8 +53,7 @@ macro_rules! laws {
         $($(#[$key_doc:meta])* $key:ident: $number:ty, $limit:ident $unit:literal;)*
     })*) => {
         /// How the force of a connector depends on its length.
-        #[derive(Clone, Debug, Deserialize, JsonSchema)]
-        #[serde(rename_all = "snake_case")]
+        #[derive(Clone, Debug, FromNode)]
         pub enum ConnectorLaw {
             $($(#[$doc])* $law($written),)*
             /// A rope, which pulls while it is taut.
@@ -67,8 +61,7 @@ macro_rules! laws {
         }
 
         $($(#[$doc])*
-        #[derive(Clone, Debug, Deserialize, JsonSchema)]
-        #[serde(deny_unknown_fields, expecting = $expecting)]
+        #[derive(Clone, Debug, FromNode)]
         pub struct $written {
             $($(#[$key_doc])* pub $key: $number,)*
         })*
@@ -78,11 +71,7 @@ macro_rules! laws {
 point_laws!(laws);
 
 /// A rope between two points, perhaps over sheaves.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(
-    deny_unknown_fields,
-    expecting = "a mapping of `stiffness` or `axial_stiffness`, `damping`, and `length` or `motion`"
-)]
+#[derive(Clone, Debug, FromNode)]
 pub struct Rope {
     /// Stiffness EA/ℓ₀, N/m.
     pub stiffness: Option<Spanned<Number>>,

@@ -1,16 +1,10 @@
 //! Hydraulic cylinders between their pins.
 
-use schemars::JsonSchema;
-use serde::Deserialize;
-
 use super::{Constant, Motion, Number, Spanned, Vector};
+use crate::node::FromNode;
 
 /// The hydraulic cylinder of a driven joint, by its pins: its length, its force and its pressures follow from the drive.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(
-    deny_unknown_fields,
-    expecting = "a mapping of `name`, `coordinate`, `foot`, `head`, `bore`, `rod`, `retracted` and `stroke`"
-)]
+#[derive(Clone, Debug, FromNode)]
 pub struct Cylinder {
     /// Name, a `snake_case` identifier.
     pub name: Spanned<String>,
@@ -44,8 +38,7 @@ pub struct Cylinder {
 }
 
 /// A proportional directional valve, and what commands it: a servo that makes the cylinder follow the drive's motion, or an opening over time.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `flow`, `pressure_drop`, `lag` and `gain` or `opening`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Valve {
     /// Flow through one metering edge of the fully open valve at `pressure_drop`, m³/s; 60 l/min are 1e-3.
     pub flow: Spanned<Constant>,
@@ -71,8 +64,7 @@ pub struct Valve {
 pub type HoseVolumes = [Spanned<Constant>; 2];
 
 /// A pin: a point of a link.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `link` and `at`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Pin {
     /// The link that carries it.
     pub link: Spanned<String>,
@@ -82,8 +74,7 @@ pub struct Pin {
 
 /// Rocker and link: the rocker turns about `pivot` on the link that carries the cylinder's foot, the link ends at the cylinder's `head`, and
 /// the rod is pinned to the joint between the two.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `pivot`, `rocker`, `link` and `side`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Linkage {
     /// The rocker's pivot in the frame of the link that carries the cylinder's foot, m; on a beam, on the element at its own place.
     pub pivot: Spanned<Vector>,
@@ -96,8 +87,7 @@ pub struct Linkage {
 }
 
 /// A side of a directed line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, FromNode)]
 pub enum Side {
     /// To the left.
     Left,
@@ -106,8 +96,7 @@ pub enum Side {
 }
 
 /// The pump that supplies the cylinders.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `max_flow` and, for cylinders with a valve, `pressure`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Pump {
     /// Maximum flow to all cylinders together, m³/s; 60 l/min are 1e-3.
     pub max_flow: Spanned<Constant>,

@@ -1,16 +1,10 @@
 //! Drives and their motions.
 
-use schemars::JsonSchema;
-use serde::Deserialize;
-
 use super::{Angle, Constant, FixedAngle, Number, Spanned};
+use crate::node::FromNode;
 
 /// A drive: a spring and a damper between a joint and a prescribed motion, the motion itself, or a torque or a force.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(
-    deny_unknown_fields,
-    expecting = "a mapping of `coordinate`, `stiffness`, `damping` and `motion`, of `coordinate`, `rigid` and `motion`, or of `coordinate` and `effort`"
-)]
+#[derive(Clone, Debug, FromNode)]
 pub struct Drive {
     /// The coordinate it drives, such as `boom_psi`.
     pub coordinate: Spanned<String>,
@@ -37,8 +31,7 @@ pub struct Drive {
 }
 
 /// Motion of a drive; before it begins and, unless it is a speed, after it ends, the drive holds its position.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Debug, FromNode)]
 pub enum Motion {
     /// Held at one position, rad or m.
     Hold(Spanned<Angle>),
@@ -59,8 +52,7 @@ pub enum Motion {
 }
 
 /// Start, end and time of a motion.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `from`, `to`, `begin`, `duration`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Ramp {
     /// Position before, rad or m.
     pub from: Spanned<Angle>,
@@ -73,8 +65,7 @@ pub struct Ramp {
 }
 
 /// A trapezoidal velocity.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `from`, `to`, `begin`, `duration`, `blend`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Trapezoid {
     /// Position before, rad or m.
     pub from: Spanned<Angle>,
@@ -89,8 +80,7 @@ pub struct Trapezoid {
 }
 
 /// A constant speed.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `rate`, `from`, `begin`, `ramp`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Speed {
     /// Speed, rad/s or m/s.
     pub rate: Spanned<Angle>,
@@ -103,8 +93,7 @@ pub struct Speed {
 }
 
 /// Positions at given times, written here or in a CSV file.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `times` and `values`, or of `file` and `column`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Table {
     /// Times, strictly increasing, s.
     pub times: Option<Spanned<Vec<Spanned<Constant>>>>,

@@ -1,13 +1,10 @@
 //! Inputs.
 
-use schemars::JsonSchema;
-use serde::Deserialize;
-
 use super::{FixedAngle, Motion, Spanned};
+use crate::node::FromNode;
 
 /// A number that a controller or a user sets between steps; until then it has a value or follows a motion.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `value` or `motion`, `unit` and `about`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Input {
     /// Value while it is not set, in SI units. Default 0.
     pub value: Option<Spanned<FixedAngle>>,

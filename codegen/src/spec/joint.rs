@@ -1,13 +1,10 @@
 //! End stops and friction of joints.
 
-use schemars::JsonSchema;
-use serde::Deserialize;
-
 use super::{Angle, Constant, Number, Spanned};
+use crate::node::FromNode;
 
 /// End stops of a joint, which push when it is beyond its range and never pull.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `min`, `max`, `stiffness` and `damping`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Stops {
     /// Minimum position, rad or m. Default: no stop.
     pub min: Option<Spanned<Angle>>,
@@ -21,11 +18,7 @@ pub struct Stops {
 }
 
 /// Friction of a joint: Coulomb friction, with a Stribeck decline from a larger breakaway friction.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(
-    deny_unknown_fields,
-    expecting = "a mapping of `coulomb`, `breakaway`, `stribeck`, `width`, `viscous` and `bristle`"
-)]
+#[derive(Clone, Debug, FromNode)]
 pub struct Friction {
     /// Coulomb friction, N m or N.
     pub coulomb: Spanned<Number>,
@@ -42,8 +35,7 @@ pub struct Friction {
 }
 
 /// The bristles of a joint that sticks; their deflection is a state of the motion.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `stiffness` and `damping`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Bristle {
     /// Stiffness σ₀, N m/rad or N/m.
     pub stiffness: Spanned<Constant>,

@@ -1,14 +1,11 @@
 //! Links, their joints and what they carry.
 
-use schemars::{JsonSchema, Schema};
-use serde::Deserialize;
-
 use super::{AxisName, Beam, Constant, Either, Inertia, Number, On, Placement, Spanned, Vector};
+use crate::node::FromNode;
 
 /// A link: its placement, its joint, and its mass: `mass`, `com` and `inertia`, or several `bodies`, or a `beam`, or
 /// a `rope`, or nothing (a massless frame).
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `name`, `on`, `placement`, `joint` and what the link carries")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Link {
     /// Name, a `snake_case` identifier; coordinates are named after it, such as `boom_psi`.
     pub name: Spanned<String>,
@@ -34,8 +31,7 @@ pub struct Link {
 }
 
 /// A rope or chain that does not stretch: slender rigid links end to end, each with a universal joint at its beginning.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `length`, `links`, `mass_per_length` and `damping`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct HangingRope {
     /// Length, m.
     pub length: Spanned<Number>,
@@ -48,8 +44,7 @@ pub struct HangingRope {
 }
 
 /// One of several bodies combined into a link.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `name`, `mass`, `com` and `inertia`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Body {
     /// Name, a `snake_case` identifier, unique in its link.
     pub name: Spanned<String>,
@@ -62,9 +57,7 @@ pub struct Body {
 }
 
 /// How a link moves relative to its placement: `fixed`, `revolute`, `prismatic`, or for the first link `free`.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-#[schemars(transform = allow_bare_words)]
+#[derive(Clone, Debug, FromNode)]
 pub enum Joint {
     /// No motion.
     Fixed,
@@ -77,16 +70,14 @@ pub enum Joint {
 }
 
 /// Axis of a joint.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `axis`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct JointAxis {
     /// Axis of the placed frame. Default z.
     pub axis: Option<Spanned<AxisName>>,
 }
 
 /// A coordinate of a free base.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, FromNode)]
 pub enum BaseCoordinate {
     /// Along x, m.
     X,
@@ -100,11 +91,4 @@ pub enum BaseCoordinate {
     Theta,
     /// About x, rad.
     Phi,
-}
-
-/// `joint: revolute` is short for `joint: {revolute: {}}`.
-fn allow_bare_words(schema: &mut Schema) {
-    if let Some(forms) = schema.get_mut("oneOf").and_then(|forms| forms.as_array_mut()) {
-        forms.push(serde_json::json!({ "enum": ["revolute", "prismatic", "free"] }));
-    }
 }

@@ -1,13 +1,10 @@
 //! External loads.
 
-use schemars::JsonSchema;
-use serde::Deserialize;
-
 use super::{Motion, Spanned, Vector};
+use crate::node::FromNode;
 
 /// A force and a moment at a point of a link.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `name`, `link`, `at`, `force`, `moment`, `axes` and `scale`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Load {
     /// Name, a `snake_case` identifier.
     pub name: Spanned<String>,
@@ -26,8 +23,7 @@ pub struct Load {
 }
 
 /// Axes along which a load is given.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, FromNode)]
 pub enum Axes {
     /// Those of the world.
     World,

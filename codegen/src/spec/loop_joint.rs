@@ -1,13 +1,10 @@
 //! Joints that close loops.
 
-use schemars::JsonSchema;
-use serde::Deserialize;
-
 use super::{Attachment, Constant, Friction, Number, Spanned};
+use crate::node::FromNode;
 
 /// A joint that closes a loop: it connects two links that are already connected through others, or a link and the world, exactly.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `name`, `from`, `to`, `joint`, `friction` and `damping`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct LoopJoint {
     /// Name, a `snake_case` identifier.
     pub name: Spanned<String>,
@@ -24,8 +21,7 @@ pub struct LoopJoint {
 }
 
 /// What a joint that closes a loop holds together: `ball`, `pin`, `rod` or `slide`.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Debug, FromNode)]
 pub enum LoopJointKind {
     /// The two points: three equations.
     Ball,
@@ -41,8 +37,7 @@ pub enum LoopJointKind {
 pub type Direction = [Spanned<Constant>; 3];
 
 /// The axis of a pin.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `axis`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct PinAxis {
     /// Its direction in the frame of the link `from`, or of the world.
     pub axis: Spanned<Direction>,
@@ -51,16 +46,14 @@ pub struct PinAxis {
 }
 
 /// A massless rod of constant length.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `length`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct LoopRod {
     /// Length, m.
     pub length: Spanned<Number>,
 }
 
 /// A line along which a point slides.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `axis`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct SlideAxis {
     /// Its direction in the frame of the link `from`, or of the world.
     pub axis: Spanned<Direction>,

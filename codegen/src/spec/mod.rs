@@ -1,4 +1,5 @@
-//! The spec language as written: one type per mapping, whose doc comments are its documentation and its JSON Schema.
+//! The spec language as written: one type per mapping, whose doc comments are its documentation and its JSON Schema;
+//! `FromNode` is derived for each.
 //!
 //! The type of a key defines its allowed values; [`Spanned`] holds its location. An optional key is an `Option`.
 
@@ -37,14 +38,11 @@ pub use placement::{AxisName, ClassicDh, ModifiedDh, Placement, Transform, Turn}
 pub use scalar::{Angle, Constant, FixedAngle, Number, Scalar, Vector, parse_angle};
 pub use schema::json_schema;
 pub use slides_in::{ExactDirection, Pad, Pads, SlidesIn};
-pub(crate) use spanned::{EITHER, MANY, SPANNED};
 pub use spanned::{Either, Entries, Many, Spanned};
 pub use support::{Kinematics, Point, Support};
 
-use schemars::JsonSchema;
-use serde::Deserialize;
-
 use crate::diagnostic::{Mistake, Span};
+use crate::node::FromNode;
 
 /// A crane as written, with the mistakes found while reading it; [`validate`](crate::validate()) reports them together with
 /// its own.
@@ -73,8 +71,7 @@ pub(crate) struct Lookalike {
 
 /// A crane: links attached to each other, from the base to the tips. Every number is in SI units; the name of an entry of
 /// `parameters` can replace a number, which keeps it live at run time.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of keys to values")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Crane {
     /// Another spec to start from: a file, relative to this one, or a shipped crane. This file then contains only the differences:
     /// mappings are merged key by key, lists whose entries have a `name` or a `coordinate`, such as links, supports and drives, entry by entry; everything
@@ -135,8 +132,7 @@ pub struct Crane {
 }
 
 /// A kind of computation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, FromNode)]
 pub enum Analysis {
     /// Static residual and tangent stiffness.
     Statics,
@@ -171,8 +167,7 @@ impl Analysis {
 }
 
 /// When repeated work is a loop in generated code.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, FromNode)]
 pub enum Loops {
     /// Where measurements showed it to be faster.
     Auto,
@@ -183,8 +178,7 @@ pub enum Loops {
 }
 
 /// A value that stays live at run time.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `value`, `unit` and `about`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Parameter {
     /// Default value, in SI units.
     pub value: Spanned<FixedAngle>,
@@ -195,8 +189,7 @@ pub struct Parameter {
 }
 
 /// Settings of a run.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `duration`, `step` and `output`")]
+#[derive(Clone, Debug, Default, FromNode)]
 pub struct Run {
     /// Simulated time, s. Default 10.
     pub duration: Option<Spanned<Constant>>,

@@ -1,17 +1,11 @@
 //! What a link is attached to.
 
-use std::borrow::Cow;
-use std::fmt;
+use crate::node::{Content, Definition, Form, FromNode, Reader, Unread};
 
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::Deserialize;
-use serde::de::{Deserializer, Error, SeqAccess, Unexpected, Visitor};
-
-use super::{Number, Spanned, Vector};
+use super::{Spanned, Vector};
 
 /// A link and a place on it.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `link` and `at`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct On {
     /// The link, an earlier one.
     pub link: Spanned<String>,
@@ -32,41 +26,22 @@ pub enum Place {
 }
 
 /// The words for places.
-const WORDS: [(&str, Place); 2] = [("tip", Place::Tip), ("start", Place::Start)];
+const WORDS: &[&str] = &["tip", "start"];
 
-impl<'de> Deserialize<'de> for Place {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Places;
-        impl<'de> Visitor<'de> for Places {
-            type Value = Place;
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("`tip`, `start` or `[x, y, z]`")
-            }
-            fn visit_str<E: Error>(self, word: &str) -> Result<Place, E> {
-                let found = WORDS.into_iter().find(|(known, _)| *known == word);
-                found.map(|(_, place)| place).ok_or_else(|| E::invalid_value(Unexpected::Str(word), &self))
-            }
-            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Place, A::Error> {
-                let mut items: Vec<Spanned<Number>> = Vec::new();
-                while let Some(item) = seq.next_element()? {
-                    items.push(item);
-                }
-                let count = items.len();
-                items.try_into().map(Place::Point).map_err(|_| A::Error::invalid_length(count, &self))
-            }
+impl FromNode for Place {
+    const FORM: Form = Form::Defined {
+        definition: &Definition {
+            name: "Place",
+            about: "`tip` or `start` of a beam or a rope, or `[x, y, z]` in the frame of the link, m.",
+            form: Form::AnyOf { forms: &[Form::Words { words: WORDS }, Vector::FORM] },
+        },
+    };
+    fn from_node(reader: Reader) -> Result<Self, Unread> {
+        match reader.content()? {
+            Content::Text(word) if word == "tip" => Ok(Place::Tip),
+            Content::Text(word) if word == "start" => Ok(Place::Start),
+            Content::Sequence(items) if items.len() == 3 => Vector::from_node(reader).map(Place::Point),
+            _ => Err(Unread::Expected("`tip`, `start` or `[x, y, z]`".into())),
         }
-        deserializer.deserialize_any(Places)
-    }
-}
-
-impl JsonSchema for Place {
-    fn schema_name() -> Cow<'static, str> {
-        "Place".into()
-    }
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        json_schema!({
-            "description": "`tip` or `start` of a beam or a rope, or `[x, y, z]` in the frame of the link, m.",
-            "anyOf": [{ "enum": WORDS.map(|(word, _)| word) }, generator.subschema_for::<Vector>()],
-        })
     }
 }

@@ -1,13 +1,10 @@
 //! Poses of links relative to what they are attached to.
 
-use schemars::JsonSchema;
-use serde::Deserialize;
-
 use super::{Angle, Many, Number, Spanned, Vector};
+use crate::node::FromNode;
 
 /// Pose of a link relative to the link and the place that it is attached to (after a beam: to its tip), exactly one of these.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Debug, FromNode)]
 pub enum Placement {
     /// A row of modified (Craig's) D-H parameters, `Rx(alpha) Tx(a) Rz(theta) Tz(d)`; the joint adds to theta or d.
     ModifiedDh(ModifiedDh),
@@ -19,8 +16,7 @@ pub enum Placement {
 }
 
 /// Modified D-H parameters.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `a`, `alpha`, `d`, `theta`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct ModifiedDh {
     /// Link length, along x of the previous frame, m. Default 0.
     pub a: Option<Spanned<Number>>,
@@ -33,8 +29,7 @@ pub struct ModifiedDh {
 }
 
 /// Classic D-H parameters.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `a`, `alpha`, `d`, `theta`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct ClassicDh {
     /// Link length, along x of this frame, m. Default 0.
     pub a: Option<Spanned<Number>>,
@@ -47,8 +42,7 @@ pub struct ClassicDh {
 }
 
 /// A constant transformation.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `translation` and `rotation`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Transform {
     /// Translation in the previous frame, m. Default `[0, 0, 0]`.
     pub translation: Option<Spanned<Vector>>,
@@ -58,8 +52,7 @@ pub struct Transform {
 }
 
 /// A rotation about one axis.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Debug, FromNode)]
 pub enum Turn {
     /// About x, rad.
     X(Spanned<Angle>),
@@ -70,8 +63,7 @@ pub enum Turn {
 }
 
 /// Name of an axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, FromNode)]
 pub enum AxisName {
     /// First axis.
     X,

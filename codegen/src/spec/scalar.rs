@@ -1,13 +1,9 @@
 //! Numbers and angles, as written.
 
-use std::borrow::Cow;
 use std::f64::consts::PI;
-use std::fmt;
-
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::{Deserialize, Deserializer, Error, Unexpected, Visitor};
 
 use super::Spanned;
+use crate::node::{Content, Definition, Form, FromNode, Reader, Unread};
 
 /// Three numbers along x, y, z.
 pub type Vector = [Spanned<Number>; 3];
@@ -63,87 +59,69 @@ fn plain_number(text: &str) -> Option<f64> {
     text.parse().ok().filter(|_| decimal)
 }
 
-/// Reads a [`Scalar`]; `EXPECTED` is the expectation in messages.
-struct ScalarVisitor {
-    expected: &'static str,
-    angle: bool,
-    name: bool,
+/// Reads a [`Scalar`] of permitted forms; `expected` are these in messages.
+fn read_scalar(reader: Reader, angle: bool, name: bool, expected: &str) -> Result<Scalar, Unread> {
+    let scalar = match reader.content()? {
+        Content::Number(number) => Some(Scalar::Number(*number)),
+        Content::Text(word) => Scalar::from_word(word),
+        _ => None,
+    };
+    let permitted = scalar.filter(|scalar| match scalar {
+        Scalar::Number(_) => true,
+        Scalar::Angle(_) => angle,
+        Scalar::Name(_) => name,
+    });
+    permitted.ok_or_else(|| Unread::Expected(expected.to_owned()))
 }
 
-impl Visitor<'_> for ScalarVisitor {
-    type Value = Scalar;
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(self.expected)
-    }
-    fn visit_f64<E: Error>(self, number: f64) -> Result<Scalar, E> {
-        Ok(Scalar::Number(number))
-    }
-    fn visit_str<E: Error>(self, word: &str) -> Result<Scalar, E> {
-        Scalar::from_word(word)
-            .filter(|scalar| match scalar {
-                Scalar::Number(_) => true,
-                Scalar::Angle(_) => self.angle,
-                Scalar::Name(_) => self.name,
-            })
-            .ok_or_else(|| E::invalid_value(Unexpected::Str(word), &self))
-    }
-}
-
-/// Declares a kind of number: its accepted forms, the expectation in messages, and its schema.
+/// Declares a kind of number: its forms, whether it may be an angle and a parameter, and the expectation in messages.
 macro_rules! scalar {
-    ($(#[doc = $about:literal])+ $name:ident, angle: $angle:literal, parameter: $parameter:literal, $expected:literal) => {
+    ($(#[doc = $about:literal])+ $name:ident, angle: $angle:literal, parameter: $parameter:literal,
+     [$($form:expr),*], $expected:literal) => {
         $(#[doc = $about])+
         #[derive(Clone, Debug, PartialEq)]
         pub struct $name(pub Scalar);
 
-        impl<'de> Deserialize<'de> for $name {
-            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        impl FromNode for $name {
+            const FORM: Form = Form::Defined {
+                definition: &Definition {
+                    name: stringify!($name),
+                    about: concat!($($about),+),
+                    form: Form::AnyOf { forms: &[Form::Number, $($form),*] },
+                },
+            };
+            fn from_node(reader: Reader) -> Result<Self, Unread> {
                 // An angle in place of a number gets a separate message from validation.
-                let visitor = ScalarVisitor { expected: $expected, angle: $angle || $parameter, name: $parameter };
-                deserializer.deserialize_any(visitor).map($name)
-            }
-        }
-
-        impl JsonSchema for $name {
-            fn schema_name() -> Cow<'static, str> {
-                stringify!($name).into()
-            }
-            fn json_schema(_: &mut SchemaGenerator) -> Schema {
-                let mut forms = vec![json_schema!({ "type": "number" })];
-                if $angle {
-                    forms.push(json_schema!({ "type": "string", "pattern": ANGLE_PATTERN }));
-                }
-                if $parameter {
-                    forms.push(json_schema!({ "type": "string", "pattern": NAME_PATTERN }));
-                }
-                json_schema!({ "description": concat!($($about),+).trim(), "anyOf": forms })
+                read_scalar(reader, $angle || $parameter, $parameter, $expected).map($name)
             }
         }
     };
 }
 
 /// Angles as [`parse_angle`] reads them.
-const ANGLE_PATTERN: &str = r"^\s*(-?([0-9.]+([eE][-+]?[0-9]+)?(\s*/\s*[0-9.]+)?)?\s*pi|-?[0-9.]+([eE][-+]?[0-9]+)?(\s*/\s*[0-9.]+)?\s*deg)\s*$";
+const ANGLE: Form = Form::Pattern {
+    pattern: r"^\s*(-?([0-9.]+([eE][-+]?[0-9]+)?(\s*/\s*[0-9.]+)?)?\s*pi|-?[0-9.]+([eE][-+]?[0-9]+)?(\s*/\s*[0-9.]+)?\s*deg)\s*$",
+};
 /// Names of parameters.
-const NAME_PATTERN: &str = "^[a-z][a-z0-9_]*$";
+const NAME: Form = Form::Pattern { pattern: "^[a-z][a-z0-9_]*$" };
 
 scalar! {
     /// A number in SI units, or the name of a parameter.
-    Number, angle: false, parameter: true, "a number in SI units without its unit, or the name of a parameter"
+    Number, angle: false, parameter: true, [NAME], "a number in SI units without its unit, or the name of a parameter"
 }
 scalar! {
     /// An angle in rad, or written `90 deg`, `7/18 pi`; or the name of a parameter. Where a length is allowed as
     /// well, as for a drive of a prismatic joint, a number in m.
-    Angle, angle: true, parameter: true, "a number, an angle such as `90 deg` or `7/18 pi`, or the name of a parameter"
+    Angle, angle: true, parameter: true, [ANGLE, NAME], "a number, an angle such as `90 deg` or `7/18 pi`, or the name of a parameter"
 }
 scalar! {
     /// A number in SI units, fixed when the crane is compiled.
-    Constant, angle: false, parameter: false, "a number, which cannot be a parameter here"
+    Constant, angle: false, parameter: false, [], "a number, which cannot be a parameter here"
 }
 scalar! {
     /// An angle in rad, or written `90 deg`, `7/18 pi`, or another number in SI units; fixed when the crane is
     /// compiled.
-    FixedAngle, angle: true, parameter: false, "a number or an angle such as `90 deg`, which cannot be a parameter here"
+    FixedAngle, angle: true, parameter: false, [ANGLE], "a number or an angle such as `90 deg`, which cannot be a parameter here"
 }
 
 #[cfg(test)]

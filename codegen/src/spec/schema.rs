@@ -1,40 +1,103 @@
 //! The JSON Schema of the spec language, from the types that read it.
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::Crane;
+use crate::node::{Form, FromNode, Key, Variant};
 
 /// JSON Schema of the spec language, for editors that complete and check a spec.
-///
-/// # Panics
-/// Never, because a schema is always printable.
 #[must_use]
 pub fn json_schema() -> String {
-    let mut schema = schemars::schema_for!(Crane).to_value();
-    forbid_null(&mut schema);
+    let Form::Defined { definition } = Crane::FORM else { return String::new() };
+    let mut definitions = Map::new();
+    let mut schema = describe_form(definition.form, &mut definitions);
     // A spec that extends another contains only the differences.
+    let whole = schema["required"].take();
+    schema["anyOf"] = json!([{ "required": whole }, { "required": ["extends"] }]);
     if let Some(object) = schema.as_object_mut() {
-        let whole = object.remove("required").unwrap_or_default();
-        object.insert("anyOf".to_owned(), json!([{ "required": whole }, { "required": ["extends"] }]));
+        object.remove("required");
     }
+    schema["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
+    schema["title"] = json!(definition.name);
+    schema["description"] = json!(definition.about);
+    schema["$defs"] = Value::Object(definitions);
     format!("{schema:#}\n")
 }
 
-/// An optional key may be omitted but not left empty: removes the `null` that represents `Option`.
-fn forbid_null(schema: &mut Value) {
-    match schema {
-        Value::Object(object) => {
-            if let Some(kind) = object.get_mut("type")
-                && let Some(single) = kind.as_array().and_then(|types| types.iter().find(|t| *t != "null"))
-            {
-                *kind = single.clone();
+/// The schema of a form; forms with a name are added to the definitions.
+fn describe_form(form: Form, definitions: &mut Map<String, Value>) -> Value {
+    match form {
+        Form::Text | Form::Word => json!({ "type": "string" }),
+        Form::Flag => json!({ "type": "boolean" }),
+        Form::Number => json!({ "type": "number" }),
+        Form::Integer { least, most } => json!({ "type": "integer", "minimum": least, "maximum": most }),
+        Form::Pattern { pattern } => json!({ "type": "string", "pattern": pattern }),
+        Form::Words { words } => json!({ "enum": words }),
+        Form::List { item, count } => {
+            let mut list = json!({ "type": "array", "items": describe_form(*item, definitions) });
+            if let Some(count) = count {
+                list["minItems"] = json!(count);
+                list["maxItems"] = json!(count);
             }
-            if let Some(Value::Array(forms)) = object.get_mut("anyOf") {
-                forms.retain(|form| form.get("type").is_none_or(|t| t != "null"));
-            }
-            object.values_mut().for_each(forbid_null);
+            list
         }
-        Value::Array(items) => items.iter_mut().for_each(forbid_null),
-        _ => {}
+        Form::Entries { value } => {
+            json!({ "type": "object", "additionalProperties": describe_form(*value, definitions) })
+        }
+        Form::AnyOf { forms } => {
+            let forms: Vec<Value> = forms.iter().map(|form| describe_form(*form, definitions)).collect();
+            json!({ "anyOf": forms })
+        }
+        Form::Mapping { keys } => describe_mapping(keys, definitions),
+        Form::Choice { variants } => {
+            let bare: Vec<&str> =
+                variants.iter().filter(|variant| variant.is_bare).map(|variant| variant.word).collect();
+            let variants = variants.iter().map(|variant| describe_variant(variant, definitions));
+            let mut forms: Vec<Value> = variants.collect();
+            if !bare.is_empty() {
+                forms.push(json!({ "enum": bare }));
+            }
+            json!({ "oneOf": forms })
+        }
+        Form::Defined { definition } => {
+            if !definitions.contains_key(definition.name) {
+                definitions.insert(definition.name.to_owned(), Value::Null);
+                let schema = with_description(describe_form(definition.form, definitions), definition.about);
+                definitions.insert(definition.name.to_owned(), schema);
+            }
+            json!({ "$ref": format!("#/$defs/{}", definition.name) })
+        }
     }
+}
+
+fn describe_mapping(keys: &[Key], definitions: &mut Map<String, Value>) -> Value {
+    let required: Vec<&str> = keys.iter().filter(|key| key.is_required).map(|key| key.name).collect();
+    let property = |key: &Key| (key.name.to_owned(), with_description(describe_form(key.form, definitions), key.about));
+    let properties: Map<String, Value> = keys.iter().map(property).collect();
+    let mut schema = json!({ "type": "object", "properties": properties, "additionalProperties": false });
+    if !required.is_empty() {
+        schema["required"] = json!(required);
+    }
+    schema
+}
+
+/// A word, or a mapping with it as its only key.
+fn describe_variant(variant: &Variant, definitions: &mut Map<String, Value>) -> Value {
+    let schema = match variant.content {
+        Form::Word => json!({ "type": "string", "const": variant.word }),
+        content => json!({
+            "type": "object",
+            "properties": { variant.word: describe_form(content, definitions) },
+            "required": [variant.word],
+            "additionalProperties": false,
+        }),
+    };
+    with_description(schema, variant.about)
+}
+
+fn with_description(mut schema: Value, about: &str) -> Value {
+    if !about.is_empty() {
+        schema["description"] = json!(about);
+    }
+    schema
 }

@@ -1,13 +1,10 @@
 //! Telescopes: beams that slide in beams.
 
-use schemars::JsonSchema;
-use serde::Deserialize;
-
 use super::{Number, Spanned, Vector};
+use crate::node::FromNode;
 
 /// A beam in which another one slides on two pads: at the front, at the end of the outer beam, and at the rear, at the beginning of the inner one.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `beam`, `overlap` and `pads`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct SlidesIn {
     /// The link of the outer beam, an earlier one.
     pub beam: Spanned<String>,
@@ -18,8 +15,7 @@ pub struct SlidesIn {
 }
 
 /// The two pairs of pads of a telescope.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `front` and `rear`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Pads {
     /// At the end of the outer beam, where they hold the inner one.
     pub front: Spanned<Pad>,
@@ -28,8 +24,7 @@ pub struct Pads {
 }
 
 /// Pads on all sides of a beam: springs and dampers along y and z of the beam that carries them, and against twist about its x; or exact.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `stiffness`, `damping`, `clearance` and `exact`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Pad {
     /// Stiffness along y and z, N/m, and against twist, N m/rad. Default `[0, 0, 0]`.
     pub stiffness: Option<Spanned<Vector>>,
@@ -42,8 +37,7 @@ pub struct Pad {
 }
 
 /// A direction in which a pad holds exactly.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, FromNode)]
 pub enum ExactDirection {
     /// Along y of the beam that carries the pad.
     Y,

@@ -1,13 +1,10 @@
 //! Supports of the base, and points of interest.
 
-use schemars::JsonSchema;
-use serde::Deserialize;
-
 use super::{Number, Spanned, Vector};
+use crate::node::FromNode;
 
 /// A support of a free base: three springs and dampers along the axes of the world.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `name`, `at`, `stiffness`, `damping`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Support {
     /// Name, a `snake_case` identifier.
     pub name: Spanned<String>,
@@ -28,8 +25,7 @@ pub struct Support {
 }
 
 /// How the elongation of a support depends on the base's coordinates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, FromNode)]
 pub enum Kinematics {
     /// For small rotations, as in the paper.
     Linear,
@@ -38,8 +34,7 @@ pub enum Kinematics {
 }
 
 /// A point of interest.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `name`, `link`, `at`")]
+#[derive(Clone, Debug, FromNode)]
 pub struct Point {
     /// Name, a `snake_case` identifier.
     pub name: Spanned<String>,

@@ -10,7 +10,7 @@ use crate::spec::Spanned;
 /// Maximum length of a name, characters: it is part of file names and of lines of generated code.
 const LONGEST: usize = 64;
 /// Crates whose names are resolved at the root of a program: a module of the same name would hide them.
-const CRATES: [&str; 10] = [
+const CRATES: [&str; 11] = [
     "std",
     "core",
     "alloc",
@@ -19,6 +19,7 @@ const CRATES: [&str; 10] = [
     "crane_model",
     "crane_codegen",
     "crane_cli",
+    "crane_shipped",
     "crane_specs",
     "crane_live",
 ];

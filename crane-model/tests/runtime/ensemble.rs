@@ -5,7 +5,7 @@ use crane_model::{
     dynamics::{Method, Settings, Stopped, ensemble, rk4::State, simulate},
     statics,
 };
-use crane_specs::{eight_link_flexible, knuckle_boom};
+use crane_shipped::{eight_link_flexible, knuckle_boom};
 use nalgebra::SVector;
 
 /// Knuckle-boom cranes with different loads, each at rest in its own equilibrium.

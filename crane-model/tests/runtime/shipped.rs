@@ -10,7 +10,7 @@ use crane_model::{
     stability::limit,
     statics,
 };
-use crane_specs as cranes;
+use crane_shipped as cranes;
 use nalgebra::{SVector, Vector3};
 
 #[test]

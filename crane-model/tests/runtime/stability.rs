@@ -9,7 +9,7 @@ use crane_model::{
     stability::{StabilityFunction, cause, grouped, limit},
     statics,
 };
-use crane_specs as cranes;
+use crane_shipped as cranes;
 use nalgebra::{Complex, SVector};
 
 /// Maximum relative difference between predicted and observed limits.
@@ -155,7 +155,7 @@ fn the_derivative_is_that_of_the_function() {
 
 #[test]
 fn the_limit_of_the_reference_crane_in_plain_words() {
-    use crane_specs::eight_link_flexible::{Crane, DESCRIPTION, N};
+    use crane_shipped::eight_link_flexible::{Crane, DESCRIPTION, N};
     let crane = Crane::default();
     let q = statics::solve(&crane, &statics::Settings::default()).q;
     let q = SVector::<f64, N>::from_column_slice(&q);

@@ -23,7 +23,7 @@ const ALLOWED: f64 = 0.03;
 
 #[test]
 fn statistics_of_runs_are_unchanged() {
-    let cranes = crane_specs::all();
+    let cranes = crane_shipped::all();
     for (name, method, recorded) in RECORDED {
         let crane = cranes.iter().find(|crane| crane.description().name == name).expect("a shipped crane");
         let rest = crane.equilibrium(&statics::Settings::default());

@@ -1,6 +1,6 @@
 //! What the page may ask.
 
-use serde::Deserialize;
+use serde_derive::Deserialize;
 
 /// A request.
 #[derive(Debug, Deserialize)]

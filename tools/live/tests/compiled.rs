@@ -28,7 +28,7 @@ fn both() -> Vec<(Box<dyn DynCrane>, LiveCrane)> {
         let live = live(&compiled.description().name);
         (compiled, live)
     };
-    crane_specs::all().into_iter().map(beside).collect()
+    crane_shipped::all().into_iter().map(beside).collect()
 }
 
 /// A pose near the guess, rates, and a time at which drives move.
@@ -118,9 +118,9 @@ fn derivatives_give_the_same_bits() {
     macro_rules! check {
         ($($name:ident),*) => {
             $({
-                let (live, compiled) = (live(stringify!($name)), crane_specs::$name::Crane::default());
-                assert_same_derivatives(&live, &Instance::<{ crane_specs::$name::N }, _>(&compiled));
-                assert_same_derivatives_of_motion(&live, &Instance::<{ crane_specs::$name::N }, _>(&compiled));
+                let (live, compiled) = (live(stringify!($name)), crane_shipped::$name::Crane::default());
+                assert_same_derivatives(&live, &Instance::<{ crane_shipped::$name::N }, _>(&compiled));
+                assert_same_derivatives_of_motion(&live, &Instance::<{ crane_shipped::$name::N }, _>(&compiled));
             })*
         };
     }

@@ -54,7 +54,7 @@ const ONLY_IN: [(&[&str], &[&str], &str); 5] = [
     (&["fs::", "env::", "process::", "std::{"], &["build.rs", "files.rs"], "files, environment and process"),
     (&["quote!", "prettyplease"], &["emit/"], "Rust as text"),
     (&["syn::"], &["emit/", "validate/names.rs", "exchange/import/links.rs"], "Rust's syntax"),
-    (&["serde_yaml"], &["read/tree.rs"], "the YAML library"),
+    (&["serde_yaml"], &["node/tree.rs"], "the YAML library"),
     (&["annotate_snippets"], &["diagnostic/draw.rs"], "the library that draws mistakes"),
 ];
 

@@ -10,8 +10,9 @@ use crate::step;
 use crate::workspace::{self, published};
 
 /// The crates that others build on and the command, each after those that it needs.
-const CRATES: [&str; 9] = [
+const CRATES: [&str; 10] = [
     "crane-quantities",
+    "crane-keys",
     "crane-codegen",
     "crane-jit",
     "crane-model",

@@ -16,7 +16,7 @@ use crate::{
 /// Folder of the copies in the new crate.
 pub const FOLDER: &str = "crates";
 /// Crates to copy, by their folders in the source tree.
-pub const CRATES: [&str; 3] = ["crane-model", "codegen", "quantities"];
+pub const CRATES: [&str; 4] = ["crane-model", "codegen", "codegen/keys", "quantities"];
 /// Tables of the workspace's manifest that those of the crates inherit from.
 const INHERITED: [&str; 4] =
     ["[workspace.package]", "[workspace.dependencies]", "[workspace.lints.rust]", "[workspace.lints.clippy]"];

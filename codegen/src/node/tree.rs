@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
+use serde_core::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use serde_yaml::{Location, Spanned};
 
 use super::slips;
@@ -10,7 +10,7 @@ use crate::diagnostic::{Mistake, Span, rule};
 
 /// A node of the tree.
 #[derive(Clone, Debug)]
-pub(super) struct Node {
+pub(crate) struct Node {
     /// Its location; for a list or mapping, its start.
     pub span: Span,
     /// Its content.
@@ -19,7 +19,7 @@ pub(super) struct Node {
 
 /// Content of a node.
 #[derive(Clone, Debug)]
-pub(super) enum Content {
+pub(crate) enum Content {
     /// An empty value, `null` or `~`.
     Null,
     /// `true` or `false`.
@@ -53,7 +53,7 @@ const MAX_DEPTH: usize = 24;
 const MAX_NODES: usize = 1 << 17;
 
 /// Parses YAML.
-pub(super) fn parse(text: &str) -> Result<Node, Mistake> {
+pub(crate) fn parse(text: &str) -> Result<Node, Mistake> {
     let budget = serde_yaml::budget! {
         max_depth: MAX_DEPTH,
         flow_nesting_limit: MAX_DEPTH,

@@ -3,7 +3,7 @@
 macro_rules! chapters {
     ($($name:ident: $file:literal,)+) => {
         $(
-            #[doc = include_str!(concat!("../../docs/manual/", $file))]
+            #[doc = include_str!(concat!("../../../docs/manual/", $file))]
             mod $name {}
         )+
     };

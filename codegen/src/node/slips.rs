@@ -18,7 +18,7 @@ fn without_commas(text: &str) -> Vec<String> {
 }
 
 /// What to write instead of a text that is a number with commas.
-pub(super) fn number_with_commas(content: &Content) -> Option<String> {
+pub(crate) fn number_with_commas(content: &Content) -> Option<String> {
     let Content::Text(text) = content else { return None };
     match without_commas(text).as_slice() {
         [] => None,
@@ -40,7 +40,7 @@ fn digits(node: &Node) -> Option<String> {
 }
 
 /// Help for a key that is the decimals of the value before it: in `{mass: 50,5}`, the comma ends the number.
-pub(super) fn decimals_as_key(before: Option<&Node>, key: &Node, value: &Node) -> Option<String> {
+pub(crate) fn decimals_as_key(before: Option<&Node>, key: &Node, value: &Node) -> Option<String> {
     let (Content::Number(whole), Content::Null) = (&before?.content, &value.content) else { return None };
     let fraction = digits(key).filter(|_| whole.fract() == 0.0)?;
     let meant: Vec<String> = without_commas(&format!("{whole},{fraction}")).iter().map(|n| format!("`{n}`")).collect();
@@ -49,7 +49,7 @@ pub(super) fn decimals_as_key(before: Option<&Node>, key: &Node, value: &Node) -
 }
 
 /// Help for a list with too many items, if these may come from decimal commas: `[0,02, 0, 0,7]`.
-pub(super) fn decimals_as_items(items: &[Node], length: usize) -> Option<String> {
+pub(crate) fn decimals_as_items(items: &[Node], length: usize) -> Option<String> {
     let is_split = |pair: &[Node]| {
         matches!(pair, [whole, fraction] if whole.span.end + 1 == fraction.span.start
             && matches!(whole.content, Content::Number(number) if number.fract() == 0.0)
@@ -84,7 +84,7 @@ pub(super) fn decimals_as_items(items: &[Node], length: usize) -> Option<String>
 }
 
 /// Splits entries of lists in which the first key returns on a line of its own, as the first of further keys: a dash is missing there.
-pub(super) fn split_entries(node: &mut Node, list: &str, text: &str, mistakes: &mut Vec<Mistake>) {
+pub(crate) fn split_entries(node: &mut Node, list: &str, text: &str, mistakes: &mut Vec<Mistake>) {
     match &mut node.content {
         Content::Mapping(entries) => {
             for (key, value) in entries {
@@ -131,7 +131,7 @@ fn split_entry(item: Node, list: &str, text: &str, mistakes: &mut Vec<Mistake>) 
 }
 
 /// What to do about a text that is not YAML, and where, if the problem is a common one.
-pub(super) fn not_yaml(text: &str, span: Span, problem: &str) -> Mistake {
+pub(crate) fn not_yaml(text: &str, span: Span, problem: &str) -> Mistake {
     /// Advice for problems that are none of the common ones.
     const ADVICE: &str =
         "check the indentation (spaces, not tabs), brackets and quotes of this line and the previous one";
