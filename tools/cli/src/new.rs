@@ -70,7 +70,7 @@ pub fn new(options: &New, registry: &Registry, out: &mut dyn Write) -> Outcome<(
     }
     let from_tree = |folder: &str| compiled::root().join(folder).to_string_lossy().into_owned();
     let copied = |folder: &str| format!("{}/{folder}", vendored::FOLDER);
-    let [model, codegen, _] = vendored::CRATES.map(|folder| if vendor { copied(folder) } else { from_tree(folder) });
+    let [model, codegen, ..] = vendored::CRATES.map(|folder| if vendor { copied(folder) } else { from_tree(folder) });
     let values = [
         ("{{package}}", package.as_str()),
         ("{{name}}", &name),

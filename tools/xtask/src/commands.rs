@@ -44,7 +44,7 @@ pub fn check_commands(tasks: &str) -> Result<(), String> {
 }
 
 /// Lines of indented blocks, without their comments, that begin with a program.
-fn commands_of(page: &str) -> impl Iterator<Item = &str> {
+pub fn commands_of(page: &str) -> impl Iterator<Item = &str> {
     let indented = page.lines().filter_map(|line| line.strip_prefix("    "));
     let uncommented = indented.map(|line| line.split(" #").next().unwrap_or(line).trim_end());
     uncommented.filter(|line| {

@@ -23,21 +23,23 @@ mod python;
 mod release;
 mod report;
 mod step;
+mod supply;
 mod units;
 mod workspace;
 
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
 
 use step::{ONLY, Step, run_steps};
 
 const USAGE: &str = "cargo xtask TASK [WORD …]
 
-With words, only the steps whose titles contain one of them run.
+With words, only the jobs of these names and the steps whose titles contain one of them run.
 
-  test     all checks: lint, unit and whole-system tests, oracles, the example crate, the default run and its report, the
-           Python package
-  lint     formatting, clippy, documentation, import rules, docs/EQUATIONS.md
-  oracles  generated code against CasADi, Pinocchio and MuJoCo, over all shipped and some random cranes
+  test [--thorough]
+           all tests, once. Jobs: unit (all crates), system (the command, new crates, Python, units, manual), pages (in a browser),
+           oracles (CasADi, Pinocchio, MuJoCo, Exudyn, SciPy). Thoroughly, before a release, also: all seeds and states, fused
+           multiply-adds, cranes without panics, a release where there is nothing else, the manual as a site, measurements
+  lint     formatting, clippy, documentation, import rules, docs/EQUATIONS.md, licences of dependencies, the oldest compiler
   performance [--quick] [--without LIBRARY …]
            time the generated functions and other libraries in turns, write docs/performance.md; needs g++ or clang
   error-vs-runtime
@@ -50,12 +52,16 @@ With words, only the steps whose titles contain one of them run.
   bless    rewrite the files that tests compare with: goldens, snapshots, schema, docs/OPERATIONS.md, the gallery";
 
 fn main() -> ExitCode {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let mut arguments: Vec<String> = std::env::args().skip(1).collect();
+    if arguments.iter().any(|word| word == "--thorough") {
+        arguments.retain(|word| word != "--thorough");
+        return run_thoroughly(&arguments);
+    }
+    let is_thorough = std::env::var_os(THOROUGH).is_some();
     let task = arguments.first().map_or("", String::as_str);
     let steps = match task {
-        "test" => [prepare_steps(), lint_steps(), test_steps(), oracle_steps(), measurement_steps()].concat(),
+        "test" => test_steps(is_thorough),
         "lint" => lint_steps(),
-        "oracles" => [prepare_steps(), vec![build_step()], oracle_steps()].concat(),
         "performance" => {
             vec![Step::check("times of the generated functions and of other libraries", oracles::measure_performance)]
         }
@@ -97,12 +103,11 @@ fn main() -> ExitCode {
         }
         return ExitCode::SUCCESS;
     }
-    // A selection, by words in their titles; `performance` has its own options.
+    // A selection, by jobs and by words in titles; `performance` has its own options.
     let words: &[String] = if task == "performance" { &[] } else { &arguments[1..] };
-    let chosen: Vec<Step> = steps
-        .into_iter()
-        .filter(|step| words.is_empty() || words.iter().any(|word| step.title.contains(word)))
-        .collect();
+    let is_chosen =
+        |step: &Step| words.iter().any(|word| step.jobs.contains(&word.as_str()) || step.title.contains(word));
+    let chosen: Vec<Step> = steps.into_iter().filter(|step| words.is_empty() || is_chosen(step)).collect();
     if chosen.is_empty() {
         eprintln!("no step of `{task}` has a title with these words");
         return ExitCode::from(2);
@@ -126,12 +131,34 @@ const ERROR_VS_RUNTIME: [&str; 12] = [
     "target/error-vs-runtime",
 ];
 
-/// What is downloaded, before anything is built.
-fn prepare_steps() -> Vec<Step> {
-    vec![
-        Step::check("Python environment", oracles::prepare_python),
-        Step::check("packages of the report page", report::prepare_packages),
-    ]
+/// Set while all seeds, states and rare configurations are tested, for steps and tests.
+pub const THOROUGH: &str = "CRANE_THOROUGH";
+
+/// The tests, job by job.
+fn test_steps(is_thorough: bool) -> Vec<Step> {
+    const ALL: &[&str] = &["unit", "system", "pages", "oracles", "thorough"];
+    // What is downloaded and built first; then what uses it.
+    let mut jobs: Vec<(&[&str], Vec<Step>)> = vec![
+        (ALL, vec![Step::check("Python environment", oracles::prepare_python)]),
+        (&["system", "pages", "thorough"], vec![Step::check("packages of the report page", report::prepare_packages)]),
+        (ALL, vec![build_step()]),
+        (&["unit"], unit_steps()),
+        (&["system", "pages"], vec![Step::program("the default run", "crane", &[])]),
+        (&["system"], system_steps()),
+        (&["pages"], page_steps()),
+        (&["oracles"], oracle_steps()),
+    ];
+    if is_thorough {
+        jobs.push((&["thorough"], thorough_steps()));
+    }
+    jobs.into_iter().flat_map(|(jobs, steps)| steps.into_iter().map(move |step| step.of_jobs(jobs))).collect()
+}
+
+/// Runs the same task again where all that it starts knows that it is to be thorough.
+fn run_thoroughly(arguments: &[String]) -> ExitCode {
+    let program = std::env::current_exe();
+    let ended = program.and_then(|program| Command::new(program).args(arguments).env(THOROUGH, "1").status());
+    if ended.is_ok_and(|status| status.success()) { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
 fn lint_steps() -> Vec<Step> {
@@ -144,12 +171,12 @@ fn lint_steps() -> Vec<Step> {
         Step::check("units built twice", units::check_units),
         Step::cargo("clippy", &["clippy", "--release", "--workspace", "--all-targets", "--", "-D", "warnings"])
             .with(SECTIONS, "0"),
-        // A separate workspace, which no other step checks.
-        Step::cargo("fuzz target", &["check", "--release", "--manifest-path", "codegen/fuzz/Cargo.toml"]),
         // Not of the generated cranes of the tests, whose text has no other comments than that of shipped ones.
         Step::cargo("documentation", &["doc", "--release", "--workspace", "--exclude", "crane-tests", "--no-deps"])
             .with("RUSTDOCFLAGS", "-D warnings")
             .with(SECTIONS, "0"),
+        Step::check("licences and sources of dependencies", supply::check_dependencies),
+        Step::check("the oldest compiler", supply::check_oldest_compiler),
     ]
 }
 
@@ -165,15 +192,12 @@ fn build_step() -> Step {
     Step::cargo("all programs", &ALL_PROGRAMS)
 }
 
-fn test_steps() -> Vec<Step> {
+fn unit_steps() -> Vec<Step> {
+    vec![Step::cargo("tests", &["test", "--release", "--workspace", "--exclude", "crane-bench", "--no-fail-fast"])]
+}
+
+fn system_steps() -> Vec<Step> {
     vec![
-        build_step(),
-        Step::cargo("tests", &["test", "--release", "--workspace", "--exclude", "crane-bench", "--no-fail-fast"]),
-        Step::check("tests with fused multiply-adds", fused::check_fused),
-        Step::program("the default run", "crane", &[]),
-        Step::check("the report page in a browser", report::check_in_browser).light(),
-        Step::check("the instrument in a browser", instrument::check_instrument).light(),
-        Step::check("the report page is current", report::check_current).light(),
         Step::program("the example of your own crane", "own-crane", &[]).light(),
         Step::check("a new crane", new_crane::check_new_crane).light(),
         Step::check("commands of the manual", manual::check_manual).light(),
@@ -189,23 +213,33 @@ fn test_steps() -> Vec<Step> {
             .concat(),
         )
         .light(),
-        Step::check("cranes without panics", no_panic::check_no_panic).light(),
         Step::check("the Python package", package::check_package),
-        Step::check("a release, where there is nothing else", release::rehearse_release),
-        Step::check("the manual as a site", book::build_site).light(),
         Step::check("random cranes by every way to compute them", outside::check_ways).light(),
-        Step::check("pages of the Python package in a browser", report::check_in_notebook).light(),
         Step::check("functional mock-up units", outside::check_units).light(),
         Step::check("what the command prints as JSON", outside::check_output).light(),
     ]
 }
 
-/// Documented measurements in their quick forms: what is not run is broken one day. No time is compared with anything.
-fn measurement_steps() -> Vec<Step> {
+fn page_steps() -> Vec<Step> {
+    vec![
+        Step::check("the report page in a browser", report::check_in_browser).light(),
+        Step::check("the instrument in a browser", instrument::check_instrument).light(),
+        Step::check("the report page is current", report::check_current).light(),
+        Step::check("pages of the Python package in a browser", report::check_in_notebook).light(),
+    ]
+}
+
+/// What a release also needs: other configurations, packages, and documented measurements in their quick forms, since what is not run is
+/// broken one day. No time is compared with anything.
+fn thorough_steps() -> Vec<Step> {
     let once = ["bench", "--package", "crane-bench", "--", "--test"];
     let out = "target/error-vs-runtime/quick";
     let quick = ["work-precision", "knuckle_boom", "--quick", "--sections", "none", "--duration", "0.5", "--out", out];
     vec![
+        Step::check("tests with fused multiply-adds", fused::check_fused),
+        Step::check("cranes without panics", no_panic::check_no_panic),
+        Step::check("a release, where there is nothing else", release::rehearse_release),
+        Step::check("the manual as a site", book::build_site),
         Step::cargo("every benchmark once", &once).with(SECTIONS, "0"),
         Step::program("error against run time, quickly", "crane-lab", &quick),
         Step::check("times beside other libraries, quickly", oracles::rehearse_performance),

@@ -26,6 +26,9 @@ pub const CHECKS: Environment = Environment {
     ],
 };
 
+/// For lints.
+pub const LINTS: Environment = Environment { folder: ".venv-lints", requirements: &["tools/xtask/requirements.txt"] };
+
 /// For programs of other processors than that of this machine.
 pub const CROSS: Environment = Environment {
     folder: ".venv-cross",

@@ -1,12 +1,13 @@
 //! One step of a task: a command, or a check in Rust.
 
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
+use std::fs;
 use std::io::{self, Read};
 use std::process::{Command, ExitCode};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use crate::workspace;
 
@@ -18,6 +19,8 @@ pub const ONLY: &str = "--only";
 pub struct Step {
     /// What it is, for the reader of the output.
     pub title: &'static str,
+    /// The jobs that need it; none of other tasks than `test`.
+    pub jobs: &'static [&'static str],
     action: Action,
     /// Whether it may run beside its neighbours: it keeps one core busy, and needs nothing that they make.
     is_light: bool,
@@ -34,18 +37,23 @@ impl Step {
     /// Runs cargo at the workspace's root.
     pub fn cargo(title: &'static str, arguments: &[&str]) -> Self {
         let arguments = arguments.iter().map(ToString::to_string).collect();
-        Step { title, action: Action::Cargo { arguments, environment: vec![] }, is_light: false }
+        Step { title, jobs: &[], action: Action::Cargo { arguments, environment: vec![] }, is_light: false }
     }
 
     /// Runs a function.
     pub fn check(title: &'static str, check: fn() -> Result<(), String>) -> Self {
-        Step { title, action: Action::Check(check), is_light: false }
+        Step { title, jobs: &[], action: Action::Check(check), is_light: false }
     }
 
     /// Runs a program of the workspace that is already built, at the workspace's root.
     pub fn program(title: &'static str, name: &'static str, arguments: &[&str]) -> Self {
         let arguments = arguments.iter().map(ToString::to_string).collect();
-        Step { title, action: Action::Program { name, arguments }, is_light: false }
+        Step { title, jobs: &[], action: Action::Program { name, arguments }, is_light: false }
+    }
+
+    /// The same as part of jobs.
+    pub fn of_jobs(self, jobs: &'static [&'static str]) -> Self {
+        Self { jobs, ..self }
     }
 
     /// The same beside its neighbours.
@@ -86,15 +94,17 @@ pub fn run_steps(task: &str, steps: &[Step]) -> ExitCode {
         match neighbours {
             [step] => {
                 summary.lock().expect("no step panics").begin(step);
-                let begun = Instant::now();
+                let (begun, before) = (Instant::now(), processor_time(OWN));
                 let outcome = step.run();
-                summary.lock().expect("no step panics").end(step, begun, outcome);
+                let cost = Cost { elapsed: begun.elapsed(), processor: processor_time(OWN) - before };
+                summary.lock().expect("no step panics").end(step, cost, outcome);
             }
             _ => run_beside(task, neighbours, &summary),
         }
     }
     let Summary { text, failed, of, .. } = summary.into_inner().expect("no step panics");
-    println!("\n{text}\n{failed} of {of} steps failed, {:.0} s", start.elapsed().as_secs_f64());
+    let cost = Cost { elapsed: start.elapsed(), processor: processor_time(OWN) };
+    println!("\n    wall    processor\n{text}\n{failed} of {of} steps failed, {cost}");
     if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
@@ -104,12 +114,12 @@ fn run_beside(task: &str, steps: &[Step], summary: &Mutex<Summary>) {
     let work = || {
         while let Some(step) = steps.get(next.fetch_add(1, Ordering::Relaxed)) {
             let begun = Instant::now();
-            let (printed, outcome) =
-                run_apart(task, step).unwrap_or_else(|error| (String::new(), Err(error.to_string())));
+            let (printed, processor, outcome) =
+                run_apart(task, step).unwrap_or_else(|error| (String::new(), 0.0, Err(error.to_string())));
             let mut summary = summary.lock().expect("no step panics");
             summary.begin(step);
             print!("{printed}");
-            summary.end(step, begun, outcome);
+            summary.end(step, Cost { elapsed: begun.elapsed(), processor }, outcome);
         }
     };
     thread::scope(|scope| {
@@ -119,8 +129,8 @@ fn run_beside(task: &str, steps: &[Step], summary: &Mutex<Summary>) {
     });
 }
 
-/// Runs a step in a process of its own; returns what it printed.
-fn run_apart(task: &str, step: &Step) -> io::Result<(String, Result<(), String>)> {
+/// Runs a step in a process of its own; returns what it printed and the processor's time that it took.
+fn run_apart(task: &str, step: &Step) -> io::Result<(String, f64, Result<(), String>)> {
     let (mut reader, writer) = io::pipe()?;
     let mut command = Command::new(std::env::current_exe()?);
     command.args([task, ONLY, step.title]).stdout(writer.try_clone()?).stderr(writer);
@@ -129,9 +139,38 @@ fn run_apart(task: &str, step: &Step) -> io::Result<(String, Result<(), String>)
     drop(command);
     let mut printed = Vec::new();
     reader.read_to_end(&mut printed)?;
+    // It has ended; what it took is known until it is waited for.
+    let processor = processor_time(&child.id().to_string());
     let status = child.wait()?;
     let outcome = if status.success() { Ok(()) } else { Err("see above".to_owned()) };
-    Ok((String::from_utf8_lossy(&printed).into_owned(), outcome))
+    Ok((String::from_utf8_lossy(&printed).into_owned(), processor, outcome))
+}
+
+/// This process, in `/proc`.
+const OWN: &str = "self";
+
+/// Time of the processor that a process and the ended ones that it started have taken, s; 0 where the system does not tell.
+fn processor_time(process: &str) -> f64 {
+    /// Units of these times per second, on all processors that Linux runs on.
+    const TICKS: f64 = 100.0;
+    let text = fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
+    // Behind the name, which may contain anything: state, and as the 12th to 15th field the times of the process and of its children.
+    let fields = text.rsplit_once(')').map_or("", |(_, fields)| fields).split_whitespace();
+    fields.skip(11).take(4).filter_map(|ticks| ticks.parse::<f64>().ok()).sum::<f64>() / TICKS
+}
+
+/// What a step took.
+#[derive(Clone, Copy)]
+struct Cost {
+    elapsed: Duration,
+    /// Time of the processor, s.
+    processor: f64,
+}
+
+impl fmt::Display for Cost {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{:>6.0} s  {:>6.0} CPU s", self.elapsed.as_secs_f64(), self.processor)
+    }
 }
 
 /// What is said at the end.
@@ -149,17 +188,16 @@ impl Summary {
         println!("\n=== {}/{} {}", self.begun, self.of, step.title);
     }
 
-    fn end(&mut self, step: &Step, begun: Instant, outcome: Result<(), String>) {
-        let seconds = begun.elapsed().as_secs_f64();
+    fn end(&mut self, step: &Step, cost: Cost, outcome: Result<(), String>) {
         match outcome {
             Ok(()) => {
-                println!("=== {} done, {seconds:.0} s", step.title);
-                let _ = writeln!(self.text, "{seconds:>6.0} s  {}", step.title);
+                println!("=== {} done, {:.0} s", step.title, cost.elapsed.as_secs_f64());
+                let _ = writeln!(self.text, "{cost}  {}", step.title);
             }
             Err(message) => {
                 eprintln!("\n{} failed: {message}", step.title);
                 self.failed += 1;
-                let _ = writeln!(self.text, "{seconds:>6.0} s  {}: FAILED, {message}", step.title);
+                let _ = writeln!(self.text, "{cost}  {}: FAILED, {message}", step.title);
             }
         }
     }

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Command;
 use std::{fs, io};
 
-use crate::{step, workspace};
+use crate::{commands, step, workspace};
 
 /// The manifest of programs that the command keeps, whose builds of dependencies are those of the workspace.
 const KEPT_PROGRAM: &str = "tools/cli/src/compiled/Cargo.toml.template";
@@ -30,6 +30,17 @@ pub fn check_units() -> Result<(), String> {
     if !twice.is_empty() {
         return Err(format!("built twice:\n{}", twice.join("\n")));
     }
+    let mut graphs = vec![];
+    for command in documented_builds()? {
+        let words: Vec<&str> = command.split(' ').collect();
+        graphs.push((command.clone(), unit_graph(&words)?));
+    }
+    graphs.push(("all programs".to_owned(), unit_graph(&crate::ALL_PROGRAMS)?));
+    let again = units_built_again(&graphs);
+    if !again.is_empty() {
+        let remedy = "built again with other settings; give their features in the root's Cargo.toml, or list them where they are `not used`";
+        return Err(format!("{remedy}:\n{}", again.join("\n")));
+    }
     let idle = without_tests(&unit_graph(&["test", "--workspace", "--exclude", "crane-bench"])?)?;
     let remedy = "built once more for tests, of which they have none; write `test = false` in their manifests";
     if idle.is_empty() { Ok(()) } else { Err(format!("{remedy}:\n{}", idle.join("\n"))) }
@@ -38,7 +49,13 @@ pub fn check_units() -> Result<(), String> {
 /// What cargo would build in a release: unstable output of a stable cargo.
 fn unit_graph(task: &[&str]) -> Result<String, String> {
     let mut command = Command::new(step::cargo());
-    command.args(task).args(["--release", "--unit-graph", "-Z", "unstable-options"]).env("RUSTC_BOOTSTRAP", "1");
+    command.args(task.iter().filter(|word| **word != "--release")).args([
+        "--release",
+        "--unit-graph",
+        "-Z",
+        "unstable-options",
+    ]);
+    command.env("RUSTC_BOOTSTRAP", "1");
     let output = command.current_dir(workspace::root()).output().map_err(|error| format!("cargo: {error}"))?;
     if output.status.success() {
         Ok(String::from_utf8_lossy(&output.stdout).into_owned())
@@ -105,16 +122,64 @@ fn differences(own: &BTreeMap<String, String>, copied: &BTreeMap<String, String>
 /// The units of a graph with the same package and target that are built with different settings.
 fn units_built_twice(graph: &str) -> Vec<String> {
     let mut units: BTreeMap<(String, String), Vec<String>> = BTreeMap::new();
-    for unit in graph.split("{\"pkg_id\":\"").skip(1) {
-        let package = unit.split('"').next().unwrap_or_default().to_owned();
-        if !unit.contains("\"mode\":\"build\"") {
-            continue;
-        }
-        let settings = text_between(unit, "\"profile\":", ",\"dependencies\":");
-        units.entry((package, text_between(unit, "\"kind\":[", "]"))).or_default().push(settings);
+    for (unit, settings) in built_units(graph) {
+        units.entry(unit).or_default().push(settings);
     }
     let several = units.into_iter().filter(|(_, settings)| settings.len() > 1);
     several.map(|((package, kind), settings)| format!("{package} ({kind}):\n  {}", settings.join("\n  "))).collect()
+}
+
+/// What the commands of README.md and CONTRIBUTING.md build in a release: the first two words of cargo's tasks, and packages.
+fn documented_builds() -> Result<Vec<String>, String> {
+    let mut builds = vec!["build".to_owned()];
+    for page in commands::PAGES {
+        let text = workspace::read_file(page)?;
+        for line in commands::commands_of(&text) {
+            let words: Vec<&str> = line.split(" -- ").next().unwrap_or(line).split_whitespace().collect();
+            let task = words.iter().position(|word| *word == "cargo").and_then(|cargo| words.get(cargo + 1));
+            let task = match task {
+                Some(&"run" | &"build") if words.contains(&"--release") => "build",
+                Some(&"test") if words.contains(&"--release") => "test",
+                _ => continue,
+            };
+            let package = words.iter().position(|word| *word == "-p").and_then(|flag| words.get(flag + 1));
+            let build = package.map_or(task.to_owned(), |package| format!("{task} -p {package}"));
+            if !builds.contains(&build) {
+                builds.push(build);
+            }
+        }
+    }
+    Ok(builds)
+}
+
+/// Units that a command builds with settings which none of the earlier commands that need the unit has.
+fn units_built_again(graphs: &[(String, String)]) -> Vec<String> {
+    let mut known: BTreeMap<(String, String), BTreeSet<String>> = BTreeMap::new();
+    let mut again = vec![];
+    for (command, graph) in graphs {
+        let mut units: BTreeMap<(String, String), BTreeSet<String>> = BTreeMap::new();
+        for (unit, settings) in built_units(graph) {
+            units.entry(unit).or_default().insert(settings);
+        }
+        for (unit, settings) in units {
+            let earlier = known.entry(unit.clone()).or_insert_with(|| settings.clone());
+            let new = settings
+                .difference(earlier)
+                .map(|settings| format!("{} ({}) by `cargo {command}`: {settings}", unit.0, unit.1));
+            again.extend(new.collect::<Vec<_>>());
+            earlier.extend(settings);
+        }
+    }
+    again
+}
+
+/// Libraries, build scripts and macros that a graph builds, by package and kind, with their settings.
+fn built_units(graph: &str) -> impl Iterator<Item = ((String, String), String)> {
+    let units = graph.split("{\"pkg_id\":\"").skip(1).filter(|unit| unit.contains("\"mode\":\"build\""));
+    units.map(|unit| {
+        let package = unit.split('"').next().unwrap_or_default().to_owned();
+        ((package, text_between(unit, "\"kind\":[", "]")), text_between(unit, "\"profile\":", ",\"dependencies\":"))
+    })
 }
 
 /// The text between two others; empty if they do not occur.
@@ -156,5 +221,12 @@ mod tests {
         let found = units_built_twice(&graph("one", "build"));
         assert_eq!(found.len(), 1);
         assert!(found[0].contains("\"codegen_units\":16") && found[0].contains("\"codegen_units\":1}"), "{found:?}");
+        // The same unit in two commands, once with other settings.
+        let graphs = |settings: u32| {
+            let other = unit("one", "build", settings);
+            [("build".to_owned(), unit("one", "build", 16)), ("test".to_owned(), other + &unit("two", "build", 1))]
+        };
+        assert!(units_built_again(&graphs(16)).is_empty());
+        assert!(units_built_again(&graphs(1))[0].starts_with("one (\"lib\") by `cargo test`"));
     }
 }
