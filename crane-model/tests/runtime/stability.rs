@@ -95,7 +95,8 @@ fn predicted_limits_of_all_shipped_cranes_are_observed() {
 
 #[test]
 fn predicted_limits_are_observed_for_1_to_16_sections() {
-    let reference = SourceFile::new("eight_link_flexible.yaml", cranes::spec("eight_link_flexible").expect("shipped"));
+    let reference =
+        SourceFile::new("eight_link_flexible.yaml", crane_specs::spec("eight_link_flexible").expect("shipped"));
     macro_rules! check {
         ($($sections:literal),*) => {$({
             let changes = concat!("links: [{name: boom, beam: {sections: ", $sections, "}}]");
