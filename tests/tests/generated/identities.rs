@@ -1,5 +1,7 @@
 //! Physical identities on random cranes with fixed seeds, by the interpreter.
 
+use std::sync::LazyLock;
+
 use crane_codegen::chain::{BodyId, Chain, CoordinateId, CoordinateKind, Cut, Force, Line, LinePart, Step};
 use crane_codegen::program::{Argument, Inputs};
 use crane_model::nalgebra::{DMatrix, DVector, Rotation2, Vector2};
@@ -15,10 +17,16 @@ const BRANCHED: std::ops::Range<u64> = 24..36;
 const POTENTIAL_ENERGIES: [&str; 6] =
     ["gravity_energy", "support_energy", "element_energy", "drive_energy", "stop_energy", "connector_energy"];
 
-fn cranes() -> impl Iterator<Item = (u64, Interpreted)> {
+/// Derived once: each test uses most of them.
+static CRANES: LazyLock<Vec<(u64, Interpreted)>> = LazyLock::new(|| {
     let serial = SEEDS.map(|seed| (seed, random::spec(seed)));
     let branched = BRANCHED.map(|seed| (seed, random::with_branches(seed)));
-    serial.chain(branched).map(|(seed, spec)| (seed, Interpreted::new(workspace::chain_of("random", &spec))))
+    let specs = serial.chain(branched);
+    specs.map(|(seed, spec)| (seed, Interpreted::new(workspace::chain_of("random", &spec)))).collect()
+});
+
+fn cranes() -> impl Iterator<Item = (u64, &'static Interpreted)> {
+    CRANES.iter().map(|(seed, crane)| (*seed, crane))
 }
 
 /// The state in dual numbers, with these rates of t, q and v.
@@ -55,7 +63,7 @@ fn velocity_forces_and_the_rate_of_the_mass_matrix_fit() {
         for state in states::far(&crane.chain, 3, seed) {
             let n = crane.size();
             let rest = vec![0.0; n];
-            let inputs = moving(&crane, &state, (0.0, &state.v, &rest));
+            let inputs = moving(crane, &state, (0.0, &state.v, &rest));
             let rate: Vec<f64> = crane.get("mass_matrix", &inputs, n * n).into_iter().map(Dual::derivative).collect();
             let v = DVector::from_column_slice(&state.v);
             let half = 0.5 * v.dot(&(DMatrix::from_row_slice(n, n, &rate) * &v));
@@ -81,7 +89,7 @@ fn rate_of_the_mass_matrix_less_twice_c_is_skew() {
                 crane.vector("bias", &at(&DVector::zeros(n))) - crane.vector("bias", &at(v))
             };
             let coriolis = 0.5 * (h(&(&v + &w)) - h(&v) - h(&w));
-            let inputs = moving(&crane, state, (0.0, &state.v, &vec![0.0; n]));
+            let inputs = moving(crane, state, (0.0, &state.v, &vec![0.0; n]));
             let rate: Vec<f64> = crane.get("mass_matrix", &inputs, n * n).into_iter().map(Dual::derivative).collect();
             let quadratic = w.dot(&(DMatrix::from_row_slice(n, n, &rate) * &w));
             let size = w.iter().zip(&h(&(&v + &w))).map(|(w, h)| (w * h).abs()).sum();
@@ -176,12 +184,12 @@ fn what_a_joint_transmits_along_its_axis_is_its_effort() {
             let mut efforts = crane.matrix("mass_matrix", &state) * &a
                 - crane.vector("bias", &state)
                 - crane.vector("load_forces", &state)
-                - forces_between_points(&crane, &state);
+                - forces_between_points(crane, &state);
             for rotor in &chain.rotors {
                 efforts[rotor.coordinate.0] -= rotor.armature.at(&chain.parameter_defaults()) * a[rotor.coordinate.0];
             }
             let mut compared = 0;
-            for (cut, wrench) in chain.cuts().into_iter().zip(wrenches(&crane, &state, &a)) {
+            for (cut, wrench) in chain.cuts().into_iter().zip(wrenches(crane, &state, &a)) {
                 let Cut::Joint(body) = cut else { continue };
                 let last = chain.bodies[body.0].path.iter().rev().find(|step| !step.coordinates().is_empty());
                 let Some(Step::Move(id)) = last else { continue };
@@ -216,7 +224,8 @@ fn along_last_coordinate(crane: &Interpreted, cut: Cut) -> Option<(usize, usize)
 fn wrenches_of_cylinders_and_connectors_follow_from_their_lengths() {
     let (mut of_cylinders, mut of_beams) = (0, 0);
     let shipped = Interpreted::new(workspace::chain("eight_link_hydraulic"));
-    for (seed, crane) in cranes().filter(|(seed, _)| seed % 8 == 7).chain([(0, shipped)]) {
+    let cranes = CRANES.iter().map(|(seed, crane)| (*seed, crane)).filter(|(seed, _)| seed % 8 == 7);
+    for (seed, crane) in cranes.chain([(0, &shipped)]) {
         let (chain, cuts) = (&crane.chain, crane.chain.cuts());
         for state in states::far(chain, 3, seed) {
             for (rows, wrenches, sign) in
@@ -233,7 +242,7 @@ fn wrenches_of_cylinders_and_connectors_follow_from_their_lengths() {
                         continue;
                     }
                     for (cut, wrench) in cuts.iter().zip(wrenches.chunks_exact(6)) {
-                        let Some((j, along)) = along_last_coordinate(&crane, *cut) else { continue };
+                        let Some((j, along)) = along_last_coordinate(crane, *cut) else { continue };
                         let size = row.iter().fold(1.0, |size: f64, entry| size.max(entry.abs()));
                         assert_close(sign * wrench[along], row[j], size, 1e-12, &format!("seed {seed}: {cut:?}"));
                         let spans = sign > 0.0 && chain.spanned_by(&chain.cylinders[index]).contains(&CoordinateId(j));
@@ -254,7 +263,7 @@ fn supports_carry_the_load_on_the_ground() {
     for (seed, crane) in cranes().filter(|(seed, _)| seed % 3 == 0) {
         for state in states::far(&crane.chain, 2, seed) {
             let reactions = crane.get("support_reactions", &crane.inputs(&state), 0);
-            let ground = wrenches(&crane, &state, &crane.acceleration(&state))[0];
+            let ground = wrenches(crane, &state, &crane.acceleration(&state))[0];
             for axis in 0..3 {
                 let total: f64 = reactions.iter().skip(axis).step_by(3).sum();
                 let size = reactions.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
@@ -312,7 +321,7 @@ fn power_balances() {
     for (seed, crane) in cranes() {
         for state in states::far(&crane.chain, 3, seed) {
             let acceleration = crane.acceleration(&state);
-            let inputs = moving(&crane, &state, (1.0, &state.v, acceleration.as_slice()));
+            let inputs = moving(crane, &state, (1.0, &state.v, acceleration.as_slice()));
             let parts = ["kinetic_energy"].into_iter().chain(POTENTIAL_ENERGIES);
             let rates: Vec<f64> = parts.map(|part| crane.get(part, &inputs, 1)[0].derivative()).collect();
             let supplied = crane.scalar("drive_power", &state)
@@ -357,7 +366,7 @@ fn prescribed_coordinates_are_left_out_of_every_function() {
                 "seed {seed}: the forces are the sum of their parts"
             );
 
-            let motions = moving(&crane, &state, (1.0, &vec![0.0; n], &vec![0.0; n]));
+            let motions = moving(crane, &state, (1.0, &vec![0.0; n], &vec![0.0; n]));
             let motions = crane.get("prescribed_motions", &motions, 0);
             for (j, motion) in prescribed.iter().zip(motions.chunks(2)) {
                 let (rate, expected) = (motion[1].derivative(), acceleration[*j]);
@@ -392,7 +401,7 @@ fn residual_and_tangent_are_derivatives_of_the_energy() {
             for j in 0..n {
                 let mut direction = vec![0.0; n];
                 direction[j] = 1.0;
-                let inputs = moving(&crane, &state, (0.0, &direction, &vec![0.0; n]));
+                let inputs = moving(crane, &state, (0.0, &direction, &vec![0.0; n]));
                 let slopes: Vec<f64> =
                     POTENTIAL_ENERGIES.iter().map(|part| crane.get(part, &inputs, 1)[0].derivative()).collect();
                 let of_oil = crane.slope_of_holding_energy(&state, &inputs);
@@ -432,7 +441,7 @@ fn the_tangent_is_the_derivative_of_the_residual_at_any_time_and_positions() {
             let positions: Vec<f64> = state.q.iter().zip(&state.v).map(|(q, v)| q + 0.02 * v.sin()).collect();
             let direction: Vec<f64> = (0..n).map(|j| if is_fixed(j) { 0.0 } else { state.v[j].sin() }).collect();
             let held = positions.iter().map(|position| Dual::new(*position, 0.0)).collect();
-            let inputs = moving(&crane, &state, (0.0, &direction, &vec![0.0; n])).with(Argument::DrivePositions, held);
+            let inputs = moving(crane, &state, (0.0, &direction, &vec![0.0; n])).with(Argument::DrivePositions, held);
             let along: Vec<f64> = crane.get("static_residual", &inputs, n).into_iter().map(Dual::derivative).collect();
             let inputs = crane.inputs(&state).with(Argument::DrivePositions, positions);
             let tangent = DMatrix::from_row_slice(n, n, &crane.get("tangent_stiffness", &inputs, n * n));
@@ -460,7 +469,7 @@ fn transform_derivatives_are_derivatives() {
             for m in 0..n {
                 let mut direction = vec![0.0; n];
                 direction[m] = 1.0;
-                let inputs = moving(&crane, &state, (0.0, &direction, &vec![0.0; n]));
+                let inputs = moving(crane, &state, (0.0, &direction, &vec![0.0; n]));
                 let slopes = |function: &str| -> Vec<f64> {
                     crane.get(function, &inputs, 0).into_iter().map(Dual::derivative).collect()
                 };
