@@ -2,8 +2,13 @@
 
 use std::fmt;
 
+use nalgebra::DVector;
+
 use super::{
-    Equilibrium, Status, guess_dyn,
+    Equilibrium, Status,
+    equations::Equations,
+    guess_dyn,
+    newton::rounding_hides,
     overloaded::overloaded,
     slipping::{Slip, slips},
 };
@@ -91,6 +96,11 @@ pub enum Diagnosis {
         /// Its unit.
         unit: &'static str,
     },
+    /// Rounding hides the balance of forces.
+    Rounding {
+        /// The residual that is left, relative to the greatest forces.
+        residual: f64,
+    },
     /// Numbers overflow.
     Overflow,
     /// Nothing more is known.
@@ -123,7 +133,10 @@ impl Diagnosis {
                 Self::NoPolygon { one_place }
             }
             Status::TipsOver { feet } => tipping(crane, &guess, feet),
-            _ => raised_foot(crane, &guess).or_else(|| too_stiff(crane, &guess)).unwrap_or(Self::Unknown),
+            _ => raised_foot(crane, &guess)
+                .or_else(|| too_stiff(crane, &guess))
+                .or_else(|| rounding(crane, equilibrium))
+                .unwrap_or(Self::Unknown),
         }
     }
 
@@ -178,6 +191,9 @@ impl Diagnosis {
             }
             Self::TooStiff { coordinate, .. } => {
                 format!("check the stiffnesses of what holds {coordinate}, in N/m and N m/rad; with 1e10 a spring is as good as rigid")
+            }
+            Self::Rounding { .. } => {
+                "check the places and lengths, in m, and the stiffnesses: one of them is far larger than all others".to_owned()
             }
             Self::Overflow => {
                 "check the exponents and units of masses, stiffnesses and positions; `crane check` warns about unusual ones".to_owned()
@@ -246,6 +262,13 @@ fn too_stiff(crane: &dyn DynCrane, q: &[f64]) -> Option<Diagnosis> {
     let (info, stiffness) = held.max_by(|a, b| a.1.total_cmp(&b.1))?;
     let unit = if info.kind == CoordinateKind::Rotation { "N m/rad" } else { "N/m" };
     (stiffness > TOO_STIFF).then(|| Diagnosis::TooStiff { coordinate: info.name.clone(), stiffness, unit })
+}
+
+/// Whether the search ended in rounding errors.
+fn rounding(crane: &dyn DynCrane, equilibrium: &Equilibrium) -> Option<Diagnosis> {
+    let q = DVector::from_column_slice(&equilibrium.q);
+    let hides = equilibrium.status == Status::NotConverged && rounding_hides(&Equations::at(crane, 0.0), &q);
+    hides.then(|| Diagnosis::Rounding { residual: equilibrium.residual() })
 }
 
 /// Why a crane tips over the line between two feet.
@@ -320,6 +343,9 @@ impl fmt::Display for Diagnosis {
                     f,
                     "; {coordinate} is held with {stiffness:.1e} {unit}, beside which rounding hides all other forces"
                 )
+            }
+            Self::Rounding { residual } => {
+                write!(f, "; rounding hides the balance of forces, of which {residual:.1e} of the largest is left")
             }
             Self::Overflow | Self::Unknown => Ok(()),
         }

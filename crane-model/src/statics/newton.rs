@@ -24,6 +24,8 @@ pub(super) const BOLD: &Steps =
     &[(Limit::Free, 0..=FIRST), (Limit::Soft, 0..=HALVINGS), (Limit::Free, FIRST + 1..=HALVINGS)];
 /// Limited in soft directions, in which a crane on feet that have lifted would move far.
 pub(super) const CAUTIOUS: &Steps = &[(Limit::Soft, 0..=HALVINGS), (Limit::Free, 0..=HALVINGS)];
+/// Largest residual that rounding may leave in an equilibrium: forces are then known to six digits.
+const ROUNDED: f64 = 1e-6;
 /// Maximum rotation in a step, rad: far from equilibrium the tangent says nothing about poses further away.
 const GREATEST_ROTATION: f64 = 1.0;
 
@@ -51,8 +53,12 @@ pub(super) fn iterate(
         let Some(tangent) = Tangent::new(&stiffness, description).filter(|_| norm.is_finite()) else {
             break Status::Overflow;
         };
-        if norm <= settings.tolerance.max(scale.rounding(equations, &stiffness, &q)) {
+        if norm <= settings.tolerance {
             break tangent.status(description);
+        }
+        if norm <= scale.rounding(equations, &stiffness, &q) {
+            // Nothing improves it further: what is left is the error of an equilibrium, or too much to call it one.
+            break if norm <= ROUNDED { tangent.status(description) } else { Status::NotConverged };
         }
         if history.len() > settings.iterations {
             break Status::NotConverged;
@@ -87,6 +93,13 @@ pub(super) fn iterate(
         history.push(Iteration { residual: norm, fraction });
     };
     Equilibrium { status, q: q.as_slice().to_vec(), history, load_steps }
+}
+
+/// Whether rounding hides how far a pose is from equilibrium, which then cannot be found.
+pub(super) fn rounding_hides(equations: &Equations<'_>, q: &DVector<f64>) -> bool {
+    let scale = ResidualScale::at(equations, q);
+    let norm = scale.norm(&equations.residual(q));
+    norm > ROUNDED && norm <= scale.rounding(equations, &equations.stiffness(q), q)
 }
 
 /// The step, shortened so that no coordinate rotates by more than [`GREATEST_ROTATION`].

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use crane_codegen::SourceFile;
+use crane_codegen::{SourceFile, build};
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::{InitialState, Method, Sample, Settings};
@@ -299,6 +299,28 @@ fn a_foot_in_the_air_and_a_spring_beyond_reason_are_named() {
     let Diagnosis::TooStiff { stiffness, .. } = &found else { panic!("{found:?}") };
     assert!(*stiffness > 1e17, "{found}");
     assert!(found.advice().contains("N/m"), "{}", found.advice());
+}
+
+/// A cylinder that is 3e11 m long: its spring turns the rounding errors of its length into a tenth of the weight. No pose is an equilibrium to six
+/// digits, and the reason is said.
+#[test]
+fn an_equilibrium_that_rounding_hides_is_none() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../specs/eight_link_hydraulic.yaml");
+    let open = build::open(path.as_ref()).expect("a spec");
+    for (far, hidden) in [(3e9, true), (3e11, true), (3.0, false)] {
+        let changes =
+            format!("name: far\ncylinders:\n  - {{name: telescope_cylinder, foot: {{at: [0, -{far:e}, 0]}}}}\n");
+        let changed = LiveCrane::from_spec(&open.changed(&changes)).expect("valid");
+        let crane: &dyn DynCrane = &changed;
+        let found = crane.equilibrium(&Statics::default());
+        assert_eq!((found.status == Status::NotConverged, found.is_stable()), (hidden, !hidden), "{far:e}: {found}");
+        assert!(hidden || found.residual() < 1e-8);
+        if hidden {
+            let why = Diagnosis::of(crane, &found);
+            assert!(matches!(why, Diagnosis::Rounding { residual } if residual > 1e-6), "{why:?}");
+            assert!(why.to_string().contains("rounding"), "{why}");
+        }
+    }
 }
 
 /// A loader crane that a rope pulls sideways with 17 kN. Newton's method ends where its rear foot stands on the push of its own lateral springs,
