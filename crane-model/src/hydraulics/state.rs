@@ -39,11 +39,6 @@ impl CylinderState {
         CylinderState { length, speed, arm, force, pressures, flow }
     }
 
-    /// Pressure at which oil flows in, Pa.
-    pub fn supply_pressure(&self) -> f64 {
-        self.pressures[usize::from(self.speed <= 0.0)]
-    }
-
     /// How far it is extended beyond its retracted length, m.
     pub fn extension(&self, info: &CylinderInfo) -> f64 {
         self.length - info.retracted

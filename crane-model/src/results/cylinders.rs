@@ -2,7 +2,7 @@
 
 use super::{Extremes, Table};
 use crate::{
-    CylinderInfo, Description, DriveInfo, Text,
+    CoordinateRole, CylinderInfo, Description, DriveInfo, Text,
     dyn_crane::{DynCrane, DynImplicit},
     hydraulics::{CylinderState, cylinders_at},
 };
@@ -11,21 +11,54 @@ use crate::{
 const BAR: f64 = 1e5;
 /// m³/s
 const LITRE_PER_MINUTE: f64 = 1e-3 / 60.0;
+/// Flow from which a cylinder's pressure counts in full for the pump, m³/s: 0.6 l/min, about what a mobile valve meters at least.
+const LEAST_FLOW: f64 = 1e-5;
 /// A drive stiffer than the oil of its cylinder by this factor or more is no longer a model of it.
 const STIFFER: f64 = 2.0;
 
-/// Flow that the pump delivers to all cylinders, m³/s, and its power, W: one pump at the maximum of their supply pressures.
-fn pump<'c>(cylinders: impl IntoIterator<Item = &'c CylinderState> + Clone) -> [f64; 2] {
-    let flow: f64 = cylinders.clone().into_iter().map(|cylinder| cylinder.flow).sum();
-    let moving = cylinders.into_iter().filter(|cylinder| cylinder.flow > 0.0);
-    let pressure = moving.map(CylinderState::supply_pressure).fold(0.0, f64::max);
+/// Flow that the pump delivers to all cylinders, m³/s, and its power, W: one pump at the maximum of the pressures that they demand.
+///
+/// A cylinder demands the flow of its prescribed motion: the spring of its drive stands for its oil, which yields without the pump. So one that
+/// is held demands nothing while it vibrates. Its pressure counts in full from [`LEAST_FLOW`] on and below in proportion, as that of a valve that
+/// opens, so that the power is continuous in the speeds.
+fn pump<'c>(cylinders: impl Iterator<Item = &'c Demand> + Clone) -> [f64; 2] {
+    let flow: f64 = cylinders.clone().map(|demand| demand.flow).sum();
+    let pressure = cylinders.map(|demand| demand.pressure * (demand.flow / LEAST_FLOW).min(1.0)).fold(0.0, f64::max);
     [flow, flow * pressure]
 }
 
-/// The same for the pump of each crane of a fleet.
-pub(super) fn pumps(description: &Description, cylinders: &[CylinderState]) -> impl Iterator<Item = f64> {
+/// What a cylinder demands of the pump.
+struct Demand {
+    /// m³/s
+    flow: f64,
+    /// Pressure on the side that it enters, Pa.
+    pressure: f64,
+}
+
+/// The flow and the power of the pump, for each crane of a fleet; `rates`: of the motions of the drives, m/s and rad/s.
+pub(super) fn pumps(
+    crane: &dyn DynCrane,
+    q: &[f64],
+    cylinders: &[CylinderState],
+    rates: impl Fn(usize) -> f64,
+) -> Vec<f64> {
+    let description = crane.description();
     let cranes = with_cylinders(description);
-    (0..cranes).flat_map(move |crane| pump(cylinders.iter().skip(crane).step_by(cranes)))
+    if cranes == 0 {
+        return Vec::new();
+    }
+    let stiffness = (crane as &dyn DynImplicit).drive_stiffness(q);
+    let demand = |(info, state): (&CylinderInfo, &CylinderState)| {
+        let is_rigid =
+            description.coordinates[description.drives[info.drive].coordinate].role == CoordinateRole::Prescribed;
+        // A drive without a spring has no motion to follow: its cylinder takes what it needs.
+        let follows = is_rigid || stiffness[info.drive] > 0.0;
+        let speed = if follows { state.arm * rates(info.drive) } else { state.speed };
+        let side = usize::from(speed <= 0.0);
+        Demand { flow: info.areas[side] * speed.abs(), pressure: state.pressures[side] }
+    };
+    let demands: Vec<Demand> = description.cylinders.iter().zip(cylinders).map(demand).collect();
+    (0..cranes).flat_map(|crane| pump(demands.iter().skip(crane).step_by(cranes))).collect()
 }
 
 /// The number of cranes that have cylinders: in a fleet, those of all cranes have the same names.
@@ -276,4 +309,29 @@ fn over_pressure(info: &CylinderInfo, sides: [Extremes; 2], moves: bool) -> Opti
         when(highest.time, moves),
         limit / BAR
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A fast cylinder at 50 bar beside a slow one at 200 bar: 1 l/s times 50 bar, and up to 200 bar as the slow one begins to take oil.
+    #[test]
+    fn power_rises_with_the_flow_of_a_slow_cylinder() {
+        let power = |flow: f64| {
+            let demands = [Demand { flow: 1e-3, pressure: 5e6 }, Demand { flow, pressure: 2e7 }];
+            let [total, power] = pump(demands.iter());
+            assert!((total - 1e-3 - flow).abs() < 1e-18);
+            power
+        };
+        // Rounding.
+        for (flow, expected) in [(0.0, 5e3), (2e-6, 1.002e-3 * 5e6), (5e-6, 1.005e-3 * 1e7), (1e-5, 1.01e-3 * 2e7)] {
+            assert!((power(flow) / expected - 1.0).abs() < 1e-12, "{flow}: {}", power(flow));
+        }
+        // No jump: 1e-9 m³/s change the pressure by no more than 2e3 Pa.
+        for k in 0..20_000 {
+            let flow = 1e-9 * f64::from(k);
+            assert!((power(flow + 1e-9) - power(flow)).abs() < 1.1e-3 * 2e3 + 1e-9 * 2e7, "{flow}");
+        }
+    }
 }

@@ -168,8 +168,9 @@ fn push_quantities(
     let mut efforts = crane.drive_efforts_with(moment);
     efforts.iter_mut().zip(added).for_each(|(effort, added)| *effort += added);
     let oil = Oil::at(crane, moment);
-    for ([position, _], effort) in crane.drive_motions_at(t).into_iter().zip(&efforts) {
-        row.extend([position, *effort]);
+    let motions = crane.drive_motions_at(t);
+    for ([position, _], effort) in motions.iter().zip(&efforts) {
+        row.extend([position, effort]);
     }
     let mut cylinders = hydraulics::cylinders_at(crane, q, v, &efforts);
     if let Some(oil) = &oil {
@@ -178,7 +179,7 @@ fn push_quantities(
     row.extend(cylinders.iter().flat_map(cylinders::values));
     match &oil {
         Some(oil) => row.extend(oil.pump_and_spools()),
-        None => row.extend(cylinders::pumps(crane.description(), &cylinders)),
+        None => row.extend(cylinders::pumps(crane, q, &cylinders, |drive| motions[drive][1])),
     }
     if all {
         for (position, velocity) in crane.points_at(q).iter().zip(crane.point_velocities_at(q, v)) {
