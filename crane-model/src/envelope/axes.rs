@@ -2,6 +2,9 @@
 
 use crate::{CoordinateKind, Description, dyn_crane::DynCrane};
 
+/// Largest angle without a unit that is taken for one in rad: a turn.
+pub const TURN: f64 = std::f64::consts::TAU + 1e-6;
+
 /// A quantity that is varied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Varied {
@@ -39,7 +42,6 @@ pub struct Axis {
 impl Axis {
     /// A value of an angle that is more than a turn: most likely it was meant in degrees.
     pub fn implausible_angle(&self, description: &Description) -> Option<f64> {
-        const TURN: f64 = 2.0 * std::f64::consts::PI + 1e-6;
         let is_angle = match self.varied {
             Varied::Drive(drive) => {
                 description.coordinates[description.drives[drive].coordinate].kind == CoordinateKind::Rotation

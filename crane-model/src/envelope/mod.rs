@@ -22,7 +22,7 @@ mod rating;
 mod search;
 mod sweep;
 
-pub use axes::{Axes, Axis, Varied};
+pub use axes::{Axes, Axis, TURN, Varied};
 pub use condition::Condition;
 pub use coverage::Coverage;
 pub use critical::{Critical, CriticalLoad, NoCriticalLoad, critical_load};

@@ -6,7 +6,7 @@ use crane_live::LiveCrane;
 use crane_model::{
     Description,
     dyn_crane::{DynCrane, DynModel},
-    force_states,
+    dynamics, force_states,
     linear::{About, Forces, LinearModel},
     modes::{ComplexShape, DampedMode, Held, SmallMotions, damped_with_shapes, steady},
     statics,
@@ -17,9 +17,9 @@ use serde_json::Value;
 
 use crate::{
     arguments::Linearise,
-    envelope::number,
     files,
     npz::{Array, npz},
+    poses::held_number,
     problem::{Outcome, Problem},
     selection::Registry,
     start::{Variable, row},
@@ -67,6 +67,13 @@ pub fn linearise(options: &Linearise, registry: &Registry, out: &mut dyn Write) 
                 description.name
             ),
             "let its drives hold them, `motion: {hold: 30 deg}` in the spec, or give a moment of a run with `--from`",
+        ));
+    }
+    let latest = dynamics::Settings::TIMES.1;
+    if let Some(t) = options.time.filter(|t| t.abs() > latest) {
+        return Err(Problem::usage(
+            format!("`--time {t:e}` is out of range"),
+            format!("write a number of seconds up to {latest:e}"),
         ));
     }
     let motion = match &options.from {
@@ -234,18 +241,17 @@ fn of_steady(live: &LiveCrane, options: &Linearise) -> Outcome<Motion> {
 fn read_held(given: &[String], description: &Description) -> Outcome<Vec<Held>> {
     let mut held: Vec<Held> = Vec::new();
     for text in given {
-        let (name, value) = text.split_once('=').ok_or_else(|| {
+        let (name, _) = text.split_once('=').ok_or_else(|| {
             let help =
                 "write `--hold coordinate=value`, such as `--hold boom_psi=30deg` or `--hold column_psi_rate=0.2`";
             Problem::usage(format!("`--hold {text}` has no value"), help)
         })?;
-        let value = number(value).ok_or_else(|| {
-            let help = "write a finite number in m, rad, m/s or rad/s, or an angle such as `30deg`";
-            Problem::usage(format!("`{value}` is not a valid value for {name}"), help)
-        })?;
-        let (coordinate, position, rate) = match Variable::named(name.trim(), description)? {
-            Variable::Position(index) => (index, Some(value), None),
-            Variable::Rate(index) => (index, None, Some(value)),
+        let variable = Variable::named(name.trim(), description)?;
+        let (coordinate, position, rate) = match variable {
+            Variable::Position(index) => {
+                (index, Some(held_number(text, description.coordinates[index].kind, false)?), None)
+            }
+            Variable::Rate(index) => (index, None, Some(held_number(text, description.coordinates[index].kind, true)?)),
             // Nothing but drives holds cranes with states of forces.
             Variable::ForceState(_) => continue,
         };

@@ -6,9 +6,9 @@ use std::{io::Write, num::NonZeroUsize, path::Path};
 
 use crane_codegen::{Diagnostics, SourceFile, compile};
 use crane_model::{
-    Description,
+    CoordinateKind, Description,
     dyn_crane::DynCrane,
-    envelope::{Axes, Axis, Varied},
+    envelope::{Axes, TURN, Varied},
 };
 use crane_page::tables::Report;
 
@@ -34,7 +34,7 @@ pub fn hold(held: &Held, ranges: &[String], name: &str, registry: &mut Registry)
     let description = crane.description();
     let mut changes = Changes::default();
     for text in held {
-        let (drive, value) = text.split_once('=').ok_or_else(|| {
+        let (drive, _) = text.split_once('=').ok_or_else(|| {
             let help = "write `--hold drive=position`, such as `--hold boom_psi=30deg`";
             Problem::usage(format!("`--hold {text}` has no value"), help)
         })?;
@@ -44,17 +44,7 @@ pub fn hold(held: &Held, ranges: &[String], name: &str, registry: &mut Registry)
                 format!("write `--set {text}`"),
             ));
         };
-        let value = number(value).ok_or_else(|| {
-            let help = "write a finite number in m or rad, or an angle such as `30deg`";
-            Problem::usage(format!("`{value}` is not a position"), help)
-        })?;
-        let axis = Axis { varied: Varied::Drive(drive), values: vec![value] };
-        if let Some(angle) = axis.implausible_angle(description).filter(|_| !text.contains("deg")) {
-            return Err(Problem::usage(
-                format!("`--hold {text}` is {angle} rad, {:.0}°", angle.to_degrees()),
-                format!("write degrees with their unit, `--hold {}deg`", text.trim()),
-            ));
-        }
+        let value = held_number(text, description.coordinates[description.drives[drive].coordinate].kind, false)?;
         changes.drives.push(held_at(description, drive, &format!("{value:?}")));
     }
     for axis in &read_ranges(ranges, description)?.0 {
@@ -74,6 +64,32 @@ pub fn hold(held: &Held, ranges: &[String], name: &str, registry: &mut Registry)
     let text = posed(&changes).text;
     registry.add(name, text);
     Ok(())
+}
+
+/// The number of `--hold NAME=VALUE`, of a coordinate or its rate.
+///
+/// # Errors
+/// It is not finite, no crane moves so far or so fast, or an angle is probably in degrees.
+pub fn held_number(text: &str, kind: CoordinateKind, is_rate: bool) -> Outcome<f64> {
+    /// Largest position or rate, m, rad, m/s or rad/s.
+    const FARTHEST: f64 = 1e6;
+    let (name, value) = text.split_once('=').unwrap_or((text, ""));
+    let (what, units) = if is_rate { ("rate", "m/s or rad/s") } else { ("position", "m or rad") };
+    let number = number(value).ok_or_else(|| {
+        let help = format!("write a finite number in {units}, or an angle such as `30deg`");
+        Problem::usage(format!("`{value}` is not a valid value for {name}"), help)
+    })?;
+    if number.abs() > FARTHEST {
+        let help = format!("write a {what} in {units}, at most {FARTHEST:e}");
+        return Err(Problem::usage(format!("`--hold {}` is out of range", text.trim()), help));
+    }
+    if kind == CoordinateKind::Rotation && !is_rate && number.abs() > TURN && !text.contains("deg") {
+        return Err(Problem::usage(
+            format!("`--hold {text}` is {number} rad, {:.0}°", number.to_degrees()),
+            format!("write degrees with their unit, `--hold {}deg`", text.trim()),
+        ));
+    }
+    Ok(number)
 }
 
 /// Names of the parameters to which nothing refers, if there is no other mistake.

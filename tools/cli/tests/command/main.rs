@@ -316,6 +316,14 @@ fn a_moment_of_a_run_is_linearised() {
         &["no coordinate `uper_theta`", "`upper_theta`"],
     );
     refused(&["linearise", "double_pendulum", "--hold", "upper_theta=high"], &["`high` is not a valid value"]);
+    // No crane is that far, that fast or that late: statics and linearise refuse the same.
+    for command in ["linearise", "statics"] {
+        refused(&[command, "knuckle_boom", "--hold", "main_boom_theta=1e308"], &["out of range", "at most 1e6"]);
+        refused(&[command, "knuckle_boom", "--hold", "main_boom_theta=1e14deg"], &["out of range", "at most 1e6"]);
+    }
+    refused(&["linearise", "knuckle_boom", "--hold", "main_boom_theta_rate=-1e308"], &["out of range", "m/s or rad/s"]);
+    refused(&["linearise", "knuckle_boom", "--time", "1e308"], &["out of range", "seconds"]);
+    refused(&["linearise", "double_pendulum", "--hold", "upper_theta=30"], &["`--hold upper_theta=30deg`"]);
     refused(&["linearise", "double_pendulum", "-o", "a.json"], &["does not end in .npz"]);
     refused(&["linearise", "eight_link_hydraulic", "--hold", "boom_psi=0"], &["valves", "motion: {hold: 30 deg}"]);
     refused(

@@ -89,7 +89,10 @@ fn strength_and_modes_over_poses() {
 fn poses_that_mean_nothing_are_refused() {
     refused(&["statics", "knuckle_boom", "--hold", "hook_theta=0"], &["has no drive", "driven are"]);
     refused(&["statics", "knuckle_boom", "--hold", "payload=3"], &["live parameter, not a drive", "--set payload=3"]);
-    refused(&["statics", "knuckle_boom", "--hold", "main_boom_theta=up"], &["`up` is not a position", "30deg"]);
+    refused(
+        &["statics", "knuckle_boom", "--hold", "main_boom_theta=up"],
+        &["`up` is not a valid value for main_boom_theta", "30deg"],
+    );
     refused(&["modes", "knuckle_boom", "--range", "mainboom=0:1:2"], &["no drive and no live parameter"]);
     refused(&["strength", "knuckle_boom", "-o", "x.csv"], &["`--file` needs `--run` or `--range`"]);
     let output = crane(&["modes", "knuckle_boom", "--count", "2"]);
