@@ -85,7 +85,7 @@ impl ForceStates {
         if given.is_empty() { self.holding(crane, t, q) } else { given.to_vec() }
     }
 
-    /// As [`holding`](Self::holding), with valves that a servo has opened slightly, in either direction.
+    /// As [`holding`](Self::holding), with valves that have opened slightly, in either direction.
     pub(crate) fn slightly_open(&mut self, crane: &dyn DynDynamics, t: f64, q: &[f64]) -> [Vec<f64>; 2] {
         let mut both = [Vec::new(), Vec::new()];
         for (kind, _) in &mut self.kinds {

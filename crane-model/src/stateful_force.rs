@@ -25,7 +25,7 @@ pub(crate) trait StatefulForces: Debug + Send + Sync {
     /// The states that hold a pose at rest at a given time.
     fn holding(&mut self, crane: &dyn DynDynamics, t: f64, q: &[f64]) -> Vec<f64>;
 
-    /// As [`holding`](Self::holding), with valves that a servo has opened slightly, in either direction.
+    /// As [`holding`](Self::holding), with valves that have opened slightly, in either direction.
     fn slightly_open(&mut self, crane: &dyn DynDynamics, t: f64, q: &[f64]) -> [Vec<f64>; 2] {
         let states = self.holding(crane, t, q);
         [states.clone(), states]

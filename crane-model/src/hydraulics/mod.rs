@@ -204,7 +204,7 @@ impl StatefulForces for Hydraulics {
         all.chain(self.pump.map(|pump| pump.pressure)).collect()
     }
 
-    /// As held, with valves that a servo has opened slightly, towards the pump and towards the tank.
+    /// As held, with valves that have opened slightly, towards the pump and towards the tank.
     fn slightly_open(&mut self, crane: &dyn DynDynamics, t: f64, q: &[f64]) -> [Vec<f64>; 2] {
         let holding = self.holding(crane, t, q);
         [1.0, -1.0].map(|towards| self.opened_slightly(&holding, towards))

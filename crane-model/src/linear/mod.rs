@@ -61,7 +61,8 @@ pub enum Forces<'a> {
     Given(&'a [f64]),
     /// Those that hold the pose at rest: shut valves, bristles that carry nothing.
     Holding,
-    /// Those with valves that have opened slightly, with the mean of the slopes in both directions, as an oscillation about a shut valve meets them.
+    /// Those with valves that have opened slightly, with the mean of the slopes in both directions, as an oscillation about a shut valve meets them:
+    /// those with a servo, and those that are commanded.
     SlightlyOpen,
 }
 

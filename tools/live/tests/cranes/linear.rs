@@ -9,7 +9,7 @@ use crane_model::dynamics::{InitialState, Method, Settings};
 use crane_model::force_states::{self, ForceStates};
 use crane_model::linear::{About, Forces, Input, LinearModel, NoModel, Output, linear_model, outputs};
 use crane_model::modes::{DampedMode, damped, with_servos};
-use crane_model::nalgebra::{DMatrix, DVector};
+use crane_model::nalgebra::{Complex, DMatrix, DVector};
 use crane_model::results::quantities_at;
 use crane_model::statics;
 
@@ -45,10 +45,19 @@ fn four_bar() -> LiveCrane {
 
 /// A ram that lifts a mass by a valve; its beam carries the cylinder's foot.
 fn lift(leakage: f64) -> LiveCrane {
+    lift_with(leakage, "gain: 20", "")
+}
+
+/// The same with a valve that an input commands.
+fn commanded_lift(leakage: f64) -> LiveCrane {
+    lift_with(leakage, "opening: {input: lever}", "inputs: {lever: {unit: \"1\"}}\n")
+}
+
+fn lift_with(leakage: f64, command: &str, inputs: &str) -> LiveCrane {
     crane(&format!(
         "format: 1
 name: lift
-links:
+{inputs}links:
   - {{name: post, joint: fixed, mass: 50, com: [0, 0, 0]}}
   - {{name: arm, placement: {{transform: {{rotation: {{x: 90 deg}}}}}}, joint: revolute, mass: 300, com: [1.2, 0, 0], inertia: {{gyration: [0.1, 0.6, 0.6]}}}}
   - {{name: bob, placement: {{transform: {{translation: [2.2, 0, 0]}}}}, joint: revolute, mass: 80, com: [0, -0.7, 0], inertia: {{gyration: [0.1, 0.1, 0.1]}}}}
@@ -68,7 +77,7 @@ cylinders:
     max_pressure: 2.5e7
     bulk_modulus: 1.3e9
     hose_volumes: [6e-4, 4e-4]
-    valve: {{flow: 6e-4, pressure_drop: 1e6, lag: 0.03, gain: 20, leakage: {leakage:e}}}
+    valve: {{flow: 6e-4, pressure_drop: 1e6, lag: 0.03, {command}, leakage: {leakage:e}}}
 pump: {{max_flow: 1e-3, pressure: 2e7, volume: 4e-3}}
 points: [{{name: hook, link: bob, at: [0, -0.7, 0]}}]
 "
@@ -151,6 +160,48 @@ fn slightly_open_valves_are_those_of_servos() {
         assert!(off < 1e-6 * scale, "{off:e} of {scale:e}");
         assert_same_modes("servos", &model.modes().unwrap(), &expected.modes().unwrap(), 1e-4);
     }
+}
+
+/// A valve that is commanded opens slightly as one with a servo does: A is that with the servo, whose gain is not there, and a loop on the
+/// valve moves the arm.
+#[test]
+fn a_commanded_valve_opens_slightly() {
+    let [servo, commanded] = [lift(2e-13), commanded_lift(2e-13)];
+    let q = at_rest(&servo);
+    let about = About { steady: true, ..about(&q, &[0.0; 2], Forces::SlightlyOpen) };
+    let of =
+        |crane: &LiveCrane, input: Input| linear_model(crane, &about, &[input], &named(crane, &["arm_psi"])).unwrap();
+    let (with, without) = (of(&servo, Input::Valve(0)), of(&commanded, Input::Valve(0)));
+    let spool = with.states.iter().position(|state| state.name == "ram_valve").unwrap();
+    let mut expected = with.a.clone();
+    assert!(expected[(spool, 0)].abs() > 100.0, "gain 20 1/m, 0.8 m/rad, lag 0.03 s");
+    // The servo sees the arm alone.
+    expected[(spool, 0)] = 0.0;
+    let off = (&without.a - &expected).amax();
+    assert!(off < 1e-9 * expected.amax(), "{off:e}");
+    assert_eq!((&without.b, of(&commanded, Input::Spec(0)).b.amax().round()), (&with.b, with.b.amax().round()));
+    // At low frequencies the arm turns by the flow over area and lever, against leakage: some 1 rad/s for a valve that is fully open.
+    let states = without.a.nrows();
+    let turning = Complex::new(0.0, 0.5);
+    let matrix = DMatrix::from_fn(states, states, |i, j| {
+        (if i == j { turning } else { Complex::from(0.0) }) - without.a[(i, j)]
+    });
+    let states = matrix.lu().solve(&without.b.map(Complex::from)).unwrap();
+    let response = (without.c.map(Complex::from) * states)[(0, 0)];
+    assert!((0.1..10.0).contains(&response.norm()), "{response}");
+}
+
+/// Where a servo brings the arm is where its motion prescribes it, up to what the leakage of the load takes; a rate alone moves it little.
+#[test]
+fn a_servo_follows_its_motion() {
+    let crane = lift(2e-13);
+    let q = at_rest(&crane);
+    let about = About { steady: true, ..about(&q, &[0.0; 2], Forces::SlightlyOpen) };
+    let model =
+        linear_model(&crane, &about, &[Input::Motion(0), Input::Rate(0)], &named(&crane, &["arm_psi"])).unwrap();
+    let gains = -(&model.c * model.a.lu().solve(&model.b).unwrap());
+    assert!((gains[(0, 0)] - 1.0).abs() < 1e-3, "{gains}");
+    assert!(gains[(0, 1)].abs() < 0.2, "{gains}");
 }
 
 /// A and B about a moving state with an open valve, against central differences of accelerations and rates of the states of forces.
