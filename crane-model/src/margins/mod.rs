@@ -11,10 +11,17 @@
 //! Sec. 10.3], with as many as the open loop has unstable poles: a phase margin alone says nothing about loops that cross the unit circle
 //! several times, as those around flexible cranes do, nor about cranes that are unstable without the loop. The count is taken on the line
 //! `Re s = 1e-4 1/s` instead of the imaginary axis: integrators and undamped modes then are to its left, and what grows more slowly takes longer
-//! than any manoeuvre.
+//! than any manoeuvre. The dead time turns L there as it does on the axis.
+//!
+//! The damping of the closed loop is that of all its motions, the zeros of 1 + L (`roots`), up to the highest frequency with |L| ≥ 0.1. Those that
+//! grow are compared with the count.
 
+mod acting;
+mod controller;
 mod line;
+mod open;
 mod response;
+mod roots;
 #[cfg(test)]
 mod tests;
 
@@ -22,131 +29,29 @@ use std::{error::Error, f64::consts::PI, fmt};
 
 use nalgebra::Complex;
 
-use crate::{Description, DriveInfo, linear::Input, linear::LinearModel, modes::NoModes, results::Column};
+use crate::{
+    linear::LinearModel,
+    modes::{GROWTH, NoModes, damping_ratio, grows},
+};
+pub use acting::Acting;
+pub use controller::Loop;
 use line::{Line, Point};
+use open::Open;
 pub use response::{Plant, Term};
 
-/// Growth of a disturbance, 1/s, below which it is rounding or takes longer than any manoeuvre.
-const GROWTH: f64 = 1e-4;
-/// Iterations of Newton's method towards a root of 1 + L.
-const ITERATIONS: usize = 40;
-/// Change of a root, relative to its size, with which it is found.
-const FOUND: f64 = 1e-10;
-/// Distance of L from −1 up to which a minimum on the axis belongs to a motion of the closed loop that the loop worsens, and the least size of L
-/// there.
-const NEAR: f64 = 1.0;
+/// Least size of L at the highest frequency up to which motions of the closed loop are those of the loop.
 const LEAST: f64 = 0.1;
+/// Most that a dead time turns L up to its last crossing, rad, with which the motions of the closed loop are listed: about ten of its chain.
+const LONGEST: f64 = 30.0;
+/// A motion of the plant that the loop moves by less than this part of its eigenvalue, near rounding, is not one of the loop.
+const MOVED: f64 = 1e-9;
+/// Growth of motions that may be counted or not, relative to the least growth that is.
+const VERGE: [f64; 2] = [0.9, 1.1];
 /// A frequency below all others, rad/s, and the change of L up to the first one, relative to L, with which it begins at a finite number.
 const LOWEST: f64 = 1e-8;
 const SAME: f64 = 0.1;
 /// The count of encirclements is determined if it is as close as this to an integer.
 const WHOLE: f64 = 0.05;
-
-/// A controller with its dead time and its lag. All zeros: no loop.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Loop {
-    /// Proportional gain, unit of the input per unit of the output.
-    pub p: f64,
-    /// Integral gain, the same per s.
-    pub i: f64,
-    /// Derivative gain, the same times s.
-    pub d: f64,
-    /// Time constant of the filter of the derivative, s.
-    pub filter: f64,
-    /// Time constants of numerator and denominator of a lead, or of a lag if the second is larger, s.
-    pub lead: [f64; 2],
-    /// Dead time, s.
-    pub delay: f64,
-    /// Time constant of a first-order lag, s.
-    pub lag: f64,
-}
-
-impl Loop {
-    /// C(s).
-    pub fn response(&self, s: Complex<f64>) -> Complex<f64> {
-        let one = Complex::from(1.0);
-        let gains =
-            s * self.d / (one + s * self.filter) + self.p + if self.i == 0.0 { Complex::from(0.0) } else { self.i / s };
-        let lead = (one + s * self.lead[0]) / (one + s * self.lead[1]);
-        gains * lead * (-s * self.delay).exp() / (one + s * self.lag)
-    }
-}
-
-/// What a loop acts on, of a drive or of the spec.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Acting {
-    /// The motion of a drive, position and rate.
-    Motion(usize),
-    /// The rate of the motion of a drive, whose position is its integral.
-    Rate(usize),
-    /// A single input.
-    On(Input),
-}
-
-impl Acting {
-    /// What a name stands for: the coordinate of a drive for its motion, `<coordinate>_rate` for the rate of its motion, any other input by
-    /// its own name.
-    pub fn named(name: &str, description: &Description) -> Option<Self> {
-        let drive = |name: &str| {
-            let is_it = |drive: &DriveInfo| description.coordinates[drive.coordinate].name == name;
-            description.drives.iter().position(is_it)
-        };
-        let rate = || name.strip_suffix("_rate").and_then(drive).map(Acting::Rate);
-        drive(name).map(Acting::Motion).or_else(rate).or_else(|| Input::named(name, description).map(Acting::On))
-    }
-
-    /// All names.
-    pub fn names(description: &Description) -> Vec<String> {
-        let inputs = Input::all(description);
-        let motions = inputs.iter().filter_map(|input| match input {
-            Input::Motion(drive) => Some(*drive),
-            _ => None,
-        });
-        let motions = motions.flat_map(|drive| {
-            let [motion, rate] = [Acting::Motion(drive), Acting::Rate(drive)];
-            [motion.column(description).name, rate.column(description).name]
-        });
-        motions.chain(inputs.iter().map(|input| input.column(description).name)).collect()
-    }
-
-    /// Its name and unit.
-    pub fn column(self, description: &Description) -> Column {
-        let info = |drive: usize| &description.coordinates[description.drives[drive].coordinate];
-        match self {
-            Acting::Motion(drive) => {
-                let info = info(drive);
-                Column { name: info.name.to_string(), unit: info.kind.unit().to_owned() }
-            }
-            Acting::Rate(drive) => {
-                let info = info(drive);
-                Column { name: format!("{}_rate", info.name), unit: format!("{}/s", info.kind.unit()) }
-            }
-            Acting::On(input) => input.column(description),
-        }
-    }
-
-    /// Name of the coordinate of the drive on which it acts; `None` for inputs of the spec.
-    pub fn coordinate(self, description: &Description) -> Option<&str> {
-        let drive = match self {
-            Acting::Motion(drive)
-            | Acting::Rate(drive)
-            | Acting::On(Input::Motion(drive) | Input::Rate(drive) | Input::Effort(drive) | Input::Valve(drive)) => {
-                drive
-            }
-            Acting::On(Input::Spec(_)) => return None,
-        };
-        Some(description.coordinates[description.drives[drive].coordinate].name.as_str())
-    }
-
-    /// The inputs that it moves, and the power of s by which each follows.
-    pub fn inputs(self) -> Vec<(Input, i32)> {
-        match self {
-            Acting::Motion(drive) => vec![(Input::Motion(drive), 0), (Input::Rate(drive), 1)],
-            Acting::Rate(drive) => vec![(Input::Motion(drive), -1), (Input::Rate(drive), 0)],
-            Acting::On(input) => vec![(input, 0)],
-        }
-    }
-}
 
 /// Margins of a loop. Frequencies are in rad/s.
 #[derive(Clone, Debug, PartialEq)]
@@ -161,18 +66,46 @@ pub struct Margins {
     pub gain: Option<(f64, f64)>,
     /// The same of the largest factor below 1: a loop that needs its gain has one.
     pub reduction: Option<(f64, f64)>,
-    /// The smallest distance of L from −1, the inverse of the largest sensitivity `|1/(1 + L)|`, and its frequency.
-    pub distance: (f64, f64),
+    /// The smallest distance of L from −1, the inverse of the largest sensitivity `|1/(1 + L)|`, and its frequency; `None` if the dead time
+    /// turns L too often.
+    pub distance: Option<(f64, f64)>,
     /// The frequency up to which the output follows the reference: |L/(1 + L)| falls below 1/√2.
     pub bandwidth: Option<f64>,
-    /// The least damped motion of the closed loop on which the loop acts: its eigenvalue, 1/s, with Im λ ≥ 0.
-    pub closed: Option<Complex<f64>>,
+    /// The least damped of all motions of the closed loop, zeros of 1 + L, up to the highest frequency with |L| ≥ 0.1, and of those that
+    /// grow: its eigenvalue, 1/s, with Im λ ≥ 0. `None` where |L| is nowhere 0.1 and nothing grows.
+    pub closed: Result<Option<Complex<f64>>, NoMotions>,
 }
 
 impl Margins {
-    /// Damping ratio of the least damped motion of the closed loop; negative if it grows.
+    /// Damping ratio of the least damped motion of the closed loop; negative if and only if one grows.
     pub fn damping(&self) -> Option<f64> {
-        self.closed.map(|root| damping_ratio(&root))
+        self.closed.ok().flatten().map(damping_ratio)
+    }
+}
+
+/// Why the motions of a closed loop are not known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NoMotions {
+    /// The dead time turns L by this angle up to its last crossing, rad: its chain of motions is too long.
+    DeadTime(f64),
+    /// Growing motions that were found, and those that Nyquist's count has.
+    Count(usize, usize),
+}
+
+impl fmt::Display for NoMotions {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            NoMotions::DeadTime(turn) => {
+                write!(
+                    f,
+                    "no damping: the dead time turns L by {turn:.0} rad up to its crossover, more than {LONGEST}: is it in s?"
+                )
+            }
+            NoMotions::Count(found, counted) => write!(
+                f,
+                "no damping: {found} motions that grow were found, {counted} are counted: the loop is on the verge of instability"
+            ),
+        }
     }
 }
 
@@ -213,8 +146,8 @@ impl Error for NoMargins {}
 /// # Errors
 /// The loop is open or its gain does not fall at high frequencies.
 pub fn margins(plant: &Plant, of: &Loop) -> Result<Margins, NoMargins> {
-    let l = |s: Complex<f64>| of.response(s) * plant.response(s);
-    let axis = Line::new(0.0, plant.poles(), &l);
+    let open = Open { plant, of };
+    let axis = Line::new(0.0, &open);
     let last = axis.points[axis.points.len() - 1];
     if axis.points.iter().any(|point| !point.l.is_finite()) {
         return Err(NoMargins::Modes(NoModes::Eigenvalues));
@@ -225,60 +158,70 @@ pub fn margins(plant: &Plant, of: &Loop) -> Result<Margins, NoMargins> {
     if axis.points.iter().all(|point| point.l.norm() == 0.0) {
         return Err(NoMargins::NoLoop);
     }
-    let unstable = closed_unstable(plant, &l)?;
-    let [gain, reduction] = gain_margins(&axis, &l);
+    let unstable = closed_unstable(&open)?;
+    let real = if axis.follows { negative(&axis, &open) } else { Vec::new() };
+    let [gain, reduction] = gain_margins(&real);
     Ok(Margins {
         stable: unstable == 0,
         unstable,
-        phase: phase_margin(&axis, &l),
+        phase: phase_margin(&axis),
         gain,
         reduction,
-        distance: distance(&axis, &l),
-        bandwidth: bandwidth(&axis, &l),
-        closed: least_damped(&axis, &l),
+        distance: axis.follows.then(|| distance(&axis, &open)),
+        bandwidth: if axis.follows { bandwidth(&axis) } else { None },
+        closed: least_damped(&open, &axis, &real, unstable),
     })
 }
 
 /// Number of motions of the closed loop that grow: `Z = P − Δarg(1 + L)/π` along the upper half of the line, P those of the open loop.
-fn closed_unstable(plant: &Plant, l: &dyn Fn(Complex<f64>) -> Complex<f64>) -> Result<usize, NoMargins> {
-    let line = Line::new(GROWTH, plant.poles(), l);
-    let beyond = plant.poles().iter().filter(|pole| pole.re > GROWTH).map(|pole| if pole.im > 0.0 { 2.0 } else { 1.0 });
-    let turned: f64 = line.points.windows(2).map(|pair| ((pair[1].l + 1.0) / (pair[0].l + 1.0)).arg()).sum();
-    let end = (line.points[line.points.len() - 1].l + 1.0).arg();
-    // From the last point on, L falls to zero.
-    let count = beyond.sum::<f64>() - (turned - end) / PI;
-    if (count - count.round()).abs() > WHOLE || count < -WHOLE {
+fn closed_unstable(open: &Open<'_>) -> Result<usize, NoMargins> {
+    let growing: usize = open.plant.poles().iter().copied().filter(|pole| grows(*pole)).map(motions).sum();
+    #[expect(clippy::cast_precision_loss, reason = "a few hundreds")]
+    let count = growing as f64 - Line::new(GROWTH, open).turn() / PI;
+    let whole = count.round();
+    if (count - whole).abs() > WHOLE || whole < 0.0 || whole > f64::from(u32::MAX) {
         return Err(NoMargins::Count);
     }
-    Ok((1..=u32::MAX).take_while(|&growing| f64::from(growing) < count + 0.5).count())
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to the largest u32")]
+    Ok(whole as usize)
+}
+
+/// How many motions an eigenvalue with Im λ ≥ 0 stands for: with its conjugate two.
+fn motions(eigenvalue: Complex<f64>) -> usize {
+    if eigenvalue.im > 0.0 { 2 } else { 1 }
 }
 
 /// The phase of L + 180° with the least size where |L| = 1.
-fn phase_margin(axis: &Line, l: &dyn Fn(Complex<f64>) -> Complex<f64>) -> Option<(f64, f64)> {
+fn phase_margin(axis: &Line<'_>) -> Option<(f64, f64)> {
     let size = |l: Complex<f64>| l.norm().ln();
-    let crossings = axis.crossings(&size, l).into_iter().map(|point| {
+    let crossings = axis.crossings(&size).into_iter().map(|point| {
         let angle = (-point.l).arg();
         (angle, point.omega)
     });
     crossings.min_by(|(a, _), (b, _)| a.abs().total_cmp(&b.abs()))
 }
 
-/// The factors nearest to 1, above and below, with which L passes −1.
-fn gain_margins(axis: &Line, l: &dyn Fn(Complex<f64>) -> Complex<f64>) -> [Option<(f64, f64)>; 2] {
-    let crossings = axis.crossings(&|l: Complex<f64>| l.im, l).into_iter().filter(|point| point.l.re < 0.0);
+/// Where L is a negative number.
+fn negative(axis: &Line<'_>, open: &Open<'_>) -> Vec<Point> {
+    let crossings = axis.crossings(&|l: Complex<f64>| l.im).into_iter().filter(|point| point.l.re < 0.0);
     // Without integrators L begins at a real number.
-    let at_rest = l(Complex::new(0.0, LOWEST));
+    let at_rest = open.response(Complex::new(0.0, LOWEST));
     let begins = at_rest.re < 0.0 && (axis.points[0].l - at_rest).norm() < SAME * at_rest.norm();
-    let at_rest = begins.then_some(Point { omega: 0.0, l: at_rest });
-    let factors: Vec<(f64, f64)> = crossings.chain(at_rest).map(|point| (-1.0 / point.l.re, point.omega)).collect();
-    let above = factors.iter().copied().filter(|(factor, _)| *factor > 1.0).min_by(|a, b| a.0.total_cmp(&b.0));
-    let below = factors.iter().copied().filter(|(factor, _)| *factor <= 1.0).max_by(|a, b| a.0.total_cmp(&b.0));
+    let at_rest = begins.then_some(Point { omega: 0.0, rational: at_rest, l: at_rest });
+    crossings.chain(at_rest).collect()
+}
+
+/// The factors nearest to 1, above and below, with which L passes −1.
+fn gain_margins(negative: &[Point]) -> [Option<(f64, f64)>; 2] {
+    let factors = || negative.iter().map(|point| (-1.0 / point.l.re, point.omega));
+    let above = factors().filter(|(factor, _)| *factor > 1.0).min_by(|a, b| a.0.total_cmp(&b.0));
+    let below = factors().filter(|(factor, _)| *factor <= 1.0).max_by(|a, b| a.0.total_cmp(&b.0));
     [above, below]
 }
 
 /// The smallest distance of L from −1, by golden section about the nearest point.
-fn distance(axis: &Line, l: &dyn Fn(Complex<f64>) -> Complex<f64>) -> (f64, f64) {
-    let far = |omega: f64| (l(Complex::new(0.0, omega)) + 1.0).norm();
+fn distance(axis: &Line<'_>, open: &Open<'_>) -> (f64, f64) {
+    let far = |omega: f64| (open.response(Complex::new(0.0, omega)) + 1.0).norm();
     let points = &axis.points;
     let least = (0..points.len()).min_by(|&a, &b| {
         let size = |index: usize| (points[index].l + 1.0).norm();
@@ -297,49 +240,37 @@ fn distance(axis: &Line, l: &dyn Fn(Complex<f64>) -> Complex<f64>) -> (f64, f64)
 }
 
 /// The first frequency at which |L/(1 + L)| falls below 1/√2.
-fn bandwidth(axis: &Line, l: &dyn Fn(Complex<f64>) -> Complex<f64>) -> Option<f64> {
+fn bandwidth(axis: &Line<'_>) -> Option<f64> {
     let follows = |l: Complex<f64>| (l / (l + 1.0)).norm() - 0.5_f64.sqrt();
     if follows(axis.points[0].l) < 0.0 {
         return None;
     }
-    axis.crossings(&follows, l).first().map(|point| point.omega)
+    axis.crossings(&follows).first().map(|point| point.omega)
 }
 
-/// The root of 1 + L with the smallest damping ratio, from the minima of |1 + L| on the axis.
-fn least_damped(axis: &Line, l: &dyn Fn(Complex<f64>) -> Complex<f64>) -> Option<Complex<f64>> {
-    let size = |point: &Point| (point.l + 1.0).norm();
-    let minima = axis.points.windows(3).filter(|three| {
-        let [before, here, after] = [size(&three[0]), size(&three[1]), size(&three[2])];
-        here <= before && here <= after && here < NEAR && three[1].l.norm() > LEAST
-    });
-    let roots = minima.filter_map(|three| root(three[1].omega, l));
-    roots.min_by(|a, b| damping_ratio(a).total_cmp(&damping_ratio(b)))
-}
-
-fn damping_ratio(root: &Complex<f64>) -> f64 {
-    -root.re / root.norm()
-}
-
-/// A root of 1 + L near a point of the axis, by Newton's method on 1 + 1/L, which has no poles near the resonances of the plant.
-fn root(omega: f64, l: &dyn Fn(Complex<f64>) -> Complex<f64>) -> Option<Complex<f64>> {
-    /// Step of the difference quotient, relative to s: the quotient only directs the iteration.
-    const STEP: f64 = 1e-6;
-    let mut s = Complex::new(0.0, omega);
-    for _ in 0..ITERATIONS {
-        let h = Complex::new(STEP * s.norm(), 0.0);
-        let slope = (l(s + h).inv() - l(s - h).inv()) / (h * 2.0);
-        let step = (l(s).inv() + 1.0) / slope;
-        // No further than half the way to the origin at once.
-        let step = step * (0.5 * s.norm() / step.norm()).min(1.0);
-        s -= step;
-        if !s.is_finite() {
-            return None;
-        }
-        if step.norm() < FOUND * s.norm() {
-            return Some(Complex::new(s.re, s.im.abs()));
-        }
+/// The zero of 1 + L with the smallest damping ratio.
+fn least_damped(
+    open: &Open<'_>,
+    axis: &Line<'_>,
+    negative: &[Point],
+    unstable: usize,
+) -> Result<Option<Complex<f64>>, NoMotions> {
+    let turn = open.of.delay * axis.highest(1.0);
+    if turn > LONGEST || !axis.follows {
+        return Err(NoMotions::DeadTime(turn));
     }
-    None
+    let highest = axis.highest(LEAST);
+    let found = roots::roots(open, highest, negative.iter().map(|point| (point.omega, point.rational)));
+    let beyond = |growth: f64| found.iter().copied().filter(|root| root.re > growth).map(motions).sum::<usize>();
+    let [least, most] = [VERGE[1], VERGE[0]].map(|part| beyond(part * GROWTH));
+    if !(least..=most).contains(&unstable) {
+        return Err(NoMotions::Count(beyond(GROWTH), unstable));
+    }
+    let is_moved = |root: Complex<f64>| {
+        open.plant.poles().iter().all(|pole| (root - pole).norm() > MOVED * root.norm()) && root.norm() > GROWTH
+    };
+    let of_loop = found.iter().copied().filter(|&root| grows(root) || (highest > 0.0 && is_moved(root)));
+    Ok(of_loop.min_by(|a, b| damping_ratio(*a).total_cmp(&damping_ratio(*b))))
 }
 
 /// The plant of a loop: output `output` of a linear model whose inputs are those of `acting`.

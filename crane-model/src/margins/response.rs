@@ -20,8 +20,8 @@ pub struct Term {
 pub struct Plant {
     /// Hessenberg form of A, balanced, row by row.
     hessenberg: Vec<f64>,
-    c: Vec<f64>,
-    terms: Vec<Term>,
+    pub(super) c: Vec<f64>,
+    pub(super) terms: Vec<Term>,
     poles: Vec<Complex<f64>>,
 }
 
@@ -52,22 +52,55 @@ impl Plant {
         &self.poles
     }
 
+    /// The state matrix in the basis of b and c.
+    pub(super) fn matrix(&self) -> DMatrix<f64> {
+        DMatrix::from_row_slice(self.c.len(), self.c.len(), &self.hessenberg)
+    }
+
+    /// Whether an input follows with a negative power of s.
+    pub(super) fn integrals(&self) -> bool {
+        self.terms.iter().any(|term| term.power < 0)
+    }
+
     /// G(s).
     pub fn response(&self, s: Complex<f64>) -> Complex<f64> {
-        let n = self.c.len();
-        let mut right = vec![Complex::from(0.0); n];
-        let mut through = Complex::from(0.0);
+        let (right, through) = self.input(|power| s.powi(power));
+        self.output(&self.solve(s, right)) + through
+    }
+
+    /// G(s) and its derivative.
+    pub(super) fn response_and_slope(&self, s: Complex<f64>) -> [Complex<f64>; 2] {
+        let (right, through) = self.input(|power| s.powi(power));
+        let (mut right_by_s, through_by_s) = self.input(|power| s.powi(power - 1) * f64::from(power));
+        let states = self.solve(s, right);
+        right_by_s.iter_mut().zip(&states).for_each(|(right, state)| *right -= state);
+        [self.output(&states) + through, self.output(&self.solve(s, right_by_s)) + through_by_s]
+    }
+
+    /// `Σ f_k b_k` and `Σ f_k d_k` with factors of the powers of s.
+    fn input(&self, factor: impl Fn(i32) -> Complex<f64>) -> (Vec<Complex<f64>>, Complex<f64>) {
+        let (mut right, mut through) = (vec![Complex::from(0.0); self.c.len()], Complex::from(0.0));
         for Term { power, b, d } in &self.terms {
-            let factor = s.powi(*power);
+            let factor = factor(*power);
             through += factor * *d;
             right.iter_mut().zip(b).for_each(|(right, b)| *right += factor * *b);
         }
+        (right, through)
+    }
+
+    /// `(s − A)⁻¹ right`.
+    fn solve(&self, s: Complex<f64>, mut right: Vec<Complex<f64>>) -> Vec<Complex<f64>> {
+        let n = self.c.len();
         let mut matrix: Vec<Complex<f64>> = self.hessenberg.iter().map(|entry| Complex::from(-entry)).collect();
         for j in 0..n {
             matrix[j * n + j] += s;
         }
         solve_hessenberg(&mut matrix, &mut right, n);
-        right.iter().zip(&self.c).fold(through, |sum, (x, c)| sum + x * *c)
+        right
+    }
+
+    fn output(&self, states: &[Complex<f64>]) -> Complex<f64> {
+        states.iter().zip(&self.c).map(|(x, c)| x * *c).sum()
     }
 }
 

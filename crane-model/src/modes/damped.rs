@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use nalgebra::{Complex, DMatrix, DVector, Schur, linalg::balancing};
 
 use super::{
-    NoModes, SmallMotions,
+    NoModes, SmallMotions, damping_ratio,
     eigenvectors::{Block, rounding},
 };
 
@@ -29,9 +29,9 @@ impl DampedMode {
         self.eigenvalue.norm() / TAU
     }
 
-    /// Damping ratio `ζ = −Re λ/|λ|`: 1 for a mode that returns without oscillating, negative for one that grows.
+    /// [Damping ratio](damping_ratio).
     pub fn damping_ratio(&self) -> f64 {
-        if self.eigenvalue.norm() > 0.0 { -self.eigenvalue.re / self.eigenvalue.norm() } else { 0.0 }
+        damping_ratio(self.eigenvalue)
     }
 }
 

@@ -9,6 +9,7 @@ mod small_motions;
 mod state_space;
 mod steady;
 mod undamped;
+mod verdict;
 
 pub(crate) use damped::eigenvalues;
 pub use damped::{ComplexShape, DampedMode, damped, damped_with_shapes};
@@ -20,6 +21,7 @@ pub(crate) use small_motions::independent_motions;
 pub use state_space::StateSpace;
 pub use steady::{Held, NotSteady, Steady, steady};
 pub use undamped::{Mode, undamped};
+pub use verdict::{GROWTH, damping_ratio, grows};
 
 use std::{error::Error, fmt};
 

@@ -5,7 +5,7 @@
 //! valve meets. A valve that opens slightly now and then leaves neither side full, which determines the pressures: `p + p′ = p_s + p_T`, with
 //! the tank's pressure `p_T`. With leakage past the piston the spool is open at rest, and its own slope counts.
 
-use super::{DampedMode, NoModes, SmallMotions, StateSpace, held::add_cylinders};
+use super::{DampedMode, NoModes, SmallMotions, StateSpace, grows, held::add_cylinders};
 use crate::{
     dyn_crane::DynCrane,
     force_states::ForceStates,
@@ -13,8 +13,6 @@ use crate::{
     stateful_force::StateAt,
 };
 
-/// Growth of a disturbance, 1/s, below which it is rounding or takes longer than any manoeuvre.
-const GROWTH: f64 = 1e-3;
 /// Relative accuracy of the largest stable gain.
 const ACCURATE: f64 = 1e-3;
 /// Smallest gain that is tried, as a fraction of the servo's own.
@@ -120,7 +118,7 @@ impl Loops {
         for (row, factor) in self.rows.iter().zip(factors) {
             space.matrix.view_mut((*row, 0), (1, n)).scale_mut(*factor);
         }
-        let growing = space.modes()?.into_iter().filter(|mode| mode.eigenvalue.re > GROWTH);
+        let growing = space.modes()?.into_iter().filter(|mode| grows(mode.eigenvalue));
         Ok(growing.max_by(|a, b| a.eigenvalue.re.total_cmp(&b.eigenvalue.re)))
     }
 

@@ -111,7 +111,11 @@ fn ask(options: &arguments::Margins, crane: &LiveCrane) -> Outcome<Asked> {
         Some(&[above, below]) => [above, below],
         _ => [0.0; 2],
     };
-    Ok(Asked { acting, output, of: Loop { p, i, d, filter, lead, delay, lag }, least: options.least })
+    let of = Loop { p, i, d, filter, lead, delay, lag };
+    if let Some((name, value, needed)) = of.mistake() {
+        return Err(Problem::usage(format!("`--{name} {value:e}` is out of range"), format!("write {needed}")));
+    }
+    Ok(Asked { acting, output, of, least: options.least })
 }
 
 /// The rows of all poses, on several threads.
@@ -208,6 +212,9 @@ fn facts(report: &mut Report, asked: &Asked, description: &Description, rows: &[
             report.line(name, time, "s");
         }
     }
+    if description.has_valves() {
+        report.fact("valves", "slightly open", "");
+    }
     report.value(
         "loop",
         json!({"p": p, "i": i, "d": d, "filter": filter, "lead": lead, "delay": delay, "lag": lag, "units": unit}),
@@ -257,11 +264,11 @@ fn table(axes: &Axes, description: &Description, rows: &[Row]) -> Grid {
                     found.phase.map(|(_, at)| at).into(),
                     found.gain.map(|(factor, _)| factor).into(),
                     found.reduction.map(|(factor, _)| factor).into(),
-                    found.distance.0.into(),
+                    found.distance.map(|(distance, _)| distance).into(),
                     found.bandwidth.into(),
                     found.damping().into(),
-                    found.closed.map(crane_model::nalgebra::Complex::norm).into(),
-                    "ok".into(),
+                    found.closed.ok().flatten().map(crane_model::nalgebra::Complex::norm).into(),
+                    found.closed.err().map_or_else(|| "ok".to_owned(), |why| why.to_string()).into(),
                 ]);
             }
             Err(why) => {

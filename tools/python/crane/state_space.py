@@ -112,7 +112,9 @@ class Margins:
     stable: whether the closed loop is stable, by Nyquist's count. phase: phase of L + 180°, rad, where |L| = 1 and its size is least; crossover:
     where that is. gain: smallest factor above 1 with which L passes −1, and its frequency gain_at; reduction: largest factor below 1.
     distance: of L from −1, the inverse of the largest sensitivity, and its frequency distance_at. bandwidth: where |L/(1 + L)| falls below 1/√2.
-    closed: eigenvalue of the least damped motion of the closed loop on which the loop acts, 1/s. damping: its damping ratio.
+    closed: eigenvalue, 1/s, of the least damped of all motions of the closed loop up to the highest frequency with |L| ≥ 0.1, with the exact dead
+    time, and of those that grow; NaN where |L| is nowhere 0.1. damping: its damping ratio. Where the dead time turns L by more than 30 rad up
+    to its crossover, or where the motions that grow are not as many as Nyquist's count, both are NaN, and a warning says so.
     """
 
     stable: NDArray[np.bool_]
@@ -128,7 +130,7 @@ class Margins:
 
     @property
     def damping(self) -> Array:
-        """Damping ratio of the least damped motion of the closed loop; negative if it grows."""
+        """Damping ratio of the least damped motion of the closed loop; negative if it grows, however slowly: below 1e-4 1/s it counts as stable."""
         return -self.closed.real / np.abs(self.closed)
 
 

@@ -14,7 +14,7 @@ use pyo3::types::PyDict;
 use crate::arrays::{Argument, Joined, array};
 use crate::crane::Crane;
 use crate::evaluation::{Given, STATE, State};
-use crate::mistakes::{BadRow, Invalid, describe, warn_of_rows};
+use crate::mistakes::{BadRow, Invalid, describe, warn_of_numbers, warn_of_rows};
 use crate::parallel::map_rows;
 
 /// How the states of forces are found that are not given.
@@ -204,11 +204,11 @@ pub fn loop_margins<'py>(
     let invalid = Invalid::named(invalid)?;
     let (rows, n, k) = (a.shape()[0], a.shape()[1], powers.len());
     let [a, b, c, d] = [a.to_vec()?, b.to_vec()?, c.to_vec()?, d.to_vec()?];
-    if numbers.iter().any(|number| !number.is_finite()) || numbers[3..].iter().any(|time| *time < 0.0) {
-        return Err(PyValueError::new_err("gains must be finite numbers, and times at least 0"));
-    }
     let [p, i, derivative, filter, above, below, delay, lag] = numbers;
     let of = Loop { p, i, d: derivative, filter, lead: [above, below], delay, lag };
+    if let Some((name, value, needed)) = of.mistake() {
+        return Err(PyValueError::new_err(format!("{name}={value:e}: write {needed}")));
+    }
     let found = map_rows(py, rows, |row, _| {
         let a = DMatrix::from_row_slice(n, n, &a[row * n * n..][..n * n]);
         let b = DMatrix::from_row_slice(n, k, &b[row * n * k..][..n * k]);
@@ -229,13 +229,20 @@ pub fn loop_margins<'py>(
         return Err(PyArithmeticError::new_err(describe(first, &[rows])));
     }
     warn_of_rows(py, &bad, &[rows])?;
+    let unknown = |(row, found): (usize, &Result<Margins, String>)| {
+        let why = found.as_ref().ok()?.closed.err()?;
+        Some(BadRow { row, reason: why.to_string() })
+    };
+    let unknown: Vec<BadRow> = found.iter().enumerate().filter_map(unknown).collect();
+    warn_of_numbers(py, "closed and damping", &unknown, &[rows])?;
     let none = (f64::NAN, f64::NAN);
     let row = |found: &Result<Margins, String>| match found {
         Err(_) => [f64::NAN; WIDTH],
         Ok(found) => {
             let (phase, crossover) = found.phase.unwrap_or(none);
             let ((gain, gain_at), (reduction, _)) = (found.gain.unwrap_or(none), found.reduction.unwrap_or(none));
-            let closed = found.closed.map_or(none, |root| (root.re, root.im));
+            let (distance, distance_at) = found.distance.unwrap_or(none);
+            let closed = found.closed.ok().flatten().map_or(none, |root| (root.re, root.im));
             [
                 if found.stable { 1.0 } else { 0.0 },
                 phase,
@@ -243,8 +250,8 @@ pub fn loop_margins<'py>(
                 gain,
                 gain_at,
                 reduction,
-                found.distance.0,
-                found.distance.1,
+                distance,
+                distance_at,
                 found.bandwidth.unwrap_or(f64::NAN),
                 closed.0,
                 closed.1,

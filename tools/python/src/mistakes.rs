@@ -79,6 +79,11 @@ const TOLD: usize = 5;
 
 /// Warns of bad rows of a batch of this shape.
 pub fn warn_of_rows(py: Python<'_>, bad: &[BadRow], shape: &[usize]) -> PyResult<()> {
+    warn_of_numbers(py, "results", bad, shape)
+}
+
+/// Warns of rows of which some numbers are missing.
+pub fn warn_of_numbers(py: Python<'_>, what: &str, bad: &[BadRow], shape: &[usize]) -> PyResult<()> {
     if bad.is_empty() {
         return Ok(());
     }
@@ -87,7 +92,7 @@ pub fn warn_of_rows(py: Python<'_>, bad: &[BadRow], shape: &[usize]) -> PyResult
         texts.push(format!("{} more", bad.len() - TOLD));
     }
     let category = py.get_type::<InvalidRowWarning>();
-    warn(py, &category, format!("results of {} rows are NaN: {}", bad.len(), texts.join("; ")))
+    warn(py, &category, format!("{what} of {} rows are NaN: {}", bad.len(), texts.join("; ")))
 }
 
 /// A bad row in words: its index, and why.

@@ -73,3 +73,20 @@ def test_a_run_decays_within_the_gain_margin_and_grows_beyond(part):
     # The hold is a half sample of dead time to second order, and peaks fall between samples.
     assert abs(growth - expected.closed.real) < 0.03 * abs(expected.closed.real), (growth, expected.closed)
     assert (growth < 0) == (part < 1)
+
+
+def test_long_dead_times_are_unstable_and_told():
+    """1.3 rad/s and 13 rad/s times 1e6 s: no list of motions, and why; the verdict is Nyquist's."""
+    boom = crane.load("knuckle_boom")
+    with pytest.warns(crane.InvalidRowWarning, match="is it in s"):
+        margins = boom.margins("main_boom_theta", 1.0, delay=1e6)
+    assert not margins.stable and np.isnan(margins.damping) and np.isfinite(margins.phase)
+    with pytest.raises(ValueError, match="delay=1e\\+?300.*time in s"):
+        boom.margins("main_boom_theta", 1.0, delay=1e300)
+
+
+def test_a_motion_that_grows_far_from_the_axis_is_found():
+    """All roots of 1 + L by another program: -0.1247 at 7.15 rad/s."""
+    margins = crane.load("eight_link_flexible").margins("boom_psi_rate", 5.0, delay=0.06, lag=0.05)
+    assert not margins.stable
+    np.testing.assert_allclose([margins.damping, abs(margins.closed)], [-0.1247, 7.15], rtol=1e-3)

@@ -91,6 +91,38 @@ fn a_loop_acts_on_a_valve() {
     assert_eq!(found["loop"]["units"], "1 per m");
 }
 
+/// Loops of the reference crane that grow far from the axis, by all roots of 1 + L in another program: −0.1247 at 7.15 rad/s and −0.0050 at
+/// 2.635 rad/s, as printed there.
+#[test]
+fn a_loop_that_grows_has_a_negative_damping_ratio() {
+    for (on, p, damping, at) in [("boom_psi_rate", "5", -0.1247, 7.15), ("column_psi_rate", "0.8", -0.0050, 2.635)] {
+        let asked = ["margins", "eight_link_flexible", "--on", on, "--p", p, "--delay", "0.06", "--lag", "0.05"];
+        let found = json(&[&asked[..], &["--format", "json"]].concat());
+        let row = &found["margins"][0];
+        assert_eq!((&row["stable"], &row["status"]), (&"no".into(), &"ok".into()), "{row}");
+        let number = |key: &str| row[key].as_f64().expect("a number");
+        assert!((number("damping_ratio") - damping).abs() < 6e-5, "{row}");
+        assert!((number("at") - at).abs() < 6e-3, "{row}");
+    }
+}
+
+/// A dead time in the wrong unit: unstable, without a list of motions, and the reason; longer than any, refused.
+#[test]
+fn a_dead_time_that_is_not_in_seconds_is_told() {
+    for delay in ["65", "65000", "1e6"] {
+        let asked =
+            ["margins", "knuckle_boom", "--on", "main_boom_theta", "--p", "1", "--delay", delay, "--format", "json"];
+        let row = &json(&asked)["margins"][0];
+        assert_eq!(row["stable"], "no", "{delay}: {row}");
+        assert!(row["damping_ratio"].is_null() && row["phase_margin"].is_f64(), "{delay}: {row}");
+        assert!(row["status"].as_str().is_some_and(|status| status.contains("is it in s?")), "{delay}: {row}");
+    }
+    for (option, time) in [("--delay", "1e7"), ("--filter", "1e18"), ("--lag", "1e300")] {
+        let asked = ["margins", "knuckle_boom", "--on", "main_boom_theta", "--p", "1", option, time];
+        refused(&asked, &["out of range", "a time in s"]);
+    }
+}
+
 #[test]
 fn loops_that_cannot_be_are_refused() {
     refused(
