@@ -59,6 +59,13 @@ impl ForceStates {
         }
     }
 
+    /// The same without leakage.
+    pub(crate) fn sealed(description: &Description) -> Self {
+        let mut states = Self::new(description);
+        states.kinds.iter_mut().for_each(|(kind, _)| kind.seal());
+        states
+    }
+
     /// Number of states.
     pub fn len(&self) -> usize {
         self.states.len()

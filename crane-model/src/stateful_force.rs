@@ -44,6 +44,9 @@ pub(crate) trait StatefulForces: Debug + Send + Sync {
     /// Replaces slopes where a law sticks by the steeper ones on either side of rest; `c` is the implicit part of a step, s.
     fn steepen(&self, _moment: &StateAt<'_>, _c: f64, _forces: &mut [StatefulForce]) {}
 
+    /// Takes out leakage, by which a state at rest drifts.
+    fn seal(&mut self) {}
+
     /// Motions and commands change: what is kept of the last time does not hold any more.
     fn forget(&mut self) {}
 

@@ -178,6 +178,10 @@ impl StatefulForces for Hydraulics {
         self.t = None;
     }
 
+    fn seal(&mut self) {
+        self.cylinders.iter_mut().for_each(|cylinder| cylinder.valve.leakage = 0.0);
+    }
+
     fn supplies_power(&self) -> bool {
         true
     }

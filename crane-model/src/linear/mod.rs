@@ -13,20 +13,22 @@
 //! exact for coordinates, rates and points, others are central differences, to some 1e-7 of an entry.
 
 mod differences;
+mod drift;
 mod inputs;
 mod outputs;
 
+pub use drift::Drift;
 pub use inputs::Input;
 pub use outputs::{Output, outputs};
 
 use std::{error::Error, fmt};
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector};
 
 use crate::{
     dyn_crane::{DynCrane, DynLineariseMotion, DynMotionDerivatives},
     force_states::{self, ForceStates},
-    modes::{DampedMode, NoModes, SmallMotions, StateSpace},
+    modes::{DampedMode, NoModes, SmallMotions, StateSpace, eigenvalues, grows},
     results::{Column, quantities},
     stateful_force::StateAt,
 };
@@ -83,7 +85,11 @@ pub struct LinearModel {
     pub inputs: Vec<Column>,
     /// Names and units of the outputs.
     pub outputs: Vec<Column>,
+    /// How the state moves if it is at rest and no equilibrium: shut valves, whose cylinders leak.
+    pub drift: Option<Drift>,
     space: StateSpace,
+    /// A without leakage, if the state drifts.
+    sealed: Option<DMatrix<f64>>,
 }
 
 /// Why there is no linear model.
@@ -169,9 +175,19 @@ impl LinearModel {
         self.space.modes()
     }
 
+    /// The motion that grows fastest, if any does: its eigenvalue, 1/s. What only grows with a drift does not count.
+    ///
+    /// # Errors
+    /// The QR algorithm does not converge.
+    pub fn growing(&self) -> Result<Option<Complex<f64>>, NoModes> {
+        let found = eigenvalues(self.sealed.as_ref().unwrap_or(&self.a).clone())?;
+        Ok(found.into_iter().filter(|value| grows(*value)).max_by(|a, b| a.re.total_cmp(&b.re)))
+    }
+
     fn mean(mut self, other: &Self) -> Self {
         let mean = |one: DMatrix<f64>, other: &DMatrix<f64>| (one + other) * 0.5;
         self.space.matrix = mean(self.space.matrix, &other.space.matrix);
+        self.sealed = self.sealed.zip(other.sealed.as_ref()).map(|(one, other)| mean(one, other));
         Self {
             a: mean(self.a, &other.a),
             b: mean(self.b, &other.b),
@@ -212,6 +228,11 @@ fn part<C: Linearisable>(
     if space.basis().is_some() && !rests {
         space.matrix = differences::state_matrix(crane, moment, space.unknowns(), &directions, &forces.scales());
     }
+    let drift = if rests { drift_of(crane, moment, &space, &mut forces) } else { None };
+    let sealed = match &drift {
+        Some(_) => Some(StateSpace::about(crane, moment, &a, &mut ForceStates::sealed(crane.description()))?.matrix),
+        None => None,
+    };
     let mut model = LinearModel {
         a: space.matrix.clone(),
         b: DMatrix::zeros(2 * n + m, inputs.len()),
@@ -220,7 +241,9 @@ fn part<C: Linearisable>(
         states: states(crane, &space),
         inputs: inputs.iter().map(|input| input.column(crane.description())).collect(),
         outputs: outputs.iter().map(|output| output.column.clone()).collect(),
+        drift,
         space: space.clone(),
+        sealed,
     };
     for (index, input) in inputs.iter().enumerate() {
         let effect = inputs::effect(crane, moment, *input, &space, outputs)?;
@@ -228,6 +251,16 @@ fn part<C: Linearisable>(
         model.d.set_column(index, &DVector::from_vec(effect.outputs));
     }
     Ok(model)
+}
+
+/// How a state at rest moves if its valves are shut.
+fn drift_of(crane: &dyn DynCrane, moment: &StateAt<'_>, space: &StateSpace, forces: &mut ForceStates) -> Option<Drift> {
+    if !crane.description().has_valves() {
+        return None;
+    }
+    let mut rates = vec![0.0; forces.len()];
+    forces.evaluate(crane, moment, &mut rates, None);
+    Drift::of(space, &rates)
 }
 
 /// Names and units of the states.

@@ -7,13 +7,13 @@ use crane_model::{
     Description,
     dyn_crane::{DynCrane, DynModel},
     dynamics, force_states,
-    linear::{About, Forces, LinearModel},
+    linear::{About, Drift, Forces, LinearModel},
     modes::{ComplexShape, DampedMode, Held, SmallMotions, damped_with_shapes, steady},
     statics,
 };
 use crane_page::tables::{Cell, Grid, Report, damped_mode, names};
 use nalgebra::{Complex, DMatrix};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::{
     arguments::Linearise,
@@ -28,8 +28,8 @@ use crate::{
 
 /// Number of lowest modes that are printed by default.
 const LOWEST: usize = 10;
-/// Motions that grow more slowly than this, 1/s, are not distinguished from rounding.
-const GROWTH: f64 = 1e-5;
+/// A pose that changes more slowly than this stays, m/s or rad/s.
+const STILL: f64 = 1e-5;
 /// Accelerations up to this, m/s² and rad/s², are those of a steady motion.
 const STEADY: f64 = 1e-3;
 /// The pose may change by this fraction of the rates before a motion no longer counts as steady.
@@ -101,16 +101,15 @@ pub fn linearise(options: &Linearise, registry: &Registry, out: &mut dyn Write) 
     report.fact("crane", description.name.as_str(), "");
     report.fact("about", motion.about, "");
     report.fact("time", motion.t, "s");
-    let growth = found.iter().map(|(mode, _)| mode.eigenvalue.re).fold(f64::NEG_INFINITY, f64::max);
-    report.value("stable", growth <= GROWTH);
-    if let Some((mode, _)) = found.iter().find(|(mode, _)| mode.eigenvalue.re > GROWTH) {
-        let names: Vec<&str> =
-            mode.dominating.iter().map(|index| description.coordinates[*index].name.as_str()).collect();
-        report.caution(Some(format!(
-            "unstable: a disturbance of {} grows, at most by {growth:.3} 1/s",
-            names.join(", ")
-        )));
+    let valves = description.has_valves();
+    if valves {
+        report.fact("valves", if motion.x.is_empty() { "shut" } else { "as in the results" }, "");
     }
+    report.value("drift", model.drift.as_ref().map_or(Value::Null, |drift| drift_value(description, &model, drift)));
+    report.caution(model.drift.as_ref().map(|drift| drift_words(description, &model, drift)));
+    let growing = model.growing()?;
+    report.value("stable", growing.is_none());
+    report.caution(growing.map(|growing| unstable_words(description, &found, growing)));
     for caution in &motion.cautions {
         report.caution(Some(caution.as_str()));
     }
@@ -127,6 +126,39 @@ pub fn linearise(options: &Linearise, registry: &Registry, out: &mut dyn Write) 
     report.excerpt(state_space::signals(&model), 0);
     report.show_all(options.analysis.all);
     options.analysis.format.print(&report, out)
+}
+
+/// What grows, and how fast.
+fn unstable_words(description: &Description, found: &[Mode], growing: Complex<f64>) -> String {
+    let far = |mode: &DampedMode| (mode.eigenvalue - growing).norm();
+    let nearest = found.iter().map(|(mode, _)| mode).min_by(|a, b| far(a).total_cmp(&far(b)));
+    let names = nearest
+        .into_iter()
+        .flat_map(|mode| &mode.dominating)
+        .map(|index| description.coordinates[*index].name.as_str());
+    let names: Vec<&str> = names.collect();
+    format!("unstable: a disturbance of {} grows, at most by {:.3} 1/s", names.join(", "), growing.re)
+}
+
+/// The fastest coordinate of a drift: its index, its rate, and the rate's unit.
+fn fastest(description: &Description, model: &LinearModel, drift: &Drift) -> (usize, f64, String) {
+    let coordinate = model.coordinates()[drift.fastest];
+    (coordinate, drift.rates[drift.fastest], format!("{}/s", description.coordinates[coordinate].kind.unit()))
+}
+
+fn drift_words(description: &Description, model: &LinearModel, drift: &Drift) -> String {
+    let (coordinate, rate, unit) = fastest(description, model, drift);
+    let (changes, decay) = if drift.decay < 0.0 { ("speeds up", -drift.decay) } else { ("decays", drift.decay) };
+    format!(
+        "no equilibrium: with shut valves oil leaks past pistons, and {} drifts by {rate:.2e} {unit} at first, which {changes} at {decay:.2e} 1/s; \
+         motions as slow as this are the drift's, and whether others grow is judged without the leakage",
+        description.coordinates[coordinate].name
+    )
+}
+
+fn drift_value(description: &Description, model: &LinearModel, drift: &Drift) -> Value {
+    let (coordinate, rate, unit) = fastest(description, model, drift);
+    json!({"coordinate": description.coordinates[coordinate].name.as_str(), "rate": rate, "unit": unit, "decay": drift.decay})
 }
 
 /// The motion in a row of results, with the accelerations that follow from it.
@@ -172,10 +204,10 @@ fn of_rest(crane: &dyn DynCrane, t: f64) -> Outcome<Motion> {
         return Err(Problem::failed(title, "`crane statics` says more, and what to change"));
     }
     let n = rest.q.len();
-    let cautions = crane
-        .description()
-        .has_valves()
-        .then(|| "valves are shut, as at rest, so that leakage is a slow drift; what a servo does is a matter of `crane margins` and `crane statics`".to_owned());
+    let cautions = crane.description().has_valves().then(|| {
+        "valves are shut, as at rest: what a servo does about it is a matter of `crane margins` and `crane statics`"
+            .to_owned()
+    });
     Ok(Motion {
         about: "a pose at rest",
         t,
@@ -215,7 +247,7 @@ fn of_steady(live: &LiveCrane, options: &Linearise) -> Outcome<Motion> {
     })?;
     let greatest = found.v.iter().fold(0.0, |greatest: f64, v| greatest.max(v.abs()));
     let mut cautions = Vec::new();
-    if found.drift > DRIFT * greatest && found.drift > GROWTH {
+    if found.drift > DRIFT * greatest && found.drift > STILL {
         cautions.push(format!(
             "not steady: the pose changes by up to {:.2e} rad/s or m/s as the motion goes on, so matrices and modes are valid \
              only at this moment",

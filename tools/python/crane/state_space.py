@@ -25,6 +25,10 @@ class StateSpace:
     A: (..., states, states). B: (..., states, inputs). C: (..., outputs, states). D: (..., outputs, inputs).
     states, inputs, outputs: names; state_units, input_units, output_units: their units.
     interval: None, or of a sampled model, `δx[k+1] = A δx[k] + B δu[k]`, the time between samples, s.
+    stable: (...,), whether no disturbance grows faster than 1e-4 1/s. drift: (..., coordinates), the rates, m/s and rad/s, of the coordinates in
+    the state, if the state is at rest and no equilibrium: oil leaks past pistons whose valves are shut. Zeros for equilibria and for states that
+    move. decay: (...,), the rate at which the fastest of them decays, 1/s, NaN without a drift. What only grows with a drift does not count
+    as unstable. None for sampled models.
 
     It unpacks into A, B, C, D: `scipy.signal.StateSpace(*model)`, `control.ss(*model)`.
     """
@@ -40,6 +44,9 @@ class StateSpace:
     input_units: tuple[str, ...]
     output_units: tuple[str, ...]
     interval: float | None = None
+    stable: NDArray[np.bool_] | None = None
+    drift: Array | None = None
+    decay: Array | None = None
 
     def __iter__(self) -> Iterator[Array]:
         return iter((self.A, self.B, self.C, self.D))
@@ -148,7 +155,8 @@ def about(
     lists = (None if names is None else list(names) for names in (inputs, outputs))
     found = crane._state_space(*state, valves=valves, steady=steady, **dict(zip(("inputs", "outputs"), lists, strict=True)), invalid=invalid)
     names = ("states", "inputs", "outputs", "state_units", "input_units", "output_units")
-    return StateSpace(*(found[name] for name in "ABCD"), *(tuple(found[name]) for name in names))
+    verdicts = {"stable": found["stable"] == 1.0, "drift": found["drift"], "decay": found["decay"]}
+    return StateSpace(*(found[name] for name in "ABCD"), *(tuple(found[name]) for name in names), **verdicts)
 
 
 def margins(crane: "Crane", model: StateSpace, powers: list[int], numbers: list[float], invalid: str) -> Margins:

@@ -121,6 +121,27 @@ impl Crane {
             }
             all.set_item(name, array(py, numbers, &joined.shape, &[rows, columns])?)?;
         }
+        // Verdicts: whether nothing grows, rates of a drift, and its decay.
+        let n = model.coordinates().len();
+        let mut verdicts: [Vec<f64>; 3] = Default::default();
+        for found in &found {
+            let stable = found.as_ref().ok().and_then(|model| model.growing().ok());
+            verdicts[0].push(stable.map_or(f64::NAN, |growing| if growing.is_none() { 1.0 } else { 0.0 }));
+            match found.as_ref().map(|model| &model.drift) {
+                Ok(Some(drift)) => {
+                    verdicts[1].extend(&drift.rates);
+                    verdicts[2].push(drift.decay);
+                }
+                none => {
+                    verdicts[1].extend(std::iter::repeat_n(if none.is_ok() { 0.0 } else { f64::NAN }, n));
+                    verdicts[2].push(f64::NAN);
+                }
+            }
+        }
+        let [stable, drift, decay] = verdicts;
+        all.set_item("stable", array(py, stable, &joined.shape, &[])?)?;
+        all.set_item("drift", array(py, drift, &joined.shape, &[n])?)?;
+        all.set_item("decay", array(py, decay, &joined.shape, &[])?)?;
         for (name, columns) in [("states", &model.states), ("inputs", &model.inputs), ("outputs", &model.outputs)] {
             let (names, units): (Vec<&str>, Vec<&str>) =
                 columns.iter().map(|Column { name, unit }| (name.as_str(), unit.as_str())).unzip();

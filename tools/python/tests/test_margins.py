@@ -90,3 +90,18 @@ def test_a_motion_that_grows_far_from_the_axis_is_found():
     margins = crane.load("eight_link_flexible").margins("boom_psi_rate", 5.0, delay=0.06, lag=0.05)
     assert not margins.stable
     np.testing.assert_allclose([margins.damping, abs(margins.closed)], [-0.1247, 7.15], rtol=1e-3)
+
+
+def test_a_leak_is_a_drift():
+    """Shut valves drift; slightly open ones hold the leak; a crane without valves rests."""
+    oil = crane.load("eight_link_hydraulic")
+    q = oil.statics().q
+    shut = oil.state_space(q)
+    fastest = int(np.abs(shut.drift).argmax())
+    assert shut.stable and 1e-8 < abs(shut.drift[fastest]) < 1e-3 and shut.decay > 0
+    assert np.linalg.eigvals(shut.A).real.max() > 1e-3, "what grows with the drift"
+    held = oil.state_space(q, valves="slightly open", steady=True)
+    assert held.stable and not held.drift.any() and np.isnan(held.decay)
+    rest = crane.load("knuckle_boom")
+    model = rest.state_space(rest.statics().q)
+    assert model.stable and model.drift.shape == (4,) and not model.drift.any()

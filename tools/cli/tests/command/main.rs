@@ -258,6 +258,23 @@ fn evaluation_is_shaped_as_announced() {
     assert!(npz.stdout.windows(6).any(|bytes| bytes == b"\x93NUMPY"));
 }
 
+/// A crane whose valves are shut and whose cylinders leak is in no equilibrium: the command says how fast it sinks, and not that it is unstable.
+#[test]
+fn a_crane_that_drifts_is_not_unstable() {
+    let found = json(&["linearise", "eight_link_hydraulic", "--format", "json"]);
+    assert_eq!((&found["stable"], &found["valves"]), (&true.into(), &"shut".into()));
+    let drift = &found["drift"];
+    let [rate, decay] = ["rate", "decay"].map(|key| drift[key].as_f64().expect("a number"));
+    assert!(rate.abs() > 1e-8 && rate.abs() < 1e-3 && decay > 0.0, "{drift}");
+    let printed = text(&crane(&["linearise", "eight_link_hydraulic"]).stdout);
+    assert!(
+        printed.contains("no equilibrium") && printed.contains("drifts by") && !printed.contains("unstable"),
+        "{printed}"
+    );
+    let steady = json(&["linearise", "knuckle_boom", "--format", "json"]);
+    assert!(steady["drift"].is_null() && steady["valves"].is_null(), "{steady:.300}");
+}
+
 /// Linearised about a row of results, the motion has its accelerations, and the matrices have their derivatives.
 #[test]
 fn a_moment_of_a_run_is_linearised() {

@@ -1,5 +1,6 @@
 //! Linear models of open chains, of loops and of cranes on oil: against modes, differences of the equations of motion, and runs.
 
+use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
 use crane_codegen::{SourceFile, build};
@@ -202,6 +203,70 @@ fn a_servo_follows_its_motion() {
     let gains = -(&model.c * model.a.lu().solve(&model.b).unwrap());
     assert!((gains[(0, 0)] - 1.0).abs() < 1e-3, "{gains}");
     assert!(gains[(0, 1)].abs() < 0.2, "{gains}");
+}
+
+/// Oil that leaks past a piston with a shut valve lets the arm sink as fast as the force stays in balance: with the stiffness of the oil
+/// `K = β (A²/V + A′²/V′)` and that of the load F′,
+///
+/// ```text
+/// ẏ = −β λ (p − p′) (A/V + A′/V′)/(K + F′)
+/// ```
+///
+/// worked out here from areas, volumes and moments. The state is no equilibrium, and not unstable, although A has an eigenvalue that grows.
+#[test]
+fn a_leak_is_a_drift_and_no_instability() {
+    let leakage = 2e-11;
+    let crane = lift(leakage);
+    let q = at_rest(&crane);
+    let model = linear_model(&crane, &about(&q, &[0.0; 2], Forces::Holding), &[], &[]).unwrap();
+    let [area, ring] = [0.25 * PI * 0.08 * 0.08, 0.25 * PI * (0.08 * 0.08 - 0.045 * 0.045)];
+    let (bulk, [of_piston, of_rod]) = (1.3e9, [6e-4, 4e-4]);
+    // The head, turned by the arm about the foot: length and lever.
+    let length = |psi: f64| {
+        let (x, z) = (0.9 * psi.cos() + 0.05 * psi.sin(), 0.9 * psi.sin() - 0.05 * psi.cos());
+        (x - 0.2).hypot(z + 0.9)
+    };
+    let lever = |psi: f64| (length(psi + 1e-6) - length(psi - 1e-6)) / 2e-6;
+    let force = |psi: f64| 9.81 * (300.0 * 1.2 + 80.0 * 2.2) * psi.cos() / lever(psi);
+    let rate = |psi: f64, [p, other]: [f64; 2]| {
+        let y = length(psi) - 0.8;
+        let [v, w] = [of_piston + area * y, of_rod + ring * (0.7 - y)];
+        let oil = bulk * (area * area / v + ring * ring / w);
+        let load = (force(psi + 1e-4) - force(psi - 1e-4)) / 2e-4 / lever(psi);
+        let speed = -bulk * leakage * (p - other) * (area / v + ring / w) / (oil + load);
+        let leak = leakage * (p - other);
+        (speed, [bulk / v * (-area * speed - leak), bulk / w * (ring * speed + leak)])
+    };
+    let start = (q[0], [(force(q[0]) + 3e5 * ring) / area, 3e5]);
+    let (speed, _) = rate(start.0, start.1);
+    let drift = model.drift.as_ref().expect("no equilibrium");
+    let expected = speed / lever(q[0]);
+    // Differences of the test, 1e-6 of the load's stiffness, which is 1 % of the oil's; the bob hangs within its own rounding.
+    assert!((drift.rates[0] / expected - 1.0).abs() < 1e-6, "{} for {expected}", drift.rates[0]);
+    assert_eq!(drift.fastest, 0);
+    // After a second of its own motion, by the midpoint rule in steps of 0.1 s.
+    let (mut psi, mut p) = start;
+    for _ in 0..10 {
+        let step = 0.1;
+        let (speed, slopes) = rate(psi, p);
+        let middle = [0, 1].map(|side| p[side] + 0.5 * step * slopes[side]);
+        let half = psi + 0.5 * step * speed / lever(psi);
+        let (speed, slopes) = rate(half, middle);
+        psi += step * speed / lever(half);
+        p = [0, 1].map(|side| p[side] + step * slopes[side]);
+    }
+    let decay = -(rate(psi, p).0 / lever(psi) / expected).ln();
+    // Of the second, in which the lever changes too.
+    assert!((drift.decay / decay - 1.0).abs() < 0.1 && decay > 0.0, "{} for {decay}", drift.decay);
+    assert!(model.modes().unwrap().iter().any(|mode| mode.eigenvalue.re > 1e-4), "the drift changes with the pose");
+    assert_eq!(model.growing().unwrap(), None);
+    // Without leakage there is neither.
+    let sealed = linear_model(&lift(0.0), &about(&q, &[0.0; 2], Forces::Holding), &[], &[]).unwrap();
+    assert!(sealed.drift.is_none() && sealed.growing().unwrap().is_none());
+    // A valve that feeds the leak holds the pose.
+    let fed = About { steady: true, ..about(&q, &[0.0; 2], Forces::SlightlyOpen) };
+    let held = linear_model(&crane, &fed, &[], &[]).unwrap();
+    assert!(held.drift.is_none(), "{:?}", held.drift);
 }
 
 /// A and B about a moving state with an open valve, against central differences of accelerations and rates of the states of forces.
