@@ -176,7 +176,6 @@ pub fn margins(plant: &Plant, of: &Loop) -> Result<Margins, NoMargins> {
 /// Number of motions of the closed loop that grow: `Z = P − Δarg(1 + L)/π` along the upper half of the line, P those of the open loop.
 fn closed_unstable(open: &Open<'_>) -> Result<usize, NoMargins> {
     let growing: usize = open.plant.poles().iter().copied().filter(|pole| grows(*pole)).map(motions).sum();
-    #[expect(clippy::cast_precision_loss, reason = "a few hundreds")]
     let count = growing as f64 - Line::new(GROWTH, open).turn() / PI;
     let whole = count.round();
     if (count - whole).abs() > WHOLE || whole < 0.0 || whole > f64::from(u32::MAX) {

@@ -182,8 +182,9 @@ fn the_least_damping_is_that_of_all_motions() {
         let growing: usize =
             zeros.iter().filter(|zero| zero.re > 1e-4).map(|zero| if zero.im > 0.0 { 2 } else { 1 }).sum();
         assert_eq!(margins.unstable, growing, "case {case}: {of:?}");
-        // Both end at rounding, and the own difference quotient does not move the zero.
-        let ours = margins.damping().unwrap();
+        // Both end at rounding, and the own difference quotient does not move the zero. Zeros to the left of the rectangle have more damping.
+        let beyond = 1.1 / 1.1_f64.hypot(1.0);
+        let [ours, least] = [margins.damping().unwrap(), least].map(|damping| damping.min(beyond));
         assert!((ours - least).abs() < 1e-9, "case {case}: {ours} for {least}: {of:?}");
         kinds[usize::from(margins.stable)] += 1;
     }
