@@ -10,7 +10,7 @@ use crane_model::{
     dynamics::Sample,
     force_states::ForceStates,
     modes::{ComplexShape, Mode, NoModes, damped_with_shapes, undamped},
-    results::{Recording, Table},
+    results::{Column, Recording, Table},
 };
 use nalgebra::{Complex, DVector};
 use serde_json::{Value, json};
@@ -20,7 +20,8 @@ use crate::{
     history::{Instant, instants},
     record::{entries, record},
     scene::scene,
-    strength::{self, packed},
+    strength::{self, extremes, packed},
+    tables::damping_ratio,
 };
 
 /// Maximum number of rows of a run in a page; a longer run is thinned, so that the page stays small enough to mail.
@@ -35,7 +36,7 @@ pub(crate) struct Shown<'a> {
     pub table: Cow<'a, Table>,
     /// What it carries at each result.
     pub history: Vec<Instant>,
-    /// Modes at rest, lowest first; none unless the pose is a stable equilibrium.
+    /// Modes at rest, lowest first; none unless the pose is a stable equilibrium, or if they were not asked for.
     pub modes: Vec<Vibration>,
 }
 
@@ -48,6 +49,11 @@ pub(crate) struct Vibration {
 
 impl<'a> Shown<'a> {
     pub fn new(subject: &'a Subject<'a>) -> Result<Self, NoModes> {
+        Ok(Self { modes: modes(subject)?, ..Self::without_modes(subject) })
+    }
+
+    /// The same without its modes, which take longer than everything else of a crane at rest.
+    pub fn without_modes(subject: &'a Subject<'a>) -> Self {
         let &Subject { crane, equilibrium, run, .. } = subject;
         // Without an equilibrium there is at least a pose to look at.
         let found = equilibrium.q.iter().all(|q| q.is_finite());
@@ -56,7 +62,7 @@ impl<'a> Shown<'a> {
             Some((_, recorded)) => (Cow::Borrowed(&recorded.table), instants(crane, recorded.table.rows.iter())),
             None => (Cow::Owned(rest(crane, &pose)), vec![Instant::at_rest(crane, &pose)]),
         };
-        Ok(Self { subject, pose, table, history, modes: modes(subject)? })
+        Self { subject, pose, table, history, modes: Vec::new() }
     }
 
     /// Whether it moves.
@@ -89,7 +95,6 @@ impl<'a> Shown<'a> {
             })
             .collect();
         let every = self.table.rows.len().div_ceil(MOST_ROWS).max(1);
-        let modes: Vec<Value> = self.modes.iter().map(|mode| mode.data(description)).collect();
         json!({
             "name": description.name.as_str(),
             "title": description.title.as_str(),
@@ -98,7 +103,7 @@ impl<'a> Shown<'a> {
             "drives": description.drives.iter().map(|drive| drive.coordinate).collect::<Vec<_>>(),
             "scene": scene(live, &self.pose),
             "outlines": outlines(live),
-            "modes": modes,
+            "modes": vibrations(&self.modes, description),
             "run": columns(&self.table, every),
             "record": run.map(|(settings, recorded)| record(crane, settings, recorded, program)),
             "repeat": run.map(|(settings, recorded)| entries(crane, settings, recorded, program)),
@@ -132,7 +137,7 @@ fn outlines(live: &LiveCrane) -> Value {
 }
 
 /// Modes of a stable equilibrium, each with the damping of the damped mode that moves in the same way.
-fn modes(subject: &Subject<'_>) -> Result<Vec<Vibration>, NoModes> {
+pub(crate) fn modes(subject: &Subject<'_>) -> Result<Vec<Vibration>, NoModes> {
     if !subject.equilibrium.is_stable() {
         return Ok(Vec::new());
     }
@@ -148,9 +153,14 @@ fn modes(subject: &Subject<'_>) -> Result<Vec<Vibration>, NoModes> {
         let share = |shape: &ComplexShape| weighted.dotc(shape).norm_sqr();
         let alike = damped.iter().map(|(mode, shape)| (share(shape), mode));
         let (share, damped) = alike.max_by(|a, b| a.0.total_cmp(&b.0))?;
-        (share > SAME).then(|| damped.damping_ratio())
+        (share > SAME).then(|| damping_ratio(damped))
     };
     Ok(undamped(&motions)?.into_iter().map(|mode| Vibration { damping: damping(&mode), mode }).collect())
+}
+
+/// Modes for the page.
+pub(crate) fn vibrations(modes: &[Vibration], description: &Description) -> Value {
+    modes.iter().map(|mode| mode.data(description)).collect()
 }
 
 impl Vibration {
@@ -163,11 +173,32 @@ impl Vibration {
     }
 }
 
-/// Names, units and values of every `every`-th row, column by column.
+/// Names, units and values of every `every`-th row, column by column; the extremes are those of all rows.
 fn columns(table: &Table, every: usize) -> Value {
     let rows: Vec<&Vec<f64>> = table.rows.iter().step_by(every).collect();
     let numbers = (0..table.columns.len()).flat_map(|column| rows.iter().map(move |row| row[column]));
-    let columns: Vec<Value> =
-        table.columns.iter().map(|column| json!({"name": column.name, "unit": column.unit})).collect();
+    let described = |(index, column): (usize, &Column)| {
+        let [least, most] = extremes(table.rows.iter().map(|row| row[index]));
+        json!({"name": column.name, "unit": column.unit, "least": least, "most": most})
+    };
+    let columns: Vec<Value> = table.columns.iter().enumerate().map(described).collect();
     json!({"columns": columns, "rows": rows.len(), "every": every, "data": packed(numbers)})
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A page that leaves out rows still knows the extremes of all.
+    #[test]
+    fn a_thinned_run_keeps_its_extremes() {
+        let mut table = Table::default();
+        table.add("t", "s");
+        table.add("x", "m");
+        table.rows = (0..7_i32).map(f64::from).map(|t| vec![t, if t == 4.0 { 9.0 } else { t }]).collect();
+        let written = columns(&table, 3);
+        assert_eq!((&written["rows"], &written["every"]), (&json!(3), &json!(3)));
+        assert_eq!(written["columns"][1], json!({"name": "x", "unit": "m", "least": 0.0, "most": 9.0}));
+        assert_eq!(extremes([f64::NAN, 2.0, f64::NAN, -1.0].into_iter()), [-1.0, 2.0]);
+    }
 }

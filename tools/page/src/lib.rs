@@ -84,9 +84,29 @@ pub fn page(subjects: &[Subject<'_>], texts: Texts<'_>, program: Program) -> Res
 /// The modes of a crane could not be computed.
 pub fn data(subjects: &[Subject<'_>], texts: Texts<'_>, program: Program) -> Result<Value, NoModes> {
     let shown = subjects.iter().map(Shown::new).collect::<Result<Vec<_>, _>>()?;
+    Ok(written(&shown, texts, program))
+}
+
+/// The data of a page of one crane without its modes, which [`modes`] gives afterwards.
+pub fn data_without_modes(subject: &Subject<'_>, texts: Texts<'_>, program: Program) -> Value {
+    written(&[Shown::without_modes(subject)], texts, program)
+}
+
+/// The modes of a crane at rest, and the figures about them.
+///
+/// # Errors
+/// They could not be computed.
+pub fn modes(subject: &Subject<'_>) -> Result<Value, NoModes> {
+    let description = subject.crane.description();
+    let modes = crane::modes(subject)?;
+    let figures: Vec<_> = figures::vibration(&modes, description).into_iter().collect();
+    Ok(json!({"modes": crane::vibrations(&modes, description), "figures": figures::json(&figures)}))
+}
+
+fn written(shown: &[Shown<'_>], texts: Texts<'_>, program: Program) -> Value {
     let Texts { tables, chart, load_chart, moves, command, spec, instrument } = texts;
     let tables = tables.map(|report| report.page());
-    let (main, rigid) = match shown.as_slice() {
+    let (main, rigid) = match shown {
         [] => (None, None),
         [main] => (Some(main), None),
         [rigid, .., main] => (Some(main), Some(rigid)),
@@ -94,7 +114,7 @@ pub fn data(subjects: &[Subject<'_>], texts: Texts<'_>, program: Program) -> Res
     let figures = main.map_or_else(Vec::new, |main| figures::figures(main, rigid));
     let summary = main.map(|main| figures::sign::summary(main, &figures, command.as_deref(), program));
     let (verdict, sentence) = figures::verdict(&figures);
-    Ok(json!({
+    json!({
         "cranes": shown.iter().map(|crane| crane.data(program)).collect::<Vec<_>>(),
         "figures": figures::json(&figures),
         "verdict": {"verdict": verdict.name(), "text": sentence},
@@ -106,7 +126,7 @@ pub fn data(subjects: &[Subject<'_>], texts: Texts<'_>, program: Program) -> Res
         "command": command,
         "spec": spec,
         "instrument": instrument,
-    }))
+    })
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use crane_model::{dyn_crane::DynCrane, dynamics::Settings, results::Verification, runs::Recorded};
 use serde_json::{Map, Value, json};
 
-use crate::tables::readable;
+use crate::tables::{pace, readable};
 
 /// The program that computed a run.
 #[derive(Clone, Copy)]
@@ -50,8 +50,8 @@ pub fn record(crane: &dyn DynCrane, settings: &Settings, recorded: &Recorded, pr
         "parameters": parameters,
         "cautions": recorded.cautions,
         "differences_from_a_finer_run": recorded.verification.as_ref().map(|verification| differences(recorded, verification)),
-        "wall_time_s": recorded.wall.as_secs_f64(),
-        "real_time_factor": recorded.real_time_factor(),
+        "wall_time_s": pace(recorded).map(|(wall, _)| wall),
+        "real_time_factor": pace(recorded).map(|(_, factor)| factor),
     })
 }
 
@@ -86,7 +86,9 @@ pub(crate) fn entries(
         // Exact, to repeat the run.
         add(&info.name, format!("{value} {}", info.unit).trim_end().to_owned() + &degrees);
     }
-    add("wall time", format!("{} s", readable(recorded.wall.as_secs_f64())));
-    add("real-time factor", readable(recorded.real_time_factor()));
+    if let Some((wall, factor)) = pace(recorded) {
+        add("wall time", format!("{} s", readable(wall)));
+        add("real-time factor", readable(factor));
+    }
     entries
 }

@@ -3,7 +3,7 @@ use crane_model::dyn_crane::DynModel;
 
 use super::*;
 
-fn live(name: &str) -> LiveCrane {
+pub(crate) fn live(name: &str) -> LiveCrane {
     let text = crane_specs::spec(name).expect("a shipped crane");
     LiveCrane::new(compile::load(&SourceFile::new(name, text)).unwrap_or_else(|mistakes| panic!("{mistakes}")))
 }
@@ -49,6 +49,38 @@ fn a_crane_without_an_equilibrium_is_shown_at_its_guess() {
     equilibrium.status = crane_model::statics::Status::Overflow;
     let (_, data) = at_rest(&live, &equilibrium, "");
     assert_eq!(pose(&data["cranes"][0]), crane.guess());
+}
+
+/// Modes can be asked for after everything else: then both together are the page.
+#[test]
+fn modes_come_apart_from_the_crane_at_rest() {
+    let live = live("eight_link_flexible");
+    let crane: &dyn DynCrane = &live;
+    let equilibrium = crane.equilibrium(&crane_model::statics::Settings::default());
+    let subject = Subject { label: "value", crane, live: &live, equilibrium: &equilibrium, run: None };
+    let program = Program { name: "test", version: "0" };
+    let whole = data(&[subject], Texts::default(), program).expect("modes");
+    let mut first = data_without_modes(&subject, Texts::default(), program);
+    let later = modes(&subject).expect("modes");
+    assert_eq!(first["cranes"][0]["modes"], json!([]));
+    assert_eq!(later["modes"].as_array().map(Vec::len), Some(live.size()));
+    first["cranes"][0]["modes"] = later["modes"].clone();
+    let figures = first["figures"].as_array_mut().expect("figures");
+    figures.extend(later["figures"].as_array().expect("figures").iter().cloned());
+    assert_eq!(first, whole);
+}
+
+/// A pendulum without damping has the ratio 0, not the rounding of its eigenvalue.
+#[test]
+fn what_is_not_damped_says_zero() {
+    let live = live("double_pendulum");
+    let crane: &dyn DynCrane = &live;
+    let equilibrium = crane.equilibrium(&crane_model::statics::Settings::default());
+    let subject = Subject { label: "value", crane, live: &live, equilibrium: &equilibrium, run: None };
+    let found = modes(&subject).expect("modes");
+    assert_eq!(found["modes"][0]["damping"], 0.0);
+    let note = found["figures"][0]["note"].as_str().expect("a note");
+    assert!(note.ends_with("; damping ratio 0"), "{note}");
 }
 
 #[test]

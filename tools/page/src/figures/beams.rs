@@ -1,11 +1,14 @@
 //! What bending beams do: utilisation, deflection, vibration.
 
-use crane_model::sections::{StressedSection, stressed_sections};
+use crane_model::{
+    Description,
+    sections::{StressedSection, stressed_sections},
+};
 use nalgebra::Vector3;
 
 use super::{Figure, quantity, spoken};
 use crate::{
-    crane::Shown,
+    crane::{Shown, Vibration},
     tables::{readable, uncertain},
 };
 
@@ -62,9 +65,8 @@ pub(super) fn deflection(crane: &Shown<'_>, rigid: &Shown<'_>) -> Option<Figure>
 }
 
 /// The lowest frequency, with its damping.
-pub(super) fn vibration(crane: &Shown<'_>) -> Option<Figure> {
-    let lowest = crane.modes.first()?;
-    let description = crane.subject.crane.description();
+pub(crate) fn vibration(modes: &[Vibration], description: &Description) -> Option<Figure> {
+    let lowest = modes.first()?;
     let names = lowest.mode.dominating.iter().take(2).map(|&index| spoken(&description.coordinates[index].name));
     let names = names.collect::<Vec<_>>().join(", ");
     let damping = lowest.damping.map_or_else(String::new, |ratio| format!("; damping ratio {}", uncertain(ratio)));

@@ -10,6 +10,8 @@ mod beams;
 mod loads;
 pub mod sign;
 
+pub(crate) use beams::vibration;
+
 use serde_json::{Value, json};
 
 use crate::{crane::Shown, tables::readable};
@@ -84,7 +86,7 @@ pub(crate) fn figures(crane: &Shown<'_>, rigid: Option<&Shown<'_>>) -> Vec<Figur
     found.extend(loads::pressure(crane));
     found.extend(loads::drives(crane));
     found.extend(rigid.and_then(|rigid| beams::deflection(crane, rigid)));
-    found.extend(beams::vibration(crane));
+    found.extend(vibration(&crane.modes, crane.subject.crane.description()));
     found.extend(loads::energy(crane));
     found
 }

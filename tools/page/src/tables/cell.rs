@@ -215,6 +215,9 @@ pub fn number_text(number: f64) -> String {
 
 /// A number with two significant digits, in powers of ten where it is very large or small.
 pub(crate) fn uncertain(number: f64) -> String {
+    if number == 0.0 {
+        return "0".to_owned();
+    }
     let short = format!("{number:.1e}");
     match short.parse::<f64>() {
         Ok(rounded) if (1e-3..1e6).contains(&rounded) => rounded.to_string(),

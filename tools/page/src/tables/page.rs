@@ -3,7 +3,7 @@
 use crane_model::runs::{Failed, POSES, Reason, Recorded, Start, manoeuvre};
 
 use super::{
-    Case, Report, caution_of_runs, damped_modes, deflection, equilibria, extremes, stable_steps, summary,
+    Case, Report, VALUE, caution_of_runs, damped_modes, deflection, equilibria, extremes, stable_steps, summary,
     undamped_modes,
 };
 
@@ -17,6 +17,14 @@ const AFFORDABLE: usize = 100;
 /// # Errors
 /// The modes of the last crane cannot be computed.
 pub fn of_page(cases: &[Case<'_>], runs: &[&Recorded], bend: f64, changes: Option<&[f64]>) -> Result<Report, Failed> {
+    // The page is about a single crane as a whole, not a column of each table.
+    let unnamed = match cases {
+        [Case { crane, equilibrium, .. }] => {
+            vec![Case { label: VALUE, crane: *crane, equilibrium: equilibrium.clone() }]
+        }
+        _ => Vec::new(),
+    };
+    let cases = if unnamed.is_empty() { cases } else { &unnamed };
     let mut report = equilibria(cases, bend);
     let labelled: Vec<(&str, &Recorded)> = cases.iter().map(|case| case.label).zip(runs.iter().copied()).collect();
     caution_of_runs(&mut report, labelled.iter().copied());
@@ -48,7 +56,30 @@ fn affordable_poses(coordinates: usize) -> u16 {
 
 #[cfg(test)]
 mod tests {
+    use crane_model::dyn_crane::DynCrane;
+    use serde_json::json;
+
     use super::*;
+
+    /// The page is about the crane: its name in every heading would push the numbers off the screen.
+    #[test]
+    fn tables_of_a_single_crane_do_not_repeat_its_name() {
+        let crane = crate::tests::live("eight_link_rigid");
+        let crane: &dyn DynCrane = &crane;
+        let page = |cases: &[Case<'_>]| {
+            let report = of_page(cases, &[], 1.0, None).unwrap_or_else(|failed| panic!("{failed}")).page();
+            let grids = report["grids"].as_array().cloned().unwrap_or_default();
+            let headers = |key: &str| grids.iter().find(|grid| grid["key"] == key).map(|grid| grid["headers"].clone());
+            ["reactions", "points", "drives"].map(|key| headers(key).unwrap_or_default())
+        };
+        let name = crane.description().name.as_str();
+        let alone = page(&[Case::new(name, crane)]);
+        assert_eq!(alone[0], json!(["support", "x", "y", "z", "unit"]));
+        assert_eq!(alone[1], json!(["point", "x", "y", "z", "unit"]));
+        assert_eq!(alone[2], json!(["drive", "value", "unit"]));
+        let [_, points, _] = page(&[Case::new("one", crane), Case::new("other", crane)]);
+        assert_eq!(points, json!(["point", "one x", "one y", "one z", "other x", "other y", "other z", "unit"]));
+    }
 
     #[test]
     fn large_cranes_have_fewer_poses() {

@@ -46,7 +46,11 @@ pub fn summary(runs: &[(&str, &Recorded)]) -> Grid {
     let headings = [Heading::from("quantity")].into_iter().chain(values).chain(["unit".into()]).collect();
     let mut grid = Grid::with_headings("summary", "Run", headings);
     let mut row = |name: String, unit: &str, value: &dyn Fn(&Recorded) -> Option<f64>| {
-        let values = runs.iter().map(|(_, run)| value(run).into());
+        let values: Vec<Option<f64>> = runs.iter().map(|(_, run)| value(run)).collect();
+        if values.iter().all(Option::is_none) {
+            return;
+        }
+        let values = values.into_iter().map(Cell::from);
         grid.row([name.into()].into_iter().chain(values).chain([unit.into()]).collect::<Vec<_>>());
     };
     let greatest = |run: &Recorded, column: &str| run.table.values(column).map(|v| v.map(f64::abs).fold(0.0, f64::max));
@@ -54,9 +58,14 @@ pub fn summary(runs: &[(&str, &Recorded)]) -> Grid {
     row("work of the drives".to_owned(), "J", &|run| last(run, "drive_work"));
     row("dissipated".to_owned(), "J", &|run| last(run, "dissipated_energy"));
     row("energy balance, largest error".to_owned(), "J", &|run| greatest(run, "energy_balance"));
-    row("wall time".to_owned(), "s", &|run| Some(run.wall.as_secs_f64()));
-    row("real-time factor".to_owned(), "", &|run| Some(run.real_time_factor()));
+    row("wall time".to_owned(), "s", &|run| Some(pace(run)?.0));
+    row("real-time factor".to_owned(), "", &|run| Some(pace(run)?.1));
     grid
+}
+
+/// Wall time of a run, s, and simulated time per wall time; none where no clock was read, as in a page.
+pub(crate) fn pace(run: &Recorded) -> Option<(f64, f64)> {
+    (!run.wall.is_zero()).then(|| (run.wall.as_secs_f64(), run.real_time_factor()))
 }
 
 /// Adds the cautions of labelled runs, with the label as prefix if there are several.
