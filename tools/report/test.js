@@ -90,10 +90,11 @@ async function panels(page) {
           kind === "path" ? (Math.max(...curves.flatMap(({ x, values }) => [extent(x), extent(values)])) * bbox.width) / (scales.x.max - scales.x.min) : Infinity;
         const shown = globalThis.report.plots.find((one) => one.id === id);
         const values = [...figure.querySelectorAll(".u-series:not(:first-child) .u-value")].map((value) => value.textContent);
-        return { coloured, length: shown ? drawn(shown) : Infinity, values: along ? [] : values };
+        return { coloured, length: shown ? drawn(shown) : Infinity, values: along ? [] : values, isRatio: shown?.y.unit === "1" };
       }, id);
       assert(seen.coloured > Math.min(100, seen.length / 2), `${id}: no curve (${seen.coloured} pixels of ${seen.length})`);
-      for (const value of seen.values) assert.match(value, /^-?[\d.,e\s-]+ \S/, `${id}: ${value}`);
+      // A ratio has no unit.
+      for (const value of seen.values) assert.match(value, seen.isRatio ? /^-?[\d.e-]+$/ : /^-?[\d.,e\s-]+ \S/, `${id}: ${value}`);
     });
   }
   return ids;
@@ -150,7 +151,8 @@ async function moves(page) {
   await page.evaluate(() => scrollTo(0, 0));
   const look = async (t) => {
     await seek(page, t);
-    await page.waitForTimeout(250);
+    // Pictures differ in what they show, not in their detail.
+    await page.waitForFunction(() => !globalThis.report.viewer.moves);
     return page.locator("#view canvas").screenshot();
   };
   const duration = await page.evaluate(() => globalThis.report.player.duration);
@@ -171,6 +173,62 @@ async function moves(page) {
   await page.waitForFunction(() => globalThis.report.player.t > 0.05);
   await page.keyboard.press("Space");
   assert.equal(await page.evaluate(() => globalThis.report.player.playing), false, "the play button has the focus: space pauses");
+}
+
+/** A run plays once and rests, without a picture of the crane at rest in between and out of sight without any; counts, no times. */
+async function rests(page) {
+  await page.evaluate(() => {
+    scrollTo(0, 0);
+    const { viewer, player } = globalThis.report;
+    const paint = viewer.paint.bind(viewer);
+    globalThis.painted = [];
+    viewer.paint = () => {
+      paint();
+      globalThis.painted.push({ level: viewer.level, playing: player.playing, triangles: viewer.renderer.info.render.triangles, calls: viewer.renderer.info.render.calls });
+    };
+  });
+  const { soft, duration } = await page.evaluate(() => ({ soft: globalThis.report.viewer.soft, duration: globalThis.report.player.duration }));
+  if (!duration) return;
+  const settled = () => page.waitForFunction(() => !globalThis.report.viewer.moves && !globalThis.report.player.playing);
+  const frames = () => page.evaluate(() => globalThis.painted.length);
+  await settled();
+  const length = Math.min(1.5, duration);
+  await page.evaluate((from) => {
+    const { player } = globalThis.report;
+    globalThis.painted = [];
+    player.seek(from);
+    player.play(true);
+  }, duration - length);
+  await page.waitForFunction(() => globalThis.painted.some(({ playing }) => playing));
+  // Longer than a crane must be still to be drawn as one at rest.
+  await page.evaluate(() => {
+    const { viewer } = globalThis.report;
+    clearTimeout(viewer.quiet);
+    viewer.settle();
+  });
+  await settled();
+  await eventually(page, async () => assert.equal((await page.evaluate(() => globalThis.painted.at(-1))).level, 0, "at rest with all detail"));
+  const painted = await page.evaluate(() => globalThis.painted);
+  const playing = painted.filter((one) => one.playing);
+  assert(playing.length > 0);
+  if (soft) {
+    const { calls } = painted.at(-1);
+    for (const one of playing) assert(one.level >= 1 && one.calls < calls, `${JSON.stringify(one)} in a motion, at rest ${calls} calls`);
+  }
+  assert.equal(await page.evaluate(() => globalThis.report.player.t), duration, "it plays once");
+  const still = await frames();
+  await page.waitForTimeout(700);
+  assert.equal(await frames(), still, "at rest nothing is drawn");
+  // Out of sight.
+  await page.evaluate(() => scrollTo(0, document.documentElement.scrollHeight));
+  await page.waitForFunction(() => !globalThis.report.viewer.seen);
+  const before = await frames();
+  await page.evaluate(() => globalThis.report.player.play(true));
+  await page.waitForFunction(() => globalThis.report.player.t > 0);
+  await settled();
+  assert.equal(await frames(), before, "nothing is drawn out of sight");
+  await page.evaluate(() => scrollTo(0, 0));
+  await eventually(page, async () => assert((await frames()) > before, "what has changed is drawn when it comes into sight"));
 }
 
 /** Zoom by keys, cursor by keys, SVG with units. */
@@ -291,7 +349,7 @@ const browser = await launch();
 let count = 0;
 const said = await open(browser, { viewport: { width: 1440, height: 900 }, colorScheme: "light" }, async (page) => {
   await seek(page, (await page.evaluate(() => globalThis.report.player.duration)) * 0.32);
-  await page.waitForTimeout(300);
+  await page.waitForFunction(() => !globalThis.report.viewer.moves);
   await page.screenshot({ path: picture("light") });
   count = (await panels(page)).length;
   if (csvFiles.length) {
@@ -312,6 +370,7 @@ const said = await open(browser, { viewport: { width: 1440, height: 900 }, color
     spec.forEach((side, i) => assert(Math.abs(drawn[i] - side) < 1e-5, `a beam drawn ${drawn} m high and wide, ${spec} in the spec`));
   }
   await moves(page);
+  await rests(page);
   await plots(page);
   await strength(page);
   await cylinders(page);
@@ -324,17 +383,24 @@ const said = await open(browser, { viewport: { width: 1440, height: 900 }, color
 });
 said.push(...(await open(browser, { viewport: { width: 1440, height: 900 }, colorScheme: "dark" }, async (page) => {
   assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), "dark");
-  await page.waitForTimeout(300);
+  await page.waitForFunction(() => !globalThis.report.viewer.moves);
   await page.screenshot({ path: picture("dark") });
 })));
 const phone = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, isMobile: true, hasTouch: true };
 said.push(...(await open(browser, phone, async (page) => {
   const [width, screen] = await page.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
   assert(width <= screen, `the page is ${width} wide on a screen of ${screen}`);
-  await page.waitForTimeout(300);
+  await page.waitForFunction(() => !globalThis.report.viewer.moves);
   await page.screenshot({ path: picture("phone") });
 })));
 assert.deepEqual(said, [], "the page says or asks for something");
+// The reader sees what fails in the page.
+const failures = await open(browser, { viewport: { width: 1000, height: 700 } }, async (page) => {
+  assert.equal(await page.locator("#fault").isVisible(), false);
+  await page.evaluate(() => setTimeout(() => { throw new Error("a mistake of the test"); }));
+  await eventually(page, async () => assert.match(await page.locator("#fault").textContent(), /failed \(a mistake of the test\)/));
+});
+assert(failures.length === 1 && failures[0].includes("a mistake of the test"), failures.join("\n"));
 await browser.close();
 
 // Without 3-D, everything else is there.

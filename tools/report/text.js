@@ -17,6 +17,8 @@ function shown() {
   return {
     written: { figures: data.figures, summary: data.summary, verdict: data.verdict, moves: data.moves },
     bars: [...document.querySelectorAll("#moves .block .move")].map((row) => ({ texts: texts(row, "span.number, span.change"), width: parseFloat(row.querySelector("b").style.width) })),
+    cut: [...document.querySelectorAll("#moves .number")].filter((one) => one.scrollWidth > one.clientWidth).map(({ textContent }) => textContent),
+    ticks: [...document.querySelectorAll("#moves .tick")].map((tick) => tick.getBoundingClientRect()).filter(({ width }) => width).map(({ left, right }) => [left, right]),
     drawn: texts(document, "#moves code").join(""),
     tiles: [...document.querySelectorAll("#tiles > div")].map((tile) => ({ texts: texts(tile, "span, strong"), colour: red(tile.querySelector("strong")) })),
     lines: [...document.querySelectorAll("#sign tr")].map((line) => ({ name: texts(line, "th")[0], texts: texts(line, "td p"), colour: red(line.querySelector("td")) })),
@@ -36,9 +38,12 @@ for (const file of process.argv.slice(2).map((path) => resolve(path))) {
   await page.goto(`file://${file}`);
   await page.waitForFunction(() => document.documentElement.dataset.ready === "yes");
   const name = basename(file);
-  for (const media of ["screen", "print"]) {
+  for (const [media, width] of [["screen", 1000], ["screen", 390], ["print", 680]]) {
     await page.emulateMedia({ media });
-    const { written, tiles, lines, verdict, whole, titles, bars, drawn } = await page.evaluate(shown);
+    await page.setViewportSize({ width, height: 700 });
+    const { written, tiles, lines, verdict, whole, titles, bars, drawn, cut, ticks } = await page.evaluate(shown);
+    assert.deepEqual(cut, [], `${name}: names that are cut, ${media} of ${width} points`);
+    ticks.slice(1).forEach(([left], index) => assert(left > ticks[index][1], `${name}: numbers of the scale overlap, ${media} of ${width} points`));
     assert.deepEqual(tiles.map(({ texts }) => texts), written.figures.map(({ title, value, note }) => [title, value, note]), `${name}: tiles`);
     assert.deepEqual(lines.map(({ name, texts }) => [name, texts]), written.summary.map(({ name, texts }) => [name, texts]), `${name}: to sign`);
     const moved = (written.moves?.outputs ?? []).flatMap((output) => output.bars);

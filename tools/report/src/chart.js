@@ -39,7 +39,7 @@ function loads({ load_chart: rows, units }) {
   const order = ["radius", "largest_load", "height_of_largest_load", "limit_of_largest_load", "least_load", "height_of_least_load", "limit_of_least_load"];
   const columns = order.filter((key) => key in rows[0]).flatMap((key) => of(rows[0][key], key));
   const value = (row, [key, label]) => (label === null ? row[key] : row[key]?.[label]);
-  const cell = (value) => (value === null || value === undefined ? "–" : typeof value === "number" ? String(Number(value.toPrecision(4))) : value);
+  const cell = (value) => (typeof value === "string" ? value : readable(value));
   return grid({
     key: "load_chart",
     title: "Loads over the radius: the largest and the least load of all poses that reach it, rounded down",

@@ -10,7 +10,13 @@ export function decoded(data) {
   return { ...data, crane, rigid: data.cranes.length > 1 ? data.cranes[0] : null };
 }
 
-/** A recorded run: columns by name, each `{name, unit, values}`. */
+/**
+ * Whether there is a number. What is absent is null in JSON and not finite in the packed numbers of a run: no load that a pose could bear, no margin where
+ * nothing stabilises. In tables it is "–", in files an empty field, in curves a gap.
+ */
+export const known = (value) => value != null && Number.isFinite(value);
+
+/** A recorded run: columns by name, each `{name, unit, values, least, most}`; the extremes are those of the whole run, also where rows are left out. */
 function run({ columns, rows, every, data }) {
   const bytes = Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0));
   const numbers = new Float32Array(bytes.buffer);
@@ -33,31 +39,44 @@ export function place(times, t) {
   return { low, high, part };
 }
 
-/** Value of a column between samples. */
-export const at = (values, { low, high, part }) => values[low] + (values[high] - values[low]) * part;
+/** Value of a column between samples; beside an absent one, the nearer sample. */
+export const at = (values, { low, high, part }) => {
+  const way = values[high] - values[low];
+  if (!known(way)) return values[part < 0.5 ? low : high];
+  return values[low] + way * part;
+};
 
-/** Minimum and maximum of numbers. */
+/** Minimum and maximum of the numbers that are known. */
 export function range(values) {
   let low = Infinity;
   let high = -Infinity;
   for (const value of values) {
+    if (!known(value)) continue;
     if (value < low) low = value;
     if (value > high) high = value;
   }
   return [low, high];
 }
 
-/** Some significant digits; digits before the point are never dropped. */
+/** Numbers times a factor; what is absent stays so, as null. */
+export const times = (values, factor) => Array.from(values, (value) => (known(value) ? value * factor : null));
+
+/** Some significant digits, as the command prints them (`tools/page/src/tables/cell.rs`); digits before the point are never dropped. */
 export function significant(value, digits) {
-  if (value == null || !Number.isFinite(value)) return "–";
+  if (!known(value)) return "–";
   const size = Math.abs(value);
   if (size < 1e-10) return "0";
-  if (size < 1e-3 || size >= 1e7) return value.toExponential(digits - 1);
+  const plain = String(value);
+  if (size >= 1e-6 && plain.length <= digits + 1) return plain;
+  if (size < 1e-3 || size >= 1e7) return value.toExponential(digits - 1).replace("e+", "e");
   return value.toFixed(Math.max(digits - 1 - Math.floor(Math.log10(size)), 0));
 }
 
 /** Four digits, as the command prints them. */
 export const readable = (value) => significant(value, 4);
+
+/** A number with its unit; a ratio has none. */
+export const measured = (value, unit) => (unit && unit !== "1" ? `${readable(value)} ${unit}` : readable(value));
 
 /** Larger units for larger numbers: N to kN, J to kJ, m to mm. */
 export function scaled(unit, values) {

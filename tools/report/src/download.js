@@ -1,4 +1,5 @@
 // Files to download from the page.
+import { known, times } from "./data.js";
 
 /** Offers text, or a blob, as a file. */
 export function save(name, text, type) {
@@ -8,8 +9,9 @@ export function save(name, text, type) {
   setTimeout(() => URL.revokeObjectURL(url), 1000);
 }
 
-/** The shortest text of a 32-bit number: the digits that the page has. */
+/** The shortest text of a 32-bit number: the digits that the page has; of what is absent, none. */
 const exact = (value) => {
+  if (!known(value)) return "";
   for (let digits = 6; digits <= 9; digits += 1) {
     const text = value.toPrecision(digits);
     if (Math.fround(Number(text)) === Math.fround(value)) return String(Number(text));
@@ -34,7 +36,7 @@ export function csv(plot) {
   const columns = curves.flatMap(({ label, values, x: own }) =>
     own
       ? [{ name: `${label} ${x.label}`, unit: x.unit, values: own }, { name: `${label} ${y.label}`, unit: y.unit, values }]
-      : [{ name: label, unit: y.unit, values: factor === 1 ? values : Float32Array.from(values, (v) => v * factor) }],
+      : [{ name: label, unit: y.unit, values: times(values, factor) }],
   );
   return table(plot.kind === "path" ? columns : [{ name: x.label, unit: x.unit, values: x.values }, ...columns]);
 }

@@ -27,7 +27,7 @@ const LEG = 0.014;
 const MARGIN = 0.03;
 
 export const COLOURS = {
-  base: 0x4a5560, link: 0xe2a32b, flexible: 0x1f7fc0, slide: 0xb9c2cb, load: 0xa5784f, pin: 0x2b3138, passive: 0x8d979f,
+  base: 0x4a5560, link: 0xe2a32b, flexible: 0x1f7fc0, stage: 0x5aa9dd, slide: 0xb9c2cb, load: 0xa5784f, pin: 0x2b3138, passive: 0x8d979f,
   barrel: 0x59636e, rod: 0xdfe4e8, linkage: 0xc98a1c, rope: 0x2b3138, pad: 0xf2f2ee, ghost: 0xd55e00,
 };
 
@@ -44,6 +44,8 @@ export class Figure {
     this.legs = [];
     /** Heights and widths of the beams as drawn, m, by name. */
     this.sizes = new Map();
+    /** How many beams are around each one. */
+    this.depths = new Map();
     this.materials = new Map();
     this.kinematics.pose(this.kinematics.reference);
     this.build();
@@ -133,7 +135,10 @@ export class Figure {
     const [height, width] = outline?.size ?? along[0].slice(1);
     const side = Math.max(height, width);
     const geometry = new BeamGeometry(lengths, along, outline?.round);
-    const mesh = this.mesh(geometry, COLOURS.flexible);
+    // Every other stage of a telescope is lighter, so that it can be told from the one around it.
+    const depth = outer ? (this.depths.get(outer) ?? 0) + 1 : 0;
+    this.depths.set(name, depth);
+    const mesh = this.mesh(geometry, depth % 2 ? COLOURS.stage : COLOURS.flexible);
     mesh.frustumCulled = false;
     this.beams.push({ name, geometry, elements, mesh, plain: mesh.material });
     // Rings between the elements show where it bends.

@@ -26,7 +26,8 @@ function scale(greatest) {
   const track = element("span", { className: "track" });
   for (let count = -most; count <= most; count++) {
     const text = `${Number((100 * count * step).toPrecision(3))} %`.replace("-", "−");
-    const tick = element("i", { className: "tick", textContent: text });
+    // Where there is little room, only the middle and the ends have numbers.
+    const tick = element("i", { className: count % most ? "tick between" : "tick", textContent: text });
     tick.style.left = `${at(count * step, greatest)}%`;
     track.append(tick);
   }
@@ -44,5 +45,7 @@ function row({ number, relative, text }, greatest) {
   const [from, to] = [0, relative].sort((a, b) => a - b).map((share) => at(share, greatest));
   Object.assign(bar.style, { left: `${from}%`, width: `${to - from}%` });
   const track = element("span", { className: "track" }, bar);
-  return element("div", { className: "move" }, element("span", { className: "number", textContent: number, title: number }), track, element("span", { className: "change", textContent: text }));
+  // Names may break after a dot and an underscore.
+  const name = number.split(/(?<=[._])/).flatMap((part) => [part, document.createElement("wbr")]);
+  return element("div", { className: "move" }, element("span", { className: "number" }, ...name.slice(0, -1)), track, element("span", { className: "change", textContent: text }));
 }

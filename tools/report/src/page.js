@@ -5,8 +5,9 @@ import { fragment } from "../instrument/src/link.js";
 import { chart } from "./chart.js";
 import { moves } from "./moves.js";
 import { PULLS, gradient } from "./colours.js";
-import { at, place, read, readable, scaled, spoken } from "./data.js";
+import { at, measured, place, read, readable, scaled, spoken } from "./data.js";
 import { save, table } from "./download.js";
+import { faults } from "./faults.js";
 import { follow, panels } from "./panels.js";
 import { Player } from "./player.js";
 import { sign } from "./sign.js";
@@ -22,6 +23,7 @@ const REST = 10;
 const STEP = 0.1;
 
 const $ = (selector) => document.querySelector(selector);
+faults((textContent) => Object.assign($("#fault"), { textContent, hidden: false }));
 const data = read();
 const { crane, rigid } = data;
 /** Without a record of a run, the crane is at rest. */
@@ -187,7 +189,7 @@ function controls() {
   if (crane.scene.supports.length) {
     $("#scale i").style.background = gradient;
     const { unit, factor: larger } = scaled("N", [viewer.greatest]);
-    $("#scale b").textContent = `${readable(viewer.greatest * larger)} ${unit}`;
+    $("#scale b").textContent = measured(viewer.greatest * larger, unit);
     $("#pulls").hidden = !viewer.pulls;
     $("#pulls i").style.background = PULLS;
   } else $("#scale").remove();
@@ -223,7 +225,7 @@ function now() {
     const term = Object.assign(document.createElement("dt"), { textContent: label });
     const number = document.createElement("dd");
     list.append(term, number);
-    shown.push((here) => (number.textContent = `${readable(at(column.values, here) * factor)} ${unit}`));
+    shown.push((here) => (number.textContent = measured(at(column.values, here) * factor, unit)));
   };
   const { points } = crane.scene;
   const [point] = points.slice(points.length >> 1);
@@ -264,7 +266,7 @@ function printing() {
     unfolded = [...document.querySelectorAll("details.table:not([open])")];
     for (const details of unfolded) details.open = true;
     for (const plot of plots) plot.resize(plot.kind === "path" ? PAPER.path : PAPER.plot);
-    viewer?.paint();
+    viewer?.finish();
   });
   addEventListener("afterprint", () => {
     for (const details of unfolded) details.open = false;

@@ -166,12 +166,12 @@ function moments(add, overTime, crane, time) {
       const joints = [];
       for (const p of link.bodies.slice(1)) {
         const column = crane.run.column(`${bodies[p].name}${suffix}_moment`);
-        if (column) joints.push({ x, values: column.values });
+        if (column) joints.push({ x, values: column.values, range: [column.least, column.most] });
         x += bodies[p].length;
       }
       // A single spring has no curve along the link; its moment over time follows below.
       if (joints.length < 2) continue;
-      const ranges = joints.map(({ values }) => range(values));
+      const ranges = joints.map((joint) => joint.range);
       const { unit, factor } = scaled("N m", ranges.flat());
       const plot = add("boom", {
         id: `moment_${link.name}${suffix}`, kind: "along", title: `${spoken(link.name)}: ${title.toLowerCase()}`,
@@ -202,7 +202,7 @@ function strength(add, overTime, crane) {
       x: { label: "along the beam", unit: "m", values: sections.map(({ x }) => x) }, y: { label, unit },
       curves: [
         { label: "now", colour: 0, values: sections.map(({ values }) => values[0]) },
-        { label: "maximum of the run", colour: 1, dashed: true, values: sections.map(({ values }) => range(values)[1]) },
+        { label: "maximum of the run", colour: 1, dashed: true, values: sections.map(({ most }) => most) },
       ],
     });
     return { plot, joints: sections };

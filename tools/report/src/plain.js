@@ -31,6 +31,9 @@ void main() {
     mat4 own = mat4(1.0);
     vec3 tone = diffuse;
   #endif
+  #ifdef USE_COLOR
+    tone = color;
+  #endif
   vec4 place = modelViewMatrix * own * vec4(position, 1.0);
   gl_Position = projectionMatrix * place;
   #ifdef SHADE
@@ -50,8 +53,6 @@ varying vec3 shown;
 void main() {
   gl_FragColor = vec4(shown, opacity);
 }`;
-
-const isLit = ({ material }) => (material.isMeshStandardMaterial || material.isMeshLambertMaterial) && !material.transparent;
 
 /** The geometries of meshes in one, in which every corner knows the index of its part. */
 function joined(meshes) {
@@ -77,26 +78,26 @@ function joined(meshes) {
 }
 
 export class Plain {
-  /** `vectors`: room of the shaders for numbers. */
-  constructor({ figure, floor, grid, size, vectors }) {
+  /** `ghost`: a figure behind the other one, if there is one; `vectors`: room of the shaders for numbers. */
+  constructor({ figure, ghost = null, floor, grid, size, vectors }) {
     const value = (value) => ({ value });
     this.light = { sun: value(new Color()), sky: value(new Color()), earth: value(new Color()), towards: value(new Vector3()), up: value(new Vector3()), haze: value(new Color()), near: value(0), far: value(0) };
     this.floor = floor;
     this.size = size;
-    this.source = figure.group;
+    this.sources = [figure, ghost].filter(Boolean).map(({ group }) => group);
     this.group = new Group();
     this.group.visible = false;
     this.shadow = new Group();
     this.shadow.matrixAutoUpdate = false;
     this.group.add(this.shadow);
     this.batches = [];
-    const meshes = [];
-    figure.group.traverse((one) => one.isMesh && isLit(one) && meshes.push(one));
-    const bent = meshes.filter(({ geometry }) => geometry.follow);
-    const rigid = meshes.filter(({ geometry }) => !geometry.follow);
+    /** Beams, whose colour may change along their lengths. */
+    this.bent = [];
     const most = Math.floor((vectors - VECTORS.other) / VECTORS.part);
-    for (let first = 0; first < rigid.length; first += most) this.batch(rigid.slice(first, first + most));
-    for (const { geometry, material } of bent) this.both(geometry, {}, { diffuse: { value: material.color } });
+    this.figure(figure, this.group, most);
+    this.ghost = new Group();
+    if (ghost) this.figure(ghost, this.ghost, most);
+    this.group.add(this.ghost);
     this.group.add(new Mesh(floor.geometry, this.material({}, { diffuse: { value: floor.material.color } })));
     this.group.children.at(-1).position.copy(floor.position);
     const lines = this.material({ LINE: "" }, { diffuse: { value: grid.material.color }, opacity: { value: grid.material.opacity } });
@@ -107,24 +108,53 @@ export class Plain {
     this.group.add(squares);
   }
 
-  material(defines, uniforms) {
-    return new ShaderMaterial({ vertexShader, fragmentShader, defines, uniforms: { ...this.light, opacity: { value: 1 }, toneMappingExposure: { value: 1 }, ...uniforms } });
+  material(defines, uniforms, more = {}) {
+    return new ShaderMaterial({ vertexShader, fragmentShader, defines, uniforms: { ...this.light, opacity: { value: 1 }, toneMappingExposure: { value: 1 }, ...uniforms }, ...more });
+  }
+
+  /** The parts of a figure; `most`: so many together. */
+  figure({ group, ghost }, host, most) {
+    const meshes = [];
+    group.traverse((one) => one.isMesh && meshes.push(one));
+    const rigid = meshes.filter(({ geometry }) => !geometry.follow);
+    for (let first = 0; first < rigid.length; first += most) this.batch(rigid.slice(first, first + most), host, ghost);
+    for (const mesh of meshes.filter(({ geometry }) => geometry.follow)) {
+      const uniforms = { diffuse: { value: mesh.material.color } };
+      const drawn = this.both(mesh.geometry, {}, uniforms, host, ghost ? mesh.material : null);
+      this.bent.push({ mesh, drawn, usual: drawn.material, painted: this.material({}, uniforms, { vertexColors: true }) });
+    }
   }
 
   /** Parts that are drawn together. */
-  batch(meshes) {
+  batch(meshes, host, ghost) {
     const [places, paints] = [new Float32Array(16 * meshes.length), new Float32Array(3 * meshes.length)];
     this.batches.push({ meshes, places, paints });
-    this.both(joined(meshes), { PARTS: meshes.length }, { places: { value: places }, paints: { value: paints } });
+    this.both(joined(meshes), { PARTS: meshes.length }, { places: { value: places }, paints: { value: paints } }, host, ghost ? meshes[0].material : null);
   }
 
-  /** What is drawn, and its shadow. */
-  both(geometry, defines, uniforms) {
+  /** What is drawn, and its shadow; `pale`: the material of a ghost, which has none. */
+  both(geometry, defines, uniforms, host, pale) {
+    if (pale) {
+      const { transparent, opacity, depthWrite, polygonOffset, polygonOffsetFactor, polygonOffsetUnits } = pale;
+      const look = { transparent, depthWrite, polygonOffset, polygonOffsetFactor, polygonOffsetUnits };
+      const mesh = new Mesh(geometry, this.material(defines, { ...uniforms, opacity: { value: opacity } }, look));
+      mesh.frustumCulled = false;
+      host.add(mesh);
+      return mesh;
+    }
     const mesh = new Mesh(geometry, this.material(defines, uniforms));
     const shade = new Mesh(geometry, this.material({ ...defines, SHADE: "" }, { ...uniforms, shade: { value: this.floor.material.color } }));
     mesh.frustumCulled = shade.frustumCulled = false;
-    this.group.add(mesh);
+    host.add(mesh);
     this.shadow.add(shade);
+    return mesh;
+  }
+
+  /** Shows the crane plainly, with its ghost or without. */
+  show(shown, ghostly) {
+    this.group.visible = shown;
+    this.ghost.visible = ghostly;
+    if (shown) this.follow();
   }
 
   /** The light of a scene: of the sun, of sky and earth, and its haze. */
@@ -148,7 +178,8 @@ export class Plain {
 
   /** Takes the places and the colours of all parts. */
   follow() {
-    this.source.updateMatrixWorld();
+    for (const source of this.sources) source.updateMatrixWorld();
+    for (const { mesh, drawn, usual, painted } of this.bent) drawn.material = mesh.material.vertexColors ? painted : usual;
     for (const { meshes, places, paints } of this.batches) {
       meshes.forEach(({ matrixWorld, material: { color } }, index) => {
         places.set(matrixWorld.elements, 16 * index);

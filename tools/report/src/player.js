@@ -6,6 +6,8 @@ export class Player {
     this.t = 0;
     this.speed = 1;
     this.playing = false;
+    /** Begins again at its end, as a mode does; a run plays once. */
+    this.loops = false;
     this.followers = [];
     this.last = 0;
   }
@@ -48,7 +50,7 @@ export class Player {
     const passed = this.last ? Math.min((now - this.last) / 1000, 0.1) : 0;
     this.last = now;
     const t = this.t + passed * this.speed;
-    if (this.done && t >= this.duration) {
+    if (t >= this.duration && (this.done || !this.loops)) {
       this.seek(this.duration);
       this.play(false);
       return;

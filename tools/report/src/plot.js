@@ -1,7 +1,7 @@
 // A plot with hover, zoom, keyboard, and downloads as SVG and CSV.
 import uPlot from "uplot";
 import { curve, style } from "./colours.js";
-import { at, range, readable, tickText } from "./data.js";
+import { at, measured, range, readable, tickText, times } from "./data.js";
 import { csv, save } from "./download.js";
 import { svg } from "./svg.js";
 
@@ -58,7 +58,7 @@ export class Plot {
 
   /** Data as uPlot wants them. */
   data() {
-    const values = this.curves.map((one) => this.factor === 1 ? one.values : Float64Array.from(one.values, (v) => v * this.factor));
+    const values = this.curves.map((one) => times(one.values, this.factor));
     return this.kind === "path" ? [null, ...this.curves.map((one) => [one.x, one.values])] : [this.x.values, ...values];
   }
 
@@ -69,7 +69,7 @@ export class Plot {
       grid: { stroke: () => style("--line"), width: 1 }, ticks: { stroke: () => style("--line"), width: 1 },
       values: (_, ticks) => ticks.map((tick) => (tick === null ? "" : tickText(tick))), ...more,
     });
-    const value = (unit) => (_, v) => (v == null ? "–" : `${readable(v)} ${unit}`);
+    const value = (unit) => (_, v) => measured(v, unit);
     const series = this.curves.map(({ label, dashed, colour }, index) => ({
       label, scale: "y", width: 1.6, dash: dashed ? [6, 4] : undefined, stroke: () => curve(colour ?? index),
       points: { show: this.kind === "along", size: 5 }, value: value(this.y.unit),

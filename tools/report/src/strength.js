@@ -12,15 +12,15 @@ function columns(data, count) {
   return Array.from({ length: count }, (_, column) => Float32Array.from({ length: rows }, (_, row) => numbers[row * count + column]));
 }
 
-/** Beams with their sections, `{name, sections: [{x, values}]}`; empty if their stresses are not known. */
+/** Beams with their sections, `{name, sections: [{x, values, most}]}`, with the maximum of the whole run; empty if their stresses are not known. */
 export function used(crane) {
   const sections = crane.strength?.sections;
   if (!sections) return { beams: [], unit: "1" };
   const values = columns(sections.data, sections.places.length);
   const beams = [];
-  sections.places.forEach(({ beam, x }, index) => {
+  sections.places.forEach(({ beam, x, most }, index) => {
     if (beams.at(-1)?.name !== beam) beams.push({ name: beam, sections: [] });
-    beams.at(-1).sections.push({ x, values: values[index] });
+    beams.at(-1).sections.push({ x, values: values[index], most });
   });
   // Without beams that have no yield stress, if others have one.
   return { beams: beams.filter(({ sections: of }) => of.every((section) => Number.isFinite(section.values[0]))), unit: sections.unit };

@@ -1,6 +1,6 @@
 // A plot as SVG for a paper: black on white, labelled axes with units, the colours of the figures, plain fonts.
 import { CURVES } from "./colours.js";
-import { tickText } from "./data.js";
+import { known, tickText } from "./data.js";
 
 const WIDTH = 640;
 const HEIGHT = 400;
@@ -44,9 +44,14 @@ export function svg(plot) {
   parts.push(text(0, 0, "middle", `${y.label} [${y.unit}]`, `transform="translate(16 ${round(top + height / 2)}) rotate(-90)"`));
   curves.forEach((one, index) => {
     const xs = kind === "path" ? one.x : x.values;
-    const points = Array.from(one.values, (value, i) => `${round(px(xs[i]))},${round(py(kind === "path" ? value : value * factor))}`);
+    // A line for each stretch between gaps.
+    const lines = [[]];
+    one.values.forEach((value, i) => {
+      if (known(value)) lines.at(-1).push(`${round(px(xs[i]))},${round(py(kind === "path" ? value : value * factor))}`);
+      else if (lines.at(-1).length) lines.push([]);
+    });
     const look = `fill="none" stroke="${CURVES.light[(one.colour ?? index) % 8]}" stroke-width="1.6" ${one.dashed ? 'stroke-dasharray="6 4"' : ""}`;
-    parts.push(`<polyline clip-path="url(#area)" points="${points.join(" ")}" ${look}/>`);
+    for (const points of lines) parts.push(`<polyline clip-path="url(#area)" points="${points.join(" ")}" ${look}/>`);
     const [lx, ly] = [MARGIN.left + (index % 3) * (width / 3), 16 + ROW * Math.floor(index / 3)];
     parts.push(`<line x1="${round(lx)}" y1="${ly}" x2="${round(lx + 28)}" y2="${ly}" ${look}/>`, text(lx + 34, ly + 4, "start", one.label));
   });

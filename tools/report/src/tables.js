@@ -1,5 +1,5 @@
 // Tables of the page.
-import { significant, spoken } from "./data.js";
+import { readable, significant, spoken } from "./data.js";
 import { element } from "./element.js";
 
 /** Tables of this many rows and more are folded. */
@@ -60,5 +60,5 @@ export function results({ facts, grids }, host = document.querySelector("#tables
 /** A mode in words. */
 export const modeText = ({ frequency, damping, moves }, index) => {
   const damped = damping === null ? "" : `, damping ${significant(damping, 2)}`;
-  return `${index + 1}: ${frequency === null ? "unstable" : `${significant(frequency, 3)} Hz`}${damped}, ${moves.slice(0, 3).map(spoken).join(", ")}`;
+  return `${index + 1}: ${frequency === null ? "unstable" : `${readable(frequency)} Hz`}${damped}, ${moves.slice(0, 3).map(spoken).join(", ")}`;
 };

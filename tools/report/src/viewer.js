@@ -10,6 +10,7 @@ import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
 import { BEYOND, curve, isDark, scale, smooth, style } from "./colours.js";
 import { at, place, range } from "./data.js";
 import { Figure, extent } from "./figure.js";
+import { Plain } from "./plain.js";
 import { margins, used } from "./strength.js";
 
 /** Largest motion of a mode as drawn, relative to the crane's size. */
@@ -25,18 +26,29 @@ const EDGE = 0.97;
 const FINEST = 2;
 /**
  * Levels of detail, from the best, for a graphics card and for a processor that draws: picture elements, of those that the screen has, and those across the
- * map of shadows; whether materials are plain; and the time between pictures of a motion beyond which the level is left, s.
+ * map of shadows; whether materials are plain; and the time between pictures of a motion beyond which the level is left, s. At rest it is the best; a motion
+ * begins at `first` at the earliest.
  */
 const DETAIL = {
-  card: [
-    { ratio: 1, shadows: 2048, slow: 1 / 50 }, { ratio: 1, shadows: 512, slow: 1 / 50 }, { ratio: 1, shadows: 0, slow: 1 / 50 },
-    { ratio: 0.7, shadows: 0, slow: 1 / 20 }, { ratio: 0.5, shadows: 0, slow: Infinity },
-  ],
-  processor: [
-    { ratio: 1, shadows: 2048, slow: 0 }, { ratio: 1, shadows: 0, plain: true, slow: 1 / 50 }, { ratio: 0.7, shadows: 0, plain: true, slow: 1 / 30 },
-    { ratio: 0.5, shadows: 0, plain: true, slow: Infinity },
-  ],
+  card: {
+    first: 0,
+    levels: [
+      { ratio: 1, shadows: 2048, slow: 1 / 50 }, { ratio: 1, shadows: 512, slow: 1 / 50 }, { ratio: 1, shadows: 0, slow: 1 / 50 },
+      { ratio: 0.7, shadows: 0, slow: 1 / 20 }, { ratio: 0.5, shadows: 0, slow: Infinity },
+    ],
+  },
+  processor: {
+    first: 1,
+    levels: [
+      { ratio: 1, shadows: 2048, slow: 0 }, { ratio: 1, shadows: 0, plain: true, slow: 1 / 50 }, { ratio: 0.7, shadows: 0, plain: true, slow: 1 / 30 },
+      { ratio: 0.5, shadows: 0, plain: true, slow: Infinity },
+    ],
+  },
 };
+/** Pictures of a motion after which its detail is reconsidered; where they are very slow, so many. */
+const PICTURES = { usual: 15, least: 5 };
+/** Longer times between two pictures say nothing about drawing: the page was hidden. s */
+const ABSENT = 3;
 /** WebGL's name for the room of shaders for numbers. */
 const VECTORS = 0x8dfb;
 /** Rings of the ground, where haze is computed at their corners. */
@@ -55,17 +67,32 @@ export const VIEWS = {
   top: [0, -0.02, 1],
 };
 
+/** Whether 3-D is drawn by the processor. */
+function inSoftware() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const name = gl?.getParameter(gl.getExtension("WEBGL_debug_renderer_info")?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER);
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
+}
+
 export class Viewer {
-  /** `Plain`, of `plain.js`: where the processor draws. Then edges are smoothed by more picture elements, and only at rest; motions are drawn plainly. */
-  constructor(canvas, data, player, { Plain = null } = {}) {
-    this.Plain = Plain;
-    this.levels = Plain ? DETAIL.processor : DETAIL.card;
+  /** Where the processor draws, edges are smoothed by more picture elements, and only at rest; motions are drawn plainly. */
+  constructor(canvas, data, player) {
+    this.soft = inSoftware();
+    Object.assign(this, DETAIL[this.soft ? "processor" : "card"]);
     this.canvas = canvas;
     this.player = player;
     this.factor = 1;
-    this.detail = 0;
+    /** Level of detail of motions, as far as it is known. */
+    this.detail = this.first;
+    /** What is drawn now is a motion. */
     this.moves = false;
-    this.renderer = new WebGLRenderer({ canvas, antialias: !Plain });
+    /** The crane follows the levers; somebody turns the view. */
+    this.driven = this.held = false;
+    this.seen = true;
+    /** Pictures since the detail was considered, the time that they took, when the last was drawn, and how long it waited for numbers, s. */
+    this.pace = { pictures: 0, spent: 0, last: null, waited: 0 };
+    this.renderer = new WebGLRenderer({ canvas, antialias: !this.soft });
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
     this.renderer.toneMapping = ACESFilmicToneMapping;
@@ -76,8 +103,11 @@ export class Viewer {
     this.controls.maxPolarAngle = 0.56 * Math.PI;
     this.controls.listenToKeyEvents(canvas);
     this.controls.addEventListener("change", () => this.draw());
+    this.controls.addEventListener("start", () => (this.held = true));
+    this.controls.addEventListener("end", () => (this.held = false));
     this.load(data);
     new ResizeObserver(() => this.resize()).observe(canvas);
+    new IntersectionObserver((entries) => this.sight(entries.at(-1).isIntersecting)).observe(canvas);
     this.resize();
     this.look("corner");
     player.follow(() => this.show());
@@ -88,6 +118,7 @@ export class Viewer {
     this.crane = crane;
     this.rigid = rigid;
     this.mode = null;
+    this.player.loops = false;
     this.extent = extent(crane);
     const { size } = this.extent;
     Object.assign(this.camera, { near: 0.01 * size, far: 60 * size }).updateProjectionMatrix();
@@ -102,16 +133,16 @@ export class Viewer {
     if (this.ghost) this.content.add(this.ghost.group);
     this.used = used(crane);
     /** Value at the end of the colour scale. */
-    this.full = this.used.unit === "1" ? 1 : Math.max(...this.used.beams.flatMap(({ sections }) => sections.map(({ values }) => range(values)[1])), 1e-9);
+    this.full = this.used.unit === "1" ? 1 : Math.max(...this.used.beams.flatMap(({ sections }) => sections.map(({ most }) => most)), 1e-9);
     this.runs = new Map([crane, rigid].filter(Boolean).map((one) => [one, one.coordinates.map((c) => one.run.column(c.name).values)]));
     this.lights();
     this.ground();
     this.traces();
     this.forces();
     this.tippingLines();
-    if (this.Plain) {
-      const { figure, floor, grid, renderer } = this;
-      this.plain = new this.Plain({ figure, floor, grid, size, vectors: renderer.getContext().getParameter(VECTORS) });
+    if (this.soft) {
+      const { figure, ghost, floor, grid, renderer } = this;
+      this.plain = new Plain({ figure, ghost, floor, grid, size, vectors: renderer.getContext().getParameter(VECTORS) });
       this.content.add(this.plain.group);
     }
     this.theme();
@@ -136,7 +167,7 @@ export class Viewer {
     const { low, size, centre } = this.extent;
     const { supports } = this.crane.scene;
     const level = supports.length ? Math.min(...supports.map(({ at: [, , z] }) => z)) - 0.008 * size : Math.min(low.z, 0);
-    this.floor = new Mesh(new RingGeometry(0, 6 * size, 48, this.Plain ? HAZE : 1), new MeshLambertMaterial());
+    this.floor = new Mesh(new RingGeometry(0, 6 * size, 48, this.soft ? HAZE : 1), new MeshLambertMaterial());
     this.floor.position.set(centre.x, centre.y, level);
     this.floor.receiveShadow = true;
     const square = 10 ** Math.round(Math.log10(size / 12));
@@ -175,16 +206,17 @@ export class Viewer {
   /** An arrow for the force of each support. */
   forces() {
     const { crane, extent: { size } } = this;
-    const column = (name, axis) => crane.run.column(`${name}_reaction_${axis}`).values;
+    const column = (name, axis) => crane.run.column(`${name}_reaction_${axis}`);
     this.reactions = crane.scene.supports.map(({ name, at: local }) => {
-      const values = ["x", "y", "z"].map((axis) => column(name, axis));
+      const values = ["x", "y", "z"].map((axis) => column(name, axis).values);
       const arrow = new ArrowHelper(new Vector3(0, 0, 1), new Vector3(), 1, 0xffffff);
       this.content.add(arrow);
       return { values, local: new Vector3(...local), arrow };
     });
-    this.greatest = Math.max(...this.reactions.map(({ values: [, , z] }) => Math.max(...range(z).map(Math.abs))), 1e-9);
+    const upwards = crane.scene.supports.map(({ name }) => column(name, "z"));
+    this.greatest = Math.max(...upwards.flatMap(({ least, most }) => [Math.abs(least), Math.abs(most)]), 1e-9);
     this.arrow = (ARROW * size) / this.greatest;
-    this.pulls = this.reactions.some(({ values: [, , z] }) => range(z)[0] < -ROUNDING * this.greatest);
+    this.pulls = upwards.some(({ least }) => least < -ROUNDING * this.greatest);
   }
 
   /** The lines between feet about which the crane could tip over, and one line to draw the governing one. */
@@ -255,29 +287,75 @@ export class Viewer {
     this.fit(this.camera.position.clone().sub(this.controls.target).normalize());
   }
 
-  /** Draws with less detail, or with all of it again, if there is such a level. */
-  refine(level) {
-    if (level === this.detail || !this.levels[level]) return;
-    this.detail = level;
-    this.shade();
-    this.resize();
-  }
-
   /** The level of detail now. */
   get level() {
-    return Math.max(this.detail, this.moves ? 1 : 0);
+    return this.moves ? this.detail : 0;
   }
 
-  /** Time between pictures of a motion beyond which they should have less detail, s. */
-  get slow() {
-    return this.levels[this.level].slow;
+  /** Whether pictures follow each other by themselves. */
+  get plays() {
+    return this.player.playing || this.driven;
   }
 
   /** The crane, or what it is seen from, begins to move or came to rest. */
   move(moves) {
+    if (moves === this.moves) return;
+    const before = this.level;
     this.moves = moves;
+    this.pace = { pictures: 0, spent: 0, last: null, waited: 0 };
+    // Another motion may be drawn faster.
+    if (!moves) this.detail = Math.max(this.detail - 1, this.first);
+    if (this.level !== before) this.change();
+  }
+
+  /** Takes another level of detail. */
+  change() {
     this.shade();
-    this.resize(true);
+    this.resize(false);
+  }
+
+  /** Nothing has changed for a while: the crane rests, unless it is only that its pictures take long. */
+  settle() {
+    if (this.plays || this.held) this.quiet = setTimeout(() => this.settle(), QUIET);
+    else this.move(false);
+  }
+
+  /** Less detail where pictures of a motion follow each other slowly. */
+  measure() {
+    const now = performance.now() / 1000;
+    const { pace } = this;
+    const took = pace.last === null ? ABSENT : now - pace.last - pace.waited;
+    Object.assign(pace, { last: now, waited: 0 });
+    if (!this.moves || !this.plays || took >= ABSENT) return;
+    pace.pictures += 1;
+    pace.spent += took;
+    const { slow } = this.levels[this.level];
+    const { usual, least } = PICTURES;
+    if (pace.pictures < usual && !(pace.pictures >= least && pace.spent > usual * slow)) return;
+    const isSlow = pace.spent > pace.pictures * slow;
+    Object.assign(pace, { pictures: 0, spent: 0 });
+    if (!isSlow || !this.levels[this.level + 1]) return;
+    this.detail = this.level + 1;
+    this.change();
+  }
+
+  /** Time that the next picture waited for numbers, s: this is not drawing. */
+  wait(took) {
+    this.pace.waited += took;
+  }
+
+  /** Out of sight nothing is drawn, and a mode, which has no end, pauses. */
+  sight(seen) {
+    this.seen = seen;
+    const { player } = this;
+    if (!seen && this.mode && player.playing) {
+      player.play(false);
+      this.paused = true;
+    } else if (seen) {
+      if (this.paused && this.mode) player.play(true);
+      this.paused = false;
+      if (this.due) this.draw(false);
+    }
   }
 
   shade() {
@@ -289,15 +367,15 @@ export class Viewer {
     sun.shadow.map = null;
   }
 
-  resize(asked = false) {
+  resize(changed = true) {
     const { clientWidth, clientHeight } = this.canvas;
     if (!clientWidth || !clientHeight) return;
-    const smoothed = this.level === 0 && this.Plain ? FINEST : Math.min(window.devicePixelRatio, FINEST);
+    const smoothed = this.level === 0 && this.soft ? FINEST : Math.min(window.devicePixelRatio, FINEST);
     this.renderer.setPixelRatio(this.levels[this.level].ratio * smoothed);
     this.renderer.setSize(clientWidth, clientHeight, false);
     this.camera.aspect = clientWidth / clientHeight;
     this.camera.updateProjectionMatrix();
-    this.draw(asked);
+    this.draw(changed);
   }
 
   theme() {
@@ -331,12 +409,13 @@ export class Viewer {
       const amplitude = (small * SWING * this.extent.size) / Math.max(...ways, 1e-12);
       this.mode = { ...mode, amplitude };
     }
+    this.player.loops = Boolean(mode);
     for (const { whole, come } of this.paths) whole.visible = come.visible = !mode && this.traced !== false;
     this.show();
   }
 
   set({ ghost, trace, arrows, tipping, factor, use }) {
-    if (ghost !== undefined && this.ghost) this.ghost.group.visible = ghost;
+    if (ghost !== undefined) this.ghostly = ghost;
     if (trace !== undefined) this.traced = trace;
     if (arrows !== undefined) this.arrows = arrows;
     if (tipping !== undefined) this.tippingShown = tipping;
@@ -400,25 +479,34 @@ export class Viewer {
     if (colours.length) this.figure.paint(colours);
   }
 
-  /** Draws once, however often it is called before the next frame; `asked`: nothing but the level of detail has changed. */
-  draw(asked = false) {
-    if (this.Plain && !asked) {
+  /** Draws once, however often it is called before the next frame, as soon as it is in sight; `changed`: more than the level of detail has. */
+  draw(changed = true) {
+    if (changed) {
       clearTimeout(this.quiet);
-      this.quiet = setTimeout(() => this.move(false), QUIET);
-      if (!this.moves) this.move(true);
+      this.quiet = setTimeout(() => this.settle(), QUIET);
+      this.move(true);
     }
-    if (this.asked || !this.renderer) return;
+    // A film needs every picture.
+    this.due = !this.seen && !this.player.done;
+    if (this.asked || this.due || !this.renderer) return;
     this.asked = true;
     requestAnimationFrame(() => {
       this.asked = false;
+      this.measure();
       this.paint();
     });
+  }
+
+  /** Draws at once, with all detail: for paper, and for a picture. */
+  finish() {
+    this.move(false);
+    this.paint();
   }
 
   /** The view as it is now, a PNG image. */
   picture() {
     // The drawing is discarded once the browser has shown it.
-    this.paint();
+    this.finish();
     return new Promise((done) => this.canvas.toBlob(done, "image/png"));
   }
 
@@ -426,8 +514,9 @@ export class Viewer {
   paint() {
     const { plain } = this.levels[this.level];
     for (const one of [this.figure.group, this.floor, this.grid]) one.visible = !plain;
-    if (this.plain) this.plain.group.visible = Boolean(plain);
-    if (plain) this.plain.follow();
+    const ghostly = this.ghostly !== false;
+    if (this.ghost) this.ghost.group.visible = !plain && ghostly;
+    if (this.plain) this.plain.show(Boolean(plain), ghostly);
     this.renderer.render(this.scene, this.camera);
     this.stale?.traverse((one) => {
       one.geometry?.dispose();

@@ -1,7 +1,7 @@
 // Driving: the motion of the crane in real time, with levers.
 import uPlot from "uplot";
 import { curve, style } from "../../src/colours.js";
-import { scaled, spoken, readable, tickText } from "../../src/data.js";
+import { known, scaled, spoken, readable, tickText } from "../../src/data.js";
 import { save, table } from "../../src/download.js";
 import { element } from "../../src/element.js";
 import { Levers } from "./levers.js";
@@ -15,8 +15,6 @@ const LAG = 0.5;
 /** Time over which the pace is measured, s, and that of the strip, s. */
 const PACE = 1;
 const STRIP = 20;
-/** Pictures after which the detail is reconsidered. */
-const PICTURES = 15;
 /** Longest record, s. */
 const RECORD = 600;
 /** Interval of the gauges, s: faster numbers cannot be read. */
@@ -65,7 +63,8 @@ export class Drive {
     const { list } = crane.run;
     this.rest = Float64Array.from(list, ({ values }) => values[0]);
     this.levers.open(this.opened.drives);
-    Object.assign(this, { on: true, tolerance: TOLERANCE.fine, t: 0, zero: null, rows: [], pictures: [], spent: [], gauged: 0, drawn: 0, since: performance.now() / 1000 });
+    Object.assign(this, { on: true, tolerance: TOLERANCE.fine, t: 0, zero: null, rows: [], pictures: [], spent: [], gauged: 0 });
+    this.stage.drive(true);
     $("#drive_state").textContent = "";
     $("#cockpit").hidden = false;
     $("#engage").textContent = "Stop";
@@ -80,7 +79,7 @@ export class Drive {
     if (!this.on) return;
     this.on = false;
     this.levers.release();
-    this.stage.viewer?.refine(0);
+    this.stage.drive(false);
     $("#engage").textContent = "Drive";
     $("#pace").textContent = "";
     $("#drive_state").textContent = words || `driven for ${this.t.toFixed(1)} s`;
@@ -103,10 +102,9 @@ export class Drive {
       if (!this.on || turn !== this.turn) return;
       this.spend(t - this.t, took / 1000);
       this.t = t;
-      this.stage.follow(row, margins);
+      this.stage.follow(row, margins, took / 1000);
       this.keep(row);
       this.pictures.push(performance.now() / 1000);
-      this.coarsen();
       if (t - this.gauged > GAUGES || t < this.gauged) {
         this.gauged = t;
         this.gauge(row, margins);
@@ -133,16 +131,6 @@ export class Drive {
       this.tolerance = bounded;
       this.spent = [];
     }
-  }
-
-  /** Draws with less detail where pictures are slow, unless computing is what takes the time. */
-  coarsen() {
-    if ((this.drawn += 1) < PICTURES) return;
-    const now = performance.now() / 1000;
-    const { viewer } = this.stage;
-    const slow = (now - this.since) / PICTURES > viewer?.slow && this.share < SHARE.high;
-    Object.assign(this, { drawn: 0, since: now });
-    if (slow) viewer.refine(viewer.level + 1);
   }
 
   keep(row) {
@@ -213,8 +201,9 @@ export class Drive {
     };
     const { tipping: [tipping], swing: [swing], feet, pressures } = this.gauges;
     if (tipping) {
-      const margin = Math.min(...margins.map((one) => one.margin));
-      set(tipping, margin, margin.toFixed(2), margin <= 0);
+      // Where nothing stabilises there is none.
+      const margin = Math.min(...margins.map((one) => one.margin ?? -Infinity));
+      set(tipping, margin, known(margin) ? margin.toFixed(2) : "none", margin <= 0);
     }
     if (swing) {
       const angle = Math.max(...this.free.map(({ index }) => Math.abs(row[index] - this.rest[index]))) * DEGREES;

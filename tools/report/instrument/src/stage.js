@@ -1,8 +1,7 @@
 // The crane in three dimensions, whatever is known of it: at rest, in a mode, in a run, driven.
-import { decoded, readable, scaled } from "../../src/data.js";
+import { decoded, measured, scaled } from "../../src/data.js";
 import { gradient } from "../../src/colours.js";
 import { element } from "../../src/element.js";
-import { Plain } from "../../src/plain.js";
 import { Player } from "../../src/player.js";
 import { Viewer } from "../../src/viewer.js";
 
@@ -11,17 +10,8 @@ const WAVES = 10;
 /** Logarithm of the ratio of sizes from which the camera moves to a crane again. */
 const GROWN = 0.2;
 
-/** Whether 3-D is drawn by the processor: then pictures of a motion are plainer than those at rest. */
-function inSoftware() {
-  const gl = document.createElement("canvas").getContext("webgl2");
-  const name = gl?.getParameter(gl.getExtension("WEBGL_debug_renderer_info")?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER);
-  gl?.getExtension("WEBGL_lose_context")?.loseContext();
-  return /swiftshader|llvmpipe|software|basic render/i.test(name);
-}
-
 export class Stage {
   constructor() {
-    this.drawing = inSoftware() ? { Plain } : {};
     this.player = new Player(WAVES);
     this.viewer = null;
     this.crane = null;
@@ -44,7 +34,7 @@ export class Stage {
     this.crane = crane;
     try {
       if (this.viewer) this.viewer.load({ crane, rigid: null });
-      else if (!this.flat) this.viewer = new Viewer(document.querySelector("#view canvas"), { crane, rigid: null }, this.player, this.drawing);
+      else if (!this.flat) this.viewer = new Viewer(document.querySelector("#view canvas"), { crane, rigid: null }, this.player);
     } catch (error) {
       this.flat = true;
       const words = `3-D is not available in this browser (${error.message}). Everything else is here.`;
@@ -65,7 +55,7 @@ export class Stage {
     if (!feet || !this.viewer) return;
     const { unit, factor } = scaled("N", [this.viewer.greatest]);
     legend.querySelector("i").style.background = gradient;
-    legend.querySelector("b").textContent = `${readable(this.viewer.greatest * factor)} ${unit}`;
+    legend.querySelector("b").textContent = measured(this.viewer.greatest * factor, unit);
   }
 
   /** Shows a mode, or the crane as it is. */
@@ -75,13 +65,19 @@ export class Stage {
     if (!mode) this.player.seek(0);
   }
 
-  /** Takes over a row of results and margins about tipping lines, of a crane that is shown at rest. */
-  follow(row, margins) {
+  /** The crane begins to follow its levers, or ends. */
+  drive(on) {
+    if (this.viewer) this.viewer.driven = on;
+  }
+
+  /** Takes over a row of results and margins about tipping lines, of a crane that is shown at rest; `took`: the time that computing them took, s. */
+  follow(row, margins, took) {
+    this.viewer?.wait(took);
     this.crane.run.list.forEach(({ values }, column) => {
       if (column < row.length) values[0] = row[column];
     });
     const { lines } = this.viewer ?? { lines: [] };
-    if (lines.length === margins.length) lines.forEach((line, index) => (line.values[0] = margins[index].margin));
+    if (lines.length === margins.length) lines.forEach((line, index) => (line.values[0] = margins[index].margin ?? -Infinity));
     this.viewer?.show();
     this.viewer?.follow();
   }
