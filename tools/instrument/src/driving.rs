@@ -17,7 +17,7 @@ use crane_page::Texts;
 use serde_json::{Value, json};
 
 use crate::{
-    engine::{Outcome, check_positions, page_of, starts, with_numbers, with_parameters},
+    engine::{Outcome, check_positions, starts, still, with_numbers, with_parameters},
     levers::{Kind, Numbers, full_speed, kind, with_levers},
 };
 
@@ -60,7 +60,7 @@ impl Driving {
         }
         let x = ForceStates::new(crane.description()).holding(&crane, 0.0, &rest.q);
         let state = InitialState { v: vec![0.0; rest.q.len()], q: rest.q.clone(), x };
-        let page = page_of(&crane, &rest, None, Texts::default())?;
+        let page = still(&crane, &rest, Texts::default());
         let settings = Settings {
             method: Method::Rosenbrock,
             duration: f64::INFINITY,
@@ -106,8 +106,9 @@ impl Driving {
         self.state = InitialState { q: sample.q.to_vec(), v: sample.v.to_vec(), x: sample.x.to_vec() };
         let row = quantities_at(&self.crane, sample.t, (sample.q, sample.v), sample.x);
         let lines = instants(&self.crane, std::iter::once(&row)).pop().map_or_else(Vec::new, |instant| instant.lines);
+        // Where nothing stabilises there is no margin: null.
         let margins: Vec<Value> =
-            lines.iter().map(|line| json!({"feet": line.feet, "margin": line.margin().max(-1e3)})).collect();
+            lines.iter().map(|line| json!({"feet": line.feet, "margin": line.margin()})).collect();
         Ok(json!({"t": self.t, "row": row, "margins": margins, "steps": steps}))
     }
 

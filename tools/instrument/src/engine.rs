@@ -14,11 +14,11 @@ use crane_model::{
     dyn_crane::{DynCrane, DynDynamics, DynModel},
     dynamics::{Method, Settings},
     results::cautions::BEND,
-    runs::{Start, record_checked},
+    runs::{Recorded, Start, record_checked},
     statics::{self, Equilibrium},
 };
 use crane_page::{
-    Program, Subject, Texts, data,
+    Program, Subject, Texts, data, data_without_modes, modes,
     tables::{Case, VALUE, diagnostics, equilibria, of_page},
 };
 use serde_json::{Value, json};
@@ -40,6 +40,8 @@ pub type Outcome<T> = Result<T, String>;
 #[derive(Default)]
 pub struct Engine {
     crane: Option<Opened>,
+    /// The crane as it rested last.
+    resting: Option<(LiveCrane, Equilibrium)>,
     driving: Option<Driving>,
 }
 
@@ -64,7 +66,13 @@ impl Engine {
             Request::Open { name, text } => Ok(self.open(&name, &text)),
             Request::Rest { parameters, positions } => {
                 let crane = self.crane()?.at(&parameters, &positions)?;
-                rest(&crane, positions.is_empty())
+                let (page, equilibrium) = rest(&crane, positions.is_empty());
+                self.resting = Some((crane, equilibrium));
+                Ok(page)
+            }
+            Request::Modes => {
+                let (crane, equilibrium) = self.resting.as_ref().ok_or("there is no crane at rest")?;
+                modes(&subject(crane, equilibrium, None)).map_err(|error| error.to_string())
             }
             Request::Run { parameters, duration } => run(&self.crane()?.at(&parameters, &[])?, duration),
             Request::Chart { parameters, positions, load, point, ranges } => {
@@ -90,7 +98,7 @@ impl Engine {
 
     /// Reads a spec; mistakes leave the page without a crane.
     fn open(&mut self, name: &str, text: &str) -> Value {
-        (self.crane, self.driving) = (None, None);
+        *self = Self::default();
         let Checked { chain, warnings } = match check(name, text) {
             Ok(checked) => checked,
             Err(words) => return words,
@@ -207,24 +215,24 @@ pub fn check_positions(live: &LiveCrane, positions: &[f64]) -> Outcome<()> {
     if positions.len() == drives { Ok(()) } else { Err(format!("{} positions for {drives} drives", positions.len())) }
 }
 
-/// The crane at rest: what the page draws, and the same tables as those of `crane statics`.
-fn rest(crane: &LiveCrane, as_written: bool) -> Outcome<Value> {
+/// The crane at rest: what the page draws, and the same tables as those of `crane statics`; without modes.
+fn rest(crane: &LiveCrane, as_written: bool) -> (Value, Equilibrium) {
     let case = Case::new(VALUE, crane as &dyn DynCrane);
     let report = equilibria(std::slice::from_ref(&case), BEND);
     let results = if as_written { report.json() } else { Value::Null };
     let texts = Texts { tables: Some(report), ..Texts::default() };
-    let mut page = page_of(crane, &case.equilibrium, None, texts)?;
+    let mut page = still(crane, &case.equilibrium, texts);
     let found = &case.equilibrium;
     page["results"] = results;
     page["rest"] = json!({
-        "stable": found.is_stable(), "rests": found.rests(), "words": found.to_string(), "steps": found.steps(), "q": found.q,
+        "stable": found.is_stable(), "rests": found.rests(), "words": found.status.to_string(), "steps": found.steps(), "q": found.q,
         "drives": starts(crane),
     });
     if !found.is_stable() {
         let failed = crane_model::runs::Reason::no_equilibrium(crane, found).of(&crane.description().name);
         page["rest"]["why"] = json!(format!("{failed}; {}", failed.advice()));
     }
-    Ok(page)
+    (page, case.equilibrium)
 }
 
 /// The run of the spec from its start, with all tables.
@@ -244,18 +252,21 @@ fn run(crane: &LiveCrane, duration: Option<f64>) -> Outcome<Value> {
     let case = Case::new(VALUE, crane as &dyn DynCrane);
     let tables = of_page(std::slice::from_ref(&case), &[&recorded], BEND, None).map_err(told)?;
     let texts = Texts { tables: Some(tables), ..Texts::default() };
-    page_of(crane, &case.equilibrium, Some((&settings, &recorded)), texts)
+    let subject = subject(crane, &case.equilibrium, Some((&settings, &recorded)));
+    data(&[subject], texts, PROGRAM).map_err(|error| error.to_string())
 }
 
-/// Data of the page of one crane.
-pub fn page_of(
-    crane: &LiveCrane,
-    equilibrium: &Equilibrium,
-    run: Option<(&Settings, &crane_model::runs::Recorded)>,
-    texts: Texts<'_>,
-) -> Outcome<Value> {
-    let subject = Subject { label: VALUE, crane, live: crane, equilibrium, run };
-    data(&[subject], texts, PROGRAM).map_err(|error| error.to_string())
+/// Data of the page of one crane at rest, without its modes.
+pub fn still(crane: &LiveCrane, equilibrium: &Equilibrium, texts: Texts<'_>) -> Value {
+    data_without_modes(&subject(crane, equilibrium, None), texts, PROGRAM)
+}
+
+fn subject<'a>(
+    crane: &'a LiveCrane,
+    equilibrium: &'a Equilibrium,
+    run: Option<(&'a Settings, &'a Recorded)>,
+) -> Subject<'a> {
+    Subject { label: VALUE, crane, live: crane, equilibrium, run }
 }
 
 /// Calls the acceleration many times; the page measures how long this takes.

@@ -22,6 +22,8 @@ pub enum Request {
         #[serde(default)]
         positions: Vec<f64>,
     },
+    /// The modes of the crane as it rested last: they take longer than statics, whose numbers need not wait for them.
+    Modes,
     /// The run of the spec.
     Run {
         /// Live parameters.

@@ -49,6 +49,31 @@ fn a_request_that_does_not_exist_is_answered() {
     assert!(engine.answer(&[0xff]).starts_with("{\"error\":"));
 }
 
+/// Statics do not wait for modes: these are of the crane as it rested last.
+#[test]
+fn modes_follow_statics() {
+    let (mut engine, _) = opened(spec("knuckle_boom"));
+    let early = ask(&mut engine, &json!({"ask": "modes"}));
+    assert!(early["error"].is_string(), "{early}");
+    let frequency = |engine: &mut Engine, request: &Value| {
+        let rest = ask(engine, request);
+        assert_eq!(rest["cranes"][0]["modes"], json!([]), "no modes with statics");
+        let found = ask(engine, &json!({"ask": "modes"}));
+        assert_eq!(found["figures"][0]["key"], "lowest_frequency", "{found}");
+        found["modes"][0]["frequency"].as_f64().expect("a frequency")
+    };
+    let written = frequency(&mut engine, &json!({"ask": "rest"}));
+    // Another pose swings otherwise.
+    let moved = frequency(&mut engine, &json!({"ask": "rest", "positions": [-0.6, 1.2, 0.2]}));
+    assert!((moved - written).abs() > 1e-6 * written, "{moved} Hz, {written} Hz");
+    opened_again(&mut engine, spec("cantilever"));
+    assert!(ask(&mut engine, &json!({"ask": "modes"}))["error"].is_string(), "another crane has not rested yet");
+}
+
+fn opened_again(engine: &mut Engine, text: &str) {
+    ask(engine, &json!({"ask": "open", "name": "crane.yaml", "text": text}));
+}
+
 /// With the drives where their motions begin, the crane with levers rests as that of the spec.
 #[test]
 fn sliders_at_their_starts_change_nothing() {

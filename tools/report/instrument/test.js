@@ -73,10 +73,10 @@ async function open(browser, options, use, { hash = "", silent = true } = {}) {
   await context.close();
 }
 
-const example = async (page, name) => {
+const example = async (page, name, crane = name.replaceAll(" ", "_")) => {
   const index = await page.evaluate((name) => [...document.querySelectorAll("#example option")].findIndex(({ textContent }) => textContent === name) - 1, name);
   await page.selectOption("#example", String(index));
-  await eventually(page, async () => assert.equal(await at(page, () => globalThis.instrument.stage.crane?.name), name.replaceAll(" ", "_")));
+  await eventually(page, async () => assert.equal(await at(page, () => globalThis.instrument.stage.crane?.name), crane));
   await eventually(page, async () => assert.match(await state(page), /^At rest/));
 };
 
@@ -170,6 +170,52 @@ async function schema(page) {
   assert.deepEqual(lacking.filter((one) => !/\.(after|remove)$/.test(one)), []);
 }
 
+/** Warnings are in the line under the crane, and on a phone at the tab of the spec. */
+async function warnings(page, phone) {
+  await example(page, "knuckle boom");
+  const badge = page.locator("#tab_spec .badge");
+  assert.equal(await badge.isVisible(), false);
+  await edit(page, "mass: 420", "mass: 420000");
+  await eventually(page, async () => assert.match(await state(page), /^At rest.* · 1 warning · /));
+  assert.equal(await page.locator("#state").getAttribute("class"), "warned");
+  assert.equal(await badge.isVisible(), phone);
+  assert.equal(await badge.textContent(), "1");
+  await edit(page, "mass: 420000", "mass: 420");
+  await eventually(page, async () => assert.doesNotMatch(await state(page), /warning/));
+  await eventually(page, async () => assert.equal(await page.locator("#state").getAttribute("class"), ""));
+}
+
+/** Statics are shown before modes are asked for, and sliders that move ask for none. */
+async function first(page) {
+  await example(page, "knuckle boom");
+  await eventually(page, async () => assert.equal(await page.locator("#rest_tiles .later:not(.old)").count(), 1));
+  await at(page, () => {
+    const { engine } = globalThis.instrument;
+    const ask = engine.ask.bind(engine);
+    globalThis.asked = [];
+    engine.ask = (request, ...more) => {
+      globalThis.asked.push([request.ask, document.querySelector("#state").textContent]);
+      return ask(request, ...more);
+    };
+  });
+  const slider = page.locator("#sliders input[type=range]").first();
+  await slider.evaluate(async (one) => {
+    for (let step = 1; step <= 5; step += 1) {
+      one.value = 800 + 40 * step;
+      one.dispatchEvent(new Event("input"));
+      await new Promise(requestAnimationFrame);
+    }
+  });
+  await eventually(page, async () => assert((await at(page, () => globalThis.asked)).some(([ask]) => ask === "modes")));
+  const asked = (await at(page, () => globalThis.asked)).map(([ask]) => ask);
+  assert.equal(asked.at(-1), "modes", asked.join());
+  assert(asked.filter((one) => one === "modes").length === 1 && asked.filter((one) => one === "rest").length >= 1, asked.join());
+  await eventually(page, async () => assert.equal(await page.locator("#rest_tiles .later:not(.old)").count(), 1));
+  await at(page, () => delete globalThis.instrument.engine.ask);
+  await page.getByRole("button", { name: "As in the spec" }).click();
+  await eventually(page, async () => assert.equal(await at(page, () => globalThis.instrument.rest.parameters[0]), 800));
+}
+
 /** Sliders move the crane and its numbers. */
 async function sliders(page) {
   await example(page, "knuckle boom");
@@ -206,12 +252,41 @@ async function analyses(page) {
   assert(ids.includes("path") && ids.some((id) => id.startsWith("drive_")) && ids.includes("balance"), ids.join());
   const rows = await at(page, () => globalThis.instrument.stage.crane.run.t.at(-1));
   assert(Math.abs(rows - 3) < 1e-6);
+  assert.match(await state(page), /^The run of the spec, 3.00 s$/);
+  // The page has no clock of its own for the engine.
+  assert.doesNotMatch(await page.locator("#run .tables").textContent(), /wall time|real-time factor|\binf\b|NaN/);
   await page.screenshot({ path: picture("run") });
   await page.getByRole("tab", { name: "Load chart" }).click();
   await page.getByRole("button", { name: "Compute" }).click();
   await page.waitForSelector("#load_chart .panel");
   assert((await page.locator("#table_chart tbody tr").count()) > 10);
   await page.screenshot({ path: picture("chart") });
+  await page.getByRole("tab", { name: "At rest" }).click();
+  assert.match(await state(page), /^At rest/);
+}
+
+/** Poses that bear no load: "–" in the table, an empty field in the file, a gap in the picture. */
+async function absent(page) {
+  await example(page, "loader crane", "my_loader_crane");
+  await page.getByRole("tab", { name: "Load chart" }).click();
+  await page.getByRole("button", { name: "Compute" }).click();
+  await page.waitForSelector("#load_chart .panel");
+  const panel = page.locator("#load_chart_plot");
+  const load = async (button) => {
+    const [download] = await Promise.all([page.waitForEvent("download"), panel.locator("button", { hasText: button }).click()]);
+    return readFile(await download.path(), "utf8");
+  };
+  const csv = await load("CSV");
+  const [, ...lines] = csv.trimEnd().split("\n").map((line) => line.split(","));
+  const empty = lines.flat().filter((field) => field === "").length;
+  const dashes = await page.$$eval("#table_chart tbody tr", (rows) => rows.filter(({ cells }) => cells[4].textContent === "–").length);
+  assert(empty > 0 && empty === dashes, `${empty} empty fields, ${dashes} dashes`);
+  const numbers = lines.flat().filter((field) => field !== "").map(Number);
+  assert(numbers.every(Number.isFinite), csv);
+  const svg = await load("SVG");
+  const points = [...svg.matchAll(/<polyline [^>]*points="([^"]*)"/g)].flatMap(([, text]) => text.split(" ").filter(Boolean));
+  assert.equal(points.length, numbers.length - lines.length, "a point of a curve for every load");
+  await page.getByRole("tab", { name: "At rest" }).click();
 }
 
 /** Pictures of motions that the processor draws: a few calls instead of one for each part, and the crane where it is, in its colours. */
@@ -245,9 +320,19 @@ async function plainly(page) {
   const several = await at(page, () => {
     const { viewer } = globalThis.instrument.stage;
     const { figure, floor, grid, extent: { size } } = viewer;
-    return new viewer.Plain({ figure, floor, grid, size, vectors: 164 }).batches.map(({ meshes }) => meshes.length);
+    return new viewer.plain.constructor({ figure, floor, grid, size, vectors: 164 }).batches.map(({ meshes }) => meshes.length);
   });
   assert(several.length > 2 && several.every((count) => count <= 20) && several.reduce((sum, count) => sum + count) > 40, several.join());
+}
+
+/** The reader sees what fails in the page. */
+async function faults(browser) {
+  await open(browser, { viewport: { width: 640, height: 480 } }, async (page) => {
+    await at(page, () => setTimeout(() => { throw new Error("a mistake of the test"); }));
+    await eventually(page, async () => assert.match(await state(page), /failed \(a mistake of the test\)/));
+    await at(page, () => void Promise.reject(new Error("another one")));
+    await eventually(page, async () => assert.match(await state(page), /failed \(another one\)/));
+  }, { silent: false });
 }
 
 /** Driving by keys: the crane moves in real time, levers spring back, the record is a file. */
@@ -266,6 +351,7 @@ async function drive(page) {
   await page.keyboard.down("KeyW");
   await eventually(page, async () => assert.equal(await page.locator("#levers .track").nth(1).getAttribute("aria-valuenow"), "100"));
   await eventually(page, async () => assert((await seen()).t > still.t + 2));
+  assert.equal(await state(page), "Driven in real time");
   await page.screenshot({ path: picture("drive") });
   const moved = await seen();
   await page.keyboard.up("KeyW");
@@ -318,6 +404,15 @@ async function links(browser) {
   const text = "format: 1\nname: linked\nlinks:\n  - {name: rod, placement: {transform: {rotation: {x: 90 deg}}}, joint: revolute, mass: 3, com: [0, -1, 0]}\ndamping: {rod_psi: 1}\n";
   await open(browser, small, async (page) => {
     assert.equal(await at(page, () => globalThis.instrument.crane.name), "linked");
+    // What was written outlasts a reload, and is not that of another link.
+    await edit(page, "mass: 3", "mass: 4");
+    await eventually(page, async () => assert(await at(page, () => sessionStorage.getItem("crane").includes("mass: 4"))));
+    // What is saved is not asked about.
+    await page.click("#save");
+    await page.reload();
+    await page.waitForSelector("html[data-ready]");
+    assert.equal(await at(page, () => globalThis.instrument.editor.text), text.replace("mass: 3", "mass: 4"));
+    await edit(page, "mass: 4", "mass: 3");
     await page.click("#share");
     await eventually(page, async () => assert.equal(await at(page, () => location.hash.startsWith("#spec=")), true));
     const hash = await at(page, () => location.hash);
@@ -405,8 +500,11 @@ await open(browser, { viewport: { width: 1440, height: 900 }, colorScheme: "ligh
   await edits(page);
   await page.screenshot({ path: picture("light") });
   await schema(page);
+  await first(page);
   await sliders(page);
+  await warnings(page, false);
   await analyses(page);
+  await absent(page);
   await plainly(page);
   await drive(page);
   await speeds(page);
@@ -436,7 +534,9 @@ await open(browser, phone, async (page) => {
   await page.touchscreen.tap(track.x + track.width * 0.9, track.y + track.height / 2);
   await page.waitForTimeout(500);
   await page.screenshot({ path: picture("phone_drive") });
+  await warnings(page, true);
 });
+await faults(browser);
 await links(browser);
 await fromReport(browser);
 await browser.close();

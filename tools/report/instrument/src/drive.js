@@ -26,9 +26,9 @@ const $ = (selector) => document.querySelector(selector);
 const DEGREES = 180 / Math.PI;
 
 export class Drive {
-  /** `ask(request, seconds)` asks the engine, `given()` is what the sliders say, `before()` ends everything else. */
-  constructor(stage, { ask, given, before }) {
-    Object.assign(this, { stage, ask, given, before, on: false });
+  /** `ask(request, seconds)` asks the engine, `given()` is what the sliders say, `before()` ends everything else, `note(words)` is the line under the crane. */
+  constructor(stage, { ask, given, before, note }) {
+    Object.assign(this, { stage, ask, given, before, note, on: false });
     this.levers = new Levers($("#levers"));
     $("#engage").addEventListener("click", () => (this.on ? this.stop() : this.start()));
     $("#record").addEventListener("click", () => this.export());
@@ -66,6 +66,7 @@ export class Drive {
     Object.assign(this, { on: true, tolerance: TOLERANCE.fine, t: 0, zero: null, rows: [], pictures: [], spent: [], gauged: 0 });
     this.stage.drive(true);
     $("#drive_state").textContent = "";
+    this.note("Driven in real time");
     $("#cockpit").hidden = false;
     $("#engage").textContent = "Stop";
     $("#record").hidden = true;
@@ -83,6 +84,7 @@ export class Drive {
     $("#engage").textContent = "Drive";
     $("#pace").textContent = "";
     $("#drive_state").textContent = words || `driven for ${this.t.toFixed(1)} s`;
+    this.note(`Where it was after ${this.t.toFixed(1)} s of driving`);
     $("#record").hidden = !this.rows?.length;
   }
 

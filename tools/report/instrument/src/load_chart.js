@@ -1,5 +1,5 @@
 // Load charts: the largest load within limits over the positions of one or two drives.
-import { readable, spoken } from "../../src/data.js";
+import { measured, readable, spoken } from "../../src/data.js";
 import { element } from "../../src/element.js";
 import { Plot } from "../../src/plot.js";
 import { grid } from "../../src/tables.js";
@@ -118,7 +118,7 @@ export class LoadChart {
     const shown = (range) => (drive(range).unit === "rad" ? { unit: "°", factor: DEGREES } : { unit: "m", factor: 1 });
     const [x, y] = [shown(along), by && shown(by)];
     const rows = Array.from({ length: by?.count ?? 1 }, (_, k) => poses.slice(k * along.count, (k + 1) * along.count));
-    const label = (row) => (by ? `${spoken(drive(by).name)} ${readable(row[0].at[0] * y.factor)} ${y.unit}` : spoken(load));
+    const label = (row) => (by ? `${spoken(drive(by).name)} ${measured(row[0].at[0] * y.factor, y.unit)}` : spoken(load));
     const axis = { label: spoken(drive(along).name), unit: x.unit, values: Float64Array.from(rows[0], ({ at }) => at.at(-1) * x.factor) };
     const host = element("div", { className: "panels" });
     this.results.append(host);
@@ -126,13 +126,12 @@ export class LoadChart {
       prefix: name, id: "load_chart_plot", kind: "along", title: `Largest ${spoken(load)}`, height: 320, x: axis, y: { label: spoken(load), unit },
       curves: rows.map((row, colour) => ({ label: label(row), colour, values: row.map((pose) => pose.load) })),
     })];
-    const number = (value) => (value === null ? "–" : readable(value));
     this.results.append(grid({
       key: "chart", title: `Largest ${spoken(load)}, and what limits it`,
       headers: [...(by ? [`${spoken(drive(by).name)} [${y.unit}]`] : []), `${axis.label} [${x.unit}]`, `radius of ${point ? spoken(point) : "the point"} [m]`, "height [m]", `${spoken(load)} [${unit}]`, "limit", "where"],
       numeric: [...(by ? [true] : []), true, true, true, true, false, false],
       rows: poses.map((pose) => [
-        ...(by ? [readable(pose.at[0] * y.factor)] : []), readable(pose.at.at(-1) * x.factor), number(pose.radius), number(pose.height), number(pose.load), pose.limit ?? "none", spoken(pose.where ?? ""),
+        ...(by ? [readable(pose.at[0] * y.factor)] : []), readable(pose.at.at(-1) * x.factor), readable(pose.radius), readable(pose.height), readable(pose.load), pose.limit ?? "none", spoken(pose.where ?? ""),
       ]),
     }));
   }

@@ -1,5 +1,5 @@
 // Modes about the pose at rest: a list to choose from.
-import { significant, spoken } from "../../src/data.js";
+import { readable, significant, spoken } from "../../src/data.js";
 import { element } from "../../src/element.js";
 
 export class Modes {
@@ -13,19 +13,33 @@ export class Modes {
     this.amplitude = amplitude.closest("label");
   }
 
-  show(crane, stable) {
-    this.modes = crane.modes;
-    const any = crane.modes.length > 0;
+  /** Until modes are known. */
+  wait(stable) {
+    this.list.classList.add("old");
+    if (!stable) this.fail("There are no modes: the crane does not rest in a stable pose.");
+    else this.note.textContent = "computing …";
+  }
+
+  /** Says why there are none. */
+  fail(words) {
+    this.show([]);
+    this.note.textContent = words;
+  }
+
+  show(modes) {
+    this.modes = modes;
+    this.list.classList.remove("old");
+    const any = modes.length > 0;
     this.amplitude.hidden = !any;
-    this.note.textContent = !stable ? "There are no modes: the crane does not rest in a stable pose." : any ? "Small vibrations about the pose at rest, not to scale and slowed down." : "Nothing can vibrate.";
+    this.note.textContent = any ? "Small vibrations about the pose at rest, not to scale and slowed down." : "Nothing can vibrate.";
     const row = ({ frequency, damping, moves }, index) => {
       const choice = element("input", { type: "radio", name: "mode", value: index });
       choice.addEventListener("change", () => this.choose(this.modes[index]));
-      const cells = [`${index + 1}`, frequency === null ? "unstable" : `${significant(frequency, 3)} Hz`, damping === null ? "–" : significant(damping, 2), moves.slice(0, 3).map(spoken).join(", ")];
+      const cells = [`${index + 1}`, frequency === null ? "unstable" : `${readable(frequency)} Hz`, significant(damping, 2), moves.slice(0, 3).map(spoken).join(", ")];
       return element("label", { className: "mode" }, choice, ...cells.map((textContent) => element("span", { textContent })));
     };
     const head = element("div", { className: "mode head" }, ...["", "mode", "frequency", "damping ratio", "moves most"].map((textContent) => element("span", { textContent })));
-    this.list.replaceChildren(...(any ? [head, ...crane.modes.map(row)] : []));
+    this.list.replaceChildren(...(any ? [head, ...modes.map(row)] : []));
   }
 
   /** The mode that is chosen, if any. */

@@ -5,6 +5,7 @@ import "./style.css";
 import { spoken } from "../../src/data.js";
 import { save } from "../../src/download.js";
 import { element } from "../../src/element.js";
+import { faults } from "../../src/faults.js";
 import { Drive } from "./drive.js";
 import { Editor } from "./editor.js";
 import { Engine, compile } from "./engine.js";
@@ -18,10 +19,16 @@ import { Stage } from "./stage.js";
 
 /** Time after the last key until the spec is read, ms. */
 const PAUSE = 80;
+/** Time without an edit or a moved slider until modes are computed, which take longer than statics, ms. */
+const CALM = 250;
+/** Modes that take no longer than this are waited for: another start of the engine would take as long, ms. */
+const BRIEF = 150;
 /** Longest time for reading a spec or for statics, s. */
 const PATIENCE = 10;
 /** Name of a spec that came from nowhere. */
 const UNNAMED = "crane.yaml";
+/** Where the browser keeps the spec while its tab is open. */
+const KEPT = "crane";
 
 const $ = (selector) => document.querySelector(selector);
 const { examples, schema } = JSON.parse($("#given").textContent);
@@ -33,6 +40,9 @@ let engine = null;
 /** The crane of the last spec without mistakes, as the engine describes it, and as it is at rest. */
 let crane = null;
 let atRest = null;
+/** What the line under the crane says of the crane at rest; and of mistakes and warnings. */
+let restNote = null;
+let counts = { mistakes: 0, warnings: 0 };
 let name = UNNAMED;
 /** The text as it was opened or saved. */
 let kept = "";
@@ -41,10 +51,11 @@ let tab = "rest";
 const ask = (request, seconds = PATIENCE) => engine.ask(request, seconds);
 const editor = new Editor($("#editor"), schema, { changed: edited, names });
 const rest = new Rest($("#rest"), moved);
+faults((words) => note(words, "bad"));
 const modes = new Modes($("#modes"), { choose: (mode) => stage.vibrate(mode), swell: (factor) => stage.viewer?.set({ factor }) });
-const run = new Run($("#run"), stage, { ask, end: (words) => engine.end(words), given: () => rest.given });
+const run = new Run($("#run"), stage, { ask, end: (words) => engine.end(words), given: () => rest.given, note });
 const chart = new LoadChart($("#load_chart"), { ask, given: () => rest.given });
-const drive = new Drive(stage, { ask, given: () => rest.given, before: () => stage.player.play(false) });
+const drive = new Drive(stage, { ask, given: () => rest.given, note, before: () => stage.player.play(false) });
 
 controls();
 globalThis.instrument = { stage, editor, run, drive, chart, rest, context, get engine() { return engine; }, get crane() { return crane; }, get atRest() { return atRest; } };
@@ -59,15 +70,34 @@ async function begin() {
   try {
     engine = new Engine(await compile($("#engine").textContent));
   } catch (error) {
-    note(`This browser cannot run the engine (${error.message}): it needs WebAssembly with 128-bit SIMD, as all browsers since 2023 have it.`, true);
+    note(`This browser cannot run the engine (${error.message}): it needs WebAssembly with 128-bit SIMD, as all browsers since 2023 have it.`, "bad");
     return;
   }
   globalThis.instrument.compiled = performance.now();
   const text = await linked;
-  const opened = text === null ? load(examples[0].name, examples[0].text) : load(UNNAMED, text);
-  await opened.catch(({ message }) => note(`The spec cannot be shown: ${message}.`, true));
-  if (refused) note(`${refused}. This is an example instead.`, true);
+  const { name: own, text: written } = remembered() ?? (text === null ? examples[0] : { name: UNNAMED, text });
+  await load(own, written).catch(({ message }) => note(`The spec cannot be shown: ${message}.`, "bad"));
+  if (refused) note(`${refused}. This is an example instead.`, "bad");
   root.dataset.ready = "yes";
+}
+
+/** The spec as it was when this tab was reloaded, unless another link is open now. */
+function remembered() {
+  try {
+    const kept = JSON.parse(sessionStorage.getItem(KEPT));
+    return kept?.hash === location.hash ? kept : null;
+  } catch {
+    return null;
+  }
+}
+
+/** Keeps the spec, in case this tab is reloaded. */
+function remember() {
+  try {
+    sessionStorage.setItem(KEPT, JSON.stringify({ hash: location.hash, name, text: editor.text }));
+  } catch {
+    // Some browsers keep nothing for files, or not so much.
+  }
 }
 
 /** Puts a spec into the editor and reads it. */
@@ -94,7 +124,9 @@ async function read() {
   }
   read.busy = true;
   const begin = performance.now();
-  engine.abandon(["run", "chart"], "ended: the spec was changed");
+  remember();
+  clearTimeout(vibrations.waiting);
+  engine.abandon(["run", "chart", ...(vibrations.took > BRIEF ? ["modes"] : [])], "ended: the spec was changed");
   try {
     const opened = await ask({ ask: "open", name, text: editor.text });
     problems(opened.diagnostics);
@@ -111,12 +143,11 @@ async function read() {
       run.open(crane);
       await statics(begin);
     } else {
-      const count = opened.diagnostics.length;
-      note(`${count} mistake${count === 1 ? "" : "s"}: ${crane ? "the crane is as before" : "there is no crane yet"}`, true);
+      note(`${[counted("mistake"), counted("warning")].filter(Boolean).join(", ")}: ${crane ? "the crane is as before" : "there is no crane yet"}`, "bad");
     }
   } catch ({ message }) {
     problems([]);
-    note(message, true);
+    note(message, "bad");
   }
   read.busy = false;
   if (read.again) {
@@ -138,6 +169,7 @@ async function moved() {
     return;
   }
   moved.busy = true;
+  if (vibrations.took > BRIEF) engine.abandon(["modes"], "ended: a slider was moved");
   do {
     moved.again = false;
     drive.stop();
@@ -146,26 +178,56 @@ async function moved() {
   moved.busy = false;
 }
 
-/** The crane at rest. */
+/** The crane at rest; its modes when nothing else is asked. */
 async function statics(begin) {
+  clearTimeout(vibrations.waiting);
   try {
     const shown = stage.show(await ask({ ask: "rest", ...rest.given }));
     atRest = shown;
     rest.show(shown);
-    modes.show(shown.crane, shown.rest.stable);
+    modes.wait(shown.rest.stable);
     const took = performance.now() - begin;
     globalThis.instrument.took = took;
     const { stable, words, why } = shown.rest;
-    note(`${stable ? `At rest: ${words}` : why ?? words} · ${crane.coordinates} coordinate${crane.coordinates === 1 ? "" : "s"} · ${Math.round(took)} ms`, !stable);
+    const parts = [stable ? `At rest: ${words}` : why ?? words, counted("warning"), `${crane.coordinates} coordinate${crane.coordinates === 1 ? "" : "s"}`, `${Math.round(took)} ms`];
+    restNote = [parts.filter(Boolean).join(" · "), stable ? (counts.warnings ? "warned" : "") : "bad"];
+    note(...restNote);
+    if (stable) vibrations.waiting = setTimeout(vibrations, tab === "modes" ? 0 : CALM);
   } catch ({ message }) {
-    note(message, true);
+    note(message, "bad");
   }
 }
 
-/** The line under the crane. */
-function note(words, bad = false) {
-  $("#state").textContent = words;
-  $("#state").classList.toggle("bad", bad);
+/** Modes about the pose at rest: they do not keep its numbers waiting, nor a crane that is driven. */
+async function vibrations() {
+  clearTimeout(vibrations.waiting);
+  const of = atRest;
+  if (!of?.rest.stable || of.modes || drive.on) return;
+  try {
+    const found = await ask({ ask: "modes" });
+    vibrations.took = found.took;
+    if (of !== atRest) return;
+    Object.assign(of, { modes: found.modes, figures: [...of.figures, ...found.figures] });
+    of.crane.modes = found.modes;
+    rest.vibrates(of.figures);
+    modes.show(found.modes);
+  } catch ({ message }) {
+    if (of === atRest) modes.fail(message);
+  }
+}
+
+/** Time that modes took, ms; before the first ones, unknown. */
+vibrations.took = Infinity;
+
+/** The line under the crane; `kind`: bad, warned or nothing. */
+function note(words, kind = "") {
+  Object.assign($("#state"), { textContent: words, className: kind });
+}
+
+/** How many mistakes or warnings there are, in words; nothing if there are none. */
+function counted(what) {
+  const count = counts[`${what}s`];
+  return count ? `${count} ${what}${count === 1 ? "" : "s"}` : "";
 }
 
 /** Mistakes and warnings under the editor, as in the terminal, and underlined in it. */
@@ -183,7 +245,13 @@ function problems(diagnostics) {
     if (help) words.append(element("span", { className: "help", textContent: `help: ${help}` }));
     return element("li", { className: severity }, place, words);
   }));
-  root.classList.toggle("mistaken", diagnostics.some(({ severity }) => severity === "error"));
+  const mistakes = diagnostics.filter(({ severity }) => severity === "error").length;
+  counts = { mistakes, warnings: diagnostics.length - mistakes };
+  root.classList.toggle("mistaken", mistakes > 0);
+  // Where the spec is a tab of its own, its tab says what is in it.
+  const badge = $("#tab_spec .badge");
+  Object.assign(badge, { textContent: diagnostics.length || "", className: `badge ${mistakes ? "bad" : "warned"}`, hidden: !diagnostics.length });
+  badge.setAttribute("aria-label", [counted("mistake"), counted("warning")].filter(Boolean).join(", "));
 }
 
 /** What the parts of the crane are called, for completion. */
@@ -209,9 +277,11 @@ function choose(chosen) {
   for (const panel of document.querySelectorAll("#panel > [role=tabpanel]")) panel.hidden = panel.getAttribute("aria-labelledby") !== `tab_${chosen}`;
   if (left === chosen) return;
   if (left === "drive") drive.stop();
+  if (chosen === "modes" && engine) vibrations();
   if (chosen === "run") run.again();
-  else if (["rest", "modes", "chart"].includes(chosen) && atRest && ["run", "drive"].includes(left)) {
+  else if (["rest", "modes", "chart"].includes(chosen) && atRest && stage.crane !== atRest.crane) {
     stage.present(atRest.crane);
+    note(...restNote);
     if (chosen === "modes") stage.vibrate(modes.chosen);
   } else if (left === "modes") stage.vibrate(null);
   else if (chosen === "modes") stage.vibrate(modes.chosen);
@@ -269,7 +339,7 @@ function controls() {
       const text = await textOf(location.hash);
       if (text !== null && text !== editor.text) load(UNNAMED, text);
     } catch ({ message }) {
-      note(message, true);
+      note(message, "bad");
     }
   });
   $("#theme").addEventListener("click", () => {
@@ -284,7 +354,7 @@ function controls() {
 /** Opens a file. */
 async function take(file) {
   if (!file) return;
-  if (file.size > MOST) note(`${file.name} is longer than ${MOST >> 20} MB: that is not a spec`, true);
+  if (file.size > MOST) note(`${file.name} is longer than ${MOST >> 20} MB: that is not a spec`, "bad");
   else load(file.name, await file.text());
 }
 
@@ -292,6 +362,7 @@ async function take(file) {
 async function share() {
   history.replaceState(null, "", await fragment(editor.text));
   kept = editor.text;
+  remember();
   const words = "The address now contains the whole spec";
   try {
     await navigator.clipboard.writeText(location.href);

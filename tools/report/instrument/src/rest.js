@@ -2,7 +2,7 @@
 import { spoken } from "../../src/data.js";
 import { element } from "../../src/element.js";
 import { results } from "../../src/tables.js";
-import { tiles } from "../../src/tiles.js";
+import { tile, tiles } from "../../src/tiles.js";
 
 /** Travel of a slider to either side of where a drive begins, if it has no stops: degrees, m. */
 const TRAVEL = { rad: 60, m: 1 };
@@ -78,13 +78,28 @@ export class Rest {
     return { parameters: this.parameters, positions: this.moved ? this.positions : [] };
   }
 
-  /** Shows figures and tables. */
-  show({ figures, verdict, tables }) {
+  /** Shows figures and tables; figures of modes, which follow later, fade until then. */
+  show({ figures, verdict, tables, rest: { stable } }) {
     const [sentence, host, grids] = [element("p", { id: "rest_verdict" }), element("div", { id: "rest_tiles" }), element("div", { className: "tables" })];
     const open = new Set([...this.results.querySelectorAll("details[open]")].map(({ id }) => id));
+    const waiting = stable ? [...this.results.querySelectorAll("#rest_tiles .later")] : [];
     this.results.replaceChildren(sentence, host, grids);
     tiles({ figures, verdict }, sentence, host);
+    for (const tile of waiting) tile.classList.add("old");
+    host.append(...waiting);
+    this.statics = figures.length;
     results(tables, grids);
     for (const one of this.results.querySelectorAll("details")) one.open = open.has(one.id);
+  }
+
+  /** Shows all figures, now also those of modes. */
+  vibrates(figures) {
+    const host = this.results.querySelector("#rest_tiles");
+    for (const old of host.querySelectorAll(".later")) old.remove();
+    host.append(...figures.slice(this.statics).map((figure) => {
+      const made = tile(figure);
+      made.classList.add("later");
+      return made;
+    }));
   }
 }

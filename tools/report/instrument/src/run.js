@@ -17,9 +17,9 @@ function seen(one) {
 }
 
 export class Run {
-  /** `ask(request, seconds)` asks the engine, `end()` ends what it computes, `given()` is what the sliders say. */
-  constructor(host, stage, { ask, end, given }) {
-    Object.assign(this, { host, stage, ask, given, plots: [], along: [], data: null });
+  /** `ask(request, seconds)` asks the engine, `end()` ends what it computes, `given()` is what the sliders say, `note(words)` is the line under the crane. */
+  constructor(host, stage, { ask, end, given, note }) {
+    Object.assign(this, { host, stage, ask, given, note, plots: [], along: [], data: null });
     this.results = host.querySelector(".results");
     $("#start").addEventListener("click", () => this.start());
     $("#cancel").addEventListener("click", () => end("ended"));
@@ -73,6 +73,7 @@ export class Run {
     const { stage } = this;
     this.data = answer;
     this.shown = stage.show(answer, { run: true });
+    this.says();
     this.results.replaceChildren($("#results_of_a_run").content.cloneNode(true));
     tiles(this.shown, this.results.querySelector("#verdict"), this.results.querySelector("#tiles"));
     results(this.shown.tables, this.results.querySelector("#tables .tables"));
@@ -87,7 +88,13 @@ export class Run {
 
   /** Shows the last run again, after something else was shown. */
   again() {
-    if (this.data && this.stage.crane !== this.shown.crane) this.stage.present(this.shown.crane, true);
+    if (!this.data) return;
+    if (this.stage.crane !== this.shown.crane) this.stage.present(this.shown.crane, true);
+    this.says();
+  }
+
+  says() {
+    this.note(`The run of the spec, ${this.stage.player.duration.toFixed(2)} s`);
   }
 
   follow(t) {
