@@ -18,6 +18,7 @@ mod no_panic;
 mod oracles;
 mod outside;
 mod package;
+mod pictures;
 mod prose;
 mod python;
 mod release;
@@ -46,6 +47,7 @@ With words, only the jobs of these names and the steps whose titles contain one 
            time methods and numbers of sections of the reference crane, write docs/error-vs-runtime.md
   instrument
            build the page as an instrument, out/instrument.html; needs Node.js, and Rust for wasm32-unknown-unknown, which rustup installs
+  pictures make the pictures of README.md again; needs Node.js
   release  what is published, in target/published: the command as one file for this machine and for Linux on aarch64, Python wheels for
            Linux on x86-64 and aarch64, packages of the crates, checksums
   aarch64  what is published for Linux on aarch64, tried in an emulator; needs a Debian with qemu-user-static
@@ -67,6 +69,7 @@ fn main() -> ExitCode {
         }
         "error-vs-runtime" => vec![Step::cargo("error against run time", &ERROR_VS_RUNTIME)],
         "instrument" => vec![Step::check("the page as an instrument", instrument::build_page)],
+        "pictures" => picture_steps(),
         "release" => vec![
             Step::check("Python environment", oracles::prepare_python),
             Step::check("linker for other systems", cross::prepare),
@@ -225,6 +228,7 @@ fn page_steps() -> Vec<Step> {
         Step::check("the report page in a browser", report::check_in_browser).light(),
         Step::check("the instrument in a browser", instrument::check_instrument).light(),
         Step::check("the report page is current", report::check_current).light(),
+        Step::check("the pictures of the README are current", pictures::check_pictures).light(),
         Step::check("pages of the Python package in a browser", report::check_in_notebook).light(),
     ]
 }
@@ -255,6 +259,14 @@ fn oracle_steps() -> Vec<Step> {
         Step::check("generated code against Pinocchio and MuJoCo", oracles::compare_with_peers).light(),
         Step::check("URDF and MJCF there and back", oracles::check_exchange).light(),
         Step::check("cylinders against Exudyn", oracles::check_hydraulics).light(),
+    ]
+}
+
+fn picture_steps() -> Vec<Step> {
+    vec![
+        Step::check("packages of the report page", report::prepare_packages),
+        Step::cargo("the default run", &["run", "--release"]),
+        Step::check("the pictures of the README", pictures::make_pictures),
     ]
 }
 
