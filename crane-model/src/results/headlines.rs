@@ -22,8 +22,6 @@ pub struct Kind {
     /// The measure of their size, in words.
     pub measure: &'static str,
     size: Size,
-    /// Columns of forces, N, beside which moments may be rounding.
-    beside: Vec<String>,
 }
 
 impl Kind {
@@ -32,7 +30,7 @@ impl Kind {
             Size::Peak => "peak",
             Size::Range => "range",
         };
-        Self { names, unit, measure, size, beside: Vec::new() }
+        Self { names, unit, measure, size }
     }
 
     /// Size of a quantity.
@@ -43,19 +41,17 @@ impl Kind {
         }
     }
 
-    /// Below this a difference is rounding or a negligible motion: a micrometre on a crane of several metres, or the moment of a billionth of
-    /// the largest force at an arm of 1 m.
-    pub fn noise(&self, table: &Table, name: &str) -> f64 {
+    /// Below this a difference is rounding or a negligible motion: a micrometre on a crane of several metres, or a billionth of the largest force
+    /// of the run, `force` in N, or its moment at an arm of 1 m.
+    pub fn noise(&self, table: &Table, name: &str, force: f64) -> f64 {
         /// Fraction of the largest value.
         const NOISE: f64 = 1e-6;
-        /// The same for forces beside moments.
+        /// The same for forces and moments.
         const ROUNDING: f64 = 1e-9;
-        match self.size {
-            Size::Peak => {
-                let forces = self.beside.iter().map(|name| Extremes::of(table, name).size());
-                ROUNDING * forces.fold(0.0, f64::max)
-            }
-            Size::Range => NOISE * Extremes::of(table, name).size(),
+        match (self.size, self.unit) {
+            (Size::Peak, "N" | "N m") => ROUNDING * force,
+            (Size::Peak, _) => 0.0,
+            (Size::Range, _) => NOISE * Extremes::of(table, name).size(),
         }
     }
 }
@@ -83,7 +79,32 @@ pub fn headlines(description: &Description) -> Vec<Kind> {
         Kind::new(supports.collect(), "N", Size::Peak),
         Kind::new(cylinders::pressures(description), "Pa", Size::Peak),
         Kind::new(connectors("N"), "N", Size::Peak),
-        // Where nothing twists a telescope, the moments of its pads are zero up to rounding.
-        Kind { beside: connectors("N"), ..Kind::new(connectors("N m"), "N m", Size::Peak) },
+        Kind::new(connectors("N m"), "N m", Size::Peak),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_billionth_of_the_largest_force_is_rounding() {
+        let mut table = Table::default();
+        for (name, unit) in [("t", "s"), ("slew", "N m"), ("rope", "N"), ("oil", "Pa"), ("tip", "m")] {
+            table.add(name, unit);
+        }
+        table.rows = vec![vec![0.0, 1e-22, 2e4, 1e7, 3.0], vec![9.0, -2e-22, -3e4, 2e7, 4.0]];
+        let force = table.largest_force();
+        assert!((force - 3e4).abs() < f64::EPSILON, "{force}");
+        for (name, unit, size, noise) in [
+            ("slew", "N m", Size::Peak, 3e-5),
+            ("rope", "N", Size::Peak, 3e-5),
+            ("oil", "Pa", Size::Peak, 0.0),
+            ("tip", "m", Size::Range, 4e-6),
+        ] {
+            let found = Kind::new(vec![name.into()], unit, size).noise(&table, name, force);
+            // Products of two numbers, each rounded.
+            assert!((found - noise).abs() <= 1e-15 * noise, "{name}: {found}");
+        }
+    }
 }

@@ -46,6 +46,13 @@ impl Table {
         (results as f64 * duration / (self.rows.len().max(2) - 1) as f64).min(duration)
     }
 
+    /// The largest force or moment of a run, N or N m, of all its columns.
+    pub(super) fn largest_force(&self) -> f64 {
+        let forces = self.columns.iter().enumerate().filter(|(_, column)| matches!(column.unit.as_str(), "N" | "N m"));
+        let forces: Vec<usize> = forces.map(|(index, _)| index).collect();
+        self.rows.iter().flat_map(|row| forces.iter().map(|&force| row[force].abs())).fold(0.0, f64::max)
+    }
+
     /// The poses of a run: the columns after the time.
     pub(super) fn poses(&self, description: &Description) -> impl Iterator<Item = &[f64]> {
         let n = description.coordinates.len();

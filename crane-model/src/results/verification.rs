@@ -105,6 +105,7 @@ impl Verification {
 
     /// Quantities whose error may exceed one percent of their size.
     fn doubtful(&self, description: &Description, table: &Table) -> Vec<Doubtful> {
+        let force = table.largest_force();
         let mut found = Vec::new();
         for kind in headlines(description) {
             let sizes: Vec<f64> = kind.names.iter().map(|name| kind.size(&Extremes::of(table, name))).collect();
@@ -116,7 +117,8 @@ impl Verification {
                 else {
                     continue;
                 };
-                if difference > CAUTION * size.max(NEGLIGIBLE * greatest) && difference > kind.noise(table, name) {
+                if difference > CAUTION * size.max(NEGLIGIBLE * greatest) && difference > kind.noise(table, name, force)
+                {
                     let share = difference / size.max(f64::MIN_POSITIVE);
                     let (unit, measure) = (kind.unit, kind.measure);
                     found.push(Doubtful { name: name.clone(), difference, unit, share, measure, between });
