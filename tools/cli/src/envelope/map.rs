@@ -7,6 +7,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use crate::figures::{FONT, PIXEL, SPACE, draw_title, folded, font, shade, tick, title_height};
 
 /// Coloured cells.
+#[derive(Clone)]
 pub struct Map {
     /// Lines: what the colours show, with unit, and more about it.
     pub title: Vec<String>,
@@ -16,7 +17,7 @@ pub struct Map {
     pub y: (String, Vec<f64>),
     /// Rows along x, one per value of y; NaN is left blank.
     pub cells: Vec<Vec<f64>>,
-    /// What is written into the cells, in the same order.
+    /// What is written into the cells, in the same order: all of it, else its last word, else nothing, as there is room.
     pub words: Vec<Vec<String>>,
 }
 
@@ -81,8 +82,12 @@ fn draw(map: &Map, text: &mut String, title: (&[String], u32)) -> Result<(), Box
     }
     let spacing = |count: usize, length: u32| f64::from(length) / count.max(1) as f64;
     let (width, height) = (SIZE.0 - SCALE - 70 * PIXEL, SIZE.1 - 46 * PIXEL);
-    let letters = map.words.iter().flatten().map(|word| word.chars().count()).max().unwrap_or(0);
-    if spacing(map.x.1.len(), width) >= letters as f64 * ROOM.0 && spacing(map.y.1.len(), height) >= ROOM.1 {
+    let fits = |part: fn(&str) -> &str| {
+        let letters = map.words.iter().flatten().map(|word| part(word).chars().count()).max().unwrap_or(0);
+        spacing(map.x.1.len(), width) >= letters as f64 * ROOM.0 && spacing(map.y.1.len(), height) >= ROOM.1
+    };
+    let parts: [fn(&str) -> &str; 2] = [|word| word, |word| word.rsplit(' ').next().unwrap_or(word)];
+    if let Some(shown) = parts.into_iter().find(|part| fits(*part)) {
         for (words, (row, sides)) in map.words.iter().zip(map.cells.iter().zip(y.windows(2))) {
             for (word, (number, ends)) in words.iter().zip(row.iter().zip(x.windows(2))) {
                 // Dark cells have white letters.
@@ -90,7 +95,7 @@ fn draw(map: &Map, text: &mut String, title: (&[String], u32)) -> Result<(), Box
                 let style = font(0.87 * FONT).color(if part < 0.6 { &WHITE } else { &BLACK });
                 let middle = (0.5 * (ends[0] + ends[1]), 0.5 * (sides[0] + sides[1]));
                 let style = style.pos(Pos::new(HPos::Center, VPos::Center));
-                chart.draw_series([Text::new(word.clone(), middle, style)])?;
+                chart.draw_series([Text::new(shown(word).to_owned(), middle, style)])?;
             }
         }
     }
@@ -151,6 +156,15 @@ mod tests {
         let picture = svg(&map).unwrap();
         assert!(picture.contains("load [kg]") && picture.contains("slew [°]"));
         assert_eq!((picture.matches("\nT\n").count(), picture.matches("\nU\n").count()), (3, 3));
+        // With less room the letter is left of a load and its letter.
+        let crowded = |count: usize| {
+            let word = vec!["1890 T".to_owned(); count];
+            let values: Vec<f64> = (0..count).map(|place| place as f64).collect();
+            let (x, cells) = (("slew [°]".to_owned(), values.clone()), vec![values; 2]);
+            let picture = svg(&Map { x, cells, words: vec![word; 2], ..map.clone() }).unwrap();
+            ["\n1890 T\n", "\nT\n"].map(|text| picture.matches(text).count())
+        };
+        assert_eq!([crowded(4), crowded(13), crowded(200)], [[8, 0], [0, 26], [0, 0]]);
         // Background, five cells and the scale.
         assert!(picture.matches("<rect").count() >= 5 + 60, "{}", picture.matches("<rect").count());
     }
