@@ -287,7 +287,8 @@ fn a_foot_in_the_air_and_a_spring_beyond_reason_are_named() {
     let (_, loader) = crane_specs::EXAMPLES.iter().find(|(name, _)| *name == "loader_crane").expect("an example");
     let diagnosis = |from: &str, to: &str| {
         assert!(loader.contains(from), "{from}");
-        let changed = crane(&loader.replacen(from, to, 1));
+        // With less it stands on the other three feet.
+        let changed = crane(&loader.replacen(from, to, 1).replace("payload: {value: 800,", "payload: {value: 900,"));
         let crane: &dyn DynCrane = &changed;
         let found = crane.equilibrium(&Statics::default());
         assert!(!found.is_stable(), "{to}: {found}");
