@@ -19,7 +19,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{}, {} Newton steps", rest.status, rest.steps());
 
     let start = dynamics::rk4::State::at_rest(SVector::from_column_slice(&rest.q));
-    let settings = dynamics::Settings::of(crane.description());
+    // Of the run in the spec, a line per half second.
+    let settings = dynamics::Settings { output: 0.5, ..dynamics::Settings::of(crane.description()) };
     println!("{:>5}  {:>8}  {:>8}  {:>11}", "t [s]", "x [m]", "z [m]", "drive [N m]");
     dynamics::simulate(&crane, start, &settings, |sample| {
         let q = SVector::<f64, N>::from_column_slice(sample.q);

@@ -1,4 +1,4 @@
-"""Examples of the manual for Python."""
+"""Examples of the README and of the manual for Python."""
 
 import re
 
@@ -8,19 +8,31 @@ from conftest import ROOT
 
 def blocks(page, language):
     """The examples of a page."""
-    return re.findall(rf"^```{language}\n(.*?)^```", (ROOT / "docs/manual" / page).read_text(), re.MULTILINE | re.DOTALL)
+    return re.findall(rf"^```{language}\n(.*?)^```", (ROOT / page).read_text(), re.MULTILINE | re.DOTALL)
+
+
+def test_readme(tmp_path, monkeypatch):
+    """The first minute in Python: as it stands, with the crane of the README."""
+    [spec], [example] = blocks("README.md", "yaml"), blocks("README.md", "python")
+    (tmp_path / "my_crane.yaml").write_text(spec)
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    exec(example, names)
+    # The load is a point of 500 kg, 1.5 m below its hinge, whose coordinate is the last; one product, rounded.
+    assert abs(names["A"][-1, -1] - 500 * 1.5**2) < 1e-9
+    assert not names["run"].cautions
 
 
 def test_fitting(capsys):
     """The fit finds the numbers of the measurement, within three deviations, and prints what the manual shows."""
     pytest.importorskip("scipy")
-    first, others = blocks("fitting.md", "python")
+    first, others = blocks("docs/manual/fitting.md", "python")
     names = {}
     exec(first, names)
     found = names["found"]
     for name, value in {"k_boom": 3e6, "d_boom": 4e4, "d_hook": 55, "payload": 620, "dead_time": 0.06}.items():
         assert abs(found[name] - value) < 3 * found.deviations[found.names.index(name)]
-    shown = blocks("fitting.md", "text")[0].split("\n")
+    shown = blocks("docs/manual/fitting.md", "text")[0].split("\n")
     said = capsys.readouterr().out.split("\n")
     # The words, and numbers to two digits of their errors: another processor may end the search elsewhere.
     assert [re.sub(r"[\d.e+-]+", "#", line).split() for line in said if line] == [re.sub(r"[\d.e+-]+", "#", line).split() for line in shown if line]
