@@ -1,5 +1,5 @@
-//! Commands that README.md and CONTRIBUTING.md show: those of `crane` are run, in a folder of their own; of others, whatever they name
-//! must exist. Tests, builds and tasks of hours have steps of their own.
+//! Commands that README.md and CONTRIBUTING.md show in indented blocks: those of `crane` are run, in a folder of their own; of others, whatever
+//! they name must exist. Tests, builds and tasks of hours have steps of their own, and so have blocks `sh`: [`manual`](crate::manual).
 
 use std::process::Command;
 use std::{env, fs};
@@ -10,8 +10,6 @@ use crate::{step, workspace};
 pub const PAGES: [&str; 2] = ["README.md", "CONTRIBUTING.md"];
 /// Beginnings of a command of `crane`.
 pub const CRANE: [&str; 3] = ["cargo run --release -- ", "target/release/crane ", "crane "];
-/// The spec that README.md describes before it uses it.
-const SPEC: &str = "my_crane.yaml";
 
 /// Checks all commands of both pages.
 pub fn check_commands(tasks: &str) -> Result<(), String> {
@@ -28,9 +26,6 @@ pub fn check_commands(tasks: &str) -> Result<(), String> {
     let mut checked = 0;
     for page in PAGES {
         let text = workspace::read_file(page)?;
-        if let Some(spec) = text.split("```yaml\n").nth(1).and_then(|rest| rest.split("```").next()) {
-            copied(SPEC, spec.to_owned())?;
-        }
         for line in commands_of(&text) {
             let located = |problem: String| format!("{page}: `{line}`: {problem}");
             match CRANE.iter().find_map(|start| line.strip_prefix(start)) {
