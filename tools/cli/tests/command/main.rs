@@ -1,5 +1,6 @@
 //! The `crane` command as a user meets it.
 
+mod cautions;
 mod documents;
 mod ensemble;
 mod margins;
