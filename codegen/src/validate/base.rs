@@ -14,14 +14,16 @@ impl<'a> Check<'a> {
     pub(super) fn supports(&mut self, crane: &'a Crane) -> Vec<Support> {
         let Some(given) = &crane.supports else { return Vec::new() };
         let Some(supports) = &given.value else { return Vec::new() };
-        let base = self.bodies.first().map(|body| body.link.clone()).unwrap_or_default();
+        // After a mistake in the base, the first body is that of another link.
+        let base = crane.links.value.as_ref().and_then(|links| links.first()?.value.as_ref()?.name.value.clone());
+        let base = base.unwrap_or_default();
         if self.base.iter().all(Option::is_none) && !supports.is_empty() && !self.unknown.links {
             self.report(rule::base_fixed(given.span, &base));
         } else if self.links.get(base.as_str()).is_some_and(|subject| subject.starts.len() > 1) && !supports.is_empty()
         {
             self.report(rule::supports_on_beam(given.span, &base));
         }
-        let path = self.bodies.first().map(|body| body.path.clone()).unwrap_or_default();
+        let path = self.bodies.first().filter(|body| body.link == base).map_or(Vec::new(), |body| body.path.clone());
         let misplaced = if path.iter().any(|step| matches!(step, Step::Rotate { .. })) {
             Some("with a rotation")
         } else if path.windows(2).any(|pair| matches!(pair, [Step::Move(_), Step::Translate(_)])) {

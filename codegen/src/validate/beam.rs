@@ -54,7 +54,7 @@ impl<'a> Check<'a> {
         let Some(Elements { elements, joints }) = elements.filter(|_| total <= Chain::MOST_COORDINATES) else {
             // The beam's coordinates are not known.
             self.unknown.links = true;
-            return (vec![Value::ZERO], Value::ZERO);
+            return (Vec::new(), Value::ZERO);
         };
         let section_joint = section_joint.unwrap_or(SectionJoint::Symmetric);
         self.unroll((link, span), attached, (elements, joints), section_joint)

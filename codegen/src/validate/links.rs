@@ -100,8 +100,10 @@ impl<'a> Check<'a> {
         own
     }
 
-    /// Appends a body; its name must not be taken.
+    /// Appends a body; its name must not be taken. It comes after the one that carries it, also while there are mistakes: all walks from
+    /// a body to the world end because of this.
     pub(super) fn push_body(&mut self, body: Body, span: Span) {
+        assert!(body.parent < Some(BodyId(self.bodies.len())), "a body comes after the one that carries it");
         self.register_expanded("bodies", &body.name, &body.link, span);
         self.bodies.push(body);
     }

@@ -122,9 +122,9 @@ enum Owner {
 /// The position of a link in the chain.
 #[derive(Clone, Debug)]
 struct LinkBodies {
-    /// Index of its first body.
+    /// Index of its first body, if it has any.
     first: usize,
-    /// The starts of its bodies along x when undeformed, m.
+    /// The starts of its bodies along x when undeformed, m; after a mistake in a beam or a rope, there are none.
     starts: Vec<Value>,
     /// The tip along x of its last body, m; 0 for a rigid link.
     tip: Value,
@@ -136,9 +136,14 @@ impl LinkBodies {
         self.starts.last().cloned().unwrap_or(Value::ZERO) + self.tip.clone()
     }
 
+    /// Its first body.
+    fn first(&self) -> Option<BodyId> {
+        (!self.starts.is_empty()).then_some(BodyId(self.first))
+    }
+
     /// Its last body.
-    fn last(&self) -> BodyId {
-        BodyId(self.first + self.starts.len().saturating_sub(1))
+    fn last(&self) -> Option<BodyId> {
+        self.starts.len().checked_sub(1).map(|last| BodyId(self.first + last))
     }
 }
 

@@ -30,11 +30,11 @@ impl Default for Attached {
 }
 
 impl Attached {
-    /// At a point of a body.
-    pub(super) fn at(parent: BodyId, along: Value, point: [Value; 3]) -> Self {
+    /// At a point of a body; `None` if a mistake left the link without bodies.
+    pub(super) fn at(parent: Option<BodyId>, along: Value, point: [Value; 3]) -> Self {
         let mut path = Vec::new();
         translate(&mut path, point);
-        Attached { parent: Some(parent), along, path }
+        Attached { parent, along, path }
     }
 
     /// At the tip of a link.
@@ -83,8 +83,8 @@ impl<'a> Check<'a> {
 
     /// At the end of the body that was appended last.
     pub(super) fn on_the_last_body(&self, tip: Value) -> Attached {
-        let last = BodyId(self.bodies.len().saturating_sub(1));
-        Attached::at(last, tip.clone(), [tip, Value::ZERO, Value::ZERO])
+        let last = self.bodies.len().checked_sub(1);
+        Attached::at(last.map(BodyId), tip.clone(), [tip, Value::ZERO, Value::ZERO])
     }
 
     /// The bodies of an earlier link.
@@ -119,14 +119,14 @@ impl<'a> Check<'a> {
         if place.tip.is_zero() && !self.unknown.links {
             self.report(rule::start_of_rigid(span, name));
         }
-        Attached::at(BodyId(place.first), Value::ZERO, [Value::ZERO; 3])
+        Attached::at(place.first(), Value::ZERO, [Value::ZERO; 3])
     }
 
     /// At a point of a link; on a beam or a rope it is between its beginning and its end.
     fn at_point(&mut self, name: &str, place: &LinkBodies, (at, span): (&[Spanned<Number>; 3], Span)) -> Attached {
         let [x, y, z] = at.each_ref().map(|given| self.number(given, "`at`", "m", Limit::Any));
         if place.tip.is_zero() {
-            return Attached::at(BodyId(place.first), x.clone(), [x, y, z]);
+            return Attached::at(place.first(), x.clone(), [x, y, z]);
         }
         let length = place.length();
         let (here, whole) = (self.now(&x), self.now(&length));
@@ -147,17 +147,17 @@ impl<'a> Check<'a> {
     }
 
     /// The body of a link at a position along x, and the position along it: for a beam, the element that contains it.
-    pub(super) fn element_at(&self, place: &LinkBodies, x: Value) -> (BodyId, Value) {
+    pub(super) fn element_at(&self, place: &LinkBodies, x: Value) -> (Option<BodyId>, Value) {
         let reach = self.now(&x) + AT_THE_JOINT * place.starts.last().map_or(0.0, |start| self.now(start));
         let element = place.starts.iter().rposition(|start| self.now(start) <= reach).unwrap_or(0);
         let start = place.starts.get(element).cloned().unwrap_or(Value::ZERO);
-        (BodyId(place.first + element), x - start)
+        (place.first().map(|BodyId(first)| BodyId(first + element)), x - start)
     }
 
-    /// The coordinates that move a body, in the order of q. After a mistake, it may be missing.
+    /// The coordinates that move a body, in the order of q.
     pub(super) fn coordinates_of(&self, body: Option<BodyId>) -> Vec<CoordinateId> {
-        let path = std::iter::successors(body, |BodyId(index)| self.bodies.get(*index)?.parent);
-        let steps = path.filter_map(|BodyId(index)| self.bodies.get(index)).flat_map(|body| &body.path);
+        let path = std::iter::successors(body, |BodyId(index)| self.bodies[*index].parent);
+        let steps = path.flat_map(|BodyId(index)| &self.bodies[index].path);
         let mut coordinates: Vec<CoordinateId> = steps.flat_map(Step::coordinates).copied().collect();
         coordinates.sort_unstable();
         coordinates

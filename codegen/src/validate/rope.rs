@@ -25,7 +25,7 @@ impl<'a> Check<'a> {
         let Some((rope, count)) = links else {
             // The rope's coordinates are not known.
             self.unknown.links = true;
-            return (vec![Value::ZERO], Value::ZERO);
+            return (Vec::new(), Value::ZERO);
         };
         let length = self.number(&rope.length, "`length`", "m", Limit::Positive);
         let line_density = self.number(&rope.mass_per_length, "`mass_per_length`", "kg/m", Limit::Positive);

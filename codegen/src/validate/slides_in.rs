@@ -4,8 +4,8 @@ use super::limits::Limit;
 use super::on::Attached;
 use super::{Check, LinkBodies, Owner};
 use crate::chain::{
-    self, Attachment, Axis, BeamAxis, BodyId, Clearance, CoordinateId, CoordinateKind, Cylinder, Force, Group, Law,
-    LoopJoint, LoopJointKind, PadDirection, Sliding, Spring, Step, Strain, Value,
+    self, Attachment, Axis, BeamAxis, Clearance, CoordinateId, CoordinateKind, Cylinder, Force, Group, Law, LoopJoint,
+    LoopJointKind, PadDirection, Sliding, Spring, Step, Strain, Value,
 };
 use crate::diagnostic::{Span, rule};
 use crate::spec::{AxisName, Beam, ExactDirection, Joint, Link, Pad, SlidesIn, Spanned, Vector};
@@ -64,9 +64,9 @@ pub(super) fn slides_in(link: &Link) -> Option<&Spanned<SlidesIn>> {
     link.beam.as_ref()?.value.as_ref()?.slides_in.as_ref()
 }
 
-/// The axis of a beam.
-fn axis_of(place: &LinkBodies) -> BeamAxis {
-    BeamAxis { first: BodyId(place.first), sections: place.starts.len() - 1, length: place.length() }
+/// The axis of a beam; `None` if a mistake left it without bodies.
+fn axis_of(place: &LinkBodies) -> Option<BeamAxis> {
+    Some(BeamAxis { first: place.first()?, sections: place.starts.len() - 1, length: place.length() })
 }
 
 /// The key of a beam that is not straight and of equal sections, if it has one.
@@ -114,7 +114,7 @@ impl<'a> Check<'a> {
         }
         let behind = place.length() - overlap.clone();
         let start = [behind, Value::ZERO, Value::ZERO];
-        Some((Attached::at(BodyId(place.first), Value::ZERO, start), Outer { place, overlap }))
+        Some((Attached::at(place.first(), Value::ZERO, start), Outer { place, overlap }))
     }
 
     /// A link that slides in a beam has a joint along x and no other place.
@@ -157,12 +157,19 @@ impl<'a> Check<'a> {
                 .map(|(pad, which)| self.pad(pad, &format!("the {which} pad of `{name}`")))
         });
         let (Some(Outer { place, overlap }), Some(pads)) = (outer, pads) else { return };
+        let [Some(outer), Some(inner)] = [&place, own].map(axis_of) else { return };
         self.keep_overlap(&overlap, [&place, own], name, given.overlap.span);
         if pads.iter().all(|[.., twist]| matches!(twist, Hold::No)) {
             self.report(rule::untwisted(given.pads.span, name));
         }
-        let beams = [&place, own].map(axis_of);
-        self.stages.push(Stage { link: name, span: link.name.span, beams, overlap, coordinate: first, pads });
+        self.stages.push(Stage {
+            link: name,
+            span: link.name.span,
+            beams: [outer, inner],
+            overlap,
+            coordinate: first,
+            pads,
+        });
     }
 
     /// The overlap is within both beams.
@@ -256,7 +263,7 @@ impl<'a> Check<'a> {
             std::mem::take(&mut self.stages)
         {
             let on_axis = |body, x: Value| Attachment { body: Some(body), position: [x, Value::ZERO, Value::ZERO] };
-            let end = self.bodies.get(outer.last().0).map_or(Value::ZERO, |body| body.length.clone());
+            let end = self.bodies[outer.last().0].length.clone();
             let sides = [
                 ("front", front, on_axis(outer.last(), end), &inner, overlap.clone(), false),
                 ("rear", rear, on_axis(inner.first, Value::ZERO), &outer, outer.length.clone() - overlap, true),
