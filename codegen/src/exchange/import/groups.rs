@@ -30,8 +30,10 @@ pub(super) fn groups<'r>(robot: &'r Robot, fixed: &[String]) -> Result<Vec<Group
     for joint in &robot.joints {
         children.entry(&joint.parent.name).or_default().push(joint);
     }
-    let link = |name: &str| robot.links.iter().find(|link| link.name == name);
+    let links: BTreeMap<&str, &Link> = robot.links.iter().map(|link| (link.name.as_str(), link)).collect();
+    let link = |name: &str| links.get(name).copied();
     let mut groups = Vec::new();
+    let by_name = by_name(robot);
     let mut next = vec![(None, None, root)];
     while let Some((carrier, joint, first)) = next.pop() {
         let mut group = Group { carrier, joint, links: Vec::new(), held: Vec::new() };
@@ -41,7 +43,7 @@ pub(super) fn groups<'r>(robot: &'r Robot, fixed: &[String]) -> Result<Vec<Group
             group.links.push((member, frame));
             for joint in children.get(member.name.as_str()).into_iter().flatten().rev() {
                 let placed = frame.outer(&joint.placement);
-                if let Some(position) = standing(robot, fixed, joint) {
+                if let Some(position) = standing(&by_name, fixed, joint) {
                     let moved = placed.outer(&joint.moved_by(position));
                     open.extend(link(&joint.child.name).map(|link| (link, moved)));
                     group.held.extend((!matches!(joint.motion, Motion::Fixed)).then_some((*joint, position)));
@@ -92,29 +94,57 @@ fn names(robot: &Robot, fixed: &[String], mistakes: &mut Vec<Mistake>) {
     for name in fixed.iter().filter(|name| !joints.contains(name.as_str())) {
         mistakes.push(rule::unknown_joint(Span::START, name, suggest(name, joints.iter().copied())));
     }
+    let by_name = by_name(robot);
+    let circular = circular(robot, &by_name);
     for joint in &robot.joints {
         let Some(Follows { leader, .. }) = &joint.follows else { continue };
         if !joints.contains(leader.name.as_str()) {
             let others = joints.iter().copied().filter(|name| *name != joint.name);
             mistakes.push(rule::unknown_leader(leader.span, &joint.name, &leader.name, suggest(&leader.name, others)));
-        } else if leaders(robot, joint).any(|leader| leader.name == joint.name) {
+        } else if circular.contains(joint.name.as_str()) {
             mistakes.push(rule::own_leader(leader.span, &joint.name));
         }
     }
 }
 
-/// The joint that a joint follows, the one that this one follows, and so on, each once.
-fn leaders<'r>(robot: &'r Robot, joint: &'r Joint) -> impl Iterator<Item = &'r Joint> {
-    let leader = |joint: &Joint| {
-        let follows = joint.follows.as_ref()?;
-        robot.joints.iter().find(|other| other.name == follows.leader.name)
-    };
-    std::iter::successors(leader(joint), move |joint| leader(joint)).take(robot.joints.len())
+/// Joints by name; of several with one name, the first.
+type ByName<'r> = BTreeMap<&'r str, &'r Joint>;
+
+fn by_name(robot: &Robot) -> ByName<'_> {
+    robot.joints.iter().rev().map(|joint| (joint.name.as_str(), joint)).collect()
+}
+
+/// The joint that a joint follows.
+fn leader<'r>(by_name: &ByName<'r>, joint: &Joint) -> Option<&'r Joint> {
+    by_name.get(joint.follows.as_ref()?.leader.name.as_str()).copied()
+}
+
+/// The names of joints that follow themselves, directly or over others. Each joint is visited once, since what follows a joint that was
+/// visited from an earlier start adds no circle.
+fn circular<'r>(robot: &'r Robot, by_name: &ByName<'r>) -> BTreeSet<&'r str> {
+    let mut visited: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut circular = BTreeSet::new();
+    for (start, joint) in robot.joints.iter().enumerate() {
+        let mut next = Some(joint);
+        let mut way: Vec<&str> = Vec::new();
+        while let Some(joint) = next {
+            let name = joint.name.as_str();
+            if let Some(from) = visited.get(name) {
+                let entered = way.iter().position(|passed| *passed == name).filter(|_| *from == start);
+                circular.extend(entered.into_iter().flat_map(|entered| &way[entered..]).copied());
+                break;
+            }
+            visited.insert(name, start);
+            way.push(name);
+            next = leader(by_name, joint);
+        }
+    }
+    circular
 }
 
 /// Where a joint stands that does not move, m or rad: at zero if it is fixed, where the file holds it if it is held on request, or where it
 /// follows one that does not move.
-fn standing(robot: &Robot, fixed: &[String], joint: &Joint) -> Option<f64> {
+fn standing(by_name: &ByName, fixed: &[String], joint: &Joint) -> Option<f64> {
     let on_its_own = |joint: &Joint| match joint.motion {
         Motion::Fixed => Some(0.0),
         _ => fixed.contains(&joint.name).then(|| joint.held.unwrap_or(0.0)),
@@ -122,7 +152,8 @@ fn standing(robot: &Robot, fixed: &[String], joint: &Joint) -> Option<f64> {
     if matches!(joint.motion, Motion::Fixed) {
         return Some(0.0);
     }
-    let chain: Vec<&Joint> = std::iter::once(joint).chain(leaders(robot, joint)).collect();
+    // It ends, because no joint follows itself.
+    let chain: Vec<&Joint> = std::iter::successors(Some(joint), |joint| leader(by_name, joint)).collect();
     // The furthest leader that stands holds all between it and the joint.
     let last = chain.iter().rposition(|joint| on_its_own(joint).is_some())?;
     let followers = chain[..last].iter().rev().filter_map(|joint| joint.follows.as_ref());
@@ -153,17 +184,19 @@ fn root<'r>(robot: &'r Robot, mistakes: &mut Vec<Mistake>) -> Option<&'r Link> {
 }
 
 /// A link that is not connected to the root: part of a closed loop.
-fn unreachable<'r>(robot: &'r Robot, root: &Link) -> Option<&'r Link> {
-    let mut reached = BTreeSet::from([root.name.as_str()]);
-    loop {
-        let before = reached.len();
-        let further = robot.joints.iter().filter(|joint| reached.contains(joint.parent.name.as_str()));
-        let further: Vec<&str> = further.map(|joint| joint.child.name.as_str()).collect();
-        reached.extend(further);
-        if reached.len() == before {
-            return robot.links.iter().find(|link| !reached.contains(link.name.as_str()));
+fn unreachable<'r>(robot: &'r Robot, root: &'r Link) -> Option<&'r Link> {
+    let mut children: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for joint in &robot.joints {
+        children.entry(&joint.parent.name).or_default().push(&joint.child.name);
+    }
+    let mut reached = BTreeSet::new();
+    let mut open = vec![root.name.as_str()];
+    while let Some(link) = open.pop() {
+        if reached.insert(link) {
+            open.extend(children.get(link).into_iter().flatten());
         }
     }
+    robot.links.iter().find(|link| !reached.contains(link.name.as_str()))
 }
 
 /// Reports a joint with a motion that cranes do not support.

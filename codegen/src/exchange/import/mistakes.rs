@@ -8,11 +8,11 @@ catalogue! {
     /// The root of the file is `<robot>` (URDF) or `<mujoco>` (MJCF), and macros are expanded.
     U002 not_a_robot(found) "the file does not describe a robot: found <{found}>", "an element of neither URDF nor MJCF",
         "give a URDF or MJCF file; convert a xacro file with `xacro robot.urdf.xacro > robot.urdf`";
-    /// Links, bodies and joints have what their language requires of them.
+    /// Links, bodies, joints and classes of defaults have what their language requires of them.
     U003 missing(owner, what) "{owner} lacks {what}", "{what} is missing here", "add {what}: URDF and MJCF require it";
     /// Numeric attributes have the right count of numbers.
     U004 wrong_numbers(subject, given, expected) "{subject} cannot be `{given}`", "not {expected}", "write {expected}, in SI units";
-    /// Names of links and of joints are unique.
+    /// Names of links, of joints and of classes of defaults are unique.
     U005 duplicate(kind, name) "two {kind}s are called `{name}`", "already used by another {kind}", "rename one of the two";
     /// Joints connect links that are in the file.
     U006 unknown_link(joint, name, help) "joint `{joint}` names link `{name}`, which is not in the file", "no such link", "{help}";

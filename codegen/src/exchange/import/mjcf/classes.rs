@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use roxmltree::{Attribute, Node};
 
 use crate::diagnostic::suggest;
-use crate::exchange::import::document::{Reader, value_span};
+use crate::exchange::import::document::{Reader, tag, value_span};
 use crate::exchange::import::mistakes::rule;
 
 /// The class of elements that name none.
 const MAIN: &str = "main";
 
-/// Classes of defaults by name.
+/// Classes of defaults by name. A class within another one is defined once, after that one, so that no class inherits from itself.
 #[derive(Default)]
 pub(super) struct Classes<'a, 'i>(BTreeMap<&'a str, Class<'a, 'i>>);
 
@@ -23,20 +23,33 @@ struct Class<'a, 'i> {
 }
 
 impl<'a, 'i> Classes<'a, 'i> {
-    /// Reads all `<default>` sections, and reports names of classes that are not defined.
+    /// Reads all `<default>` sections; reports classes within others that have no name or that of another one, and names of classes that
+    /// are not defined.
     pub(super) fn read(root: Node<'a, 'i>, reader: &mut Reader) -> Self {
         let mut classes = Classes::default();
         let defaults = |node: Node<'a, 'i>| node.children().filter(|node| node.has_tag_name("default"));
-        let mut open: Vec<(Node<'a, 'i>, Option<&'a str>)> = defaults(root).map(|node| (node, None)).collect();
-        while let Some((node, parent)) = open.pop() {
-            // The outermost class may have any name, and applies to elements without a class.
-            let name = if parent.is_none() { MAIN } else { node.attribute("class").unwrap_or(MAIN) };
-            let class = classes.0.entry(name).or_default();
-            class.nodes.push(node);
-            class.parent = parent;
-            open.extend(defaults(node).map(|inner| (inner, Some(name))));
-        }
         let outermost: Vec<&str> = defaults(root).filter_map(|node| node.attribute("class")).collect();
+        // In the order of the file.
+        let within = |node: Node<'a, 'i>, name: &'a str| defaults(node).rev().map(move |inner| (inner, name));
+        let mut open: Vec<(Node<'a, 'i>, &'a str)> = Vec::new();
+        // The outermost class may have any name, and applies to elements without a class.
+        for node in defaults(root) {
+            classes.0.entry(MAIN).or_default().nodes.push(node);
+            open.extend(within(node, MAIN));
+            while let Some((node, parent)) = open.pop() {
+                let Some(name) = node.attribute_node("class") else {
+                    reader.mistakes.push(rule::missing(tag(node), "a <default> within another one", "`class=\"…\"`"));
+                    continue;
+                };
+                let (name, span) = (name.value(), value_span(name));
+                if outermost.contains(&name) || classes.0.contains_key(name) {
+                    reader.mistakes.push(rule::duplicate(span, "<default>", name));
+                    continue;
+                }
+                classes.0.insert(name, Class { nodes: vec![node], parent: Some(parent) });
+                open.extend(within(node, name));
+            }
+        }
         for attribute in
             root.descendants().filter(|node| !node.has_tag_name("default")).flat_map(|node| node.attributes())
         {
