@@ -5,7 +5,7 @@
 
 use super::acts::{Acts, Rest};
 use super::connectors;
-use super::kinematics::Kinematics;
+use super::kinematics::{Curvature, Kinematics};
 use super::model::Model;
 use super::place::{Place, Pull};
 use super::profile;
@@ -29,15 +29,42 @@ impl<'g> Acts<'g> for Loads<'_, 'g> {
         forces(self.model, self.kinematics, rest.t)
     }
 
-    /// The symmetric part of `−∂f/∂q`. For a force along fixed axes `∂f/∂q` is symmetric; for a moment, and for a force that turns with its
-    /// link, it is not, and there is no potential.
+    /// The symmetric part of `−∂f/∂q`. With `J_j = Ω_j x` and i ≤ j on the path of the load's body,
+    ///
+    /// `K_ij = −ω_i · (J_j × F + ½ ω_j × M)`
+    ///
+    /// and the contribution of curvatures: three multiplications per entry from two vectors per coordinate. For a force along fixed axes `∂f/∂q` is
+    /// symmetric; for a moment, and for a force that turns with its link, it is not, and there is no potential. The latter adds
+    /// `∂F/∂q_i = ω_i × F`, `½ ω_i · (J_j × F) + ½ ω_j · (J_i × F)`; the moment's, `½ (ω_i × M) · ω_j + ½ (ω_j × M) · ω_i`, is zero.
     fn add_stiffness(&self, rest: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>) {
-        let (forces, model) = (self.at_rest(rest), self.model);
-        let columns: Vec<Vec<Expr<'g>>> = model.q.iter().map(|q| model.graph.derivatives(&forces, *q)).collect();
-        for j in 0..columns.len() {
-            matrix.add(j, j, -columns[j][j]);
-            for i in 0..j {
-                matrix.add(i, j, -0.5 * (columns[j][i] + columns[i][j]));
+        let (model, generators) = (self.model, &self.kinematics.generators);
+        let half = model.graph.constant(0.5);
+        for load in &model.chain.loads {
+            let Applied { at, force, moment } = applied(model, self.kinematics, load, rest.t);
+            let path = model.chain.coordinates_of(load.body);
+            let turning = |j: usize| generators[j].velocity(at).cross(force);
+            for (place, CoordinateId(j)) in path.iter().enumerate() {
+                let moving = &generators[*j];
+                let torque = match load.axes {
+                    LoadAxes::World => turning(*j),
+                    LoadAxes::Link => half * turning(*j),
+                };
+                let torque = torque + half * moving.omega.cross(moment);
+                for CoordinateId(i) in &path[..=place] {
+                    let mut work = generators[*i].omega.dot(torque);
+                    if load.axes == LoadAxes::Link {
+                        work = work - 0.5 * moving.omega.dot(turning(*i));
+                    }
+                    matrix.add(*i, *j, -work);
+                }
+            }
+            for curvature in &self.kinematics.curvatures {
+                if model.chain.is_beyond(load.body, BodyId(curvature.body)) {
+                    let torque = (at - curvature.pose.origin).cross(force) + moment;
+                    for ((m, n), work) in Curvature::PAIRS.into_iter().zip(curvature.works(torque)) {
+                        matrix.add(curvature.first + m, curvature.first + n, -work);
+                    }
+                }
             }
         }
     }

@@ -11,7 +11,7 @@ use crane_jit::Rounding;
 pub const ROUNDING: Rounding =
     if cfg!(any(target_feature = "fma", target_arch = "aarch64")) { Rounding::Fused } else { Rounding::Separate };
 
-/// Number of a register.
+/// Number of a register in [`Instructions::Narrow`].
 pub type Register = u16;
 
 /// A function as bytecode.
@@ -22,7 +22,7 @@ pub struct Code {
     /// Inputs in the next registers, in sequence.
     pub inputs: Vec<Inputs>,
     /// Operations, in order.
-    pub instructions: Vec<Instruction>,
+    pub instructions: Instructions,
     /// Results and their registers, in order.
     pub stores: Vec<Store>,
     /// The segments, in the order of execution.
@@ -31,6 +31,14 @@ pub struct Code {
     pub registers: usize,
     /// The number of results.
     pub results: usize,
+}
+
+impl Code {
+    /// Whether it has more registers than 16 bits can name.
+    #[must_use]
+    pub fn is_wide(&self) -> bool {
+        matches!(self.instructions, Instructions::Wide(_))
+    }
 }
 
 /// A number that is available before a call.
@@ -107,11 +115,72 @@ impl Kind {
     }
 }
 
-/// An operation on registers, whose meaning depends on the kind: four 16-bit numbers in one, which are loaded together.
+/// Operations in order, as wide as the numbers of their registers need.
+#[derive(Clone, Debug)]
+pub enum Instructions {
+    /// With up to 65,536 registers.
+    Narrow(Vec<Instruction>),
+    /// With more: dense tangents of cranes with many coordinates. They take twice the memory, and have no machine code.
+    Wide(Vec<WideInstruction>),
+}
+
+impl Default for Instructions {
+    fn default() -> Self {
+        Instructions::Narrow(Vec::new())
+    }
+}
+
+/// The registers of an operation, whose meaning depends on the kind.
+pub trait Operands: Copy {
+    /// Register of the result.
+    fn out(self) -> usize;
+    /// First operand.
+    fn a(self) -> usize;
+    /// Second operand.
+    fn b(self) -> usize;
+    /// Third operand.
+    fn c(self) -> usize;
+}
+
+/// An operation: four 16-bit numbers in one, which are loaded together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Instruction(u64);
 
-#[expect(clippy::cast_possible_truncation, reason = "each has 16 bits of its own")]
+/// An operation on any number of registers: its result, then its operands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WideInstruction(pub [u32; 4]);
+
+impl WideInstruction {
+    /// The same in half the memory, if all its registers have numbers of 16 bits.
+    #[must_use]
+    pub fn narrow(self) -> Option<Instruction> {
+        let [out, a, b, c] = self.0.map(Register::try_from);
+        Some(Instruction::new(out.ok()?, [a.ok()?, b.ok()?, c.ok()?]))
+    }
+}
+
+impl Operands for WideInstruction {
+    #[inline]
+    fn out(self) -> usize {
+        self.0[0] as usize
+    }
+
+    #[inline]
+    fn a(self) -> usize {
+        self.0[1] as usize
+    }
+
+    #[inline]
+    fn b(self) -> usize {
+        self.0[2] as usize
+    }
+
+    #[inline]
+    fn c(self) -> usize {
+        self.0[3] as usize
+    }
+}
+
 impl Instruction {
     /// An operation with a result and three operands.
     #[must_use]
@@ -119,33 +188,28 @@ impl Instruction {
         let [a, b, c] = operands.map(u64::from);
         Self(u64::from(out) << 48 | c << 32 | b << 16 | a)
     }
+}
 
-    /// Register of the result.
+#[expect(clippy::cast_possible_truncation, reason = "each has 16 bits of its own")]
+impl Operands for Instruction {
     #[inline]
-    #[must_use]
-    pub fn out(self) -> Register {
-        (self.0 >> 48) as Register
+    fn out(self) -> usize {
+        usize::from((self.0 >> 48) as Register)
     }
 
-    /// First operand.
     #[inline]
-    #[must_use]
-    pub fn a(self) -> Register {
-        self.0 as Register
+    fn a(self) -> usize {
+        usize::from(self.0 as Register)
     }
 
-    /// Second operand.
     #[inline]
-    #[must_use]
-    pub fn b(self) -> Register {
-        (self.0 >> 16) as Register
+    fn b(self) -> usize {
+        usize::from((self.0 >> 16) as Register)
     }
 
-    /// Third operand.
     #[inline]
-    #[must_use]
-    pub fn c(self) -> Register {
-        (self.0 >> 32) as Register
+    fn c(self) -> usize {
+        usize::from((self.0 >> 32) as Register)
     }
 }
 
@@ -155,5 +219,5 @@ pub struct Store {
     /// Its index among the results.
     pub place: u32,
     /// The register.
-    pub register: Register,
+    pub register: u32,
 }

@@ -101,9 +101,6 @@ impl Library {
     }
 
     /// A function; `None` if the crane does not need it.
-    ///
-    /// # Panics
-    /// If the crane has far more than [`LiveCrane::MOST_COORDINATES`](crate::LiveCrane::MOST_COORDINATES).
     pub fn routine(&self, id: FunctionId) -> Option<&Routine> {
         self.routines[id as usize].get_or_init(|| self.assemble(id)).as_ref()
     }
@@ -117,7 +114,9 @@ impl Library {
             let program = self.program(id);
             let alone = program.function(id).map(|function| program.product_alone(function, product));
             let routine = alone.map(|alone| Routine::new(&alone, &alone.functions[0]));
-            routine.transpose()
+            let wide = routine.as_ref().map(Routine::code).filter(|code| code.is_wide());
+            wide.map_or(Ok(()), |code| Err(TooLarge { registers: code.registers }))?;
+            Ok(routine)
         };
         let kept = &self.products[product as usize][id as usize];
         kept.get_or_init(derive).as_ref().map(Option::as_ref).map_err(|large| *large)
@@ -125,8 +124,7 @@ impl Library {
 
     fn assemble(&self, id: FunctionId) -> Option<Routine> {
         let program = self.program(id);
-        let routine = Routine::new(program, program.function(id)?);
-        Some(routine.expect("functions of MOST_COORDINATES coordinates fit into the registers"))
+        Some(Routine::new(program, program.function(id)?))
     }
 
     /// The program with a function.

@@ -8,7 +8,7 @@ use crane_model::rt::lanes::{Function, Fused, f64x8};
 use crane_model::rt::{exp, fma, select, sin_cos, sin_cos_lanes, sqrt, stumpff, stumpff_lanes};
 use wide::bytemuck::cast_slice_mut;
 
-use crate::bytecode::{Code, Fixed, Instruction, Kind};
+use crate::bytecode::{Code, Fixed, Instructions, Kind, Operands};
 
 /// One number, eight of different states, or one with its derivatives.
 pub trait Number:
@@ -256,12 +256,13 @@ impl<T: Number> Arguments<'_, T> {
 /// Possible numbers of registers of a machine, powers of two: register indices are masked instead of checked.
 const SIZES: [usize; 3] = [1 << 10, 1 << 13, 1 << 16];
 
-/// An array of registers, of one of three sizes.
+/// An array of registers, of one of three sizes; of any size for wide instructions.
 #[derive(Clone, Debug)]
 enum File<T> {
     Small(Box<[T; SIZES[0]]>),
     Medium(Box<[T; SIZES[1]]>),
     Large(Box<[T; SIZES[2]]>),
+    Wide(Vec<T>),
 }
 
 impl<T> File<T> {
@@ -270,6 +271,7 @@ impl<T> File<T> {
             File::Small(file) => file.as_mut_slice(),
             File::Medium(file) => file.as_mut_slice(),
             File::Large(file) => file.as_mut_slice(),
+            File::Wide(file) => file,
         }
     }
 }
@@ -292,7 +294,8 @@ impl<T: Number> Machine<T> {
         let file = match code.registers {
             count if count <= SIZES[0] => File::Small(zeros()),
             count if count <= SIZES[1] => File::Medium(zeros()),
-            _ => File::Large(zeros()),
+            count if count <= SIZES[2] => File::Large(zeros()),
+            count => File::Wide(vec![T::splat(0.0); count]),
         };
         Self { file, frame: vec![], version: 0, cells: [vec![], vec![]] }
     }
@@ -323,10 +326,12 @@ impl<T: Number> Machine<T> {
     /// Runs the function for which the machine was made. Arguments that are not given are zero.
     pub fn run(&mut self, code: &Code, arguments: &Arguments<'_, T>, out: &mut [T]) {
         arguments.write(code, self.registers(), 0);
-        match &mut self.file {
-            File::Small(file) => run(code, file, out),
-            File::Medium(file) => run(code, file, out),
-            File::Large(file) => run(code, file, out),
+        match (&code.instructions, &mut self.file) {
+            (Instructions::Narrow(narrow), File::Small(file)) => run(code, narrow, &mut **file, out),
+            (Instructions::Narrow(narrow), File::Medium(file)) => run(code, narrow, &mut **file, out),
+            (Instructions::Narrow(narrow), File::Large(file)) => run(code, narrow, &mut **file, out),
+            (Instructions::Narrow(narrow), File::Wide(file)) => run(code, narrow, &mut **file, out),
+            (Instructions::Wide(wide), file) => run(code, wide, file.registers(), out),
         }
     }
 
@@ -354,9 +359,45 @@ fn zeros<T: Number, const SIZE: usize>() -> Box<[T; SIZE]> {
     }
 }
 
+/// The registers of a run, by their numbers.
+trait Registers<T> {
+    fn get(&self, register: usize) -> T;
+    fn set(&mut self, register: usize, value: T);
+}
+
+/// With a power of two the number is masked, without a comparison.
+impl<T: Copy, const SIZE: usize> Registers<T> for [T; SIZE] {
+    #[inline]
+    fn get(&self, register: usize) -> T {
+        self[register % SIZE]
+    }
+
+    #[inline]
+    fn set(&mut self, register: usize, value: T) {
+        self[register % SIZE] = value;
+    }
+}
+
+impl<T: Copy> Registers<T> for [T] {
+    #[inline]
+    fn get(&self, register: usize) -> T {
+        self[register]
+    }
+
+    #[inline]
+    fn set(&mut self, register: usize, value: T) {
+        self[register] = value;
+    }
+}
+
 /// Runs all segments.
-fn run<T: Number, const SIZE: usize>(code: &Code, file: &mut [T; SIZE], out: &mut [T]) {
-    let (mut instructions, mut copies) = (code.instructions.as_slice(), code.stores.as_slice());
+fn run<T: Number, I: Operands, F: Registers<T> + ?Sized>(
+    code: &Code,
+    mut instructions: &[I],
+    file: &mut F,
+    out: &mut [T],
+) {
+    let mut copies = code.stores.as_slice();
     for segment in &code.segments {
         let length = segment.length as usize;
         if segment.kind == Kind::Store {
@@ -364,7 +405,7 @@ fn run<T: Number, const SIZE: usize>(code: &Code, file: &mut [T; SIZE], out: &mu
             copies = rest;
             for copy in own {
                 if let Some(place) = out.get_mut(copy.place as usize) {
-                    *place = file[at::<SIZE>(copy.register)];
+                    *place = file.get(copy.register as usize);
                 }
             }
             continue;
@@ -373,14 +414,14 @@ fn run<T: Number, const SIZE: usize>(code: &Code, file: &mut [T; SIZE], out: &mu
         instructions = rest;
         match segment.kind {
             Kind::MulAdd => multiply_and_add(own, file),
-            Kind::Div => own.iter().for_each(|i| set(file, i.out(), get(file, i.a()) / get(file, i.b()))),
-            Kind::Min => own.iter().for_each(|i| set(file, i.out(), get(file, i.a()).min(get(file, i.b())))),
-            Kind::Max => own.iter().for_each(|i| set(file, i.out(), get(file, i.a()).max(get(file, i.b())))),
-            Kind::Sqrt => own.iter().for_each(|i| set(file, i.out(), sqrt(get(file, i.a())))),
-            Kind::Exp => own.iter().for_each(|i| set(file, i.out(), exp(get(file, i.a())))),
+            Kind::Div => own.iter().for_each(|i| file.set(i.out(), file.get(i.a()) / file.get(i.b()))),
+            Kind::Min => own.iter().for_each(|i| file.set(i.out(), file.get(i.a()).min(file.get(i.b())))),
+            Kind::Max => own.iter().for_each(|i| file.set(i.out(), file.get(i.a()).max(file.get(i.b())))),
+            Kind::Sqrt => own.iter().for_each(|i| file.set(i.out(), sqrt(file.get(i.a())))),
+            Kind::Exp => own.iter().for_each(|i| file.set(i.out(), exp(file.get(i.a())))),
             Kind::Select => {
                 for i in own {
-                    set(file, i.out(), select(get(file, i.a()), get(file, i.b()), get(file, i.c())));
+                    file.set(i.out(), select(file.get(i.a()), file.get(i.b()), file.get(i.c())));
                 }
             }
             Kind::Angle => take_angles(own, file),
@@ -390,58 +431,42 @@ fn run<T: Number, const SIZE: usize>(code: &Code, file: &mut [T; SIZE], out: &mu
     }
 }
 
-fn multiply_and_add<T: Number, const SIZE: usize>(instructions: &[Instruction], file: &mut [T; SIZE]) {
+fn multiply_and_add<T: Number, I: Operands, F: Registers<T> + ?Sized>(instructions: &[I], file: &mut F) {
     for i in instructions {
-        set(file, i.out(), fma(get(file, i.a()), get(file, i.b()), get(file, i.c())));
+        file.set(i.out(), fma(file.get(i.a()), file.get(i.b()), file.get(i.c())));
     }
 }
 
 /// Sines and cosines of angles, eight by eight; all eight are read before one is written.
-fn take_angles<T: Number, const SIZE: usize>(instructions: &[Instruction], file: &mut [T; SIZE]) {
+fn take_angles<T: Number, I: Operands, F: Registers<T> + ?Sized>(instructions: &[I], file: &mut F) {
     for eight in instructions.chunks(ANGLES) {
         let mut angles = [T::splat(0.0); ANGLES];
         for (angle, i) in angles.iter_mut().zip(eight) {
-            *angle = get(file, i.a());
+            *angle = file.get(i.a());
         }
         let (sines, cosines) = T::sin_cos(angles);
         for (i, (sin, cos)) in eight.iter().zip(sines.into_iter().zip(cosines)) {
-            set(file, i.out(), sin);
-            set(file, i.b(), cos);
+            file.set(i.out(), sin);
+            file.set(i.b(), cos);
         }
     }
 }
 
 /// Stumpff's functions of arguments, eight by eight, two instructions each; all eight are read before one is written.
-fn take_stumpff<T: Number, const SIZE: usize>(instructions: &[Instruction], file: &mut [T; SIZE]) {
+fn take_stumpff<T: Number, I: Operands, F: Registers<T> + ?Sized>(instructions: &[I], file: &mut F) {
     for eight in instructions.chunks(2 * ANGLES) {
         let mut arguments = [T::splat(0.0); ANGLES];
         for (argument, i) in arguments.iter_mut().zip(eight.iter().step_by(2)) {
-            *argument = get(file, i.a());
+            *argument = file.get(i.a());
         }
         let [c0, c1, c2, c3, c4, c5] = T::stumpff(arguments);
         let halves = c0.into_iter().zip(c1).zip(c2).zip(c3.into_iter().zip(c4).zip(c5));
         for (pair, (((c0, c1), c2), ((c3, c4), c5))) in eight.chunks(2).zip(halves) {
             for (i, [out, b, c]) in pair.iter().zip([[c0, c1, c2], [c3, c4, c5]]) {
-                set(file, i.out(), out);
-                set(file, i.b(), b);
-                set(file, i.c(), c);
+                file.set(i.out(), out);
+                file.set(i.b(), b);
+                file.set(i.c(), c);
             }
         }
     }
-}
-
-/// A register's index: with a power of two it is masked, without a comparison.
-#[inline]
-fn at<const SIZE: usize>(register: u16) -> usize {
-    usize::from(register) % SIZE
-}
-
-#[inline]
-fn get<T: Number, const SIZE: usize>(file: &[T; SIZE], register: u16) -> T {
-    file[at::<SIZE>(register)]
-}
-
-#[inline]
-fn set<T: Number, const SIZE: usize>(file: &mut [T; SIZE], register: u16, value: T) {
-    file[at::<SIZE>(register)] = value;
 }

@@ -8,7 +8,7 @@ use crane_jit::{Code as MachineCode, Line, Pause, Step, Value, Width, value};
 use crane_model::rt::lanes::f64x8;
 use crane_model::rt::sin_cos;
 
-use crate::bytecode::{Code, Fixed, Instruction, Kind, ROUNDING};
+use crate::bytecode::{Code, Fixed, Instruction, Instructions, Kind, Operands, ROUNDING};
 use crate::dual::eight_orders;
 use crate::machine::{ANGLES, Arguments, Form, Machine, Number};
 use crate::sines::{MOST, with_sines};
@@ -73,7 +73,8 @@ pub struct Native {
 
 impl Native {
     fn of(code: &Code, form: Form) -> Option<Self> {
-        let (line, pauses) = line(code);
+        let Instructions::Narrow(instructions) = &code.instructions else { return None };
+        let (line, pauses) = line(code, instructions);
         let given = [code.fixed.len(), line.given.len()];
         let (line, pauses, width) = match form {
             Form::One => (line, pauses, Width::One),
@@ -222,7 +223,7 @@ fn compute<T: Number>(kind: Kind, pause: Pause, frame: &mut [T]) {
 }
 
 /// Bytecode as a line, in which each value has its own number; and what its pauses compute.
-fn line(code: &Code) -> (Line, Vec<Kind>) {
+fn line(code: &Code, mut instructions: &[Instruction]) -> (Line, Vec<Kind>) {
     let number = |fixed: &Fixed| match fixed {
         Fixed::Number(number) => Some(*number),
         Fixed::Parameter { .. } | Fixed::Stored { .. } => None,
@@ -233,7 +234,7 @@ fn line(code: &Code) -> (Line, Vec<Kind>) {
     (0..given.len()).for_each(|at| of[at] = value(at));
     let mut writer =
         Writer { of, count: given.len(), pauses: vec![], line: Line { given, steps: vec![], results: code.results } };
-    let (mut instructions, mut stores) = (code.instructions.as_slice(), code.stores.as_slice());
+    let mut stores = code.stores.as_slice();
     for segment in &code.segments {
         let length = segment.length as usize;
         if segment.kind == Kind::Store {
@@ -241,7 +242,7 @@ fn line(code: &Code) -> (Line, Vec<Kind>) {
             stores = rest;
             let step = |store: &crate::bytecode::Store| Step::Store {
                 place: store.place,
-                value: writer.of[usize::from(store.register)],
+                value: writer.of[store.register as usize],
             };
             let steps: Vec<Step> = own.iter().map(step).collect();
             writer.line.steps.extend(steps);
@@ -271,7 +272,7 @@ impl Writer {
             return;
         }
         for i in instructions {
-            let [a, b, c] = [i.a(), i.b(), i.c()].map(|register| self.of[usize::from(register)]);
+            let [a, b, c] = [i.a(), i.b(), i.c()].map(|register| self.of[register]);
             self.line.steps.push(match kind {
                 Kind::Div => Step::Div([a, b]),
                 Kind::Min => Step::Min([a, b]),
@@ -280,7 +281,7 @@ impl Writer {
                 Kind::Select => Step::Select([a, b, c]),
                 _ => Step::MulAdd([a, b, c]),
             });
-            self.of[usize::from(i.out())] = value(self.count);
+            self.of[i.out()] = value(self.count);
             self.count += 1;
         }
     }
@@ -288,8 +289,7 @@ impl Writer {
     /// Functions of several arguments at once: no argument is a value of another.
     fn pause(&mut self, kind: Kind, instructions: &[Instruction]) {
         let per_argument = kind.instructions() as usize;
-        let arguments: Vec<Value> =
-            instructions.iter().step_by(per_argument).map(|i| self.of[usize::from(i.a())]).collect();
+        let arguments: Vec<Value> = instructions.iter().step_by(per_argument).map(|i| self.of[i.a()]).collect();
         let reads = arguments.len();
         let first = self.count;
         for (at, own) in instructions.chunks(per_argument).enumerate() {
@@ -299,7 +299,7 @@ impl Writer {
                 _ => vec![i.out(), i.b(), i.c()],
             });
             for (order, register) in outs.enumerate() {
-                self.of[usize::from(register)] = value(first + order * reads + at);
+                self.of[register] = value(first + order * reads + at);
                 self.count += 1;
             }
         }

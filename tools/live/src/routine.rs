@@ -3,7 +3,7 @@
 use crane_codegen::lower::Constants;
 use crane_codegen::program::{Function, Program, Shape};
 
-use crate::assemble::{TooLarge, assemble, assemble_constants};
+use crate::assemble::{assemble, assemble_constants};
 use crate::bytecode::Code;
 use crate::machine::{Arguments, Form, Machine, Number};
 use crate::native::{Hot, Native};
@@ -20,19 +20,17 @@ pub struct Routine {
 
 impl Routine {
     /// A function of a program.
-    ///
-    /// # Errors
-    /// It needs too many registers.
-    pub fn new(program: &Program, function: &Function) -> Result<Self, TooLarge> {
+    #[must_use]
+    pub fn new(program: &Program, function: &Function) -> Self {
         let alone = program.alone(function);
         let constants = Constants::of(&alone);
         let code = alone.functions.iter().map(|function| assemble(&alone, &constants, function)).next();
-        Ok(Self {
+        Self {
             shape: function.shape.clone(),
-            code: code.transpose()?.unwrap_or_default(),
-            constants: assemble_constants(&alone, &constants)?,
+            code: code.unwrap_or_default(),
+            constants: assemble_constants(&alone, &constants),
             native: Default::default(),
-        })
+        }
     }
 
     /// The shape of its result.

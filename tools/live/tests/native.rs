@@ -142,7 +142,7 @@ fn machine_code_gives_the_bits_of_bytecode() {
     for (name, chain) in cranes() {
         let program = mechanics::derive(&chain, Analyses::ALL);
         for function in &program.functions {
-            let routine = Routine::new(&program, function).unwrap();
+            let routine = Routine::new(&program, function);
             let what = format!("{} of {name}", function.id.name());
             numbers += compare::<f64>(&what, &chain, &program, &routine, has_code);
             numbers += compare::<f64x8>(&what, &chain, &program, &routine, has_lanes);

@@ -19,7 +19,7 @@ use crate::layout::layout;
 use line::{Line, Order};
 use select::Selection;
 
-/// A function needs more registers than bytecode can name.
+/// A product of a function needs more registers than narrow bytecode can name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooLarge {
     /// Their number.
@@ -27,23 +27,20 @@ pub struct TooLarge {
 }
 
 /// A function of a program; `constants` are those of the program.
-///
-/// # Errors
-/// It needs too many registers.
-pub fn assemble(program: &Program, constants: &Constants, function: &Function) -> Result<Code, TooLarge> {
+#[must_use]
+pub fn assemble(program: &Program, constants: &Constants, function: &Function) -> Code {
     let fused = fuse(program, constants, &function.outputs);
     let graph = Graph { program, constants: Some(constants), fused };
     let entries = layout(&function.shape);
     let selection = Selection::of(&graph, &function.outputs);
     let line = |order| Line::of(&graph, &selection, &function.outputs, &entries, order);
-    registers::assign(&line(Order::Derivation)).or_else(|_| registers::assign(&line(Order::Results)))
+    let code = registers::assign(&line(Order::Derivation));
+    if code.is_wide() { registers::assign(&line(Order::Results)) } else { code }
 }
 
 /// The stored constants of a program, as a function of its live parameters: each operation rounds, as in compiled code.
-///
-/// # Errors
-/// It needs too many registers.
-pub fn assemble_constants(program: &Program, constants: &Constants) -> Result<Code, TooLarge> {
+#[must_use]
+pub fn assemble_constants(program: &Program, constants: &Constants) -> Code {
     let graph = Graph { program, constants: None, fused: vec![None; program.operations.len()] };
     let outputs = &constants.stored;
     let entries: Vec<_> = (0..outputs.len()).map(crate::layout::Entry::Slot).collect();
@@ -70,6 +67,7 @@ mod tests {
 
     use super::*;
     use crate::LiveCrane;
+    use crate::bytecode::{Instructions, Operands, WideInstruction};
     use crate::machine::{Arguments, Machine};
 
     /// The results of a function for arbitrary numbers in place of live parameters and what follows from them, and its registers.
@@ -80,6 +78,30 @@ mod tests {
         machine.run(code, arguments, &mut out);
         assert!(out.iter().all(|x| x.is_finite()));
         (out.into_iter().map(f64::to_bits).collect(), code.registers)
+    }
+
+    #[test]
+    fn wide_instructions_give_the_bits_of_narrow_ones() {
+        let path = format!("{}/../../specs/eight_link_flexible.yaml", env!("CARGO_MANIFEST_DIR"));
+        let crane = LiveCrane::from_spec(&build::open(path.as_ref()).unwrap()).unwrap();
+        let q = (&crane as &dyn DynCrane).guess();
+        let program = mechanics::derive(crane.chain(), Analyses { statics: true, ..Analyses::ALL });
+        for id in [FunctionId::TangentStiffness, FunctionId::ForwardDynamics, FunctionId::Transforms] {
+            let alone = program.alone(program.function(id).unwrap());
+            let narrow = assemble(&alone, &Constants::of(&alone), &alone.functions[0]);
+            let Instructions::Narrow(instructions) = &narrow.instructions else { panic!("{id:?} is wide") };
+            let wide = instructions
+                .iter()
+                .map(|i| [i.out(), i.a(), i.b(), i.c()].map(|register| u32::try_from(register).unwrap()));
+            // As many registers as no narrow instruction can name.
+            let wide = Code {
+                instructions: Instructions::Wide(wide.map(WideInstruction).collect()),
+                registers: 70_000,
+                ..narrow.clone()
+            };
+            let arguments = Arguments { q: &q, v: &q, a: &q, positions: &q, ..Arguments::none() };
+            assert_eq!(results(&narrow, &arguments).0, results(&wide, &arguments).0, "{id:?}");
+        }
     }
 
     #[test]
@@ -104,7 +126,7 @@ mod tests {
         let [derived, by_result] = [Order::Derivation, Order::Results].map(|order| {
             let line = Line::of(&graph, &selection, &function.outputs, &entries, order);
             let arguments = Arguments { q: &q, v: &q, a: &q, positions: &q, ..Arguments::none() };
-            results(&registers::assign(&line).unwrap(), &arguments)
+            results(&registers::assign(&line), &arguments)
         });
         assert_eq!(derived.0, by_result.0);
         assert!(by_result.1 < derived.1, "{} registers instead of {}", by_result.1, derived.1);

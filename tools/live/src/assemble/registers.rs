@@ -1,11 +1,10 @@
 //! Registers by linear scan: a value takes the register that was released last, which is still in the first-level cache.
 
-use super::TooLarge;
 use super::line::{Line, Step, Value};
-use crate::bytecode::{Code, Instruction, Kind, Register, Segment, Store};
+use crate::bytecode::{Code, Instructions, Kind, Segment, Store, WideInstruction};
 
 /// The bytecode of a line.
-pub fn assign(line: &Line) -> Result<Code, TooLarge> {
+pub fn assign(line: &Line) -> Code {
     let last_reads = last_reads(line);
     let mut registers = Registers { of: vec![0; line.values], free: vec![], count: line.fixed.len() };
     for value in 0..line.fixed.len() {
@@ -18,12 +17,13 @@ pub fn assign(line: &Line) -> Result<Code, TooLarge> {
     let mut code = Code {
         fixed: line.fixed.clone(),
         inputs: line.inputs.clone(),
-        instructions: vec![],
+        instructions: Instructions::default(),
         stores: vec![],
         segments: vec![],
         registers: 0,
         results: line.results,
     };
+    let mut instructions: Vec<WideInstruction> = vec![];
     for (place, step) in line.steps.iter().enumerate() {
         let is_last = |value: &Value| *value >= line.fixed.len() && last_reads[*value] == Some(place);
         let mut ending: Vec<Value> = step.reads().filter(is_last).collect();
@@ -44,21 +44,22 @@ pub fn assign(line: &Line) -> Result<Code, TooLarge> {
         for value in step.makes().filter(|value| last_reads[*value].is_none()) {
             registers.free.push(registers.of[value]);
         }
-        let own = |register: usize| Register::try_from(register).unwrap_or(Register::MAX);
+        // Steps are fewer than this: each takes some bytes of memory.
+        let own = |register: usize| u32::try_from(register).unwrap_or(u32::MAX);
         let [a, b, c] = reads.map(own);
         let kind = match *step {
             Step::Operation { kind, out, .. } => {
-                code.instructions.push(Instruction::new(own(registers.of[out]), [a, b, c]));
+                instructions.push(WideInstruction([own(registers.of[out]), a, b, c]));
                 kind
             }
             Step::Angle { sin, cos, .. } => {
                 let [out, b] = [sin, cos].map(|value| own(registers.of[value]));
-                code.instructions.push(Instruction::new(out, [a, b, c]));
+                instructions.push(WideInstruction([out, a, b, c]));
                 Kind::Angle
             }
             Step::Stumpff { values, .. } => {
                 let [c0, c1, c2, c3, c4, c5] = values.map(|value| own(registers.of[value]));
-                code.instructions.extend([Instruction::new(c0, [a, c1, c2]), Instruction::new(c3, [a, c4, c5])]);
+                instructions.extend([WideInstruction([c0, a, c1, c2]), WideInstruction([c3, a, c4, c5])]);
                 Kind::Stumpff
             }
             Step::Store { place, .. } => {
@@ -72,8 +73,9 @@ pub fn assign(line: &Line) -> Result<Code, TooLarge> {
         }
     }
     code.registers = registers.count;
-    let nameable = usize::from(Register::MAX) + 1;
-    if code.registers > nameable { Err(TooLarge { registers: code.registers }) } else { Ok(code) }
+    let narrow: Option<Vec<_>> = instructions.iter().map(|instruction| instruction.narrow()).collect();
+    code.instructions = narrow.map_or(Instructions::Wide(instructions), Instructions::Narrow);
+    code
 }
 
 /// For every value, the last step that reads it.

@@ -51,7 +51,7 @@ struct Room {
 }
 
 impl LiveCrane {
-    /// Coordinates of the largest crane whose functions fit into the registers: `solve` takes 49,144 of 65,536 at 3,013.
+    /// Coordinates of the largest crane: `solve` takes 49,144 of the 65,536 registers of narrow bytecode at 3,013.
     pub const MOST_COORDINATES: usize = Chain::MOST_COORDINATES;
     /// Coordinates of the largest crane that has derivatives of the residual and of accelerations; those of a larger one are NaN.
     pub const MOST_COORDINATES_OF_DERIVATIVES: usize = Chain::MOST_COORDINATES_OF_DERIVATIVES;

@@ -105,7 +105,7 @@ fn bytecode_computes_what_the_interpreter_does() {
         let (chain, program) = crane(name);
         let state = State::new(&chain, &program, 0.0);
         for function in &program.functions {
-            let routine = Routine::new(&program, function).unwrap();
+            let routine = Routine::new(&program, function);
             let mut result = vec![f64::NAN; routine.results()];
             routine.run(&mut routine.machine(&state.parameters), &state.arguments(), &mut result);
             let result = function.shape.expand(slots(&function.shape, &result));
@@ -147,7 +147,7 @@ fn a_lane_computes_what_one_state_does() {
             inputs: &[],
         };
         for function in &program.functions {
-            let routine = Routine::new(&program, function).unwrap();
+            let routine = Routine::new(&program, function);
             let mut eight = vec![f64x8::splat(0.0); routine.results()];
             routine.run(&mut routine.machine(&parameters), &arguments, &mut eight);
             for (lane, state) in states.iter().enumerate() {
@@ -186,7 +186,7 @@ fn functions_of_one_number_and_choices_are_the_interpreters() {
         trace: SweepTrace::default(),
     };
     let program = Program::new(graph, vec![symbol("x", 0), symbol("y", 1)], vec![function]);
-    let routine = Routine::new(&program, &program.functions[0]).unwrap();
+    let routine = Routine::new(&program, &program.functions[0]);
     let states: Vec<[f64; 2]> = (0..8).map(|i| [f64::from(i) - 3.5, 0.4 * f64::from(i) - 1.0]).collect();
     let q = [0, 1].map(|i| f64x8::new(std::array::from_fn(|lane| states[lane][i])));
     let mut eight = [f64x8::splat(0.0); 8];

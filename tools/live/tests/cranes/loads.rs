@@ -160,3 +160,90 @@ fn no_step_misses_a_short_push() {
         assert!((speed - expected).abs() < 1e-5, "{method}: {speed} m/s instead of {expected}");
     }
 }
+
+/// A beam of as many sections as 252 coordinates need bends as a cantilever under a force at its tip: P L³/(3 E J), but for the two halves of sections
+/// at its ends without a spring, 1/(2n)² of it. Its tangent needs registers in proportion to its coordinates.
+#[test]
+fn a_force_bends_a_beam_of_many_sections() {
+    const SECTIONS: usize = 84;
+    let (force, length, youngs) = (100.0, 10.0_f64, 2.1e11);
+    let beam = crane(&format!(
+        "format: 1\nname: beam\ngravity: [0, 0, 0]\nlinks: [{{name: beam, beam: {{length: {length}, sections: {SECTIONS}, \
+         material: {{E: {youngs:e}, G: 8.1e10, density: 7850}}, section: {{box: {{height: 0.3, width: 0.2, thickness: 0.01}}}}}}}}]\n\
+         loads: [{{name: pull, link: beam, at: [{length}, 0, 0], force: [0, 0, {force}]}}]\npoints: [{{name: tip, link: beam, at: [{length}, 0, 0]}}]\n"
+    ));
+    let beam: &dyn DynCrane = &beam;
+    let rest = beam.equilibrium(&statics::Settings::default());
+    assert!(rest.is_stable(), "{rest}");
+    let points = beam.points_at(&rest.q);
+    // The force is along the width.
+    let moment_of_area = (0.3 * 0.2_f64.powi(3) - 0.28 * 0.18_f64.powi(3)) / 12.0;
+    let expected = force * length.powi(3) / (3.0 * youngs * moment_of_area);
+    let n = SECTIONS as f64;
+    let off = points[0].z / expected - 1.0;
+    // Springs in the middle of sections: Σ (L − x_k)² d = L³/3 (1 − 1/(4n²)).
+    assert!((off + 0.25 / (n * n)).abs() < 1e-6, "{} m instead of {expected} m: {off:e}", points[0].z);
+}
+
+/// The tangent of forces and moments along axes of the world and of their links is the symmetric part of central differences of the residual, which
+/// know nothing of its formula. Joints of all kinds carry them: a free base, hinges, sections that turn by rotation vectors and one by one.
+#[test]
+fn the_tangent_of_loads_is_a_difference() {
+    let spec = |joint: &str, loads: &str| {
+        format!(
+            "format: 1\nname: arm\ngravity: [0, 0, 0]\nlinks:\n\
+             - {{name: truck, joint: free, mass: 900, com: [0, 0, 0.3], inertia: {{gyration: [0.5, 0.6, 0.7]}}}}\n\
+             - {{name: slide, joint: prismatic, placement: {{transform: {{translation: [0.2, 0.1, 1], rotation: {{y: 70 deg}}}}}}, mass: 30, com: [0.2, 0, 0], \
+             inertia: {{gyration: [0.1, 0.2, 0.2]}}}}\n\
+             - {{name: boom, joint: revolute, beam: {{length: 3, sections: 2, section_joint: {joint}, material: {{E: 2.1e9, G: 8.1e8, density: 7850}}, \
+             section: {{circle: {{diameter: 0.1}}}}}}}}\n\
+             - {{name: tip, joint: revolute, mass: 9, com: [0.2, -0.3, 0.1], inertia: {{gyration: [0.1, 0.2, 0.2]}}}}\nloads: [{loads}]\n"
+        )
+    };
+    let loads = ["world", "link"].map(|axes| {
+        format!("{{name: one_{axes}, link: tip, at: [0.3, 0.5, -0.2], force: [300, -200, 500], moment: [40, 70, -90], axes: {axes}}}")
+    });
+    for joint in ["symmetric", "paper"] {
+        for load in &loads {
+            let [with, without] = [load.as_str(), ""].map(|load| crane(&spec(joint, load)));
+            let [with, without]: [&dyn DynCrane; 2] = [&with, &without];
+            let n = with.size();
+            let q: Vec<f64> = (0..n).map(|j| 0.3 * (1.0 + j as f64).sin()).collect();
+            let residual = |q: &[f64]| {
+                let of = |crane: &dyn DynCrane| {
+                    let mut out = vec![0.0; n];
+                    crane.static_residual(0.0, q, &vec![0.0; n], &mut out);
+                    out
+                };
+                of(with).iter().zip(of(without)).map(|(with, without)| with - without).collect::<Vec<f64>>()
+            };
+            let h = 1e-5;
+            let columns: Vec<Vec<f64>> = (0..n)
+                .map(|j| {
+                    let moved =
+                        |by: f64| residual(&(0..n).map(|i| if i == j { q[i] + by } else { q[i] }).collect::<Vec<_>>());
+                    moved(h).iter().zip(moved(-h)).map(|(ahead, behind)| (ahead - behind) / (2.0 * h)).collect()
+                })
+                .collect();
+            let tangent = |crane: &dyn DynCrane| {
+                let mut out = vec![0.0; n * n];
+                crane.tangent_stiffness(0.0, &q, &vec![0.0; n], &mut out);
+                out
+            };
+            let own: Vec<f64> =
+                tangent(with).iter().zip(tangent(without)).map(|(with, without)| with - without).collect();
+            let largest = own.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+            for i in 0..n {
+                for j in 0..n {
+                    let expected = 0.5 * (columns[i][j] + columns[j][i]);
+                    // Differences of forces of 1e3 N m: rounding 1e-13/1e-5 and truncation h² of them, and the rounding of the springs' tangents of 1e4.
+                    assert!(
+                        (own[i * n + j] - expected).abs() < 1e-7 * largest,
+                        "{joint}, {load}: {i}, {j}: {} for {expected}",
+                        own[i * n + j]
+                    );
+                }
+            }
+        }
+    }
+}
