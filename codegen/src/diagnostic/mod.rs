@@ -93,11 +93,12 @@ impl Diagnostics {
 
     /// Each mistake or warning with its place.
     pub fn located(&self) -> impl Iterator<Item = Located<'_>> {
-        self.mistakes.iter().map(|mistake| Located {
+        let places = self.source.places();
+        self.mistakes.iter().map(move |mistake| Located {
             mistake,
-            file: self.source.part(mistake.span.start).name,
-            start: self.source.position(mistake.span.start),
-            end: self.source.position(mistake.span.end.max(mistake.span.start)),
+            file: places.part(mistake.span.start).name,
+            start: places.position(mistake.span.start),
+            end: places.position(mistake.span.end.max(mistake.span.start)),
         })
     }
 

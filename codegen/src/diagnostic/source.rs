@@ -133,11 +133,7 @@ impl SourceFile {
 
     /// The part or data file that contains a byte.
     pub(crate) fn part(&self, byte: usize) -> Part<'_> {
-        let mut sections = self.sections();
-        while sections.len() > 1 && sections.last().is_some_and(|(_, part)| part.start > byte) {
-            sections.pop();
-        }
-        sections.pop().map_or(Part { name: &self.name, start: 0, text: &self.text }, |(_, part)| part)
+        self.places().part(byte)
     }
 
     /// Where the file itself begins, after those that it extends.
@@ -162,10 +158,13 @@ impl SourceFile {
     /// Line and column of a byte in its part, both from 1; the column counts characters.
     #[must_use]
     pub fn position(&self, byte: usize) -> (usize, usize) {
-        let line = self.line(byte);
-        let part = self.part(byte).start.min(line.start);
-        let number = self.text[part..line.start].matches('\n').count() + 1;
-        (number, self.text[line.start..self.boundary(byte)].chars().count() + 1)
+        self.places().position(byte)
+    }
+
+    /// Its lines and parts, found once.
+    pub(crate) fn places(&self) -> Places<'_> {
+        let ends = self.text.match_indices('\n').map(|(end, _)| end + 1);
+        Places { source: self, lines: std::iter::once(0).chain(ends).collect(), sections: self.sections() }
     }
 
     /// The line that contains a byte, without its end.
@@ -183,6 +182,32 @@ impl SourceFile {
             at -= 1;
         }
         at
+    }
+}
+
+/// The lines and parts of a source file, for the positions of many bytes.
+pub(crate) struct Places<'a> {
+    source: &'a SourceFile,
+    /// The first byte of each line.
+    lines: Vec<usize>,
+    sections: Vec<(&'static str, Part<'a>)>,
+}
+
+impl<'a> Places<'a> {
+    /// As [`SourceFile::part`].
+    pub(crate) fn part(&self, byte: usize) -> Part<'a> {
+        let after = self.sections.partition_point(|(_, part)| part.start <= byte);
+        let found = self.sections.get(after.saturating_sub(1));
+        found.map_or(Part { name: &self.source.name, start: 0, text: &self.source.text }, |(_, part)| *part)
+    }
+
+    /// As [`SourceFile::position`].
+    pub(crate) fn position(&self, byte: usize) -> (usize, usize) {
+        let at = self.source.boundary(byte);
+        let line_of = |byte: usize| self.lines.partition_point(|start| *start <= byte).saturating_sub(1);
+        let line = line_of(at);
+        let first = line_of(self.part(byte).start).min(line);
+        (line - first + 1, self.source.text[self.lines[line]..at].chars().count() + 1)
     }
 }
 
