@@ -136,7 +136,14 @@ fn with_bases(
             return Err(refused(&format!("more than {MOST_BASES} specs extend one another: join some of them")));
         }
         let source = if file.exists() && !file.is_dir() {
-            open_single(&file).map_err(|failure| refused(&failure.to_string()))?
+            let source = open_single(&file).map_err(|failure| refused(&failure.to_string()))?;
+            // A file that is none may be one that its owner does not want to show: no message repeats its lines.
+            if !is_spec(&source.text) {
+                return Err(refused(
+                    "it is not the spec of a crane: no line of it begins with `format:`, `extends:` or `links:`",
+                ));
+            }
+            source
         } else {
             SourceFile::new(&name, shipped(&name).ok_or_else(|| refused("there is no such file"))?)
         };
@@ -150,6 +157,17 @@ fn with_bases(
         (named, extended)
     });
     whole.map(|(_, source)| (source, files)).ok_or(Failure::File(nothing))
+}
+
+/// Whether a text has a key that the spec of a crane begins with, also in braces and quotation marks.
+fn is_spec(text: &str) -> bool {
+    const KEYS: [&str; 3] = ["format", "extends", "links"];
+    let begins = |line: &str| {
+        let line = line.trim_start_matches(['\u{feff}', '{', ' ', '\t']);
+        let key = line.split(':').next().unwrap_or_default().trim_matches(['"', '\'', ' ']);
+        line.contains(':') && KEYS.contains(&key)
+    };
+    text.lines().any(begins)
 }
 
 /// A spec, which is called `named`, with the data files to which it refers, looked up `from` a folder. Their paths are added to `files`.

@@ -33,6 +33,23 @@ fn mistakes(file: &Path) -> Diagnostics {
     }
 }
 
+/// Whoever checks uploaded specs must not show the lines of other files: of what is no spec of a crane, no word is repeated.
+#[test]
+fn lines_of_a_file_that_is_no_spec_are_not_shown() {
+    let secrets = ["root:*:20228:0:99999:7:::\n", "# words\npassword\n", "- secret\n", "secret: {word\n"];
+    for (index, secret) in secrets.into_iter().enumerate() {
+        let folder = folder(
+            &format!("extends_secret_{index}"),
+            &[("secret", secret), ("over.yaml", "extends: secret\nname: mine\n")],
+        );
+        let found = mistakes(&folder.join("over.yaml"));
+        let text = found.to_string();
+        let words = ["root", "20228", "password", "word"];
+        assert!(words.iter().all(|word| !text.contains(word)), "{text}");
+        assert!(text.contains("is not the spec of a crane") && found.mistakes()[0].code == "E008", "{text}");
+    }
+}
+
 /// The third file contains every key of both, as a person would write it without `extends`.
 #[test]
 fn an_extending_spec_is_the_crane_written_in_full() {
