@@ -95,6 +95,22 @@ def test_steps_out_of_turn(export, tmp_path):
     unit.freeInstance()
 
 
+def test_initialisations_out_of_turn(export, tmp_path):
+    unit = Slave(export("knuckle_boom"), tmp_path / "twice")
+    unit.open()
+    refused(unit, unit.exitInitializationMode, "an initialisation that has not begun")
+    unit.setupExperiment()
+    unit.enterInitializationMode()
+    refused(unit, unit.enterInitializationMode, "has begun before")
+    refused(unit, unit.setupExperiment, "has begun before")
+    unit.exitInitializationMode()
+    refused(unit, unit.exitInitializationMode, "an initialisation that has not begun")
+    refused(unit, unit.enterInitializationMode, "has begun before")
+    unit.reset()
+    unit.begin()
+    unit.freeInstance()
+
+
 def test_states_of_another_crane(export, slave, boom, tmp_path):
     """Another crane, also one with the same number of everything."""
     twin = tmp_path / "twin.yaml"

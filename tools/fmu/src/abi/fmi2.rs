@@ -3,7 +3,7 @@
 use std::ffi::{CString, c_char, c_double, c_int, c_uint, c_void};
 use std::rc::Rc;
 
-use super::shared::shared;
+use super::shared::{functions, shared};
 use super::unit::{Host, Pointer, Status, Unit, none_of, with, write};
 use super::{array, array_mut, states, words};
 use crate::instance::Fault;
@@ -103,7 +103,6 @@ shared! {
     terminate: fmi2Terminate,
     reset: fmi2Reset,
     accept: [
-        fmi2EnterInitializationMode,
         fmi2EnterEventMode,
         fmi2EnterContinuousTimeMode,
     ],
@@ -119,6 +118,10 @@ shared! {
     derivatives: fmi2GetDerivatives,
     indicators: fmi2GetEventIndicators,
     nominals: fmi2GetNominalsOfContinuousStates,
+}
+
+functions! {
+    fn fmi2EnterInitializationMode() |unit| unit.instance.initialise();
 }
 
 #[unsafe(no_mangle)]

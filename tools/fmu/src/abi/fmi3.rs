@@ -134,7 +134,7 @@ unsafe extern "C" fn fmi3EnterInitializationMode(
         with(component, |unit| {
             unit.instance.set_up((has_tolerance != FALSE).then_some(tolerance), start)?;
             unit.last = start;
-            Ok(())
+            unit.instance.initialise()
         })
     }
 }

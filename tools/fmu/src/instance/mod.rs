@@ -42,6 +42,8 @@ pub struct Instance {
     is_current: bool,
     settings: Settings,
     begin: f64,
+    /// Whether initialisation has begun and not ended.
+    is_initialising: bool,
     /// Whether initialisation has ended; before that, a parameter changes the start.
     has_begun: bool,
     /// Whether the importer has ended the simulation.
@@ -86,6 +88,7 @@ impl Instance {
             parameters,
             is_current: false,
             begin: 0.0,
+            is_initialising: false,
             has_begun: false,
             has_ended: false,
             moment: None,
@@ -106,8 +109,9 @@ impl Instance {
     /// Sets the tolerance of the crane's own integrator and the start time, s.
     ///
     /// # Errors
-    /// The tolerance is out of range, or the time is not finite.
+    /// The tolerance is out of range, or the time is not finite; or the initialisation has begun.
     pub fn set_up(&mut self, tolerance: Option<f64>, begin: f64) -> Result<(), Fault> {
+        self.keep_before_initialisation()?;
         let (least, greatest) = Settings::TOLERANCES;
         if let Some(tolerance) = tolerance {
             if !(least..=greatest).contains(&tolerance) {
@@ -123,13 +127,36 @@ impl Instance {
         Ok(())
     }
 
+    /// Begins the initialisation.
+    ///
+    /// # Errors
+    /// It has begun before.
+    pub fn initialise(&mut self) -> Result<(), Fault> {
+        self.keep_before_initialisation()?;
+        self.is_initialising = true;
+        Ok(())
+    }
+
+    /// An error once the initialisation has begun.
+    fn keep_before_initialisation(&self) -> Result<(), Fault> {
+        if self.is_initialising || self.has_begun {
+            return Err(Fault::Error("the initialisation has begun before: reset the unit first".to_owned()));
+        }
+        Ok(())
+    }
+
     /// Ends the initialisation: from now on parameters change the crane but not its state.
     ///
     /// # Errors
-    /// As [`Instance::get`].
+    /// As [`Instance::get`]; the initialisation has not begun.
     pub fn start(&mut self) -> Result<(), Fault> {
+        if !self.is_initialising {
+            return Err(Fault::Error(
+                "the end of an initialisation that has not begun: enter the initialisation mode first".to_owned(),
+            ));
+        }
         self.settle()?;
-        self.has_begun = true;
+        (self.is_initialising, self.has_begun) = (false, true);
         Ok(())
     }
 
@@ -144,7 +171,7 @@ impl Instance {
         self.inputs.fill(None);
         self.settings.tolerance = Settings::of(self.crane.description()).tolerance;
         (self.begin, self.is_current) = (0.0, false);
-        (self.has_begun, self.has_ended) = (false, false);
+        (self.is_initialising, self.has_begun, self.has_ended) = (false, false, false);
         (self.moment, self.motion) = (None, None);
         self.cautions.clear();
         self.forget();
