@@ -5,6 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use clap::ValueEnum;
 use crane_codegen::{
     chain::{Bound, Chain, Refusal},
     compile,
@@ -38,8 +39,14 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
             "set the input where the exported crane runs, or change its `value` in the spec",
         ));
     }
-    if options.crane.compile && options.format != Language::Fmu {
-        return Err(Problem::usage("`--compile` is for `--format fmu` alone", "leave `--compile` out"));
+    for (option, given, language) in options.of_one_language() {
+        if given && options.format != language {
+            let format = language.to_possible_value().map_or(String::new(), |value| value.get_name().to_owned());
+            return Err(Problem::usage(
+                format!("`--{option}` is for `--format {format}` alone"),
+                format!("leave `--{option}` out"),
+            ));
+        }
     }
     let (chain, spec) = registry.load(&options.crane.name, options.crane.strict)?;
     if let Some(joint) = chain.loop_joints.first() {
@@ -69,7 +76,7 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
         }
         Language::C => {
             let by_forces = ["forces", "forward_dynamics"];
-            if let Some(name) = options.functions.iter().find(|name| by_forces.contains(&Product::split(name).0))
+            if let Some(name) = options.functions().iter().find(|name| by_forces.contains(&Product::split(name).0))
                 && chain.has_force_states()
             {
                 return Err(Problem::usage(
@@ -116,11 +123,11 @@ fn beside(source: &Path) -> Outcome<String> {
 
 /// The chosen functions in C.
 fn in_c(options: &Export, chain: &Chain, parameters: &[f64], header: &str) -> Outcome<CCode> {
-    let precision = match options.precision {
+    let precision = match options.precision.unwrap_or_default() {
         CNumber::Double => Precision::Double,
         CNumber::Single => Precision::Single,
     };
-    compile::generate_c(chain, &options.functions, parameters, precision, header).map_err(
+    compile::generate_c(chain, &options.functions(), parameters, precision, header).map_err(
         |NoFunction { name, known, with_products }| {
             let products = format!("products with derivatives, `_vjp` and `_jvp`, of {}", with_products.join(", "));
             let help = match Product::split(&name) {
@@ -190,7 +197,7 @@ fn keep_loops(options: &Export, crane: &str, joint: &str) -> Outcome<()> {
             format!("{crane} has a loop, which `{joint}` closes; exported models are open chains"),
             "export a functional mock-up unit (`--format fmu`) for co-simulation, or a spec without `loop_joints` and exact pads, and close the loop in the other program",
         )),
-        Language::C => match options.functions.iter().find(|name| SOLVED.contains(&Product::split(name).0)) {
+        Language::C => match options.functions().iter().find(|name| SOLVED.contains(&Product::split(name).0)) {
             None => Ok(()),
             Some(name) => Err(Problem::usage(
                 format!(

@@ -61,7 +61,7 @@ pub fn write_unit(
     carried: &Carried,
     out: &mut dyn Write,
 ) -> Outcome<()> {
-    let is_compiled = options.crane.compile;
+    let (is_compiled, version) = (options.crane.compile, options.fmi.unwrap_or_default());
     let libraries = match options.libraries.as_slice() {
         [] if is_compiled => vec![read_library(&compiled::unit(&chain, spec)?)?],
         [] => vec![own_library(carried)?],
@@ -75,15 +75,15 @@ pub fn write_unit(
     };
     let mut crane = LiveCrane::new(chain);
     crane.set_parameters(parameters).map_err(|refused| Problem::usage(refused.to_string(), ""))?;
-    let content = pack(&crane, spec, &libraries, options.fmi)
+    let content = pack(&crane, spec, &libraries, version)
         .map_err(|error| Problem::failed(format!("{}: {error}", file.display()), "make its libraries smaller"))?;
     files::write_file(file, |file| file.write_all(&content))?;
-    let systems: Vec<String> = libraries.iter().map(|library| library.system.folder(options.fmi)).collect();
+    let systems: Vec<String> = libraries.iter().map(|library| library.system.folder(version)).collect();
     let (file, size) = (file.display(), content.len() as f64 / 1e6);
     Ok(writeln!(
         out,
         "{file} written: FMI {}, co-simulation{}, {}{}; {size:.1} MB",
-        options.fmi.number(),
+        version.number(),
         if crane.chain().loop_joints.is_empty() { " and model exchange" } else { " alone because of its loops" },
         if is_compiled { "compiled, " } else { "" },
         systems.join(", ")

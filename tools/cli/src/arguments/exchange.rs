@@ -63,18 +63,37 @@ pub struct Export {
     #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: Option<PathBuf>,
     /// Functions to write in C, separated by commas, with `_vjp` or `_jvp` products with their derivatives; a wrong name lists all
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "mass_matrix,bias,forward_dynamics")]
-    pub functions: Vec<String>,
-    /// Type of numbers in C
-    #[arg(long, value_enum, default_value_t)]
-    pub precision: CNumber,
-    /// Version of the interface of an FMU
-    #[arg(long, value_enum, default_value_t, value_name = "VERSION")]
-    pub fmi: Fmi,
+    /// [default: mass_matrix,bias,forward_dynamics]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub functions: Option<Vec<String>>,
+    /// Type of numbers in C [default: double]
+    #[arg(long, value_enum)]
+    pub precision: Option<CNumber>,
+    /// Version of the interface of an FMU [default: 2.0]
+    #[arg(long, value_enum, value_name = "VERSION")]
+    pub fmi: Option<Fmi>,
     /// Shared library to put into an FMU, .so, .dll or .dylib; repeat the option to include several systems
     /// [default: the one next to the command]
     #[arg(long = "library", value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub libraries: Vec<PathBuf>,
+}
+
+impl Export {
+    /// The functions to write in C.
+    pub fn functions(&self) -> Vec<String> {
+        self.functions.clone().unwrap_or_else(|| ["mass_matrix", "bias", "forward_dynamics"].map(str::to_owned).into())
+    }
+
+    /// The options that are for one language, whether they are given, and that language.
+    pub fn of_one_language(&self) -> [(&'static str, bool, Language); 5] {
+        [
+            ("functions", self.functions.is_some(), Language::C),
+            ("precision", self.precision.is_some(), Language::C),
+            ("fmi", self.fmi.is_some(), Language::Fmu),
+            ("library", !self.libraries.is_empty(), Language::Fmu),
+            ("compile", self.crane.compile, Language::Fmu),
+        ]
+    }
 }
 
 /// A spec from another program's file.
