@@ -33,6 +33,8 @@ pub fn hold(held: &Held, ranges: &[String], name: &str, registry: &mut Registry)
     let crane = registry.crane(name)?;
     let description = crane.description();
     let mut changes = Changes::default();
+    let mut is_held = vec![false; description.drives.len()];
+    let name_of = |drive: usize| format!("`{}`", description.coordinates[description.drives[drive].coordinate].name);
     for text in held {
         let (drive, _) = text.split_once('=').ok_or_else(|| {
             let help = "write `--hold drive=position`, such as `--hold boom_psi=30deg`";
@@ -45,10 +47,18 @@ pub fn hold(held: &Held, ranges: &[String], name: &str, registry: &mut Registry)
             ));
         };
         let value = held_number(text, description.coordinates[description.drives[drive].coordinate].kind, false)?;
+        if std::mem::replace(&mut is_held[drive], true) {
+            let title = format!("{} is held twice", name_of(drive));
+            return Err(Problem::usage(title, "leave one of the two out"));
+        }
         changes.drives.push(held_at(description, drive, &format!("{value:?}")));
     }
     for axis in &read_ranges(ranges, description)?.0 {
         if let Varied::Drive(drive) = axis.varied {
+            if is_held[drive] {
+                let title = format!("{} is held and varied", name_of(drive));
+                return Err(Problem::usage(title, "leave `--hold` or `--range` of it out"));
+            }
             let info = &description.coordinates[description.drives[drive].coordinate];
             let parameter = parameter_of(description, drive);
             let entry = format!("  {parameter}: {{value: {:?}, unit: {}}}\n", axis.values[0], info.kind.unit());

@@ -98,3 +98,12 @@ fn poses_that_mean_nothing_are_refused() {
     let output = crane(&["modes", "knuckle_boom", "--count", "2"]);
     assert!(text(&output.stdout).contains("2 more rows with `--all`"), "{}", text(&output.stdout));
 }
+
+#[test]
+fn a_drive_is_held_or_varied_and_held_once() {
+    let hold = ["statics", "knuckle_boom", "--hold", "main_boom_theta=-1"];
+    let also = |more: &[&'static str]| [&hold[..], more].concat();
+    let expected = ["`main_boom_theta` is held and varied", "leave `--hold` or `--range` of it out"];
+    refused(&also(&["--range", "main_boom_theta=-1:0:3"]), &expected);
+    refused(&also(&["--hold", "main_boom=-0.5"]), &["`main_boom_theta` is held twice"]);
+}
