@@ -5,6 +5,7 @@
 //! of all mutants, the same ones in every run. `CRANE_THOROUGH=1` takes all of them, which takes minutes; `CRANE_SEED=7` draws others.
 
 use std::fmt::Write as _;
+use std::io::Write as _;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
@@ -95,7 +96,8 @@ impl Tried {
                 let memory = resident().unwrap_or_default();
                 if since.elapsed() > LONGEST || memory > LARGEST {
                     let seconds = since.elapsed().as_secs_f64();
-                    eprintln!("without an end: {seconds:.1} s, {memory} kB, from\n{what}");
+                    // Not captured by the tests, whose process ends here.
+                    let _ = writeln!(std::io::stderr(), "without an end: {seconds:.1} s, {memory} kB, from\n{what}");
                     std::process::exit(101);
                 }
             }
