@@ -46,8 +46,10 @@ impl Settings {
     pub const TIMES: (f64, f64) = (1e-9, 1e7);
     /// Maximum number of results of a run that are kept in memory.
     pub const MOST_RESULTS: f64 = 1e6;
-    /// Maximum number of steps of constant length: these take hours.
+    /// Maximum number of steps of constant length: these take days.
     pub const MOST_STEPS: f64 = 1e10;
+    /// From this number of steps of constant length on, a run has to be asked for twice: a crane of 25 coordinates takes half an hour.
+    pub const MANY_STEPS: f64 = 1e8;
 
     /// The run that the crane's spec describes, with the default method, without audit.
     pub fn of(description: &Description) -> Self {

@@ -83,7 +83,7 @@ pub fn record_adjoint(
         };
         gradients.push((0..along.len()).map(by).collect());
     }
-    recorded.wall = begin.map_or(recorded.wall, |begin| begin.elapsed());
+    recorded.wall = begin.map(|begin| begin.elapsed());
     Ok((recorded, gradients))
 }
 

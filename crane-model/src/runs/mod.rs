@@ -1,6 +1,7 @@
 //! Complete runs of one crane or many: from the equilibrium, recorded, with an estimate of their error and with cautions.
 
 mod adjoint;
+mod effort;
 pub mod ensemble;
 mod failed;
 mod gradients;
@@ -10,6 +11,7 @@ mod recorded;
 mod start;
 
 pub use adjoint::{Transposed, record_adjoint};
+pub use effort::{Effort, large_effort};
 pub use failed::{Failed, Reason};
 pub use gradients::{Gradients, record_gradients};
 pub use manoeuvre::{Bound, POSES, Pose, SAFE, limiting_modes, manoeuvre, step_limit};

@@ -22,8 +22,8 @@ pub struct Recorded {
     pub run: Run,
     /// All results.
     pub table: Table,
-    /// Wall time; zero where there is no clock.
-    pub wall: Duration,
+    /// Wall time; `None` where there is no clock, and where results are to be the same in each run.
+    pub wall: Option<Duration>,
     /// Its estimated errors, if requested.
     pub verification: Option<Verification>,
     /// Cautions: conditions for which the model or the method is not valid.
@@ -32,8 +32,8 @@ pub struct Recorded {
 
 impl Recorded {
     /// Simulated time per wall time.
-    pub fn real_time_factor(&self) -> f64 {
-        self.run.time / self.wall.as_secs_f64()
+    pub fn real_time_factor(&self) -> Option<f64> {
+        self.wall.map(|wall| self.run.time / wall.as_secs_f64())
     }
 }
 
@@ -149,7 +149,7 @@ pub(super) fn record_by(
         start: start.what.clone(),
         run,
         table,
-        wall: begin.map_or(Duration::ZERO, |begin| begin.elapsed()),
+        wall: begin.map(|begin| begin.elapsed()),
         verification: None,
         cautions,
     })

@@ -10,9 +10,10 @@ use crate::{
     arguments::{Compare, ComparePair, Format, Parameters, spec_file},
     figures::{Curve, Mark, PALETTE, Panel},
     files,
-    integration::runs,
+    integration::{prepare, runs},
     page,
     problem::{Outcome, Problem},
+    screen,
     selection::{Registry, set_inputs},
     simulate::{Trace, file_list, points, spoken, write_figure, write_figures, write_run},
     spec_file,
@@ -105,6 +106,8 @@ fn side_by_side(
     let begin = Instant::now();
     let folder = &options.folder.out;
     let cases = [Case::new(first, one.as_ref()), Case::new(second, other.as_ref())];
+    // Arguments that cannot be used are refused before anything is written.
+    let prepared = prepare(&cases, &options.timing, default)?;
     let format = options.format;
     let mut report = equilibria(&cases, options.limits.bend);
     report.grid(deflection(&cases[0], &cases[1]));
@@ -120,7 +123,7 @@ fn side_by_side(
     }
 
     files::folder(folder)?;
-    let (settings, runs) = runs(&cases, &options.timing, options.limits, default)?;
+    let (settings, runs) = runs(&cases, &options.timing, options.limits, prepared)?;
     let [one_run, other_run] = runs.as_slice() else {
         return Err(Problem::failed("a simulation is missing", "please report this as a bug"));
     };
@@ -163,8 +166,8 @@ fn side_by_side(
         )?;
     }
     format.print(&report, out)?;
-    if format == Format::Table {
-        writeln!(out, "\nTotal time: {:.1} s", begin.elapsed().as_secs_f64())?;
+    if let (Format::Table, Some(seconds)) = (format, screen::seconds_since(begin)) {
+        writeln!(out, "\nTotal time: {seconds:.1} s")?;
     }
     Ok(())
 }

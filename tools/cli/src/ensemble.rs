@@ -30,6 +30,7 @@ use crate::{
     journal::{self, Journal, Request},
     parameter_table::ParameterTable,
     problem::{Outcome, Problem},
+    screen,
     selection::Registry,
     simulate::method,
 };
@@ -98,7 +99,7 @@ pub fn simulate(options: &Simulate, given: &Path, registry: &Registry, out: &mut
     let execution = Execution { threads, done: &done, cancelled: &failed };
     let simulated: f64 = ensemble::run_ensemble(crane, &cases, &settings, &execution).iter().map(Row::time).sum();
     bar.finish_and_clear();
-    let wall = begin.elapsed().as_secs_f64();
+    let wall = screen::seconds_since(begin);
     let (rows, written) = state.into_inner().unwrap_or_else(PoisonError::into_inner);
     written?;
     let rows: Vec<Vec<String>> = rows.into_iter().flatten().collect();
@@ -120,9 +121,11 @@ pub fn simulate(options: &Simulate, given: &Path, registry: &Registry, out: &mut
         report.fact("step from", step, "");
     }
     report.fact("threads", threads, "");
-    report.fact("wall time", wall, "s");
-    report.fact("cranes per second", fresh.len() as f64 / wall, "");
-    report.fact("real-time factor", simulated / wall, "");
+    if let Some(wall) = wall {
+        report.fact("wall time", wall, "s");
+        report.fact("cranes per second", fresh.len() as f64 / wall, "");
+        report.fact("real-time factor", simulated / wall, "");
+    }
     report.fact("written to", path.display().to_string(), "");
     options.run.analysis.format.print(&report, out)?;
     if reached == rows.len() {

@@ -95,12 +95,22 @@ impl Timing {
                 "write a longer `--step`, in s",
             ));
         }
+        let effort = if self.force { None } else { runs::large_effort(crane, start, &settings) };
         match limit {
             // The step of a run is never longer than the interval of its results.
             Some(Bound { t, limit }) if settings.step.min(settings.output) > limit.step && !self.force => {
                 Err(unstable(crane, settings.step, t, &limit))
             }
-            _ => Ok(settings),
+            _ => match effort {
+                Some(effort) => Err(Problem::failed(
+                    format!("{}: a run of {} s takes {effort}", crane.description().name, settings.duration),
+                    format!(
+                        "`--method {}` takes longer steps; a very stiff spring or a point far away makes steps short; `--force` runs anyway",
+                        Method::RECOMMENDED
+                    ),
+                )),
+                None => Ok(settings),
+            },
         }
     }
 }
@@ -168,16 +178,16 @@ pub fn record_checked(
     (verify, limits): (bool, Limits),
     bar: &ProgressBar,
 ) -> Outcome<Recorded> {
-    Ok(runs::record_checked(crane, start, settings, (verify, limits.bend), &mut show(bar))?)
+    let mut recorded = runs::record_checked(crane, start, settings, (verify, limits.bend), &mut show(bar))?;
+    recorded.wall = recorded.wall.filter(|_| !screen::is_reproducible());
+    Ok(recorded)
 }
 
-/// Runs cranes side by side, each from its own start; `default`: the method unless one is asked for.
-pub fn runs(
-    cases: &[Case<'_>],
-    timing: &Timing,
-    limits: Limits,
-    default: Method,
-) -> Outcome<(Vec<dynamics::Settings>, Vec<Recorded>)> {
+/// The start and the settings of the run of each crane; `default`: the method unless one is asked for.
+///
+/// # Errors
+/// An option has a value that cannot be used.
+pub fn prepare(cases: &[Case<'_>], timing: &Timing, default: Method) -> Outcome<(Vec<Start>, Vec<dynamics::Settings>)> {
     // The last crane is the one that the arguments refer to.
     let starts = cases.iter().enumerate();
     let starts =
@@ -187,6 +197,16 @@ pub fn runs(
         .zip(&starts)
         .map(|(case, start)| timing.settings(case.crane, start, default))
         .collect::<Outcome<Vec<_>>>()?;
+    Ok((starts, settings))
+}
+
+/// Runs cranes side by side, each as it was prepared.
+pub fn runs(
+    cases: &[Case<'_>],
+    timing: &Timing,
+    limits: Limits,
+    (starts, settings): (Vec<Start>, Vec<dynamics::Settings>),
+) -> Outcome<(Vec<dynamics::Settings>, Vec<Recorded>)> {
     let bar = progress(settings.iter().map(|settings| settings.duration).sum());
     bar.set_message("simulating");
     let results: Vec<Outcome<Recorded>> = thread::scope(|scope| {

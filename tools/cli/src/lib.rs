@@ -27,6 +27,7 @@ mod figures;
 pub mod files;
 mod fmu;
 mod generate;
+mod guard;
 mod help;
 mod info;
 mod integration;
@@ -80,6 +81,7 @@ pub fn main(registry: Registry) -> ExitCode {
     completions::answer(registry.shipped());
     with_arguments(help::grouped(Arguments::command()), |arguments: Arguments, out| {
         screen::choose(&arguments.manner);
+        guard::watch()?;
         command::execute(arguments, registry, out)?;
         screen::unaccepted().map_or(Ok(()), Err)
     })

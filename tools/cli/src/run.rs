@@ -8,7 +8,7 @@ use crane_page::tables::{caution_of_runs, deflection, equilibria, extremes, summ
 use crate::{
     arguments::Run,
     files,
-    integration::runs,
+    integration::{prepare, runs},
     page::{cases, twin, write_page},
     problem::Outcome,
     selection::Registry,
@@ -24,7 +24,8 @@ pub fn run_crane(options: &Run, registry: &Registry, out: &mut dyn Write) -> Out
     if let [rigid, flexible] = cases.as_slice() {
         report.grid(deflection(rigid, flexible));
     }
-    let (settings, runs) = runs(&cases, &options.timing, options.analysis.crane.limits, Method::RECOMMENDED)?;
+    let prepared = prepare(&cases, &options.timing, Method::RECOMMENDED)?;
+    let (settings, runs) = runs(&cases, &options.timing, options.analysis.crane.limits, prepared)?;
     let labels = cases.iter().map(|case| case.label);
 
     let folder = &options.folder.out;

@@ -4,10 +4,10 @@ use std::{
     env,
     io::{self, IsTerminal, Write},
     sync::{
-        OnceLock,
+        Mutex, OnceLock, PoisonError,
         atomic::{AtomicBool, Ordering},
     },
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use clap::{Args, ValueEnum};
@@ -37,10 +37,15 @@ pub struct Manner {
     /// End with code 3 if there are warnings about the spec or cautions about results, for scripts
     #[arg(long, global = true, value_enum, value_delimiter = ',', value_name = "SEVERITY")]
     pub fail_on: Vec<Severity>,
+    /// Leave out of results how long they took, so that the same command gives the same bytes again
+    #[arg(long, global = true)]
+    pub reproducible: bool,
 }
 
 /// As the arguments ask for.
 static MANNER: OnceLock<Manner> = OnceLock::new();
+/// The crane that was read last, and its number of coordinates.
+static CRANE: Mutex<Option<(String, usize)>> = Mutex::new(None);
 /// Whether the crane has had a warning, and results a caution.
 static WARNED: AtomicBool = AtomicBool::new(false);
 static CAUTIONED: AtomicBool = AtomicBool::new(false);
@@ -58,6 +63,16 @@ pub fn choose(manner: &Manner) {
 /// Whether only results and errors are wanted.
 pub fn is_quiet() -> bool {
     MANNER.get().is_some_and(|manner| manner.quiet)
+}
+
+/// How long it took since then, s, if results may say so.
+pub fn seconds_since(begin: Instant) -> Option<f64> {
+    (!is_reproducible()).then(|| begin.elapsed().as_secs_f64())
+}
+
+/// Whether results may not depend on how long they took.
+pub fn is_reproducible() -> bool {
+    MANNER.get().is_some_and(|manner| manner.reproducible)
 }
 
 /// Whether the arguments ask for JSON, wherever they do: also those that cannot be read.
@@ -83,6 +98,18 @@ fn tell(words: &str) {
 
 fn drawn(found: &Diagnostics) -> String {
     if has_colours(io::stderr().is_terminal()) { found.coloured() } else { found.to_string() }
+}
+
+/// Notes the crane that work begins on.
+pub fn begin(chain: &Chain) {
+    let of = (chain.name.clone(), chain.coordinates.len());
+    *CRANE.lock().unwrap_or_else(PoisonError::into_inner) = Some(of);
+}
+
+/// The crane that was read last, in words.
+pub fn crane_at_work() -> Option<String> {
+    let crane = CRANE.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    crane.map(|(name, count)| format!("{name}, with {count} coordinates,"))
 }
 
 /// Shows warnings about a spec.

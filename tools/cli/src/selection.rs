@@ -9,7 +9,7 @@ use crane_model::{Description, ParameterError, Refusal, dyn_crane::DynCrane};
 use crate::{
     arguments::{Choice, Parameters, STANDARD_INPUT},
     problem::{Outcome, Problem, nearest},
-    spec_file, variants,
+    screen, spec_file, variants,
 };
 
 /// Names and specs (YAML) of shipped cranes.
@@ -66,6 +66,7 @@ impl Entry {
             return Ok(live);
         }
         let crane = LiveCrane::from_spec(&self.source()).map_err(Problem::mistakes)?;
+        screen::begin(crane.chain());
         Ok(self.live.get_or_init(|| crane))
     }
 }
@@ -132,6 +133,7 @@ impl Registry {
     /// As [`Self::add`], for a spec that has been read; returns the crane's name.
     pub fn add_read(&mut self, chain: Chain, spec: String) -> String {
         let name = chain.name.clone();
+        screen::begin(&chain);
         let entry = Entry::new(&name, Cow::Owned(spec));
         self.replace(Entry { live: LiveCrane::new(chain).into(), ..entry });
         name

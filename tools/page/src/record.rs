@@ -31,7 +31,7 @@ pub fn record(crane: &dyn DynCrane, settings: &Settings, recorded: &Recorded, pr
             (parameter.name.to_string(), json!({"value": crane.parameter(index), "unit": parameter.unit.as_str()}))
         })
         .collect();
-    json!({
+    let mut record = json!({
         "crane": description.name.as_str(),
         "title": description.title.as_str(),
         "spec_hash": description.spec_hash.as_str(),
@@ -50,9 +50,12 @@ pub fn record(crane: &dyn DynCrane, settings: &Settings, recorded: &Recorded, pr
         "parameters": parameters,
         "cautions": recorded.cautions,
         "differences_from_a_finer_run": recorded.verification.as_ref().map(|verification| differences(recorded, verification)),
-        "wall_time_s": pace(recorded).map(|(wall, _)| wall),
-        "real_time_factor": pace(recorded).map(|(_, factor)| factor),
-    })
+    });
+    if let Some((wall, factor)) = pace(recorded) {
+        record["wall_time_s"] = wall.into();
+        record["real_time_factor"] = factor.into();
+    }
+    record
 }
 
 /// The record for readers: names and values with their units. Errors and cautions are in the tables of results.

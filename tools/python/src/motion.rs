@@ -11,7 +11,7 @@ use crane_model::dynamics::{InitialState, Method, Settings, Statistics};
 use crane_model::results::{Column, Peaks, Recording, cautions, quantities};
 use crane_model::runs::ensemble::{self, Case, Execution};
 use crane_model::runs::{
-    Bound as StepBound, Failed, Measure, Reason, Recorded, SAFE, Start, check, record_checked, step_limit,
+    Bound as StepBound, Failed, Measure, Reason, Recorded, SAFE, Start, check, large_effort, record_checked, step_limit,
 };
 use crane_model::stability::cause;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -103,19 +103,27 @@ impl Timing {
         if settings.method.is_adaptive() {
             return Ok(settings);
         }
-        match step_limit(crane, start) {
-            Some(StepBound { limit, .. }) if self.safe_step => Ok(Settings { step: SAFE * limit.step, ..settings }),
+        let settings = match step_limit(crane, start) {
+            Some(StepBound { limit, .. }) if self.safe_step => Settings { step: SAFE * limit.step, ..settings },
             Some(StepBound { t, limit }) if settings.step.min(settings.output) > limit.step && !self.force => {
                 let (name, step) = (&crane.description().name, settings.step);
                 let cause = cause(crane.description(), &limit.mode);
-                Err(PyValueError::new_err(format!(
+                return Err(PyValueError::new_err(format!(
                     "{name}: a step of {step:e} s is unstable; rk4 takes at most {:.3e} s, limited at t = {t} s by {cause}; \
                      step=\"auto\" uses {:.2e} s, method=\"bdf\" can use longer steps, force=True runs anyway",
                     limit.step,
                     SAFE * limit.step
-                )))
+                )));
             }
-            _ => Ok(settings),
+            _ => settings,
+        };
+        match large_effort(crane, start, &settings).filter(|_| !self.force) {
+            Some(effort) => Err(PyValueError::new_err(format!(
+                "{}: a run of {} s takes {effort}; method=\"bdf\" takes longer steps, force=True runs anyway",
+                crane.description().name,
+                settings.duration
+            ))),
+            None => Ok(settings),
         }
     }
 }
@@ -251,7 +259,7 @@ impl Crane {
         all.set_item("differences", verification.as_ref().map(|found| found.differences.clone()))?;
         all.set_item("divergence", verification.as_ref().and_then(|found| found.divergence))?;
         all.set_item("cautions", cautions)?;
-        all.set_item("wall_time", wall.as_secs_f64())?;
+        all.set_item("wall_time", wall.unwrap_or_default().as_secs_f64())?;
         if let (Some(names), None) = (gradients, &asked) {
             let of_names = PyDict::new(py);
             for (name, rows) in names.iter().zip(found) {

@@ -77,7 +77,7 @@ impl Given<'_> {
             start: self.start.clone(),
             run: Run { statistics, step: self.step, time: duration, efforts: Vec::new() },
             table,
-            wall: Duration::try_from_secs_f64(self.wall_time).unwrap_or_default(),
+            wall: Duration::try_from_secs_f64(self.wall_time).ok(),
             verification,
             cautions: self.cautions.clone(),
         };

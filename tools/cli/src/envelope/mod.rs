@@ -32,6 +32,7 @@ use crate::{
     integration::styled,
     journal::{self, Journal, Request},
     problem::{Outcome, Problem},
+    screen,
     selection::{Registry, refusal_message},
     strength::load_parameter,
 };
@@ -62,12 +63,14 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
     let (journal, records) = Journal::open(&journal, &request, options.restart)?;
     let kept = kept_rows(&records, &asked, &layout);
     let rows = rate(&asked, &layout, crane.as_ref(), options.threads, &journal, kept)?;
-    let seconds = begin.elapsed().as_secs_f64();
+    let seconds = screen::seconds_since(begin);
 
     let mut report = Report::default();
     let coverage = Coverage::of(crane.as_ref(), &asked.limits);
     summary::facts(&mut report, &asked, &layout, &coverage, &rows);
-    report.fact("wall time", seconds, "s");
+    if let Some(seconds) = seconds {
+        report.fact("wall time", seconds, "s");
+    }
     report.value("parameters", identity::parameters(crane.as_ref(), &asked));
     let mut written = rows::write_rows(&options.folder.out, &name, &asked, &layout, &rows)?;
     let surface = surface::Surface::of(&asked, &layout, &rows);

@@ -23,7 +23,7 @@ use serde_json::Value;
 use crate::{
     arguments::{Limits, Page},
     compiled, files,
-    integration::runs,
+    integration::{prepare, runs},
     problem::Outcome,
     refinement, screen,
     selection::Registry,
@@ -38,7 +38,8 @@ pub fn report(options: &Page, registry: &Registry, out: &mut dyn Write) -> Outco
     let chart = options.envelope.as_deref().map(|table| chart::read_chart(table, crane.as_ref())).transpose()?;
     let moves = if options.sensitivity { moves(crane.as_ref(), registry)? } else { Value::Null };
     let extras = Extras { chart: chart.unwrap_or_default(), moves, instrument: options.instrument.as_deref() };
-    let (settings, runs) = runs(&cases, &options.timing, options.crane.limits, Method::RECOMMENDED)?;
+    let prepared = prepare(&cases, &options.timing, Method::RECOMMENDED)?;
+    let (settings, runs) = runs(&cases, &options.timing, options.crane.limits, prepared)?;
     write_with(&options.file, registry, (&cases, options.crane.limits), &settings, &runs, extras)?;
     writeln!(out, "{} written: open it in a browser", options.file.display())?;
     Ok(())

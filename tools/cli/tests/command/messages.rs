@@ -130,3 +130,24 @@ fn explain_and_its_picture_number_coordinates_alike() {
     assert!(!report.contains("unsimplified"));
     assert!(text(&crane(&["explain", "double_pendulum", "--operations"]).stdout).contains("unsimplified"));
 }
+
+/// One MB is less than any process has.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_command_ends_before_it_takes_all_memory() {
+    let run = |limit: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));
+        let out = folder("little_memory");
+        command.args(["simulate", "--duration", "1000", "--out"]).arg(out).env("CRANE_MEMORY", limit);
+        command.output().expect("the command starts")
+    };
+    let output = run("1");
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(
+        message.contains("MB of memory") && message.contains("are more than the 1 MB of CRANE_MEMORY"),
+        "{message}"
+    );
+    let output = run("much");
+    assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
+}

@@ -195,3 +195,23 @@ fn two_exports_into_one_folder_have_a_header_each() {
     assert!(read("a.h").contains("const float q[") && read("b.h").contains("const double q["));
     refused(&["export", "knuckle_boom", "--format", "c", "-o", "boom.h"], &["cannot be the name of a source in C"]);
 }
+
+#[test]
+fn options_of_another_language_are_refused() {
+    for (format, option, value, of) in [
+        ("c", "--library", "nonsense", "fmu"),
+        ("c", "--fmi", "3.0", "fmu"),
+        ("urdf", "--functions", "x", "c"),
+        ("mjcf", "--precision", "double", "c"),
+    ] {
+        let title = format!("`{option}` is for `--format {of}` alone");
+        refused(&["export", "knuckle_boom", "--format", format, option, value], &[&title, "leave"]);
+    }
+}
+
+#[test]
+fn arguments_that_are_refused_leave_no_folder() {
+    let out = folder("nothing");
+    refused(&["--start", "nonsense", "--out", out.to_str().expect("a path")], &["--start nonsense"]);
+    assert!(!out.exists());
+}

@@ -1,6 +1,6 @@
 //! Runs: results, starts, steps and stability.
 
-use std::fs;
+use std::{fs, path::Path};
 
 use serde_json::Value;
 
@@ -214,4 +214,37 @@ fn stability_names_what_limits_the_step_and_draws_it() {
     assert!(rk4["limited_by"].as_str().is_some_and(|words| words.starts_with("torsion of boom elements 3, 2; 22,9")));
     let svg = fs::read_to_string(out.join("eight_link_flexible_stability.svg")).expect("a figure");
     assert!(svg.starts_with("<svg") && svg.contains("Re hλ") && svg.matches("<circle").count() > 40);
+}
+
+/// The bytes of everything that a command prints and writes.
+fn everything(arguments: &[&str], out: &Path) -> Vec<Vec<u8>> {
+    let _ = fs::remove_dir_all(out);
+    let output = crane(&[arguments, &["--out", out.to_str().expect("a path")]].concat());
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let mut files: Vec<_> = fs::read_dir(out).expect("a folder").map(|entry| entry.expect("an entry").path()).collect();
+    files.sort();
+    [output.stdout].into_iter().chain(files.iter().map(|file| fs::read(file).expect("a file"))).collect()
+}
+
+#[test]
+fn reproducible_results_are_the_same_bytes_again() {
+    let out = folder("reproducible");
+    let arguments = ["run", "double_pendulum", "--duration", "0.5", "--format", "json", "--reproducible"];
+    let [one, other] = [(); 2].map(|()| everything(&arguments, &out));
+    assert!(one.len() > 3 && one == other);
+    let says = |all: &[Vec<u8>], word: &str| all.iter().any(|bytes| text(bytes).contains(word));
+    for word in ["wall_time_s", "real_time_factor", "wall time"] {
+        assert!(!says(&one, word), "{word}");
+        assert!(says(&everything(&arguments[..6], &out), word), "{word}");
+    }
+}
+
+#[test]
+fn a_run_of_too_many_steps_names_their_number_and_time() {
+    let output = crane(&["simulate", "knuckle_boom", "--step", "2e-9", "--duration", "10", "--quiet"]);
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    for words in ["knuckle_boom: a run of 10 s takes 5.0e9 steps of 2.0e-9 s, about", "--force"] {
+        assert!(message.contains(words), "`{words}` not in: {message}");
+    }
 }

@@ -58,14 +58,16 @@ pub fn summary(runs: &[(&str, &Recorded)]) -> Grid {
     row("work of the drives".to_owned(), "J", &|run| last(run, "drive_work"));
     row("dissipated".to_owned(), "J", &|run| last(run, "dissipated_energy"));
     row("energy balance, largest error".to_owned(), "J", &|run| greatest(run, "energy_balance"));
-    row("wall time".to_owned(), "s", &|run| Some(pace(run)?.0));
-    row("real-time factor".to_owned(), "", &|run| Some(pace(run)?.1));
+    if runs.iter().any(|(_, run)| run.wall.is_some()) {
+        row("wall time".to_owned(), "s", &|run| Some(pace(run)?.0));
+        row("real-time factor".to_owned(), "", &|run| Some(pace(run)?.1));
+    }
     grid
 }
 
-/// Wall time of a run, s, and simulated time per wall time; none where no clock was read, as in a page.
+/// Wall time of a run, s, and simulated time per wall time; none where no clock was read, as in a page, or no time is reported.
 pub(crate) fn pace(run: &Recorded) -> Option<(f64, f64)> {
-    (!run.wall.is_zero()).then(|| (run.wall.as_secs_f64(), run.real_time_factor()))
+    Some((run.wall?.as_secs_f64(), run.real_time_factor()?))
 }
 
 /// Adds the cautions of labelled runs, with the label as prefix if there are several.
