@@ -33,7 +33,7 @@ fn mistakes(file: &Path) -> Diagnostics {
     }
 }
 
-/// Whoever checks uploaded specs must not show the lines of other files: of what is no spec of a crane, no word is repeated.
+/// Whoever checks uploaded specs must not show the lines of other files: of a file that does not describe a crane, no word is repeated.
 #[test]
 fn lines_of_a_file_that_is_no_spec_are_not_shown() {
     let secrets = ["root:*:20228:0:99999:7:::\n", "# words\npassword\n", "- secret\n", "secret: {word\n"];

@@ -1,7 +1,7 @@
 //! Valid specs and robots in which one thing is wrong: each value of each shipped spec and each example, and each attribute and element of
 //! each robot, replaced by others. Every mutant gets an answer within bounds of memory, without a panic.
 //!
-//! Random bytes (`stages/any_bytes.rs`) rarely come so far that a crane is expanded; a mutant is a crane but for one place. A run draws some
+//! Random bytes (`stages/any_bytes.rs`) rarely come so far that a crane is expanded; a mutant is a crane except in one place. A run draws some
 //! of all mutants, the same ones in every run. `CRANE_THOROUGH=1` takes all of them, which takes minutes; `CRANE_SEED=7` draws others.
 
 use std::fmt::Write as _;

@@ -35,8 +35,8 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// The body of a link that carries a point, and the position on it: for a beam, the element that contains the point's x. `None` if there
-    /// is no such link, or if a mistake left it without bodies.
+    /// The body of a link that carries a point, and the position on it: for a beam, the element that contains the point's x. `None` if the
+    /// link does not exist, or if a mistake left it without bodies.
     pub(super) fn attach(&mut self, link: &Spanned<String>, at: [Value; 3]) -> Option<(BodyId, [Value; 3])> {
         let name = link.value.as_deref()?;
         let Some(body) = self.links.get(name) else {

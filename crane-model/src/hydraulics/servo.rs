@@ -73,7 +73,7 @@ pub(crate) fn spool(crane: &dyn DynModel, moment: &StateAt<'_>, drive: usize) ->
 }
 
 impl Hydraulics {
-    /// States at rest with all valves opened slightly, in the direction of `towards`, 1 or −1: by a servo, or by whoever commands them.
+    /// States at rest with all valves opened slightly, in the direction of `towards`, 1 or −1: by a servo, or by what commands them.
     pub(super) fn opened_slightly(&self, holding: &[f64], towards: f64) -> Vec<f64> {
         let mut x = holding.to_vec();
         let Some(&pump) = holding.last() else { return x };

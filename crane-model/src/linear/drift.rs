@@ -19,7 +19,7 @@ const STILL: f64 = 1e-8;
 /// Size of a pivot of the stiffness, rows and columns of one size, up to which nothing holds a coordinate.
 const FREE: f64 = 1e-9;
 
-/// How a pose at rest moves that is no equilibrium.
+/// How a pose at rest moves that is not an equilibrium.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drift {
     /// Rates of the coordinates in the state, m/s and rad/s.

@@ -66,7 +66,7 @@ fn root(open: &Open<'_>, start: Complex<f64>, least: f64) -> Option<Complex<f64>
         let step = step * (0.5 * s.norm() / step.norm().max(f64::MIN_POSITIVE)).min(1.0);
         s -= step;
         if step.norm() <= FOUND * s.norm() {
-            // A real zero stays real but for rounding.
+            // A real zero stays real, up to rounding.
             let im = if s.im.abs() < SAME * s.norm() { 0.0 } else { s.im.abs() };
             return Some(Complex::new(s.re, im));
         }

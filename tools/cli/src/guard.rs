@@ -19,7 +19,7 @@ const MEGABYTES: f64 = 1e-3;
 /// Watches the memory of this process from a thread of its own, where the system says how much it is and how much there is.
 ///
 /// # Errors
-/// The environment variable is no number.
+/// The environment variable is not a number.
 pub fn watch() -> Outcome<()> {
     let (most, whose) = match env::var(VARIABLE) {
         Ok(text) => (limit(&text)?, format!("the {text} MB of {VARIABLE}")),

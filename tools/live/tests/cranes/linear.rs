@@ -212,7 +212,7 @@ fn a_servo_follows_its_motion() {
 /// ẏ = −β λ (p − p′) (A/V + A′/V′)/(K + F′)
 /// ```
 ///
-/// worked out here from areas, volumes and moments. The state is no equilibrium, and not unstable, although A has an eigenvalue that grows.
+/// worked out here from areas, volumes and moments. The state is not an equilibrium, and not unstable, although A has an eigenvalue that grows.
 #[test]
 fn a_leak_is_a_drift_and_no_instability() {
     let leakage = 2e-11;

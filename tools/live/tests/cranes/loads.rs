@@ -161,7 +161,7 @@ fn no_step_misses_a_short_push() {
     }
 }
 
-/// A beam of as many sections as 252 coordinates need bends as a cantilever under a force at its tip: P L³/(3 E J), but for the two halves of sections
+/// A beam of as many sections as 252 coordinates need bends as a cantilever under a force at its tip: P L³/(3 E J), except for the two halves of sections
 /// at its ends without a spring, 1/(2n)² of it. Its tangent needs registers in proportion to its coordinates.
 #[test]
 fn a_force_bends_a_beam_of_many_sections() {
