@@ -23,6 +23,16 @@ pub use fault::Fault;
 use state::Moment;
 pub use state::State;
 
+/// How far an importer has come with a unit.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Phase {
+    Created,
+    Initialising,
+    /// Until here, a parameter changes the start.
+    Begun,
+    Ended,
+}
+
 /// A crane whose motion is integrated by the importer or by the crane's own method.
 ///
 /// A crane begins where its runs begin: in the static equilibrium if the spec asks for statics, otherwise at the guess.
@@ -42,12 +52,7 @@ pub struct Instance {
     is_current: bool,
     settings: Settings,
     begin: f64,
-    /// Whether initialisation has begun and not ended.
-    is_initialising: bool,
-    /// Whether initialisation has ended; before that, a parameter changes the start.
-    has_begun: bool,
-    /// Whether the importer has ended the simulation.
-    has_ended: bool,
+    phase: Phase,
     moment: Option<Moment>,
     contacts: Contacts,
     /// The run in progress by the crane's own method.
@@ -88,9 +93,7 @@ impl Instance {
             parameters,
             is_current: false,
             begin: 0.0,
-            is_initialising: false,
-            has_begun: false,
-            has_ended: false,
+            phase: Phase::Created,
             moment: None,
             motion: None,
             quantities: None,
@@ -133,13 +136,13 @@ impl Instance {
     /// It has begun before.
     pub fn initialise(&mut self) -> Result<(), Fault> {
         self.keep_before_initialisation()?;
-        self.is_initialising = true;
+        self.phase = Phase::Initialising;
         Ok(())
     }
 
     /// An error once the initialisation has begun.
     fn keep_before_initialisation(&self) -> Result<(), Fault> {
-        if self.is_initialising || self.has_begun {
+        if self.phase != Phase::Created {
             return Err(Fault::Error("the initialisation has begun before: reset the unit first".to_owned()));
         }
         Ok(())
@@ -150,19 +153,19 @@ impl Instance {
     /// # Errors
     /// As [`Instance::get`]; the initialisation has not begun.
     pub fn start(&mut self) -> Result<(), Fault> {
-        if !self.is_initialising {
+        if self.phase != Phase::Initialising {
             return Err(Fault::Error(
                 "the end of an initialisation that has not begun: enter the initialisation mode first".to_owned(),
             ));
         }
         self.settle()?;
-        (self.is_initialising, self.has_begun) = (false, true);
+        self.phase = Phase::Begun;
         Ok(())
     }
 
     /// Ends the simulation: no step follows, unless it is reset.
     pub fn end(&mut self) {
-        self.has_ended = true;
+        self.phase = Phase::Ended;
     }
 
     /// Returns to the state in which it was created.
@@ -171,7 +174,7 @@ impl Instance {
         self.inputs.fill(None);
         self.settings.tolerance = Settings::of(self.crane.description()).tolerance;
         (self.begin, self.is_current) = (0.0, false);
-        (self.is_initialising, self.has_begun, self.has_ended) = (false, false, false);
+        self.phase = Phase::Created;
         (self.moment, self.motion) = (None, None);
         self.cautions.clear();
         self.forget();
@@ -334,7 +337,7 @@ impl Instance {
                 _ => return Err(Fault::Error(format!("{name} cannot be set: it follows from the motion"))),
             }
             self.is_current = false;
-            if !self.has_begun {
+            if self.phase < Phase::Begun {
                 self.moment = None;
             }
         }
@@ -412,12 +415,12 @@ impl Instance {
     pub fn step(&mut self, from: f64, length: f64) -> Result<(), Fault> {
         /// Accepted rounding error of a time that is a sum of steps, as a fraction of a step.
         const ROUNDING: f64 = 1e-6;
-        if !self.has_begun {
+        if self.phase < Phase::Begun {
             return Err(Fault::Error(
                 "a step before the end of the initialisation: exit the initialisation mode first".to_owned(),
             ));
         }
-        if self.has_ended {
+        if self.phase == Phase::Ended {
             return Err(Fault::Error("a step after the end of the simulation: reset the unit first".to_owned()));
         }
         let Moment { t, q, v, x } = self.moment()?.clone();
