@@ -366,7 +366,7 @@ fn robots_with(name: &str, text: &str) -> Vec<(String, String)> {
         let what = format!("{name}, {what} at byte {}: {by:.60}", range.start);
         mutants.push((what, [&text[..range.start], by, &text[range.end..]].concat()));
     };
-    for node in document.descendants().filter(|node| node.is_element()) {
+    for node in document.descendants().filter(roxmltree::Node::is_element) {
         let (range, tag) = (node.range(), node.tag_name().name());
         let own = &text[range.clone()];
         push(format!("<{tag}> left out"), range.clone(), "");
