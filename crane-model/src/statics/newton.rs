@@ -58,7 +58,8 @@ pub(super) fn iterate(
         }
         if norm <= scale.rounding(equations, &stiffness, &q) {
             // Nothing improves it further: what is left is the error of an equilibrium, or too much to call it one.
-            break if norm <= ROUNDED { tangent.status(description) } else { Status::NotConverged };
+            let is_hidden = norm > ROUNDED && exceeds_weights(equations, &q, &residual);
+            break if is_hidden { Status::NotConverged } else { tangent.status(description) };
         }
         if history.len() > settings.iterations {
             break Status::NotConverged;
@@ -98,8 +99,23 @@ pub(super) fn iterate(
 /// Whether rounding hides how far a pose is from equilibrium, which then cannot be found.
 pub(super) fn rounding_hides(equations: &Equations<'_>, q: &DVector<f64>) -> bool {
     let scale = ResidualScale::at(equations, q);
-    let norm = scale.norm(&equations.residual(q));
-    norm > ROUNDED && norm <= scale.rounding(equations, &equations.stiffness(q), q)
+    let residual = equations.residual(q);
+    let norm = scale.norm(&residual);
+    norm > ROUNDED
+        && norm <= scale.rounding(equations, &equations.stiffness(q), q)
+        && exceeds_weights(equations, q, &residual)
+}
+
+/// Whether a residual is also more than weights leave that move by 1 rad or 1 m: where a pendulum hangs, no force is left to compare with.
+fn exceeds_weights(equations: &Equations<'_>, q: &DVector<f64>, residual: &DVector<f64>) -> bool {
+    let energy = |q: &DVector<f64>| equations.crane.gravity_energy(q.as_slice());
+    let here = energy(q);
+    let lifted = (0..q.len()).map(|i| {
+        let mut moved = q.clone();
+        moved[i] += 1.0;
+        (energy(&moved) - here).abs()
+    });
+    residual.amax() > ROUNDED * lifted.fold(0.0, f64::max)
 }
 
 /// The step, shortened so that no coordinate rotates by more than [`GREATEST_ROTATION`].

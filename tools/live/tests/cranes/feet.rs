@@ -306,6 +306,13 @@ fn a_foot_in_the_air_and_a_spring_beyond_reason_are_named() {
 /// digits, and the reason is said.
 #[test]
 fn an_equilibrium_that_rounding_hides_is_none() {
+    // Where a pendulum hangs, its moment is rounding alone: the only force there is, and no reason to refuse the pose.
+    let pendulum = crane(
+        "format: 1\nname: pendulum\nanalyses: [statics, dynamics, modes, internal_forces]\n\
+         links: [{name: rod, placement: {transform: {rotation: {x: 90 deg}}}, joint: revolute, mass: 60, com: [1, 0, 0]}]\n\
+         guess: {rod_psi: -90 deg}\n",
+    );
+    assert!((&pendulum as &dyn DynCrane).equilibrium(&Statics::default()).is_stable());
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../specs/eight_link_hydraulic.yaml");
     let open = build::open(path.as_ref()).expect("a spec");
     for (far, hidden) in [(3e9, true), (3e11, true), (3.0, false)] {
