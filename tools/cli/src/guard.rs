@@ -21,12 +21,12 @@ const MEGABYTES: f64 = 1e-3;
 /// # Errors
 /// The environment variable is not a number.
 pub fn watch() -> Outcome<()> {
-    let (most, whose) = match env::var(VARIABLE) {
-        Ok(text) => (limit(&text)?, format!("the {text} MB of {VARIABLE}")),
-        Err(_) => {
-            let Some(all) = available() else { return Ok(()) };
-            (SHARE * all, format!("half of the {all:.0} MB that there are"))
-        }
+    let (most, whose) = if let Ok(text) = env::var(VARIABLE) {
+        (limit(&text)?, format!("the {text} MB of {VARIABLE}"))
+    } else if let Some(all) = available() {
+        (SHARE * all, format!("half of the {all:.0} MB that there are"))
+    } else {
+        return Ok(());
     };
     if most == 0.0 || resident().is_none() {
         return Ok(());

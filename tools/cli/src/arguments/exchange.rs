@@ -63,7 +63,7 @@ pub struct Export {
     #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: Option<PathBuf>,
     /// Functions to write in C, separated by commas, with `_vjp` or `_jvp` products with their derivatives; a wrong name lists all
-    /// [default: mass_matrix,bias,forward_dynamics]
+    /// [default: `mass_matrix,bias,forward_dynamics`]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub functions: Option<Vec<String>>,
     /// Type of numbers in C [default: double]

@@ -21,10 +21,10 @@ links:
     beam:
       length: 4
       sections: 8
-      material: {E: 2.1e11, G: 8.1e10, density: 1, yield_stress: 355e6}
+      material: {E: 2.1e11, G: 8.1e10, density: 50, yield_stress: 355e6}
       section: {box: {height: 0.2, width: 0.15, thickness: 0.006}}
   - {name: load, mass: payload, com: [0, 0, 0], inertia: {gyration: [0.1, 0.1, 0.1]}}
-drives: [{coordinate: arm_psi, stiffness: 1e12, motion: {quintic: {from: 0, to: 1, duration: 3}}}]
+drives: [{coordinate: arm_psi, stiffness: 1e10, motion: {quintic: {from: 0, to: 1, duration: 3}}}]
 points: [{name: tip, link: load, at: [0, 0, 0]}]
 ";
 
