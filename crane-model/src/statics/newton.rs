@@ -53,13 +53,9 @@ pub(super) fn iterate(
         let Some(tangent) = Tangent::new(&stiffness, description).filter(|_| norm.is_finite()) else {
             break Status::Overflow;
         };
-        if norm <= settings.tolerance {
+        // Whether rounding leaves too much to call the pose an equilibrium is decided at the end of the search.
+        if norm <= settings.tolerance.max(scale.rounding(equations, &stiffness, &q)) {
             break tangent.status(description);
-        }
-        if norm <= scale.rounding(equations, &stiffness, &q) {
-            // Nothing improves it further: what is left is the error of an equilibrium, or too much to call it one.
-            let is_hidden = norm > ROUNDED && exceeds_weights(equations, &q, &residual);
-            break if is_hidden { Status::NotConverged } else { tangent.status(description) };
         }
         if history.len() > settings.iterations {
             break Status::NotConverged;

@@ -69,6 +69,10 @@ fn search(equations: &mut Equations<'_>, q: &[f64], settings: &Settings) -> Equi
         return Equilibrium { status: Status::NotConverged, q: start.as_slice().to_vec(), history, load_steps: None };
     }
     let mut found = search_from(equations, &start, settings);
+    let is_found = matches!(found.status, Status::Converged | Status::Unstable { .. });
+    if is_found && newton::rounding_hides(equations, &DVector::from_column_slice(&found.q)) {
+        found.status = Status::NotConverged;
+    }
     equations.prescribe(&mut found.q);
     found
 }

@@ -107,7 +107,7 @@ fn forward_dynamics(spec: &str) -> (Routine, Vec<f64>, Vec<f64>) {
     let chain = compile::load(&SourceFile::new("crane.yaml", spec)).expect("a spec that was compiled");
     let program = mechanics::derive(&chain, Analyses::ALL);
     let function = program.function(FunctionId::ForwardDynamics).expect("a function of every crane");
-    let routine = Routine::new(&program, function).expect("a crane of moderate size");
+    let routine = Routine::new(&program, function);
     (routine, chain.parameter_defaults(), Input::NOT_SET.repeat(chain.inputs.len()))
 }
 
