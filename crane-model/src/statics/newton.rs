@@ -92,6 +92,12 @@ pub(super) fn iterate(
     Equilibrium { status, q: q.as_slice().to_vec(), history, load_steps }
 }
 
+/// Whether the iteration ended, by rounding, with more than an equilibrium leaves.
+pub(super) fn is_hidden(equations: &Equations<'_>, found: &Equilibrium) -> bool {
+    let q = DVector::from_column_slice(&found.q);
+    found.residual() > ROUNDED && exceeds_weights(equations, &q, &equations.residual(&q))
+}
+
 /// Whether rounding hides how far a pose is from equilibrium, which then cannot be found.
 pub(super) fn rounding_hides(equations: &Equations<'_>, q: &DVector<f64>) -> bool {
     let scale = ResidualScale::at(equations, q);

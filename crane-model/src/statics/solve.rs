@@ -70,7 +70,7 @@ fn search(equations: &mut Equations<'_>, q: &[f64], settings: &Settings) -> Equi
     }
     let mut found = search_from(equations, &start, settings);
     let is_found = matches!(found.status, Status::Converged | Status::Unstable { .. });
-    if is_found && newton::rounding_hides(equations, &DVector::from_column_slice(&found.q)) {
+    if is_found && newton::is_hidden(equations, &found) {
         found.status = Status::NotConverged;
     }
     equations.prescribe(&mut found.q);
