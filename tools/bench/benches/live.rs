@@ -75,7 +75,7 @@ fn main() {
 fn routine(live: &LiveCrane) -> Routine {
     let program = mechanics::derive(live.chain(), Analyses::ALL);
     let function = program.function(FunctionId::ForwardDynamics).expect("a function of every crane");
-    Routine::new(&program, function).expect("a crane of moderate size")
+    Routine::new(&program, function)
 }
 
 /// Time to make machine code of forward dynamics, ms.
