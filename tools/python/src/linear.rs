@@ -26,6 +26,26 @@ fn forces_named(name: &str) -> PyResult<Forces<'static>> {
     }
 }
 
+/// Whether nothing grows, 1 or 0, the rates of a drift of `n` coordinates, and its decay, for each state; NaN where there are none.
+fn verdicts(found: &[Result<LinearModel, String>], n: usize) -> [Vec<f64>; 3] {
+    let mut verdicts: [Vec<f64>; 3] = Default::default();
+    for found in found {
+        let stable = found.as_ref().ok().and_then(|model| model.growing().ok());
+        verdicts[0].push(stable.map_or(f64::NAN, |growing| if growing.is_none() { 1.0 } else { 0.0 }));
+        match found.as_ref().map(|model| &model.drift) {
+            Ok(Some(drift)) => {
+                verdicts[1].extend(&drift.rates);
+                verdicts[2].push(drift.decay);
+            }
+            none => {
+                verdicts[1].extend(std::iter::repeat_n(if none.is_ok() { 0.0 } else { f64::NAN }, n));
+                verdicts[2].push(f64::NAN);
+            }
+        }
+    }
+    verdicts
+}
+
 #[pymethods]
 impl Crane {
     /// Linear models about states: `Crane.state_space` names them.
@@ -121,24 +141,8 @@ impl Crane {
             }
             all.set_item(name, array(py, numbers, &joined.shape, &[rows, columns])?)?;
         }
-        // Verdicts: whether nothing grows, rates of a drift, and its decay.
         let n = model.coordinates().len();
-        let mut verdicts: [Vec<f64>; 3] = Default::default();
-        for found in &found {
-            let stable = found.as_ref().ok().and_then(|model| model.growing().ok());
-            verdicts[0].push(stable.map_or(f64::NAN, |growing| if growing.is_none() { 1.0 } else { 0.0 }));
-            match found.as_ref().map(|model| &model.drift) {
-                Ok(Some(drift)) => {
-                    verdicts[1].extend(&drift.rates);
-                    verdicts[2].push(drift.decay);
-                }
-                none => {
-                    verdicts[1].extend(std::iter::repeat_n(if none.is_ok() { 0.0 } else { f64::NAN }, n));
-                    verdicts[2].push(f64::NAN);
-                }
-            }
-        }
-        let [stable, drift, decay] = verdicts;
+        let [stable, drift, decay] = verdicts(&found, n);
         all.set_item("stable", array(py, stable, &joined.shape, &[])?)?;
         all.set_item("drift", array(py, drift, &joined.shape, &[n])?)?;
         all.set_item("decay", array(py, decay, &joined.shape, &[])?)?;
