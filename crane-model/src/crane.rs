@@ -69,7 +69,7 @@ impl dyn DynCrane + '_ {
         statics::with_tipped_status(self, t, q, statics::solve_at_dyn(self, t, q, settings))
     }
 
-    /// Equilibrium with the drives at given positions, from pose `q`: [`statics::solve_holding_dyn`].
+    /// Equilibrium with the drives at given positions, from pose `q`: [`statics::solve_holding_dyn`]. [`statics::RestSearch`] needs no pose.
     pub fn equilibrium_holding(&self, positions: &[f64], q: &[f64], settings: &statics::Settings) -> Equilibrium {
         statics::solve_holding_dyn(self, positions, q, settings)
     }

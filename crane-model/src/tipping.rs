@@ -6,7 +6,7 @@
 
 use nalgebra::Vector3;
 
-use crate::{Text, Wrench, dyn_crane::DynCrane};
+use crate::{SupportInfo, Text, Wrench, dyn_crane::DynCrane};
 
 /// Moments about a tipping line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,16 +17,26 @@ pub struct TippingLine {
     pub stabilising: f64,
     /// Moment of the links that tip it over the line, N m, not negative.
     pub overturning: f64,
+    /// Whether only feet on the line carry the crane. The moments then balance for any load, up to rounding, or something else holds it: the
+    /// crane has tipped.
+    pub has_tipped: bool,
 }
 
 impl TippingLine {
-    /// Remaining moment that holds the crane down, N m; negative where it tips.
+    /// Remaining moment that holds the crane down, N m; negative where it tips, never positive where it has tipped.
     pub fn balance(&self) -> f64 {
-        self.stabilising - self.overturning
+        let balance = self.stabilising - self.overturning;
+        if self.has_tipped { balance.min(0.0) } else { balance }
     }
 
-    /// `1 − overturning / stabilising`: 1 where nothing tips, 0 where the crane is about to fall, −∞ where nothing holds it.
+    /// `1 − overturning / stabilising`: 1 where nothing tips, 0 where the crane is about to fall, −∞ where nothing holds it; never positive
+    /// where it has tipped.
     pub fn margin(&self) -> f64 {
+        let margin = self.margin_of_moments();
+        if self.has_tipped { margin.min(0.0) } else { margin }
+    }
+
+    fn margin_of_moments(&self) -> f64 {
         if self.overturning == 0.0 {
             1.0
         } else if self.stabilising > 0.0 {
@@ -44,8 +54,30 @@ pub fn lines(crane: &dyn DynCrane, t: f64, q: &[f64], v: &[f64], a: &[f64]) -> V
     let corners = polygon(&feet);
     let loads = || loads_of_links(crane, t, [q, v, a]).into_iter().map(|(_, load)| load).collect();
     let loads: Vec<Wrench> = if corners.is_empty() { Vec::new() } else { loads() };
+    let lifted = if corners.is_empty() { Vec::new() } else { lifted(crane, q, v) };
     let sides = corners.iter().zip(corners.iter().cycle().skip(1));
-    sides.map(|(&from, &to)| line([from, to], [feet[from], feet[to]], &loads)).collect()
+    let with_feet = |(&from, &to): (&usize, &usize)| TippingLine {
+        has_tipped: lifted.contains(&false) && off_line(&feet, [from, to]).all(|foot| lifted[foot]),
+        ..line([from, to], [feet[from], feet[to]], &loads)
+    };
+    sides.map(with_feet).collect()
+}
+
+/// Which supports carry nothing because they are above the ground.
+fn lifted(crane: &dyn DynCrane, q: &[f64], v: &[f64]) -> Vec<bool> {
+    let supports = &crane.description().supports;
+    if !supports.iter().any(SupportInfo::is_one_sided) {
+        return vec![false; supports.len()];
+    }
+    let carries_nothing = |(support, force): (&SupportInfo, Vector3<f64>)| support.is_one_sided() && force.z <= 0.0;
+    supports.iter().zip(crane.support_reactions_at(q, v)).map(carries_nothing).collect()
+}
+
+/// The feet that are not on the line through two of them, seen from above.
+fn off_line(places: &[Vector3<f64>], [from, to]: [usize; 2]) -> impl Iterator<Item = usize> {
+    let along = (places[to] - places[from]).xy();
+    let distance = move |place: &Vector3<f64>| along.perp(&(place - places[from]).xy()).abs() / along.norm_squared();
+    places.iter().enumerate().filter(move |(_, place)| distance(place) > ON_A_LINE).map(|(foot, _)| foot)
 }
 
 /// The line with the smallest margin.
@@ -72,6 +104,12 @@ pub fn moments(crane: &dyn DynCrane, t: f64, motion: [&[f64]; 3], feet: [usize; 
     loads_of_links(crane, t, motion).into_iter().map(of_link).collect()
 }
 
+/// Weight and loads of the crane at rest in pose `q` at t = 0, N.
+pub(crate) fn total_load(crane: &dyn DynCrane, q: &[f64]) -> Vector3<f64> {
+    let rest = vec![0.0; q.len()];
+    loads_of_links(crane, 0.0, [q, &rest, &rest]).into_iter().map(|(_, load)| load.force).sum()
+}
+
 /// Moment of a load about the line through two points, positive if it holds the crane down: a load within the polygon turns the crane clockwise about
 /// the line, and so against the ground.
 fn held([from, to]: [Vector3<f64>; 2], load: &Wrench) -> f64 {
@@ -88,7 +126,7 @@ fn line(feet: [usize; 2], places: [Vector3<f64>; 2], loads: &[Wrench]) -> Tippin
             overturning -= moment;
         }
     }
-    TippingLine { feet, stabilising, overturning }
+    TippingLine { feet, stabilising, overturning, has_tipped: false }
 }
 
 /// Where a link begins, and which links it carries.
@@ -228,5 +266,14 @@ mod tests {
         assert_eq!((found.stabilising, found.overturning), (5.0, 4.0));
         assert!((found.margin() - 0.2).abs() < 1e-15);
         assert_eq!(found.balance(), 1.0);
+        let tipped = TippingLine { has_tipped: true, ..found };
+        assert_eq!((tipped.margin(), tipped.balance()), (0.0, 0.0));
+    }
+
+    #[test]
+    fn a_foot_between_two_is_on_their_line() {
+        let feet = places(&[[1.0, 1.0], [-1.0, 1.0], [0.2, 1.0], [0.0, -1.0]]);
+        assert_eq!(off_line(&feet, [0, 1]).collect::<Vec<_>>(), [3]);
+        assert_eq!(off_line(&feet, [1, 3]).collect::<Vec<_>>(), [0, 2]);
     }
 }

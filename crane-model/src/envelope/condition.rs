@@ -88,7 +88,9 @@ impl Condition {
     ) -> Vec<(Limit, f64)> {
         let mut slacks = Vec::new();
         if let Some(least) = limits.tipping {
-            let slack = |line: &TippingLine| (Limit::Tipping { feet: line.feet }, line.margin() - least);
+            // Where the crane has tipped, rounding decides the sign of its margin.
+            let left = |line: &TippingLine| if line.has_tipped { -1.0 } else { line.margin() - least };
+            let slack = |line: &TippingLine| (Limit::Tipping { feet: line.feet }, left(line));
             slacks.extend(self.lines.iter().map(slack));
         }
         if let Some(greatest) = limits.utilisation {

@@ -1,7 +1,7 @@
 //! What a load chart takes into account, in words that stand beside it.
 
 use super::{Limits, PartLimit};
-use crate::{CylinderInfo, Description, SupportInfo, dyn_crane::DynCrane};
+use crate::{CylinderInfo, Description, SupportInfo, dyn_crane::DynCrane, tipping};
 
 /// What a load chart takes into account, and what it does not, for people.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -10,18 +10,21 @@ pub struct Coverage {
     pub considered: Vec<String>,
     /// Limits that were not considered, or that lack a number.
     pub not_considered: Vec<String>,
+    /// Limits that were asked for and cannot be reached, with the reason.
+    pub without_effect: Vec<String>,
 }
 
 /// What no limit of a load at rest covers.
-const NEVER: [&str; 3] =
-    ["motion, wind and a slope of the ground", "buckling and fatigue", "hook, slings and the strength of ropes"];
+const NEVER: [&str; 3] = ["motion", "buckling and fatigue", "hook, slings and the strength of ropes"];
+/// Horizontal part of the weight from which the ground is a slope: above rounding.
+const SLOPE: f64 = 1e-9;
 
 impl Coverage {
     /// Of some limits of a crane.
     pub fn of(crane: &dyn DynCrane, limits: &Limits) -> Self {
         let description = crane.description();
-        let mut found = Self { considered: vec!["a stable equilibrium".to_owned()], not_considered: Vec::new() };
-        found.ground(description, limits);
+        let mut found = Self { considered: vec!["a stable equilibrium".to_owned()], ..Self::default() };
+        found.ground(crane, limits);
         found.beams(crane, limits);
         found.cylinders(description, limits);
         found.drives(crane, limits);
@@ -32,6 +35,7 @@ impl Coverage {
         {
             found.add(true, format!("the load moves {point} by at most {deflection} m"));
         }
+        found.surroundings(crane);
         found.not_considered.extend(NEVER.map(str::to_owned));
         found
     }
@@ -40,14 +44,26 @@ impl Coverage {
         if considered { &mut self.considered } else { &mut self.not_considered }.push(words);
     }
 
-    fn ground(&mut self, description: &Description, limits: &Limits) {
-        if description.supports.is_empty() {
-            self.add(false, "tipping: the crane has no supports".to_owned());
-            return;
+    fn ground(&mut self, crane: &dyn DynCrane, limits: &Limits) {
+        let (description, q) = (crane.description(), crane.guess());
+        let rest = vec![0.0; q.len()];
+        let no_lines = if description.supports.is_empty() {
+            Some("the crane has no supports")
+        } else if tipping::lines(crane, 0.0, &q, &rest, &rest).is_empty() {
+            Some("the supports form no polygon")
+        } else {
+            None
+        };
+        match (no_lines, limits.tipping) {
+            (Some(why), asked) => {
+                self.add(false, format!("tipping: {why}"));
+                self.without_effect.extend(asked.map(|_| format!("tipping limits nothing: {why}")));
+            }
+            (None, Some(margin)) => self.add(true, format!("a tipping margin of at least {margin}")),
+            (None, None) => self.add(false, "tipping".to_owned()),
         }
-        match limits.tipping {
-            Some(margin) => self.add(true, format!("a tipping margin of at least {margin}")),
-            None => self.add(false, "tipping".to_owned()),
+        if description.supports.is_empty() {
+            return;
         }
         let what = if description.supports.iter().all(SupportInfo::is_one_sided) {
             "the first foot that lifts off"
@@ -70,7 +86,10 @@ impl Coverage {
         let mut links: Vec<&str> = description.bodies.iter().map(|body| body.link.as_str()).collect();
         links.dedup();
         let (strong, other): (Vec<&str>, Vec<&str>) = links.into_iter().partition(|link| known(link));
-        if !strong.is_empty() {
+        if strong.is_empty() {
+            let why = "utilisation limits nothing: no beam has a section with known moduli and a `yield_stress`";
+            self.without_effect.extend(limits.utilisation.map(|_| why.to_owned()));
+        } else {
             let beams = strong.join(", ");
             match limits.utilisation {
                 Some(greatest) => self.add(true, format!("a utilisation of {beams} of at most {greatest}")),
@@ -148,6 +167,24 @@ impl Coverage {
             .collect();
         if !ropes.is_empty() {
             self.add(limits.has(PartLimit::SlackRopes), format!("slack of {}", ropes.join(", ")));
+        }
+    }
+
+    /// What acts on the crane besides its weight.
+    fn surroundings(&mut self, crane: &dyn DynCrane) {
+        let loads: Vec<&str> = crane.description().loads.iter().map(|load| load.name.as_str()).collect();
+        if !loads.is_empty() {
+            self.add(true, format!("the loads {}, as at the beginning of a run", loads.join(", ")));
+            self.add(false, "a slope of the ground, unless `gravity` is one".to_owned());
+            return;
+        }
+        self.add(false, "wind: the spec has no loads".to_owned());
+        let weight = tipping::total_load(crane, &crane.guess());
+        let slope = weight.xy().norm() / weight.norm();
+        if slope > SLOPE {
+            self.add(true, format!("a slope of the ground of {:.2}°, by `gravity`", slope.asin().to_degrees()));
+        } else {
+            self.add(false, "a slope of the ground".to_owned());
         }
     }
 

@@ -1,19 +1,17 @@
 //! The load that lifts the first foot, and the load that tips the crane.
 
 use super::{
-    Condition, Limit, Limits, PartLimit, range_of_loads,
-    rating::{NEWTON, Posed},
-    search::{Range, Trial, largest},
+    Limit, Limits, PartLimit, range_of_loads,
+    rating::{LoadSearch, Posed},
+    search::{Range, Trial},
 };
 use crate::{
     dyn_crane::DynCrane,
-    statics::{Settings, Status},
+    statics::{RestSearch, Status},
 };
 
 /// Relative accuracy of a critical load.
 const ACCURACY: f64 = 1e-8;
-/// Relative distance from a load with which the crane stands, beyond which a load is also tried from the guess.
-const FAR: f64 = 1e-3;
 /// Part of a load by which another one is a little larger.
 const A_LITTLE: f64 = 1e-6;
 /// Powers of two by which the mass of the crane is multiplied to find a load with which it stands, if it does not stand without one.
@@ -101,25 +99,22 @@ pub fn critical_load(
         Critical::Tipping => Limits { tipping: Some(0.0), ..Limits::none(&description) },
     };
     let positions: Vec<f64> = crane.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
-    let mut stand = Stand { crane, parameter, positions: &positions, limits: &limits };
+    let range = Range { greatest, guess: 0.0, scale: mass.max(f64::MIN_POSITIVE), accuracy: ACCURACY };
+    let search = LoadSearch { limits: &limits, factor: 1.0, range, points: &[] };
+    let mut posed = Posed { crane, load: parameter, positions: &positions };
     let multiples = SEARCHED.map(|power| mass * 2.0_f64.powi(power));
     let loads = [least].into_iter().chain(multiples).chain([spec_load]).filter(|load| *load <= greatest);
-    let first = loads.filter_map(|load| stand.rest_from_guess(load)).find(Trial::is_within);
-    let first = first.ok_or(NoCriticalLoad::Never { critical })?;
-    let range = Range { greatest, guess: 0.0, scale: mass.max(f64::MIN_POSITIVE), accuracy: ACCURACY };
-    // Newton's method may fail with a load from the guess, and with a much larger one from another pose: only if both fail is it beyond.
-    let mut highest = first.load;
-    let (best, governing) = largest(first, &range, &mut |load, near| {
-        let far = load - highest > FAR * load;
-        let found = stand.rest_near(load, &near.q).or_else(|| if far { stand.rest_from_guess(load) } else { None });
-        highest = highest.max(found.as_ref().filter(|trial| trial.is_within()).map_or(highest, |trial| trial.load));
-        found
+    let trials = loads.filter_map(|load| {
+        let at = posed.find(load, None)?;
+        Some(posed.trial(load, at, &search))
     });
+    let first = trials.into_iter().find(Trial::is_within).ok_or(NoCriticalLoad::Never { critical })?;
+    let (best, governing) = posed.find_largest(first, &search);
     let load = best.ok_or(NoCriticalLoad::Never { critical })?.load;
     match governing {
         None => Err(NoCriticalLoad::Beyond { load }),
         Some(Limit::Equilibrium) => {
-            let status = stand.status_beyond(load);
+            let status = status_beyond(&mut posed, load);
             match status {
                 Status::TipsOver { feet } if critical == Critical::Tipping => {
                     Ok(CriticalLoad { load, location: feet.join(" – ") })
@@ -131,39 +126,10 @@ pub fn critical_load(
     }
 }
 
-/// A crane that is asked whether it stands.
-struct Stand<'a> {
-    crane: &'a mut dyn DynCrane,
-    parameter: usize,
-    positions: &'a [f64],
-    limits: &'a Limits,
-}
-
-impl Stand<'_> {
-    fn trial(&self, load: f64, at: Condition) -> Trial {
-        Trial { load, slacks: at.slacks(self.crane.description(), self.limits, &at.points), at }
-    }
-
-    /// The crane at rest with a load, as `crane statics` finds it.
-    fn rest_from_guess(&mut self, load: f64) -> Option<Trial> {
-        self.crane.set_parameter(self.parameter, load).ok()?;
-        let found = self.crane.equilibrium(&Settings::default());
-        let at = found.is_stable().then(|| Condition::at(self.crane, found.q, self.positions))?;
-        Some(self.trial(load, at))
-    }
-
-    /// The crane at rest with a load, near the pose with a smaller one: as a load that is added slowly moves it.
-    fn rest_near(&mut self, load: f64, near: &[f64]) -> Option<Trial> {
-        let (parameter, positions) = (self.parameter, self.positions);
-        let at = Posed { crane: &mut *self.crane, load: parameter, positions }.rest(load, near, &NEWTON)?;
-        Some(self.trial(load, at))
-    }
-
-    /// How statics ends with a little more than a load.
-    fn status_beyond(&mut self, load: f64) -> Status {
-        match self.crane.set_parameter(self.parameter, load * (1.0 + A_LITTLE)) {
-            Ok(()) => self.crane.equilibrium(&Settings::default()).status,
-            Err(_) => Status::NotConverged,
-        }
+/// How statics ends with a little more than a load.
+fn status_beyond(posed: &mut Posed<'_>, load: f64) -> Status {
+    match posed.crane.set_parameter(posed.load, load * (1.0 + A_LITTLE)) {
+        Ok(()) => RestSearch { crane: posed.crane, positions: posed.positions }.find_from_guess().status,
+        Err(_) => Status::NotConverged,
     }
 }

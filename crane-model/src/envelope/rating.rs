@@ -1,10 +1,15 @@
 //! The rating of one pose.
 
+use nalgebra::Vector3;
+
 use super::{
     Condition, Limit, Limits,
     search::{CHART, Range, Trial, largest},
 };
-use crate::{dyn_crane::DynCrane, statics::Settings};
+use crate::{
+    dyn_crane::DynCrane,
+    statics::{Equilibrium, RestSearch},
+};
 
 /// The largest load of a pose.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,45 +46,126 @@ pub(super) struct RatingRequest<'a> {
     pub factor: f64,
     /// Another load, for which the condition is computed too.
     pub spec_load: f64,
+    /// A load that may be near the largest.
+    pub guess: f64,
 }
 
-/// Newton's method alone: if it fails from the pose of a slightly smaller load, there is no pose nearby.
-pub(super) const NEWTON: Settings = Settings { tolerance: 1e-10, iterations: 30, load_steps: 0 };
+/// A search for the largest load of a pose.
+pub(super) struct LoadSearch<'a> {
+    /// What limits the load.
+    pub limits: &'a Limits,
+    /// The crane rests with this many times the load.
+    pub factor: f64,
+    /// The range in which the load is searched.
+    pub range: Range,
+    /// Positions of the points of interest from which their deflections count.
+    pub points: &'a [Vector3<f64>],
+}
+
+/// Shortest step between loads with which the crane rests, as a fraction of the way.
+const SHORTEST: f64 = 1.0 / 64.0;
+/// How much more load is searched from the guess where the crane does not rest with a little more, as parts of the load.
+const BEYOND: [f64; 8] = [0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.064, 0.128];
+/// A load counts as at least this part of the typical size of loads.
+const PART_OF_SCALE: f64 = 1e-2;
 
 impl Posed<'_> {
-    /// The crane at rest with a value of the load's parameter, from a pose nearby.
-    pub(super) fn rest(&mut self, value: f64, q: &[f64], settings: &Settings) -> Option<Condition> {
+    /// The crane at rest with a value of the load's parameter, wherever it is found. `near`: positions of the drives, and the pose there.
+    pub(super) fn find(&mut self, value: f64, near: Option<(&[f64], &[f64])>) -> Option<Condition> {
         self.crane.set_parameter(self.load, value).ok()?;
-        let found = self.crane.equilibrium_holding(self.positions, q, settings);
-        let stands = found.is_stable() && !self.crane.description().has_tipped(q, &found.q);
-        stands.then(|| Condition::at(self.crane, found.q, self.positions))
+        self.condition(RestSearch { crane: self.crane, positions: self.positions }.find(near))
     }
 
-    /// Its rating, with the search starting from the nearby pose `q` and, if given, the load `guess`; also the pose with the minimum load.
-    pub fn rate(&mut self, request: &RatingRequest<'_>, guess: Option<f64>, q: Vec<f64>) -> (Rating, Vec<f64>) {
-        let RatingRequest { limits, load_range: [least, greatest], factor, spec_load } = *request;
+    /// The crane at rest with a value of the load's parameter, near a pose.
+    fn find_near(&mut self, value: f64, q: &[f64]) -> Option<Condition> {
+        self.crane.set_parameter(self.load, value).ok()?;
+        self.condition(RestSearch { crane: self.crane, positions: self.positions }.find_near(q)?)
+    }
+
+    fn condition(&self, found: Equilibrium) -> Option<Condition> {
+        found.is_stable().then(|| Condition::at(self.crane, found.q, self.positions))
+    }
+
+    /// The crane at rest with the load `to`, from its pose with the load `from`, in steps between which it rests.
+    fn change_load(&mut self, from: f64, to: f64, begin: Condition) -> Option<Condition> {
+        let (mut part, mut step, mut at) = (0.0, 1.0, begin);
+        while part < 1.0 {
+            let next = if part + step > 1.0 - 1e-9 { 1.0 } else { part + step };
+            let value = if next < 1.0 { from + next * (to - from) } else { to };
+            match self.find_near(value, &at.q) {
+                Some(found) => (part, at, step) = (next, found, 2.0 * step),
+                None if step <= SHORTEST => return None,
+                None => step *= 0.5,
+            }
+        }
+        Some(at)
+    }
+
+    /// The largest load from that of the trial `first` on, and what governs.
+    ///
+    /// A trial begins at the pose with a smaller load. Where Newton's method fails there with a little more load, although no margin says so,
+    /// loads up to which the margins suffice are searched from the guess, and the search goes on from the first with which the crane rests.
+    pub(super) fn find_largest(&mut self, first: Trial, search: &LoadSearch<'_>) -> (Option<Trial>, Option<Limit>) {
+        let mut first = first;
+        loop {
+            let found = largest(first, &search.range, &mut |load, near| {
+                let at = self.find_near(search.factor * load, &near.q)?;
+                Some(self.trial(load, at, search))
+            });
+            let (Some(best), Some(expected)) = (&found.best, found.expected) else {
+                return (found.best, found.governing);
+            };
+            let loads = BEYOND.map(|part| best.load + part * best.load.max(PART_OF_SCALE * search.range.scale));
+            let next = loads.into_iter().take_while(|load| *load < expected).find_map(|load| {
+                let at = self.find(search.factor * load, None)?;
+                Some(self.trial(load, at, search)).filter(Trial::is_within)
+            });
+            let Some(next) = next else { return (found.best, found.governing) };
+            first = next;
+        }
+    }
+
+    /// A trial load and its margins.
+    pub(super) fn trial(&self, load: f64, at: Condition, search: &LoadSearch<'_>) -> Trial {
+        Trial { load, slacks: at.slacks(self.crane.description(), search.limits, search.points), at }
+    }
+
+    /// Its rating, and the pose with the minimum load if the crane rests there. `near`: positions of the drives, and the pose there.
+    pub fn rate(
+        &mut self,
+        request: &RatingRequest<'_>,
+        near: Option<&(Vec<f64>, Vec<f64>)>,
+    ) -> (Rating, Option<Vec<f64>>) {
+        let RatingRequest { limits, load_range: [least, greatest], factor, spec_load, guess } = *request;
         let limits = &limits.with_max_efforts(self.crane);
-        let Some(empty) = self.rest(least, &q, &Settings::default()) else {
+        let near = near.map(|(positions, q)| (positions.as_slice(), q.as_slice()));
+        let mut with_spec_load = None;
+        let mut empty = self.find(least, near);
+        if empty.is_none() && spec_load != least {
+            // A rope may be slack without a load, and a hook stand upright.
+            with_spec_load = self.find(spec_load, near);
+            empty = with_spec_load.clone().and_then(|loaded| self.change_load(spec_load, least, loaded));
+        }
+        let Some(empty) = empty else {
             let governing = Some(Limit::Equilibrium);
-            return (Rating { load: None, governing, loaded: None, with_spec_load: None, deflections: Vec::new() }, q);
+            return (Rating { load: None, governing, loaded: None, with_spec_load, deflections: Vec::new() }, None);
         };
-        let with_spec_load =
-            if spec_load == least { Some(empty.clone()) } else { self.rest(spec_load, &empty.q, &NEWTON) };
-        let deflections = with_spec_load.as_ref().map_or_else(Vec::new, |condition| condition.deflections(&empty));
         let description = self.crane.description();
         let mass: f64 = description.bodies.iter().map(|body| body.mass).sum();
         let greatest = greatest.min(description.parameters[self.load].upper_bound.value / factor);
-        let scale = mass.max(f64::MIN_POSITIVE);
-        let range = Range { greatest, guess: guess.unwrap_or(spec_load), scale, accuracy: CHART };
-        let slacks = empty.slacks(description, limits, &empty.points);
-        let first = Trial { load: least / factor, slacks, at: empty.clone() };
-        let mut trial = |load: f64, near: &Condition| {
-            let at = self.rest(factor * load, &near.q, &NEWTON)?;
-            Some(Trial { load, slacks: at.slacks(self.crane.description(), limits, &empty.points), at })
-        };
-        let (best, governing) = largest(first, &range, &mut trial);
-        let q = empty.q.clone();
-        let (load, loaded) = best.map_or((None, empty), |best| (Some(best.load), best.at));
-        (Rating { load, governing, loaded: Some(loaded), with_spec_load, deflections }, q)
+        let range = Range { greatest, guess, scale: mass.max(f64::MIN_POSITIVE), accuracy: CHART };
+        let search = LoadSearch { limits, factor, range, points: &empty.points };
+        let first = self.trial(least / factor, empty.clone(), &search);
+        let (best, governing) = self.find_largest(first, &search);
+        let (load, loaded) = best.map_or((None, empty.clone()), |best| (Some(best.load), best.at));
+        let with_spec_load = with_spec_load.or_else(|| match load {
+            _ if spec_load == least => Some(empty.clone()),
+            // On the way from the minimum to the largest load the crane rests; beyond, unless its rest has ended there.
+            Some(load) if spec_load > factor * load && governing == Some(Limit::Equilibrium) => None,
+            Some(load) if spec_load > factor * load => self.change_load(factor * load, spec_load, loaded.clone()),
+            _ => self.change_load(least, spec_load, empty.clone()),
+        });
+        let deflections = with_spec_load.as_ref().map_or_else(Vec::new, |condition| condition.deflections(&empty));
+        (Rating { load, governing, loaded: Some(loaded), with_spec_load, deflections }, Some(empty.q))
     }
 }

@@ -10,12 +10,10 @@ use super::{
     Axes, Limits, Rating,
     rating::{Posed, RatingRequest},
 };
-use crate::{Description, ParameterError, ParameterInfo, dyn_crane::DynCrane, statics::Settings};
+use crate::{Description, ParameterError, ParameterInfo, dyn_crane::DynCrane};
 
 /// Maximum number of poses in a piece.
 pub const PIECE: usize = 25;
-/// Maximum change of a drive's position from one pose at rest to the next, m or rad.
-const STRIDE: f64 = 0.2;
 
 /// What to compute for a crane.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +36,7 @@ pub struct Execution<'a> {
     pub threads: usize,
     /// Called with the ratings of every completed piece, in the order of completion, from any thread.
     pub done: &'a (dyn Fn(usize, &[Rating]) + Sync),
-    /// Whether to end: unfinished pieces are not reported. Asked before every pose, and on the way to it.
+    /// Whether to end: unfinished pieces are not reported. Asked before every pose.
     pub cancelled: &'a (dyn Fn() -> bool + Sync),
 }
 
@@ -127,61 +125,30 @@ impl Envelope {
     ) -> Result<Option<Vec<Rating>>, ParameterError> {
         let poses = self.poses_of(piece);
         let mut ratings: Vec<Rating> = Vec::with_capacity(poses.len());
+        // Positions of the drives and the pose where the crane rested last.
         let mut near: Option<(Vec<f64>, Vec<f64>)> = None;
         for pose in poses {
+            if cancelled() {
+                return Ok(None);
+            }
             let mut parameters = self.axes.parameters(crane, pose);
             let load = parameters[self.load];
             parameters[self.load] = self.loads[0];
             own_crane.set_parameters(&parameters)?;
             let positions = self.axes.positions(own_crane, pose);
-            let Some(q) = walk(own_crane, near.take().unwrap_or_else(|| begin(own_crane)), &positions, cancelled)
-            else {
-                return Ok(None);
-            };
-            let request =
-                RatingRequest { limits: &self.limits, load_range: self.loads, factor: self.factor, spec_load: load };
             let guess = ratings.last().and_then(|rating| rating.load);
-            let (rating, q) =
-                Posed { crane: own_crane, load: self.load, positions: &positions }.rate(&request, guess, q);
-            near = Some((positions, q));
+            let request = RatingRequest {
+                limits: &self.limits,
+                load_range: self.loads,
+                factor: self.factor,
+                spec_load: load,
+                guess: guess.unwrap_or(load),
+            };
+            let (rating, rest) =
+                Posed { crane: own_crane, load: self.load, positions: &positions }.rate(&request, near.as_ref());
+            near = rest.map(|q| (positions, q)).or(near);
             ratings.push(rating);
         }
         Ok(Some(ratings))
     }
-}
-
-/// Positions of the drives at the beginning of their motions, and the pose of the crane there.
-fn begin(crane: &dyn DynCrane) -> (Vec<f64>, Vec<f64>) {
-    let positions = crane.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
-    (positions, crane.equilibrium(&Settings::default()).q)
-}
-
-/// A pose near the one with the drives at `positions`, approached in strides from the pose with the drives at `from`; `None` if it is
-/// cancelled.
-fn walk(
-    crane: &dyn DynCrane,
-    (from, mut q): (Vec<f64>, Vec<f64>),
-    positions: &[f64],
-    cancelled: &dyn Fn() -> bool,
-) -> Option<Vec<f64>> {
-    let furthest = from.iter().zip(positions).map(|(from, to)| (to - from).abs()).fold(0.0, f64::max);
-    let strides = (furthest / STRIDE).ceil().max(1.0);
-    let mut stride = 0.0;
-    while !cancelled() {
-        stride += 1.0;
-        for (drive, (from, to)) in crane.description().drives.iter().zip(from.iter().zip(positions)) {
-            q[drive.coordinate] += (to - from) / strides;
-        }
-        if stride >= strides {
-            // The equilibrium of the last stride is left to the caller.
-            return Some(q);
-        }
-        let part = stride / strides;
-        let between: Vec<f64> = from.iter().zip(positions).map(|(from, to)| from + part * (to - from)).collect();
-        let found = crane.equilibrium_holding(&between, &q, &Settings::default());
-        if found.is_stable() {
-            q = found.q;
-        }
-    }
-    None
 }

@@ -43,10 +43,12 @@ fn tipping(description: &Description, history: &[Instant], moves: bool) -> Optio
     let [from, to] = line.feet.map(|foot| description.supports[foot].name.as_str());
     let (begins, when) = if moves { ("begins to tip", format!(" at {t:.2} s")) } else { ("tips", String::new()) };
     (line.margin() <= 0.0).then(|| {
-        format!(
-            "the crane {begins} over the line {from} – {to}{when}: the overturning moment exceeds the stabilising moment by {:.4} kN m",
-            -line.balance() / 1e3
-        )
+        let why = if line.has_tipped {
+            "no other foot carries anything".to_owned()
+        } else {
+            format!("the overturning moment exceeds the stabilising moment by {:.4} kN m", -line.balance() / 1e3)
+        };
+        format!("the crane {begins} over the line {from} – {to}{when}: {why}")
     })
 }
 

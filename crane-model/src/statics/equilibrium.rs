@@ -65,9 +65,7 @@ impl fmt::Display for Equilibrium {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}; {} Newton steps", self.status, self.steps())?;
         match self.load_steps {
-            Some(count) => {
-                write!(f, " after continuation in {count} load steps, because Newton's method failed from the guess")
-            }
+            Some(count) => write!(f, " after continuation in {count} load steps"),
             None => Ok(()),
         }
     }

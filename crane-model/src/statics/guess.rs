@@ -3,7 +3,7 @@
 use nalgebra::SVector;
 
 use crate::{
-    CraneModel,
+    CraneModel, Tension,
     dyn_crane::{DynModel, Instance},
 };
 
@@ -21,18 +21,61 @@ pub fn guess<const N: usize, C: CraneModel<N>>(crane: &C) -> SVector<f64, N> {
 
 /// As [`guess`], of a crane of any size.
 pub fn guess_dyn(crane: &(impl DynModel + ?Sized)) -> Vec<f64> {
+    let mut motions = vec![[0.0; 2]; crane.description().drives.len()];
+    crane.drive_motions(0.0, &mut motions);
+    let mut q = guess_with(crane, motions.iter().map(|[position, _]| *position));
+    let mut rates = vec![0.0; q.len()];
+    crane.prescribe(0.0, &mut q, &mut rates);
+    q
+}
+
+/// The guess with the drives at given positions, one per drive, instead of those of their motions: driven coordinates that the description
+/// has where their drives begin, and coordinates that follow them by couplings, move with them.
+pub(super) fn guess_with(crane: &(impl DynModel + ?Sized), positions: impl Iterator<Item = f64>) -> Vec<f64> {
     let description = crane.description();
     let mut q = description.guess.to_vec();
-    let mut motions = vec![[0.0; 2]; description.drives.len()];
-    crane.drive_motions(0.0, &mut motions);
-    for (drive, [position, _]) in description.drives.iter().zip(&motions) {
+    let mut has_moved = vec![false; q.len()];
+    for (drive, position) in description.drives.iter().zip(positions) {
         let (guess, moved) = (&mut q[drive.coordinate], position - drive.start);
         // The guess of default parameters is unchanged bit for bit.
         if (*guess - drive.start).abs() < ROUNDING && moved.abs() > ROUNDING {
             *guess += moved;
+            has_moved[drive.coordinate] = true;
         }
     }
-    let mut rates = vec![0.0; q.len()];
-    crane.prescribe(0.0, &mut q, &mut rates);
+    if has_moved.contains(&true) {
+        follow_couplings(crane, &mut q, &mut has_moved);
+    }
     q
+}
+
+/// Moves coordinates that follow others: a coupling that the guess of the description leaves without force remains so.
+fn follow_couplings(crane: &(impl DynModel + ?Sized), q: &mut [f64], has_moved: &mut [bool]) {
+    let description = crane.description();
+    let (n, count) = (q.len(), description.connectors.len());
+    let couplings: Vec<usize> = (0..count).filter(|&index| description.connectors[index].points.is_empty()).collect();
+    if couplings.is_empty() {
+        return;
+    }
+    let rest = vec![0.0; n];
+    let (mut tensions, mut jacobians) = (vec![Tension::ZERO; count], vec![0.0; count * n]);
+    crane.connector_tensions(0.0, &description.guess, &rest, &mut tensions);
+    crane.connector_jacobians(&description.guess, &mut jacobians);
+    let is_driven = |coordinate: usize| description.drives.iter().any(|drive| drive.coordinate == coordinate);
+    // A coordinate that follows one that follows another is known one pass later.
+    for _ in &couplings {
+        for &index in &couplings {
+            let row = &jacobians[index * n..(index + 1) * n];
+            let Tension { force, stiffness, .. } = tensions[index];
+            let is_at_rest = force.abs() <= ROUNDING * stiffness.abs();
+            let mut coupled = (0..n).filter(|&i| row[i] != 0.0);
+            let (Some(one), Some(other), true) = (coupled.next(), coupled.next(), is_at_rest) else { continue };
+            for (follower, leader) in [(one, other), (other, one)] {
+                if has_moved[leader] && !has_moved[follower] && !is_driven(follower) {
+                    q[follower] -= row[leader] / row[follower] * (q[leader] - description.guess[leader]);
+                    has_moved[follower] = true;
+                }
+            }
+        }
+    }
 }

@@ -24,6 +24,8 @@ pub(super) const BOLD: &Steps =
     &[(Limit::Free, 0..=FIRST), (Limit::Soft, 0..=HALVINGS), (Limit::Free, FIRST + 1..=HALVINGS)];
 /// Limited in soft directions, in which a crane on feet that have lifted would move far.
 pub(super) const CAUTIOUS: &Steps = &[(Limit::Soft, 0..=HALVINGS), (Limit::Free, 0..=HALVINGS)];
+/// Where steps do not help any more, a residual of at most this many times the estimate is rounding.
+const STALLED: f64 = 8.0;
 /// Largest residual that rounding may leave in an equilibrium: forces are then known to six digits.
 const ROUNDED: f64 = 1e-6;
 /// Maximum rotation in a step, rad: far from equilibrium the tangent says nothing about poses further away.
@@ -54,7 +56,11 @@ pub(super) fn iterate(
             break Status::Overflow;
         };
         // Whether rounding leaves too much to call the pose an equilibrium is decided at the end of the search.
-        if norm <= settings.tolerance.max(scale.rounding(equations, &stiffness, &q)) {
+        let rounding = scale.rounding(equations, &stiffness, &q);
+        // Steps that gain nothing any more end a little above the estimate.
+        let before = history.iter().rev().nth(1).map_or(f64::INFINITY, |last| last.residual);
+        let has_stalled = norm <= STALLED * rounding && norm > 0.5 * before;
+        if norm <= settings.tolerance.max(rounding) || has_stalled {
             break tangent.status(description);
         }
         if history.len() > settings.iterations {
@@ -81,6 +87,9 @@ pub(super) fn iterate(
             })
         });
         let Some((pose, next, trial, fraction)) = improved else {
+            if norm <= STALLED * rounding {
+                break tangent.status(description);
+            }
             // A free direction explains why no step helps.
             break tangent
                 .free_directions(description, Limit::Soft)

@@ -83,6 +83,9 @@ pub struct Envelope {
     /// Point whose radius and height are shown [default: the only point of interest, otherwise the origin of the last link]
     #[arg(long, value_name = "POINT")]
     pub point: Option<String>,
+    /// Radii of the load chart, m, as in `4,6,8.5` [default: round ones]
+    #[arg(long = "radius", value_name = "RADIUS", value_delimiter = ',', value_parser = above_zero)]
+    pub radii: Vec<f64>,
     /// Threads [default: all of the machine]
     #[arg(long, value_name = "COUNT", value_parser = count)]
     pub threads: Option<NonZeroUsize>,

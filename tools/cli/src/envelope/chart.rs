@@ -12,13 +12,15 @@ use super::{
 
 /// How to read it.
 pub const NOTE: &str = "The load chart is valid for the model and the limits above: loads at rest, rounded down to three digits, at every \
-     slewing angle considered. Between two poses it has the load that both bear.";
+     slewing angle considered. Between two poses it has the load that both bear. Where a cell is empty, no pose brings the load there.";
 
 /// Upper limit of the number of rows of a chart.
 const ROWS: f64 = 12.5;
 /// Width of a screen, characters.
 pub const SCREEN: usize = 100;
 
+/// Of a radius that is asked for.
+const UNREACHED: &str = "no pose";
 const KEY: &str = "load_chart";
 const TITLE: &str =
     "Load chart: the largest load within the limits in the best and in the worst pose that reaches a radius";
@@ -31,6 +33,8 @@ pub struct Chart<'a> {
     pub surface: &'a Surface,
     /// Ratings of all poses.
     pub rows: &'a [Row],
+    /// Radii that are asked for, m; round ones if there are none.
+    pub asked_radii: &'a [f64],
 }
 
 /// The charts of poses among which no drive moves the load in or out.
@@ -53,8 +57,11 @@ impl Chart<'_> {
         }
     }
 
-    /// Round radii up to the largest.
+    /// The radii that are asked for, or round ones up to the largest.
     fn radii(&self) -> Vec<f64> {
+        if !self.asked_radii.is_empty() {
+            return self.asked_radii.to_vec();
+        }
         multiples(self.surface.knots().map(|knot| knot.radius))
     }
 
@@ -106,7 +113,15 @@ impl Chart<'_> {
                 format!("Load chart{}: largest load in the best and in the worst pose of a radius", caption_of(sheet));
             let mut grid = Grid::new(KEY, title, &headings.each_ref().map(String::as_str));
             for radius in self.radii() {
-                let Some(knots) = best_and_worst(sheet, radius) else { continue };
+                let Some(knots) = best_and_worst(sheet, radius) else {
+                    if !self.asked_radii.is_empty() {
+                        let blank = [Cell::Empty, Cell::Empty, Cell::from(UNREACHED)];
+                        grid.row(
+                            [Cell::from(radius)].into_iter().chain(blank.clone()).chain(blank).collect::<Vec<_>>(),
+                        );
+                    }
+                    continue;
+                };
                 let cells = knots.iter().flat_map(|knot| {
                     let kind = self.limit(knot)[0];
                     let limit = if kind.is_empty() { "none" } else { kind };

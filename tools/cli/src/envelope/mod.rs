@@ -74,7 +74,7 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
     report.value("parameters", identity::parameters(crane.as_ref(), &asked));
     let mut written = rows::write_rows(&options.folder.out, &name, &asked, &layout, &rows)?;
     let surface = surface::Surface::of(&asked, &layout, &rows);
-    let chart = surface.as_ref().map(|surface| Chart { surface, rows: &rows });
+    let chart = surface.as_ref().map(|surface| Chart { surface, rows: &rows, asked_radii: &options.radii });
     let [by_radius, by_place] = chart.as_ref().map_or_else(chart::empty, |chart| [chart.table(), chart.by_place()]);
     if let Some(chart) = &chart {
         for (end, grid) in [("load_chart", &by_radius), ("loads_by_place", &by_place)] {

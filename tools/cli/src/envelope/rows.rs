@@ -96,11 +96,6 @@ impl Layout {
         self.axes + 2
     }
 
-    /// Column of the tipping margin with the crane's own load.
-    pub fn margin(&self) -> usize {
-        self.axes + 3
-    }
-
     /// Column of the utilisation with the crane's own load.
     pub fn utilisation(&self) -> usize {
         self.axes + 4

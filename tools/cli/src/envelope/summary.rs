@@ -25,7 +25,6 @@ pub fn facts(report: &mut Report, asked: &Envelope, layout: &Layout, coverage: &
     report.fact("crane", description.name.as_str(), "");
     report.fact_as("spec_hash", "hash of the spec", description.spec_hash.as_str(), "");
     report.fact("load", description.parameters[asked.load].name.as_str(), "");
-    let limits = &asked.limits;
     if asked.factor > 1.0 {
         report.line("loads multiplied by", asked.factor, "");
     }
@@ -58,12 +57,8 @@ pub fn facts(report: &mut Report, asked: &Envelope, layout: &Layout, coverage: &
             description.parameters[asked.load].unit
         )));
     }
-    if limits.tipping.is_some() && rows.iter().all(|row| row.numbers[layout.margin()].is_nan()) {
-        report.caution(Some("tipping limits nothing: there are no supports, or they form no polygon"));
-    }
-    if limits.utilisation.is_some() && rows.iter().all(|row| row.numbers[layout.utilisation()].is_nan()) {
-        report
-            .caution(Some("utilisation limits nothing: no beam has a section with known moduli and a `yield_stress`"));
+    for why in &coverage.without_effect {
+        report.caution(Some(why.as_str()));
     }
 }
 

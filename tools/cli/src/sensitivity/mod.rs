@@ -91,6 +91,8 @@ struct Changes {
     found: sensitivity::Sensitivity,
     /// The numbers, one per list of derivatives.
     numbers: Vec<Number>,
+    /// Those of them that cannot be live parameters, which are the last.
+    fixed: Vec<FixedNumber>,
     /// Numbers, the most influential first, by their indices in these lists.
     order: Vec<usize>,
     /// Outputs that are asked for, by their indices.
@@ -112,9 +114,14 @@ impl Changes {
     fn relative(&self, place: usize, output: usize) -> Option<f64> {
         /// A value below this fraction of the largest of its kind is zero up to rounding, or close to it.
         const SMALL: f64 = 1e-6;
+        /// A rate below this, m/s or rad/s, is that of a crane that stays at rest, up to rounding.
+        const AT_REST: f64 = 1e-9;
         let Output { group, unit, .. } = &self.found.outputs[output];
-        if *group == Group::Run && (*unit == "m" || *unit == "rad") {
-            return None;
+        let is_still = || self.found.values[output].abs() < AT_REST;
+        match (*group, *unit) {
+            (Group::Run, "m" | "rad") => return None,
+            (Group::Run, "m/s" | "rad/s") if is_still() => return None,
+            _ => {}
         }
         if *group == Group::Points || (*group == Group::Supports && *unit == "m") {
             return None;
@@ -183,7 +190,7 @@ pub fn sensitivity(options: &Sensitivity, registry: &Registry, out: &mut dyn Wri
     let changes = changes(&request, &source, &crane, loaded.as_ref())?;
     let steps: Vec<f64> = changes.numbers.iter().map(|number| number.step).collect();
     let cautions = match &loaded {
-        Some((largest, asked)) => largest.cautions(&changes.found, &crane, asked, &steps),
+        Some((largest, asked)) => largest.cautions(&changes.found, &crane, asked, &changes.fixed, &steps),
         None => cautions(&crane, &changes.found, &steps, &request.settings),
     };
     let mut report = begin(options, description);
@@ -299,12 +306,13 @@ fn changes(request: &Request<'_>, source: &SourceFile, crane: &LiveCrane, loaded
         None => derivatives(&crane, &parameters, settings)?,
     };
     let mut numbers: Vec<Number> = parameters.iter().map(|&index| Number::live(&crane, index)).collect();
-    for place in &places {
-        let number = FixedNumber::new(source, place)?;
+    let fixed: Vec<FixedNumber> =
+        places.iter().map(|place| FixedNumber::new(source, place)).collect::<Result<_, _>>()?;
+    for number in &fixed {
         let Differences { derivatives, errors, .. } = number.differentiate(&crane, &found, settings)?;
         found.derivatives.push(derivatives);
         numbers.push(Number {
-            label: number.place,
+            label: number.place.clone(),
             value: number.value,
             unit: number.unit.to_owned(),
             step: 0.0,
@@ -313,21 +321,19 @@ fn changes(request: &Request<'_>, source: &SourceFile, crane: &LiveCrane, loaded
         });
     }
     if let Some((largest, asked)) = loaded
-        && largest.add_to(&mut found, &crane, asked, parameters.len()).is_none()
+        && largest.add_to(&mut found, &crane, asked, parameters.len(), &fixed).is_none()
     {
-        let errors = largest.add_differences(&mut found, own, asked).map_err(|none| no_load(&none, own, asked))?;
+        let errors =
+            largest.add_differences(&mut found, own, asked, &fixed).map_err(|none| no_load(&none, own, asked))?;
         for (number, error) in numbers.iter_mut().zip(errors) {
             number.errors = Some(vec![0.0; found.outputs.len() - 1].into_iter().chain([error]).collect());
-        }
-        for derivatives in found.derivatives.iter_mut().skip(parameters.len()) {
-            derivatives.push(f64::NAN);
         }
     }
     if let Some(rigid) = rigid(&crane, &parameters, &places, source) {
         found.add_deflections(&rigid);
     }
     let shown = shown(request.outputs, &found.outputs, request.all)?;
-    Ok(ordered(request, description, found, numbers, shown))
+    Ok(Changes { fixed, ..ordered(request, description, found, numbers, shown) })
 }
 
 /// The changes with their steps, the most influential number first.
@@ -342,11 +348,15 @@ fn ordered(
         number.step = if number.value == 0.0 { 1.0 } else { request.change * number.value };
     }
     let name = description.name.to_string();
-    let mut changes = Changes { crane: name, found, order: (0..numbers.len()).collect(), numbers, shown };
+    let mut changes =
+        Changes { crane: name, found, order: (0..numbers.len()).collect(), numbers, fixed: Vec::new(), shown };
     let influence: Vec<f64> = changes.order.iter().map(|&place| changes.influence(place)).collect();
     changes.order.sort_by(|&a, &b| influence[b].total_cmp(&influence[a]));
     changes
 }
+
+/// Errors below this percentage are not told apart.
+const LEAST_PERCENT: f64 = 0.001;
 
 /// What to know about the numbers.
 fn remarks(report: &mut Report, changes: &Changes) {
@@ -363,7 +373,13 @@ fn remarks(report: &mut Report, changes: &Changes) {
             "moves a load whose limit is not at the bound of an output: its changes are differences"
         };
         let words = |error: f64| {
-            format!("{} {why}, with errors up to {} % of the outputs", number.label, Cell::from(100.0 * error).short())
+            let percent = 100.0 * error;
+            let errors = if percent < LEAST_PERCENT {
+                format!("below {LEAST_PERCENT} %")
+            } else {
+                format!("up to {} %", Cell::from(percent).short())
+            };
+            format!("{} {why}, with errors {errors} of the outputs", number.label)
         };
         report.caution(changes.uncertainty(place).map(words));
     }

@@ -6,7 +6,7 @@ use crane_model::runs::Failed;
 
 use super::places::Refused;
 use super::units::unit_at;
-use super::{Sensitivity, Settings, sensitivity_near};
+use super::{Sensitivity, Settings, label, sensitivity_near};
 use crate::LiveCrane;
 
 /// Longer step relative to the number: the error of its differences, of the square, is 1e-6 of how fast derivatives change, and poses that are exact
@@ -24,6 +24,8 @@ pub struct FixedNumber {
     pub value: f64,
     /// Its unit; empty for a number without one.
     pub unit: &'static str,
+    /// The spec with the number itself.
+    source: SourceFile,
     /// Half the distance of the outer cranes.
     step: f64,
     /// With the number less a step, less half of it, plus half of it, plus a step.
@@ -55,7 +57,7 @@ impl FixedNumber {
         };
         let around = [with(-1.0)?, with(-0.5)?, with(0.5)?, with(1.0)?];
         let unit = unit_at(place, source, around[0].description());
-        Ok(Self { place: place.to_owned(), value, unit, step, around })
+        Ok(Self { place: place.to_owned(), value, unit, source: source.clone(), step, around })
     }
 
     /// Central differences of the outputs of a crane with this number, with its parameters and inputs.
@@ -68,17 +70,8 @@ impl FixedNumber {
         found: &Sensitivity,
         settings: &Settings,
     ) -> Result<Differences, Failed> {
-        let inputs: Vec<Option<f64>> = (0..crane.description().inputs.len()).map(|index| crane.input(index)).collect();
         let at = |other: &LiveCrane| -> Result<Vec<f64>, Failed> {
-            let mut other = other.clone().with_inputs(&inputs);
-            for (index, info) in crane.description().parameters.iter().enumerate() {
-                let own = other.description().parameters.iter().position(|own| own.name == info.name);
-                if let Some(own) = own {
-                    // The crane itself has this value; it is allowed here too, or the crane keeps its own.
-                    let _ = other.set_parameter(own, crane.parameters()[index]);
-                }
-            }
-            let other = sensitivity_near(&other, &[], settings, &found.q)?;
+            let other = sensitivity_near(&like(crane, other), &[], settings, &found.q)?;
             let value = |name: &str| other.index_of(name).map_or(f64::NAN, |index| other.values[index]);
             Ok(found.outputs.iter().map(|output| value(&output.name)).chain(other.q.iter().copied()).collect())
         };
@@ -87,6 +80,89 @@ impl FixedNumber {
         all.pose = all.derivatives.split_off(found.outputs.len());
         all.errors.truncate(found.outputs.len());
         Ok(all)
+    }
+}
+
+/// A crane with the parameters and inputs of another one.
+fn like(crane: &LiveCrane, other: &LiveCrane) -> LiveCrane {
+    let inputs: Vec<Option<f64>> = (0..crane.description().inputs.len()).map(|index| crane.input(index)).collect();
+    let mut other = other.clone().with_inputs(&inputs);
+    for (index, info) in crane.description().parameters.iter().enumerate() {
+        let own = other.description().parameters.iter().position(|own| own.name == info.name);
+        if let Some(own) = own {
+            // The crane itself has this value; it is allowed here too, or the crane keeps its own.
+            let _ = other.set_parameter(own, crane.parameters()[index]);
+        }
+    }
+    other
+}
+
+/// A number of a crane that changes: a live parameter, or a number that cannot be one.
+#[derive(Clone, Copy)]
+pub enum Changing<'a> {
+    /// The index of a live parameter.
+    Parameter(usize),
+    /// A number at a place of the spec.
+    Fixed(&'a FixedNumber),
+}
+
+impl Changing<'_> {
+    /// Its value in a crane.
+    #[must_use]
+    pub fn value(self, crane: &LiveCrane) -> f64 {
+        match self {
+            Self::Parameter(index) => crane.parameters()[index],
+            Self::Fixed(number) => number.value,
+        }
+    }
+
+    /// What people call it, and its unit.
+    #[must_use]
+    pub fn label<'c>(&'c self, crane: &'c LiveCrane) -> [&'c str; 2] {
+        match self {
+            Self::Parameter(index) => {
+                let info = &crane.description().parameters[*index];
+                [label(info), info.unit.as_str()]
+            }
+            Self::Fixed(number) => [number.place.as_str(), number.unit],
+        }
+    }
+
+    /// A crane whose number is larger by `by`.
+    ///
+    /// # Errors
+    /// The number breaks a rule of the spec, in words.
+    pub fn change(self, crane: &LiveCrane, by: f64) -> Result<LiveCrane, String> {
+        match self {
+            Self::Parameter(index) => {
+                let mut other = crane.clone();
+                let set = other.set_parameter(index, crane.parameters()[index] + by);
+                set.map(|()| other).map_err(|refused| refused.to_string())
+            }
+            Self::Fixed(FixedNumber { source, place, value, .. }) => {
+                let changed = changed(source, place, *value, by).map_err(|wrong| wrong.title)?;
+                let other = LiveCrane::from_spec(&changed);
+                other.map(|other| like(crane, &other)).map_err(|mistakes| {
+                    mistakes.mistakes().first().map(|mistake| mistake.title.clone()).unwrap_or_default()
+                })
+            }
+        }
+    }
+
+    /// The derivative of a number of the crane, by a central difference; 0 where it has none.
+    pub(super) fn slope(self, crane: &LiveCrane, number: impl Fn(&LiveCrane) -> Option<f64>) -> f64 {
+        let (step, at): (f64, [Option<f64>; 2]) = match self {
+            Self::Parameter(_) => {
+                let value = self.value(crane);
+                let step = STEP * if value == 0.0 { 1.0 } else { value.abs() };
+                (step, [-step, step].map(|by| number(&self.change(crane, by).ok()?)))
+            }
+            Self::Fixed(FixedNumber { step, around: [least, .., most], .. }) => (*step, [least, most].map(number)),
+        };
+        match at {
+            [Some(before), Some(after)] if before.is_finite() && after.is_finite() => (after - before) / (2.0 * step),
+            _ => 0.0,
+        }
     }
 }
 

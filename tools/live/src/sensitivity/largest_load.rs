@@ -12,12 +12,12 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::dyn_crane::DynModel;
 use crane_model::envelope::{Condition, Envelope, Execution, Limit, Rating, UNITS_OF_LOADS};
 use crane_model::results::{connector_force, drive_effort};
 
 use super::whole::{CURVED, in_unit};
-use super::{Differences, Group, Output, Sensitivity, label};
+use super::{Changing, Differences, FixedNumber, Group, Output, Sensitivity};
 use crate::LiveCrane;
 
 /// Name of the output.
@@ -101,23 +101,34 @@ impl LargestLoad {
         words(self.limit, crane)
     }
 
-    /// Adds the load to the outputs of the crane that carries it. `place`: the list of derivatives by the load, which is removed.
+    /// Adds the load to the outputs of the crane that carries it. `place`: the list of derivatives by the load, which is removed; `fixed`: the
+    /// numbers of the lists after it.
     ///
     /// `None` where no output is at its bound, so that the load has no exact derivatives; nothing is changed then except that list.
-    pub fn add_to(&self, found: &mut Sensitivity, crane: &LiveCrane, asked: &Envelope, place: usize) -> Option<()> {
+    pub fn add_to(
+        &self,
+        found: &mut Sensitivity,
+        crane: &LiveCrane,
+        asked: &Envelope,
+        place: usize,
+        fixed: &[FixedNumber],
+    ) -> Option<()> {
         let bound = self.bound(found, crane, asked);
         let by_load = found.derivatives.remove(place);
         found.pose.remove(place);
         found.parameters.remove(place);
-        let Bound { output, sign, limit, slopes } = bound?;
+        let Bound { output, sign } = bound?;
+        let end = self.end(found, crane, asked);
+        let limit_of = |crane: &LiveCrane| self.limit_of(crane, asked, end);
+        let limit = limit_of(crane)?;
         let slope = sign * by_load[output] * asked.factor;
         let correction = -(sign * found.values[output] - limit) / slope;
         if !slope.is_finite() || slope == 0.0 || correction.abs() > SMALL * self.load.abs() {
             return None;
         }
-        for (index, derivatives) in found.derivatives.iter_mut().enumerate() {
-            let of_limit = slopes.get(index).copied().unwrap_or_default();
-            let own = -(sign * derivatives[output] - of_limit) / slope;
+        let numbers: Vec<Changing<'_>> = changing(found, fixed).collect();
+        for (number, derivatives) in numbers.into_iter().zip(&mut found.derivatives) {
+            let own = -(sign * derivatives[output] - number.slope(crane, limit_of)) / slope;
             derivatives.push(own);
         }
         found.values.push(self.load + correction);
@@ -134,20 +145,20 @@ impl LargestLoad {
         found: &mut Sensitivity,
         crane: &LiveCrane,
         asked: &Envelope,
+        fixed: &[FixedNumber],
     ) -> Result<Vec<f64>, NoLargestLoad> {
         let mut errors = Vec::new();
-        for (index, &parameter) in found.parameters.iter().enumerate() {
-            let value = crane.parameters()[parameter];
+        let numbers: Vec<Changing<'_>> = changing(found, fixed).collect();
+        for (number, all) in numbers.into_iter().zip(&mut found.derivatives) {
+            let value = number.value(crane);
             let step = STEP * if value == 0.0 { 1.0 } else { value.abs() };
             let at = |share: f64| {
-                let mut other = crane.clone();
-                let set = other.set_parameter(parameter, value + share * step);
-                set.map_err(|refused| NoLargestLoad::Refused(refused.to_string()))?;
+                let other = number.change(crane, share * step).map_err(NoLargestLoad::Refused)?;
                 Ok(Self::of(&other, asked)?.load)
             };
             let Differences { derivatives, errors: own, .. } =
                 Differences::central([at(-1.0)?, at(-0.5)?, at(0.5)?, at(1.0)?].map(|load| vec![load]), step);
-            found.derivatives[index].push(derivatives[0]);
+            all.push(derivatives[0]);
             errors.push(own[0]);
         }
         found.values.push(self.load);
@@ -155,22 +166,27 @@ impl LargestLoad {
         Ok(errors)
     }
 
-    /// What happens to the load when each parameter changes by its whole step, one after the other, that its derivatives do not say. `crane`: with
+    /// What happens to the load when each number changes by its whole step, one after the other, that its derivatives do not say. `crane`: with
     /// its own load; `found`: with the output.
     #[must_use]
-    pub fn cautions(&self, found: &Sensitivity, crane: &LiveCrane, asked: &Envelope, steps: &[f64]) -> Vec<String> {
+    pub fn cautions(
+        &self,
+        found: &Sensitivity,
+        crane: &LiveCrane,
+        asked: &Envelope,
+        fixed: &[FixedNumber],
+        steps: &[f64],
+    ) -> Vec<String> {
         let mut words = Vec::new();
         let Some(output) = found.index_of(NAME) else { return words };
         let unit = found.outputs[output].unit;
-        for ((place, &parameter), step) in found.parameters.iter().enumerate().zip(steps) {
-            let info = &crane.description().parameters[parameter];
-            let value = crane.parameters()[parameter] + step;
-            let with = format!("with {} at {}", label(info), in_unit(value, &info.unit));
-            let mut other = crane.clone();
-            if other.set_parameter(parameter, value).is_err() {
+        for ((place, number), step) in changing(found, fixed).enumerate().zip(steps) {
+            let [name, of_number] = number.label(crane);
+            let with = format!("with {name} at {}", in_unit(number.value(crane) + step, of_number));
+            let Ok(other) = number.change(crane, *step) else {
                 words.push(format!("{with} it breaks a rule of the spec"));
                 continue;
-            }
+            };
             let straight = found.derivatives[place][output] * step;
             match Self::of(&other, asked) {
                 Err(none) => words.push(format!("{with}, {}", none.words(&other, unit))),
@@ -203,39 +219,53 @@ impl LargestLoad {
     /// The output that is at its bound; `None` if there is none.
     fn bound(&self, found: &Sensitivity, crane: &LiveCrane, asked: &Envelope) -> Option<Bound> {
         let description = crane.description();
-        let output = |name: &str| found.index_of(name);
-        let fixed =
-            |output: Option<usize>, limit: f64| Some(Bound { output: output?, sign: 1.0, limit, slopes: Vec::new() });
+        let output = |name: &str| Some(Bound { output: found.index_of(name)?, sign: 1.0 });
         match self.limit {
             Limit::Tipping { .. } => {
-                let margin = output("tipping_margin")?;
-                let is_same = found.outputs[margin].place == self.limit.location(description);
-                is_same.then(|| fixed(Some(margin), asked.limits.tipping?))?
+                let bound = output("tipping_margin")?;
+                let is_same = found.outputs[bound.output].place == self.limit.location(description);
+                (is_same && asked.limits.tipping.is_some()).then_some(bound)
             }
-            Limit::Utilisation { .. } => fixed(output("greatest_utilisation"), asked.limits.utilisation?),
+            Limit::Utilisation { .. } => output("greatest_utilisation"),
             Limit::Effort { drive } => {
                 let coordinate = &description.coordinates[description.drives[drive].coordinate];
-                let output = output(&drive_effort(&coordinate.name, coordinate.kind))?;
-                let limit = |crane: &LiveCrane| asked.limits.with_max_efforts(crane).efforts[drive];
-                let slope = |&parameter: &usize| slope_of(crane, parameter, limit);
-                let slopes = found.parameters.iter().map(slope).collect();
-                Some(Bound { output, sign: found.values[output].signum(), limit: limit(crane), slopes })
+                let bound = output(&drive_effort(&coordinate.name, coordinate.kind))?;
+                Some(Bound { sign: found.values[bound.output].signum(), ..bound })
             }
             Limit::Pressure { cylinder, rod } | Limit::Pump { cylinder, rod } => {
-                let info = &description.cylinders[cylinder];
-                let is_pump = matches!(self.limit, Limit::Pump { .. });
-                let limit = if is_pump { description.pump.and_then(|pump| pump.pressure) } else { info.max_pressure };
-                fixed(output(&format!("{}_{}_pressure", info.name, if rod { "rod" } else { "piston" })), limit?)
+                let name = &description.cylinders[cylinder].name;
+                output(&format!("{name}_{}_pressure", if rod { "rod" } else { "piston" }))
             }
+            Limit::Stroke { cylinder } => output(&format!("{}_length", description.cylinders[cylinder].name)),
+            Limit::LiftOff { foot } => output(&format!("{}_reaction_z", description.supports[foot].name)),
+            Limit::Slack { rope } => output(&connector_force(&description.connectors[rope])),
+            Limit::Equilibrium | Limit::Deflection { .. } | Limit::Stop { .. } | Limit::Overlap { .. } => None,
+        }
+    }
+
+    /// Which end of its stroke a cylinder is at: 0 retracted, 1 extended.
+    fn end(&self, found: &Sensitivity, crane: &LiveCrane, asked: &Envelope) -> f64 {
+        let (Limit::Stroke { cylinder }, Some(bound)) = (self.limit, self.bound(found, crane, asked)) else {
+            return 0.0;
+        };
+        let info = &crane.description().cylinders[cylinder];
+        if found.values[bound.output] - info.retracted > 0.5 * info.stroke { 1.0 } else { 0.0 }
+    }
+
+    /// The number that the output must not exceed in a crane. `end`: of a stroke.
+    fn limit_of(&self, crane: &LiveCrane, asked: &Envelope, end: f64) -> Option<f64> {
+        let description = crane.description();
+        match self.limit {
+            Limit::Tipping { .. } => asked.limits.tipping,
+            Limit::Utilisation { .. } => asked.limits.utilisation,
+            Limit::Effort { drive } => asked.limits.with_max_efforts(crane).efforts.get(drive).copied(),
+            Limit::Pressure { cylinder, .. } => description.cylinders[cylinder].max_pressure,
+            Limit::Pump { .. } => description.pump.and_then(|pump| pump.pressure),
             Limit::Stroke { cylinder } => {
                 let info = &description.cylinders[cylinder];
-                let length = output(&format!("{}_length", info.name))?;
-                let ends = [info.retracted, info.retracted + info.stroke];
-                let away = |end: &f64| (found.values[length] - end).abs();
-                fixed(Some(length), ends.into_iter().min_by(|a, b| away(a).total_cmp(&away(b)))?)
+                Some(info.retracted + end * info.stroke)
             }
-            Limit::LiftOff { foot } => fixed(output(&format!("{}_reaction_z", description.supports[foot].name)), 0.0),
-            Limit::Slack { rope } => fixed(output(&connector_force(&description.connectors[rope])), 0.0),
+            Limit::LiftOff { .. } | Limit::Slack { .. } => Some(0.0),
             Limit::Equilibrium | Limit::Deflection { .. } | Limit::Stop { .. } | Limit::Overlap { .. } => None,
         }
     }
@@ -245,23 +275,10 @@ impl LargestLoad {
 struct Bound {
     output: usize,
     sign: f64,
-    limit: f64,
-    /// Derivatives of the bound by the parameters, if it moves.
-    slopes: Vec<f64>,
 }
 
-/// Derivative of a number of the crane that is proportional to a parameter, or does not depend on it.
-fn slope_of(crane: &LiveCrane, parameter: usize, number: impl Fn(&LiveCrane) -> f64) -> f64 {
-    const STEP: f64 = 1e-3;
-    let value = crane.parameters()[parameter];
-    let step = STEP * if value == 0.0 { 1.0 } else { value.abs() };
-    let at = |step: f64| {
-        let mut other = crane.clone();
-        other.set_parameter(parameter, value + step).ok()?;
-        Some(number(&other))
-    };
-    match (at(-step), at(step)) {
-        (Some(before), Some(after)) if before.is_finite() && after.is_finite() => (after - before) / (2.0 * step),
-        _ => 0.0,
-    }
+/// The numbers of the lists of derivatives.
+fn changing<'a>(found: &Sensitivity, fixed: &'a [FixedNumber]) -> impl Iterator<Item = Changing<'a>> {
+    let parameters: Vec<usize> = found.parameters.clone();
+    parameters.into_iter().map(Changing::Parameter).chain(fixed.iter().map(Changing::Fixed))
 }

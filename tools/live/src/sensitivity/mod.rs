@@ -43,7 +43,7 @@ use crane_model::statics::{self, Equilibrium};
 
 use crate::LiveCrane;
 use crate::dual::{DIRECTIONS, Dual8};
-pub use differences::{Differences, FixedNumber};
+pub use differences::{Changing, Differences, FixedNumber};
 use frequencies::Frequencies;
 pub use largest_load::{LargestLoad, NoLargestLoad};
 pub use places::{Refused, label, with_live_numbers};

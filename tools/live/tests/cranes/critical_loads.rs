@@ -223,3 +223,47 @@ fn where_there_is_no_critical_load_the_reason_is_known() {
         assert!(matches!(none, Err(NoCriticalLoad::Beyond { load }) if load > 8e5 - 1.0), "{none:?}");
     }
 }
+
+/// A truck on four feet that may lift, and something that holds the tip of its boom to the world.
+fn held_truck(payload: f64, held: &str) -> LiveCrane {
+    let foot = |(name, x, y): (&str, f64, f64)| {
+        format!(
+            "  - {{name: {name}, at: [{x}, {y}, 0], one_sided: true, kinematics: exact, stiffness: [3e6, 3e6, 7e6]}}\n"
+        )
+    };
+    let feet = [("fl", 1.5, 2.2), ("fr", 1.5, -2.2), ("rl", -1.5, 2.2), ("rr", -1.5, -2.2)].map(foot).concat();
+    crane(&format!(
+        "format: 1\nname: held\nanalyses: [statics]\nparameters: {{payload: {{value: {payload:?}, unit: kg}}}}\nlinks:\n\
+         - {{name: truck, joint: free, mass: 8000, com: [0, 0, 0.9], inertia: {{Ixx: 6500, Iyy: 36000, Izz: 38000}}}}\n\
+         - {{name: boom, placement: {{transform: {{translation: [0, 0, 2.4]}}}}, mass: 200, com: [1.6, 0, 0]}}\n\
+         - {{name: hook, placement: {{transform: {{translation: [3.4, 0, 0]}}}}, mass: payload, com: [0, 0, 0]}}\n\
+         supports:\n{feet}{held}"
+    ))
+}
+
+/// When both rear feet have lifted, the moments about the front ones balance for any load, up to rounding, and a rope that was slack before
+/// may carry the crane. It has tipped. The load is that of Newton's method on the rigid truck on its four springs, written by itself.
+#[test]
+fn a_slack_rope_does_not_raise_the_load_that_tips() {
+    for length in [6.3, 6.4, 6.6, 100.0] {
+        let rope = format!(
+            "connectors: [{{name: guy, from: {{at: [-3, 1, 5]}}, to: {{link: boom, at: [2.5, 0, 0]}}, law: {{rope: {{stiffness: 1e5, length: {length}}}}}}}]\n"
+        );
+        let mut crane = held_truck(300.0, &rope);
+        let found = critical_load(&mut crane, 0, Critical::Tipping).unwrap();
+        assert!((found.load / 6_264.869_851 - 1.0).abs() < 2e-8, "{length}: {found:?}");
+        assert_eq!(found.location, "fr – fl");
+    }
+}
+
+/// A rod and a spring of 1e12 N/m that hold the boom to the world are one crane: it stands until the third foot lifts.
+#[test]
+fn a_rod_and_a_stiff_spring_tip_at_one_load() {
+    let ends = "name: rod, from: {at: [-3, 1, 5]}, to: {link: boom, at: [2.5, 0, 0]}";
+    let rod = format!("loop_joints: [{{{ends}, joint: {{rod: {{length: 6.161225056719341}}}}}}]\n");
+    let spring = format!("connectors: [{{{ends}, law: {{spring: {{stiffness: 1e12, length: 6.161225056719341}}}}}}]\n");
+    let [rod, spring] = [rod, spring].map(|held| {
+        critical_load(&mut held_truck(3000.0, &held), 0, Critical::Tipping).unwrap_or_else(|none| panic!("{none:?}"))
+    });
+    assert!((rod.load / spring.load - 1.0).abs() < 1e-6, "{rod:?}, {spring:?}");
+}

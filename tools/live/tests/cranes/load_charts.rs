@@ -2,14 +2,17 @@
 
 use std::f64::consts::PI;
 
-use crane_codegen::SourceFile;
+use crane_codegen::{SourceFile, build};
 use crane_live::LiveCrane;
+use crane_model::DriveInfo;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::envelope::{
     Axes, Axis, Coverage, Critical, Envelope, Execution, Limit, Limits, PartLimit, Rating, Varied, critical_load,
+    range_of_loads,
 };
 use crane_model::results::cylinders_at;
 use crane_model::statics;
+use crane_model::tipping::{governing, lines};
 
 const GRAVITY: f64 = 9.81;
 const BORE: f64 = 0.1;
@@ -329,5 +332,56 @@ drives:
         };
         // The feet yield by micrometres.
         assert_close("moments", found.load, expected, 1e-5);
+    }
+}
+
+/// Where a chart has no load, statics finds no rest either: at poses far from the spec's own, whose ropes, stages that follow, and hook move with
+/// the drives that hold.
+#[test]
+fn a_chart_is_empty_only_where_statics_finds_no_rest() {
+    let path = format!("{}/../../specs/examples/telescopic_loader.yaml", env!("CARGO_MANIFEST_DIR"));
+    let source = build::open(path.as_ref()).unwrap();
+    let held = |boom: f64, stage: f64| {
+        let changes = format!(
+            "name: held\ndrives:\n- {{coordinate: boom_psi, motion: {{hold: {boom:?}}}}}\n\
+             - {{coordinate: first_stage_x, motion: {{hold: {stage:?}}}}}\nconnectors: [{{name: hoist, law: {{rope: {{motion: {{hold: 11.2}}}}}}}}]\n"
+        );
+        LiveCrane::from_spec(&source.changed(&changes)).unwrap()
+    };
+    let crane = held(0.4, 1.6);
+    let description = crane.description();
+    let drive = |name: &str| {
+        let is_named = |drive: &DriveInfo| description.coordinates[drive.coordinate].name == name;
+        Varied::Drive(description.drives.iter().position(is_named).unwrap())
+    };
+    let [booms, stages] = [vec![0.0, PI / 9.0], vec![0.0, 0.4, 1.6]];
+    let axes = Axes(vec![
+        Axis { varied: drive("boom_psi"), values: booms.clone() },
+        Axis { varied: drive("first_stage_x"), values: stages.clone() },
+    ]);
+    let load = description.parameters.iter().position(|info| info.name == "payload").unwrap();
+    let limits = Limits { tipping: Some(0.0), ..Limits::none(description) };
+    let asked = Envelope { axes, load, loads: range_of_loads(description, load, None), limits, factor: 1.0 };
+    let found = std::sync::Mutex::new(Vec::new());
+    let done = |piece: usize, ratings: &[Rating]| found.lock().unwrap().push((piece, ratings.to_vec()));
+    let pieces: Vec<usize> = (0..asked.pieces()).collect();
+    asked.run(&crane, &pieces, &Execution { threads: 1, done: &done, cancelled: &|| false }).unwrap();
+    let mut found = found.into_inner().unwrap();
+    found.sort_by_key(|(piece, _)| *piece);
+    let ratings: Vec<Rating> = found.into_iter().flat_map(|(_, ratings)| ratings).collect();
+    assert_eq!(ratings.len(), booms.len() * stages.len());
+    for (index, rating) in ratings.iter().enumerate() {
+        let (boom, stage) = (booms[index / stages.len()], stages[index % stages.len()]);
+        let mut own = held(boom, stage);
+        let rated = rating.load.unwrap_or_else(|| panic!("boom {boom}, stage {stage}: {:?}", rating.governing));
+        // Tipping governs: statics stands up to this load, and the margin there is zero.
+        for share in [0.0, 0.5, 1.0] {
+            own.set_parameter(load, share * rated).unwrap();
+            let rest = (&own as &dyn DynCrane).equilibrium(&statics::Settings::default());
+            assert!(rest.is_stable(), "boom {boom}, stage {stage}, {share} of {rated}: {rest}");
+            let still = vec![0.0; rest.q.len()];
+            let margin = governing(&lines(&own, 0.0, &rest.q, &still, &still)).unwrap().margin();
+            assert!(margin >= 0.0 && (share < 1.0 || margin < 1e-5), "boom {boom}, stage {stage}: {margin} at {rated}");
+        }
     }
 }

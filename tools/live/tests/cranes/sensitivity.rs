@@ -319,7 +319,7 @@ fn largest_load(crane: &LiveCrane, asked: &Envelope, parameters: &[usize]) -> (L
     let all: Vec<usize> = parameters.iter().copied().chain([asked.load]).collect();
     let settings = Settings { frequencies: 0 };
     let mut found = sensitivity_near(&loaded, &all, &settings, &largest.condition.q).unwrap();
-    largest.add_to(&mut found, &loaded, asked, parameters.len()).unwrap_or_else(|| panic!("{:?}", largest.limit));
+    largest.add_to(&mut found, &loaded, asked, parameters.len(), &[]).unwrap_or_else(|| panic!("{:?}", largest.limit));
     (largest, found)
 }
 
@@ -399,4 +399,64 @@ fn largest_loads_at_pressures_and_efforts_of_the_spec_change_as_those_of_charts(
     let crane = shipped("loader_tipping", changes);
     let efforts = Limits { of_parts: vec![PartLimit::MaxEffort], ..Limits::none(crane.description()) };
     assert_largest_load("max_effort", &crane, "load", efforts, |limit| matches!(limit, Limit::Effort { .. }));
+}
+
+/// A bound that is a number of the spec moves the load, too: central differences of the loads of whole cranes, at two steps.
+#[test]
+fn largest_loads_change_with_the_numbers_that_bound_them() {
+    let text = |number: &str| {
+        let spec = "format: 1
+name: pump_limit
+analyses: [statics]
+parameters: {payload: {value: 500, unit: kg}}
+links:
+  - {name: column, joint: revolute, mass: 350, com: [0, 0, 0.8], inertia: {Ixx: 90, Iyy: 90, Izz: 15}}
+  - {name: boom, placement: {transform: {translation: [0, 0, 1.7], rotation: {x: 90 deg}}}, joint: revolute, mass: 320, com: [1.5, 0, 0], inertia: {Ixx: 6, Iyy: 260, Izz: 260}}
+  - {name: load, placement: {transform: {translation: [4, 0, 0]}}, joint: revolute, mass: payload, com: [0, -0.8, 0]}
+drives:
+  - {coordinate: column_psi, stiffness: 2e6, damping: 2e4, motion: {hold: 0}}
+  - {coordinate: boom_psi, stiffness: 2e5, damping: 2e4, motion: {hold: 20 deg}}
+cylinders:
+  - {name: lift, coordinate: boom_psi, foot: {link: column, at: [0.25, 0, 0.45]}, head: {link: boom, at: [1.15, -0.12, 0]}, bore: 0.1, rod: 0.06, retracted: 1.2, stroke: 1.0, max_pressure: 250e5}
+pump: {max_flow: 1e-3, pressure: 230e5}
+guess: {load_psi: -20 deg}
+";
+        SourceFile::new("pump_limit.yaml", spec).changed(&format!("name: changed\n{number}"))
+    };
+    for (part, place, change, values) in [
+        (PartLimit::Pressure, "cylinders.lift.max_pressure", "cylinders: [{name: lift, max_pressure: VALUE}]", 250e5),
+        (PartLimit::Pump, "pump.pressure", "pump: {pressure: VALUE}", 230e5),
+        // The boom sags until the cylinder is at its end.
+        (PartLimit::Stroke, "cylinders.lift.retracted", "cylinders: [{name: lift, retracted: VALUE}]", 1.22),
+    ] {
+        let with = |value: f64| text(&change.replace("VALUE", &format!("{value:e}")));
+        let source = with(values);
+        let largest = |source: &SourceFile, fixed: &[FixedNumber]| {
+            let crane = live(source);
+            let limits = Limits { of_parts: vec![part], ..Limits::none(crane.description()) };
+            let loads = range_of_loads(crane.description(), 0, None);
+            let asked = Envelope { axes: Axes::default(), load: 0, loads, limits, factor: 1.0 };
+            let largest = LargestLoad::of(&crane, &asked).unwrap_or_else(|none| panic!("{place}: {none:?}"));
+            let mut loaded = crane;
+            loaded.set_parameter(0, largest.load).unwrap();
+            let settings = Settings { frequencies: 0 };
+            let mut found = sensitivity_near(&loaded, &[0], &settings, &largest.condition.q).unwrap();
+            for number in fixed {
+                found.derivatives.push(number.differentiate(&loaded, &found, &settings).unwrap().derivatives);
+            }
+            largest.add_to(&mut found, &loaded, &asked, 0, fixed).unwrap_or_else(|| panic!("{:?}", largest.limit));
+            let output = found.index_of("largest_load").unwrap();
+            (found.values[output], found.derivatives.first().map(|derivatives| derivatives[output]))
+        };
+        let number = FixedNumber::new(&source, place).unwrap();
+        let (load, derivative) = largest(&source, &[number]);
+        let derivative = derivative.unwrap();
+        for share in [1e-3, 2e-3] {
+            let [less, more] = [-share, share].map(|share| largest(&with(values * (1.0 + share)), &[]).0);
+            let expected = (more - less) / (2.0 * share * values);
+            assert!(expected.abs() * values > 0.1 * load, "{place} moves nothing: {expected}");
+            // Differences have an error of the square of the step, 4e-6, times how fast the derivative changes.
+            assert!((derivative / expected - 1.0).abs() < 1e-4, "{place}: {derivative} for {expected} at {load}");
+        }
+    }
 }

@@ -147,6 +147,34 @@ pub(super) fn pressure(crane: &Shown<'_>) -> Option<Figure> {
     Some(if limit.is_some() { figure.judged(excess) } else { figure })
 }
 
+/// Cylinders beyond an end of their strokes, if there are any.
+pub(super) fn strokes(crane: &Shown<'_>) -> Option<Figure> {
+    /// Part of a stroke by which rounding may place a cylinder beyond its end.
+    const ROUNDING: f64 = 1e-9;
+    let cylinders = crane.subject.crane.description().cylinders.iter();
+    let used = cylinders.map(|info| {
+        let length = Extremes::of(&crane.table, &format!("{}_length", info.name));
+        let part = |length: f64| (length - info.retracted) / info.stroke;
+        let ends = [(part(length.minimum), length.time_of_minimum), (part(length.maximum), length.time_of_maximum)];
+        (info, ends)
+    });
+    let all: Vec<_> = used.filter(|(_, ends)| ends.iter().all(|(part, _)| part.is_finite())).collect();
+    let percent = |part: f64| readable(100.0 * part);
+    let beyond = |part: f64| (-part).max(part - 1.0);
+    let worst = |ends: &[(f64, f64); 2]| if beyond(ends[0].0) > beyond(ends[1].0) { ends[0] } else { ends[1] };
+    let (info, ends) = all.iter().max_by(|a, b| beyond(worst(&a.1).0).total_cmp(&beyond(worst(&b.1).0)))?;
+    let (_, time) = worst(ends);
+    let note = format!("of {}, nearest to an end {}", spoken(&info.name), crane.when(time));
+    let value = format!("{} … {} %", percent(ends[0].0), percent(ends[1].0));
+    let beyond_ends: Vec<String> = all
+        .iter()
+        .filter(|(_, ends)| beyond(worst(ends).0) > ROUNDING)
+        .map(|(info, ends)| format!("{} is at {} % of its stroke", spoken(&info.name), percent(worst(ends).0)))
+        .collect();
+    let excess = (!beyond_ends.is_empty()).then(|| beyond_ends.join("; "))?;
+    Some(Figure::new("stroke", "stroke of a cylinder", value, note).judged(Some(excess)))
+}
+
 /// The largest error of the energy balance of a run.
 pub(super) fn energy(crane: &Shown<'_>) -> Option<Figure> {
     crane.subject.run?;

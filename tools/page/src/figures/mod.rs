@@ -84,6 +84,7 @@ pub(crate) fn figures(crane: &Shown<'_>, rigid: Option<&Shown<'_>>) -> Vec<Figur
     found.extend(loads::tipping(crane));
     found.extend(loads::reactions(crane));
     found.extend(loads::pressure(crane));
+    found.extend(loads::strokes(crane));
     found.extend(loads::drives(crane));
     found.extend(rigid.and_then(|rigid| beams::deflection(crane, rigid)));
     found.extend(vibration(&crane.modes, crane.subject.crane.description()));

@@ -270,6 +270,7 @@ fn what_is_beyond_its_limit_is_named_first() {
     let cases = [
         (boom(500.0, 60e6, 320e5), "stress of boom is", vec!["utilisation"]),
         (boom(500.0, 700e6, 20e5), "its relief valve opens at 20", vec!["highest_pressure"]),
+        (boom(100.0, 700e6, 320e5).replace("stroke: 0.9", "stroke: 0.3"), "of its stroke", vec!["stroke"]),
         (boom(1780.0, 700e6, 320e5), "rear left, rear right lift off the ground", vec!["vertical_reactions"]),
     ];
     for (spec, words, beyond) in cases {
