@@ -18,12 +18,33 @@ const SHARE: f64 = 0.3;
 
 /// `K = S⁻¹ U Λ Uᵀ S⁻¹`, with `S = diag(1/√|K_ii|)`: m and rad become comparable, and relative coordinates nearly decouple.
 ///
-/// One factorisation gives the Newton step, the stability of the equilibrium, and the coordinates responsible.
+/// One factorisation gives the Newton step, the stability of the equilibrium, and the coordinates responsible. Where `M = S K S` is positive
+/// definite without soft directions, `1 / (‖M‖ ‖M⁻¹‖) > SOFT` with Frobenius norms, which bound the eigenvalues, the inverse is enough.
 pub(super) struct Tangent {
     scale: DVector<f64>,
-    values: DVector<f64>,
-    vectors: DMatrix<f64>,
-    greatest: f64,
+    factors: Factors,
+}
+
+/// What a scaled tangent stiffness is factorised into.
+enum Factors {
+    /// The inverse of a definite one without soft directions.
+    Inverse(DMatrix<f64>),
+    /// Its principal directions.
+    Principal { values: DVector<f64>, vectors: DMatrix<f64>, greatest: f64 },
+}
+
+impl Factors {
+    fn new(scaled: DMatrix<f64>) -> Self {
+        if let Some(factor) = scaled.clone().cholesky() {
+            let inverse = factor.inverse();
+            if 1.0 > SOFT * scaled.norm() * inverse.norm() {
+                return Self::Inverse(inverse);
+            }
+        }
+        let SymmetricEigen { eigenvalues: values, eigenvectors: vectors } = scaled.symmetric_eigen();
+        let greatest = values.amax().max(f64::MIN_POSITIVE);
+        Self::Principal { values, vectors, greatest }
+    }
 }
 
 /// Which directions a Newton step leaves alone.
@@ -66,19 +87,24 @@ impl Tangent {
             stiffness[(i, i)].abs().max(least).sqrt().recip()
         });
         let scaled = DMatrix::from_fn(n, n, |i, j| stiffness[(i, j)] * scale[i] * scale[j]);
-        let SymmetricEigen { eigenvalues: values, eigenvectors: vectors } = scaled.symmetric_eigen();
-        let greatest = values.amax().max(f64::MIN_POSITIVE);
-        Some(Self { scale, values, vectors, greatest })
+        Some(Self { scale, factors: Factors::new(scaled) })
     }
 
     /// Newton step `−K⁻¹ r`; directions within the limit get the smallest stiffness beyond it.
     pub(super) fn step(&self, residual: &DVector<f64>, limit: Limit) -> DVector<f64> {
-        let least = limit.fraction() * self.greatest;
-        let mut along = self.vectors.tr_mul(&residual.component_mul(&self.scale));
-        for (component, &value) in along.iter_mut().zip(&self.values) {
-            *component /= if value.abs() < least { least.copysign(value) } else { value };
-        }
-        -(&self.vectors * along).component_mul(&self.scale)
+        let scaled = residual.component_mul(&self.scale);
+        let step = match &self.factors {
+            Factors::Inverse(inverse) => inverse * scaled,
+            Factors::Principal { values, vectors, greatest } => {
+                let least = limit.fraction() * greatest;
+                let mut along = vectors.tr_mul(&scaled);
+                for (component, &value) in along.iter_mut().zip(values) {
+                    *component /= if value.abs() < least { least.copysign(value) } else { value };
+                }
+                vectors * along
+            }
+        };
+        -step.component_mul(&self.scale)
     }
 
     /// The kind of equilibrium.
@@ -91,9 +117,10 @@ impl Tangent {
 
     /// Coordinates of unconstrained directions, if there are any.
     pub(super) fn free_directions(&self, names: &Description, limit: Limit) -> Option<Vec<Text>> {
-        let least = limit.fraction() * self.greatest;
-        let free = (0..self.values.len()).filter(|&k| self.values[k].abs() < least);
-        let mut coordinates: Vec<_> = free.flat_map(|k| self.names_of(k, names)).collect();
+        let Factors::Principal { values, vectors, greatest } = &self.factors else { return None };
+        let least = limit.fraction() * greatest;
+        let free = (0..values.len()).filter(|&k| values[k].abs() < least);
+        let mut coordinates: Vec<_> = free.flat_map(|k| names_of(vectors, k, names)).collect();
         coordinates.sort_unstable();
         coordinates.dedup();
         (!coordinates.is_empty()).then_some(coordinates)
@@ -101,15 +128,17 @@ impl Tangent {
 
     /// Coordinates of the direction of the most negative stiffness, if there is one.
     fn negative_direction(&self, names: &Description) -> Option<Vec<Text>> {
-        let k = self.values.imin();
-        (self.values[k] < -FREE * self.greatest).then(|| self.names_of(k, names))
+        let Factors::Principal { values, vectors, greatest } = &self.factors else { return None };
+        let k = values.imin();
+        (values[k] < -FREE * greatest).then(|| names_of(vectors, k, names))
     }
+}
 
-    fn names_of(&self, k: usize, names: &Description) -> Vec<Text> {
-        let direction = self.vectors.column(k);
-        let least = SHARE * direction.amax();
-        let mut share: Vec<usize> = (0..direction.len()).filter(|&i| direction[i].abs() >= least).collect();
-        share.sort_by(|&i, &j| direction[j].abs().total_cmp(&direction[i].abs()));
-        share.into_iter().map(|i| names.coordinates[i].name.clone()).collect()
-    }
+/// The coordinates with a share in a principal direction.
+fn names_of(vectors: &DMatrix<f64>, k: usize, names: &Description) -> Vec<Text> {
+    let direction = vectors.column(k);
+    let least = SHARE * direction.amax();
+    let mut share: Vec<usize> = (0..direction.len()).filter(|&i| direction[i].abs() >= least).collect();
+    share.sort_by(|&i, &j| direction[j].abs().total_cmp(&direction[i].abs()));
+    share.into_iter().map(|i| names.coordinates[i].name.clone()).collect()
 }

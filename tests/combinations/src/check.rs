@@ -6,7 +6,7 @@ use crate::crane::{Case, with_features};
 use crate::feature::Features;
 use crate::observe::{differences, observe};
 use crate::tree::{Tree, source, text};
-use crate::{changes, descriptions, fleets, laws, meshes, run_changes};
+use crate::{changes, charts, descriptions, fleets, laws, meshes, run_changes};
 
 /// A check that failed.
 #[derive(Clone, Debug)]
@@ -38,7 +38,7 @@ pub fn names() -> Vec<&'static str> {
     let described = descriptions::ALL.iter().map(|(name, _)| *name);
     described
         .chain(laws::ALL.iter().map(|(name, _)| *name))
-        .chain([meshes::NAME, changes::NAME, run_changes::NAME, fleets::NAME])
+        .chain([meshes::NAME, changes::NAME, run_changes::NAME, fleets::NAME, charts::NAME])
         .collect()
 }
 
@@ -61,6 +61,9 @@ fn apply(check: &str, tree: &Tree, seed: u64, run: bool) -> Option<Vec<String>> 
     }
     if check == fleets::NAME {
         return fleets::check_fleets(tree, seed);
+    }
+    if check == charts::NAME {
+        return charts::check_charts(tree, seed);
     }
     if check == meshes::NAME {
         return meshes::check_meshes(tree);

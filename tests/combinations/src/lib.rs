@@ -7,6 +7,7 @@
 #![allow(clippy::unnecessary_wraps, clippy::format_push_string)]
 
 pub mod changes;
+mod charts;
 pub mod check;
 pub mod crane;
 pub mod cuts;

@@ -10,6 +10,7 @@ use crane_model::dynamics::Settings;
 use crane_model::envelope::{Axes, Envelope, Execution, Limits, PartLimit, Rating, only_mass};
 use crane_model::runs::{Start, record};
 use crane_model::sections::stressed_sections;
+use crane_model::tipping::lines;
 use crane_model::{Cut, Wrench, modes, statics};
 
 /// A number with its unit, and how far it may be off, relative to the largest number of this unit in the same group.
@@ -95,6 +96,11 @@ pub fn observe(source: &SourceFile, run: bool) -> Result<Numbers, String> {
             add(CUTS.0, format!("{body} force"), "N", wrench.force.norm());
             add(CUTS.0, format!("{body} moment"), "N m", wrench.moment.norm());
         }
+    }
+    // The margin itself depends on which bodies are a link.
+    let balances = lines(crane, 0.0, &q, &rest, &rest).into_iter().map(|line| line.balance());
+    if let Some(least) = balances.min_by(f64::total_cmp) {
+        add(CUTS.0, "least moment about a tipping line".to_owned(), "N m", least);
     }
     let start = Start { v: rest, q, x: Vec::new(), what: String::new(), rests: true };
     let base = Settings { tolerance: STEP, most_steps: MOST_STEPS, audit: false, ..Settings::of(description) };

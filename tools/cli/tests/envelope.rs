@@ -249,11 +249,17 @@ fn a_chart_over_radius_and_height_has_limits_in_its_cells() {
         .replace("points:", "  - {coordinate: mast_z, rigid: true, motion: {hold: 1}}\npoints:");
     fs::write(folder.join("truck.yaml"), text).expect("a file");
     let ranges = ["--range", "arm_x=2:6:9", "--range", "mast_z=0.5:3:6", "--set", "payload=100"];
-    let output = run_command(&folder, &[&ranges[..], &["--format", "json"]].concat());
+    let radii = ["--radius", "3,4.25,9", "--restart"];
+    let output = run_command(&folder, &[&ranges[..], &radii, &["--format", "json"]].concat());
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let output: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let asked: Vec<_> = output["load_chart"].as_array().expect("rows").iter().map(|row| row["radius"].clone()).collect();
+    assert_eq!(asked, [3.0, 4.25]);
+    let text = String::from_utf8(run_command(&folder, &[&ranges[..], &radii].concat()).stdout).expect("text");
+    assert!(text.lines().any(|line| line.trim_start().starts_with("9 ") && line.contains("no pose")), "{text}");
     let places = output["loads_by_place"].as_array().expect("rows");
-    assert!(places.len() > 20, "{places:?}");
+    let of_radius = places.iter().filter(|row| row["radius"] == 4.25).count();
+    assert!(of_radius > 3 && places.len() == 2 * of_radius, "{places:?}");
     for row in places {
         let (radius, load) = (row["radius"].as_f64().unwrap(), row["load"].as_f64().unwrap());
         // In front of the truck, towards x: its line is 1.5 m away. The nearest poses are up to 0.5 m further out.

@@ -1,0 +1,95 @@
+//! Load charts: a pose of a chart is the pose at rest of the spec whose drives hold its positions.
+
+use std::sync::Mutex;
+
+use crane_live::LiveCrane;
+use crane_model::DriveInfo;
+use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::envelope::{Axes, Axis, Condition, Envelope, Execution, Limits, Rating, Varied, only_mass};
+use crane_model::statics::Settings;
+use fastrand::Rng;
+use serde_json::{Value, json};
+
+use crate::observe::live;
+use crate::tree::{Tree, source};
+
+/// The name of the check.
+pub const NAME: &str = "poses of charts are those of statics";
+/// How far a drive moves, m or rad.
+const MOVED: f64 = 0.3;
+/// Largest load, kg.
+const GREATEST: f64 = 2e4;
+/// Of efforts and reactions, relative to the largest: Newton's tolerance times the condition of the tangent stiffness.
+const TOLERANCE: f64 = 1e-7;
+
+/// What a chart and statics find at different poses or loads; `None` for a crane without a mass as a live parameter or without a drive whose
+/// position can be written.
+pub fn check_charts(tree: &Tree, seed: u64) -> Option<Vec<String>> {
+    let mut rng = Rng::with_seed(seed);
+    let crane = live(&source(tree)).ok()?;
+    let description = crane.description();
+    let load = only_mass(description)?;
+    let drive = (!description.drives.is_empty()).then(|| rng.usize(..description.drives.len()))?;
+    let DriveInfo { coordinate, start, .. } = description.drives[drive];
+    let name = description.coordinates[coordinate].name.to_string();
+    let position = start + MOVED * (2.0 * rng.f64() - 1.0);
+    let mut held = tree.clone();
+    let entry = held["drives"].as_array_mut()?.iter_mut().find(|entry| entry["coordinate"] == name.as_str())?;
+    let entry: &mut serde_json::Map<String, Value> = entry.as_object_mut()?;
+    entry.insert("motion".into(), json!({"hold": position}));
+    let mut held = live(&source(&held)).ok()?;
+    let load_name = description.parameters[load].name.to_string();
+    let held_load = held.description().parameters.iter().position(|info| info.name == load_name.as_str())?;
+
+    let limits = Limits { tipping: Some(0.0), ..Limits::none(description) };
+    let least = crane_model::envelope::range_of_loads(description, load, None)[0];
+    let axes = Axes(vec![Axis { varied: Varied::Drive(drive), values: vec![start, position] }]);
+    let asked = Envelope { axes, load, loads: [least, GREATEST], limits, factor: 1.0 };
+    let rating = rate(&crane, &asked)?;
+
+    let mut wrong = Vec::new();
+    let at = |rated: f64| format!("{name} at {position}, {rated} kg");
+    let mut stands = |value: f64| -> Option<Condition> {
+        held.set_parameter(held_load, value).ok()?;
+        let whole: &dyn DynCrane = &held;
+        let found = whole.equilibrium(&Settings::default());
+        let positions: Vec<f64> = whole.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
+        found.is_stable().then(|| Condition::at(whole, found.q, &positions))
+    };
+    let Some(rated) = rating.load else {
+        // Beyond a limit with the least load, or no rest.
+        if rating.loaded.is_none() && stands(least).is_some() {
+            wrong.push(format!("{}: a chart finds no rest", at(least)));
+        }
+        return Some(wrong);
+    };
+    match (rating.loaded, stands(rated)) {
+        (Some(chart), Some(rest)) => {
+            let forces = |condition: &Condition| -> Vec<f64> {
+                condition.efforts.iter().copied().chain(condition.feet.iter().map(|[force, _]| *force)).collect()
+            };
+            let (chart, rest) = (forces(&chart), forces(&rest));
+            let size = rest.iter().fold(1.0, |size: f64, force| size.max(force.abs()));
+            let off = chart.iter().zip(&rest).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            if off > TOLERANCE * size {
+                wrong.push(format!("{}: forces differ by {off:.3e} of {size:.3e}", at(rated)));
+            }
+        }
+        // Just below the load that tips, statics may miss the pose that is left.
+        (_, None) if stands(0.98 * rated).is_none() => wrong.push(format!("{}: statics finds no rest", at(rated))),
+        _ => {}
+    }
+    Some(wrong)
+}
+
+/// The rating of the second pose.
+fn rate(crane: &LiveCrane, asked: &Envelope) -> Option<Rating> {
+    let found = Mutex::new(Vec::new());
+    let done = |_: usize, ratings: &[Rating]| {
+        if let Ok(mut found) = found.lock() {
+            found.extend(ratings.to_vec());
+        }
+    };
+    asked.run(crane, &[0], &Execution { threads: 1, done: &done, cancelled: &|| false }).ok()?;
+    found.into_inner().ok()?.pop()
+}
