@@ -56,28 +56,27 @@ pub fn check_charts(tree: &Tree, seed: u64) -> Option<Vec<String>> {
         let positions: Vec<f64> = whole.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
         found.is_stable().then(|| Condition::at(whole, found.q, &positions))
     };
-    let Some(rated) = rating.load else {
+    // Near the load that tips, statics may find another pose, or miss the one that is left.
+    let written = crane.parameters()[load];
+    let Some(chart) = rating.with_spec_load.filter(|_| rating.load.is_none_or(|rated| written < 0.8 * rated)) else {
         // Beyond a limit with the least load, or no rest.
         if rating.loaded.is_none() && stands(least).is_some() {
             wrong.push(format!("{}: a chart finds no rest", at(least)));
         }
         return Some(wrong);
     };
-    match (rating.loaded, stands(rated)) {
-        (Some(chart), Some(rest)) => {
-            let forces = |condition: &Condition| -> Vec<f64> {
-                condition.efforts.iter().copied().chain(condition.feet.iter().map(|[force, _]| *force)).collect()
-            };
-            let (chart, rest) = (forces(&chart), forces(&rest));
-            let size = rest.iter().fold(1.0, |size: f64, force| size.max(force.abs()));
-            let off = chart.iter().zip(&rest).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            if off > TOLERANCE * size {
-                wrong.push(format!("{}: forces differ by {off:.3e} of {size:.3e}", at(rated)));
-            }
-        }
-        // Just below the load that tips, statics may miss the pose that is left.
-        (_, None) if stands(0.98 * rated).is_none() => wrong.push(format!("{}: statics finds no rest", at(rated))),
-        _ => {}
+    let Some(rest) = stands(written) else {
+        wrong.push(format!("{}: statics finds no rest", at(written)));
+        return Some(wrong);
+    };
+    let forces = |condition: &Condition| -> Vec<f64> {
+        condition.efforts.iter().copied().chain(condition.feet.iter().map(|[force, _]| *force)).collect()
+    };
+    let (chart, rest) = (forces(&chart), forces(&rest));
+    let size = rest.iter().fold(1.0, |size: f64, force| size.max(force.abs()));
+    let off = chart.iter().zip(&rest).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    if off > TOLERANCE * size {
+        wrong.push(format!("{}: forces differ by {off:.3e} of {size:.3e}", at(written)));
     }
     Some(wrong)
 }

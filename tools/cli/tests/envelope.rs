@@ -253,7 +253,8 @@ fn a_chart_over_radius_and_height_has_limits_in_its_cells() {
     let output = run_command(&folder, &[&ranges[..], &radii, &["--format", "json"]].concat());
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let output: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    let asked: Vec<_> = output["load_chart"].as_array().expect("rows").iter().map(|row| row["radius"].clone()).collect();
+    let asked: Vec<_> =
+        output["load_chart"].as_array().expect("rows").iter().map(|row| row["radius"].clone()).collect();
     assert_eq!(asked, [3.0, 4.25]);
     let text = String::from_utf8(run_command(&folder, &[&ranges[..], &radii].concat()).stdout).expect("text");
     assert!(text.lines().any(|line| line.trim_start().starts_with("9 ") && line.contains("no pose")), "{text}");
