@@ -36,6 +36,10 @@ pub fn check_charts(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     let mut held = tree.clone();
     let entry = held["drives"].as_array_mut()?.iter_mut().find(|entry| entry["coordinate"] == name.as_str())?;
     let entry: &mut serde_json::Map<String, Value> = entry.as_object_mut()?;
+    // A chart's position is where the drive is; a motion is moved by an offset.
+    if entry.contains_key("offset") {
+        return None;
+    }
     entry.insert("motion".into(), json!({"hold": position}));
     let mut held = live(&source(&held)).ok()?;
     let load_name = description.parameters[load].name.to_string();
