@@ -1,6 +1,7 @@
 //! `crane simulate --ensemble` that is interrupted and continues.
 
 use std::{
+    collections::BTreeSet,
     env, fs,
     path::{Path, PathBuf},
     process::{Child, Command, Stdio},
@@ -49,15 +50,24 @@ fn finish(folder: &Path, method: &str, more: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).expect("JSON")
 }
 
-/// Starts the command and stops it as soon as the file of finished rows has some more; returns how many lines that file has then.
+/// The fleets of which all rows are in a file of finished rows: those that are kept.
+fn whole_fleets(part: &Path) -> Vec<usize> {
+    let text = fs::read_to_string(part).unwrap_or_default();
+    let complete = text.rsplit_once('\n').map_or("", |(complete, _)| complete);
+    let row = |line: &str| line.split(',').next()?.parse::<usize>().ok();
+    // Some are written twice, before and after an interruption.
+    let rows: BTreeSet<usize> = complete.lines().filter_map(row).collect();
+    (0..ROWS / FLEET).filter(|fleet| rows.range(fleet * FLEET..(fleet + 1) * FLEET).count() == FLEET).collect()
+}
+
+/// Starts the command and stops it as soon as one more fleet is finished; returns how many lines the file of finished rows has then.
 fn interrupt(folder: &Path, method: &str, stop: impl Fn(&mut Child)) -> usize {
     let part = folder.join("peaks.part.csv");
-    let size = || fs::metadata(&part).map_or(0, |file| file.len());
-    let before = size();
+    let before = whole_fleets(&part).len();
     let mut child =
         command(folder, method, &[]).stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("it starts");
     let begin = Instant::now();
-    while size() < before + 10_000 {
+    while whole_fleets(&part).len() == before {
         assert!(begin.elapsed() < Duration::from_secs(120), "it writes as it goes");
         thread::sleep(Duration::from_millis(1));
     }
@@ -119,11 +129,12 @@ fn finished_rows_are_not_computed_again() {
     interrupt(&folder, "bdf", by_ctrl_c);
     let written = fs::read_to_string(&part).expect("finished rows");
     let mut lines: Vec<String> = written.lines().map(str::to_owned).collect();
+    let row = FLEET * whole_fleets(&part)[0];
+    let line = lines.iter_mut().find(|line| line.starts_with(&format!("{row},"))).expect("a row");
     // The number of the row, the load, the first of the extremes.
-    let mut fields: Vec<&str> = lines[1].split(',').collect();
-    let row: usize = fields[0].parse().expect("a number");
+    let mut fields: Vec<&str> = line.split(',').collect();
     fields[2] = "12345.678";
-    lines[1] = fields.join(",");
+    *line = fields.join(",");
     fs::write(&part, lines.join("\n") + "\n").expect("a file");
     finish(&folder, "bdf", &[]);
     let table = fs::read_to_string(folder.join("peaks.csv")).expect("a table");
