@@ -1,5 +1,6 @@
 //! `crane new`: a crate for your own crane, starting from a shipped one.
 
+mod sources;
 mod vendored;
 
 use std::{
@@ -70,7 +71,7 @@ pub fn new(options: &New, registry: &Registry, out: &mut dyn Write) -> Outcome<(
     }
     let from_tree = |folder: &str| compiled::root().join(folder).to_string_lossy().into_owned();
     let copied = |folder: &str| format!("{}/{folder}", vendored::FOLDER);
-    let [model, codegen, ..] = vendored::CRATES.map(|folder| if vendor { copied(folder) } else { from_tree(folder) });
+    let [model, codegen, ..] = sources::CRATES.map(|folder| if vendor { copied(folder) } else { from_tree(folder) });
     let values = [
         ("{{package}}", package.as_str()),
         ("{{name}}", &name),

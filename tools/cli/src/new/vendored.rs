@@ -7,6 +7,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use super::sources::{CRATES, WORKSPACE, list_files};
 use crate::{
     compiled,
     problem::{Outcome, Problem},
@@ -15,15 +16,9 @@ use crate::{
 
 /// Folder of the copies in the new crate.
 pub const FOLDER: &str = "crates";
-/// Crates to copy, by their folders in the source tree.
-pub const CRATES: [&str; 4] = ["crane-model", "codegen", "codegen/keys", "quantities"];
 /// Tables of the workspace's manifest that those of the crates inherit from.
 const INHERITED: [&str; 4] =
     ["[workspace.package]", "[workspace.dependencies]", "[workspace.lints.rust]", "[workspace.lints.clippy]"];
-
-/// Files of the workspace that belong to the crates.
-const LICENCES: [&str; 2] = ["LICENSE-APACHE", "LICENSE-MIT"];
-const WORKSPACE: &str = "Cargo.toml";
 
 /// Whether this command was built from a source tree that is still there.
 pub fn has_tree() -> bool {
@@ -40,18 +35,7 @@ impl Sources {
             let carried = carried.sources.iter().map(|(path, text)| (PathBuf::from(path), Cow::Borrowed(*text)));
             return Ok(Self(carried.collect()));
         }
-        let manifests = CRATES.iter().map(|name| Path::new(name).join("Cargo.toml"));
-        let mut files: Vec<PathBuf> = manifests.chain(LICENCES.map(PathBuf::from)).chain([WORKSPACE.into()]).collect();
-        let mut folders: Vec<PathBuf> = CRATES.iter().map(|name| Path::new(name).join("src")).collect();
-        while let Some(folder) = folders.pop() {
-            let entries =
-                fs::read_dir(compiled::root().join(&folder)).map_err(|error| Problem::file(&folder, &error))?;
-            for entry in entries {
-                let entry = entry.map_err(|error| Problem::file(&folder, &error))?;
-                let path = folder.join(entry.file_name());
-                if entry.path().is_dir() { folders.push(path) } else { files.push(path) }
-            }
-        }
+        let files = list_files(compiled::root()).map_err(|(folder, error)| Problem::file(&folder, &error))?;
         let read = |path: PathBuf| {
             let text =
                 fs::read_to_string(compiled::root().join(&path)).map_err(|error| Problem::file(&path, &error))?;
