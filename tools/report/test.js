@@ -33,8 +33,8 @@ async function open(browser, options, check) {
   // Software rendering on a busy machine.
   page.setDefaultTimeout(PATIENCE);
   const said = [];
-  // The one on reading pixels concerns this test, not the page.
-  page.on("console", (message) => message.text().includes("getImageData") || said.push(`${message.type()}: ${message.text()}`));
+  // Those on reading pixels concern this test and the browser without a graphics card, not the page.
+  page.on("console", (message) => /getImageData|due to ReadPixels/.test(message.text()) || said.push(`${message.type()}: ${message.text()}`));
   page.on("pageerror", (error) => said.push(`error: ${error.stack}`));
   page.on("request", (request) => {
     if (!/^(file|data|blob):/.test(request.url())) said.push(`request: ${request.url()}`);
@@ -345,7 +345,7 @@ const begin = Date.now();
 assert((await stat(file)).size < MOST_BYTES);
 const text = await readFile(file, "utf8");
 assert.match(text, /http-equiv="Content-Security-Policy" content="default-src 'none'/);
-const browser = await launch();
+const browser = await launch({ swift: true });
 let count = 0;
 const said = await open(browser, { viewport: { width: 1440, height: 900 }, colorScheme: "light" }, async (page) => {
   await seek(page, (await page.evaluate(() => globalThis.report.player.duration)) * 0.32);
