@@ -6,7 +6,7 @@ use crate::python::CHECKS;
 use crate::{step, workspace};
 
 fn python_script(path: &str) -> Command {
-    let mut command = Command::new(CHECKS.python());
+    let mut command = CHECKS.interpreter_command();
     command.arg(workspace::root().join(path)).current_dir(workspace::root());
     command
 }

@@ -1,8 +1,6 @@
 //! Checks of the command from outside, in Python: functional mock-up units run by `FMPy`, random cranes computed in several
 //! ways, and JSON against its schemas.
 
-use std::process::Command;
-
 use crate::python::CHECKS;
 use crate::{step, workspace};
 
@@ -25,13 +23,12 @@ pub fn check_ways() -> Result<(), String> {
 
 /// Runs the tests of a folder with the built command and other arguments.
 fn run_python_tests(tests: &str, arguments: &[&str]) -> Result<(), String> {
-    let mut command = Command::new(CHECKS.python());
+    let mut command = CHECKS.interpreter_command();
     command
         .args(["-m", "pytest", "-q", "-p", "no:cacheprovider", "--rootdir", tests, "--durations", "5", tests])
         .arg("--command")
         .arg(workspace::target().join("release/crane"))
         .args(arguments)
-        .env("PYTHONDONTWRITEBYTECODE", "1")
         .current_dir(workspace::root());
     step::run_to_end(&mut command)
 }

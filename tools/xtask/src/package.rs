@@ -35,7 +35,7 @@ fn wheels(folder: &Path) -> Result<Vec<PathBuf>, String> {
 
 /// The Python of the checks, with the programs of its environment, of which maturin is one, and those of the workspace.
 fn python(arguments: &[&str]) -> Command {
-    let mut command = Command::new(CHECKS.python());
+    let mut command = CHECKS.interpreter_command();
     command
         .args(arguments)
         .current_dir(workspace::root())

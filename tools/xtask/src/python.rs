@@ -41,6 +41,13 @@ impl Environment {
         workspace::root().join(self.folder).join("bin/python")
     }
 
+    /// Its interpreter, to be given a script. What that compiles is kept outside the folders of sources.
+    pub fn interpreter_command(&self) -> Command {
+        let mut command = Command::new(self.python());
+        command.env("PYTHONPYCACHEPREFIX", workspace::target().join("pycache"));
+        command
+    }
+
     /// A program that finds those of the environment.
     pub fn command(&self, program: &str) -> Command {
         let mut command = Command::new(program);
@@ -67,9 +74,10 @@ impl Environment {
                 "{error}; Python 3.11 or newer with its venv module is needed (Debian: apt-get install python3-venv)"
             )
         })?;
+        // Most modules are never imported: each is compiled when it is.
         step::run_to_end(
             Command::new(self.python())
-                .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"])
+                .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile"])
                 .args(self.requirements.iter().flat_map(|file| ["--requirement", file]))
                 .current_dir(workspace::root()),
         )?;

@@ -47,7 +47,7 @@ pub fn check_in_notebook() -> Result<(), String> {
     let file = workspace::root().join("out/notebook.html");
     fs::create_dir_all(workspace::root().join("out")).map_err(|error| format!("out: {error}"))?;
     step::run_to_end(
-        Command::new(CHECKS.python()).arg("notebook.py").arg(&file).current_dir(workspace::root().join(FOLDER)),
+        CHECKS.interpreter_command().arg("notebook.py").arg(&file).current_dir(workspace::root().join(FOLDER)),
     )?;
     step::run_to_end(command_in_folder("node").arg("notebook.js").arg(file))
 }
