@@ -140,11 +140,11 @@ pub const THOROUGH: &str = "CRANE_THOROUGH";
 /// The tests, job by job.
 fn test_steps(is_thorough: bool) -> Vec<Step> {
     const ALL: &[&str] = &["unit", "system", "pages", "oracles", "thorough"];
-    // What is downloaded and built first; then what uses it.
+    // What is downloaded and built first, beside each other: a build has times when it needs one core. Then what uses it.
+    let packages = Step::check("packages of the report page", report::prepare_packages).light();
     let mut jobs: Vec<(&[&str], Vec<Step>)> = vec![
-        (ALL, vec![Step::check("Python environment", oracles::prepare_python)]),
-        (&["system", "pages", "thorough"], vec![Step::check("packages of the report page", report::prepare_packages)]),
-        (ALL, vec![build_step()]),
+        (ALL, vec![build_step().light(), Step::check("Python environment", oracles::prepare_python).light()]),
+        (&["system", "pages", "thorough"], vec![packages]),
         (&["unit"], unit_steps()),
         (&["system", "pages"], vec![Step::program("the default run", "crane", &[])]),
         (&["system"], system_steps()),

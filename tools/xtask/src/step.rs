@@ -22,7 +22,7 @@ pub struct Step {
     /// The jobs that need it; none of other tasks than `test`.
     pub jobs: &'static [&'static str],
     action: Action,
-    /// Whether it may run beside its neighbours: it keeps one core busy, and needs nothing that they make.
+    /// Whether it may run beside its neighbours: it leaves cores idle, and needs nothing that they make.
     is_light: bool,
 }
 
@@ -113,6 +113,7 @@ fn run_beside(task: &str, steps: &[Step], summary: &Mutex<Summary>) {
     let next = AtomicUsize::new(0);
     let work = || {
         while let Some(step) = steps.get(next.fetch_add(1, Ordering::Relaxed)) {
+            println!("... {}", step.title);
             let begun = Instant::now();
             let (printed, processor, outcome) =
                 run_apart(task, step).unwrap_or_else(|error| (String::new(), 0.0, Err(error.to_string())));
