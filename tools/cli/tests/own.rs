@@ -6,11 +6,14 @@ use std::{
     process::{Command, Output},
 };
 
+/// Where cargo builds quickly.
+const UNOPTIMISED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/unoptimised");
+
 /// The command, with compiled cranes kept in a folder for this test.
 fn crane(arguments: &[&str]) -> Output {
     let cache = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("own_cranes");
     let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));
-    command.args(arguments).env("CRANE_CACHE", cache).output().expect("the command starts")
+    command.args(arguments).current_dir(UNOPTIMISED).env("CRANE_CACHE", cache).output().expect("the command starts")
 }
 
 fn text(bytes: &[u8]) -> String {
@@ -114,7 +117,7 @@ fn a_spec_computes_to_the_bit_what_the_shipped_crane_does() {
     let cache = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("own_cranes");
     let statics = |path: Option<&str>| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));
-        command.args(["statics", &file, "--compile"]).env("CRANE_CACHE", &cache);
+        command.args(["statics", &file, "--compile"]).current_dir(UNOPTIMISED).env("CRANE_CACHE", &cache);
         if let Some(path) = path {
             command.env("PATH", path).env_remove("CARGO");
         }

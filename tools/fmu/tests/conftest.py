@@ -39,11 +39,12 @@ def crane(request):
     """Runs the command, and returns what it prints."""
     program = request.config.getoption("--command")
 
-    # What is compiled stays beside the command: the next tests find what cargo has built for it.
+    # Where cargo builds quickly. What is compiled stays beside the command: the next tests find what cargo has built for it.
+    folder = Path(__file__).parents[3] / "tests" / "unoptimised"
     environment = {**os.environ, "CRANE_CACHE": str(Path(program).resolve().parents[1] / "tmp" / "units")}
 
     def run(*arguments, fails=False):
-        done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, env=environment)
+        done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, cwd=folder, env=environment)
         assert (done.returncode != 0) == fails, done.stderr
         return done.stderr if fails else done.stdout
 

@@ -8,8 +8,11 @@ use std::{
 
 use serde_json::Value;
 
+/// The command, where cargo builds quickly.
 fn lab(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_crane-lab")).args(arguments).output().expect("the command starts")
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/unoptimised");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_crane-lab"));
+    command.args(arguments).current_dir(folder).output().expect("the command starts")
 }
 
 fn text(bytes: &[u8]) -> String {

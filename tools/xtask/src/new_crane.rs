@@ -9,6 +9,9 @@ use crate::{step, workspace};
 /// Where the new crate is made, under cargo's target folder.
 const FOLDER: &str = "new-crane";
 
+/// What the programs of other tests that compile a crane are built with: what these have built is used again.
+const UNOPTIMISED: &str = "tests/unoptimised/.cargo/config.toml";
+
 /// Makes a crate, runs its tests and its program.
 pub fn check_new_crane() -> Result<(), String> {
     let folder = workspace::target().join(FOLDER);
@@ -24,6 +27,7 @@ pub fn check_new_crane() -> Result<(), String> {
     for task in ["test", "run"] {
         let mut cargo = Command::new(step::cargo());
         cargo.args([task, "--release", "--config"]).arg(&profile);
+        cargo.arg("--config").arg(workspace::root().join(UNOPTIMISED));
         step::run_to_end(cargo.env("CARGO_TARGET_DIR", workspace::target()).current_dir(&folder))?;
     }
     Ok(())
