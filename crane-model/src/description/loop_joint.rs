@@ -7,7 +7,7 @@ use super::{AttachmentInfo, List, Text};
 pub struct LoopJointInfo {
     /// Name.
     pub name: Text,
-    /// `ball`, `pin`, `rod` or `slide`.
+    /// `ball`, `pin`, `rod`, `slide`, or `pad`: what holds a stage of a telescope exactly.
     pub kind: Text,
     /// Its points; the directions of its forces are in the axes of the first.
     pub ends: [AttachmentInfo; 2],
@@ -15,6 +15,18 @@ pub struct LoopJointInfo {
     pub spanned: [usize; 2],
     /// Its equations.
     pub equations: List<LoopEquationInfo>,
+}
+
+impl LoopJointInfo {
+    /// Whether it holds the distance of its points.
+    pub fn is_rod(&self) -> bool {
+        self.kind.as_str() == "rod"
+    }
+
+    /// Whether it is a pad on which a beam slides.
+    pub fn is_pad(&self) -> bool {
+        self.kind.as_str() == "pad"
+    }
 }
 
 /// An equation of a joint that closes a loop.

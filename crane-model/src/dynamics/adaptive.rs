@@ -186,7 +186,7 @@ impl<F: Formula> Adaptive<'_, F> {
             let q = &self.motion[..n];
             let description = equations.crane.description();
             let context = StepContext { method: F::METHOD, t: reached, h: length, q, description };
-            return Err(context.open(equations.crane, open));
+            return Err(context.opened(equations.crane, open));
         }
         self.motion.copy_from_slice(&self.step.end);
         self.equations.make_absolute(reached, &mut self.motion);

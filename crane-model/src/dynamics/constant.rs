@@ -182,7 +182,7 @@ impl Stepper for Rk4<'_> {
         }
         let closed = if advanced.is_ok() { equations.project(motion) } else { Ok(()) };
         if let Err(open) = closed {
-            return Err(self.context(t + h, h).open(self.equations.crane, open));
+            return Err(self.context(t + h, h).opened(self.equations.crane, open));
         }
         if let Err(NotFinite) = advanced {
             let context = self.context(t, h);

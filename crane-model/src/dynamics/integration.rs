@@ -155,7 +155,7 @@ impl<'a, S: Stepper + ?Sized> Integration<'a, S> {
         if let Err(open) = self.loops.project(self.crane, q, &mut rest[..n]) {
             let context =
                 StepContext { method: self.settings.method, t: result, h: self.settings.step, q, description };
-            return Err(context.open(self.crane, open));
+            return Err(context.opened(self.crane, open));
         }
         (self.time, self.is_steered) = (result, false);
         Ok(ControlFlow::Continue(()))

@@ -8,7 +8,7 @@ use super::Method;
 use crate::{
     Description, Text,
     dyn_crane::DynDynamics,
-    loop_joints::{Gap, Open},
+    loop_joints::{Gap, Open, drives_beyond_reach},
 };
 
 /// Why a run stopped early.
@@ -26,6 +26,8 @@ pub enum Cause {
     MassMatrix,
     /// A loop does not close: [`Stopped::coordinate`] is its joint and the direction, [`Stopped::value`] the gap.
     OpenLoop,
+    /// Rigid drives move a loop beyond its reach: [`Stopped::coordinate`] names them.
+    BeyondReach,
 }
 
 /// A run that stopped early, and where.
@@ -72,6 +74,16 @@ impl StepContext<'_> {
         let Gap { joint, direction, gap, unit } = Gap::of(crane, open);
         let along = if direction.is_empty() { joint } else { format!("{joint} along {direction}") };
         Stopped { coordinate: along.into(), value: gap, unit, ..self.stopped(Cause::OpenLoop, 0) }
+    }
+
+    /// A run that stopped because a loop that was closed opened: because of its rigid drives, if it was about to be stretched out.
+    pub fn opened(&self, crane: &dyn DynDynamics, open: Open) -> Stopped {
+        let stopped = self.open(crane, open);
+        let drives = if crane.cranes() == 1 { drives_beyond_reach(crane, self.q) } else { Vec::new() };
+        if drives.is_empty() {
+            return stopped;
+        }
+        Stopped { cause: Cause::BeyondReach, coordinate: drives.join(" and ").into(), ..stopped }
     }
 
     /// Like [`stopped`](Self::stopped), for the coordinate with the largest value: the first that is not finite, otherwise the largest.
@@ -141,6 +153,11 @@ impl Stopped {
                  joints that are not parallel: hold it with a `ball` or a `slide` instead of a `pin`, or with fewer joints",
                 self.coordinate
             ),
+            Cause::BeyondReach => format!(
+                "the loop is at a dead centre of its drives, and no pose lies beyond: end the motion of {} earlier, or change the lengths of the \
+                 loop",
+                self.coordinate
+            ),
             Cause::MassMatrix => format!(
                 "give the links that {} moves a `mass` above zero, in kg, and an `inertia`, in kg m², if it only rotates them, or \
                  write `joint: fixed`; a parameter may have been set to zero",
@@ -167,6 +184,9 @@ impl fmt::Display for Stopped {
             Cause::OpenLoop => {
                 let (size, unit) = if *unit == "m" { (value * 1e3, "mm") } else { (value.to_degrees(), "°") };
                 write!(f, "a loop does not close at t = {time:.6} s: joint {coordinate} is open by {size:.3} {unit}")
+            }
+            Cause::BeyondReach => {
+                write!(f, "at t = {time:.6} s the rigid drive of {coordinate} moves its loop beyond its reach")
             }
             Cause::MassMatrix => write!(
                 f,

@@ -1,54 +1,10 @@
 //! Whether the drives of a crane determine the motion of its loops.
 
-use nalgebra::DMatrix;
-
 use super::{
-    Loops, dot,
+    Loops,
     required::{Balance, without_pushes},
 };
-use crate::{CoordinateRole, dyn_crane::DynModel};
-
-/// Angle to a dead centre, or its sine, below which there is a caution: 2°.
-pub const DEAD_CENTRE: f64 = 0.035;
-
-/// The angle by which drives miss a dead centre, rad, if it is below [`DEAD_CENTRE`]: that between the directions in which the other coordinates
-/// move the points of the loops. With two of them, as in a four-bar, it is the transmission angle. `None` also if drives hold more than the loops leave
-/// free, or if beams bend in a loop.
-pub(super) fn dead_centre_of_drives(crane: &(impl DynModel + ?Sized), loops: &Loops) -> Option<f64> {
-    /// Directions that depend on each other at every pose.
-    const ALWAYS: f64 = 1e-7;
-    let coordinates = &crane.description().coordinates;
-    let (kept, n) = (loops.independent(), coordinates.len());
-    let all: Vec<usize> = (0..n).filter(|j| loops.is_moved_by(*j)).collect();
-    let role = |j: &usize| coordinates[*j].role;
-    if !all.iter().any(|j| role(j) == CoordinateRole::Driven) || all.iter().any(|j| role(j).is_element()) {
-        return None;
-    }
-    let passive: Vec<usize> = all.into_iter().filter(|j| role(j) == CoordinateRole::Passive).collect();
-    if kept.is_empty() || passive.len() < kept.len() {
-        return None;
-    }
-    let moments: Vec<bool> =
-        crane.loop_joints().iter().flat_map(|joint| &*joint.equations).map(|equation| equation.is_moment).collect();
-    let size = |is_moment: bool| {
-        let rows = kept.iter().filter(|row| moments[**row] == is_moment);
-        rows.map(|row| dot(&loops.jacobian()[row * n..][..n], &loops.jacobian()[row * n..][..n]).sqrt())
-            .fold(f64::MIN_POSITIVE, f64::max)
-    };
-    let sizes = [false, true].map(size);
-    let mut directions = DMatrix::from_fn(kept.len(), passive.len(), |i, k| {
-        loops.jacobian()[kept[i] * n + passive[k]] / sizes[usize::from(moments[kept[i]])]
-    });
-    for mut direction in directions.column_iter_mut() {
-        let length = direction.norm();
-        direction /= if length > ALWAYS { length } else { 1.0 };
-    }
-    // The smallest singular value, as an eigenvalue's root: known to 1e-8.
-    let squares = &directions * directions.transpose();
-    let least = squares.symmetric_eigenvalues().min().max(0.0).sqrt();
-    let angle = 2.0 * (least * std::f64::consts::FRAC_1_SQRT_2).min(1.0).asin();
-    (least > ALWAYS && angle < DEAD_CENTRE).then_some(angle)
-}
+use crate::dyn_crane::DynModel;
 
 /// Coordinates in loops that rigid drives prescribe although the loops determine them: not all of them can be prescribed. Empty if the drives
 /// leave the loops enough freedom.
@@ -59,7 +15,7 @@ pub(crate) fn prescribed_too_much(crane: &(impl DynModel + ?Sized), q: &[f64]) -
     }
     loops.evaluate(crane, q, &vec![0.0; q.len()]);
     let prescribed = loops.prescribed.clone();
-    let [(with, _), (without, _)] = [&[], prescribed.as_slice()].map(|held| loops.independent_without(held));
+    let [with, without] = [&[], prescribed.as_slice()].map(|held| loops.independent_without(held));
     let in_loops = prescribed.iter().filter(|j| loops.is_moved_by(**j));
     let names = in_loops.map(|j| crane.description().coordinates[*j].name.to_string());
     if without < with { names.collect() } else { Vec::new() }

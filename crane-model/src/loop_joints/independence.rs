@@ -1,14 +1,13 @@
 //! Which equations of loop joints are independent.
 //!
-//! A planar four-bar described in space has five equations, of which two are independent. The rows of J, each over its length, are
-//! eliminated with the largest remaining row as pivot; a pivot is the square of the sine of the angle between a row and the space of
-//! those before. Units do not matter, and neither do masses.
+//! A planar four-bar described in space has five equations, of which two are independent. The rows of J, those of a joint's forces over
+//! the length of the longest of them, are eliminated with the largest remaining row as pivot; a pivot is the square of the distance of a row from
+//! the space of those before. A row is not divided by its own length: near a dead centre along an axis, it vanishes instead of
+//! becoming parallel to others. Neither units nor masses matter, nor how the crane lies in the world.
 
 use crate::memory::{visit_flag, visit_indices};
 
-/// A row shorter than this fraction of what it could be is zero: rounding of the axes leaves 1e-16.
-const NOTHING: f64 = 1e-9;
-/// A row whose pivot is below this depends on others: a sine of 1e-5.
+/// A row whose pivot is below this is zero or depends on others: a sine of 1e-5.
 const DEPENDENT: f64 = 1e-10;
 /// The choice is made again if the smallest pivot falls below this fraction of that at the last choice.
 const WORSE: f64 = 0.1;
@@ -25,9 +24,9 @@ pub(super) struct Independence {
     /// The smallest pivot, and that when the choice was made; NaN before.
     least: f64,
     chosen: f64,
-    /// `J Jᵀ` of rows of unit length, eliminated step by step.
+    /// `J Jᵀ` of rows over their units, eliminated step by step.
     gram: Vec<f64>,
-    lengths: Vec<f64>,
+    units: Vec<f64>,
     remaining: Vec<bool>,
 }
 
@@ -41,7 +40,7 @@ impl Independence {
             least: f64::NAN,
             chosen: f64::NAN,
             gram: vec![0.0; count * count],
-            lengths: vec![0.0; count],
+            units: vec![0.0; count],
             remaining: vec![false; count],
         }
     }
@@ -62,7 +61,7 @@ impl Independence {
 
     /// Number of equations.
     pub fn len(&self) -> usize {
-        self.lengths.len()
+        self.units.len()
     }
 
     /// Whether no choice was made so far.
@@ -76,11 +75,6 @@ impl Independence {
 
     pub fn is_kept(&self, equation: usize) -> bool {
         self.is_kept[equation]
-    }
-
-    /// The square root of the smallest pivot; 1 without equations.
-    pub fn least(&self) -> f64 {
-        if self.kept.is_empty() { 1.0 } else { self.least.sqrt() }
     }
 
     /// Chooses equations at a state; `prescribed` coordinates do not count. Those chosen before remain if they are still good.
@@ -139,32 +133,29 @@ impl Independence {
         }
     }
 
-    /// The products of all rows of unit length; rows that are zero do not remain.
+    /// The products of all rows over their units; rows that are zero do not remain.
     fn measure(&mut self, jacobian: &[f64], n: usize, prescribed: &[usize]) {
         let product = |i: usize, j: usize| -> f64 {
             let (one, other) = (&jacobian[i * n..][..n], &jacobian[j * n..][..n]);
             let whole: f64 = one.iter().zip(other).map(|(a, b)| a * b).sum();
             whole - prescribed.iter().map(|&k| one[k] * other[k]).sum::<f64>()
         };
-        let size = self.len();
-        for row in 0..size {
-            self.lengths[row] = product(row, row).max(0.0).sqrt();
-        }
         let mut first = 0;
         for group in &self.groups {
             let own = first..first + group.len();
-            let greatest = self.lengths[own.clone()].iter().zip(group).filter(|(_, is_moment)| !**is_moment);
-            let greatest = greatest.map(|(length, _)| *length).fold(0.0, f64::max);
+            let lengths = own.clone().zip(group).filter(|(_, is_moment)| !**is_moment);
+            let greatest = lengths.map(|(row, _)| product(row, row).max(0.0).sqrt()).fold(0.0, f64::max);
             for (row, is_moment) in own.zip(group) {
-                let whole = if *is_moment { 1.0 } else { greatest };
-                self.remaining[row] = self.lengths[row] > NOTHING * whole && self.lengths[row] > 0.0;
+                self.units[row] = if *is_moment { 1.0 } else { greatest };
             }
             first += group.len();
         }
+        let size = self.len();
         for i in 0..size {
+            self.remaining[i] = self.units[i] > 0.0;
             for j in 0..=i {
                 let both = self.remaining[i] && self.remaining[j];
-                let entry = if both { product(i, j) / (self.lengths[i] * self.lengths[j]) } else { 0.0 };
+                let entry = if both { product(i, j) / (self.units[i] * self.units[j]) } else { 0.0 };
                 (self.gram[i * size + j], self.gram[j * size + i]) = (entry, entry);
             }
         }
@@ -188,9 +179,9 @@ mod tests {
         let before = independence.kept().to_vec();
         independence.choose(&rows(1.1), 3, &[2]);
         assert_eq!(independence.kept(), before);
-        // Rows 0 and 1 nearly coincide at a small angle: the sine of the best pair is that between row 2 and either of them.
+        // Rows 0 and 1 nearly coincide at a small angle, and what is left of row 2 is short.
         independence.choose(&rows(1e-3), 3, &[2]);
-        assert!(independence.least() < 2e-3);
+        assert!(independence.kept().len() == 2 && independence.least < 1e-5);
         independence.choose(&rows(0.0), 3, &[2]);
         assert_eq!(independence.kept().len(), 1);
     }

@@ -19,6 +19,7 @@
 //! Equations that depend on others (`independence`) are left out: what they would transmit cannot be determined.
 
 mod curvature;
+mod dead_centre;
 mod drives;
 mod independence;
 mod of_crane;
@@ -27,10 +28,10 @@ mod reactions;
 mod required;
 
 pub(crate) use curvature::{closed_motions, geometric_stiffness};
-pub use drives::DEAD_CENTRE;
+pub use dead_centre::DEAD_CENTRE;
 pub(crate) use drives::prescribed_too_much;
-pub use reactions::{Gap, cautions, gap_at, independent, undetermined};
-pub(crate) use reactions::{add_to_wrenches, on_rigid_drives};
+pub use reactions::{Caution, Gap, Watch, cautions, gap_at, independent, undetermined};
+pub(crate) use reactions::{add_to_wrenches, drives_beyond_reach, on_rigid_drives};
 pub(crate) use required::{at_rest, generalized, required};
 
 use nalgebra::Vector3;
@@ -183,11 +184,6 @@ impl Loops {
         self.each[equation % self.cranes].independence.is_kept(equation / self.cranes)
     }
 
-    /// How far the independent equations of the first crane are from depending on each other, 0 to 1: a sine, 0 at a dead centre.
-    pub fn distance_to_dead_centre(&self) -> f64 {
-        self.each[0].independence.least()
-    }
-
     /// φ, φ̇ and J̇ q̇ of every equation, and J.
     pub fn evaluate(&mut self, crane: &(impl DynModel + ?Sized), q: &[f64], v: &[f64]) {
         crane.loop_states(q, v, &mut self.states);
@@ -210,11 +206,11 @@ impl Loops {
         self.each.iter_mut().for_each(|own| own.order(&mut self.rows));
     }
 
-    /// Number of equations that are independent while some coordinates rest, and how far they are from depending on each other.
-    fn independent_without(&self, held: &[usize]) -> (usize, f64) {
+    /// Number of equations that are independent while some coordinates rest.
+    fn independent_without(&self, held: &[usize]) -> usize {
         let mut independence = self.each[0].independence.begin_again();
         independence.choose(&self.jacobian, self.n, held);
-        (independence.kept().len(), independence.least())
+        independence.kept().len()
     }
 
     /// Prepares solutions at the state evaluated; `solve` solves the system of the open chain.

@@ -1,8 +1,10 @@
 //! What loop joints transmit, and what to say about them at a pose.
 
 use super::{
-    Loops, OPEN, Open, dot,
-    drives::{DEAD_CENTRE, dead_centre_of_drives, fighting_valves, prescribed_too_much},
+    Loops, OPEN, Open,
+    dead_centre::{DEAD_CENTRE, DeadCentre, DeadCentres},
+    dot,
+    drives::{fighting_valves, prescribed_too_much},
 };
 use crate::{
     Wrench,
@@ -91,45 +93,135 @@ pub fn undetermined(crane: &(impl DynModel + ?Sized), q: &[f64]) -> Vec<String> 
     dependent.map(name).collect()
 }
 
+/// A caution about the loops of a crane.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Caution {
+    /// The equations of a joint's loop nearly depend on each other.
+    DeadCentre {
+        /// The joint.
+        joint: String,
+        /// How far it is from the dead centre, rad.
+        angle: f64,
+    },
+    /// The joints without a drive move the point of a joint nearly in too few directions.
+    DeadCentreOfDrives {
+        /// The joint.
+        joint: String,
+        /// How far it is from the dead centre, rad.
+        angle: f64,
+    },
+    /// These cylinders with valves can push against each other.
+    Fighting(Vec<String>),
+    /// What these equations transmit is not determined.
+    Undetermined(Vec<String>),
+}
+
+impl Caution {
+    /// Whether it is of the kind of another one.
+    pub fn is_like(&self, other: &Self) -> bool {
+        std::mem::discriminant(self) == std::mem::discriminant(other)
+    }
+
+    /// The angle from a dead centre, rad.
+    pub fn angle(&self) -> Option<f64> {
+        match self {
+            Self::DeadCentre { angle, .. } | Self::DeadCentreOfDrives { angle, .. } => Some(*angle),
+            Self::Fighting(_) | Self::Undetermined(_) => None,
+        }
+    }
+}
+
+impl std::fmt::Display for Caution {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::DeadCentre { joint, angle } => write!(
+                f,
+                "the loop of {joint} is {:.2}° from a dead centre: its forces are large and its motion beyond is not determined",
+                angle.to_degrees()
+            ),
+            Self::DeadCentreOfDrives { joint, angle } => write!(
+                f,
+                "the loop of {joint} is {:.2}° from a dead centre of its drives: they hardly hold it, and which way it moves on is not determined",
+                angle.to_degrees()
+            ),
+            Self::Fighting(cylinders) => write!(
+                f,
+                "{} hold one loop together and can push against each other: how they share its load depends on the oil trapped in them; a run \
+                 begins with the smallest forces in the loop",
+                cylinders.join(" and ")
+            ),
+            Self::Undetermined(equations) => write!(
+                f,
+                "reactions of {} cannot be determined: other joints hold the same; they are shown as 0",
+                equations.join(", ")
+            ),
+        }
+    }
+}
+
+/// Looks at the loops of a crane, pose by pose.
+pub struct Watch<'a, M: DynModel + ?Sized> {
+    crane: &'a M,
+    loops: Loops,
+    dead_centres: DeadCentres,
+}
+
+impl<'a, M: DynModel + ?Sized> Watch<'a, M> {
+    /// Of a crane.
+    pub fn new(crane: &'a M) -> Self {
+        Self { crane, loops: Loops::new(crane), dead_centres: DeadCentres::new() }
+    }
+
+    /// Cautions about a pose, the most important first.
+    pub fn cautions(&mut self, q: &[f64]) -> Vec<Caution> {
+        /// As near as this to a dead centre, rad, equations are dependent because of it.
+        const AT: f64 = 1e-4;
+        let Self { crane, loops, .. } = self;
+        if loops.is_empty() {
+            return Vec::new();
+        }
+        let undetermined = undetermined(*crane, q);
+        let is_closed = gap_at(*crane, q).is_none();
+        let too_much = !prescribed_too_much(*crane, q).is_empty();
+        let dead_centre = self.dead_centre(q);
+        let is_at = dead_centre.as_ref().and_then(Caution::angle).is_some_and(|angle| angle < AT);
+        let unknown = is_closed && !undetermined.is_empty() && !too_much && !is_at;
+        self.loops.choose();
+        let fighting = fighting_valves(self.crane, q, &self.loops).map(Caution::Fighting);
+        let undetermined = unknown.then_some(Caution::Undetermined(undetermined));
+        dead_centre.filter(|_| is_closed && !too_much).into_iter().chain(fighting).chain(undetermined).collect()
+    }
+
+    /// The dead centre to which a loop is near, if there is one.
+    fn dead_centre(&mut self, q: &[f64]) -> Option<Caution> {
+        let Self { crane, loops, dead_centres } = self;
+        loops.evaluate(*crane, q, &vec![0.0; q.len()]);
+        let near = dead_centres.nearest(*crane, loops, q);
+        let name = |index: usize| crane.loop_joints()[index].name.to_string();
+        let [of_loop, of_drives] = near.map(|near| near.filter(|DeadCentre { angle, .. }| *angle < DEAD_CENTRE));
+        let of_loop = of_loop.map(|near| Caution::DeadCentre { joint: name(near.joint), angle: near.angle });
+        of_loop.or_else(|| {
+            of_drives.map(|near| Caution::DeadCentreOfDrives { joint: name(near.joint), angle: near.angle })
+        })
+    }
+}
+
 /// Cautions about the loops at a pose.
 pub fn cautions(crane: &(impl DynModel + ?Sized), q: &[f64]) -> Vec<String> {
+    Watch::new(crane).cautions(q).iter().map(Caution::to_string).collect()
+}
+
+/// The rigid drives that hold a loop, if it is as near to a dead centre of them as it is where they moved it beyond its reach.
+pub(crate) fn drives_beyond_reach(crane: &(impl DynModel + ?Sized), q: &[f64]) -> Vec<String> {
+    /// A loop that opens within a step is not yet in line, rad: 10°.
+    const NEAR: f64 = 0.17;
     let mut loops = Loops::new(crane);
-    if loops.is_empty() {
-        return Vec::new();
-    }
-    let undetermined = undetermined(crane, q);
-    let is_closed = gap_at(crane, q).is_none();
-    let unknown = (is_closed && !undetermined.is_empty() && prescribed_too_much(crane, q).is_empty()).then(|| {
-        format!(
-            "reactions of {} cannot be determined: other joints hold the same; they are shown as 0",
-            undetermined.join(", ")
-        )
-    });
     loops.evaluate(crane, q, &vec![0.0; q.len()]);
-    loops.choose();
-    let last = loops.independent().last().copied().unwrap_or(0);
-    let name = &equation_of(crane.loop_joints(), last).0.name;
-    let distance = loops.distance_to_dead_centre();
-    let near = (distance < DEAD_CENTRE).then(|| {
-        format!(
-            "the loop of {name} is {:.2}° from a dead centre: its forces are large and its motion beyond is not determined",
-            distance.asin().to_degrees()
-        )
-    });
-    let loose = dead_centre_of_drives(crane, &loops).filter(|_| near.is_none()).map(|angle| {
-        format!(
-            "the loop of {name} is {:.2}° from a dead centre of its drives: they hardly hold it, and which way it moves on is not determined",
-            angle.to_degrees()
-        )
-    });
-    let fighting = fighting_valves(crane, q, &loops).map(|cylinders| {
-        format!(
-            "{} hold one loop together and can push against each other: how they share its load depends on the oil trapped in them; a run begins \
-             with the smallest forces in the loop",
-            cylinders.join(" and ")
-        )
-    });
-    near.into_iter().chain(loose).chain(fighting).chain(unknown).collect()
+    let [_, of_drives] = DeadCentres::new().nearest(crane, &loops, q);
+    let Some(DeadCentre { joint, .. }) = of_drives.filter(|near| near.angle < NEAR) else { return Vec::new() };
+    let [first, end] = crane.loop_joints()[joint].spanned;
+    let in_loop = loops.prescribed.iter().filter(|j| (first..end).contains(*j));
+    in_loop.map(|j| crane.description().coordinates[*j].name.to_string()).collect()
 }
 
 /// Adds what loop joints transmit at every cut; only those that hold to the world if `to_world`.

@@ -4,7 +4,7 @@ use fastrand::Rng;
 
 use crate::crane::{Case, with_features};
 use crate::feature::Features;
-use crate::observe::{differences, observe};
+use crate::observe::{CAUTIONS, differences, observe};
 use crate::tree::{Tree, source, text};
 use crate::{changes, charts, descriptions, fleets, laws, meshes, run_changes};
 
@@ -47,9 +47,19 @@ fn apply(check: &str, tree: &Tree, seed: u64, run: bool) -> Option<Vec<String>> 
     if let Some((_, description)) = descriptions::ALL.iter().find(|(name, _)| *name == check) {
         let second = description(tree, &mut Rng::with_seed(seed))?;
         let moves = run && second.moves;
-        let first = observe(&source(second.first.as_ref().unwrap_or(tree)), moves).ok()?;
+        let mut first = observe(&source(second.first.as_ref().unwrap_or(tree)), moves).ok()?;
         return Some(match observe(&second.source, moves) {
-            Ok(numbers) => differences([&first, &numbers], &second.name, &second.factor),
+            Ok(mut numbers) => {
+                if !second.cautions {
+                    for numbers in [&mut first, &mut numbers] {
+                        numbers.retain(|_, number| number.group != CAUTIONS);
+                    }
+                }
+                let missing = differences([&first, &numbers], &second.name, &second.factor);
+                let cautions =
+                    numbers.iter().filter(|(name, number)| number.group == CAUTIONS && !first.contains_key(*name));
+                missing.into_iter().chain(cautions.map(|(name, _)| format!("{name}, of the second only"))).collect()
+            }
             Err(refused) => refused.lines().map(str::to_owned).collect(),
         });
     }

@@ -23,6 +23,8 @@ pub struct Second {
     pub factor: Box<dyn Fn(&str) -> f64>,
     /// Whether it also moves as the first does.
     pub moves: bool,
+    /// Whether cautions about it are, word for word, those about the first.
+    pub cautions: bool,
 }
 
 impl Second {
@@ -35,6 +37,7 @@ impl Second {
             name: Box::new(|name| Some(name.to_owned())),
             factor: Box::new(|_| 1.0),
             moves: true,
+            cautions: false,
         }
     }
 
@@ -314,10 +317,8 @@ fn turned(tree: &Tree, _: &mut Rng) -> Option<Second> {
         connector.get_mut("over").and_then(Value::as_array_mut).into_iter().flatten().for_each(turned);
     }
     let points = ["tip_", "middle_", "load_"];
-    Some(
-        Second::of(&second)
-            .named(move |name| (!points.iter().any(|point| name.starts_with(point))).then(|| name.to_owned())),
-    )
+    let named = move |name: &str| (!points.iter().any(|point| name.starts_with(point))).then(|| name.to_owned());
+    Some(Second { cautions: true, ..Second::of(&second).named(named) })
 }
 
 /// Positions in a frame that is turned by 90° about x.

@@ -8,6 +8,7 @@ use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::Settings;
 use crane_model::envelope::{Axes, Envelope, Execution, Limits, PartLimit, Rating, only_mass};
+use crane_model::results::cautions;
 use crane_model::runs::{Start, record};
 use crane_model::sections::stressed_sections;
 use crane_model::tipping::lines;
@@ -33,6 +34,8 @@ const REST: (&str, f64) = ("rest", 1e-7);
 const RUN: (&str, f64) = ("run", 2e-5);
 /// Frequencies: those of the lowest modes are differences of large numbers.
 const MODES: (&str, f64) = ("modes", 1e-6);
+/// Cautions about the pose, each a number 1.
+pub const CAUTIONS: &str = "cautions";
 /// Forces that joints transmit.
 const CUTS: (&str, f64) = ("cuts", 1e-7);
 
@@ -101,6 +104,10 @@ pub fn observe(source: &SourceFile, run: bool) -> Result<Numbers, String> {
     let balances = lines(crane, 0.0, &q, &rest, &rest).into_iter().map(|line| line.balance());
     if let Some(least) = balances.min_by(f64::total_cmp) {
         add(CUTS.0, "least moment about a tipping line".to_owned(), "N m", least);
+    }
+    for caution in cautions::of_pose(crane, &q, cautions::BEND) {
+        let words: String = caution.chars().filter(|letter| !letter.is_ascii_digit()).collect();
+        add(CAUTIONS, words, "", 1.0);
     }
     let start = Start { v: rest, q, x: Vec::new(), what: String::new(), rests: true };
     let base = Settings { tolerance: STEP, most_steps: MOST_STEPS, audit: false, ..Settings::of(description) };

@@ -347,7 +347,7 @@ impl Stepper for Bdf<'_> {
         }
         self.accept();
         match self.open.take() {
-            Some(open) => Err(self.context().open(self.crane, open)),
+            Some(open) => Err(self.context().opened(self.crane, open)),
             None => Ok(self.history.t),
         }
     }

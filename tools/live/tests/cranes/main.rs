@@ -9,6 +9,7 @@ mod connectors;
 mod critical_loads;
 mod curved_beams;
 mod cylinders;
+mod dead_centres;
 mod efforts;
 mod energy_audit;
 mod exact_pads;
