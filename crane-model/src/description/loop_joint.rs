@@ -44,6 +44,11 @@ impl LoopEquationInfo {
         if self.is_moment { "rad" } else { "m" }
     }
 
+    /// Unit of the rate of its gap.
+    pub const fn rate_unit(&self) -> &'static str {
+        if self.is_moment { "rad/s" } else { "m/s" }
+    }
+
     /// Unit of what it transmits.
     pub const fn force_unit(&self) -> &'static str {
         if self.is_moment { "N m" } else { "N" }

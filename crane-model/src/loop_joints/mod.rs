@@ -26,6 +26,7 @@ mod of_crane;
 mod quantities;
 mod reactions;
 mod required;
+mod starts;
 
 pub(crate) use curvature::{closed_motions, geometric_stiffness};
 pub use dead_centre::DEAD_CENTRE;
@@ -33,6 +34,8 @@ pub(crate) use drives::prescribed_too_much;
 pub use reactions::{Caution, Gap, Watch, cautions, gap_at, independent, undetermined};
 pub(crate) use reactions::{add_to_wrenches, drives_beyond_reach, on_rigid_drives};
 pub(crate) use required::{at_rest, generalized, required};
+pub use starts::Given;
+pub(crate) use starts::{close_start, close_state};
 
 use nalgebra::Vector3;
 
@@ -64,8 +67,10 @@ const GREATEST_ROTATION: f64 = 0.5;
 pub(crate) struct Open {
     /// Index of the equation with the largest gap, among those of all joints.
     pub equation: usize,
-    /// The gap, m or rad.
+    /// The gap, m or rad, or its rate, m/s or rad/s.
     pub gap: f64,
+    /// Whether it is the rate of a gap that is closed.
+    pub is_rate: bool,
 }
 
 /// Solves a linear system, `x = M⁻¹ r`.
@@ -354,9 +359,13 @@ impl Loops {
         let gaps = gaps.map(|(equation, state)| Open {
             equation,
             gap: if state.x.is_nan() { f64::INFINITY } else { state.x.abs() },
+            is_rate: false,
         });
-        gaps.reduce(|one, other| if other.gap > one.gap { other } else { one })
-            .unwrap_or(Open { equation: 0, gap: 0.0 })
+        gaps.reduce(|one, other| if other.gap > one.gap { other } else { one }).unwrap_or(Open {
+            equation: 0,
+            gap: 0.0,
+            is_rate: false,
+        })
     }
 
     /// Moves a pose and its rates, which a method has integrated, onto the loops.

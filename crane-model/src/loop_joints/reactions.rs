@@ -13,14 +13,14 @@ use crate::{
     wrench,
 };
 
-/// A loop that is open at a pose.
+/// A loop that is open at a pose, or opens.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gap {
     /// The joint.
     pub joint: String,
     /// The direction; empty for a rod.
     pub direction: String,
-    /// The gap, m or rad.
+    /// The gap, m or rad, or its rate, m/s or rad/s.
     pub gap: f64,
     /// Its unit.
     pub unit: &'static str,
@@ -28,11 +28,12 @@ pub struct Gap {
 
 impl Gap {
     /// Of an equation of a crane.
-    pub(crate) fn of(crane: &(impl DynModel + ?Sized), Open { equation, gap }: Open) -> Self {
+    pub(crate) fn of(crane: &(impl DynModel + ?Sized), Open { equation, gap, is_rate }: Open) -> Self {
         let (joint, info) = equation_of(crane.loop_joints(), equation);
         // That of an axis is a sine.
-        let gap = if info.is_moment && gap <= 1.0 { gap.asin() } else { gap };
-        Self { joint: joint.name.to_string(), direction: info.direction.to_string(), gap, unit: info.unit() }
+        let gap = if info.is_moment && !is_rate && gap <= 1.0 { gap.asin() } else { gap };
+        let unit = if is_rate { info.rate_unit() } else { info.unit() };
+        Self { joint: joint.name.to_string(), direction: info.direction.to_string(), gap, unit }
     }
 }
 
@@ -40,11 +41,16 @@ impl std::fmt::Display for Gap {
     /// `joint p is open by 3.20 mm along x`
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { joint, direction, gap, unit } = self;
-        if *unit == "m" {
-            write!(f, "joint {joint} is open by {:.3} mm", gap * 1e3)?;
-            if direction.is_empty() { write!(f, " along its length") } else { write!(f, " along {direction}") }
-        } else {
-            write!(f, "the axes of joint {joint} differ by {:.3}° about {direction}", gap.to_degrees())
+        let along = if direction.is_empty() { "its length" } else { direction };
+        match *unit {
+            "m" => write!(f, "joint {joint} is open by {:.3} mm along {along}", gap * 1e3),
+            "m/s" => write!(f, "joint {joint} opens at {:.3} mm/s along {along}", gap * 1e3),
+            "rad/s" => write!(
+                f,
+                "the axes of joint {joint} turn against each other at {:.3} °/s about {direction}",
+                gap.to_degrees()
+            ),
+            _ => write!(f, "the axes of joint {joint} differ by {:.3}° about {direction}", gap.to_degrees()),
         }
     }
 }

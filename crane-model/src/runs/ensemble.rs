@@ -202,7 +202,7 @@ pub fn ready(crane: &dyn DynCrane, row: &Case) -> Result<(Box<dyn DynCrane>, Sta
     for (index, input) in row.inputs.iter().enumerate() {
         row_crane.set_input(index, *input);
     }
-    let start = Start::with(row_crane.as_ref(), row.q.as_deref(), row.v.as_deref()).map_err(Reason::Failed)?;
+    let start = Start::with(row_crane.as_ref(), 0.0, row.q.as_deref(), row.v.as_deref()).map_err(Reason::Failed)?;
     Ok((row_crane, start))
 }
 

@@ -6,6 +6,7 @@ use crate::{
     Text,
     dyn_crane::DynCrane,
     dynamics::{Cause, Stopped},
+    loop_joints::Gap,
     modes::NoModes,
     statics::{Diagnosis, Equilibrium},
 };
@@ -31,6 +32,13 @@ pub enum Reason {
     },
     /// The mass matrix at the start is not positive definite.
     MassMatrix,
+    /// The start is not on the loops of the crane.
+    OpenStart {
+        /// The loop that is open most.
+        gap: Gap,
+        /// Whether only some of its numbers are given, and the others cannot follow.
+        partly: bool,
+    },
     /// There are no modes, which are needed to compute a stable step.
     Modes(NoModes),
     /// The linkage of a cylinder cannot be assembled in a pose of the run.
@@ -76,6 +84,12 @@ impl Reason {
             Reason::MassMatrix => {
                 "give every link a mass in kg and an inertia in kg m² that are not negligible compared with those of the others".to_owned()
             }
+            Reason::OpenStart { partly: true, .. } => {
+                "give fewer positions and rates of its loop, or none: those that are not given follow".to_owned()
+            }
+            Reason::OpenStart { .. } => {
+                "start from a state with closed loops, such as one of an earlier run, or give single coordinates by `--start`: others follow".to_owned()
+            }
             Reason::Modes(_) => "check masses and inertias in the spec".to_owned(),
             Reason::Unassembled { .. } => {
                 "lengthen its `rocker` or `link`, check the positions of its pins, or keep the joint where they reach each other".to_owned()
@@ -111,6 +125,14 @@ impl fmt::Display for Reason {
             }
             Reason::MassMatrix => {
                 f.write_str("the mass matrix is not positive definite, so accelerations are not defined")
+            }
+            Reason::OpenStart { gap, partly } => {
+                let what = if *partly {
+                    "no position or rate of the others closes the loop"
+                } else {
+                    "the loop is not closed"
+                };
+                write!(f, "the start cannot be used: {what}: {gap}")
             }
             Reason::Modes(no_modes) => write!(f, "{no_modes}"),
             Reason::Unassembled { cylinder, time } => {

@@ -4,6 +4,7 @@ use super::{Failed, Reason};
 use crate::{
     dyn_crane::DynCrane,
     dynamics::InitialState,
+    loop_joints::{Given, close_start, close_state},
     statics::{Equilibrium, Settings},
 };
 
@@ -48,28 +49,47 @@ impl Start {
         }
     }
 
-    /// The start of a crane, with another pose, at rest, or with other rates, where these are given.
+    /// The start of a crane at time `t`, s, with another pose, at rest, or with other rates, where these are given.
     ///
     /// # Errors
-    /// Those of [`Start::of`], if no pose is given.
-    pub fn with(crane: &dyn DynCrane, q: Option<&[f64]>, v: Option<&[f64]>) -> Result<Self, Failed> {
-        let start = match q {
+    /// Those of [`Start::of`], if no pose is given; [`Reason::OpenStart`].
+    pub fn with(crane: &dyn DynCrane, t: f64, q: Option<&[f64]>, v: Option<&[f64]>) -> Result<Self, Failed> {
+        let mut start = match q {
             Some(q) => {
                 Self { v: vec![0.0; q.len()], q: q.to_vec(), x: Vec::new(), what: GIVEN.to_owned(), rests: false }
             }
             None => Self::of(crane)?,
         };
-        Ok(match v {
-            Some(v) => {
-                let what = match start.what.as_str() {
-                    EQUILIBRIUM => EQUILIBRIUM_MOVING,
-                    GUESS => GUESS_MOVING,
-                    _ => GIVEN,
-                };
-                Self { v: v.to_vec(), what: what.to_owned(), rests: false, ..start }
-            }
-            None => start,
-        })
+        if let Some(v) = v {
+            let what = match start.what.as_str() {
+                EQUILIBRIUM => EQUILIBRIUM_MOVING,
+                GUESS => GUESS_MOVING,
+                _ => GIVEN,
+            };
+            start = Self { v: v.to_vec(), what: what.to_owned(), rests: false, ..start };
+        }
+        if q.is_some() || v.is_some() {
+            start.close_state(crane, t)?;
+        }
+        Ok(start)
+    }
+
+    /// Moves a whole state at time `t`, s, onto the loops of the crane, up to a millionth of their size.
+    ///
+    /// # Errors
+    /// [`Reason::OpenStart`]: it is further away.
+    pub fn close_state(&mut self, crane: &dyn DynCrane, t: f64) -> Result<(), Failed> {
+        close_state(crane, t, (&mut self.q, &mut self.v))
+            .map_err(|gap| Reason::OpenStart { gap, partly: false }.of(&crane.description().name))
+    }
+
+    /// Moves what is not given of a start at time `t`, s, onto the loops of the crane: given positions and rates hold exactly.
+    ///
+    /// # Errors
+    /// [`Reason::OpenStart`]: what is given leaves no way to close a loop.
+    pub fn close(&mut self, crane: &dyn DynCrane, t: f64, given: &Given) -> Result<(), Failed> {
+        close_start(crane, t, (&mut self.q, &mut self.v), given)
+            .map_err(|gap| Reason::OpenStart { gap, partly: true }.of(&crane.description().name))
     }
 
     /// A given equilibrium.

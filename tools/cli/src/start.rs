@@ -6,6 +6,7 @@ use crane_model::{
     Description,
     dyn_crane::DynCrane,
     force_states::{self, ForceStates},
+    loop_joints::Given,
     runs::Start,
 };
 
@@ -17,6 +18,11 @@ use crate::{
 
 /// Suffix of a coordinate's name in the name of its rate.
 const RATE: &str = "_rate";
+
+/// Difference from the motion of a rigid drive above which a start contradicts it, m, rad and their rates.
+const PRESCRIBED: f64 = 1e-9;
+/// What closing a loop changes beyond this is said, m, rad and their rates.
+const MOVED: f64 = 1e-6;
 
 /// A coordinate, its rate, or a state of a force, by its index.
 #[derive(Clone, Copy)]
@@ -47,6 +53,24 @@ impl Variable {
         Self::of(name, description).ok_or_else(|| unknown(name, description))
     }
 
+    /// Adds it to what is given.
+    fn give(self, given: &mut Given) {
+        match self {
+            Self::Position(index) => given.positions.push(index),
+            Self::Rate(index) => given.rates.push(index),
+            Self::ForceState(_) => {}
+        }
+    }
+
+    /// Its position or rate in a start.
+    fn motion(self, start: &Start) -> Option<f64> {
+        match self {
+            Self::Position(index) => Some(start.q[index]),
+            Self::Rate(index) => Some(start.v[index]),
+            Self::ForceState(_) => None,
+        }
+    }
+
     fn set(self, start: &mut Start, value: f64) {
         match self {
             Self::Position(index) => start.q[index] = value,
@@ -75,9 +99,16 @@ impl Timing {
         // Values that are not given are those of the equilibrium, if there is one.
         let mut start = Start::of(crane).unwrap_or_else(|_| Start::guess(crane));
         start.rests = false;
+        let mut given = Given::default();
         if let Some(file) = &self.from {
             for (variable, value) in row(file, description, None)?.values {
                 variable.set(&mut start, value);
+                variable.give(&mut given);
+            }
+            // A whole state is closed as it is; of others the rest follows.
+            if given.positions.len() == start.q.len() && given.rates.len() == start.v.len() {
+                start.close_state(crane, 0.0)?;
+                given = Given::default();
             }
             let states = force_states::columns(description);
             start.x.resize(if start.x.is_empty() { 0 } else { states.len() }, f64::NAN);
@@ -95,11 +126,12 @@ impl Timing {
             };
             start.what = format!("end of {}{held}", file.display());
         }
-        for given in &self.start {
-            let (name, value) = given.split_once('=').ok_or_else(|| {
+        let mut asked = Vec::new();
+        for text in &self.start {
+            let (name, value) = text.split_once('=').ok_or_else(|| {
                 let help =
                     "write `--start coordinate=value`, such as `--start boom_psi=0.3` or `--start boom_psi_rate=-0.1`";
-                Problem::usage(format!("`--start {given}` has no value"), help)
+                Problem::usage(format!("`--start {text}` has no value"), help)
             })?;
             let variable = match Variable::of(name, description) {
                 Some(variable) => variable,
@@ -113,7 +145,21 @@ impl Timing {
                 )
             })?;
             variable.set(&mut start, number);
+            variable.give(&mut given);
+            asked.push((name, variable, number));
         }
+        let before = [start.q.clone(), start.v.clone()].concat();
+        start.close(crane, 0.0, &given)?;
+        for (name, variable, number) in asked {
+            if let Some(prescribed) = variable.motion(&start).filter(|is| (is - number).abs() > PRESCRIBED) {
+                return Err(Problem::usage(
+                    format!("{name} cannot start at {number}: its rigid drive prescribes {prescribed:.6}"),
+                    "change the `motion` of the drive, or leave the value out",
+                ));
+            }
+        }
+        let follows =
+            before.iter().zip(start.q.iter().chain(&start.v)).any(|(before, now)| (before - now).abs() > MOVED);
         if !start.x.is_empty() {
             // States that are not given take the values that hold the pose.
             let held = ForceStates::new(description).holding(crane, 0.0, &start.q);
@@ -126,9 +172,12 @@ impl Timing {
                 "give an opening from −1 (fully open, retracts) to 1 (fully open, extends)",
             ));
         }
-        for given in &self.start {
+        for text in &self.start {
             start.what += ", ";
-            start.what += given;
+            start.what += text;
+        }
+        if follows && !crane.loop_joints().is_empty() {
+            start.what += ", the rest as loops require";
         }
         Ok(start)
     }

@@ -224,7 +224,7 @@ impl Crane {
         };
         let watch = Watch::new();
         let result = py.detach(|| {
-            let start = Start::with(crane, q.as_deref(), v.as_deref()).map_err(|failed| raised(&failed))?;
+            let start = Start::with(crane, 0.0, q.as_deref(), v.as_deref()).map_err(|failed| raised(&failed))?;
             let settings = timing.stable(crane, &start)?;
             let proceed = &mut |_: f64| unless(watch.look());
             let checked = |recorded, proceed: &mut dyn FnMut(f64) -> ControlFlow<()>| {

@@ -93,7 +93,8 @@ impl Crane {
             for (index, input) in case.inputs.iter().enumerate() {
                 crane.set_input(index, *input);
             }
-            let start = Start::with(&crane, case.q.as_deref(), case.v.as_deref()).map_err(|failed| raised(&failed))?;
+            let start =
+                Start::with(&crane, t, case.q.as_deref(), case.v.as_deref()).map_err(|failed| raised(&failed))?;
             let start = InitialState { q: start.q, v: start.v, x: if x.is_empty() { start.x } else { x.clone() } };
             SteeredMotion::new(&crane, t, &start, &settings).map_err(|stopped| failed(stopped, &description.name))
         };

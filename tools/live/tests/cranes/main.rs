@@ -39,5 +39,6 @@ mod sensitivity;
 mod servos;
 mod sheaves;
 mod sliding_beams;
+mod starts;
 mod stresses;
 mod telescopes;

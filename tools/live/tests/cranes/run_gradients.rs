@@ -31,7 +31,7 @@ type State = Option<(Vec<f64>, Vec<f64>)>;
 
 fn start(crane: &LiveCrane, from: &State) -> Start {
     match from {
-        Some((q, v)) => Start::with(crane, Some(q), Some(v)),
+        Some((q, v)) => Start::with(crane, 0.0, Some(q), Some(v)),
         None => Start::of(crane),
     }
     .unwrap_or_else(|failed| panic!("{failed}"))

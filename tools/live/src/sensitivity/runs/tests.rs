@@ -7,6 +7,7 @@ use crane_model::CoordinateRole;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::gradients::{Around, At, CylinderSlopes, Numbers, Slopes};
 use crane_model::dynamics::{Method, Settings};
+use crane_model::loop_joints::Given;
 use crane_model::results::quantities;
 use crane_model::runs::{self, Measure, Start, record_adjoint, record_gradients};
 
@@ -77,8 +78,9 @@ fn assert_transposed(what: &str, crane: &LiveCrane, duration: f64, moves: bool) 
     let settings =
         Settings { duration, output: duration / 7.0, tolerance: 1e-5, audit: false, method: Method::Rosenbrock, ..own };
     let start = if moves {
-        let rest = Start::of(crane).unwrap();
-        Start::with(crane, Some(&rest.q), Some(&vec![0.01; n])).unwrap()
+        let mut start = Start { v: vec![0.01; n], rests: false, ..Start::of(crane).unwrap() };
+        start.close(crane, 0.0, &Given::default()).unwrap();
+        start
     } else {
         Start::of(crane).unwrap()
     };

@@ -1,0 +1,108 @@
+//! Starts of cranes with loops: what is given is held, the rest follows, and what cannot follow is said.
+
+use crane_codegen::SourceFile;
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::DynCrane;
+use crane_model::loop_joints::Given;
+use crane_model::runs::Start;
+
+/// Three cranks of 1 m, 1 m apart, and two couplers between their ends: all cranks turn alike.
+fn cranks() -> LiveCrane {
+    let bar = |name: String, on: String| {
+        format!(
+            "- {{name: {name}, on: {{{on}}}, joint: revolute, mass: 1, com: [0.5, 0, 0], inertia: {{Ixx: 1e-4, Iyy: 0.083, Izz: 0.083}}}}\n"
+        )
+    };
+    let crank = |k: u32| bar(format!("c{k}"), format!("link: ground, at: [{k}, 0, 0]"));
+    let coupler = |k: u32| bar(format!("b{k}"), format!("link: c{k}, at: [1, 0, 0]"));
+    let slide = |k: u32| {
+        format!(
+            "- {{name: l{k}, from: {{link: b{k}, at: [1, 0, 0]}}, to: {{link: c{}, at: [1, 0, 0]}}, joint: {{slide: {{axis: [0, 0, 1]}}}}}}\n",
+            k + 1
+        )
+    };
+    let text = format!(
+        "format: 1\nname: cranks\ngravity: [0, -9.81, 0]\nanalyses: [dynamics]\nlinks:\n- {{name: ground}}\n{}{}{}{}{}loop_joints:\n{}{}\
+         guess: {{c0_psi: 90 deg, c1_psi: 90 deg, c2_psi: 90 deg, b0_psi: -90 deg, b1_psi: -90 deg}}\n",
+        crank(0),
+        coupler(0),
+        crank(1),
+        coupler(1),
+        crank(2),
+        slide(0),
+        slide(1)
+    );
+    LiveCrane::from_spec(&SourceFile::new("cranks.yaml", text.as_str()))
+        .unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
+}
+
+/// c0, b0, c1, b1, c2
+const C0: usize = 0;
+
+fn assert_near(found: &[f64], expected: [f64; 5], tolerance: f64) {
+    assert!(found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < tolerance), "{found:?}");
+}
+
+/// The cranks have one freedom: with one rate, or one angle, all others are those of parallel cranks and of couplers that do not turn.
+#[test]
+fn what_is_given_is_held_and_the_rest_follows() {
+    let crane = cranks();
+    let crane: &dyn DynCrane = &crane;
+    let mut start = Start::guess(crane);
+    start.v[C0] = -1.0;
+    start.close(crane, 0.0, &Given { rates: vec![C0], ..Given::default() }).unwrap();
+    assert!(start.v[C0].to_bits() == (-1.0_f64).to_bits());
+    // Rounding of the systems that are solved.
+    assert_near(&start.v, [-1.0, 1.0, -1.0, 1.0, -1.0], 1e-13);
+    let mut start = Start::guess(crane);
+    start.q[C0] = 1.0;
+    start.close(crane, 0.0, &Given { positions: vec![C0], ..Given::default() }).unwrap();
+    assert!(start.q[C0].to_bits() == 1.0_f64.to_bits());
+    assert_near(&start.q, [1.0, -1.0, 1.0, -1.0, 1.0], 1e-13);
+    // Without anything given, the least change of all.
+    let mut start = Start::guess(crane);
+    start.v[C0] = -1.0;
+    start.close(crane, 0.0, &Given::default()).unwrap();
+    assert!((start.v[C0] + 0.4444).abs() < 2e-3, "{}", start.v[C0]);
+}
+
+/// Two cranks that turn against each other open the loop between them; both joints along x by the difference of the rates.
+#[test]
+fn what_cannot_follow_is_said() {
+    let crane = cranks();
+    let crane: &dyn DynCrane = &crane;
+    let mut start = Start::guess(crane);
+    (start.v[C0], start.v[2]) = (-1.0, 2.0);
+    let failed = start.close(crane, 0.0, &Given { rates: vec![C0, 2], ..Given::default() }).unwrap_err().to_string();
+    assert!(
+        failed.contains("joint l0 opens at 3000.000 mm/s along u")
+            || failed.contains("joint l0 opens at 3000.000 mm/s along x"),
+        "{failed}"
+    );
+    let mut start = Start::guess(crane);
+    (start.q[C0], start.q[2]) = (1.0, 2.0);
+    let failed =
+        start.close(crane, 0.0, &Given { positions: vec![C0, 2], ..Given::default() }).unwrap_err().to_string();
+    assert!(failed.contains("no position or rate of the others closes the loop: joint l0 is open by"), "{failed}");
+}
+
+/// A whole state is closed if it is open by less than a millionth of the crank's length, as numbers are that were written with seven digits.
+#[test]
+fn a_whole_state_off_the_loops_is_refused() {
+    let crane = cranks();
+    let crane: &dyn DynCrane = &crane;
+    let guess = crane.guess();
+    let with = |off: f64, rate: f64| {
+        let mut q = guess.clone();
+        q[C0] += off;
+        Start::with(crane, 0.0, Some(&q), Some(&[rate, 1.0, -1.0, 1.0, -1.0]))
+    };
+    let closed = with(1e-7, -1.0 + 1e-7).unwrap();
+    assert_near(&closed.v, [-1.0, 1.0, -1.0, 1.0, -1.0], 2e-7);
+    let sum = closed.v[0] + closed.v[1];
+    assert!(sum.abs() < 1e-12, "{sum}");
+    for (off, rate, words) in [(1e-5, -1.0, "is open by 0.010 mm"), (0.0, -0.9, "opens at 100.000 mm/s")] {
+        let failed = with(off, rate).unwrap_err().to_string();
+        assert!(failed.contains("the loop is not closed: joint l0") && failed.contains(words), "{failed}");
+    }
+}
