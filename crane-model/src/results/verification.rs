@@ -1,7 +1,8 @@
 //! The error of a run, estimated by repeating it with a tenth of the tolerance or half the step, and results four times as often.
 //!
 //! If the method converges, the finer run is several times more accurate, so the difference of the two is almost the error of
-//! the coarser one. The additional results of the finer run show what a quantity does between two results, above all its peaks.
+//! the coarser one. The additional results of the finer run show what a quantity does between two results, above all its peaks: how far these
+//! lie beyond the results is not an error of the steps, and is counted apart.
 
 use super::{Extremes, Table, headlines};
 use crate::{Description, dynamics};
@@ -35,11 +36,11 @@ pub fn finer(settings: &dynamics::Settings) -> dynamics::Settings {
 /// The comparison of a run with a finer one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verification {
-    /// Largest difference over the run, column by column, in the column's unit: of values at the same times, and of minima and
-    /// maxima.
-    pub differences: Vec<f64>,
-    /// Whether the largest difference is that of a minimum or maximum between two results.
-    pub between: Vec<bool>,
+    /// Largest difference of values at the same times, column by column, in the column's unit: the error of the steps.
+    pub errors: Vec<f64>,
+    /// How far the finer run goes between two results beyond its values at the same times, column by column: what the interval of results
+    /// leaves out of minima and maxima.
+    pub missed: Vec<f64>,
     /// Time in which small differences grow by a factor e, s, where the motion is chaotic.
     pub divergence: Option<f64>,
 }
@@ -50,25 +51,25 @@ impl Verification {
         let every = (finer.rows.len().max(1) - 1) / (run.rows.len().max(2) - 1);
         let together: Vec<(&Vec<f64>, &Vec<f64>)> =
             run.rows.iter().zip(finer.rows.iter().step_by(every.max(1))).collect();
-        let (differences, between) = (0..run.columns.len())
-            .map(|column| {
-                let at_results = together.iter().map(|(a, b)| (a[column] - b[column]).abs()).fold(0.0, f64::max);
-                let range = |table: &Table| {
-                    let values = table.rows.iter().map(|row| row[column]);
-                    values.fold([f64::MAX, f64::MIN], |[least, greatest], x| [x.min(least), x.max(greatest)])
-                };
-                let ([least, greatest], [finer_least, finer_greatest]) = (range(run), range(finer));
-                let missed = (least - finer_least).max(finer_greatest - greatest);
-                (missed.max(at_results), missed > at_results)
-            })
-            .unzip();
-        Self { differences, between, divergence: divergence(&together, coordinates) }
+        let of_column = |column: usize| {
+            let error = together.iter().map(|(a, b)| (a[column] - b[column]).abs()).fold(0.0, f64::max);
+            let [least, greatest] = range(together.iter().map(|(_, row)| row[column]));
+            let [finer_least, finer_greatest] = range(finer.rows.iter().map(|row| row[column]));
+            (error, (least - finer_least).max(finer_greatest - greatest).max(0.0))
+        };
+        let (errors, missed) = (0..run.columns.len()).map(of_column).unzip();
+        Self { errors, missed, divergence: divergence(&together, coordinates) }
     }
 
-    /// Largest difference of the column with this name.
-    pub fn difference(&self, table: &Table, name: &str) -> Option<f64> {
+    /// Error and what is missed of the column with this name.
+    pub fn find_errors(&self, table: &Table, name: &str) -> Option<[f64; 2]> {
         let index = table.columns.iter().position(|column| column.name == name)?;
-        self.differences.get(index).copied()
+        Some([*self.errors.get(index)?, *self.missed.get(index)?])
+    }
+
+    /// Largest difference of the column with this name from the finer run: the larger one of both.
+    pub fn difference(&self, table: &Table, name: &str) -> Option<f64> {
+        self.find_errors(table, name).map(|[error, missed]| error.max(missed))
     }
 
     /// Reports quantities whose error may exceed one percent of their size, the worst by name.
@@ -85,7 +86,7 @@ impl Verification {
                 count => format!(", and {count} other quantities by less"),
             };
             let remedy = if between {
-                "there are peaks between two results; use a shorter interval of results"
+                "it has peaks between two results; write a smaller `output`"
             } else {
                 "a finer run differs by that much; use a smaller tolerance or step"
             };
@@ -111,12 +112,8 @@ impl Verification {
             let sizes: Vec<f64> = kind.names.iter().map(|name| kind.size(&Extremes::of(table, name))).collect();
             let greatest = sizes.iter().copied().fold(0.0, f64::max);
             for (name, size) in kind.names.iter().zip(sizes) {
-                let index = table.columns.iter().position(|column| column.name == *name);
-                let Some((difference, between)) =
-                    index.and_then(|index| Some((*self.differences.get(index)?, *self.between.get(index)?)))
-                else {
-                    continue;
-                };
+                let Some([error, missed]) = self.find_errors(table, name) else { continue };
+                let (difference, between) = (error.max(missed), missed > error);
                 if difference > CAUTION * size.max(NEGLIGIBLE * greatest) && difference > kind.noise(table, name, force)
                 {
                     let share = difference / size.max(f64::MIN_POSITIVE);
@@ -140,6 +137,11 @@ struct Doubtful {
     measure: &'static str,
     /// Whether the error is that of a peak between two results.
     between: bool,
+}
+
+/// The least and the greatest of some values.
+fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::MAX, f64::MIN], |[least, greatest], x| [x.min(least), x.max(greatest)])
 }
 
 /// Time in which the difference of two runs grows by a factor e, if it grows by [`CHAOS`] powers and along a straight line:
@@ -201,6 +203,25 @@ mod tests {
         assert_eq!(verification.difference(&run, "none"), None);
     }
 
+    /// A wave whose steps are off by 1e-6, with results every 0.1 s of which none is at a peak: both are told apart, and a caution names the
+    /// interval.
+    #[test]
+    fn steps_and_interval_contribute_apart() {
+        let wave = |count: i32, error: f64| {
+            let mut table = table(|_| 0.0);
+            let times = (0..=count).map(|i| f64::from(i) * 10.0 / f64::from(count));
+            table.rows = times.map(|t| vec![t, (0.1 + std::f64::consts::TAU * t).sin() + error]).collect();
+            table
+        };
+        let (run, finer) = (wave(100, 1e-6), wave(400, 0.0));
+        let [error, missed] = Verification::new(&run, &finer, 1).find_errors(&run, "q").expect("a column");
+        // Sines near their peaks, which are at 90°: of the run the nearest results are at 77.73° and 257.73°, of the finer one at 86.73° and 266.73°.
+        let expected = |from: f64| from.to_radians().sin();
+        let nearest = 0.1_f64.to_degrees() + 72.0;
+        assert!((error - 1e-6).abs() < 1e-14, "{error}");
+        assert!((missed - (expected(nearest + 9.0) - expected(nearest))).abs() < 1e-14, "{missed}");
+    }
+
     /// A quantity that is sampled at its zeros has its peaks in between, upwards or downwards.
     #[test]
     fn peaks_between_results_are_noticed() {
@@ -217,7 +238,7 @@ mod tests {
             let verification = Verification::new(&vibration(100), &vibration(400), 1);
             // Sines of multiples of 2π are zero up to the rounding of numbers below 400.
             assert!(
-                (verification.differences[1] - 1.0).abs() < 1e-12 && verification.between[1],
+                (verification.missed[1] - 1.0).abs() < 1e-12 && verification.errors[1] < 1e-12,
                 "{up}, {down}: {verification:?}"
             );
         }

@@ -14,10 +14,10 @@ pub struct Program {
     pub version: &'static str,
 }
 
-/// Maximum difference of every column from a finer run, by name.
-fn differences(recorded: &Recorded, verification: &Verification) -> Map<String, Value> {
-    let columns = recorded.table.columns.iter().map(|column| column.name.clone());
-    columns.zip(verification.differences.iter().map(|difference| json!(difference))).collect()
+/// Numbers of the columns, by name.
+fn by_name(recorded: &Recorded, of: fn(&Verification) -> &Vec<f64>) -> Option<Map<String, Value>> {
+    let numbers = of(recorded.verification.as_ref()?).iter().map(|number| json!(number));
+    Some(recorded.table.columns.iter().map(|column| column.name.clone()).zip(numbers).collect())
 }
 
 /// The record of a run: enough to repeat it.
@@ -49,7 +49,8 @@ pub fn record(crane: &dyn DynCrane, settings: &Settings, recorded: &Recorded, pr
         "output_s": settings.output,
         "parameters": parameters,
         "cautions": recorded.cautions,
-        "differences_from_a_finer_run": recorded.verification.as_ref().map(|verification| differences(recorded, verification)),
+        "differences_from_a_finer_run": by_name(recorded, |found| &found.errors),
+        "missed_between_results": by_name(recorded, |found| &found.missed),
     });
     if let Some((wall, factor)) = pace(recorded) {
         record["wall_time_s"] = wall.into();

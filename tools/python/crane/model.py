@@ -599,9 +599,9 @@ class Crane(_native.Crane):
         crane = self.replace(inputs=inputs) if inputs else self
         found = crane._record(timing, q, v, verify, **limits, gradients=names, adjoint=asked)
         units = dict(found.pop("columns"))
-        differences = found.pop("differences")
-        errors = None if differences is None else dict(zip(units, differences, strict=True))
-        return Run(units=units, errors=errors, crane=crane, **found)
+        of_finer = {name: found.pop(name) for name in ("errors", "missed")}
+        by_name = {name: None if numbers is None else dict(zip(units, numbers, strict=True)) for name, numbers in of_finer.items()}
+        return Run(units=units, crane=crane, **by_name, **found)
 
     def simulate_ensemble(
         self,

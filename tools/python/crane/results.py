@@ -267,7 +267,9 @@ class Run(Mapping[str, Array]):
     units: unit of every column, by name.
     table: (times, columns), all of them in the order of `units`.
     start: what it started from. method, tolerance, step (s; the mean of an adaptive method), statistics: how it ran.
-    errors: largest difference of every column from a finer run, in the column's unit; None if that was not requested.
+    errors: largest difference of every column from a finer run at the same times, in the column's unit: the error of the steps; None if that was
+    not requested.
+    missed: how far every column goes between two results beyond its minimum and maximum, in its unit: a shorter `output` shows it; None as errors.
     divergence: time in which small differences grow by a factor e, s, if the motion is chaotic.
     cautions: where the run was outside the validity of the model or the method.
     crane: the crane with the parameters and inputs of the run.
@@ -284,6 +286,7 @@ class Run(Mapping[str, Array]):
     step: float
     statistics: dict[str, int]
     errors: dict[str, float] | None = field(repr=False)
+    missed: dict[str, float] | None = field(repr=False)
     divergence: float | None
     cautions: list[str]
     wall_time: float
@@ -367,7 +370,8 @@ class Run(Mapping[str, Array]):
                 "tolerance": self.tolerance,
                 "step": self.step,
                 "statistics": [self.statistics[count] for count in counts],
-                "differences": None if self.errors is None else list(self.errors.values()),
+                "errors": None if self.errors is None else list(self.errors.values()),
+                "missed": None if self.missed is None else list(self.missed.values()),
                 "divergence": self.divergence,
                 "cautions": self.cautions,
                 "wall_time": self.wall_time,

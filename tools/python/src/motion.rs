@@ -256,7 +256,8 @@ impl Crane {
         all.set_item("tolerance", settings.method.is_adaptive().then_some(settings.tolerance))?;
         all.set_item("step", run.step)?;
         all.set_item("statistics", statistics(py, &run.statistics)?)?;
-        all.set_item("differences", verification.as_ref().map(|found| found.differences.clone()))?;
+        all.set_item("errors", verification.as_ref().map(|found| found.errors.clone()))?;
+        all.set_item("missed", verification.as_ref().map(|found| found.missed.clone()))?;
         all.set_item("divergence", verification.as_ref().and_then(|found| found.divergence))?;
         all.set_item("cautions", cautions)?;
         all.set_item("wall_time", wall.unwrap_or_default().as_secs_f64())?;

@@ -34,7 +34,8 @@ pub struct Given<'py> {
     #[pyo3(item)]
     statistics: [usize; 4],
     #[pyo3(item)]
-    differences: Option<Vec<f64>>,
+    errors: Option<Vec<f64>>,
+    missed: Option<Vec<f64>>,
     #[pyo3(item)]
     divergence: Option<f64>,
     #[pyo3(item)]
@@ -68,11 +69,8 @@ impl Given<'_> {
         };
         let [steps, rejections, evaluations, factorisations] = self.statistics;
         let statistics = Statistics { steps, rejections, evaluations, factorisations };
-        let verification = self.differences.clone().map(|differences| Verification {
-            between: vec![false; differences.len()],
-            differences,
-            divergence: self.divergence,
-        });
+        let found = self.errors.clone().zip(self.missed.clone());
+        let verification = found.map(|(errors, missed)| Verification { errors, missed, divergence: self.divergence });
         let recorded = Recorded {
             start: self.start.clone(),
             run: Run { statistics, step: self.step, time: duration, efforts: Vec::new() },

@@ -69,7 +69,7 @@ def test_pages_have_the_tables_of_the_command(knuckle):
     for name, row in zip(names, moved["extremes"], strict=True):
         extremes = run.extremes(name)
         assert (float(row["minimum"]), float(row["maximum"])) == (extremes["minimum"], extremes["maximum"]), name
-        assert float(row["error"]) == run.errors[name], name
+        assert (float(row["error"]), float(row["missed"])) == (run.errors[name], run.missed[name]), name
     assert {"main_boom_theta_drive_torque", "load_centre_z"} <= set(names)
     facts = dict((name, value) for name, value, _ in data(run.page())["tables"]["facts"])
     assert "converged to a stable equilibrium" in facts["knuckle_boom"]
@@ -100,7 +100,7 @@ def test_a_run_is_shown_with_all_its_columns(knuckle, verify):
     record = moving["record"]
     assert record["parameters"]["payload"] == {"value": 700.0, "unit": "kg"}
     assert (record["duration_s"], record["output_s"], record["steps"]) == (0.5, 0.01, run.statistics["steps"])
-    assert record["differences_from_a_finer_run"] == run.errors
+    assert (record["differences_from_a_finer_run"], record["missed_between_results"]) == (run.errors, run.missed)
     assert pickle.loads(pickle.dumps(run)).page() == page
 
 

@@ -15,10 +15,11 @@ fn instant(time: f64) -> f64 {
 
 /// Extremes of all headlines of some runs, a row per quantity and run.
 pub fn extremes(description: &Description, runs: &[(&str, &Recorded)]) -> Grid {
-    let headers = ["quantity", "crane", "minimum", "time of minimum", "maximum", "time of maximum", "error", "unit"];
+    let headers =
+        ["quantity", "crane", "minimum", "time of minimum", "maximum", "time of maximum", "error", "missed", "unit"];
     let alone = runs.len() < 2;
     let headers: Vec<&str> = headers.into_iter().filter(|header| !alone || *header != "crane").collect();
-    let title = "Extremes of the run with their times in s, and the largest difference from a finer run";
+    let title = "Extremes of the run with their times in s, the largest difference from a finer run, and what they miss between two results";
     let mut grid = Grid::new("extremes", title, &headers);
     for kind in headlines(description) {
         for name in &kind.names {
@@ -27,13 +28,12 @@ pub fn extremes(description: &Description, runs: &[(&str, &Recorded)]) -> Grid {
                     continue;
                 }
                 let Extremes { minimum, time_of_minimum, maximum, time_of_maximum } = Extremes::of(&run.table, name);
-                let error = run.verification.as_ref().and_then(|v| v.difference(&run.table, name));
+                let found = run.verification.as_ref().and_then(|found| found.find_errors(&run.table, name));
+                let uncertain = [0, 1].map(|k| found.map_or(Cell::Empty, |found| Cell::Uncertainty(found[k])));
                 let numbers = [minimum, instant(time_of_minimum), maximum, instant(time_of_maximum)].map(Cell::from);
                 let crane = (!alone).then(|| Cell::from(*label));
                 let row = [Cell::from(name.as_str())].into_iter().chain(crane).chain(numbers);
-                grid.row(
-                    row.chain([error.map_or(Cell::Empty, Cell::Uncertainty), kind.unit.into()]).collect::<Vec<_>>(),
-                );
+                grid.row(row.chain(uncertain).chain([kind.unit.into()]).collect::<Vec<_>>());
             }
         }
     }
