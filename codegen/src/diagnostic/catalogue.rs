@@ -125,13 +125,12 @@ catalogue! {
         "check `density` and the section, in kg/m³ and m; or write `sections: rigid`";
 
     // Inertias.
-    /// An inertia is positive definite.
-    E050 not_positive_definite(subject, smallest) "{subject} is not positive definite",
-        "smallest principal moment about the centre of mass: {smallest} kg m²",
-        "check signs, products and `about`; leave `inertia` out for a point mass";
-    /// Principal moments satisfy the triangle inequality: none exceeds the sum of the other two by more than 25 %.
-    E051 triangle(subject, largest, others) "{subject} is not possible for a rigid body", "{largest} kg m² exceeds {others} kg m², the sum of the other two principal moments",
-        "no principal moment about the centre of mass may exceed the sum of the other two";
+    /// No principal moment of what moves together is below zero.
+    E050 not_positive_definite(subject, smallest, help) "{subject} has a principal moment below zero",
+        "smallest principal moment about the centre of mass: {smallest} kg m²", "{help}";
+    /// Principal moments of what moves together satisfy the triangle inequality: none exceeds the sum of the other two by more than 25 %.
+    E051 triangle(subject, largest, others, help) "{subject} is not possible for a rigid body", "{largest} kg m² exceeds {others} kg m², the sum of the other two principal moments",
+        "{help}";
     /// An inertia is given by its tensor or by radii of gyration.
     E052 two_inertias(subject) "{subject} is given in two ways", "`gyration` is given too",
         "give `gyration` alone, or `Ixx`, `Iyy`, `Izz`";

@@ -89,11 +89,19 @@ fn with_trace(tensor: &Tensor, a: f64, b: f64) -> Tensor {
     })
 }
 
-/// Principal moments of a tensor, ascending, by Jacobi's rotations.
-pub(crate) fn principal_moments([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> [f64; 3] {
+/// Principal moments of a tensor, ascending.
+pub(crate) fn principal_moments(tensor: [f64; 6]) -> [f64; 3] {
+    let mut moments = principal_axes(tensor).map(|(moment, _)| moment);
+    moments.sort_by(f64::total_cmp);
+    moments
+}
+
+/// Principal moments of a tensor with the unit vectors of their axes, by Jacobi's rotations.
+pub(crate) fn principal_axes([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> [(f64, [f64; 3]); 3] {
     /// Jacobi's method converges quadratically: for three by three, six sweeps reach rounding; two more are a margin.
     const SWEEPS: usize = 8;
     let mut a = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+    let mut axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     for (p, q) in [(0, 1), (0, 2), (1, 2)].into_iter().cycle().take(3 * SWEEPS) {
         if a[p][q] == 0.0 {
             continue;
@@ -107,11 +115,10 @@ pub(crate) fn principal_moments([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> [f64; 3] 
         }
         for k in 0..3 {
             (a[p][k], a[q][k]) = (cos * a[p][k] - sin * a[q][k], sin * a[p][k] + cos * a[q][k]);
+            (axes[p][k], axes[q][k]) = (cos * axes[p][k] - sin * axes[q][k], sin * axes[p][k] + cos * axes[q][k]);
         }
     }
-    let mut moments = [a[0][0], a[1][1], a[2][2]];
-    moments.sort_by(f64::total_cmp);
-    moments
+    [0, 1, 2].map(|k| (a[k][k], axes[k]))
 }
 
 #[cfg(test)]

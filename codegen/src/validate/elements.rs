@@ -59,8 +59,9 @@ impl<'a> Check<'a> {
     /// A rigid element as given.
     fn element(&mut self, element: &Element) -> Option<RigidElement> {
         let length = self.number(&element.length, "`length`", "m", Limit::Positive);
-        let (inertia, _) = self.inertia(&element.mass, Some(&element.com), Some(&element.inertia), "the element")?;
-        Some(RigidElement { length, inertia })
+        let lump = self.inertia(&element.mass, Some(&element.com), Some(&element.inertia), "the element")?;
+        lump.judgement.into_iter().for_each(|judgement| self.accept(judgement));
+        Some(RigidElement { length, inertia: lump.inertia })
     }
 
     /// A spring as given.

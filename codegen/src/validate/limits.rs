@@ -15,11 +15,18 @@ pub(super) enum Limit {
     Positive,
     /// Above zero; a live mass may be zero if the mass matrix stays regular without it.
     Mass,
+    /// Not negative; a live one as [`Limit::Mass`].
+    MassOfMoments,
 }
 
 /// The message of a rule up to the number that breaks it, or without a number.
 fn refusal(mistake: &Mistake) -> Refusal {
     Refusal { code: mistake.code, title: mistake.title.trim_end().to_owned(), help: mistake.help.clone() }
+}
+
+/// The rule that a margin is above zero, if it is live.
+pub(super) fn positive_margin(margin: Value, broken: &Mistake) -> Option<Relation> {
+    margin.as_constant().is_none().then(|| Relation { margin, refusal: refusal(broken) })
 }
 
 impl Check<'_> {
@@ -35,7 +42,11 @@ impl Check<'_> {
                 self.report(rule::not_positive(span, subject, number, unit));
                 return f64::NAN.into();
             }
-            (Limit::NotNegative, _) | (Limit::Mass, Some(_)) if number < 0.0 => {
+            (Limit::MassOfMoments, None) if number < 0.0 => {
+                self.report(rule::not_positive(span, subject, number, unit));
+                return f64::NAN.into();
+            }
+            (Limit::NotNegative, _) | (Limit::Mass | Limit::MassOfMoments, Some(_)) if number < 0.0 => {
                 self.report(rule::negative(span, subject, number, unit));
                 return f64::NAN.into();
             }
@@ -49,7 +60,7 @@ impl Check<'_> {
             Limit::Any => {}
             Limit::Positive => self.parameters[id.0].raise(above),
             Limit::NotNegative => self.parameters[id.0].raise(not_below),
-            Limit::Mass => {
+            Limit::Mass | Limit::MassOfMoments => {
                 self.parameters[id.0].raise(not_below);
                 self.live_masses.push((id, above));
             }
@@ -65,9 +76,7 @@ impl Check<'_> {
 
     /// Records the rule that `margin` is above zero. Default values are checked elsewhere.
     pub(super) fn keep_positive(&mut self, margin: Value, broken: &Mistake) {
-        if margin.as_constant().is_none() {
-            self.relations.push(Relation { margin, refusal: refusal(broken) });
-        }
+        self.relations.extend(positive_margin(margin, broken));
     }
 
     /// A live mass cannot be zero if a joint would move nothing without it.

@@ -1,19 +1,13 @@
 //! Masses and inertias of links.
 
 use super::Check;
+use super::inertias::Lump;
 use super::limits::Limit;
 use super::on::Attached;
-use crate::chain::{self, Part, Value};
+use crate::chain::{self, BodyId, Part, Value};
 use crate::diagnostic::{Span, rule};
 use crate::expand::inertia::{self, Tensor};
 use crate::spec::{About, Body, Inertia, Link, Number, Spanned, Vector};
-
-/// Published inertias are measured or rounded: they may violate the triangle inequality by this fraction.
-const SLIGHT: f64 = 0.25;
-/// Rounding of inertias in a spec that is not worth a warning.
-const WRITTEN: f64 = 1e-6;
-/// If the smallest principal moment is below this fraction of the largest, it counts as zero.
-const VANISHING: f64 = 1e-12;
 
 impl<'a> Check<'a> {
     /// Appends the bodies of a link; returns their starts along x, and the tip along x of the last.
@@ -42,7 +36,7 @@ impl<'a> Check<'a> {
             (Some(mass), _) => {
                 let subject = format!("link `{name}`");
                 let lump = self.inertia(mass, link.com.as_ref(), link.inertia.as_ref(), &subject);
-                (lump.map(|(inertia, _)| inertia), Vec::new())
+                (lump.map(|lump| self.judged_in_sum(lump).0), Vec::new())
             }
             (None, Some(bodies)) => self.lumped(bodies.value.as_deref().unwrap_or_default()),
             (None, None) => (None, Vec::new()),
@@ -81,7 +75,8 @@ impl<'a> Check<'a> {
                 self.report(rule::duplicate_name(span, "bodies", &name, "a body of this link"));
             }
             let inertia = self.inertia(&body.mass, Some(&body.com), body.inertia.as_ref(), &format!("body `{name}`"));
-            if let Some((inertia, com)) = inertia {
+            if let Some(lump) = inertia {
+                let (inertia, com) = self.judged_in_sum(lump);
                 parts.push(Part { name, mass: inertia.mass.clone(), com });
                 whole = Some(match whole {
                     Some(others) => inertia::sum(others, inertia),
@@ -92,33 +87,45 @@ impl<'a> Check<'a> {
         (whole, parts)
     }
 
-    /// Mass, centre of mass and inertia as a pseudo-inertia about the origin of the frame; and the centre of mass.
+    /// Mass, centre of mass and inertia as a pseudo-inertia about the origin of the frame.
     pub(super) fn inertia(
         &mut self,
         mass: &Spanned<Number>,
         com: Option<&Spanned<Vector>>,
         inertia: Option<&Spanned<Inertia>>,
         subject: &str,
-    ) -> Option<(chain::Inertia, [Value; 3])> {
-        let m = self.number(mass, &format!("the mass of {subject}"), "kg", Limit::Mass);
+    ) -> Option<Lump> {
+        // Moments alone are a mass of zero with an inertia; radii of gyration are in proportion to the mass.
+        let moments = inertia.and_then(|given| given.value.as_ref()).is_some_and(|given| given.gyration.is_none());
+        let limit = if moments { Limit::MassOfMoments } else { Limit::Mass };
+        let m = self.number(mass, &format!("the mass of {subject}"), "kg", limit);
         let com = self.vector_or_zero(com, &format!("the centre of mass of {subject}"), "m", Limit::Any);
         let subject = format!("the inertia of {subject}");
-        let Some(given) = inertia else { return Some((inertia::point(m, &com), com)) };
+        let Some(given) = inertia else {
+            return Some(Lump { inertia: inertia::point(m, &com), com, judgement: None });
+        };
         let written = given.value.as_ref()?;
         let (tensor, about) = self.tensor(written, given.span, &m, &subject)?;
-        match &written.gyration {
+        let judgement = match &written.gyration {
             // Whether radii of gyration are possible does not depend on the mass, which may be zero.
             Some(_) => {
                 let (unit, _) = self.tensor(written, given.span, &Value::ONE, &subject)?;
-                self.possible(&Value::ONE, &com, &unit, about, given.span, &subject);
+                self.judge(&Value::ONE, &com, &unit, about, given.span, subject)
             }
-            None => self.possible(&m, &com, &tensor, about, given.span, &subject),
-        }
+            None => self.judge(&m, &com, &tensor, about, given.span, subject),
+        };
         let inertia = match about {
             About::Com => inertia::about_com(m, &com, &tensor),
             About::Origin => inertia::about_origin(m, &com, &tensor),
         };
-        Some((inertia, com))
+        Some(Lump { inertia, com, judgement })
+    }
+
+    /// The pseudo-inertia and the centre of mass of a part of the next body, which is judged with all that moves with it.
+    fn judged_in_sum(&mut self, Lump { inertia, com, judgement }: Lump) -> (chain::Inertia, [Value; 3]) {
+        let body = BodyId(self.bodies.len());
+        self.judgements.extend(judgement.map(|judgement| (body, judgement)));
+        (inertia, com)
     }
 
     fn tensor(&mut self, inertia: &Inertia, span: Span, mass: &Value, subject: &str) -> Option<(Tensor, About)> {
@@ -148,39 +155,4 @@ impl<'a> Check<'a> {
         }
         Some((tensor, about))
     }
-
-    /// Checks that an inertia is physically possible.
-    fn possible(&mut self, mass: &Value, com: &[Value; 3], tensor: &Tensor, about: About, span: Span, subject: &str) {
-        let tensor = match about {
-            About::Com => tensor.clone(),
-            About::Origin => inertia::tensor_at_com(mass, com, tensor),
-        };
-        let numbers = tensor.each_ref().map(|element| self.now(element));
-        if !numbers.iter().all(|element| element.is_finite()) {
-            return;
-        }
-        let [smallest, middle, largest] = inertia::principal_moments(numbers);
-        let not_positive = rule::not_positive_definite(span, subject, rounded(smallest));
-        let triangle = rule::triangle(span, subject, rounded(largest), rounded(smallest + middle));
-        for (margins, broken) in [
-            (inertia::leading_minors(inertia::definite_margin(&tensor, VANISHING)), &not_positive),
-            (inertia::leading_minors(inertia::triangle_margin(&tensor, SLIGHT)), &triangle),
-        ] {
-            for margin in margins {
-                self.keep_positive(margin, broken);
-            }
-        }
-        if smallest <= VANISHING * largest {
-            self.report(not_positive);
-        } else if largest > (smallest + middle) * (1.0 + SLIGHT) {
-            self.report(triangle);
-        } else if largest > (smallest + middle) * (1.0 + WRITTEN) {
-            self.warnings.push(rule::slight_triangle(span, subject, rounded(largest), rounded(smallest + middle)));
-        }
-    }
-}
-
-/// A number as a person would write it, to six digits.
-fn rounded(number: f64) -> f64 {
-    format!("{number:.5e}").parse().unwrap_or(number)
 }

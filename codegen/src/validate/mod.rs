@@ -9,6 +9,7 @@ mod connectors;
 mod cylinders;
 mod drives;
 mod elements;
+mod inertias;
 mod inputs;
 mod joints;
 mod limits;
@@ -36,6 +37,7 @@ use crate::chain::{
 use crate::diagnostic::{Diagnostics, Mistake, SourceFile, rule};
 use crate::expand::beam::Distribution;
 use crate::spec::{self, Analysis, Crane, CraneSpec, Lookalike, Spanned};
+use inertias::Judgement;
 use limits::Limit;
 use names::Names;
 use section::Elastic;
@@ -162,6 +164,8 @@ struct Check<'a> {
     live_masses: Vec<(ParameterId, Bound)>,
     /// Rules about several numbers, some of them live.
     relations: Vec<Relation>,
+    /// Inertias as written, with the bodies of which they are a part.
+    judgements: Vec<(BodyId, Judgement)>,
     inputs: Vec<Input>,
     /// Whether some motion refers to each input.
     used_inputs: Vec<bool>,
@@ -219,6 +223,7 @@ impl<'a> Check<'a> {
         };
         self.loop_names = loop_joints::given(crane).filter_map(|joint| joint.name.value.as_deref()).collect();
         self.links(&crane.links);
+        self.possible_inertias();
         let supports = self.supports(crane);
         let (mut drives, mut rotors) = self.drives(crane);
         let mut forces = std::mem::take(&mut self.element_springs);

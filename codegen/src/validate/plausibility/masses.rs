@@ -30,6 +30,9 @@ impl Plausibility<'_> {
             let inertia = chain.bodies.iter().find(|body| body.link == name).and_then(|body| body.inertia.as_ref());
             let (Some(inertia), Some(com)) = (inertia, &link.com) else { continue };
             let mass = inertia.mass.at(&self.values);
+            if mass == 0.0 {
+                continue;
+            }
             let centre = inertia.first.each_ref().map(|first| first.at(&self.values) / mass);
             let distance = centre.iter().map(|x| x * x).sum::<f64>().sqrt();
             if distance > most {
