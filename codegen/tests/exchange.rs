@@ -5,8 +5,10 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use crane_codegen::chain::{Chain, Strain};
-use crane_codegen::{SourceFile, build, compile, exchange};
+use crane_codegen::chain::{Analyses, Chain, Strain};
+use crane_codegen::exchange::ImportOptions;
+use crane_codegen::program::{FunctionId, Inputs};
+use crane_codegen::{SourceFile, build, compile, exchange, mechanics};
 
 /// Files of a folder of this package, in order.
 fn files(folder: &str) -> Vec<PathBuf> {
@@ -27,7 +29,7 @@ fn chain(source: &SourceFile) -> Chain {
 
 /// The spec of a robot.
 fn spec(name: &str, text: &str) -> String {
-    let imported = exchange::import(&SourceFile::new(name, text), &[]);
+    let imported = exchange::import(&SourceFile::new(name, text), &ImportOptions::default());
     imported.unwrap_or_else(|mistakes| panic!("\n{mistakes}")).spec
 }
 
@@ -50,8 +52,8 @@ fn unsupported_robots_are_refused_with_the_reason() {
         let name = stem(&path);
         let file = path.file_name().expect("a name").to_string_lossy();
         let source = SourceFile::new(&*file, std::fs::read_to_string(&path).expect("a file"));
-        let fixed: &[String] = if name.starts_with("U013") { &["sholder".to_owned()] } else { &[] };
-        let found = exchange::import(&source, fixed).expect_err(&name);
+        let fixed = if name.starts_with("U013") { vec!["sholder".to_owned()] } else { Vec::new() };
+        let found = exchange::import(&source, &ImportOptions { fixed, ..ImportOptions::default() }).expect_err(&name);
         snapshot(&name, &found.to_string());
         let code = name.split('_').next().expect("a code").to_owned();
         assert_eq!(found.mistakes().iter().map(|mistake| mistake.code).collect::<Vec<_>>(), [&code], "{name}: {found}");
@@ -134,8 +136,9 @@ fn a_joint_that_mimics_a_held_one_is_held_where_it_follows() {
         ];
         let links = ["upper", "palm", "tip"].map(|name| format!("<link name='{name}'>{mass}</link>"));
         let urdf = format!("<robot name='hand'><link name='base'/>{}{}</robot>", links.concat(), joints.concat());
-        let fixed: Vec<String> = fixed.iter().map(ToString::to_string).collect();
-        let imported = exchange::import(&SourceFile::new("hand.urdf", urdf), &fixed);
+        let fixed = fixed.iter().map(ToString::to_string).collect();
+        let options = ImportOptions { fixed, ..ImportOptions::default() };
+        let imported = exchange::import(&SourceFile::new("hand.urdf", urdf), &options);
         imported.unwrap_or_else(|mistakes| panic!("\n{mistakes}")).spec
     };
     let followed = hand("<mimic joint='wrist' multiplier='2' offset='0.3'/>", 0.0, &["wrist"]);
@@ -193,7 +196,7 @@ fn a_crane_comes_back_from_mjcf() {
 
 #[test]
 fn an_arm_in_mjcf_is_a_crane() {
-    let imported = exchange::import(&SourceFile::new("arm.xml", ARM), &[]).expect("a robot");
+    let imported = exchange::import(&SourceFile::new("arm.xml", ARM), &ImportOptions::default()).expect("a robot");
     snapshot("arm.yaml", &imported.spec);
     insta::with_settings!({ prepend_module_to_snapshot => false, snapshot_path => "exchange", omit_expression => true }, {
         insta::assert_snapshot!("arm.left_out", imported.left_out.join("\n"));
@@ -267,8 +270,288 @@ fn any_bytes_of(text: &str, every: usize) {
     for (at, _) in text.char_indices().step_by(every) {
         let cut =
             SourceFile::new("cut", format!("{}{}", &text[..at], &text[at..].replacen(['"', '<', 'l', '0'], "é", 1)));
-        if let Ok(imported) = exchange::import(&cut, &[]) {
+        if let Ok(imported) = exchange::import(&cut, &ImportOptions::default()) {
             let _ = compile::load(&SourceFile::new("cut.yaml", imported.spec));
         }
+    }
+}
+
+/// A quantity of a crane at a state, as the interpreter computes it: of a symmetric matrix the upper triangle, row by row.
+fn quantity(crane: &Chain, function: FunctionId, q: &[f64], v: &[f64]) -> Vec<f64> {
+    let program = mechanics::derive(crane, Analyses::ALL);
+    let function = program.function(function).expect("a function of every crane");
+    let inputs = Inputs::state(0.0, q.to_vec(), v.to_vec(), crane.parameter_defaults());
+    function.shape.expand(program.evaluate(function, &inputs))
+}
+
+/// A spec that is valid, without a warning about an inertia.
+fn accepted(name: &str, spec: &str) -> Chain {
+    let checked = compile::check(&SourceFile::new(name, spec)).unwrap_or_else(|mistakes| panic!("{name}:\n{mistakes}"));
+    assert!(checked.warnings.mistakes().iter().all(|warning| warning.code != "W011"), "{}", checked.warnings);
+    checked.chain
+}
+
+/// The first link has moments and no mass. By hand: of the second link, at `p = 0.8 x + 0.2 (cos q₂ x + sin q₂ y)` in the first one's axes,
+/// `A₁₁ = 0.03 + (0.8 + 0.2 cos q₂)² + 0.02 sin² q₂ + 0.03 cos² q₂`.
+#[test]
+fn moments_without_mass_are_part_of_the_crane() {
+    let crane = accepted("moments", &spec("moments.urdf", include_str!("robots/moments_without_mass.urdf")));
+    let (sin, cos) = 0.2_f64.sin_cos();
+    let right = 0.03 + (0.8 + 0.2 * cos).powi(2) + 0.02 * sin * sin + 0.03 * cos * cos;
+    // Pinocchio's, to the digits that it was noted with.
+    assert!((right - 1.051_647_83_f64).abs() < 1e-8);
+    let found = quantity(&crane, FunctionId::MassMatrix, &[0.3, 0.2], &[0.0; 2])[0];
+    // Rounding of a dozen operations.
+    assert!((found / right - 1.0).abs() < 1e-14, "{found}, {right}");
+    // The same in MJCF: a rotor beside the body that has the mass.
+    let rotor = "<mujoco><worldbody><body name='arm'><joint axis='0 1 0'/>\
+                 <inertial pos='0.5 0 0' mass='1' diaginertia='0.01 0.1 0.1'/>\
+                 <body name='rotor' pos='0.3 0 0'><inertial pos='0 0 0' mass='0' diaginertia='0.5 0.5 0.5'/></body></body></worldbody></mujoco>";
+    let found =
+        quantity(&chain(&SourceFile::new("rotor", spec("rotor.xml", rotor))), FunctionId::MassMatrix, &[0.4], &[0.0]);
+    assert!((found[0] - (0.1 + 0.25 + 0.5)).abs() < 1e-15, "{found:?}");
+}
+
+/// A rod has no moment about its axis; of bodies that move together only the sum matters; one that never moves does not matter.
+#[test]
+fn inertias_are_judged_by_what_moves() {
+    let rod = accepted("rod", &spec("rod.urdf", include_str!("robots/rod.urdf")));
+    assert_eq!(rod.coordinates.len(), 2);
+    accepted("rounding", include_str!("robots/rounded_flange.yaml"));
+    let inertial = |ixx: &str| {
+        format!(
+            "<inertial><mass value='1'/><inertia ixx='{ixx}' iyy='0.2' izz='0.2' ixy='0' ixz='0' iyz='0'/></inertial>"
+        )
+    };
+    let robot = |base: &str, tip: &str| {
+        let joint =
+            "<joint name='j' type='continuous'><parent link='base'/><child link='tip'/><axis xyz='0 0 1'/></joint>";
+        format!(
+            "<robot name='r'><link name='base'>{}</link><link name='tip'>{}</link>{joint}</robot>",
+            inertial(base),
+            inertial(tip)
+        )
+    };
+    accepted("still", &spec("still.urdf", &robot("-7", "0.1")));
+    // A link that stands on another one by its placement, in the spec language.
+    let with = |second: &str| {
+        format!(
+            "format: 1\nname: two\nlinks:\n\
+             \x20 - {{name: arm, joint: revolute, mass: 5, com: [1, 0, 0], inertia: {{Ixx: 0.1, Iyy: 2, Izz: 2}}}}\n\
+             \x20 - {{name: plate, placement: {{transform: {{translation: [1, 0, 0], rotation: {{x: 30 deg}}}}}}, {second}mass: 0.1, com: [0, 0, 0], inertia: {{Ixx: 0.01, Iyy: 0.01, Izz: 0.03}}}}\n"
+        )
+    };
+    accepted("together", &with(""));
+    let alone = compile::load(&SourceFile::new("alone", with("joint: revolute, "))).expect_err("impossible on its own");
+    assert_eq!(alone.mistakes().iter().map(|mistake| mistake.code).collect::<Vec<_>>(), ["E051"], "{alone}");
+}
+
+/// Each slip alone makes an inertia impossible, and the message names it.
+#[test]
+fn the_message_about_an_impossible_inertia_names_the_slip() {
+    for (given, slip) in [
+        ("{Ixx: -1, Iyy: 2, Izz: 2}", "the other sign of `Ixx`"),
+        ("{Ixx: 1, Iyy: 2, Izz: 2, Ixy: 3}", "with `Ixy` 0.3 instead of 3 kg m²"),
+        ("{Ixx: 11, Iyy: 14, Izz: 5, Ixy: 1, Ixz: 30, Iyz: 1}", "with `Ixz` 3 instead of 30 kg m²"),
+        ("{about: origin, Ixx: 1, Iyy: 2, Izz: 2}", "leave out `about: origin`"),
+    ] {
+        let spec = format!(
+            "format: 1\nname: slip\nlinks:\n  - {{name: arm, joint: revolute, mass: 10, com: [1, 0.3, 0], inertia: {given}}}\n"
+        );
+        let found = compile::load(&SourceFile::new("slip", spec)).expect_err(given).to_string();
+        assert!(found.contains(slip), "{given}:\n{found}");
+    }
+}
+
+/// Moments 1, 2, 4 about the centre of mass become 1.5, 2.5, 4, as `mass::tests` work out; nothing else changes, and it is said.
+#[test]
+fn impossible_inertias_are_repaired_on_request() {
+    let urdf = "<robot name='r'><link name='base'/><link name='tip'><inertial><mass value='3'/>\
+                <inertia ixx='1' iyy='2' izz='4' ixy='0' ixz='0' iyz='0'/></inertial></link>\
+                <joint name='j' type='continuous'><parent link='base'/><child link='tip'/><axis xyz='0 0 1'/></joint></robot>";
+    let import = |repair| {
+        exchange::import(&SourceFile::new("r.urdf", urdf), &ImportOptions { repair, ..ImportOptions::default() })
+    };
+    let [as_it_is, repaired] = [false, true].map(|repair| import(repair).expect("a robot"));
+    assert!(compile::load(&SourceFile::new("r", as_it_is.spec.as_str())).is_err());
+    assert!(repaired.spec.contains("inertia: {Ixx: 1.5, Iyy: 2.5, Izz: 4}"), "{}", repaired.spec);
+    accepted("r", &repaired.spec);
+    let remark = "Repaired: the inertia of link `tip` about its centre of mass, [1.0, 2.0, 4.0, 0.0, 0.0, 0.0] kg m², is impossible; \
+                  written is [1.5, 2.5, 4.0, 0.0, 0.0, 0.0] (Ixx, Iyy, Izz, Ixy, Ixz, Iyz).";
+    assert!(repaired.left_out.iter().any(|told| told == remark), "{:?}", repaired.left_out);
+    assert!(as_it_is.left_out.iter().all(|told| !told.contains("Repaired")));
+}
+
+#[test]
+fn an_export_says_that_efforts_of_drives_are_left_out() {
+    let spec = "format: 1\nname: effort\nlinks:\n  - {name: boom, joint: revolute, mass: 100, com: [1, 0, 0]}\n\
+                drives:\n  - {coordinate: boom_psi, stiffness: 1e5, motion: {hold: 0}, effort: {hold: 700}}\n";
+    let told = exchange::approximations(&chain(&SourceFile::new("effort", spec))).expect("something is left out");
+    assert_eq!(told, "Efforts of drives besides their springs are left out: boom_psi.");
+}
+
+fn imported(file: &str) -> exchange::Imported {
+    let path = Path::new("tests/robots").join(file);
+    let source = SourceFile::new(file, std::fs::read_to_string(path).expect("a robot"));
+    exchange::import(&source, &ImportOptions::default()).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
+}
+
+fn accelerations(file: &str, q: &[f64]) -> (Chain, Vec<f64>) {
+    let crane = chain(&SourceFile::new(file, imported(file).spec));
+    let found = quantity(&crane, FunctionId::ForwardDynamics, q, &vec![0.0; q.len()]);
+    (crane, found)
+}
+
+/// An arm of 2 kg at 0.4 m with 0.1 kg m²: `q̈ = m g r / (I + m r²)`.
+#[test]
+fn options_of_mjcf_are_merged_and_flags_hold() {
+    let inertia = 0.1 + 2.0 * 0.4 * 0.4;
+    // Two `<option>`: the second has no gravity. The moment of the weight is 2.96 N m.
+    let (_, found) = accelerations("two_options.xml", &[0.0]);
+    assert!((found[0] * inertia - 2.96).abs() < 1e-14, "{found:?}");
+    // Flags switch its spring and its damper off.
+    let (crane, found) = accelerations("flags.xml", &[0.0]);
+    assert!((found[0] - 18.685_714_285_714_28).abs() < 1e-12, "{found:?}");
+    assert!(crane.drives.is_empty() && crane.forces.is_empty(), "{crane:?}");
+}
+
+/// The defaults of equalities say that none is active. Accelerations are `MuJoCo`'s, noted with six digits.
+#[test]
+fn equalities_have_their_defaults() {
+    let (crane, found) = accelerations("default_equality.xml", &[0.3, 0.1]);
+    assert!(crane.connectors().is_empty());
+    for (found, right) in found.iter().zip([14.7219, -18.5548]) {
+        assert!((found - right).abs() < 5e-5, "{found}, {right}");
+    }
+    assert!(
+        imported("default_equality.xml")
+            .left_out
+            .contains(&"Left out, equalities that are not active: <joint>.".to_owned())
+    );
+}
+
+/// Two equalities for one joint are two equations: the second one is that of the other joint. With 0.1 + 2 q₁ and 0.3 − 4 q₁ for the first
+/// joint, the third is at (0.3 − q₁) / 4.
+#[test]
+fn several_equalities_of_one_joint_all_hold() {
+    let body = |name: &str, inside: &str| {
+        format!(
+            "<body name='{name}'><joint name='j{name}' axis='0 1 0'/><inertial pos='0.4 0 0' mass='2' diaginertia='0.1 0.1 0.1'/>{inside}</body>"
+        )
+    };
+    let bodies = body("a", &body("b", &body("c", "")));
+    let robot = |equalities: &str| {
+        let text = format!("<mujoco><worldbody>{bodies}</worldbody><equality>{equalities}</equality></mujoco>");
+        exchange::import(&SourceFile::new("robot.xml", text), &ImportOptions::default())
+    };
+    let two = "<joint joint1='ja' joint2='jb' polycoef='0.1 2 0 0 0'/><joint joint1='ja' joint2='jc' polycoef='0.3 -4 0 0 0'/>";
+    let crane = chain(&SourceFile::new("robot", robot(two).expect("a robot").spec));
+    let ties: Vec<_> = crane
+        .connectors()
+        .iter()
+        .map(|connector| match &connector.strain {
+            Strain::Coupling { coordinate, leader, ratio } => {
+                (coordinate.0, leader.0, ratio.at(&[]), format!("{:?}", connector.law))
+            }
+            _ => panic!("{connector:?}"),
+        })
+        .collect();
+    assert_eq!([(ties[0].0, ties[0].1, ties[0].2), (ties[1].0, ties[1].1, ties[1].2)], [(0, 1, 2.0), (2, 0, -0.25)]);
+    assert!(ties[0].3.contains("0.1") && ties[1].3.contains("0.075"), "{ties:?}");
+    let held = robot("<joint joint1='ja'/><joint joint1='ja' polycoef='0.2 0 0 0 0'/>").expect_err("held twice");
+    assert_eq!(held.mistakes()[0].code, "U025");
+}
+
+#[test]
+fn a_site_and_a_body_of_one_name_are_a_point_and_a_link() {
+    let crane = chain(&SourceFile::new("arm", imported("site_and_body.xml").spec));
+    assert_eq!(crane.coordinates.len(), 2);
+    let names: Vec<&str> = crane.bodies.iter().map(|body| body.name.as_str()).collect();
+    assert_eq!(names, ["arm", "wrist"]);
+}
+
+#[test]
+fn a_joint_starts_at_its_ref() {
+    let text = "<mujoco><compiler angle='radian'/><worldbody><body name='a'><joint axis='0 1 0' ref='0.4'/>\
+                <inertial pos='0.4 0 0' mass='2' diaginertia='0.1 0.1 0.1'/></body></worldbody></mujoco>";
+    assert_eq!(chain(&SourceFile::new("a", spec("a.xml", text))).guess, [0.4]);
+}
+
+#[test]
+fn included_files_are_read_where_they_stand() {
+    let arm = "<mujocoinclude><body name='arm'><joint name='j' axis='0 1 0'/><include file='mass.xml'/></body></mujocoinclude>";
+    let mass = "<m><inertial pos='0.4 0 0' mass='2' diaginertia='0.1 0.1 0.1'/></m>";
+    let scene = "<mujoco><worldbody><include file='arm.xml'/></worldbody></mujoco>";
+    let mut read = |file: &str| match file {
+        "arm.xml" => Some(arm.to_owned()),
+        "mass.xml" => Some(mass.to_owned()),
+        _ => None,
+    };
+    let whole = exchange::with_includes(SourceFile::new("scene.xml", scene), &mut read);
+    assert_eq!(whole.name, "scene.xml with arm.xml with mass.xml");
+    let crane = chain(&SourceFile::new("scene", spec("scene.xml", &whole.text)));
+    assert_eq!(crane.bodies[0].inertia.as_ref().map(|inertia| inertia.mass.at(&[])), Some(2.0));
+    // A file that includes itself is read once, and the rest is reported.
+    let mut itself = |_: &str| Some("<m><include file='a.xml'/></m>".to_owned());
+    let text =
+        exchange::with_includes(SourceFile::new("a", "<mujoco><include file='a.xml'/></mujoco>"), &mut itself).text;
+    assert_eq!(text, "<mujoco><include file='a.xml'/></mujoco>");
+}
+
+/// A rotor of 4e-4 kg m² behind a reduction of 100 is 4 kg m² at the joint, beside `0.03 + 3 · 0.4²`.
+#[test]
+fn rotors_of_transmissions_are_armature() {
+    let imported = imported("rotor.urdf");
+    assert!(imported.spec.contains("  a_theta: 4\n"), "{}", imported.spec);
+    let crane = chain(&SourceFile::new("rotor", imported.spec));
+    let found = quantity(&crane, FunctionId::MassMatrix, &[0.3], &[0.0])[0];
+    assert!((found - 4.51).abs() < 1e-14, "{found}");
+    assert!(
+        imported.left_out.contains(
+            &"Left out, limits and control of drives: `effort` of <limit>, `velocity` of <limit>, <type>.".to_owned()
+        ),
+        "{:?}",
+        imported.left_out
+    );
+}
+
+#[test]
+fn limits_without_end_and_other_namespaces_are_read() {
+    let endless = imported("infinite_limits.urdf");
+    assert!(!endless.spec.contains("; from "), "{}", endless.spec);
+    let other = imported("namespace.urdf");
+    assert_eq!(chain(&SourceFile::new("u13", other.spec)).coordinates.len(), 2);
+    let told = "Left out, extensions of other programs: <drake:collision_filter_group>.";
+    assert!(other.left_out.contains(&told.to_owned()), "{:?}", other.left_out);
+}
+
+/// An attribute that no reader asks for is told wherever it stands, unless all of its element is left out; so is an element.
+#[test]
+fn what_is_not_understood_is_told() {
+    for (file, left_out) in
+        [("branches.urdf", &[][..]), ("arm.xml", &["<motor ", "<position ", "<weld ", "<geom name=\"ground\""])]
+    {
+        let text = std::fs::read_to_string(Path::new("tests/robots").join(file)).expect("a robot");
+        let import =
+            |text: &str| exchange::import(&SourceFile::new(file, text), &ImportOptions::default()).expect(file);
+        let mut told = 0;
+        for (at, _) in
+            text.match_indices('<').filter(|(at, _)| text[at + 1..].starts_with(|c: char| c.is_ascii_alphabetic()))
+        {
+            let name: String = text[at + 1..].chars().take_while(char::is_ascii_alphanumeric).collect();
+            let end = at + 1 + name.len();
+            let with = import(&format!("{} unheard=\"1\"{}", &text[..end], &text[end..]));
+            let remark = with.left_out.iter().find(|remark| remark.contains("`unheard`"));
+            if left_out.iter().any(|start| text[at..].starts_with(start)) {
+                continue;
+            }
+            let remark = remark.unwrap_or_else(|| panic!("{file}: {}\n{:?}", &text[at..end + 20], with.left_out));
+            assert!(with.spec.contains(&format!("#   {remark}\n")), "{}", with.spec);
+            told += 1;
+        }
+        assert!(told > 10, "{file}: {told}");
+        let inner = text.find("</joint>").or(text.find("</body>")).expect("an end");
+        let with = import(&format!("{}<unheard/>{}", &text[..inner], &text[inner..]));
+        assert!(with.left_out[0].starts_with("Not understood and left out: <unheard>"), "{:?}", with.left_out);
     }
 }

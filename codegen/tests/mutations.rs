@@ -406,13 +406,14 @@ fn everything_in_every_robot_may_be_wrong() {
     let (mut count, mut wrong) = (0, Vec::new());
     for (_, (what, text)) in mutants.iter().enumerate().filter(|(index, _)| draw.takes(*index)) {
         count += 1;
-        let import = || match exchange::import(&SourceFile::new("robot", text.as_str()), &[]) {
-            Ok(imported) => answer("robot.yaml", &imported.spec),
-            Err(mistakes) => {
-                assert!(!mistakes.to_string().is_empty() && !mistakes.headline().contains('\n'));
-                Err(mistakes.to_string())
-            }
-        };
+        let import =
+            || match exchange::import(&SourceFile::new("robot", text.as_str()), &exchange::ImportOptions::default()) {
+                Ok(imported) => answer("robot.yaml", &imported.spec),
+                Err(mistakes) => {
+                    assert!(!mistakes.to_string().is_empty() && !mistakes.headline().contains('\n'));
+                    Err(mistakes.to_string())
+                }
+            };
         wrong.extend(judged(&tried, what, 100, import));
     }
     let shown: String = wrong.iter().take(20).fold(String::new(), |text, line| text + line + "\n");

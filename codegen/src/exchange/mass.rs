@@ -1,9 +1,16 @@
 //! Mass properties as other programs describe them: mass, centre of mass, and the tensor about it.
 
 use crate::chain::{Frame, Inertia, Vector};
+use crate::expand::inertia::principal_axes;
 
-/// A mass in a frame.
-#[derive(Clone, Debug)]
+/// `MuJoCo` refuses moving bodies without mass or inertia, so files give massless frames tiny ones: up to this, kg or kg m², they are
+/// nothing.
+const NOTHING: f64 = 1e-12;
+/// Second moments below zero by this fraction of their sum are rounding of a file.
+const WRITTEN: f64 = 1e-6;
+
+/// A mass in a frame. It has ten numbers, and is something if one of them is: moments without mass are rotors whose mass is elsewhere.
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Lump {
     /// Mass, kg.
     pub(super) mass: f64,
@@ -17,7 +24,7 @@ impl Lump {
     /// From a pseudo-inertia: with `S = ∫ r rᵀ dm − m c cᵀ`, the tensor is `tr(S) 1 − S`.
     pub(super) fn of(inertia: &Inertia, parameters: &[f64]) -> Self {
         let mass = inertia.mass.at(parameters);
-        let com = inertia.first.each_ref().map(|first| first.at(parameters) / mass);
+        let com = inertia.first.each_ref().map(|first| if mass == 0.0 { 0.0 } else { first.at(parameters) / mass });
         let second = inertia.second.each_ref().map(|second| second.at(parameters));
         let size = second[..3].iter().sum::<f64>();
         let central = |k: usize, i: usize, j: usize| second[k] - mass * com[i] * com[j];
@@ -31,6 +38,49 @@ impl Lump {
         ];
         let tensor = [yy + zz, xx + zz, xx + yy, -xy, -xz, -yz];
         Lump { mass, com, tensor: tensor.map(|entry| without_rounding(entry, size)) }
+    }
+
+    /// Whether it has neither mass nor moments.
+    pub(super) fn is_nothing(&self) -> bool {
+        self.tensor.iter().chain([&self.mass]).all(|number| number.abs() <= NOTHING)
+    }
+
+    /// Lumps that move together, combined into one; `None` if they are nothing.
+    pub(super) fn sum(lumps: &[Lump]) -> Option<Lump> {
+        if lumps.iter().all(Lump::is_nothing) {
+            return None;
+        }
+        let mass: f64 = lumps.iter().map(|lump| lump.mass).sum();
+        let weighted = |i: usize| lumps.iter().map(|lump| lump.mass * lump.com[i]).sum::<f64>();
+        let com = [0, 1, 2].map(|i| if mass == 0.0 { 0.0 } else { weighted(i) / mass });
+        let mut tensor = [0.0; 6];
+        for lump in lumps {
+            let [x, y, z] = [0, 1, 2].map(|i| lump.com[i] - com[i]);
+            let shifted = [y * y + z * z, x * x + z * z, x * x + y * y, -x * y, -x * z, -y * z];
+            for (sum, (about_com, shift)) in tensor.iter_mut().zip(lump.tensor.iter().zip(shifted)) {
+                *sum += about_com + lump.mass * shift;
+            }
+        }
+        Some(Lump { mass, com, tensor })
+    }
+
+    /// The nearest lump that is possible, if this one is not: with `S = ∫ r rᵀ dm = ½ tr(I) 1 − I` about the centre of mass, principal
+    /// second moments below zero become zero. Then no principal moment exceeds the sum of the other two.
+    pub(super) fn repaired(&self) -> Option<Lump> {
+        let [xx, yy, zz, xy, xz, yz] = self.tensor;
+        let half = 0.5 * (xx + yy + zz);
+        let second = principal_axes([half - xx, half - yy, half - zz, -xy, -xz, -yz]);
+        let size: f64 = second.iter().map(|(moment, _)| moment.abs()).sum();
+        if !second.iter().any(|(moment, _)| *moment < -WRITTEN * size) {
+            return None;
+        }
+        let element = |i: usize, j: usize| -> f64 {
+            second.iter().map(|(moment, axis)| moment.max(0.0) * axis[i] * axis[j]).sum()
+        };
+        let [a, b, c] = [0, 1, 2].map(|i| element(i, i));
+        let tensor = [b + c, a + c, a + b, -element(0, 1), -element(0, 2), -element(1, 2)];
+        let size = a + b + c;
+        Some(Lump { tensor: tensor.map(|entry| without_rounding(entry, size)), ..self.clone() })
     }
 
     /// The same expressed in the outer frame: `c' = p + R c`, `I' = R I Rᵀ`.
@@ -73,6 +123,38 @@ mod tests {
         assert_eq!((back.mass, back.com, back.tensor), (mass, com, tensor));
         // A point mass has no inertia, not even from rounding.
         assert_eq!(Lump::of(&point(0.3.into(), &[0.1.into(), 0.7.into(), 1.3.into()]), &[]).tensor, [0.0; 6]);
+    }
+
+    #[test]
+    fn moments_without_mass_count_in_a_sum() {
+        let [arm, rotor] = [
+            Lump { mass: 2.0, com: [0.5, 0.0, 0.0], tensor: [0.1, 0.2, 0.3, 0.0, 0.0, 0.0] },
+            Lump { mass: 0.0, com: [9.0, 9.0, 9.0], tensor: [0.5, 0.6, 0.7, 0.0, 0.0, 0.01] },
+        ];
+        let sum = Lump::sum(&[arm.clone(), rotor.clone()]).expect("something");
+        assert_eq!((sum.mass, sum.com), (2.0, [0.5, 0.0, 0.0]));
+        // Sums of two numbers of order one.
+        let apart =
+            |expected: [f64; 6]| sum.tensor.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(apart([0.6, 0.8, 1.0, 0.0, 0.0, 0.01]) < 1e-15, "{sum:?}");
+        assert_eq!(Lump::sum(std::slice::from_ref(&rotor)).expect("something").tensor, rotor.tensor);
+        assert_eq!(Lump::sum(&[Lump { tensor: [0.0; 6], ..rotor }]), None);
+        assert_eq!(arm.repaired(), None);
+    }
+
+    /// Moments 1, 2, 4: second moments 2.5, 1.5 and −0.5 kg m², of which the last becomes zero. Turned by 30° about z, the same turned.
+    #[test]
+    fn an_impossible_inertia_becomes_the_nearest_possible() {
+        let lump = Lump { mass: 3.0, com: [0.1, 0.2, 0.3], tensor: [1.0, 2.0, 4.0, 0.0, 0.0, 0.0] };
+        let turned = Frame::WORLD.rotated(Axis::Z, 0.5, 0.75_f64.sqrt());
+        let right = Lump { tensor: [1.5, 2.5, 4.0, 0.0, 0.0, 0.0], ..lump.clone() };
+        for frame in [Frame::WORLD, turned] {
+            let found = lump.seen_through(&frame).repaired().expect("a change").tensor;
+            let expected = right.seen_through(&frame).tensor;
+            // Jacobi's rotations of numbers of order one.
+            assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-14), "{found:?} {expected:?}");
+        }
+        assert_eq!(right.repaired(), None);
     }
 
     #[test]

@@ -137,7 +137,10 @@ fn bodies(xml: &mut Xml, chain: &Chain, parameters: &[f64]) {
         }
         let moves = path.iter().any(|step| matches!(step, Step::Move(_)));
         match &body.inertia {
-            Some(inertia) => inertial(xml, &Lump::of(inertia, parameters)),
+            Some(inertia) => {
+                let lump = Lump::of(inertia, parameters);
+                inertial(xml, &Lump { mass: lump.mass.max(LEAST), ..lump });
+            }
             None if moves => inertial(xml, &Lump { mass: LEAST, com: [0.0; 3], tensor: [0.0; 6] }),
             None => {}
         }

@@ -3,26 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::{Check, Owner};
-use crate::chain::CoordinateId;
+use crate::chain::{CRATES, CoordinateId, LONGEST_NAME};
 use crate::diagnostic::{Span, rule, suggest};
 use crate::spec::Spanned;
-
-/// Maximum length of a name, characters: it is part of file names and of lines of generated code.
-const LONGEST: usize = 64;
-/// Crates whose names are resolved at the root of a program: a module of the same name would hide them.
-const CRATES: [&str; 11] = [
-    "std",
-    "core",
-    "alloc",
-    "nalgebra",
-    "wide",
-    "crane_model",
-    "crane_codegen",
-    "crane_cli",
-    "crane_shipped",
-    "crane_specs",
-    "crane_live",
-];
 
 /// Keywords of Rust that cannot be raw identifiers either.
 const NEVER_NAMES: [&str; 3] = ["crate", "self", "super"];
@@ -60,7 +43,7 @@ impl Check<'_> {
         let name = given.value.as_deref()?;
         let letters = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
         let identifier = name.starts_with(|c: char| c.is_ascii_lowercase()) && name.chars().all(letters);
-        if !identifier || name.len() > LONGEST {
+        if !identifier || name.len() > LONGEST_NAME {
             let why = if identifier { "longer than 64 characters" } else { "not an identifier" };
             self.report(rule::not_an_identifier(given.span, name.chars().take(40).collect::<String>(), why));
             return None;

@@ -207,8 +207,8 @@ fn a_tree_comes_back_from_urdf_and_mjcf() {
     let values = tree.chain.parameter_defaults();
     let files = [exchange::urdf(&tree.chain, &values), exchange::mjcf(&tree.chain, &values).expect("expressible")];
     for text in files {
-        let imported =
-            exchange::import(&SourceFile::new("tree.xml", text), &[]).unwrap_or_else(|told| panic!("{told}"));
+        let imported = exchange::import(&SourceFile::new("tree.xml", text), &exchange::ImportOptions::default())
+            .unwrap_or_else(|told| panic!("{told}"));
         let back = crane(&imported.spec);
         let places: Vec<usize> =
             places(&tree, &back, str::to_owned).into_iter().map(|place| place.expect("the same coordinates")).collect();

@@ -10,9 +10,10 @@ use crane_codegen::{
     chain::{Bound, Chain, Refusal},
     compile,
     compile::NoFunction,
+    diagnostic::MAX_BYTES,
     emit_c::{CCode, Precision},
     exchange,
-    exchange::Imported,
+    exchange::{ImportOptions, Imported},
     program::Product,
 };
 
@@ -142,13 +143,22 @@ fn in_c(options: &Export, chain: &Chain, parameters: &[f64], header: &str) -> Ou
 /// Writes a spec made from URDF or MJCF, and checks it.
 pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
     let source = spec_file::open(&options.robot, "give a URDF or MJCF file")?;
+    // Files that it includes lie beside it.
+    let folder = options.robot.parent().unwrap_or(Path::new("."));
+    let mut beside = |file: &str| {
+        let bytes = crane_codegen::files::read_file(&folder.join(file), MAX_BYTES).ok()?;
+        String::from_utf8(bytes).ok()
+    };
+    let source = exchange::with_includes(source, &mut beside);
     if let Some(file) = options.spec.as_ref().filter(|file| file.exists() && !options.force) {
         return Err(Problem::usage(
             format!("{} exists", file.display()),
             "give another file with `-o`, or replace it with `--force`; drives and other changes in it would be lost",
         ));
     }
-    let Imported { spec, left_out } = exchange::import(&source, &options.fixed).map_err(Problem::mistakes)?;
+    let Imported { spec, left_out } =
+        exchange::import(&source, &ImportOptions { fixed: options.fixed.clone(), repair: options.repair })
+            .map_err(Problem::mistakes)?;
     let Some(file) = &options.spec else {
         out.write_all(spec.as_bytes())?;
         // To standard error, not into the spec.

@@ -1,6 +1,11 @@
 //! Elements and attributes of an XML file with their locations.
+//!
+//! An [`Element`] notes what is asked of it. Whatever a reader never asked for is left over at the end, and is told: nothing is dropped in
+//! silence, and no list of what a reader ignores can be out of date.
 
-use std::fmt::Display;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::fmt::{Display, Write};
 
 use roxmltree::{Attribute, Document, Node, ParsingOptions};
 
@@ -21,6 +26,192 @@ pub(super) fn parse(source: &SourceFile) -> Result<Document<'_>, Vec<Mistake>> {
     })
 }
 
+/// What became of elements and attributes, by the byte at which they begin.
+#[derive(Default)]
+pub(super) struct Notes(RefCell<BTreeMap<usize, Fate>>);
+
+/// What became of an element or an attribute.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Fate {
+    Read,
+    /// What it belongs to, which a spec does not have.
+    LeftOut(&'static str),
+}
+
+/// An element of a file.
+#[derive(Clone, Copy)]
+pub(super) struct Element<'a, 'i> {
+    node: Node<'a, 'i>,
+    notes: &'a Notes,
+}
+
+impl<'a, 'i> Element<'a, 'i> {
+    /// The root of a file.
+    pub(super) fn root(document: &'a Document<'i>, notes: &'a Notes) -> Self {
+        Element { node: document.root_element(), notes }.read()
+    }
+
+    fn note(&self, at: usize, fate: Fate) {
+        self.notes.0.borrow_mut().entry(at).or_insert(fate);
+    }
+
+    fn fate(&self, at: usize) -> Option<Fate> {
+        self.notes.0.borrow().get(&at).copied()
+    }
+
+    /// The element, which is read from here on.
+    pub(super) fn read(self) -> Self {
+        self.note(self.node.range().start, Fate::Read);
+        self
+    }
+
+    /// Leaves out the element and all that is in it. `what`: what it belongs to.
+    pub(super) fn leave_out(self, what: &'static str) {
+        self.note(self.node.range().start, Fate::LeftOut(what));
+    }
+
+    /// Leaves out the attributes of the element that were not asked for so far. `what`: what they belong to.
+    pub(super) fn leave_out_rest(self, what: &'static str) {
+        self.node.attributes().for_each(|attribute| self.note(attribute.range().start, Fate::LeftOut(what)));
+    }
+
+    /// The name as written, including its prefix.
+    pub(super) fn name(self) -> &'a str {
+        let text = &self.node.document().input_text()[self.node.range()];
+        let name = text.trim_start_matches('<');
+        name.split(|c: char| c.is_whitespace() || c == '>' || c == '/').next().unwrap_or_default()
+    }
+
+    /// The name without prefix.
+    pub(super) fn local_name(self) -> &'a str {
+        self.node.tag_name().name()
+    }
+
+    /// The address of the namespace.
+    pub(super) fn namespace(self) -> Option<&'a str> {
+        self.node.tag_name().namespace()
+    }
+
+    /// Whether this is its name, without a namespace.
+    pub(super) fn is(self, name: &str) -> bool {
+        self.node.has_tag_name(name)
+    }
+
+    /// `<name`, the start of the element.
+    pub(super) fn tag(self) -> Span {
+        let start = self.node.range().start;
+        Span { start, end: start + 1 + self.name().len() }
+    }
+
+    /// An attribute, which is read.
+    pub(super) fn attribute(self, key: &str) -> Option<Attribute<'a, 'i>> {
+        let attribute = self.node.attribute_node(key)?;
+        self.note(attribute.range().start, Fate::Read);
+        Some(attribute)
+    }
+
+    /// The text of an attribute, which is read.
+    pub(super) fn text(self, key: &str) -> Option<&'a str> {
+        self.attribute(key).map(|attribute| attribute.value())
+    }
+
+    /// Whether it has an attribute; this does not read it.
+    pub(super) fn has(self, key: &str) -> bool {
+        self.node.has_attribute(key)
+    }
+
+    /// The names of its attributes.
+    pub(super) fn keys(self) -> impl Iterator<Item = &'a str> {
+        self.node.attributes().map(|attribute| attribute.name())
+    }
+
+    /// The text between its tags.
+    pub(super) fn content(self) -> &'a str {
+        self.node.text().unwrap_or_default().trim()
+    }
+
+    /// The element around it.
+    pub(super) fn parent(self) -> Option<Self> {
+        Some(Element { node: self.node.parent_element()?, ..self })
+    }
+
+    /// The elements in it.
+    pub(super) fn elements(self) -> impl DoubleEndedIterator<Item = Self> + use<'a, 'i> {
+        self.node.children().filter(Node::is_element).map(move |node| Element { node, ..self })
+    }
+
+    /// The elements in it with a name, which are read.
+    pub(super) fn named(self, name: &str) -> impl Iterator<Item = Self> {
+        self.elements().filter(move |element| element.is(name)).map(Element::read)
+    }
+
+    /// The first element in it with a name, which is read.
+    pub(super) fn child(self, name: &str) -> Option<Self> {
+        self.elements().find(|element| element.is(name)).map(Element::read)
+    }
+
+    /// The element and all elements in it, at any depth.
+    pub(super) fn descendants(self) -> impl Iterator<Item = Self> {
+        self.node.descendants().filter(Node::is_element).map(move |node| Element { node, ..self })
+    }
+
+    /// What of an element and all in it was left out or never asked for, one sentence for each reason.
+    pub(super) fn remarks(self) -> Vec<String> {
+        /// Names in one sentence; of more, their number is told.
+        const MOST_NAMES: usize = 20;
+        // By reason, the names with how many there are, in the order of the file, and how many others there are.
+        let mut found: Vec<(Option<&str>, Vec<(String, usize)>, usize)> = Vec::new();
+        let mut add = |reason: Option<&'static str>, name: String| {
+            let index = found.iter().position(|(other, ..)| *other == reason).unwrap_or(found.len());
+            if index == found.len() {
+                found.push((reason, Vec::new(), 0));
+            }
+            let (_, names, others) = &mut found[index];
+            match names.iter().position(|(other, _)| *other == name) {
+                Some(index) => names[index].1 += 1,
+                None if names.len() < MOST_NAMES => names.push((name, 1)),
+                None => *others += 1,
+            }
+        };
+        let mut open = vec![self];
+        while let Some(element) = open.pop() {
+            let name = element.name();
+            match element.fate(element.node.range().start) {
+                None => add(None, format!("<{name}>")),
+                Some(Fate::LeftOut(what)) => add(Some(what), format!("<{name}>")),
+                Some(Fate::Read) => {
+                    // A name alone says nothing about the motion.
+                    let attributes = element.node.attributes().filter(|attribute| attribute.name() != "name");
+                    for attribute in attributes {
+                        let text = || format!("`{}` of <{name}>", attribute.name());
+                        match element.fate(attribute.range().start) {
+                            None => add(None, text()),
+                            Some(Fate::LeftOut(what)) => add(Some(what), text()),
+                            Some(Fate::Read) => {}
+                        }
+                    }
+                    open.extend(element.elements().rev());
+                }
+            }
+        }
+        let written =
+            |(name, count): &(String, usize)| if *count > 1 { format!("{name} ({count})") } else { name.clone() };
+        let sentence = |(reason, names, others): (Option<&str>, Vec<(String, usize)>, usize)| {
+            let mut names = names.iter().map(written).collect::<Vec<_>>().join(", ");
+            if others > 0 {
+                let _ = write!(names, ", and {others} others");
+            }
+            match reason {
+                Some(what) => format!("Left out, {what}: {names}."),
+                None => format!("Not understood and left out: {names}."),
+            }
+        };
+        // What was not understood comes first.
+        found.sort_by_key(|(reason, ..)| reason.is_some());
+        found.into_iter().map(sentence).collect()
+    }
+}
+
 /// Reads attributes, and collects mistakes.
 #[derive(Default)]
 pub(super) struct Reader {
@@ -29,18 +220,18 @@ pub(super) struct Reader {
 
 impl Reader {
     /// A required attribute.
-    pub(super) fn required(&mut self, node: Node, key: &str, owner: &str) -> Option<Named> {
-        let Some(attribute) = node.attribute_node(key) else {
-            self.mistakes.push(rule::missing(tag(node), owner, format!("`{key}=\"…\"`")));
+    pub(super) fn required(&mut self, element: Element, key: &str, owner: &str) -> Option<Named> {
+        let Some(attribute) = element.attribute(key) else {
+            self.mistakes.push(rule::missing(element.tag(), owner, format!("`{key}=\"…\"`")));
             return None;
         };
         Some(Named { name: attribute.value().to_owned(), span: value_span(attribute) })
     }
 
     /// `N` finite numbers of a required attribute, or a mistake.
-    pub(super) fn numbers<const N: usize>(&mut self, node: Node, key: &str, subject: &str) -> Option<[f64; N]> {
-        self.required(node, key, subject)?;
-        self.exact_numbers(node.attribute_node(key)?, subject)
+    pub(super) fn numbers<const N: usize>(&mut self, element: Element, key: &str, subject: &str) -> Option<[f64; N]> {
+        self.required(element, key, subject)?;
+        self.exact_numbers(element.attribute(key)?, subject)
     }
 
     /// The same for an attribute that is present.
@@ -71,24 +262,6 @@ impl Reader {
 
 fn finite_numbers(text: &str) -> Option<Vec<f64>> {
     text.split_whitespace().map(|word| word.parse().ok().filter(|n: &f64| n.is_finite())).collect()
-}
-
-/// The first child with a name.
-pub(super) fn child<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
-    node.children().find(|child| child.has_tag_name(name))
-}
-
-/// `<name`, the start of an element.
-pub(super) fn tag(node: Node) -> Span {
-    let start = node.range().start;
-    Span { start, end: start + 1 + name_of(node).len() }
-}
-
-/// The name of an element as written, including its prefix.
-pub(super) fn name_of<'a>(node: Node<'a, '_>) -> &'a str {
-    let text = &node.document().input_text()[node.range()];
-    let name = text.trim_start_matches('<');
-    name.split(|c: char| c.is_whitespace() || c == '>' || c == '/').next().unwrap_or_default()
 }
 
 /// The text of an attribute between its quotes.

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::groups::Group;
 use super::robot::{Joint, Motion};
-use crate::chain::{Axis, Frame, Vector};
+use crate::chain::{Axis, CRATES, Frame, LONGEST_NAME, Vector};
 use crate::exchange::mass::{Lump, clean};
 use crate::exchange::rotation::along_z;
 
@@ -22,8 +22,10 @@ pub(super) struct SpecLink<'r> {
     pub(super) placement: Frame,
     pub(super) motion: SpecMotion,
     pub(super) bodies: Vec<(String, Lump)>,
-    /// Frames without mass at the ends of the group.
-    pub(super) points: Vec<(String, Vector)>,
+    /// Frames without mass at the ends of the group: name, name of the robot's link, and place.
+    pub(super) points: Vec<(String, &'r str, Vector)>,
+    /// Whether its frame is turned from that of the robot's link, onto the axis of its joint.
+    pub(super) turned: bool,
     /// Joints in it that do not move, and where they stand, m or rad.
     pub(super) held: Vec<(&'r Joint, f64)>,
 }
@@ -42,6 +44,23 @@ impl<'r> SpecLink<'r> {
     /// Its joints with the names of their coordinates, in order.
     pub(super) fn joints(&self) -> impl Iterator<Item = (&'r Joint, String)> {
         self.before.iter().copied().chain(self.joint).zip(self.motion.coordinates(&self.name))
+    }
+
+    /// Makes the inertia of all its bodies together possible, if it is not; returns what was changed.
+    fn repair(&mut self) -> Option<String> {
+        let lumps: Vec<Lump> = self.bodies.iter().map(|(_, lump)| lump.clone()).collect();
+        let sum = Lump::sum(&lumps)?;
+        let repaired = sum.repaired()?;
+        let written = |lump: &Lump| lump.tensor.map(|moment| format!("{moment:.6}").parse().unwrap_or(moment));
+        let remark = format!(
+            "Repaired: the inertia of link `{}` about its centre of mass, {:?} kg m², is impossible; written is {:?} \
+             (Ixx, Iyy, Izz, Ixy, Ixz, Iyz).",
+            self.name,
+            written(&sum),
+            written(&repaired)
+        );
+        self.bodies = vec![(self.name.clone(), repaired)];
+        Some(remark)
     }
 }
 
@@ -62,7 +81,9 @@ impl SpecMotion {
 }
 
 /// The links of a spec, one per group; the fixed group is left out if it has no mass and carries one group.
-pub(super) fn links<'r>(groups: &[Group<'r>]) -> Vec<SpecLink<'r>> {
+///
+/// `repair`: inertias of links that are not possible become the nearest possible ones; what was changed is added to it.
+pub(super) fn links<'r>(groups: &[Group<'r>], mut repair: Option<&mut Vec<String>>) -> Vec<SpecLink<'r>> {
     let mut names = Names::default();
     let mut links: Vec<SpecLink> = Vec::new();
     // For each group, its link, and the frame of that link expressed in the frame of the robot's link.
@@ -92,6 +113,7 @@ pub(super) fn links<'r>(groups: &[Group<'r>]) -> Vec<SpecLink<'r>> {
             motion,
             bodies: Vec::new(),
             points: Vec::new(),
+            turned: rotated != Frame::WORLD,
             held: group.held.clone(),
         };
         let mut bodies = Names::default();
@@ -100,7 +122,7 @@ pub(super) fn links<'r>(groups: &[Group<'r>]) -> Vec<SpecLink<'r>> {
             let pose = rotated.local(frame);
             match &member.lump {
                 Some(lump) => link.bodies.push((bodies.unique(&member.name), lump.seen_through(&pose))),
-                None if ends && index > 0 => link.points.push((member.name.clone(), clean(pose.origin))),
+                None if ends && index > 0 => link.points.push((String::new(), &member.name, clean(pose.origin))),
                 None => {}
             }
         }
@@ -112,13 +134,16 @@ pub(super) fn links<'r>(groups: &[Group<'r>]) -> Vec<SpecLink<'r>> {
             let heavy = group.links.iter().find(|(member, _)| member.lump.is_some() && link.joint.is_none());
             link.was = &heavy.map_or(carrier, |(heavy, _)| heavy).name;
             link.name = names.unique(link.was);
+            if let Some(changes) = repair.as_deref_mut().filter(|_| link.joint.is_some()) {
+                changes.extend(link.repair());
+            }
             links.push(link);
         }
     }
     free_base(&mut links);
     let mut points = Names(links.iter().flat_map(|link| link.motion.coordinates(&link.name)).collect());
-    for (name, _) in links.iter_mut().flat_map(|link| &mut link.points) {
-        *name = points.unique_point(name);
+    for (name, was, _) in links.iter_mut().flat_map(|link| &mut link.points) {
+        *name = points.unique_point(was);
     }
     links
 }
@@ -211,11 +236,16 @@ impl Names {
     }
 }
 
-/// A `snake_case` identifier that is not a keyword.
+/// A `snake_case` identifier that the language does not reserve.
 pub(super) fn identifier(name: &str) -> String {
+    /// Room for what makes a name unique.
+    const ENDING: usize = 6;
     let mut text = String::new();
     let mut lower = false;
     for c in name.chars() {
+        if text.len() + ENDING >= LONGEST_NAME {
+            break;
+        }
         if c.is_ascii_uppercase() && lower {
             text.push('_');
         }
@@ -223,7 +253,7 @@ pub(super) fn identifier(name: &str) -> String {
         text.push(if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' });
     }
     let text = text.trim_matches('_');
-    let is_keyword = text == "gen" || syn::parse_str::<syn::Ident>(text).is_err();
+    let is_keyword = text == "gen" || CRATES.contains(&text) || syn::parse_str::<syn::Ident>(text).is_err();
     match text.chars().next() {
         None => "link".to_owned(),
         Some(first) if !first.is_ascii_lowercase() => format!("link_{text}"),
@@ -245,11 +275,13 @@ mod tests {
             ("3rd", "link_3rd"),
             ("move", "move_1"),
             ("gen", "gen_1"),
+            ("core", "core_1"),
             ("__", "link"),
             ("Größe", "gr__e"),
         ] {
             assert_eq!(identifier(name), expected);
         }
+        assert!(identifier(&"a".repeat(100)).len() < LONGEST_NAME);
         let mut names = Names::default();
         assert_eq!([names.unique("a"), names.unique("A"), names.unique("a")], ["a", "a_2", "a_3"]);
     }

@@ -56,4 +56,6 @@ catalogue! {
     U023 no_orientation(owner, key) "`{key}` of {owner} gives no orientation", "a direction has no length, or two are parallel", "write other numbers";
     /// A joint follows another one.
     U024 own_leader(joint) "joint `{joint}` follows itself", "directly, or over joints that follow it", "name another joint, or remove `mimic` or the equality";
+    /// A joint is held or follows another one in one way.
+    U025 second_equality(joint) "two equalities hold joint `{joint}`", "it already follows another joint, or is held", "remove one of them, or let the other joint follow this one";
 }

@@ -10,6 +10,7 @@
 
 mod document;
 mod groups;
+mod includes;
 mod links;
 mod mistakes;
 mod mjcf;
@@ -17,37 +18,55 @@ mod robot;
 mod urdf;
 mod yaml;
 
+pub use includes::with_includes;
 pub use mistakes::CATALOGUE;
 
 use crate::diagnostic::{Diagnostics, SourceFile};
+use document::Element;
+
+/// How a robot is converted.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ImportOptions {
+    /// Joints that are held at zero.
+    pub fixed: Vec<String>,
+    /// Whether inertias that are not possible become the nearest possible ones.
+    pub repair: bool,
+}
 
 /// A robot as a spec.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Imported {
     /// The spec, commented YAML.
     pub spec: String,
-    /// What the robot has and the spec does not, one sentence each.
+    /// What the robot has and the spec does not, and what was changed, one sentence each.
     pub left_out: Vec<String>,
 }
 
-/// The spec of a robot in URDF or MJCF; the root of the file decides which. `fixed`: joints that are held at zero.
+/// The spec of a robot in URDF or MJCF; the root of the file decides which.
 ///
-/// Masses and inertias are passed on unchanged; the validation of the spec checks them.
+/// Without `repair`, masses and inertias are passed on unchanged; the validation of the spec checks them.
 ///
 /// # Errors
 /// Mistakes in the file, and structures that cannot be a crane: closed loops, and joints that are neither fixed nor about or along
 /// one axis.
-pub fn import(source: &SourceFile, fixed: &[String]) -> Result<Imported, Diagnostics> {
+pub fn import(source: &SourceFile, options: &ImportOptions) -> Result<Imported, Diagnostics> {
     let diagnostics = |mistakes| Diagnostics::new(source, mistakes);
     let document = document::parse(source).map_err(diagnostics)?;
-    let root = document.root_element();
-    let robot = match root.tag_name().name() {
+    let notes = document::Notes::default();
+    let root = Element::root(&document, &notes);
+    let robot = match root.local_name() {
         "robot" => urdf::read_robot(root),
         "mujoco" => mjcf::read_robot(root),
-        _ => Err(vec![mistakes::rule::not_a_robot(document::tag(root), document::name_of(root))]),
+        _ => Err(vec![mistakes::rule::not_a_robot(root.tag(), root.name())]),
     };
-    let robot = robot.map_err(diagnostics)?;
-    let groups = groups::groups(&robot, fixed).map_err(diagnostics)?;
-    let spec = yaml::write_spec(&robot, &links::links(&groups), source);
-    Ok(Imported { spec, left_out: robot.left_out })
+    let mut robot = robot.map_err(diagnostics)?;
+    let mut left_out = root.remarks();
+    left_out.append(&mut robot.left_out);
+    if robot.joints.iter().any(|joint| joint.range().is_some()) {
+        left_out.push("Ranges of joints become comments: write `stops` for those that the crane reaches.".to_owned());
+    }
+    let groups = groups::groups(&robot, &options.fixed).map_err(diagnostics)?;
+    let links = links::links(&groups, options.repair.then_some(&mut left_out));
+    let spec = yaml::write_spec(&robot, &links, &left_out, source);
+    Ok(Imported { spec, left_out })
 }

@@ -4,6 +4,7 @@ use crate::chain::{Frame, Vector};
 use crate::diagnostic::Span;
 use crate::exchange::mass::Lump;
 use crate::exchange::rotation::about;
+use crate::exchange::urdf::NO_LIMIT;
 
 /// A robot.
 pub(super) struct Robot {
@@ -76,6 +77,11 @@ impl Joint {
             start: None,
             reference: 0.0,
         }
+    }
+
+    /// Its range, m or rad, if it has one: exports of cranes write large numbers for none.
+    pub(super) fn range(&self) -> Option<[f64; 2]> {
+        self.limits.filter(|limits| limits.iter().any(|limit| limit.abs() < NO_LIMIT[0]))
     }
 
     /// The pose of its child at a position, m or rad, in that at zero.

@@ -9,15 +9,25 @@ use crate::chain::{Axis, Frame, Vector};
 use crate::diagnostic::{SourceFile, printable};
 use crate::exchange::mass::{Lump, clean, without_rounding};
 use crate::exchange::rotation::roll_pitch_yaw;
-use crate::exchange::urdf::NO_LIMIT;
 use crate::exchange::xml::number_text;
 
 /// The text of a spec.
-pub(super) fn write_spec(robot: &Robot, links: &[SpecLink], source: &SourceFile) -> String {
+///
+/// `remarks`: what the spec lacks of the robot, which stands at its head.
+pub(super) fn write_spec(robot: &Robot, links: &[SpecLink], remarks: &[String], source: &SourceFile) -> String {
     let file = Path::new(&source.name).file_name().unwrap_or_default().to_string_lossy();
     let (file, robot_name) = (plain(&file), plain(&robot.name));
     let mut text = format!("# The robot {robot_name}, from {file}. SI units; angles in rad, or written as `90 deg`.\n");
     text += "# Positions, velocities and zero positions of joints are those of the robot.\n";
+    if links.iter().any(|link| link.turned) {
+        text += "# Frames of links are those of the robot, except where `frame turned` says that z lies along the joint's axis.\n";
+    }
+    if !remarks.is_empty() {
+        text += "# What the robot has and this spec does not:\n";
+    }
+    for remark in remarks {
+        let _ = writeln!(text, "#   {}", remark.replace(char::is_control, "\u{fffd}"));
+    }
     let _ =
         write!(text, "format: 1\nname: {}\ntitle: \"{robot_name}, from {file}\"\n\nlinks:\n", identifier(&robot.name));
     for (index, link) in links.iter().enumerate() {
@@ -46,8 +56,9 @@ pub(super) fn write_spec(robot: &Robot, links: &[SpecLink], source: &SourceFile)
     let points: Vec<_> = links.iter().flat_map(|link| link.points.iter().map(move |point| (link, point))).collect();
     if !points.is_empty() {
         text += "points:                         # frames without mass\n";
-        for (link, (name, at)) in points {
-            let _ = writeln!(text, "  - {{name: {name}, link: {}, at: {}}}", link.name, list(*at));
+        for (link, (name, was, at)) in points {
+            let was = if name == was { String::new() } else { format!("   # {}", plain(was)) };
+            let _ = writeln!(text, "  - {{name: {name}, link: {}, at: {}}}{was}", link.name, list(*at));
         }
         text.push('\n');
     }
@@ -125,9 +136,11 @@ fn link_text(link: &SpecLink, on: Option<&str>) -> String {
     if link.name != link.was {
         comments.push(format!("link {}", plain(link.was)));
     }
-    let limits = |joint: &Joint| joint.limits.filter(|limits| limits.iter().all(|limit| limit.abs() < NO_LIMIT[0]));
+    if link.turned {
+        comments.push("frame turned".to_owned());
+    }
     let unit = |joint: &Joint| if matches!(joint.motion, Motion::Prismatic) { "m" } else { "rad" };
-    if let Some((joint, [lower, upper])) = link.joint.and_then(|joint| Some((joint, limits(joint)?))) {
+    if let Some((joint, [lower, upper])) = link.joint.and_then(|joint| Some((joint, joint.range()?))) {
         comments.push(format!("from {} to {} {}", decimal(lower), decimal(upper), unit(joint)));
     }
     let (zero, elsewhere): (Vec<_>, Vec<_>) = link.held.iter().partition(|(_, position)| *position == 0.0);
@@ -226,6 +239,11 @@ fn angle(angle: f64) -> String {
 fn decimal(number: f64) -> String {
     /// About five rounding errors.
     const ROUNDING: f64 = 1e-15;
+    /// Smaller numbers are not allowed in a spec (E033): they are residues of rounding.
+    const LEAST: f64 = 1e-30;
+    if number.abs() < LEAST {
+        return number_text(0.0);
+    }
     let rounded = (0..17).map(|digits| format!("{number:.digits$e}").parse().unwrap_or(number));
     let short = rounded.into_iter().find(|short: &f64| (short - number).abs() <= ROUNDING * number.abs());
     number_text(short.unwrap_or(number))

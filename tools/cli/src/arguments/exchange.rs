@@ -108,6 +108,9 @@ pub struct Import {
     /// Joint to hold at zero, such as a gripper's, with those that follow it; repeatable
     #[arg(long = "fix", value_name = "JOINT")]
     pub fixed: Vec<String>,
+    /// Replace inertias that no body can have by the nearest possible ones, and say which
+    #[arg(long)]
+    pub repair: bool,
     /// Replace a spec that exists
     #[arg(long)]
     pub force: bool,

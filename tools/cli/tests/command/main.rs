@@ -111,6 +111,27 @@ fn statics_of_the_reference_crane_as_json() {
     assert!((log - 500.0 * 9.81).abs() < 1e-9, "{log}");
 }
 
+/// A scene includes its robot, whose inertia is impossible.
+#[test]
+fn a_robot_is_read_with_what_it_includes_and_repaired_on_request() {
+    let out = folder("include");
+    fs::create_dir_all(&out).expect("a folder");
+    let file = |name: &str| out.join(name).to_str().expect("a path").to_owned();
+    let body = "<body name='a'><joint axis='0 1 0'/><inertial pos='0.5 0 0' mass='2' diaginertia='1 2 4'/></body>";
+    fs::write(file("a.xml"), format!("<mujocoinclude>{body}</mujocoinclude>")).expect("a file");
+    fs::write(file("scene.xml"), "<mujoco><worldbody><include file='a.xml'/></worldbody></mujoco>").expect("a file");
+    let spec = file("a.yaml");
+    let output = crane(&["import", &file("scene.xml"), "-o", &spec]);
+    assert!(
+        text(&output.stderr).contains("error[E051]") && output.status.code() == Some(1),
+        "{}",
+        text(&output.stderr)
+    );
+    let output = crane(&["import", &file("scene.xml"), "-o", &spec, "--repair", "--force"]);
+    assert!(text(&output.stdout).contains("Repaired: the inertia of link `a`"), "{}", text(&output.stderr));
+    assert!(fs::read_to_string(&spec).expect("a spec").contains("inertia: {Ixx: 1.5, Iyy: 2.5, Izz: 4}"));
+}
+
 #[test]
 fn a_crane_goes_to_other_programs_and_comes_back() {
     let out = folder("exchange");
@@ -138,10 +159,12 @@ fn a_crane_goes_to_other_programs_and_comes_back() {
     let output = crane(&["import", &mjcf, "-o", &again]);
     assert!(text(&output.stdout).contains("knuckle_boom: valid; 4 bodies, 4 coordinates"), "{}", text(&output.stdout));
     assert!(fs::read_to_string(&again).expect("a spec").contains("stiffness: 4000000"));
-    // Only the spec goes to standard output.
+    // The spec goes to standard output; what is left out stands at its head, and on standard error.
     let output = crane(&["import", "../../codegen/tests/robots/arm.xml"]);
-    assert!(text(&output.stdout).starts_with("# The robot arm") && !text(&output.stdout).contains("left out"));
-    assert!(text(&output.stderr).contains("2 actuators are left out."), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).starts_with("# The robot arm"));
+    for output in [&output.stdout, &output.stderr] {
+        assert!(text(output).contains("Left out, actuators: <motor>, <position>."), "{}", text(output));
+    }
     let output = crane(&["import", &spec, "-o", &file("nothing.yaml")]);
     assert!(
         text(&output.stderr).contains("error[U001]") && output.status.code() == Some(1) && output.stdout.is_empty()

@@ -3,13 +3,11 @@
 //! Of several joints of a body, all but the last one get a link without mass. The link of a joint has its origin at the joint's anchor, and
 //! its joint is at zero where `MuJoCo`'s is, so that a joint moves the body from its `ref`: `T = P T(p) M(−ref) M(q) T(−p)`.
 
-use roxmltree::Node;
-
-use super::geoms::together;
+use super::geoms::SHAPES;
 use super::pose::unit;
 use super::{File, InertiaFromGeoms};
 use crate::chain::{Frame, Vector};
-use crate::exchange::import::document::{name_of, tag, value_span};
+use crate::exchange::import::document::{Element, value_span};
 use crate::exchange::import::mistakes::rule;
 use crate::exchange::import::robot::{Joint, Link, Motion, Named, Spring};
 use crate::exchange::mass::Lump;
@@ -19,12 +17,10 @@ use crate::exchange::rotation::about;
 const WORLD: &str = "world";
 /// Elements that move a body.
 const JOINTS: [&str; 2] = ["joint", "freejoint"];
-/// `MuJoCo` refuses moving bodies without mass: a body with less than this, kg, is taken as massless.
-const LEAST_MASS: f64 = 1e-12;
 
 /// An element in a body, and what it inherits from the elements around it.
 pub(super) struct Placed<'a, 'i> {
-    pub(super) node: Node<'a, 'i>,
+    pub(super) node: Element<'a, 'i>,
     /// Pose of the `<frame>` elements around it, in the frame of the body.
     pub(super) frame: Frame,
     pub(super) class: Option<&'a str>,
@@ -41,12 +37,12 @@ struct Open<'a, 'i> {
 
 impl<'a, 'i> File<'a, 'i> {
     /// Everything in the world.
-    pub(super) fn world(&mut self, world: Node<'a, 'i>) {
+    pub(super) fn world(&mut self, world: Element<'a, 'i>) {
         if self.robot.links.is_empty() {
-            self.robot.links.push(Link { name: WORLD.to_owned(), span: tag(world), lump: None });
+            self.robot.links.push(Link { name: WORLD.to_owned(), span: world.tag(), lump: None });
         }
         let mut open = Vec::new();
-        let inside = self.elements(world, world.attribute("childclass"));
+        let inside = self.elements(world, world.text("childclass"));
         self.contents(inside, &Frame::WORLD, (WORLD, true), &mut open);
         let mut count = 0;
         while let Some(next) = open.pop() {
@@ -57,16 +53,16 @@ impl<'a, 'i> File<'a, 'i> {
 
     /// Reads a body with its joints; the bodies in it are added to `open`.
     fn body(&mut self, Open { body, parent, stands }: Open<'a, 'i>, count: usize, open: &mut Vec<Open<'a, 'i>>) {
-        let node = body.node;
-        let named = node.attribute_node("name");
+        let node = body.node.read();
+        let named = node.attribute("name");
         let name = named.map_or_else(|| format!("body_{count}"), |name| name.value().to_owned());
-        let span = named.map_or_else(|| tag(node), value_span);
+        let span = named.map_or_else(|| node.tag(), value_span);
         let owner = format!("body `{name}`");
-        let class = node.attribute("childclass").or(body.class);
+        let class = node.text("childclass").or(body.class);
         let inside = self.elements(node, class);
         let placement = body.frame.outer(&self.pose(node, None, &owner));
-        let joints: Vec<&Placed> = inside.iter().filter(|inner| JOINTS.contains(&name_of(inner.node))).collect();
-        if node.attribute("gravcomp").is_some_and(|given| given.parse() != Ok(0.0)) {
+        let joints: Vec<&Placed> = inside.iter().filter(|inner| JOINTS.contains(&inner.node.name())).collect();
+        if node.text("gravcomp").is_some_and(|given| given.parse() != Ok(0.0)) {
             self.robot.left_out.push(format!("Gravity compensation of body `{name}` is left out: gravity acts on it."));
         }
 
@@ -76,7 +72,7 @@ impl<'a, 'i> File<'a, 'i> {
         let mut within = Frame::WORLD;
         for (index, joint) in joints.iter().enumerate() {
             let last = index + 1 == joints.len();
-            let link = if last { name.clone() } else { format!("{name}_{}", index + 1) };
+            let link = if last { name.clone() } else { self.free_name(&name, &format!("_{}", index + 1)) };
             let ends = [&carrier, &link].map(|end| Named { name: end.clone(), span });
             let (read, at) = self.joint(joint, (&name, index), ends, &here);
             self.robot.joints.push(read);
@@ -95,21 +91,22 @@ impl<'a, 'i> File<'a, 'i> {
         }
         let stands = stands && joints.is_empty();
         let lump = self.lump(&inside, &name, stands);
-        let lump = lump.filter(|lump| lump.mass > LEAST_MASS).map(|lump| lump.seen_through(&within));
+        let lump = lump.filter(|lump| !lump.is_nothing()).map(|lump| lump.seen_through(&within));
         self.robot.links.push(Link { name: name.clone(), span, lump });
         self.contents(inside, &within, (&name, stands), open);
     }
 
     /// Elements of a body or of the world, including those in `<frame>` elements.
-    fn elements(&mut self, node: Node<'a, 'i>, class: Option<&'a str>) -> Vec<Placed<'a, 'i>> {
-        let children = |of: Node<'a, 'i>| of.children().filter(Node::is_element).rev();
+    fn elements(&mut self, node: Element<'a, 'i>, class: Option<&'a str>) -> Vec<Placed<'a, 'i>> {
+        let children = |of: Element<'a, 'i>| of.elements().rev();
         let placed = |frame, class| move |node| Placed { node, frame, class };
         let mut open: Vec<Placed> = children(node).map(placed(Frame::WORLD, class)).collect();
         let mut found = Vec::new();
         while let Some(next) = open.pop() {
-            if name_of(next.node) == "frame" {
+            if next.node.name() == "frame" {
+                let _ = next.node.read();
                 let frame = next.frame.outer(&self.pose(next.node, None, "a frame"));
-                let class = next.node.attribute("childclass").or(next.class);
+                let class = next.node.text("childclass").or(next.class);
                 open.extend(children(next.node).map(placed(frame, class)));
             } else {
                 found.push(next);
@@ -130,25 +127,40 @@ impl<'a, 'i> File<'a, 'i> {
         // In reverse, so that the first body is on top of the stack.
         for inner in inside.into_iter().rev() {
             let placed = Placed { frame: within.outer(&inner.frame), ..inner };
-            match name_of(placed.node) {
+            match placed.node.name() {
                 "body" => open.push(Open { body: placed, parent: link.to_owned(), stands }),
                 "site" => self.site(&placed, link),
+                "camera" | "light" => placed.node.leave_out("cameras and lights"),
+                // Of the world: that of a body has been read.
+                "geom" => placed.node.leave_out(SHAPES),
                 _ => {}
             }
         }
     }
 
     fn site(&mut self, site: &Placed<'a, 'i>, link: &str) {
-        let Some(name) = site.node.attribute_node("name") else { return };
+        let Some(name) = site.node.attribute("name") else { return site.node.leave_out("sites without a name") };
+        let _ = site.node.read();
         let span = value_span(name);
         // A body may have the same name.
-        let taken = self.robot.links.iter().any(|link| link.name == name.value());
-        let free_name = if taken { format!("{}_site", name.value()) } else { name.value().to_owned() };
+        let ending = if self.names.contains(name.value()) { "_site" } else { "" };
+        let free_name = self.free_name(name.value(), ending);
         let placement = site.frame.outer(&self.pose(site.node, site.class, &format!("site `{}`", name.value())));
         let ends = [link, &free_name].map(|end| Named { name: end.to_owned(), span });
         let joint = Joint::new(&format!("{free_name} is a site"), span, Motion::Fixed, ends);
         self.robot.joints.push(Joint { placement, ..joint });
         self.robot.links.push(Link { name: free_name, span, lump: None });
+        site.node.leave_out_rest(SHAPES);
+    }
+
+    /// A name for a link that no other link and no body has.
+    fn free_name(&mut self, name: &str, ending: &str) -> String {
+        let first = format!("{name}{ending}");
+        let numbered = (2..).map(|number| format!("{first}_{number}"));
+        let mut candidates = std::iter::once(first.clone()).chain(numbered);
+        let free = candidates.find(|name| !self.names.contains(name)).unwrap_or(first);
+        self.names.insert(free.clone());
+        free
     }
 
     /// A joint, and its anchor in the frame of its body. `here`: pose of the body, before this joint moves it, in the previous link.
@@ -160,16 +172,14 @@ impl<'a, 'i> File<'a, 'i> {
         here: &Frame,
     ) -> (Joint, Vector) {
         let &Placed { node, ref frame, class } = joint;
-        let named = node.attribute_node("name");
+        let _ = node.read();
+        let named = node.attribute("name");
         let unnamed = || if index == 0 { format!("{body}_joint") } else { format!("{body}_joint_{}", index + 1) };
         let name = named.map_or_else(unnamed, |name| name.value().to_owned());
-        let span = named.map_or_else(|| tag(node), value_span);
+        let span = named.map_or_else(|| node.tag(), value_span);
         let owner = format!("joint `{name}`");
-        let kind = if name_of(node) == "freejoint" {
-            "free"
-        } else {
-            self.classes.text(node, class, "type").unwrap_or("hinge")
-        };
+        let kind =
+            if node.name() == "freejoint" { "free" } else { self.classes.text(node, class, "type").unwrap_or("hinge") };
         let motion = match kind {
             "hinge" => Motion::Revolute,
             "slide" => Motion::Prismatic,
@@ -180,7 +190,7 @@ impl<'a, 'i> File<'a, 'i> {
         let angle = if turns { self.angles.unit } else { 1.0 };
         let direction = self.numbers(node, class, "axis", &owner).unwrap_or([0.0, 0.0, 1.0]);
         let axis = unit(direction).unwrap_or_else(|| {
-            self.reader.mistakes.push(rule::no_direction(tag(node), &name));
+            self.reader.mistakes.push(rule::no_direction(node.tag(), &name));
             direction
         });
         let axis = frame.direction(axis);
@@ -192,7 +202,7 @@ impl<'a, 'i> File<'a, 'i> {
         let limited = self.classes.text(node, class, "limited") != Some("false");
         let range = self.numbers::<2>(node, class, "range", &owner).filter(|_| limited);
         if self.classes.find(node, class, "springdamper").is_some() {
-            self.reader.mistakes.push(rule::to_expand(tag(node), format!("`springdamper` of joint `{name}`")));
+            self.reader.mistakes.push(rule::to_expand(node.tag(), format!("`springdamper` of joint `{name}`")));
         }
         let back = if turns {
             about(axis, -reference)
@@ -202,20 +212,25 @@ impl<'a, 'i> File<'a, 'i> {
         let placement = here.outer(&Frame { origin: anchor, ..Frame::WORLD }).outer(&back);
         let spring = (stiffness != 0.0).then_some(Spring { stiffness, rest });
         let limits = range.filter(|[lower, upper]| lower < upper).map(|range| range.map(|limit| limit * angle));
+        node.leave_out_rest("contacts, limits of drives and looks of joints");
         let plain = Joint::new(&name, span, motion, ends);
-        (Joint { placement, axis, limits, damping, friction, spring, armature, reference, ..plain }, anchor)
+        // MuJoCo starts at `ref`.
+        let start = (reference != 0.0).then_some(reference);
+        (Joint { placement, axis, limits, damping, friction, spring, armature, reference, start, ..plain }, anchor)
     }
 
     /// The mass of a body: its inertial frame, or its shapes.
     fn lump(&mut self, inside: &[Placed<'a, 'i>], name: &str, stands: bool) -> Option<Lump> {
         let owner = format!("the mass of body `{name}`");
-        let inertial = inside.iter().find(|inner| name_of(inner.node) == "inertial");
+        let inertial = inside.iter().find(|inner| inner.node.name() == "inertial");
+        let geoms = || inside.iter().filter(|inner| inner.node.name() == "geom");
         match (inertial, self.inertia_from_geoms) {
             (Some(&Placed { node, ref frame, .. }), InertiaFromGeoms::Auto | InertiaFromGeoms::Never) => {
-                let placement = frame.outer(&self.pose(node, None, &owner));
+                geoms().for_each(|geom| geom.node.leave_out(SHAPES));
+                let placement = frame.outer(&self.pose(node.read(), None, &owner));
                 let [mass] = self.reader.numbers(node, "mass", &owner)?;
                 if mass < 0.0 {
-                    self.reader.mistakes.push(rule::negative_mass(tag(node), name, mass));
+                    self.reader.mistakes.push(rule::negative_mass(node.tag(), name, mass));
                 }
                 let full = self.numbers(node, None, "fullinertia", &owner);
                 let tensor = full.unwrap_or_else(|| {
@@ -224,11 +239,16 @@ impl<'a, 'i> File<'a, 'i> {
                 });
                 Some(Lump { mass, com: [0.0; 3], tensor }.seen_through(&placement))
             }
-            (_, InertiaFromGeoms::Never) => None,
-            _ => {
-                let shapes = inside.iter().filter(|inner| name_of(inner.node) == "geom");
-                let lumps: Vec<Lump> = shapes.filter_map(|shape| self.shape(shape, name, stands)).collect();
-                together(&lumps)
+            (_, InertiaFromGeoms::Never) => {
+                geoms().for_each(|geom| geom.node.leave_out(SHAPES));
+                None
+            }
+            (replaced, _) => {
+                if let Some(replaced) = replaced {
+                    replaced.node.leave_out("masses that `inertiafromgeom` replaces");
+                }
+                let lumps: Vec<Lump> = geoms().filter_map(|shape| self.shape(shape, name, stands)).collect();
+                Lump::sum(&lumps)
             }
         }
     }

@@ -7,13 +7,15 @@ use std::f64::consts::PI;
 use super::File;
 use super::bodies::Placed;
 use crate::chain::{Frame, Vector};
-use crate::exchange::import::document::tag;
+use crate::exchange::import::document::Element;
 use crate::exchange::import::mistakes::rule;
 use crate::exchange::mass::Lump;
 use crate::exchange::rotation::{along_z, length};
 
 /// Density of a shape that has neither density nor mass, kg/m³.
 const WATER: f64 = 1000.0;
+/// What geoms have besides masses.
+pub(super) const SHAPES: &str = "contacts, shapes and colours";
 /// Shapes without mass: the ground.
 const MASSLESS: [&str; 2] = ["plane", "hfield"];
 
@@ -21,6 +23,19 @@ impl<'a, 'i> File<'a, 'i> {
     /// A shape in the frame of its body; `None` if it has no mass. `stands`: whether the body is fixed, so that its mass does not matter.
     pub(super) fn shape(&mut self, shape: &Placed<'a, 'i>, body: &str, stands: bool) -> Option<Lump> {
         let &Placed { node, ref frame, class } = shape;
+        let lump = self.solid(node, frame, class, body, stands);
+        node.read().leave_out_rest(SHAPES);
+        lump
+    }
+
+    fn solid(
+        &mut self,
+        node: Element<'a, 'i>,
+        frame: &Frame,
+        class: Option<&str>,
+        body: &str,
+        stands: bool,
+    ) -> Option<Lump> {
         let owner = format!("a geom of body `{body}`");
         let mass = self.number(node, class, "mass", &owner);
         let density = self.number(node, class, "density", &owner).unwrap_or(WATER);
@@ -38,7 +53,7 @@ impl<'a, 'i> File<'a, 'i> {
         let solid = if mesh || shell { None } else { Solid::new(kind, &size, ends) };
         let Some(solid) = solid else {
             let what = if mesh { "mesh" } else { kind };
-            self.reader.mistakes.push(rule::unknown_mass(tag(node), body, what));
+            self.reader.mistakes.push(rule::unknown_mass(node.tag(), body, what));
             return None;
         };
         let placement = match ends {
@@ -120,22 +135,4 @@ impl Solid {
             }
         }
     }
-}
-
-/// Masses that move together, combined into one.
-pub(super) fn together(lumps: &[Lump]) -> Option<Lump> {
-    let mass: f64 = lumps.iter().map(|lump| lump.mass).sum();
-    if mass <= 0.0 {
-        return None;
-    }
-    let com = [0, 1, 2].map(|i| lumps.iter().map(|lump| lump.mass * lump.com[i]).sum::<f64>() / mass);
-    let mut tensor = [0.0; 6];
-    for lump in lumps {
-        let [x, y, z] = [0, 1, 2].map(|i| lump.com[i] - com[i]);
-        let shifted = [y * y + z * z, x * x + z * z, x * x + y * y, -x * y, -x * z, -y * z];
-        for (sum, (about_com, shift)) in tensor.iter_mut().zip(lump.tensor.iter().zip(shifted)) {
-            *sum += about_com + lump.mass * shift;
-        }
-    }
-    Some(Lump { mass, com, tensor })
 }

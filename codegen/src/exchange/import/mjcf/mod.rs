@@ -14,9 +14,9 @@ mod geoms;
 mod others;
 mod pose;
 
-use roxmltree::Node;
+use std::collections::BTreeSet;
 
-use super::document::{Reader, name_of, tag};
+use super::document::{Element, Reader};
 use super::mistakes::rule;
 use super::robot::Robot;
 use crate::diagnostic::Mistake;
@@ -36,14 +36,15 @@ const OF_MASSES: [(&str, &str); 5] = [
 ];
 
 /// Reads a file by its root; returns what could be read, and all mistakes.
-pub(super) fn read_robot(root: Node) -> Result<Robot, Vec<Mistake>> {
+pub(super) fn read_robot(root: Element) -> Result<Robot, Vec<Mistake>> {
     let mut file = File {
         reader: Reader::default(),
+        names: BTreeSet::new(),
         classes: Classes::default(),
         angles: Angles::default(),
         inertia_from_geoms: InertiaFromGeoms::Auto,
         robot: Robot {
-            name: root.attribute("model").unwrap_or("robot").to_owned(),
+            name: root.text("model").unwrap_or("robot").to_owned(),
             links: Vec::new(),
             joints: Vec::new(),
             gravity: None,
@@ -51,14 +52,16 @@ pub(super) fn read_robot(root: Node) -> Result<Robot, Vec<Mistake>> {
             no_drives: "Actuators are not carried over: every joint swings freely.",
         },
     };
-    for node in root.descendants().filter(|node| EXPANDED.contains(&node.tag_name().name())) {
-        file.reader.mistakes.push(rule::to_expand(tag(node), format!("<{}>", name_of(node))));
+    for node in root.descendants().filter(|node| EXPANDED.contains(&node.local_name())) {
+        file.reader.mistakes.push(rule::to_expand(node.tag(), format!("<{}>", node.name())));
     }
-    let sections = |name: &'static str| root.children().filter(move |node| node.has_tag_name(name));
-    sections("compiler").for_each(|node| file.compiler(node));
+    root.named("compiler").for_each(|node| file.compiler(node));
     file.classes = Classes::read(root, &mut file.reader);
-    sections("worldbody").for_each(|node| file.world(node));
+    let bodies = root.descendants().filter(|node| node.is("body"));
+    file.names = bodies.filter_map(|node| node.text("name")).map(str::to_owned).collect();
+    root.named("worldbody").for_each(|node| file.world(node));
     file.others(root);
+    file.classes.note_defaults();
     if file.reader.mistakes.is_empty() { Ok(file.robot) } else { Err(file.reader.mistakes) }
 }
 
@@ -76,35 +79,40 @@ enum InertiaFromGeoms {
 /// A file as far as it was read.
 struct File<'a, 'i> {
     reader: Reader,
+    /// The names of its bodies, and of other links.
+    names: BTreeSet<String>,
     classes: Classes<'a, 'i>,
     angles: Angles,
     inertia_from_geoms: InertiaFromGeoms,
     robot: Robot,
 }
 
-impl File<'_, '_> {
+impl<'a, 'i> File<'a, 'i> {
     /// `<compiler>`: how numbers are interpreted.
-    fn compiler(&mut self, node: Node) {
+    fn compiler(&mut self, node: Element<'a, 'i>) {
         for (key, harmless) in OF_MASSES {
-            let given = node.attribute(key).map(|given| given.split_whitespace().collect::<Vec<_>>().join(" "));
+            let given = node.text(key).map(|given| given.split_whitespace().collect::<Vec<_>>().join(" "));
             let number = |text: &str| text.parse::<f64>().ok();
             let same = |given: &str| given == harmless || number(given).is_some_and(|n| Some(n) == number(harmless));
             if given.is_some_and(|given| !same(&given)) {
-                self.reader.mistakes.push(rule::to_expand(tag(node), format!("`{key}` of <compiler>")));
+                self.reader.mistakes.push(rule::to_expand(node.tag(), format!("`{key}` of <compiler>")));
             }
         }
         self.angles.read(node, &mut self.reader);
-        if let Some(given) = node.attribute("inertiafromgeom") {
+        // Read where ranges are.
+        node.attribute("autolimits");
+        if let Some(given) = node.text("inertiafromgeom") {
             self.inertia_from_geoms = match given {
                 "true" => InertiaFromGeoms::Always,
                 "false" => InertiaFromGeoms::Never,
                 _ => InertiaFromGeoms::Auto,
             };
         }
+        node.leave_out_rest("files and settings of MuJoCo's compiler");
     }
 
     /// A number. `MuJoCo` also accepts the coefficients of a nonlinear law after it: they have to be zero.
-    fn number(&mut self, node: Node, class: Option<&str>, key: &str, owner: &str) -> Option<f64> {
+    fn number(&mut self, node: Element<'a, 'i>, class: Option<&str>, key: &str, owner: &str) -> Option<f64> {
         let attribute = self.classes.find(node, class, key)?;
         let numbers = self.reader.some_numbers(attribute, &format!("`{key}` of {owner}"))?;
         match numbers.as_slice() {
@@ -117,7 +125,13 @@ impl File<'_, '_> {
     }
 
     /// Exactly `N` numbers.
-    fn numbers<const N: usize>(&mut self, node: Node, class: Option<&str>, key: &str, owner: &str) -> Option<[f64; N]> {
+    fn numbers<const N: usize>(
+        &mut self,
+        node: Element<'a, 'i>,
+        class: Option<&str>,
+        key: &str,
+        owner: &str,
+    ) -> Option<[f64; N]> {
         let attribute = self.classes.find(node, class, key)?;
         self.reader.exact_numbers(attribute, &format!("`{key}` of {owner}"))
     }

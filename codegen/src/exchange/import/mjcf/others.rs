@@ -1,74 +1,137 @@
 //! Everything except bodies: gravity, equalities, key frames, and elements that a spec cannot express.
 
-use roxmltree::Node;
-
 use super::File;
 use crate::chain::Vector;
-use crate::exchange::import::document::{child, name_of, tag};
+use crate::exchange::import::document::Element;
 use crate::exchange::import::mistakes::rule;
-use crate::exchange::import::robot::{Follows, Joint, Motion, Named};
+use crate::exchange::import::robot::{Follows, Joint, Motion};
 
 /// Default acceleration of gravity, m/s².
 const GRAVITY: Vector = [0.0, 0.0, -9.81];
-/// Sections whose elements a spec cannot express.
-const LEFT_OUT: [(&str, &str); 4] =
-    [("actuator", "actuators"), ("tendon", "tendons"), ("contact", "pairs of contact"), ("extension", "plugins")];
+/// Sections that a spec cannot express, and what they belong to.
+const LEFT_OUT: [(&str, &str); 11] = [
+    ("actuator", "actuators"),
+    ("tendon", "tendons"),
+    ("contact", "contacts"),
+    ("extension", "plugins"),
+    ("sensor", "sensors"),
+    ("asset", super::geoms::SHAPES),
+    ("visual", super::geoms::SHAPES),
+    ("statistic", super::geoms::SHAPES),
+    ("size", "memory"),
+    ("custom", "numbers and texts of users"),
+    ("deformable", "deformable bodies"),
+];
+
+/// What `<flag>` of `<option>` switches off.
+#[derive(Default)]
+struct Disabled {
+    gravity: bool,
+    springs: bool,
+    dampers: bool,
+    equalities: bool,
+    friction: bool,
+}
 
 impl<'a, 'i> File<'a, 'i> {
-    /// All sections except settings, defaults and the world.
-    pub(super) fn others(&mut self, root: Node<'a, 'i>) {
-        let sections = |name: &'static str| root.children().filter(move |node| node.has_tag_name(name));
-        let elements = |name: &'static str| sections(name).flat_map(|node| node.children()).filter(Node::is_element);
-        for node in sections("option") {
-            self.gravity(node);
-        }
-        for node in elements("equality") {
-            self.equality(node);
-        }
-        if let Some(key) = elements("keyframe").find(|node| node.has_attribute("qpos")) {
-            self.start(key);
-        }
-        for (section, what) in LEFT_OUT {
-            let count = elements(section).count();
-            if count > 0 {
-                self.robot.left_out.push(format!("{count} {what} are left out."));
+    /// All sections except defaults and the world.
+    pub(super) fn others(&mut self, root: Element<'a, 'i>) {
+        let disabled = self.options(root);
+        self.contacts(root);
+        for node in root.named("equality").flat_map(Element::elements) {
+            if disabled.equalities {
+                node.leave_out("equalities that a flag disables");
+            } else {
+                self.equality(node);
             }
         }
-        let touches = |node: Node<'a, 'i>| {
-            node.has_tag_name("geom")
-                && ["contype", "conaffinity"].iter().any(|key| self.classes.text(node, None, key) != Some("0"))
-        };
-        if sections("worldbody").flat_map(|world| world.descendants()).any(touches) {
-            self.robot.left_out.push("Contacts of geoms are left out.".to_owned());
+        for joint in &mut self.robot.joints {
+            if disabled.springs {
+                joint.spring = None;
+            }
+            if disabled.dampers {
+                joint.damping = 0.0;
+            }
+            if disabled.friction {
+                joint.friction = 0.0;
+            }
         }
-        if self.robot.joints.iter().any(|joint| joint.limits.is_some()) {
-            let limits = "Ranges of joints become comments: write `stops` for those that the crane reaches.";
-            self.robot.left_out.push(limits.to_owned());
+        let mut keys = root.named("keyframe").flat_map(Element::elements);
+        let first = keys.by_ref().find(|node| node.has("qpos"));
+        if let Some(key) = first {
+            self.start(key.read());
+            key.leave_out_rest("times, speeds and commands of key frames");
+        }
+        root.named("keyframe")
+            .flat_map(Element::elements)
+            .filter(|key| Some(key.tag()) != first.map(Element::tag))
+            .for_each(|key| {
+                key.leave_out("key frames except the first with `qpos`");
+            });
+        for (section, what) in LEFT_OUT {
+            root.named(section).for_each(|node| {
+                node.elements().for_each(|element| element.leave_out(what));
+                node.leave_out_rest(what);
+            });
         }
     }
 
-    fn gravity(&mut self, option: Node<'a, 'i>) {
-        let given = self.numbers(option, None, "gravity", "<option>");
-        self.robot.gravity = given.filter(|gravity| *gravity != GRAVITY);
-        let flag = child(option, "flag").and_then(|flag| flag.attribute("gravity"));
-        if flag == Some("disable") {
+    /// Notes that shapes do not touch, if some can.
+    fn contacts(&mut self, root: Element<'a, 'i>) {
+        let touches = |node: Element<'a, 'i>| {
+            ["contype", "conaffinity"].iter().any(|key| self.classes.text(node, None, key) != Some("0"))
+        };
+        let mut geoms = root.named("worldbody").flat_map(Element::descendants).filter(|node| node.is("geom"));
+        if geoms.any(touches) {
+            self.robot.left_out.push("Contacts of geoms are left out.".to_owned());
+        }
+    }
+
+    /// `<option>`: of several, each attribute counts where it stands last.
+    fn options(&mut self, root: Element<'a, 'i>) -> Disabled {
+        let mut disabled = Disabled::default();
+        for option in root.named("option") {
+            if option.has("gravity") {
+                self.robot.gravity = self.numbers(option, None, "gravity", "<option>");
+            }
+            for key in ["density", "viscosity"] {
+                if option.text(key).is_some_and(|given| given.parse() != Ok(0.0)) {
+                    self.robot.left_out.push("Forces of the surrounding medium are left out.".to_owned());
+                }
+            }
+            for flag in option.named("flag") {
+                let switch = |key: &str, switched: &mut [&mut bool]| {
+                    if let Some(given) = flag.text(key) {
+                        switched.iter_mut().for_each(|switch| **switch = given == "disable");
+                    }
+                };
+                let Disabled { gravity, springs, dampers, equalities, friction } = &mut disabled;
+                switch("gravity", &mut [gravity]);
+                switch("passive", &mut [&mut *springs, &mut *dampers]);
+                switch("spring", &mut [springs]);
+                switch("damper", &mut [dampers]);
+                switch("constraint", &mut [&mut *equalities, &mut *friction]);
+                switch("equality", &mut [equalities]);
+                switch("frictionloss", &mut [friction]);
+                flag.leave_out_rest("switches of what a spec does not have");
+            }
+            option.leave_out_rest("settings of the solver");
+        }
+        self.robot.gravity = self.robot.gravity.filter(|gravity| *gravity != GRAVITY);
+        if disabled.gravity {
             self.robot.gravity = Some([0.0; 3]);
         }
-        let flows = ["density", "viscosity"]
-            .iter()
-            .any(|key| option.attribute(*key).is_some_and(|given| given.parse() != Ok(0.0)));
-        if flows {
-            self.robot.left_out.push("Forces of the surrounding medium are left out.".to_owned());
-        }
+        disabled
     }
 
     /// Reads an equality that holds a joint or lets it follow another one; no other kind is supported.
-    fn equality(&mut self, node: Node<'a, 'i>) {
+    fn equality(&mut self, node: Element<'a, 'i>) {
         if self.classes.text(node, None, "active") == Some("false") {
-            return;
+            return node.leave_out("equalities that are not active");
         }
-        if name_of(node) != "joint" {
-            return self.reader.mistakes.push(rule::closed_loop(tag(node), format!("<{}>", name_of(node))));
+        let _ = node.read();
+        if node.name() != "joint" {
+            return self.reader.mistakes.push(rule::closed_loop(node.tag(), format!("<{}>", node.name())));
         }
         let Some(follower) = self.reader.required(node, "joint1", "<joint> of <equality>") else { return };
         let power = |exponent: usize| if exponent == 1 { 1.0 } else { 0.0 };
@@ -76,9 +139,9 @@ impl<'a, 'i> File<'a, 'i> {
         let given = given.and_then(|given| self.reader.some_numbers(given, "`polycoef`")).unwrap_or_default();
         let [zeroth, first, higher @ ..] =
             [0, 1, 2, 3, 4].map(|exponent| given.get(exponent).copied().unwrap_or_else(|| power(exponent)));
-        let leader = node.attribute_node("joint2").and_then(|_| self.reader.required(node, "joint2", ""));
+        let leader = if node.has("joint2") { self.reader.required(node, "joint2", "") } else { None };
         if leader.is_some() && higher != [0.0; 3] {
-            return self.reader.mistakes.push(rule::not_linear(tag(node), &follower.name));
+            return self.reader.mistakes.push(rule::not_linear(node.tag(), &follower.name));
         }
         let reference =
             |robot: &[Joint], name: &str| robot.iter().find(|joint| joint.name == name).map(|joint| joint.reference);
@@ -86,20 +149,37 @@ impl<'a, 'i> File<'a, 'i> {
             return self.reader.mistakes.push(rule::equality(follower.span, &follower.name));
         };
         let of_leader = leader.as_ref().map(|leader| reference(&self.robot.joints, &leader.name).unwrap_or(0.0));
-        let Some(joint) = self.robot.joints.iter_mut().find(|joint| joint.name == follower.name) else { return };
+        node.leave_out_rest("softness of equalities");
+        let index = |robot: &[Joint], name: &str| robot.iter().position(|joint| joint.name == name);
+        let Some(at) = index(&self.robot.joints, &follower.name) else { return };
+        let taken = |joint: &Joint| joint.follows.is_some() || joint.held.is_some();
         match (leader, of_leader) {
-            (Some(Named { name, span }), Some(of_leader)) => {
+            (Some(leader), Some(of_leader)) => {
                 // q₁ − ref₁ = c₀ + c₁ (q₂ − ref₂).
                 let offset = of_follower + zeroth - first * of_leader;
-                joint.follows = Some(Follows { leader: Named { name, span }, multiplier: first, offset });
+                let other = index(&self.robot.joints, &leader.name).filter(|other| *other != at);
+                match other.filter(|other| taken(&self.robot.joints[at]) && !taken(&self.robot.joints[*other])) {
+                    // The same equation for the other joint.
+                    Some(other) if first != 0.0 => {
+                        let follows = Follows { leader: follower, multiplier: 1.0 / first, offset: -offset / first };
+                        self.robot.joints[other].follows = Some(follows);
+                    }
+                    _ if taken(&self.robot.joints[at]) => {
+                        self.reader.mistakes.push(rule::second_equality(follower.span, &follower.name));
+                    }
+                    _ => self.robot.joints[at].follows = Some(Follows { leader, multiplier: first, offset }),
+                }
             }
-            _ => joint.held = Some(of_follower + zeroth),
+            _ if taken(&self.robot.joints[at]) => {
+                self.reader.mistakes.push(rule::second_equality(follower.span, &follower.name));
+            }
+            _ => self.robot.joints[at].held = Some(of_follower + zeroth),
         }
     }
 
     /// The pose of a key frame.
-    fn start(&mut self, key: Node<'a, 'i>) {
-        let Some(given) = key.attribute_node("qpos") else { return };
+    fn start(&mut self, key: Element<'a, 'i>) {
+        let Some(given) = key.attribute("qpos") else { return };
         let Some(pose) = self.reader.some_numbers(given, "`qpos` of a key frame") else { return };
         let moving = |joint: &&mut Joint| !matches!(joint.motion, Motion::Fixed);
         let count = self.robot.joints.iter_mut().filter(moving).count();

@@ -1,10 +1,8 @@
 //! Positions and orientations.
 
-use roxmltree::Node;
-
 use super::File;
 use crate::chain::{Axis, Frame, Value, Vector};
-use crate::exchange::import::document::{Reader, tag};
+use crate::exchange::import::document::{Element, Reader};
 use crate::exchange::import::mistakes::rule;
 use crate::exchange::rotation::{about, from_quaternion, length};
 
@@ -24,11 +22,11 @@ impl Default for Angles {
 
 impl Angles {
     /// The settings of a `<compiler>`.
-    pub(super) fn read(&mut self, node: Node, reader: &mut Reader) {
-        if let Some(unit) = node.attribute("angle") {
+    pub(super) fn read(&mut self, node: Element, reader: &mut Reader) {
+        if let Some(unit) = node.text("angle") {
             self.unit = if unit == "radian" { 1.0 } else { 1_f64.to_radians() };
         }
-        let Some(given) = node.attribute_node("eulerseq") else { return };
+        let Some(given) = node.attribute("eulerseq") else { return };
         let letters: Vec<char> = given.value().chars().collect();
         match <[char; 3]>::try_from(letters) {
             Ok(letters) if letters.iter().all(|letter| "xyzXYZ".contains(*letter)) => self.sequence = letters,
@@ -42,18 +40,18 @@ const ORIENTATIONS: [&str; 5] = ["quat", "axisangle", "xyaxes", "zaxis", "euler"
 
 impl<'a, 'i> File<'a, 'i> {
     /// Position and orientation of an element in the frame around it.
-    pub(super) fn pose(&mut self, node: Node<'a, 'i>, class: Option<&str>, owner: &str) -> Frame {
+    pub(super) fn pose(&mut self, node: Element<'a, 'i>, class: Option<&str>, owner: &str) -> Frame {
         let origin = self.numbers(node, class, "pos", owner).unwrap_or([0.0; 3]);
         Frame { origin, ..self.orientation(node, class, owner) }
     }
 
     /// Orientation of an element in the frame around it.
-    pub(super) fn orientation(&mut self, node: Node<'a, 'i>, class: Option<&str>, owner: &str) -> Frame {
+    pub(super) fn orientation(&mut self, node: Element<'a, 'i>, class: Option<&str>, owner: &str) -> Frame {
         let Some(given) = self.classes.with_any(node, class, &ORIENTATIONS) else { return Frame::WORLD };
-        let keys: Vec<&str> = ORIENTATIONS.into_iter().filter(|key| given.has_attribute(*key)).collect();
+        let keys: Vec<&str> = ORIENTATIONS.into_iter().filter(|key| given.has(*key)).collect();
         let [key] = keys.as_slice() else {
             let both = keys.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(" and ");
-            self.reader.mistakes.push(rule::two_orientations(tag(given), owner, both));
+            self.reader.mistakes.push(rule::two_orientations(given.tag(), owner, both));
             return Frame::WORLD;
         };
         // Numbers that could not be read are already reported; a direction without length is reported here.
@@ -70,14 +68,14 @@ impl<'a, 'i> File<'a, 'i> {
             _ => self.numbers_of::<3>(given, key, owner).map(|angles| Some(self.euler(angles))),
         };
         if let Some(None) = frame {
-            self.reader.mistakes.push(rule::no_orientation(tag(given), owner, key));
+            self.reader.mistakes.push(rule::no_orientation(given.tag(), owner, key));
         }
         frame.flatten().unwrap_or(Frame::WORLD)
     }
 
     /// Numbers of an element's own attribute.
-    fn numbers_of<const N: usize>(&mut self, node: Node, key: &str, owner: &str) -> Option<[f64; N]> {
-        self.reader.exact_numbers(node.attribute_node(key)?, &format!("`{key}` of {owner}"))
+    fn numbers_of<const N: usize>(&mut self, node: Element, key: &str, owner: &str) -> Option<[f64; N]> {
+        self.reader.exact_numbers(node.attribute(key)?, &format!("`{key}` of {owner}"))
     }
 
     /// Rotations about three axes, one after the other.
