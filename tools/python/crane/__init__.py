@@ -12,6 +12,8 @@ Every function takes states as arrays whose last axis holds the coordinates, and
 so do live parameters that are arrays. Batches run on all threads, without Python's global lock.
 """
 
+from importlib import metadata
+
 from . import experiments
 from ._native import (
     InvalidRowWarning,
@@ -26,7 +28,7 @@ from ._native import (
 from .fit_result import Band, Fit
 from .fitting import fit
 from .frames import Frames
-from .model import Crane, load
+from .model import Crane, from_mjcf, from_urdf, load
 from .results import (
     Energies,
     Ensemble,
@@ -44,7 +46,10 @@ from .simulation import Simulation, State
 from .state_space import Margins, StateSpace
 from .vector_simulation import VectorSimulation, VectorState
 
+__version__ = metadata.version("crane")
+
 __all__ = [
+    "__version__",
     "Band",
     "Crane",
     "Energies",
@@ -73,6 +78,8 @@ __all__ = [
     "VectorState",
     "experiments",
     "fit",
+    "from_mjcf",
+    "from_urdf",
     "load",
     "set_threads",
     "shipped",

@@ -27,6 +27,9 @@ class SpecWarning(UserWarning):
 class InvalidRowWarning(UserWarning):
     """Rows of a batch whose results are NaN, with the reasons."""
 
+def import_robot(named: str, text: str | None, fix: list[str], repair: bool) -> str:
+    """The spec of a robot in URDF or MJCF, as `crane import` writes it: of a file, with those in MJCF that it includes, or of a text."""
+
 def shipped() -> list[str]:
     """Names of the cranes that come with the package."""
 

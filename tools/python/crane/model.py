@@ -2,6 +2,7 @@
 
 import difflib
 import html
+import itertools
 import math
 import os
 import warnings
@@ -34,6 +35,10 @@ from .state_space import Margins, StateSpace
 from .vector_simulation import VectorSimulation
 
 
+# Endings of files in URDF and MJCF.
+ROBOTS = (".urdf", ".xml")
+# The comment at the head of an imported spec under which the remarks of the import stand.
+NOTES = "# What the robot has and this spec does not:"
 # Numbers of a state that have one entry per coordinate.
 STATE = ("q", "v", "a")
 
@@ -47,7 +52,8 @@ def load(
     inputs: Mapping[str, float | None] | None = None,
     **parameters: ArrayLike,
 ) -> "Crane":
-    """Loads a crane: a shipped one by its name (`crane.shipped()` lists them), or that of a YAML file.
+    """Loads a crane: a shipped one by its name (`crane.shipped()` lists them), or that of a YAML file, or a robot of a file in URDF or
+    MJCF, `.urdf` or `.xml`, as `crane import` converts it: `Crane.notes` tells what of it is left out.
 
     text: the spec itself; `source` is then its name in messages. It may extend shipped cranes, and files of the working folder.
     parameters: live parameters by name, in the units that `Crane.info` shows. Arrays of them make a batch: their axes are leading
@@ -57,7 +63,28 @@ def load(
 
     Raises SpecError, which prints every mistake with its place and remedy; warns of anything implausible with SpecWarning.
     """
-    return Crane(os.fspath(source), text=text, parameters=parameters, invalid=invalid, inputs=None if inputs is None else dict(inputs))
+    source = os.fspath(source)
+    if text is None and os.path.splitext(source)[1].lower() in ROBOTS:
+        text = _native.import_robot(source, None, [], False)
+        source = f"{source}.yaml"
+    return Crane(source, text=text, parameters=parameters, invalid=invalid, inputs=None if inputs is None else dict(inputs))
+
+
+def from_urdf(text: str, /, *, name: str = "robot.urdf", fix: Sequence[str] = (), repair: bool = False) -> "Crane":
+    """A crane from the text of a robot in URDF, as `crane import` converts it; `Crane.notes` tells what of it is left out.
+
+    name: that of the file in messages.
+    fix: joints that are held at zero.
+    repair: whether inertias that no body can have become the nearest possible ones.
+
+    Raises SpecError, which prints every mistake with its place and remedy.
+    """
+    return Crane(f"{name}.yaml", text=_native.import_robot(name, text, list(fix), repair))
+
+
+def from_mjcf(text: str, /, *, name: str = "robot.xml", fix: Sequence[str] = (), repair: bool = False) -> "Crane":
+    """A crane from the text of a robot in MJCF, without `<include>`; otherwise as `from_urdf`."""
+    return from_urdf(text, name=name, fix=fix, repair=repair)
 
 
 def _load_again(source: str, text: str, parameters: dict[str, Any], inputs: dict[str, float]) -> "Crane":
@@ -92,6 +119,13 @@ class Crane(_native.Crane):
         values = ", ".join(f"{name}={value}" for name, value in self.parameters.items() if np.ndim(value) == 0)
         batch = f", shape={self.shape}" if self.shape else ""
         return f"<crane {self.name}: {self.n} coordinates{', ' if values else ''}{values}{batch}>"
+
+    @property
+    def notes(self) -> list[str]:
+        """What an imported robot has and the crane does not, and what was changed, one sentence each; of other cranes nothing."""
+        _, found, after = self.spec.partition(f"{NOTES}\n")
+        lines = after.splitlines() if found else []
+        return [line.removeprefix("#   ") for line in itertools.takewhile(lambda line: line.startswith("#   "), lines)]
 
     def page(self) -> str:
         """The crane in 3-D at rest, with its modes and tables: an HTML page that needs no network, to be written to a file.

@@ -6,8 +6,10 @@ use std::sync::{Mutex, PoisonError};
 
 use crane_codegen::chain::{Profile, Transmission};
 use crane_codegen::compile::check_with;
+use crane_codegen::diagnostic::MAX_BYTES;
+use crane_codegen::exchange::ImportOptions;
 use crane_codegen::picture::picture;
-use crane_codegen::{Checked, SourceFile, build, exchange};
+use crane_codegen::{Checked, SourceFile, build, exchange, files};
 use crane_live::LiveCrane;
 use crane_live::rows::Evaluation;
 use crane_model::Description;
@@ -59,6 +61,36 @@ fn open(py: Python<'_>, named: &str) -> PyResult<SourceFile> {
         build::Failure::File(message) if !path.exists() => PyFileNotFoundError::new_err(message),
         failure => not_read(py, failure),
     })
+}
+
+/// The spec of a robot in URDF or MJCF, as `crane import` writes it: of a file, with those in MJCF that it includes, or of a text.
+#[pyfunction]
+#[pyo3(signature = (named, text, fix, repair))]
+pub fn import_robot(
+    py: Python<'_>,
+    named: &str,
+    text: Option<&str>,
+    fix: Vec<String>,
+    repair: bool,
+) -> PyResult<String> {
+    let source = match text {
+        Some(text) => SourceFile::new(named, text),
+        None => {
+            let path = PathBuf::from(named);
+            let bytes = files::read_file(&path, MAX_BYTES).map_err(|error| match error.kind() {
+                std::io::ErrorKind::NotFound => PyFileNotFoundError::new_err(format!("{named}: {error}")),
+                _ => PyOSError::new_err(format!("{named}: {error}")),
+            })?;
+            let source = SourceFile::from_bytes(named, &bytes).map_err(|found| spec_error(py, &found))?;
+            let folder = path.parent().map(PathBuf::from).unwrap_or_default();
+            exchange::with_includes(source, &mut |file| {
+                String::from_utf8(files::read_file(&folder.join(file), MAX_BYTES).ok()?).ok()
+            })
+        }
+    };
+    let options = ImportOptions { fixed: fix, repair };
+    let imported = py.detach(|| exchange::import(&source, &options));
+    Ok(imported.map_err(|found| spec_error(py, &found))?.spec)
 }
 
 /// The spec of a text, with those that it extends: shipped ones, or files of the working folder. That of another crane, `Crane.spec`,

@@ -46,6 +46,8 @@ mod _native {
     #[pymodule_export]
     use crate::crane::Crane;
     #[pymodule_export]
+    use crate::crane::import_robot;
+    #[pymodule_export]
     use crate::crane::shipped;
     #[pymodule_export]
     use crate::functions::functions;
@@ -53,7 +55,6 @@ mod _native {
     use crate::linear::loop_margins;
     #[pymodule_export]
     use crate::mistakes::{InvalidRowWarning, NoEquilibrium, ParameterError, SpecError, SpecWarning};
-    #[pymodule_export]
     #[pymodule_export]
     use crate::parallel::{set_threads, threads};
     #[pymodule_export]

@@ -46,6 +46,40 @@ def test_what_is_implausible_is_a_warning():
         crane.load("thin.yaml", text=PENDULUM.replace("Iyy: 0.05, Izz: 0.05", "Iyy: 0.05, Izz: 0.0515"))
 
 
+ROBOT = """<robot name="arm"><link name="base"/>
+<link name="upper"><visual/><inertial><origin xyz="0.5 0 0"/><mass value="2"/><inertia ixx="0.1" iyy="0.2" izz="0.2"/></inertial></link>
+<joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/></joint></robot>"""
+
+
+def test_robots_load_from_files_and_texts(tmp_path):
+    for name in ("arm.urdf", "ARM.URDF"):
+        (tmp_path / name).write_text(ROBOT)
+        arm = crane.load(tmp_path / name)
+        # I + m r² about y.
+        assert abs(arm.mass_matrix([0.3])[0, 0] - (0.2 + 2 * 0.25)) < 1e-15
+    assert arm.notes == ["Left out, shapes and colours: <visual>."]
+    assert pickle.loads(pickle.dumps(arm)).notes == arm.notes
+    assert crane.from_urdf(ROBOT).mass_matrix([0.3])[0, 0] == arm.mass_matrix([0.3])[0, 0]
+    assert crane.load("knuckle_boom").notes == []
+    body = "<body name='a'><joint axis='0 1 0'/><inertial pos='0.5 0 0' mass='2' diaginertia='0.1 0.2 0.2'/></body>"
+    (tmp_path / "body.xml").write_text(f"<mujocoinclude>{body}</mujocoinclude>")
+    (tmp_path / "scene.xml").write_text("<mujoco><worldbody><include file='body.xml'/></worldbody></mujoco>")
+    for robot in (crane.load(tmp_path / "scene.xml"), crane.from_mjcf(f"<mujoco><worldbody>{body}</worldbody></mujoco>")):
+        assert abs(robot.mass_matrix([0.3])[0, 0] - 0.7) < 1e-15
+    with pytest.raises(crane.SpecError, match="U012"):
+        crane.from_urdf(ROBOT, fix=["shoulder"])
+    impossible = ROBOT.replace('iyy="0.2" izz="0.2"', 'iyy="0.2" izz="0.9"')
+    with pytest.raises(crane.SpecError, match="E051"):
+        crane.from_urdf(impossible)
+    assert "Repaired" in crane.from_urdf(impossible, repair=True).notes[-1]
+    with pytest.raises(FileNotFoundError):
+        crane.load("nowhere.urdf")
+
+
+def test_the_package_has_a_version():
+    assert crane.__version__.count(".") == 2
+
+
 def test_names_and_units(flexible):
     info = flexible.info
     assert len(info["coordinates"]) == flexible.n == 25
