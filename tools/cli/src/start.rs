@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crane_model::{
-    Description,
+    CoordinateRole, Description,
     dyn_crane::DynCrane,
     force_states::{self, ForceStates},
     loop_joints::Given,
@@ -62,13 +62,14 @@ impl Variable {
         }
     }
 
-    /// Its position or rate in a start.
-    fn motion(self, start: &Start) -> Option<f64> {
-        match self {
-            Self::Position(index) => Some(start.q[index]),
-            Self::Rate(index) => Some(start.v[index]),
-            Self::ForceState(_) => None,
-        }
+    /// What a rigid drive makes of it in a start, if one prescribes its coordinate.
+    fn find_prescribed(self, start: &Start, description: &Description) -> Option<f64> {
+        let (index, value) = match self {
+            Self::Position(index) => (index, start.q[index]),
+            Self::Rate(index) => (index, start.v[index]),
+            Self::ForceState(_) => return None,
+        };
+        (description.coordinates[index].role == CoordinateRole::Prescribed).then_some(value)
     }
 
     fn set(self, start: &mut Start, value: f64) {
@@ -151,7 +152,8 @@ impl Timing {
         let before = [start.q.clone(), start.v.clone()].concat();
         start.close(crane, 0.0, &given)?;
         for (name, variable, number) in asked {
-            if let Some(prescribed) = variable.motion(&start).filter(|is| (is - number).abs() > PRESCRIBED) {
+            let prescribed = variable.find_prescribed(&start, description);
+            if let Some(prescribed) = prescribed.filter(|prescribed| (prescribed - number).abs() > PRESCRIBED) {
                 return Err(Problem::usage(
                     format!("{name} cannot start at {number}: its rigid drive prescribes {prescribed:.6}"),
                     "change the `motion` of the drive, or leave the value out",

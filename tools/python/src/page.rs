@@ -35,6 +35,7 @@ pub struct Given<'py> {
     statistics: [usize; 4],
     #[pyo3(item)]
     errors: Option<Vec<f64>>,
+    #[pyo3(item)]
     missed: Option<Vec<f64>>,
     #[pyo3(item)]
     divergence: Option<f64>,
