@@ -525,7 +525,7 @@ fn limits_without_end_and_other_namespaces_are_read() {
     assert!(other.left_out.contains(&told.to_owned()), "{:?}", other.left_out);
 }
 
-/// An attribute that no reader asks for is told wherever it stands, unless all of its element is left out; so is an element.
+/// An attribute that no reader asks for is listed wherever it stands, unless all of its element is left out; so is an element.
 #[test]
 fn what_is_not_understood_is_told() {
     for (file, left_out) in

@@ -187,7 +187,7 @@ impl Check<'_> {
                 _ if moves => Some((index, Frame::WORLD)),
                 None => None,
                 Some((root, frame)) => {
-                    let placed = path.iter().try_fold(frame, |frame, step| after_constant(frame, step));
+                    let placed = path.iter().try_fold(frame, after_constant);
                     Some(placed.map_or((index, Frame::WORLD), |frame| (root, frame)))
                 }
             };

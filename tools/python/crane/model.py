@@ -53,7 +53,7 @@ def load(
     **parameters: ArrayLike,
 ) -> "Crane":
     """Loads a crane: a shipped one by its name (`crane.shipped()` lists them), or that of a YAML file, or a robot of a file in URDF or
-    MJCF, `.urdf` or `.xml`, as `crane import` converts it: `Crane.notes` tells what of it is left out.
+    MJCF, `.urdf` or `.xml`, as `crane import` converts it: `Crane.notes` lists what is left out.
 
     text: the spec itself; `source` is then its name in messages. It may extend shipped cranes, and files of the working folder.
     parameters: live parameters by name, in the units that `Crane.info` shows. Arrays of them make a batch: their axes are leading
@@ -71,7 +71,7 @@ def load(
 
 
 def from_urdf(text: str, /, *, name: str = "robot.urdf", fix: Sequence[str] = (), repair: bool = False) -> "Crane":
-    """A crane from the text of a robot in URDF, as `crane import` converts it; `Crane.notes` tells what of it is left out.
+    """A crane from the text of a robot in URDF, as `crane import` converts it; `Crane.notes` lists what is left out.
 
     name: that of the file in messages.
     fix: joints that are held at zero.

@@ -83,7 +83,7 @@ pub fn import_robot(
             })?;
             let source = SourceFile::from_bytes(named, &bytes).map_err(|found| spec_error(py, &found))?;
             let folder = path.parent().map(PathBuf::from).unwrap_or_default();
-            exchange::with_includes(source, &mut |file| {
+            exchange::with_includes(source, &mut |file: &str| {
                 String::from_utf8(files::read_file(&folder.join(file), MAX_BYTES).ok()?).ok()
             })
         }

@@ -38,6 +38,9 @@ enum Fate {
     LeftOut(&'static str),
 }
 
+/// What was left out for one reason: names with how many there are, and how many others there are.
+type LeftOver = (Option<&'static str>, Vec<(String, usize)>, usize);
+
 /// An element of a file.
 #[derive(Clone, Copy)]
 pub(super) struct Element<'a, 'i> {
@@ -160,7 +163,7 @@ impl<'a, 'i> Element<'a, 'i> {
         /// Names in one sentence; of more, their number is told.
         const MOST_NAMES: usize = 20;
         // By reason, the names with how many there are, in the order of the file, and how many others there are.
-        let mut found: Vec<(Option<&str>, Vec<(String, usize)>, usize)> = Vec::new();
+        let mut found: Vec<LeftOver> = Vec::new();
         let mut add = |reason: Option<&'static str>, name: String| {
             let index = found.iter().position(|(other, ..)| *other == reason).unwrap_or(found.len());
             if index == found.len() {
@@ -196,7 +199,7 @@ impl<'a, 'i> Element<'a, 'i> {
         }
         let written =
             |(name, count): &(String, usize)| if *count > 1 { format!("{name} ({count})") } else { name.clone() };
-        let sentence = |(reason, names, others): (Option<&str>, Vec<(String, usize)>, usize)| {
+        let sentence = |(reason, names, others): LeftOver| {
             let mut names = names.iter().map(written).collect::<Vec<_>>().join(", ");
             if others > 0 {
                 let _ = write!(names, ", and {others} others");

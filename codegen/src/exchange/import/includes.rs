@@ -18,7 +18,8 @@ pub fn with_includes(source: SourceFile, read: &mut dyn FnMut(&str) -> Option<St
             break;
         }
         source.text.replace_range(place, &content);
-        source.name += &format!(" with {file}");
+        source.name += " with ";
+        source.name += file.rsplit(['/', '\\']).next().unwrap_or_default();
     }
     source
 }

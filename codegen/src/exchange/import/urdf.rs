@@ -39,11 +39,10 @@ pub(super) fn read_robot(root: Element) -> Result<Robot, Vec<Mistake>> {
                     *rotors.entry(joint).or_insert(0.0) += inertia;
                 }
             }
-            (None, "gazebo") => node.leave_out(OF_OTHERS),
             (Some(address), _) if address.contains("xacro") => {
                 reader.mistakes.push(rule::not_a_robot(node.tag(), node.name()));
             }
-            (Some(_), _) => node.leave_out(OF_OTHERS),
+            (Some(_), _) | (None, "gazebo") => node.leave_out(OF_OTHERS),
             _ => {}
         }
     }

@@ -216,7 +216,7 @@ impl<'a, 'i> File<'a, 'i> {
         let plain = Joint::new(&name, span, motion, ends);
         // MuJoCo starts at `ref`.
         let start = (reference != 0.0).then_some(reference);
-        (Joint { placement, axis, limits, damping, friction, spring, armature, reference, start, ..plain }, anchor)
+        (Joint { placement, axis, limits, damping, friction, spring, armature, start, reference, ..plain }, anchor)
     }
 
     /// The mass of a body: its inertial frame, or its shapes.

@@ -1,5 +1,7 @@
 //! Everything except bodies: gravity, equalities, key frames, and elements that a spec cannot express.
 
+use std::collections::BTreeMap;
+
 use super::File;
 use crate::chain::Vector;
 use crate::exchange::import::document::Element;
@@ -23,36 +25,30 @@ const LEFT_OUT: [(&str, &str); 11] = [
     ("deformable", "deformable bodies"),
 ];
 
-/// What `<flag>` of `<option>` switches off.
-#[derive(Default)]
-struct Disabled {
-    gravity: bool,
-    springs: bool,
-    dampers: bool,
-    equalities: bool,
-    friction: bool,
-}
+/// What `<flag>` of `<option>` switches that a spec has. `passive` is springs and dampers, `constraint` equalities and friction.
+const FLAGS: [&str; 7] = ["gravity", "passive", "spring", "damper", "constraint", "equality", "frictionloss"];
 
 impl<'a, 'i> File<'a, 'i> {
     /// All sections except defaults and the world.
     pub(super) fn others(&mut self, root: Element<'a, 'i>) {
-        let disabled = self.options(root);
+        let flags = self.options(root);
+        let disabled = |keys: [&str; 2]| keys.iter().any(|key| flags.get(key) == Some(&true));
         self.contacts(root);
         for node in root.named("equality").flat_map(Element::elements) {
-            if disabled.equalities {
+            if disabled(["equality", "constraint"]) {
                 node.leave_out("equalities that a flag disables");
             } else {
                 self.equality(node);
             }
         }
         for joint in &mut self.robot.joints {
-            if disabled.springs {
+            if disabled(["spring", "passive"]) {
                 joint.spring = None;
             }
-            if disabled.dampers {
+            if disabled(["damper", "passive"]) {
                 joint.damping = 0.0;
             }
-            if disabled.friction {
+            if disabled(["frictionloss", "constraint"]) {
                 joint.friction = 0.0;
             }
         }
@@ -87,9 +83,9 @@ impl<'a, 'i> File<'a, 'i> {
         }
     }
 
-    /// `<option>`: of several, each attribute counts where it stands last.
-    fn options(&mut self, root: Element<'a, 'i>) -> Disabled {
-        let mut disabled = Disabled::default();
+    /// `<option>`: of several, each attribute counts where it stands last. Returns which flags disable something.
+    fn options(&mut self, root: Element<'a, 'i>) -> BTreeMap<&'static str, bool> {
+        let mut flags = BTreeMap::new();
         for option in root.named("option") {
             if option.has("gravity") {
                 self.robot.gravity = self.numbers(option, None, "gravity", "<option>");
@@ -100,28 +96,20 @@ impl<'a, 'i> File<'a, 'i> {
                 }
             }
             for flag in option.named("flag") {
-                let switch = |key: &str, switched: &mut [&mut bool]| {
+                for key in FLAGS {
                     if let Some(given) = flag.text(key) {
-                        switched.iter_mut().for_each(|switch| **switch = given == "disable");
+                        flags.insert(key, given == "disable");
                     }
-                };
-                let Disabled { gravity, springs, dampers, equalities, friction } = &mut disabled;
-                switch("gravity", &mut [gravity]);
-                switch("passive", &mut [&mut *springs, &mut *dampers]);
-                switch("spring", &mut [springs]);
-                switch("damper", &mut [dampers]);
-                switch("constraint", &mut [&mut *equalities, &mut *friction]);
-                switch("equality", &mut [equalities]);
-                switch("frictionloss", &mut [friction]);
+                }
                 flag.leave_out_rest("switches of what a spec does not have");
             }
             option.leave_out_rest("settings of the solver");
         }
         self.robot.gravity = self.robot.gravity.filter(|gravity| *gravity != GRAVITY);
-        if disabled.gravity {
+        if flags.get("gravity") == Some(&true) {
             self.robot.gravity = Some([0.0; 3]);
         }
-        disabled
+        flags
     }
 
     /// Reads an equality that holds a joint or lets it follow another one; no other kind is supported.

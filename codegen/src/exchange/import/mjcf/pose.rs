@@ -48,7 +48,7 @@ impl<'a, 'i> File<'a, 'i> {
     /// Orientation of an element in the frame around it.
     pub(super) fn orientation(&mut self, node: Element<'a, 'i>, class: Option<&str>, owner: &str) -> Frame {
         let Some(given) = self.classes.with_any(node, class, &ORIENTATIONS) else { return Frame::WORLD };
-        let keys: Vec<&str> = ORIENTATIONS.into_iter().filter(|key| given.has(*key)).collect();
+        let keys: Vec<&str> = ORIENTATIONS.into_iter().filter(|key| given.has(key)).collect();
         let [key] = keys.as_slice() else {
             let both = keys.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(" and ");
             self.reader.mistakes.push(rule::two_orientations(given.tag(), owner, both));
