@@ -73,20 +73,19 @@ pub fn import_robot(
     fix: Vec<String>,
     repair: bool,
 ) -> PyResult<String> {
-    let source = match text {
-        Some(text) => SourceFile::new(named, text),
-        None => {
-            let path = PathBuf::from(named);
-            let bytes = files::read_file(&path, MAX_BYTES).map_err(|error| match error.kind() {
-                std::io::ErrorKind::NotFound => PyFileNotFoundError::new_err(format!("{named}: {error}")),
-                _ => PyOSError::new_err(format!("{named}: {error}")),
-            })?;
-            let source = SourceFile::from_bytes(named, &bytes).map_err(|found| spec_error(py, &found))?;
-            let folder = path.parent().map(PathBuf::from).unwrap_or_default();
-            exchange::with_includes(source, &mut |file: &str| {
-                String::from_utf8(files::read_file(&folder.join(file), MAX_BYTES).ok()?).ok()
-            })
-        }
+    let source = if let Some(text) = text {
+        SourceFile::new(named, text)
+    } else {
+        let path = PathBuf::from(named);
+        let bytes = files::read_file(&path, MAX_BYTES).map_err(|error| match error.kind() {
+            std::io::ErrorKind::NotFound => PyFileNotFoundError::new_err(format!("{named}: {error}")),
+            _ => PyOSError::new_err(format!("{named}: {error}")),
+        })?;
+        let source = SourceFile::from_bytes(named, &bytes).map_err(|found| spec_error(py, &found))?;
+        let folder = path.parent().map(PathBuf::from).unwrap_or_default();
+        exchange::with_includes(source, &mut |file| {
+            String::from_utf8(files::read_file(&folder.join(file), MAX_BYTES).ok()?).ok()
+        })
     };
     let options = ImportOptions { fixed: fix, repair };
     let imported = py.detach(|| exchange::import(&source, &options));
