@@ -69,9 +69,10 @@ impl dyn DynCrane + '_ {
         statics::with_tipped_status(self, t, q, statics::solve_at_dyn(self, t, q, settings))
     }
 
-    /// Equilibrium with the drives at given positions, from pose `q`: [`statics::solve_holding_dyn`]. [`statics::RestSearch`] needs no pose.
+    /// Equilibrium with the drives at given positions, from pose `q`: [`statics::solve_holding_dyn`], with the supports over which the crane tips,
+    /// if it does. [`statics::RestSearch`] needs no pose.
     pub fn equilibrium_holding(&self, positions: &[f64], q: &[f64], settings: &statics::Settings) -> Equilibrium {
-        statics::solve_holding_dyn(self, positions, q, settings)
+        statics::with_tipped_status(self, 0.0, q, statics::solve_holding_dyn(self, positions, q, settings))
     }
 
     /// Coefficients of small motions about a pose at rest, with shut valves and joints that stick.

@@ -77,7 +77,7 @@ impl NoCriticalLoad {
 }
 
 /// A critical load of a crane, with its drives at the beginning of their motions: the largest with which the crane stands, and with every
-/// smaller one down to the smallest load with which it does. The load does not depend on the present value of the parameter, which is
+/// smaller one down to the smallest load with which it does, up to [gaps](super). The load does not depend on the present value of the parameter, which is
 /// left at another one.
 ///
 /// # Errors

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     dyn_crane::DynCrane,
-    statics::{Equilibrium, RestSearch},
+    statics::{Equilibrium, RestSearch, advance},
 };
 
 /// The largest load of a pose.
@@ -66,6 +66,8 @@ pub(super) struct LoadSearch<'a> {
 const SHORTEST: f64 = 1.0 / 64.0;
 /// How much more load is searched from the guess where the crane does not rest with a little more, as parts of the load.
 const BEYOND: [f64; 8] = [0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.064, 0.128];
+/// Maximum number of gaps: a crane has as many feet that let go.
+const MOST_GAPS: usize = 32;
 /// A load counts as at least this part of the typical size of loads.
 const PART_OF_SCALE: f64 = 1e-2;
 
@@ -88,25 +90,20 @@ impl Posed<'_> {
 
     /// The crane at rest with the load `to`, from its pose with the load `from`, in steps between which it rests.
     fn change_load(&mut self, from: f64, to: f64, begin: Condition) -> Option<Condition> {
-        let (mut part, mut step, mut at) = (0.0, 1.0, begin);
-        while part < 1.0 {
-            let next = if part + step > 1.0 - 1e-9 { 1.0 } else { part + step };
-            let value = if next < 1.0 { from + next * (to - from) } else { to };
-            match self.find_near(value, &at.q) {
-                Some(found) => (part, at, step) = (next, found, 2.0 * step),
-                None if step <= SHORTEST => return None,
-                None => step *= 0.5,
-            }
-        }
-        Some(at)
+        let mut step = |at: &Condition, [_, part]: [f64; 2]| {
+            let value = if part < 1.0 { from + part * (to - from) } else { to };
+            self.find_near(value, &at.q)
+        };
+        advance(begin, [SHORTEST, 1.0], &mut step)
     }
 
     /// The largest load from that of the trial `first` on, and what governs.
     ///
     /// A trial begins at the pose with a smaller load. Where Newton's method fails there with a little more load, although no margin says so,
-    /// loads up to which the margins suffice are searched from the guess, and the search goes on from the first with which the crane rests.
+    /// loads up to which the margins suffice are searched from the guess, and the search goes on from the first with which the crane rests: the
+    /// lateral springs of feet that let go leave such gaps. After [`MOST_GAPS`] of them the search ends.
     pub(super) fn find_largest(&mut self, first: Trial, search: &LoadSearch<'_>) -> (Option<Trial>, Option<Limit>) {
-        let mut first = first;
+        let (mut first, mut gaps) = (first, 0);
         loop {
             let found = largest(first, &search.range, &mut |load, near| {
                 let at = self.find_near(search.factor * load, &near.q)?;
@@ -120,8 +117,11 @@ impl Posed<'_> {
                 let at = self.find(search.factor * load, None)?;
                 Some(self.trial(load, at, search)).filter(Trial::is_within)
             });
-            let Some(next) = next else { return (found.best, found.governing) };
-            first = next;
+            gaps += 1;
+            match next {
+                Some(next) if gaps <= MOST_GAPS => first = next,
+                _ => return (found.best, found.governing),
+            }
         }
     }
 

@@ -257,14 +257,20 @@ fn out_of_stroke(info: &CylinderInfo, length: &Extremes, moves: bool) -> Option<
     if !length.minimum.is_finite() {
         return Some(format!("{name} cannot be assembled: its rocker and link do not reach each other"));
     }
-    let (length, time, beyond) = if least - length.minimum > length.maximum - greatest {
-        (length.minimum, length.time_of_minimum, least - length.minimum)
+    let [length, time] = beyond_stroke(info, length)?;
+    let when = when(time, moves);
+    Some(format!("{name} is {length:.3} m long{when}: its stroke is from {least:.3} to {greatest:.3} m"))
+}
+
+/// The length of a cylinder furthest beyond an end of its stroke, m, and when it is, s; `None` if it is never beyond one.
+pub fn beyond_stroke(info: &CylinderInfo, length: &Extremes) -> Option<[f64; 2]> {
+    let (least, greatest) = (info.retracted, info.retracted + info.stroke);
+    let (furthest, beyond) = if least - length.minimum > length.maximum - greatest {
+        ([length.minimum, length.time_of_minimum], least - length.minimum)
     } else {
-        (length.maximum, length.time_of_maximum, length.maximum - greatest)
+        ([length.maximum, length.time_of_maximum], length.maximum - greatest)
     };
-    (beyond > 0.0).then(|| {
-        format!("{name} is {length:.3} m long{}: its stroke is from {least:.3} to {greatest:.3} m", when(time, moves))
-    })
+    (beyond > 0.0).then_some(furthest)
 }
 
 /// The highest pressure in a cylinder.

@@ -19,7 +19,7 @@ mod telescopes;
 pub mod verification;
 
 pub(crate) use cylinders::unassembled;
-pub use cylinders::{HighestPressure, highest_pressure};
+pub use cylinders::{HighestPressure, beyond_stroke, highest_pressure};
 pub use extremes::Extremes;
 pub use feet::{Lift, Pull, TipsOver, lifts, pulls, tips_over};
 pub use headlines::{Kind, headlines};

@@ -22,6 +22,7 @@ pub use equilibrium::{Equilibrium, Iteration};
 pub use guess::{guess, guess_dyn};
 pub(crate) use overloaded::{REACHED, Reached, reached};
 pub use rest::RestSearch;
+pub(crate) use rest::advance;
 pub use settings::Settings;
 pub use solve::{solve, solve_at, solve_at_dyn, solve_dyn, solve_holding_dyn};
 pub use status::Status;

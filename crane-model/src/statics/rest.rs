@@ -1,9 +1,9 @@
-//! The pose at rest with the drives at given positions: the one search of `statics`, load charts, critical loads and sensitivities.
+//! The pose at rest with the drives at given positions, for load charts, critical loads and sensitivities: where statics finds it.
 
-use super::{Equilibrium, Settings, guess::guess_with, solve::solve_holding_dyn, tipped::with_tipped_status};
+use super::{Equilibrium, Settings, guess::guess_with};
 use crate::dyn_crane::DynCrane;
 
-/// Newton's method alone: where it fails from a pose, there is no pose at rest nearby.
+/// Newton's method alone: where it fails from a pose, the crane does not rest nearby.
 const NEWTON: Settings = Settings { tolerance: 1e-10, iterations: 30, load_steps: 0 };
 /// Longest stride of the drives between two poses at rest, m or rad.
 const STRIDE: f64 = 0.2;
@@ -62,25 +62,64 @@ impl RestSearch<'_> {
         let drives = &self.crane.description().drives;
         let furthest = from.iter().zip(self.positions).map(|(from, to)| (to - from).abs()).fold(0.0, f64::max);
         let longest = (STRIDE / furthest).min(1.0);
-        let (mut part, mut stride, mut q) = (0.0, longest, q.to_vec());
-        loop {
-            let next: f64 = if part + stride > 1.0 - 1e-9 { 1.0 } else { part + stride };
-            let at = |part: f64| from.iter().zip(self.positions).map(move |(from, to)| from + part * (to - from));
+        // Where no drive moves there is nothing to shorten.
+        let shortest = if furthest > 0.0 { SHORTEST * longest } else { longest };
+        let at = |part: f64| from.iter().zip(self.positions).map(move |(from, to)| from + part * (to - from));
+        let mut found = None;
+        let mut stride = |q: &Vec<f64>, [before, after]: [f64; 2]| {
             let mut start = q.clone();
-            for (drive, (after, before)) in drives.iter().zip(at(next).zip(at(part))) {
+            for (drive, (after, before)) in drives.iter().zip(at(after).zip(at(before))) {
                 start[drive.coordinate] += after - before;
             }
-            let positions: Vec<f64> = if next < 1.0 { at(next).collect() } else { self.positions.to_vec() };
-            match (RestSearch { positions: &positions, ..*self }).find_near(&start) {
-                Some(found) if next >= 1.0 => return Some(found),
-                Some(found) => (part, q, stride) = (next, found.q, (2.0 * stride).min(longest)),
-                None if furthest == 0.0 || stride <= SHORTEST * longest => return None,
-                None => stride *= 0.5,
-            }
-        }
+            let positions: Vec<f64> = if after < 1.0 { at(after).collect() } else { self.positions.to_vec() };
+            let rest = RestSearch { positions: &positions, ..*self }.find_near(&start)?;
+            Some(found.insert(rest).q.clone())
+        };
+        advance(q.to_vec(), [shortest, longest], &mut stride)?;
+        found
     }
 
     fn search(&self, q: &[f64], settings: &Settings) -> Equilibrium {
-        with_tipped_status(self.crane, 0.0, q, solve_holding_dyn(self.crane, self.positions, q, settings))
+        self.crane.equilibrium_holding(self.positions, q, settings)
+    }
+}
+
+/// Follows states from part 0 to part 1 of a way, in steps from the longest down to the shortest: one that fails is halved, and after one that succeeds
+/// the next may be twice as long. `step`: the state at the second part, from that at the first; `None` for the result if the shortest step fails.
+pub(crate) fn advance<S>(
+    begin: S,
+    [shortest, longest]: [f64; 2],
+    step: &mut dyn FnMut(&S, [f64; 2]) -> Option<S>,
+) -> Option<S> {
+    /// What rounding leaves of a way.
+    const ROUNDING: f64 = 1e-9;
+    let (mut part, mut length, mut state) = (0.0, longest, begin);
+    while part < 1.0 {
+        let next = if part + length > 1.0 - ROUNDING { 1.0 } else { part + length };
+        match step(&state, [part, next]) {
+            Some(reached) => (part, state, length) = (next, reached, (2.0 * length).min(longest)),
+            None if length <= shortest => return None,
+            None => length *= 0.5,
+        }
+    }
+    Some(state)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Steps longer than 0.1 fail in the second half.
+    #[test]
+    fn steps_that_fail_are_halved_and_grow_again() {
+        let mut parts = Vec::new();
+        let mut step = |_: &(), [from, to]: [f64; 2]| {
+            let is_possible = to <= 0.5 || to - from <= 0.1;
+            is_possible.then(|| parts.push(to))
+        };
+        assert_eq!(advance((), [0.01, 0.25], &mut step), Some(()));
+        assert_eq!(parts[..3], [0.25, 0.5, 0.5625]);
+        assert_eq!(parts.last(), Some(&1.0));
+        assert_eq!(advance((), [0.2, 0.25], &mut |(), [_, to]| (to <= 0.5).then_some(())), None);
     }
 }

@@ -6,6 +6,7 @@ use crane_codegen::{SourceFile, build};
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::envelope::{Critical, CriticalLoad, NoCriticalLoad, critical_load};
+use crane_model::results::cautions;
 use crane_model::statics::Settings;
 use crane_model::tipping::{governing, lines};
 
@@ -253,5 +254,25 @@ fn a_slack_rope_does_not_raise_the_load_that_tips() {
         let found = critical_load(&mut crane, 0, Critical::Tipping).unwrap();
         assert!((found.load / 6_264.869_851 - 1.0).abs() < 2e-8, "{length}: {found:?}");
         assert_eq!(found.location, "fr – fl");
+    }
+}
+
+/// Hung on the rope with its rear feet in the air, the moments about the front feet balance for any load: the sign of the margin is rounding.
+#[test]
+fn a_crane_on_two_feet_and_a_rope_has_tipped() {
+    let rope = "connectors: [{name: guy, from: {at: [-3, 1, 5]}, to: {link: boom, at: [2.5, 0, 0]}, law: {rope: {stiffness: 1e5, length: 6.3}}}]\n";
+    for payload in [6500.0, 7000.0, 7500.0, 8000.0] {
+        let crane = held_truck(payload, rope);
+        let crane: &dyn DynCrane = &crane;
+        let found = crane.equilibrium(&Settings::default());
+        assert!(found.is_stable(), "{payload}: {found}");
+        let rest = vec![0.0; found.q.len()];
+        let forces = crane.support_reactions_at(&found.q, &rest).iter().map(|force| force.z > 0.0).collect::<Vec<_>>();
+        assert_eq!(forces, [true, true, false, false], "{payload}");
+        let lines = lines(crane, 0.0, &found.q, &rest, &rest);
+        let line = governing(&lines).unwrap();
+        assert!(line.has_tipped && line.margin() <= 0.0, "{payload}: {line:?}");
+        let words = cautions::of_pose(crane, &found.q, cautions::BEND).join("\n");
+        assert!(words.contains("tips over the line fr – fl: no other foot carries anything"), "{payload}: {words}");
     }
 }

@@ -1,7 +1,8 @@
 //! What the crane carries: drives, feet, cylinders.
 
 use crane_model::{
-    results::{Extremes, drive_effort, highest_pressure, lifts, pulls, tips_over},
+    CylinderInfo,
+    results::{Extremes, beyond_stroke, drive_effort, highest_pressure, lifts, pulls, tips_over},
     tipping::governing,
 };
 
@@ -147,32 +148,22 @@ pub(super) fn pressure(crane: &Shown<'_>) -> Option<Figure> {
     Some(if limit.is_some() { figure.judged(excess) } else { figure })
 }
 
-/// Cylinders beyond an end of their strokes, if there are any.
+/// Cylinders beyond an end of their strokes, if there are any: those of which a caution says so.
 pub(super) fn strokes(crane: &Shown<'_>) -> Option<Figure> {
-    /// Part of a stroke by which rounding may place a cylinder beyond its end.
-    const ROUNDING: f64 = 1e-9;
     let cylinders = crane.subject.crane.description().cylinders.iter();
-    let used = cylinders.map(|info| {
-        let length = Extremes::of(&crane.table, &format!("{}_length", info.name));
-        let part = |length: f64| (length - info.retracted) / info.stroke;
-        let ends = [(part(length.minimum), length.time_of_minimum), (part(length.maximum), length.time_of_maximum)];
-        (info, ends)
+    let beyond = cylinders.filter_map(|info| {
+        let [length, time] = beyond_stroke(info, &Extremes::of(&crane.table, &format!("{}_length", info.name)))?;
+        Some((info, (length - info.retracted) / info.stroke, time))
     });
-    let all: Vec<_> = used.filter(|(_, ends)| ends.iter().all(|(part, _)| part.is_finite())).collect();
+    let beyond: Vec<_> = beyond.collect();
     let percent = |part: f64| readable(100.0 * part);
-    let beyond = |part: f64| (-part).max(part - 1.0);
-    let worst = |ends: &[(f64, f64); 2]| if beyond(ends[0].0) > beyond(ends[1].0) { ends[0] } else { ends[1] };
-    let (info, ends) = all.iter().max_by(|a, b| beyond(worst(&a.1).0).total_cmp(&beyond(worst(&b.1).0)))?;
-    let (_, time) = worst(ends);
-    let note = format!("of {}, nearest to an end {}", spoken(&info.name), crane.when(time));
-    let value = format!("{} … {} %", percent(ends[0].0), percent(ends[1].0));
-    let beyond_ends: Vec<String> = all
-        .iter()
-        .filter(|(_, ends)| beyond(worst(ends).0) > ROUNDING)
-        .map(|(info, ends)| format!("{} is at {} % of its stroke", spoken(&info.name), percent(worst(ends).0)))
-        .collect();
-    let excess = (!beyond_ends.is_empty()).then(|| beyond_ends.join("; "))?;
-    Some(Figure::new("stroke", "stroke of a cylinder", value, note).judged(Some(excess)))
+    let (info, part, time) = beyond.iter().max_by(|a, b| (a.1 - 0.5).abs().total_cmp(&(b.1 - 0.5).abs()))?;
+    let note = format!("{}, {}", spoken(&info.name), crane.when(*time));
+    let words = |(info, part, _): &(&CylinderInfo, f64, f64)| {
+        format!("{} is at {} % of its stroke", spoken(&info.name), percent(*part))
+    };
+    let excess = beyond.iter().map(words).collect::<Vec<_>>().join("; ");
+    Some(Figure::new("stroke", "stroke of a cylinder", format!("{} %", percent(*part)), note).judged(Some(excess)))
 }
 
 /// The largest error of the energy balance of a run.
