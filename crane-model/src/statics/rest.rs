@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn steps_that_fail_are_halved_and_grow_again() {
         let mut parts = Vec::new();
-        let mut step = |_: &(), [from, to]: [f64; 2]| {
+        let mut step = |(): &(), [from, to]: [f64; 2]| {
             let is_possible = to <= 0.5 || to - from <= 0.1;
             is_possible.then(|| parts.push(to))
         };
