@@ -1,11 +1,15 @@
 //! docs/EQUATIONS.md names functions and tests, ARCHITECTURE.md the tests that hold its invariants: all of them must exist, and no generated
-//! function may be missing in the first.
+//! function may be missing in the first. docs/manual/from-the-paper.md derives every equation of the paper and names its functions.
 
 use crate::workspace;
 
 const DOCUMENT: &str = "docs/EQUATIONS.md";
 /// Its invariants end with the names of their tests.
 const INVARIANTS: &str = "ARCHITECTURE.md";
+/// It derives the paper's equations, each under a heading `### (n) …`, with its functions after `Code:` and a number after `By hand`.
+const DERIVATIONS: &str = "docs/manual/from-the-paper.md";
+/// Number of the last of them.
+const LAST_EQUATION: usize = 23;
 /// The file that lists the generated functions.
 const FUNCTIONS: &str = "quantities/src/table.rs";
 
@@ -46,7 +50,28 @@ pub fn check_equations() -> Result<(), String> {
             stale.push(format!("{INVARIANTS}: `{name}` does not exist"));
         }
     }
+    let derivations = workspace::read_file(DERIVATIONS)?;
+    for name in derivations.split('`').filter(|name| name.contains("::") && !name.contains(char::is_whitespace)) {
+        if !function_exists(name)? {
+            stale.push(format!("{DERIVATIONS}: `{name}` does not exist"));
+        }
+    }
+    stale.extend(missing_derivations(&derivations).into_iter().map(|problem| format!("{DERIVATIONS}: {problem}")));
     if stale.is_empty() { Ok(()) } else { Err(format!("\n{}", stale.join("\n"))) }
+}
+
+/// Equations without a section in their order, and sections without functions or a number.
+fn missing_derivations(page: &str) -> Vec<String> {
+    let sections: Vec<&str> = page.split("\n### ").skip(1).collect();
+    let wanted = (1..=LAST_EQUATION).filter_map(|number| {
+        let Some(section) = sections.get(number - 1).filter(|section| section.starts_with(&format!("({number}) ")))
+        else {
+            return Some(format!("section {number} is not that of equation ({number})"));
+        };
+        let without = ["Code: ", "By hand"].into_iter().find(|part| !section.contains(part))?;
+        Some(format!("equation ({number}) has no `{without}`"))
+    });
+    wanted.collect()
 }
 
 /// Whether `path/file.rs::name` or `module::name` of the compiler is a function.
@@ -95,5 +120,16 @@ mod tests {
         assert!(function_exists("tools/xtask/src/equations.rs::tests_of_invariants_are_found_and_exist").unwrap());
         assert!(!function_exists("tools/xtask/src/equations.rs::another").unwrap());
         assert!(tests_named(&workspace::read_file(INVARIANTS).unwrap()).count() > 15);
+    }
+
+    #[test]
+    fn every_equation_is_derived_with_its_code_and_a_number() {
+        let section = |number: usize, text: &str| format!("\n### ({number}) One\n{text}\n");
+        let all = |odd: usize, text: &str| -> String {
+            (1..=LAST_EQUATION).map(|n| section(n, if n == odd { text } else { "Code: `a::b`. By hand: 1." })).collect()
+        };
+        assert_eq!(missing_derivations(&all(0, "")), [""; 0]);
+        assert_eq!(missing_derivations(&all(7, "Code: `a::b`.")), ["equation (7) has no `By hand`"]);
+        assert_eq!(missing_derivations(&section(2, "")).len(), LAST_EQUATION);
     }
 }
