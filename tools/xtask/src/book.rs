@@ -80,7 +80,7 @@ fn problem_of_link(page: &str, link: &str, pages: &BTreeMap<String, String>) -> 
 }
 
 /// The path from the root of a link on a page.
-fn resolve_link(page: &str, link: &str) -> String {
+pub fn resolve_link(page: &str, link: &str) -> String {
     let mut parts: Vec<&str> = page.split('/').collect();
     parts.pop();
     for part in link.split('/') {
@@ -94,7 +94,7 @@ fn resolve_link(page: &str, link: &str) -> String {
 }
 
 /// Lines of a page outside of blocks of code, with their numbers.
-fn prose_lines(page: &str) -> impl Iterator<Item = (usize, &str)> {
+pub fn prose_lines(page: &str) -> impl Iterator<Item = (usize, &str)> {
     let mut in_code = false;
     (1..).zip(page.lines()).filter(move |(_, line)| {
         let fence = line.starts_with("```");
@@ -104,7 +104,7 @@ fn prose_lines(page: &str) -> impl Iterator<Item = (usize, &str)> {
 }
 
 /// Links of a page, with the numbers of their lines.
-fn links_of(page: &str) -> Vec<(usize, &str)> {
+pub fn links_of(page: &str) -> Vec<(usize, &str)> {
     prose_lines(page)
         .flat_map(|(number, line)| {
             line.split("](").skip(1).filter_map(move |rest| Some((number, rest.split(')').next()?)))

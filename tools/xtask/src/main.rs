@@ -8,6 +8,7 @@ mod cross;
 mod cycles;
 mod equations;
 mod fused;
+mod glossary;
 mod imports;
 mod instrument;
 mod manual;
@@ -177,6 +178,7 @@ fn lint_steps() -> Vec<Step> {
         Step::check("import rules", imports::check_imports),
         Step::check("plain English", prose::check_prose),
         Step::check("pages and links of the manual", book::check_manual),
+        Step::check("terms of the glossary", glossary::check_glossary),
         Step::check("docs/EQUATIONS.md is current", equations::check_equations),
         Step::check("units built twice", units::check_units),
         // Clippy builds the compiler, which build scripts need, as a crate of its own.
