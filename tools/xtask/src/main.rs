@@ -24,6 +24,7 @@ mod prose;
 mod python;
 mod release;
 mod report;
+mod sentences;
 mod step;
 mod supply;
 mod units;

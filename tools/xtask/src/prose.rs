@@ -1,6 +1,6 @@
-//! Words that a reader stumbles over, in documents, comments and messages.
+//! Words that a reader stumbles over, in documents, comments and messages, and long sentences of the manual.
 
-use crate::workspace;
+use crate::{sentences, workspace};
 
 /// What is looked for, and what to write instead.
 const STUMBLES: [(&str, &str); 15] = [
@@ -54,13 +54,13 @@ const DOCUMENTS: [&str; 3] = ["ARCHITECTURE.md", "CONTRIBUTING.md", "README.md"]
 /// This file, which contains the words itself.
 const HERE: &str = "tools/xtask/src/prose.rs";
 
-/// Every place where one occurs.
+/// Every place where one occurs, and every long sentence.
 pub fn check_prose() -> Result<(), String> {
     let mut files: Vec<String> = DOCUMENTS.map(str::to_owned).to_vec();
     for (folder, extension) in TEXTS {
         files.extend(workspace::find_files(folder, extension)?);
     }
-    let mut found = Vec::new();
+    let mut found = sentences::find_long()?;
     for file in files.iter().filter(|file| *file != HERE && !file.contains("/target/")) {
         for (number, line) in workspace::read_file(file)?.lines().enumerate() {
             let rest = PLAIN.iter().fold(line.to_owned(), |line, plain| line.replace(plain, " "));
