@@ -94,12 +94,20 @@ pub fn resolve_link(page: &str, link: &str) -> String {
 }
 
 /// Lines of a page outside of blocks of code, with their numbers.
-pub fn prose_lines(page: &str) -> impl Iterator<Item = (usize, &str)> {
+fn prose_lines(page: &str) -> impl Iterator<Item = (usize, &str)> {
     let mut in_code = false;
     (1..).zip(page.lines()).filter(move |(_, line)| {
         let fence = line.starts_with("```");
         in_code ^= fence;
         !in_code && !fence && !line.starts_with("    ")
+    })
+}
+
+/// Lines of a page that are or contain sentences: without code, headings, tables, comments and pictures.
+pub fn sentence_lines(page: &str) -> impl Iterator<Item = (usize, &str)> {
+    prose_lines(page).filter(|(_, line)| {
+        let text = line.trim_start();
+        !text.is_empty() && !text.starts_with(['#', '|', '<']) && !text.starts_with("![")
     })
 }
 

@@ -80,8 +80,7 @@ fn unlinked(page: &str, text: &str, terms: &[Term]) -> Vec<String> {
 
 /// Sentences of a page on one line in small letters, without headings, tables and code; and its links: from where to where in it, and their target.
 fn prose_and_links(text: &str) -> (String, BTreeMap<usize, (usize, String)>) {
-    let is_sentence = |line: &&str| !line.starts_with(['#', '|', '<']);
-    let lines: Vec<&str> = book::prose_lines(text).map(|(_, line)| line.trim()).filter(is_sentence).collect();
+    let lines: Vec<&str> = book::sentence_lines(text).map(|(_, line)| line.trim()).collect();
     let joined = lines.join(" ").to_ascii_lowercase();
     let outside_of_code = joined.split('`').step_by(2).collect::<Vec<_>>().join("_");
     let (mut prose, mut links) = (String::new(), BTreeMap::new());

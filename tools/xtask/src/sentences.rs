@@ -54,16 +54,12 @@ fn too_long(sentence: &[&str]) -> Option<usize> {
     (words > MOST_WORDS).then_some(words)
 }
 
-/// Paragraphs and entries of lists, each on one line, with the line where they begin; without headings, tables, pictures, code blocks, the code
-/// between backticks and the targets of links.
+/// Paragraphs and entries of lists, each on one line, with the line where they begin; without the code between backticks and the targets of links.
 fn paragraphs_of(page: &str) -> Vec<(usize, String)> {
     let mut paragraphs: Vec<(usize, String)> = Vec::new();
     let mut last = 0;
-    for (number, line) in book::prose_lines(page) {
+    for (number, line) in book::sentence_lines(page) {
         let text = line.trim();
-        if text.is_empty() || text.starts_with(['#', '|', '<']) || text.starts_with("![") {
-            continue;
-        }
         let entry = text.strip_prefix("* ").or(text.strip_prefix("- ")).or(text
             .split_once(". ")
             .and_then(|(begin, rest)| begin.chars().all(|c| c.is_ascii_digit()).then_some(rest)));
