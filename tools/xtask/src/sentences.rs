@@ -64,7 +64,10 @@ fn paragraphs_of(page: &str) -> Vec<(usize, String)> {
             .split_once(". ")
             .and_then(|(begin, rest)| begin.chars().all(|c| c.is_ascii_digit()).then_some(rest)));
         match paragraphs.last_mut() {
-            Some((_, paragraph)) if entry.is_none() && number == last + 1 => *paragraph += &format!(" {text}"),
+            Some((_, paragraph)) if entry.is_none() && number == last + 1 => {
+                paragraph.push(' ');
+                *paragraph += text;
+            }
             _ => paragraphs.push((number, entry.unwrap_or(text).to_owned())),
         }
         last = number;
