@@ -171,7 +171,7 @@ fn grid(verdicts: &[Verdict]) -> Grid {
     grid
 }
 
-/// Writes the results as CSV and as a Markdown page; without times, so that both files are reproducible.
+/// Writes the results as CSV, and a Markdown page that counts them by subject; without times, so that both files are reproducible.
 fn write_verdicts(folder: &Path, verdicts: &[Verdict]) -> Outcome<()> {
     let header = ["group", "case", "expected", "happened", "verdict"];
     let fields = |verdict: &Verdict| {
@@ -191,19 +191,13 @@ fn write_verdicts(folder: &Path, verdicts: &[Verdict]) -> Outcome<()> {
     )?;
 
     let mut page = include_str!("introduction.md").to_owned();
-    let mut group = "";
-    for verdict in verdicts {
-        if verdict.group != group {
-            group = verdict.group;
-            let _ = write!(
-                page,
-                "\n## {}{}\n\n| case | expected | happened | |\n|---|---|---|---|\n",
-                group[..1].to_uppercase(),
-                &group[1..]
-            );
-        }
-        let row = fields(verdict)[1..].iter().map(|cell| cell.replace('|', "\\|")).collect::<Vec<_>>();
-        let _ = writeln!(page, "| {} |", row.join(" | "));
+    page.push_str("\n| Subject | Cases | As expected | For example |\n|---|---:|---:|---|\n");
+    for cases in verdicts.chunk_by(|one, next| one.group == next.group) {
+        let (subject, count) = (cases[0].group, cases.len());
+        let passed = cases.iter().filter(|case| case.passed).count();
+        let examples = cases.iter().map(|case| fields(case)[1..4].join(" → ").replace('|', "\\|"));
+        let example = examples.min_by_key(String::len).unwrap_or_default();
+        let _ = writeln!(page, "| {}{} | {count} | {passed} | {example} |", subject[..1].to_uppercase(), &subject[1..]);
     }
     files::write_text(&folder.join("stress.md"), &page)
 }
