@@ -151,13 +151,15 @@ fn the_least_damped_motion_may_be_far_from_the_axis() {
     }
 }
 
-/// Random loops: the least damping is that of all zeros up to the highest frequency with |L| ≥ 0.1, which the argument principle counts.
+/// Random loops: the least damping is that of all zeros up to the highest frequency with |L| ≥ 0.1, which the argument principle counts. None is left
+/// out: a loop without a damping fails. `CRANE_THOROUGH=1` tries 400, `CRANE_SEED=7` others.
 #[test]
 fn the_least_damping_is_that_of_all_motions() {
-    const LOOPS: usize = 36;
-    let mut random = random_numbers(0x9e37_79b9_7f4a_7c15);
+    let loops = if std::env::var_os("CRANE_THOROUGH").is_some() { 400 } else { 36 };
+    let seed = std::env::var("CRANE_SEED").ok().and_then(|seed| seed.parse().ok());
+    let mut random = random_numbers(seed.unwrap_or(0x9e37_79b9_7f4a_7c15));
     let mut kinds = [0; 2];
-    for case in 0..LOOPS {
+    for case in 0..loops {
         let mut between = |low: f64, high: f64| low * (high / low).powf(random());
         let table =
             Turntable { stiffness: between(4e3, 4e4), damping: between(100.0, 1e4), inertia: between(300.0, 3000.0) };
@@ -188,7 +190,8 @@ fn the_least_damping_is_that_of_all_motions() {
         assert!((ours - least).abs() < 1e-9, "case {case}: {ours} for {least}: {of:?}");
         kinds[usize::from(margins.stable)] += 1;
     }
-    assert!(kinds[0] > LOOPS / 5 && kinds[1] > LOOPS / 5, "both kinds are among them: {kinds:?}");
+    println!("{} loops compared, {} unstable, {} stable", kinds[0] + kinds[1], kinds[0], kinds[1]);
+    assert!(kinds[0] > loops / 5 && kinds[1] > loops / 5, "both kinds are among them: {kinds:?}");
 }
 
 /// `k e^(−Ts)/s` grows if k T > π/2, however long the dead time is: as many pairs as there are frequencies (2 n + 1/2) π/T below k. Its
