@@ -30,9 +30,11 @@ pub fn scene(live: &LiveCrane, q: &[f64]) -> Value {
         .enumerate()
         .map(|(index, (body, frame))| {
             let own = tree.own(index);
+            let (written, parameters) = (&live.chain().bodies[index], live.parameters());
+            let mass = written.inertia.as_ref().map_or(0.0, |inertia| inertia.mass.at(parameters));
             json!({
-                "name": body.name.as_str(), "link": body.link.as_str(), "mass": body.mass, "length": body.length,
-                "parent": tree.parent(index), "along": live.chain().bodies[index].along.at(live.parameters()),
+                "name": body.name.as_str(), "link": body.link.as_str(), "mass": mass, "length": body.length,
+                "parent": tree.parent(index), "along": written.along.at(parameters),
                 "moved_by": [own.start, own.end], "frame": rows(frame), "rope": is_rope(description, &tree, body),
             })
         })

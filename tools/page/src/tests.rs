@@ -70,6 +70,20 @@ fn modes_come_apart_from_the_crane_at_rest() {
     assert_eq!(first, whole);
 }
 
+/// What hangs on the hook of 25 kg is a live parameter.
+#[test]
+fn masses_are_those_of_the_live_parameters() {
+    let mut live = live("knuckle_boom");
+    for payload in [800.0, 650.0] {
+        live.set_parameters(&[payload]).expect("a mass");
+        let scene = scene::scene(&live, &(&live as &dyn DynCrane).guess());
+        let bodies = scene["bodies"].as_array().expect("bodies");
+        let hook: f64 =
+            bodies.iter().filter(|body| body["link"] == "hook").filter_map(|body| body["mass"].as_f64()).sum();
+        assert_eq!(hook, 25.0 + payload);
+    }
+}
+
 /// A pendulum without damping has the ratio 0, not the rounding of its eigenvalue.
 #[test]
 fn what_is_not_damped_says_zero() {
