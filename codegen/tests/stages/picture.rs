@@ -13,12 +13,18 @@ fn root() -> PathBuf {
 
 /// The shipped cranes, by name.
 fn shipped() -> Vec<Chain> {
-    let files = fs::read_dir(root().join("specs")).expect("a folder").map(|entry| entry.expect("a file").path());
+    cranes("specs").into_iter().map(|(_, chain)| chain).collect()
+}
+
+/// The names of the files in a folder and their cranes, by name.
+fn cranes(folder: &str) -> Vec<(String, Chain)> {
+    let files = fs::read_dir(root().join(folder)).expect("a folder").map(|entry| entry.expect("a file").path());
     let mut specs: Vec<PathBuf> = files.filter(|path| path.extension().is_some_and(|found| found == "yaml")).collect();
     specs.sort();
     let chain = |path: PathBuf| {
         let source = build::open(&path).unwrap_or_else(|failure| panic!("{failure}"));
-        compile::load(&source).unwrap_or_else(|mistakes| panic!("{mistakes}"))
+        let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+        (name, compile::load(&source).unwrap_or_else(|mistakes| panic!("{mistakes}")))
     };
     specs.into_iter().map(chain).collect()
 }
@@ -83,17 +89,20 @@ fn a_horizontal_beam_is_drawn_as_long_as_it_is() {
 fn the_gallery_shows_every_shipped_crane() {
     let update = env::var_os("UPDATE_GOLDEN").is_some();
     let images = root().join("docs/images/cranes");
-    let mut page = "# Gallery\n\nThe shipped cranes at the poses of their specs, with frames, joints, beams, supports and drives. \
+    let mut page = "# Gallery\n\nThe shipped cranes and examples at the poses of their specs, with frames, joints, beams, supports and drives. \
                     `crane explain CRANE --svg FILE`\ndraws such a picture of any crane. Masses are those with default parameters.\n"
         .to_owned();
-    for chain in shipped() {
-        let image = images.join(format!("{}.svg", chain.name));
+    let all = [("run", "specs"), ("example", "specs/examples")];
+    for (command, (name, chain)) in
+        all.into_iter().flat_map(|(command, folder)| cranes(folder).into_iter().map(move |one| (command, one)))
+    {
+        let image = images.join(format!("{name}.svg"));
         if update {
             fs::create_dir_all(&images).expect("a folder");
             fs::write(&image, picture::picture(&chain)).expect("a picture");
         }
         assert!(image.exists(), "there is no {}: run this test with UPDATE_GOLDEN=1", image.display());
-        let (name, title) = (&chain.name, &chain.title);
+        let title = &chain.title;
         let parameters = chain.parameter_defaults();
         let mass: f64 = chain
             .bodies
@@ -105,7 +114,7 @@ fn the_gallery_shows_every_shipped_crane() {
         let (supports, drives) = (chain.supports.len(), chain.drives.len());
         let _ = write!(
             page,
-            "\n## {title}\n\n`crane run {name}`: {coordinates} coordinates, {bodies} bodies, {supports} supports, {drives} drives, \
+            "\n## {title}\n\n`crane {command} {name}`: {coordinates} coordinates, {bodies} bodies, {supports} supports, {drives} drives, \
              {mass:.0} kg\n\n![{title}: frames, joints and beams, with a table of coordinates](../images/cranes/{name}.svg)\n"
         );
     }
