@@ -28,7 +28,7 @@ const MARGIN = 0.03;
 
 export const COLOURS = {
   base: 0x4a5560, link: 0xe2a32b, flexible: 0x1f7fc0, stage: 0x5aa9dd, slide: 0xb9c2cb, load: 0xa5784f, pin: 0x2b3138, passive: 0x8d979f,
-  barrel: 0x59636e, rod: 0xdfe4e8, linkage: 0xc98a1c, rope: 0x2b3138, pad: 0xf2f2ee, ghost: 0xd55e00,
+  barrel: 0x59636e, rod: 0xdfe4e8, linkage: 0xc98a1c, rope: 0x2b3138, pad: 0xf2f2ee, ghost: 0xd55e00, marked: 0xcc3f8f,
 };
 
 export class Figure {
@@ -47,6 +47,10 @@ export class Figure {
     /** How many beams are around each one. */
     this.depths = new Map();
     this.materials = new Map();
+    /** What a crane without feet stands on, if it does. */
+    this.plate = null;
+    /** The meshes of the part that is marked. */
+    this.marked = new Set();
     this.kinematics.pose(this.kinematics.reference);
     this.build();
   }
@@ -72,6 +76,7 @@ export class Figure {
   /** A mesh that moves with a body. */
   part(body, mesh, local) {
     mesh.matrixAutoUpdate = false;
+    mesh.userData.part = { kind: "links", name: this.kinematics.bodies[body].link };
     this.parts.push({ body, mesh, local });
   }
 
@@ -109,7 +114,11 @@ export class Figure {
     this.stand();
     this.connect();
     const paint = { barrel: COLOURS.barrel, rod: COLOURS.rod, linkage: COLOURS.linkage, pin: COLOURS.pin };
-    this.cylinders = this.crane.scene.cylinders.map((data) => new Cylinder(data, this.size, (geometry, colour) => this.mesh(geometry, colour), paint));
+    this.cylinders = this.crane.scene.cylinders.map((data) => new Cylinder(data, this.size, (geometry, colour) => {
+      const mesh = this.mesh(geometry, colour);
+      mesh.userData.part = { kind: "cylinders", name: data.name };
+      return mesh;
+    }, paint));
   }
 
   /** The links of ropes and chains, thin and straight. */
@@ -140,6 +149,7 @@ export class Figure {
     this.depths.set(name, depth);
     const mesh = this.mesh(geometry, depth % 2 ? COLOURS.stage : COLOURS.flexible);
     mesh.frustumCulled = false;
+    mesh.userData.part = { kind: "links", name };
     this.beams.push({ name, geometry, elements, mesh, plain: mesh.material });
     // Rings between the elements show where it bends.
     let begin = 0;
@@ -305,7 +315,7 @@ export class Figure {
     const side = this.thickness(bodies[0].mass, 0);
     const first = new Vector3().setFromMatrixPosition(frames[0]);
     const slides = this.crane.coordinates.slice(...bodies[0].moved_by).some(({ unit }) => unit === "m");
-    const plate = this.mesh(new CylinderGeometry(2 * side, 2 * side, 0.5 * side, 40), COLOURS.base);
+    const plate = this.plate = this.mesh(new CylinderGeometry(2 * side, 2 * side, 0.5 * side, 40), COLOURS.base);
     // A beam that begins at the origin is clamped to a wall.
     const normal = bodies[0].flexible && first.length() < NOTHING * this.size ? new Vector3().setFromMatrixColumn(frames[0], 0) : new Vector3(0, 0, 1);
     plate.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), normal);
@@ -414,6 +424,7 @@ export class Figure {
   colour(colours) {
     for (const { name, geometry, mesh, plain } of this.beams) {
       const colour = colours?.(name);
+      if (this.marked.has(mesh)) continue;
       if (!colour) {
         mesh.material = plain;
         continue;
@@ -421,6 +432,17 @@ export class Figure {
       geometry.paint(colour);
       this.painted ??= new MeshStandardMaterial({ vertexColors: true, roughness: 0.62, metalness: 0.15 });
       mesh.material = this.painted;
+    }
+  }
+
+  /** Shows one part in another colour; `null`: none. */
+  mark(part) {
+    for (const mesh of this.marked) mesh.material = mesh.userData.paint;
+    const own = ({ userData: { part: one } }) => part && one?.kind === part.kind && one.name === part.name;
+    this.marked = new Set(this.group.children.filter(own));
+    for (const mesh of this.marked) {
+      mesh.userData.paint = mesh.material;
+      mesh.material = this.material(COLOURS.marked);
     }
   }
 

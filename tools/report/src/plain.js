@@ -179,7 +179,10 @@ export class Plain {
   /** Takes the places and the colours of all parts. */
   follow() {
     for (const source of this.sources) source.updateMatrixWorld();
-    for (const { mesh, drawn, usual, painted } of this.bent) drawn.material = mesh.material.vertexColors ? painted : usual;
+    for (const { mesh, drawn, usual, painted } of this.bent) {
+      drawn.material = mesh.material.vertexColors ? painted : usual;
+      usual.uniforms.diffuse.value = mesh.material.color;
+    }
     for (const { meshes, places, paints } of this.batches) {
       meshes.forEach(({ matrixWorld, material: { color } }, index) => {
         places.set(matrixWorld.elements, 16 * index);

@@ -1,7 +1,7 @@
 // The view in three dimensions: cranes, ground, traces, forces, camera.
 import {
-  ACESFilmicToneMapping, ArrowHelper, Color, DirectionalLight, Fog, GridHelper, Group, HemisphereLight, Mesh, MeshBasicMaterial,
-  MeshLambertMaterial, PCFShadowMap, PerspectiveCamera, RingGeometry, Scene, SphereGeometry, Vector3, WebGLRenderer,
+  ACESFilmicToneMapping, ArrowHelper, Box3, Color, DirectionalLight, Fog, GridHelper, Group, HemisphereLight, Mesh, MeshBasicMaterial,
+  MeshLambertMaterial, PCFShadowMap, PerspectiveCamera, Raycaster, RingGeometry, Scene, SphereGeometry, Vector2, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { Line2 } from "three/examples/jsm/lines/Line2.js";
@@ -90,6 +90,8 @@ export class Viewer {
     /** The crane follows the levers; somebody turns the view. */
     this.driven = this.held = false;
     this.seen = true;
+    /** Called after every picture. */
+    this.drawn = null;
     /** Pictures since the detail was considered, the time that they took, when the last was drawn, and how long it waited for numbers, s. */
     this.pace = { pictures: 0, spent: 0, last: null, waited: 0 };
     this.renderer = new WebGLRenderer({ canvas, antialias: !this.soft });
@@ -103,7 +105,10 @@ export class Viewer {
     this.controls.maxPolarAngle = 0.56 * Math.PI;
     this.controls.listenToKeyEvents(canvas);
     this.controls.addEventListener("change", () => this.draw());
-    this.controls.addEventListener("start", () => (this.held = true));
+    this.controls.addEventListener("start", () => {
+      this.held = true;
+      this.view = null;
+    });
     this.controls.addEventListener("end", () => (this.held = false));
     this.load(data);
     new ResizeObserver(() => this.resize()).observe(canvas);
@@ -128,7 +133,13 @@ export class Viewer {
     this.content = new Group();
     this.scene.add(this.content);
     this.figure = new Figure(crane, size);
+    // What it stands on is to be seen, too.
+    if (this.figure.plate) {
+      const { min, max } = new Box3().setFromObject(this.figure.plate);
+      for (const x of [min.x, max.x]) for (const y of [min.y, max.y]) this.extent.places.push(new Vector3(x, y, min.z));
+    }
     this.content.add(this.figure.group);
+    this.figure.mark(this.marked ?? null);
     this.ghost = rigid ? new Figure(rigid, size, { ghost: true }) : null;
     if (this.ghost) this.content.add(this.ghost.group);
     this.used = used(crane);
@@ -245,7 +256,46 @@ export class Viewer {
   }
 
   look(view) {
+    this.view = view;
     this.fit(new Vector3(...VIEWS[view]).normalize());
+  }
+
+  /** Where the crane is seen from: the name of a view, or place and target of the camera, m, and the ratio of the picture's sides. */
+  get seenFrom() {
+    if (this.view) return this.view;
+    return [...this.camera.position, ...this.controls.target, this.camera.aspect].map((number) => Number(number.toPrecision(5)));
+  }
+
+  /** Looks from there again; from farther away in a narrower picture. What is no such place changes nothing. */
+  set seenFrom(from) {
+    if (typeof from === "string" && Object.hasOwn(VIEWS, from)) this.look(from);
+    if (!Array.isArray(from) || from.length !== 7 || !from.every(Number.isFinite)) return;
+    const [place, target] = [new Vector3(...from.slice(0, 3)), new Vector3(...from.slice(3, 6))];
+    const { size } = this.extent;
+    const way = place.sub(target);
+    if (way.length() < 0.01 * size || way.length() > 50 * size || target.distanceTo(this.extent.centre) > 50 * size) return;
+    this.view = null;
+    this.camera.position.copy(target).addScaledVector(way, Math.max(from[6] / this.camera.aspect, 1));
+    this.controls.target.copy(target);
+    this.controls.update();
+    this.draw();
+  }
+
+  /** The part of the crane at a place of the window, `{kind, name}`; `null`: none. */
+  pick(x, y) {
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    const ray = new Raycaster();
+    ray.setFromCamera(new Vector2((2 * (x - left)) / width - 1, 1 - (2 * (y - top)) / height), this.camera);
+    // What is drawn plainly is drawn by other meshes.
+    this.figure.group.updateMatrixWorld();
+    return ray.intersectObject(this.figure.group).find(({ object }) => object.userData.part)?.object.userData.part ?? null;
+  }
+
+  /** Marks a part of this crane and of those that are shown later; `null`: none. */
+  mark(part) {
+    this.marked = part;
+    this.figure.mark(part);
+    this.show();
   }
 
   /** Looks from a direction, from as near as shows all places of the crane. */
@@ -518,6 +568,7 @@ export class Viewer {
     if (this.ghost) this.ghost.group.visible = !plain && ghostly;
     if (this.plain) this.plain.show(Boolean(plain), ghostly);
     this.renderer.render(this.scene, this.camera);
+    this.drawn?.();
     this.stale?.traverse((one) => {
       one.geometry?.dispose();
       one.material?.dispose();
