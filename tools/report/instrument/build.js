@@ -24,13 +24,22 @@ const page = await build({ ...options, entryPoints: ["instrument/src/page.js"], 
     Checks build without optimising the units of a crate once more as one: 2 % more. */
 const MOST = process.env.CARGO_PROFILE_RELEASE_LTO === "off" ? 1.3e6 : 1.26e6;
 
-/** The cranes to start from, simplest first, with the titles of their specs. */
+/** The cranes to start from, simplest first, with the titles of their specs and their pictures. */
 const EXAMPLES = [
   "knuckle_boom", "double_pendulum", "cantilever", "loader_tipping", "two_arms", "examples/loader_crane", "examples/parallel_harvester", "examples/telescopic_loader", "eight_link_rigid", "eight_link_flexible", "eight_link_hydraulic",
   "eight_link_identified", "eight_link_two_flexible",
 ];
-const examples = await Promise.all(EXAMPLES.map(async (name) => ({ name: `${name.split("/").at(-1)}.yaml`, text: await file(`../../../specs/${name}.yaml`) })));
-const given = JSON.stringify({ examples, schema: JSON.parse(await file("../../../specs/crane.schema.json")) }).replaceAll("<", "\\u003c");
+/** The picture of a crane, to be shown small: without words, table and axes, and with thicker lines. */
+const picture = async (name) => (await file(`../../../docs/images/cranes/${name}.svg`))
+  .replace(/<text[^]*?<\/text>|<title>[^]*?<\/title>|<rect width='100%'[^>]*>|<[^>]*stroke-width='1.4'[^>]*>|\n/g, "")
+  .replace(/stroke-width='([\d.]+)'/g, (_, width) => `stroke-width='${2.5 * width}'`).replace(/width='\d+' height='\d+' viewBox='[^']*'/, "viewBox='0 40 740 520'");
+const examples = await Promise.all(EXAMPLES.map(async (path) => {
+  const name = path.split("/").at(-1);
+  const text = await file(`../../../specs/${path}.yaml`);
+  return { name: `${name}.yaml`, title: /^title: (.*)$/m.exec(text)[1], picture: await picture(name), text };
+}));
+const fresh = { name: "new_crane.yaml", text: await file("src/new.yaml") };
+const given = JSON.stringify({ examples, fresh, schema: JSON.parse(await file("../../../specs/crane.schema.json")) }).replaceAll("<", "\\u003c");
 // A twentieth less than by zlib.
 const compressed = await gzipAsync(await readFile(engine), { numiterations: 5 });
 if (compressed.length > MOST) {

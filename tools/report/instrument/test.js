@@ -18,7 +18,7 @@ const times = {};
 
 const fragment = (text) => `#spec=${deflateRawSync(text).toString("base64url")}`;
 const state = (page) => page.locator("#state").textContent();
-const at = (page, expression) => page.evaluate(expression);
+const at = (page, expression, given) => page.evaluate(expression, given);
 
 /** Waits until a check passes. */
 async function eventually(page, check, patience = 20_000) {
@@ -66,8 +66,8 @@ async function open(browser, options, use, { hash = "", silent = true } = {}) {
 }
 
 const example = async (page, name, crane = name.replaceAll(" ", "_")) => {
-  const index = await page.evaluate((name) => [...document.querySelectorAll("#example option")].findIndex(({ textContent }) => textContent === name) - 1, name);
-  await page.selectOption("#example", String(index));
+  await page.click("#new");
+  await page.locator("#gallery .cards button").filter({ hasText: name.replaceAll(" ", "_") }).click();
   await eventually(page, async () => assert.equal(await at(page, () => globalThis.instrument.stage.crane?.name), crane));
   await eventually(page, async () => assert.match(await state(page), /^At rest/));
 };
@@ -175,6 +175,155 @@ async function warnings(page, phone) {
   await edit(page, "mass: 420000", "mass: 420");
   await eventually(page, async () => assert.doesNotMatch(await state(page), /warning/));
   await eventually(page, async () => assert.equal(await page.locator("#state").getAttribute("class"), ""));
+}
+
+/** A new crane, and the pictures of the examples; the browser's way back leads to the spec before, as it was left. */
+async function start(page) {
+  await example(page, "knuckle boom");
+  await edit(page, "mass: 420", "mass: 430");
+  await eventually(page, async () => assert.match(await state(page), /^At rest/));
+  await page.click("#new");
+  const cards = page.locator("#gallery .cards button");
+  const shown = await cards.evaluateAll((all) => all.map((card) => ({ open: card.ariaCurrent, drawn: card.querySelector("img")?.naturalWidth })));
+  assert.equal(shown.length, 14);
+  // The first card has no picture; the knuckle boom is open.
+  assert(shown.every(({ drawn }, index) => (index ? drawn > 0 : drawn === undefined)), JSON.stringify(shown));
+  assert.deepEqual(shown.flatMap(({ open }, index) => (open ? [index] : [])), [1]);
+  await page.screenshot({ path: picture("gallery") });
+  await cards.first().click();
+  await eventually(page, async () => assert.equal(await at(page, () => globalThis.instrument.crane.name), "new_crane"));
+  await eventually(page, async () => assert.match(await state(page), /^At rest: [^·]* · 2 coordinates/));
+  assert.equal(await page.locator("#problems li").count(), 0);
+  // (250 kg at 2 m and 500 kg at 4 m) g cos ψ, held by 2e6 N m/rad from -20°: the torque is that of the spring.
+  const { positions, torque } = await at(page, () => {
+    const { results, rest } = globalThis.instrument.atRest;
+    return { positions: rest.q, torque: results.drives[1].value };
+  });
+  assert(Math.abs(torque + (250 * 2 + 500 * 4) * 9.81 * Math.cos(positions[1])) < 1e-6 * Math.abs(torque), `${torque} N m at ${positions[1]}`);
+  await page.goBack();
+  await eventually(page, async () => assert.equal(await at(page, () => globalThis.instrument.crane.name), "knuckle_boom"));
+  assert.match(await at(page, () => globalThis.instrument.editor.text), /mass: 430/);
+  await page.goForward();
+  await eventually(page, async () => assert.equal(await at(page, () => globalThis.instrument.crane.name), "new_crane"));
+  await eventually(page, async () => assert.match(await state(page), /^At rest/));
+  // Whole entries of lists are parts of a crane.
+  const insert = (list) => at(page, (list) => {
+    const { editor } = globalThis.instrument;
+    const { view } = editor;
+    const { index, 0: { length } } = view.state.doc.toString().match(new RegExp(`^${list}:.*\n`, "m"));
+    view.dispatch({ changes: { from: index + length, insert: "  \n" } });
+    const pos = index + length + 2;
+    const [entry] = editor.complete({ state: view.state, pos, explicit: true }).options;
+    entry.apply(view, entry, pos, pos);
+    return entry.label;
+  }, list);
+  const rests = (check) => eventually(page, async () => {
+    assert(await at(page, check));
+    assert.match(await state(page), /^At rest/);
+  });
+  assert.deepEqual([await insert("links"), await insert("points"), await insert("drives")], ["link", "point", "drive"]);
+  await edit(page, "coordinate: coordinate", "coordinate: link_theta");
+  await rests(() => globalThis.instrument.crane.drives.length === 3 && globalThis.instrument.crane.points.length === 2);
+  // What a key that is missing would be.
+  await edit(page, "    mass: 300\n", "");
+  await eventually(page, async () => assert.match(await page.textContent("#problems"), /has `com` but no mass.*mass: Mass, kg/s));
+  await example(page, "loader tipping");
+  assert.equal(await insert("supports"), "support");
+  await rests(() => globalThis.instrument.stage.crane.scene.supports.length === 5);
+}
+
+/** A click on a part names it, says what is known of it, and leads to its lines in the spec. */
+async function parts(page, phone) {
+  await example(page, "knuckle boom");
+  await page.getByRole("tab", { name: "At rest" }).click();
+  // Where the page shows the middle of the way from one frame to another, by the frames that the engine gives.
+  const middle = (from, to) => at(page, ([from, to]) => {
+    const { viewer, crane } = globalThis.instrument.stage;
+    const origin = (name) => viewer.figure.kinematics.frames[crane.scene.bodies.findIndex(({ link }) => link === name)].elements.slice(12, 15);
+    const place = viewer.camera.position.clone().set(...origin(from).map((x, i) => (x + origin(to)[i]) / 2)).project(viewer.camera);
+    const { left, top, width, height } = viewer.canvas.getBoundingClientRect();
+    return [left + ((place.x + 1) / 2) * width, top + ((1 - place.y) / 2) * height];
+  }, [from, to]);
+  const tap = async (place) => (phone ? page.touchscreen.tap(...place) : page.mouse.click(...place));
+  const seen = () => at(page, () => [globalThis.instrument.parts.part?.name ?? null, document.querySelector("#part output").textContent]);
+  await tap(await middle("main_boom", "knuckle"));
+  const [name, words] = await seen();
+  assert.equal(name, "main_boom");
+  const angle = await at(page, () => globalThis.instrument.atRest.rest.q[0]);
+  assert.equal(words.replace("−", "-"), `420 kg · main boom theta ${((angle * 180) / Math.PI).toPrecision(4)} °`);
+  const marked = await at(page, () => [...globalThis.instrument.stage.viewer.figure.marked].every(({ userData }) => userData.part.name === "main_boom"));
+  assert(marked, "only the part is marked");
+  await page.screenshot({ path: picture(phone ? "phone_part" : "part") });
+  await page.getByRole("button", { name: "In the spec", exact: true }).click();
+  const line = await at(page, () => {
+    const { state } = globalThis.instrument.editor.view;
+    return state.doc.lineAt(state.selection.main.head).text;
+  });
+  assert.match(line, /- name: main_boom/);
+  if (phone) await page.getByRole("tab", { name: "At rest" }).click();
+  // The mark stays while the crane changes; what is known of the part follows.
+  await page.locator("#part select").selectOption({ label: "hook" });
+  const payload = page.locator("#sliders input[type=number]").first();
+  await payload.fill("650");
+  await eventually(page, async () => assert.match((await seen())[1], /^675 kg/));
+  // Beside the crane there is none.
+  const { left, top } = await at(page, () => document.querySelector("#view canvas").getBoundingClientRect().toJSON());
+  await tap([left + 3, top + 120]);
+  assert.deepEqual(await seen(), [null, ""]);
+  // Sliders become numbers of the spec, where it has one for them.
+  await page.getByRole("button", { name: "Into the spec" }).click();
+  await eventually(page, async () => assert.match(await at(page, () => globalThis.instrument.editor.text), /payload: \{value: 650, unit: kg/));
+  await eventually(page, async () => assert.deepEqual(await at(page, () => globalThis.instrument.rest.state), { parameters: {}, positions: {} }));
+}
+
+/** A link keeps what is shown: sliders, tab, chart, part, and where the crane is seen from; so does a reload. */
+async function shown(browser) {
+  const wide = { viewport: { width: 1280, height: 800 }, acceptDownloads: true };
+  const what = (page) => at(page, () => {
+    const { rest, chart, parts: { part }, stage: { viewer: { view, camera, controls } } } = globalThis.instrument;
+    // In a lower picture the camera is as much farther away.
+    const towards = camera.position.clone().sub(controls.target).normalize();
+    const from = view ?? [...towards, ...controls.target].map((number) => number.toFixed(3));
+    return { ...rest.state, chart: chart.chosen, part, tab: document.documentElement.dataset.tab, from, duration: document.querySelector("#duration").value };
+  });
+  const [link, before] = await new Promise((done, fail) => {
+    open(browser, wide, async (page) => {
+      await page.locator("#sliders input[type=number]").first().fill("650");
+      await page.locator("#sliders input[type=number]").nth(1).fill("-30");
+      await page.getByRole("tab", { name: "Load chart" }).click();
+      await page.locator("#asked input[aria-label='how many']").first().fill("7");
+      await at(page, () => (document.querySelector("#duration").value = "2.5"));
+      await page.locator("#part select").selectOption({ label: "knuckle" });
+      await page.locator("#view canvas").focus();
+      await page.mouse.move(900, 200);
+      await page.mouse.down();
+      await page.mouse.move(960, 190, { steps: 3 });
+      await page.mouse.up();
+      await eventually(page, async () => assert.equal((await what(page)).parameters.payload, 650));
+      await page.click("#share");
+      await eventually(page, async () => assert.match(await at(page, () => location.hash), /^#spec=.*&shown=/));
+      const before = await what(page);
+      assert.equal(before.from.length, 6);
+      assert.equal(before.positions.main_boom_theta, -Math.PI / 6);
+      await page.reload();
+      await page.waitForSelector("html[data-ready]");
+      assert.deepEqual(await what(page), before);
+      done([await at(page, () => location.hash), before]);
+    }).catch(fail);
+  });
+  await open(browser, wide, async (page) => {
+    assert.deepEqual(await what(page), before);
+    await eventually(page, async () => assert.match(await state(page), /^At rest/));
+  }, { hash: link });
+  // What no page has written changes nothing.
+  const packed = (text) => deflateRawSync(text).toString("base64url");
+  const { hash } = new URL(`${address}${link}`);
+  for (const wrong of [packed("[1]"), packed("{"), "!", packed(JSON.stringify({ tab: "x", parameters: [], positions: 3, chart: { axes: [[1]] }, part: {}, seenFrom: [1e300, 0, 0, 0, 0, 0, "a"], duration: -1 }))]) {
+    await open(browser, wide, async (page) => {
+      const found = await what(page);
+      assert.deepEqual([found.parameters, found.part, found.tab, found.from], [{}, null, "rest", "corner"]);
+    }, { hash: `${hash.split("&")[0]}&shown=${wrong}` });
+  }
 }
 
 /** Statics are shown before modes are asked for, and sliders that move ask for none. */
@@ -492,6 +641,8 @@ await open(browser, { viewport: { width: 1440, height: 900 }, colorScheme: "ligh
   await edits(page);
   await page.screenshot({ path: picture("light") });
   await schema(page);
+  await start(page);
+  await parts(page, false);
   await first(page);
   await sliders(page);
   await warnings(page, false);
@@ -527,9 +678,17 @@ await open(browser, phone, async (page) => {
   await page.waitForTimeout(500);
   await page.screenshot({ path: picture("phone_drive") });
   await warnings(page, true);
+  await parts(page, true);
+  // Nothing that can be pressed lies over the crane.
+  const over = await at(page, () => {
+    const { bottom } = document.querySelector("#view canvas").getBoundingClientRect();
+    return [...document.querySelectorAll("#crane button, #crane select")].filter((one) => one.offsetParent && one.getBoundingClientRect().top < bottom).length;
+  });
+  assert.equal(over, 0);
 });
 await faults(browser);
 await links(browser);
+await shown(browser);
 await fromReport(browser);
 await browser.close();
 

@@ -1,5 +1,5 @@
 // The editor: YAML with highlighting, completion and help from the schema, and mistakes where they are.
-import { autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap } from "@codemirror/autocomplete";
+import { autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap, snippet } from "@codemirror/autocomplete";
 import { defaultKeymap, history, historyKeymap, indentWithTab } from "@codemirror/commands";
 import { yamlLanguage } from "@codemirror/lang-yaml";
 import { HighlightStyle, LanguageSupport, bracketMatching, indentOnInput, indentUnit, syntaxHighlighting } from "@codemirror/language";
@@ -16,6 +16,14 @@ import { Schema, context } from "./schema.js";
 const NAMES = { coordinate: "coordinates", follows: "coordinates", link: "links", load: "parameters" };
 /** Mappings at the top of a spec whose keys are such names. */
 const KEYED = { armature: "coordinates", damping: "coordinates", friction: "coordinates", guess: "coordinates", stops: "coordinates" };
+
+/** Whole entries of lists at the top of a spec: the first word of each completion, and its text. */
+export const ENTRIES = {
+  links: ["link", "- name: ${1:link}\n  placement: {transform: {translation: [${2:1}, 0, 0]}}\n  joint: {revolute: {axis: ${3:y}}}\n  mass: ${4:100}\n  com: [${5:0.5}, 0, 0]\n  inertia: {gyration: [0.1, 0.3, 0.3]}"],
+  drives: ["drive", "- coordinate: ${1:coordinate}\n  stiffness: ${2:1e6}\n  damping: ${3:1e4}\n  motion: {hold: ${4:0 deg}}"],
+  points: ["point", "- {name: ${1:point}, link: ${2:link}, at: [${3:0}, 0, 0]}"],
+  supports: ["support", "- {name: ${1:foot}, one_sided: true, at: [${2:1}, ${3:1}, ${4:-1}], stiffness: [4e6, 4e6, 1.2e7], damping: [4e4, 4e4, 9e4]}"],
+};
 
 const colours = HighlightStyle.define([
   { tag: [tags.definition(tags.propertyName), tags.propertyName], color: "var(--code-key)" },
@@ -118,9 +126,28 @@ export class Editor {
     this.view.dispatch(setDiagnostics(state, marks));
   }
 
-  /** Goes to a place. */
+  /** Goes to a line and a column, both from 1. */
   show(line, column) {
-    const anchor = offset(this.view.state.doc, line, column);
+    this.go(offset(this.view.state.doc, line, column));
+  }
+
+  /** What a key would be in the mapping at a line and a column. */
+  about(line, column, key) {
+    const { doc } = this.view.state;
+    const at = offset(doc, line, column);
+    const text = doc.toString();
+    const { path } = context(text, text[at] === "{" ? at + 1 : at);
+    // The place is in the mapping, or at a value in it.
+    return this.schema.about([...path, key]) || this.schema.about([...path.slice(0, -1), key]);
+  }
+
+  /** Changes of the text, `{from, to, insert}`. */
+  change(changes) {
+    this.view.dispatch({ changes });
+  }
+
+  /** Goes to a place. */
+  go(anchor) {
     this.view.dispatch({ selection: { anchor }, effects: EditorView.scrollIntoView(anchor, { y: "center" }) });
     this.view.focus();
   }
@@ -132,10 +159,13 @@ export class Editor {
     if (!word && !explicit) return null;
     const from = pos - word.length;
     const { path, key } = context(state.sliceDoc(0, from), from);
+    const entry = this.entry(before, path, from);
+    if (entry && !key) return { from, options: [entry], validFor: /^\w*$/ };
     if (key) {
       const follows = state.sliceDoc(pos, pos + 1) === ":";
       const own = path.length === 1 ? (this.names()[KEYED[path[0]]] ?? []) : [];
-      const options = [...own.map((name) => [name]), ...this.schema.keys(path)].map(([name, info]) => ({ label: name, apply: follows ? name : `${name}: `, type: "property", info: info || undefined }));
+      const keys = [...own.map((name) => [name]), ...this.schema.keys(path)].map(([name, info]) => ({ label: name, apply: follows ? name : `${name}: `, type: "property", info: info || undefined }));
+      const options = [...(entry ? [entry] : []), ...keys];
       return options.length ? { from, options, validFor: /^\w*$/ } : null;
     }
     const words = [...this.schema.values(path)].map(([label, info]) => ({ label, type: "constant", info: info || undefined }));
@@ -143,6 +173,15 @@ export class Editor {
     const own = (names[NAMES[path.at(-1)]] ?? (words.length ? [] : names.parameters)).map((label) => ({ label, type: "variable" }));
     const options = [...words, ...own];
     return options.length ? { from, options, validFor: /^[\w-]*$/ } : null;
+  }
+
+  /** A whole entry of the list at a path, where one may begin after `before`. */
+  entry(before, [list, item, ...more], from) {
+    const dash = /^\s*(-\s+)?\w*$/.exec(before);
+    if (!ENTRIES[list] || more.length || !dash || Boolean(dash[1]) !== (item === "[]")) return null;
+    const [label, text] = ENTRIES[list];
+    const apply = (view, completion, _, to) => snippet(text)(view, completion, from - (dash[1]?.length ?? 0), to);
+    return { label, detail: "a whole entry", type: "class", boost: 1, apply };
   }
 
   help(view, position) {

@@ -14,7 +14,7 @@ const MOST = [61, 8];
 export class LoadChart {
   /** `ask(request, seconds)` asks the engine, `given()` is what the sliders say. */
   constructor(host, { ask, given }) {
-    Object.assign(this, { ask, given, plots: [] });
+    Object.assign(this, { ask, given, plots: [], axes: [] });
     this.form = host.querySelector("form");
     this.state = host.querySelector("#chart_state");
     this.results = host.querySelector(".results");
@@ -24,9 +24,11 @@ export class LoadChart {
     });
   }
 
-  open(crane) {
+  /** Another crane; `given`: what was chosen for it (see `chosen`). */
+  open(crane, given = {}) {
     this.crane = crane;
     this.clear();
+    this.axes = [];
     const loads = crane.parameters.filter(({ unit }) => unit !== "rad" && unit !== "m");
     const masses = loads.filter(({ unit }) => unit === "kg");
     this.state.textContent = "";
@@ -36,10 +38,10 @@ export class LoadChart {
       return;
     }
     this.load = element("select", {}, ...loads.map(({ name, unit }) => new Option(`${spoken(name)} [${unit}]`, name)));
-    this.load.value = (masses[0] ?? loads[0]).name;
+    this.load.value = (loads.find(({ name }) => name === given.load) ?? masses[0] ?? loads[0]).name;
     // Most charts vary what lifts and what reaches; what slews comes first in a crane.
     const usual = [[0, 1], [0, 1], [0, 1], [0, 2]][crane.drives.length] ?? [1, 3];
-    this.axes = usual.map((chosen, axis) => this.axis(axis, chosen));
+    this.axes = usual.map((chosen, axis) => this.axis(axis, chosen, given.axes?.[axis]));
     const submit = element("button", { type: "submit", className: "main", textContent: "Compute" });
     this.form.replaceChildren(
       element("label", {}, "load ", this.load), ...this.axes.map(({ host }) => host), submit,
@@ -47,8 +49,13 @@ export class LoadChart {
     );
   }
 
-  /** A drive and its range. */
-  axis(axis, chosen) {
+  /** What is chosen. */
+  get chosen() {
+    return this.axes.length ? { load: this.load.value, axes: this.axes.map(({ fields }) => fields.map(({ value }) => value)) } : {};
+  }
+
+  /** A drive and its range; `given`: values of its fields. */
+  axis(axis, chosen, given) {
     const { drives } = this.crane;
     const select = element("select", {}, ...drives.map(({ name }, index) => new Option(spoken(name), index)));
     if (axis === 1) select.prepend(new Option("none", ""));
@@ -75,6 +82,11 @@ export class LoadChart {
     };
     select.addEventListener("change", fit);
     fit();
+    const fields = [select, from, to, count];
+    if (Array.isArray(given) && given.length === fields.length && given.every((value) => typeof value === "string")) {
+      fields.forEach((field, index) => (field.value = given[index]));
+      unit.textContent = drives[select.value]?.unit === "rad" ? "°" : "m";
+    }
     const host = element("fieldset", { className: "axis" }, element("legend", { textContent: axis === 0 ? "along the axis" : "curve by curve" }), select, from, " … ", to, unit, count, element("span", { className: "soft", textContent: "values" }));
     const range = () => {
       const drive = drives[select.value];
@@ -83,7 +95,7 @@ export class LoadChart {
       const counted = Math.min(Math.max(Math.round(Number(count.value)) || 1, 1), MOST[axis]);
       return { drive: Number(select.value), from: Number(from.value) / factor, to: Number(to.value) / factor, count: counted };
     };
-    return { host, range };
+    return { host, range, fields };
   }
 
   clear() {

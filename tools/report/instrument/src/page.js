@@ -9,9 +9,12 @@ import { faults } from "../../src/faults.js";
 import { Drive } from "./drive.js";
 import { Editor } from "./editor.js";
 import { Engine, compile } from "./engine.js";
-import { MOST, fragment, text as textOf } from "./link.js";
+import { Gallery } from "./gallery.js";
+import { MOST, fragment, shown as shownOf, text as textOf } from "./link.js";
 import { LoadChart } from "./load_chart.js";
 import { Modes } from "./modes.js";
+import { Parts } from "./parts.js";
+import { entry, rewritten } from "./places.js";
 import { Rest } from "./rest.js";
 import { Run } from "./run.js";
 import { context } from "./schema.js";
@@ -31,7 +34,7 @@ const UNNAMED = "crane.yaml";
 const KEPT = "crane";
 
 const $ = (selector) => document.querySelector(selector);
-const { examples, schema } = JSON.parse($("#given").textContent);
+const { examples, fresh, schema } = JSON.parse($("#given").textContent);
 const root = document.documentElement;
 root.dataset.theme = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
 
@@ -50,23 +53,35 @@ let tab = "rest";
 
 const ask = (request, seconds = PATIENCE) => engine.ask(request, seconds);
 const editor = new Editor($("#editor"), schema, { changed: edited, names });
-const rest = new Rest($("#rest"), moved);
+const rest = new Rest($("#rest"), { changed: moved, write });
 faults((words) => note(words, "bad"));
 const modes = new Modes($("#modes"), { choose: (mode) => stage.vibrate(mode), swell: (factor) => stage.viewer?.set({ factor }) });
 const run = new Run($("#run"), stage, { ask, end: (words) => engine.end(words), given: () => rest.given, note });
 const chart = new LoadChart($("#load_chart"), { ask, given: () => rest.given });
+const gallery = new Gallery($("#gallery"), { examples, fresh }, start);
+const parts = new Parts($("#part"), $("#view canvas"), stage, {
+  find: ({ kind, name: own }) => entry(editor.text, kind, own),
+  go: (place) => {
+    if (isNarrow()) choose("spec");
+    editor.go(place);
+  },
+});
+/** Specs that were open before in this page, by the number of their entry in the browser's history; the number of the present entry, and of the last. */
+const before = new Map();
+const visits = { now: 0, last: 0 };
 const drive = new Drive(stage, { ask, given: () => rest.given, note, before: () => stage.player.play(false) });
 
 controls();
-globalThis.instrument = { stage, editor, run, drive, chart, rest, context, get engine() { return engine; }, get crane() { return crane; }, get atRest() { return atRest; } };
+globalThis.instrument = { stage, editor, run, drive, chart, rest, parts, context, get engine() { return engine; }, get crane() { return crane; }, get atRest() { return atRest; } };
 begin();
 
 async function begin() {
   let refused = null;
-  const linked = textOf(location.hash).catch(({ message }) => {
+  const linked = linkedSpec().catch(({ message }) => {
     refused = message;
     return null;
   });
+  history.replaceState({ entry: 0 }, "");
   try {
     engine = new Engine(await compile($("#engine").textContent));
   } catch (error) {
@@ -74,11 +89,21 @@ async function begin() {
     return;
   }
   globalThis.instrument.compiled = performance.now();
-  const text = await linked;
-  const { name: own, text: written } = remembered() ?? (text === null ? examples[0] : { name: UNNAMED, text });
-  await load(own, written).catch(({ message }) => note(`The spec cannot be shown: ${message}.`, "bad"));
+  const link = await linked;
+  await load(remembered() ?? link ?? examples[0]).catch(({ message }) => note(`The spec cannot be shown: ${message}.`, "bad"));
   if (refused) note(`${refused}. This is an example instead.`, "bad");
   root.dataset.ready = "yes";
+}
+
+/** The spec in the address, if there is one, with what is shown of it. */
+async function linkedSpec(hash = location.hash) {
+  const text = await textOf(hash);
+  return text === null ? null : { name: UNNAMED, text, shown: await shownOf(hash) };
+}
+
+/** What is shown beside the spec: for links, for reloads, and for the way back. */
+function shown() {
+  return { tab, ...rest.state, chart: chart.chosen, duration: $("#duration").value, part: $("#part select").value, seenFrom: stage.viewer?.seenFrom };
 }
 
 /** The spec as it was when this tab was reloaded, unless another link is open now. */
@@ -94,19 +119,72 @@ function remembered() {
 /** Keeps the spec, in case this tab is reloaded. */
 function remember() {
   try {
-    sessionStorage.setItem(KEPT, JSON.stringify({ hash: location.hash, name, text: editor.text }));
+    sessionStorage.setItem(KEPT, JSON.stringify({ hash: location.hash, name, text: editor.text, shown: shown() }));
   } catch {
     // Some browsers keep nothing for files, or not so much.
   }
 }
 
-/** Puts a spec into the editor and reads it. */
-async function load(given, text) {
+/** Puts a spec into the editor and reads it; `shown`: what is shown of it, if that is known. */
+async function load({ name: given, text, kept: saved = text, shown: wanted = null }) {
   name = given;
   editor.text = text;
-  kept = editor.text;
+  kept = saved;
   clearTimeout(edited.waiting);
+  load.wanted = wanted;
   return read();
+}
+
+/** Starts with another spec; the browser's way back leads to the one before. */
+function start(spec) {
+  leave();
+  visits.now = visits.last += 1;
+  history.pushState({ entry: visits.now }, "", location.href.split("#")[0]);
+  load(spec);
+}
+
+/** Keeps the spec for the way back to it. */
+function leave() {
+  before.set(visits.now, { name, text: editor.text, kept, shown: shown() });
+}
+
+/** Another entry of the browser's history: a spec that was open before, or a link that was pasted into the address. */
+async function goBack({ state }) {
+  leave();
+  const known = before.get(state?.entry);
+  if (known) {
+    visits.now = state.entry;
+    load(known);
+    return;
+  }
+  visits.now = visits.last += 1;
+  history.replaceState({ entry: visits.now }, "");
+  try {
+    const linked = await linkedSpec();
+    if (linked && (linked.text !== editor.text || linked.shown)) load(linked);
+  } catch ({ message }) {
+    note(message, "bad");
+  }
+}
+
+/** Shows what is wanted of a crane that was read: its tab, and where it is seen from. */
+function present({ tab: chosen, seenFrom, duration, part }) {
+  if (document.getElementById(`tab_${chosen}`)) choose(chosen === "spec" && !isNarrow() ? "rest" : chosen);
+  if (Number(duration) > 0) $("#duration").value = duration;
+  if (stage.viewer) stage.viewer.seenFrom = seenFrom;
+  parts.choose(String(part));
+}
+
+/** Whether spec and crane do not fit side by side. */
+function isNarrow() {
+  return matchMedia("(max-width: 900px)").matches;
+}
+
+/** Writes the numbers of the sliders into the spec. */
+function write() {
+  const { changes, left } = rewritten(editor.text, rest.state);
+  editor.change(changes);
+  if (left.length) note(`Not one number of this spec: ${left.map(spoken).join(", ")}`, "warned");
 }
 
 /** The spec was changed: it is read when the keys rest. */
@@ -123,6 +201,8 @@ async function read() {
     return;
   }
   read.busy = true;
+  const { wanted } = load;
+  load.wanted = null;
   const begin = performance.now();
   remember();
   clearTimeout(vibrations.waiting);
@@ -131,17 +211,18 @@ async function read() {
     const opened = await ask({ ask: "open", name, text: editor.text });
     problems(opened.diagnostics);
     if (opened.name) {
-      const same = crane && alike(crane, opened);
+      const same = crane && !wanted && alike(crane, opened);
       crane = opened;
       document.title = `${crane.title || spoken(crane.name)} · Crane`;
       $("h1").textContent = crane.title || spoken(crane.name);
       if (!same) {
-        rest.open(crane);
-        chart.open(crane);
+        rest.open(crane, wanted ?? {});
+        chart.open(crane, wanted?.chart ?? {});
       }
       drive.open(crane);
       run.open(crane);
       await statics(begin);
+      if (wanted) present(wanted);
     } else {
       note(`${[counted("mistake"), counted("warning")].filter(Boolean).join(", ")}: ${crane ? "the crane is as before" : "there is no crane yet"}`, "bad");
     }
@@ -185,12 +266,13 @@ async function statics(begin) {
     const shown = stage.show(await ask({ ask: "rest", ...rest.given }));
     atRest = shown;
     rest.show(shown);
+    parts.open(shown.crane);
     modes.wait(shown.rest.stable);
     const took = performance.now() - begin;
     globalThis.instrument.took = took;
     const { stable, words, why } = shown.rest;
-    const parts = [stable ? `At rest: ${words}` : why ?? words, counted("warning"), `${crane.coordinates} coordinate${crane.coordinates === 1 ? "" : "s"}`, `${Math.round(took)} ms`];
-    restNote = [parts.filter(Boolean).join(" · "), stable ? (counts.warnings ? "warned" : "") : "bad"];
+    const said = [stable ? `At rest: ${words}` : why ?? words, counted("warning"), `${crane.coordinates} coordinate${crane.coordinates === 1 ? "" : "s"}`, `${Math.round(took)} ms`];
+    restNote = [said.filter(Boolean).join(" · "), stable ? (counts.warnings ? "warned" : "") : "bad"];
     note(...restNote);
     if (stable) vibrations.waiting = setTimeout(vibrations, tab === "modes" ? 0 : CALM);
   } catch ({ message }) {
@@ -237,12 +319,16 @@ function problems(diagnostics) {
     const place = element("button", { type: "button", textContent: `${file === name ? "" : `${file}:`}${line}:${column}`, title: "Go there" });
     place.disabled = file !== name;
     place.addEventListener("click", () => {
-      choose(matchMedia("(max-width: 900px)").matches ? "spec" : tab);
+      if (isNarrow()) choose("spec");
       editor.show(line, column);
     });
     const words = element("div", {}, element("strong", { textContent: `${message} [${code}]` }));
     if (label) words.append(element("span", { textContent: label }));
     if (help) words.append(element("span", { className: "help", textContent: `help: ${help}` }));
+    // What the help refers to is in the schema of the page.
+    const lacking = /^add `(\w+):`/.exec(help ?? "");
+    const about = lacking && file === name ? editor.about(line, column, lacking[1]) : "";
+    if (about) words.append(element("span", { className: "help", textContent: `${lacking[1]}: ${about}` }));
     return element("li", { className: severity }, place, words);
   }));
   const mistakes = diagnostics.filter(({ severity }) => severity === "error").length;
@@ -302,13 +388,7 @@ function controls() {
     });
   });
   document.querySelectorAll("[data-view]").forEach((button) => button.addEventListener("click", () => stage.viewer?.look(button.dataset.view)));
-  const example = $("#example");
-  examples.forEach(({ name: own, about }, index) => example.append(new Option(`${spoken(own.replace(".yaml", ""))}${about ? ` – ${about}` : ""}`, index)));
-  example.addEventListener("change", () => {
-    const chosen = examples[example.value];
-    example.value = "";
-    if (chosen) load(chosen.name, chosen.text);
-  });
+  $("#new").addEventListener("click", () => gallery.show(name));
   const file = $("#file");
   $("#open").addEventListener("click", () => file.click());
   file.addEventListener("change", () => {
@@ -333,15 +413,9 @@ function controls() {
   });
   // The browser asks before what was written is lost.
   addEventListener("beforeunload", (event) => editor.text !== kept && event.preventDefault());
+  addEventListener("pagehide", remember);
   $("#share").addEventListener("click", share);
-  addEventListener("hashchange", async () => {
-    try {
-      const text = await textOf(location.hash);
-      if (text !== null && text !== editor.text) load(UNNAMED, text);
-    } catch ({ message }) {
-      note(message, "bad");
-    }
-  });
+  addEventListener("popstate", goBack);
   $("#theme").addEventListener("click", () => {
     root.dataset.theme = root.dataset.theme === "dark" ? "light" : "dark";
     stage.theme();
@@ -355,19 +429,19 @@ function controls() {
 async function take(file) {
   if (!file) return;
   if (file.size > MOST) note(`${file.name} is longer than ${MOST >> 20} MB: that is not a spec`, "bad");
-  else load(file.name, await file.text());
+  else start({ name: file.name, text: await file.text() });
 }
 
 /** Puts the spec into the address, and the address where it can be pasted from. */
 async function share() {
-  history.replaceState(null, "", await fragment(editor.text));
+  history.replaceState(history.state, "", await fragment(editor.text, shown()));
   kept = editor.text;
   remember();
-  const words = "The address now contains the whole spec";
+  const words = "The address now contains the whole spec, and what is shown of it";
   try {
     await navigator.clipboard.writeText(location.href);
-    note(`${words}, and is copied.`);
+    note(`${words}, and is copied`);
   } catch {
-    note(`${words}: copy it from the browser's address bar.`);
+    note(`${words}: copy it from the browser's address bar`);
   }
 }

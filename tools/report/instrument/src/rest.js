@@ -9,7 +9,7 @@ const TRAVEL = { rad: 60, m: 1 };
 const DEGREES = 180 / Math.PI;
 
 /** A slider and a field for the same number. `change(value)` gets it in SI units. */
-function slider({ name, about, unit, value, least, most }, change) {
+function slider({ name, about, unit, least, most }, value, change) {
   const turns = unit === "rad";
   const factor = turns ? DEGREES : 1;
   const shown = (number) => Number((number * factor).toPrecision(6));
@@ -32,31 +32,32 @@ function slider({ name, about, unit, value, least, most }, change) {
 }
 
 export class Rest {
-  /** `changed()` is called when a slider moves. */
-  constructor(host, changed) {
+  /** `changed()` is called when a slider moves, `write()` when its numbers are to be those of the spec. */
+  constructor(host, { changed, write }) {
     this.sliders = host.querySelector(".sliders");
     this.results = host.querySelector(".results");
-    this.changed = changed;
+    Object.assign(this, { changed, write });
   }
 
-  /** Sliders of another crane. */
-  open(crane) {
-    this.parameters = crane.parameters.map(({ value }) => value);
-    this.positions = crane.drives.map(({ start }) => start);
-    this.starts = [...this.positions];
-    this.moved = false;
+  /** Sliders of another crane; `given`: where they stand, if not at the numbers of the spec (see `state`). */
+  open(crane, given = {}) {
+    const number = (numbers, name, usual) => (Number.isFinite(numbers?.[name]) ? numbers[name] : usual);
+    this.crane = crane;
+    this.parameters = crane.parameters.map(({ name, value }) => number(given.parameters, name, value));
+    this.positions = crane.drives.map(({ name, start }) => number(given.positions, name, start));
+    this.moved = crane.drives.some(({ start }, index) => this.positions[index] !== start);
     const again = () => this.open(crane);
     const parameters = crane.parameters.map((one, index) => {
       const around = Math.abs(one.value) || 1;
       const least = Math.max(one.least, one.value < 0 ? -2 * around : 0);
       const slide = { ...one, least: one.value === 0 && one.least < 0 ? -1 : least, most: Math.min(one.most, one.value <= 0 && one.value !== 0 ? 0 : 2 * around) };
-      return slider(slide, (value) => this.take(this.parameters, index, value));
+      return slider(slide, this.parameters[index], (value) => this.take(this.parameters, index, value));
     });
     const drives = crane.drives.map((one, index) => {
       const way = TRAVEL[one.unit] / (one.unit === "rad" ? DEGREES : 1);
       const [low, high] = one.stops;
-      const slide = { ...one, about: "position of the drive", value: one.start, least: low ?? one.start - way, most: high ?? one.start + way };
-      return slider(slide, (value) => this.take(this.positions, index, value, true));
+      const slide = { ...one, about: "position of the drive", least: low ?? one.start - way, most: high ?? one.start + way };
+      return slider(slide, this.positions[index], (value) => this.take(this.positions, index, value, true));
     });
     const group = (title, rows) => (rows.length ? [element("fieldset", {}, element("legend", { textContent: title }), ...rows)] : []);
     const reset = element("button", { type: "button", textContent: "As in the spec", title: "All sliders back to the numbers of the spec" });
@@ -64,13 +65,23 @@ export class Rest {
       again();
       this.changed();
     });
-    this.sliders.replaceChildren(...group("Live parameters", parameters), ...group("Positions of the drives", drives), ...(parameters.length + drives.length ? [reset] : []));
+    const write = element("button", { type: "button", textContent: "Into the spec", title: "Write the numbers of the sliders into the spec" });
+    write.addEventListener("click", this.write);
+    const buttons = parameters.length + drives.length ? [element("div", { className: "bar" }, reset, write)] : [];
+    this.sliders.replaceChildren(...group("Live parameters", parameters), ...group("Positions of the drives", drives), ...buttons);
   }
 
   take(numbers, index, value, moves = false) {
     numbers[index] = value;
     if (moves) this.moved = true;
     this.changed();
+  }
+
+  /** The numbers of the sliders that are not those of the spec, by name. */
+  get state() {
+    const other = (all, numbers, own) => Object.fromEntries(all.map((one, index) => [one.name, numbers[index], own(one)]).filter(([, now, usual]) => now !== usual));
+    const { parameters, drives } = this.crane ?? { parameters: [], drives: [] };
+    return { parameters: other(parameters, this.parameters, ({ value }) => value), positions: other(drives, this.positions, ({ start }) => start) };
   }
 
   /** What to ask the engine: positions only once a drive was moved. */

@@ -7,6 +7,8 @@ import { Viewer } from "../../src/viewer.js";
 
 /** Time in which a mode is shown over and over, s. */
 const WAVES = 10;
+/** The world's axes: name, colour, direction. */
+const AXES = [["x", "#d55e00", 1, 0, 0], ["y", "#009e73", 0, 1, 0], ["z", "#0072b2", 0, 0, 1]];
 /** Logarithm of the ratio of sizes from which the camera moves to a crane again. */
 const GROWN = 0.2;
 
@@ -38,13 +40,42 @@ export class Stage {
     } catch (error) {
       this.flat = true;
       const words = `3-D is not available in this browser (${error.message}). Everything else is here.`;
-      for (const overlay of document.querySelectorAll("#view .overlay")) overlay.hidden = true;
+      for (const one of document.querySelectorAll("#view .overlay, #tools")) one.toggleAttribute("hidden", true);
       document.querySelector("#view canvas").replaceWith(element("p", { textContent: words, className: "sorry" }));
     }
     const grown = before && Math.abs(Math.log(before.size / this.viewer.extent.size)) > GROWN;
     if (before && (before.name !== crane.name || grown)) this.viewer.look("corner");
     this.player.seek(0);
     this.legend();
+    this.axes();
+  }
+
+  /** The world's axes as they are seen, in the colours of `crane explain`, and the size of the ground's squares. */
+  axes() {
+    const { viewer } = this;
+    if (!viewer) return;
+    document.querySelector("#square").textContent = `squares of ${measured(viewer.square, "m")}`;
+    const svg = document.querySelector("#axes");
+    if (viewer.drawn) return;
+    const made = (name, attributes, words = "") => {
+      const one = document.createElementNS(svg.namespaceURI, name);
+      for (const [key, value] of Object.entries(attributes)) one.setAttribute(key, value);
+      one.textContent = words;
+      return one;
+    };
+    const axes = AXES.map(([name, colour, ...along]) => ({ along, line: made("line", { x1: 0, y1: 0, stroke: colour }), label: made("text", { fill: colour }, name) }));
+    svg.replaceChildren(...axes.flatMap(({ line, label }) => [line, label]));
+    viewer.drawn = () => {
+      for (const { along, line, label } of axes) {
+        const { x, y } = viewer.camera.up.clone().set(...along).transformDirection(viewer.camera.matrixWorldInverse);
+        const place = (far) => [(far * x).toFixed(1), (-far * y).toFixed(1)];
+        const [[x2, y2], [lx, ly]] = [place(18), place(25)];
+        line.setAttribute("x2", x2);
+        line.setAttribute("y2", y2);
+        label.setAttribute("x", lx);
+        label.setAttribute("y", ly);
+      }
+    };
   }
 
   /** What the lengths and the colours of the arrows mean. */
