@@ -93,6 +93,20 @@ pub fn csv(path: &Path) -> Result<csv::Reader<io::Cursor<Vec<u8>>>, csv::Error> 
     Ok(csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(io::Cursor::new(read_file(path)?)))
 }
 
+/// Refuses a header whose columns are separated otherwise than by commas, as spreadsheets write it in some languages.
+///
+/// # Errors
+/// It has semicolons.
+pub fn check_separators(path: &Path, headers: &csv::StringRecord) -> Outcome<()> {
+    if headers.iter().any(|header| header.contains(';')) {
+        return Err(Problem::usage(
+            format!("{} has semicolons between columns", path.display()),
+            "save it as CSV with commas between columns and decimal points, `900,0.006`",
+        ));
+    }
+    Ok(())
+}
+
 /// Writes text.
 ///
 /// # Errors

@@ -38,12 +38,7 @@ impl ParameterTable {
         let mut csv = csv.map_err(unreadable)?;
         let mut columns = Vec::new();
         let headers = csv.headers().map_err(unreadable)?;
-        if headers.iter().any(|header| header.contains(';')) {
-            return Err(Problem::usage(
-                format!("{} has semicolons between columns", path.display()),
-                "save it as CSV with commas between columns and decimal points, `900,0.006`",
-            ));
-        }
+        files::check_separators(path, headers)?;
         for (column, header) in headers.iter().enumerate() {
             let at = Cell { path, line: 1, column: column + 1 };
             let index = at.parameter(header, description)?;

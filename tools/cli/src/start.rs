@@ -217,6 +217,7 @@ pub fn row(file: &Path, description: &Description, at: Option<f64>) -> Outcome<R
     let unreadable = |error: csv::Error| Problem::usage(format!("cannot use {}: {error}", file.display()), help);
     let mut csv = files::csv(file).map_err(unreadable)?;
     let headers = csv.headers().map_err(unreadable)?.clone();
+    files::check_separators(file, &headers)?;
     let name_of = |header: &str| header.split(" [").next().unwrap_or(header).to_owned();
     let clock = headers.iter().position(|header| name_of(header) == TIME);
     let time_of = |record: &csv::StringRecord| clock.and_then(|column| record.get(column)?.parse::<f64>().ok());

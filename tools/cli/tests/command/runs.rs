@@ -146,6 +146,14 @@ fn a_run_goes_on_from_the_end_of_another() {
         &["`x` is not a valid value for upper_theta"],
     );
     refused(&["simulate", "double_pendulum", "--from", "no_such.csv"], &["no_such.csv"]);
+    // As a spreadsheet writes it where numbers have commas.
+    let separated = folder.join("separated.csv");
+    fs::write(&separated, "t [s];upper_theta [rad]\n0;1,5\n").expect("a file");
+    let separated = separated.to_str().expect("a path");
+    refused(
+        &["simulate", "double_pendulum", "--from", separated],
+        &["separated.csv has semicolons between columns", "with commas between columns and decimal points"],
+    );
     refused(
         &["simulate", "eight_link_hydraulic", "--start", "boom_cylinder_valve=7"],
         &["`boom_cylinder_valve` is 7", "give an opening from −1"],
