@@ -266,7 +266,7 @@ export class Viewer {
     return [...this.camera.position, ...this.controls.target, this.camera.aspect].map((number) => Number(number.toPrecision(5)));
   }
 
-  /** Looks from there again; from farther away in a narrower picture. What is no such place changes nothing. */
+  /** Looks from there again; from farther away in a narrower picture. Anything else changes nothing. */
   set seenFrom(from) {
     if (typeof from === "string" && Object.hasOwn(VIEWS, from)) this.look(from);
     if (!Array.isArray(from) || from.length !== 7 || !from.every(Number.isFinite)) return;

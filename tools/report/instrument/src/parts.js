@@ -36,7 +36,7 @@ export class Parts {
     this.choose(before);
   }
 
-  /** Marks a part, by its key; what is no part of this crane: none. */
+  /** Marks a part, by its key; none for any other text. */
   choose(chosen) {
     this.part = this.all?.find((part) => key(part) === chosen) ?? null;
     this.list.value = key(this.part);
