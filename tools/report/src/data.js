@@ -89,6 +89,12 @@ export function scaled(unit, values) {
   return { unit, factor: 1 };
 }
 
+/** Degrees in a radian. */
+export const DEGREES = 180 / Math.PI;
+
+/** The unit in which angles and their rates are shown, and its factor; `null` for other units. */
+export const turned = (unit) => (unit === "rad" || unit === "rad/s" ? { unit: unit.replace("rad", "°"), factor: DEGREES } : null);
+
 /** A name for readers: spaces instead of underscores. */
 export const spoken = (name) => name.replaceAll("_", " ");
 

@@ -1,5 +1,5 @@
 // Levers of a crane: moved by pointer, keys or a gamepad; each springs back to its middle when it is let go.
-import { spoken } from "../../src/data.js";
+import { DEGREES, spoken } from "../../src/data.js";
 import { element } from "../../src/element.js";
 
 /** Keys of each lever by their places on the keyboard: one direction and the other. */
@@ -25,7 +25,7 @@ export class Levers {
   open(drives) {
     this.rows = drives.map(({ name, unit, lever, full }, index) => {
       const keys = KEYS[index] ?? "";
-      const speed = unit === "rad" ? `${Math.round((full * 180) / Math.PI)} °/s` : `${full} m/s`;
+      const speed = unit === "rad" ? `${Math.round(full * DEGREES)} °/s` : `${full} m/s`;
       const says = lever === "valve" ? "valve" : speed;
       const knob = element("i", {});
       const track = element("div", { className: "track", tabIndex: 0 }, knob);

@@ -1,12 +1,11 @@
 // Load charts: the largest load within limits over the positions of one or two drives.
-import { measured, readable, spoken } from "../../src/data.js";
+import { DEGREES, measured, readable, spoken, turned } from "../../src/data.js";
 import { element } from "../../src/element.js";
 import { Plot } from "../../src/plot.js";
 import { grid } from "../../src/tables.js";
 
 /** Longest chart of a page, s of computing. */
 const PATIENCE = 300;
-const DEGREES = 180 / Math.PI;
 /** Values of the first and of the second drive unless chosen otherwise; more curves have no colours of their own. */
 const COUNTS = [13, 4];
 const MOST = [61, 8];
@@ -127,7 +126,7 @@ export class LoadChart {
   show({ poses, load, unit, point }, along, by) {
     const { drives, name } = this.crane;
     const drive = (range) => drives[range.drive];
-    const shown = (range) => (drive(range).unit === "rad" ? { unit: "°", factor: DEGREES } : { unit: "m", factor: 1 });
+    const shown = (range) => turned(drive(range).unit) ?? { unit: "m", factor: 1 };
     const [x, y] = [shown(along), by && shown(by)];
     const rows = Array.from({ length: by?.count ?? 1 }, (_, k) => poses.slice(k * along.count, (k + 1) * along.count));
     const label = (row) => (by ? `${spoken(drive(by).name)} ${measured(row[0].at[0] * y.factor, y.unit)}` : spoken(load));

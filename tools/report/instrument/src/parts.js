@@ -1,8 +1,7 @@
 // The parts of the crane: chosen in the picture or from a list, marked, and found in the spec.
-import { known, measured, spoken } from "../../src/data.js";
+import { at, known, measured, place, spoken, turned } from "../../src/data.js";
 import { element } from "../../src/element.js";
 
-const DEGREES = 180 / Math.PI;
 /** Farthest that a pointer moves in a click, CSS pixels: what moves it farther turns the view. */
 const STILL = 5;
 
@@ -58,12 +57,13 @@ const key = (part) => (part ? `${part.kind} ${part.name}` : "");
 
 /** The mass of a link and the positions of its joint, or length and force of a cylinder, at a time. */
 function facts({ scene, coordinates, run }, { kind, name }, t) {
-  const row = Math.max(run.t.findLastIndex((time) => time <= t), 0);
-  const value = (column, label) => {
-    const found = run.column(column);
-    if (!found || !known(found.values[row])) return [];
-    const [factor, unit] = found.unit === "rad" ? [DEGREES, "°"] : [1, found.unit];
-    return [`${label} ${measured(found.values[row] * factor, unit)}`];
+  const now = place(run.t, t);
+  const value = (name, label) => {
+    const column = run.column(name);
+    const number = column && at(column.values, now);
+    if (!known(number)) return [];
+    const { unit, factor } = turned(column.unit) ?? { unit: column.unit, factor: 1 };
+    return [`${label} ${measured(number * factor, unit)}`];
   };
   if (kind === "cylinders") return ["length", "force"].flatMap((what) => value(`${name}_${what}`, what));
   const bodies = scene.bodies.filter(({ link }) => link === name);

@@ -1,4 +1,5 @@
 // Where parts and numbers of a crane are in the text of its spec.
+import { DEGREES } from "../../src/data.js";
 import { context } from "./schema.js";
 
 const plain = (text) => text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&");
@@ -20,7 +21,7 @@ export function entry(text, list, name, key = "name") {
 /** A number as it is written: with the unit of what it replaces. */
 function written(value, before) {
   const turns = /\bdeg\b/.test(before);
-  const number = Number((turns ? (value * 180) / Math.PI : value).toPrecision(6));
+  const number = Number((turns ? value * DEGREES : value).toPrecision(6));
   return before.replace(/^[^\s"']+|(?<=["'])[^\s"']+/, String(number));
 }
 

@@ -1,12 +1,11 @@
 // The crane at rest: sliders for live parameters and positions of drives, key figures, tables.
-import { spoken } from "../../src/data.js";
+import { DEGREES, spoken } from "../../src/data.js";
 import { element } from "../../src/element.js";
 import { results } from "../../src/tables.js";
 import { tile, tiles } from "../../src/tiles.js";
 
 /** Travel of a slider to either side of where a drive begins, if it has no stops: degrees, m. */
 const TRAVEL = { rad: 60, m: 1 };
-const DEGREES = 180 / Math.PI;
 
 /** A slider and a field for the same number. `change(value)` gets it in SI units. */
 function slider({ name, about, unit, least, most }, value, change) {
