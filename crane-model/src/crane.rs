@@ -4,9 +4,10 @@ use std::ops::ControlFlow;
 
 use crate::{
     ParameterError, Wrench,
-    dyn_crane::DynCrane,
+    dyn_crane::{DynCrane, Energies},
     dynamics,
     dynamics::{InitialState, Run, Sample, Stopped, ensemble::Member},
+    feet::{Feet, Slid},
     force_states,
     hydraulics::Oil,
     loop_joints::Loops,
@@ -34,6 +35,25 @@ impl dyn DynCrane + '_ {
             oil.give_efforts(self.description(), &mut efforts);
         }
         efforts
+    }
+
+    /// How much of its friction each one-sided support on the ground uses in a pose at rest, |F|/(μ N), with its index: from 1 on it slides.
+    pub fn friction_utilisations_at(&self, q: &[f64]) -> Vec<(usize, f64)> {
+        Feet::at(self, q, &vec![0.0; q.len()]).utilisations_on_the_ground().collect()
+    }
+
+    /// Energies at a sample of a run, with the springs of feet that have slid, J.
+    pub fn energies_of(&self, sample: &Sample<'_>) -> Energies {
+        let &Sample { t, q, v, x, .. } = sample;
+        let moment = StateAt { t, q, v, x };
+        self.energies_with(&moment, &Slid::at(self, &moment))
+    }
+
+    /// The same at a state of the crane and its forces.
+    pub(crate) fn energies_with(&self, moment: &StateAt<'_>, slid: &Slid) -> Energies {
+        let mut energies = self.energies_at(moment.t, moment.q, moment.v);
+        energies.supports += slid.energy;
+        energies
     }
 
     /// As `internal_forces_at`, with cylinders that push with the force of their pressures, which are among the states `x` of forces.

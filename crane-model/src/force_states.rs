@@ -1,7 +1,9 @@
-//! States of forces, in addition to the pose and rates of a motion: pressures and spools of cylinders with a valve, bristles of joints that
-//! stick.
+//! States of forces, in addition to the pose and rates of a motion: pressures and spools of cylinders with a valve, the places to which feet have
+//! slid, bristles of joints that stick.
 //!
 //! A motion is `[q, v, x]`; x has the states kind by kind, those of local forces last.
+
+use std::any::Any;
 
 use nalgebra::DMatrix;
 
@@ -9,14 +11,15 @@ use crate::{
     Description,
     bristles::Bristles,
     dyn_crane::{DynDynamics, DynModel},
+    feet::Feet,
     hydraulics::Hydraulics,
     loop_joints::{self, Loops},
     stateful_force::{Evaluated, ForceState, Row, StateAt, StatefulForce, StatefulForces},
 };
 
 /// The forces with states of a description, kind by kind: first those that span several coordinates or share states, then local ones.
-fn kinds(description: &Description) -> [Box<dyn StatefulForces>; 2] {
-    [Box::new(Hydraulics::new(description)), Box::new(Bristles::new(description))]
+fn kinds(description: &Description) -> [Box<dyn StatefulForces>; 3] {
+    [Box::new(Hydraulics::new(description)), Box::new(Feet::new(description)), Box::new(Bristles::new(description))]
 }
 
 /// All forces of a crane that have states.
@@ -34,34 +37,54 @@ pub struct ForceStates {
     /// The coordinates of rigid drives, and the mass matrix if there are any.
     prescribed: Vec<usize>,
     mass: DMatrix<f64>,
+    /// Rate of the energy that the forces have stored beyond what the crane's functions contain, as last evaluated, W.
+    storing: f64,
 }
 
 impl ForceStates {
     /// From the description of a crane.
     pub fn new(description: &Description) -> Self {
+        Self::of_kinds(description, kinds(description).into())
+    }
+
+    /// The same without those of feet, which stick in small motions, or are free if they slide.
+    pub(crate) fn of_small_motions(description: &Description) -> Self {
+        let [oil, _, bristles] = kinds(description);
+        Self::of_kinds(description, vec![oil, bristles])
+    }
+
+    /// All, or those of small motions if there are only as many states.
+    fn with_as_many_states(description: &Description, states: usize) -> Self {
+        let all = Self::new(description);
+        if states < all.len() { Self::of_small_motions(description) } else { all }
+    }
+
+    fn of_kinds(description: &Description, kinds: Vec<Box<dyn StatefulForces>>) -> Self {
         let n = description.coordinates.len();
         let prescribed = description.prescribed();
         let size = if prescribed.is_empty() { 0 } else { n };
         let (mut rows, mut states) = (Vec::new(), Vec::new());
-        let kinds = kinds(description).map(|kind| {
+        let mut with_ends = |kind: Box<dyn StatefulForces>| {
             rows.extend(kind.rows());
             states.extend(kind.states());
             (kind, [rows.len(), states.len()])
-        });
+        };
+        let kinds = kinds.into_iter().map(&mut with_ends).collect();
         Self {
             prescribed,
             mass: DMatrix::zeros(size, size),
             forces: vec![StatefulForce::default(); rows.len()],
-            kinds: kinds.into(),
+            kinds,
             rows,
             states,
             efforts: [vec![0.0; n], vec![0.0; n]],
+            storing: 0.0,
         }
     }
 
-    /// The same without leakage.
+    /// Those of small motions, without leakage.
     pub(crate) fn sealed(description: &Description) -> Self {
-        let mut states = Self::new(description);
+        let mut states = Self::of_small_motions(description);
         states.kinds.iter_mut().for_each(|(kind, _)| kind.seal());
         states
     }
@@ -116,6 +139,14 @@ impl ForceStates {
         self.kinds.iter().rev().find(|(kind, _)| !kind.is_local()).map_or([0; 2], |(_, ends)| *ends)
     }
 
+    /// The feet as last evaluated, with the indices of the first of their forces and of the first of their states, if there are any.
+    pub(crate) fn feet(&self) -> Option<(&Feet, [usize; 2])> {
+        let begins = [[0; 2]].into_iter().chain(self.kinds.iter().map(|(_, ends)| *ends));
+        let mut kinds = self.kinds.iter().map(|(kind, _)| kind.as_ref() as &dyn Any).zip(begins);
+        let found = kinds.find_map(|(kind, begin)| Some((kind.downcast_ref::<Feet>()?, begin)));
+        found.filter(|(feet, _)| !feet.is_empty())
+    }
+
     /// The forces as last evaluated.
     pub(crate) fn forces(&self) -> &[StatefulForce] {
         &self.forces
@@ -138,12 +169,15 @@ impl ForceStates {
             matrix.fill(0.0);
         }
         let [mut first_force, mut first] = [0; 2];
+        self.storing = 0.0;
         for (kind, [end_force, end]) in &mut self.kinds {
             let (forces, rows) = (&mut self.forces[first_force..*end_force], &mut self.rows[first_force..*end_force]);
             let block =
                 by_states.as_deref_mut().map(|matrix| matrix.view_mut((first, first), (*end - first, *end - first)));
             let out = Evaluated { rates: &mut rates[first..*end], forces: &mut *forces, rows };
-            kind.evaluate(crane, &moment.with_states(first..*end), out, block);
+            let own = moment.with_states(first..*end);
+            kind.evaluate(crane, &own, out, block);
+            self.storing += kind.energy_and_rate(own.x, &rates[first..*end])[1];
             for force in forces {
                 force.first += first;
             }
@@ -229,9 +263,9 @@ impl ForceStates {
         }
     }
 
-    /// Power that forces supply, `Σ F ℓ̇`, and power that others dissipate, `−Σ F ℓ̇`, at the last evaluation, W.
+    /// Power that forces supply, `Σ F ℓ̇`, and power that others dissipate, `−Σ F ℓ̇` without what they store, at the last evaluation, W.
     pub(crate) fn powers(&self) -> [f64; 2] {
-        let (mut first, mut powers) = (0, [0.0; 2]);
+        let (mut first, mut powers) = (0, [0.0, -self.storing]);
         for (kind, [end, _]) in &self.kinds {
             let power = self.forces[first..*end].iter().map(|force| force.force * force.speed).sum::<f64>();
             if kind.supplies_power() {
@@ -252,7 +286,7 @@ pub(crate) fn add_to_rigid_drives(crane: &dyn DynDynamics, moment: &StateAt<'_>,
     if description.prescribed().is_empty() {
         return;
     }
-    let mut states = ForceStates::new(description);
+    let mut states = ForceStates::with_as_many_states(description, moment.x.len());
     let mut all = loops_on_rigid_drives(crane, moment);
     if !states.is_empty() && moment.x.len() >= states.len() {
         states.evaluate(crane, moment, &mut vec![0.0; moment.x.len()], None);
@@ -268,6 +302,18 @@ pub(crate) fn add_to_rigid_drives(crane: &dyn DynDynamics, moment: &StateAt<'_>,
 /// Names of the columns of results with the states, in their order.
 pub fn columns(description: &Description) -> Vec<String> {
     ForceStates::new(description).states.into_iter().map(|state| state.name).collect()
+}
+
+/// Names of the states of small motions, in their order: the same without those of feet.
+pub fn columns_of_small_motions(description: &Description) -> Vec<String> {
+    ForceStates::of_small_motions(description).states.into_iter().map(|state| state.name).collect()
+}
+
+/// The states of small motions among all.
+pub(crate) fn states_of_small_motions(description: &Description, x: &[f64]) -> Vec<f64> {
+    let feet = description.supports.iter().filter(|support| support.is_one_sided()).count();
+    let end = x.len().saturating_sub(description.bristles.len());
+    [&x[..end.saturating_sub(2 * feet)], &x[end..]].concat()
 }
 
 /// How far integration errors may move a state beyond its range.
@@ -318,7 +364,7 @@ pub(crate) fn motion_at(crane: &dyn DynDynamics, moment: &StateAt<'_>) -> Motion
     let (mut accelerations, mut rates) = (vec![0.0; q.len()], vec![0.0; x.len()]);
     let mut loops = Loops::new(crane);
     loops.open(crane, t, (q, v), &mut accelerations);
-    let mut states = ForceStates::new(crane.description());
+    let mut states = ForceStates::with_as_many_states(crane.description(), x.len());
     if !states.is_empty() && x.len() >= states.len() {
         states.accelerate(crane, moment, &mut rates, &mut accelerations);
     }

@@ -41,6 +41,8 @@ pub mod dynamics;
 #[cfg(feature = "std")]
 pub mod envelope;
 #[cfg(feature = "std")]
+mod feet;
+#[cfg(feature = "std")]
 pub mod force_states;
 #[cfg(feature = "std")]
 pub mod hydraulics;
@@ -79,9 +81,9 @@ pub use crane_quantities::Count;
 pub use description::Tree;
 pub use description::{
     AttachmentInfo, BodyInfo, Bound, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole,
-    CylinderInfo, Description, DriveInfo, HoldInfo, InputInfo, LARGE_TILT, List, LoadInfo, LoopEquationInfo,
-    LoopJointInfo, NEAR_SINGULAR, ParameterError, ParameterInfo, PumpInfo, Refusal, SectionInfo, Side, StageInfo,
-    SupportInfo, TIPPED, Text, ValveInfo, fill_links,
+    CylinderInfo, Description, DriveInfo, InputInfo, LARGE_TILT, List, LoadInfo, LoopEquationInfo, LoopJointInfo,
+    NEAR_SINGULAR, ParameterError, ParameterInfo, PumpInfo, Refusal, SectionInfo, Side, StageInfo, SupportInfo, TIPPED,
+    Text, ValveInfo, fill_links,
 };
 pub use methods::Entry;
 pub use model::{

@@ -1,7 +1,7 @@
 //! Forces with states of their own: what they have in common, at which state they are evaluated, what they return, and on which
 //! coordinates they act.
 
-use std::{fmt::Debug, ops::Range};
+use std::{any::Any, fmt::Debug, ops::Range};
 
 use nalgebra::DMatrixViewMut;
 
@@ -9,7 +9,7 @@ use crate::dyn_crane::{DynDynamics, DynModel};
 
 /// Forces of one kind that have states. Indices of states are those among the states of this kind, except in [`StateAt`] and
 /// [`StatefulForce`], whose users see all states.
-pub(crate) trait StatefulForces: Debug + Send + Sync {
+pub(crate) trait StatefulForces: Any + Debug + Send + Sync {
     /// Their states, in order.
     fn states(&self) -> Vec<ForceState>;
 
@@ -40,6 +40,12 @@ pub(crate) trait StatefulForces: Debug + Send + Sync {
         out: Evaluated<'_>,
         by_states: Option<DMatrixViewMut<'_, f64>>,
     );
+
+    /// Energy that the forces, as last evaluated, have stored beyond what the crane's functions contain, J, and its rate, W, from their states and
+    /// the rates of these.
+    fn energy_and_rate(&self, _x: &[f64], _rates: &[f64]) -> [f64; 2] {
+        [0.0; 2]
+    }
 
     /// Replaces slopes where a law sticks by the steeper ones on either side of rest; `c` is the implicit part of a step, s.
     fn steepen(&self, _moment: &StateAt<'_>, _c: f64, _forces: &mut [StatefulForce]) {}
@@ -94,8 +100,8 @@ impl StateAt<'_> {
 /// Maximum number of states of a force.
 pub(crate) const STATES: usize = 3;
 
-/// A force with states of its own, evaluated at a state of the crane, and its derivatives. ℓ is the length of a cylinder, or the coordinate
-/// of a joint with bristles.
+/// A force with states of its own, evaluated at a state of the crane, and its derivatives. ℓ is the length of a cylinder, the coordinate
+/// of a joint with bristles, or the elongation of a foot along x or y.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct StatefulForce {
     /// The first of its states, and their number.
@@ -109,8 +115,10 @@ pub(crate) struct StatefulForce {
     /// Derivatives of the rates of its states with respect to ℓ and ℓ̇.
     pub rates_by_length: [f64; STATES],
     pub rates_by_speed: [f64; STATES],
-    /// The cylinder that exerts it, by its index among all; `None` for a joint with bristles.
+    /// The cylinder that exerts it, by its index among all, if one does.
     pub cylinder: Option<usize>,
+    /// Whether a foot exerts it: what else it depends on, gradients take from the feet themselves.
+    pub is_of_foot: bool,
     /// Derivatives of the rate of its last state, a spool, with respect to the wanted length of the cylinder, the rate of this length, and the
     /// opening that the spec gives over time.
     pub by_command: [f64; 3],

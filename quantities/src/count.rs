@@ -37,6 +37,8 @@ pub enum Count {
     Axes,
     /// Coordinates of the points of interest in the world.
     PointAxes,
+    /// Elongations of the supports along the world's axes.
+    SupportAxes,
     /// What the derivatives of a residual are with respect to: poses and rates.
     PosesAndRates,
     /// Entries of a residual, for poses and for rates.
@@ -73,6 +75,7 @@ impl Count {
             Count::SecondDerivatives => "second_derivatives",
             Count::Axes => "3",
             Count::PointAxes => "point_axes",
+            Count::SupportAxes => "support_axes",
             Count::PosesAndRates => "2",
             Count::ResidualRows => "residual_rows",
             Count::ResidualFactors => "residual_factors",
@@ -100,6 +103,7 @@ impl Count {
             Count::ConnectorCuts => &[Count::Connectors, Count::Cuts],
             Count::LoopCuts => &[Count::LoopEquations, Count::Cuts],
             Count::PointAxes => &[Count::Points, Count::Axes],
+            Count::SupportAxes => &[Count::Supports, Count::Axes],
             Count::ResidualRows => &[Count::PosesAndRates, Count::Coordinates],
             _ => &[],
         }

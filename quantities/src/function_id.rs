@@ -187,6 +187,9 @@ macro_rules! count {
     (point_axes) => {
         Count::PointAxes
     };
+    (support_axes) => {
+        Count::SupportAxes
+    };
     (residual_rows) => {
         Count::ResidualRows
     };

@@ -101,6 +101,22 @@ CraneModel {
     SupportGaps = support_gaps(q, v) -> [pair; supports] zero
         "How far one-sided supports are above the ground, m, negative where they are pressed in, and its rate, m/s; 0 for others."
         "e_z, ė_z [Urbaś 2016, Eq. (16)]" python(q, v);
+    /// Zeros for a crane without one-sided supports, as for the next four.
+    SupportElongations = support_elongations(q) -> [vector; supports] zero
+        "How far every support is from where the spec puts it, in the world frame, m."
+        "e [Urbaś 2016, Eq. (16)]" python(q);
+    SupportJacobians = support_jacobians(q) -> [row; support_axes] zero
+        "How the elongations of the supports change with the coordinates: three rows per support; m/rad and 1."
+        "J = ∂e/∂q" python(q);
+    SupportStiffnesses = support_stiffnesses() -> [vector; supports] zero
+        "Stiffness of every support along the world's axes, N/m."
+        "s";
+    SupportDampings = support_dampings() -> [vector; supports] zero
+        "Damping of every support along the world's axes, N s/m."
+        "d";
+    SupportGrips = support_grips(q, v) -> [vector; supports] zero
+        "Pressing force of one-sided supports, the lateral force up to which they stick, and the one that keeps them where the spec puts them, N; 0 for others."
+        "N, μ N, |F|" python(q, v);
     /// NaN where the linkage of a cylinder cannot be assembled.
     CylinderStates = cylinder_states(q, v) -> [vector; cylinders] zero
         "Length of every cylinder, m, its rate, m/s, and its derivative with respect to the joint's coordinate, m/rad or m/m."
@@ -337,6 +353,7 @@ macro_rules! axes {
     ([transform; derivatives]) => { ", bodies, n, 4, 4" };
     ([pair; coordinates]) => { ", n, 2" };
     ([row; point_axes]) => { ", points, 3, n" };
+    ([row; support_axes]) => { ", supports, 3, n" };
     ([row; residual_rows]) => { ", 2, n, n" };
     ([row; residual_factors]) => { ", 66, n" };
     ([row; mass_factors]) => { ", 13, n" };

@@ -177,14 +177,14 @@ def length_over(points, falls, chosen=None):
 
 @dataclass
 class Support:
-    """Springs and dampers along the world's axes; one entry each for x, y, z. `full_hold` is None if the support also pulls."""
+    """Springs and dampers along the world's axes; one entry each for x, y, z. `friction` is None if the support also pulls."""
 
     name: str
     position: ca.SX
     elongation: ca.SX
     stiffness: ca.SX
     damping: ca.SX
-    full_hold: object = None
+    friction: object = None
 
 
 @dataclass
@@ -529,8 +529,10 @@ def read_support(crane, written, base):
     stiffness, damping, free_play = (
         spec.vector(written.get(key, [0, 0, 0])) for key in ("stiffness", "damping", "free_play")
     )
-    full_hold = spec.number(written.get("full_hold", 1000)) if written.get("one_sided", False) else None
-    return Support(written["name"], position, displacement - free_play, stiffness, damping, full_hold)
+    friction = spec.number(written.get("friction_coefficient", 1000 if written.get("sticks", False) else 0.6))
+    return Support(
+        written["name"], position, displacement - free_play, stiffness, damping, friction if written.get("one_sided", False) else None
+    )
 
 
 def read_drive(crane, written):

@@ -54,7 +54,7 @@ class Derivations:
         self.crane = crane
         self.arguments = [crane.time, crane.q, crane.v, crane.parameters]
         self.by_oil = any(drive.by_oil for drive in crane.drives)
-        self.contacts = {s.name: contact(s, crane.q, crane.v) for s in crane.supports if s.full_hold is not None}
+        self.contacts = {s.name: contact(s, crane.q, crane.v) for s in crane.supports if s.friction is not None}
         self.quantities = {
             **self.transforms(),
             **self.dynamics(),
@@ -245,7 +245,7 @@ class Derivations:
         def lost(springs):
             return sum_of(s.damping * (self.rate(ca.SX(s.motion)) - s.coordinate.v) ** 2 / 2 for s in springs)
 
-        anchored = [s for s in crane.supports if s.full_hold is None]
+        anchored = [s for s in crane.supports if s.friction is None]
         unlimited = [drive for drive in crane.drives if drive.max_effort is None and not drive.by_oil]
         return {
             "support": (
@@ -468,16 +468,19 @@ class Derivations:
         )
 
     def statics(self):
-        """Gradient and Hessian of the whole potential energy, with loads, winches and drives where they are at the time of the state; the
+        """Gradient and Hessian of the whole potential energy, with feet, loads, winches and drives where they are at the time of the state; the
         Hessian also at t = 0 without oil, for small motions."""
         q = self.crane.q
         springs, oil = self.potentials()["drive"][0] + self.limited_drives()[5], self.holding_energy()
         others = self.gravity_energy() + sum(energy for part, (energy, _) in self.potentials().items() if part != "drive")
-        others += self.joint_forces()[2] + self.contact_forces()[1] + self.connector_forces()[0]["connector_energy"]
+        others += self.joint_forces()[2] + self.connector_forces()[0]["connector_energy"]
         loads = self.load_forces()
         slope = ca.jacobian(loads, q)
         stiffness, gradient = ca.hessian(others + springs, q)
         stiffness, gradient = stiffness - (slope + slope.T) / 2, gradient - loads
+        # Friction has no potential.
+        for foot in self.contacts.values():
+            stiffness, gradient = stiffness + foot.stiffness, gradient + foot.pull
         of_oil, push = ca.hessian(oil, q)
         residual, holding = ca.densify(gradient + push), ca.densify(-ca.gradient(springs, q) - push)
         for place in self.crane.rigid_drives:
@@ -521,6 +524,7 @@ class Derivations:
             "point_accelerations": ca.jtimes(self.rate(points), crane.q, crane.v) + self.rate(points),
             "support_reactions": ca.vertcat(*[self.reaction(s) for s in crane.supports]),
             "support_gaps": ca.vertcat(*[self.gap(s) for s in crane.supports]),
+            **self.stands(),
             "cylinder_states": ca.vertcat(*[cylinders.state(cylinder, self.rate) for cylinder in crane.cylinders]),
             "cylinder_jacobians": self.cylinder_jacobians(),
             "drive_limits": self.drive_limits(),
@@ -547,15 +551,29 @@ class Derivations:
 
     def reaction(self, support):
         """Force of a support on the crane, world frame."""
-        if support.full_hold is not None:
+        if support.friction is not None:
             return self.contacts[support.name].force
         return -support.stiffness * support.elongation - support.damping * self.rate(support.elongation)
 
     def gap(self, support):
         """How far a one-sided support is above the ground, and its rate; zeros for others."""
-        if support.full_hold is None:
+        if support.friction is None:
             return ca.SX.zeros(2)
         return ca.vertcat(support.elongation[2], self.rate(support.elongation[2]))
+
+    def stands(self):
+        """How the supports stand, and how feet hold sideways; zeros for a crane without feet."""
+        supports = self.crane.supports
+        grips = [self.contacts[s.name].grip if s.friction is not None else ca.SX.zeros(3) for s in supports]
+        elongations = ca.vertcat(ca.SX(0, 1), *[s.elongation for s in supports])
+        found = {
+            "support_elongations": elongations,
+            "support_jacobians": row_major(ca.densify(ca.jacobian(elongations, self.crane.q))),
+            "support_stiffnesses": ca.vertcat(ca.SX(0, 1), *[s.stiffness for s in supports]),
+            "support_dampings": ca.vertcat(ca.SX(0, 1), *[s.damping for s in supports]),
+            "support_grips": ca.vertcat(ca.SX(0, 1), *grips),
+        }
+        return found if self.contacts else {name: ca.SX.zeros(of.shape) for name, of in found.items()}
 
     def sizes(self):
         """How many numbers each quantity has."""

@@ -1,7 +1,8 @@
-"""Forces with states in addition to pose and rates: the oil of cylinders with valves, and bristles of joints that stick."""
+"""Forces with states in addition to pose and rates: the oil of cylinders with valves, feet that slide, and bristles of joints that stick."""
 
 import casadi as ca
 
+from contacts import sliding
 from hydraulics import Oil
 
 
@@ -12,6 +13,19 @@ class ForceStates:
         oil = Oil(crane, rate)
         self.names, self.scales, self.forces = list(oil.names), list(oil.scales), oil.forces
         states, rates = [oil.x], [oil.rates]
+        feet = [support for support in crane.supports if support.friction is not None]
+        ways = []
+        for foot in feet:
+            slid = ca.SX.sym(f"{foot.name}_slid", 2)
+            force, slides = sliding(foot, rate, slid)
+            ways.append((slid, slides))
+            self.forces += ca.jacobian(foot.elongation[:2], crane.q).T @ force
+        # All along x, then all along y.
+        for index, axis in enumerate("xy"):
+            states += [slid[index] for slid, _ in ways]
+            rates += [slides[index] for _, slides in ways]
+            self.names += [f"{foot.name}_slid_{axis}" for foot in feet]
+            self.scales += [1e-2] * len(feet)
         for friction in crane.frictions:
             if friction.bristle is None:
                 continue

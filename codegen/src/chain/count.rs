@@ -30,9 +30,12 @@ impl Chain {
             Count::PosesAndRates => 2,
             Count::ResidualFactors => Count::RESIDUAL_FACTORS,
             Count::MassFactors => Count::MASS_FACTORS,
-            Count::CylinderCuts | Count::ConnectorCuts | Count::LoopCuts | Count::PointAxes | Count::ResidualRows => {
-                count.factors().iter().map(|factor| self.count(*factor)).product()
-            }
+            Count::CylinderCuts
+            | Count::ConnectorCuts
+            | Count::LoopCuts
+            | Count::PointAxes
+            | Count::SupportAxes
+            | Count::ResidualRows => count.factors().iter().map(|factor| self.count(*factor)).product(),
         }
     }
 }

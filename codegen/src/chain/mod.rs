@@ -141,7 +141,7 @@ impl Chain {
     /// Whether any support is one-sided: it presses and never pulls.
     #[must_use]
     pub fn has_one_sided_supports(&self) -> bool {
-        self.supports.iter().any(|support| support.full_hold.is_some())
+        self.supports.iter().any(|support| support.friction.is_some())
     }
 
     /// Whether any drive has a maximum effort.

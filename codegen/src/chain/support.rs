@@ -15,9 +15,9 @@ pub struct Support {
     pub damping: [Value; 3],
     /// Free play δ along x, y, z, m.
     pub free_play: [Value; 3],
-    /// For a one-sided support, which presses and never pulls: the pressing force above which its lateral stiffness and its
-    /// damping are fully effective, N. `None` if it pulls as well.
-    pub full_hold: Option<Value>,
+    /// For a one-sided support, which presses and never pulls: its coefficient of friction on the ground, μ. `None` if it pulls
+    /// as well.
+    pub friction: Option<Value>,
     /// How its elongation depends on the base's coordinates.
     pub kinematics: SupportKinematics,
 }

@@ -84,11 +84,11 @@ catalogue! {
     /// Numbers are finite.
     E030 not_finite(subject, given) "{subject} is {given}", "not a finite number", "write a finite number, in SI units";
     /// Masses, lengths, sections, moduli and durations are above zero.
-    E031 not_positive(subject, given, unit) "{subject} must be above zero, not {given}", "{given} {unit}",
-        "write a number above 0, in {unit}";
+    E031 not_positive(subject, given, of_unit, in_unit) "{subject} must be above zero, not {given}", "{given}{of_unit}",
+        "write a number above 0{in_unit}";
     /// Stiffness, damping and other numbers that may be zero are not negative.
-    E032 negative(subject, given, unit) "{subject} must not be negative, but is {given}", "{given} {unit}",
-        "write 0 or a positive number, in {unit}";
+    E032 negative(subject, given, of_unit, in_unit) "{subject} must not be negative, but is {given}", "{given}{of_unit}",
+        "write 0 or a positive number{in_unit}";
     /// Numbers are 0 or have a magnitude from 1e-30 to 1e18.
     E033 out_of_range(subject, given) "{subject} is outside the allowed range: {given}", "allowed: 0, or a magnitude from 1e-30 to 1e18",
         "check the exponent; every number is in SI units";
@@ -186,9 +186,12 @@ catalogue! {
     /// A one-sided support presses with its vertical spring.
     E073 nothing_to_press(support) "one-sided support `{support}` has nothing to press with", "its vertical stiffness is 0 N/m",
         "give `stiffness` a third number above zero, in N/m, or remove `one_sided`";
-    /// Only a support that never pulls can depend on its pressing force.
-    E074 hold_of_two_sided(support) "`full_hold` of support `{support}` has no effect", "the support pulls as well as presses",
-        "add `one_sided: true`, or remove `full_hold`";
+    /// Only a one-sided support has friction on the ground.
+    E074 friction_of_two_sided(key, support) "`{key}` of support `{support}` has no effect", "the support pulls as well as presses, and never slides",
+        "add `one_sided: true`, or remove `{key}`";
+    /// A support that sticks has no coefficient of friction.
+    E075 friction_of_stuck(support) "support `{support}` sticks and has a coefficient of friction", "a support that sticks never slides",
+        "keep `sticks: true` or `friction_coefficient`, and remove the other one";
 
     // Drives, damping, profiles.
     /// A coordinate has at most one drive and one passive damping.
@@ -505,9 +508,9 @@ catalogue! {
     /// Principal moments satisfy the triangle inequality; measured ones may exceed it by up to 25 % (beyond: E051).
     W011 slight_triangle(subject, largest, others) "{subject} slightly violates the triangle inequality", "{largest} kg m² exceeds {others} kg m², the sum of the other two principal moments",
         "no principal moment about the centre of mass exceeds the sum of the other two; rounded or identified data may violate this slightly";
-    /// A one-sided support carries more than the pressing force above which it holds fully.
-    W020 hold_beyond_weight(support, force, share) "`full_hold` of support `{support}` is {force} N",
-        "its share of the crane's weight is {share} N", "write a force below its load at rest, in N; under a smaller load the support gives only a part of its lateral stiffness and damping";
+    /// The coefficient of friction of a support is from 0.1 to 1.2.
+    W020 odd_friction(support, coefficient) "the friction coefficient of support `{support}` is {coefficient}", "usual: 0.1 to 1.2",
+        "write a fraction: steel or wood on dry, firm ground has about 0.6, wet or loose ground about 0.3; a support that never slides has `sticks: true` instead";
     /// The free length of a connector is consistent with the distance between its points at the guess.
     W021 connector_length(connector, length, distance) "connector `{connector}` has a free length of {length} m", "its points are {distance} m apart at the guess",
         "check the unit, the points and the `guess`: its force is the stiffness times the difference between distance and length; a rope only pulls";

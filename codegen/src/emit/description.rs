@@ -114,14 +114,14 @@ fn description_constant(chain: &Chain) -> Item {
         let name = text(&support.name);
         let position = support.position.iter().map(at_defaults);
         let linear = support.kinematics == SupportKinematics::Linear;
-        let hold = support.full_hold.as_ref().map_or_else(
+        let friction = support.friction.as_ref().map_or_else(
             || quote!(None),
-            |full| {
-                let (stiffness, full) = (support.stiffness.iter().map(at_defaults), at_defaults(full));
-                quote!(Some(HoldInfo { stiffness: [#(#stiffness),*], full: #full }))
+            |friction| {
+                let coefficient = at_defaults(friction);
+                quote!(Some(#coefficient))
             },
         );
-        quote!(SupportInfo { name: #name, position: [#(#position),*], linear: #linear, hold: #hold })
+        quote!(SupportInfo { name: #name, position: [#(#position),*], linear: #linear, friction: #friction })
     });
     let drives = chain.drives.iter().map(|drive| drive_info(drive, &defaults));
     let stops = chain.stopped().into_iter().map(|id| integer(id.0));

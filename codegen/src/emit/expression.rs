@@ -86,8 +86,8 @@ pub fn operation(op: Op, number: Number, of: &mut dyn FnMut(ExprId) -> Expr) -> 
         Op::Sub(a, b) => difference(of(a), of(b)),
         Op::Mul(a, b) => product(of(a), of(b)),
         Op::Div(a, b) => quotient(of(a), of(b)),
-        Op::Min(a, b) => method(of(a), "min", of(b)),
-        Op::Max(a, b) => method(of(a), "max", of(b)),
+        Op::Min(a, b) => extreme("min", of(a), of(b)),
+        Op::Max(a, b) => extreme("max", of(a), of(b)),
         Op::Sqrt(a) => call("sqrt", [of(a)]),
         Op::Exp(a) => call("exp", [of(a)]),
         Op::Select(a, b, c) => {
@@ -103,6 +103,11 @@ pub fn operation(op: Op, number: Number, of: &mut dyn FnMut(ExprId) -> Expr) -> 
         Op::Constant(c) => number.literal(c.value()),
         Op::Symbol(_) => unreachable!("inputs are read, not computed"),
     }
+}
+
+/// `a.min(b)` or `a.max(b)`, with a literal as the argument: it has no type as the receiver.
+fn extreme(name: &str, a: Expr, b: Expr) -> Expr {
+    if matches!(a, Expr::Lit(_)) { method(b, name, a) } else { method(a, name, b) }
 }
 
 /// `sin_cos([angle]).0[0]`

@@ -130,6 +130,7 @@ impl<'a> Labels<'a> {
                 })
             }
             Count::PointAxes => self.part(Count::Points, index / 3),
+            Count::SupportAxes => self.part(Count::Supports, index / 3),
             Count::ResidualFactors => {
                 const VECTORS: [&str; 20] = [
                     "ω",

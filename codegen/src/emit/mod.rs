@@ -132,7 +132,6 @@ fn imports(items: &[syn::Item]) -> String {
                 "Dynamics",
                 "Ensemble",
                 "Implicit",
-                "HoldInfo",
                 "InputInfo",
                 "InternalForces",
                 "Linearisation",

@@ -50,7 +50,7 @@ pub fn mjcf(chain: &Chain, parameters: &[f64]) -> Result<String, Inexpressible> 
                 .into(),
         });
     }
-    if let Some(support) = chain.supports.iter().find(|support| support.full_hold.is_some()) {
+    if let Some(support) = chain.supports.iter().find(|support| support.friction.is_some()) {
         return Err(Inexpressible {
             title: format!("MJCF has no supports that lift off, such as `{}`", support.name),
             help: "remove `one_sided` for a crane whose feet are anchored, or export URDF with its file of springs"

@@ -87,13 +87,13 @@ pub fn springs(chain: &Chain, parameters: &[f64]) -> String {
             base.name
         );
         if chain.has_one_sided_supports() {
-            text += "  # one_sided: presses along z and never pulls; below a pressing force of full_hold, N, lateral stiffness and\n\
-                     # damping are multiplied by x^2 (3 - 2 x), x = force of the vertical spring / full_hold.\n";
+            text += "  # one_sided: presses along z and never pulls; its damping along z adds at most the force of its spring.\n  \
+                     # Sideways it holds at most friction_coefficient times the force with which it presses, and slides beyond.\n";
         }
         for support in &chain.supports {
             let kinematics = if support.kinematics == SupportKinematics::Linear { "linear" } else { "exact" };
-            let one_sided = support.full_hold.as_ref().map_or_else(String::new, |force| {
-                format!(", one_sided: true, full_hold: {}", number_text(force.at(parameters)))
+            let one_sided = support.friction.as_ref().map_or_else(String::new, |coefficient| {
+                format!(", one_sided: true, friction_coefficient: {}", number_text(coefficient.at(parameters)))
             });
             let _ = writeln!(
                 text,

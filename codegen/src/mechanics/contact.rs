@@ -1,17 +1,17 @@
-//! The law of one-sided supports, which press on the ground and never pull.
+//! The law of one-sided supports, which press on the ground, never pull, and hold sideways by friction.
 //!
 //! Notation
-//! : e, ė elongation and its rate along the world's axes; s, d stiffness and damping; N₀ the pressing force above which it holds fully.
-//!   `δ = max(0, −e_z)` is how far the support is pressed in, `x = min(1, s_z δ/N₀)` and `w = x² (3 − 2x)` the fraction to which
-//!   its lateral springs and its dampers act, `L = s_x e_x² + s_y e_y²`.
+//! : e, ė elongation and its rate along the world's axes; s, d stiffness and damping; μ the coefficient of friction.
+//!   `δ = max(0, −e_z)` is how far the support is pressed in, `c = s_z δ` the force of its spring.
 //!
 //! ```text
-//! E = ½ s_z δ² + ½ w L
-//! f = (−w (s_x e_x + d_x ė_x), −w (s_y e_y + d_y ė_y), max(0, c − w d_z ė_z)),     c = s_z δ + ½ w' L
+//! N = c + min(max(−d_z ė_z, −c), c)                     F = (s_x e_x + d_x ė_x, s_y e_y + d_y ė_y)
+//! f = (−g F_x, −g F_y, N),     g = min(1, μ N/|F|)      E = ½ s_z δ² + ½ (s_x e_x² + s_y e_y²), 0 in the air
 //! ```
 //!
-//! Above N₀, w = 1: a firmly pressed support acts exactly like a two-sided one, to the last bit. Through the term `½ w' L`, a
-//! lifting support returns the energy of its lateral springs.
+//! A support sticks as long as |F| ≤ μ N: it then acts exactly like a two-sided one, to the last bit. Beyond, it slides. How far it has slid is
+//! not a function of the pose: the runtime keeps it as a state and subtracts it from e (`feet` in the runtime); here the support stands where the
+//! spec puts it. The damper exerts at most as much as the spring, so that no force jumps where a support meets the ground.
 
 use super::vector::{Symmetric3, Vec3};
 use crate::symbolic::Expr;
@@ -26,20 +26,16 @@ pub struct Contact<'g> {
     pub stiffness: Vec3<'g>,
     /// d, N s/m.
     pub damping: Vec3<'g>,
-    /// N₀, N.
-    pub full_hold: Expr<'g>,
+    /// μ.
+    pub friction: Expr<'g>,
 }
 
-/// The fraction w to which a support holds, and its derivatives with respect to δ.
-struct Share<'g> {
-    value: Expr<'g>,
-    slope: Expr<'g>,
-    curvature: Expr<'g>,
-}
+/// A lateral force that does not count, N: a support that just touches the ground, without a lateral force, sticks.
+const NO_FORCE: f64 = 1e-15;
 
 impl<'g> Contact<'g> {
     fn zero(&self) -> Expr<'g> {
-        self.full_hold.graph().constant(0.0)
+        self.friction.graph().constant(0.0)
     }
 
     /// `number` if the support touches the ground, otherwise 0. A support that just touches counts, because Newton's method
@@ -48,94 +44,105 @@ impl<'g> Contact<'g> {
         self.elongation[2].select(self.zero(), number)
     }
 
-    /// δ
-    fn depth(&self) -> Expr<'g> {
-        (-self.elongation[2]).max(self.zero())
+    /// `c = s_z δ`, N.
+    fn spring(&self) -> Expr<'g> {
+        self.stiffness[2] * (-self.elongation[2]).max(self.zero())
     }
 
-    fn share(&self) -> Share<'g> {
-        let one = self.full_hold.graph().constant(1.0);
-        let by_depth = self.stiffness[2] / self.full_hold;
-        let x = (by_depth * self.depth()).min(one);
-        let rest = 1.0 - x;
-        Share {
-            value: x.squared() * (3.0 - 2.0 * x),
-            slope: 6.0 * x * rest * by_depth,
-            curvature: self.touching(rest.select((6.0 - 12.0 * x) * by_depth.squared(), self.zero())),
+    /// What the damper adds to N.
+    fn damper(&self) -> Expr<'g> {
+        let force = -(self.damping[2] * self.rate[2]);
+        if force.as_constant() == Some(0.0) {
+            return force;
         }
+        let spring = self.spring();
+        force.max(-spring).min(spring)
     }
 
-    /// L
-    fn lateral(&self) -> Expr<'g> {
-        self.stiffness[0] * self.elongation[0].squared() + self.stiffness[1] * self.elongation[1].squared()
+    /// N, N.
+    pub fn pressing(&self) -> Expr<'g> {
+        self.spring() + self.damper()
     }
 
-    /// `c = s_z δ + ½ w' L`, the pressing force of the springs.
-    fn spring(&self, share: &Share<'g>) -> Expr<'g> {
-        self.stiffness[2] * self.depth() + 0.5 * share.slope * self.lateral()
+    /// F, N, along x and y.
+    fn lateral(&self) -> [Expr<'g>; 2] {
+        [0, 1].map(|axis| self.stiffness[axis] * self.elongation[axis] + self.damping[axis] * self.rate[axis])
     }
 
-    /// `−w d_z ė_z`, the force that the damper adds as long as the sum is positive.
-    fn damper(&self, share: &Share<'g>) -> Expr<'g> {
-        -(share.value * (self.damping[2] * self.rate[2]))
+    /// |F|, N.
+    pub fn lateral_size(&self) -> Expr<'g> {
+        let [x, y] = self.lateral();
+        (x.squared() + y.squared() + NO_FORCE * NO_FORCE).sqrt()
+    }
+
+    /// `μ N`, N.
+    pub fn grip(&self) -> Expr<'g> {
+        self.friction * self.pressing()
+    }
+
+    /// g.
+    fn share(&self) -> Expr<'g> {
+        let one = self.friction.graph().constant(1.0);
+        self.touching(((self.grip() + NO_FORCE) / self.lateral_size()).min(one))
+    }
+
+    /// `number` if the support sticks, otherwise 0.
+    fn sticking(&self, number: Expr<'g>) -> Expr<'g> {
+        let slides = self.lateral_size() - (self.grip() + NO_FORCE);
+        self.touching(slides.select(self.zero(), number))
     }
 
     /// f, N.
     pub fn reaction(&self) -> Vec3<'g> {
         let share = self.share();
-        let along = |axis: usize| {
-            let pull = self.stiffness[axis] * self.elongation[axis] + self.damping[axis] * self.rate[axis];
-            -(share.value * pull)
-        };
-        Vec3([along(0), along(1), (self.spring(&share) + self.damper(&share)).max(self.zero())])
+        let [x, y] = self.lateral().map(|force| -(share * force));
+        Vec3([x, y, self.pressing()])
     }
 
     /// 2E, J.
     pub fn twice_energy(&self) -> Expr<'g> {
-        self.stiffness[2] * self.depth().squared() + self.share().value * self.lateral()
+        let depth = (-self.elongation[2]).max(self.zero());
+        let [x, y] = [0, 1].map(|axis| self.stiffness[axis] * self.elongation[axis].squared());
+        self.stiffness[2] * depth.squared() + self.touching(x + y)
     }
 
-    /// Dissipated power, W: `w (d_x ė_x² + d_y ė_y²) + max(−w d_z ė_z, −c) (−ė_z) ≥ 0`, the power put into the support minus the
-    /// rate of change of its energy.
+    /// The power put into the support minus the rate of change of its energy, W.
     pub fn dissipation(&self) -> Expr<'g> {
         let share = self.share();
-        let lateral = self.damping[0] * self.rate[0].squared() + self.damping[1] * self.rate[1].squared();
-        let pressing = self.damper(&share).max(-self.spring(&share));
-        share.value * lateral - pressing * self.rate[2]
+        let lost = |axis: usize, force: Expr<'g>| {
+            (share * force - self.stiffness[axis] * self.elongation[axis]) * self.rate[axis]
+        };
+        let [x, y] = self.lateral();
+        self.touching(lost(0, x) + lost(1, y)) - self.damper() * self.rate[2]
     }
 
-    /// `∂E/∂e`, N.
-    pub fn gradient(&self) -> Vec3<'g> {
-        let share = self.share();
-        let along = |axis: usize| share.value * (self.stiffness[axis] * self.elongation[axis]);
-        Vec3([along(0), along(1), -self.spring(&share)])
+    /// `−f` at rest, N.
+    pub fn pull(&self) -> Vec3<'g> {
+        let reaction = Contact { rate: Vec3([self.zero(); 3]), ..*self }.reaction();
+        Vec3(reaction.0.map(|force| -force))
     }
 
-    /// `∂²E/∂e∂e`, N/m.
+    /// `−∂f/∂e` at rest, N/m, of a support that sticks; one that slides is free sideways.
     pub fn tangent(&self) -> Symmetric3<'g> {
-        let share = self.share();
-        let held = |axis: usize| share.value * self.stiffness[axis];
-        let mixed = |axis: usize| -(share.slope * (self.stiffness[axis] * self.elongation[axis]));
-        let normal = self.touching(self.stiffness[2] + 0.5 * share.curvature * self.lateral());
-        Symmetric3([held(0), held(1), normal, self.zero(), mixed(0), mixed(1)])
+        let held = |axis: usize| self.sticking(self.stiffness[axis]);
+        let zero = self.zero();
+        Symmetric3([held(0), held(1), self.touching(self.stiffness[2]), zero, zero, zero])
     }
 
-    /// Damping at rest, N s/m.
+    /// Damping at rest, N s/m; one that slides is free sideways.
     pub fn damping_at_rest(&self) -> Vec3<'g> {
-        let share = self.share();
-        Vec3(self.damping.0.map(|damping| share.value * damping))
+        let [x, y] = [0, 1].map(|axis| self.sticking(self.damping[axis]));
+        Vec3([x, y, self.touching(self.damping[2])])
     }
 
     /// Stiffness and damping along the axes for an implicit step, which does not need the exact derivative, but must keep `A + D̂`
-    /// positive definite: `w s_x, w s_y, max(0, ∂f_z/∂δ)` and `w d`; along z zero if the support does not press.
+    /// positive definite: `g s_x, g s_y, s_z` and `g d_x, g d_y, d_z`; along z zero if the support does not press.
     pub fn stiffness_and_damping(&self) -> [Vec3<'g>; 2] {
         let share = self.share();
-        let presses = self.spring(&share) + self.damper(&share);
-        let where_pressing = |number: Expr<'g>| presses.select(number, self.zero());
-        let growth = 0.5 * share.curvature * self.lateral() - share.slope * (self.damping[2] * self.rate[2]);
-        let normal = (self.stiffness[2] + growth).max(self.zero());
-        let [held_x, held_y] = [0, 1].map(|axis| share.value * self.stiffness[axis]);
-        let [x, y, z] = self.damping_at_rest().0;
-        [Vec3([held_x, held_y, where_pressing(self.touching(normal))]), Vec3([x, y, where_pressing(z)])]
+        let where_pressing = |number: Expr<'g>| self.pressing().select(number, self.zero());
+        let of = |numbers: Vec3<'g>| {
+            Vec3([share * numbers[0], share * numbers[1], where_pressing(self.touching(numbers[2]))])
+        };
+        [of(self.stiffness), of(self.damping)]
     }
 }

@@ -42,7 +42,7 @@ impl<'g> Acts<'g> for Supports<'_, 'g> {
         Some(sum(self.model, self.kinematics, |s| (s.rate, s.damping), Contact::dissipation))
     }
 
-    /// `∂²E_s/∂q_i∂q_j = J_iᵀ (∂²E/∂e∂e) J_j + ∂E/∂e · Ω_i Ω_j T r_E`; linear kinematics have no second term.
+    /// `J_iᵀ (−∂f/∂e) J_j − f · Ω_i Ω_j T r_E` at rest; linear kinematics have no second term.
     fn add_stiffness(&self, _: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>) {
         add_stiffness(self.model, self.kinematics, &self.model.zeros(), Stretched::tangent, matrix);
     }
@@ -103,8 +103,8 @@ struct Stretched<'g> {
     jacobian: Vec<(usize, Vec3<'g>)>,
     stiffness: Vec3<'g>,
     damping: Vec3<'g>,
-    /// N₀ of a one-sided support, N.
-    full_hold: Option<Expr<'g>>,
+    /// μ of a one-sided support.
+    friction: Option<Expr<'g>>,
     /// Whether J depends on the pose.
     exact: bool,
 }
@@ -135,15 +135,15 @@ impl<'g> Stretched<'g> {
             jacobian,
             stiffness: model.vector(&support.stiffness),
             damping: model.vector(&support.damping),
-            full_hold: support.full_hold.as_ref().map(|force| model.number(force)),
+            friction: support.friction.as_ref().map(|coefficient| model.number(coefficient)),
             exact: support.kinematics == SupportKinematics::Exact,
         }
     }
 
     /// Its law if it is one-sided.
     fn contact(&self) -> Option<Contact<'g>> {
-        let &Self { stretch: elongation, rate, stiffness, damping, full_hold, .. } = self;
-        full_hold.map(|full_hold| Contact { elongation, rate, stiffness, damping, full_hold })
+        let &Self { stretch: elongation, rate, stiffness, damping, friction, .. } = self;
+        friction.map(|friction| Contact { elongation, rate, stiffness, damping, friction })
     }
 
     /// Force on the crane, `−s e − d ė`, N.
@@ -154,13 +154,13 @@ impl<'g> Stretched<'g> {
         )
     }
 
-    /// `∂E/∂e`, N.
-    fn gradient(&self) -> Vec3<'g> {
+    /// `−f` at rest, N.
+    fn pull(&self) -> Vec3<'g> {
         let spring = || Vec3([0, 1, 2].map(|a| self.stiffness[a] * self.stretch[a]));
-        self.contact().map_or_else(spring, |contact| contact.gradient())
+        self.contact().map_or_else(spring, |contact| contact.pull())
     }
 
-    /// `∂²E/∂e∂e`, N/m.
+    /// `−∂f/∂e` at rest, N/m.
     fn tangent(&self) -> Symmetric3<'g> {
         self.contact().map_or_else(|| diagonal(self.stiffness), |contact| contact.tangent())
     }
@@ -191,7 +191,7 @@ fn at_rest<'g>(model: &Model<'g>, r: Vec3<'g>) -> Vec3<'g> {
 
 /// Whether force and elongation are linear in the base's coordinates.
 fn is_linear(support: &Support) -> bool {
-    support.kinematics == SupportKinematics::Linear && support.full_hold.is_none()
+    support.kinematics == SupportKinematics::Linear && support.friction.is_none()
 }
 
 /// Supports whose J depends on the pose or whose law is nonlinear; these are treated one by one.
@@ -282,10 +282,48 @@ pub fn reactions<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr
 pub fn gaps<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
     let gap = |support: &Support| {
         let stretched = Stretched::new(model, kinematics, support, &model.v);
-        let one_sided = |number: Expr<'g>| if support.full_hold.is_some() { number } else { model.zero() };
+        let one_sided = |number: Expr<'g>| if support.friction.is_some() { number } else { model.zero() };
         [one_sided(stretched.stretch[2]), one_sided(stretched.rate[2])]
     };
     model.chain.supports.iter().flat_map(gap).collect()
+}
+
+/// Elongation of each support, e, m.
+pub fn elongations<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
+    let elongation = |support| Stretched::new(model, kinematics, support, &model.v).stretch.0;
+    model.chain.supports.iter().flat_map(elongation).collect()
+}
+
+/// J of each support: its rows along x, y and z.
+pub fn jacobians<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
+    let rows = |support| {
+        let mut rows = [model.zeros(), model.zeros(), model.zeros()];
+        for (j, column) in Stretched::new(model, kinematics, support, &model.v).jacobian {
+            rows.iter_mut().zip(column.0).for_each(|(row, entry)| row[j] = entry);
+        }
+        rows
+    };
+    model.chain.supports.iter().flat_map(rows).flatten().collect()
+}
+
+/// Stiffness s of each support along the world's axes, N/m.
+pub fn stiffnesses<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    model.chain.supports.iter().flat_map(|support| model.vector(&support.stiffness).0).collect()
+}
+
+/// Damping d of each support along the world's axes, N s/m.
+pub fn dampings<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    model.chain.supports.iter().flat_map(|support| model.vector(&support.damping).0).collect()
+}
+
+/// Pressing force N of each support, the lateral force μ N up to which it sticks, and the lateral force |F| that holds it where the spec puts it,
+/// N; zeros for supports that are not one-sided.
+pub fn grips<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
+    let grip = |support| {
+        let contact = Stretched::new(model, kinematics, support, &model.v).contact();
+        contact.map_or([model.zero(); 3], |contact| [contact.pressing(), contact.grip(), contact.lateral_size()])
+    };
+    model.chain.supports.iter().flat_map(grip).collect()
 }
 
 /// `Σ c x²` over supports and axes; for one-sided supports, the value that their law gives.
@@ -315,7 +353,7 @@ fn add_stiffness<'g>(
     linear_matrix(model, |s| model.vector(&s.stiffness), matrix);
     for support in nonlinear(model) {
         let stretched = Stretched::new(model, kinematics, support, v);
-        let (tangent, pull) = (tangent(&stretched), stretched.gradient());
+        let (tangent, pull) = (tangent(&stretched), stretched.pull());
         for (&(i, u), &(j, w)) in pairs(stretched.jacobian.iter()) {
             let first_order = tangent.apply(u).dot(w);
             // J_j is Ω_j T r_E, a direction that Ω_i turns.

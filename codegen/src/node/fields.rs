@@ -42,10 +42,11 @@ impl<'a> Reader<'a> {
             let name = key.key_text();
             match names.iter().position(|field| *field == name) {
                 None => {
-                    let decimals = slips::decimals_as_key(before, key, value);
-                    let meant = nearest(&name, names.iter().copied()).filter(|_| decimals.is_none());
+                    let known =
+                        slips::decimals_as_key(before, key, value).or_else(|| slips::removed_key(&name, &names));
+                    let meant = nearest(&name, names.iter().copied()).filter(|_| known.is_none());
                     unknown.extend(meant.map(|meant| (meant, key, value)));
-                    let help = decimals.unwrap_or_else(|| suggest(&name, names.iter().copied()));
+                    let help = known.unwrap_or_else(|| suggest(&name, names.iter().copied()));
                     self.report(rule::unknown_key(key.span, name, help));
                 }
                 Some(field) if given[field].is_some() => {

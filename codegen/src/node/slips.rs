@@ -1,4 +1,4 @@
-//! Slips that are common enough to be recognised: decimal commas, entries of lists without a dash, tabs.
+//! Slips that are common enough to be recognised: decimal commas, entries of lists without a dash, tabs, keys of earlier versions.
 
 use super::tree::{Content, Node};
 use crate::diagnostic::{Mistake, Span, rule};
@@ -81,6 +81,19 @@ pub(crate) fn decimals_as_items(items: &[Node], length: usize) -> Option<String>
     } else {
         format!("write {length} items; a comma separates items, so write decimals with a point: 0.02, not 0,02")
     })
+}
+
+/// Keys that the language had, each with the key that took its place and what to do.
+const REMOVED: &[(&str, &str, &str)] = &[(
+    "full_hold",
+    "friction_coefficient",
+    "feet hold by friction now: remove `full_hold`, or write `friction_coefficient:`",
+)];
+
+/// Help for a key that the language had where it now has the given keys.
+pub(crate) fn removed_key(name: &str, keys: &[&str]) -> Option<String> {
+    let removed = REMOVED.iter().find(|(removed, new, _)| *removed == name && keys.contains(new));
+    removed.map(|(_, _, help)| (*help).to_owned())
 }
 
 /// Splits entries of lists in which the first key returns on a line of its own, as the first of further keys: a dash is missing there.

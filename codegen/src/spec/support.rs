@@ -20,8 +20,11 @@ pub struct Support {
     pub kinematics: Option<Spanned<Kinematics>>,
     /// Whether it only presses along z, and lifts off instead of pulling. Free play along z is then a gap. Default `false`.
     pub one_sided: Option<Spanned<bool>>,
-    /// Pressing force above which the lateral springs and the dampers of a one-sided support act fully, N. Default 1000.
-    pub full_hold: Option<Spanned<Number>>,
+    /// Coefficient of friction between a one-sided support and the ground: sideways it holds at most this times the force with which it
+    /// presses, and slides beyond. Default 0.6.
+    pub friction_coefficient: Option<Spanned<Number>>,
+    /// Whether a one-sided support never slides while it presses: it then has a coefficient of friction of 1000. Default `false`.
+    pub sticks: Option<Spanned<bool>>,
 }
 
 /// How the elongation of a support depends on the base's coordinates.

@@ -6,9 +6,10 @@ use crate::chain::{Step, Support, SupportKinematics, Value};
 use crate::diagnostic::rule;
 use crate::spec::{self, Crane, Kinematics};
 
-/// Default pressing force from which a one-sided support has its full lateral stiffness and damping, N: a hundredth of what a
-/// foot of a timber crane carries.
-const FULL_HOLD: f64 = 1e3;
+/// Default coefficient of friction of a one-sided support: steel, wood or rubber on dry concrete or firm ground.
+const FRICTION: f64 = 0.6;
+/// That of a support that sticks: far above any lateral force over a pressing force.
+const STICKS: f64 = 1e3;
 
 impl<'a> Check<'a> {
     pub(super) fn supports(&mut self, crane: &'a Crane) -> Vec<Support> {
@@ -47,7 +48,7 @@ impl<'a> Check<'a> {
             }
             let subject = |what: &str| format!("the {what} of support `{name}`");
             let stiffness = self.vector(&support.stiffness, &subject("stiffness"), "N/m", Limit::NotNegative);
-            let full_hold = self.full_hold(support, &name, &stiffness[2]);
+            let friction = self.ground_friction(support, &name, &stiffness[2]);
             sound.push(Support {
                 position: self.vector(&support.at, &subject("position"), "m", Limit::Any),
                 stiffness,
@@ -58,7 +59,7 @@ impl<'a> Check<'a> {
                     Limit::NotNegative,
                 ),
                 free_play: self.vector_or_zero(support.free_play.as_ref(), &subject("free play"), "m", Limit::Any),
-                full_hold,
+                friction,
                 kinematics,
                 name,
             });
@@ -66,22 +67,31 @@ impl<'a> Check<'a> {
         sound
     }
 
-    /// The pressing force from which a one-sided support has its full lateral stiffness and damping.
-    fn full_hold(&mut self, support: &spec::Support, name: &str, stiffness: &Value) -> Option<Value> {
-        let subject = format!("the full hold of support `{name}`");
-        let full_hold = self.number_or(support.full_hold.as_ref(), FULL_HOLD, &subject, "N", Limit::Positive);
+    /// The coefficient of friction of a one-sided support.
+    fn ground_friction(&mut self, support: &spec::Support, name: &str, stiffness: &Value) -> Option<Value> {
+        let spec::Support { friction_coefficient, sticks, .. } = support;
+        let subject = format!("the friction coefficient of support `{name}`");
+        let is_stuck = sticks.as_ref().is_some_and(|sticks| sticks.value == Some(true));
+        let unless_given = if is_stuck { STICKS } else { FRICTION };
+        let coefficient = self.number_or(friction_coefficient.as_ref(), unless_given, &subject, "", Limit::Positive);
         let one_sided = support.one_sided.as_ref().filter(|given| given.value != Some(false));
+        let spans = [friction_coefficient.as_ref().map(|given| given.span), sticks.as_ref().map(|given| given.span)];
         let Some(given) = one_sided else {
-            if let Some(full_hold) = &support.full_hold {
-                self.report(rule::hold_of_two_sided(full_hold.span, name));
+            for (key, span) in ["friction_coefficient", "sticks"].into_iter().zip(spans) {
+                if let Some(span) = span {
+                    self.report(rule::friction_of_two_sided(span, key, name));
+                }
             }
             return None;
         };
+        if let ([Some(_), Some(span)], true) = (spans, is_stuck) {
+            self.report(rule::friction_of_stuck(span, name));
+        }
         let broken = rule::nothing_to_press(given.span, name);
         if self.now(stiffness) == 0.0 {
             self.report(broken.clone());
         }
         self.keep_positive(stiffness.clone(), &broken);
-        (given.value == Some(true)).then_some(full_hold)
+        (given.value == Some(true)).then_some(coefficient)
     }
 }

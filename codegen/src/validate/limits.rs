@@ -37,25 +37,30 @@ impl Check<'_> {
             _ => None,
         };
         let number = self.now(&value);
+        let [of_unit, in_unit] = [" ", ", in "].map(|before| match unit {
+            "" => String::new(),
+            unit => format!("{before}{unit}"),
+        });
+        let not_positive = |given: String| rule::not_positive(span, subject, given, &of_unit, &in_unit);
+        let negative = |given: String| rule::negative(span, subject, given, &of_unit, &in_unit);
         match (limit, live) {
             (Limit::Positive, _) | (Limit::Mass, None) if number <= 0.0 => {
-                self.report(rule::not_positive(span, subject, number, unit));
+                self.report(not_positive(number.to_string()));
                 return f64::NAN.into();
             }
             (Limit::MassOfMoments, None) if number < 0.0 => {
-                self.report(rule::not_positive(span, subject, number, unit));
+                self.report(not_positive(number.to_string()));
                 return f64::NAN.into();
             }
             (Limit::NotNegative, _) | (Limit::Mass | Limit::MassOfMoments, Some(_)) if number < 0.0 => {
-                self.report(rule::negative(span, subject, number, unit));
+                self.report(negative(number.to_string()));
                 return f64::NAN.into();
             }
             _ => {}
         }
         let Some(id) = live else { return value };
-        let above =
-            Bound { value: 0.0, allowed: false, refusal: refusal(&rule::not_positive(span, subject, "", unit)) };
-        let not_below = Bound { value: 0.0, allowed: true, refusal: refusal(&rule::negative(span, subject, "", unit)) };
+        let above = Bound { value: 0.0, allowed: false, refusal: refusal(&not_positive(String::new())) };
+        let not_below = Bound { value: 0.0, allowed: true, refusal: refusal(&negative(String::new())) };
         match limit {
             Limit::Any => {}
             Limit::Positive => self.parameters[id.0].raise(above),

@@ -36,9 +36,12 @@ impl Description {
             Count::PosesAndRates => 2,
             Count::ResidualFactors => Count::RESIDUAL_FACTORS,
             Count::MassFactors => Count::MASS_FACTORS,
-            Count::CylinderCuts | Count::ConnectorCuts | Count::LoopCuts | Count::PointAxes | Count::ResidualRows => {
-                count.factors().iter().map(|factor| self.count(loop_joints, *factor)).product()
-            }
+            Count::CylinderCuts
+            | Count::ConnectorCuts
+            | Count::LoopCuts
+            | Count::PointAxes
+            | Count::SupportAxes
+            | Count::ResidualRows => count.factors().iter().map(|factor| self.count(loop_joints, *factor)).product(),
         }
     }
 }

@@ -78,9 +78,19 @@ impl Description {
         self.cylinders.iter().any(|cylinder| cylinder.valve.is_some())
     }
 
-    /// Whether forces have states besides pose and rates: forces and accelerations then need those, too.
+    /// Whether forces have states besides pose and rates.
     pub fn has_force_states(&self) -> bool {
+        self.has_hidden_forces() || self.has_feet()
+    }
+
+    /// Whether oil or bristles exert forces that generated functions do not contain: forces and accelerations need their states, too.
+    pub fn has_hidden_forces(&self) -> bool {
         self.has_valves() || !self.bristles.is_empty()
+    }
+
+    /// Whether it stands on supports that press, and hold by friction.
+    pub fn has_feet(&self) -> bool {
+        self.supports.iter().any(SupportInfo::is_one_sided)
     }
 
     /// The first body that a coordinate moves: the coordinate is named after it, or after its link.
@@ -244,24 +254,15 @@ pub struct SupportInfo {
     pub position: [f64; 3],
     /// Whether its elongation is linear in the base's coordinates, `kinematics: linear`.
     pub linear: bool,
-    /// How firmly it holds, if it only presses, and lifts off instead of pulling; `None` for a support that also pulls.
-    pub hold: Option<HoldInfo>,
+    /// Coefficient of friction with default parameters, if it only presses, and lifts off instead of pulling; `None` for a support that also pulls.
+    pub friction: Option<f64>,
 }
 
 impl SupportInfo {
     /// Whether it only presses, and lifts off instead of pulling.
     pub fn is_one_sided(&self) -> bool {
-        self.hold.is_some()
+        self.friction.is_some()
     }
-}
-
-/// How firmly a support that only presses holds sideways, with default parameters.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HoldInfo {
-    /// Stiffness along x, y, z, N/m.
-    pub stiffness: [f64; 3],
-    /// Pressing force from which it holds in full, N₀, N.
-    pub full: f64,
 }
 
 /// A drive.

@@ -16,7 +16,7 @@ use nalgebra::DMatrix;
 use crate::{
     dyn_crane::DynModel,
     force_states::ForceStates,
-    stateful_force::{Row, StateAt, StatefulForce},
+    stateful_force::{Row, STATES, StateAt, StatefulForce},
 };
 
 /// The crane's forces that have states, evaluated at a state of the crane, and their contribution to the system there.
@@ -110,7 +110,19 @@ impl ForceStateUpdate {
         }
         of_coupled.factorise(|row, column| f64::from(row == column) / c - by_states[(row, column)]);
         let forces = &force_states.forces()[..coupled];
+        // What only states change that no force feels, as those of feet in the air and of feet that stick, has neither stiffness nor damping.
+        let is_felt = |force: &StatefulForce| {
+            let feels = |other: &StatefulForce| other.first == force.first && other.by_states != [0.0; STATES];
+            !force.is_of_foot || forces.iter().any(feels)
+        };
         for (column, force) in forces.iter().enumerate() {
+            if !is_felt(force) {
+                kappa.column_mut(column).fill(0.0);
+                delta.column_mut(column).fill(0.0);
+                kappa[(column, column)] = force.by_length;
+                delta[(column, column)] = force.by_speed;
+                continue;
+            }
             for (matrix, rates) in [(&mut *kappa, force.rates_by_length), (&mut *delta, force.rates_by_speed)] {
                 let of_states = &mut self.of_states[..states];
                 of_states.fill(0.0);
@@ -128,6 +140,13 @@ impl ForceStateUpdate {
         }
         let rows = &force_states.rows()[..coupled];
         for (column, (row, inverse_column)) in rows.iter().zip(inverse_columns).enumerate() {
+            // S has nothing of a foot that sticks.
+            if (0..coupled).all(|other| added_inertia[(other, column)] == 0.0 && added_inertia[(column, other)] == 0.0)
+            {
+                inverse_column.fill(0.0);
+                (0..coupled).for_each(|row| inverse[(row, column)] = 0.0);
+                continue;
+            }
             self.column.fill(0.0);
             row.add_to(&mut self.column, 1.0);
             solve(&self.column, inverse_column);

@@ -36,7 +36,7 @@ pub fn acceleration<const N: usize, C: Dynamics<N>>(
     q: &SVector<f64, N>,
     v: &SVector<f64, N>,
 ) -> Result<SVector<f64, N>, NotFinite> {
-    if crane.description().has_force_states() || !crane.loop_joints().is_empty() {
+    if crane.description().has_hidden_forces() || !crane.loop_joints().is_empty() {
         return Err(NotFinite);
     }
     let a = crane.forward_dynamics(t, q, v);

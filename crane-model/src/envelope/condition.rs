@@ -6,6 +6,7 @@ use super::{Limit, Limits, PartLimit};
 use crate::{
     Description,
     dyn_crane::DynCrane,
+    feet::Feet,
     hydraulics::{CylinderState, cylinders_at},
     results::overlaps,
     sections::{StressedSection, stressed_sections},
@@ -27,6 +28,8 @@ pub struct Condition {
     pub cylinders: Vec<CylinderState>,
     /// Vertical force of each support on the crane, N, and its height above the ground if it is one-sided, m: positive if it has lifted.
     pub feet: Vec<[f64; 2]>,
+    /// Index of each foot on the ground among the supports, and how much of its friction it uses: with 1 it begins to slide.
+    pub utilisations_of_friction: Vec<(usize, f64)>,
     /// Efforts of the end stops, as [`Description::stops`] lists them, N m and N.
     pub stops: Vec<f64>,
     /// Forces of the connectors, N and N m.
@@ -52,6 +55,7 @@ impl Condition {
             cylinders: cylinders_at(crane, &q, &rest, &efforts),
             efforts,
             feet: reactions.map(|(force, gap)| [force.z, gap]).collect(),
+            utilisations_of_friction: Feet::at(crane, &q, &rest).utilisations_on_the_ground().collect(),
             stops: crane.stop_efforts_at(&q, &rest),
             connectors: crane.connector_tensions_at(0.0, &q, &rest).into_iter().map(|tension| tension.force).collect(),
             overlaps: crane.stages().iter().map(|stage| stage.inner).zip(overlaps::at(crane, &q)).collect(),
@@ -142,6 +146,10 @@ impl Condition {
                 .extend(stops.map(|(&coordinate, effort)| {
                     (Limit::Stop { coordinate }, if *effort == 0.0 { 1.0 } else { -1.0 })
                 }));
+        }
+        if limits.has(PartLimit::Sliding) {
+            let longest = self.utilisations_of_friction.iter().min_by(|a, b| a.1.total_cmp(&b.1));
+            slacks.extend(longest.map(|&(foot, utilisation)| (Limit::Sliding { foot }, 1.0 - utilisation)));
         }
         if limits.has(PartLimit::LiftOff) {
             let sizes = self.feet.iter().map(|[force, _]| force.abs());

@@ -71,6 +71,9 @@ impl Coverage {
             "the first support that pulls"
         };
         self.add(limits.has(PartLimit::LiftOff), what.to_owned());
+        if description.has_feet() {
+            self.add(limits.has(PartLimit::Sliding), "the friction under the feet".to_owned());
+        }
     }
 
     fn beams(&mut self, crane: &dyn DynCrane, limits: &Limits) {

@@ -30,6 +30,8 @@ pub enum PartLimit {
     Stops,
     /// The maximum efforts of drives, `max_effort`.
     MaxEffort,
+    /// The friction of all feet together: a crane slides if none of them sticks.
+    Sliding,
     /// Supports that carry nothing.
     LiftOff,
     /// Ropes without tension.
@@ -40,19 +42,20 @@ pub enum PartLimit {
 
 impl PartLimit {
     /// Every kind.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Pressure,
         Self::Pump,
         Self::Stroke,
         Self::Stops,
         Self::MaxEffort,
+        Self::Sliding,
         Self::LiftOff,
         Self::SlackRopes,
         Self::Overlap,
     ];
     /// What no crane can exceed. A foot may lift and a rope may be slack in normal work.
-    pub const DEFAULT: [Self; 6] =
-        [Self::Pressure, Self::Pump, Self::Stroke, Self::Stops, Self::MaxEffort, Self::Overlap];
+    pub const DEFAULT: [Self; 7] =
+        [Self::Pressure, Self::Pump, Self::Stroke, Self::Stops, Self::MaxEffort, Self::Sliding, Self::Overlap];
 
     /// Its name in options.
     pub fn name(self) -> &'static str {
@@ -62,6 +65,7 @@ impl PartLimit {
             PartLimit::Stroke => "stroke",
             PartLimit::Stops => "stops",
             PartLimit::MaxEffort => "max-effort",
+            PartLimit::Sliding => "sliding",
             PartLimit::LiftOff => "lift-off",
             PartLimit::SlackRopes => "slack-ropes",
             PartLimit::Overlap => "overlap",
@@ -155,6 +159,11 @@ pub enum Limit {
         /// Index of the coordinate.
         coordinate: usize,
     },
+    /// The friction under all feet: the last of them begins to slide.
+    Sliding {
+        /// Index of the support that sticks longest.
+        foot: usize,
+    },
     /// A support that carries nothing.
     LiftOff {
         /// Index of the support.
@@ -185,6 +194,7 @@ impl Limit {
             Limit::Pump { .. } => "pump",
             Limit::Stroke { .. } => "stroke",
             Limit::Stop { .. } => "stop",
+            Limit::Sliding { .. } => "sliding",
             Limit::LiftOff { .. } => "lift-off",
             Limit::Slack { .. } => "slack",
             Limit::Overlap { .. } => "overlap",
@@ -212,7 +222,7 @@ impl Limit {
             Limit::Pressure { cylinder, rod } | Limit::Pump { cylinder, rod } => side(cylinder, rod),
             Limit::Stroke { cylinder } => description.cylinders[cylinder].name.to_string(),
             Limit::Stop { coordinate } => description.coordinates[coordinate].name.to_string(),
-            Limit::LiftOff { foot } => description.supports[foot].name.to_string(),
+            Limit::Sliding { foot } | Limit::LiftOff { foot } => description.supports[foot].name.to_string(),
             Limit::Slack { rope } => description.connectors[rope].name.to_string(),
             Limit::Overlap { body } => description.bodies[body].link.to_string(),
         }
@@ -220,6 +230,6 @@ impl Limit {
 
     /// Whether a crane near this limit may lose its equilibrium because of it.
     pub(super) fn ends_equilibrium(self) -> bool {
-        matches!(self, Limit::Tipping { .. } | Limit::Effort { .. } | Limit::LiftOff { .. })
+        matches!(self, Limit::Tipping { .. } | Limit::Effort { .. } | Limit::Sliding { .. } | Limit::LiftOff { .. })
     }
 }

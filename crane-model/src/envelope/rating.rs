@@ -64,13 +64,6 @@ pub(super) struct LoadSearch<'a> {
 
 /// Shortest step between loads with which the crane rests, as a fraction of the way.
 const SHORTEST: f64 = 1.0 / 64.0;
-/// How much more load is searched from the guess where the crane does not rest with a little more, as parts of the load.
-const BEYOND: [f64; 8] = [0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.064, 0.128];
-/// Maximum number of gaps: a crane has as many feet that let go.
-const MOST_GAPS: usize = 32;
-/// A load counts as at least this part of the typical size of loads.
-const PART_OF_SCALE: f64 = 1e-2;
-
 impl Posed<'_> {
     /// The crane at rest with a value of the load's parameter, wherever it is found. `near`: positions of the drives, and the pose there.
     pub(super) fn find(&mut self, value: f64, near: Option<(&[f64], &[f64])>) -> Option<Condition> {
@@ -97,32 +90,13 @@ impl Posed<'_> {
         advance(begin, [SHORTEST, 1.0], &mut step)
     }
 
-    /// The largest load from that of the trial `first` on, and what governs.
-    ///
-    /// A trial begins at the pose with a smaller load. Where Newton's method fails there with a little more load, although no margin says so,
-    /// loads up to which the margins suffice are searched from the guess, and the search goes on from the first with which the crane rests: the
-    /// lateral springs of feet that let go leave such gaps. After [`MOST_GAPS`] of them the search ends.
+    /// The largest load from that of the trial `first` on, and what governs: trials begin at the pose with a smaller load, and a rest beyond a load
+    /// with which the crane does not rest nearby does not count.
     pub(super) fn find_largest(&mut self, first: Trial, search: &LoadSearch<'_>) -> (Option<Trial>, Option<Limit>) {
-        let (mut first, mut gaps) = (first, 0);
-        loop {
-            let found = largest(first, &search.range, &mut |load, near| {
-                let at = self.find_near(search.factor * load, &near.q)?;
-                Some(self.trial(load, at, search))
-            });
-            let (Some(best), Some(expected)) = (&found.best, found.expected) else {
-                return (found.best, found.governing);
-            };
-            let loads = BEYOND.map(|part| best.load + part * best.load.max(PART_OF_SCALE * search.range.scale));
-            let next = loads.into_iter().take_while(|load| *load < expected).find_map(|load| {
-                let at = self.find(search.factor * load, None)?;
-                Some(self.trial(load, at, search)).filter(Trial::is_within)
-            });
-            gaps += 1;
-            match next {
-                Some(next) if gaps <= MOST_GAPS => first = next,
-                _ => return (found.best, found.governing),
-            }
-        }
+        largest(first, &search.range, &mut |load, near| {
+            let at = self.find_near(search.factor * load, &near.q)?;
+            Some(self.trial(load, at, search))
+        })
     }
 
     /// A trial load and its margins.

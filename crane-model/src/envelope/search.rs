@@ -58,23 +58,15 @@ const FIRST_STEP: f64 = 0.1;
 /// Maximum ratio of a step up to the distance between the minimum load and the last one within the limits.
 const GROWTH: f64 = 4.0;
 
-/// The end of a search.
-#[derive(Debug)]
-pub(super) struct Largest {
-    /// The trial with the largest load; `None` if the first one is beyond a limit.
-    pub best: Option<Trial>,
-    /// The limit that governs; `None` if none is reached.
-    pub governing: Option<Limit>,
-    /// Where the crane did not rest with a little more load: the load at which margins meet a limit if they go on as before, or the maximum.
-    pub expected: Option<f64>,
-}
-
-/// The largest load from `first` on, and the limit that governs.
-pub(super) fn largest(first: Trial, range: &Range, trial: &mut dyn FnMut(f64, &Condition) -> Option<Trial>) -> Largest {
-    let at_limit = |best, governing| Largest { best, governing, expected: None };
+/// The trial with the largest load from `first` on, `None` if that one is beyond a limit, and the limit that governs, `None` if none is reached.
+pub(super) fn largest(
+    first: Trial,
+    range: &Range,
+    trial: &mut dyn FnMut(f64, &Condition) -> Option<Trial>,
+) -> (Option<Trial>, Option<Limit>) {
     if !first.is_within() {
         let governing = first.least().map(|(limit, _)| limit);
-        return at_limit(None, governing);
+        return (None, governing);
     }
     let least = first.load;
     let mut within = first;
@@ -90,7 +82,7 @@ pub(super) fn largest(first: Trial, range: &Range, trial: &mut dyn FnMut(f64, &C
             break;
         }
         if let Some((_, limit)) = secant.filter(|(at, _)| at - within.load <= accuracy(*at, range) && *at <= high) {
-            return at_limit(Some(within), Some(limit));
+            return (Some(within), Some(limit));
         }
         let next = match &beyond {
             None => {
@@ -115,7 +107,7 @@ pub(super) fn largest(first: Trial, range: &Range, trial: &mut dyn FnMut(f64, &C
         match trial(next, &within.at) {
             Some(found) if found.is_within() => {
                 if found.load >= range.greatest {
-                    return at_limit(Some(found), None);
+                    return (Some(found), None);
                 }
                 if beyond.as_ref().is_some_and(|(load, _)| found.load >= *load) {
                     (beyond, confirmed) = (None, false);
@@ -128,14 +120,13 @@ pub(super) fn largest(first: Trial, range: &Range, trial: &mut dyn FnMut(f64, &C
     match &beyond {
         Some((_, Some(trial))) => {
             let governing = trial.least().map(|(limit, _)| limit);
-            at_limit(Some(within), governing)
+            (Some(within), governing)
         }
         Some((_, None)) => {
-            let crossing = before.as_ref().and_then(|before| crossing(before, &within));
-            let expected = crossing.map_or(range.greatest, |(at, _)| at.min(range.greatest));
-            Largest { governing: Some(within.cause_of_falling()), expected: Some(expected), best: Some(within) }
+            let governing = Some(within.cause_of_falling());
+            (Some(within), governing)
         }
-        None => at_limit(Some(within), None),
+        None => (Some(within), None),
     }
 }
 
@@ -176,7 +167,7 @@ mod tests {
     /// Finds the largest load from zero on, for slacks that are functions of the load, and counts trials.
     fn find(slacks: &dyn Fn(f64) -> Option<Vec<f64>>, range: &Range) -> (Option<f64>, Option<Limit>, usize) {
         let mut trials = 0;
-        let Largest { best, governing, .. } = largest(trial(0.0, &slacks(0.0).unwrap()), range, &mut |load, _| {
+        let (best, governing) = largest(trial(0.0, &slacks(0.0).unwrap()), range, &mut |load, _| {
             trials += 1;
             slacks(load).map(|slacks| trial(load, &slacks))
         });
@@ -229,7 +220,7 @@ mod tests {
     #[test]
     fn a_step_that_was_too_long_is_no_limit() {
         let first = trial(0.0, &[1.0]);
-        let Largest { best, governing, .. } = largest(first, &RANGE, &mut |load, near| {
+        let (best, governing) = largest(first, &RANGE, &mut |load, near| {
             (load - near.q[0] < 300.0)
                 .then(|| trial(load, &[if load < 250.0 { 1.0 } else { 1.0 - (load - 250.0) / 450.0 }]))
         });

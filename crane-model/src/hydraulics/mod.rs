@@ -100,7 +100,7 @@ impl Hydraulics {
     }
 
     /// Number of states.
-    fn len(&self) -> usize {
+    pub fn len(&self) -> usize {
         if self.cylinders.is_empty() { 0 } else { STATES * self.cylinders.len() + 1 }
     }
 

@@ -27,7 +27,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use crate::{
     dyn_crane::{DynCrane, DynLineariseMotion, DynMotionDerivatives},
-    force_states::{self, ForceStates},
+    force_states::{self, ForceStates, states_of_small_motions},
     modes::{DampedMode, NoModes, SmallMotions, StateSpace, eigenvalues, grows},
     results::{Column, quantities},
     stateful_force::StateAt,
@@ -59,7 +59,7 @@ pub struct About<'a> {
 /// States of forces about which a crane is linearised.
 #[derive(Clone, Copy, Debug)]
 pub enum Forces<'a> {
-    /// These, in the order of [`force_states::columns`].
+    /// These, in the order of [`force_states::columns`]; those of feet, which stick in small motions, or are free if they slide, may be left out.
     Given(&'a [f64]),
     /// Those that hold the pose at rest: shut valves, bristles that carry nothing.
     Holding,
@@ -141,11 +141,15 @@ pub fn linear_model<C: Linearisable>(
     inputs: &[Input],
     outputs: &[Output],
 ) -> Result<LinearModel, NoModel> {
-    let mut forces = ForceStates::new(crane.description());
+    let description = crane.description();
+    let mut forces = ForceStates::of_small_motions(description);
     let About { t, q, v, .. } = *about;
     let at = |x: &[f64]| part(crane, &StateAt { t, q, v, x }, about.steady, inputs, outputs);
     match about.x {
         Forces::Given(x) if x.len() == forces.len() => at(x),
+        Forces::Given(x) if x.len() == ForceStates::new(description).len() => {
+            at(&states_of_small_motions(description, x))
+        }
         Forces::Given(x) => Err(NoModel::States(x.len(), forces.len())),
         Forces::Holding => at(&forces.holding(crane, t, q)),
         Forces::SlightlyOpen => {
@@ -212,7 +216,7 @@ fn part<C: Linearisable>(
     inputs: &[Input],
     outputs: &[Output],
 ) -> Result<LinearModel, NoModel> {
-    let mut forces = ForceStates::new(crane.description());
+    let mut forces = ForceStates::of_small_motions(crane.description());
     let a = if steady { vec![0.0; moment.q.len()] } else { force_states::motion_at(crane, moment).accelerations };
     let rests = moment.v.iter().all(|v| *v == 0.0) && a.iter().all(|a| a.abs() < REST);
     let mut space = StateSpace::about(crane, moment, &a, &mut forces)?;
@@ -270,7 +274,7 @@ fn states(crane: &dyn DynCrane, space: &StateSpace) -> Vec<Column> {
     let rates = coordinates.clone();
     let column = |name: String, unit: String| Column { name, unit };
     let all = quantities(description, crane.loop_joints());
-    let of_forces = force_states::columns(description).into_iter().map(|name| {
+    let of_forces = force_states::columns_of_small_motions(description).into_iter().map(|name| {
         let unit =
             all.iter().find(|column| column.name == name).map_or_else(|| "1".to_owned(), |found| found.unit.clone());
         column(name, unit)

@@ -34,7 +34,7 @@ pub struct UnstableServo {
 /// # Errors
 /// The mass matrix is not positive definite.
 pub fn with_servos(crane: &dyn DynCrane, t: f64, q: &[f64]) -> Result<StateSpace, NoModes> {
-    let mut forces = ForceStates::new(crane.description());
+    let mut forces = ForceStates::of_small_motions(crane.description());
     let mut motions = SmallMotions::of(crane, q);
     add_cylinders(crane, q, &mut motions, |_, _| 0.0);
     let motions = motions.with_closed_loops(crane, t, q);

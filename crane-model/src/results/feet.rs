@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::{Extremes, Table, support_gap};
-use crate::{Description, SupportInfo, TIPPED, dyn_crane::DynCrane};
+use crate::{Description, SupportInfo, TIPPED, dyn_crane::DynCrane, feet};
 
 /// Fraction of the maximum reaction below which a pull is a rounding error.
 const ROUNDING: f64 = 1e-9;
@@ -25,7 +25,28 @@ pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> impl Iterator<Item = S
 
 /// Feet over a run: whether the crane tips over, and as for a pose.
 pub(super) fn of_run(description: &Description, table: &Table) -> impl Iterator<Item = String> {
-    tipping(description, table).into_iter().chain(of_reactions(description, table))
+    tipping(description, table).into_iter().chain(of_reactions(description, table)).chain(sliding(description, table))
+}
+
+/// A foot that slides less than this in a run is not worth a caution, m.
+const SLIDES: f64 = 1e-3;
+
+/// Reports which feet slide in a run, how far from where they stood at its beginning, and when they are furthest from there.
+fn sliding(description: &Description, table: &Table) -> Option<String> {
+    let furthest = |support: &SupportInfo| {
+        let values = |axis: &str| Some(table.values(&feet::column(&support.name, axis))?.collect::<Vec<f64>>());
+        let [x, y] = ["x", "y"].map(values);
+        let gaps: Vec<f64> = table.values(&support_gap(&support.name))?.collect();
+        let (x, y) = (x?, y?);
+        let ways = x.iter().zip(&y).map(|(at_x, at_y)| (at_x - x[0]).hypot(at_y - y[0]));
+        let on_the_ground = ways.zip(&gaps).enumerate().filter(|(_, (_, gap))| **gap <= 0.0);
+        let (row, (way, _)) = on_the_ground.max_by(|a, b| a.1.0.total_cmp(&b.1.0))?;
+        let words = format!("{} by up to {} mm at {:.2} s", support.name, millimetres(way), table.rows[row][0]);
+        (way > SLIDES).then_some(words)
+    };
+    let one_sided = description.supports.iter().filter(|support| support.is_one_sided());
+    let slides: Vec<String> = one_sided.filter_map(furthest).collect();
+    (!slides.is_empty()).then(|| format!("feet that slide on the ground: {}", slides.join("; ")))
 }
 
 /// A foot that lifts off the ground in a run.

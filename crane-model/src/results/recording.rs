@@ -2,10 +2,13 @@
 
 use std::collections::HashMap;
 
+use nalgebra::Vector3;
+
 use crate::{
     ConnectorInfo, CoordinateKind, Description, LoopJointInfo, bristles,
     dyn_crane::{DynCrane, Energies},
     dynamics::Sample,
+    feet::{self, Slid},
     force_states,
     hydraulics::{self, Oil},
     results::{Column, Table, cylinders},
@@ -17,7 +20,7 @@ use crate::{
 /// Columns: `t`; `<coordinate>` and `<coordinate>_rate`; for a drive `<coordinate>_prescribed` and `<coordinate>_drive_torque` or
 /// `_drive_force`; for a cylinder `<cylinder>_length`, `_speed`, `_force`, `_piston_pressure`, `_rod_pressure` and `_flow`, for all
 /// cylinders `pump_flow` and `pump_power`, with valves `pump_pressure` and `<cylinder>_valve`; for a point `<point>_x`, `_y`, `_z` and
-/// `_vx`, `_vy`, `_vz`; for a support `<support>_reaction_x`, `_y`, `_z`, and `<support>_gap` if it is one-sided; for a coordinate of an
+/// `_vx`, `_vy`, `_vz`; for a support `<support>_reaction_x`, `_y`, `_z`, and `<support>_gap`, `<support>_slid_x` and `_y` if it is one-sided; for a coordinate of an
 /// element `<coordinate>_moment`; for end stops and friction `<coordinate>_stop_torque` or `_stop_force`, `<coordinate>_friction_torque` or
 /// `_friction_force`; for joints that stick `<coordinate>_bristle`; for a connector `<connector>_length`, `<connector>_length_rate` and
 /// `<connector>_force`; for a coupling `<coupling>_slip`, `<coupling>_slip_rate` and `<coupling>_force` or `_torque`; for a pad `<pad>_offset` and so on; for a loop joint with
@@ -188,11 +191,15 @@ fn push_quantities(
     } else {
         row.extend(crane.points_at(q).iter().flatten());
     }
-    for reaction in crane.support_reactions_at(q, v) {
-        row.extend(&reaction);
+    let slid = Slid::at(crane, moment);
+    let mut reactions = crane.support_reactions_at(q, v);
+    for (support, [x, y]) in &slid.forces {
+        reactions[*support] += Vector3::new(*x, *y, 0.0);
     }
+    row.extend(reactions.iter().flatten());
     let gaps = crane.support_gaps_at(q).into_iter().zip(&*crane.description().supports);
     row.extend(gaps.filter(|(_, support)| support.is_one_sided()).map(|(gap, _)| gap));
+    row.extend(&slid.places);
     if all {
         row.extend(crane.element_moments_at(q, v));
     }
@@ -215,7 +222,7 @@ fn push_quantities(
     if !all {
         return None;
     }
-    let energies = crane.energies_at(t, q, v);
+    let energies = crane.energies_with(moment, &slid);
     row.extend(energies.parts(crane.description()).map(|(_, energy)| energy));
     Some(energies)
 }
@@ -258,6 +265,10 @@ fn quantities_of(description: &Description, loop_joints: &[LoopJointInfo], exten
     }
     for support in description.supports.iter().filter(|support| support.is_one_sided()) {
         table.add(support_gap(&support.name), "m");
+    }
+    let feet = description.supports.iter().filter(|support| support.is_one_sided());
+    for column in feet::columns(feet.map(|support| support.name.as_str())) {
+        table.add(column, "m");
     }
     for coordinate in description.coordinates.iter().filter(|coordinate| all && coordinate.role.is_element()) {
         table.add(format!("{}_moment", coordinate.name), coordinate.kind.force_unit());

@@ -94,7 +94,7 @@ impl Closed {
         &scaled - &rows.basis * rows.basis.tr_mul(&scaled)
     }
 
-    /// `D^½ K̃ D^½`, from the residual and the stiffness of the open chain.
+    /// `D^½ K̃ D^½`, from the residual and the stiffness of the open chain, symmetric up to rounding if this one is.
     pub fn stiffness(
         &self,
         crane: &dyn DynStatics,
@@ -108,7 +108,7 @@ impl Closed {
         let half = &whole - basis * basis.tr_mul(&whole);
         let mut both = &half - (&half * basis) * basis.transpose() + basis * basis.transpose();
         self.restore(&mut both);
-        (&both + both.transpose()) * 0.5
+        both
     }
 
     /// A force r that acts on the motions that leave the loops closed, together with the gaps of the loops, and its derivatives by q and by a

@@ -4,17 +4,11 @@ use std::fmt;
 
 use nalgebra::DVector;
 
-use super::{
-    Equilibrium, Status,
-    equations::Equations,
-    guess_dyn,
-    newton::rounding_hides,
-    overloaded::overloaded,
-    slipping::{Slip, slips},
-};
+use super::{Equilibrium, Status, equations::Equations, guess_dyn, newton::rounding_hides, overloaded::overloaded};
 use crate::{
     CoordinateKind, CoordinateRole, Text,
     dyn_crane::DynCrane,
+    feet::Feet,
     hydraulics::unassembled_at,
     loop_joints::{Gap, gap_at, prescribed_too_much},
     tipping::{LinkMoment, TippingLine, lines, moments},
@@ -54,8 +48,8 @@ pub enum Diagnosis {
         /// Their sum, upwards, N.
         upwards: f64,
     },
-    /// Feet let go under a lateral force.
-    Slips {
+    /// Feet slide under a lateral force.
+    Slides {
         /// The foot that is furthest beside its place.
         foot: Text,
         /// How far, m.
@@ -123,7 +117,7 @@ impl Diagnosis {
         }
         match &equilibrium.status {
             Status::Floats => Self::Floats { upwards: upwards(crane, 0.0, &guess).unwrap_or(f64::NAN) },
-            Status::Slips { .. } => slipping(crane, &equilibrium.q),
+            Status::Slides { .. } => sliding(crane, &equilibrium.q),
             Status::Overflow => Self::Overflow,
             Status::TipsOver { .. } | Status::Singular { .. } | Status::Unstable { .. }
                 if has_no_polygon(crane, &guess) =>
@@ -164,9 +158,9 @@ impl Diagnosis {
             Self::Floats { .. } => {
                 "z points upwards: write `gravity: [0, 0, -9.81]`, and check the loads that pull upwards".to_owned()
             }
-            Self::Slips { foot, .. } => format!(
-                "check the ropes and loads that pull sideways, and whether enough weight is on {foot}; with a smaller `full_hold` it holds under less \
-                 weight"
+            Self::Slides { foot, .. } => format!(
+                "check the slope, the ropes and loads that pull sideways, and whether enough weight is on {foot}; `friction_coefficient` of its \
+                 support, 0.6 by default, says how much it holds"
             ),
             Self::NoPolygon { .. } => {
                 "give each foot its own place, `at: [x, y, z]` in m, so that they form a polygon around the crane".to_owned()
@@ -228,10 +222,11 @@ fn has_no_polygon(crane: &dyn DynCrane, q: &[f64]) -> bool {
     !description.supports.is_empty() && tilts.count() == 2 && lines(crane, 0.0, q, &rest, &rest).is_empty()
 }
 
-/// The foot that slips most.
-fn slipping(crane: &dyn DynCrane, q: &[f64]) -> Diagnosis {
-    let most = slips(crane, q).into_iter().max_by(|a, b| a.distance.total_cmp(&b.distance));
-    most.map_or(Diagnosis::Unknown, |Slip { foot, distance }| Diagnosis::Slips {
+/// The foot that has slid furthest.
+fn sliding(crane: &dyn DynCrane, q: &[f64]) -> Diagnosis {
+    let feet = Feet::at(crane, q, &vec![0.0; q.len()]);
+    let most = feet.distances().max_by(|a, b| a.1.total_cmp(&b.1));
+    most.map_or(Diagnosis::Unknown, |(foot, distance)| Diagnosis::Slides {
         foot: crane.description().supports[foot].name.clone(),
         distance,
     })
@@ -313,7 +308,7 @@ impl fmt::Display for Diagnosis {
             Self::Floats { upwards } => {
                 write!(f, "; together they pull upwards with {:.2} kN", upwards / 1e3)
             }
-            Self::Slips { foot, distance } => write!(f, "; there {foot} is {:.0} mm beside its place", 1e3 * distance),
+            Self::Slides { foot, distance } => write!(f, "; there {foot} is {:.0} mm beside its place", 1e3 * distance),
             Self::NoPolygon { one_place: true } => f.write_str("; seen from above, all its feet are in one place"),
             Self::NoPolygon { one_place: false } => f.write_str("; seen from above, all its feet are on one line"),
             Self::Overturned { feet: [from, to], line, most: [worst, best] } => {

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::closed::Closed;
-use crate::{CoordinateRole, dyn_crane::DynStatics};
+use crate::{CoordinateRole, dyn_crane::DynStatics, feet::Feet};
 
 /// The equations that a pose at rest satisfies, with loads and winches as at a time and the drives at given positions.
 pub(super) struct Equations<'a> {
@@ -60,9 +60,26 @@ impl<'a> Equations<'a> {
         }
     }
 
-    /// `∂r/∂q`, with loops positive in the directions that open them.
+    /// `∂r/∂q`, with loops positive in the directions that open them; feet that slide are free sideways.
     pub(super) fn stiffness(&self, q: &DVector<f64>) -> DMatrix<f64> {
-        let stiffness = self.open_stiffness(q);
+        let stiffness = self.closed_stiffness(q, self.open_stiffness(q));
+        if self.closed.is_some() { (&stiffness + stiffness.transpose()) * 0.5 } else { stiffness }
+    }
+
+    /// The same with the friction of feet that slide, which is not symmetric; `None` if none slides.
+    pub(super) fn sliding_stiffness(&self, q: &DVector<f64>) -> Option<DMatrix<f64>> {
+        let sliding = self.friction_of_sliding(q)?;
+        Some(self.closed_stiffness(q, self.open_stiffness(q) + sliding))
+    }
+
+    fn friction_of_sliding(&self, q: &DVector<f64>) -> Option<DMatrix<f64>> {
+        if !self.crane.description().has_feet() {
+            return None;
+        }
+        Feet::at(self.crane, q.as_slice(), &vec![0.0; q.len()]).sliding_stiffness(self.crane.description())
+    }
+
+    fn closed_stiffness(&self, q: &DVector<f64>, stiffness: DMatrix<f64>) -> DMatrix<f64> {
         match &self.closed {
             Some(closed) => closed.stiffness(self.crane, q.as_slice(), &self.open_residual(q), &stiffness),
             None => stiffness,
@@ -81,7 +98,9 @@ impl<'a> Equations<'a> {
         let residual = self.open_residual(q);
         let value = &residual * load + held * (1.0 - load);
         let by_load = residual - held;
-        let by_pose = self.open_stiffness(q) * load + DMatrix::from_diagonal(springs) * (1.0 - load);
+        let stiffness = self.open_stiffness(q);
+        let stiffness = self.friction_of_sliding(q).map_or_else(|| stiffness.clone(), |sliding| &stiffness + sliding);
+        let by_pose = stiffness * load + DMatrix::from_diagonal(springs) * (1.0 - load);
         match &self.closed {
             Some(closed) => closed.partly_loaded(self.crane, q.as_slice(), &value, &by_pose, &by_load),
             None => (value, by_pose, by_load),

@@ -44,7 +44,7 @@ impl Equilibrium {
             Status::Singular { .. } => self.at_rest(&Settings::default()),
             Status::TipsOver { .. }
             | Status::Floats
-            | Status::Slips { .. }
+            | Status::Slides { .. }
             | Status::Overflow
             | Status::NotConverged => false,
         }

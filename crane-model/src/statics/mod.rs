@@ -11,7 +11,6 @@ mod overloaded;
 mod residual_scale;
 mod rest;
 mod settings;
-mod slipping;
 mod solve;
 mod status;
 mod tangent;

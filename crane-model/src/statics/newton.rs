@@ -66,26 +66,39 @@ pub(super) fn iterate(
         if history.len() > settings.iterations {
             break Status::NotConverged;
         }
-        let improved = steps.iter().cloned().find_map(|(limit, halvings)| {
-            let newton = tangent.step(&residual, limit);
-            // A stiff connector makes a curved valley: its force grows along a straight step, even if the step leads towards the
-            // equilibrium. There a residual is measured by the Newton step from it, in which soft and stiff directions count equally:
-            // the natural monotonicity test, P. Deuflhard, Newton Methods for Nonlinear Problems, Springer 2004.
-            let length = newton.norm();
-            let is_nearer = |residual: &DVector<f64>| {
-                !description.connectors.is_empty() && tangent.step(residual, limit).norm() < length
+        let try_step = |step: &DVector<f64>, fraction: f64, is_nearer: &dyn Fn(&DVector<f64>) -> bool| {
+            let mut pose = &q + step * fraction;
+            if !equations.close(&mut pose) {
+                return None;
+            }
+            let residual = equations.residual(&pose);
+            let trial = scale.norm(&residual);
+            (trial < norm || is_nearer(&residual)).then_some((pose, residual, trial, fraction))
+        };
+        let fractions =
+            |mut halvings: RangeInclusive<u32>, step: DVector<f64>, is_nearer: &dyn Fn(&DVector<f64>) -> bool| {
+                let step = limited(step, |i| description.coordinates[i].kind);
+                halvings.find_map(|k| try_step(&step, 0.5_f64.powi(k.cast_signed()), is_nearer))
             };
-            let step = limited(newton, |i| description.coordinates[i].kind);
-            halvings.map(|k| 0.5_f64.powi(k.cast_signed())).find_map(|fraction| {
-                let mut pose = &q + &step * fraction;
-                if !equations.close(&mut pose) {
-                    return None;
-                }
-                let residual = equations.residual(&pose);
-                let trial = scale.norm(&residual);
-                (trial < norm || is_nearer(&residual)).then_some((pose, residual, trial, fraction))
+        // The friction of feet that slide does not enter the tangent that decides about stability.
+        let sliding = equations.sliding_stiffness(&q).and_then(|matrix| matrix.lu().solve(&-&residual));
+        let with_friction = || sliding.clone().and_then(|step| fractions(0..=HALVINGS, step, &|_| false));
+        let by_tangent = || {
+            steps.iter().cloned().find_map(|(limit, halvings)| {
+                let newton = tangent.step(&residual, limit);
+                // A stiff connector makes a curved valley: its force grows along a straight step, even if the step leads towards the
+                // equilibrium. There a residual is measured by the Newton step from it, in which soft and stiff directions count equally:
+                // the natural monotonicity test, P. Deuflhard, Newton Methods for Nonlinear Problems, Springer 2004.
+                let length = newton.norm();
+                let is_nearer = |residual: &DVector<f64>| {
+                    !description.connectors.is_empty() && tangent.step(residual, limit).norm() < length
+                };
+                fractions(halvings, newton, &is_nearer)
             })
-        });
+        };
+        let is_cautious = matches!(steps.first(), Some((Limit::Soft, _)));
+        let improved =
+            if is_cautious { by_tangent().or_else(with_friction) } else { with_friction().or_else(by_tangent) };
         let Some((pose, next, trial, fraction)) = improved else {
             if norm <= STALLED * rounding {
                 break tangent.status(description);

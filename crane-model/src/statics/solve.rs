@@ -4,11 +4,12 @@ use nalgebra::{DVector, SVector};
 
 use super::{
     Equilibrium, Iteration, Settings, Status, continuation, equations::Equations, guess_dyn, newton,
-    residual_scale::ResidualScale, slipping::slips, tangent::Tangent,
+    residual_scale::ResidualScale, tangent::Tangent,
 };
 use crate::{
     CoordinateKind, Statics, SupportInfo,
     dyn_crane::{DynStatics, Instance},
+    feet::Feet,
 };
 
 /// Solves `∂E_p/∂q = 0` at t = 0, Eq. (23) with `q̇ = q̈ = 0`, from [`super::guess()`].
@@ -74,54 +75,47 @@ fn search(equations: &mut Equations<'_>, q: &[f64], settings: &Settings) -> Equi
         found.status = Status::NotConverged;
     }
     equations.prescribe(&mut found.q);
-    found
+    with_sliding_status(equations, found)
 }
 
 /// Newton's method, with bold and with cautious steps, then continuation.
 fn search_from(equations: &Equations<'_>, start: &DVector<f64>, settings: &Settings) -> Equilibrium {
     let scale = ResidualScale::at(equations, start);
     let iterate = |q: &DVector<f64>, limits| newton::iterate(equations, q.clone(), settings, &scale, limits);
-    let first = with_slips_status(equations, iterate(start, newton::BOLD));
+    let first = iterate(start, newton::BOLD);
     if settings.load_steps == 0 || !missed(equations, start, settings, &first) {
         return first;
     }
-    let second = with_slips_status(equations, iterate(start, newton::CAUTIOUS));
+    let second = iterate(start, newton::CAUTIOUS);
     if second.is_stable() {
         return second;
     }
     let mut load_steps = 0;
-    let mut slipping = None;
     let mut arrive = |mut q: DVector<f64>, steps: usize| {
         load_steps = steps;
         if !equations.close(&mut q) {
             return None;
         }
-        for limits in [newton::BOLD, newton::CAUTIOUS] {
-            let end = with_slips_status(equations, iterate(&q, limits));
-            match end.status {
-                Status::Converged => return Some(end),
-                Status::Slips { .. } => slipping = Some(end),
-                _ => {}
-            }
-        }
-        None
+        let mut ends = [newton::BOLD, newton::CAUTIOUS].into_iter().map(|limits| iterate(&q, limits));
+        ends.find(|end| end.status == Status::Converged)
     };
     let found = continuation::follow(equations, start, settings.load_steps, &scale, &mut arrive);
-    let found = found.map(|found| Equilibrium { load_steps: Some(load_steps), ..found });
-    found.or(slipping).unwrap_or(first)
+    found.map_or(first, |found| Equilibrium { load_steps: Some(load_steps), ..found })
 }
 
-/// An equilibrium in which feet slip is none of a real crane.
-fn with_slips_status(equations: &Equations<'_>, found: Equilibrium) -> Equilibrium {
-    let slips = if found.is_stable() { slips(equations.crane, &found.q) } else { Vec::new() };
-    if slips.is_empty() {
+/// A search that ended where every foot on the ground slides ended for that reason.
+fn with_sliding_status(equations: &Equations<'_>, found: Equilibrium) -> Equilibrium {
+    let description = equations.crane.description();
+    if found.is_stable() || !description.has_feet() {
         return found;
     }
-    let supports = &equations.crane.description().supports;
-    Equilibrium {
-        status: Status::Slips { feet: slips.iter().map(|slip| supports[slip.foot].name.clone()).collect() },
-        ..found
+    let feet = Feet::at(equations.crane, &found.q, &vec![0.0; found.q.len()]);
+    let pressing: Vec<_> = feet.utilisations_on_the_ground().collect();
+    if pressing.is_empty() || pressing.iter().any(|(_, utilisation)| *utilisation < 1.0) {
+        return found;
     }
+    let name = |(foot, _): &(usize, f64)| description.supports[*foot].name.clone();
+    Equilibrium { status: Status::Slides { feet: pressing.iter().map(name).collect() }, ..found }
 }
 
 /// Rotation by which an equilibrium may differ from the guess and still be the intended one, rad.
@@ -144,7 +138,7 @@ fn missed(equations: &Equations<'_>, start: &DVector<f64>, settings: &Settings, 
         Status::Converged | Status::TipsOver { .. } | Status::Floats | Status::Overflow => false,
         // Also reported for poses where no step helps; at an equilibrium it is exact.
         Status::Singular { .. } => !found.at_rest(settings),
-        Status::NotConverged | Status::Slips { .. } => true,
+        Status::NotConverged | Status::Slides { .. } => true,
         // A crane that has tipped half off its feet may balance there, besides standing on them.
         Status::Unstable { .. } => !meant() || stable() || description.supports.iter().any(SupportInfo::is_one_sided),
     }

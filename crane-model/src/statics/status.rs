@@ -27,8 +27,8 @@ pub enum Status {
     },
     /// Weight and loads pull a crane on feet that do not hold it down upwards.
     Floats,
-    /// The only pose found is one in which feet stand on the push of their own lateral springs, which let go.
-    Slips {
+    /// Every foot on the ground slides: what pulls the crane sideways exceeds their friction.
+    Slides {
         /// These feet.
         feet: Vec<Text>,
     },
@@ -39,13 +39,13 @@ pub enum Status {
 }
 
 impl Status {
-    /// A word for it: `stable`, `tips over`, `floats`, `slips`, `unstable`, `singular`, `overflow` or `not converged`.
+    /// A word for it: `stable`, `tips over`, `floats`, `slides`, `unstable`, `singular`, `overflow` or `not converged`.
     pub fn name(&self) -> &'static str {
         match self {
             Status::Converged => "stable",
             Status::TipsOver { .. } => "tips over",
             Status::Floats => "floats",
-            Status::Slips { .. } => "slips",
+            Status::Slides { .. } => "slides",
             Status::Unstable { .. } => "unstable",
             Status::Singular { .. } => "singular",
             Status::Overflow => "overflow",
@@ -67,12 +67,8 @@ impl fmt::Display for Status {
             Status::TipsOver { feet } if feet.is_empty() => f.write_str("tips over: no stable pose is left"),
             Status::TipsOver { feet } => write!(f, "tips over about {}: no stable pose is left", feet.join(" – ")),
             Status::Floats => f.write_str("floats: weight and loads do not press the crane onto its feet"),
-            Status::Slips { feet } => {
-                write!(
-                    f,
-                    "slips: pulled sideways, {} let go, and no pose was found in which they hold",
-                    feet.join(", ")
-                )
+            Status::Slides { feet } => {
+                write!(f, "slides: what pulls it sideways exceeds the friction under {}", feet.join(", "))
             }
             Status::Overflow => f.write_str("forces overflow: a mass, a stiffness or a position is out of range"),
             Status::NotConverged => f.write_str("not converged: no equilibrium found from this guess"),

@@ -97,7 +97,7 @@ impl Writer<'_> {
         if self.rng.borrow_mut().bool() {
             self.tree["gravity"] = json!([self.between(-0.5, 0.5), self.between(-0.5, 0.5), self.between(-9.9, -9.7)]);
         }
-        self.base();
+        self.base(seed);
         self.column();
         self.boom();
         self.arm();
@@ -122,7 +122,7 @@ impl Writer<'_> {
         self.push("links", link);
     }
 
-    fn base(&mut self) {
+    fn base(&mut self, seed: u64) {
         let free = self.has(F::FreeBase);
         let mass = self.between(7000.0, 9000.0);
         let com = [self.between(-1.5, -1.0), self.between(-0.05, 0.05), self.between(0.8, 1.0)];
@@ -137,7 +137,11 @@ impl Writer<'_> {
             ("rear_left", -4.6, 1.9),
             ("rear_right", -4.6, -1.9),
         ];
-        for (name, x, y) in feet {
+        // Without a random number, which would change all that follow.
+        let first = usize::try_from(seed % 4).unwrap_or(0);
+        let friction = [0.3, 0.6, 0.9].map(|coefficient| ("friction_coefficient", json!(coefficient)));
+        let friction: Vec<_> = friction.into_iter().chain([("sticks", json!(true))]).collect();
+        for ((name, x, y), (key, value)) in feet.into_iter().zip(friction.into_iter().cycle().skip(first)) {
             let at = [x, round(y + self.between(-0.1, 0.1)), self.between(-0.1, 0.1)];
             let stiffness = [self.between(2e6, 4e6), self.between(2e6, 4e6), self.between(5e6, 9e6)];
             let mut foot = json!({"name": name, "at": at, "stiffness": stiffness, "damping": [4e4, 4e4, 8e4]});
@@ -146,7 +150,7 @@ impl Writer<'_> {
             }
             if self.has(F::OneSidedFeet) {
                 foot["one_sided"] = json!(true);
-                foot["full_hold"] = json!(4e3);
+                foot[key] = value;
             }
             self.push("supports", foot);
         }

@@ -446,6 +446,8 @@ pub(crate) fn numbers_as_parameters(tree: &Tree, _: &mut Rng) -> Option<Second> 
     for (k, foot) in second.get_mut("supports").and_then(Value::as_array_mut).into_iter().flatten().enumerate() {
         live(&format!("ground_{k}"), &mut foot["stiffness"][2]);
         live(&format!("place_{k}"), &mut foot["at"][1]);
+        live(&format!("grip_{k}"), &mut foot["friction_coefficient"]);
+        strip(foot);
     }
     for (k, connector) in second.get_mut("connectors").and_then(Value::as_array_mut).into_iter().flatten().enumerate() {
         live(&format!("end_{k}"), &mut connector["to"]["at"][1]);
@@ -655,7 +657,6 @@ const WITH_MASS: &[&str] = &[
     "coulomb",
     "breakaway",
     "viscous",
-    "full_hold",
     "extra_mass",
     "mass_per_length",
     "max_pressure",

@@ -53,9 +53,9 @@ fn state(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> (f64, Vec<f64>, Vec<
     (t, q, v)
 }
 
-/// Whether forces have states of their own, which a state of pose and rates does not contain.
+/// Whether oil or bristles exert forces, which a state of pose and rates does not contain.
 fn has_states(crane: &LiveCrane) -> bool {
-    crane.description().has_force_states()
+    crane.description().has_hidden_forces()
 }
 
 /// Compares two numbers, relative to the sum of what they are made of.
@@ -371,14 +371,8 @@ fn damped_run_ends(crane: &LiveCrane, q: &[f64], rng: &mut Rng) -> Option<Result
     let settings = Settings { duration, output: duration, ..base };
     let table = record(crane, &start, &settings, &mut |_| ControlFlow::Continue(())).ok()?.table;
     let end = table.rows.last()?;
-    // A foot holds sideways as much as it is pressed: pushed aside, a crane may come to rest on fewer feet, shifted by their slip.
-    let depths = |pose: &[f64]| {
-        let mut gaps = vec![[0.0; 2]; description.supports.len()];
-        whole.support_gaps(pose, &vec![0.0; pose.len()], &mut gaps);
-        gaps.into_iter().map(|[gap, _]| -gap).collect::<Vec<f64>>()
-    };
-    let lifted = |(before, after): (f64, f64)| before > 0.0 && after < 0.1 * before;
-    if depths(q).into_iter().zip(depths(&end[1..=q.len()])).any(lifted) {
+    // Pushed aside, a crane may come to rest where its feet have slid to.
+    if table.columns.iter().zip(end).any(|(column, slid)| column.name.contains("_slid_") && *slid != 0.0) {
         return None;
     }
     let off = |j: usize| (end[1 + j] - q[j]).abs();

@@ -9,10 +9,9 @@ impl Writer {
         }
         self.line("supports:");
         let damping = if self.driven { "damping: [40, 50, 90], " } else { "" };
-        // Two supports of every other driven crane are one-sided; one of them holds fully only where it is pressed in far.
-        let one_sided =
-            |hold: &str| if self.driven && seed % 2 == 1 { format!(", one_sided: true{hold}") } else { String::new() };
-        let one_sided = [String::new(), one_sided(", full_hold: 4000"), one_sided("")];
+        // Two supports of every other driven crane are one-sided; they stick, so that statics has a potential energy.
+        let one_sided = if self.driven && seed % 2 == 1 { ", one_sided: true, sticks: true" } else { "" };
+        let one_sided = ["", one_sided, one_sided];
         let kinds = [("left", "linear"), ("right", "exact"), ("rear", "linear")];
         for ((name, kinematics), one_sided) in kinds.into_iter().zip(one_sided) {
             let (at, play) = (self.vector(1.5), self.vector(0.02));

@@ -47,7 +47,7 @@ fn record_moments(crane: &dyn DynCrane, settings: &Settings) -> Vec<Moment> {
     let mut at_start = None;
     let start = InitialState::at_rest(crane.guess());
     let run = crane.simulate(&start, settings, &mut |sample| {
-        let energy = crane.energies_at(sample.t, sample.q, sample.v).total();
+        let energy = crane.energies_of(sample).total();
         let gained = energy - *at_start.get_or_insert(energy);
         let (q, v) = (sample.q.to_vec(), sample.v.to_vec());
         moments.push(Moment {
@@ -90,10 +90,10 @@ fn every_method_follows_prescribed_motions() {
     }
 }
 
-/// A run in lanes gives the same as a single run.
+/// A run in lanes gives the same as a single run. Feet have states, which have no lanes.
 #[test]
 fn ensembles_follow_prescribed_motions() {
-    for (crane, prescribed) in cranes() {
+    for (crane, prescribed) in cranes().into_iter().filter(|(crane, _)| !crane.description().has_force_states()) {
         let settings = Settings { audit: false, duration: 0.1, ..settings(&*crane, Method::Rk4) };
         let start = InitialState::at_rest(crane.guess());
         let parameters = (0..crane.description().parameters.len()).map(|index| crane.parameter(index)).collect();

@@ -136,7 +136,7 @@ fn check(quantity: Quantity, crane: &LiveCrane) -> Outcome<()> {
     let refusal = match quantity {
         Quantity::Of(id) if !takes_accelerations(id) || crane.refusal(id).is_some() => crane.refusal(id),
         Quantity::Energies => None,
-        _ => crane.description().has_force_states().then_some(Refusal::ForceStates),
+        _ => crane.description().has_hidden_forces().then_some(Refusal::ForceStates),
     };
     let why = match refusal {
         None => return Ok(()),

@@ -59,7 +59,7 @@ type Mode = (DampedMode, ComplexShape);
 pub fn linearise(options: &Linearise, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let crane = registry.live(options.analysis.crane.open(registry)?.as_ref())?;
     let description = crane.description();
-    let is_closed = description.has_force_states() || !crane.loop_joints().is_empty();
+    let is_closed = description.has_hidden_forces() || !crane.loop_joints().is_empty();
     if is_closed && !options.held.is_empty() {
         return Err(Problem::usage(
             format!(

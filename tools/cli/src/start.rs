@@ -117,11 +117,11 @@ impl Timing {
                 let title = format!("{} has no column {}", file.display(), states[index]);
                 return Err(Problem::usage(
                     title,
-                    "to continue a run, give all pressures, valves and bristles of the earlier run",
+                    "to continue a run, give all pressures, valves, bristles and slid feet of the earlier run",
                 ));
             }
             let held = if start.x.is_empty() && !states.is_empty() {
-                ", pressures and bristles as they hold this pose"
+                ", pressures, bristles and feet as they hold this pose"
             } else {
                 ""
             };

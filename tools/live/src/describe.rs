@@ -5,8 +5,8 @@ use crane_codegen::chain::{
 };
 use crane_model::{
     AttachmentInfo, BodyInfo, Bound, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole,
-    CylinderInfo, Description, DriveInfo, HoldInfo, InputInfo, LoadInfo, LoopEquationInfo, LoopJointInfo,
-    ParameterInfo, PumpInfo, Refusal, SectionInfo, Side, StageInfo, SupportInfo, ValveInfo,
+    CylinderInfo, Description, DriveInfo, InputInfo, LoadInfo, LoopEquationInfo, LoopJointInfo, ParameterInfo,
+    PumpInfo, Refusal, SectionInfo, Side, StageInfo, SupportInfo, ValveInfo,
 };
 
 /// What the bodies of a chain with branches are attached to, as the compiler writes it.
@@ -53,10 +53,7 @@ pub fn describe(chain: &Chain) -> Description {
         name: support.name.clone().into(),
         position: support.position.each_ref().map(at_defaults),
         linear: support.kinematics == SupportKinematics::Linear,
-        hold: support
-            .full_hold
-            .as_ref()
-            .map(|full| HoldInfo { stiffness: support.stiffness.each_ref().map(at_defaults), full: at_defaults(full) }),
+        friction: support.friction.as_ref().map(at_defaults),
     });
     let drives = chain.drives.iter().map(|drive| DriveInfo {
         coordinate: drive.coordinate.0,

@@ -34,7 +34,7 @@ impl LiveCrane {
             | FunctionId::Forces
             | FunctionId::DriveForces
             | FunctionId::DrivePower
-            | FunctionId::Dissipation => description.has_force_states(),
+            | FunctionId::Dissipation => description.has_hidden_forces(),
             FunctionId::FrictionForces => !description.bristles.is_empty(),
             _ => false,
         };

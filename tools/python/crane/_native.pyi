@@ -335,6 +335,13 @@ class Crane:
         """(..., supports, 3): Forces of the supports on the crane in the world frame, N."""
     def support_gaps(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., supports, 2): How far one-sided supports are above the ground, m, negative where they are pressed in, and its rate, m/s; 0 for others."""
+    def support_elongations(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., supports, 3): How far every support is from where the spec puts it, in the world frame, m.
+        Zeros for a crane without one-sided supports, as for the next four."""
+    def support_jacobians(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., supports, 3, n): How the elongations of the supports change with the coordinates: three rows per support; m/rad and 1."""
+    def support_grips(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., supports, 3): Pressing force of one-sided supports, the lateral force up to which they stick, and the one that keeps them where the spec puts them, N; 0 for others."""
     def cylinder_states(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., cylinders, 3): Length of every cylinder, m, its rate, m/s, and its derivative with respect to the joint's coordinate, m/rad or m/m.
         NaN where the linkage of a cylinder cannot be assembled."""

@@ -490,8 +490,8 @@ class Crane(_native.Crane):
     ) -> Envelope:
         """The largest load within limits, at rest, for all combinations of positions of drives, m and rad, and live parameters.
 
-        The limits that the spec gives are always considered: pressures of relief valves and pump, strokes, end stops of driven joints and
-        `max_effort`, except those named in `without`: "pressure", "pump", "stroke", "stops", "max-effort", "overlap". `considered` and
+        The limits that the spec gives are always considered: pressures of relief valves and pump, strokes, end stops of driven joints,
+        `max_effort` and the friction under feet, except those named in `without`: "pressure", "pump", "stroke", "stops", "max-effort", "sliding", "overlap". `considered` and
         `not_considered` of the result list all limits.
 
         ranges: values by the name of a coordinate, of its link if that has only one drive, or of a live parameter; each is an axis of the

@@ -130,7 +130,7 @@ class Equilibrium:
     """Where a crane rests, over the leading axes.
 
     q: (..., n), m and rad; NaN where there is no equilibrium.
-    status: "stable", "tips over", "floats", "slips", "unstable", "singular", "not converged" or "overflow"; "invalid" for a row whose parameters or arguments
+    status: "stable", "tips over", "floats", "slides", "unstable", "singular", "not converged" or "overflow"; "invalid" for a row whose parameters or arguments
     are not allowed; a str, or (...) of them. message: the same in a sentence.
     residual: (...), relative to the balancing forces.
     steps: (...), Newton steps.
@@ -204,7 +204,7 @@ class Envelope:
     axes: values of each axis, by name; all arrays have these axes first.
     load: (...), the largest load, in `unit`, up to which every smaller one is within all limits; NaN where not even the minimum load is.
     parameter, unit: the live parameter that is the load, and its unit.
-    governing: (...), the limit that governs: "tipping", "utilisation", "pressure", "pump", "stroke", "stop", "effort", "lift-off", "slack", "overlap",
+    governing: (...), the limit that governs: "tipping", "utilisation", "pressure", "pump", "stroke", "stop", "effort", "sliding", "lift-off", "slack", "overlap",
     "deflection", "equilibrium", or "" up to the maximum load considered. governing_of: (...), the tipping line, section, cylinder, drive,
     support, rope or point.
     considered, not_considered: limits that were, and those that were not or that lack a number, in words.

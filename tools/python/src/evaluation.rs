@@ -139,7 +139,7 @@ impl Crane {
             FunctionId::DriveForcesAtRest => "use statics",
             _ if refusal == Some(Refusal::TooLarge) => "use linearise(q, v, a, t)",
             FunctionId::FrictionForces => "use simulate, whose columns contain them",
-            _ if self.live.description().has_force_states() => "use simulate or simulation",
+            _ if self.live.description().has_hidden_forces() => "use simulate or simulation",
             _ => "use simulate, whose columns contain them",
         };
         let name = &self.live.description().name;

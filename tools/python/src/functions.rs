@@ -109,7 +109,7 @@ impl Crane {
 impl Crane {
     /// A function of all rows. Accelerations are those with closed loops, as far as they follow from the state.
     fn function<'py>(&self, py: Python<'py>, id: FunctionId, state: State<'_, 'py>, invalid: &str) -> Array<'py> {
-        let has_loops = !self.live.loop_joints().is_empty() && !self.live.description().has_force_states();
+        let has_loops = !self.live.loop_joints().is_empty() && !self.live.description().has_hidden_forces();
         if id == FunctionId::ForwardDynamics && has_loops {
             return self.one_by_one(py, state, &[self.live.size()], invalid, |crane, at, out| {
                 let crane: &dyn DynCrane = crane;

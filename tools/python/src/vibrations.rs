@@ -218,7 +218,7 @@ impl Crane {
 
     /// Refuses cranes whose forces have states of their own: small motions about a motion depend on them.
     fn refuse_motions(&self) -> PyResult<()> {
-        if self.live.description().has_force_states() {
+        if self.live.description().has_hidden_forces() {
             let (name, states) = (&self.live.description().name, self.force_states());
             return Err(PyValueError::new_err(format!(
                 "forces of {name} follow from {states}, which are states of a run: use modes(q), about poses at rest, or state_space"

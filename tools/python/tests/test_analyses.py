@@ -268,7 +268,7 @@ def test_oil_moves_a_crane_and_its_states_are_saved():
     simulation = boom.simulation()
     simulation.step(0.2)
     saved = simulation.save()
-    assert saved.x.shape == (12,) and (saved.x[[0, 1, 3, 4, 6, 7, 9]] > 1e5).all()
+    assert saved.x.shape == (28,) and (saved.x[[0, 1, 3, 4, 6, 7, 9]] > 1e5).all()
     first = simulation.step(0.1)
     simulation.restore(saved)
     second = simulation.step(0.1)

@@ -55,7 +55,7 @@ def test_batches_and_cranes_without_states(oil):
     held = oil.state_derivatives(rest, np.zeros(oil.n))[0]
     # Shut valves hold the pose: what is left is the residual of the equilibrium over the smallest inertia.
     assert np.abs(held).max() < 1e-4
-    with pytest.raises(ValueError, match="x needs 12 numbers in its last axis: .*pressure"):
+    with pytest.raises(ValueError, match="x needs 28 numbers in its last axis: .*pressure"):
         oil.state_derivatives(rest, rest, np.zeros(3))
     with pytest.raises(ValueError, match="knuckle_boom has no states of forces: leave x out"):
         knuckle.columns_at(q, v, np.zeros(2))

@@ -103,7 +103,7 @@ def test_forces_are_outputs_and_states_of_oil_are_states():
     state = hydraulic.simulation().step(0.05)
     moving = hydraulic.state_space(state.q, state.v, state.t, state.x)
     assert moving.A.shape == model.A.shape and np.isfinite(moving.A).all()
-    with pytest.raises(ValueError, match="x needs 12 numbers"):
+    with pytest.raises(ValueError, match="x needs 28 numbers"):
         hydraulic.state_space(state.q, state.v, state.t, state.x[:5])
 
 

@@ -44,13 +44,21 @@ impl<'g> Derivation<'g> {
         }
     }
 
-    /// Forces on the supports, and how far one-sided ones are above the ground.
+    /// Forces on the supports, and how one-sided ones stand on the ground.
     fn reactions_and_gaps(&self) -> Vec<Function> {
         let (model, chain) = (&self.model, self.model.chain);
         let mut functions =
             vec![self.function(FunctionId::SupportReactions, supports::reactions(model, &self.kinematics))];
         if chain.has_one_sided_supports() {
-            functions.push(self.function(FunctionId::SupportGaps, supports::gaps(model, &self.kinematics)));
+            let kinematics = &self.kinematics;
+            functions.extend([
+                self.function(FunctionId::SupportGaps, supports::gaps(model, kinematics)),
+                self.function(FunctionId::SupportElongations, supports::elongations(model, kinematics)),
+                self.function(FunctionId::SupportJacobians, supports::jacobians(model, kinematics)),
+                self.function(FunctionId::SupportStiffnesses, supports::stiffnesses(model)),
+                self.function(FunctionId::SupportDampings, supports::dampings(model)),
+                self.function(FunctionId::SupportGrips, supports::grips(model, kinematics)),
+            ]);
         }
         functions
     }

@@ -1,4 +1,4 @@
-//! Supports compared with each other and with the weight that they carry.
+//! Places, free play and friction of supports.
 
 use super::{Plausibility, items, rounded};
 use crate::diagnostic::rule;
@@ -9,6 +9,8 @@ const HEIGHT: f64 = 1.0;
 const ONE_PLACE: f64 = 1e-6;
 /// Maximum free play, m.
 const FREE_PLAY: f64 = 0.2;
+/// Usual coefficients of friction: from wet ice to rubber on dry concrete.
+const FRICTION: [f64; 2] = [0.1, 1.2];
 
 impl Plausibility<'_> {
     /// Supports that are far above or below the others or in the place of another one, or act only after a long way.
@@ -35,18 +37,14 @@ impl Plausibility<'_> {
         }
     }
 
-    /// Supports whose full hold exceeds their share of the crane's weight: they hold the crane only in part.
+    /// Supports whose coefficient of friction no usual ground has.
     pub(super) fn feet(&mut self) {
-        let (crane, chain) = (self.crane, self.chain);
-        let mass: f64 = chain.bodies.iter().filter_map(|body| Some(body.inertia.as_ref()?.mass.at(&self.values))).sum();
-        let gravity = chain.gravity[2].at(&self.values).abs();
-        let share = mass * gravity / chain.supports.len().max(1) as f64;
-        for support in items(crane.supports.as_ref()) {
-            let Some(full_hold) = &support.full_hold else { continue };
-            let (force, at) = self.number(full_hold);
-            if force > share {
+        for support in items(self.crane.supports.as_ref()) {
+            let Some(given) = &support.friction_coefficient else { continue };
+            let (coefficient, span) = self.number(given);
+            if !(FRICTION[0]..=FRICTION[1]).contains(&coefficient) {
                 let name = support.name.value.as_deref().unwrap_or_default();
-                self.warn(rule::hold_beyond_weight(at, name, rounded(force), rounded(share)));
+                self.warn(rule::odd_friction(span, name, rounded(coefficient)));
             }
         }
     }

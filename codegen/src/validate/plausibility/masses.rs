@@ -66,7 +66,7 @@ impl Plausibility<'_> {
     pub(super) fn base(&mut self) {
         let (crane, chain) = (self.crane, self.chain);
         let Some(link) = items(Some(&crane.links)).next() else { return };
-        let (Some(given), true) = (&link.mass, chain.supports.iter().any(|support| support.full_hold.is_some())) else {
+        let (Some(given), true) = (&link.mass, chain.supports.iter().any(|support| support.friction.is_some())) else {
             return;
         };
         let (mass, at) = self.number(given);

@@ -49,6 +49,7 @@ mod pull_back;
 mod rates;
 
 use super::{InitialState, Integration, Run, Sample, Settings, Stopped, settings::divided};
+pub use crate::feet::FeetSlopes;
 use crate::{
     dyn_crane::{DynCrane, DynImplicit},
     force_states::ForceStates,
@@ -121,6 +122,9 @@ pub trait Slopes: Numbers {
     /// Slopes of every cylinder.
     fn cylinders(&mut self, at: &At<'_>, along: &[Vec<f64>], out: &mut [Vec<CylinderSlopes>]);
 
+    /// Slopes of the numbers of feet.
+    fn feet(&mut self, at: &At<'_>, along: &[Vec<f64>], out: &mut [FeetSlopes]);
+
     /// Slopes of the prescribed position and rate of every drive at a time; `false` if no motion changes in any direction.
     fn drive_motions(&mut self, t: f64, out: &mut [Vec<[f64; 2]>]) -> bool;
 }
@@ -152,6 +156,9 @@ pub trait PullBacks: Numbers {
 
     /// Of what cylinders with a valve depend on.
     fn cylinders(&mut self, at: &At<'_>, weights: &[CylinderSlopes], sum: &mut Covector);
+
+    /// Of the numbers of feet.
+    fn feet(&mut self, at: &At<'_>, weights: &FeetSlopes, sum: &mut Covector);
 
     /// Of the prescribed position and rate of every drive at a time.
     fn drive_motions(&mut self, t: f64, weights: &[[f64; 2]], sum: &mut Covector);

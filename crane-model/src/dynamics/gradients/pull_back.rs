@@ -12,8 +12,8 @@
 use nalgebra::DMatrix;
 
 use super::{
-    At, Covector, CylinderSlopes, PullBacks,
-    rates::{Rates, halves},
+    At, Covector, CylinderSlopes, FeetSlopes, PullBacks,
+    rates::{Rates, halves, has_slid},
 };
 use crate::{
     dynamics::{NotFinite, motion::add, state::finite},
@@ -57,14 +57,27 @@ impl Rates<'_> {
         }
         let at = At { t, q, v, a: &self.accelerations, multipliers: self.loops.multipliers() };
         if !self.force_states.is_empty() {
-            let cylinders =
-                if self.force_states.coupled()[0] > 0 { self.crane.description().cylinders.len() } else { 0 };
+            let description = self.crane.description();
+            let cylinders = if description.has_valves() { description.cylinders.len() } else { 0 };
             let mut of_cylinders =
                 vec![CylinderSlopes { jacobian: vec![0.0; n], ..CylinderSlopes::default() }; cylinders];
             let states = (&self.force_states, &self.by_states);
             of_forces(states, (&forces, of_x), &mut of_cylinders, &mut sum.motion);
             if cylinders > 0 {
                 functions.cylinders(&at, &of_cylinders, sum);
+            }
+            let x = &motion[2 * n..];
+            if let Some((feet, [force, state])) = self.force_states.feet().filter(|_| has_slid(&self.force_states)) {
+                let mut of_feet = FeetSlopes::zero(description);
+                let (of_pose, of_states) = sum.motion.split_at_mut(2 * n);
+                feet.pull_back(
+                    &self.force_states.forces()[force..],
+                    (&forces, &of_x[state..]),
+                    (v, &x[state..]),
+                    &mut of_feet,
+                    (&mut of_pose[n..], &mut of_states[state..]),
+                );
+                functions.feet(&at, &of_feet, sum);
             }
         }
         let forces: Vec<f64> = forces.iter().map(|force| -force).collect();
@@ -117,7 +130,7 @@ fn of_forces(
     for (column, sum) in of_x.iter_mut().enumerate() {
         *sum += of_rates.iter().enumerate().map(|(row, weight)| by_states[(row, column)] * weight).sum::<f64>();
     }
-    for (force, row) in forces.forces().iter().zip(forces.rows()) {
+    for (force, row) in forces.forces().iter().zip(forces.rows()).filter(|(force, _)| !force.is_of_foot) {
         let own = force.first..force.first + force.count;
         let weight = row.along(generalized);
         add(&mut of_x[own.clone()], weight, &force.by_states);

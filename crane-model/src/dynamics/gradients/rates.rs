@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::{At, CylinderSlopes, Slopes};
+use super::{At, CylinderSlopes, FeetSlopes, Slopes};
 use crate::{
     dyn_crane::{DynCrane, DynDynamics, DynImplicit, DynSystem},
     dynamics::{NotFinite, state::finite},
@@ -30,6 +30,7 @@ pub(super) struct Rates<'a> {
     residuals: Vec<Vec<f64>>,
     of_loops: Vec<Vec<[f64; 3]>>,
     of_cylinders: Vec<Vec<CylinderSlopes>>,
+    of_feet: Vec<FeetSlopes>,
 }
 
 impl<'a> Rates<'a> {
@@ -37,8 +38,7 @@ impl<'a> Rates<'a> {
     pub fn new(crane: &'a dyn DynCrane, directions: usize) -> Self {
         let (n, description) = (crane.size(), crane.description());
         let force_states = ForceStates::new(description);
-        let [forces, _] = force_states.coupled();
-        let cylinders = if forces > 0 { description.cylinders.len() } else { 0 };
+        let cylinders = if description.has_valves() { description.cylinders.len() } else { 0 };
         let of_cylinder = CylinderSlopes { jacobian: vec![0.0; n], ..CylinderSlopes::default() };
         let prescribed = description.prescribed();
         let drive = |coordinate: &usize| description.drives.iter().position(|drive| drive.coordinate == *coordinate);
@@ -59,6 +59,7 @@ impl<'a> Rates<'a> {
             residuals: vec![vec![0.0; n]; directions],
             of_loops: vec![vec![[0.0; 3]; equations]; directions],
             of_cylinders: vec![vec![of_cylinder; cylinders]; directions],
+            of_feet: vec![FeetSlopes::zero(description); directions],
         }
     }
 
@@ -103,6 +104,9 @@ impl<'a> Rates<'a> {
         if self.of_cylinders.first().is_some_and(|cylinders| !cylinders.is_empty()) {
             slopes.cylinders(&at, along, &mut self.of_cylinders);
         }
+        if has_slid(&self.force_states) {
+            slopes.feet(&at, along, &mut self.of_feet);
+        }
         for (direction, out) in out.iter_mut().enumerate() {
             let along = &along[direction];
             out[..n].copy_from_slice(&along[n..2 * n]);
@@ -113,6 +117,15 @@ impl<'a> Rates<'a> {
             if !self.force_states.is_empty() {
                 let Self { force_states, by_states, of_cylinders, .. } = self;
                 of_forces((force_states, by_states), &of_cylinders[direction], along, (right, &mut out[2 * n..]));
+                if let Some((feet, [force, state])) = force_states.feet().filter(|_| has_slid(force_states)) {
+                    feet.add_slopes(
+                        &force_states.forces()[force..],
+                        &self.of_feet[direction],
+                        (v, &along[n..2 * n]),
+                        [&motion[2 * n + state..], &along[2 * n + state..]],
+                        (right, &mut out[2 * n + state..]),
+                    );
+                }
             }
             let prescribed =
                 || self.prescribed.iter().zip(self.drives.iter().map(|drive| of_drives[direction][*drive]));
@@ -176,7 +189,7 @@ fn of_forces(
     for (row, rate) in rates.iter_mut().enumerate() {
         *rate = states.iter().enumerate().map(|(column, state)| by_states[(row, column)] * state).sum();
     }
-    for (force, row) in forces.forces().iter().zip(forces.rows()) {
+    for (force, row) in forces.forces().iter().zip(forces.rows()).filter(|(force, _)| !force.is_of_foot) {
         let own = force.first..force.first + force.count;
         let of_cylinder = force.cylinder.map(|cylinder| &cylinders[cylinder]);
         let [length, speed] = match of_cylinder {
@@ -195,6 +208,11 @@ fn of_forces(
             rates[own.end - 1] += by_command;
         }
     }
+}
+
+/// Whether feet have slid, or slide, at the last evaluation: what they add is zero otherwise, and so are its derivatives.
+pub(super) fn has_slid(forces: &ForceStates) -> bool {
+    forces.feet().is_some_and(|(feet, _)| feet.has_slid())
 }
 
 /// Pose and rates.

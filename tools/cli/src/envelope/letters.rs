@@ -1,7 +1,7 @@
 //! A letter for each kind of limit, for the cells of charts.
 
 /// Kinds of limits, their letters, and what they are, in the order of a legend.
-const LETTERS: [(&str, char, &str); 13] = [
+const LETTERS: [(&str, char, &str); 14] = [
     ("tipping", 'T', "tipping"),
     ("utilisation", 'U', "utilisation of a beam"),
     ("pressure", 'P', "relief valve of a cylinder"),
@@ -9,6 +9,7 @@ const LETTERS: [(&str, char, &str); 13] = [
     ("stroke", 'S', "stroke of a cylinder"),
     ("stop", 'N', "end stop of a joint"),
     ("effort", 'E', "effort of a drive"),
+    ("sliding", 'F', "friction under all feet"),
     ("lift-off", 'L', "a foot lifts off"),
     ("slack", 'R', "a rope is slack"),
     ("overlap", 'O', "a stage has left its outer beam"),

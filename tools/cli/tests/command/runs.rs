@@ -165,7 +165,7 @@ fn a_run_goes_on_from_the_end_of_another() {
     let out = folder.display().to_string();
     let run = crane(&[&["simulate", "eight_link_hydraulic", "--out", &out], &from[..]].concat());
     assert!(
-        text(&run.stdout).contains("pose.csv, pressures and bristles as they hold this pose"),
+        text(&run.stdout).contains("pose.csv, pressures, bristles and feet as they hold this pose"),
         "{}",
         text(&run.stdout)
     );

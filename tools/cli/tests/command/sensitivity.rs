@@ -223,6 +223,7 @@ fn numbers_of_the_spec_have_their_units() {
         "rope.links",
         "safety_factor",
         "ratio",
+        "friction_coefficient",
         "valve.overlap",
         "feed_forward",
         "axis.0",

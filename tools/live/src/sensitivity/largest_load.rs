@@ -239,7 +239,11 @@ impl LargestLoad {
             Limit::Stroke { cylinder } => output(&format!("{}_length", description.cylinders[cylinder].name)),
             Limit::LiftOff { foot } => output(&format!("{}_reaction_z", description.supports[foot].name)),
             Limit::Slack { rope } => output(&connector_force(&description.connectors[rope])),
-            Limit::Equilibrium | Limit::Deflection { .. } | Limit::Stop { .. } | Limit::Overlap { .. } => None,
+            Limit::Equilibrium
+            | Limit::Sliding { .. }
+            | Limit::Deflection { .. }
+            | Limit::Stop { .. }
+            | Limit::Overlap { .. } => None,
         }
     }
 
@@ -266,7 +270,11 @@ impl LargestLoad {
                 Some(info.retracted + end * info.stroke)
             }
             Limit::LiftOff { .. } | Limit::Slack { .. } => Some(0.0),
-            Limit::Equilibrium | Limit::Deflection { .. } | Limit::Stop { .. } | Limit::Overlap { .. } => None,
+            Limit::Equilibrium
+            | Limit::Sliding { .. }
+            | Limit::Deflection { .. }
+            | Limit::Stop { .. }
+            | Limit::Overlap { .. } => None,
         }
     }
 }

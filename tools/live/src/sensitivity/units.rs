@@ -94,7 +94,7 @@ fn of_part(words: &[&str], key: &str, component: Option<usize>) -> &'static str 
         "damping" => "N s/m",
         "stiffness" => "N/m",
         "progression" => "N/m³",
-        "axial_stiffness" | "force" | "full_hold" => "N",
+        "axial_stiffness" | "force" => "N",
         "moment" => "N m",
         "link" | "rocker" | "pivot" | "length" | "height" | "width" | "thickness" | "flange" | "web" | "diameter"
         | "at" | "com" | "gyration" | "translation" | "a" | "d" | "bore" | "rod" | "stroke" | "retracted"

@@ -97,7 +97,7 @@ fn block(b: f64, h: f64, stiffness: f64, damping: f64) -> LiveCrane {
     let foot = |name: &str, x: f64| {
         format!(
             "  - {{name: {name}, at: [{x}, 0, 0], stiffness: [{stiffness:e}, 0, {stiffness:e}], \
-             damping: [{damping:e}, 0, {damping:e}], kinematics: exact, one_sided: true, full_hold: 10}}\n"
+             damping: [{damping:e}, 0, {damping:e}], kinematics: exact, one_sided: true, sticks: true}}\n"
         )
     };
     crane(&format!(
@@ -123,10 +123,10 @@ type See<'a> = dyn FnMut(f64, &[f64], &[f64]) + 'a;
 /// Runs a crane and passes on its samples; its energy balances to 0.3 % of the energy at stake.
 fn run_watched(crane: &LiveCrane, start: &InitialState, settings: &Settings, at_stake: f64, see: &mut See<'_>) {
     let crane: &dyn DynCrane = crane;
-    let energy = |t: f64, q: &[f64], v: &[f64]| crane.energies_at(t, q, v).total();
-    let begin = energy(0.0, &start.q, &start.v);
+    let mut begin = None;
     let run = crane.simulate(start, settings, &mut |sample: &Sample<'_>| {
-        let balance = energy(sample.t, sample.q, sample.v) + sample.dissipated - sample.work - begin;
+        let energy = crane.energies_of(sample).total();
+        let balance = energy + sample.dissipated - sample.work - *begin.get_or_insert(energy);
         // The errors of the energy integrals are not controlled.
         assert!(balance.abs() < 3e-3 * at_stake, "{:?} at {}: {balance} J of {at_stake}", settings.method, sample.t);
         see(sample.t, sample.q, sample.v);
@@ -287,14 +287,14 @@ fn a_foot_in_the_air_and_a_spring_beyond_reason_are_named() {
     let (_, loader) = crane_specs::EXAMPLES.iter().find(|(name, _)| *name == "loader_crane").expect("an example");
     let diagnosis = |from: &str, to: &str| {
         assert!(loader.contains(from), "{from}");
-        // With less it stands on the other three feet.
-        let changed = crane(&loader.replacen(from, to, 1).replace("payload: {value: 800,", "payload: {value: 900,"));
+        let changed = crane(&loader.replacen(from, to, 1));
         let crane: &dyn DynCrane = &changed;
         let found = crane.equilibrium(&Statics::default());
         assert!(!found.is_stable(), "{to}: {found}");
         Diagnosis::of(crane, &found)
     };
-    let found = diagnosis("at: [0, 2.4, 0]", "at: [0, 2.4, 3]");
+    let found =
+        diagnosis("at: [0, 2.4, 0], stiffness: [3e6, 3e6, 8e6]", "at: [0, 2.4, 3], stiffness: [3e6, 3e6, 1e18]");
     assert_eq!(found, Diagnosis::RaisedFoot { foot: "front_left".into(), height: 3.0 });
     let found = diagnosis("stiffness: [3e6, 3e6, 8e6]", "stiffness: [3e6, 3e6, 1e18]");
     let Diagnosis::TooStiff { stiffness, .. } = &found else { panic!("{found:?}") };
@@ -331,31 +331,19 @@ fn an_equilibrium_that_rounding_hides_is_none() {
     }
 }
 
-/// A loader crane that a rope pulls sideways with 17 kN. Newton's method ends where its rear foot stands on the push of its own lateral springs,
-/// with some meshes; at rest all feet hold, and all meshes agree. With more `full_hold` than the foot carries the whole truck would stand on such
-/// a push, 3 m beside its place.
+/// A loader crane that a rope pulls sideways with 17 kN: all its meshes rest with the same force on the foot at the rear.
 #[test]
-fn no_crane_stands_on_the_push_of_springs_that_let_go() {
+fn all_meshes_of_a_crane_that_a_rope_pulls_rest_alike() {
     let text = include_str!("../specs/two_rests.yaml");
-    let loader = |hold: f64, sections: u32| {
-        crane(&text.replace("SECTIONS", &sections.to_string()).replace("HOLD", &format!("{hold:?}")))
-    };
-    for hold in [1000.0, 4000.0] {
-        for sections in [3, 14, 16, 18] {
-            let loader = loader(hold, sections);
-            let loader: &dyn DynCrane = &loader;
-            let found = loader.equilibrium(&Statics::default());
-            assert!(found.is_stable(), "{hold}, {sections}: {found}");
-            let reactions = loader.support_reactions_at(&found.q, &vec![0.0; found.q.len()]);
-            // Three sections are 0.5 N from the limit.
-            assert!((reactions[3].z - 9005.0).abs() < 2.0, "{hold}, {sections}: {reactions:?}");
-        }
+    for sections in [3, 14, 16, 18] {
+        let loader = crane(&text.replace("SECTIONS", &sections.to_string()));
+        let loader: &dyn DynCrane = &loader;
+        let found = loader.equilibrium(&Statics::default());
+        assert!(found.is_stable(), "{sections}: {found}");
+        let reactions = loader.support_reactions_at(&found.q, &vec![0.0; found.q.len()]);
+        // Three sections are 0.5 N from the limit.
+        assert!((reactions[3].z - 9005.0).abs() < 2.0, "{sections}: {reactions:?}");
     }
-    let loader = loader(16_000.0, 16);
-    let loader: &dyn DynCrane = &loader;
-    let found = loader.equilibrium(&Statics::default());
-    let Diagnosis::Slips { distance, .. } = Diagnosis::of(loader, &found) else { panic!("{found}") };
-    assert!(distance > 1.0 && found.status.name() == "slips", "{found}");
 }
 
 /// A block that rocks without damping on stiff ground keeps its energy. Its feet land beside where they stood, where a law changes within

@@ -76,7 +76,7 @@ fn feet() -> String {
     let corners = [("fl", [1.4, 1.6]), ("fr", [1.4, -1.6]), ("rl", [-2.5, 1.2]), ("rr", [-2.5, -1.2])];
     let foot = |(name, [x, y]): (&str, [f64; 2])| {
         format!(
-            "- {{name: {name}, one_sided: true, full_hold: 2e3, at: [{x}, {y}, 0], stiffness: [3e6, 3e6, 6e6], damping: [4e4, 4e4, 6e4]}}\n"
+            "- {{name: {name}, one_sided: true, at: [{x}, {y}, 0], stiffness: [3e6, 3e6, 6e6], damping: [4e4, 4e4, 6e4]}}\n"
         )
     };
     format!("supports:\n{}", corners.map(foot).concat())

@@ -38,6 +38,7 @@ mod run_gradients;
 mod sensitivity;
 mod servos;
 mod sheaves;
+mod sliding;
 mod sliding_beams;
 mod starts;
 mod stresses;

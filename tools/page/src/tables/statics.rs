@@ -100,6 +100,9 @@ pub fn equilibria(cases: &[Case<'_>], bend: f64) -> Report {
         report.grid(grid);
     }
     report.grid(reactions(cases));
+    if let Some(grid) = friction(cases) {
+        report.grid(grid);
+    }
     if let Some(grid) = connectors(cases) {
         report.grid(grid);
     }
@@ -231,6 +234,26 @@ fn reactions(cases: &[Case<'_>]) -> Grid {
         }
     }
     grid
+}
+
+/// How much of its friction each foot on the ground uses.
+fn friction(cases: &[Case<'_>]) -> Option<Grid> {
+    let description = cases.iter().map(|case| case.crane.description()).find(|description| description.has_feet())?;
+    let title =
+        "Friction of feet on the ground: lateral force over the largest that the ground holds; at 100 % a foot slides";
+    let unit = || Scale::of("%").map_or("%".into(), Cell::ShownUnit);
+    let mut grid = Grid::with_headings("friction", title, headings("support", cases));
+    let used: Vec<_> = cases.iter().map(|case| case.crane.friction_utilisations_at(&case.equilibrium.q)).collect();
+    for (index, support) in description.supports.iter().enumerate().filter(|(_, support)| support.is_one_sided()) {
+        let of_case = |used: &Vec<(usize, f64)>| {
+            used.iter()
+                .find(|(foot, _)| *foot == index)
+                .map_or(Cell::Empty, |(_, used)| Cell::shown(used.min(1.0), "%"))
+        };
+        let name: Cell = support.name.as_str().into();
+        grid.row([name].into_iter().chain(used.iter().map(of_case)).chain([unit()]).collect::<Vec<Cell>>());
+    }
+    Some(grid)
 }
 
 /// Lengths and forces of connectors.

@@ -4,7 +4,7 @@ use crane_codegen::chain::Input;
 use crane_codegen::program::{Argument, FunctionId};
 use crane_model::Description;
 use crane_model::dyn_crane::{DynCrane, DynModel};
-use crane_model::dynamics::gradients::{Around, At, CylinderSlopes, Numbers, Slopes};
+use crane_model::dynamics::gradients::{Around, At, CylinderSlopes, FeetSlopes, Numbers, Slopes};
 
 use super::Along;
 use crate::LiveCrane;
@@ -41,6 +41,8 @@ pub(super) struct Chunk {
     loops: Option<[Evaluation<Dual8>; 2]>,
     /// Of cylinders with a valve, if there are any.
     oil: Option<Oil>,
+    /// Numbers of feet, if there are any.
+    feet: Option<[Evaluation<Dual8>; 5]>,
 }
 
 /// What cylinders with a valve depend on.
@@ -225,6 +227,7 @@ impl Chunk {
         Self {
             count,
             oil,
+            feet: crane.description().has_feet().then(|| FEET.map(evaluation)),
             residual: evaluation(FunctionId::DynamicResidual),
             motions: evaluation(FunctionId::DriveMotions),
             loops,
@@ -239,6 +242,21 @@ impl Chunk {
         let zeros = constants(&vec![0.0; q.len()]);
         jacobians.at(Dual8::splat(0.0), q, &zeros, &zeros).to_vec()
     }
+}
+
+/// The functions with the numbers of feet.
+pub(super) const FEET: [FunctionId; 5] = [
+    FunctionId::SupportElongations,
+    FunctionId::SupportJacobians,
+    FunctionId::SupportStiffnesses,
+    FunctionId::SupportDampings,
+    FunctionId::SupportGrips,
+];
+
+/// Numbers of feet in the order of these functions.
+fn in_order(slopes: &mut FeetSlopes) -> [&mut Vec<f64>; 5] {
+    let FeetSlopes { elongations, jacobians, stiffnesses, dampings, grips } = slopes;
+    [elongations, jacobians, stiffnesses, dampings, grips]
 }
 
 /// Whether a function of a crane depends on live parameters or inputs.
@@ -374,6 +392,23 @@ impl Slopes for Directions<'_> {
                 for (out, (states, drive)) in out.iter_mut().zip(wanted.chunks_exact(3).zip(&oil.drives)) {
                     out.wanted = pair(states, direction);
                     out.opening = openings[2 * drive].slope(direction);
+                }
+            }
+        }
+    }
+
+    fn feet(&mut self, at: &At<'_>, along: &[Vec<f64>], out: &mut [FeetSlopes]) {
+        let n = at.q.len();
+        for (number, Chunk { count, feet, .. }) in self.chunks.iter_mut().enumerate() {
+            let Some(feet) = feet else { continue };
+            let first = number * DIRECTIONS;
+            let along = &along[first..][..*count];
+            let (q, v, zeros) = (moved(at.q, 0, along), moved(at.v, n, along), constants(&vec![0.0; n]));
+            for (place, function) in feet.iter_mut().enumerate() {
+                let numbers = function.at(Dual8::splat(at.t), &q, &v, &zeros);
+                for (direction, out) in out[first..].iter_mut().take(*count).enumerate() {
+                    let slopes = in_order(out)[place].iter_mut().zip(numbers);
+                    slopes.for_each(|(slope, number)| *slope = number.slope(direction));
                 }
             }
         }

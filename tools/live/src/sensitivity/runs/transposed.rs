@@ -3,10 +3,10 @@
 use crane_codegen::chain::Input;
 use crane_codegen::program::FunctionId;
 use crane_model::dyn_crane::{DynCrane, DynModel};
-use crane_model::dynamics::gradients::{Around, At, Covector, CylinderSlopes, Numbers, PullBacks};
+use crane_model::dynamics::gradients::{Around, At, Covector, CylinderSlopes, FeetSlopes, Numbers, PullBacks};
 
 use super::Along;
-use super::directions::Directions;
+use super::directions::{Directions, FEET};
 use crate::LiveCrane;
 use crate::assemble::TooLarge;
 use crate::products::{PullBack, Pulled, State};
@@ -23,6 +23,7 @@ pub(super) struct Transposed<'a> {
     cylinder_states: Option<PullBack>,
     cylinder_jacobians: Option<PullBack>,
     openings: Option<PullBack>,
+    feet: Option<[Option<PullBack>; 5]>,
 }
 
 impl<'a> Transposed<'a> {
@@ -50,6 +51,13 @@ impl<'a> Transposed<'a> {
             cylinder_states: with(has_oil, FunctionId::CylinderStates)?,
             cylinder_jacobians: with(has_oil, FunctionId::CylinderJacobians)?,
             openings: with(has_oil, FunctionId::ValveOpenings)?,
+            feet: match description.has_feet() {
+                true => {
+                    let [a, b, c, d, e] = FEET.map(|id| with(true, id));
+                    Some([a?, b?, c?, d?, e?])
+                }
+                false => None,
+            },
         })
     }
 
@@ -160,6 +168,17 @@ impl PullBacks for Transposed<'_> {
         for (function, weights) in rest {
             if let Some(function) = function {
                 places.add_numbers(&function.at(&state, weights.as_flattened()), sum);
+            }
+        }
+    }
+
+    fn feet(&mut self, at: &At<'_>, weights: &FeetSlopes, sum: &mut Covector) {
+        let Self { places, feet: Some(feet), .. } = self else { return };
+        let state = State { t: at.t, q: at.q, v: at.v, a: at.a };
+        let FeetSlopes { elongations, jacobians, stiffnesses, dampings, grips } = weights;
+        for (function, weights) in feet.iter_mut().zip([elongations, jacobians, stiffnesses, dampings, grips]) {
+            if let Some(function) = function {
+                places.add(&function.at(&state, weights), sum);
             }
         }
     }
