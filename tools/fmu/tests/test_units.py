@@ -265,7 +265,7 @@ def test_directional_derivatives_of_rates_are_exact(export, slave):
     unit = slave(file)
     unit.follow(0, 0.2, 4)
     states, rates = states_and_rates(file)
-    assert len(states) == len(rates) == 2 * 17 + 3 * 3 + 1 + 2
+    assert len(states) == len(rates) == 2 * 17 + 3 * 3 + 1 + 2 + 2 * 8
     references = [unit.references[name] for name in rates]
     size = lambda name: 1e5 if name.endswith("_pressure") else 1e-3
     together = unit.getDirectionalDerivative(references, [unit.references[name] for name in states], [size(name) for name in states])

@@ -216,7 +216,7 @@ fn numbers(node: &Value, all: &Value, place: &str, said: &str, found: &mut Vec<(
 #[test]
 fn numbers_of_the_spec_have_their_units() {
     /// Ends of places of numbers without a unit, and of parameters and inputs, which have their own.
-    const WITHOUT: [&str; 16] = [
+    const WITHOUT: [&str; 17] = [
         "format",
         "falls",
         "sections",
