@@ -419,7 +419,8 @@ impl Feet {
                 of_slid[self.place(index, axis)] += by.slid[axis];
                 let row = &mut weights.jacobians[place * self.n + first..][..count];
                 for (j, weight) in row.iter_mut().enumerate() {
-                    *weight += by.rate[axis] * v[first + j] + forces[self.place(index, axis)].force * generalized[first + j];
+                    *weight +=
+                        by.rate[axis] * v[first + j] + forces[self.place(index, axis)].force * generalized[first + j];
                     of_v[first + j] += by.rate[axis] * self.row(index, axis)[j];
                 }
             }

@@ -555,8 +555,9 @@ async function links(browser) {
     assert.equal(await at(page, () => globalThis.instrument.editor.text), text.replace("mass: 3", "mass: 4"));
     await edit(page, "mass: 4", "mass: 3");
     await page.click("#share");
-    await eventually(page, async () => assert.equal(await at(page, () => location.hash.startsWith("#spec=")), true));
+    await eventually(page, async () => assert.match(await page.textContent("#state"), /address now contains the whole spec/));
     const hash = await at(page, () => location.hash);
+    assert(hash.startsWith("#spec="));
     await page.goto("about:blank");
     await page.goto(address + hash);
     await page.waitForSelector("html[data-ready]");
