@@ -51,12 +51,11 @@ impl<'a> Transposed<'a> {
             cylinder_states: with(has_oil, FunctionId::CylinderStates)?,
             cylinder_jacobians: with(has_oil, FunctionId::CylinderJacobians)?,
             openings: with(has_oil, FunctionId::ValveOpenings)?,
-            feet: match description.has_feet() {
-                true => {
-                    let [a, b, c, d, e] = FEET.map(|id| with(true, id));
-                    Some([a?, b?, c?, d?, e?])
-                }
-                false => None,
+            feet: if description.has_feet() {
+                let [a, b, c, d, e] = FEET.map(|id| with(true, id));
+                Some([a?, b?, c?, d?, e?])
+            } else {
+                None
             },
         })
     }
