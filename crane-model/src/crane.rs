@@ -39,7 +39,7 @@ impl dyn DynCrane + '_ {
 
     /// How much of its friction each one-sided support on the ground uses in a pose at rest, |F|/(μ N), with its index: from 1 on it slides.
     pub fn friction_utilisations_at(&self, q: &[f64]) -> Vec<(usize, f64)> {
-        Feet::at(self, q, &vec![0.0; q.len()]).utilisations_on_the_ground().collect()
+        Feet::at_rest(self, q).utilisations_on_the_ground().collect()
     }
 
     /// Energies at a sample of a run, with the springs of feet that have slid, J.

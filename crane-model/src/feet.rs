@@ -180,10 +180,10 @@ impl Feet {
         }
     }
 
-    /// The feet at a state of a crane.
-    pub fn at(crane: &dyn DynModel, q: &[f64], v: &[f64]) -> Self {
+    /// The feet of a crane in a pose at rest.
+    pub fn at_rest(crane: &dyn DynModel, q: &[f64]) -> Self {
         let mut feet = Self::new(crane.description());
-        feet.evaluate_at(crane, q, v);
+        feet.evaluate_at(crane, q, &vec![0.0; q.len()]);
         feet
     }
 
@@ -432,7 +432,7 @@ impl Feet {
 /// What the feet of a crane at a state contribute besides generated functions, which do not know where they have slid.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Slid {
-    /// a of each foot, m, foot by foot.
+    /// a of all feet, m, in the order of their states.
     pub places: Vec<f64>,
     /// Index of each foot among the supports, and the forces along x and y, N, that it adds.
     pub forces: Vec<(usize, [f64; 2])>,

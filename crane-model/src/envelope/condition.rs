@@ -6,7 +6,6 @@ use super::{Limit, Limits, PartLimit};
 use crate::{
     Description,
     dyn_crane::DynCrane,
-    feet::Feet,
     hydraulics::{CylinderState, cylinders_at},
     results::overlaps,
     sections::{StressedSection, stressed_sections},
@@ -55,7 +54,7 @@ impl Condition {
             cylinders: cylinders_at(crane, &q, &rest, &efforts),
             efforts,
             feet: reactions.map(|(force, gap)| [force.z, gap]).collect(),
-            utilisations_of_friction: Feet::at(crane, &q, &rest).utilisations_on_the_ground().collect(),
+            utilisations_of_friction: crane.friction_utilisations_at(&q),
             stops: crane.stop_efforts_at(&q, &rest),
             connectors: crane.connector_tensions_at(0.0, &q, &rest).into_iter().map(|tension| tension.force).collect(),
             overlaps: crane.stages().iter().map(|stage| stage.inner).zip(overlaps::at(crane, &q)).collect(),

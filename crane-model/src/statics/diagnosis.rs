@@ -224,7 +224,7 @@ fn has_no_polygon(crane: &dyn DynCrane, q: &[f64]) -> bool {
 
 /// The foot that has slid furthest.
 fn sliding(crane: &dyn DynCrane, q: &[f64]) -> Diagnosis {
-    let feet = Feet::at(crane, q, &vec![0.0; q.len()]);
+    let feet = Feet::at_rest(crane, q);
     let most = feet.distances().max_by(|a, b| a.1.total_cmp(&b.1));
     most.map_or(Diagnosis::Unknown, |(foot, distance)| Diagnosis::Slides {
         foot: crane.description().supports[foot].name.clone(),

@@ -76,7 +76,7 @@ impl<'a> Equations<'a> {
         if !self.crane.description().has_feet() {
             return None;
         }
-        Feet::at(self.crane, q.as_slice(), &vec![0.0; q.len()]).sliding_stiffness(self.crane.description())
+        Feet::at_rest(self.crane, q.as_slice()).sliding_stiffness(self.crane.description())
     }
 
     fn closed_stiffness(&self, q: &DVector<f64>, stiffness: DMatrix<f64>) -> DMatrix<f64> {
@@ -98,8 +98,10 @@ impl<'a> Equations<'a> {
         let residual = self.open_residual(q);
         let value = &residual * load + held * (1.0 - load);
         let by_load = residual - held;
-        let stiffness = self.open_stiffness(q);
-        let stiffness = self.friction_of_sliding(q).map_or_else(|| stiffness.clone(), |sliding| &stiffness + sliding);
+        let mut stiffness = self.open_stiffness(q);
+        if let Some(sliding) = self.friction_of_sliding(q) {
+            stiffness += sliding;
+        }
         let by_pose = stiffness * load + DMatrix::from_diagonal(springs) * (1.0 - load);
         match &self.closed {
             Some(closed) => closed.partly_loaded(self.crane, q.as_slice(), &value, &by_pose, &by_load),

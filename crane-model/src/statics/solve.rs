@@ -109,7 +109,7 @@ fn with_sliding_status(equations: &Equations<'_>, found: Equilibrium) -> Equilib
     if found.is_stable() || !description.has_feet() {
         return found;
     }
-    let feet = Feet::at(equations.crane, &found.q, &vec![0.0; found.q.len()]);
+    let feet = Feet::at_rest(equations.crane, &found.q);
     let pressing: Vec<_> = feet.utilisations_on_the_ground().collect();
     if pressing.is_empty() || pressing.iter().any(|(_, utilisation)| *utilisation < 1.0) {
         return found;
