@@ -1,22 +1,48 @@
-//! Stresses at the sections of a crane's beams.
+//! Places along a crane's beams: what they carry, and their stresses. Every table, diagram, file, limit and derivative reads this list.
 
 use std::cmp::Ordering;
+use std::ops::Range;
 
 use crate::{Cut, Description, SectionInfo, SectionModuli, Stress, Wrench};
 
-/// A section where stresses are known.
+/// A place of a beam in a pose, on one side of what is there, and what it carries.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StressedSection {
+pub struct Place {
     /// Its index among [`Description::sections`].
     pub section: usize,
-    /// Its stresses.
-    pub stress: Stress,
-    /// Equivalent stress over the allowable one, if there is one.
-    pub utilisation: Option<f64>,
+    /// Index of its cut.
+    pub cut: usize,
+    /// Distance from the beginning of the beam, m.
+    pub x: f64,
+    /// What the part beyond exerts on the part before, in the section's frame.
+    pub wrench: Wrench,
+    /// Whose moduli it has.
+    pub moduli: Between,
 }
 
-impl StressedSection {
-    /// Where it is.
+/// A mean of two sections.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Between {
+    /// Their indices; twice the same for a section with its own.
+    pub sections: [usize; 2],
+    /// The part of the second.
+    pub part: f64,
+}
+
+impl Between {
+    const fn own(section: usize) -> Self {
+        Self { sections: [section; 2], part: 0.0 }
+    }
+
+    /// The mean of numbers of both sections.
+    pub fn mean<T>(&self, of: impl Fn(usize) -> T, mean: impl Fn(T, T, f64) -> T) -> T {
+        let [one, other] = self.sections;
+        if self.part == 0.0 { of(one) } else { mean(of(one), of(other), self.part) }
+    }
+}
+
+impl Place {
+    /// What the description says about it.
     pub fn info<'a>(&self, description: &'a Description) -> &'a SectionInfo {
         &description.sections[self.section]
     }
@@ -28,9 +54,115 @@ impl StressedSection {
 
     /// Where it is, in words: the beam, the distance from its start, and what is there.
     pub fn location(&self, description: &Description) -> String {
-        let info = self.info(description);
-        let text = format!("{}, {:.3} m from its start", self.beam(description), info.x);
-        if info.at.is_empty() { text } else { format!("{text}, {}", info.location()) }
+        location(description, self.section, Some(self.x))
+    }
+}
+
+/// Where a section is, in words: in a pose `x` m from the beginning of its beam. Without a pose, what slides has no distance.
+pub fn location(description: &Description, section: usize, x: Option<f64>) -> String {
+    let info = &description.sections[section];
+    let beam = description.bodies[info.body].link.to_string();
+    let distance = x.or(info.slides.is_none().then_some(info.x)).map(|x| format!("{x:.3} m from its start"));
+    let what = (!info.at.is_empty()).then(|| info.location());
+    [Some(beam), distance, what].into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+impl Description {
+    /// Distances of all sections from the beginning of their beams in a pose, m. Those at pads move along the beams, and stay at the end of a
+    /// beam that has left them.
+    pub fn section_places(&self, q: &[f64]) -> Vec<f64> {
+        let place = |section: &SectionInfo| {
+            let Some(slides) = section.slides else { return section.x };
+            let by = q[slides.coordinate];
+            let x = section.x + if slides.grows { by } else { -by };
+            x.clamp(0.0, self.length_of_beam(section.body))
+        };
+        self.sections.iter().map(place).collect()
+    }
+
+    /// Length of the beam to which a body belongs, with default parameters, m.
+    fn length_of_beam(&self, body: usize) -> f64 {
+        let link = &self.bodies[body].link;
+        self.bodies.iter().filter(|body| body.link == *link).map(|body| body.length).sum()
+    }
+
+    /// Indices of the sections of each beam.
+    fn sections_of_beams(&self) -> Vec<Range<usize>> {
+        let link = |section: usize| &self.bodies[self.sections[section].body].link;
+        let mut beams: Vec<Range<usize>> = Vec::new();
+        for section in 0..self.sections.len() {
+            match beams.last_mut().filter(|beam| link(beam.start) == link(section)) {
+                Some(beam) => beam.end = section + 1,
+                None => beams.push(section..section + 1),
+            }
+        }
+        beams
+    }
+}
+
+/// All places of beams and ropes in a pose, beam by beam from the beginning to the end; `wrenches` one per cut.
+pub fn places(description: &Description, q: &[f64], wrenches: &[Wrench]) -> Vec<Place> {
+    let x = description.section_places(q);
+    let mut cuts = vec![None; x.len()];
+    for (index, cut) in description.cuts().iter().enumerate() {
+        if let Some(section) = Cut::section(cut) {
+            cuts[section] = Some(index);
+        }
+    }
+    let of_beam = |beam: Range<usize>| {
+        let mut order: Vec<usize> = beam.collect();
+        order.sort_by(|a, b| x[*a].total_cmp(&x[*b]));
+        let place = |(position, &section): (usize, &usize)| {
+            let cut = cuts[section]?;
+            let moduli = around(description, &x, &order, position);
+            Some(Place { section, cut, x: x[section], wrench: *wrenches.get(cut)?, moduli })
+        };
+        order.iter().enumerate().filter_map(place).collect::<Vec<_>>()
+    };
+    description.sections_of_beams().into_iter().flat_map(of_beam).collect()
+}
+
+/// The sections whose moduli a place has: its own, or where it slides those around it. Between them the shape changes linearly.
+fn around(description: &Description, x: &[f64], order: &[usize], position: usize) -> Between {
+    let section = order[position];
+    let fixed = |section: &&usize| description.sections[**section].slides.is_none();
+    let before = order[..position].iter().rev().find(fixed);
+    let after = order[position..].iter().find(fixed);
+    match (description.sections[section].slides, before, after) {
+        (None, ..) | (_, None, None) => Between::own(section),
+        (_, Some(&one), None) | (_, None, Some(&one)) => Between::own(one),
+        (_, Some(&one), Some(&other)) => {
+            let way = x[other] - x[one];
+            Between { sections: [one, other], part: if way > 0.0 { (x[section] - x[one]) / way } else { 0.0 } }
+        }
+    }
+}
+
+/// A place where stresses are known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StressedSection {
+    /// The place.
+    pub place: Place,
+    /// Its stresses.
+    pub stress: Stress,
+    /// Equivalent stress over the allowable one, if there is one.
+    pub utilisation: Option<f64>,
+}
+
+impl StressedSection {
+    /// What the description says about it.
+    pub fn info<'a>(&self, description: &'a Description) -> &'a SectionInfo {
+        self.place.info(description)
+    }
+
+    /// Name of the beam's link.
+    pub fn beam<'a>(&self, description: &'a Description) -> &'a str {
+        self.place.beam(description)
+    }
+
+    /// Where it is, in words: the beam, the distance from its start, and what is there.
+    pub fn location(&self, description: &Description) -> String {
+        self.place.location(description)
     }
 
     /// Orders sections by utilisation; where no beam has a yield stress, by equivalent stress.
@@ -40,17 +172,20 @@ impl StressedSection {
     }
 }
 
-/// All sections whose moduli are known; `moduli` one per section, as [`Description::sections`] lists them, `wrenches` one per cut.
+/// All [places] in a pose whose moduli are known; `moduli` one per section, as [`Description::sections`] lists them, `wrenches` one per cut.
 pub fn stressed_sections(
     description: &Description,
     moduli: &[SectionModuli],
+    q: &[f64],
     wrenches: &[Wrench],
 ) -> Vec<StressedSection> {
-    let at = |(cut, wrench): (Cut, &Wrench)| {
-        let section = cut.section()?;
-        let moduli = moduli.get(section)?;
-        let stress = moduli.stress(wrench)?;
-        Some(StressedSection { section, stress, utilisation: moduli.utilisation(&stress) })
-    };
-    description.cuts().into_iter().zip(wrenches).filter_map(at).collect()
+    places(description, q, wrenches).into_iter().filter_map(|place| stressed(moduli, place)).collect()
+}
+
+/// The stresses of a place; `None` where its moduli are not known.
+pub fn stressed(moduli: &[SectionModuli], place: Place) -> Option<StressedSection> {
+    let of = |section: usize| moduli.get(section).copied().unwrap_or(SectionModuli::ZERO);
+    let moduli = place.moduli.mean(of, |one, other, part| one.mean(&other, part));
+    let stress = moduli.stress(&place.wrench)?;
+    Some(StressedSection { place, stress, utilisation: moduli.utilisation(&stress) })
 }

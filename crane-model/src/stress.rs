@@ -58,6 +58,14 @@ pub struct Stress {
 
 #[cfg(feature = "std")]
 impl SectionModuli {
+    /// A mean with another one, which counts for a `part`.
+    pub fn mean(&self, other: &Self, part: f64) -> Self {
+        use crate::methods::Entry;
+        let numbers: Vec<f64> =
+            self.numbers().zip(other.numbers()).map(|(one, other)| one + part * (other - one)).collect();
+        Self::from_numbers(&numbers)
+    }
+
     /// Stresses of a section that transmits a wrench, in the section's frame; `None` if its moduli are not known.
     pub fn stress(&self, Wrench { force, moment }: &Wrench) -> Option<Stress> {
         if self.area <= 0.0 {

@@ -1,6 +1,6 @@
 //! Flexible links: data for stresses and pictures.
 
-use super::{BodyId, Inertia, Value};
+use super::{BodyId, Inertia, Sliding, Value};
 
 /// Data of a beam for pictures and for its stresses.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,8 +29,18 @@ pub struct Section {
     pub at: String,
     /// Where it is within its element; `None` where the element begins.
     pub inside: Option<Inside>,
-    /// Its moduli; `None` if the spec does not give them.
+    /// The pad on which the beam slides there: x is its place with the coordinate along which the beam slides at 0. `None` for other sections.
+    pub slides: Option<Box<Sliding>>,
+    /// Its moduli; `None` if the spec does not give them. On a beam whose sections differ, they follow from those around the pad.
     pub moduli: Option<Moduli>,
+}
+
+impl Section {
+    /// Whether it is where its element begins.
+    #[must_use]
+    pub fn begins_element(&self) -> bool {
+        self.inside.is_none() && self.slides.is_none()
+    }
 }
 
 /// The place of a section within an element.

@@ -108,7 +108,11 @@ fn description_constant(chain: &Chain) -> Item {
             Side::Both => quote!(Both),
             Side::After => quote!(After),
         };
-        quote!(SectionInfo { body: #body, x: #x, side: Side::#side, at: #at })
+        let slides = section.slides.as_ref().map_or(quote!(None), |sliding| {
+            let (coordinate, grows) = (integer(sliding.coordinate.0), sliding.grows);
+            quote!(Some(SlideInfo { coordinate: #coordinate, grows: #grows }))
+        });
+        quote!(SectionInfo { body: #body, x: #x, side: Side::#side, at: #at, slides: #slides })
     });
     let supports = chain.supports.iter().map(|support| {
         let name = text(&support.name);

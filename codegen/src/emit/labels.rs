@@ -178,7 +178,7 @@ impl<'a> Labels<'a> {
             Side::Both => "at",
             Side::After => "after",
         };
-        if section.inside.is_none() { format!("Before {body}") } else { format!("{body}, {side} {}", section.at) }
+        if section.begins_element() { format!("Before {body}") } else { format!("{body}, {side} {}", section.at) }
     }
 
     fn transform(&self, function: FunctionId, counts: &[usize], mut matrix: usize) -> String {

@@ -149,6 +149,7 @@ fn imports(items: &[syn::Item]) -> String {
                 "SectionInfo",
                 "SectionModuli",
                 "Side",
+                "SlideInfo",
                 "StageInfo",
                 "Statics",
                 "SupportInfo",

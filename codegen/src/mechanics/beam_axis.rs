@@ -14,16 +14,14 @@
 //! `r_0` is the beginning of the beam. Beyond both ends the curve continues straight on. A motion of the coordinate j, whose joint is that of
 //! element m, moves the point that is fixed to the curve with `Ω_j P` if m = 0, and otherwise with `ω_j × Σ_{k ≥ m} c_k x̂_k`.
 //!
-//! Where a force acts at P(s), each element carries a share of it at a point of its own (de Casteljau's algorithm): `τ_{k−1}² + (1 − τ_k)² − 1`
-//! in its middle (of the first element: `(1 − τ_0)²` at its beginning, of the last `τ_{n−1}²` at its end), and `2 τ_k (1 − τ_k)` at its end.
+//! A force at P(s) thereby does work on several springs. Sections carry what is beyond them: there the force acts on the element on which s is.
 
 use std::collections::BTreeMap;
 
 use super::kinematics::{Kinematics, Pose};
 use super::model::Model;
-use super::place::Place;
 use super::vector::Vec3;
-use crate::chain::{Axis, BeamAxis, BodyId, CoordinateId, Value};
+use crate::chain::{Axis, BeamAxis, CoordinateId};
 use crate::symbolic::Expr;
 
 /// The axis of a beam at s.
@@ -165,44 +163,17 @@ impl<'a, 'g> AxisPoint<'a, 'g> {
         self.sums(Axis::X, |k| self.way(k))
     }
 
-    /// The points of elements that carry a force at P, and the share that each carries.
-    pub fn carried(&self) -> Vec<(Place, Vec3<'g>, Expr<'g>)> {
+    /// For every element 1 if s is on it, otherwise 0: each begins at its spring, the first and the last go on beyond the ends.
+    pub fn here(&self) -> Vec<Expr<'g>> {
+        let (zero, one) = (self.model.zero(), self.model.graph.constant(1.0));
         let n = self.axis.sections;
-        let one = self.model.graph.constant(1.0);
-        let mut carried = Vec::new();
-        for (element, body) in self.axis.elements().enumerate() {
-            let Pose { rotation, origin } = self.pose(element);
-            let [before, after] = self.passed_by(element);
-            let (weight, x) = match element {
-                0 if n == 0 => (one, self.section * self.past_end),
-                0 => ((1.0 - after).squared(), self.section * self.before_start),
-                k if k == n => (before.squared(), self.section * (0.5 + self.past_end.max(self.model.zero()))),
-                _ => (before.squared() - after * (2.0 - after), 0.5 * self.section),
-            };
-            carried.push((self.middle(element), *origin + x * rotation.axis(Axis::X), weight));
-            if element < n {
-                let end = if element == 0 { 0.5 * self.section_length() } else { self.section_length() };
-                let joint = self.pose(element + 1).origin;
-                carried.push((Place { body, along: end }, joint, 2.0 * after * (1.0 - after)));
-            }
-        }
-        carried
-    }
-
-    /// The elements that carry a moment at P, and the share that each carries.
-    pub fn turned(&self) -> Vec<(Place, Expr<'g>)> {
-        (0..=self.axis.sections).map(|element| (self.middle(element), self.share(element))).collect()
-    }
-
-    /// Where an element touches the curve: its middle, and the beginning of the beam.
-    fn middle(&self, element: usize) -> Place {
-        let along = if element == 0 { Value::ZERO } else { 0.5 * self.section_length() };
-        Place { body: BodyId(self.axis.first.0 + element), along }
-    }
-
-    /// d as a number of the chain.
-    fn section_length(&self) -> Value {
-        self.axis.length.clone() / (self.axis.sections.max(1) as f64).into()
+        // σ > k − ½, from the distance to the end, which is there for a rigid beam, too.
+        let begun = |element: usize| match element {
+            0 => one,
+            k if k > n => zero,
+            k => (self.past_end + (n as f64 + 0.5 - k as f64)).select(one, zero),
+        };
+        (0..=n).map(|element| begun(element) - begun(element + 1)).collect()
     }
 }
 

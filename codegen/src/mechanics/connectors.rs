@@ -73,7 +73,7 @@ pub fn pieces<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 }
 
 /// Forces on the bodies at the ends, at sheaves and at pads, in the world.
-pub fn pulls<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<(Place, Pull<'g>)> {
+pub fn pulls<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<(Place<'g>, Pull<'g>)> {
     let on_bodies =
         |Pulled { element: Element { force: Force { strain, .. }, strained, .. }, force, .. }: Pulled<'_, 'g>| {
             let pulls = strained.pulls(strain, |_| true).into_iter();
@@ -83,7 +83,11 @@ pub fn pulls<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<(Place, 
 }
 
 /// The same for a tension of 1 N at pads and in those parts of a line that are between two bodies; the others hold to the world.
-pub fn between_bodies<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, strain: &Strain) -> Vec<(Place, Pull<'g>)> {
+pub fn between_bodies<'g>(
+    model: &Model<'g>,
+    kinematics: &Kinematics<'g>,
+    strain: &Strain,
+) -> Vec<(Place<'g>, Pull<'g>)> {
     if !strain.joins_bodies() {
         return Vec::new();
     }

@@ -31,14 +31,14 @@
 
 use super::kinematics::Kinematics;
 use super::model::Model;
-use super::place::Place;
+use super::place::{Along, Place};
 use super::vector::{SymmetricMatrix, Vec3};
 use crate::chain::{Body, BodyId, CoordinateId, Cylinder, Linkage, Pin, Value};
 use crate::symbolic::Expr;
 
 /// A point on which the length of a cylinder depends.
 struct Point<'g> {
-    place: Place,
+    place: Place<'g>,
     position: Vec3<'g>,
     /// g of this point.
     gradient: Vec3<'g>,
@@ -125,7 +125,7 @@ impl<'g> Line<'g> {
         let length = way.dot(way).sqrt();
         let direction = (1.0 / length) * way;
         let point = |pin: &Pin, position, gradient| {
-            let place = Place { body: pin.body, along: pin.position[0].clone() };
+            let place = Place { body: pin.body, along: Along::Fixed(pin.position[0].clone()) };
             Point { place, position, gradient }
         };
         let of_foot = point(&cylinder.foot, foot, -direction);
@@ -208,7 +208,11 @@ pub fn jacobians<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 }
 
 /// Force and moment about the world's origin, in the world frame, that a cylinder that pushes with 1 N exerts on bodies.
-pub fn pushes<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, cylinder: &Cylinder) -> Vec<(Place, [Vec3<'g>; 2])> {
+pub fn pushes<'g>(
+    model: &Model<'g>,
+    kinematics: &Kinematics<'g>,
+    cylinder: &Cylinder,
+) -> Vec<(Place<'g>, [Vec3<'g>; 2])> {
     let line = Line::new(model, kinematics, cylinder);
     let at = |point: &Point<'g>| (point.place.clone(), [point.gradient, point.position.cross(point.gradient)]);
     // The joint leaves its axis in place, seen from both of its sides: that on which the head is not. On the body before it, it is at the end.
@@ -216,9 +220,9 @@ pub fn pushes<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, cylinder: &Cyl
     let Body { parent, along, .. } = &model.chain.bodies[beyond.0];
     let carrier = match parent {
         Some(parent) if model.chain.moves(cylinder.coordinate, cylinder.head.body) => {
-            Place { body: *parent, along: along.clone() }
+            Place { body: *parent, along: Along::Fixed(along.clone()) }
         }
-        _ => Place { body: beyond, along: Value::ZERO },
+        _ => Place { body: beyond, along: Along::Fixed(Value::ZERO) },
     };
     let on_carrier = line.axis.map(|[axis, by_axis]| (carrier, [Vec3::zero(model.graph), axis.cross(by_axis)]));
     line.points.iter().map(at).chain(on_carrier).collect()

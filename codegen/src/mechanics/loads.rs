@@ -7,7 +7,7 @@ use super::acts::{Acts, Rest};
 use super::connectors;
 use super::kinematics::{Curvature, Kinematics};
 use super::model::Model;
-use super::place::{Place, Pull};
+use super::place::{Along, Place, Pull};
 use super::profile;
 use super::twist::Twist;
 use super::vector::{SymmetricMatrix, Vec3};
@@ -115,10 +115,17 @@ fn forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, t: Expr<'g>) -> Ve
 /// A force on a body and its moment about the body's origin, in the body's axes.
 #[derive(Clone, Debug)]
 pub struct Action<'g> {
-    /// Where it acts along the body, m.
-    pub along: Value,
+    /// Where it acts along the body.
+    pub along: Along<'g>,
     /// Force and moment.
     pub wrench: [Vec3<'g>; 2],
+}
+
+impl<'g> Action<'g> {
+    /// A multiple.
+    pub fn times(&self, factor: Expr<'g>) -> Self {
+        Action { along: self.along.clone(), wrench: self.wrench.map(|vector| factor * vector) }
+    }
 }
 
 /// The sum of actions on a body; `None` if there are none.
@@ -143,7 +150,7 @@ pub fn on_bodies<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Vec<
         };
         let force = along_own_axes(&load.force);
         let moment = along_own_axes(&load.moment) + model.vector(&load.position).cross(force);
-        actions[body].push(Action { along: load.position[0].clone(), wrench: [force, moment] });
+        actions[body].push(Action { along: Along::Fixed(load.position[0].clone()), wrench: [force, moment] });
     }
     for (Place { body: BodyId(body), along }, Pull { point, force, moment }) in connectors::pulls(model, kinematics) {
         let pose = &kinematics.poses[body];

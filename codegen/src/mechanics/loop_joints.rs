@@ -24,7 +24,7 @@ use super::beam_axis::AxisPoint;
 use super::kinematics::{Curvature, Generator, Kinematics, Pose};
 use super::model::Model;
 use super::pads::{self, AtPad};
-use super::place::Place;
+use super::place::{Along, Place};
 use super::vector::{Rotation, Vec3};
 use crate::chain::{
     Across, Attachment, Axis, BodyId, CoordinateId, LoopJoint, LoopJointKind, PadDirection, Sliding, Vector,
@@ -324,7 +324,7 @@ pub fn actions<'g>(
     model: &Model<'g>,
     kinematics: &Kinematics<'g>,
     joint: &LoopJoint,
-) -> Vec<Vec<(Place, [Vec3<'g>; 2])>> {
+) -> Vec<Vec<(Place<'g>, [Vec3<'g>; 2])>> {
     let zero = Vec3::zero(model.graph);
     if let LoopJointKind::Pad { held } = &joint.kind {
         let on_bodies = |sliding: &Sliding| {
@@ -351,7 +351,8 @@ pub fn actions<'g>(
         }
     };
     let on_both = |wrench: [Vec3<'g>; 2]| {
-        let place = |end: &Attachment| end.body.map(|body| Place { body, along: end.position[0].clone() });
+        let place =
+            |end: &Attachment| end.body.map(|body| Place { body, along: Along::Fixed(end.position[0].clone()) });
         let of_ends = joint.ends.iter().zip([wrench, wrench.map(|vector| -vector)]);
         of_ends.filter_map(|(end, wrench)| Some((place(end)?, wrench))).collect()
     };

@@ -3,14 +3,16 @@
 //! J. Y. S. Luh, M. W. Walker, R. P. C. Paul, J. Dyn. Syst. Meas. Control 102 (1980) 69. At q̈ = 0 the efforts are the bias; at
 //! any q̈ the forces and moments of the inward sweep are those that the crane transmits.
 
+use super::beam_axis::AxisPoint;
 use super::factors::{Branches, Factor, Reached};
 use super::kinematics::Kinematics;
 use super::loads::{self, Action};
 use super::model::Model;
 use super::outward::{Velocities, along};
-use super::place::Place;
-use super::vector::Vec3;
-use crate::chain::{Axis, BodyId, Cut, Inertia, Point, Section, Side};
+use super::pads;
+use super::place::{Along, Place};
+use super::vector::{Symmetric3, Vec3};
+use crate::chain::{Axis, BodyId, Cut, Inertia, Point, Section, Side, Sliding};
 use crate::symbolic::Expr;
 
 /// What acts on a body closer to a section than this fraction of the body's length acts at the section.
@@ -33,7 +35,7 @@ pub fn inverse_dynamics<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Ex
 pub fn internal_forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
     let motions = outward(model, factors, (&model.v, Some(&model.a)), -model.vector(&model.chain.gravity));
     let applied = loads::on_bodies(model, kinematics);
-    at_cuts(model, factors, &motions, &applied)
+    at_cuts(model, kinematics, factors, (&motions, &applied))
 }
 
 /// `R (a + α × r + ω × (ω × r))`, with the motion of the body of each point of interest, R its rotation; world frame, m/s².
@@ -68,7 +70,7 @@ pub fn transmitted<'g>(
     model: &Model<'g>,
     kinematics: &Kinematics<'g>,
     factors: &[Factor<'g>],
-    on_bodies: Vec<(Place, Wrench<'g>)>,
+    on_bodies: Vec<(Place<'g>, Wrench<'g>)>,
 ) -> Vec<Expr<'g>> {
     let motions = outward(model, factors, (&model.zeros(), None), Vec3::zero(model.graph));
     let mut applied = vec![Vec::new(); model.chain.bodies.len()];
@@ -77,15 +79,15 @@ pub fn transmitted<'g>(
         let wrench = [force, moment - pose.origin.cross(force)].map(|vector| pose.rotation.apply_transposed(vector));
         applied[body].push(Action { along, wrench });
     }
-    at_cuts(model, factors, &motions, &applied)
+    at_cuts(model, kinematics, factors, (&motions, &applied))
 }
 
 /// The wrenches that all cuts transmit.
 fn at_cuts<'g>(
     model: &Model<'g>,
+    kinematics: &Kinematics<'g>,
     factors: &[Factor<'g>],
-    motions: &[Motion<'g>],
-    applied: &[Vec<Action<'g>>],
+    (motions, applied): (&[Motion<'g>], &[Vec<Action<'g>>]),
 ) -> Vec<Expr<'g>> {
     let swept = inward(model, factors, motions, applied, |force, moment| Some([-force, -moment]));
     let wrenches = model.chain.cuts().into_iter().filter_map(|cut| match cut {
@@ -94,6 +96,11 @@ fn at_cuts<'g>(
         Cut::Body(BodyId(body)) => swept.bodies[body],
         Cut::Inside(beam, section) => {
             let section = &model.chain.beams[beam].sections[section];
+            if let Some(sliding) = &section.slides {
+                return at_pad(model, kinematics, (section.side, sliding), &swept, &|body| {
+                    Some((motion_of(factors, motions, body)?, applied[body].as_slice()))
+                });
+            }
             let BodyId(body) = section.body;
             let motion = motion_of(factors, motions, body)?;
             within(model, section, (swept.beyond[body], motion), [&swept.branches[body], &applied[body]])
@@ -112,12 +119,16 @@ fn within<'g>(
 ) -> Option<Wrench<'g>> {
     let ([mut force, mut moment], inside) = (beyond?, section.inside.as_ref()?);
     let Velocities::Body { omega } = &motion.velocities else { return None };
-    let sum_beyond =
-        |actions: &[Action<'g>]| loads::sum(actions.iter().filter(|action| acts_beyond(model, section, action)));
+    let sum_beyond = |actions: &[Action<'g>]| {
+        let beyond: Vec<Action<'g>> =
+            actions.iter().filter_map(|action| acting_beyond(model, section, action)).collect();
+        loads::sum(beyond.iter())
+    };
     if let Some([more, more_moment]) = sum_beyond(branches) {
         (force, moment) = (force + more, moment + more_moment);
     }
-    [force, moment] = with_inertia(model, [force, moment], &inside.beyond, *omega, (motion.alpha, motion.a));
+    [force, moment] =
+        with_inertia([force, moment], &Masses::new(model, &inside.beyond), *omega, (motion.alpha, motion.a));
     if let Some([load, moment_of_load]) = sum_beyond(applied) {
         (force, moment) = (force - load, moment - moment_of_load);
     }
@@ -125,26 +136,151 @@ fn within<'g>(
     Some([-force, -(moment - lever.cross(force))])
 }
 
-/// Whether what acts on a body acts beyond a section, with default parameters. What is beside the body acts on its end.
-fn acts_beyond(model: &Model<'_>, section: &Section, action: &Action<'_>) -> bool {
-    let Some(inside) = &section.inside else { return true };
-    let defaults = model.chain.parameter_defaults();
-    let [length, distance, along] =
-        [&model.chain.bodies[section.body.0].length, &inside.distance, &action.along].map(|value| value.at(&defaults));
-    let along = along.clamp(0.0, length);
-    if (along - distance).abs() <= SAME_PLACE * length { section.side != Side::After } else { along > distance }
+/// What acts on a body beyond a section; `None` if nothing of it does. What is beside the body acts on its end. The place of a load is
+/// that with default parameters, the place of a pad the present one.
+fn acting_beyond<'g>(model: &Model<'g>, section: &Section, action: &Action<'g>) -> Option<Action<'g>> {
+    let Some(inside) = &section.inside else { return Some(action.clone()) };
+    match &action.along {
+        Along::Fixed(along) => {
+            let defaults = model.chain.parameter_defaults();
+            let [length, distance, along] =
+                [&model.chain.bodies[section.body.0].length, &inside.distance, along].map(|value| value.at(&defaults));
+            let along = along.clamp(0.0, length);
+            let same = (along - distance).abs() <= SAME_PLACE * length;
+            let acts = if same { section.side != Side::After } else { along > distance };
+            acts.then(|| action.clone())
+        }
+        Along::Pad { s, .. } => {
+            let (x, [zero, one]) = (model.number(&section.x), gates(model));
+            let gate = match section.side {
+                Side::After => (*s - x).select(one, zero),
+                Side::Before | Side::Both => (x - *s).select(zero, one),
+            };
+            Some(action.times(gate))
+        }
+    }
 }
 
-/// A wrench about a body's origin, plus what the motion of an inertia of the body requires.
-fn with_inertia<'g>(
+/// The factors of what does not count and of what does.
+fn gates<'g>(model: &Model<'g>) -> [Expr<'g>; 2] {
+    [model.zero(), model.graph.constant(1.0)]
+}
+
+/// The wrench that the section of a beam at a pad transmits, before or after the pad: in the frame of the element on which the pad is, about the
+/// element's axis there. It is what that element requires where it begins, without what is between there and the pad.
+fn at_pad<'a, 'g: 'a>(
     model: &Model<'g>,
+    kinematics: &Kinematics<'g>,
+    (side, sliding): (Side, &Sliding),
+    swept: &Inward<'g>,
+    on_element: &impl Fn(usize) -> Option<(&'a Motion<'g>, &'a [Action<'g>])>,
+) -> Option<Wrench<'g>> {
+    let (axis, own) = (&sliding.beam, sliding.identity());
+    let [zero, one] = gates(model);
+    let (whole, d) = (model.number(&axis.length), model.number(&axis.length) / axis.sections.max(1) as f64);
+    let (_, s) = pads::place(model, sliding);
+    let here = AxisPoint::new(model, kinematics, axis, s).here();
+    let s = s.clamp(zero, whole);
+    let none = Vec3::zero(model.graph);
+    let (mut wrench, mut masses) = ([none; 2], Masses::zero(model));
+    let (mut omega, mut alpha, mut a, mut start) = (none, none, none, zero);
+    for ((element, BodyId(body)), here) in axis.elements().enumerate().zip(here) {
+        let begins = if element == 0 { zero } else { (element as f64 - 0.5) * d };
+        let ends = if element == axis.sections { whole } else { (element as f64 + 0.5) * d };
+        let (motion, applied) = on_element(body)?;
+        let Velocities::Body { omega: own_omega } = &motion.velocities else { return None };
+        let [force, moment] = swept.bodies[body]?;
+        let mut required = [-force, -moment];
+        // What acts before the section is no longer required beyond it.
+        let before = |action: &Action<'g>| match &action.along {
+            Along::Fixed(along) => {
+                let place = begins + model.number(along).clamp(zero, ends - begins);
+                action.times((s - place).select(one, zero))
+            }
+            Along::Pad { pad, .. } if *pad == own => action.times(if side == Side::After { one } else { zero }),
+            Along::Pad { s: other, .. } => action.times((s - other.clamp(zero, whole)).select(one, zero)),
+        };
+        for action in applied {
+            let [load, of_load] = before(action).wrench;
+            required = [required[0] + load, required[1] + of_load];
+        }
+        for branch in &swept.branches[body] {
+            let [pull, of_pull] = before(branch).wrench;
+            required = [required[0] - pull, required[1] - of_pull];
+        }
+        for (sum, part) in wrench.iter_mut().zip(required) {
+            *sum = *sum + here * part;
+        }
+        omega = omega + here * *own_omega;
+        alpha = alpha + here * motion.alpha;
+        a = a + here * motion.a;
+        start = start + here * begins;
+        if let Some(inertia) = &model.chain.bodies[body].inertia {
+            masses = masses.plus(here, &Masses::new(model, inertia).until(s - begins, ends - begins));
+        }
+    }
+    let [of_masses, turning] = with_inertia([none; 2], &masses, omega, (alpha, a));
+    let [force, moment] = [wrench[0] - of_masses, wrench[1] - turning];
+    let lever = Vec3::along(Axis::X, s - start);
+    Some([-force, -(moment - lever.cross(force))])
+}
+
+/// Mass and its moments about the origin of a body's frame, in its axes.
+struct Masses<'g> {
+    mass: Expr<'g>,
+    first: Vec3<'g>,
+    second: Symmetric3<'g>,
+}
+
+impl<'g> Masses<'g> {
+    fn new(model: &Model<'g>, inertia: &Inertia) -> Self {
+        Masses {
+            mass: model.number(&inertia.mass),
+            first: model.vector(&inertia.first),
+            second: model.second_moments(inertia),
+        }
+    }
+
+    fn zero(model: &Model<'g>) -> Self {
+        let zero = model.zero();
+        Masses { mass: zero, first: Vec3::zero(model.graph), second: Symmetric3([zero; 6]) }
+    }
+
+    fn plus(self, factor: Expr<'g>, other: &Self) -> Self {
+        let second = std::array::from_fn(|i| self.second.0[i] + factor * other.second.0[i]);
+        Masses {
+            mass: self.mass + factor * other.mass,
+            first: self.first + factor * other.first,
+            second: Symmetric3(second),
+        }
+    }
+
+    /// Of the part of an element of a length l from its beginning to x: as if the mass per length changed linearly between its ends. With `∫ x dm = S`
+    /// it is `a + b x`, `a = (4 m − 6 S/l)/l`, `b = (12 S/l − 6 m)/l²`; exact for a uniform element.
+    fn until(&self, x: Expr<'g>, l: Expr<'g>) -> Self {
+        let (t, mean) = (x / l, self.first[0] / l);
+        let (a, b) = (4.0 * self.mass - 6.0 * mean, 12.0 * mean - 6.0 * self.mass);
+        let squared = t.squared();
+        let of_first = squared * (0.5 * a + (1.0 / 3.0) * (b * t));
+        let of_second = t * squared * ((1.0 / 3.0) * a + 0.25 * (b * t));
+        let [_, yy, zz, xy, xz, yz] = self.second.0;
+        Masses {
+            mass: t * (a + 0.5 * (b * t)),
+            first: Vec3([l * of_first, t * self.first[1], t * self.first[2]]),
+            second: Symmetric3([l * l * of_second, t * yy, t * zz, squared * xy, squared * xz, t * yz]),
+        }
+    }
+}
+
+/// A wrench about a body's origin, plus what the motion of masses of the body requires.
+fn with_inertia<'g>(
     [force, moment]: Wrench<'g>,
-    inertia: &Inertia,
+    masses: &Masses<'g>,
     omega: Vec3<'g>,
     (alpha, a): (Vec3<'g>, Vec3<'g>),
 ) -> Wrench<'g> {
-    let (mass, first) = (model.number(&inertia.mass), model.vector(&inertia.first));
-    let tensor = model.second_moments(inertia).tensor();
+    let &Masses { mass, first, second } = masses;
+    let tensor = second.tensor();
     [
         force + mass * a + alpha.cross(first) + omega.cross(omega.cross(first)),
         moment + tensor.apply(alpha) + omega.cross(tensor.apply(omega)) + first.cross(a),
@@ -265,14 +401,15 @@ fn inward<'g>(
             (Factor::Body(index), Velocities::Body { omega }) => {
                 let body = &model.chain.bodies[*index];
                 sweep.visit(&body.name);
-                let (at_end, elsewhere): (Vec<_>, Vec<_>) =
-                    branches.take(*index).into_iter().partition(|branch: &Action<'g>| branch.along == body.length);
+                let (at_end, elsewhere): (Vec<_>, Vec<_>) = branches.take(*index).into_iter().partition(
+                    |branch: &Action<'g>| matches!(&branch.along, Along::Fixed(along) if *along == body.length),
+                );
                 [force, moment] = with_branches([force, moment], &at_end);
                 beyond[*index] = Some([force, moment]);
                 [force, moment] = with_branches([force, moment], &elsewhere);
                 at_bodies[*index] = elsewhere;
                 if let Some(inertia) = &body.inertia {
-                    [force, moment] = with_inertia(model, [force, moment], inertia, *omega, (*alpha, *a));
+                    [force, moment] = with_inertia([force, moment], &Masses::new(model, inertia), *omega, (*alpha, *a));
                     force.named(&format!("force_{}", body.name));
                     moment.named(&format!("moment_{}", body.name));
                 }
@@ -284,7 +421,10 @@ fn inward<'g>(
                 bodies[on] = note(force, moment);
             }
             (Factor::Branch(from), _) => {
-                branches.bring(*from, Action { along: model.chain.bodies[on].along.clone(), wrench: [force, moment] });
+                branches.bring(
+                    *from,
+                    Action { along: Along::Fixed(model.chain.bodies[on].along.clone()), wrench: [force, moment] },
+                );
                 (force, moment) = (zero, zero);
             }
             (Factor::Rotation(_) | Factor::Revolute { .. } | Factor::Ball { .. }, _) => {

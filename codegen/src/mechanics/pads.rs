@@ -10,13 +10,12 @@
 //! ```
 //!
 //! The first part counts if j moves the beam, the second if it moves the pad; if j moves both as one body, ℓ does not change. A tension of
-//! 1 N pulls the pad with n at P, and the beam with −n, which its elements share; in twist, a moment `y × z` turns the pad, and its opposite
-//! the beam. A pad is frictionless: no force acts on what slides except through the directions of n.
+//! 1 N pulls the pad with n at P, and the beam with −n there; in twist, a moment `y × z` turns the pad, and its opposite the beam. A pad is frictionless: no force acts on what slides except through the directions of n.
 
 use super::beam_axis::AxisPoint;
 use super::kinematics::Kinematics;
 use super::model::Model;
-use super::place::{Place, Pull};
+use super::place::{Along, Place, Pull};
 use super::strains::point;
 use super::vector::{Rotation, Vec3};
 use crate::chain::{Axis, BodyId, CoordinateId, PadDirection, Sliding};
@@ -29,7 +28,7 @@ pub struct AtPad<'g> {
     /// Indices and values of the entries of J.
     pub jacobian: Vec<(usize, Expr<'g>)>,
     /// What a tension of 1 N exerts on bodies.
-    pub pulls: Vec<(Place, Pull<'g>)>,
+    pub pulls: Vec<(Place<'g>, Pull<'g>)>,
 }
 
 /// A direction at a pad: ℓ, and what changes it.
@@ -42,7 +41,7 @@ struct Measured<'g> {
     /// `∂ℓ/∂q_j` of those that move the pad.
     by_pad: Vec<(usize, Expr<'g>)>,
     on_pad: Pull<'g>,
-    on_beam: Vec<(Place, Pull<'g>)>,
+    on_beam: Pull<'g>,
 }
 
 impl<'g> AtPad<'g> {
@@ -64,8 +63,13 @@ impl<'g> AtPad<'g> {
         jacobian[slid] = jacobian[slid] + sign * by_place;
         let changing = model.chain.changing_at(sliding).into_iter();
         let jacobian = changing.map(|CoordinateId(j)| (j, jacobian[j])).collect();
-        let of_pad = sliding.pad.body.map(|body| (Place { body, along: sliding.pad.position[0].clone() }, on_pad));
-        AtPad { length, jacobian, pulls: of_pad.into_iter().chain(on_beam).collect() }
+        let fixed = || Along::Fixed(sliding.pad.position[0].clone());
+        let of_pad = sliding.pad.body.map(|body| (Place { body, along: fixed() }, on_pad));
+        let here = AxisPoint::new(model, kinematics, &sliding.beam, s).here();
+        let of_beam = sliding.beam.elements().zip(here).map(|(body, here)| {
+            (Place { body, along: Along::Pad { s, pad: sliding.identity() } }, on_beam.times(here))
+        });
+        AtPad { length, jacobian, pulls: of_pad.into_iter().chain(of_beam).collect() }
     }
 }
 
@@ -96,11 +100,7 @@ fn along<'g>(
         by_beam: beam.position_slopes().into_iter().map(|(j, slope)| (j, normal.dot(slope))).collect(),
         by_pad: of_pad.map(|CoordinateId(j)| (j, -normal.dot(kinematics.generators[j].velocity(position)))).collect(),
         on_pad: Pull::of_force(position, normal),
-        on_beam: beam
-            .carried()
-            .into_iter()
-            .map(|(place, point, share)| (place, Pull::of_force(point, -(share * normal))))
-            .collect(),
+        on_beam: Pull::of_force(position, -normal),
     }
 }
 
@@ -114,10 +114,6 @@ fn twist<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, sliding: &Sliding, 
         force: Vec3::zero(model.graph),
         moment: Some(moment),
     };
-    let on_element = |(place, share): (Place, Expr<'g>)| {
-        let own = kinematics.poses[place.body.0].rotation.axis(Axis::Y);
-        (place, turned(share * z.cross(own)))
-    };
     // At any s, to be differentiated.
     let [free, _] = model.free_symbols();
     let anywhere = z.dot(AxisPoint::new(model, kinematics, &sliding.beam, free).cross_axis(Axis::Y));
@@ -128,6 +124,6 @@ fn twist<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, sliding: &Sliding, 
         by_beam: beam.cross_axis_slopes(Axis::Y).into_iter().map(|(j, slope)| (j, z.dot(slope))).collect(),
         by_pad: of_pad.map(|CoordinateId(j)| (j, kinematics.generators[j].omega.dot(z.cross(y)))).collect(),
         on_pad: turned(y.cross(z)),
-        on_beam: beam.turned().into_iter().map(on_element).collect(),
+        on_beam: turned(z.cross(y)),
     }
 }

@@ -1,16 +1,40 @@
 //! Places on bodies, and what is exerted there.
 
 use super::vector::Vec3;
-use crate::chain::{BodyId, Value};
+use crate::chain::{Attachment, BodyId, Sliding, Value};
 use crate::symbolic::Expr;
 
 /// Where a force acts on a body.
 #[derive(Clone, Debug)]
-pub struct Place {
+pub struct Place<'g> {
     /// The body.
     pub body: BodyId,
-    /// Position along it, m.
-    pub along: Value,
+    /// Position along it.
+    pub along: Along<'g>,
+}
+
+/// A position along a body.
+#[derive(Clone, Debug)]
+pub enum Along<'g> {
+    /// Always the same, m.
+    Fixed(Value),
+    /// That of a pad on which a beam slides: on the element where the pad is, the others get nothing from it.
+    Pad {
+        /// Its distance from the beginning of the beam, m.
+        s: Expr<'g>,
+        /// What tells it from the other pads.
+        pad: Pad,
+    },
+}
+
+/// What the directions in which one pad holds one beam have in common: the pad's body and position there, the beam and the place.
+pub type Pad = (Attachment, BodyId, Value);
+
+impl Sliding {
+    /// What tells this pad from the others of its beam.
+    pub fn identity(&self) -> Pad {
+        (self.pad.clone(), self.beam.first, self.start.clone())
+    }
 }
 
 /// A force on a body, in the world.

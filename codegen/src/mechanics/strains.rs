@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use super::kinematics::{Kinematics, Pose};
 use super::model::Model;
 use super::pads::AtPad;
-use super::place::{Place, Pull};
+use super::place::{Along, Place, Pull};
 use super::turning::Turned;
 use super::vector::Vec3;
 use crate::chain::{Attachment, BodyId, CoordinateId, Line, LinePart, Strain};
@@ -29,7 +29,7 @@ pub struct Strained<'g> {
     /// `u_i` of its parts: a tension of 1 N pulls `p_i` with `u_i`, and `p_{i+1}` with `−u_i`.
     pulls: Vec<Vec3<'g>>,
     /// What a tension of 1 exerts at a pad, N, or in a pin, N m.
-    on_bodies: Vec<(Place, Pull<'g>)>,
+    on_bodies: Vec<(Place<'g>, Pull<'g>)>,
 }
 
 /// The position of an end in the world.
@@ -109,7 +109,7 @@ impl<'g> Strained<'g> {
 
     /// The bodies that a tension of 1 N pulls, in the world: of all parts of a line or of some, at a pad, or in a pin. A strain of coordinates has none:
     /// its force acts on joints, like that of a drive.
-    pub fn pulls(&self, strain: &Strain, counts: impl Fn(&LinePart<'_>) -> bool) -> Vec<(Place, Pull<'g>)> {
+    pub fn pulls(&self, strain: &Strain, counts: impl Fn(&LinePart<'_>) -> bool) -> Vec<(Place<'g>, Pull<'g>)> {
         let Some(line) = strain.line() else { return self.on_bodies.clone() };
         let mut sums: Vec<Option<Vec3<'g>>> = vec![None; self.points.len()];
         for (index, (_, pull)) in line.parts().zip(&self.pulls).enumerate().filter(|(_, (part, _))| counts(part)) {
@@ -118,7 +118,7 @@ impl<'g> Strained<'g> {
             }
         }
         let of_point = |((end, point), pull): ((&Attachment, &Vec3<'g>), Option<Vec3<'g>>)| {
-            let place = Place { body: end.body?, along: end.position[0].clone() };
+            let place = Place { body: end.body?, along: Along::Fixed(end.position[0].clone()) };
             Some((place, Pull::of_force(*point, pull?)))
         };
         line.points.iter().zip(&self.points).zip(sums).filter_map(of_point).collect()

@@ -12,7 +12,7 @@
 
 use super::kinematics::Kinematics;
 use super::model::Model;
-use super::place::{Place, Pull};
+use super::place::{Along, Place, Pull};
 use super::vector::{Rotation, Vec3};
 use crate::chain::{Attachment, BodyId, CoordinateId, Turning, Vector};
 use crate::symbolic::Expr;
@@ -24,7 +24,7 @@ pub struct Turned<'g> {
     /// Indices and values of the entries of ∂θ/∂q.
     pub jacobian: Vec<(usize, Expr<'g>)>,
     /// What a torque of 1 N m exerts on bodies.
-    pub pulls: Vec<(Place, Pull<'g>)>,
+    pub pulls: Vec<(Place<'g>, Pull<'g>)>,
 }
 
 impl<'g> Turned<'g> {
@@ -41,7 +41,7 @@ impl<'g> Turned<'g> {
         };
         let zero = Vec3::zero(model.graph);
         let pull = |(end, moment): (&Attachment, Vec3<'g>)| {
-            let place = Place { body: end.body?, along: end.position[0].clone() };
+            let place = Place { body: end.body?, along: Along::Fixed(end.position[0].clone()) };
             Some((place, Pull { point: zero, force: zero, moment: Some(moment) }))
         };
         Turned {

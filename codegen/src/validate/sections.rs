@@ -3,8 +3,6 @@
 //! Forces and moments jump where a force acts on a beam, the shape jumps at a step. There, a section is known on both sides; besides these
 //! at both ends of the beam and where each of its elements begins.
 
-use std::collections::BTreeSet;
-
 use super::Check;
 use crate::chain::{
     Axis, Beam, BodyId, Cylinder, Force, Inside, Load, LoopJoint, Moduli, Outline, PadDirection, Section, Side,
@@ -53,10 +51,11 @@ impl Check<'_> {
         }
         let mut pins = pins(loads, cylinders, connectors, loop_joints);
         pins.extend(self.branches());
-        pins.extend(self.middles(connectors, loop_joints));
         let mut beams = std::mem::take(&mut self.beams);
         for (beam, distribution) in beams.iter_mut().zip(std::mem::take(&mut self.distributions)) {
             beam.sections = self.sections_of(&beam.link, distribution.as_ref(), &pins);
+            let of_pads = self.at_pads(beam, distribution.as_ref(), connectors, loop_joints);
+            beam.sections.extend(of_pads);
         }
         self.beams = beams;
     }
@@ -71,18 +70,34 @@ impl Check<'_> {
         })
     }
 
-    /// The middles of the inner elements of beams that slide on pads, which carry their forces.
-    fn middles(&self, connectors: &[Force], loop_joints: &[LoopJoint]) -> Vec<Pin> {
-        let exact = loop_joints.iter().filter_map(|joint| joint.kind.slides());
-        let sliding = connectors.iter().filter_map(|connector| connector.strain.sliding()).chain(exact);
-        let inner =
-            |sliding: &'_ Sliding| sliding.beam.elements().skip(1).take(sliding.beam.sections.saturating_sub(1));
-        let elements: BTreeSet<BodyId> = sliding.flat_map(inner).collect();
-        let middle = |BodyId(body): BodyId| {
-            let along = 0.5 * self.bodies[body].length.clone();
-            Pin { body, along, what: String::new(), jumps: false }
+    /// The sections of a beam at the pads on which it slides, before and after each of them.
+    fn at_pads(
+        &self,
+        beam: &Beam,
+        distribution: Option<&Distribution>,
+        connectors: &[Force],
+        loop_joints: &[LoopJoint],
+    ) -> Vec<Section> {
+        let (Some(distribution), Some(last)) = (distribution, beam.sections.iter().map(|section| section.body).max())
+        else {
+            return Vec::new();
         };
-        elements.into_iter().map(middle).collect()
+        let springs = connectors.iter().filter_map(|connector| Some((connector.strain.sliding()?, &connector.name)));
+        let springs = springs
+            .filter(|(sliding, _)| sliding.direction == PadDirection::Along(Axis::Y))
+            .map(|(sliding, name)| (sliding, name.trim_end_matches("_y")));
+        let exact = loop_joints.iter().filter_map(|joint| Some((joint.kind.slides()?, joint.name.as_str())));
+        let on_beam = springs.chain(exact).filter(|(sliding, _)| sliding.beam.last() == last);
+        let section = |(sliding, name): (&Sliding, &str), side| Section {
+            body: last,
+            x: sliding.start.clone(),
+            side,
+            at: format!("pads {name}"),
+            inside: None,
+            slides: Some(Box::new(sliding.clone())),
+            moduli: distribution.moduli(0.0)[1].clone(),
+        };
+        on_beam.flat_map(|pad| [Side::Before, Side::After].map(|side| section(pad, side))).collect()
     }
 
     fn sections_of(&self, link: &str, distribution: Option<&Distribution>, pins: &[Pin]) -> Vec<Section> {
@@ -246,7 +261,7 @@ impl Elements<'_, '_> {
 
     fn beginning(&self, element: usize, side: Side, at: String, moduli: Option<Moduli>) -> Section {
         let (body, x) = (BodyId(self.first + element), self.starts[element].clone());
-        Section { body, x, side, at, inside: None, moduli }
+        Section { body, x, side, at, inside: None, slides: None, moduli }
     }
 
     fn inside(

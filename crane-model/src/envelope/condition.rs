@@ -50,7 +50,7 @@ impl Condition {
         let reactions = crane.support_reactions_at(&q, &rest).into_iter().zip(crane.support_gaps_at(&q));
         Self {
             lines: tipping::lines(crane, 0.0, &q, &rest, &rest),
-            sections: stressed_sections(crane.description(), &crane.section_moduli_at(), &wrenches),
+            sections: stressed_sections(crane.description(), &crane.section_moduli_at(), &q, &wrenches),
             cylinders: cylinders_at(crane, &q, &rest, &efforts),
             efforts,
             feet: reactions.map(|(force, gap)| [force.z, gap]).collect(),
@@ -98,7 +98,7 @@ impl Condition {
         }
         if let Some(greatest) = limits.utilisation {
             let slack = |section: &StressedSection| {
-                Some((Limit::Utilisation { section: section.section }, 1.0 - section.utilisation? / greatest))
+                Some((Limit::Utilisation { section: section.place.section }, 1.0 - section.utilisation? / greatest))
             };
             slacks.extend(self.sections.iter().filter_map(slack));
         }

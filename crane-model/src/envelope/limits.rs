@@ -1,6 +1,6 @@
 //! Limits of the load.
 
-use crate::{Description, dyn_crane::DynCrane};
+use crate::{Description, dyn_crane::DynCrane, sections};
 
 /// Limits that a load must not exceed.
 #[derive(Clone, Debug, PartialEq)]
@@ -212,11 +212,7 @@ impl Limit {
                 let [from, to] = feet.map(|foot| description.supports[foot].name.as_str());
                 format!("{from} – {to}")
             }
-            Limit::Utilisation { section } => {
-                let section = &description.sections[section];
-                let body = description.bodies[section.body].name.as_str();
-                if section.at.is_empty() { body.to_owned() } else { format!("{body} {}", section.location()) }
-            }
+            Limit::Utilisation { section } => sections::location(description, section, None),
             Limit::Effort { drive } => description.coordinates[description.drives[drive].coordinate].name.to_string(),
             Limit::Deflection { point } => description.points[point].to_string(),
             Limit::Pressure { cylinder, rod } | Limit::Pump { cylinder, rod } => side(cylinder, rod),

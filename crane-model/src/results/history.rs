@@ -1,10 +1,11 @@
 //! Internal forces and tipping lines over a run.
 
 use crate::{
-    Wrench,
+    Description, SectionModuli, Wrench,
     dyn_crane::DynCrane,
     force_states,
     results::quantities,
+    sections::{self, Place, StressedSection},
     tipping::{TippingLine, lines},
 };
 
@@ -15,6 +16,8 @@ pub struct Instant {
     pub t: f64,
     /// Tipping lines.
     pub lines: Vec<TippingLine>,
+    /// The pose, m and rad.
+    pub q: Vec<f64>,
     /// Internal forces at every cut.
     pub wrenches: Vec<Wrench>,
 }
@@ -26,6 +29,7 @@ impl Instant {
         Self {
             t: 0.0,
             lines: lines(crane, 0.0, q, &rest, &rest),
+            q: q.to_vec(),
             wrenches: crane.internal_forces_at(0.0, q, &rest, &rest),
         }
     }
@@ -33,7 +37,22 @@ impl Instant {
     /// In motion.
     fn moving(crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> Self {
         let (a, _) = force_states::accelerations(crane, t, (q, v), x);
-        Self { t, lines: lines(crane, t, q, v, &a), wrenches: crane.internal_forces_of(t, [q, v, &a], x) }
+        Self {
+            t,
+            lines: lines(crane, t, q, v, &a),
+            q: q.to_vec(),
+            wrenches: crane.internal_forces_of(t, [q, v, &a], x),
+        }
+    }
+
+    /// All places of beams and what they carry.
+    pub fn places(&self, description: &Description) -> Vec<Place> {
+        sections::places(description, &self.q, &self.wrenches)
+    }
+
+    /// Those whose stresses are known; `moduli` one per section.
+    pub fn stressed_sections(&self, description: &Description, moduli: &[SectionModuli]) -> Vec<StressedSection> {
+        sections::stressed_sections(description, moduli, &self.q, &self.wrenches)
     }
 }
 

@@ -1,12 +1,7 @@
 //! Cautions about what a crane carries: sections beyond their allowable stress, and moments that tip it over.
 
 use super::{Instant, Table, instants};
-use crate::{
-    Description, SectionModuli,
-    dyn_crane::DynCrane,
-    sections::{StressedSection, stressed_sections},
-    tipping::governing,
-};
+use crate::{Description, SectionModuli, dyn_crane::DynCrane, sections::StressedSection, tipping::governing};
 
 /// At a pose at rest.
 pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
@@ -56,7 +51,7 @@ fn tipping(description: &Description, history: &[Instant], moves: bool) -> Optio
 fn overstress(description: &Description, moduli: &[SectionModuli], history: &[Instant], moves: bool) -> Option<String> {
     let mut worst: Vec<(f64, f64, StressedSection)> = Vec::new();
     for instant in history {
-        for section in stressed_sections(description, moduli, &instant.wrenches) {
+        for section in instant.stressed_sections(description, moduli) {
             let Some(used) = section.utilisation.filter(|used| *used > 1.0) else { continue };
             let same =
                 |(.., other): &&mut (f64, f64, StressedSection)| other.beam(description) == section.beam(description);
@@ -71,9 +66,8 @@ fn overstress(description: &Description, moduli: &[SectionModuli], history: &[In
     let each = worst.iter().map(|(used, t, section)| {
         let when = if moves { format!(" at {t:.2} s") } else { String::new() };
         format!(
-            "{}, {:.3} m from its start{when}: {:.0} MPa, {used:.2} times the allowable stress",
-            section.beam(description),
-            section.info(description).x,
+            "{}{when}: {:.0} MPa, {used:.2} times the allowable stress",
+            section.location(description),
             section.stress.equivalent / 1e6
         )
     });

@@ -90,7 +90,7 @@ pub fn observe(source: &SourceFile, run: bool) -> Result<Numbers, String> {
     let rest = vec![0.0; q.len()];
     let description = crane.description();
     let wrenches = crane.internal_forces_at(0.0, &q, &rest, &rest);
-    for (name, unit, value) in stresses(crane, &wrenches) {
+    for (name, unit, value) in stresses(crane, &q, &wrenches) {
         add(CUTS.0, name, unit, value);
     }
     for (cut, wrench) in description.cuts().iter().zip(wrenches) {
@@ -128,10 +128,10 @@ pub fn observe(source: &SourceFile, run: bool) -> Result<Numbers, String> {
 }
 
 /// The largest stress of each beam, Pa, and the largest utilisation of all.
-fn stresses(crane: &dyn DynCrane, wrenches: &[Wrench]) -> Vec<(String, &'static str, f64)> {
+fn stresses(crane: &dyn DynCrane, q: &[f64], wrenches: &[Wrench]) -> Vec<(String, &'static str, f64)> {
     let description = crane.description();
     let mut greatest: BTreeMap<String, (&'static str, f64)> = BTreeMap::new();
-    for section in stressed_sections(description, &crane.section_moduli_at(), wrenches) {
+    for section in stressed_sections(description, &crane.section_moduli_at(), q, wrenches) {
         let beam = section.beam(description);
         let used = section.utilisation.map(|used| ("utilisation with stress".to_owned(), "", used));
         for (name, unit, value) in used.into_iter().chain([(format!("{beam} stress"), "Pa", section.stress.equivalent)])

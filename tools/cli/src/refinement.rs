@@ -5,11 +5,7 @@ use crane_codegen::{
     spec::{Analysis, Link, Sections, Spanned},
 };
 use crane_live::LiveCrane;
-use crane_model::{
-    dyn_crane::DynCrane,
-    modes::undamped,
-    sections::{StressedSection, stressed_sections},
-};
+use crane_model::{dyn_crane::DynCrane, modes::undamped, sections::StressedSection};
 use crane_page::{history::Instant, tables::Case};
 
 use crate::{problem::Outcome, selection::Registry};
@@ -46,8 +42,8 @@ pub fn changes(case: &Case<'_>, registry: &Registry) -> Outcome<Option<Vec<f64>>
 /// a crane without stresses or sections, with too many, or without a stable pose.
 pub fn change_of_stress(case: &Case<'_>, registry: &Registry) -> Option<f64> {
     let greatest = |case: &Case<'_>| {
-        let wrenches = Instant::at_rest(case.crane, &case.equilibrium.q).wrenches;
-        let sections = stressed_sections(case.crane.description(), &case.crane.section_moduli_at(), &wrenches);
+        let rest = Instant::at_rest(case.crane, &case.equilibrium.q);
+        let sections = rest.stressed_sections(case.crane.description(), &case.crane.section_moduli_at());
         let section = sections.into_iter().max_by(StressedSection::by_use)?;
         Some(section.utilisation.unwrap_or(section.stress.equivalent))
     };

@@ -6,7 +6,7 @@ use crane_codegen::chain::{
 use crane_model::{
     AttachmentInfo, BodyInfo, Bound, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole,
     CylinderInfo, Description, DriveInfo, InputInfo, LoadInfo, LoopEquationInfo, LoopJointInfo, ParameterInfo,
-    PumpInfo, Refusal, SectionInfo, Side, StageInfo, SupportInfo, ValveInfo,
+    PumpInfo, Refusal, SectionInfo, Side, SlideInfo, StageInfo, SupportInfo, ValveInfo,
 };
 
 /// What the bodies of a chain with branches are attached to, as the compiler writes it.
@@ -48,6 +48,10 @@ pub fn describe(chain: &Chain) -> Description {
             chain::Side::After => Side::After,
         },
         at: section.at.clone().into(),
+        slides: section
+            .slides
+            .as_ref()
+            .map(|sliding| SlideInfo { coordinate: sliding.coordinate.0, grows: sliding.grows }),
     });
     let supports = chain.supports.iter().map(|support| SupportInfo {
         name: support.name.clone().into(),

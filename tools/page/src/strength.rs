@@ -4,7 +4,7 @@ use base64::{Engine, prelude::BASE64_STANDARD};
 use crane_model::{
     Description, SectionModuli,
     dyn_crane::DynCrane,
-    sections::{StressedSection, stressed_sections},
+    sections::{Place, StressedSection},
     tipping::TippingLine,
 };
 use serde_json::{Value, json};
@@ -14,19 +14,66 @@ use crate::history::Instant;
 /// Pascals in a newton per square millimetre.
 const MEGA: f64 = 1e6;
 
-/// Utilisation of all sections whose moduli are known (stresses in megapascals if no beam has a yield stress), and margins about all tipping lines,
-/// of every `every`-th result.
+/// What all places of beams carry; utilisation of those whose moduli are known (stresses in megapascals if no beam has a yield stress); and margins
+/// about all tipping lines, of every `every`-th result.
 pub fn data(crane: &dyn DynCrane, history: &[Instant], every: usize) -> Value {
     let description = crane.description();
     let moduli = crane.section_moduli_at();
-    if description.supports.is_empty() && moduli.iter().all(|moduli| moduli.area <= 0.0) {
+    if description.supports.is_empty() && description.sections.is_empty() {
         return Value::Null;
     }
-    json!({"sections": sections(description, &moduli, history, every), "stability": stability(description, history, every)})
+    json!({
+        "carried": carried(description, history, every),
+        "sections": sections(description, &moduli, history, every),
+        "stability": stability(description, history, every),
+    })
+}
+
+/// Moments about x, y and z at all places of beams, in the order of the sections.
+fn carried(description: &Description, history: &[Instant], every: usize) -> Value {
+    let at = |instant: &Instant| {
+        let mut places = instant.places(description);
+        places.sort_by_key(|place| place.section);
+        places
+    };
+    let all: Vec<Vec<Place>> = history.iter().map(at).collect();
+    let Some(first) = all.first().filter(|places| !places.is_empty()) else { return Value::Null };
+    let moments = |place: &Place| -> [f64; 3] { place.wrench.moment.into() };
+    let places: Vec<Value> = first
+        .iter()
+        .enumerate()
+        .map(|(index, place)| {
+            let ranges = [0, 1, 2].map(|axis| extremes(all.iter().map(|places| moments(&places[index])[axis])));
+            let mut words = words(place, description);
+            words["ranges"] = json!(ranges);
+            words
+        })
+        .collect();
+    let data = packed(all.iter().step_by(every).flatten().flat_map(moments));
+    json!({"places": places, "data": data, "x": ways(&all, description, every)})
+}
+
+/// Where a place is, for readers.
+fn words(place: &Place, description: &Description) -> Value {
+    let info = place.info(description);
+    json!({"beam": place.beam(description), "body": info.body, "x": place.x, "place": info.location(), "slides": info.slides.is_some()})
+}
+
+/// Distances of all places that slide, row by row.
+fn ways(all: &[Vec<Place>], description: &Description, every: usize) -> String {
+    let sliding = |places: &'_ Vec<Place>| -> Vec<f64> {
+        let slide = |place: &&Place| place.info(description).slides.is_some();
+        places.iter().filter(slide).map(|place| place.x).collect()
+    };
+    packed(all.iter().step_by(every).flat_map(sliding))
 }
 
 fn sections(description: &Description, moduli: &[SectionModuli], history: &[Instant], every: usize) -> Value {
-    let at = |instant: &Instant| stressed_sections(description, moduli, &instant.wrenches);
+    let at = |instant: &Instant| {
+        let mut sections = instant.stressed_sections(description, moduli);
+        sections.sort_by_key(|section| section.place.section);
+        sections
+    };
     let Some(first) = history.first().map(at).filter(|sections| !sections.is_empty()) else {
         return Value::Null;
     };
@@ -39,11 +86,10 @@ fn sections(description: &Description, moduli: &[SectionModuli], history: &[Inst
         .iter()
         .enumerate()
         .map(|(index, section)| {
-            let info = section.info(description);
             let [_, most] = extremes(values.iter().map(|row| row[index]));
-            json!({
-                "beam": section.beam(description), "body": info.body, "x": info.x, "place": info.location(), "most": most,
-            })
+            let mut words = words(&section.place, description);
+            words["most"] = json!(most);
+            words
         })
         .collect();
     let data = packed(values.iter().step_by(every).flatten().copied());

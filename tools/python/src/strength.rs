@@ -81,11 +81,11 @@ fn write_wrenches_of(crane: &LiveCrane, Moment { t, q, v, a }: &Moment, out: &mu
     let description = crane.description();
     out.fill(f64::NAN);
     let wrenches = crane.internal_forces_at(*t, q, v, a);
-    let known = stressed_sections(description, &crane.section_moduli_at(), &wrenches);
+    let known = stressed_sections(description, &crane.section_moduli_at(), q, &wrenches);
     for section in known {
         let Stress { normal, shear, torsion, equivalent } = section.stress;
         let of_section = [normal, shear, torsion, equivalent, section.utilisation.unwrap_or(f64::NAN)];
-        out[OF_SECTION * section.section..][..OF_SECTION].copy_from_slice(&of_section);
+        out[OF_SECTION * section.place.section..][..OF_SECTION].copy_from_slice(&of_section);
     }
     let lines = tipping::lines(crane, *t, q, v, a);
     if let (Some(line), Some(out)) = (tipping::governing(&lines), out.last_chunk_mut::<OF_LINE>()) {

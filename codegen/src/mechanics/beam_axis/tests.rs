@@ -140,26 +140,16 @@ fn slopes_over_coordinates_are_those_of_differences() {
     }
 }
 
+/// Springs of 4 sections of 1 m are at 0.5, 1.5, 2.5 and 3.5 m.
 #[test]
-fn what_the_elements_carry_is_a_force_on_the_curve() {
+fn every_place_is_on_one_element() {
     let (chain, n) = (beam("4"), 4);
     let q = bent(&chain);
-    for s in [-0.2, 0.0, 0.3, 1.7, 2.0, 3.9, 4.3] {
-        let (shares, middle, position) = at((&chain, n), &q, s, |point, _| {
-            let carried = point.carried();
-            let shares: Vec<f64> = carried.iter().map(|(.., share)| share.as_constant().expect("a number")).collect();
-            let points: Vec<[f64; 3]> = carried.iter().map(|(_, point, _)| numbers(*point)).collect();
-            let middle = [0, 1, 2].map(|i| shares.iter().zip(&points).map(|(share, point)| share * point[i]).sum());
-            (shares, middle, numbers(point.position()))
+    for (s, element) in [(-0.2, 0), (0.0, 0), (0.3, 0), (0.7, 1), (1.7, 2), (2.0, 2), (3.9, 4), (4.3, 4)] {
+        let here: Vec<f64> = at((&chain, n), &q, s, |point, _| {
+            point.here().iter().map(|here| here.as_constant().expect("a number")).collect()
         });
-        assert!((shares.iter().sum::<f64>() - 1.0).abs() < ROUNDING, "s = {s}: {shares:?}");
-        assert!(shares.iter().all(|share| *share >= 0.0) && shares.iter().filter(|share| **share > 0.0).count() <= 3);
-        assert!(distance(middle, position) < ROUNDING, "s = {s}");
-    }
-    for s in [0.0, 0.3, 1.7, 4.0] {
-        let total = at((&chain, n), &q, s, |point, _| {
-            point.turned().iter().map(|(_, share)| share.as_constant().expect("a number")).sum::<f64>()
-        });
-        assert!((total - 1.0).abs() < ROUNDING, "s = {s}");
+        let expected: Vec<f64> = (0..=n).map(|k| if k == element { 1.0 } else { 0.0 }).collect();
+        assert_eq!(here, expected, "s = {s}");
     }
 }

@@ -1,8 +1,9 @@
 //! Loads and moments about tipping lines over a run.
 
 use crane_model::{
-    Cut, Description, SectionInfo, Wrench,
+    Cut, Description, SectionInfo, SectionModuli, Stress, Wrench,
     results::Table,
+    sections::StressedSection,
     tipping::{TippingLine, governing},
 };
 use crane_page::history::Instant;
@@ -30,16 +31,18 @@ pub fn prefix(description: &Description, cut: Cut) -> Option<(String, [&'static 
         }
         Cut::Body { section: None, .. } => None,
         Cut::Inside { section } => {
-            let SectionInfo { body, side, at, .. } = &description.sections[section];
-            let what = at.replace(' ', "_");
-            Some((format!("{}_{}_{what}", description.bodies[*body].name, side.name()), OF_SECTIONS))
+            let SectionInfo { body, side, at, slides, .. } = &description.sections[section];
+            let (what, body) = (at.replace(' ', "_"), &description.bodies[*body]);
+            let on = if slides.is_some() { &body.link } else { &body.name };
+            Some((format!("{on}_{}_{what}", side.name()), OF_SECTIONS))
         }
     }
 }
 
 /// The history in columns: `t`; for a tipping line `<from>_<to>_stabilising` and `_overturning`; for the ground, joints and
-/// sections the six components. A section within an element is named after the element and what is there.
-pub fn table(description: &Description, history: &[Instant]) -> Table {
+/// sections the six components, and for sections whose moduli are known four stresses and the utilisation. A section within an element is named
+/// after the element and what is there, one at a pad on which the beam slides after the beam; of the latter, `x` is where it is on the beam.
+pub fn table(description: &Description, moduli: &[SectionModuli], history: &[Instant]) -> Table {
     let mut table = Table::default();
     table.add("t", "s");
     for line in history.first().map_or(&[][..], |instant| &instant.lines) {
@@ -54,10 +57,35 @@ pub fn table(description: &Description, history: &[Instant]) -> Table {
             table.add(format!("{prefix}_{component}"), unit);
         }
     }
+    // Columns are in the order of the sections, whose order along a beam changes where it slides.
+    let stressed = |instant: &Instant| {
+        let mut sections = instant.stressed_sections(description, moduli);
+        sections.sort_by_key(|section| section.place.section);
+        sections
+    };
+    for StressedSection { place, utilisation, .. } in history.first().map(stressed).unwrap_or_default() {
+        let Some((prefix, _)) = prefix(description, cuts[place.cut]) else { continue };
+        if place.info(description).slides.is_some() {
+            table.add(format!("{prefix}_x"), "m");
+        }
+        for what in ["normal", "shear", "torsion", "equivalent"] {
+            table.add(format!("{prefix}_{what}_stress"), "Pa");
+        }
+        if utilisation.is_some() {
+            table.add(format!("{prefix}_utilisation"), "");
+        }
+    }
+    let of_stresses = |StressedSection { place, stress, utilisation }: StressedSection| {
+        let Stress { normal, shear, torsion, equivalent } = stress;
+        let x = place.info(description).slides.map(|_| place.x);
+        x.into_iter().chain([normal, shear, torsion, equivalent]).chain(utilisation)
+    };
     let row = |instant: &Instant| {
         let moments = instant.lines.iter().flat_map(|line| [line.stabilising, line.overturning]);
         let shown = cuts.iter().zip(&instant.wrenches).filter(|(cut, _)| prefix(description, **cut).is_some());
-        [instant.t].into_iter().chain(moments).chain(shown.flat_map(|(_, wrench)| numbers(wrench))).collect()
+        let wrenches = shown.flat_map(|(_, wrench)| numbers(wrench));
+        let stresses = stressed(instant).into_iter().flat_map(of_stresses);
+        [instant.t].into_iter().chain(moments).chain(wrenches).chain(stresses).collect()
     };
     table.rows = history.iter().map(row).collect();
     table

@@ -60,10 +60,10 @@ pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) ->
         loads::critical(&mut report, crane.as_mut(), index)?;
     }
     let crane = crane.as_ref();
-    report.grid(stresses::table(crane.description(), &moduli, &rest.wrenches));
+    report.grid(stresses::table(crane.description(), &moduli, &rest));
     report.grid(tables::tipping(crane.description(), &rest.lines));
     if let Some(history) = &history {
-        let table = history::table(crane.description(), history);
+        let table = history::table(crane.description(), &moduli, history);
         report.grid(tables::extremes_of_joints(crane.description(), &table));
         report.grid(tables::extremes_of_sections(crane.description(), &table));
         if let Some(file) = &options.results {
@@ -71,7 +71,7 @@ pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) ->
         }
     }
     report.grid(tables::joints(crane.description(), &rest.wrenches));
-    report.excerpt(tables::sections(crane.description(), &rest.wrenches), 0);
+    report.excerpt(tables::sections(crane.description(), &rest), 0);
     report.show_all(options.analysis.all);
     options.analysis.format.print(&report, out)
 }

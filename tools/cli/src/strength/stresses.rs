@@ -1,11 +1,10 @@
 //! Stresses of beams, and how far they use the allowable stress.
 
-use crane_model::{
-    Description, SectionModuli, Stress, Wrench,
-    sections::{StressedSection, stressed_sections},
-};
+use crane_model::{Description, SectionModuli, Stress, sections::StressedSection};
 use crane_page::history::Instant;
 use crane_page::tables::{Cell, Grid, Report, Scale};
+
+use super::tables::words;
 
 /// Reports the section with the highest utilisation, at rest or over a run.
 pub fn verdict(
@@ -16,7 +15,7 @@ pub fn verdict(
     of_what: &str,
 ) {
     let sections = instants.iter().flat_map(|instant| {
-        let sections = stressed_sections(description, moduli, &instant.wrenches);
+        let sections = instant.stressed_sections(description, moduli);
         sections.into_iter().map(|section| (instant.t, section))
     });
     let greatest = sections.max_by(|(_, a), (_, b)| StressedSection::by_use(a, b));
@@ -41,19 +40,16 @@ pub fn verdict(
 }
 
 /// Stresses of all sections at rest.
-pub fn table(description: &Description, moduli: &[SectionModuli], wrenches: &[Wrench]) -> Grid {
+pub fn table(description: &Description, moduli: &[SectionModuli], rest: &Instant) -> Grid {
     let title = "Stresses of beams at rest: maximum of normal force and bending, of shear forces, of torsion; von Mises' equivalent of \
                  all three, and its ratio to yield stress over safety factor";
     let headers =
         ["beam", "x [m]", "place", "normal [MPa]", "shear [MPa]", "torsion [MPa]", "equivalent [MPa]", "utilisation"];
     let mut grid = Grid::new("stresses", title, &headers);
-    for section in stressed_sections(description, moduli, wrenches) {
-        let StressedSection { stress, utilisation, .. } = section;
-        let info = section.info(description);
+    for StressedSection { place, stress, utilisation } in rest.stressed_sections(description, moduli) {
         let Stress { normal, shear, torsion, equivalent } = stress;
         let stresses = [normal, shear, torsion, equivalent].map(|pascal| Cell::Shown(pascal, Scale::Megapascal));
-        let location = [Cell::from(section.beam(description)), info.x.into(), info.location().into()];
-        let row = location.into_iter().chain(stresses).chain([utilisation.into()]);
+        let row = words(&place, description).into_iter().chain(stresses).chain([utilisation.into()]);
         grid.row(row.collect::<Vec<_>>());
     }
     grid

@@ -2,7 +2,8 @@
 
 use crane_model::{
     Cut, Description, Wrench,
-    results::{Extremes, Table},
+    results::{Extremes, Instant, Table},
+    sections::Place,
     tipping::TippingLine,
 };
 use crane_page::tables::{Cell, Grid};
@@ -53,19 +54,19 @@ pub fn joints(description: &Description, wrenches: &[Wrench]) -> Grid {
     grid
 }
 
+/// Where a place is: the beam, the distance from its beginning, what is there.
+pub fn words(place: &Place, description: &Description) -> [Cell; 3] {
+    [place.beam(description).into(), place.x.into(), place.info(description).location().into()]
+}
+
 /// What the sections of beams carry.
-pub fn sections(description: &Description, wrenches: &[Wrench]) -> Grid {
+pub fn sections(description: &Description, rest: &Instant) -> Grid {
     let title = "Section forces of beams at rest, in the section's frame, x along the beam: N is positive in tension, Mx twists, My \
                  and Mz bend as theta and psi do";
     let mut grid = Grid::new("sections", title, &borrowed(&headings(&["beam", "x [m]", "place"], OF_SECTIONS)));
-    for (cut, wrench) in description.cuts().into_iter().zip(wrenches) {
-        if let Some(section) = cut.section() {
-            let section = &description.sections[section];
-            let beam = description.bodies[section.body].link.as_str();
-            let location = [Cell::from(beam), section.x.into(), section.location().into()];
-            let row = location.into_iter().chain(numbers(wrench).map(Cell::from));
-            grid.row(row.collect::<Vec<_>>());
-        }
+    for place in rest.places(description) {
+        let row = words(&place, description).into_iter().chain(numbers(&place.wrench).map(Cell::from));
+        grid.row(row.collect::<Vec<_>>());
     }
     grid
 }
@@ -111,6 +112,12 @@ pub fn extremes_of_sections(description: &Description, table: &Table) -> Grid {
         "unit",
     ];
     let mut grid = Grid::new("extremes_of_sections", title, &headers);
+    // The distance of a section that slides changes.
+    let x_at = |cut: Cut, x: f64, time: f64| {
+        let (prefix, _) = prefix(description, cut)?;
+        let row = table.rows.iter().position(|row| row[0] == time)?;
+        Some(table.values(&format!("{prefix}_x")).and_then(|mut values| values.nth(row)).unwrap_or(x))
+    };
     let mut beams: Vec<(&str, Vec<(f64, Cut)>)> = Vec::new();
     for cut in description.cuts() {
         if let Some(section) = cut.section() {
@@ -123,20 +130,23 @@ pub fn extremes_of_sections(description: &Description, table: &Table) -> Grid {
         }
     }
     for (beam, sections) in beams {
-        let all: Vec<_> = sections.iter().map(|(x, cut)| (*x, extremes(description, *cut, table))).collect();
+        let all: Vec<_> = sections.iter().map(|(x, cut)| ((*x, *cut), extremes(description, *cut, table))).collect();
         for index in 0..UNITS.len() {
-            let at = all.iter().map(|(x, found)| (*x, found[index]));
+            let at = all.iter().map(|(place, found)| (*place, found[index]));
             let least = at.clone().min_by(|(_, (.., a)), (_, (.., b))| a.minimum.total_cmp(&b.minimum));
             let greatest = at.max_by(|(_, (.., a)), (_, (.., b))| a.maximum.total_cmp(&b.maximum));
-            let (Some((x, (component, unit, low))), Some((x_high, (.., high)))) = (least, greatest) else { continue };
+            let (Some(((x, cut), (component, unit, low))), Some(((x_high, cut_high), (.., high)))) = (least, greatest)
+            else {
+                continue;
+            };
             grid.row([
                 beam.into(),
                 component.into(),
                 low.minimum.into(),
-                x.into(),
+                x_at(cut, x, low.time_of_minimum).into(),
                 low.time_of_minimum.into(),
                 high.maximum.into(),
-                x_high.into(),
+                x_at(cut_high, x_high, high.time_of_maximum).into(),
                 high.time_of_maximum.into(),
                 unit.into(),
             ]);

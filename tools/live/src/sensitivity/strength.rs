@@ -48,7 +48,7 @@ impl Strength {
             return None;
         }
         let mut sections: Vec<StressedSection> = Vec::new();
-        for section in stressed_sections(description, &crane.section_moduli_at(), &wrenches) {
+        for section in stressed_sections(description, &crane.section_moduli_at(), &rest.q, &wrenches) {
             let same = |known: &&mut StressedSection| known.beam(description) == section.beam(description);
             match sections.iter_mut().find(same) {
                 Some(known) if StressedSection::by_use(known, &section).is_lt() => *known = section,
@@ -71,13 +71,14 @@ impl Strength {
         let description = source.crane.description();
         let wrenches = wrenches_at(source, q, multipliers);
         let moduli = source.at(FunctionId::SectionModuli, q);
-        let cuts = description.cuts();
         let worst = self.sections.iter().max_by(|a, b| StressedSection::by_use(a, b));
         let each = self.sections.iter().map(|section| (section, section.beam(description).to_owned() + "_"));
         for (section, beam) in worst.map(|section| (section, "greatest_".to_owned())).into_iter().chain(each) {
-            let Some(cut) = cuts.iter().position(|cut| cut.section() == Some(section.section)) else { continue };
-            let moduli = &moduli[8 * section.section..][..8];
-            let stress = equivalent(moduli, &wrenches[cut]);
+            let moduli: [Dual8; 8] = std::array::from_fn(|number| {
+                let of = |section: usize| moduli[8 * section + number];
+                section.place.moduli.mean(of, |one, other, part| one + Dual8::constant(part) * (other - one))
+            });
+            let stress = equivalent(&moduli, &wrenches[section.place.cut]);
             let named = |name: &str, unit| Output {
                 place: section.location(description),
                 ..named(format!("{beam}{name}"), unit, Group::Stresses)

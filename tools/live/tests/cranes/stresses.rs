@@ -28,7 +28,7 @@ fn at_rest(crane: &LiveCrane) -> (Sections<Wrench>, Sections<StressedSection>) {
     let description = crane.description();
     let cuts = description.cuts().into_iter().zip(&wrenches);
     let carried = cuts.filter_map(|(cut, wrench)| Some((description.sections[cut.section()?].clone(), *wrench)));
-    let stressed = stressed_sections(description, &crane.section_moduli_at(), &wrenches);
+    let stressed = stressed_sections(description, &crane.section_moduli_at(), &found.q, &wrenches);
     (carried.collect(), stressed.into_iter().map(|section| (section.info(description).clone(), section)).collect())
 }
 

@@ -1,9 +1,6 @@
 //! What bending beams do: utilisation, deflection, vibration.
 
-use crane_model::{
-    Description,
-    sections::{StressedSection, stressed_sections},
-};
+use crane_model::{Description, sections::StressedSection};
 use nalgebra::Vector3;
 
 use super::{Figure, quantity, spoken};
@@ -17,15 +14,11 @@ pub(super) fn utilisation(crane: &Shown<'_>) -> Option<Figure> {
     let live = crane.subject.crane;
     let (description, moduli) = (live.description(), live.section_moduli_at());
     let sections = crane.history.iter().flat_map(|instant| {
-        let sections = stressed_sections(description, &moduli, &instant.wrenches);
+        let sections = instant.stressed_sections(description, &moduli);
         sections.into_iter().map(|section| (instant.t, section))
     });
     let (time, section) = sections.max_by(|(_, a), (_, b)| StressedSection::by_use(a, b))?;
-    let info = section.info(description);
-    let mut location = format!("{}, {} m from its start", spoken(section.beam(description)), readable(info.x));
-    if !info.at.is_empty() {
-        location = format!("{location}, {}", info.location());
-    }
+    let location = section.location(description);
     let stress = format!("{} MPa", readable(section.stress.equivalent / 1e6));
     let when = crane.when(time);
     let Some(used) = section.utilisation else {
