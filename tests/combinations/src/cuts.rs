@@ -4,13 +4,14 @@
 //! transforms. The recursion that it checks works in the frames of the bodies, outward and back.
 
 use crane_codegen::chain::{
-    Attachment, Axis, BodyId, Cylinder, Inertia, Line, Load, LoadAxes, LoopJointKind, PadDirection, Pin, Sliding,
-    Strain, Value,
+    Attachment, Axis, BodyId, Cylinder, Inertia, Line, Load, LoadAxes, LoopJointKind, PadDirection, Pin, Section,
+    Sliding, Strain, Value,
 };
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::nalgebra::{DVector, Matrix3, Matrix4, Vector3, Vector6};
-use crane_model::{Cut, Wrench};
+use crane_model::sections::{Place, places};
+use crane_model::{Cut, Side, Wrench};
 
 /// A force and its moment about the world's origin, N and N m.
 type Screw = Vector6<f64>;
@@ -47,6 +48,61 @@ pub fn imbalances(crane: &LiveCrane, motion: &Motion) -> Vec<(String, f64)> {
     let rest = remainder(&sums, &unknown_forces(crane, motion.q, &transforms));
     let missing = |body: usize| rest.fixed_rows::<6>(6 * body).norm() / size.max(1.0);
     chain.bodies.iter().enumerate().map(|(body, own)| (own.name.clone(), missing(body))).collect()
+}
+
+/// By how much what a beam carries before each pad on which it slides differs from what it carries after it, without what pads exert there,
+/// relative to what it carries: the name of the place, and what remains.
+#[must_use]
+pub fn jumps(crane: &LiveCrane, motion: &Motion) -> Vec<(String, f64)> {
+    let whole: &dyn DynCrane = crane;
+    let description = whole.description();
+    let transforms = crane_transforms(crane, motion.q);
+    let tensions = whole.connector_tensions_at(motion.t, motion.q, motion.v);
+    let wrenches = whole.internal_forces_at(motion.t, motion.q, motion.v, motion.a);
+    let all = places(description, motion.q, &wrenches);
+    let sections: Vec<&Section> = crane.chain().beams.iter().flat_map(|beam| &beam.sections).collect();
+    let mut found = Vec::new();
+    for before in all.iter().filter(|place| place.info(description).side == Side::Before) {
+        let info = before.info(description);
+        let Some(sliding) = &sections[before.section].slides else { continue };
+        let same = |other: &&Place| other.section == before.section + 1 && other.info(description).at == info.at;
+        let after = all.iter().find(same).expect("both sides");
+        // The element on which the pad is, and the centre of its section there.
+        let (first, x) = (sliding.beam.first.0, before.x);
+        let long = |body: usize| crane.chain().bodies[body].length.at(crane.parameters());
+        let (mut body, mut begins) = (first, 0.0);
+        while body < sliding.beam.last().0 && begins + long(body) < x {
+            begins += long(body);
+            body += 1;
+        }
+        let at_centre = |wrench: &Wrench| {
+            let mut shifted = transforms[body];
+            let centre = transforms[body].transform_point(&Vector3::new(x - begins, 0.0, 0.0).into());
+            shifted.fixed_view_mut::<3, 1>(0, 3).copy_from(&centre.coords);
+            screw(&shifted, wrench)
+        };
+        let jump = at_centre(&before.wrench) - at_centre(&after.wrench);
+        let size = at_centre(&before.wrench).norm().max(at_centre(&after.wrench).norm()).max(1.0);
+        let own =
+            |other: &Sliding| other.pad == sliding.pad && other.start == sliding.start && other.beam == sliding.beam;
+        let on_beam = |other: &Sliding, tension: f64| {
+            let forces = pad_forces(crane, other, tension, (motion.q, &transforms));
+            forces.into_iter().filter(|(on, _)| *on == body).map(|(_, force)| (0, force)).collect::<Vec<_>>()
+        };
+        let mut rest = jump;
+        for (connector, tension) in crane.chain().connectors().iter().zip(&tensions) {
+            if let Some(other) = connector.strain.sliding().filter(|other| own(other)) {
+                rest -= on_beam(other, tension.force).into_iter().fold(Screw::zeros(), |sum, (_, force)| sum + force);
+            }
+        }
+        let held = crane.chain().loop_joints.iter().flat_map(|joint| match &joint.kind {
+            LoopJointKind::Pad { held } => held.as_slice(),
+            _ => &[],
+        });
+        let unknown: Vec<_> = held.filter(|other| own(other)).map(|other| on_beam(other, 1.0)).collect();
+        found.push((before.location(description), remainder(&[rest], &unknown).norm() / size));
+    }
+    found
 }
 
 /// What cuts transmit to the bodies on their two sides, the negative of inertia and weight, and the forces of connectors and of loads with a
@@ -198,8 +254,9 @@ fn connectors(crane: &LiveCrane, motion: &Motion, transforms: &[Matrix4<f64>]) -
     forces
 }
 
-/// What a pad and the beam that slides on it exert on bodies, by de Casteljau's algorithm: in each section the axis of a beam is the quadratic
-/// curve from the middle of an element over its end to the middle of the next one; it begins and ends where the beam does.
+/// What a pad and the beam that slides on it exert on bodies: on the beam, on the element on which the pad is. Where the axis passes the pad follows
+/// by de Casteljau's algorithm: in each section it is the quadratic curve from the middle of an element over its end to the middle of the next
+/// one; it begins and ends where the beam does.
 fn pad_forces(
     crane: &LiveCrane,
     Sliding { pad, beam, start, grows, coordinate, direction }: &Sliding,
@@ -214,6 +271,8 @@ fn pad_forces(
     let section = length / n.max(1) as f64;
     let k = (1..n).take_while(|&k| k as f64 * section <= s).count();
     let part = if n == 0 { 0.0 } else { s / section - k as f64 };
+    // Springs are in the middles of the sections.
+    let on = first + (0..n).take_while(|&k| (k as f64 + 0.5) * section < s).count();
     let axis = |body: usize, index: usize| -> Vector3<f64> { transforms[body].fixed_view::<3, 1>(0, index).into() };
     let [y, z] = [1, 2].map(|index| axis(carrier, index));
     if *direction == PadDirection::Twist {
@@ -223,7 +282,7 @@ fn pad_forces(
         return shares
             .flat_map(|(body, share)| {
                 let moment = tension * share * axis(body, 1).cross(&z);
-                [(carrier, turned(moment)), (body, turned(-moment))]
+                [(carrier, turned(moment)), (on, turned(-moment))]
             })
             .collect();
     }
@@ -245,7 +304,7 @@ fn pad_forces(
         .into_iter()
         .flat_map(|(body, x, share)| {
             let force = force_at(at(body, x), tension * share * normal);
-            [(carrier, force), (body, -force)]
+            [(carrier, force), (on, -force)]
         })
         .collect()
 }

@@ -5,12 +5,13 @@ use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynDynamics, DynModel, DynStatics};
 use crane_model::dynamics::{Method, Settings};
 use crane_model::nalgebra::{DMatrix, DVector};
+use crane_model::results::Instant;
 use crane_model::runs::{Start, record};
 use crane_model::{Cut, modes};
 use fastrand::Rng;
 use std::ops::ControlFlow;
 
-use crate::cuts::{Motion, imbalances};
+use crate::cuts::{Motion, imbalances, jumps};
 use crate::observe::{equilibrium, live};
 use crate::tree::{Tree, source};
 
@@ -18,13 +19,14 @@ use crate::tree::{Tree, source};
 pub type Law = fn(&LiveCrane, &[f64], &mut Rng) -> Option<Result<(), String>>;
 
 /// All of them, with their names.
-pub const ALL: [(&str, Law); 12] = [
+pub const ALL: [(&str, Law); 13] = [
     ("accelerations solve A a = e + f", accelerations_solve),
     ("power of all forces", power),
     ("rate of the kinetic energy", kinetic_energy),
     ("tangent is the derivative of the residual", tangent),
     ("springs of beams carry what is beyond them", springs_carry),
     ("every body is in balance", bodies_balance),
+    ("places along beams are those of diagrams, and pads make them jump", places_agree),
     ("energy balance of a run", energy_balance),
     ("ground carries weight and loads", ground_carries),
     ("a crane at rest stays at rest", rest_stays),
@@ -208,8 +210,23 @@ fn springs_carry(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Resul
         let springs: Vec<(&str, f64)> =
             of_elements.zip(moments).map(|((_, own), moment)| (own.name.as_str(), moment)).collect();
         let transforms = whole.transforms_at(&q);
+        let x = description.section_places(&q);
+        // The force of a pad bends the spring of its section by the mean of the moment, which jumps or kinks there.
+        let at_pad = |section: usize| {
+            let beam = |section: usize| &description.bodies[description.sections[section].body].link;
+            let length = description.bodies[description.sections[section].body - 1].length
+                + description.bodies[description.sections[section].body].length;
+            (0..x.len()).any(|other| {
+                description.sections[other].slides.is_some()
+                    && beam(other) == beam(section)
+                    && (x[other] - x[section]).abs() < length
+            })
+        };
         for (cut, wrench) in description.cuts().iter().zip(whole.internal_forces_at(t, &q, &v, &a)) {
-            let Cut::Body { body, .. } = *cut else { continue };
+            let Cut::Body { body, section } = *cut else { continue };
+            if section.is_some_and(|section| section > 0 && at_pad(section)) {
+                continue;
+            }
             let name = description.bodies[body].name.as_str();
             let own = |axis: &str| springs.iter().find(|(spring, _)| *spring == format!("{name}_{axis}"));
             let Some(((psi, theta), phi)) = own("psi").zip(own("theta")).zip(own("phi")) else { continue };
@@ -241,6 +258,38 @@ fn bodies_balance(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Resu
         let a = whole.accelerations_at(t, &q, &v).as_slice().to_vec();
         // Second differences.
         broken.extend(unbalanced("in motion", imbalances(crane, &Motion { t, q: &q, v: &v, a: &a }), 1e-5));
+    }
+    Some(if broken.is_empty() { Ok(()) } else { Err(broken.join("; ")) })
+}
+
+/// At pads on which beams slide, what they carry jumps by what the pads exert; and what pages draw at every place is what its cut carries.
+fn places_agree(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Result<(), String>> {
+    let whole: &dyn DynCrane = crane;
+    let description = whole.description();
+    if description.sections.is_empty() {
+        return None;
+    }
+    let still = vec![0.0; pose.len()];
+    // Both sides round forces of all pads.
+    let at_rest = jumps(crane, &Motion { t: 0.0, q: pose, v: &still, a: &still });
+    let mut broken = unbalanced("at rest", at_rest, 1e-8);
+    if !has_states(crane) {
+        let (t, q, v) = state(crane, pose, rng);
+        let a = whole.accelerations_at(t, &q, &v).as_slice().to_vec();
+        broken.extend(unbalanced("in motion", jumps(crane, &Motion { t, q: &q, v: &v, a: &a }), 1e-8));
+    }
+    let rest = Instant::at_rest(whole, pose);
+    let page = crane_page::strength::data(whole, std::slice::from_ref(&rest), 1);
+    let drawn = page["carried"]["places"].as_array().map_or(&[][..], Vec::as_slice);
+    let cuts = description.cuts();
+    for section in 0..description.sections.len() {
+        let Some(cut) = cuts.iter().position(|cut| cut.section() == Some(section)) else { continue };
+        let moment: [f64; 3] = rest.wrenches[cut].moment.into();
+        let found = drawn.get(section).map(|place| &place["ranges"]);
+        let same = |axis: usize| found.and_then(|ranges| ranges[axis][0].as_f64()) == Some(moment[axis]);
+        if !(0..3).all(same) {
+            broken.push(format!("section {section} is drawn with {found:?} for {moment:?}"));
+        }
     }
     Some(if broken.is_empty() { Ok(()) } else { Err(broken.join("; ")) })
 }

@@ -179,6 +179,71 @@ links:
     assert!(report["stresses"][0]["beam"] == "inner" && of_inner > 2.0 * equivalent, "{of_inner}");
 }
 
+/// Two stages on pads, two sections each. At every pad the normal stress is the moment of what is beyond it over the modulus: own weights and
+/// load, whatever the pads within exert. Between pads and springs, elements used to share the forces of pads, and stresses were up to 16 % less.
+#[test]
+fn stages_are_stressed_at_their_pads() {
+    let pads = "pads: {front: {stiffness: [4e9, 4e9, 8e7]}, rear: {stiffness: [4e9, 4e9, 8e7]}}";
+    let beam = "length: 4, sections: 2, material: steel, section: {box: {height: 0.3, width: 0.3, thickness: 0.01}}";
+    let spec = format!(
+        "
+materials: {{steel: {{E: 2.1e11, G: 8.1e10, density: 7850}}}}
+links:
+  - {{name: outer, beam: {{{beam}}}}}
+  - {{name: one, joint: {{prismatic: {{axis: x}}}}, beam: {{{beam}, slides_in: {{beam: outer, overlap: 3.5, {pads}}}}}}}
+  - {{name: two, joint: {{prismatic: {{axis: x}}}}, beam: {{{beam}, slides_in: {{beam: one, overlap: 3.5, {pads}}}}}}}
+  - {{name: load, mass: 1000}}
+drives:
+  - {{coordinate: one_x, stiffness: 1e9, motion: {{hold: 2}}}}
+  - {{coordinate: two_x, stiffness: 1e9, motion: {{hold: 2}}}}
+run: {{duration: 0.02, output: 0.01}}
+"
+    );
+    let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("stages.csv");
+    let report = strength("stages", &spec, &["--run", "--file", file.to_str().expect("a name")]);
+    let (side, inner): (f64, f64) = (0.3, 0.28);
+    let (weight, load) = (9.81 * 7850.0 * (side * side - inner * inner), 9.81 * 1000.0);
+    let modulus = (side.powi(4) - inner.powi(4)) / (6.0 * side);
+    // Stage two is 1.5 m in stage one, which is 1.5 m in the outer beam; 2.5 m of each are outside.
+    let front_of_two = weight * 2.5 * 1.25 + load * 2.5;
+    let front_of_one = weight * 2.5 * 1.25 + weight * 4.0 * 3.0 + load * 5.0;
+    // The front pad of stage two, from moments about its rear pad, has a lever of 1.5 m to that on stage one.
+    let rear_of_two = weight * 1.5 * 0.75 + weight * 4.0 * 2.0 + load * 4.0;
+    let rows = report["stresses"].as_array().expect("a table");
+    for (beam, pads, x, moment) in [
+        ("two", "two_front", 1.5, front_of_two),
+        ("one", "one_front", 1.5, front_of_one),
+        ("one", "two_rear", 2.5, rear_of_two),
+    ] {
+        for side in ["before", "after"] {
+            let place = format!("{side} the pads {pads}");
+            let here = |row: &&serde_json::Value| row["beam"] == beam && row["place"] == place.as_str();
+            let row = rows.iter().find(here).unwrap_or_else(|| panic!("{beam}, {place}"));
+            // Drives give way by 1e-5 m.
+            assert_close("place", &row["x"], x, 1e-4);
+            // The stages sag by 1 %: levers are shorter by half of its square, and weight has a part along them.
+            assert_close(&place, &row["normal"], moment / modulus, 1e-3);
+        }
+    }
+    // The file has the same stresses as the table, at its first time.
+    let text = fs::read_to_string(file).expect("results");
+    let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+    let names: Vec<&str> = lines.next().expect("names").split(',').collect();
+    let first: Vec<f64> =
+        lines.next().expect("a row").split(',').map(|number| number.parse().expect("a number")).collect();
+    let of_file =
+        names.iter().zip(&first).filter(|(name, _)| name.contains("_normal_stress")).map(|(_, stress)| *stress);
+    let (mut of_file, mut of_table): (Vec<f64>, Vec<f64>) =
+        (of_file.collect(), rows.iter().map(|row| row["normal"].as_f64().expect("a number")).collect());
+    of_file.sort_by(f64::total_cmp);
+    of_table.sort_by(f64::total_cmp);
+    assert_eq!(of_file.len(), of_table.len());
+    for (one, other) in of_file.iter().zip(&of_table) {
+        // The run begins at the pose at rest; stresses of 1 Pa are rounding beside 1e7 Pa.
+        assert!((one - other).abs() < 1e-6 * of_table[of_table.len() - 1], "{one} in the file, {other} in the table");
+    }
+}
+
 /// Along a run at rest, the bending moment has its minimum at the clamped end, `−(m g L + w L²/2)`, and its maximum, 0, at the free end.
 #[test]
 fn extremes_of_sections_have_their_own_places() {

@@ -18,7 +18,7 @@ mod figures;
 pub mod history;
 mod record;
 mod scene;
-mod strength;
+pub mod strength;
 pub mod tables;
 
 use crane_live::LiveCrane;

@@ -3,17 +3,17 @@ import { Matrix4, Vector3 } from "three";
 import { range, scaled, spoken } from "./data.js";
 import { Kinematics, links } from "./kinematics.js";
 import { Plot } from "./plot.js";
-import { envelope, margins, used } from "./strength.js";
+import { carried, envelope, margins, ordered, used } from "./strength.js";
 
 /** A point hardly moves along an axis if it does so by less than this fraction of its travel along z. */
 const HARDLY = 0.01;
 /** Shorter travel counts as none, m. */
 const STILL = 1e-6;
-/** Angles of an element and what bends or twists: ψ about z, θ about y, φ about x. */
+/** What twists and bends: about x, y and z of the section. */
 const MOMENTS = [
-  { suffix: "_psi", title: "Bending moment about z" },
-  { suffix: "_theta", title: "Bending moment about y" },
-  { suffix: "_phi", title: "Torsion moment" },
+  { id: "_phi", title: "Torsion moment" },
+  { id: "_theta", title: "Bending moment about y" },
+  { id: "_psi", title: "Bending moment about z" },
 ];
 
 /** All plots of the page, or of a part of it with the same sections. */
@@ -55,7 +55,7 @@ export function panels(data, player, root = document) {
   }
   const gaps = named(crane, "_gap");
   if (gaps.length) overTime("supports", "gaps", "Feet above the ground", "gap", "m", gaps);
-  const along = moments(add, overTime, crane, time);
+  const along = moments(add, overTime, crane);
   along.push(...strength(add, overTime, crane));
   stability(overTime, crane);
   energy(overTime, crane, both);
@@ -156,57 +156,48 @@ function deflection(overTime, crane, rigid) {
   });
 }
 
-/** Moments along flexible links now, with maximum and minimum of the run; and over time at the root. */
-function moments(add, overTime, crane, time) {
-  const { bodies } = crane.scene;
+/** Moments along beams now, with maximum and minimum of the run, at all their places; and over time at the beginning. */
+function moments(add, overTime, crane) {
   const along = [];
-  for (const link of links({ bodies: bodies.map((body) => ({ ...body, flexible: body.length > 0 })) })) {
-    for (const { suffix, title } of MOMENTS) {
-      let x = bodies[link.bodies[0]].length;
-      const joints = [];
-      for (const p of link.bodies.slice(1)) {
-        const column = crane.run.column(`${bodies[p].name}${suffix}_moment`);
-        if (column) joints.push({ x, values: column.values, range: [column.least, column.most] });
-        x += bodies[p].length;
-      }
-      // A single spring has no curve along the link; its moment over time follows below.
-      if (joints.length < 2) continue;
-      const ranges = joints.map((joint) => joint.range);
+  for (const { name, sections } of carried(crane)) {
+    MOMENTS.forEach(({ id, title }, axis) => {
+      const ranges = sections.map((section) => section.ranges[axis]);
+      // What is 0 everywhere, as in a planar crane, has no curve.
+      if (sections.length < 2 || ranges.every(([low, high]) => low === 0 && high === 0)) return;
       const { unit, factor } = scaled("N m", ranges.flat());
-      const plot = add("boom", {
-        id: `moment_${link.name}${suffix}`, kind: "along", title: `${spoken(link.name)}: ${title.toLowerCase()}`,
-        x: { label: "along the link", unit: "m", values: joints.map((joint) => joint.x) }, y: { label: "moment", unit, factor },
-        curves: [
-          { label: "now", colour: 0, values: joints.map(({ values }) => values[0]) },
-          { label: "maximum", colour: 1, dashed: true, values: ranges.map((r) => r[1]) },
-          { label: "minimum", colour: 2, dashed: true, values: ranges.map((r) => r[0]) },
-        ],
-      });
-      along.push({ plot, joints });
-    }
-    const root = MOMENTS.map(({ suffix, title }, colour) => ({
-      label: title.toLowerCase(), colour, column: crane.run.column(`${bodies[link.bodies[1]]?.name}${suffix}_moment`),
-    })).filter(({ column }) => column).map(({ column, ...rest }) => ({ ...rest, values: column.values }));
-    if (root.length) overTime("boom", `root_${link.name}`, `${spoken(link.name)}: moments at its first spring`, "moment", "N m", root);
+      const joints = sections.map((section) => ({ ...section, values: section.moments[axis], range: ranges[sections.indexOf(section)] }));
+      const curves = [
+        { label: "now", of: ({ values }) => values[0] }, { label: "maximum", of: ({ range: r }) => r[1] },
+        { label: "minimum", of: ({ range: r }) => r[0] },
+      ];
+      along.push(alongBeam(add, "boom", joints, {
+        id: `moment_${name}${id}`, title: `${spoken(name)}: ${title.toLowerCase()}`, y: { label: "moment", unit, factor },
+      }, curves));
+    });
+    const root = MOMENTS.map(({ title }, axis) => ({ label: title.toLowerCase(), colour: axis, values: sections[0].moments[axis] }));
+    const moving = root.filter(({ values }) => values.some((value) => value !== 0));
+    if (moving.length) overTime("boom", `root_${name}`, `${spoken(name)}: moments at its beginning`, "moment", "N m", moving);
   }
   return along;
+}
+
+/** A plot of curves along a beam, through its places in their order now. */
+function alongBeam(add, host, joints, options, curves) {
+  const start = ordered(joints, { low: 0, high: 0, part: 0 });
+  const plot = add(host, {
+    kind: "along", x: { label: "along the beam", unit: "m", values: start.x }, ...options,
+    curves: curves.map(({ label, of }, colour) => ({ label, colour, dashed: colour > 0, values: start.order.map((index) => of(joints[index])) })),
+  });
+  return { plot, joints, curves };
 }
 
 /** Utilisation of the sections of beams: along each beam, now and maximum, and over time. */
 function strength(add, overTime, crane) {
   const { beams, unit } = used(crane);
   const label = unit === "1" ? "utilisation" : "equivalent stress";
-  const along = beams.map(({ name, sections }) => {
-    const plot = add("strength", {
-      id: `use_${name}`, kind: "along", title: `${spoken(name)}: ${label} along the beam`,
-      x: { label: "along the beam", unit: "m", values: sections.map(({ x }) => x) }, y: { label, unit },
-      curves: [
-        { label: "now", colour: 0, values: sections.map(({ values }) => values[0]) },
-        { label: "maximum of the run", colour: 1, dashed: true, values: sections.map(({ most }) => most) },
-      ],
-    });
-    return { plot, joints: sections };
-  });
+  const along = beams.map(({ name, sections }) => alongBeam(add, "strength", sections, {
+    id: `use_${name}`, title: `${spoken(name)}: ${label} along the beam`, y: { label, unit },
+  }, [{ label: "now", of: ({ values }) => values[0] }, { label: "maximum of the run", of: ({ most }) => most }]));
   const curves = beams.map(({ name, sections }, colour) => ({
     label: spoken(name), colour, values: envelope(sections.map(({ values }) => values)),
   }));
@@ -256,10 +247,15 @@ function explorer(host, { add, crane, rigid, plots }) {
   show();
 }
 
-/** Shows the moments along flexible links at a time of the run. */
-export function follow(along, { low, high, part }) {
-  for (const { plot, joints } of along) {
-    const now = joints.map(({ values }) => values[low] + (values[high] - values[low]) * part);
-    plot.update([now, ...plot.curves.slice(1).map(({ values }) => values)]);
+/** Shows what acts along beams at a time of the run. */
+export function follow(along, time) {
+  const { low, high, part } = time;
+  for (const { plot, joints, curves } of along) {
+    const { order, x } = ordered(joints, time);
+    plot.x.values = x;
+    plot.update(curves.map(({ of }, index) => order.map((place) => {
+      const { values } = joints[place];
+      return index === 0 ? values[low] + (values[high] - values[low]) * part : of(joints[place]);
+    })));
   }
 }

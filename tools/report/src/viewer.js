@@ -11,7 +11,7 @@ import { BEYOND, curve, isDark, scale, smooth, style } from "./colours.js";
 import { at, place, range } from "./data.js";
 import { Figure, extent } from "./figure.js";
 import { Plain } from "./plain.js";
-import { margins, used } from "./strength.js";
+import { margins, ordered, used } from "./strength.js";
 
 /** Largest motion of a mode as drawn, relative to the crane's size. */
 const SWING = 0.012;
@@ -504,11 +504,12 @@ export class Viewer {
   useAlong(name, here) {
     const sections = this.used.beams.find((beam) => beam.name === name)?.sections;
     if (!sections) return null;
-    const shares = sections.map(({ values }) => at(values, here) / this.full);
+    const { order, x: places } = ordered(sections, here);
+    const shares = order.map((index) => at(sections[index].values, here) / this.full);
     return (x) => {
-      const next = sections.findIndex((section) => section.x > x);
+      const next = places.findIndex((place) => place > x);
       if (next < 1) return smooth(shares.at(next === 0 ? 0 : -1));
-      const [from, to] = [sections[next - 1].x, sections[next].x];
+      const [from, to] = [places[next - 1], places[next]];
       return smooth(shares[next - 1] + ((x - from) / (to - from)) * (shares[next] - shares[next - 1]));
     };
   }

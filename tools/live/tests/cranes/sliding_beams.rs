@@ -6,7 +6,8 @@ use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::{InitialState, Method, Sample, Settings};
-use crane_model::{SectionInfo, Wrench, statics};
+use crane_model::sections::places;
+use crane_model::{Side, statics};
 
 fn crane(text: &str) -> LiveCrane {
     LiveCrane::from_spec(&SourceFile::new("crane.yaml", text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
@@ -178,35 +179,41 @@ fn internal_forces_jump_at_the_pads_by_their_forces() {
     assert_section_forces(crane, &q);
 }
 
-/// Asserts that shear forces and moments of both beams of 8 sections are those of the load at the tip, by their statics.
+/// Asserts that shear forces and moments of both beams are those of the load at the tip, by their statics: at every place, also at the pads and
+/// on both sides of them, whatever the springs share.
 pub(super) fn assert_section_forces(crane: &dyn DynCrane, q: &[f64]) {
     let still = vec![0.0; q.len()];
     let (a, b) = (LENGTH - OVERLAP, OVERLAP);
     let [front, rear] = [LOAD * (a + b) / b, LOAD * a / b];
     let description = crane.description();
-    let wrenches = crane.internal_forces_at(0.0, q, &still, &still);
-    let cuts = description.cuts().into_iter().zip(&wrenches);
-    let sections: Vec<(SectionInfo, Wrench)> =
-        cuts.filter_map(|(cut, wrench)| Some((description.sections[cut.section()?].clone(), *wrench))).collect();
-    // Elements share the forces of pads over one section.
-    let d = LENGTH / 8.0;
-    let (mut checked, size) = (0, LOAD * (a + b));
-    for (info, wrench) in &sections {
-        let is_inner = description.bodies[info.body].link.as_str() == "inner";
-        let (shear, moment) = match (is_inner, info.x) {
-            (true, x) if x > 1e-9 && x < b - d => (-rear, rear * x),
-            (true, x) if x > b + d && x < LENGTH - 1e-9 => (LOAD, LOAD * (LENGTH - x)),
-            (false, x) if x < LENGTH - b - d => (LOAD, LOAD * (LENGTH - x + a)),
-            (false, x) if x > LENGTH - b + d && x < LENGTH - 1e-9 => (front, front * (LENGTH - x)),
-            _ => continue,
+    let (mut checked, mut at_pads, size) = (0, 0, LOAD * (a + b));
+    for place in places(description, q, &crane.internal_forces_at(0.0, q, &still, &still)) {
+        let (info, x, wrench) = (place.info(description), place.x, place.wrench);
+        if x < 1e-9 || x > LENGTH - 1e-9 {
+            continue;
+        }
+        let is_inner = place.beam(description) == "inner";
+        // The front pad is at b on the inner beam, the rear pad at L − b on the outer one.
+        let pad = if is_inner { b } else { LENGTH - b };
+        let is_at_pad = info.slides.is_some();
+        assert!(!is_at_pad || (x - pad).abs() < 1e-9, "{}", place.location(description));
+        let before = if is_at_pad { info.side == Side::Before } else { x < pad };
+        let (shear, moment) = match (is_inner, before) {
+            (true, true) => (-rear, rear * x),
+            (true, false) => (LOAD, LOAD * (LENGTH - x)),
+            (false, true) => (LOAD, LOAD * (LENGTH - x + a)),
+            (false, false) => (front, front * (LENGTH - x)),
         };
         checked += 1;
+        at_pads += usize::from(is_at_pad);
         let found = (-wrench.force.z, wrench.moment.y);
         let off = (found.0 - shear).abs().max((found.1 - moment).abs());
         // The forces turn with the beams by up to 2e-3.
-        assert!(off < 1e-5 * size, "inner {is_inner}, x = {}: {found:?} instead of {shear}, {moment}", info.x);
+        let location = place.location(description);
+        assert!(off < 1e-5 * size, "{location}: {found:?} instead of {shear}, {moment}");
     }
-    assert!(checked > 20, "{checked}");
+    // 8 springs on each beam, and both sides of one pad.
+    assert_eq!((checked, at_pads), (20, 4));
 }
 
 /// J against differences of the lengths, and `f = −Jᵀ F` against differences of the energy, at bent poses and extensions within and beyond.
