@@ -159,8 +159,7 @@ class Connector:
     def wrenches(self, within=False):
         """What acts on bodies at a tension of 1: the body, the distance along it, force, moment about the world's origin."""
         if self.pad is not None:
-            for station, wrench in zip(self.pad.stations, self.pad.wrenches()):
-                yield station.body, station.along, wrench[:3], wrench[3:]
+            yield from self.pad.actions()
         elif self.pin is not None:
             yield from self.pin.wrenches(within)
         elif self.points:

@@ -7,6 +7,14 @@ import casadi as ca
 
 
 @dataclass
+class OnPad:
+    """Where a pad touches an element of the beam that slides on it: the distance along the element, and what tells the pad from others."""
+
+    distance: ca.SX
+    pad: tuple
+
+
+@dataclass
 class Cut:
     """A cut through the crane: the pose of its frame in the world, and the index of the body that it separates, with all beyond, from the rest.
 
@@ -17,10 +25,41 @@ class Cut:
     frame: ca.SX
     body: int
     portion: object = None
-    distance: float = math.inf
+    distance: object = math.inf
+    # Of a cut at a pad, just before or just after it.
+    pad: tuple = None
+    before: bool = False
 
-    def has_beyond(self, bodies, body, along=0.0):
-        """Whether what acts on a body, at a distance along it, acts beyond the cut."""
+    def parts(self):
+        """Cuts of which one is meant, with numbers that are 1 for that one."""
+        return [(1, self)]
+
+    def beyond(self, bodies, body, along=0.0):
+        """1 if what acts on a body, at a distance along it, acts beyond the cut, else 0."""
         while body is not None and body != self.body:
             body, along = bodies[body].parent, bodies[body].along
-        return body is not None and (self.portion is None or along > self.distance)
+        if body is None or self.portion is None:
+            return int(body is not None)
+        if isinstance(along, OnPad):
+            if along.pad == self.pad:
+                return int(self.before)
+            along = along.distance
+        if isinstance(along, ca.SX) or isinstance(self.distance, ca.SX):
+            return ca.if_else(along > self.distance, 1, 0)
+        return int(along > self.distance)
+
+
+@dataclass
+class CutAtPad:
+    """A cut of a beam at a pad on which it slides: the cuts within its elements, with numbers that are 1 for the element on which the pad is."""
+
+    within: list
+
+    @property
+    def body(self):
+        """The last element."""
+        return self.within[-1][1].body
+
+    def parts(self):
+        """See `Cut.parts`."""
+        return self.within

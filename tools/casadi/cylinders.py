@@ -28,7 +28,7 @@ def on_part_beyond(cylinder, cut, bodies):
     displaced = []
     for vector, body, distance, is_axis in cylinder.carried:
         shift = ca.cross(about, vector) if is_axis else along + ca.cross(about, vector)
-        displaced.append(vector + shift if cut.has_beyond(bodies, body, distance) else vector)
+        displaced.append(vector + cut.beyond(bodies, body, distance) * shift)
     length = cylinder.length_of(*displaced)
     zeros = ca.DM.zeros(3)
     return [ca.substitute(ca.gradient(length, by), ca.vertcat(along, about), ca.vertcat(zeros, zeros)) for by in (along, about)]

@@ -134,16 +134,20 @@ class Derivations:
                 sums[body.parent] = sums[body.parent][0] + sums[place][0], sums[body.parent][1] + sums[place][1]
         wrenches = []
         for cut in self.crane.cuts:
-            force, moment = sums[cut.body]
-            if cut.portion is not None:
-                force, moment = self.momenta_rate(bodies[cut.body].transform, cut.portion)
-                for place, body in enumerate(bodies):
-                    if body.parent == cut.body and cut.has_beyond(bodies, place):
-                        force, moment = force + sums[place][0], moment + sums[place][1]
-                for along, pull, turn in self.actions(cut.body):
-                    if cut.has_beyond(bodies, cut.body, along):
-                        force, moment = force - pull, moment - turn
-            wrenches += in_cut(cut, -force, -moment)
+            total = ca.SX(6, 1)
+            for here, part in cut.parts():
+                force, moment = sums[part.body]
+                if part.portion is not None:
+                    force, moment = self.momenta_rate(bodies[part.body].transform, part.portion)
+                    for place, body in enumerate(bodies):
+                        if body.parent == part.body:
+                            beyond = part.beyond(bodies, place)
+                            force, moment = force + beyond * sums[place][0], moment + beyond * sums[place][1]
+                    for along, pull, turn in self.actions(part.body):
+                        beyond = part.beyond(bodies, part.body, along)
+                        force, moment = force - beyond * pull, moment - beyond * turn
+                total += here * ca.vertcat(*in_cut(part, -force, -moment))
+            wrenches.append(total)
         positions = [support.position for support in self.crane.supports]
         return {
             "internal_forces": ca.vertcat(*wrenches),
@@ -179,16 +183,22 @@ class Derivations:
         of_cylinders, of_connectors = [ca.SX(0, 1)], [ca.SX(0, 1)]
         for cylinder in self.crane.cylinders:
             for cut in self.crane.cuts:
-                force, moment = cylinders.on_part_beyond(cylinder, cut, self.crane.bodies) if self.by_oil else (ca.SX(3, 1), ca.SX(3, 1))
-                of_cylinders += in_cut(cut, force, moment)
+                total = ca.SX(6, 1)
+                for here, part in cut.parts() if self.by_oil else []:
+                    force, moment = cylinders.on_part_beyond(cylinder, part, self.crane.bodies)
+                    total += here * ca.vertcat(*in_cut(part, force, moment))
+                of_cylinders.append(total)
         for connector in self.crane.connectors:
             wrenches = list(connector.wrenches(within=True))
             for cut in self.crane.cuts:
-                force, moment = ca.SX(3, 1), ca.SX(3, 1)
-                for body, along, pull, turn in wrenches:
-                    if cut.has_beyond(self.crane.bodies, body, along):
-                        force, moment = force + pull, moment + turn
-                of_connectors += in_cut(cut, force, moment)
+                total = ca.SX(6, 1)
+                for here, part in cut.parts():
+                    force, moment = ca.SX(3, 1), ca.SX(3, 1)
+                    for body, along, pull, turn in wrenches:
+                        beyond = part.beyond(self.crane.bodies, body, along)
+                        force, moment = force + beyond * pull, moment + beyond * turn
+                    total += here * ca.vertcat(*in_cut(part, force, moment))
+                of_connectors.append(total)
         return {"cylinder_wrenches": ca.vertcat(*of_cylinders), "connector_wrenches": ca.vertcat(*of_connectors)}
 
     def section_moduli(self):

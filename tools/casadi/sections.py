@@ -1,6 +1,6 @@
 """Sections of beams within their elements: at pins, loads, steps and at the end."""
 
-from cuts import Cut
+from cuts import Cut, CutAtPad
 from transforms import translate
 
 # Farther along than whatever acts beside an element, and nearer than a link on its end.
@@ -31,8 +31,29 @@ def add_sections(crane, spans):
                     limit = BEYOND_ALL_POINTS
                 added[index].append(Cut(body.transform @ shift, index, rest, limit))
                 moduli.append(of_section)
+        for pad in pads_on(crane, span):
+            added[index] += [at_pad(crane, beam, span, pad, before) for before in (True, False)]
+            moduli += [beam.moduli_beside(0.0)[1]] * 2
         beam.sections = moduli
     crane.cuts[:] = merged(crane, added)
+
+
+def pads_on(crane, span):
+    """The pads on which a beam slides, each once."""
+    for held in [*crane.connectors, *crane.loop_joints]:
+        if held.pad is not None and held.pad.direction == "y" and crane.bodies[held.pad.stations[1].body] is span.bodies[0]:
+            yield held.pad
+
+
+def at_pad(crane, beam, span, pad, before):
+    """The section just before or just after a pad, in the element on which the pad is."""
+    within = []
+    for element, (index, distance, here) in enumerate(pad.on_elements()):
+        start, length = span.starts[element], beam.lengths[element]
+        shift = translate(x=distance)
+        rest = shift @ beam.portion(start + distance, start + length) @ shift.T
+        within.append((here, Cut(span.bodies[element].transform @ shift, index, rest, distance, pad.identity, before)))
+    return CutAtPad(within)
 
 
 def merged(crane, added):
@@ -83,8 +104,7 @@ def within(crane, beam, span, element, index):
 
 
 def pins(crane, index):
-    """Distances along a body at which something acts on it, or another link begins, and whether forces jump there: what slides on pads carries
-    their forces in the middles of its elements."""
+    """Distances along a body at which something acts on it, or another link begins, and whether forces jump there."""
     yield from ((body.at, True) for body in crane.bodies if body.parent == index and body.at is not None)
     yield from ((load.at, True) for load in crane.loads if load.body == index)
     for cylinder in crane.cylinders:
@@ -95,7 +115,5 @@ def pins(crane, index):
         yield from ((at, True) for body, at in zip(connector.bodies, connector.at) if body == index)
     for held in [*crane.connectors, *crane.loop_joints]:
         if held.pad is not None:
-            pad, *beam = held.pad.stations
+            pad = held.pad.stations[0]
             yield from ((pad.at, True) for _ in range(pad.body == index))
-            middle = held.pad.length / max(held.pad.sections, 1) / 2
-            yield from ((middle, False) for station in beam[1 : held.pad.sections] if station.body == index)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import casadi as ca
 
+from cuts import OnPad
 from transforms import translate
 
 # What holds a stage in addition to its joint.
@@ -81,6 +82,28 @@ class Pad:
         every = ca.vertcat(*shifts)
         slopes = ca.densify(ca.substitute(-ca.gradient(strain, every), every, ca.DM.zeros(every.shape)))
         return [slopes[6 * k : 6 * k + 6] for k in range(len(shifts))]
+
+    @property
+    def identity(self):
+        """What the directions of one pad have in common."""
+        pad, first = self.stations[0], self.stations[1]
+        return pad.body, str(pad.along), first.body, str(self.s)
+
+    def on_elements(self):
+        """Of each element of the beam: its body, the distance of the pad from its beginning, and 1 if the pad is on it, else 0."""
+        d = self.length / max(self.sections, 1)
+        begins = [0, *((k - 0.5) * d for k in range(1, self.sections + 1))]
+        begun = [1, *(ca.if_else(self.s > begin, 1, 0) for begin in begins[1:]), 0]
+        for k, begin in enumerate(begins):
+            s = ca.fmin(ca.fmax(self.s, 0), self.length)
+            yield self.stations[1 + k].body, s - begin, begun[k] - begun[k + 1]
+
+    def actions(self):
+        """What a tension of 1 exerts: body, where along it, force and moment about the world's origin. The beam receives the opposite of the pad."""
+        own = self.wrenches()[0]
+        yield self.stations[0].body, self.stations[0].along, own[:3], own[3:]
+        for body, distance, here in self.on_elements():
+            yield body, OnPad(distance, self.identity), -here * own[:3], -here * own[3:]
 
 
 def slide(crane, name):

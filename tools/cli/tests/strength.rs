@@ -192,7 +192,7 @@ links:
   - {{name: outer, beam: {{{beam}}}}}
   - {{name: one, joint: {{prismatic: {{axis: x}}}}, beam: {{{beam}, slides_in: {{beam: outer, overlap: 3.5, {pads}}}}}}}
   - {{name: two, joint: {{prismatic: {{axis: x}}}}, beam: {{{beam}, slides_in: {{beam: one, overlap: 3.5, {pads}}}}}}}
-  - {{name: load, mass: 1000}}
+  - {{name: load, mass: 1000, com: [0, 0, 0]}}
 drives:
   - {{coordinate: one_x, stiffness: 1e9, motion: {{hold: 2}}}}
   - {{coordinate: two_x, stiffness: 1e9, motion: {{hold: 2}}}}
