@@ -239,8 +239,8 @@ class Strength:
     internal_forces: (..., cuts, 6), force, N, and moment, N m, that the part beyond each cut of `Crane.info["cuts"]` exerts on the part
     before it: of the ground in the world frame about its origin, of a joint in the frame after it about its origin, of a section of a beam
     in the section's frame, x along the beam.
-    normal, shear, torsion, equivalent: (..., sections), Pa, maximum stresses at the sections of `Crane.info["sections"]`, whose `beam`, `x` and
-    `place` (such as `before the head of lift`) say where they are: of normal force and bending, of shear forces, of torsion, and von Mises' equivalent of all three; NaN where moduli of the section are unknown.
+    normal, shear, torsion, equivalent: (..., sections), Pa, maximum stresses at the sections of `Crane.info["sections"]`, whose `beam`, `x` (at a pad
+    on which the beam slides, that with its coordinate at 0) and `place` (such as `before the head of lift`) say where they are: of normal force and bending, of shear forces, of torsion, and von Mises' equivalent of all three; NaN where moduli of the section are unknown.
     utilisation: (..., sections), equivalent stress over yield stress divided by safety factor; NaN without a yield stress.
     tipping_margin: (...), 1 − overturning / stabilising about the governing tipping line: 1 where nothing overturns the crane, 0 where it
     is about to tip; NaN where the supports form no polygon.
