@@ -60,10 +60,17 @@ pub struct Stress {
 impl SectionModuli {
     /// A mean with another one, which counts for a `part`.
     pub fn mean(&self, other: &Self, part: f64) -> Self {
-        use crate::methods::Entry;
-        let numbers: Vec<f64> =
-            self.numbers().zip(other.numbers()).map(|(one, other)| one + part * (other - one)).collect();
-        Self::from_numbers(&numbers)
+        let mean = |of: fn(&Self) -> f64| of(self) + part * (of(other) - of(self));
+        Self {
+            area: mean(|own| own.area),
+            bending_y: mean(|own| own.bending_y),
+            bending_z: mean(|own| own.bending_z),
+            torsion: mean(|own| own.torsion),
+            shear_y: mean(|own| own.shear_y),
+            shear_z: mean(|own| own.shear_z),
+            corners: mean(|own| own.corners),
+            allowable_stress: mean(|own| own.allowable_stress),
+        }
     }
 
     /// Stresses of a section that transmits a wrench, in the section's frame; `None` if its moduli are not known.

@@ -198,7 +198,7 @@ fn at_pad<'a, 'g: 'a>(
                 action.times((s - place).select(one, zero))
             }
             Along::Pad { pad, .. } if *pad == own => action.times(if side == Side::After { one } else { zero }),
-            Along::Pad { s: other, .. } => action.times((s - other.clamp(zero, whole)).select(one, zero)),
+            Along::Pad { s: other, .. } => action.times((s - *other).select(one, zero)),
         };
         for action in applied {
             let [load, of_load] = before(action).wrench;

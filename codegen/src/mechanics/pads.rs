@@ -66,8 +66,10 @@ impl<'g> AtPad<'g> {
         let fixed = || Along::Fixed(sliding.pad.position[0].clone());
         let of_pad = sliding.pad.body.map(|body| (Place { body, along: fixed() }, on_pad));
         let here = AxisPoint::new(model, kinematics, &sliding.beam, s).here();
+        // A beam that has left its pad carries the force at its end.
+        let on = s.clamp(model.zero(), model.number(&sliding.beam.length));
         let of_beam = sliding.beam.elements().zip(here).map(|(body, here)| {
-            (Place { body, along: Along::Pad { s, pad: sliding.identity() } }, on_beam.times(here))
+            (Place { body, along: Along::Pad { s: on, pad: sliding.identity() } }, on_beam.times(here))
         });
         AtPad { length, jacobian, pulls: of_pad.into_iter().chain(of_beam).collect() }
     }

@@ -22,7 +22,7 @@ pub enum Along<'g> {
     Pad {
         /// Its distance from the beginning of the beam, m.
         s: Expr<'g>,
-        /// What tells it from the other pads.
+        /// Which pad it is.
         pad: Pad,
     },
 }

@@ -54,7 +54,7 @@ impl Check<'_> {
         let mut beams = std::mem::take(&mut self.beams);
         for (beam, distribution) in beams.iter_mut().zip(std::mem::take(&mut self.distributions)) {
             beam.sections = self.sections_of(&beam.link, distribution.as_ref(), &pins);
-            let of_pads = self.at_pads(beam, distribution.as_ref(), connectors, loop_joints);
+            let of_pads = Self::at_pads(beam, distribution.as_ref(), connectors, loop_joints);
             beam.sections.extend(of_pads);
         }
         self.beams = beams;
@@ -72,7 +72,6 @@ impl Check<'_> {
 
     /// The sections of a beam at the pads on which it slides, before and after each of them.
     fn at_pads(
-        &self,
         beam: &Beam,
         distribution: Option<&Distribution>,
         connectors: &[Force],

@@ -207,7 +207,7 @@ pub struct BodyInfo {
 pub struct SectionInfo {
     /// Index of its body, a rigid element.
     pub body: usize,
-    /// Distance from the beginning of the beam with default parameters, m; [`Description::places`] are those in a pose.
+    /// Distance from the beginning of the beam with default parameters, m; [`Description::section_places`] are those in a pose.
     pub x: f64,
     /// On which side of what is there.
     pub side: Side,
