@@ -7,14 +7,6 @@ import casadi as ca
 
 
 @dataclass
-class OnPad:
-    """Where a pad touches an element of the beam that slides on it: the distance along the element, and what tells the pad from others."""
-
-    distance: ca.SX
-    pad: tuple
-
-
-@dataclass
 class Cut:
     """A cut through the crane: the pose of its frame in the world, and the index of the body that it separates, with all beyond, from the rest.
 
@@ -26,9 +18,6 @@ class Cut:
     body: int
     portion: object = None
     distance: object = math.inf
-    # Of a cut at a pad, just before or just after it.
-    pad: tuple = None
-    before: bool = False
 
     def parts(self):
         """Cuts of which one is meant, with numbers that are 1 for that one."""
@@ -40,10 +29,6 @@ class Cut:
             body, along = bodies[body].parent, bodies[body].along
         if body is None or self.portion is None:
             return int(body is not None)
-        if isinstance(along, OnPad):
-            if along.pad == self.pad:
-                return int(self.before)
-            along = along.distance
         if isinstance(along, ca.SX) or isinstance(self.distance, ca.SX):
             return ca.if_else(along > self.distance, 1, 0)
         return int(along > self.distance)

@@ -48,11 +48,13 @@ def pads_on(crane, span):
 def at_pad(crane, beam, span, pad, before):
     """The section just before or just after a pad, in the element on which the pad is."""
     within = []
+    # What acts at the pad itself acts beyond the section, if the section is just before.
+    same = SAME * crane.spec.default(pad.length) * (-1 if before else 1)
     for element, (index, distance, here) in enumerate(pad.on_elements()):
         start, length = span.starts[element], beam.lengths[element]
         shift = translate(x=distance)
         rest = shift @ beam.portion(start + distance, start + length) @ shift.T
-        within.append((here, Cut(span.bodies[element].transform @ shift, index, rest, distance, pad.identity, before)))
+        within.append((here, Cut(span.bodies[element].transform @ shift, index, rest, distance + same)))
     return CutAtPad(within)
 
 

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-from cuts import OnPad
 from transforms import translate
 
 # What holds a stage in addition to its joint.
@@ -83,12 +82,6 @@ class Pad:
         slopes = ca.densify(ca.substitute(-ca.gradient(strain, every), every, ca.DM.zeros(every.shape)))
         return [slopes[6 * k : 6 * k + 6] for k in range(len(shifts))]
 
-    @property
-    def identity(self):
-        """What the directions of one pad have in common."""
-        pad, first = self.stations[0], self.stations[1]
-        return pad.body, str(pad.along), first.body, str(self.s)
-
     def on_elements(self):
         """Of each element of the beam: its body, the distance of the pad from its beginning, and 1 if the pad is on it, else 0."""
         d = self.length / max(self.sections, 1)
@@ -103,7 +96,7 @@ class Pad:
         own = self.wrenches()[0]
         yield self.stations[0].body, self.stations[0].along, own[:3], own[3:]
         for body, distance, here in self.on_elements():
-            yield body, OnPad(distance, self.identity), -here * own[:3], -here * own[3:]
+            yield body, distance, -here * own[:3], -here * own[3:]
 
 
 def slide(crane, name):

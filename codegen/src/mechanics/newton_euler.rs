@@ -140,30 +140,29 @@ fn within<'g>(
 /// that with default parameters, the place of a pad the present one.
 fn acting_beyond<'g>(model: &Model<'g>, section: &Section, action: &Action<'g>) -> Option<Action<'g>> {
     let Some(inside) = &section.inside else { return Some(action.clone()) };
+    let length = &model.chain.bodies[section.body.0].length;
     match &action.along {
         Along::Fixed(along) => {
             let defaults = model.chain.parameter_defaults();
-            let [length, distance, along] =
-                [&model.chain.bodies[section.body.0].length, &inside.distance, along].map(|value| value.at(&defaults));
+            let [length, distance, along] = [length, &inside.distance, along].map(|value| value.at(&defaults));
             let along = along.clamp(0.0, length);
             let same = (along - distance).abs() <= SAME_PLACE * length;
             let acts = if same { section.side != Side::After } else { along > distance };
             acts.then(|| action.clone())
         }
-        Along::Pad { s, .. } => {
-            let (x, [zero, one]) = (model.number(&section.x), gates(model));
-            let gate = match section.side {
-                Side::After => (*s - x).select(one, zero),
-                Side::Before | Side::Both => (x - *s).select(zero, one),
-            };
-            Some(action.times(gate))
+        &Along::Pad(s) => {
+            let (x, length) = (model.number(&section.x), model.number(length));
+            Some(action.times(is_beyond(model, section.side, (s - x, length))))
         }
     }
 }
 
-/// The factors of what does not count and of what does.
-fn gates<'g>(model: &Model<'g>) -> [Expr<'g>; 2] {
-    [model.zero(), model.graph.constant(1.0)]
+/// 1 if what acts farther along a beam than a section by a distance, m, acts beyond the section, otherwise 0. What acts at the section itself, to
+/// [`SAME_PLACE`] of a length, acts beyond it unless the section is just after.
+fn is_beyond<'g>(model: &Model<'g>, side: Side, (distance, length): (Expr<'g>, Expr<'g>)) -> Expr<'g> {
+    let same = SAME_PLACE * length;
+    let past = if side == Side::After { distance - same } else { distance + same };
+    past.select(model.graph.constant(1.0), model.zero())
 }
 
 /// The wrench that the section of a beam at a pad transmits, before or after the pad: in the frame of the element on which the pad is, about the
@@ -175,8 +174,7 @@ fn at_pad<'a, 'g: 'a>(
     swept: &Inward<'g>,
     on_element: &impl Fn(usize) -> Option<(&'a Motion<'g>, &'a [Action<'g>])>,
 ) -> Option<Wrench<'g>> {
-    let (axis, own) = (&sliding.beam, sliding.identity());
-    let [zero, one] = gates(model);
+    let (axis, zero) = (&sliding.beam, model.zero());
     let (whole, d) = (model.number(&axis.length), model.number(&axis.length) / axis.sections.max(1) as f64);
     let (_, s) = pads::place(model, sliding);
     let here = AxisPoint::new(model, kinematics, axis, s).here();
@@ -192,13 +190,12 @@ fn at_pad<'a, 'g: 'a>(
         let [force, moment] = swept.bodies[body]?;
         let mut required = [-force, -moment];
         // What acts before the section is no longer required beyond it.
-        let before = |action: &Action<'g>| match &action.along {
-            Along::Fixed(along) => {
-                let place = begins + model.number(along).clamp(zero, ends - begins);
-                action.times((s - place).select(one, zero))
-            }
-            Along::Pad { pad, .. } if *pad == own => action.times(if side == Side::After { one } else { zero }),
-            Along::Pad { s: other, .. } => action.times((s - *other).select(one, zero)),
+        let before = |action: &Action<'g>| {
+            let place = match &action.along {
+                Along::Fixed(along) => begins + model.number(along).clamp(zero, ends - begins),
+                &Along::Pad(s) => s,
+            };
+            action.times(1.0 - is_beyond(model, side, (place - s, whole)))
         };
         for action in applied {
             let [load, of_load] = before(action).wrench;

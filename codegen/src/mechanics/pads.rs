@@ -69,7 +69,7 @@ impl<'g> AtPad<'g> {
         // A beam that has left its pad carries the force at its end.
         let on = s.clamp(model.zero(), model.number(&sliding.beam.length));
         let of_beam = sliding.beam.elements().zip(here).map(|(body, here)| {
-            (Place { body, along: Along::Pad { s: on, pad: sliding.identity() } }, on_beam.times(here))
+            (Place { body, along: Along::Pad(on) }, on_beam.times(here))
         });
         AtPad { length, jacobian, pulls: of_pad.into_iter().chain(of_beam).collect() }
     }

@@ -1,7 +1,7 @@
 //! Places on bodies, and what is exerted there.
 
 use super::vector::Vec3;
-use crate::chain::{Attachment, BodyId, Sliding, Value};
+use crate::chain::{BodyId, Value};
 use crate::symbolic::Expr;
 
 /// Where a force acts on a body.
@@ -18,23 +18,9 @@ pub struct Place<'g> {
 pub enum Along<'g> {
     /// Always the same, m.
     Fixed(Value),
-    /// That of a pad on which a beam slides: on the element where the pad is, the others get nothing from it.
-    Pad {
-        /// Its distance from the beginning of the beam, m.
-        s: Expr<'g>,
-        /// Which pad it is.
-        pad: Pad,
-    },
-}
-
-/// What the directions in which one pad holds one beam have in common: the pad's body and position there, the beam and the place.
-pub type Pad = (Attachment, BodyId, Value);
-
-impl Sliding {
-    /// What tells this pad from the others of its beam.
-    pub fn identity(&self) -> Pad {
-        (self.pad.clone(), self.beam.first, self.start.clone())
-    }
+    /// That of a pad on which a beam slides: its distance from the beginning of the beam, m. It acts on the element where the pad is, the others get
+    /// nothing from it.
+    Pad(Expr<'g>),
 }
 
 /// A force on a body, in the world.
