@@ -158,8 +158,7 @@ impl Feet {
     /// Those of a description.
     pub fn new(description: &Description) -> Self {
         let (supports, n) = (description.supports.len(), description.coordinates.len());
-        let one_sided: Vec<usize> =
-            (0..supports).filter(|support| description.supports[*support].is_one_sided()).collect();
+        let one_sided: Vec<usize> = (0..supports).filter(|support| description.supports[*support].one_sided).collect();
         let is_base = |j: &usize| description.coordinates[*j].role == CoordinateRole::Base;
         let first = (0..n).find(is_base).unwrap_or(0);
         let end = (0..n).rfind(is_base).map_or(first, |last| last + 1);

@@ -311,7 +311,7 @@ pub fn columns_of_small_motions(description: &Description) -> Vec<String> {
 
 /// The states of small motions among all.
 pub(crate) fn states_of_small_motions(description: &Description, x: &[f64]) -> Vec<f64> {
-    let feet = description.supports.iter().filter(|support| support.is_one_sided()).count();
+    let feet = description.supports.iter().filter(|support| support.one_sided).count();
     let end = x.len().saturating_sub(description.bristles.len());
     [&x[..end.saturating_sub(2 * feet)], &x[end..]].concat()
 }

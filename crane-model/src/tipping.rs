@@ -66,10 +66,10 @@ pub fn lines(crane: &dyn DynCrane, t: f64, q: &[f64], v: &[f64], a: &[f64]) -> V
 /// Which supports carry nothing because they are above the ground.
 fn lifted(crane: &dyn DynCrane, q: &[f64], v: &[f64]) -> Vec<bool> {
     let supports = &crane.description().supports;
-    if !supports.iter().any(SupportInfo::is_one_sided) {
+    if !supports.iter().any(|support| support.one_sided) {
         return vec![false; supports.len()];
     }
-    let carries_nothing = |(support, force): (&SupportInfo, Vector3<f64>)| support.is_one_sided() && force.z <= 0.0;
+    let carries_nothing = |(support, force): (&SupportInfo, Vector3<f64>)| support.one_sided && force.z <= 0.0;
     supports.iter().zip(crane.support_reactions_at(q, v)).map(carries_nothing).collect()
 }
 

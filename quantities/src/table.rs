@@ -32,6 +32,12 @@ CraneModel {
     Transforms = transforms(q) -> [transform; bodies] required
         "Transforms T of all bodies into the world frame; translations in m."
         "T(p) = T(p−1) T̃(p) [Urbaś 2016, Eq. (3)]" python(q);
+    BodySizes = body_sizes() -> [pair; bodies] required
+        "Mass (kg) of every body, 0 for a frame without one, and its length (m) along x, 0 unless it is a rigid finite element or a link of a rope."
+        "m, l";
+    SupportPlaces = support_places() -> [vector; supports] zero
+        "Where every support is attached, in the frame of the base, m."
+        "r";
     Points = points(q) -> [vector; points] zero
         "Positions of the points of interest in the world frame, m."
         "T(p) r" python(q);

@@ -54,6 +54,7 @@ class Body:
     parent: object = None
     at: object = None
     along: float = math.inf
+    length: object = 0
 
     @property
     def degrees_of_freedom(self):
@@ -176,9 +177,13 @@ def length_over(points, falls, chosen=None):
 
 @dataclass
 class Support:
-    """Springs and dampers along the world's axes; one entry each for x, y, z. `friction` is None if the support also pulls."""
+    """Springs and dampers along the world's axes; one entry each for x, y, z. `friction` is None if the support also pulls.
+
+    `at` is the place in the frame of the base, `position` that in the world.
+    """
 
     name: str
+    at: ca.SX
     position: ca.SX
     elongation: ca.SX
     stiffness: ca.SX
@@ -272,14 +277,14 @@ class Crane:
             return rotate(ROTATIONS[symbol], coordinate.q)
         return translate_along(TRANSLATIONS[symbol], coordinate.q)
 
-    def add_body(self, name, transform, pseudo_inertia, place):
+    def add_body(self, name, transform, pseudo_inertia, place, length=0):
         """Adds a body that begins at a place; the coordinates added since the last body are those of its joint."""
         self.cuts.append(Cut(transform, len(self.bodies)))
         known = {index for body in self.bodies for index in body.moved_by}
         own = [index for index in range(len(self.coordinates)) if index not in known]
         before = [] if place.parent is None else self.bodies[place.parent].moved_by
         along = math.inf if place.at is None else self.spec.default(place.at)
-        self.bodies.append(Body(name, transform, before + own, pseudo_inertia, place.parent, place.at, along))
+        self.bodies.append(Body(name, transform, before + own, pseudo_inertia, place.parent, place.at, along, length))
         return self.bodies[-1]
 
 
@@ -428,7 +433,7 @@ def read_beam_bodies(crane, name, transform, written, place):
                 stiffness, damping = beam.stiffness[index - 1][symbol], beam.damping[index - 1][symbol]
                 crane.elements.append(Spring(coordinate, stiffness, damping))
         body_name = name if written.get("sections") == "rigid" else element
-        span.bodies.append(crane.add_body(body_name, transform, pseudo_inertia, place))
+        span.bodies.append(crane.add_body(body_name, transform, pseudo_inertia, place, length))
         span.starts.append(start)
         transform = transform @ translate(x=length)
         start = start + length
@@ -530,7 +535,7 @@ def read_support(crane, written, base):
     )
     friction = spec.number(written.get("friction_coefficient", 1000 if written.get("sticks", False) else 0.6))
     return Support(
-        written["name"], position, displacement - free_play, stiffness, damping, friction if written.get("one_sided", False) else None
+        written["name"], spec.vector(written["at"]), position, displacement - free_play, stiffness, damping, friction if written.get("one_sided", False) else None
     )
 
 

@@ -91,6 +91,8 @@ class Derivations:
         moving = [(p, body.moved_by) for p, body in enumerate(bodies)]
         return {
             "transforms": poses,
+            "body_sizes": ca.vertcat(*[ca.vertcat(body.pseudo_inertia[3, 3], body.length) for body in bodies]),
+            "support_places": ca.vertcat(ca.SX(0, 1), *[support.at for support in self.crane.supports]),
             "transform_derivatives": ca.vertcat(*[first[block[p], i] for p, dof in moving for i in dof]),
             "transform_second_derivatives": ca.vertcat(
                 *[pair(p, m, n) for p, dof in moving for m in dof for n in dof if n >= m]

@@ -96,10 +96,8 @@ fn description_constant(chain: &Chain) -> Item {
     });
     let bodies = chain.bodies.iter().enumerate().map(|(p, body)| {
         let (name, link) = (text(&body.name), text(&body.link));
-        let mass = literal(body.inertia.as_ref().map_or(0.0, |inertia| inertia.mass.at(&defaults)));
-        let length = at_defaults(&body.length);
         let degrees = integer(chain.degrees_of_freedom(BodyId(p)));
-        quote!(BodyInfo { name: #name, link: #link, mass: #mass, length: #length, degrees_of_freedom: #degrees })
+        quote!(BodyInfo { name: #name, link: #link, degrees_of_freedom: #degrees })
     });
     let sections = chain.beams.iter().flat_map(|beam| &beam.sections).map(|section| {
         let (body, x, at) = (integer(section.body.0), at_defaults(&section.x), text(&section.at));
@@ -116,16 +114,9 @@ fn description_constant(chain: &Chain) -> Item {
     });
     let supports = chain.supports.iter().map(|support| {
         let name = text(&support.name);
-        let position = support.position.iter().map(at_defaults);
         let linear = support.kinematics == SupportKinematics::Linear;
-        let friction = support.friction.as_ref().map_or_else(
-            || quote!(None),
-            |friction| {
-                let coefficient = at_defaults(friction);
-                quote!(Some(#coefficient))
-            },
-        );
-        quote!(SupportInfo { name: #name, position: [#(#position),*], linear: #linear, friction: #friction })
+        let one_sided = support.friction.is_some();
+        quote!(SupportInfo { name: #name, linear: #linear, one_sided: #one_sided })
     });
     let drives = chain.drives.iter().map(|drive| drive_info(drive, &defaults));
     let stops = chain.stopped().into_iter().map(|id| integer(id.0));

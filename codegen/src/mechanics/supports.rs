@@ -306,6 +306,11 @@ pub fn jacobians<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr
     model.chain.supports.iter().flat_map(rows).flatten().collect()
 }
 
+/// Where each support is attached, in the frame of the base, m.
+pub fn places<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    model.chain.supports.iter().flat_map(|support| model.vector(&support.position).0).collect()
+}
+
 /// Stiffness s of each support along the world's axes, N/m.
 pub fn stiffnesses<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     model.chain.supports.iter().flat_map(|support| model.vector(&support.stiffness).0).collect()

@@ -90,7 +90,7 @@ impl Description {
 
     /// Whether it stands on supports that press, and hold by friction.
     pub fn has_feet(&self) -> bool {
-        self.supports.iter().any(SupportInfo::is_one_sided)
+        self.supports.iter().any(|support| support.one_sided)
     }
 
     /// The first body that a coordinate moves: the coordinate is named after it, or after its link.
@@ -193,10 +193,6 @@ pub struct BodyInfo {
     pub name: Text,
     /// Link it belongs to.
     pub link: Text,
-    /// Mass with default parameters, kg; 0 for a massless frame.
-    pub mass: f64,
-    /// Length along x of a rigid finite element, m; 0 otherwise.
-    pub length: f64,
     /// Number of coordinates that move it, Eq. (2): the first of `q`, unless the crane has branches
     /// ([`CraneModel::parents`](crate::CraneModel::parents)).
     pub degrees_of_freedom: usize,
@@ -261,19 +257,10 @@ impl SectionInfo {
 pub struct SupportInfo {
     /// Name.
     pub name: Text,
-    /// Attachment point in the base's frame with default parameters, m.
-    pub position: [f64; 3],
     /// Whether its elongation is linear in the base's coordinates, `kinematics: linear`.
     pub linear: bool,
-    /// Coefficient of friction with default parameters, if it only presses, and lifts off instead of pulling; `None` for a support that also pulls.
-    pub friction: Option<f64>,
-}
-
-impl SupportInfo {
     /// Whether it only presses, and lifts off instead of pulling.
-    pub fn is_one_sided(&self) -> bool {
-        self.friction.is_some()
-    }
+    pub one_sided: bool,
 }
 
 /// A drive.

@@ -182,6 +182,25 @@ impl dyn DynCrane + '_ {
         out
     }
 
+    /// Mass (kg) and length (m) of every body.
+    pub fn body_sizes_at(&self) -> Vec<[f64; 2]> {
+        let mut out = vec![[0.0; 2]; self.description().bodies.len()];
+        self.body_sizes(&mut out);
+        out
+    }
+
+    /// Mass of the crane with its load, kg.
+    pub fn mass(&self) -> f64 {
+        self.body_sizes_at().iter().map(|[mass, _]| mass).sum()
+    }
+
+    /// Where every support is attached, in the frame of the base, m.
+    pub fn support_places_at(&self) -> Vec<Vector3<f64>> {
+        let mut out = vec![Vector3::zeros(); self.description().supports.len()];
+        self.support_places(&mut out);
+        out
+    }
+
     /// Section moduli for stresses of beams, as [`Description::sections`](crate::Description::sections) lists the sections.
     pub fn section_moduli_at(&self) -> Vec<SectionModuli> {
         let mut out = vec![SectionModuli::ZERO; self.description().sections.len()];

@@ -17,7 +17,7 @@ impl Contacts {
     pub fn new(crane: &dyn DynModel) -> Self {
         let Description { supports, stops, connectors, .. } = crane.description();
         Self {
-            feet: (0..supports.len()).filter(|foot| supports[*foot].is_one_sided()).collect(),
+            feet: (0..supports.len()).filter(|foot| supports[*foot].one_sided).collect(),
             stops: stops.to_vec(),
             ropes: (0..connectors.len()).filter(|rope| connectors[*rope].is_rope).collect(),
             gaps: vec![[0.0; 2]; supports.len()],
@@ -38,7 +38,7 @@ impl Contacts {
 
     /// Their names.
     pub fn names(description: &Description) -> Vec<String> {
-        let feet = description.supports.iter().filter(|support| support.is_one_sided()).map(|support| &support.name);
+        let feet = description.supports.iter().filter(|support| support.one_sided).map(|support| &support.name);
         let stops = description.stops.iter().map(|&stop| &description.coordinates[stop].name);
         let ropes = description.connectors.iter().filter(|connector| connector.is_rope).map(|rope| &rope.name);
         let kinds = [("contact", feet.collect::<Vec<_>>()), ("stop", stops.collect()), ("tension", ropes.collect())];

@@ -20,7 +20,7 @@ use super::{
 };
 use crate::memory::{Visit, visit_count};
 use crate::{
-    Description, SupportInfo,
+    Description,
     dyn_crane::{DynImplicit, DynSystem},
     loop_joints::Loops,
     stateful_force::StateAt,
@@ -68,7 +68,7 @@ impl<'a> System<'a> {
         let zeros = || vec![0.0; n];
         let loops = Loops::new(crane);
         let Description { stops, frictions, supports, connectors, .. } = crane.description();
-        let one_sided = supports.iter().any(SupportInfo::is_one_sided);
+        let one_sided = supports.iter().any(|support| support.one_sided);
         let ropes_or_pins = connectors.iter().any(|connector| connector.is_rope || connector.is_pin());
         Self {
             crane,

@@ -1,7 +1,7 @@
 //! What a load chart takes into account, in words that stand beside it.
 
 use super::{Limits, PartLimit};
-use crate::{CylinderInfo, Description, SupportInfo, dyn_crane::DynCrane, tipping};
+use crate::{CylinderInfo, Description, dyn_crane::DynCrane, tipping};
 
 /// What a load chart takes into account, and what it does not, for people.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -65,7 +65,7 @@ impl Coverage {
         if description.supports.is_empty() {
             return;
         }
-        let what = if description.supports.iter().all(SupportInfo::is_one_sided) {
+        let what = if description.supports.iter().all(|support| support.one_sided) {
             "the first foot that lifts off"
         } else {
             "the first support that pulls"

@@ -4,6 +4,7 @@ use super::{
     Limit, Limits, PartLimit, range_of_loads,
     rating::{LoadSearch, Posed},
     search::{Range, Trial},
+    sweep::mass_with,
 };
 use crate::{
     dyn_crane::DynCrane,
@@ -92,8 +93,9 @@ pub fn critical_load(
         return Err(NoCriticalLoad::NoSupports);
     }
     let spec_load = crane.parameter(parameter);
-    let mass: f64 = description.bodies.iter().map(|body| body.mass).sum();
-    let [least, greatest] = range_of_loads(&description, parameter, None);
+    let [least, _] = range_of_loads(crane, parameter, None);
+    let mass = mass_with(crane, parameter, least);
+    let [_, greatest] = range_of_loads(crane, parameter, None);
     let limits = match critical {
         Critical::FirstFoot => Limits { of_parts: vec![PartLimit::LiftOff], ..Limits::none(&description) },
         Critical::Tipping => Limits { tipping: Some(0.0), ..Limits::none(&description) },

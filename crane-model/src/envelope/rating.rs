@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use super::{
     Condition, Limit, Limits,
     search::{CHART, Range, Trial, largest},
+    sweep::mass_with,
 };
 use crate::{
     dyn_crane::DynCrane,
@@ -124,9 +125,9 @@ impl Posed<'_> {
             let governing = Some(Limit::Equilibrium);
             return (Rating { load: None, governing, loaded: None, with_spec_load, deflections: Vec::new() }, None);
         };
-        let description = self.crane.description();
-        let mass: f64 = description.bodies.iter().map(|body| body.mass).sum();
-        let greatest = greatest.min(description.parameters[self.load].upper_bound.value / factor);
+        // A search does not depend on the load that was tried last.
+        let mass = mass_with(self.crane, self.load, least);
+        let greatest = greatest.min(self.crane.description().parameters[self.load].upper_bound.value / factor);
         let range = Range { greatest, guess, scale: mass.max(f64::MIN_POSITIVE), accuracy: CHART };
         let search = LoadSearch { limits, factor, range, points: &empty.points };
         let first = self.trial(least / factor, empty.clone(), &search);

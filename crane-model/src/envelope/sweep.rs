@@ -61,12 +61,18 @@ pub fn only_mass(description: &Description) -> Option<usize> {
 
 /// The minimum load, which is allowed and as near to zero as possible, and the maximum load to consider: `greatest`, or a hundred times the
 /// mass of the crane.
-pub fn range_of_loads(description: &Description, load: usize, greatest: Option<f64>) -> [f64; 2] {
-    let info = &description.parameters[load];
+pub fn range_of_loads(crane: &dyn DynCrane, load: usize, greatest: Option<f64>) -> [f64; 2] {
+    let info = &crane.description().parameters[load];
     let is_allowed = |value: &f64| info.check(*value).is_ok();
     let least = [0.0, LEAST_LOAD, info.lower_bound.value].into_iter().find(is_allowed).unwrap_or(info.default);
-    let mass: f64 = description.bodies.iter().map(|body| body.mass).sum();
-    [least, greatest.unwrap_or(GREATEST_LOAD * mass.max(1.0)).min(info.upper_bound.value)]
+    [least, greatest.unwrap_or(GREATEST_LOAD * crane.mass().max(1.0)).min(info.upper_bound.value)]
+}
+
+/// Mass of the crane with a load, which it keeps, kg.
+pub(super) fn mass_with(crane: &mut dyn DynCrane, parameter: usize, load: f64) -> f64 {
+    // A load that is not allowed leaves the one before.
+    let _ = crane.set_parameter(parameter, load);
+    crane.mass()
 }
 
 impl Envelope {

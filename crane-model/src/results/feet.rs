@@ -17,7 +17,7 @@ pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> impl Iterator<Item = S
         description.supports.iter().zip(&reactions).map(|(support, force)| (support.name.as_str(), force.z, None));
     let pulls: Vec<_> = forces.filter(|(_, force, _)| *force < -ROUNDING * greatest).collect();
     let gaps = description.supports.iter().zip(crane.support_gaps_at(q));
-    let lifted = gaps.filter(|(support, gap)| support.is_one_sided() && *gap > 0.0);
+    let lifted = gaps.filter(|(support, gap)| support.one_sided && *gap > 0.0);
     let lifted: Vec<_> = lifted.map(|(support, gap)| format!("{} by {} mm", support.name, millimetres(gap))).collect();
     let lifted = (!lifted.is_empty()).then(|| format!("feet off the ground: {}", lifted.join(", ")));
     pulled(&pulls).into_iter().chain(lifted)
@@ -44,7 +44,7 @@ fn sliding(description: &Description, table: &Table) -> Option<String> {
         let words = format!("{} by up to {} mm at {:.2} s", support.name, millimetres(way), table.rows[row][0]);
         (way > SLIDES).then_some(words)
     };
-    let one_sided = description.supports.iter().filter(|support| support.is_one_sided());
+    let one_sided = description.supports.iter().filter(|support| support.one_sided);
     let slides: Vec<String> = one_sided.filter_map(furthest).collect();
     (!slides.is_empty()).then(|| format!("feet that slide on the ground: {}", slides.join("; ")))
 }
@@ -64,7 +64,7 @@ pub struct Lift<'a> {
 
 /// The one-sided feet that lift off the ground in a run.
 pub fn lifts<'a>(description: &'a Description, table: &Table) -> Vec<Lift<'a>> {
-    let one_sided = description.supports.iter().filter(|support| support.is_one_sided());
+    let one_sided = description.supports.iter().filter(|support| support.one_sided);
     let lift = |support: &'a SupportInfo| {
         let Extremes { minimum, time_of_minimum, .. } = Extremes::of(table, &reaction(&support.name));
         let gap = Extremes::of(table, &support_gap(&support.name));
@@ -137,7 +137,7 @@ pub fn tips_over(description: &Description, table: &Table) -> Option<TipsOver> {
     let n = description.coordinates.len();
     let pose = |row: &[f64]| row[1..=n].to_vec();
     let start = pose(table.rows.first()?);
-    let lifts = description.supports.iter().any(SupportInfo::is_one_sided);
+    let lifts = description.supports.iter().any(|support| support.one_sided);
     let over = table.rows.iter().position(|row| lifts && description.has_tipped(&start, &pose(row)))?;
     let presses = |row: &[f64], name: &str| {
         let column = reaction(name);

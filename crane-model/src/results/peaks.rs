@@ -66,7 +66,7 @@ fn tracked(description: &Description) -> Vec<Column> {
             table.add(format!("{}_reaction_{axis}", support.name), "N");
         }
     }
-    for support in description.supports.iter().filter(|support| support.is_one_sided()) {
+    for support in description.supports.iter().filter(|support| support.one_sided) {
         table.add(support_gap(&support.name), "m");
     }
     cylinders::add_columns(description, &mut table);

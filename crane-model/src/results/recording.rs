@@ -198,7 +198,7 @@ fn push_quantities(
     }
     row.extend(reactions.iter().flatten());
     let gaps = crane.support_gaps_at(q).into_iter().zip(&*crane.description().supports);
-    row.extend(gaps.filter(|(_, support)| support.is_one_sided()).map(|(gap, _)| gap));
+    row.extend(gaps.filter(|(_, support)| support.one_sided).map(|(gap, _)| gap));
     row.extend(&slid.places);
     if all {
         row.extend(crane.element_moments_at(q, v));
@@ -263,10 +263,10 @@ fn quantities_of(description: &Description, loop_joints: &[LoopJointInfo], exten
             table.add(format!("{}_reaction_{axis}", support.name), "N");
         }
     }
-    for support in description.supports.iter().filter(|support| support.is_one_sided()) {
+    for support in description.supports.iter().filter(|support| support.one_sided) {
         table.add(support_gap(&support.name), "m");
     }
-    let feet = description.supports.iter().filter(|support| support.is_one_sided());
+    let feet = description.supports.iter().filter(|support| support.one_sided);
     for column in feet::columns(feet.map(|support| support.name.as_str())) {
         table.add(column, "m");
     }

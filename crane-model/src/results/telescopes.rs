@@ -78,13 +78,13 @@ fn overlaps(crane: &dyn DynCrane, stages: &[Stage], q: &[f64]) -> Vec<f64> {
     if stages.is_empty() {
         return Vec::new();
     }
-    let transforms = crane.transforms_at(q);
+    let (transforms, sizes) = (crane.transforms_at(q), crane.body_sizes_at());
     let overlap = |stage: &Stage| {
         let [outer, inner] = [stage.outer, stage.first].map(|body| &transforms[body]);
         let axes = [outer, inner].map(|frame| frame.fixed_view::<3, 1>(0, 0));
         let offset = inner.fixed_view::<3, 1>(0, 3) - outer.fixed_view::<3, 1>(0, 3);
         let along = axes[0].dot(&axes[1]) > ALONG;
-        if along { (crane.description().bodies[stage.outer].length - axes[0].dot(&offset)).max(0.0) } else { 0.0 }
+        if along { (sizes[stage.outer][1] - axes[0].dot(&offset)).max(0.0) } else { 0.0 }
     };
     stages.iter().map(overlap).collect()
 }

@@ -53,8 +53,11 @@ impl ResidualScale {
             CoordinateKind::Rotation => moment,
         });
         // Exact kinematics subtract the position of a support in the spec from its current position.
-        let supports = crane.description().supports.iter().filter(|support| !support.linear);
-        let farthest = supports.flat_map(|support| support.position).fold(0.0, |far: f64, x| far.max(x.abs()));
+        let mut places = vec![Vector3::zeros(); crane.description().supports.len()];
+        crane.support_places(&mut places);
+        let supports = crane.description().supports.iter().zip(places);
+        let exact = supports.filter(|(support, _)| !support.linear).flat_map(|(_, place)| <[f64; 3]>::from(place));
+        let farthest = exact.fold(0.0, |far: f64, x| far.max(x.abs()));
         let reach = DVector::from_fn(n, |i, _| match (coordinates[i].role, coordinates[i].kind) {
             (CoordinateRole::Base, CoordinateKind::Translation) => farthest,
             _ => 0.0,

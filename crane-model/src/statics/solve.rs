@@ -7,7 +7,7 @@ use super::{
     residual_scale::ResidualScale, tangent::Tangent,
 };
 use crate::{
-    CoordinateKind, Statics, SupportInfo,
+    CoordinateKind, Statics,
     dyn_crane::{DynStatics, Instance},
     feet::Feet,
 };
@@ -140,6 +140,6 @@ fn missed(equations: &Equations<'_>, start: &DVector<f64>, settings: &Settings, 
         Status::Singular { .. } => !found.at_rest(settings),
         Status::NotConverged | Status::Slides { .. } => true,
         // A crane that has tipped half off its feet may balance there, besides standing on them.
-        Status::Unstable { .. } => !meant() || stable() || description.supports.iter().any(SupportInfo::is_one_sided),
+        Status::Unstable { .. } => !meant() || stable() || description.supports.iter().any(|support| support.one_sided),
     }
 }

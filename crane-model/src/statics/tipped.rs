@@ -18,7 +18,7 @@ const AT_REST: f64 = 1e-6;
 /// feet that lift and the pose found is not stable or its base is not upright.
 pub(crate) fn with_tipped_status(crane: &dyn DynCrane, t: f64, from: &[f64], found: Equilibrium) -> Equilibrium {
     let description = crane.description();
-    let feet = || description.supports.iter().filter(|support| support.is_one_sided());
+    let feet = || description.supports.iter().filter(|support| support.one_sided);
     let fell = description.has_tipped(from, &found.q);
     let stands = found.is_stable() || found.status == Status::NotConverged && found.residual() < AT_REST;
     if feet().next().is_none() || stands && !fell {

@@ -28,6 +28,8 @@ impl CraneModel<0> for Fixed {
 
     fn transforms(&self, _: &SVector<f64, 0>, _: &mut [Matrix4<f64>]) {}
 
+    fn body_sizes(&self, _: &mut [[f64; 2]]) {}
+
     fn gravity_energy(&self, _: &SVector<f64, 0>) -> f64 {
         0.0
     }

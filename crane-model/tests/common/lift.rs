@@ -120,6 +120,8 @@ impl CraneModel<1> for Lift {
 
     fn transforms(&self, _: &Vector1<f64>, _: &mut [Matrix4<f64>]) {}
 
+    fn body_sizes(&self, _: &mut [[f64; 2]]) {}
+
     fn forces(&self, t: f64, q: &Vector1<f64>, v: &Vector1<f64>) -> Vector1<f64> {
         self.drive_forces(t, q, v)
     }

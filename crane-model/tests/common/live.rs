@@ -48,6 +48,10 @@ impl<const N: usize> CraneModel<N> for Live<N> {
         self.0.set_parameter(index, value)
     }
 
+    fn body_sizes(&self, out: &mut [[f64; 2]]) {
+        self.0.body_sizes(out);
+    }
+
     fn transforms(&self, q: &SVector<f64, N>, out: &mut [Matrix4<f64>]) {
         self.0.transforms(q.as_slice(), out);
     }

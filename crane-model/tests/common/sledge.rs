@@ -24,8 +24,6 @@ static DESCRIPTION: LazyLock<Description> = LazyLock::new(|| Description {
     bodies: List::Static(&[BodyInfo {
         name: Text::Static("sledge"),
         link: Text::Static("sledge"),
-        mass: MASS,
-        length: 0.0,
         degrees_of_freedom: 2,
     }]),
     ..description("sledge", COORDINATES, &[0.0, 0.0])
@@ -75,6 +73,10 @@ impl CraneModel<2> for Sledge {
     fn set_parameter(&mut self, _: usize, value: f64) -> Result<(), ParameterError> {
         self.gravity = value;
         Ok(())
+    }
+
+    fn body_sizes(&self, out: &mut [[f64; 2]]) {
+        out[0] = [MASS, 0.0];
     }
 
     fn transforms(&self, q: &Vector2<f64>, out: &mut [Matrix4<f64>]) {

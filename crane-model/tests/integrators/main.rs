@@ -16,6 +16,10 @@ macro_rules! impl_model_as_in_crane {
             fn transforms(&self, q: &SVector<f64, N>, out: &mut [Matrix4<f64>]) {
                 self.crane.transforms(q, out);
             }
+
+            fn body_sizes(&self, out: &mut [[f64; 2]]) {
+                self.crane.body_sizes(out);
+            }
             fn forces(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
                 self.crane.forces(t, q, v)
             }

@@ -39,6 +39,8 @@ impl CraneModel<2> for ElasticPendulum {
         Ok(())
     }
     fn transforms(&self, _: &Vector2<f64>, _: &mut [Matrix4<f64>]) {}
+
+    fn body_sizes(&self, _: &mut [[f64; 2]]) {}
     fn forces(&self, _: f64, q: &Vector2<f64>, v: &Vector2<f64>) -> Vector2<f64> {
         Vector2::new(-self.stiffness * q.x - self.damping * v.x, 0.0)
     }

@@ -46,7 +46,7 @@ pub fn check_charts(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     let held_load = held.description().parameters.iter().position(|info| info.name == load_name.as_str())?;
 
     let limits = Limits { tipping: Some(0.0), ..Limits::none(description) };
-    let least = crane_model::envelope::range_of_loads(description, load, None)[0];
+    let least = crane_model::envelope::range_of_loads(&crane, load, None)[0];
     let axes = Axes(vec![Axis { varied: Varied::Drive(drive), values: vec![start, position] }]);
     let asked = Envelope { axes, load, loads: [least, GREATEST], limits, factor: 1.0 };
     let rating = rate(&crane, &asked)?;

@@ -79,17 +79,13 @@ pub fn info(options: &Analysis, registry: &Registry, out: &mut dyn Write) -> Out
     }
     report.grid(coordinates);
 
-    let mut bodies = Grid::new(
-        "bodies",
-        "Bodies (mass with default parameters)",
-        &["name", "link", "mass [kg]", "length [m]", "degrees of freedom"],
-    );
-    for body in &description.bodies {
-        let length = (body.length > 0.0).then_some(body.length);
+    let mut bodies = Grid::new("bodies", "Bodies", &["name", "link", "mass [kg]", "length [m]", "degrees of freedom"]);
+    for (body, [mass, length]) in description.bodies.iter().zip(crane.body_sizes_at()) {
+        let length = (length > 0.0).then_some(length);
         bodies.row([
             body.name.as_str().into(),
             body.link.as_str().into(),
-            body.mass.into(),
+            mass.into(),
             length.into(),
             body.degrees_of_freedom.into(),
         ]);
@@ -97,8 +93,8 @@ pub fn info(options: &Analysis, registry: &Registry, out: &mut dyn Write) -> Out
     report.grid(bodies);
 
     let mut supports = Grid::new("supports", "Supports", &["name", "x [m]", "y [m]", "z [m]"]);
-    for support in &description.supports {
-        let [x, y, z] = support.position.map(Cell::from);
+    for (support, place) in description.supports.iter().zip(crane.support_places_at()) {
+        let [x, y, z] = <[f64; 3]>::from(place).map(Cell::from);
         supports.row([support.name.as_str().into(), x, y, z]);
     }
     report.grid(supports);

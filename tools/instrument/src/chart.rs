@@ -45,7 +45,7 @@ pub fn chart(crane: &LiveCrane, wanted: &Wanted) -> Outcome<Value> {
         of_parts: PartLimit::DEFAULT.to_vec(),
         ..Limits::none(description)
     };
-    let loads = range_of_loads(description, load, None);
+    let loads = range_of_loads(crane, load, None);
     let envelope = Envelope { axes, load, loads, limits, factor: 1.0 };
     let pieces: Vec<usize> = (0..envelope.pieces()).collect();
     let rated = std::sync::Mutex::new(vec![None; envelope.axes.poses()]);

@@ -35,8 +35,6 @@ pub fn describe(chain: &Chain) -> Description {
     let bodies = chain.bodies.iter().enumerate().map(|(index, body)| BodyInfo {
         name: body.name.clone().into(),
         link: body.link.clone().into(),
-        mass: body.inertia.as_ref().map_or(0.0, |inertia| at_defaults(&inertia.mass)),
-        length: at_defaults(&body.length),
         degrees_of_freedom: chain.degrees_of_freedom(BodyId(index)),
     });
     let sections = chain.beams.iter().flat_map(|beam| &beam.sections).map(|section| SectionInfo {
@@ -55,9 +53,8 @@ pub fn describe(chain: &Chain) -> Description {
     });
     let supports = chain.supports.iter().map(|support| SupportInfo {
         name: support.name.clone().into(),
-        position: support.position.each_ref().map(at_defaults),
         linear: support.kinematics == SupportKinematics::Linear,
-        friction: support.friction.as_ref().map(at_defaults),
+        one_sided: support.friction.is_some(),
     });
     let drives = chain.drives.iter().map(|drive| DriveInfo {
         coordinate: drive.coordinate.0,

@@ -22,7 +22,7 @@ pub fn scene(live: &LiveCrane, q: &[f64]) -> Value {
         description.coordinates.iter().map(|coordinate| coordinate.role == CoordinateRole::ElementVector).collect();
     let reference: Vec<f64> = q.iter().zip(&is_vector).map(|(q, vector)| if *vector { 0.0 } else { *q }).collect();
     let frames = crane.transforms_at(&reference);
-    let tree = (live as &dyn DynModel).tree();
+    let (tree, sizes) = ((live as &dyn DynModel).tree(), crane.body_sizes_at());
     let bodies: Vec<Value> = description
         .bodies
         .iter()
@@ -31,18 +31,19 @@ pub fn scene(live: &LiveCrane, q: &[f64]) -> Value {
         .map(|(index, (body, frame))| {
             let own = tree.own(index);
             let (written, parameters) = (&live.chain().bodies[index], live.parameters());
-            let mass = written.inertia.as_ref().map_or(0.0, |inertia| inertia.mass.at(parameters));
+            let [mass, length] = sizes[index];
             json!({
-                "name": body.name.as_str(), "link": body.link.as_str(), "mass": mass, "length": body.length,
+                "name": body.name.as_str(), "link": body.link.as_str(), "mass": mass, "length": length,
                 "parent": tree.parent(index), "along": written.along.at(parameters),
-                "moved_by": [own.start, own.end], "frame": rows(frame), "rope": is_rope(description, &tree, body),
+                "moved_by": [own.start, own.end], "frame": rows(frame), "rope": length > 0.0 && !deforms(description, &tree, body),
             })
         })
         .collect();
     let supports: Vec<Value> = description
         .supports
         .iter()
-        .map(|support| json!({"name": support.name.as_str(), "at": support.position}))
+        .zip(crane.support_places_at())
+        .map(|(support, place)| json!({"name": support.name.as_str(), "at": <[f64; 3]>::from(place)}))
         .collect();
     let connectors: Vec<Value> = description
         .connectors
@@ -76,12 +77,11 @@ fn pads(live: &LiveCrane) -> Vec<Value> {
     chain.stages().iter().flat_map(of_stage).collect()
 }
 
-/// Whether a body is a link of a rope or chain: such links have lengths, as elements of beams do, and do not deform.
-fn is_rope(description: &Description, tree: &Tree, body: &BodyInfo) -> bool {
+/// Whether a body is of a beam that deforms. Links of ropes and chains have lengths, as elements of beams do, and do not.
+fn deforms(description: &Description, tree: &Tree, body: &BodyInfo) -> bool {
     let last = description.bodies.iter().rposition(|other| other.link == body.link);
     let moving = last.map(|last| tree.coordinates(last)).unwrap_or_default();
-    let deforms = moving.last().is_some_and(|&coordinate| description.coordinates[coordinate].role.is_element());
-    body.length > 0.0 && !deforms
+    moving.last().is_some_and(|&coordinate| description.coordinates[coordinate].role.is_element())
 }
 
 /// Cylinders with their pins in the frames of the bodies that carry them; with the joint's axis, if it turns.

@@ -1,6 +1,6 @@
 //! What a crane consists of: names, units and numbers that do not change.
 
-use crane_model::dyn_crane::DynModel;
+use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::{BodyInfo, ConnectorInfo, Cut, Description, SectionInfo};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -36,11 +36,11 @@ impl Crane {
             rows.push(row);
         }
         all.set_item("drives", list(std::mem::take(&mut rows))?)?;
-        for info in &description.supports {
+        for (info, place) in description.supports.iter().zip(crane.support_places_at()) {
             let row = PyDict::new(py);
             row.set_item("name", &*info.name)?;
-            row.set_item("position", info.position.to_vec())?;
-            row.set_item("one_sided", info.is_one_sided())?;
+            row.set_item("position", place.as_slice().to_vec())?;
+            row.set_item("one_sided", info.one_sided)?;
             rows.push(row);
         }
         all.set_item("supports", list(std::mem::take(&mut rows))?)?;
@@ -118,14 +118,15 @@ fn describe_connectors<'py>(py: Python<'py>, description: &Description) -> PyRes
 }
 
 /// Bodies, with what carries each and which coordinates move it.
-fn describe_bodies<'py>(py: Python<'py>, crane: &dyn DynModel) -> PyResult<Bound<'py, PyList>> {
-    let tree = crane.tree();
+fn describe_bodies<'py>(py: Python<'py>, crane: &dyn DynCrane) -> PyResult<Bound<'py, PyList>> {
+    let (tree, sizes) = (crane.tree(), crane.body_sizes_at());
     let describe = |(body, info): (usize, &BodyInfo)| {
         let row = PyDict::new(py);
         row.set_item("name", &*info.name)?;
         row.set_item("link", &*info.link)?;
-        row.set_item("mass", info.mass)?;
-        row.set_item("length", info.length)?;
+        let [mass, length] = sizes[body];
+        row.set_item("mass", mass)?;
+        row.set_item("length", length)?;
         row.set_item("degrees_of_freedom", info.degrees_of_freedom)?;
         row.set_item("parent", tree.parent(body))?;
         row.set_item("coordinates", tree.coordinates(body))?;

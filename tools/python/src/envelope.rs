@@ -157,7 +157,7 @@ impl Asked {
         if let Some(greatest) = self.greatest_load.filter(|greatest| !greatest.is_finite()) {
             return Err(PyValueError::new_err(format!("greatest_load={greatest}: write a finite number")));
         }
-        let loads = range_of_loads(description, load, self.greatest_load);
+        let loads = range_of_loads(crane, load, self.greatest_load);
         if loads[1] <= loads[0] {
             let [least, greatest] = loads;
             return Err(PyValueError::new_err(format!("greatest_load={greatest}: write a number above {least}")));

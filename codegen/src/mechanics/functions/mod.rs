@@ -97,7 +97,18 @@ impl<'g> Derivation<'g> {
 
     fn poses(&self) -> Vec<Function> {
         let chain = self.model.chain;
-        let mut functions = vec![self.function(FunctionId::Transforms, transforms::transforms(&self.kinematics))];
+        let model = &self.model;
+        let sizes = chain.bodies.iter().flat_map(|body| {
+            let mass = body.inertia.as_ref().map_or(model.zero(), |inertia| model.number(&inertia.mass));
+            [mass, model.number(&body.length)]
+        });
+        let mut functions = vec![
+            self.function(FunctionId::Transforms, transforms::transforms(&self.kinematics)),
+            self.function(FunctionId::BodySizes, sizes.collect()),
+        ];
+        if !chain.supports.is_empty() {
+            functions.push(self.function(FunctionId::SupportPlaces, crate::mechanics::supports::places(model)));
+        }
         if !chain.points.is_empty() {
             functions.push(self.function(FunctionId::Points, points::positions(&self.model, &self.kinematics)));
             functions.push(self.function(

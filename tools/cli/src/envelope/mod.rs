@@ -144,7 +144,7 @@ pub fn within(options: &LoadLimits, axes: Axes, crane: &dyn DynCrane) -> Outcome
             "leave its `--range` out, or name another load with `--load`",
         ));
     }
-    let [least, greatest] = range_of_loads(description, load, options.greatest_load);
+    let [least, greatest] = range_of_loads(crane, load, options.greatest_load);
     if greatest.is_nan() || greatest <= least {
         return Err(Problem::usage(
             format!("`--greatest-load {greatest}` is not above the minimum load, {least}"),

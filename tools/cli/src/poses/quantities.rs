@@ -85,7 +85,7 @@ impl<'a> Subject<'a> {
         };
         let varies = |index| axes.0.iter().any(|axis| axis.varied == Varied::Parameter(index));
         let load = only_mass(description).filter(|load| !varies(*load) && matches!(wanted, Quantities::Statics));
-        let load = load.map(|load| (load, range_of_loads(description, load, None)[0]));
+        let load = load.map(|load| (load, range_of_loads(crane, load, None)[0]));
         Ok(Self { crane, rigid, load, axes, point, slew: SlewAxis::of(crane), wanted })
     }
 

@@ -102,7 +102,7 @@ fn of_supports(source: &mut Source<'_>, description: &Description, q: &[Dual8]) 
     }
     let gaps = source.at(FunctionId::SupportGaps, q);
     for (support, gap) in description.supports.iter().zip(gaps.chunks_exact(2)) {
-        if support.is_one_sided() {
+        if support.one_sided {
             all.push((named(support_gap(&support.name), "m", Group::Supports), gap[0]));
         }
     }

@@ -83,9 +83,10 @@ fn a_boom_bends_under_its_cylinder() {
     let along = (head - foot).normalize();
     // Weights of the elements, each in its middle, and of the load.
     let density = 7850.0 * (0.16 * 0.12 - 0.148 * 0.108);
+    let lengths: Vec<f64> = crane.body_sizes_at().iter().map(|[_, length]| *length).collect();
     let mut weights = vec![(bodies.len() - 1, position(bodies.len() - 1, [0.0; 3]), 500.0)];
-    for (index, body) in bodies.iter().enumerate().filter(|(_, body)| body.link.as_ref() == "boom") {
-        weights.push((index, position(index, [0.5 * body.length, 0.0, 0.0]), density * body.length));
+    for (index, _) in bodies.iter().enumerate().filter(|(_, body)| body.link.as_ref() == "boom") {
+        weights.push((index, position(index, [0.5 * lengths[index], 0.0, 0.0]), density * lengths[index]));
     }
     let turning = |at: &Vector3<f64>, force: Vector3<f64>| at.cross(&force).y;
     let down = |mass: f64| Vector3::new(0.0, 0.0, -mass * GRAVITY);

@@ -100,12 +100,12 @@ fn position_at(crane: &dyn DynCrane, q: &[f64], body: usize, at: [f64; 3]) -> Ve
 fn on_boom(crane: &dyn DynCrane, q: &[f64], at: [f64; 3]) -> Vector3<f64> {
     let mut start = 0.0;
     let mut found = None;
-    for (index, body) in crane.description().bodies.iter().enumerate().filter(|(_, body)| body.link.as_ref() == "boom")
+    for (index, _) in crane.description().bodies.iter().enumerate().filter(|(_, body)| body.link.as_ref() == "boom")
     {
         if start <= at[0] {
             found = Some((index, start));
         }
-        start += body.length;
+        start += crane.body_sizes_at()[index][1];
     }
     let (body, start) = found.expect("an element");
     position_at(crane, q, body, [at[0] - start, at[1], at[2]])
@@ -215,9 +215,10 @@ fn a_boom_carries_the_weight_and_the_rod() {
             let bodies = crane.description().bodies.iter().enumerate().skip(body);
             let by_boom: f64 = bodies
                 .filter(|(_, body)| body.link.as_ref() == "boom")
-                .map(|(index, body)| {
-                    let middle = position_at(crane, &q, index, [0.5 * body.length, 0.0, 0.0]);
-                    turning(middle - origin, weight(density * body.length))
+                .map(|(index, _)| {
+                    let [_, length] = crane.body_sizes_at()[index];
+                    let middle = position_at(crane, &q, index, [0.5 * length, 0.0, 0.0]);
+                    turning(middle - origin, weight(density * length))
                 })
                 .sum();
             let weights = by_boom + turning(load - origin, weight(900.0));

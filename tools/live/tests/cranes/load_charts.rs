@@ -361,7 +361,7 @@ fn a_chart_is_empty_only_where_statics_finds_no_rest() {
     ]);
     let load = description.parameters.iter().position(|info| info.name == "payload").unwrap();
     let limits = Limits { tipping: Some(0.0), ..Limits::none(description) };
-    let asked = Envelope { axes, load, loads: range_of_loads(description, load, None), limits, factor: 1.0 };
+    let asked = Envelope { axes, load, loads: range_of_loads(&crane, load, None), limits, factor: 1.0 };
     let found = std::sync::Mutex::new(Vec::new());
     let done = |piece: usize, ratings: &[Rating]| found.lock().unwrap().push((piece, ratings.to_vec()));
     let pieces: Vec<usize> = (0..asked.pieces()).collect();

@@ -328,7 +328,7 @@ fn assert_largest_load(what: &str, crane: &LiveCrane, load: &str, limits: Limits
     let description = crane.description();
     let index = |name: &str| description.parameters.iter().position(|info| info.name == name).unwrap();
     let load = index(load);
-    let loads = range_of_loads(description, load, None);
+    let loads = range_of_loads(crane, load, None);
     let asked = Envelope { axes: Axes::default(), load, loads, limits, factor: 1.25 };
     let parameters: Vec<usize> = (0..description.parameters.len()).filter(|&index| index != load).collect();
     assert!(parameters.len() > 1, "{what}");
@@ -434,7 +434,7 @@ guess: {load_psi: -20 deg}
         let largest = |source: &SourceFile, fixed: &[FixedNumber]| {
             let crane = live(source);
             let limits = Limits { of_parts: vec![part], ..Limits::none(crane.description()) };
-            let loads = range_of_loads(crane.description(), 0, None);
+            let loads = range_of_loads(&crane, 0, None);
             let asked = Envelope { axes: Axes::default(), load: 0, loads, limits, factor: 1.0 };
             let largest = LargestLoad::of(&crane, &asked).unwrap_or_else(|none| panic!("{place}: {none:?}"));
             let mut loaded = crane;

@@ -120,7 +120,7 @@ fn check_data(name: &str, live: &LiveCrane, recorded: &Recorded, data: &Value) {
         assert_close(name, number(&format!("{low} {unit}")), least);
         assert_close(name, number(high), most);
         let one_sided =
-            |foot: &str| description.supports.iter().any(|support| support.name == foot && support.is_one_sided());
+            |foot: &str| description.supports.iter().any(|support| support.name == foot && support.one_sided);
         let lifted: Vec<&String> =
             reactions.iter().filter(|(foot, (low, _))| one_sided(foot) && *low <= 0.0).map(|(foot, _)| foot).collect();
         let pulls = reactions.iter().any(|(foot, (low, _))| !one_sided(foot) && *low < 0.0);

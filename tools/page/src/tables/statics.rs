@@ -244,7 +244,7 @@ fn friction(cases: &[Case<'_>]) -> Option<Grid> {
     let unit = || Scale::of("%").map_or("%".into(), Cell::ShownUnit);
     let mut grid = Grid::with_headings("friction", title, headings("support", cases));
     let used: Vec<_> = cases.iter().map(|case| case.crane.friction_utilisations_at(&case.equilibrium.q)).collect();
-    for (index, support) in description.supports.iter().enumerate().filter(|(_, support)| support.is_one_sided()) {
+    for (index, support) in description.supports.iter().enumerate().filter(|(_, support)| support.one_sided) {
         let of_case = |used: &Vec<(usize, f64)>| {
             used.iter()
                 .find(|(foot, _)| *foot == index)
