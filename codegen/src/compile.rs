@@ -28,7 +28,7 @@ pub struct Compiled {
 /// # Errors
 /// All mistakes of the spec at once.
 pub fn compile(source: &SourceFile, analyses: Option<Analyses>) -> Result<Compiled, Diagnostics> {
-    let Checked { chain, warnings } = check(source)?;
+    let Checked { chain, warnings, .. } = check(source)?;
     // Only the spec can request eight cranes per call.
     let analyses = Analyses { ensemble: chain.analyses.ensemble, ..analyses.unwrap_or(chain.analyses) };
     // A path would differ between machines.
@@ -58,6 +58,15 @@ pub fn check(source: &SourceFile) -> Result<Checked, Diagnostics> {
 /// All mistakes of the spec at once.
 pub fn check_with(source: &SourceFile, set: &[(&str, f64)]) -> Result<Checked, Diagnostics> {
     validate::check_with(&read(source)?, source, set)
+}
+
+/// The unit of the number at a place of a valid spec, such as `links.boom.beam.section.box.height`, in SI: that which messages about it name. Empty for
+/// a number without one.
+#[must_use]
+pub fn unit_at(source: &SourceFile, place: &str) -> String {
+    let units = check(source).map(|checked| checked.units).unwrap_or_default();
+    let at = source.span_at(place);
+    units.into_iter().find(|(span, _)| Some(*span) == at).map_or(String::new(), |(_, unit)| unit)
 }
 
 /// Compiles a chain to Rust. `spec_file` is the name of the YAML file, for the header.

@@ -32,6 +32,7 @@ mod read;
 pub mod report;
 pub mod spec;
 pub mod symbolic;
+pub mod units;
 mod validate;
 
 pub use diagnostic::{Diagnostics, Located, SourceFile, WrongPlace};

@@ -92,8 +92,12 @@ catalogue! {
     /// Numbers are 0 or have a magnitude from 1e-30 to 1e18.
     E033 out_of_range(subject, given) "{subject} is outside the allowed range: {given}", "allowed: 0, or a magnitude from 1e-30 to 1e18",
         "check the exponent; every number is in SI units";
-    /// Angles are written only where an angle is expected.
-    E034 misplaced_angle(subject) "{subject} is not an angle", "`deg` and `pi` are for angles only", "write a number, in SI units";
+    /// A number with a unit has the dimension of its key.
+    E034 wrong_dimension(subject, problem, help) "{subject} {problem}", "another dimension", "{help}";
+    /// Units are those of the table.
+    E035 unknown_unit(subject, written, symbol, help) "{subject} cannot be `{written}`: there is no unit `{symbol}`", "not a unit", "{help}";
+    /// A parameter or an input whose value has a unit is in an SI unit.
+    E036 not_si(subject, unit, si) "{subject} has a value with a unit, but is shown in {unit}", "values are kept in SI units", "write `unit: {si}`";
 
     // Links.
     /// A crane has at least one link.

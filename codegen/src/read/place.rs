@@ -4,8 +4,9 @@ use std::fmt::Write as _;
 
 use super::overlay::Noticed;
 use super::parts;
-use crate::diagnostic::{SourceFile, WrongPlace, suggest};
+use crate::diagnostic::{SourceFile, Span, WrongPlace, suggest};
 use crate::node::{Content, Node};
+use crate::units::Quantity;
 
 impl SourceFile {
     /// The same crane with a number at a place replaced by a live parameter of the same value, whose description is the place.
@@ -18,13 +19,13 @@ impl SourceFile {
         Ok(self.changed(&format!("parameters: {{{entry}}}\n{}\n", &changed[1..changed.len() - 1])))
     }
 
-    /// The number at a place, angles in rad.
+    /// The number at a place, in SI units.
     ///
     /// # Errors
     /// There is no number at this place.
     pub fn number_at(&self, place: &str) -> Result<f64, WrongPlace> {
         let (_, value) = self.replaced_at(place, "0")?;
-        value.parse().ok().or_else(|| crate::spec::parse_angle(&value)).ok_or_else(|| not_a_number(place))
+        value.parse().ok().or_else(|| quantity(&value)).ok_or_else(|| not_a_number(place))
     }
 
     /// The same crane with another number at a place.
@@ -36,9 +37,9 @@ impl SourceFile {
         Ok(self.changed(&format!("{}\n", &changed[1..changed.len() - 1])))
     }
 
-    /// The text at a place; `None` if there is none.
+    /// The location of the value at a place; `None` if there is none.
     #[must_use]
-    pub fn text_at(&self, place: &str) -> Option<String> {
+    pub(crate) fn span_at(&self, place: &str) -> Option<Span> {
         let root = parts(self, &mut Noticed::default()).ok()?;
         let mut node = &root;
         for key in place.split('.') {
@@ -50,10 +51,7 @@ impl SourceFile {
                 _ => node.entry(key)?,
             };
         }
-        match &node.content {
-            Content::Text(text) => Some(text.clone()),
-            _ => None,
-        }
+        Some(node.span)
     }
 
     /// The changes to lay over the spec so that a word stands in place of a number, and that number.
@@ -110,7 +108,7 @@ fn overlay(node: &Node, keys: &[&str], place: &str, word: &str, value: &mut Stri
             }
             Ok(format!("[{}]", all.join(", ")))
         }
-        Content::Text(text) if !is_number(text) => Err(not_there(place, keys, text)),
+        Content::Text(text) if quantity(text).is_none() => Err(not_there(place, keys, text)),
         _ => Err(not_a_number(place)),
     }
 }
@@ -127,9 +125,9 @@ fn not_there(place: &str, keys: &[&str], name: &str) -> WrongPlace {
     WrongPlace { title: format!("`{before}` is `{name}`: there is nothing at `{place}`"), help }
 }
 
-/// Whether a text is an angle.
-fn is_number(text: &str) -> bool {
-    crate::spec::parse_angle(text).is_some()
+/// The number of a text with a unit, in SI units.
+fn quantity(text: &str) -> Option<f64> {
+    Some(Quantity::parse(text)?.ok()?.value)
 }
 
 /// A whole node with the number at the place replaced, where a list without names cannot be laid over.
@@ -173,7 +171,7 @@ fn written(node: &Node) -> String {
 fn number(node: &Node, place: &str) -> Result<String, WrongPlace> {
     match &node.content {
         Content::Number(_) => Ok(written(node)),
-        Content::Text(text) if is_number(text) => Ok(text.clone()),
+        Content::Text(text) if quantity(text).is_some() => Ok(text.clone()),
         Content::Text(text) if text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') => Err(WrongPlace {
             title: format!("`{place}` is `{text}`, not a number"),
             help: "if this is a live parameter, write its name; if it is an entry of `materials`, give the place of its number there"

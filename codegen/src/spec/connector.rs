@@ -77,7 +77,7 @@ pub struct Rope {
     pub stiffness: Option<Spanned<Number>>,
     /// Stiffness EA of its section, N, instead of `stiffness`, which is then EA/ℓ₀ and changes with a winch.
     pub axial_stiffness: Option<Spanned<Number>>,
-    /// Relative increase of the force with the rate of stretch, as a fraction per m/s. Default 0.
+    /// Relative increase of the force with the rate of stretch, as a fraction, s/m. Default 0.
     pub damping: Option<Spanned<Number>>,
     /// Unstretched length, m.
     pub length: Option<Spanned<Number>>,

@@ -56,7 +56,7 @@ pub struct Valve {
     /// Fraction of the opening required for the speed of the motion at the measured pressures that the servo adds as a
     /// feed-forward. Default 1.
     pub feed_forward: Option<Spanned<Constant>>,
-    /// Leakage past the piston, m³/s per Pa. Default 0.
+    /// Leakage past the piston, m³/(s Pa). Default 0.
     pub leakage: Option<Spanned<Constant>>,
 }
 

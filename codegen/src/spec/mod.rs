@@ -35,7 +35,7 @@ pub use load::{Axes, Load};
 pub use loop_joint::{Direction, LoopJoint, LoopJointKind, LoopRod, PinAxis, SlideAxis};
 pub use on::{On, Place};
 pub use placement::{AxisName, ClassicDh, ModifiedDh, Placement, Transform, Turn};
-pub use scalar::{Angle, Constant, FixedAngle, Number, Scalar, Vector, parse_angle};
+pub use scalar::{Angle, Constant, FixedAngle, Number, Scalar, Vector};
 pub use schema::json_schema;
 pub use slides_in::{ExactDirection, Pad, Pads, SlidesIn};
 pub use spanned::{Either, Entries, Many, Spanned};

@@ -103,12 +103,18 @@ impl<'a> Check<'a> {
             let kind = self.kind_of(coordinate);
             let place = |what: &str| format!("the {what} of coupling `{name}`");
             let Units { stiffness, damping, .. } = units(kind);
-            let ratio = self.number(&coupling.ratio, &place("ratio"), "", Limit::Any);
+            let turns = [kind, self.kind_of(leader)].map(|kind| kind != Some(CoordinateKind::Translation));
+            let unit = match turns {
+                [false, true] => "m/rad",
+                [true, false] => "rad/m",
+                _ => "",
+            };
+            let ratio = self.number(&coupling.ratio, &place("ratio"), unit, Limit::Any);
             let offset = coupling.offset.as_ref();
             let law = Law::Spring(Spring {
                 stiffness: self.number(&coupling.stiffness, &place("stiffness"), stiffness, Limit::NotNegative),
                 damping: self.number_or(coupling.damping.as_ref(), 0.0, &place("damping"), damping, Limit::NotNegative),
-                length: offset.map_or(Value::ZERO, |offset| self.position(offset, kind, "`offset`")),
+                length: offset.map_or(Value::ZERO, |offset| self.position(offset, units(kind).position, "`offset`")),
             });
             if let (Some(coordinate), Some(leader)) = (coordinate, leader) {
                 let strain = Strain::Coupling { coordinate, leader, ratio };
@@ -214,8 +220,7 @@ impl<'a> Check<'a> {
                 Profile::Hold(self.number(length, &place, "m", Limit::Positive))
             }
             (None, Some(motion)) => {
-                let way = Some(CoordinateKind::Translation);
-                let profile = motion.value.as_ref().and_then(|value| self.motion(value, way, motion.span));
+                let profile = motion.value.as_ref().and_then(|value| self.motion(value, Some("m"), motion.span));
                 profile.unwrap_or(wrong)
             }
             _ => {

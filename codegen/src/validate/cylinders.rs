@@ -107,8 +107,7 @@ impl<'a> Check<'a> {
                 self.report(rule::valve_commanded_twice(other.span, name, key));
             }
         }
-        // An opening is a fraction, not an angle.
-        self.motion(given.value.as_ref()?, Some(CoordinateKind::Translation), given.span)
+        self.motion(given.value.as_ref()?, Some(""), given.span)
     }
 
     fn valve(&mut self, given: &spec::Valve, name: &str) -> Valve {

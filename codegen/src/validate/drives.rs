@@ -7,19 +7,29 @@ use crate::chain::{
 };
 use crate::diagnostic::{Span, rule};
 use crate::expand::spline;
-use crate::spec::{self, Angle, Crane, Motion, Number, Spanned, Table};
+use crate::spec::{self, Angle, Crane, Motion, Number, Scalar, Spanned, Table};
 
 /// Units for a coordinate.
 pub(super) struct Units {
     pub(super) stiffness: &'static str,
     pub(super) damping: &'static str,
     armature: &'static str,
+    pub(super) position: Option<&'static str>,
+    effort: &'static str,
 }
 
 pub(super) fn units(kind: Option<CoordinateKind>) -> Units {
     match kind {
-        Some(CoordinateKind::Translation) => Units { stiffness: "N/m", damping: "N s/m", armature: "kg" },
-        _ => Units { stiffness: "N m/rad", damping: "N m s/rad", armature: "kg m²" },
+        Some(CoordinateKind::Translation) => {
+            Units { stiffness: "N/m", damping: "N s/m", armature: "kg", position: Some("m"), effort: "N" }
+        }
+        _ => Units {
+            stiffness: "N m/rad",
+            damping: "N m s/rad",
+            armature: "kg m²",
+            position: kind.map(|_| "rad"),
+            effort: "N m",
+        },
     }
 }
 
@@ -49,7 +59,9 @@ impl<'a> Check<'a> {
             let armature = self.number_or(armature, 0.0, &subject, units(kind).armature, Limit::NotNegative);
             let motion_span = drive.motion.as_ref().map_or(given.span, |motion| motion.span);
             let profile = match &drive.motion {
-                Some(motion) => motion.value.as_ref().and_then(|motion| self.motion(motion, kind, motion_span)),
+                Some(motion) => {
+                    motion.value.as_ref().and_then(|motion| self.motion(motion, units(kind).position, motion_span))
+                }
                 None => Some(Profile::Hold(Value::ZERO)),
             };
             self.motion_moves(drive, given.span, name);
@@ -137,13 +149,11 @@ impl<'a> Check<'a> {
         }
         let max_effort = drive.max_effort.as_ref().map(|given| {
             let subject = format!("the maximum effort of drive `{name}`");
-            let unit = if kind == Some(CoordinateKind::Translation) { "N" } else { "N m" };
-            self.number(given, &subject, unit, Limit::Positive)
+            self.number(given, &subject, units.effort, Limit::Positive)
         });
-        // Torques and forces are numbers as they are, like openings: no angles.
         let effort = drive.effort.as_ref().map(|given| {
             let motion = given.value.as_ref();
-            let profile = motion.and_then(|motion| self.motion(motion, Some(CoordinateKind::Translation), given.span));
+            let profile = motion.and_then(|motion| self.motion(motion, Some(units.effort), given.span));
             profile.unwrap_or(Profile::Hold(f64::NAN.into()))
         });
         let stiffness = stiffness.unwrap_or(if effort.is_some() { Value::ZERO } else { f64::NAN.into() });
@@ -237,14 +247,15 @@ impl<'a> Check<'a> {
         }
     }
 
-    pub(super) fn motion(&mut self, motion: &Motion, kind: Option<CoordinateKind>, span: Span) -> Option<Profile> {
+    /// A motion of something with a unit; of anything if that is unknown.
+    pub(super) fn motion(&mut self, motion: &Motion, unit: Option<&str>, span: Span) -> Option<Profile> {
         Some(match motion {
-            Motion::Hold(position) => Profile::Hold(self.position(position, kind, "`hold`")),
-            Motion::Quintic(r) => Profile::Quintic(self.ramp(kind, &r.from, &r.to, r.begin.as_ref(), &r.duration)),
-            Motion::Cubic(r) => Profile::Cubic(self.ramp(kind, &r.from, &r.to, r.begin.as_ref(), &r.duration)),
-            Motion::Cycloid(r) => Profile::Cycloid(self.ramp(kind, &r.from, &r.to, r.begin.as_ref(), &r.duration)),
+            Motion::Hold(position) => Profile::Hold(self.position(position, unit, "`hold`")),
+            Motion::Quintic(r) => Profile::Quintic(self.ramp(unit, &r.from, &r.to, r.begin.as_ref(), &r.duration)),
+            Motion::Cubic(r) => Profile::Cubic(self.ramp(unit, &r.from, &r.to, r.begin.as_ref(), &r.duration)),
+            Motion::Cycloid(r) => Profile::Cycloid(self.ramp(unit, &r.from, &r.to, r.begin.as_ref(), &r.duration)),
             Motion::Trapezoid(r) => {
-                let ramp = self.ramp(kind, &r.from, &r.to, r.begin.as_ref(), &r.duration);
+                let ramp = self.ramp(unit, &r.from, &r.to, r.begin.as_ref(), &r.duration);
                 let blend = r.blend.as_ref().map_or(0.25, |blend| {
                     let share = self.constant(blend, "`blend`", "", Limit::Any);
                     if share <= 0.0 || share > 0.5 {
@@ -258,34 +269,46 @@ impl<'a> Check<'a> {
                 let from = speed.from.as_ref();
                 let (begin, ramp) = (speed.begin.as_ref(), speed.ramp.as_ref());
                 Profile::Speed {
-                    from: from.map_or(Value::ZERO, |from| self.position(from, kind, "`from`")),
-                    rate: self.position(&speed.rate, kind, "`rate`"),
+                    from: from.map_or(Value::ZERO, |from| self.position(from, unit, "`from`")),
+                    rate: self.rate(&speed.rate, unit),
                     begin: begin.map_or(Value::ZERO, |begin| self.number(begin, "`begin`", "s", Limit::Any)),
                     ramp: ramp.map(|ramp| self.number(ramp, "the ramp of a motion", "s", Limit::Positive)),
                 }
             }
-            Motion::Table(table) => self.table(table, kind, span)?,
+            Motion::Table(table) => self.table(table, unit, span)?,
             Motion::Input(name) => self.input(name)?,
         })
     }
 
+    /// The rate of a motion of something with a unit; `90 deg` is 90° per second.
+    fn rate(&mut self, given: &Spanned<Angle>, unit: Option<&str>) -> Value {
+        let rate = unit.map(|unit| if unit.is_empty() { "1/s".to_owned() } else { format!("{unit}/s") });
+        if let (Some("rad"), Some(Angle(Scalar::Quantity(quantity)))) = (unit, &given.value)
+            && quantity.wrong_for("rad").is_none()
+        {
+            self.units.push((given.span, "rad/s".to_owned()));
+            return self.position(given, unit, "`rate`");
+        }
+        self.position(given, rate.as_deref(), "`rate`")
+    }
+
     fn ramp(
         &mut self,
-        kind: Option<CoordinateKind>,
+        unit: Option<&str>,
         from: &Spanned<Angle>,
         to: &Spanned<Angle>,
         begin: Option<&Spanned<Number>>,
         duration: &Spanned<Number>,
     ) -> chain::Ramp {
         chain::Ramp {
-            from: self.position(from, kind, "`from`"),
-            to: self.position(to, kind, "`to`"),
+            from: self.position(from, unit, "`from`"),
+            to: self.position(to, unit, "`to`"),
             begin: begin.map_or(Value::ZERO, |begin| self.number(begin, "`begin`", "s", Limit::Any)),
             duration: self.number(duration, "the duration of a motion", "s", Limit::Positive),
         }
     }
 
-    fn table(&mut self, table: &Table, kind: Option<CoordinateKind>, span: Span) -> Option<Profile> {
+    fn table(&mut self, table: &Table, unit: Option<&str>, span: Span) -> Option<Profile> {
         let (Some(given), Some(values)) = (&table.times, &table.values) else {
             // A file that cannot be read is reported where it is read.
             if table.file.is_none() {
@@ -297,7 +320,7 @@ impl<'a> Check<'a> {
             self.report(rule::column_without_file(column.span));
         }
         let (given, values) = (given.value.as_ref()?, values.value.as_ref()?);
-        let values: Vec<f64> = values.iter().map(|value| self.fixed(value, "`values`", kind)).collect();
+        let values: Vec<f64> = values.iter().map(|value| self.fixed(value, "`values`", unit)).collect();
         let times: Vec<f64> = given.iter().map(|time| self.constant(time, "`times`", "s", Limit::Any)).collect();
         let mut ordered = true;
         for (pair, later) in times.windows(2).zip(given.iter().skip(1)) {

@@ -19,7 +19,7 @@ impl<'a> Check<'a> {
             };
             let unit = self.text(input.unit.as_ref(), &format!("the unit of input `{name}`"));
             let about = self.text(input.about.as_ref(), &format!("`about` of input `{name}`"));
-            let unless_set = self.unless_set(name, given.span, input);
+            let unless_set = self.unless_set(name, given.span, input, unit.as_deref());
             let (unit, about) = (unit.unwrap_or_default(), about.unwrap_or_default());
             self.inputs.push(Input { name: name.to_owned(), unit, about, unless_set });
             self.used_inputs.push(false);
@@ -27,7 +27,7 @@ impl<'a> Check<'a> {
     }
 
     /// The profile that an input follows until it is set.
-    fn unless_set(&mut self, name: &str, span: Span, input: &spec::Input) -> Profile {
+    fn unless_set(&mut self, name: &str, span: Span, input: &spec::Input, unit: Option<&str>) -> Profile {
         if input.value.is_some() && input.motion.is_some() {
             self.report(rule::input_twice(span, name));
         }
@@ -37,10 +37,10 @@ impl<'a> Check<'a> {
                 self.report(rule::input_of_input(given.span, name));
                 return Profile::Hold(f64::NAN.into());
             }
-            let profile = motion.and_then(|motion| self.motion(motion, None, given.span));
+            let profile = motion.and_then(|motion| self.motion(motion, unit, given.span));
             return profile.unwrap_or(Profile::Hold(f64::NAN.into()));
         }
-        let value = input.value.as_ref().map_or(0.0, |value| self.fixed(value, &format!("input `{name}`"), None));
+        let value = input.value.as_ref().map_or(0.0, |value| self.in_own_unit(value, &format!("input `{name}`"), unit));
         Profile::Hold(value.into())
     }
 

@@ -72,7 +72,7 @@ impl<'a> Check<'a> {
         let mut stops = Vec::new();
         for (end, at, key) in [(End::Lower, &written.min, "`min`"), (End::Upper, &written.max, "`max`")] {
             if let Some(at) = at {
-                let at = self.position(at, kind, key);
+                let at = self.position(at, units(kind).position, key);
                 stops.push(Stop { at, end, stiffness: stiffness.clone(), damping: damping.clone() });
             }
         }

@@ -2,7 +2,7 @@
 
 use super::Check;
 use super::limits::Limit;
-use crate::chain::{CoordinateKind, Load, LoadAxes};
+use crate::chain::{Load, LoadAxes};
 use crate::diagnostic::rule;
 use crate::spec::{Axes, Crane};
 
@@ -26,9 +26,7 @@ impl<'a> Check<'a> {
                 Some(Axes::Link) => LoadAxes::Link,
                 Some(Axes::World) | None => LoadAxes::World,
             };
-            // The scale is a factor, not an angle.
-            let factor = Some(CoordinateKind::Translation);
-            let scale = load.scale.as_ref().and_then(|scale| self.motion(scale.value.as_ref()?, factor, scale.span));
+            let scale = load.scale.as_ref().and_then(|scale| self.motion(scale.value.as_ref()?, Some(""), scale.span));
             if let Some((body, position)) = self.attach(&load.link, at) {
                 loads.push(Load { name, body, position, force, moment, axes, scale });
             }

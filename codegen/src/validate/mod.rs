@@ -34,9 +34,10 @@ use crate::chain::{
     self, Analyses, Body, BodyId, Bound, Chain, Coordinate, CoordinateId, Force, Input, Loops, Parameter, ParameterId,
     Relation, Value,
 };
-use crate::diagnostic::{Diagnostics, Mistake, SourceFile, rule};
+use crate::diagnostic::{Diagnostics, Mistake, SourceFile, Span, rule};
 use crate::expand::beam::Distribution;
 use crate::spec::{self, Analysis, Crane, CraneSpec, Lookalike, Spanned};
+use crate::units::Quantity;
 use inertias::Judgement;
 use limits::Limit;
 use names::Names;
@@ -50,6 +51,8 @@ pub struct Checked {
     pub chain: Chain,
     /// Warnings about numbers that suggest a wrong unit or a slip; the crane is compiled nevertheless.
     pub warnings: Diagnostics,
+    /// The units of its numbers, by their locations.
+    pub units: Vec<(Span, String)>,
 }
 
 /// Checks a spec and expands it into the chain of its bodies.
@@ -91,7 +94,7 @@ pub fn check_with(spec: &CraneSpec, source: &SourceFile, set: &[(&str, f64)]) ->
     };
     let values = chain.parameters.iter().map(value).collect();
     warnings.extend(plausibility::warnings(&spec.crane, &chain, values));
-    Ok(Checked { chain, warnings: Diagnostics::new(source, warnings) })
+    Ok(Checked { chain, warnings: Diagnostics::new(source, warnings), units: check.units })
 }
 
 /// If a new entry lacks keys and its name is almost that of an entry of the extended spec, replaces its mistakes by one: the misspelt name.
@@ -158,6 +161,10 @@ struct Check<'a> {
     parameters: Vec<Parameter>,
     /// Default values of the parameters, at which live numbers are checked.
     defaults: Vec<f64>,
+    /// Their values as written, if with a unit.
+    written: Vec<Option<&'a Quantity>>,
+    /// The units of the numbers so far, by their locations.
+    units: Vec<(Span, String)>,
     /// Whether some number refers to each parameter.
     used: Vec<bool>,
     /// Live masses, and the bound of those that cannot be zero.

@@ -2,9 +2,10 @@
 
 use super::Check;
 use super::limits::Limit;
-use crate::chain::{CoordinateKind, Parameter, ParameterId, Value};
+use crate::chain::{Parameter, ParameterId, Value};
 use crate::diagnostic::{Span, rule, suggest};
 use crate::spec::{Angle, Constant, Crane, FixedAngle, Number, Scalar, Spanned, Vector};
+use crate::units::{Quantity, Unit};
 
 /// Magnitudes outside this range, except zero, come from a slip in an exponent. Within it, no product or quotient in the
 /// expansion leaves the range of a double.
@@ -25,13 +26,18 @@ impl<'a> Check<'a> {
             };
             let (default, unit, about) = match &parameter.value {
                 Some(parameter) => {
-                    let default = self.fixed(&parameter.value, &format!("parameter `{name}`"), None);
                     let unit = self.text(parameter.unit.as_ref(), &format!("the unit of parameter `{name}`"));
+                    let default = self.in_own_unit(&parameter.value, &format!("parameter `{name}`"), unit.as_deref());
                     let about = self.text(parameter.about.as_ref(), &format!("`about` of parameter `{name}`"));
                     (default, unit, about)
                 }
                 None => (f64::NAN, None, None),
             };
+            let written = parameter.value.as_ref().and_then(|parameter| parameter.value.value.as_ref());
+            self.written.push(match written {
+                Some(FixedAngle(Scalar::Quantity(quantity))) => Some(quantity),
+                _ => None,
+            });
             self.parameters.push(Parameter {
                 name: name.to_owned(),
                 unit: unit.unwrap_or_default(),
@@ -64,7 +70,7 @@ impl<'a> Check<'a> {
 
     /// A number, checked against its limit; NaN if the mistake has been reported.
     pub(super) fn number(&mut self, given: &Spanned<Number>, subject: &str, unit: &str, limit: Limit) -> Value {
-        let value = self.resolve(given.value.as_ref().map(|number| &number.0), given.span, subject, false);
+        let value = self.resolve(given.value.as_ref().map(|number| &number.0), given.span, subject, Some(unit));
         self.within(value, given.span, (subject, unit, limit))
     }
 
@@ -88,6 +94,23 @@ impl<'a> Check<'a> {
         }
     }
 
+    /// Three optional numbers, zero by default, of two directions and a turn.
+    pub(super) fn two_and_turn(
+        &mut self,
+        given: Option<&Spanned<Vector>>,
+        subject: &str,
+        [along, turn]: [&str; 2],
+        limit: Limit,
+    ) -> [Value; 3] {
+        match given.map(|given| &given.value) {
+            Some(Some([y, z, twist])) => {
+                [(y, along), (z, along), (twist, turn)].map(|(number, unit)| self.number(number, subject, unit, limit))
+            }
+            Some(None) => [f64::NAN; 3].map(Value::from),
+            None => [Value::ZERO; 3],
+        }
+    }
+
     /// Three optional numbers, zero by default.
     pub(super) fn vector_or_zero(
         &mut self,
@@ -101,39 +124,59 @@ impl<'a> Check<'a> {
 
     /// An angle, rad.
     pub(super) fn angle(&mut self, given: &Spanned<Angle>, subject: &str) -> Value {
-        self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, subject, true)
+        self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, subject, Some("rad"))
     }
 
-    /// A position of a coordinate, rad or m; either if the kind is unknown.
-    pub(super) fn position(&mut self, given: &Spanned<Angle>, kind: Option<CoordinateKind>, subject: &str) -> Value {
-        let turns = kind != Some(CoordinateKind::Translation);
-        self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, subject, turns)
+    /// A position, a force or whatever else a motion moves, in this unit; in any if that is unknown.
+    pub(super) fn position(&mut self, given: &Spanned<Angle>, unit: Option<&str>, subject: &str) -> Value {
+        self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, subject, unit)
     }
 
-    /// A position that cannot be a parameter.
-    pub(super) fn fixed(&mut self, given: &Spanned<FixedAngle>, subject: &str, kind: Option<CoordinateKind>) -> f64 {
-        let turns = kind != Some(CoordinateKind::Translation);
-        let value = self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, subject, turns);
+    /// The same, where it cannot be a parameter.
+    pub(super) fn fixed(&mut self, given: &Spanned<FixedAngle>, subject: &str, unit: Option<&str>) -> f64 {
+        let value = self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, subject, unit);
         value.as_constant().unwrap_or(f64::NAN)
+    }
+
+    /// The value of a parameter or an input, which has the unit that the spec gives it, if any: words of its own admit numbers alone.
+    pub(super) fn in_own_unit(&mut self, given: &Spanned<FixedAngle>, subject: &str, unit: Option<&str>) -> f64 {
+        let known = unit.and_then(|unit| Some((unit, Unit::parse(unit).ok()?)));
+        if let (Some(FixedAngle(Scalar::Quantity(quantity))), Some(unit)) = (&given.value, unit)
+            && !known.is_some_and(|(_, known)| known.is_si())
+        {
+            let (_, si) = quantity.dimension.name_and_unit();
+            self.report(rule::not_si(given.span, subject, unit, si));
+            return f64::NAN;
+        }
+        self.fixed(given, subject, known.map(|(unit, _)| unit))
     }
 
     /// A number that cannot be a parameter.
     pub(super) fn constant(&mut self, given: &Spanned<Constant>, subject: &str, unit: &str, limit: Limit) -> f64 {
-        let value = self.resolve(given.value.as_ref().map(|constant| &constant.0), given.span, subject, false);
+        let value = self.resolve(given.value.as_ref().map(|constant| &constant.0), given.span, subject, Some(unit));
         self.within(value, given.span, (subject, unit, limit)).as_constant().unwrap_or(f64::NAN)
     }
 
     /// Constant or parameter; NaN if the mistake has been reported.
-    fn resolve(&mut self, scalar: Option<&Scalar>, span: Span, subject: &str, angle: bool) -> Value {
+    fn resolve(&mut self, scalar: Option<&Scalar>, span: Span, subject: &str, unit: Option<&str>) -> Value {
+        if let Some(unit) = unit {
+            self.units.push((span, unit.to_owned()));
+        }
         let reported = Value::Constant(f64::NAN);
         let number = match scalar {
             None => return reported,
-            Some(Scalar::Name(name)) => return self.parameter(name, span).map_or(reported, Value::Parameter),
-            Some(Scalar::Angle(_)) if !angle => {
-                self.report(rule::misplaced_angle(span, subject));
-                return reported;
+            Some(Scalar::Name(name)) => {
+                let Some(id) = self.parameter(name, span) else { return reported };
+                let written = self.written[id.0];
+                return if self.has_dimension(written, span, subject, unit) { Value::Parameter(id) } else { reported };
             }
-            Some(Scalar::Number(number) | Scalar::Angle(number)) => *number,
+            Some(Scalar::Number(number)) => *number,
+            Some(Scalar::Quantity(quantity)) => {
+                if !self.has_dimension(Some(quantity), span, subject, unit) {
+                    return reported;
+                }
+                quantity.value
+            }
         };
         if !number.is_finite() {
             self.report(rule::not_finite(span, subject, number));
@@ -145,6 +188,15 @@ impl<'a> Check<'a> {
         }
         // The sign of zero has no meaning here, and would appear in the generated code.
         Value::Constant(number + 0.0)
+    }
+
+    /// Whether a number with a unit, if it has one, has the dimension of a unit; reported otherwise.
+    fn has_dimension(&mut self, written: Option<&Quantity>, span: Span, subject: &str, unit: Option<&str>) -> bool {
+        let wrong = written.zip(unit).and_then(|(quantity, unit)| quantity.wrong_for(unit));
+        if let Some(wrong) = &wrong {
+            self.report(rule::wrong_dimension(span, subject, &wrong.problem, &wrong.help));
+        }
+        wrong.is_none()
     }
 
     fn parameter(&mut self, name: &str, span: Span) -> Option<ParameterId> {

@@ -1,6 +1,7 @@
 //! Points of interest, the guess of the static solution, and the settings of a run.
 
 use super::Check;
+use super::drives::units;
 use super::limits::Limit;
 use crate::chain::{BodyId, CoordinateId, Drive, Force, Point, Run, Spring, Strain, Support, Transmission, Value};
 use crate::diagnostic::{Span, rule, suggest};
@@ -62,7 +63,7 @@ impl<'a> Check<'a> {
             let coordinate = self.coordinate(name);
             let kind = coordinate.map(|CoordinateId(index)| self.coordinates[index].kind);
             let subject = format!("the guess of `{}`", name.value.as_deref().unwrap_or_default());
-            let position = self.fixed(position, &subject, kind);
+            let position = self.fixed(position, &subject, units(kind).position);
             let Some(id) = coordinate else { continue };
             if drives.iter().any(|drive| drive.coordinate == id && drive.transmission == Transmission::Rigid) {
                 self.report(rule::prescribed_guess(name.span, &self.coordinates[id.0].name));

@@ -186,7 +186,7 @@ impl<'a> Check<'a> {
 
     /// How a pad holds; without any stiffness against twist it does not hold it.
     fn pad(&mut self, given: &'a Spanned<Pad>, what: &str) -> [Hold; 3] {
-        const RATE: &str = "N s/m or N m s/rad";
+        const RATE: [&str; 2] = ["N s/m", "N m s/rad"];
         let Some(pad) = &given.value else {
             // A mistake that has been reported; it may hold against twist.
             return [Hold::No, Hold::No, Hold::Exactly];
@@ -219,9 +219,9 @@ impl<'a> Check<'a> {
             }
         }
         let damping =
-            self.vector_or_zero(pad.damping.as_ref(), &format!("the damping of {what}"), RATE, Limit::NotNegative);
+            self.two_and_turn(pad.damping.as_ref(), &format!("the damping of {what}"), RATE, Limit::NotNegative);
         let clearance = format!("the clearance of {what}");
-        let clearance = self.vector_or_zero(pad.clearance.as_ref(), &clearance, "m or rad", Limit::NotNegative);
+        let clearance = self.two_and_turn(pad.clearance.as_ref(), &clearance, ["m", "rad"], Limit::NotNegative);
         let stiffness: [Value; 3] = std::array::from_fn(|i| stiffness[i].clone());
         self.keep_exact("stiffness", pad.stiffness.as_ref(), (&stiffness, exact), what);
         self.keep_exact("damping", pad.damping.as_ref(), (&damping, exact), what);

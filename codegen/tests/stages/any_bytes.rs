@@ -14,7 +14,7 @@ fn answer(bytes: &[u8]) {
     let answer = SourceFile::from_bytes("any.yaml", bytes)
         .and_then(|source| read(&source).and_then(|spec| check(&spec, &source)));
     match answer {
-        Ok(Checked { chain, warnings }) => {
+        Ok(Checked { chain, warnings, .. }) => {
             assert_eq!(chain.guess.len(), chain.coordinates.len());
             assert!(warnings.mistakes().iter().all(Mistake::is_warning));
             assert_eq!(warnings.lines().count(), warnings.mistakes().len());

@@ -56,6 +56,17 @@ fn every_key_is_documented() {
     assert!(missing.is_empty(), "docs/SPEC.md does not describe {missing:?}");
 }
 
+/// The table of units is that of the program, with the SI unit of a symbol's own dimension first.
+#[test]
+fn every_unit_is_documented() {
+    let spec = include_str!("../../../docs/SPEC.md");
+    let section = spec.split("### Units").nth(1).expect("a section").split("\n## ").next().expect("its text");
+    let rows = section.lines().filter(|line| line.starts_with("| ")).skip(1);
+    let told: Vec<&str> = rows.flat_map(|row| row.split('`').skip(1).step_by(2)).collect();
+    let known: Vec<&str> = crane_codegen::units::TABLE.iter().map(|symbol| symbol.text).collect();
+    assert_eq!(told, known);
+}
+
 #[test]
 fn every_rule_is_documented() {
     let page = page();

@@ -10,3 +10,4 @@ mod parameters;
 mod picture;
 mod sections;
 mod shipped_specs;
+mod units;

@@ -46,7 +46,7 @@ fn as_json(Check { specs, strict, .. }: &Check, registry: &Registry, out: &mut d
     for spec in specs {
         let checked = registry.source(spec).and_then(|source| compile::check(&source).map_err(Problem::mistakes));
         let (chain, diagnostics) = match checked {
-            Ok(Checked { chain, warnings }) => (Some(chain), warnings),
+            Ok(Checked { chain, warnings, .. }) => (Some(chain), warnings),
             Err(Problem::Mistakes(mistakes)) => (None, *mistakes),
             Err(other) => return Err(other),
         };

@@ -2,12 +2,13 @@
 
 use std::{borrow::Cow, path::Path, sync::OnceLock};
 
-use crane_codegen::{SourceFile, chain::Chain, compile, spec::parse_angle};
+use crane_codegen::{SourceFile, chain::Chain, compile};
 use crane_live::LiveCrane;
 use crane_model::{Description, ParameterError, Refusal, dyn_crane::DynCrane};
 
 use crate::{
     arguments::{Choice, Parameters, STANDARD_INPUT},
+    envelope::number,
     problem::{Outcome, Problem, nearest},
     screen, spec_file, variants,
 };
@@ -271,14 +272,7 @@ fn input(setting: &str, description: &Description) -> Outcome<(usize, f64)> {
         Problem::usage(format!("{} has no input `{name}`", description.name), help)
     })?;
     let unit = description.inputs[index].unit.as_str();
-    let number = value_in(unit, value).ok_or_else(|| {
-        let help = if unit.is_empty() {
-            "write a finite number".to_owned()
-        } else {
-            format!("write a finite number, in {unit}")
-        };
-        Problem::usage(format!("`{value}` is not a value for {name}"), help)
-    })?;
+    let number = number(unit, value, name)?;
     Ok((index, number))
 }
 
@@ -330,23 +324,11 @@ impl Parameters {
             })?;
             let index = index_of_known(name, crane, known).map_err(|(title, help)| Problem::usage(title, help))?;
             let unit = known[index].1;
-            let number = value_in(unit, value).ok_or_else(|| {
-                let angle = if unit == "rad" { ", or an angle such as `30deg`" } else { "" };
-                Problem::usage(
-                    format!("`{value}` is not a valid value for {name}"),
-                    format!("write a finite number in {unit}{angle}"),
-                )
-            })?;
+            let number = number(unit, value, name)?;
             Ok((index, number))
         };
         self.settings.iter().map(read).collect()
     }
-}
-
-/// A finite number in a unit; where that is rad, also an angle such as `30deg`.
-fn value_in(unit: &str, text: &str) -> Option<f64> {
-    let angle = || parse_angle(text).filter(|_| unit == "rad");
-    text.parse().ok().or_else(angle).filter(|number: &f64| number.is_finite())
 }
 
 /// Sets live parameters, by their indices in the description, all at once.

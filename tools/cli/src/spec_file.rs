@@ -27,7 +27,7 @@ pub fn load(spec: &Path, strict: bool) -> Outcome<(Chain, String)> {
 /// # Errors
 /// Those mistakes.
 pub fn parse(source: SourceFile, strict: bool) -> Outcome<(Chain, String)> {
-    let Checked { chain, warnings } = compile::check(&source).map_err(Problem::mistakes)?;
+    let Checked { chain, warnings, .. } = compile::check(&source).map_err(Problem::mistakes)?;
     if !warnings.is_empty() {
         screen::warn(&warnings);
         if strict {

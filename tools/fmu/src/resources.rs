@@ -44,7 +44,7 @@ pub fn open(folder: &Path, make: Make) -> Result<Opened, String> {
     // Not by the compiler's reader of files: the text includes the specs that it extends.
     let bytes = read_resource(folder, SPEC)?;
     let source = SourceFile::from_bytes(SPEC, &bytes).map_err(|mistakes| mistakes.to_string())?;
-    let Checked { chain, warnings } = compile::check(&source).map_err(|mistakes| mistakes.to_string())?;
+    let Checked { chain, warnings, .. } = compile::check(&source).map_err(|mistakes| mistakes.to_string())?;
     let spec_hash = chain.spec_hash.clone();
     let live = LiveCrane::new(chain);
     let crane = make(&live);

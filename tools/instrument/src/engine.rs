@@ -99,7 +99,7 @@ impl Engine {
     /// Reads a spec; mistakes leave the page without a crane.
     fn open(&mut self, name: &str, text: &str) -> Value {
         *self = Self::default();
-        let Checked { chain, warnings } = match check(name, text) {
+        let Checked { chain, warnings, .. } = match check(name, text) {
             Ok(checked) => checked,
             Err(words) => return words,
         };

@@ -140,7 +140,7 @@ impl Crane {
         let set: Vec<(String, f64)> = parameters.into_iter().flatten().filter_map(number).collect();
         let set: Vec<(&str, f64)> = set.iter().map(|(name, value)| (name.as_str(), *value)).collect();
         let checked = py.detach(|| check_with(&source, &set));
-        let Checked { chain, warnings } = checked.map_err(|found| spec_error(py, &found))?;
+        let Checked { chain, warnings, .. } = checked.map_err(|found| spec_error(py, &found))?;
         warn_of_spec(py, &warnings)?;
         let count = chain.coordinates.len();
         if count > LiveCrane::MOST_COORDINATES {

@@ -96,7 +96,7 @@ impl Crane {
         let of_numbers = of_numbers.collect();
         all.set_item("numbers", array(py, of_numbers, shape, &[count])?)?;
         let units = parameters.iter().map(|&index| description.parameters[index].unit.as_str());
-        let units: Vec<&str> = in_order(&names, units, fixed.iter().map(|number| number.unit));
+        let units: Vec<&str> = in_order(&names, units, fixed.iter().map(|number| number.unit.as_str()));
         all.set_item("number_units", units)?;
         all.set_item("shape", shape.clone())?;
         Ok(all)

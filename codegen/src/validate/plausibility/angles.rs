@@ -158,14 +158,14 @@ impl<'a> Plausibility<'a> {
         }
     }
 
-    /// A number without `deg` or `pi`, given directly or as the value of the parameter that it names.
+    /// A number without a unit, given directly or as the value of the parameter that it names.
     fn bare(&self, scalar: Option<&Scalar>) -> Option<f64> {
         match scalar? {
             Scalar::Number(number) => Some(*number),
-            Scalar::Angle(_) => None,
+            Scalar::Quantity(_) => None,
             // A parameter whose value was set is a number in radians.
             Scalar::Name(name) => match (self.parameter(name)?, self.set(name)) {
-                (Scalar::Angle(_), false) => None,
+                (Scalar::Quantity(_), false) => None,
                 _ => self.value(name),
             },
         }

@@ -2,6 +2,8 @@
 
 use std::num::NonZeroUsize;
 
+use crane_codegen::units::number_in;
+
 fn finite(text: &str) -> Option<f64> {
     text.parse().ok().filter(|number: &f64| number.is_finite())
 }
@@ -27,8 +29,7 @@ pub fn finite_number(text: &str) -> Result<f64, String> {
 
 /// An angle.
 pub fn angle(text: &str) -> Result<f64, String> {
-    let angle = finite(text).or_else(|| crane_codegen::spec::parse_angle(text));
-    angle.ok_or_else(|| "write an angle, such as 45deg, or radians".to_owned())
+    number_in("rad", text, "the angle").map_err(|_| "write an angle, such as 45deg, or radians".to_owned())
 }
 
 /// An error tolerance.

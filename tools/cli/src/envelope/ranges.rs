@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crane_codegen::spec::parse_angle;
+use crane_codegen::units::{number_in, split};
 use crane_model::{
     CoordinateKind, Description,
     envelope::{Axes, Axis, Varied},
@@ -27,8 +27,8 @@ pub fn read_ranges(ranges: &[String], description: &Description) -> Outcome<Axes
         if axes.iter().any(|axis| axis.varied == varied) {
             return Err(Problem::usage(format!("`{name}` has two ranges"), "give each drive and parameter one range"));
         }
-        let axis = Axis { varied, values: values_of(name, values)? };
-        if let Some(angle) = axis.implausible_angle(description).filter(|_| !values.contains("deg")) {
+        let axis = Axis { varied, values: values_of(name, unit_of(varied, description), values)? };
+        if let Some(angle) = axis.implausible_angle(description).filter(|_| values.split(':').all(is_bare)) {
             return Err(Problem::usage(
                 format!("`--range {range}` goes to {angle} rad, {:.0}°", angle.to_degrees()),
                 format!("write degrees with their unit, `--range {name}={}`", in_degrees(values)),
@@ -64,23 +64,27 @@ pub fn varied(name: &str, description: &Description) -> Outcome<Varied> {
     Err(Problem::usage(title, format!("{guess}drives and parameters: {}", known.join(", "))))
 }
 
-/// The values of `FROM:TO:COUNT` or of `VALUE`.
-fn values_of(name: &str, text: &str) -> Outcome<Vec<f64>> {
+/// The values of `FROM:TO:COUNT` or of `VALUE`, in a unit.
+fn values_of(name: &str, unit: &str, text: &str) -> Outcome<Vec<f64>> {
     let wrong = |what: &str| {
         Problem::usage(
             format!("`--range {name}={text}`: {what}"),
-            "write numbers in SI units or angles such as `60deg`: `FROM:TO:COUNT` or one value",
+            "write numbers in SI units or with their units, such as `60deg`: `FROM:TO:COUNT` or one value",
         )
     };
+    let number = |text: &str| number(unit, text, name);
     let parts: Vec<&str> = text.split(':').map(str::trim).collect();
     match parts[..] {
-        [value] => Ok(vec![number(value).ok_or_else(|| wrong(&format!("`{value}` is not a number")))?]),
+        [value] => Ok(vec![number(value)?]),
         [from, to, count] => {
             // A unit after the second number applies to both.
-            let unit = if to.ends_with("deg") { "deg" } else { "" };
-            let from_with_unit = if from.parse::<f64>().is_ok() { format!("{from}{unit}") } else { from.to_owned() };
-            let from = number(&from_with_unit).ok_or_else(|| wrong(&format!("`{from}` is not a number")))?;
-            let to = number(to).ok_or_else(|| wrong(&format!("`{to}` is not a number")))?;
+            let unit = match split(to) {
+                _ if to.ends_with("deg") => "deg",
+                Some((_, unit)) if unit != "pi" && !unit.starts_with('/') => unit,
+                _ => "",
+            };
+            let from_with_unit = if is_bare(from) { format!("{from}{unit}") } else { from.to_owned() };
+            let [from, to] = [number(&from_with_unit)?, number(to)?];
             let count: usize = count.parse().map_err(|_| wrong(&format!("`{count}` is not a count")))?;
             if !(2..=MOST).contains(&count) {
                 return Err(wrong(&format!("a count must be from 2 to {MOST}")));
@@ -101,9 +105,25 @@ fn in_degrees(values: &str) -> String {
     }
 }
 
-/// A finite number or an angle.
-pub fn number(text: &str) -> Option<f64> {
-    text.parse().ok().or_else(|| parse_angle(text)).filter(|number: &f64| number.is_finite())
+/// A finite number of something, in a unit or with one of the same dimension.
+///
+/// # Errors
+/// It is neither.
+pub fn number(unit: &str, text: &str, subject: &str) -> Outcome<f64> {
+    number_in(unit, text, subject).map_err(|wrong| Problem::usage(wrong.problem, wrong.help))
+}
+
+/// Whether a number has no unit.
+pub fn is_bare(text: &str) -> bool {
+    text.trim().parse::<f64>().is_ok()
+}
+
+/// Unit of a drive's position or of a live parameter.
+fn unit_of(varied: Varied, description: &Description) -> &str {
+    match varied {
+        Varied::Drive(drive) => description.coordinates[description.drives[drive].coordinate].kind.unit(),
+        Varied::Parameter(parameter) => &description.parameters[parameter].unit,
+    }
 }
 
 /// Limits `NAME=VALUE` of drives or points, infinite where none is given.
@@ -166,14 +186,14 @@ mod tests {
 
     #[test]
     fn a_range_has_its_ends_and_its_unit() {
-        let values = values_of("boom", "-30:60deg:4").unwrap();
+        let values = values_of("boom", "rad", "-30:60deg:4").unwrap();
         let degrees: Vec<f64> = values.iter().map(|value| value.to_degrees().round()).collect();
         assert_eq!(degrees, [-30.0, 0.0, 30.0, 60.0]);
-        assert_eq!(values_of("telescope", "0.5:2:4").unwrap(), [0.5, 1.0, 1.5, 2.0]);
-        assert_eq!(values_of("boom", "1/2 pi").unwrap(), [PI / 2.0]);
-        assert_eq!(values_of("boom", "0:1/2 pi:2").unwrap(), [0.0, PI / 2.0]);
+        assert_eq!(values_of("telescope", "m", "0.5:2:4").unwrap(), [0.5, 1.0, 1.5, 2.0]);
+        assert_eq!(values_of("boom", "rad", "1/2 pi").unwrap(), [PI / 2.0]);
+        assert_eq!(values_of("boom", "rad", "0:1/2 pi:2").unwrap(), [0.0, PI / 2.0]);
         for wrong in ["", "1:2", "a", "0:1:1", "0:1:2.5", "0:nan:3", "0:1:999999999"] {
-            assert!(values_of("boom", wrong).is_err(), "{wrong}");
+            assert!(values_of("boom", "rad", wrong).is_err(), "{wrong}");
         }
     }
 }

@@ -14,7 +14,7 @@ use crane_page::tables::Report;
 
 use crate::{
     arguments::{Action, Analysis, Held, Poses},
-    envelope::{self, number, read_ranges},
+    envelope::{self, is_bare, number, read_ranges},
     files,
     integration::batches,
     problem::{Outcome, Problem},
@@ -84,16 +84,17 @@ pub fn held_number(text: &str, kind: CoordinateKind, is_rate: bool) -> Outcome<f
     /// Largest position or rate, m, rad, m/s or rad/s.
     const FARTHEST: f64 = 1e6;
     let (name, value) = text.split_once('=').unwrap_or((text, ""));
-    let (what, units) = if is_rate { ("rate", "m/s or rad/s") } else { ("position", "m or rad") };
-    let number = number(value).ok_or_else(|| {
-        let help = format!("write a finite number in {units}, or an angle such as `30deg`");
-        Problem::usage(format!("`{value}` is not a valid value for {name}"), help)
-    })?;
+    let (what, per) = if is_rate { ("rate", "/s") } else { ("position", "") };
+    let unit = &format!("{}{per}", kind.unit());
+    // `30deg` of a rate is 30° per second.
+    let of_angle =
+        if is_rate && kind == CoordinateKind::Rotation { number(kind.unit(), value, name).ok() } else { None };
+    let number = of_angle.map_or_else(|| number(unit, value, name), Ok)?;
     if number.abs() > FARTHEST {
-        let help = format!("write a {what} in {units}, at most {FARTHEST:e}");
+        let help = format!("write a {what} in {unit}, at most {FARTHEST:e}");
         return Err(Problem::usage(format!("`--hold {}` is out of range", text.trim()), help));
     }
-    if kind == CoordinateKind::Rotation && !is_rate && number.abs() > TURN && !text.contains("deg") {
+    if kind == CoordinateKind::Rotation && !is_rate && number.abs() > TURN && is_bare(value) {
         return Err(Problem::usage(
             format!("`--hold {text}` is {number} rad, {:.0}°", number.to_degrees()),
             format!("write degrees with their unit, `--hold {}deg`", text.trim()),

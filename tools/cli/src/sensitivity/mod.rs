@@ -314,7 +314,7 @@ fn changes(request: &Request<'_>, source: &SourceFile, crane: &LiveCrane, loaded
         numbers.push(Number {
             label: number.place.clone(),
             value: number.value,
-            unit: number.unit.to_owned(),
+            unit: number.unit.clone(),
             step: 0.0,
             errors: Some(errors),
             is_fixed: true,

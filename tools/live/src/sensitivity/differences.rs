@@ -1,11 +1,11 @@
 //! Derivatives by numbers that cannot be live parameters: differences of whole cranes.
 
+use crane_codegen::compile::unit_at;
 use crane_codegen::{SourceFile, WrongPlace};
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::runs::Failed;
 
 use super::places::Refused;
-use super::units::unit_at;
 use super::{Sensitivity, Settings, label, sensitivity_near};
 use crate::LiveCrane;
 
@@ -23,7 +23,7 @@ pub struct FixedNumber {
     /// Its value, in its unit.
     pub value: f64,
     /// Its unit; empty for a number without one.
-    pub unit: &'static str,
+    pub unit: String,
     /// The spec with the number itself.
     source: SourceFile,
     /// Half the distance of the outer cranes.
@@ -56,7 +56,7 @@ impl FixedNumber {
             LiveCrane::from_spec(&changed).map_err(|mistakes| Refused::Mistakes { place: place.to_owned(), mistakes })
         };
         let around = [with(-1.0)?, with(-0.5)?, with(0.5)?, with(1.0)?];
-        let unit = unit_at(place, source, around[0].description());
+        let unit = unit_at(source, place);
         Ok(Self { place: place.to_owned(), value, unit, source: source.clone(), step, around })
     }
 
@@ -124,7 +124,7 @@ impl Changing<'_> {
                 let info = &crane.description().parameters[*index];
                 [label(info), info.unit.as_str()]
             }
-            Self::Fixed(number) => [number.place.as_str(), number.unit],
+            Self::Fixed(number) => [number.place.as_str(), &number.unit],
         }
     }
 

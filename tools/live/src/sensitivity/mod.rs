@@ -20,7 +20,6 @@
 //! | `frequencies` | undamped frequencies |
 //! | `places` | numbers of the spec as live parameters |
 //! | `largest_load` | the largest load within limits, as a further output |
-//! | `units` | units of these numbers |
 //! | `differences` | numbers of the spec that cannot be live parameters |
 //! | `runs` | the same over a run |
 //! | `whole` | what a whole change does that the derivatives do not show |
@@ -34,7 +33,6 @@ mod rest;
 pub mod runs;
 mod source;
 mod strength;
-mod units;
 mod whole;
 
 use crane_model::dyn_crane::{DynCrane, DynModel};
@@ -50,7 +48,6 @@ pub use places::{Refused, label, with_live_numbers};
 use rest::Rest;
 use source::Source;
 use strength::Strength;
-pub use units::unit_at;
 pub use whole::cautions;
 
 /// What kind of quantity an output is.

@@ -1,11 +1,10 @@
 //! Numbers of a spec as live parameters, by their places.
 
+use crane_codegen::compile::{check, unit_at};
 use crane_codegen::{Diagnostics, SourceFile, WrongPlace};
 use crane_model::ParameterInfo;
-use crane_model::dyn_crane::DynModel;
 
 use super::differences::FixedNumber;
-use super::units::unit_at;
 use crate::LiveCrane;
 
 /// Begins the name of a live parameter that stands for a place of the spec.
@@ -66,10 +65,9 @@ pub fn with_live_numbers(source: &SourceFile, numbers: &mut [String]) -> Result<
         return Ok(None);
     }
     let mistakes = |place: &str, mistakes| Refused::Mistakes { place: place.to_owned(), mistakes };
-    let crane =
-        LiveCrane::from_spec(source).map_err(|wrong| mistakes(numbers.first().map_or("", |name| name), wrong))?;
+    check(source).map_err(|wrong| mistakes(numbers.first().map_or("", |name| name), wrong))?;
     let live = |before: &SourceFile, index: usize, number: &str| {
-        let unit = unit_at(number, source, crane.description());
+        let unit = &unit_at(source, number);
         before.with_live_number(number, &format!("{PLACE}{index}"), unit).map_err(Refused::Place)
     };
     let places: Vec<usize> = (0..numbers.len()).filter(|&index| numbers[index].contains('.')).collect();

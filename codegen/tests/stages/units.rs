@@ -1,0 +1,250 @@
+//! Numbers with units: every numeric key of the schema has a dimension, which messages and the schema tell alike.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use crane_codegen::chain::Chain;
+use crane_codegen::compile::{check, unit_at};
+use crane_codegen::{SourceFile, build, json_schema};
+use serde_json::{Value, json};
+
+/// A quantity that no key has.
+const WRONG: &str = "7 bar s";
+/// Forms of the schema that are numbers.
+const NUMBERS: [&str; 4] = ["Number", "Angle", "Constant", "FixedAngle"];
+/// Keys that no spec of the project has, and those of which it has no number without other mistakes. Whether the rest of the crane stands does not matter.
+const OTHERS: &str = include_str!("units.yaml");
+
+/// The numbers of a spec: their places as JSON pointers, the keys of the schema, and what the schema says about these.
+type Found = Vec<(String, String, String)>;
+
+struct Walk<'a> {
+    schema: &'a Value,
+    found: Found,
+}
+
+impl Walk<'_> {
+    fn at(&mut self, schema: &Value, value: &Value, place: &str, key: &str, said: &str) {
+        let said = schema["description"].as_str().unwrap_or(said);
+        if let Some(name) = schema["$ref"].as_str().and_then(|path| path.rsplit('/').next()) {
+            if !NUMBERS.contains(&name) {
+                let definition = self.schema["$defs"][name].clone();
+                self.at(&definition, value, place, name, said);
+            } else if value.is_number() || value.is_string() {
+                self.found.push((place.to_owned(), key.to_owned(), said.to_owned()));
+            }
+        }
+        for form in ["anyOf", "oneOf"].iter().flat_map(|forms| schema[forms].as_array().into_iter().flatten()) {
+            self.at(form, value, place, key, said);
+        }
+        match value {
+            Value::Array(items) => {
+                for (index, item) in items.iter().enumerate() {
+                    self.at(&schema["items"], item, &format!("{place}/{index}"), &format!("{key}.*"), said);
+                }
+            }
+            Value::Object(entries) => {
+                for (name, inner) in entries {
+                    let below = [(&schema["properties"][name], name.as_str()), (&schema["additionalProperties"], "*")];
+                    for (form, word) in below.into_iter().filter(|(form, _)| form.is_object()) {
+                        self.at(form, inner, &format!("{place}/{name}"), &format!("{key}.{word}"), said);
+                    }
+                }
+            }
+            _ => (),
+        }
+    }
+}
+
+/// All numeric keys of the schema.
+fn keys(schema: &Value, key: &str, found: &mut Vec<String>) {
+    let name = schema["$ref"].as_str().and_then(|path| path.rsplit('/').next());
+    if name.is_some_and(|name| NUMBERS.contains(&name)) {
+        found.push(key.to_owned());
+    }
+    let forms = ["anyOf", "oneOf"].iter().flat_map(|forms| schema[forms].as_array().into_iter().flatten());
+    forms.for_each(|form| keys(form, key, found));
+    for inner in ["items", "additionalProperties"].iter().filter_map(|inner| schema.get(inner)) {
+        keys(inner, &format!("{key}.*"), found);
+    }
+    for (name, inner) in schema["properties"].as_object().into_iter().flatten() {
+        keys(inner, &format!("{key}.{name}"), found);
+    }
+}
+
+/// The specs of the project that stand alone, and the keys that they lack.
+fn specs() -> Vec<Value> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folders = ["../specs", "../specs/examples", "tests/implausible"];
+    let mut texts = vec![OTHERS.to_owned()];
+    for entry in folders.iter().flat_map(|name| std::fs::read_dir(folder.join(name)).expect("a folder")) {
+        let path = entry.expect("an entry").path();
+        if path.extension().is_some_and(|extension| extension == "yaml") {
+            texts.push(std::fs::read_to_string(path).expect("text"));
+        }
+    }
+    texts.sort();
+    let read = texts.iter().filter_map(|text| serde_yaml::from_str(text).ok());
+    read.filter(|spec: &Value| spec.get("extends").is_none()).collect()
+}
+
+/// Whether a description names a unit, not only letters of another one.
+fn says(description: &str, unit: &str) -> bool {
+    let is_part = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || "/²³⁴".contains(c));
+    description.match_indices(unit).any(|(at, _)| {
+        let after = &description[at + unit.len()..];
+        !is_part(description[..at].chars().next_back()) && !is_part(after.chars().next())
+    })
+}
+
+/// What a spec with another number at a place is told about it: the message, and the text at which it points.
+fn told(spec: &Value, place: &str, number: &Value) -> Vec<(String, String)> {
+    let mut spec = spec.clone();
+    spec.pointer_mut(place).expect("a place").clone_from(number);
+    let text = spec.to_string();
+    let source = build::read_with("spec.yaml", text.as_bytes(), &|_| None).expect("a text");
+    let Err(mistakes) = check(&source) else { return Vec::new() };
+    let of_units = mistakes.mistakes().iter().filter(|mistake| ["E034", "E035", "E036"].contains(&mistake.code));
+    of_units.map(|mistake| (mistake.title.clone(), text[mistake.span.start..mistake.span.end].to_owned())).collect()
+}
+
+/// A wrong dimension at every numeric key of the schema is told at its place, with both units; a number with the unit of the message is right; and the
+/// schema describes the key in this unit. The expected units are those of the descriptions, which people write.
+#[test]
+fn a_wrong_dimension_is_told_at_every_numeric_key() {
+    /// Keys whose unit depends on what they belong to, or is their own: their descriptions need not name it.
+    const VARIES: [&str; 13] = [
+        "Input.value",
+        "Parameter.value",
+        "Motion.hold",
+        "Ramp.from",
+        "Ramp.to",
+        "Trapezoid.from",
+        "Trapezoid.to",
+        "Speed.from",
+        "Speed.rate",
+        "Table.values.*",
+        "Directions.phi",
+        "Directions.psi",
+        "Directions.theta",
+    ];
+    let schema: Value = serde_json::from_str(&json_schema()).expect("JSON");
+    let mut covered: BTreeMap<String, String> = BTreeMap::new();
+    let mut wrong = Vec::new();
+    for spec in specs() {
+        let mut walk = Walk { schema: &schema, found: Vec::new() };
+        walk.at(&schema, &spec, "", "Crane", "");
+        for (place, key, said) in walk.found {
+            if covered.contains_key(&key) {
+                continue;
+            }
+            let told_of = told(&spec, &place, &json!(WRONG));
+            // Where another mistake hides it, another spec must have the key.
+            let Some((title, _)) = told_of.iter().find(|(_, text)| text.trim_matches('"') == WRONG) else { continue };
+            let unit = match title.split_once(" is in ").and_then(|(_, rest)| rest.split_once(", and `7 bar s` is ")) {
+                Some((unit, _)) => unit,
+                None => "",
+            };
+            if unit.is_empty() && !title.contains(" has no unit, and `7 bar s` is another quantity (m^-1 kg s^-1)") {
+                wrong.push(format!("{place}: {title}"));
+            }
+            if !unit.is_empty() && !says(&said, unit) && !VARIES.contains(&key.as_str()) {
+                wrong.push(format!("{key} in {unit}: {said}"));
+            }
+            for right in [format!("1 {unit}"), "100 %".to_owned()].iter().skip(usize::from(unit.is_empty())).take(1) {
+                let told_of = told(&spec, &place, &json!(right));
+                if told_of.iter().any(|(_, text)| text.trim_matches('"') == right) {
+                    wrong.push(format!("{place}: {right} is refused: {told_of:?}"));
+                }
+            }
+            covered.insert(key, unit.to_owned());
+        }
+    }
+    let mut all = Vec::new();
+    keys(&schema, "Crane", &mut all);
+    for (name, definition) in schema["$defs"].as_object().expect("definitions") {
+        keys(definition, name, &mut all);
+    }
+    assert!(all.len() > 150, "{}", all.len());
+    let missing: Vec<&String> = all.iter().filter(|key| !covered.contains_key(*key)).collect();
+    assert!(missing.is_empty() && wrong.is_empty(), "not tried: {missing:?}\n{}", wrong.join("\n"));
+    // Some by hand, which no description decides.
+    for (key, unit) in [
+        ("Beam.length", "m"),
+        ("Material.E", "Pa"),
+        ("Valve.flow", "m³/s"),
+        ("Section.numbers.Jy", "m⁴"),
+        ("Valve.leakage", "m³/(s Pa)"),
+        ("Crane.gravity.*", "m/s²"),
+        ("LoopJoint.damping", "N m s/rad"),
+        ("Support.friction_coefficient", ""),
+    ] {
+        assert_eq!(covered[key], unit, "{key}");
+    }
+}
+
+/// The same crane with units as a person writes them has the same numbers, to the bit.
+#[test]
+fn units_do_not_change_numbers() {
+    let plain = include_str!("../../../specs/cantilever.yaml");
+    let chain = |text: &str| check(&SourceFile::new("cantilever.yaml", text)).map(|checked| checked.chain);
+    let spec: Value = serde_yaml::from_str(plain).expect("YAML");
+    let schema: Value = serde_json::from_str(&json_schema()).expect("JSON");
+    let mut walk = Walk { schema: &schema, found: Vec::new() };
+    walk.at(&schema, &spec, "", "Crane", "");
+    let source = SourceFile::new("cantilever.yaml", spec.to_string());
+    let mut changed = spec.clone();
+    let mut count = 0;
+    for (place, ..) in walk.found {
+        let unit = unit_at(&source, &place[1..].replace('/', "."));
+        let Some(number) = spec.pointer(&place).and_then(Value::as_f64) else { continue };
+        let [from, to, power] = match unit.as_str() {
+            "m" => ["m", "mm", "3"],
+            "Pa" => ["Pa", "GPa", "-9"],
+            "kg/m³" => ["kg/m³", "t/m³", "-3"],
+            "N" => ["N", "kN", "-3"],
+            _ => continue,
+        };
+        assert_eq!(from, unit);
+        // The decimal number, shifted as text.
+        *changed.pointer_mut(&place).expect("a place") = json!(format!("{number}e{power} {to}"));
+        count += 1;
+    }
+    assert!(count >= 5, "{count}");
+    let [before, after] = [spec.to_string(), changed.to_string()].map(|text| {
+        let chain = chain(&text).expect("a crane");
+        Chain { spec_hash: String::new(), ..chain }
+    });
+
+    // Debug writes the shortest decimal that is this double, so the same text is the same bits.
+    assert!(format!("{before:?}") == format!("{after:?}"));
+}
+
+/// What is told to people who slip.
+#[test]
+fn slips_of_units_are_told() {
+    let with = |parameter: &str, mass: &str| {
+        let text = format!(
+            "format: 1\nname: rod\nparameters: {{load: {parameter}}}\nlinks:\n  - name: rod\n    joint: revolute\n    mass: {mass}\n    \
+             com: [500 mm, 0, 0]\n    inertia: {{gyration: [0, 1, 1]}}\n"
+        );
+        match check(&SourceFile::new("rod.yaml", text)) {
+            Ok(checked) => Ok(checked.chain.parameters[0].default),
+            Err(mistakes) => Err(mistakes.to_string()),
+        }
+    };
+    assert_eq!(with("{value: 1.5 t, unit: kg}", "load"), Ok(1500.0));
+    assert_eq!(with("{value: 1.5 t}", "load"), Ok(1500.0));
+    assert_eq!(with("{value: 1.5, unit: loads}", "load"), Ok(1.5));
+    for (parameter, mass, words) in [
+        ("{value: 1.5 m, unit: kg}", "load", "parameter `load` is in kg, and `1.5 m` is a length (m)"),
+        ("{value: 1.5 m}", "load", "is in kg, and `1.5 m` is a length (m)"),
+        ("{value: 1.5 t, unit: t}", "load", "write `unit: kg`"),
+        ("{value: 1.5, unit: kg}", "5 kgs", "there is no unit `kgs`"),
+        ("{value: 1.5, unit: kg}", "5 KG", "did you mean `kg`?"),
+        ("{value: 1.5, unit: kg}", "320 bar", "and `320 bar` is a pressure (Pa)"),
+    ] {
+        let told = with(parameter, mass).expect_err(parameter);
+        assert!(told.contains(words), "{parameter} {mass}: {told}");
+    }
+}
