@@ -182,7 +182,7 @@ pub enum Loops {
 pub struct Parameter {
     /// Default value, in SI units.
     pub value: Spanned<FixedAngle>,
-    /// Unit shown in tables, such as `kg`. Default: none.
+    /// Unit shown in tables, such as `kg`. Default: the SI unit of the value, if it has a unit.
     pub unit: Option<Spanned<String>>,
     /// Description. Default: empty.
     pub about: Option<Spanned<String>>,

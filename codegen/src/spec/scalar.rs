@@ -14,7 +14,7 @@ pub enum Scalar {
     /// A plain number, in SI units.
     Number(f64),
     /// A number with a unit, such as `3600 mm`, `90 deg` or `7/18 pi`.
-    Quantity(Quantity),
+    Quantity(Box<Quantity>),
     /// Name of a parameter.
     Name(String),
 }
@@ -25,7 +25,7 @@ fn read_scalar(reader: Reader, name: bool, expected: &str) -> Result<Scalar, Unr
     match reader.content()? {
         Content::Number(number) => Ok(Scalar::Number(*number)),
         Content::Text(word) => match Quantity::parse(word) {
-            Some(Ok(quantity)) => Ok(Scalar::Quantity(quantity)),
+            Some(Ok(quantity)) => Ok(Scalar::Quantity(Box::new(quantity))),
             Some(Err(UnknownUnit { symbol, help })) => {
                 Err(reader.report(rule::unknown_unit(reader.span, reader.subject, word, symbol, help)))
             }

@@ -8,6 +8,12 @@ use crate::diagnostic::{nearest, suggest};
 pub struct Dimension(pub [i32; 4]);
 
 impl Dimension {
+    /// Its SI unit; empty for numbers.
+    #[must_use]
+    pub fn si_unit(self) -> String {
+        if self == Dimension::default() { String::new() } else { self.name_and_unit().1 }
+    }
+
     /// Its name, with an article, and its SI unit.
     #[must_use]
     pub fn name_and_unit(self) -> (&'static str, String) {

@@ -33,14 +33,15 @@ impl<'a> Check<'a> {
                 }
                 None => (f64::NAN, None, None),
             };
-            let written = parameter.value.as_ref().and_then(|parameter| parameter.value.value.as_ref());
-            self.written.push(match written {
-                Some(FixedAngle(Scalar::Quantity(quantity))) => Some(quantity),
+            let written = match parameter.value.as_ref().and_then(|parameter| parameter.value.value.as_ref()) {
+                Some(FixedAngle(Scalar::Quantity(quantity))) => Some(&**quantity),
                 _ => None,
-            });
+            };
+            self.written.push(written);
+            let of_value = || written.map(|quantity| quantity.dimension.si_unit());
             self.parameters.push(Parameter {
                 name: name.to_owned(),
-                unit: unit.unwrap_or_default(),
+                unit: unit.or_else(of_value).unwrap_or_default(),
                 about: about.unwrap_or_default(),
                 default,
                 lower_bound: None,
@@ -144,7 +145,7 @@ impl<'a> Check<'a> {
         if let (Some(FixedAngle(Scalar::Quantity(quantity))), Some(unit)) = (&given.value, unit)
             && !known.is_some_and(|(_, known)| known.is_si())
         {
-            let (_, si) = quantity.dimension.name_and_unit();
+            let si = quantity.dimension.si_unit();
             self.report(rule::not_si(given.span, subject, unit, si));
             return f64::NAN;
         }

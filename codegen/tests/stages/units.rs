@@ -229,13 +229,13 @@ fn slips_of_units_are_told() {
              com: [500 mm, 0, 0]\n    inertia: {{gyration: [0, 1, 1]}}\n"
         );
         match check(&SourceFile::new("rod.yaml", text)) {
-            Ok(checked) => Ok(checked.chain.parameters[0].default),
+            Ok(checked) => Ok((checked.chain.parameters[0].default, checked.chain.parameters[0].unit.clone())),
             Err(mistakes) => Err(mistakes.to_string()),
         }
     };
-    assert_eq!(with("{value: 1.5 t, unit: kg}", "load"), Ok(1500.0));
-    assert_eq!(with("{value: 1.5 t}", "load"), Ok(1500.0));
-    assert_eq!(with("{value: 1.5, unit: loads}", "load"), Ok(1.5));
+    assert_eq!(with("{value: 1.5 t, unit: kg}", "load"), Ok((1500.0, "kg".into())));
+    assert_eq!(with("{value: 1.5 t}", "load"), Ok((1500.0, "kg".into())));
+    assert_eq!(with("{value: 1.5, unit: loads}", "load"), Ok((1.5, "loads".into())));
     for (parameter, mass, words) in [
         ("{value: 1.5 m, unit: kg}", "load", "parameter `load` is in kg, and `1.5 m` is a length (m)"),
         ("{value: 1.5 m}", "load", "is in kg, and `1.5 m` is a length (m)"),
