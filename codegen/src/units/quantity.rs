@@ -15,7 +15,7 @@ pub struct Quantity {
     pub written: String,
 }
 
-/// Why a text is no number of a unit.
+/// Why a text is not a number of a unit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WrongQuantity {
     /// What is wrong; it follows the name of what is set.
@@ -181,7 +181,7 @@ fn scaled(number: &str, unit: &Unit) -> f64 {
     }
 }
 
-/// A decimal number times a power of 60, as a decimal number: exact for products; quotients have 40 digits more and one that tells whether
+/// A decimal number times a power of 60, as a decimal number: exact for products; quotients have 40 digits more and one that shows whether
 /// anything remains, which decides how a double is rounded.
 fn times_sixties(mantissa: &str, mut exponent: i32, sixties: i32) -> String {
     const MORE: usize = 40;

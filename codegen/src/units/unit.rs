@@ -42,7 +42,7 @@ pub struct Unit {
     pub degrees: i32,
 }
 
-/// A symbol that is no unit.
+/// A symbol that is not a unit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownUnit {
     /// The symbol.

@@ -97,7 +97,7 @@ fn says(description: &str, unit: &str) -> bool {
     })
 }
 
-/// What a spec with another number at a place is told about it: the message, and the text at which it points.
+/// Messages about a spec with another number at a place, and the texts at which they point.
 fn told(spec: &Value, place: &str, number: &Value) -> Vec<(String, String)> {
     let mut spec = spec.clone();
     spec.pointer_mut(place).expect("a place").clone_from(number);
@@ -108,7 +108,7 @@ fn told(spec: &Value, place: &str, number: &Value) -> Vec<(String, String)> {
     of_units.map(|mistake| (mistake.title.clone(), text[mistake.span.start..mistake.span.end].to_owned())).collect()
 }
 
-/// A wrong dimension at every numeric key of the schema is told at its place, with both units; a number with the unit of the message is right; and the
+/// A wrong dimension at every numeric key of the schema gets a message at its place, with both units; a number with the unit of the message is right; and the
 /// schema describes the key in this unit. The expected units are those of the descriptions, which people write.
 #[test]
 fn a_wrong_dimension_is_told_at_every_numeric_key() {
@@ -220,7 +220,7 @@ fn units_do_not_change_numbers() {
     assert!(format!("{before:?}") == format!("{after:?}"));
 }
 
-/// What is told to people who slip.
+/// Messages for people who slip.
 #[test]
 fn slips_of_units_are_told() {
     let with = |parameter: &str, mass: &str| {

@@ -42,6 +42,7 @@ mod page;
 mod parameter_table;
 mod poses;
 mod problem;
+mod quantity;
 pub mod refinement;
 mod run;
 mod screen;

@@ -8,8 +8,8 @@ use crane_model::{Description, ParameterError, Refusal, dyn_crane::DynCrane};
 
 use crate::{
     arguments::{Choice, Parameters, STANDARD_INPUT},
-    envelope::number,
     problem::{Outcome, Problem, nearest},
+    quantity::number,
     screen, spec_file, variants,
 };
 

@@ -40,7 +40,7 @@ use crate::{
 use chart::Chart;
 pub use identity::facts as facts_of_chart;
 pub use map::{Map, svg as map_svg};
-pub use ranges::{is_bare, number, point, read_ranges, shown, varied};
+pub use ranges::{point, read_ranges, shown, varied};
 use rows::{Layout, Row};
 
 /// Maximum number of poses: they take some hours.

@@ -2,13 +2,14 @@
 
 use std::f64::consts::PI;
 
-use crane_codegen::units::{number_in, split};
+use crane_codegen::units::split;
 use crane_model::{
     CoordinateKind, Description,
     envelope::{Axes, Axis, Varied},
 };
 
 use crate::problem::{Outcome, Problem, nearest};
+use crate::quantity::{is_bare, number};
 
 /// Maximum number of values of a range.
 const MOST: usize = 100_000;
@@ -103,19 +104,6 @@ fn in_degrees(values: &str) -> String {
         [from, to, count] => format!("{from}:{to}deg:{count}"),
         _ => format!("{}deg", values.trim()),
     }
-}
-
-/// A finite number of something, in a unit or with one of the same dimension.
-///
-/// # Errors
-/// It is neither.
-pub fn number(unit: &str, text: &str, subject: &str) -> Outcome<f64> {
-    number_in(unit, text, subject).map_err(|wrong| Problem::usage(wrong.problem, wrong.help))
-}
-
-/// Whether a number has no unit.
-pub fn is_bare(text: &str) -> bool {
-    text.trim().parse::<f64>().is_ok()
 }
 
 /// Unit of a drive's position or of a live parameter.

@@ -14,10 +14,11 @@ use crane_page::tables::Report;
 
 use crate::{
     arguments::{Action, Analysis, Held, Poses},
-    envelope::{self, is_bare, number, read_ranges},
+    envelope::{self, read_ranges},
     files,
     integration::batches,
     problem::{Outcome, Problem},
+    quantity::{is_bare, number},
     selection::{Registry, set_parameters},
     simulate::write_figure,
 };
