@@ -82,7 +82,7 @@ pub use description::Tree;
 pub use description::{
     AttachmentInfo, BodyInfo, Bound, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole,
     CylinderInfo, Description, DriveInfo, InputInfo, LARGE_TILT, List, LoadInfo, LoopEquationInfo, LoopJointInfo,
-    NEAR_SINGULAR, ParameterError, ParameterInfo, PumpInfo, Refusal, SectionInfo, Side, SlideInfo, StageInfo,
+    NEAR_SINGULAR, ParameterError, ParameterInfo, PumpInfo, Refusal, SectionInfo, Side, StageInfo,
     SupportInfo, TIPPED, Text, ValveInfo, fill_links,
 };
 pub use methods::Entry;

@@ -58,34 +58,16 @@ impl Place {
     }
 }
 
-/// Where a section is, in words: in a pose `x` m from the beginning of its beam. Without a pose, what slides has no distance.
+/// Where a section is, in words: `x` m from the beginning of its beam. Where that differs from pose to pose and none is meant, it has no distance.
 pub fn location(description: &Description, section: usize, x: Option<f64>) -> String {
     let info = &description.sections[section];
     let beam = description.bodies[info.body].link.to_string();
-    let distance = x.or(info.slides.is_none().then_some(info.x)).map(|x| format!("{x:.3} m from its start"));
+    let distance = x.map(|x| format!("{x:.3} m from its start"));
     let what = (!info.at.is_empty()).then(|| info.location());
     [Some(beam), distance, what].into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
 impl Description {
-    /// Distances of all sections from the beginning of their beams in a pose, m. Those at pads move along the beams, and stay at the end of a
-    /// beam that has left them.
-    pub fn section_places(&self, q: &[f64]) -> Vec<f64> {
-        let place = |section: &SectionInfo| {
-            let Some(slides) = section.slides else { return section.x };
-            let by = q[slides.coordinate];
-            let x = section.x + if slides.grows { by } else { -by };
-            x.clamp(0.0, self.length_of_beam(section.body))
-        };
-        self.sections.iter().map(place).collect()
-    }
-
-    /// Length of the beam to which a body belongs, with default parameters, m.
-    fn length_of_beam(&self, body: usize) -> f64 {
-        let link = &self.bodies[body].link;
-        self.bodies.iter().filter(|body| body.link == *link).map(|body| body.length).sum()
-    }
-
     /// Indices of the sections of each beam.
     fn sections_of_beams(&self) -> Vec<Range<usize>> {
         let link = |section: usize| &self.bodies[self.sections[section].body].link;
@@ -100,9 +82,8 @@ impl Description {
     }
 }
 
-/// All places of beams and ropes in a pose, beam by beam from the beginning to the end; `wrenches` one per cut.
-pub fn places(description: &Description, q: &[f64], wrenches: &[Wrench]) -> Vec<Place> {
-    let x = description.section_places(q);
+/// All places of beams and ropes in a pose, beam by beam from the beginning to the end; `x` where the sections are, m, `wrenches` one per cut.
+pub fn places(description: &Description, x: &[f64], wrenches: &[Wrench]) -> Vec<Place> {
     let mut cuts = vec![None; x.len()];
     for (index, cut) in description.cuts().iter().enumerate() {
         if let Some(section) = Cut::section(cut) {
@@ -114,7 +95,7 @@ pub fn places(description: &Description, q: &[f64], wrenches: &[Wrench]) -> Vec<
         order.sort_by(|a, b| x[*a].total_cmp(&x[*b]));
         let place = |(position, &section): (usize, &usize)| {
             let cut = cuts[section]?;
-            let moduli = around(description, &x, &order, position);
+            let moduli = around(description, x, &order, position);
             Some(Place { section, cut, x: x[section], wrench: *wrenches.get(cut)?, moduli })
         };
         order.iter().enumerate().filter_map(place).collect::<Vec<_>>()
@@ -125,11 +106,11 @@ pub fn places(description: &Description, q: &[f64], wrenches: &[Wrench]) -> Vec<
 /// The sections whose moduli a place has: its own, or where it slides those around it. Between them the shape changes linearly.
 fn around(description: &Description, x: &[f64], order: &[usize], position: usize) -> Between {
     let section = order[position];
-    let fixed = |section: &&usize| description.sections[**section].slides.is_none();
+    let fixed = |section: &&usize| !description.sections[**section].slides;
     let before = order[..position].iter().rev().find(fixed);
     let after = order[position..].iter().find(fixed);
     match (description.sections[section].slides, before, after) {
-        (None, ..) | (_, None, None) => Between::own(section),
+        (false, ..) | (_, None, None) => Between::own(section),
         (_, Some(&one), None) | (_, None, Some(&one)) => Between::own(one),
         (_, Some(&one), Some(&other)) => {
             let way = x[other] - x[one];
@@ -172,14 +153,14 @@ impl StressedSection {
     }
 }
 
-/// All [places] in a pose whose moduli are known; `moduli` one per section, as [`Description::sections`] lists them, `wrenches` one per cut.
+/// All [places] in a pose whose moduli are known; `moduli` one per section, as [`Description::sections`] lists them, the rest as there.
 pub fn stressed_sections(
     description: &Description,
     moduli: &[SectionModuli],
-    q: &[f64],
+    x: &[f64],
     wrenches: &[Wrench],
 ) -> Vec<StressedSection> {
-    places(description, q, wrenches).into_iter().filter_map(|place| stressed(moduli, place)).collect()
+    places(description, x, wrenches).into_iter().filter_map(|place| stressed(moduli, place)).collect()
 }
 
 /// The stresses of a place; `None` where its moduli are not known.

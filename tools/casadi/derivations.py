@@ -93,6 +93,7 @@ class Derivations:
             "transforms": poses,
             "body_sizes": ca.vertcat(*[ca.vertcat(body.pseudo_inertia[3, 3], body.length) for body in bodies]),
             "support_places": ca.vertcat(ca.SX(0, 1), *[support.at for support in self.crane.supports]),
+            "section_places": ca.vertcat(ca.SX(0, 1), *[ca.vertcat(x, beam.length) for beam in self.crane.beams for x in beam.places]),
             "transform_derivatives": ca.vertcat(*[first[block[p], i] for p, dof in moving for i in dof]),
             "transform_second_derivatives": ca.vertcat(
                 *[pair(p, m, n) for p, dof in moving for m in dof for n in dof if n >= m]

@@ -1,6 +1,9 @@
 """Sections of beams within their elements: at pins, loads, steps and at the end."""
 
+import casadi as ca
+
 from cuts import Cut, CutAtPad
+from telescopes import length_of
 from transforms import translate
 
 # Farther along than whatever acts beside an element, and nearer than a link on its end.
@@ -13,11 +16,14 @@ def add_sections(crane, spans):
     """Adds to the cuts those within elements, each behind that of its element, and to the beams the moduli there."""
     added = {}
     for beam, span in zip(crane.beams, spans):
+        beam.length = length_of(span)
+        beam.places = list(span.starts)
         if beam.portion is None:
             continue
-        moduli = []
+        moduli, beam.places = [], []
         for element, body in enumerate(span.bodies):
             moduli.append(beam.sections[element])
+            beam.places.append(span.starts[element])
             index = next(i for i, other in enumerate(crane.bodies) if other is body)
             added[index] = []
             for distance, before, of_section in within(crane, beam, span, element, index):
@@ -31,9 +37,11 @@ def add_sections(crane, spans):
                     limit = BEYOND_ALL_POINTS
                 added[index].append(Cut(body.transform @ shift, index, rest, limit))
                 moduli.append(of_section)
+                beam.places.append(start + distance)
         for pad in pads_on(crane, span):
             added[index] += [at_pad(crane, beam, span, pad, before) for before in (True, False)]
             moduli += [beam.moduli_beside(0.0)[1]] * 2
+            beam.places += [ca.fmin(ca.fmax(pad.s, 0), pad.length)] * 2
         beam.sections = moduli
     crane.cuts[:] = merged(crane, added)
 

@@ -100,17 +100,13 @@ fn description_constant(chain: &Chain) -> Item {
         quote!(BodyInfo { name: #name, link: #link, degrees_of_freedom: #degrees })
     });
     let sections = chain.beams.iter().flat_map(|beam| &beam.sections).map(|section| {
-        let (body, x, at) = (integer(section.body.0), at_defaults(&section.x), text(&section.at));
+        let (body, at, slides) = (integer(section.body.0), text(&section.at), section.slides.is_some());
         let side = match section.side {
             Side::Before => quote!(Before),
             Side::Both => quote!(Both),
             Side::After => quote!(After),
         };
-        let slides = section.slides.as_ref().map_or(quote!(None), |sliding| {
-            let (coordinate, grows) = (integer(sliding.coordinate.0), sliding.grows);
-            quote!(Some(SlideInfo { coordinate: #coordinate, grows: #grows }))
-        });
-        quote!(SectionInfo { body: #body, x: #x, side: Side::#side, at: #at, slides: #slides })
+        quote!(SectionInfo { body: #body, side: Side::#side, at: #at, slides: #slides })
     });
     let supports = chain.supports.iter().map(|support| {
         let name = text(&support.name);

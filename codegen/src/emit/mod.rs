@@ -149,7 +149,6 @@ fn imports(items: &[syn::Item]) -> String {
                 "SectionInfo",
                 "SectionModuli",
                 "Side",
-                "SlideInfo",
                 "StageInfo",
                 "Statics",
                 "SupportInfo",

@@ -24,9 +24,6 @@ impl Description {
             bodies: repeat(&self.bodies, cranes, |body: &mut BodyInfo, _| body.degrees_of_freedom *= cranes),
             sections: repeat(&self.sections, cranes, |section: &mut SectionInfo, crane| {
                 section.body = joined(section.body, crane);
-                if let Some(slides) = &mut section.slides {
-                    slides.coordinate = joined(slides.coordinate, crane);
-                }
             }),
             supports: repeat(&self.supports, cranes, |_: &mut SupportInfo, _| {}),
             drives: repeat(&self.drives, cranes, |drive: &mut DriveInfo, crane| {

@@ -203,23 +203,12 @@ pub struct BodyInfo {
 pub struct SectionInfo {
     /// Index of its body, a rigid element.
     pub body: usize,
-    /// Distance from the beginning of the beam with default parameters, m; [`Description::section_places`] are those in a pose.
-    pub x: f64,
     /// On which side of what is there.
     pub side: Side,
     /// What is there, such as `head of lift` or `end`; empty where only an element begins.
     pub at: Text,
-    /// For a section at a pad on which the beam slides, how it moves along the beam; `x` is its place with the coordinate at 0.
-    pub slides: Option<SlideInfo>,
-}
-
-/// How a section at a pad moves along its beam.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SlideInfo {
-    /// Index of the coordinate along which the beam slides.
-    pub coordinate: usize,
-    /// Whether x grows with it.
-    pub grows: bool,
+    /// Whether it is at a pad on which the beam slides, so that it moves along the beam.
+    pub slides: bool,
 }
 
 /// The side of a section at which forces and stresses are those given: where a force acts or the shape has a step, they jump.

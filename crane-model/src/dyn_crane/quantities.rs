@@ -201,6 +201,20 @@ impl dyn DynCrane + '_ {
         out
     }
 
+    /// Distances of all sections from the beginning of their beams, m.
+    pub fn section_places_at(&self, q: &[f64]) -> Vec<f64> {
+        let mut out = vec![[0.0; 2]; self.description().sections.len()];
+        self.section_places(q, &mut out);
+        out.into_iter().map(|[x, _]| x).collect()
+    }
+
+    /// Where a section is in words, in any pose: one that slides has no distance.
+    pub fn section_location(&self, section: usize) -> String {
+        let description = self.description();
+        let x = (!description.sections[section].slides).then(|| self.section_places_at(&description.guess)[section]);
+        sections::location(description, section, x)
+    }
+
     /// Section moduli for stresses of beams, as [`Description::sections`](crate::Description::sections) lists the sections.
     pub fn section_moduli_at(&self) -> Vec<SectionModuli> {
         let mut out = vec![SectionModuli::ZERO; self.description().sections.len()];

@@ -124,7 +124,7 @@ pub fn critical_load(
                 status => Err(NoCriticalLoad::Otherwise { load, status }),
             }
         }
-        Some(limit) => Ok(CriticalLoad { load, location: limit.location(&description) }),
+        Some(limit) => Ok(CriticalLoad { load, location: limit.location(crane) }),
     }
 }
 

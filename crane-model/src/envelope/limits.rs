@@ -202,7 +202,8 @@ impl Limit {
     }
 
     /// The name of the part at which the limit is reached.
-    pub fn location(self, description: &Description) -> String {
+    pub fn location(self, crane: &dyn DynCrane) -> String {
+        let description = crane.description();
         let side = |cylinder: usize, rod: bool| {
             format!("{}, side of its {}", description.cylinders[cylinder].name, if rod { "rod" } else { "piston" })
         };
@@ -212,7 +213,7 @@ impl Limit {
                 let [from, to] = feet.map(|foot| description.supports[foot].name.as_str());
                 format!("{from} – {to}")
             }
-            Limit::Utilisation { section } => sections::location(description, section, None),
+            Limit::Utilisation { section } => crane.section_location(section),
             Limit::Effort { drive } => description.coordinates[description.drives[drive].coordinate].name.to_string(),
             Limit::Deflection { point } => description.points[point].to_string(),
             Limit::Pressure { cylinder, rod } | Limit::Pump { cylinder, rod } => side(cylinder, rod),

@@ -16,8 +16,8 @@ pub struct Instant {
     pub t: f64,
     /// Tipping lines.
     pub lines: Vec<TippingLine>,
-    /// The pose, m and rad.
-    pub q: Vec<f64>,
+    /// Where the sections of beams are, m from the beginnings of their beams.
+    pub x: Vec<f64>,
     /// Internal forces at every cut.
     pub wrenches: Vec<Wrench>,
 }
@@ -29,7 +29,7 @@ impl Instant {
         Self {
             t: 0.0,
             lines: lines(crane, 0.0, q, &rest, &rest),
-            q: q.to_vec(),
+            x: crane.section_places_at(q),
             wrenches: crane.internal_forces_at(0.0, q, &rest, &rest),
         }
     }
@@ -40,19 +40,19 @@ impl Instant {
         Self {
             t,
             lines: lines(crane, t, q, v, &a),
-            q: q.to_vec(),
+            x: crane.section_places_at(q),
             wrenches: crane.internal_forces_of(t, [q, v, &a], x),
         }
     }
 
     /// All places of beams and what they carry.
     pub fn places(&self, description: &Description) -> Vec<Place> {
-        sections::places(description, &self.q, &self.wrenches)
+        sections::places(description, &self.x, &self.wrenches)
     }
 
     /// Those whose stresses are known; `moduli` one per section.
     pub fn stressed_sections(&self, description: &Description, moduli: &[SectionModuli]) -> Vec<StressedSection> {
-        sections::stressed_sections(description, moduli, &self.q, &self.wrenches)
+        sections::stressed_sections(description, moduli, &self.x, &self.wrenches)
     }
 }
 

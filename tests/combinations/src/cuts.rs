@@ -59,7 +59,7 @@ pub fn jumps(crane: &LiveCrane, motion: &Motion) -> Vec<(String, f64)> {
     let transforms = crane_transforms(crane, motion.q);
     let tensions = whole.connector_tensions_at(motion.t, motion.q, motion.v);
     let wrenches = whole.internal_forces_at(motion.t, motion.q, motion.v, motion.a);
-    let all = places(description, motion.q, &wrenches);
+    let all = places(description, &whole.section_places_at(motion.q), &wrenches);
     let sections: Vec<&Section> = crane.chain().beams.iter().flat_map(|beam| &beam.sections).collect();
     let mut found = Vec::new();
     for before in all.iter().filter(|place| place.info(description).side == Side::Before) {

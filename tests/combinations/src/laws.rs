@@ -210,14 +210,14 @@ fn springs_carry(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Resul
         let springs: Vec<(&str, f64)> =
             of_elements.zip(moments).map(|((_, own), moment)| (own.name.as_str(), moment)).collect();
         let transforms = whole.transforms_at(&q);
-        let x = description.section_places(&q);
+        let (x, sizes) = (whole.section_places_at(&q), whole.body_sizes_at());
         // The force of a pad bends the spring of its section by the mean of the moment, which jumps or kinks there.
         let at_pad = |section: usize| {
             let beam = |section: usize| &description.bodies[description.sections[section].body].link;
-            let length = description.bodies[description.sections[section].body - 1].length
-                + description.bodies[description.sections[section].body].length;
+            let body = description.sections[section].body;
+            let length = sizes[body - 1][1] + sizes[body][1];
             (0..x.len()).any(|other| {
-                description.sections[other].slides.is_some()
+                description.sections[other].slides
                     && beam(other) == beam(section)
                     && (x[other] - x[section]).abs() < length
             })

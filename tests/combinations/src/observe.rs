@@ -131,7 +131,7 @@ pub fn observe(source: &SourceFile, run: bool) -> Result<Numbers, String> {
 fn stresses(crane: &dyn DynCrane, q: &[f64], wrenches: &[Wrench]) -> Vec<(String, &'static str, f64)> {
     let description = crane.description();
     let mut greatest: BTreeMap<String, (&'static str, f64)> = BTreeMap::new();
-    for section in stressed_sections(description, &crane.section_moduli_at(), q, wrenches) {
+    for section in stressed_sections(description, &crane.section_moduli_at(), &crane.section_places_at(q), wrenches) {
         let beam = section.beam(description);
         let used = section.utilisation.map(|used| ("utilisation with stress".to_owned(), "", used));
         for (name, unit, value) in used.into_iter().chain([(format!("{beam} stress"), "Pa", section.stress.equivalent)])

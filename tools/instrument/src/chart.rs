@@ -66,7 +66,7 @@ pub fn chart(crane: &LiveCrane, wanted: &Wanted) -> Outcome<Value> {
             "at": envelope.axes.values(pose),
             "load": rating.load,
             "limit": rating.governing.map(Limit::kind),
-            "where": rating.governing.map(|limit| limit.location(description)),
+            "where": rating.governing.map(|limit| limit.location(crane as &dyn DynCrane)),
             "radius": place.map(|place| slewing.radius(&place)),
             "height": place.map(|place| place.z),
         }))

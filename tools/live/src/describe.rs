@@ -6,7 +6,7 @@ use crane_codegen::chain::{
 use crane_model::{
     AttachmentInfo, BodyInfo, Bound, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole,
     CylinderInfo, Description, DriveInfo, InputInfo, LoadInfo, LoopEquationInfo, LoopJointInfo, ParameterInfo,
-    PumpInfo, Refusal, SectionInfo, Side, SlideInfo, StageInfo, SupportInfo, ValveInfo,
+    PumpInfo, Refusal, SectionInfo, Side, StageInfo, SupportInfo, ValveInfo,
 };
 
 /// What the bodies of a chain with branches are attached to, as the compiler writes it.
@@ -39,17 +39,13 @@ pub fn describe(chain: &Chain) -> Description {
     });
     let sections = chain.beams.iter().flat_map(|beam| &beam.sections).map(|section| SectionInfo {
         body: section.body.0,
-        x: at_defaults(&section.x),
         side: match section.side {
             chain::Side::Before => Side::Before,
             chain::Side::Both => Side::Both,
             chain::Side::After => Side::After,
         },
         at: section.at.clone().into(),
-        slides: section
-            .slides
-            .as_ref()
-            .map(|sliding| SlideInfo { coordinate: sliding.coordinate.0, grows: sliding.grows }),
+        slides: section.slides.is_some(),
     });
     let supports = chain.supports.iter().map(|support| SupportInfo {
         name: support.name.clone().into(),

@@ -56,13 +56,13 @@ fn carried(description: &Description, history: &[Instant], every: usize) -> Valu
 /// Where a place is, for readers.
 fn words(place: &Place, description: &Description) -> Value {
     let info = place.info(description);
-    json!({"beam": place.beam(description), "body": info.body, "x": place.x, "place": info.location(), "slides": info.slides.is_some()})
+    json!({"beam": place.beam(description), "body": info.body, "x": place.x, "place": info.location(), "slides": info.slides})
 }
 
 /// Distances of all places that slide, row by row.
 fn ways(all: &[Vec<Place>], description: &Description, every: usize) -> String {
     let sliding = |places: &'_ Vec<Place>| -> Vec<f64> {
-        let slide = |place: &&Place| place.info(description).slides.is_some();
+        let slide = |place: &&Place| place.info(description).slides;
         places.iter().filter(slide).map(|place| place.x).collect()
     };
     packed(all.iter().step_by(every).flat_map(sliding))

@@ -12,7 +12,8 @@ impl Crane {
     /// Coordinates, bodies, drives, supports, points and parameters: names, units and descriptions.
     #[getter(info)]
     fn describe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let description = self.live.description();
+        let crane: &dyn DynCrane = &self.live;
+        let description = crane.description();
         let all = PyDict::new(py);
         let list = |rows: Vec<Bound<'py, PyDict>>| PyList::new(py, rows);
         let mut rows = Vec::new();
@@ -75,6 +76,8 @@ impl Crane {
             rows.push(row);
         }
         all.set_item("inputs", list(std::mem::take(&mut rows))?)?;
+        let places = crane.section_places_at(&description.guess);
+        let place_of = |section: usize| (!description.sections[section].slides).then(|| places[section]);
         for cut in description.cuts() {
             let section = cut.section().map(|section| &description.sections[section]);
             let (kind, body) = match cut {
@@ -86,15 +89,15 @@ impl Crane {
             let row = PyDict::new(py);
             row.set_item("kind", kind)?;
             row.set_item("link", body.map(|body| &*description.bodies[body].link))?;
-            row.set_item("x", section.map(|section| section.x))?;
+            row.set_item("x", cut.section().map(place_of))?;
             row.set_item("place", section.map(SectionInfo::location))?;
             rows.push(row);
         }
         all.set_item("cuts", list(std::mem::take(&mut rows))?)?;
-        for section in &*description.sections {
+        for (index, section) in description.sections.iter().enumerate() {
             let row = PyDict::new(py);
             row.set_item("beam", &*description.bodies[section.body].link)?;
-            row.set_item("x", section.x)?;
+            row.set_item("x", place_of(index))?;
             row.set_item("place", section.location())?;
             rows.push(row);
         }

@@ -88,7 +88,7 @@ impl Crane {
         run.map_err(|refused| PyValueError::new_err(refused.to_string()))?;
         let ratings = ratings.into_inner().unwrap_or_else(PoisonError::into_inner);
         let ratings: Vec<Rating> = ratings.into_iter().flatten().collect();
-        let all = Named { description, slew: SlewAxis::of(crane), point, shape: axes_shape(&envelope) }
+        let all = Named { crane, slew: SlewAxis::of(crane), point, shape: axes_shape(&envelope) }
             .all(py, &envelope, &ratings)?;
         let coverage = Coverage::of(crane, &envelope.limits);
         all.set_item("considered", coverage.considered)?;
@@ -197,7 +197,7 @@ impl Asked {
 
 /// Ratings as arrays.
 struct Named<'a> {
-    description: &'a Description,
+    crane: &'a dyn DynCrane,
     slew: SlewAxis,
     point: Option<usize>,
     shape: Vec<usize>,
@@ -205,7 +205,7 @@ struct Named<'a> {
 
 impl Named<'_> {
     fn all<'py>(&self, py: Python<'py>, envelope: &Envelope, ratings: &[Rating]) -> PyResult<Bound<'py, PyDict>> {
-        let all = PyDict::new(py);
+        let (all, description) = (PyDict::new(py), self.crane.description());
         let numbers = |of: &dyn Fn(&Rating) -> Option<f64>| {
             array(py, ratings.iter().map(|rating| of(rating).unwrap_or(f64::NAN)).collect(), &self.shape, &[])
         };
@@ -216,7 +216,7 @@ impl Named<'_> {
         all.set_item("height", numbers(&|rating| Some(position(rating)?.z))?)?;
         all.set_item("tipping_margin", numbers(&|rating| rating.with_spec_load.as_ref()?.margin())?)?;
         all.set_item("utilisation", numbers(&|rating| rating.with_spec_load.as_ref()?.utilisation())?)?;
-        let n = self.description.coordinates.len();
+        let n = description.coordinates.len();
         let rows = |width: usize, of: &dyn Fn(&Rating) -> Option<Vec<f64>>| {
             let row = |rating: &Rating| of(rating).unwrap_or_else(|| vec![f64::NAN; width]);
             array(py, ratings.iter().flat_map(row).collect(), &self.shape, &[width])
@@ -224,17 +224,17 @@ impl Named<'_> {
         all.set_item("q", rows(n, &|rating| Some(rating.loaded.as_ref()?.q.clone()))?)?;
         let of_load =
             |of: fn(&Condition) -> &Vec<f64>| move |rating: &Rating| Some(of(rating.with_spec_load.as_ref()?).clone());
-        all.set_item("drive_efforts", rows(self.description.drives.len(), &of_load(|of_load| &of_load.efforts))?)?;
+        all.set_item("drive_efforts", rows(description.drives.len(), &of_load(|of_load| &of_load.efforts))?)?;
         let moved = |rating: &Rating| (!rating.deflections.is_empty()).then(|| rating.deflections.clone());
-        all.set_item("deflections", rows(self.description.points.len(), &moved)?)?;
+        all.set_item("deflections", rows(description.points.len(), &moved)?)?;
         let words = |of: &dyn Fn(Limit) -> String| -> Vec<String> {
             ratings.iter().map(|rating| rating.governing.map_or_else(String::new, of)).collect()
         };
         all.set_item("governing", words(&|limit| limit.kind().to_owned()))?;
-        all.set_item("governing_of", words(&|limit| limit.location(self.description)))?;
+        all.set_item("governing_of", words(&|limit| limit.location(self.crane)))?;
         all.set_item("shape", self.shape.clone())?;
-        all.set_item("unit", self.description.parameters[envelope.load].unit.as_str())?;
-        all.set_item("parameter", self.description.parameters[envelope.load].name.as_str())?;
+        all.set_item("unit", description.parameters[envelope.load].unit.as_str())?;
+        all.set_item("parameter", description.parameters[envelope.load].name.as_str())?;
         Ok(all)
     }
 }

@@ -81,7 +81,7 @@ fn write_wrenches_of(crane: &LiveCrane, Moment { t, q, v, a }: &Moment, out: &mu
     let description = crane.description();
     out.fill(f64::NAN);
     let wrenches = crane.internal_forces_at(*t, q, v, a);
-    let known = stressed_sections(description, &crane.section_moduli_at(), q, &wrenches);
+    let known = stressed_sections(description, &crane.section_moduli_at(), &crane.section_places_at(q), &wrenches);
     for section in known {
         let Stress { normal, shear, torsion, equivalent } = section.stress;
         let of_section = [normal, shear, torsion, equivalent, section.utilisation.unwrap_or(f64::NAN)];

@@ -8,7 +8,7 @@ mod loop_joints;
 mod motion_derivatives;
 mod statics;
 
-use crate::chain::{Analyses, BodyId, Chain, Group};
+use crate::chain::{Analyses, Beam, BodyId, Chain, Group, Section};
 use crate::program::{Argument, Count, Extent, Function, FunctionId, Item, Program, Shape, Struct, Symbol};
 use crate::symbolic::{Expr, Graph, Stages, SweepTrace, SymbolId};
 
@@ -23,7 +23,7 @@ use super::model::Model;
 use super::motion_derivatives::with_rotors;
 use super::twist::{Twist, twists};
 use super::vector::{SymmetricMatrix, Vec3};
-use super::{cylinders, drives, effective_mass, energy, newton_euler, points, rotors, transforms};
+use super::{cylinders, drives, effective_mass, energy, newton_euler, pads, points, rotors, transforms};
 
 /// Derives all functions over one graph.
 pub fn program(graph: Graph, chain: &Chain, analyses: Analyses) -> Program {
@@ -108,6 +108,10 @@ impl<'g> Derivation<'g> {
         ];
         if !chain.supports.is_empty() {
             functions.push(self.function(FunctionId::SupportPlaces, crate::mechanics::supports::places(model)));
+        }
+        let places: Vec<_> = chain.beams.iter().flat_map(|beam| section_places(model, beam)).collect();
+        if !places.is_empty() {
+            functions.push(self.function(FunctionId::SectionPlaces, places));
         }
         if !chain.points.is_empty() {
             functions.push(self.function(FunctionId::Points, points::positions(&self.model, &self.kinematics)));
@@ -297,4 +301,15 @@ fn shaped(id: FunctionId, shape: Shape, outputs: Vec<Expr<'_>>) -> Function {
     let outputs = outputs.into_iter().map(Expr::id).collect();
     let (doc, equation, arguments) = (id.doc(), id.equation(), id.arguments().to_vec());
     Function { id, product: None, doc, equation, arguments, shape, outputs, trace: SweepTrace::default() }
+}
+
+/// Where the sections of a beam are, and its length.
+fn section_places<'g>(model: &Model<'g>, beam: &Beam) -> Vec<Expr<'g>> {
+    let elements = model.chain.bodies.iter().filter(|body| body.link == beam.link);
+    let length = elements.fold(model.zero(), |length, body| length + model.number(&body.length));
+    let place = |section: &Section| match &section.slides {
+        None => model.number(&section.x),
+        Some(sliding) => pads::place(model, sliding).1.clamp(model.zero(), model.number(&sliding.beam.length)),
+    };
+    beam.sections.iter().flat_map(|section| [place(section), length]).collect()
 }

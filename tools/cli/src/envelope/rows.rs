@@ -108,7 +108,7 @@ impl Layout {
     }
 
     /// The row of a pose.
-    pub fn row(&self, asked: &Envelope, pose: usize, rating: &Rating) -> Row {
+    pub fn row(&self, asked: &Envelope, crane: &dyn DynCrane, pose: usize, rating: &Rating) -> Row {
         let position: Option<Vector3<f64>> = rating.loaded.as_ref().map(|at| match self.point {
             Some(point) => at.points[point],
             None => at.end,
@@ -127,7 +127,7 @@ impl Layout {
         numbers.extend((0..points).map(|point| or_nan(rating.deflections.get(point).copied())));
         let governing = rating
             .governing
-            .map_or_else(Default::default, |limit: Limit| [limit.kind().to_owned(), limit.location(&self.description)]);
+            .map_or_else(Default::default, |limit: Limit| [limit.kind().to_owned(), limit.location(crane)]);
         Row { numbers, governing }
     }
 

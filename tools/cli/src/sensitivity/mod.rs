@@ -279,7 +279,7 @@ fn facts_of_load(
     report.line("limited by", largest.words(crane), "");
     report.line("at a radius of", format!("{radius:.2}"), "m");
     report.line("and a height of", format!("{:.2}", at.z), "m");
-    let of = largest.limit.location(description);
+    let of = largest.limit.location(crane);
     report.value(
         "largest_load",
         json!({

@@ -65,7 +65,7 @@ pub fn table(description: &Description, moduli: &[SectionModuli], history: &[Ins
     };
     for StressedSection { place, utilisation, .. } in history.first().map(stressed).unwrap_or_default() {
         let Some((prefix, _)) = prefix(description, cuts[place.cut]) else { continue };
-        if place.info(description).slides.is_some() {
+        if place.info(description).slides {
             table.add(format!("{prefix}_x"), "m");
         }
         for what in ["normal", "shear", "torsion", "equivalent"] {
@@ -77,7 +77,7 @@ pub fn table(description: &Description, moduli: &[SectionModuli], history: &[Ins
     }
     let of_stresses = |StressedSection { place, stress, utilisation }: StressedSection| {
         let Stress { normal, shear, torsion, equivalent } = stress;
-        let x = place.info(description).slides.map(|_| place.x);
+        let x = place.info(description).slides.then_some(place.x);
         x.into_iter().chain([normal, shear, torsion, equivalent]).chain(utilisation)
     };
     let row = |instant: &Instant| {

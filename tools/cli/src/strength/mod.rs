@@ -65,7 +65,7 @@ pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) ->
     if let Some(history) = &history {
         let table = history::table(crane.description(), &moduli, history);
         report.grid(tables::extremes_of_joints(crane.description(), &table));
-        report.grid(tables::extremes_of_sections(crane.description(), &table));
+        report.grid(tables::extremes_of_sections(crane.description(), &rest.x, &table));
         if let Some(file) = &options.results {
             files::write_csv(file, &table)?;
         }

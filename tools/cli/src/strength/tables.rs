@@ -98,7 +98,7 @@ pub fn extremes_of_joints(description: &Description, table: &Table) -> Grid {
 }
 
 /// Minimum and maximum section forces of every beam over a run, and where.
-pub fn extremes_of_sections(description: &Description, table: &Table) -> Grid {
+pub fn extremes_of_sections(description: &Description, at_rest: &[f64], table: &Table) -> Grid {
     let title = "Extremes of the section forces along the manoeuvre, times in s, places along the beam in m";
     let headers = [
         "beam",
@@ -120,12 +120,12 @@ pub fn extremes_of_sections(description: &Description, table: &Table) -> Grid {
     };
     let mut beams: Vec<(&str, Vec<(f64, Cut)>)> = Vec::new();
     for cut in description.cuts() {
-        if let Some(section) = cut.section() {
-            let section = &description.sections[section];
+        if let Some(index) = cut.section() {
+            let (section, x) = (&description.sections[index], at_rest[index]);
             let link = description.bodies[section.body].link.as_str();
             match beams.last_mut().filter(|(beam, _)| *beam == link) {
-                Some((_, sections)) => sections.push((section.x, cut)),
-                None => beams.push((link, vec![(section.x, cut)])),
+                Some((_, sections)) => sections.push((x, cut)),
+                None => beams.push((link, vec![(x, cut)])),
             }
         }
     }

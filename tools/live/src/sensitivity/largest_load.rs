@@ -67,7 +67,7 @@ impl NoLargestLoad {
 
 /// A limit in words.
 fn words(limit: Limit, crane: &LiveCrane) -> String {
-    let of = limit.location(crane.description());
+    let of = limit.location(crane);
     if of.is_empty() { limit.kind().to_owned() } else { format!("{}, {of}", limit.kind()) }
 }
 
@@ -223,7 +223,7 @@ impl LargestLoad {
         match self.limit {
             Limit::Tipping { .. } => {
                 let bound = output("tipping_margin")?;
-                let is_same = found.outputs[bound.output].place == self.limit.location(description);
+                let is_same = found.outputs[bound.output].place == self.limit.location(crane);
                 (is_same && asked.limits.tipping.is_some()).then_some(bound)
             }
             Limit::Utilisation { .. } => output("greatest_utilisation"),

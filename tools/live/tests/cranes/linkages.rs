@@ -210,7 +210,7 @@ fn a_boom_carries_the_weight_and_the_rod() {
         let (mut between, mut beyond) = (0, 0);
         for (cut, wrench) in wrenches(crane, &q) {
             let Cut::Body { body, section: Some(section) } = cut else { continue };
-            let x = crane.description().sections[section].x;
+            let x = crane.section_places_at(&q)[section];
             let origin = position_at(crane, &q, body, [0.0; 3]);
             let bodies = crane.description().bodies.iter().enumerate().skip(body);
             let by_boom: f64 = bodies
@@ -318,7 +318,7 @@ fn a_linkage_does_the_work_of_its_cylinder() {
         let mut compared = 0;
         for (cut, wrench) in cuts.iter().zip(&wrenches) {
             let Cut::Body { body, section: Some(section) } = *cut else { continue };
-            let x = description.sections[section].x;
+            let x = crane.section_places_at(&q)[section];
             let name = &description.bodies[body].name;
             let axes = [("psi", wrench.moment.z), ("theta", wrench.moment.y), ("phi", wrench.moment.x)];
             for (symbol, moment) in axes.into_iter().filter(|_| x > 0.0) {

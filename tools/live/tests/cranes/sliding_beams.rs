@@ -187,7 +187,7 @@ pub(super) fn assert_section_forces(crane: &dyn DynCrane, q: &[f64]) {
     let [front, rear] = [LOAD * (a + b) / b, LOAD * a / b];
     let description = crane.description();
     let (mut checked, mut at_pads, size) = (0, 0, LOAD * (a + b));
-    for place in places(description, q, &crane.internal_forces_at(0.0, q, &still, &still)) {
+    for place in places(description, &crane.section_places_at(q), &crane.internal_forces_at(0.0, q, &still, &still)) {
         let (info, x, wrench) = (place.info(description), place.x, place.wrench);
         if x < 1e-9 || x > LENGTH - 1e-9 {
             continue;
@@ -195,7 +195,7 @@ pub(super) fn assert_section_forces(crane: &dyn DynCrane, q: &[f64]) {
         let is_inner = place.beam(description) == "inner";
         // The front pad is at b on the inner beam, the rear pad at L − b on the outer one.
         let pad = if is_inner { b } else { LENGTH - b };
-        let is_at_pad = info.slides.is_some();
+        let is_at_pad = info.slides;
         assert!(!is_at_pad || (x - pad).abs() < 1e-9, "{}", place.location(description));
         let before = if is_at_pad { info.side == Side::Before } else { x < pad };
         let (shear, moment) = match (is_inner, before) {

@@ -3,7 +3,7 @@
 use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
-use crane_model::sections::{StressedSection, stressed_sections};
+use crane_model::sections::{Place, StressedSection, places, stressed_sections};
 use crane_model::{SectionInfo, Side, Wrench, statics};
 
 const GRAVITY: f64 = 9.81;
@@ -19,22 +19,22 @@ fn crane(text: &str) -> LiveCrane {
 type Sections<T> = Vec<(SectionInfo, T)>;
 
 /// What the sections carry and how they are stressed, at rest.
-fn at_rest(crane: &LiveCrane) -> (Sections<Wrench>, Sections<StressedSection>) {
+fn at_rest(crane: &LiveCrane) -> (Sections<Place>, Sections<StressedSection>) {
     let crane: &dyn DynCrane = crane;
     let found = crane.equilibrium(&statics::Settings::default());
     assert!(found.is_stable(), "{found}");
     let still = vec![0.0; found.q.len()];
     let wrenches = crane.internal_forces_at(0.0, &found.q, &still, &still);
     let description = crane.description();
-    let cuts = description.cuts().into_iter().zip(&wrenches);
-    let carried = cuts.filter_map(|(cut, wrench)| Some((description.sections[cut.section()?].clone(), *wrench)));
-    let stressed = stressed_sections(description, &crane.section_moduli_at(), &found.q, &wrenches);
+    let x = crane.section_places_at(&found.q);
+    let carried = places(description, &x, &wrenches).into_iter().map(|place| (place.info(description).clone(), place));
+    let stressed = stressed_sections(description, &crane.section_moduli_at(), &x, &wrenches);
     (carried.collect(), stressed.into_iter().map(|section| (section.info(description).clone(), section)).collect())
 }
 
-fn at(sections: &[(SectionInfo, Wrench)], x: f64, side: Side) -> Wrench {
-    let here = |(info, _): &&(SectionInfo, Wrench)| (info.x - x).abs() < 1e-9 && info.side == side;
-    sections.iter().find(here).unwrap_or_else(|| panic!("no section at {x} {side:?}")).1
+fn at(sections: &[(SectionInfo, Place)], x: f64, side: Side) -> Wrench {
+    let here = |(info, place): &&(SectionInfo, Place)| (place.x - x).abs() < 1e-9 && info.side == side;
+    sections.iter().find(here).unwrap_or_else(|| panic!("no section at {x} {side:?}")).1.wrench
 }
 
 /// Thick enough that it sags by tenths of a millimetre.
@@ -62,8 +62,7 @@ connectors:
 "
         ));
         let (carried, _) = at_rest(&beam);
-        for (info, wrench) in &carried {
-            let x = info.x;
+        for (info, Place { x, wrench, .. }) in carried {
             let pushed = x > x_force || (x == x_force && info.side == Side::After);
             let bending = reaction * x - line * x * x / 2.0 - if pushed { force * (x - x_force) } else { 0.0 };
             let shear = -reaction + line * x + if pushed { force } else { 0.0 };
@@ -105,15 +104,15 @@ loads: [{name: press, link: beam, at: [3, 0, 0], force: [0, -20e3, 0]}]
         20e3 * 1.3 * h / 2.0 / second
     };
     let found = |side: Side| {
-        let here = |(info, _): &&(SectionInfo, StressedSection)| info.x == 1.7 && info.side == side;
+        let here = |(info, section): &&(SectionInfo, StressedSection)| section.place.x == 1.7 && info.side == side;
         stressed.iter().find(here).expect("a section at the step").1.stress.normal
     };
     // Levers shorten by 1e-6, and the normal force of the tilt adds as much.
     for (side, expected) in [(Side::Before, stress(0.4, 0.3, 0.02)), (Side::After, stress(0.3, 0.25, 0.01))] {
         assert!((found(side) / expected - 1.0).abs() < 2e-4, "{side:?}: {} for {expected}", found(side));
     }
-    let (most, _) = stressed.iter().max_by(|(_, a), (_, b)| StressedSection::by_use(a, b)).expect("sections");
-    assert_eq!((most.x, most.location().as_str()), (1.7, "after the beginning of part 2"));
+    let (most, section) = stressed.iter().max_by(|(_, a), (_, b)| StressedSection::by_use(a, b)).expect("sections");
+    assert_eq!((section.place.x, most.location().as_str()), (1.7, "after the beginning of part 2"));
 }
 
 /// The boom of a loader: a hinge, a cylinder at 0.7 m, the load at the end.
@@ -156,7 +155,7 @@ fn the_peak_at_a_pin_converges_with_the_square_of_the_sections() {
         let (_, stressed) = at_rest(&loader(sections));
         let (info, most) =
             stressed.into_iter().max_by(|(_, a), (_, b)| StressedSection::by_use(a, b)).expect("sections");
-        assert!((info.x - 0.7).abs() < 1e-12, "{info:?}");
+        assert!((most.place.x - 0.7).abs() < 1e-12, "{info:?}");
         assert!(info.location().ends_with("the head of lift"), "{info:?}");
         most.stress.equivalent
     };
@@ -190,14 +189,14 @@ loads: [{{name: press, link: beam, at: [{x_force}, 0, 0], force: [0, -{force}, 0
 "
         ));
         let (carried, _) = at_rest(&beam);
-        let here: Vec<_> = carried.iter().filter(|(info, _)| (info.x - x_force).abs() < 1e-9).collect();
+        let here: Vec<_> = carried.iter().filter(|(_, place)| (place.x - x_force).abs() < 1e-9).collect();
         let sides: Vec<Side> = here.iter().map(|(info, _)| info.side).collect();
         assert_eq!(sides, [Side::Before, Side::After], "{x_force} m");
-        let jump = here[1].1.force.y - here[0].1.force.y;
+        let jump = here[1].1.wrench.force.y - here[0].1.wrench.force.y;
         assert!((jump.abs() / force - 1.0).abs() < 1e-6, "{x_force} m: {jump} N");
         // Each place of the beam has either one section or one on either side.
-        for (index, (info, _)) in carried.iter().enumerate() {
-            let next = carried.get(index + 1).filter(|(next, _)| (next.x - info.x).abs() < 1e-9);
+        for (index, (info, place)) in carried.iter().enumerate() {
+            let next = carried.get(index + 1).filter(|(_, next)| (next.x - place.x).abs() < 1e-9);
             assert_eq!(info.side == Side::Before, next.is_some(), "{x_force} m: {info:?}");
         }
     }
