@@ -38,6 +38,9 @@ CraneModel {
     SupportPlaces = support_places() -> [vector; supports] zero
         "Where every support is attached, in the frame of the base, m."
         "r";
+    SectionPlaces = section_places(q) -> [pair; sections] zero
+        "Distance of every section from the beginning of its beam, and the beam's length, m. A section at a pad moves along the beam, and stays at the end of a beam that has left it."
+        "x, L";
     Points = points(q) -> [vector; points] zero
         "Positions of the points of interest in the world frame, m."
         "T(p) r" python(q);
@@ -277,9 +280,6 @@ InternalForces {
     SupportPositions = support_positions(q) -> [vector; supports] zero
         "Positions of the supports' attachment points in the world frame, m."
         "T(1) r_E" python(q);
-    SectionPlaces = section_places(q) -> [pair; sections] zero
-        "Distance of every section from the beginning of its beam, and the beam's length, m. A section at a pad moves along the beam, and stays at the end of a beam that has left it."
-        "x, L";
     SectionModuli = section_moduli() -> [moduli; sections] zero
         "Section properties for the stresses of beams: areas (m²), moduli (m³), allowable stress (Pa); 0 where unknown."
         "A, W_y, W_z, W_t, A_y, A_z; yield stress over safety factor";

@@ -8,7 +8,7 @@ use super::arithmetic::{integer, literal};
 use super::print::constant;
 use crate::chain::{
     Attachment, BodyId, Bristle, Chain, CoordinateId, CoordinateKind, Cylinder, Drive, Force, Profile, Side,
-    SupportKinematics, Value, Valve,
+    SupportKinematics, Valve,
 };
 
 /// The sizes and the `DESCRIPTION`.
@@ -89,7 +89,6 @@ fn bristle_info((id, bristle): (CoordinateId, Bristle)) -> TokenStream {
 
 fn description_constant(chain: &Chain) -> Item {
     let defaults = chain.parameter_defaults();
-    let at_defaults = |value: &Value| literal(value.at(&defaults));
     let coordinates = chain.coordinates.iter().enumerate().map(|(i, c)| {
         let (name, kind, role) = (text(&c.name), kind(c.kind), role(chain, i));
         quote!(CoordinateInfo { name: #name, kind: CoordinateKind::#kind, role: CoordinateRole::#role })

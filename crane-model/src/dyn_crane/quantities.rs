@@ -212,7 +212,7 @@ impl dyn DynCrane + '_ {
     pub fn section_location(&self, section: usize) -> String {
         let description = self.description();
         let x = (!description.sections[section].slides).then(|| self.section_places_at(&description.guess)[section]);
-        sections::location(description, section, x)
+        crate::sections::location(description, section, x)
     }
 
     /// Section moduli for stresses of beams, as [`Description::sections`](crate::Description::sections) lists the sections.

@@ -1,6 +1,6 @@
 //! Limits of the load.
 
-use crate::{Description, dyn_crane::DynCrane, sections};
+use crate::{Description, dyn_crane::DynCrane};
 
 /// Limits that a load must not exceed.
 #[derive(Clone, Debug, PartialEq)]

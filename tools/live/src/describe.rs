@@ -1,7 +1,7 @@
 //! Metadata of a live crane.
 
 use crane_codegen::chain::{
-    self, BodyId, Chain, CoordinateId, CoordinateKind as Kind, Profile, SupportKinematics, Value,
+    self, BodyId, Chain, CoordinateId, CoordinateKind as Kind, Profile, SupportKinematics,
 };
 use crane_model::{
     AttachmentInfo, BodyInfo, Bound, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole,
@@ -18,7 +18,6 @@ pub fn parents(chain: &Chain) -> Vec<usize> {
 /// The description of a chain, as the compiler writes it.
 pub fn describe(chain: &Chain) -> Description {
     let defaults = chain.parameter_defaults();
-    let at_defaults = |value: &Value| value.at(&defaults);
     let parameters = chain.parameters.iter().map(|parameter| ParameterInfo {
         name: parameter.name.clone().into(),
         unit: parameter.unit.clone().into(),

@@ -33,7 +33,7 @@ pub fn prefix(description: &Description, cut: Cut) -> Option<(String, [&'static 
         Cut::Inside { section } => {
             let SectionInfo { body, side, at, slides, .. } = &description.sections[section];
             let (what, body) = (at.replace(' ', "_"), &description.bodies[*body]);
-            let on = if slides.is_some() { &body.link } else { &body.name };
+            let on = if *slides { &body.link } else { &body.name };
             Some((format!("{on}_{}_{what}", side.name()), OF_SECTIONS))
         }
     }
