@@ -34,7 +34,7 @@ class CraneSpec:
         """A number in SI units, or the symbol of the parameter that replaces it."""
         if isinstance(written, str) and written in self.parameters:
             return self.parameters[written]
-        return float(written)
+        return parse_quantity(written) if isinstance(written, str) else float(written)
 
     def angle(self, written):
         """An angle in rad: a number, a multiple of pi or of a degree, or a parameter."""
@@ -56,13 +56,37 @@ class CraneSpec:
         return float(function.call(list(self.defaults.values()))[0])
 
 
+# What a unit is in SI.
+UNITS = {
+    "1": 1, "%": 1e-2, "m": 1, "mm": 1e-3, "cm": 1e-2, "dm": 1e-1, "km": 1e3, "l": 1e-3, "kg": 1, "g": 1e-3, "t": 1e3, "s": 1, "ms": 1e-3,
+    "min": 60, "h": 3600, "rad": 1, "mrad": 1e-3, "deg": math.pi / 180, "°": math.pi / 180, "rpm": math.pi / 30, "Hz": 1, "N": 1, "kN": 1e3,
+    "MN": 1e6, "Pa": 1, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "bar": 1e5, "J": 1, "kJ": 1e3, "W": 1, "kW": 1e3,
+}
+QUANTITY = re.compile(r"(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(?P<unit>.*)")
+FACTOR = re.compile(r"(?P<symbol>[A-Za-z]+|%|°|1)\^?(?P<power>[234²³⁴]?)")
+
+
+def parse_quantity(written):
+    """A number, or one with a unit, `320 bar` or `4 kN/mm`, in SI: products of symbols with powers; all behind a `/` divides."""
+    match = QUANTITY.fullmatch(written.strip())
+    if not match:
+        raise ValueError(f"not a number: {written!r}")
+    value, sign = float(match["number"]), 1
+    for part in match["unit"].split("/"):
+        for factor in FACTOR.finditer(part):
+            power = {"²": 2, "³": 3, "⁴": 4}.get(factor["power"]) or int(factor["power"] or 1)
+            value *= UNITS[factor["symbol"]] ** (sign * power)
+        sign = -1
+    return value
+
+
 def parse_angle(written):
     """`90 deg`, `7/18 pi`, `-pi`, `1.5 pi` or a plain number, in rad."""
     if not isinstance(written, str):
         return float(written)
     match = ANGLE.fullmatch(written.strip())
     if not match:
-        raise ValueError(f"not an angle: {written!r}")
+        return parse_quantity(written)
     turn = math.pi if match["unit"] == "pi" else math.pi / 180
     value = turn * float(match["numerator"] or 1) / float(match["denominator"] or 1)
     return -value if match["sign"] == "-" else value

@@ -7,6 +7,7 @@ use crane_model::{
     dyn_crane::DynCrane,
     force_states::{self, ForceStates},
     loop_joints::Given,
+    results::{Column, quantities},
     runs::Start,
 };
 
@@ -14,6 +15,7 @@ use crate::{
     arguments::Timing,
     files,
     problem::{Outcome, Problem, nearest},
+    quantity::number,
 };
 
 /// Suffix of a coordinate's name in the name of its rate.
@@ -128,6 +130,7 @@ impl Timing {
             start.what = format!("end of {}{held}", file.display());
         }
         let mut asked = Vec::new();
+        let columns = quantities(description, crane.loop_joints());
         for text in &self.start {
             let (name, value) = text.split_once('=').ok_or_else(|| {
                 let help =
@@ -139,12 +142,7 @@ impl Timing {
                 None if skip_unknown_names => continue,
                 None => return Err(unknown(name, description)),
             };
-            let number = value.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
-                Problem::usage(
-                    format!("`{value}` is not a valid value for {name}"),
-                    "write a finite number, in m or rad, and in m/s or rad/s for rates",
-                )
-            })?;
+            let number = number(unit_of(name, &columns), value, name)?;
             variable.set(&mut start, number);
             variable.give(&mut given);
             asked.push((name, variable, number));
@@ -183,6 +181,11 @@ impl Timing {
         }
         Ok(start)
     }
+}
+
+/// Unit of the column of results that a start gives.
+fn unit_of<'a>(name: &str, columns: &'a [Column]) -> &'a str {
+    columns.iter().find(|column| column.name == name).map_or("", |column| column.unit.as_str())
 }
 
 fn unknown(name: &str, description: &Description) -> Problem {

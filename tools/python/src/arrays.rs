@@ -6,8 +6,9 @@ use numpy::{PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray, PyU
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyFloat, PyInt};
+use pyo3::types::{IntoPyDict, PyFloat, PyInt, PyString};
 
+use crane_codegen::units::number_in;
 use crane_model::Description;
 
 /// An argument: numbers, row after row, over leading axes.
@@ -29,6 +30,18 @@ impl Argument {
         }
         let (shape, numbers) = read_numbers(name, object)?;
         Ok(Self { shape, numbers, width: 1 })
+    }
+
+    /// The same of what has a unit: also one number with a unit of the same dimension, as text, `payload="1.5 t"`.
+    pub fn scalars_in(unit: &str, name: &str, object: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let Ok(text) = object.cast::<PyString>() else { return Self::scalars(name, object) };
+        let text = text.to_str()?;
+        if text.trim().parse::<f64>().is_ok() {
+            return Self::scalars(name, object);
+        }
+        let number = number_in(unit, text, name);
+        let number = number.map_err(|wrong| PyValueError::new_err(format!("{}: {}", wrong.problem, wrong.help)))?;
+        Ok(Self { shape: Vec::new(), numbers: vec![number], width: 1 })
     }
 
     /// As many numbers per row as the crane has coordinates: `q`, `v`, `a`.

@@ -9,6 +9,7 @@ use crane_codegen::compile::check_with;
 use crane_codegen::diagnostic::MAX_BYTES;
 use crane_codegen::exchange::ImportOptions;
 use crane_codegen::picture::picture;
+use crane_codegen::units::Quantity;
 use crane_codegen::{Checked, SourceFile, build, exchange, files};
 use crane_live::LiveCrane;
 use crane_live::rows::Evaluation;
@@ -134,8 +135,10 @@ impl Crane {
         // Numbers that are set are checked for plausibility, too; whether they may be set is checked below.
         let number = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
             let name = name.extract::<String>().ok()?;
-            let given = Argument::scalars(&name, &value).ok().filter(|given| given.shape.is_empty())?;
-            Some((name, given.numbers[0]))
+            let with_unit = value.extract::<String>().ok().and_then(|text| Some(Quantity::parse(&text)?.ok()?.value));
+            let given = || Argument::scalars(&name, &value).ok().filter(|given| given.shape.is_empty());
+            let number = with_unit.or_else(|| Some(given()?.numbers[0]))?;
+            Some((name, number))
         };
         let set: Vec<(String, f64)> = parameters.into_iter().flatten().filter_map(number).collect();
         let set: Vec<(&str, f64)> = set.iter().map(|(name, value)| (name.as_str(), *value)).collect();
@@ -283,7 +286,7 @@ impl Crane {
         for (name, value) in given {
             let name: String = name.extract()?;
             let slot = input_index(description, &name)?;
-            values[slot] = if value.is_none() { None } else { Some(input(&name, &value)?) };
+            values[slot] = if value.is_none() { None } else { Some(input(&name, &description.inputs[slot].unit, &value)?) };
         }
         self.live = self.live.with_inputs(&values);
         Ok(self)
@@ -317,7 +320,8 @@ impl Crane {
             .collect();
         for (name, value) in given.into_iter().flatten() {
             let name: String = name.extract()?;
-            values[parameter_index(&description, &name)?] = Argument::scalars(&name, &value)?;
+            let index = parameter_index(&description, &name)?;
+            values[index] = Argument::scalars_in(&description.parameters[index].unit, &name, &value)?;
         }
         let names = description.parameters.iter().map(|info| &*info.name);
         let joined = Joined::new(&names.zip(&values).collect::<Vec<_>>())?;
@@ -384,8 +388,8 @@ pub fn input_index(description: &Description, name: &str) -> PyResult<usize> {
 }
 
 /// The number to which an input is set.
-fn input(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
-    let given = Argument::scalars(&format!("inputs['{name}']"), value)?;
+fn input(name: &str, unit: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
+    let given = Argument::scalars_in(unit, &format!("inputs['{name}']"), value)?;
     match *given.numbers {
         [value] if given.shape.is_empty() && value.is_finite() => Ok(value),
         [value] if given.shape.is_empty() => {

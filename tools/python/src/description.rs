@@ -1,6 +1,6 @@
 //! What a crane consists of: names, units and numbers that do not change.
 
-use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::dyn_crane::DynCrane;
 use crane_model::{BodyInfo, ConnectorInfo, Cut, Description, SectionInfo};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};

@@ -67,7 +67,7 @@ impl Crane {
         let description = crane.description();
         let point = asked.point.as_deref().map(|name| index_of(name, "point", &points(description))).transpose()?;
         let point = point.or((description.points.len() == 1).then_some(0));
-        let envelope = asked.envelope(description)?;
+        let envelope = asked.envelope(crane)?;
         let poses = envelope.axes.poses();
         let ratings: Mutex<Vec<Option<Rating>>> = Mutex::new(vec![None; poses]);
         let watch = Watch::reporting(progress, poses);
@@ -98,7 +98,8 @@ impl Crane {
 }
 
 impl Asked {
-    fn envelope(&self, description: &Description) -> PyResult<Envelope> {
+    fn envelope(&self, crane: &dyn DynCrane) -> PyResult<Envelope> {
+        let description = crane.description();
         let mut axes: Vec<Axis> = Vec::new();
         for (name, values) in &self.ranges {
             let varied = Varied::named(name, description).ok_or_else(|| {

@@ -373,8 +373,8 @@ impl Crane {
         for (name, value) in inputs.into_iter().flatten() {
             let name: String = name.extract()?;
             let index = input_index(description, &name)?;
-            let values =
-                if value.is_none() { None } else { Some(Argument::scalars(&format!("inputs['{name}']"), &value)?) };
+            let (label, unit) = (format!("inputs['{name}']"), &description.inputs[index].unit);
+            let values = if value.is_none() { None } else { Some(Argument::scalars_in(unit, &label, &value)?) };
             if let Some(wrong) = values.iter().flat_map(|values| &values.numbers).find(|value| !value.is_finite()) {
                 return Err(PyValueError::new_err(format!("inputs['{name}'] is {wrong}, not a finite number")));
             }

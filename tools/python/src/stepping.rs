@@ -49,7 +49,8 @@ pub struct Motions {
     name: Text,
     n: usize,
     states: usize,
-    inputs: Vec<Text>,
+    /// Names and units of its inputs.
+    inputs: Vec<(Text, Text)>,
     rows: Vec<Mutex<Row>>,
 }
 
@@ -128,7 +129,7 @@ impl Crane {
             name: description.name.clone(),
             n: self.live.size(),
             states: ForceStates::new(description).len(),
-            inputs: description.inputs.iter().map(|info| info.name.clone()).collect(),
+            inputs: description.inputs.iter().map(|info| (info.name.clone(), info.unit.clone())).collect(),
             rows: motions.into_iter().map(|motion| Mutex::new(Row { motion, failed: None })).collect(),
         }
     }
@@ -247,7 +248,7 @@ impl Motions {
 
     /// Whether inputs can be set, and released, while the motions go on: they do not follow motions of the spec.
     fn can_set(&self, name: &str) -> bool {
-        let index = self.inputs.iter().position(|known| **known == *name);
+        let index = self.inputs.iter().position(|(known, _)| **known == *name);
         index.is_some_and(|index| (0..self.rows.len()).all(|row| self.row(row).motion.can_set(index)))
     }
 
@@ -296,14 +297,14 @@ impl Motions {
         let (count, mut changes) = (self.rows.len(), Changes::new());
         for (name, value) in inputs {
             let name: String = name.extract()?;
-            let index = self.inputs.iter().position(|known| **known == *name);
+            let index = self.inputs.iter().position(|(known, _)| **known == *name);
             let index = index.ok_or_else(|| PyValueError::new_err(format!("{} has no input `{name}`", self.name)))?;
             if value.is_none() {
                 changes.push((index, None));
                 continue;
             }
             let label = format!("inputs['{name}']");
-            let given = Argument::scalars(&label, &value)?;
+            let given = Argument::scalars_in(&self.inputs[index].1, &label, &value)?;
             if let Some(wrong) = given.numbers.iter().find(|number| !number.is_finite()) {
                 return Err(PyValueError::new_err(format!("{label} is {wrong}, not a finite number")));
             }
