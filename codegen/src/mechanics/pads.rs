@@ -68,9 +68,11 @@ impl<'g> AtPad<'g> {
         let here = AxisPoint::new(model, kinematics, &sliding.beam, s).here();
         // A beam that has left its pad carries the force at its end.
         let on = s.clamp(model.zero(), model.number(&sliding.beam.length));
-        let of_beam = sliding.beam.elements().zip(here).map(|(body, here)| {
-            (Place { body, along: Along::Pad(on) }, on_beam.times(here))
-        });
+        let of_beam = sliding
+            .beam
+            .elements()
+            .zip(here)
+            .map(|(body, here)| (Place { body, along: Along::Pad(on) }, on_beam.times(here)));
         AtPad { length, jacobian, pulls: of_pad.into_iter().chain(of_beam).collect() }
     }
 }
