@@ -23,6 +23,8 @@ pub enum Count {
     LoadPieces,
     /// Intervals in which the winches move smoothly.
     WinchPieces,
+    /// Points of connectors and ends of joints that close loops.
+    Attachments,
     /// Cuts, for each cylinder.
     CylinderCuts,
     /// Cuts, for each connector.
@@ -68,6 +70,7 @@ impl Count {
             Count::DrivePieces => "drive_pieces",
             Count::LoadPieces => "load_pieces",
             Count::WinchPieces => "winch_pieces",
+            Count::Attachments => "attachments",
             Count::CylinderCuts => "cylinder_cuts",
             Count::ConnectorCuts => "connector_cuts",
             Count::LoopCuts => "loop_cuts",

@@ -169,6 +169,9 @@ macro_rules! count {
     (winch_pieces) => {
         Count::WinchPieces
     };
+    (attachments) => {
+        Count::Attachments
+    };
     (cylinder_cuts) => {
         Count::CylinderCuts
     };

@@ -41,6 +41,9 @@ CraneModel {
     SectionPlaces = section_places(q) -> [pair; sections] zero
         "Distance of every section from the beginning of its beam, and the beam's length, m. A section at a pad moves along the beam, and stays at the end of a beam that has left it."
         "x, L";
+    Attachments = attachments() -> [vector; attachments] zero
+        "The points of all connectors, then both ends of all joints that close loops, each in the frame of its body or of the world, m."
+        "r";
     Points = points(q) -> [vector; points] zero
         "Positions of the points of interest in the world frame, m."
         "T(p) r" python(q);

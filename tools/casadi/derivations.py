@@ -629,6 +629,7 @@ INTERNAL = [SPRINGS, PRESCRIBED, LINEAR_DAMPING]
 # What is not derived a second time: numbers of the spec, blocks of matrices that implicit solutions contain, factors of matrices that are
 # compared, and the wrenches of loop joints, which no compiled crane has.
 NOT_DERIVED = [
+    "attachments",
     "base_damping",
     "base_stiffness",
     "drive_pieces",

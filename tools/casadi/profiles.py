@@ -4,6 +4,7 @@ import math
 
 import casadi as ca
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 
 def clamp(time, begin, duration):
@@ -60,8 +61,28 @@ def spline(time, times, values):
     for k in range(1, len(times) - 1):
         system[k, k - 1 : k + 2] = 1 / h[k - 1], 2 / h[k - 1] + 2 / h[k], 1 / h[k]
         right[k] = 3 * (delta[k - 1] / h[k - 1] ** 2 + delta[k] / h[k] ** 2)
-    slopes = np.linalg.solve(system, right)
+    return hermite(time, times, values, np.linalg.solve(system, right))
 
+
+def monotone(time, times, values):
+    """Cubic pieces whose slopes between two rises of one sign are those of SciPy's `pchip`; zero at both ends."""
+    slopes = PchipInterpolator(times, values).derivative()(times) if len(times) > 2 else np.zeros(2)
+    slopes[[0, -1]] = 0
+    return hermite(time, np.asarray(times), np.asarray(values), slopes)
+
+
+def linear(time, times, values):
+    """Straight pieces."""
+    position = ca.SX(values[-1])
+    for k in reversed(range(len(times) - 1)):
+        piece = values[k] + (values[k + 1] - values[k]) * (time - times[k]) / (times[k + 1] - times[k])
+        position = ca.if_else(time < times[k + 1], piece, position)
+    return ca.if_else(time < times[0], values[0], position)
+
+
+def hermite(time, times, values, slopes):
+    """Cubic pieces through values with slopes; constant before and after."""
+    h = np.diff(times)
     position = ca.SX(values[-1])
     for k in reversed(range(len(h))):
         u = (time - times[k]) / h[k]
@@ -87,7 +108,8 @@ def read_profile(spec, motion, is_rotation, time):
     if kind == "table":
         times = [float(t) for t in written["times"]]
         values = [spec.position(value, is_rotation) for value in written["values"]]
-        return spline(time, times, values), (times[0], times[-1])
+        shape = {"monotone": monotone, "spline": spline, "linear": linear}[written.get("shape", "monotone")]
+        return shape(time, times, values), (times[0], times[-1])
 
     if kind == "speed":
         start, rate = (spec.position(written.get(key, 0), is_rotation) for key in ("from", "rate"))

@@ -2,9 +2,15 @@
 
 use crane_quantities::Count;
 
-use super::{BodyId, Chain, Force, Load};
+use super::{Attachment, BodyId, Chain, Force, Load};
 
 impl Chain {
+    /// The points of all connectors, then both ends of all joints that close loops.
+    pub fn attachments(&self) -> impl Iterator<Item = &Attachment> {
+        let of_connectors = self.connectors().iter().flat_map(|connector| connector.strain.points());
+        of_connectors.chain(self.loop_joints.iter().flat_map(|joint| &joint.ends))
+    }
+
     /// How many of these parts it has.
     #[must_use]
     pub fn count(&self, count: Count) -> usize {
@@ -24,6 +30,7 @@ impl Chain {
             Count::DrivePieces => self.drives.iter().map(|drive| drive.pieces().len()).sum(),
             Count::LoadPieces => self.loads.iter().map(Load::pieces).sum(),
             Count::WinchPieces => self.connectors().iter().map(Force::pieces).sum(),
+            Count::Attachments => self.attachments().count(),
             Count::Derivatives => degrees.sum(),
             Count::SecondDerivatives => degrees.map(|n| n * (n + 1) / 2).sum(),
             Count::Axes => 3,

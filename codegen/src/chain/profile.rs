@@ -40,11 +40,11 @@ pub enum Profile {
     Input(InputId, Box<Profile>),
     /// The sum of two motions.
     Sum(Box<[Profile; 2]>),
-    /// Cubic spline through given positions, at rest at both ends.
+    /// Cubic pieces through given positions.
     Table {
         /// Position before the first segment, m or rad.
         from: f64,
-        /// The spline's pieces in order of time, each starting where the previous one ends.
+        /// The pieces in order of time, each starting where the previous one ends.
         segments: Vec<Segment>,
     },
 }
@@ -74,12 +74,13 @@ impl Profile {
             Profile::Input(_, unless_set) => unless_set.stations(),
             Profile::Sum(_) => Vec::new(),
             Profile::Table { from, segments } => {
-                let end = |position: &mut f64, Segment { duration, coefficients: [c1, c2, c3], .. }: &Segment| {
-                    *position += duration * (c1 + duration * (c2 + duration * c3));
-                    Some(*position)
+                let reached = |position: &mut f64, segment: &Segment| {
+                    let begun = *position;
+                    *position += segment.rise(segment.duration);
+                    Some(segment.extremes().into_iter().map(move |rise| begun + rise).chain([*position]))
                 };
-                let ends = segments.iter().scan(*from, end);
-                [*from].into_iter().chain(ends).map(Value::Constant).collect()
+                let reached = segments.iter().scan(*from, reached).flatten();
+                [*from].into_iter().chain(reached).map(Value::Constant).collect()
             }
         }
     }
@@ -140,11 +141,48 @@ pub struct Segment {
     pub coefficients: [f64; 3],
 }
 
+impl Segment {
+    /// What it adds up to u, s.
+    #[must_use]
+    pub fn rise(&self, u: f64) -> f64 {
+        let [c1, c2, c3] = self.coefficients;
+        u * (c1 + u * (c2 + u * c3))
+    }
+
+    /// Its rate at u, s.
+    #[must_use]
+    pub fn slope(&self, u: f64) -> f64 {
+        let [c1, c2, c3] = self.coefficients;
+        c1 + u * (2.0 * c2 + 3.0 * u * c3)
+    }
+
+    /// The rate of its rate at u, s.
+    #[must_use]
+    pub fn curvature(&self, u: f64) -> f64 {
+        let [_, c2, c3] = self.coefficients;
+        2.0 * c2 + 6.0 * u * c3
+    }
+
+    /// What it adds where it turns between its ends.
+    #[must_use]
+    pub fn extremes(&self) -> Vec<f64> {
+        let [c, b, a] = [self.coefficients[0], 2.0 * self.coefficients[1], 3.0 * self.coefficients[2]];
+        let discriminant = b * b - 4.0 * a * c;
+        if discriminant <= 0.0 {
+            return Vec::new();
+        }
+        // Without cancellation: one root by the sum, the other by the product.
+        let sum = -0.5 * (b + discriminant.sqrt().copysign(b));
+        let turns = [sum / a, c / sum].into_iter().filter(|u| *u > 0.0 && *u < self.duration);
+        turns.map(|u| self.rise(u)).collect()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::chain::ParameterId;
-    use crate::expand::spline::clamped;
+    use crate::expand::curve::spline;
 
     #[test]
     fn pieces_end_where_motions_are_not_smooth() {
@@ -155,7 +193,7 @@ mod tests {
         };
         assert_eq!(at(Profile::Quintic(ramp.clone())), [[2.0, 6.0]]);
         assert_eq!(at(Profile::Trapezoid { ramp, blend: 0.25 }), [[2.0, 3.0], [3.0, 5.0], [5.0, 6.0]]);
-        let segments = clamped(&[-2.0, 0.0, 1.0], &[1.0, 2.5, 3.0]);
+        let segments = spline(&[-2.0, 0.0, 1.0], &[1.0, 2.5, 3.0]);
         assert_eq!(at(Profile::Table { from: 1.0, segments }), [[-2.0, 0.0], [0.0, 1.0]]);
         assert!(at(Profile::Hold(1.0.into())).is_empty());
     }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::{Profile, Ramp};
+use super::{Chain, Profile, Ramp};
 
 impl Profile {
     /// `q_dr(0)` with the given parameter values and no input set, rad or m.
@@ -31,11 +31,24 @@ impl Profile {
             Profile::Input(_, unless_set) => unless_set.start(parameters),
             Profile::Sum(parts) => parts.iter().map(|part| part.start(parameters)).sum(),
             Profile::Table { from, segments } => segments.iter().fold(*from, |position, segment| {
-                let u = (-segment.begin).max(0.0).min(segment.duration);
-                let [c1, c2, c3] = segment.coefficients;
-                position + u * (c1 + u * (c2 + u * c3))
+                position + segment.rise((-segment.begin).max(0.0).min(segment.duration))
             }),
         }
+    }
+}
+
+impl Chain {
+    /// Where statics begins with the given parameter values, rad and m: coordinates that begin where their drives do move with these.
+    #[must_use]
+    pub fn guess_at(&self, parameters: &[f64]) -> Vec<f64> {
+        let (defaults, mut guess) = (self.parameter_defaults(), self.guess.clone());
+        for drive in &self.drives {
+            let own = &mut guess[drive.coordinate.0];
+            if *own == drive.profile.start(&defaults) {
+                *own = drive.profile.start(parameters);
+            }
+        }
+        guess
     }
 }
 
@@ -54,7 +67,7 @@ fn trapezoid(tau: f64, blend: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::expand::spline::clamped;
+    use crate::expand::curve::spline;
 
     #[test]
     fn motions_that_began_before_are_under_way() {
@@ -67,7 +80,7 @@ mod tests {
                 assert!((found - position).abs() < 1e-15, "{found} {position}");
             }
         }
-        let table = Profile::Table { from: 1.0, segments: clamped(&[-2.0, 0.0, 1.0], &[1.0, 2.5, 3.0]) };
+        let table = Profile::Table { from: 1.0, segments: spline(&[-2.0, 0.0, 1.0], &[1.0, 2.5, 3.0]) };
         assert!((table.start(&[]) - 2.5).abs() < 1e-15);
     }
 }

@@ -602,4 +602,7 @@ catalogue! {
     /// The effort of a drive stays within its maximum.
     W050 effort_beyond_limit(coordinate, effort, limit, unit) "the effort of the drive of `{coordinate}` reaches {effort} {unit}", "its `max_effort` is {limit} {unit}, and it delivers no more",
         "check the exponents of `effort` and `max_effort`";
+    /// The curve through a table stays between its points, to 5 % of their range.
+    W051 overshoot(from, to, reached) "the curve through this table reaches {reached}", "between two of its points, {from} and {to}",
+        "write `shape: monotone`, with which it stays between its points, or more points";
 }

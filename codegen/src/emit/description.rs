@@ -224,7 +224,7 @@ fn connector_info(chain: &Chain, connector: &Force) -> TokenStream {
     let [first, end] = Chain::range(&chain.spanned(&connector.strain)).map(integer);
     let pieces = integer(connector.pieces());
     let line = connector.strain.line();
-    let points = list(connector.strain.points().iter().map(|point| attachment_info(chain, point)));
+    let points = list(connector.strain.points().iter().map(attachment_info));
     let falls = integer(line.map_or(1, |line| line.falls as usize));
     let kind = match chain.kind_of(&connector.strain) {
         CoordinateKind::Translation => quote!(CoordinateKind::Translation),
@@ -234,14 +234,12 @@ fn connector_info(chain: &Chain, connector: &Force) -> TokenStream {
 }
 
 /// A point of a body or of the world.
-pub fn attachment_info(chain: &Chain, end: &Attachment) -> TokenStream {
-    let defaults = chain.parameter_defaults();
-    let position = end.position.iter().map(|x| literal(x.at(&defaults)));
+pub fn attachment_info(end: &Attachment) -> TokenStream {
     let body = if let Some(BodyId(body)) = end.body {
         let body = integer(body);
         quote!(Some(#body))
     } else {
         quote!(None)
     };
-    quote!(AttachmentInfo { body: #body, position: [#(#position),*] })
+    quote!(AttachmentInfo { body: #body })
 }

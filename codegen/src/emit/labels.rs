@@ -103,6 +103,12 @@ impl<'a> Labels<'a> {
                 let of = |connector: &'a Force| std::iter::repeat_n(&connector.name, connector.pieces());
                 chain.connectors().iter().flat_map(of).nth(index).cloned()
             }
+            Count::Attachments => {
+                let connectors = chain.connectors().iter();
+                let points = connectors.flat_map(|own| std::iter::repeat_n(&own.name, own.strain.points().len()));
+                let ends = chain.loop_joints.iter().flat_map(|joint| [&joint.name; 2]);
+                points.chain(ends).nth(index).cloned()
+            }
             Count::Sections => {
                 let mut sections = chain.beams.iter().flat_map(|beam| &beam.sections);
                 sections.nth(index).map(|section| self.section(section))

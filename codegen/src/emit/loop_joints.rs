@@ -11,7 +11,7 @@ use crate::chain::{Chain, LoopEquation, LoopJoint};
 pub fn loop_joints(chain: &Chain) -> Option<Item> {
     let joint = |joint: &LoopJoint| {
         let (name, kind) = (text(&joint.name), text(joint.kind.name()));
-        let ends = joint.ends.iter().map(|end| attachment_info(chain, end));
+        let ends = joint.ends.iter().map(attachment_info);
         let [first, end] = Chain::range(&chain.closed_by(joint)).map(integer);
         let equations = joint.kind.equations().into_iter().map(|LoopEquation { direction, is_moment }| {
             let direction = text(direction);

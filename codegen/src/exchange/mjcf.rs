@@ -103,7 +103,8 @@ pub fn mjcf(chain: &Chain, parameters: &[f64]) -> Result<String, Inexpressible> 
     xml.open("keyframe", &[]);
     // MuJoCo lists joints in the order of the file.
     let order = chain.depth_first().into_iter().flat_map(|body| &chain.bodies[body.0].path).flat_map(Step::coordinates);
-    let guess: Vec<f64> = order.map(|id| chain.guess[id.0]).collect();
+    let start = chain.guess_at(parameters);
+    let guess: Vec<f64> = order.map(|id| start[id.0]).collect();
     xml.leaf("key", &[("name", "start".into()), ("qpos", numbers(&guess))]);
     Ok(xml.finish())
 }

@@ -108,8 +108,8 @@ pub fn springs(chain: &Chain, parameters: &[f64]) -> String {
     }
 
     text += "\n# Start of the static solution, rad and m.\nguess:\n";
-    for (coordinate, guess) in chain.coordinates.iter().zip(&chain.guess) {
-        let _ = writeln!(text, "  {}: {}", coordinate.name, number_text(*guess));
+    for (coordinate, guess) in chain.coordinates.iter().zip(chain.guess_at(parameters)) {
+        let _ = writeln!(text, "  {}: {}", coordinate.name, number_text(guess));
     }
     text
 }

@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 
 use super::model::Model;
 use crate::chain::{Profile, Ramp, Segment, Value};
+use crate::expand::curve;
 use crate::symbolic::Expr;
 
 /// `q_dr(t)`, m or rad.
@@ -96,12 +97,15 @@ pub fn rate<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Expr<'g> {
             let [one, other] = parts.each_ref().map(|part| rate(model, part, t));
             one + other
         }
-        // Each piece adds the change of rate over it; the first starts at rest.
-        Profile::Table { segments, .. } => segments.iter().fold(model.zero(), |sum, segment| {
-            let u = local_time(model, segment, t);
-            let [_, c2, c3] = segment.coefficients;
-            sum + u * (u * (3.0 * c3) + 2.0 * c2)
-        }),
+        // Each piece adds the change of rate over it, straight ones also a jump at each end.
+        Profile::Table { segments, .. } => {
+            let smooth = segments.iter().fold(model.zero(), |sum, segment| {
+                let u = local_time(model, segment, t);
+                let [_, c2, c3] = segment.coefficients;
+                sum + u * (u * (3.0 * c3) + 2.0 * c2)
+            });
+            with_jumps(model, t, smooth, (segments, Segment::slope))
+        }
     }
 }
 
@@ -139,17 +143,26 @@ pub fn acceleration<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Ex
             let (tau, _) = since(model, begin, Some(ramp), t);
             model.number(rate) / model.number(ramp) * (tau * (1.0 - tau) * 6.0)
         }
-        // The spline's second derivative varies along its pieces, and jumps at both ends.
+        // Of cubic pieces it varies along each, and jumps at both ends and where a curve is no spline.
         Profile::Table { segments, .. } => {
-            let (Some(first), Some(last)) = (segments.first(), segments.last()) else { return model.zero() };
-            let [_, c2, _] = first.coefficients;
-            let [_, d2, d3] = last.coefficients;
-            let inside = segments.iter().fold((1.0 - after(model, first.begin - t)) * (2.0 * c2), |sum, segment| {
+            let varying = segments.iter().fold(model.zero(), |sum, segment| {
                 sum + local_time(model, segment, t) * (6.0 * segment.coefficients[2])
             });
-            inside - after(model, t - last.begin - last.duration) * (2.0 * d2 + 6.0 * d3 * last.duration)
+            with_jumps(model, t, varying, (segments, Segment::curvature))
         }
     }
+}
+
+/// A sum over the pieces of a curve, and the jumps of a derivative between them. At both ends of the curve, it is that within.
+fn with_jumps<'g>(
+    model: &Model<'g>,
+    t: Expr<'g>,
+    sum: Expr<'g>,
+    (segments, derivative): (&[Segment], fn(&Segment, f64) -> f64),
+) -> Expr<'g> {
+    let begins = |time: f64| segments.first().is_some_and(|first| first.begin == time);
+    let has_come = |time| if begins(time) { 1.0 - after(model, time - t) } else { after(model, t - time) };
+    curve::jumps(segments, derivative).into_iter().fold(sum, |sum, (time, jump)| sum + has_come(time) * jump)
 }
 
 /// 1 from the start of a motion on, and 1 after its end; 0 before.

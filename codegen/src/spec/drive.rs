@@ -103,4 +103,17 @@ pub struct Table {
     pub file: Option<Spanned<String>>,
     /// Name of the column with the values. Default: the second column.
     pub column: Option<Spanned<String>>,
+    /// How the curve runs between its points. Default: `monotone` where they are written, `spline` from a file.
+    pub shape: Option<Spanned<Curve>>,
+}
+
+/// How a curve runs between the points of a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, FromNode)]
+pub enum Curve {
+    /// Never beyond the points around it.
+    Monotone,
+    /// Without jumps of the acceleration; it may leave the range of its points.
+    Spline,
+    /// Straight.
+    Linear,
 }

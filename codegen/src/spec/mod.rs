@@ -26,7 +26,7 @@ pub use beam::{
 };
 pub use connector::*;
 pub use cylinder::{Cylinder, HoseVolumes, Linkage, Pin, Pump, Side, Valve};
-pub use drive::{Drive, Motion, Ramp, Speed, Table, Trapezoid};
+pub use drive::{Curve, Drive, Motion, Ramp, Speed, Table, Trapezoid};
 pub use inertia::{About, Inertia};
 pub use input::Input;
 pub use joint::{Bristle, Friction, Stops};

@@ -1,13 +1,14 @@
 //! Drives and their motions, and the damping of passive joints.
 
 use super::limits::Limit;
+use super::plausibility::rounded;
 use super::{Check, Owner};
 use crate::chain::{
-    self, CoordinateId, CoordinateKind, Drive, Force, Group, Law, Profile, Rotor, Spring, Transmission, Value,
+    self, CoordinateId, CoordinateKind, Drive, Force, Group, Law, Profile, Rotor, Segment, Spring, Transmission, Value,
 };
 use crate::diagnostic::{Span, rule};
-use crate::expand::spline;
-use crate::spec::{self, Angle, Crane, Motion, Number, Scalar, Spanned, Table};
+use crate::expand::curve;
+use crate::spec::{self, Angle, Crane, Curve, Motion, Number, Scalar, Spanned, Table};
 
 /// Units for a coordinate.
 pub(super) struct Units {
@@ -336,8 +337,41 @@ impl<'a> Check<'a> {
         if !ordered {
             return None;
         }
-        Some(Profile::Table { from: values[0], segments: spline::clamped(&times, &values) })
+        let written = table.shape.as_ref().and_then(|shape| shape.value);
+        let shape = written.unwrap_or(if table.file.is_some() { Curve::Spline } else { Curve::Monotone });
+        let segments = match shape {
+            Curve::Monotone => curve::monotone(&times, &values),
+            Curve::Spline => curve::spline(&times, &values),
+            Curve::Linear => curve::linear(&times, &values),
+        };
+        if let Some(Overshoot { between: [from, to], reached }) = overshoot(&values, &segments) {
+            let reached = format!("{} {}", rounded(reached), unit.unwrap_or_default());
+            self.warnings.push(rule::overshoot(span, from, to, reached.trim_end()));
+        }
+        Some(Profile::Table { from: values[0], segments })
     }
+}
+
+/// Where a curve leaves the range of two neighbouring points.
+struct Overshoot {
+    between: [f64; 2],
+    reached: f64,
+}
+
+/// Where a curve leaves the range of two neighbouring points furthest, if by more than a share of the range of all.
+fn overshoot(values: &[f64], segments: &[Segment]) -> Option<Overshoot> {
+    /// Share of the range of the table.
+    const SEEN: f64 = 0.05;
+    let range = values.iter().copied().fold(f64::MIN, f64::max) - values.iter().copied().fold(f64::MAX, f64::min);
+    let beyond = |(pair, segment): (&[f64], &Segment)| {
+        let [start, end] = [pair[0], pair[1]];
+        let reached = segment.extremes().into_iter().map(|rise| start + rise);
+        let by = |reached: f64| (reached - start.max(end)).max(start.min(end) - reached);
+        let reached = reached.max_by(|a, b| by(*a).total_cmp(&by(*b)))?;
+        Some((by(reached), Overshoot { between: [start, end], reached }))
+    };
+    let furthest = values.windows(2).zip(segments).filter_map(beyond).max_by(|(a, _), (b, _)| a.total_cmp(b));
+    furthest.filter(|(by, _)| *by > SEEN * range).map(|(_, found)| found)
 }
 
 /// The time at which a motion jumps to its speed, as text, if it does so during a run.
@@ -347,6 +381,7 @@ fn jump(profile: &Profile) -> Option<String> {
             (*begin > 0.0).then(|| format!("t = {begin} s"))
         }
         Profile::Speed { ramp: None, .. } => Some("the live `begin`".into()),
+        Profile::Table { segments, .. } => curve::jump(segments).map(|time| format!("t = {time} s")),
         _ => None,
     }
 }

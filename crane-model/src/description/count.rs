@@ -30,6 +30,7 @@ impl Description {
             Count::DrivePieces => self.drives.iter().map(|drive| drive.pieces).sum(),
             Count::LoadPieces => self.loads.iter().map(|load| load.pieces).sum(),
             Count::WinchPieces => self.connectors.iter().map(|connector| connector.pieces).sum(),
+            Count::Attachments => self.points_of_connectors() + 2 * loop_joints.len(),
             Count::Derivatives => degrees.sum(),
             Count::SecondDerivatives => degrees.map(|n| n * (n + 1) / 2).sum(),
             Count::Axes => 3,
@@ -43,5 +44,10 @@ impl Description {
             | Count::SupportAxes
             | Count::ResidualRows => count.factors().iter().map(|factor| self.count(loop_joints, *factor)).product(),
         }
+    }
+
+    /// How many points all connectors have: of the [`attachments`](crate::CraneModel::attachments), those of loop joints come behind them.
+    pub fn points_of_connectors(&self) -> usize {
+        self.connectors.iter().map(|connector| connector.points.len()).sum()
     }
 }

@@ -415,11 +415,9 @@ impl ConnectorInfo {
     }
 }
 
-/// A point of a body or of the world.
+/// A point of a body or of the world; [`attachments`](crate::CraneModel::attachments) are their places.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AttachmentInfo {
     /// Index of the body; `None` for the world.
     pub body: Option<usize>,
-    /// Position in the frame of the body or of the world with default parameters, m.
-    pub position: [f64; 3],
 }

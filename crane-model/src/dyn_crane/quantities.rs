@@ -1,5 +1,6 @@
 //! Quantities of a crane as owned lists and matrices, for cranes chosen at run time.
 
+use crane_quantities::Count;
 use nalgebra::{DMatrix, DVector, Matrix4, Vector3};
 
 use super::{DynCrane, DynDerivatives, DynImplicit, DynModel};
@@ -198,6 +199,13 @@ impl dyn DynCrane + '_ {
     pub fn support_places_at(&self) -> Vec<Vector3<f64>> {
         let mut out = vec![Vector3::zeros(); self.description().supports.len()];
         self.support_places(&mut out);
+        out
+    }
+
+    /// The points of all connectors, then both ends of all joints that close loops, in the frames of their bodies, m.
+    pub fn attachments_at(&self) -> Vec<Vector3<f64>> {
+        let mut out = vec![Vector3::zeros(); self.count(Count::Attachments)];
+        self.attachments(&mut out);
         out
     }
 

@@ -16,10 +16,11 @@
 
 use std::ops::Range;
 
+use crane_quantities::Count;
 use nalgebra::{DMatrix, DVector, Matrix4, SymmetricEigen, Vector3};
 
 use super::Loops;
-use crate::{AttachmentInfo, CoordinateKind, CoordinateRole, LoopJointInfo, dyn_crane::DynModel};
+use crate::{CoordinateKind, CoordinateRole, LoopJointInfo, dyn_crane::DynModel};
 
 /// Angle to a dead centre below which there is a caution, rad: 2°.
 pub const DEAD_CENTRE: f64 = 0.035;
@@ -82,7 +83,7 @@ impl Directions {
                 rows += count;
             }
         }
-        let in_order: Vec<&LoopJointInfo> = joints.iter().map(|(index, ..)| &all[*index]).collect();
+        let in_order: Vec<usize> = joints.iter().map(|(index, ..)| *index).collect();
         let motions = motions(crane, q, &in_order);
         let coordinates = &crane.description().coordinates;
         let turns = |j: usize| coordinates[j].kind == CoordinateKind::Rotation;
@@ -196,20 +197,24 @@ fn across(along: &Vector3<f64>) -> [Vector3<f64>; 2] {
 }
 
 /// Of each joint the way from its first point to its second one, and the velocity of the second relative to the first body for a unit rate of
-/// each coordinate, in the axes of the first body; m, m/rad and 1. Where a live parameter moves a point, it counts where it is by default: no more
-/// than the lengths of columns depend on it.
+/// each coordinate, in the axes of the first body; m, m/rad and 1.
 fn motions(
     crane: &(impl DynModel + ?Sized),
     q: &[f64],
-    joints: &[&LoopJointInfo],
+    joints: &[usize],
 ) -> Vec<(Vector3<f64>, Vec<Vector3<f64>>)> {
-    let mut frames = vec![Matrix4::identity(); crane.description().bodies.len()];
-    let relative = |frames: &[Matrix4<f64>], joint: &LoopJointInfo| {
-        let in_world = |end: &AttachmentInfo| {
-            let at = Vector3::from(end.position).push(1.0);
-            end.body.map_or(at, |body| frames[body] * at).xyz()
+    let (description, all) = (crane.description(), crane.loop_joints());
+    let mut frames = vec![Matrix4::identity(); description.bodies.len()];
+    let mut attachments = vec![Vector3::zeros(); crane.count(Count::Attachments)];
+    crane.attachments(&mut attachments);
+    let (ends, _) = attachments[description.points_of_connectors()..].as_chunks::<2>();
+    let relative = |frames: &[Matrix4<f64>], index: usize| {
+        let joint = &all[index];
+        let in_world = |end: usize| {
+            let at = ends[index][end].push(1.0);
+            joint.ends[end].body.map_or(at, |body| frames[body] * at).xyz()
         };
-        let [one, other] = joint.ends.each_ref().map(in_world);
+        let [one, other] = [0, 1].map(in_world);
         match joint.ends[0].body {
             Some(body) => frames[body].fixed_view::<3, 3>(0, 0).transpose() * (other - one),
             None => other - one,
@@ -217,18 +222,18 @@ fn motions(
     };
     crane.transforms(q, &mut frames);
     let zeros = vec![Vector3::zeros(); q.len()];
-    let mut motions: Vec<_> = joints.iter().map(|joint| (relative(&frames, joint), zeros.clone())).collect();
+    let mut motions: Vec<_> = joints.iter().map(|joint| (relative(&frames, *joint), zeros.clone())).collect();
     let mut moved = q.to_vec();
     for j in 0..q.len() {
-        let spans = |joint: &LoopJointInfo| (joint.spanned[0]..joint.spanned[1]).contains(&j);
-        if !joints.iter().copied().any(spans) {
+        let spans = |joint: &usize| (all[*joint].spanned[0]..all[*joint].spanned[1]).contains(&j);
+        if !joints.iter().any(spans) {
             continue;
         }
         for sign in [1.0, -1.0] {
             moved[j] = q[j] + sign * STEP;
             crane.transforms(&moved, &mut frames);
             for (joint, (_, velocities)) in joints.iter().zip(&mut motions).filter(|(joint, _)| spans(joint)) {
-                velocities[j] += sign / (2.0 * STEP) * relative(&frames, joint);
+                velocities[j] += sign / (2.0 * STEP) * relative(&frames, *joint);
             }
         }
         moved[j] = q[j];

@@ -1,5 +1,6 @@
 //! The distance of a pose from equilibrium, as one number.
 
+use crane_quantities::Count;
 use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::equations::Equations;
@@ -110,11 +111,15 @@ fn of_lengths(&Equations { crane, t, .. }: &Equations<'_>, q: &DVector<f64>) -> 
     crane.connector_jacobians(q.as_slice(), &mut jacobians);
     crane.connector_lengths(q.as_slice(), &rest, &mut lengths);
     crane.connector_tensions(t, q.as_slice(), &rest, &mut tensions);
+    let mut attachments = vec![Vector3::zeros(); crane.count(Count::Attachments)];
+    crane.attachments(&mut attachments);
+    let mut points = attachments.iter();
     let rows = jacobians.chunks_exact(q.len()).zip(connectors.iter().zip(lengths.iter().zip(&tensions)));
     for (row, (connector, ([length, _], tension))) in rows {
         #[allow(clippy::cast_precision_loss)] // at most 100
         let falls = connector.falls as f64;
-        let places = connector.points.iter().flat_map(|point| point.position.map(|x| x * falls));
+        let own = points.by_ref().take(connector.points.len());
+        let places = own.flat_map(|point| point.iter().map(|x| x * falls));
         // At a pad, two positions of a few metres are close to each other.
         let least = if connector.is_pad() { 1.0 } else { *length };
         let size = places.fold(least, |size: f64, x| size.max(x.abs()));

@@ -4,9 +4,9 @@ use fastrand::Rng;
 
 use crate::crane::{Case, with_features};
 use crate::feature::Features;
-use crate::observe::{CAUTIONS, differences, observe};
+use crate::observe::{CAUTIONS, differences, observe, observe_with};
 use crate::tree::{Tree, source, text};
-use crate::{changes, charts, descriptions, fleets, laws, meshes, run_changes};
+use crate::{changes, charts, descriptions, fleets, laws, meshes, run_changes, shown};
 
 /// A check that failed.
 #[derive(Clone, Debug)]
@@ -48,7 +48,7 @@ fn apply(check: &str, tree: &Tree, seed: u64, run: bool) -> Option<Vec<String>> 
         let second = description(tree, &mut Rng::with_seed(seed))?;
         let moves = run && second.moves;
         let mut first = observe(&source(second.first.as_ref().unwrap_or(tree)), moves).ok()?;
-        return Some(match observe(&second.source, moves) {
+        return Some(match observe_with(&second.source, &second.set, moves) {
             Ok(mut numbers) => {
                 if !second.cautions {
                     for numbers in [&mut first, &mut numbers] {
@@ -58,7 +58,8 @@ fn apply(check: &str, tree: &Tree, seed: u64, run: bool) -> Option<Vec<String>> 
                 let missing = differences([&first, &numbers], &second.name, &second.factor);
                 let cautions =
                     numbers.iter().filter(|(name, number)| number.group == CAUTIONS && !first.contains_key(*name));
-                missing.into_iter().chain(cautions.map(|(name, _)| format!("{name}, of the second only"))).collect()
+                let shown = if second.set.is_empty() { Vec::new() } else { shown::differences(tree, &second) };
+                missing.into_iter().chain(shown).chain(cautions.map(|(name, _)| format!("{name}, of the second only"))).collect()
             }
             Err(refused) => refused.lines().map(str::to_owned).collect(),
         });

@@ -186,7 +186,7 @@ impl Writer<'_> {
     fn drive(&mut self, coordinate: &str, mut drive: Tree, at: f64, by: f64) {
         drive["coordinate"] = json!(coordinate);
         drive["motion"] = if self.has(F::Motion) {
-            json!({"quintic": {"from": at, "to": round(at + by), "duration": 2}})
+            moving(at, by, drive["rigid"] == json!(true))
         } else {
             json!({"hold": at})
         };
@@ -684,4 +684,16 @@ fn valve() -> Tree {
 #[must_use]
 pub fn round(x: f64) -> f64 {
     format!("{x:.3e}").parse().unwrap_or(x)
+}
+
+/// A motion from one position by some way: a smooth one, or a curve through points in one of its shapes. Rates of rigid drives must not jump.
+fn moving(at: f64, by: f64, rigid: bool) -> Tree {
+    let (to, between) = (round(at + by), round(at + 0.7 * by));
+    let table = |shape: &str| json!({"table": {"times": [0, 0.8, 2], "values": [at, between, to], "shape": shape}});
+    match (to.abs() * 1e3).round().rem_euclid(4.0) {
+        1.0 => table("monotone"),
+        2.0 => table("spline"),
+        3.0 if !rigid => table("linear"),
+        _ => json!({"quintic": {"from": at, "to": to, "duration": 2}}),
+    }
 }

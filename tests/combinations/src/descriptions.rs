@@ -25,6 +25,8 @@ pub struct Second {
     pub moves: bool,
     /// Whether cautions about it are, word for word, those about the first.
     pub cautions: bool,
+    /// Live parameters that are set before anything is computed.
+    pub set: Vec<(String, f64)>,
 }
 
 impl Second {
@@ -38,6 +40,7 @@ impl Second {
             factor: Box::new(|_| 1.0),
             moves: true,
             cautions: false,
+            set: Vec::new(),
         }
     }
 
@@ -52,7 +55,7 @@ impl Second {
 pub type Description = fn(&Tree, &mut Rng) -> Option<Second>;
 
 /// All of them, with their names.
-pub const ALL: [(&str, Description); 22] = [
+pub const ALL: [(&str, Description); 23] = [
     ("beam split by a fixed joint", split_boom),
     ("beam given element by element", boom_one_by_one),
     ("rigid beam as a body", rigid_boom_as_body),
@@ -62,6 +65,7 @@ pub const ALL: [(&str, Description); 22] = [
     ("as an overlay", overlay),
     ("parameters written in", parameters_written_in),
     ("numbers as parameters", numbers_as_parameters),
+    ("numbers set, not written", numbers_set),
     ("angles in degrees", degrees),
     ("lists in another order", other_order),
     ("weight as a force", weight_as_force),
@@ -424,6 +428,24 @@ fn parameters_written_in(tree: &Tree, _: &mut Rng) -> Option<Second> {
 
 /// Masses, stiffnesses and an angle become live parameters.
 pub(crate) fn numbers_as_parameters(tree: &Tree, _: &mut Rng) -> Option<Second> {
+    Some(Second::of(&with_parameters(tree)?.0))
+}
+
+/// They become live parameters with other values, and are set to those of the first.
+fn numbers_set(tree: &Tree, rng: &mut Rng) -> Option<Second> {
+    let (mut second, made) = with_parameters(tree)?;
+    let mut set = Vec::new();
+    for name in made {
+        let value = &mut second["parameters"][&name]["value"];
+        let written = value.as_f64()?;
+        set.push((name, written));
+        *value = json!(written * (1.0 + 0.03 * rng.f64()));
+    }
+    Some(Second { set, ..Second::of(&second) })
+}
+
+/// A crane some of whose numbers are live parameters, and their names.
+fn with_parameters(tree: &Tree) -> Option<(Tree, Vec<String>)> {
     let mut second = tree.clone();
     let mut made = serde_json::Map::new();
     let mut live = |name: &str, value: &mut Tree| {
@@ -452,10 +474,11 @@ pub(crate) fn numbers_as_parameters(tree: &Tree, _: &mut Rng) -> Option<Second> 
     for (k, connector) in second.get_mut("connectors").and_then(Value::as_array_mut).into_iter().flatten().enumerate() {
         live(&format!("end_{k}"), &mut connector["to"]["at"][1]);
     }
+    let names = made.keys().cloned().collect();
     for (name, entry) in made {
         second["parameters"][name] = entry;
     }
-    Some(Second::of(&second))
+    Some((second, names))
 }
 
 /// Removes keys without a value, which looking for them made.

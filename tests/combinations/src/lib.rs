@@ -19,4 +19,5 @@ pub mod meshes;
 pub mod observe;
 pub mod pins;
 pub mod run_changes;
+mod shown;
 pub mod tree;

@@ -74,7 +74,30 @@ pub fn equilibrium(crane: &dyn DynCrane) -> Result<Vec<f64>, String> {
 /// # Errors
 /// The crane has mistakes, does not stand, or does not run.
 pub fn observe(source: &SourceFile, run: bool) -> Result<Numbers, String> {
-    let crane = live(source)?;
+    observe_with(source, &[], run)
+}
+
+/// The live crane of a source with some parameters set.
+///
+/// # Errors
+/// The spec has mistakes, or a parameter is refused.
+pub fn live_with(source: &SourceFile, set: &[(String, f64)]) -> Result<LiveCrane, String> {
+    let mut crane = live(source)?;
+    let mut values = crane.parameters().to_vec();
+    for (name, value) in set {
+        let index = crane.chain().parameters.iter().position(|own| own.name == *name);
+        values[index.ok_or_else(|| format!("{name} is no parameter"))?] = *value;
+    }
+    DynCrane::set_parameters(&mut crane, &values).map_err(|refused| refused.to_string())?;
+    Ok(crane)
+}
+
+/// The same with some parameters set.
+///
+/// # Errors
+/// As of [`observe`].
+pub fn observe_with(source: &SourceFile, set: &[(String, f64)], run: bool) -> Result<Numbers, String> {
+    let crane = live_with(source, set)?;
     let crane: &dyn DynCrane = &crane;
     let q = equilibrium(crane)?;
     let mut numbers = Numbers::new();

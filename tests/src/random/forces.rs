@@ -33,15 +33,16 @@ impl Writer {
             // A third of them is rigid, on joints that turn and that slide.
             let by_oil = seed % 8 == 7 && k == 1;
             let rigid = self.rng.u8(0..3) == 0 && !by_oil;
+            // Only a flexible drive may jump to another speed during a run.
+            let shape = ["", ", shape: spline", if rigid { "" } else { ", shape: linear" }][(seed % 3) as usize];
             let motion = [
                 format!("{{quintic: {{from: {from}, to: {to}, begin: 0.2, duration: 1.5}}}}"),
                 format!("{{cubic: {{from: {from}, to: {to}, duration: 2}}}}"),
                 format!("{{cycloid: {{from: {from}, to: {to}, begin: 0.1, duration: 1.2}}}}"),
                 format!("{{trapezoid: {{from: {from}, to: {to}, begin: 0.3, duration: 1.8, blend: 0.2}}}}"),
-                format!("{{table: {{times: [0, 0.5, 1.2, 2], values: [0.1, {from}, -0.2, 0.4]}}}}"),
+                format!("{{table: {{times: [0, 0.5, 1.2, 2], values: [0.1, {from}, -0.2, 0.4]{shape}}}}}"),
                 format!("{{hold: {to}}}"),
                 format!("{{speed: {{from: {from}, rate: {to}, begin: 0.4, ramp: 0.7}}}}"),
-                // Only a flexible drive may jump to its speed during a run.
                 format!("{{speed: {{rate: {to}{}}}}}", if rigid { "" } else { ", begin: 0.6" }),
             ][(first + k) % 8]
                 .clone();

@@ -61,7 +61,7 @@ pub fn describe(chain: &Chain) -> Description {
     let loads = chain.loads.iter().map(|load| LoadInfo { name: load.name.clone().into(), pieces: load.pieces() });
     let connectors = chain.connectors().iter().map(|connector| ConnectorInfo {
         name: connector.name.clone().into(),
-        points: points_of(connector).iter().map(|point| attachment_info(point, &defaults)).collect(),
+        points: points_of(connector).iter().map(attachment_info).collect(),
         falls: connector.strain.line().map_or(1, |line| line.falls as usize),
         kind: kind_of(chain.kind_of(&connector.strain)),
         is_rope: connector.is_rope(),
@@ -115,11 +115,10 @@ fn points_of(connector: &chain::Force) -> &[chain::Attachment] {
 
 /// The joints of a chain that close loops.
 pub fn describe_loop_joints(chain: &Chain) -> Vec<LoopJointInfo> {
-    let defaults = chain.parameter_defaults();
     let joint = |joint: &chain::LoopJoint| LoopJointInfo {
         name: joint.name.clone().into(),
         kind: joint.kind.name().into(),
-        ends: joint.ends.each_ref().map(|end| attachment_info(end, &defaults)),
+        ends: joint.ends.each_ref().map(attachment_info),
         spanned: Chain::range(&chain.closed_by(joint)),
         equations: joint.kind.equations().into_iter().map(equation_info).collect(),
     };
@@ -142,11 +141,8 @@ fn equation_info(chain::LoopEquation { direction, is_moment }: chain::LoopEquati
     LoopEquationInfo { direction: direction.into(), is_moment }
 }
 
-fn attachment_info(end: &chain::Attachment, parameters: &[f64]) -> AttachmentInfo {
-    AttachmentInfo {
-        body: end.body.map(|BodyId(body)| body),
-        position: end.position.each_ref().map(|x| x.at(parameters)),
-    }
+fn attachment_info(end: &chain::Attachment) -> AttachmentInfo {
+    AttachmentInfo { body: end.body.map(|BodyId(body)| body) }
 }
 
 fn bound(bound: &chain::Bound) -> Bound {

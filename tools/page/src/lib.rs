@@ -17,7 +17,7 @@ mod crane;
 mod figures;
 pub mod history;
 mod record;
-mod scene;
+pub mod scene;
 pub mod strength;
 pub mod tables;
 

@@ -45,13 +45,16 @@ pub fn scene(live: &LiveCrane, q: &[f64]) -> Value {
         .zip(crane.support_places_at())
         .map(|(support, place)| json!({"name": support.name.as_str(), "at": <[f64; 3]>::from(place)}))
         .collect();
+    let attachments = crane.attachments_at();
+    let mut places = attachments.iter();
     let connectors: Vec<Value> = description
         .connectors
         .iter()
-        .filter(|connector| connector.points.len() > 1 && !connector.is_pin())
-        .map(|connector| {
-            let point = |point: &AttachmentInfo| json!({"body": point.body, "at": point.position});
-            let points: Vec<Value> = connector.points.iter().map(point).collect();
+        .map(|connector| (connector, connector.points.iter().zip(places.by_ref().take(connector.points.len())).collect()))
+        .filter(|(connector, points): &(_, Vec<_>)| points.len() > 1 && !connector.is_pin())
+        .map(|(connector, points)| {
+            let point = |(point, at): (&AttachmentInfo, &Vector3<f64>)| json!({"body": point.body, "at": <[f64; 3]>::from(*at)});
+            let points: Vec<Value> = points.into_iter().map(point).collect();
             json!({"rope": connector.is_rope, "points": points, "falls": connector.falls})
         })
         .collect();

@@ -29,6 +29,13 @@ def test_all_functions_refuse_what_is_no_number(knuckle, given, kind):
                 call(knuckle, name, {**plain, of: wrong})
 
 
+def test_one_number_may_have_a_unit(knuckle):
+    assert knuckle.replace(payload="0.9 t")._parameter_rows(0) == knuckle.replace(payload=900.0)._parameter_rows(0)
+    for wrong, words in (("1.5 m", "payload is in kg, and `1.5 m` is a length"), ("2 tons", "there is no unit `tons`"), ("five", "not a valid value")):
+        with pytest.raises(ValueError, match=words):
+            knuckle.replace(payload=wrong)
+
+
 def test_numbers_that_are_none_are_refused(knuckle, given):
     for wrong in ("5", np.array("5"), np.array(["5"]), 1j, np.complex128(5), np.array(5 + 0j), None, object()):
         with pytest.raises(TypeError, match="payload holds"):

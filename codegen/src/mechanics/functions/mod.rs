@@ -113,6 +113,10 @@ impl<'g> Derivation<'g> {
         if !places.is_empty() {
             functions.push(self.function(FunctionId::SectionPlaces, places));
         }
+        let attachments: Vec<_> = chain.attachments().flat_map(|at| model.vector(&at.position).0).collect();
+        if !attachments.is_empty() {
+            functions.push(self.function(FunctionId::Attachments, attachments));
+        }
         if !chain.points.is_empty() {
             functions.push(self.function(FunctionId::Points, points::positions(&self.model, &self.kinematics)));
             functions.push(self.function(

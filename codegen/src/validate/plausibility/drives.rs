@@ -59,10 +59,7 @@ impl Plausibility<'_> {
             Profile::Input(_, unless_set) => self.mean_speed(unless_set),
             Profile::Sum(parts) => parts.iter().map(|part| self.mean_speed(part)).fold(0.0, f64::max),
             Profile::Table { segments, .. } => {
-                let speeds = segments.iter().map(|piece| {
-                    let [first, second, third] = piece.coefficients;
-                    (first + piece.duration * (second + piece.duration * third)).abs()
-                });
+                let speeds = segments.iter().map(|piece| (piece.rise(piece.duration) / piece.duration).abs());
                 speeds.fold(0.0, f64::max)
             }
         }

@@ -102,7 +102,7 @@ impl<'a> Plausibility<'a> {
 }
 
 /// A number as a person would write it, to four digits.
-fn rounded(number: f64) -> f64 {
+pub(super) fn rounded(number: f64) -> f64 {
     format!("{number:.3e}").parse().unwrap_or(number)
 }
 

@@ -124,6 +124,10 @@ impl Fleet {
             Extent::List(_, Count::WinchPieces) => {
                 spread(results, connectors.iter().map(|connector| connector.pieces), out);
             }
+            Extent::List(_, Count::Attachments) => {
+                let ends = std::iter::repeat_n(2, self.crane.loop_joints.len());
+                spread(results, connectors.iter().map(|connector| connector.points.len()).chain(ends), out);
+            }
             Extent::List(_, Count::DrivePieces) => spread(results, drives.iter().map(|drive| drive.pieces), out),
             Extent::List(_, Count::LoadPieces) => spread(results, loads.iter().map(|load| load.pieces), out),
             _ => spread(results, std::iter::repeat(1), out),
