@@ -1,4 +1,4 @@
-//! The same crane with other numbers of sections, and how much its frequencies and stresses change with twice as many.
+//! The same crane with other numbers of sections, and how much its frequencies, stresses and deflections change with twice as many.
 
 use crane_codegen::{
     SourceFile, read,
@@ -10,7 +10,8 @@ use crane_page::{history::Instant, tables::Case};
 
 use crate::{problem::Outcome, selection::Registry};
 
-/// Maximum number of coordinates of a crane that is also computed with twice the sections: more take seconds.
+/// Maximum number of coordinates of a crane that is also computed with twice the sections: more take seconds. Of larger ones, the change is estimated
+/// by half of the sections.
 const MOST_COORDINATES: usize = 60;
 /// Number of lowest modes that the sections should resolve; higher ones are modes of the elements.
 const LOWEST: usize = 6;
@@ -19,27 +20,65 @@ const CAUTION: f64 = 0.01;
 /// Change of a stress that is worth a caution.
 const CAUTION_OF_STRESS: f64 = 0.03;
 
-/// Relative changes of the frequencies with twice the sections, lowest first; `None` for a crane without sections, with too many,
-/// or without a stable pose.
+/// The same crane with another number of sections, at rest.
+struct OtherMesh {
+    crane: LiveCrane,
+    /// What a difference to this crane is of the change with twice the sections.
+    share: f64,
+}
+
+impl OtherMesh {
+    /// With twice the sections, or half of them in a large crane, and the same parameters; `None` without sections to change.
+    ///
+    /// Errors fall with the square of the number of sections, so that with r times fewer, `x_n − x_{n/r} = (r² − 1) (x − x_n)`, of which three
+    /// quarters show with twice as many.
+    fn of(crane: &dyn DynCrane, registry: &Registry) -> Option<Self> {
+        let description = crane.description();
+        let text = registry.spec(&description.name)?;
+        let half = |count: f64| (0.5 * count).ceil();
+        let (text, share) = if description.coordinates.len() <= MOST_COORDINATES {
+            (with(&description.name, text, |count| 2.0 * count)?, 1.0)
+        } else {
+            let (mut all, mut halves) = (0.0, 0.0);
+            let text = with(&description.name, text, |count| {
+                (all, halves) = (all + count, halves + half(count));
+                half(count)
+            })?;
+            let fewer: f64 = all / halves;
+            if fewer <= 1.0 {
+                return None;
+            }
+            (text, -0.75 / (fewer * fewer - 1.0))
+        };
+        let mut crane_with = LiveCrane::from_spec(&SourceFile::new(description.name.to_string(), text)).ok()?;
+        let values: Vec<f64> = (0..description.parameters.len()).map(|index| crane.parameter(index)).collect();
+        DynCrane::set_parameters(&mut crane_with, &values).ok()?;
+        Some(Self { crane: crane_with, share })
+    }
+
+    /// At rest; `None` without a stable pose.
+    fn case<'a>(&'a self, label: &'a str) -> Option<Case<'a>> {
+        Some(Case::new(label, &self.crane)).filter(|case| case.equilibrium.is_stable())
+    }
+}
+
+/// Relative changes of the frequencies with twice the sections, lowest first; `None` for a crane without sections or without a stable pose.
 ///
 /// # Errors
 /// The modes of one of the cranes cannot be computed.
 pub fn changes(case: &Case<'_>, registry: &Registry) -> Outcome<Option<Vec<f64>>> {
-    let Some(finer) = finer(case.crane, registry) else { return Ok(None) };
-    let finer = Case::new(case.label, &finer);
-    if !finer.equilibrium.is_stable() {
-        return Ok(None);
-    }
+    let Some(mesh) = OtherMesh::of(case.crane, registry) else { return Ok(None) };
+    let Some(other) = mesh.case(case.label) else { return Ok(None) };
     let frequencies = |case: &Case<'_>| -> Outcome<Vec<Option<f64>>> {
         let modes = undamped(&case.crane.small_motions_at(&case.equilibrium.q))?;
         Ok(modes.iter().take(LOWEST).map(crane_model::modes::Mode::frequency).collect())
     };
-    let pairs = frequencies(case)?.into_iter().zip(frequencies(&finer)?);
-    Ok(Some(pairs.map_while(|(coarse, fine)| Some(fine? / coarse? - 1.0)).collect()))
+    let pairs = frequencies(case)?.into_iter().zip(frequencies(&other)?);
+    Ok(Some(pairs.map_while(|(own, other)| Some(mesh.share * (other? / own? - 1.0))).collect()))
 }
 
 /// Relative change of the maximum stress of beams at rest with twice the sections, by utilisation where there is a yield stress; `None` for
-/// a crane without stresses or sections, with too many, or without a stable pose.
+/// a crane without stresses or sections, or without a stable pose.
 pub fn change_of_stress(case: &Case<'_>, registry: &Registry) -> Option<f64> {
     let greatest = |case: &Case<'_>| {
         let rest = Instant::at_rest(case.crane, &case.equilibrium.q);
@@ -47,13 +86,21 @@ pub fn change_of_stress(case: &Case<'_>, registry: &Registry) -> Option<f64> {
         let section = sections.into_iter().max_by(StressedSection::by_use)?;
         Some(section.utilisation.unwrap_or(section.stress.equivalent))
     };
-    let coarse = greatest(case).filter(|stress| *stress > 0.0)?;
-    let finer = finer(case.crane, registry)?;
-    let finer = Case::new(case.label, &finer);
-    if !finer.equilibrium.is_stable() {
+    let own = greatest(case).filter(|stress| *stress > 0.0)?;
+    let mesh = OtherMesh::of(case.crane, registry)?;
+    Some(mesh.share * (greatest(&mesh.case(case.label)?)? / own - 1.0))
+}
+
+/// By how much each point of interest moves with twice the sections, m; `None` for a crane without points or sections, or without a stable pose.
+pub fn changes_of_points(case: &Case<'_>, registry: &Registry) -> Option<Vec<f64>> {
+    let places = |case: &Case<'_>| case.crane.points_at(&case.equilibrium.q);
+    let own = places(case);
+    if own.is_empty() || !case.equilibrium.is_stable() {
         return None;
     }
-    Some(greatest(&finer)? / coarse - 1.0)
+    let mesh = OtherMesh::of(case.crane, registry)?;
+    let other = places(&mesh.case(case.label)?);
+    Some(own.iter().zip(&other).map(|(own, other)| mesh.share.abs() * (other - own).norm()).collect())
 }
 
 /// Says that the sections do not resolve the maximum stress.
@@ -64,17 +111,6 @@ pub fn caution_of_stress(change: f64) -> Option<String> {
             100.0 * change
         )
     })
-}
-
-/// The crane with twice the sections and the same parameters, if it has sections and not too many.
-fn finer(crane: &dyn DynCrane, registry: &Registry) -> Option<LiveCrane> {
-    let description = crane.description();
-    let text = registry.spec(&description.name).filter(|_| description.coordinates.len() <= MOST_COORDINATES)?;
-    let text = with(&description.name, text, |count| 2.0 * count)?;
-    let mut finer = LiveCrane::from_spec(&SourceFile::new(description.name.to_string(), text)).ok()?;
-    let values: Vec<f64> = (0..description.parameters.len()).map(|index| crane.parameter(index)).collect();
-    DynCrane::set_parameters(&mut finer, &values).ok()?;
-    Some(finer)
 }
 
 /// Names the lowest mode whose frequency the sections do not resolve.
@@ -100,7 +136,7 @@ pub fn spec(crane: &str, text: &str, sections: usize) -> Option<String> {
 /// The spec of a crane, extended under another name with other numbers of sections; `None` for a crane without sections.
 ///
 /// The ensemble functions are left out, as a run of one crane does not need them: they take rustc as long as all the rest.
-fn with(name: &str, text: &str, sections: impl Fn(f64) -> f64) -> Option<String> {
+fn with(name: &str, text: &str, mut sections: impl FnMut(f64) -> f64) -> Option<String> {
     let base = SourceFile::new(name, text);
     let spec = read(&base).ok()?.crane;
     let count = |given: &Spanned<Link>| {

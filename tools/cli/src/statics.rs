@@ -2,12 +2,14 @@
 
 use std::io::Write;
 
-use crane_model::statics::Equilibrium;
-use crane_page::tables::{Case, Grid, VALUE, equilibria};
+use crane_model::{Description, statics::Equilibrium};
+use crane_page::tables::{Case, Grid, Report, VALUE, equilibria};
+use serde_json::{Map, Value, json};
 
 use crate::{
     arguments::{Analysis, Format},
     problem::Outcome,
+    refinement,
     selection::Registry,
 };
 
@@ -16,12 +18,24 @@ pub fn statics(options: &Analysis, registry: &Registry, out: &mut dyn Write) -> 
     let crane = options.crane.open(registry)?;
     let case = Case::new(VALUE, crane.as_ref());
     let mut report = equilibria(std::slice::from_ref(&case), options.crane.limits.bend);
+    if let Some(changes) = refinement::changes_of_points(&case, registry) {
+        mesh(&mut report, crane.description(), &changes);
+    }
     if options.format == Format::Json {
         report.grid(history(&case.equilibrium));
     }
     report.show_all(options.all);
     options.format.print(&report, out)?;
     Ok(case.stable()?)
+}
+
+/// What the mesh leaves out of the positions of points: for people the largest number.
+fn mesh(report: &mut Report, description: &Description, changes: &[f64]) {
+    let names = description.points.iter().map(|name| name.as_str());
+    let Some((name, most)) = names.clone().zip(changes).max_by(|(_, a), (_, b)| a.total_cmp(b)) else { return };
+    report.line("change of positions with twice the sections", format!("{:.2} (of {name})", 1e3 * most), "mm");
+    let each: Map<String, Value> = names.map(str::to_owned).zip(changes.iter().map(|change| json!(change))).collect();
+    report.value("changes_of_positions_with_twice_the_sections", each);
 }
 
 fn history(equilibrium: &Equilibrium) -> Grid {
