@@ -225,9 +225,9 @@ format: 1
 name: lift
 links: [{name: boom, joint: revolute, mass: 10, com: [1, 0, 0]}, {name: jib, joint: revolute, mass: 5, com: [1, 0, 0]}]
 drives:
-  - {coordinate: boom_psi, stiffness: 1e6, motion: {table: {times: [0, 1.5, 4], values: [0, 0.3, 0.5]}}}
+  - {coordinate: boom_psi, stiffness: 1e6, motion: {table: {times: [0, 1.5, 4], values: [0, 0.3, 0.5], shape: spline}}}
   - {coordinate: jib_psi, stiffness: 1e6, motion: {table: {times: [0, 2], values: [0.1, -0.2]}}}
-loads: [{name: gust, link: jib, force: [0, 1, 0], scale: {table: {times: [0, 1, 2], values: [0, 250, 0]}}}]
+loads: [{name: gust, link: jib, force: [0, 1, 0], scale: {table: {times: [0, 1, 2], values: [0, 250, 0], shape: spline}}}]
 ";
     let base = "
 format: 1

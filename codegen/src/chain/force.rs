@@ -205,10 +205,37 @@ impl Force {
         }
     }
 
+    /// How a coordinate follows another one, if it is a coupling with a spring.
+    #[must_use]
+    pub fn follower(&self) -> Option<Follower<'_>> {
+        let Strain::Coupling { coordinate, leader, ratio } = &self.strain else { return None };
+        let Spring { length, .. } = self.spring()?;
+        Some(Follower { coordinate: *coordinate, leader: *leader, ratio, length })
+    }
+
     /// Number of intervals in which its winch moves smoothly.
     #[must_use]
     pub fn pieces(&self) -> usize {
         self.winch().map_or(0, |length| length.pieces().len())
+    }
+}
+
+/// A coordinate that follows another one.
+#[derive(Clone, Copy, Debug)]
+pub struct Follower<'a> {
+    /// The coordinate.
+    pub coordinate: CoordinateId,
+    /// That which it follows.
+    pub leader: CoordinateId,
+    ratio: &'a Value,
+    length: &'a Value,
+}
+
+impl Follower<'_> {
+    /// Where it is without force if the other one is at `leading`, m or rad.
+    #[must_use]
+    pub fn place(&self, leading: f64, parameters: &[f64]) -> f64 {
+        self.length.at(parameters) + self.ratio.at(parameters) * leading
     }
 }
 

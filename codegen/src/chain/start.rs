@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::{Chain, Profile, Ramp};
+use super::{Chain, Force, Profile, Ramp};
 
 impl Profile {
     /// `q_dr(0)` with the given parameter values and no input set, rad or m.
@@ -38,7 +38,8 @@ impl Profile {
 }
 
 impl Chain {
-    /// Where statics begins with the given parameter values, rad and m: coordinates that begin where their drives do move with these.
+    /// Where statics begins with the given parameter values, rad and m: coordinates that begin where their drives do move with these, and those that
+    /// follow others with them.
     #[must_use]
     pub fn guess_at(&self, parameters: &[f64]) -> Vec<f64> {
         let (defaults, mut guess) = (self.parameter_defaults(), self.guess.clone());
@@ -46,6 +47,15 @@ impl Chain {
             let own = &mut guess[drive.coordinate.0];
             if *own == drive.profile.start(&defaults) {
                 *own = drive.profile.start(parameters);
+            }
+        }
+        // A follower may lead another one.
+        for _ in self.connectors() {
+            for follower in self.connectors().iter().filter_map(Force::follower) {
+                let [own, leader] = [follower.coordinate, follower.leader].map(|id| id.0);
+                if self.guess[own] == follower.place(self.guess[leader], &defaults) {
+                    guess[own] = follower.place(guess[leader], parameters);
+                }
             }
         }
         guess

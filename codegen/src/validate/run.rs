@@ -3,7 +3,7 @@
 use super::Check;
 use super::drives::units;
 use super::limits::Limit;
-use crate::chain::{BodyId, CoordinateId, Drive, Force, Point, Run, Spring, Strain, Support, Transmission, Value};
+use crate::chain::{BodyId, CoordinateId, Drive, Force, Point, Run, Support, Transmission, Value};
 use crate::diagnostic::{Span, rule, suggest};
 use crate::spec::{self, Constant, Crane, Spanned};
 
@@ -72,11 +72,9 @@ impl<'a> Check<'a> {
         }
         // A coordinate that follows one that follows another is known one pass later.
         for _ in connectors {
-            for connector in connectors {
-                let Strain::Coupling { coordinate, leader, ratio } = &connector.strain else { continue };
-                let Some(Spring { length, .. }) = connector.spring() else { continue };
-                if let (None, Some(leading)) = (guess[coordinate.0], guess[leader.0]) {
-                    guess[coordinate.0] = Some(self.now(length) + self.now(ratio) * leading);
+            for follower in connectors.iter().filter_map(Force::follower) {
+                if let (None, Some(leading)) = (guess[follower.coordinate.0], guess[follower.leader.0]) {
+                    guess[follower.coordinate.0] = Some(follower.place(leading, &self.defaults));
                 }
             }
         }
