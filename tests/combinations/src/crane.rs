@@ -686,10 +686,11 @@ pub fn round(x: f64) -> f64 {
     format!("{x:.3e}").parse().unwrap_or(x)
 }
 
-/// A motion from one position by some way: a smooth one, or a curve through points in one of its shapes. Rates of rigid drives must not jump.
+/// A motion from one position by some way: a smooth one, or a curve through points in one of its shapes. Rates of rigid drives must not jump, and all
+/// rest at first.
 fn moving(at: f64, by: f64, rigid: bool) -> Tree {
     let (to, between) = (round(at + by), round(at + 0.7 * by));
-    let table = |shape: &str| json!({"table": {"times": [0, 0.8, 2], "values": [at, between, to], "shape": shape}});
+    let table = |shape: &str| json!({"table": {"times": [0.05, 0.8, 2], "values": [at, between, to], "shape": shape}});
     match (to.abs() * 1e3).round().rem_euclid(4.0) {
         1.0 => table("monotone"),
         2.0 => table("spline"),

@@ -164,9 +164,12 @@ fn kinetic_energy(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Resu
 const SMALL_STEP: f64 = 1e-6;
 
 /// The tangent is the derivative of the residual along a direction, at any time and any positions of the drives. Of loads that turn with
-/// their link it has the symmetric part: the work is that of both.
+/// their link it has the symmetric part: the work is that of both. Of feet that slide it has nothing.
 fn tangent(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Result<(), String>> {
     let (t, q, v) = state(crane, pose, rng);
+    if (crane as &dyn DynCrane).friction_utilisations_at(&q).iter().any(|(_, used)| *used >= 1.0) {
+        return None;
+    }
     let n = q.len();
     let positions: Vec<f64> = crane.drive_positions_at(t).iter().map(|at| at + 1e-3 * (rng.f64() - 0.5)).collect();
     let prescribed = crane.description().prescribed();
