@@ -13,6 +13,7 @@
 //! | `record` | the record of a run: enough to repeat it |
 //! | [`tables`] | tables of results: those of the page, and what the command prints |
 
+pub mod bars;
 mod crane;
 mod figures;
 pub mod history;

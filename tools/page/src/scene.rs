@@ -5,7 +5,7 @@
 //! so that the page can draw any pose, exaggerated and modal ones too. Three coordinates that turn by a rotation vector ρ
 //! share one factor, `exp(ξ_i ρ_1 + ξ_j ρ_2 + ξ_k ρ_3)`, with screws at ρ = 0: q⁰ is the pose with these at zero.
 
-use crane_codegen::chain::{BodyId, CoordinateId, Cylinder, Linkage, Pin, Stage, Value as Number};
+use crane_codegen::chain::{BodyId, CoordinateId, Cylinder, Linkage, Pin, Point, Stage, Value as Number};
 use crane_live::LiveCrane;
 use crane_model::{
     AttachmentInfo, BodyInfo, CoordinateRole, Description, Tree,
@@ -13,6 +13,8 @@ use crane_model::{
 };
 use nalgebra::{Matrix4, Vector3};
 use serde_json::{Value, json};
+
+use crate::bars::{Bar, bars};
 
 /// Frames, screws, supports, connectors, pads and points of a crane for pose `q`.
 pub fn scene(live: &LiveCrane, q: &[f64]) -> Value {
@@ -62,9 +64,14 @@ pub fn scene(live: &LiveCrane, q: &[f64]) -> Value {
     let cylinders = cylinders(live, (&screws, &frames));
     json!({
         "pose": q, "reference": reference, "vectors": is_vector, "bodies": bodies,
-        "screws": screws, "supports": supports, "connectors": connectors, "points": points(crane, q),
-        "cylinders": cylinders, "pads": pads(live),
+        "screws": screws, "supports": supports, "connectors": connectors, "points": points(live),
+        "cylinders": cylinders, "pads": pads(live), "bars": bars(live, &frames).iter().map(bar).collect::<Vec<_>>(),
     })
+}
+
+fn bar(bar: &Bar) -> Value {
+    let [from, to] = [bar.from, bar.to].map(<[f64; 3]>::from);
+    json!({"body": bar.body, "from": from, "to": to, "block": bar.block, "main": bar.main})
 }
 
 /// The pads of telescopes: at the end of the outer beam and at the beginning of the inner one, with the names of both links.
@@ -144,26 +151,10 @@ fn inverse(frame: &Matrix4<f64>) -> Matrix4<f64> {
     inverse
 }
 
-/// Points of interest with the body that carries each: the one in whose frame it stays fixed when everything moves.
-fn points(crane: &dyn DynCrane, q: &[f64]) -> Vec<Value> {
-    /// Displacement from the pose, m and rad: arbitrary, but different for every coordinate.
-    const WAY: f64 = 0.1;
-    let other: Vec<f64> = q.iter().enumerate().map(|(i, q)| q + WAY / (1.0 + i as f64)).collect();
-    let local = |q: &[f64]| -> Vec<Vec<Vector3<f64>>> {
-        let inverses: Vec<Matrix4<f64>> = crane.transforms_at(q).iter().map(inverse).collect();
-        let in_bodies =
-            |point: &Vector3<f64>| inverses.iter().map(|inverse| (inverse * point.push(1.0)).xyz()).collect();
-        crane.points_at(q).iter().map(in_bodies).collect()
-    };
-    crane
-        .description()
-        .points
-        .iter()
-        .zip(local(q).iter().zip(&local(&other)))
-        .map(|(name, (here, there))| {
-            let moved = |body: usize| (here[body] - there[body]).norm();
-            let body = (0..here.len()).min_by(|&a, &b| moved(a).total_cmp(&moved(b))).unwrap_or(0);
-            json!({"name": name.as_str(), "body": body, "at": here.get(body).map(|in_bodies| <[f64; 3]>::from(*in_bodies))})
-        })
-        .collect()
+/// Points of interest with the body that carries each.
+fn points(live: &LiveCrane) -> Vec<Value> {
+    let number = |number: &Number| number.at(live.parameters());
+    let point =
+        |point: &Point| json!({"name": point.name, "body": point.body.0, "at": point.position.each_ref().map(number)});
+    live.chain().points.iter().map(point).collect()
 }

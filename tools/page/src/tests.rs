@@ -1,10 +1,18 @@
 use crane_codegen::{SourceFile, compile};
 use crane_model::dyn_crane::DynModel;
+use nalgebra::Vector3;
 
 use super::*;
 
 pub(crate) fn live(name: &str) -> LiveCrane {
     let text = crane_specs::spec(name).expect("a shipped crane");
+    LiveCrane::new(compile::load(&SourceFile::new(name, text)).unwrap_or_else(|mistakes| panic!("{mistakes}")))
+}
+
+/// One of the examples.
+fn example(name: &str) -> LiveCrane {
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../specs/examples/{name}.yaml"));
+    let text = std::fs::read_to_string(file).expect("an example");
     LiveCrane::new(compile::load(&SourceFile::new(name, text)).unwrap_or_else(|mistakes| panic!("{mistakes}")))
 }
 
@@ -105,4 +113,72 @@ fn no_text_of_a_spec_ends_the_data() {
     let spec = "# </script><script>alert(1)</script>";
     let (page, data) = at_rest(&live, &equilibrium, spec);
     assert_eq!((page.matches("</script>").count(), data["spec"].as_str()), (2, Some(spec)));
+}
+
+/// Everything that belongs to a body is on something that is drawn of it: seen from the list that pages draw, not from how it is made.
+#[test]
+fn nothing_of_a_body_floats() {
+    let mut bars_of_cranes = 0;
+    let shipped = crane_specs::SPECS.iter().map(|(name, _)| (*name, live(name)));
+    let examples = ["loader_crane", "parallel_harvester", "telescopic_loader"].map(|name| (name, example(name)));
+    for (name, live) in shipped.chain(examples) {
+        let crane: &dyn DynCrane = &live;
+        let q = crane.guess();
+        let scene = crate::scene::scene(&live, &q);
+        let frames = crane.transforms_at(&q);
+        let reach = 0.05 * frames.iter().map(|frame| frame.column(3).xyz().norm()).fold(1.0, f64::max);
+        let vector = |value: &Value| -> Vector3<f64> {
+            serde_json::from_value::<[f64; 3]>(value.clone()).expect("a place").into()
+        };
+        let bars = scene["bars"].as_array().expect("bars");
+        bars_of_cranes += bars.len();
+        for anchor in crate::bars::anchors(&live) {
+            let length = crane.body_sizes_at()[anchor.body][1];
+            let mut ends = vec![[Vector3::zeros(), Vector3::x() * length]];
+            let of_body = bars.iter().filter(|bar| bar["body"] == anchor.body);
+            ends.extend(of_body.map(|bar| [vector(&bar["from"]), vector(&bar["to"])]));
+            let inverse = frames[anchor.body].try_inverse().expect("a frame");
+            let next = live
+                .chain()
+                .bodies
+                .iter()
+                .zip(&frames)
+                .filter(|(body, _)| body.parent.is_some_and(|p| p.0 == anchor.body));
+            ends.extend(next.map(|(_, frame)| [Vector3::zeros(), (inverse * frame.column(3)).xyz()]));
+            let points: Vec<Vector3<f64>> = scene["points"]
+                .as_array()
+                .expect("points")
+                .iter()
+                .filter(|point| point["body"] == anchor.body)
+                .map(|point| vector(&point["at"]))
+                .collect();
+            ends.extend(points.iter().map(|point| [Vector3::zeros(), *point]));
+            ends.extend(points.iter().flat_map(|a| points.iter().map(move |b| [*a, *b])));
+            let distance = |[from, to]: &[Vector3<f64>; 2]| {
+                let way = to - from;
+                let share = (anchor.at - from).dot(&way) / way.norm_squared().max(f64::MIN_POSITIVE);
+                (anchor.at - from - share.clamp(0.0, 1.0) * way).norm()
+            };
+            let nearest = ends.iter().map(distance).fold(f64::INFINITY, f64::min);
+            // The mass of a truck is its frame.
+            let of_base = anchor.body == 0 && !live.chain().supports.is_empty();
+            assert!(nearest < reach || of_base, "{name}: {anchor:?} is {nearest} m from what is drawn of its body");
+        }
+    }
+    assert!(bars_of_cranes > 10, "{bars_of_cranes}");
+}
+
+/// The jib of the harvester lies beyond the joint of the rod that it carries: once, it was not drawn.
+#[test]
+fn what_lies_beyond_a_joint_is_drawn() {
+    let live = example("parallel_harvester");
+    let crane: &dyn DynCrane = &live;
+    let scene = crate::scene::scene(&live, &crane.guess());
+    let jib = live.chain().bodies.iter().position(|body| body.link == "jib").expect("a jib");
+    let to_head = scene["bars"]
+        .as_array()
+        .expect("bars")
+        .iter()
+        .any(|bar| bar["body"] == jib && bar["to"][0].as_f64() > Some(4.0));
+    assert!(to_head, "{}", scene["bars"]);
 }

@@ -111,6 +111,7 @@ export class Figure {
     this.ropes();
     this.pins();
     bodies.forEach((_, p) => this.kinematics.carriedBy(p).length || this.end(p));
+    this.bars();
     this.stand();
     this.connect();
     const paint = { barrel: COLOURS.barrel, rod: COLOURS.rod, linkage: COLOURS.linkage, pin: COLOURS.pin };
@@ -266,7 +267,10 @@ export class Figure {
     const { bodies, points } = this.kinematics;
     if (bodies[p].flexible) return;
     const places = points.filter((point) => point.body === p).map((point) => point.at);
-    const { mass } = bodies[p];
+    const bars = this.crane.scene.bars.filter(({ body }) => body === p);
+    // Where its mass is known to be elsewhere, a bar leads there.
+    if (!places.length && bars.length) return;
+    const mass = bars.some(({ block }) => block > 0) ? 0 : bodies[p].mass;
     const middle = places.reduce((sum, place) => sum.add(place), new Vector3()).divideScalar(Math.max(places.length, 1));
     let [from, to] = [middle, middle];
     for (const a of places) for (const b of places) if (a.distanceTo(b) > from.distanceTo(to)) [from, to] = [a, b];
@@ -298,6 +302,25 @@ export class Figure {
     const turn = new Quaternion().setFromUnitVectors(new Vector3(0, -1, 0), down);
     const local = new Matrix4().compose(new Vector3(), turn, new Vector3(1, 1, 1));
     this.part(p, this.mesh(new TorusGeometry(size, 0.3 * size, 10, 28, 1.6 * Math.PI), COLOURS.rope), local);
+  }
+
+  /** Bars to points, pins and masses that links and beams do not reach; a block for a mass at its end. */
+  bars() {
+    for (const { body, from, to, block, main } of this.crane.scene.bars) {
+      const { mass, flexible } = this.kinematics.bodies[body];
+      const [begin, end] = [new Vector3(...from), new Vector3(...to)];
+      const side = main ? this.thickness(mass, begin.distanceTo(end)) : 0.7 * this.thickness(0, 0);
+      this.box(body, begin, end, side, flexible ? COLOURS.flexible : COLOURS.link);
+      if (block > 0) this.block(body, block, end, end.clone().sub(begin));
+    }
+  }
+
+  /** A block of a mass at a place of a body, along a direction. */
+  block(body, mass, at, along) {
+    const side = Math.min(Math.cbrt(mass / FILLING), 0.15 * this.size);
+    const turn = new Quaternion();
+    if (along.length() > NOTHING * this.size) turn.setFromUnitVectors(new Vector3(1, 0, 0), along.clone().normalize());
+    this.part(body, this.mesh(new BoxGeometry(side, side, side), COLOURS.load), new Matrix4().compose(at, turn, new Vector3(1, 1, 1)));
   }
 
   stand() {
@@ -455,7 +478,8 @@ export class Figure {
   outline() {
     const { frames, points } = this.kinematics;
     const origins = frames.map((frame) => new Vector3().setFromMatrixPosition(frame));
-    return origins.concat(points.map((_, index) => this.kinematics.point(index)));
+    const ends = this.crane.scene.bars.map(({ body, to }) => new Vector3(...to).applyMatrix4(frames[body]));
+    return origins.concat(points.map((_, index) => this.kinematics.point(index)), ends);
   }
 }
 
@@ -476,6 +500,7 @@ export function extent(crane) {
     const frames = kinematics.pose(names.map((values) => values[row]));
     for (const frame of frames) include(new Vector3().setFromMatrixPosition(frame));
     kinematics.points.forEach((_, index) => include(kinematics.point(index)));
+    crane.scene.bars.forEach(({ body, to }) => include(new Vector3(...to).applyMatrix4(frames[body])));
     crane.scene.supports.forEach(({ at }) => include(new Vector3(...at).applyMatrix4(frames[0])));
     const anchors = crane.scene.connectors.flatMap(({ points }) => points.filter(({ body }) => body === null));
     anchors.forEach(({ at }) => include(new Vector3(...at)));
