@@ -63,7 +63,8 @@ impl Equilibrium {
 
 impl fmt::Display for Equilibrium {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}; {} Newton steps", self.status, self.steps())?;
+        let steps = self.steps();
+        write!(f, "{}; {steps} Newton {}", self.status, if steps == 1 { "step" } else { "steps" })?;
         match self.load_steps {
             Some(count) => write!(f, " after continuation in {count} load steps"),
             None => Ok(()),
