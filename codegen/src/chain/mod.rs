@@ -40,7 +40,7 @@ pub use loop_joint::{Across, LoopEquation, LoopJoint, LoopJointKind, normalised}
 pub use loops::Loops;
 pub(crate) use name::{CRATES, LONGEST_NAME};
 pub use parameter::{Bound, Parameter, Refusal, Relation};
-pub use profile::{Profile, Ramp, Segment};
+pub use profile::{Derivative, Profile, Ramp, Segment, first_jump, jumps};
 pub use run::{Analyses, Run};
 pub use stage::Stage;
 pub use strain::{Attachment, Line, LinePart, PadDirection, Sliding, Strain, Turning};

@@ -178,6 +178,27 @@ impl Segment {
     }
 }
 
+/// A derivative of a piece at u, s.
+pub type Derivative = fn(&Segment, f64) -> f64;
+
+/// The times at which a derivative of a curve that rests before and after jumps, s, and by how much.
+#[must_use]
+pub fn jumps(segments: &[Segment], derivative: Derivative) -> Vec<(f64, f64)> {
+    let ends = segments.iter().flat_map(|segment| [0.0, segment.duration].map(|u| derivative(segment, u).abs()));
+    let rounding = 1e-9 * ends.fold(0.0, f64::max);
+    let before = [0.0].into_iter().chain(segments.iter().map(|segment| derivative(segment, segment.duration)));
+    let starts = segments.iter().map(|segment| (segment.begin, derivative(segment, 0.0)));
+    let after = starts.chain(segments.last().map(|last| (last.begin + last.duration, 0.0)));
+    let jumps = before.zip(after).map(|(before, (time, after))| (time, after - before));
+    jumps.filter(|(_, jump)| jump.abs() > rounding).collect()
+}
+
+/// The first time after the beginning of a run at which the rate of a curve jumps, s.
+#[must_use]
+pub fn first_jump(segments: &[Segment]) -> Option<f64> {
+    jumps(segments, Segment::slope).into_iter().map(|(time, _)| time).find(|time| *time > 0.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

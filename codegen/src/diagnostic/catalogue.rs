@@ -605,4 +605,25 @@ catalogue! {
     /// The curve through a table stays between its points, to 5 % of their range.
     W051 overshoot(from, to, reached) "the curve through this table reaches {reached}", "between two of its points, {from} and {to}",
         "write `shape: monotone`, with which it stays between its points, or more points";
+    /// The stroke of a cylinder is shorter than its retracted length.
+    W052 long_stroke(cylinder, stroke, retracted) "the stroke of cylinder `{cylinder}` is {stroke} m", "retracted, it is only {retracted} m long, and its rod must fit into it",
+        "`retracted` is the distance between the pins of the retracted cylinder";
+    /// The pins of a cylinder are in a plane in which its joint moves, to 15 % of their distance.
+    W053 pins_aside(cylinder, aside, coordinate, share) "the pins of cylinder `{cylinder}` are {aside} m apart along the axis of `{coordinate}`", "{share} % of its force bends the pins instead of turning the joint",
+        "check the order of x, y and z in `foot` and `head`: each is in the frame of its own link";
+    /// The wall of a hollow section is at most a quarter as thick as its sides.
+    W054 thick_wall(subject, key, thickness, side) "the `{key}` of {subject} is {thickness} m", "a side of the section is only {side} m",
+        "write it in m: 14 mm = 0.014";
+    /// The overlap of a stage is not longer than its beams.
+    W055 pushed_through(stage, outer, overlap, coordinate, position, longest) "`{stage}` is {overlap} m in `{outer}` with `{coordinate}` at {position} m", "the shorter of the two beams is {longest} m long",
+        "the coordinate grows as the stage comes out: check its sign, and that of the `ratio` of a coupling";
+    /// The axial stiffness of a rope is at least 1e5 N.
+    W056 soft_rope(connector, stiffness) "the axial stiffness of rope `{connector}` is {stiffness} N", "it would stretch by metres",
+        "write EA in N: 12 MN = 12e6; a steel rope of 10 mm has some 5e6 N";
+    /// Gravity is at most 30 m/s².
+    W057 odd_gravity(size) "gravity is {size} m/s²", "on Earth it is 9.81 m/s²",
+        "write it in m/s²";
+    /// The stiffness of a support is 0 or at least 1 kN/m.
+    W058 soft_support(support, stiffness) "the stiffness of support `{support}` is {stiffness} N/m", "the crane would sink by metres",
+        "write it in N/m: 5 kN/mm = 5e6";
 }

@@ -29,7 +29,7 @@ pub(crate) fn spline(times: &[f64], values: &[f64]) -> Vec<Segment> {
 ///
 /// Between two rises of one sign, the slope is the harmonic mean of theirs, weighted with `w₁ = 2 h_i + h_{i−1}`, `w₂ = h_i + 2 h_{i−1}`:
 /// `(w₁ + w₂)/v_i = w₁ h_{i−1}/Δ_{i−1} + w₂ h_i/Δ_i`; otherwise 0. F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300, whose
-/// pieces are those of `pchip` in MATLAB and SciPy but for the ends; that slopes of at most thrice the smaller mean rise suffice:
+/// pieces are those of `pchip` in MATLAB and `SciPy` except for the ends; that slopes of at most thrice the smaller mean rise suffice:
 /// F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238.
 pub(crate) fn monotone(times: &[f64], values: &[f64]) -> Vec<Segment> {
     let pieces = times.len().saturating_sub(1);
@@ -47,23 +47,9 @@ pub(crate) fn monotone(times: &[f64], values: &[f64]) -> Vec<Segment> {
 /// Straight pieces through `(times, values)`: the rate jumps at all points.
 pub(crate) fn linear(times: &[f64], values: &[f64]) -> Vec<Segment> {
     let pieces = times.iter().zip(differences(times)).zip(differences(values));
-    pieces.map(|((begin, h), rise)| Segment { begin: *begin, duration: h, coefficients: [rise / h, 0.0, 0.0] }).collect()
-}
-
-/// The times at which a derivative of a curve that rests before and after jumps, s, and by how much.
-pub(crate) fn jumps(segments: &[Segment], derivative: fn(&Segment, f64) -> f64) -> Vec<(f64, f64)> {
-    let ends = segments.iter().flat_map(|segment| [0.0, segment.duration].map(|u| derivative(segment, u).abs()));
-    let rounding = 1e-9 * ends.fold(0.0, f64::max);
-    let before = [0.0].into_iter().chain(segments.iter().map(|segment| derivative(segment, segment.duration)));
-    let starts = segments.iter().map(|segment| (segment.begin, derivative(segment, 0.0)));
-    let after = starts.chain(segments.last().map(|last| (last.begin + last.duration, 0.0)));
-    let jumps = before.zip(after).map(|(before, (time, after))| (time, after - before));
-    jumps.filter(|(_, jump)| jump.abs() > rounding).collect()
-}
-
-/// The first time after the beginning of a run at which the rate of a curve jumps, s.
-pub(crate) fn jump(segments: &[Segment]) -> Option<f64> {
-    jumps(segments, Segment::slope).into_iter().map(|(time, _)| time).find(|time| *time > 0.0)
+    pieces
+        .map(|((begin, h), rise)| Segment { begin: *begin, duration: h, coefficients: [rise / h, 0.0, 0.0] })
+        .collect()
 }
 
 fn differences(numbers: &[f64]) -> Vec<f64> {
@@ -85,6 +71,7 @@ fn through(times: &[f64], values: &[f64], slopes: &[f64]) -> Vec<Segment> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::chain::first_jump;
 
     #[test]
     fn a_spline_passes_through_its_points_and_is_smooth() {
@@ -155,7 +142,7 @@ mod tests {
     #[test]
     fn rates_jump_only_where_pieces_are_straight() {
         let (times, values) = ([0.0, 1.0, 2.5, 3.0], [0.0, 1.0, 1.5, 4.0]);
-        assert_eq!(jump(&linear(&times, &values)), Some(1.0));
-        assert_eq!([jump(&spline(&times, &values)), jump(&monotone(&times, &values))], [None, None]);
+        assert_eq!(first_jump(&linear(&times, &values)), Some(1.0));
+        assert_eq!([first_jump(&spline(&times, &values)), first_jump(&monotone(&times, &values))], [None, None]);
     }
 }

@@ -6,8 +6,7 @@
 use std::f64::consts::TAU;
 
 use super::model::Model;
-use crate::chain::{Profile, Ramp, Segment, Value};
-use crate::expand::curve;
+use crate::chain::{self, Derivative, Profile, Ramp, Segment, Value};
 use crate::symbolic::Expr;
 
 /// `q_dr(t)`, m or rad.
@@ -143,7 +142,7 @@ pub fn acceleration<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Ex
             let (tau, _) = since(model, begin, Some(ramp), t);
             model.number(rate) / model.number(ramp) * (tau * (1.0 - tau) * 6.0)
         }
-        // Of cubic pieces it varies along each, and jumps at both ends and where a curve is no spline.
+        // Of cubic pieces it varies along each, and jumps at both ends and between pieces that are not those of a spline.
         Profile::Table { segments, .. } => {
             let varying = segments.iter().fold(model.zero(), |sum, segment| {
                 sum + local_time(model, segment, t) * (6.0 * segment.coefficients[2])
@@ -158,11 +157,11 @@ fn with_jumps<'g>(
     model: &Model<'g>,
     t: Expr<'g>,
     sum: Expr<'g>,
-    (segments, derivative): (&[Segment], fn(&Segment, f64) -> f64),
+    (segments, derivative): (&[Segment], Derivative),
 ) -> Expr<'g> {
     let begins = |time: f64| segments.first().is_some_and(|first| first.begin == time);
     let has_come = |time| if begins(time) { 1.0 - after(model, time - t) } else { after(model, t - time) };
-    curve::jumps(segments, derivative).into_iter().fold(sum, |sum, (time, jump)| sum + has_come(time) * jump)
+    chain::jumps(segments, derivative).into_iter().fold(sum, |sum, (time, jump)| sum + has_come(time) * jump)
 }
 
 /// 1 from the start of a motion on, and 1 after its end; 0 before.

@@ -381,7 +381,7 @@ fn jump(profile: &Profile) -> Option<String> {
             (*begin > 0.0).then(|| format!("t = {begin} s"))
         }
         Profile::Speed { ramp: None, .. } => Some("the live `begin`".into()),
-        Profile::Table { segments, .. } => curve::jump(segments).map(|time| format!("t = {time} s")),
+        Profile::Table { segments, .. } => chain::first_jump(segments).map(|time| format!("t = {time} s")),
         _ => None,
     }
 }

@@ -50,7 +50,12 @@ impl Condition {
         let reactions = crane.support_reactions_at(&q, &rest).into_iter().zip(crane.support_gaps_at(&q));
         Self {
             lines: tipping::lines(crane, 0.0, &q, &rest, &rest),
-            sections: stressed_sections(crane.description(), &crane.section_moduli_at(), &crane.section_places_at(&q), &wrenches),
+            sections: stressed_sections(
+                crane.description(),
+                &crane.section_moduli_at(),
+                &crane.section_places_at(&q),
+                &wrenches,
+            ),
             cylinders: cylinders_at(crane, &q, &rest, &efforts),
             efforts,
             feet: reactions.map(|(force, gap)| [force.z, gap]).collect(),

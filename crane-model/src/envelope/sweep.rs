@@ -70,7 +70,7 @@ pub fn range_of_loads(crane: &dyn DynCrane, load: usize, greatest: Option<f64>) 
 
 /// Mass of the crane with a load, which it keeps, kg.
 pub(super) fn mass_with(crane: &mut dyn DynCrane, parameter: usize, load: f64) -> f64 {
-    // A load that is not allowed leaves the one before.
+    // A load that is not allowed leaves the previous one.
     let _ = crane.set_parameter(parameter, load);
     crane.mass()
 }

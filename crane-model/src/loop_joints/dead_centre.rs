@@ -198,11 +198,7 @@ fn across(along: &Vector3<f64>) -> [Vector3<f64>; 2] {
 
 /// Of each joint the way from its first point to its second one, and the velocity of the second relative to the first body for a unit rate of
 /// each coordinate, in the axes of the first body; m, m/rad and 1.
-fn motions(
-    crane: &(impl DynModel + ?Sized),
-    q: &[f64],
-    joints: &[usize],
-) -> Vec<(Vector3<f64>, Vec<Vector3<f64>>)> {
+fn motions(crane: &(impl DynModel + ?Sized), q: &[f64], joints: &[usize]) -> Vec<(Vector3<f64>, Vec<Vector3<f64>>)> {
     let (description, all) = (crane.description(), crane.loop_joints());
     let mut frames = vec![Matrix4::identity(); description.bodies.len()];
     let mut attachments = vec![Vector3::zeros(); crane.count(Count::Attachments)];

@@ -186,8 +186,12 @@ fn every_pose_is_as_a_crane_alone() {
             let margin = crane_model::tipping::governing(&lines).unwrap().margin();
             let wrenches = crane.internal_forces_at(0.0, q, &rest, &rest);
             let description = crane.description();
-            let sections =
-                crane_model::sections::stressed_sections(description, &crane.section_moduli_at(), &crane.section_places_at(q), &wrenches);
+            let sections = crane_model::sections::stressed_sections(
+                description,
+                &crane.section_moduli_at(),
+                &crane.section_places_at(q),
+                &wrenches,
+            );
             let utilisation = sections.iter().filter_map(|section| section.utilisation).fold(0.0, f64::max);
             let effort = crane.drive_efforts_at_rest(q)[1].abs();
             // Poses of the same crane are equal to the tolerance of statics.

@@ -59,7 +59,11 @@ fn apply(check: &str, tree: &Tree, seed: u64, run: bool) -> Option<Vec<String>> 
                 let cautions =
                     numbers.iter().filter(|(name, number)| number.group == CAUTIONS && !first.contains_key(*name));
                 let shown = if second.set.is_empty() { Vec::new() } else { shown::differences(tree, &second) };
-                missing.into_iter().chain(shown).chain(cautions.map(|(name, _)| format!("{name}, of the second only"))).collect()
+                missing
+                    .into_iter()
+                    .chain(shown)
+                    .chain(cautions.map(|(name, _)| format!("{name}, of the second only")))
+                    .collect()
             }
             Err(refused) => refused.lines().map(str::to_owned).collect(),
         });

@@ -185,11 +185,8 @@ impl Writer<'_> {
     /// A drive that holds a position, or moves away from it.
     fn drive(&mut self, coordinate: &str, mut drive: Tree, at: f64, by: f64) {
         drive["coordinate"] = json!(coordinate);
-        drive["motion"] = if self.has(F::Motion) {
-            moving(at, by, drive["rigid"] == json!(true))
-        } else {
-            json!({"hold": at})
-        };
+        drive["motion"] =
+            if self.has(F::Motion) { moving(at, by, drive["rigid"] == json!(true)) } else { json!({"hold": at}) };
         if self.has(F::Rotor) {
             drive["armature"] = json!(self.between(2.0, 20.0));
         }

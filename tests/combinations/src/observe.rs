@@ -86,7 +86,7 @@ pub fn live_with(source: &SourceFile, set: &[(String, f64)]) -> Result<LiveCrane
     let mut values = crane.parameters().to_vec();
     for (name, value) in set {
         let index = crane.chain().parameters.iter().position(|own| own.name == *name);
-        values[index.ok_or_else(|| format!("{name} is no parameter"))?] = *value;
+        values[index.ok_or_else(|| format!("{name} is not a parameter"))?] = *value;
     }
     DynCrane::set_parameters(&mut crane, &values).map_err(|refused| refused.to_string())?;
     Ok(crane)

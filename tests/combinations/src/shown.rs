@@ -16,7 +16,9 @@ const DRAWN: f64 = 1e-6;
 
 /// What differs between a crane as written and one with its numbers set.
 pub fn differences(tree: &Tree, second: &Second) -> Vec<String> {
-    let (Ok(written), Ok(set)) = (live(&source(tree)), live_with(&second.source, &second.set)) else { return Vec::new() };
+    let (Ok(written), Ok(set)) = (live(&source(tree)), live_with(&second.source, &second.set)) else {
+        return Vec::new();
+    };
     let mut lines = described([&written, &set]);
     let Ok(q) = equilibrium(&written as &dyn DynCrane) else { return lines };
     different("scene", [&scene(&written, &q), &scene(&set, &q)], &mut lines);
@@ -25,9 +27,12 @@ pub fn differences(tree: &Tree, second: &Second) -> Vec<String> {
         let mjcf = exchange::mjcf(chain, parameters).unwrap_or_else(|failure| failure.title);
         [exchange::urdf(chain, parameters), exchange::springs(chain, parameters), mjcf]
     };
-    for (name, (written, set)) in ["URDF", "springs", "MJCF"].iter().zip(exported(&written).iter().zip(exported(&set))) {
+    for (name, (written, set)) in ["URDF", "springs", "MJCF"].iter().zip(exported(&written).iter().zip(exported(&set)))
+    {
         // The head of a file names the spec and its parameters.
-        let of_crane = |text: &str| text.lines().skip_while(|line| !line.contains("spec hash")).skip(1).map(str::to_owned).collect::<Vec<_>>();
+        let of_crane = |text: &str| {
+            text.lines().skip_while(|line| !line.contains("spec hash")).skip(1).map(str::to_owned).collect::<Vec<_>>()
+        };
         let differing = of_crane(written).into_iter().zip(of_crane(&set)).find(|(written, set)| written != set);
         lines.extend(differing.map(|(written, set)| format!("{name}: {written} against {set}")));
     }

@@ -1,8 +1,6 @@
 //! Metadata of a live crane.
 
-use crane_codegen::chain::{
-    self, BodyId, Chain, CoordinateId, CoordinateKind as Kind, Profile, SupportKinematics,
-};
+use crane_codegen::chain::{self, BodyId, Chain, CoordinateId, CoordinateKind as Kind, Profile, SupportKinematics};
 use crane_model::{
     AttachmentInfo, BodyInfo, Bound, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole,
     CylinderInfo, Description, DriveInfo, InputInfo, LoadInfo, LoopEquationInfo, LoopJointInfo, ParameterInfo,

@@ -9,10 +9,14 @@ pub(crate) fn live(name: &str) -> LiveCrane {
     LiveCrane::new(compile::load(&SourceFile::new(name, text)).unwrap_or_else(|mistakes| panic!("{mistakes}")))
 }
 
-/// One of the examples.
-fn example(name: &str) -> LiveCrane {
-    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../specs/examples/{name}.yaml"));
-    let text = std::fs::read_to_string(file).expect("an example");
+/// The examples.
+const EXAMPLES: [(&str, &str); 3] = [
+    ("loader_crane", include_str!("../../../specs/examples/loader_crane.yaml")),
+    ("parallel_harvester", include_str!("../../../specs/examples/parallel_harvester.yaml")),
+    ("telescopic_loader", include_str!("../../../specs/examples/telescopic_loader.yaml")),
+];
+
+fn example(name: &str, text: &str) -> LiveCrane {
     LiveCrane::new(compile::load(&SourceFile::new(name, text)).unwrap_or_else(|mistakes| panic!("{mistakes}")))
 }
 
@@ -120,7 +124,7 @@ fn no_text_of_a_spec_ends_the_data() {
 fn nothing_of_a_body_floats() {
     let mut bars_of_cranes = 0;
     let shipped = crane_specs::SPECS.iter().map(|(name, _)| (*name, live(name)));
-    let examples = ["loader_crane", "parallel_harvester", "telescopic_loader"].map(|name| (name, example(name)));
+    let examples = EXAMPLES.map(|(name, text)| (name, example(name, text)));
     for (name, live) in shipped.chain(examples) {
         let crane: &dyn DynCrane = &live;
         let q = crane.guess();
@@ -171,7 +175,7 @@ fn nothing_of_a_body_floats() {
 /// The jib of the harvester lies beyond the joint of the rod that it carries: once, it was not drawn.
 #[test]
 fn what_lies_beyond_a_joint_is_drawn() {
-    let live = example("parallel_harvester");
+    let live = example(EXAMPLES[1].0, EXAMPLES[1].1);
     let crane: &dyn DynCrane = &live;
     let scene = crate::scene::scene(&live, &crane.guess());
     let jib = live.chain().bodies.iter().position(|body| body.link == "jib").expect("a jib");

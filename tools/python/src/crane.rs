@@ -286,7 +286,8 @@ impl Crane {
         for (name, value) in given {
             let name: String = name.extract()?;
             let slot = input_index(description, &name)?;
-            values[slot] = if value.is_none() { None } else { Some(input(&name, &description.inputs[slot].unit, &value)?) };
+            values[slot] =
+                if value.is_none() { None } else { Some(input(&name, &description.inputs[slot].unit, &value)?) };
         }
         self.live = self.live.with_inputs(&values);
         Ok(self)

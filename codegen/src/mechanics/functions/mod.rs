@@ -8,7 +8,7 @@ mod loop_joints;
 mod motion_derivatives;
 mod statics;
 
-use crate::chain::{Analyses, Beam, BodyId, Chain, Group, Section};
+use crate::chain::{Analyses, Beam, Body, BodyId, Chain, Group, Section};
 use crate::program::{Argument, Count, Extent, Function, FunctionId, Item, Program, Shape, Struct, Symbol};
 use crate::symbolic::{Expr, Graph, Stages, SweepTrace, SymbolId};
 
@@ -98,13 +98,9 @@ impl<'g> Derivation<'g> {
     fn poses(&self) -> Vec<Function> {
         let chain = self.model.chain;
         let model = &self.model;
-        let sizes = chain.bodies.iter().flat_map(|body| {
-            let mass = body.inertia.as_ref().map_or(model.zero(), |inertia| model.number(&inertia.mass));
-            [mass, model.number(&body.length)]
-        });
         let mut functions = vec![
             self.function(FunctionId::Transforms, transforms::transforms(&self.kinematics)),
-            self.function(FunctionId::BodySizes, sizes.collect()),
+            self.function(FunctionId::BodySizes, body_sizes(model)),
         ];
         if !chain.supports.is_empty() {
             functions.push(self.function(FunctionId::SupportPlaces, crate::mechanics::supports::places(model)));
@@ -305,6 +301,15 @@ fn shaped(id: FunctionId, shape: Shape, outputs: Vec<Expr<'_>>) -> Function {
     let outputs = outputs.into_iter().map(Expr::id).collect();
     let (doc, equation, arguments) = (id.doc(), id.equation(), id.arguments().to_vec());
     Function { id, product: None, doc, equation, arguments, shape, outputs, trace: SweepTrace::default() }
+}
+
+/// Mass and length of every body.
+fn body_sizes<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    let size = |body: &Body| {
+        let mass = body.inertia.as_ref().map_or(model.zero(), |inertia| model.number(&inertia.mass));
+        [mass, model.number(&body.length)]
+    };
+    model.chain.bodies.iter().flat_map(size).collect()
 }
 
 /// Where the sections of a beam are, and its length.

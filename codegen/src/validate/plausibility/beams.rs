@@ -36,6 +36,9 @@ fn in_pascal(given: f64) -> String {
     }
 }
 
+/// Largest usual thickness of a wall, relative to the smaller side of the section.
+const THICKEST: f64 = 0.25;
+
 impl Plausibility<'_> {
     pub(super) fn beams(&mut self) {
         let crane = self.crane;
@@ -122,7 +125,19 @@ impl Plausibility<'_> {
             Section::Tube { diameter, .. } | Section::Circle { diameter } => vec![("diameter", diameter)],
             Section::Numbers { area, jy, jz, jo, .. } => return self.section_numbers([area, jy, jz, jo], subject),
         };
-        // Only the first implausible side is reported.
+        let walls: Vec<(&str, &Spanned<Number>)> = match section {
+            Section::Box { thickness, .. } | Section::Tube { thickness, .. } => vec![("thickness", thickness)],
+            Section::WeldedBox { flange, web, .. } => vec![("flange", flange), ("web", web)],
+            Section::Solid { .. } | Section::Circle { .. } | Section::Numbers { .. } => Vec::new(),
+        };
+        let least = sides.iter().map(|(_, given)| self.number(given).0).fold(f64::INFINITY, f64::min);
+        // Only the first implausible number is reported.
+        for (key, given) in walls {
+            let (thickness, at) = self.number(given);
+            if thickness > THICKEST * least {
+                return self.warn(rule::thick_wall(at, subject, key, thickness, least));
+            }
+        }
         for (key, given) in sides {
             let (side, at) = self.number(given);
             if side > LONGEST_SIDE {

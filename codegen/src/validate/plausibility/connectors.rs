@@ -3,11 +3,15 @@
 use super::{Plausibility, items, rounded};
 use crate::chain::{Force, Strain};
 use crate::diagnostic::rule;
+use crate::spec::ConnectorLaw;
 
 /// Usual lengths without force, as fractions of the distance between the points at the guess.
 const USUAL: [f64; 2] = [0.1, 10.0];
 /// Maximum ratio of the length of a rope at the guess to its length without force: steel breaks long before.
 const STRETCHED: f64 = 1.2;
+
+/// Least usual EA of a rope, N.
+const SOFTEST_ROPE: f64 = 1e5;
 
 /// Maximum ratio of a coupling between joints of one kind.
 const RATIO: f64 = 20.0;
@@ -25,6 +29,18 @@ impl Plausibility<'_> {
             if follower.kind == other.kind && ratio.abs() > RATIO {
                 let names = [&follower.name, &other.name];
                 self.warn(rule::high_ratio(given.ratio.span, &connector.name, rounded(ratio), names[0], names[1]));
+            }
+        }
+    }
+
+    /// Ropes whose axial stiffness is in another unit.
+    pub(super) fn ropes(&mut self) {
+        for given in items(self.crane.connectors.as_ref()) {
+            let Some(ConnectorLaw::Rope(rope)) = &given.law.value else { continue };
+            let Some((stiffness, at)) = rope.axial_stiffness.as_ref().map(|given| self.number(given)) else { continue };
+            if stiffness < SOFTEST_ROPE {
+                let name = given.name.value.as_deref().unwrap_or_default();
+                self.warn(rule::soft_rope(at, name, rounded(stiffness)));
             }
         }
     }

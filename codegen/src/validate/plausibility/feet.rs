@@ -37,6 +37,32 @@ impl Plausibility<'_> {
         }
     }
 
+    /// Supports on which the crane would sink.
+    pub(super) fn soft_feet(&mut self) {
+        /// Least usual stiffness, N/m.
+        const SOFTEST: f64 = 1e3;
+        for support in items(self.crane.supports.as_ref()) {
+            let given = support.stiffness.value.as_ref().into_iter().flatten().map(|given| self.number(given));
+            let soft = given.into_iter().find(|(stiffness, _)| *stiffness > 0.0 && *stiffness < SOFTEST);
+            if let Some((stiffness, at)) = soft {
+                let name = support.name.value.as_deref().unwrap_or_default();
+                self.warn(rule::soft_support(at, name, rounded(stiffness)));
+            }
+        }
+    }
+
+    /// Gravity in another unit.
+    pub(super) fn gravity(&mut self) {
+        /// Largest of a planet on which cranes may stand, m/s².
+        const GREATEST: f64 = 30.0;
+        let Some(given) = self.crane.gravity.as_ref() else { return };
+        let numbers = given.value.as_ref().into_iter().flatten().map(|number| self.number(number).0);
+        let size = numbers.map(|g| g * g).sum::<f64>().sqrt();
+        if size > GREATEST {
+            self.warn(rule::odd_gravity(given.span, rounded(size)));
+        }
+    }
+
     /// Supports whose coefficient of friction no usual ground has.
     pub(super) fn feet(&mut self) {
         for support in items(self.crane.supports.as_ref()) {

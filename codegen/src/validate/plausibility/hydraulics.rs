@@ -3,8 +3,8 @@
 use std::ops::RangeInclusive;
 
 use super::{Plausibility, angles::positions, beams::in_metres, items, rounded};
-use crate::chain::{Chain, Cylinder as ChainCylinder, Linkage};
-use crate::diagnostic::rule;
+use crate::chain::{Chain, CoordinateKind, Cylinder as ChainCylinder, Linkage, Pin};
+use crate::diagnostic::{Span, rule};
 use crate::spec::{Constant, Cylinder, Motion, Pump, Spanned, Valve};
 
 /// A hydraulic quantity: its unit, its usual range, and how to write a number that was given in another unit.
@@ -174,10 +174,7 @@ impl Plausibility<'_> {
         /// Step of the central difference of a length, rad or m: the relative error is 1e-8.
         const DIFFERENCE: f64 = 1e-4;
         let chain = self.chain;
-        let mut q = chain.guess.clone();
-        for drive in chain.drives.iter().filter(|drive| drive.holds()) {
-            q[drive.coordinate.0] = drive.profile.start(&self.values);
-        }
+        let mut q = self.pose_at_start();
         for (given, cylinder) in items(self.crane.cylinders.as_ref()).zip(&chain.cylinders) {
             if cylinder.linkage.is_none() {
                 let mut moved = |by: f64| {
@@ -191,6 +188,11 @@ impl Plausibility<'_> {
                     self.warn(rule::no_lever(given.name.span, &cylinder.name, rounded(lever.abs())));
                 }
             }
+            if cylinder.stroke > cylinder.retracted {
+                let [stroke, retracted] = [cylinder.stroke, cylinder.retracted].map(rounded);
+                self.warn(rule::long_stroke(given.stroke.span, &cylinder.name, stroke, retracted));
+            }
+            self.pins_in_plane(given.foot.span, cylinder, &q);
             let (least, most) = (cylinder.retracted, cylinder.retracted + cylinder.stroke);
             let [length, distance] = chain.cylinder_length(cylinder, &q, &self.values);
             if let (Some(linkage), true) = (&cylinder.linkage, length.is_nan()) {
@@ -206,6 +208,30 @@ impl Plausibility<'_> {
                     other_side(chain, cylinder, &q, &self.values, least..=most),
                 ));
             }
+        }
+    }
+}
+
+impl Plausibility<'_> {
+    /// Pins that are apart along the axis about which their cylinder turns a joint: the force along it bends pins.
+    fn pins_in_plane(&mut self, span: Span, cylinder: &ChainCylinder, q: &[f64]) {
+        /// Largest usual distance along the axis, relative to that of the pins.
+        const ASIDE: f64 = 0.15;
+        let chain = self.chain;
+        let coordinate = &chain.coordinates[cylinder.coordinate.0];
+        if coordinate.kind != CoordinateKind::Rotation {
+            return;
+        }
+        let frames = chain.frames(q, &self.values);
+        let world = |pin: &Pin| frames[pin.body.0].transform_point(pin.position.each_ref().map(|x| x.at(&self.values)));
+        let ([foot, head], [_, axis]) =
+            ([&cylinder.foot, &cylinder.head].map(world), chain.axis(cylinder.coordinate, q, &self.values));
+        let way: Vec<f64> = foot.iter().zip(head).map(|(foot, head)| head - foot).collect();
+        let aside: f64 = way.iter().zip(axis).map(|(x, along)| x * along).sum::<f64>().abs();
+        let length = way.iter().map(|x: &f64| x * x).sum::<f64>().sqrt();
+        if aside > ASIDE * length {
+            let share = (100.0 * aside / length).round();
+            self.warn(rule::pins_aside(span, &cylinder.name, rounded(aside), &coordinate.name, share));
         }
     }
 }

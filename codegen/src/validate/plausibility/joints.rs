@@ -60,7 +60,7 @@ impl Plausibility<'_> {
     }
 
     /// The guess, with the drives where their motions begin.
-    fn pose_at_start(&self) -> Vec<f64> {
+    pub(super) fn pose_at_start(&self) -> Vec<f64> {
         let mut q = self.chain.guess.clone();
         for drive in self.chain.drives.iter().filter(|drive| drive.holds()) {
             q[drive.coordinate.0] = drive.profile.start(&self.values);

@@ -34,6 +34,9 @@ pub(super) fn warnings(crane: &Crane, chain: &Chain, values: Vec<f64>) -> Vec<Mi
     plausibility.pads();
     plausibility.efforts();
     plausibility.stiff_springs();
+    plausibility.soft_feet();
+    plausibility.gravity();
+    plausibility.ropes();
     // Consequences of such numbers, such as frequencies and masses, would be reported as well.
     if plausibility.warnings.is_empty() {
         plausibility.loops();

@@ -39,9 +39,29 @@ impl Plausibility<'_> {
     pub(super) fn overlaps(&mut self) {
         for stage in self.chain.stages() {
             let reached = self.reached(stage.coordinate, self.chain.coordinates.len());
+            if let Some(&(x, at)) = reached.iter().min_by(|a, b| a.0.total_cmp(&b.0)) {
+                self.pushed_in(&stage, x, at);
+            }
             if let Some((x, at)) = reached.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)) {
                 self.overlap(&stage, x, at);
             }
+        }
+    }
+
+    /// A stage that is pushed in so far that it sticks out behind.
+    fn pushed_in(&mut self, stage: &Stage<'_>, x: f64, at: Span) {
+        /// Rounding of lengths, relative.
+        const ROUNDING: f64 = 1e-6;
+        let chain = self.chain;
+        let overlap = stage.overlap(x, &self.values);
+        let [inner, outer] = [stage.inner, stage.outer.first].map(|body| &chain.bodies[body.0].link);
+        let of_inner = chain.bodies.iter().filter(|body| body.link == *inner);
+        let length: f64 = of_inner.map(|body| body.length.at(&self.values)).sum();
+        let longest = stage.outer.length.at(&self.values).min(length);
+        if overlap > longest * (1.0 + ROUNDING) {
+            let name = &chain.coordinates[stage.coordinate.0].name;
+            let [overlap, x, longest] = [overlap, x, longest].map(rounded);
+            self.warn(rule::pushed_through(at, inner, outer, overlap, name, x, longest));
         }
     }
 

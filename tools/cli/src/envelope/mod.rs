@@ -207,7 +207,8 @@ fn rate(
     let state = Mutex::new((kept, Ok(())));
     let done = |piece: usize, ratings: &[Rating]| {
         let poses = asked.poses_of(piece);
-        let rows: Vec<Row> = poses.clone().zip(ratings).map(|(pose, rating)| layout.row(asked, crane, pose, rating)).collect();
+        let rows: Vec<Row> =
+            poses.clone().zip(ratings).map(|(pose, rating)| layout.row(asked, crane, pose, rating)).collect();
         let mut state = state.lock().unwrap_or_else(PoisonError::into_inner);
         if state.1.is_ok() {
             state.1 = journal.add(poses.clone().zip(&rows).map(|(pose, row)| row.record(pose)));

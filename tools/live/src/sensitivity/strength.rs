@@ -48,7 +48,9 @@ impl Strength {
             return None;
         }
         let mut sections: Vec<StressedSection> = Vec::new();
-        for section in stressed_sections(description, &crane.section_moduli_at(), &crane.section_places_at(&rest.q), &wrenches) {
+        for section in
+            stressed_sections(description, &crane.section_moduli_at(), &crane.section_places_at(&rest.q), &wrenches)
+        {
             let same = |known: &&mut StressedSection| known.beam(description) == section.beam(description);
             match sections.iter_mut().find(same) {
                 Some(known) if StressedSection::by_use(known, &section).is_lt() => *known = section,

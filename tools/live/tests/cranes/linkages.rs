@@ -100,8 +100,7 @@ fn position_at(crane: &dyn DynCrane, q: &[f64], body: usize, at: [f64; 3]) -> Ve
 fn on_boom(crane: &dyn DynCrane, q: &[f64], at: [f64; 3]) -> Vector3<f64> {
     let mut start = 0.0;
     let mut found = None;
-    for (index, _) in crane.description().bodies.iter().enumerate().filter(|(_, body)| body.link.as_ref() == "boom")
-    {
+    for (index, _) in crane.description().bodies.iter().enumerate().filter(|(_, body)| body.link.as_ref() == "boom") {
         if start <= at[0] {
             found = Some((index, start));
         }

@@ -151,7 +151,8 @@ fn outputs_have_the_values_of_the_runtime() {
             expected.push((format!("{}_force", cylinder.name), state.force));
         }
         let wrenches = crane.internal_forces_at(0.0, q, &rest, &rest);
-        let sections = stressed_sections(description, &crane.section_moduli_at(), &crane.section_places_at(q), &wrenches);
+        let sections =
+            stressed_sections(description, &crane.section_moduli_at(), &crane.section_places_at(q), &wrenches);
         let stress =
             sections.iter().max_by(|a, b| StressedSection::by_use(a, b)).map(|section| section.stress.equivalent);
         expected.extend(stress.map(|stress| ("greatest_equivalent_stress".to_owned(), stress)));
