@@ -59,6 +59,7 @@ pub struct Stress {
 #[cfg(feature = "std")]
 impl SectionModuli {
     /// A mean with another one, which counts for a `part`.
+    #[must_use]
     pub fn mean(&self, other: &Self, part: f64) -> Self {
         let mean = |of: fn(&Self) -> f64| of(self) + part * (of(other) - of(self));
         Self {

@@ -130,7 +130,7 @@ mod tests {
         assert!(left >= 4, "{left}");
     }
 
-    /// By SciPy: `PchipInterpolator([0, 1, 3, 4], [0, 2, 3, 3]).derivative()` at the two points between.
+    /// By `SciPy`: `PchipInterpolator([0, 1, 3, 4], [0, 2, 3, 3]).derivative()` at the two points between.
     #[test]
     fn slopes_between_are_those_of_pchip() {
         let segments = monotone(&[0.0, 1.0, 3.0, 4.0], &[0.0, 2.0, 3.0, 3.0]);

@@ -52,6 +52,9 @@ pub fn imbalances(crane: &LiveCrane, motion: &Motion) -> Vec<(String, f64)> {
 
 /// By how much what a beam carries before each pad on which it slides differs from what it carries after it, without what pads exert there,
 /// relative to what it carries: the name of the place, and what remains.
+///
+/// # Panics
+/// If a pad has a section on one side alone.
 #[must_use]
 pub fn jumps(crane: &LiveCrane, motion: &Motion) -> Vec<(String, f64)> {
     let whole: &dyn DynCrane = crane;

@@ -48,7 +48,7 @@ fn described(cranes: [&LiveCrane; 2]) -> Vec<String> {
         description.spec_hash = "".into();
         // Statics begins at the guess, where drives are at their starts; drives that a parameter moves take it along.
         description.guess = Vec::new().into();
-        description.drives = description.drives.iter().map(|drive| DriveInfo { start: 0.0, ..drive.clone() }).collect();
+        description.drives = description.drives.iter().map(|drive| DriveInfo { start: 0.0, ..*drive }).collect();
         format!("{description:#?}")
     });
     let differing = written.lines().zip(set.lines()).filter(|(written, set)| written != set);

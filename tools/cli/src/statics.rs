@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use crane_model::{Description, statics::Equilibrium};
+use crane_model::{Description, Text, statics::Equilibrium};
 use crane_page::tables::{Case, Grid, Report, VALUE, equilibria};
 use serde_json::{Map, Value, json};
 
@@ -31,7 +31,7 @@ pub fn statics(options: &Analysis, registry: &Registry, out: &mut dyn Write) -> 
 
 /// What the mesh leaves out of the positions of points: for people the largest number.
 fn mesh(report: &mut Report, description: &Description, changes: &[f64]) {
-    let names = description.points.iter().map(|name| name.as_str());
+    let names = description.points.iter().map(Text::as_str);
     let Some((name, most)) = names.clone().zip(changes).max_by(|(_, a), (_, b)| a.total_cmp(b)) else { return };
     report.line("change of positions with twice the sections", format!("{:.2} (of {name})", 1e3 * most), "mm");
     let each: Map<String, Value> = names.map(str::to_owned).zip(changes.iter().map(|change| json!(change))).collect();
