@@ -608,7 +608,7 @@ catalogue! {
     /// The stroke of a cylinder is shorter than its retracted length.
     W052 long_stroke(cylinder, stroke, retracted) "the stroke of cylinder `{cylinder}` is {stroke} m", "retracted, it is only {retracted} m long, and its rod must fit into it",
         "`retracted` is the distance between the pins of the retracted cylinder";
-    /// The pins of a cylinder are in a plane in which its joint moves, to 15 % of their distance.
+    /// The pins of a cylinder are in a plane in which its joint moves, to 30 % of their distance.
     W053 pins_aside(cylinder, aside, coordinate, share) "the pins of cylinder `{cylinder}` are {aside} m apart along the axis of `{coordinate}`", "{share} % of its force bends the pins instead of turning the joint",
         "check the order of x, y and z in `foot` and `head`: each is in the frame of its own link";
     /// The wall of a hollow section is at most a quarter as thick as its sides.

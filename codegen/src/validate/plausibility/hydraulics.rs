@@ -216,7 +216,7 @@ impl Plausibility<'_> {
     /// Pins that are apart along the axis about which their cylinder turns a joint: the force along it bends pins.
     fn pins_in_plane(&mut self, span: Span, cylinder: &ChainCylinder, q: &[f64]) {
         /// Largest usual distance along the axis, relative to that of the pins.
-        const ASIDE: f64 = 0.15;
+        const ASIDE: f64 = 0.3;
         let chain = self.chain;
         let coordinate = &chain.coordinates[cylinder.coordinate.0];
         if coordinate.kind != CoordinateKind::Rotation {
