@@ -45,7 +45,7 @@ pub enum Motion {
     Trapezoid(Trapezoid),
     /// Constant speed, which never ends.
     Speed(Speed),
-    /// Cubic spline through given positions, at rest at both ends.
+    /// Curve through given positions.
     Table(Table),
     /// An input, by its name.
     Input(Spanned<String>),

@@ -106,7 +106,7 @@ class Run:
     t: times of the measurement, s, from the start of the run; increasing. columns: measured values by the names of the columns of
     `Crane.simulate`, NaN where one is missing. noise: standard deviation, or one by column.
     parameters: of this run. inputs: by name, a number, an array over t, or a pair of arrays, times and values; between these a
-    cubic spline, as for a `table`. q, v: start; the static equilibrium at rest unless given.
+    cubic spline, as for a `table` from a file. q, v: start; the static equilibrium at rest unless given.
     dead_time: by which the crane's response is delayed, s: a number, the name of a fitted number, or one of these by column. Before its beginning
     the response is that at the start.
     tolerance, method, output: of the runs, as for `Crane.simulate`.

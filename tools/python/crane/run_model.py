@@ -154,7 +154,7 @@ def _interval(t: Array) -> float:
 
 
 def following(crane: "Crane", inputs: Mapping[str, Any], t: Array, named: str) -> "Crane":
-    """The crane whose inputs follow measured values over time: a cubic spline, as for a `table` of the spec."""
+    """The crane whose inputs follow measured values over time: a cubic spline, as for a `table` from a file."""
     if not inputs:
         return crane
     from .model import _load_again
@@ -171,7 +171,7 @@ def following(crane: "Crane", inputs: Mapping[str, Any], t: Array, named: str) -
         if len(times) > ROWS:
             raise ValueError(f"{named}: the input {name!r} has {len(times)} values, and a table at most {ROWS}: give fewer, as (times, values)")
         table = ", ".join(f"{key}: [{', '.join(f'{number:.17g}' for number in numbers)}]" for key, numbers in (("times", times), ("values", values)))
-        lines.append(f"  {name}: {{value: ~, motion: {{table: {{{table}}}}}}}\n")
+        lines.append(f"  {name}: {{value: ~, motion: {{table: {{{table}, shape: spline}}}}}}\n")
     text = crane._changed("inputs:\n" + "".join(lines))
     kept = {name: value for name, value in crane.inputs.items() if name not in inputs}
     return _load_again(crane.source, text, crane.parameters, kept)
