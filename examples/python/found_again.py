@@ -34,7 +34,7 @@ def crane_with_live_drives() -> crane.Crane:
     parameters, drives, friction = "", "", ""
     for coordinate, (name, k, d, f, positions, _) in DRIVES.items():
         parameters += f"  k_{name}: {{value: {k}}}\n  d_{name}: {{value: {d}}}\n  f_{name}: {{value: {f}}}\n"
-        motion = f"{{table: {{times: {TIMES}, values: {positions}}}}}"
+        motion = f"{{table: {{times: {TIMES}, values: {positions}, shape: spline}}}}"
         drives += f"  - {{coordinate: {coordinate}, stiffness: k_{name}, damping: d_{name}, motion: {motion}}}\n"
         friction += f"  {coordinate}: {{coulomb: f_{name}}}\n"
     text = f"format: 1\nextends: eight_link_rigid\nname: found_again\nparameters:\n{parameters}drives:\n{drives}friction:\n{friction}"

@@ -20,7 +20,7 @@ format: 1
 extends: {base}
 name: slewn
 inputs: {{torque: ~}}
-drives: [{{coordinate: column_psi, rigid: true, max_effort: ~, damping: ~, effort: ~, motion: {{table: {{times: {times}, values: {values}}}}}}}]
+drives: [{{coordinate: column_psi, rigid: true, max_effort: ~, damping: ~, effort: ~, motion: {{table: {{times: {times}, values: {values}, shape: spline}}}}}}]
 """
 
 

@@ -285,7 +285,7 @@ def test_inputs_over_time_are_splines(arm, tmp_path, monkeypatch):
     steered = crane.load("steered.yaml", text=STEERED.replace("extends: arm", "extends: arm.yaml"))
     times = np.linspace(0.0, 2.0, 41)
     values = 0.2 * np.sin(3 * times) ** 2
-    table = f"{{table: {{times: {times.tolist()}, values: {values.tolist()}}}}}"
+    table = f"{{table: {{times: {times.tolist()}, values: {values.tolist()}, shape: spline}}}}"
     same = crane.load("same.yaml", text=STEERED.replace("extends: arm", "extends: arm.yaml").replace("{value: 0, unit", f"{{motion: {table}, unit"))
     run = same.replace(k=1.6e4, d=400.0).simulate(duration=2, output=0.02, tolerance=1e-8, verify=False)
     spline = scipy.CubicSpline(times, values, bc_type="clamped")
