@@ -296,7 +296,7 @@ fn a_rope_that_goes_slack_is_a_limit_when_asked_for() {
     let theta = ((3.0 - length * length) / 8.0f64.sqrt()).asin() - PI / 4.0;
     assert_close("slack", rating.load.unwrap(), stiffness * theta / (GRAVITY * REACH * theta.cos()), ACCURACY);
     assert_eq!(rating.governing, Some(Limit::Slack { rope: 1 }));
-    assert_eq!(rating.governing.unwrap().location(crane.description()), "stay");
+    assert_eq!(rating.governing.unwrap().location(&crane), "stay");
 }
 
 /// Feet and tipping lines: a chart with the limit that no foot lifts has the critical load.

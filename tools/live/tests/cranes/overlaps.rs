@@ -95,7 +95,7 @@ fn a_chart_ends_where_the_overlap_does() {
     let pieces: Vec<usize> = (0..asked.pieces()).collect();
     asked.run(&crane, &pieces, &Execution { threads: 1, done: &done, cancelled: &|| false }).unwrap();
     let ratings = found.into_inner().unwrap();
-    let is_of_stage = |limit: Limit| limit.kind() == "overlap" && limit.location(crane.description()) == "stage";
+    let is_of_stage = |limit: Limit| limit.kind() == "overlap" && limit.location(&crane) == "stage";
     assert_eq!(ratings.iter().map(|rating| rating.load.is_some()).collect::<Vec<_>>(), [true, true, false]);
     assert!(ratings[2].governing.is_some_and(is_of_stage), "{:?}", ratings[2].governing);
 }

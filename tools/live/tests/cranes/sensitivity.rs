@@ -244,7 +244,7 @@ fn differences_of_fixed_numbers_are_the_derivatives() {
     let exact = sensitivity(&with_number, &[parameter], &settings).unwrap();
     let crane = live(&source);
     let number = FixedNumber::new(&source, place).unwrap();
-    assert_eq!((number.value, number.unit), (0.26, "m"));
+    assert_eq!((number.value, number.unit.as_str()), (0.26, "m"));
     let found = sensitivity(&crane, &[], &settings).unwrap();
     let differences = number.differentiate(&crane, &found, &settings).unwrap();
     for (index, output) in found.outputs.iter().enumerate() {

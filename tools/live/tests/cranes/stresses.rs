@@ -62,7 +62,8 @@ connectors:
 "
         ));
         let (carried, _) = at_rest(&beam);
-        for (info, Place { x, wrench, .. }) in carried {
+        for (info, Place { x, wrench, .. }) in &carried {
+            let x = *x;
             let pushed = x > x_force || (x == x_force && info.side == Side::After);
             let bending = reaction * x - line * x * x / 2.0 - if pushed { force * (x - x_force) } else { 0.0 };
             let shear = -reaction + line * x + if pushed { force } else { 0.0 };
