@@ -182,7 +182,8 @@ fn too_weak(lift: Lift, name: &str, method: Method) -> Case {
 
 /// The valve opens and shuts again.
 fn lifted(lift: Lift, name: &str, method: Method) -> Case {
-    let lift = Lift { opening: "{table: {times: [0.1, 0.2, 0.6, 0.7], values: [0, 0.3, 0.3, 0], shape: spline}}", ..lift };
+    let lift =
+        Lift { opening: "{table: {times: [0.1, 0.2, 0.6, 0.7], values: [0, 0.3, 0.3, 0], shape: spline}}", ..lift };
     Case::new(GROUP, name, "lifts by 10 to 200 mm, energy balanced to 0.1 %", move || {
         let (recorded, [begin, end], _) = lift.run(method, 2.0)?;
         let found = balanced(&recorded, 1e-3)?;
