@@ -163,7 +163,7 @@ fn parameters_named_like_generated_code_keep_their_values() {
     for name in names {
         assert!(code.contains(&format!("pub {name}: f64")), "{name}");
         assert!(code.contains(&format!("params.{name}")), "{name} is read from the parameters");
-        assert!(!code.contains(&format!("let {name} = params")), "{name} is not a variable");
+        assert!(!code.contains(&format!("let {name} = params.{name};")), "{name} is not a variable");
     }
 }
 

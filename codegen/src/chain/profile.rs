@@ -184,8 +184,8 @@ pub type Derivative = fn(&Segment, f64) -> f64;
 /// The times at which a derivative of a curve that rests before and after jumps, s, and by how much.
 #[must_use]
 pub fn jumps(segments: &[Segment], derivative: Derivative) -> Vec<(f64, f64)> {
-    let ends = segments.iter().flat_map(|segment| [0.0, segment.duration].map(|u| derivative(segment, u).abs()));
-    let rounding = 1e-9 * ends.fold(0.0, f64::max);
+    let along = |segment: &Segment| [0.0, 0.5, 1.0].map(|share| derivative(segment, share * segment.duration).abs());
+    let rounding = 1e-9 * segments.iter().flat_map(along).fold(0.0, f64::max);
     let before = [0.0].into_iter().chain(segments.iter().map(|segment| derivative(segment, segment.duration)));
     let starts = segments.iter().map(|segment| (segment.begin, derivative(segment, 0.0)));
     let after = starts.chain(segments.last().map(|last| (last.begin + last.duration, 0.0)));

@@ -20,7 +20,8 @@ fn arguments_take_units() {
     same(&statics, [["--set", "payload=900 kg"], ["--set", "payload=900"]]);
     same(&statics, [["--hold", "main_boom_theta=-500 mrad"], ["--hold", "main_boom_theta=-0.5"]]);
     same(&statics, [["--range", "payload=0:1.5t:3"], ["--range", "payload=0:1500:3"]]);
-    let run = ["run", "double_pendulum", "--duration", "0.1", "--format", "json", "--reproducible"];
+    let out = concat!(env!("CARGO_TARGET_TMPDIR"), "/units");
+    let run = ["run", "double_pendulum", "--duration", "0.1", "--out", out, "--format", "json", "--reproducible"];
     same(&run, [["--start", "upper_theta=0.2"], ["--start", "upper_theta=200 mrad"]]);
 }
 

@@ -359,7 +359,7 @@ fn a_block_that_rocks_on_stiff_ground_keeps_its_energy() {
          - {{name: block, joint: free, mass: 1000, com: [0, 0, 0.5], inertia: {{Ixx: 170, Iyy: 170, Izz: 170}}}}\n\
          supports:\n{feet}\
          loads:\n  - {{name: push, link: block, at: [0, 0, 1], force: [3500, 300, 0], scale: {{table: {{\
-         times: [0, 0.02, 0.1, 0.12, 0.14, 0.16, 0.2, 0.3, 0.5, 1, 9], values: [0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0]}}}}}}\n\
+         times: [0, 0.02, 0.1, 0.12, 0.14, 0.16, 0.2, 0.3, 0.5, 1, 9], values: [0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0], shape: spline}}}}}}\n\
          run: {{duration: 3, output: 0.05}}\n"
     ));
     for (method, tolerance) in [(Method::Bdf, 1e-7), (Method::Bdf, 1e-8), (Method::Rosenbrock, 1e-8)] {
