@@ -464,7 +464,7 @@ def read_rope_bodies(crane, name, transform, written, place):
             transform = transform @ translate(x=length) @ swing(crane, f"{name}_{number}")
         for coordinate in crane.coordinates[-2:]:
             crane.rope_dampers.append(Spring(coordinate, 0, crane.spec.number(written.get("damping", 0))))
-        span.bodies.append(crane.add_body(f"{name}_{number}", transform, pseudo_inertia, place))
+        span.bodies.append(crane.add_body(f"{name}_{number}", transform, pseudo_inertia, place, length))
         span.starts.append((number - 1) * length)
         place = Place(transform, len(crane.bodies) - 1)
     span.tip, span.last = transform @ translate(x=length), length
