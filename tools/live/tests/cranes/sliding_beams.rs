@@ -189,7 +189,7 @@ pub(super) fn assert_section_forces(crane: &dyn DynCrane, q: &[f64]) {
     let (mut checked, mut at_pads, size) = (0, 0, LOAD * (a + b));
     for place in places(description, &crane.section_places_at(q), &crane.internal_forces_at(0.0, q, &still, &still)) {
         let (info, x, wrench) = (place.info(description), place.x, place.wrench);
-        if x < 1e-9 || x > LENGTH - 1e-9 {
+        if !(1e-9..=LENGTH - 1e-9).contains(&x) {
             continue;
         }
         let is_inner = place.beam(description) == "inner";
