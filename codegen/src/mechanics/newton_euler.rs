@@ -176,9 +176,8 @@ fn at_pad<'a, 'g: 'a>(
 ) -> Option<Wrench<'g>> {
     let (axis, zero) = (&sliding.beam, model.zero());
     let (whole, d) = (model.number(&axis.length), model.number(&axis.length) / axis.sections.max(1) as f64);
-    let (_, s) = pads::place(model, sliding);
-    let here = AxisPoint::new(model, kinematics, axis, s).here();
-    let s = s.clamp(zero, whole);
+    let here = AxisPoint::new(model, kinematics, axis, pads::place(model, sliding).1).here();
+    let s = pads::place_on_beam(model, sliding);
     let none = Vec3::zero(model.graph);
     let (mut wrench, mut masses) = ([none; 2], Masses::zero(model));
     let (mut omega, mut alpha, mut a, mut start) = (none, none, none, zero);

@@ -66,8 +66,7 @@ impl<'g> AtPad<'g> {
         let fixed = || Along::Fixed(sliding.pad.position[0].clone());
         let of_pad = sliding.pad.body.map(|body| (Place { body, along: fixed() }, on_pad));
         let here = AxisPoint::new(model, kinematics, &sliding.beam, s).here();
-        // A beam that has left its pad carries the force at its end.
-        let on = s.clamp(model.zero(), model.number(&sliding.beam.length));
+        let on = place_on_beam(model, sliding);
         let of_beam = sliding
             .beam
             .elements()
@@ -82,6 +81,12 @@ pub fn place<'g>(model: &Model<'g>, sliding: &Sliding) -> (f64, Expr<'g>) {
     let CoordinateId(slid) = sliding.coordinate;
     let sign = if sliding.grows { 1.0 } else { -1.0 };
     (sign, model.number(&sliding.start) + sign * model.q[slid])
+}
+
+/// Where on the beam the pad acts, m: at s, and at the end of a beam that has left it.
+pub fn place_on_beam<'g>(model: &Model<'g>, sliding: &Sliding) -> Expr<'g> {
+    let (_, s) = place(model, sliding);
+    s.clamp(model.zero(), model.number(&sliding.beam.length))
 }
 
 /// The axes of the body that carries a pad.

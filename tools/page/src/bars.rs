@@ -81,42 +81,41 @@ pub fn bars(live: &LiveCrane, frames: &[Matrix4<f64>]) -> Vec<Bar> {
     let anchors = anchors(live);
     let near = NEAR * size(frames, &anchors);
     let mut bars = Vec::new();
-    for body in 0..chain.bodies.len() {
+    for (body, written) in chain.bodies.iter().enumerate() {
         let mut own: Vec<&Anchor> = anchors.iter().filter(|anchor| anchor.body == body).collect();
         let mut segments = drawn(live, body, frames, &own);
-        let near = near.max(beam_size(live, body));
+        let beam = beam_size(live, body);
+        let near = near.max(beam);
         // Points and pins from the farthest on, then masses, which are often on the way to them.
         own.sort_by(|a, b| a.mass.is_some().cmp(&b.mass.is_some()).then(b.at.norm().total_cmp(&a.at.norm())));
         for anchor in own {
-            let [mut longest, least] = [0.0, f64::INFINITY];
-            let mut nearest = (least, Vector3::zeros(), false);
-            for [from, to] in &segments {
-                let way = to - from;
-                longest = way.norm().max(longest);
-                let share = if way.norm() > 0.0 {
-                    ((anchor.at - from).dot(&way) / way.norm_squared()).clamp(0.0, 1.0)
-                } else {
-                    0.0
-                };
-                let place = from + share * way;
-                let distance = (anchor.at - place).norm();
-                if distance < nearest.0 {
-                    nearest = (distance, place, share > 1.0 - AT_END && way.norm() > near);
-                }
-            }
-            let (distance, from, at_end) =
-                if segments.is_empty() { (anchor.at.norm(), Vector3::zeros(), false) } else { nearest };
-            let named = chain.bodies[body].parts.len() > 1;
-            let block = anchor.mass.filter(|_| distance > near || (named && at_end)).unwrap_or(0.0);
+            let to = anchor.at;
+            let length = |[from, to]: &Segment| (to - from).norm();
+            let longest = segments.iter().map(length).fold(0.0, f64::max);
+            let places = segments.iter().map(|segment| {
+                let (from, share) = nearest_on(segment, to);
+                ((to - from).norm(), from, share > 1.0 - AT_END && length(segment) > near)
+            });
+            let nearest = places.min_by(|(a, ..), (b, ..)| a.total_cmp(b));
+            let (distance, from, at_end) = nearest.unwrap_or((to.norm(), Vector3::zeros(), false));
+            let at_end = at_end && written.parts.len() > 1;
+            let block = anchor.mass.filter(|_| distance > near || at_end).unwrap_or(0.0);
             if distance > near || block > 0.0 {
-                let to = anchor.at;
-                let is_beam = beam_size(live, body) > 0.0;
-                bars.push(Bar { body, from, to, block, main: !is_beam && anchor.mass.is_none() && distance > longest });
+                let main = beam == 0.0 && anchor.mass.is_none() && distance > longest;
+                bars.push(Bar { body, from, to, block, main });
                 segments.push([from, to]);
             }
         }
     }
     bars
+}
+
+/// The place on a segment that is nearest to a point, and where it is along the segment, from 0 to 1.
+fn nearest_on([from, to]: &Segment, point: Vector3<f64>) -> (Vector3<f64>, f64) {
+    let way = to - from;
+    let share = (point - from).dot(&way) / way.norm_squared().max(f64::MIN_POSITIVE);
+    let share = share.clamp(0.0, 1.0);
+    (from + share * way, share)
 }
 
 /// What is drawn of a body anyway.

@@ -318,7 +318,7 @@ fn section_places<'g>(model: &Model<'g>, beam: &Beam) -> Vec<Expr<'g>> {
     let length = elements.fold(model.zero(), |length, body| length + model.number(&body.length));
     let place = |section: &Section| match &section.slides {
         None => model.number(&section.x),
-        Some(sliding) => pads::place(model, sliding).1.clamp(model.zero(), model.number(&sliding.beam.length)),
+        Some(sliding) => pads::place_on_beam(model, sliding),
     };
     beam.sections.iter().flat_map(|section| [place(section), length]).collect()
 }
