@@ -130,11 +130,22 @@ impl<'a, 'g> AxisPoint<'a, 'g> {
         self.by_coordinate(|j, element| self.kinematics.generators[j].rotate(beyond[element]))
     }
 
+    /// The same for `Σ ∂e_k/∂s a_k`, and that sum.
+    pub fn turning_slopes(&self, axis: Axis) -> (Vec3<'g>, BTreeMap<usize, Vec3<'g>>) {
+        let beyond = self.axis_beyond(axis, true);
+        (beyond[0], self.by_coordinate(|j, element| self.kinematics.generators[j].rotate(beyond[element])))
+    }
+
     /// For every coordinate that moves the beam: from its index and the first element that it moves.
     fn by_coordinate(&self, slope: impl Fn(usize, usize) -> Vec3<'g>) -> BTreeMap<usize, Vec3<'g>> {
         let moving = self.model.chain.coordinates_of(self.axis.last()).into_iter();
-        let first = |CoordinateId(j): CoordinateId| self.model.chain.coordinates[j].body.0;
-        moving.map(|id| (id.0, slope(id.0, first(id).saturating_sub(self.axis.first.0)))).collect()
+        let body = |CoordinateId(j): CoordinateId| self.model.chain.coordinates[j].body.0;
+        moving.map(|id| (id.0, slope(id.0, self.first_moved(body(id))))).collect()
+    }
+
+    /// The first element that the joint of a body moves.
+    pub fn first_moved(&self, body: usize) -> usize {
+        body.saturating_sub(self.axis.first.0)
     }
 
     /// `∂e_k/∂s` of every element, 1/m.

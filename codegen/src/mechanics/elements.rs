@@ -1,14 +1,12 @@
 //! Forces whose law depends on one strain: `f = −Jᵀ F(s, ṡ)`.
 
-use std::collections::BTreeSet;
-
 use super::acts::{Acts, Rest};
 use super::kinematics::Kinematics;
 use super::laws::{At, Law, law};
 use super::model::Model;
 use super::strains::Strained;
 use super::vector::SymmetricMatrix;
-use crate::chain::{CoordinateId, Force, Group};
+use crate::chain::{Force, Group};
 use crate::symbolic::Expr;
 
 /// The forces of a group.
@@ -74,19 +72,15 @@ impl<'g> Acts<'g> for Elements<'_, 'g> {
         }))
     }
 
-    /// On single coordinates `∂F/∂s`, otherwise `−∂f/∂q`, since J depends on the pose.
+    /// `∂F/∂s Jᵀ J + F ∂²s/∂q∂q`: the stiffness of the material and, since J depends on the pose, that of the geometry.
     fn add_stiffness(&self, rest: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>) {
         let (at, model) = (At::rest(self.model, rest.t), self.model);
-        if self.forces.iter().all(|force| force.coordinate().is_some()) {
-            for Element { law, strained, .. } in self.all() {
-                let [stiffness, _] = law.slopes(at, strained.length, model.zero());
-                strained.add_square(stiffness, matrix);
-            }
-            return;
+        for Element { force, law, strained } in self.all() {
+            let [stiffness, _] = law.slopes(at, strained.length, model.zero());
+            strained.add_square(stiffness, matrix);
+            let tension = law.force(at, strained.length, model.zero());
+            strained.add_curvature((model, self.kinematics), &force.strain, tension, matrix);
         }
-        let read: BTreeSet<usize> =
-            self.forces.iter().flat_map(|force| model.chain.read_by(&force.strain)).map(|CoordinateId(j)| j).collect();
-        model.add_tangent(&self.at_rest(rest), &read, matrix);
     }
 
     fn add_damping(&self, rest: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>) {

@@ -19,7 +19,7 @@ use crate::symbolic::Expr;
 use super::axis_rotation::AxisRotation;
 use super::model::Model;
 use super::rotation_vector::RotationVector;
-use super::vector::{Rotation, Vec3};
+use super::vector::{Rotation, SymmetricMatrix, Vec3};
 
 /// A frame in the world.
 #[derive(Clone, Copy, Debug)]
@@ -104,6 +104,13 @@ impl<'g> Curvature<'g> {
     pub fn works(&self, torque: Vec3<'g>) -> [Expr<'g>; 6] {
         let local = self.pose.rotation.apply_transposed(torque);
         Self::PAIRS.map(|pair| self.vector.curvature_along(local, self.axes(pair)))
+    }
+
+    /// Adds [`works`](Self::works) at the entries of their coordinates.
+    pub fn add_works(&self, torque: Vec3<'g>, matrix: &mut SymmetricMatrix<'g>) {
+        for ((m, n), work) in Self::PAIRS.into_iter().zip(self.works(torque)) {
+            matrix.add(self.first + m, self.first + n, work);
+        }
     }
 }
 

@@ -5,7 +5,7 @@
 
 use super::acts::{Acts, Rest};
 use super::connectors;
-use super::kinematics::{Curvature, Kinematics};
+use super::kinematics::Kinematics;
 use super::model::Model;
 use super::place::{Along, Place, Pull};
 use super::profile;
@@ -61,9 +61,7 @@ impl<'g> Acts<'g> for Loads<'_, 'g> {
             for curvature in &self.kinematics.curvatures {
                 if model.chain.is_beyond(load.body, BodyId(curvature.body)) {
                     let torque = (at - curvature.pose.origin).cross(force) + moment;
-                    for ((m, n), work) in Curvature::PAIRS.into_iter().zip(curvature.works(torque)) {
-                        matrix.add(curvature.first + m, curvature.first + n, -work);
-                    }
+                    curvature.add_works(-torque, matrix);
                 }
             }
         }

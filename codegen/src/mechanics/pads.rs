@@ -12,12 +12,14 @@
 //! The first part counts if j moves the beam, the second if it moves the pad; if j moves both as one body, ℓ does not change. A tension of
 //! 1 N pulls the pad with n at P, and the beam with −n there; in twist, a moment `y × z` turns the pad, and its opposite the beam. A pad is frictionless: no force acts on what slides except through the directions of n.
 
+use std::collections::BTreeMap;
+
 use super::beam_axis::AxisPoint;
-use super::kinematics::Kinematics;
+use super::kinematics::{Generator, Kinematics};
 use super::model::Model;
 use super::place::{Along, Place, Pull};
 use super::strains::point;
-use super::vector::{Rotation, Vec3};
+use super::vector::{Rotation, SymmetricMatrix, Vec3};
 use crate::chain::{Axis, BodyId, CoordinateId, PadDirection, Sliding};
 use crate::symbolic::Expr;
 
@@ -52,12 +54,9 @@ impl<'g> AtPad<'g> {
             PadDirection::Along(axis) => along(model, kinematics, sliding, (axis, s)),
             PadDirection::Twist => twist(model, kinematics, sliding, s),
         };
-        let of_both = {
-            let (of_pad, of_beam) = (model.chain.reach(&sliding.pad), model.chain.coordinates_of(sliding.beam.first));
-            move |j: usize| of_pad.contains(&CoordinateId(j)) && of_beam.contains(&CoordinateId(j))
-        };
+        let movers = Movers::new(model, sliding);
         let mut jacobian = model.zeros();
-        for (j, slope) in by_beam.into_iter().chain(by_pad).filter(|(j, _)| !of_both(*j)) {
+        for (j, slope) in by_beam.into_iter().chain(by_pad).filter(|(j, _)| !movers.as_one(CoordinateId(*j))) {
             jacobian[j] = jacobian[j] + slope;
         }
         jacobian[slid] = jacobian[slid] + sign * by_place;
@@ -73,6 +72,157 @@ impl<'g> AtPad<'g> {
             .zip(here)
             .map(|(body, here)| (Place { body, along: Along::Pad(on) }, on_beam.times(here)));
         AtPad { length, jacobian, pulls: of_pad.into_iter().chain(of_beam).collect() }
+    }
+}
+
+/// A point or direction of a beam at a pad, and a direction of the pad, whose product is ℓ but for a constant of the pad.
+struct Product<'g> {
+    /// n or z.
+    of_pad: Vec3<'g>,
+    /// Whether what is measured is a point: then a motion of the pad moves it, else it only turns it.
+    is_point: bool,
+    /// P or y.
+    value: Vec3<'g>,
+    /// `∂P/∂q_j` or `∂y/∂q_j`.
+    slopes: BTreeMap<usize, Vec3<'g>>,
+    /// P′ or y′, and its slopes.
+    by_place: (Vec3<'g>, BTreeMap<usize, Vec3<'g>>),
+    /// P″, or none.
+    bend: Option<Vec3<'g>>,
+    /// `Σ_{k ≥ m} c_k x̂_k` or `Σ_{k ≥ m} e_k y_k`.
+    beyond: Vec<Vec3<'g>>,
+}
+
+impl<'g> Product<'g> {
+    fn new(model: &Model<'g>, kinematics: &Kinematics<'g>, sliding: &Sliding) -> Self {
+        let (_, s) = place(model, sliding);
+        let beam = AxisPoint::new(model, kinematics, &sliding.beam, s);
+        let axes = axes(model, kinematics, sliding);
+        match sliding.direction {
+            PadDirection::Along(axis) => Product {
+                of_pad: axes.axis(axis),
+                is_point: true,
+                value: beam.position(),
+                slopes: beam.position_slopes(),
+                by_place: (beam.direction(), beam.cross_axis_slopes(Axis::X)),
+                bend: Some(beam.turning_slopes(Axis::X).0),
+                beyond: beam.ways_beyond(),
+            },
+            PadDirection::Twist => Product {
+                of_pad: axes.axis(Axis::Z),
+                is_point: false,
+                value: beam.cross_axis(Axis::Y),
+                slopes: beam.cross_axis_slopes(Axis::Y),
+                by_place: beam.turning_slopes(Axis::Y),
+                bend: None,
+                beyond: beam.axis_beyond(Axis::Y, false),
+            },
+        }
+    }
+
+    /// What a generator makes of the value if it moves all of the beam.
+    fn moved(&self, generator: &Generator<'g>) -> Vec3<'g> {
+        if self.is_point { generator.velocity(self.value) } else { generator.rotate(self.value) }
+    }
+}
+
+/// Adds `F ∂²ℓ/∂q∂q`. With `b_j = ∂P/∂q_j` and `D_j = b_j − Ω_j P`, where the first counts if j moves the beam and the second if it moves the
+/// pad, and i ≤ j:
+///
+/// ```text
+/// ∂²ℓ/∂q_i∂q_j = ± ω_i · (b_j × n) − D_i · (n × ω_j)       + if i moves the beam, − if the pad; the second if j moves the pad
+/// ∂²ℓ/∂q_i∂q_k has also  ± (n · ∂P′/∂q_i − ω_i · (P′ × n)),    ∂²ℓ/∂q_k² twice that, and n · P″
+/// ```
+///
+/// and the same in twist with z, y and y′ in place of n, P and P′; y″ is zero.
+pub fn add_curvature<'g>(
+    (model, kinematics): (&Model<'g>, &Kinematics<'g>),
+    sliding: &Sliding,
+    tension: Expr<'g>,
+    matrix: &mut SymmetricMatrix<'g>,
+) {
+    let product = Product::new(model, kinematics, sliding);
+    let (normal, (by_place, by_place_slopes)) = (tension * product.of_pad, &product.by_place);
+    let both = Movers::new(model, sliding);
+    let zero = Vec3::zero(model.graph);
+    let relative = |CoordinateId(j): CoordinateId| {
+        let (beam, pad) = (both.beam(j), both.pad(j));
+        let of_beam = if beam { product.slopes[&j] } else { zero };
+        let of_pad = if pad { product.moved(&kinematics.generators[j]) } else { zero };
+        (j, [beam, pad], of_beam, of_beam - of_pad)
+    };
+    let changing: Vec<_> = model.chain.changing_at(sliding).into_iter().map(relative).collect();
+    for (at, (j, [on_beam, on_pad], of_beam, _)) in changing.iter().enumerate() {
+        let (turning, turned) = (of_beam.cross(normal), normal.cross(kinematics.generators[*j].omega));
+        for (i, [other_on_beam, other_on_pad], _, relative) in &changing[..=at] {
+            let mut second = model.zero();
+            if *on_beam && other_on_beam != other_on_pad {
+                let work = kinematics.generators[*i].omega.dot(turning);
+                second = if *other_on_beam { work } else { -work };
+            }
+            if *on_pad {
+                second = second - relative.dot(turned);
+            }
+            matrix.add(*i, *j, second);
+        }
+    }
+    let (sign, k) = (if sliding.grows { 1.0 } else { -1.0 }, sliding.coordinate.0);
+    let turning = by_place.cross(normal);
+    for &(i, [on_beam, on_pad], ..) in &changing {
+        let of_beam = if on_beam { normal.dot(by_place_slopes[&i]) } else { model.zero() };
+        let of_pad = if on_pad { kinematics.generators[i].omega.dot(turning) } else { model.zero() };
+        let second = sign * (of_beam - of_pad);
+        matrix.add(i.min(k), i.max(k), if i == k { 2.0 * second } else { second });
+    }
+    if let Some(bend) = product.bend {
+        matrix.add(k, k, normal.dot(bend));
+    }
+    let axis = AxisPoint::new(model, kinematics, &sliding.beam, model.zero());
+    for (first, [on_beam, on_pad], ..) in changing {
+        let Some(curvature) = kinematics.curvatures.iter().find(|curvature| curvature.first == first) else { continue };
+        // The moments about the joint's point with which a force or moment along n turns what the joint moves.
+        let lever = |point: Vec3<'g>| if product.is_point { point - curvature.pose.origin } else { point };
+        let mut torque = zero;
+        if on_beam {
+            let moved = match axis.first_moved(curvature.body) {
+                0 => lever(product.value),
+                element => product.beyond[element],
+            };
+            torque = torque + moved.cross(normal);
+        }
+        if on_pad {
+            torque = torque - lever(product.value).cross(normal);
+        }
+        curvature.add_works(torque, matrix);
+    }
+}
+
+/// Which coordinates move the beam and which the pad; those that move both as one body count as neither.
+struct Movers {
+    beam: Vec<CoordinateId>,
+    pad: Vec<CoordinateId>,
+    whole_beam: Vec<CoordinateId>,
+}
+
+impl Movers {
+    fn new(model: &Model<'_>, sliding: &Sliding) -> Self {
+        Movers {
+            beam: model.chain.coordinates_of(sliding.beam.last()),
+            pad: model.chain.reach(&sliding.pad),
+            whole_beam: model.chain.coordinates_of(sliding.beam.first),
+        }
+    }
+
+    fn as_one(&self, id: CoordinateId) -> bool {
+        self.pad.contains(&id) && self.whole_beam.contains(&id)
+    }
+
+    fn beam(&self, j: usize) -> bool {
+        self.beam.contains(&CoordinateId(j)) && !self.as_one(CoordinateId(j))
+    }
+
+    fn pad(&self, j: usize) -> bool {
+        self.pad.contains(&CoordinateId(j)) && !self.as_one(CoordinateId(j))
     }
 }
 

@@ -5,16 +5,19 @@
 //!   `u_i = m_i (p_{i+1} − p_i)/|p_{i+1} − p_i|`. `J_j = ∂ℓ/∂q_j = Σ u_i · (∂p_{i+1}/∂q_j − ∂p_i/∂q_j)`, summed over the parts of which
 //!   j moves only one end: if it moves both, their distance stays the same. `ℓ̇ = J q̇`. For a coupling `ℓ = q_j − r q_i`, `J_j = 1`,
 //!   `J_i = −r`.
+//! : `∂²ℓ/∂q_i∂q_j` of a part that i and j change, with its distance d and `C_j` the velocity of its second end relative to its first at unit
+//!   rate of j, is `m (C_i · C_j − (u · C_i)(u · C_j))/d`, and in addition `ω_i · (C_j × u)` if i and j move the same end, i ≤ j: one loop over pairs of
+//!   coordinates, a few multiplications per entry.
 //! : for a beam as seen from a pad: [`pads`](super::pads); for a pin that turns: [`turning`](super::turning).
 
 use std::collections::BTreeMap;
 
 use super::kinematics::{Kinematics, Pose};
 use super::model::Model;
-use super::pads::AtPad;
+use super::pads::{self, AtPad};
 use super::place::{Along, Place, Pull};
 use super::turning::Turned;
-use super::vector::Vec3;
+use super::vector::{SymmetricMatrix, Vec3};
 use crate::chain::{Attachment, BodyId, CoordinateId, Line, LinePart, Strain};
 use crate::symbolic::Expr;
 
@@ -99,10 +102,39 @@ impl<'g> Strained<'g> {
     }
 
     /// Adds `c Jᵀ J`.
-    pub fn add_square(&self, c: Expr<'g>, matrix: &mut super::vector::SymmetricMatrix<'g>) {
+    pub fn add_square(&self, c: Expr<'g>, matrix: &mut SymmetricMatrix<'g>) {
         for (place, &(j, one)) in self.jacobian.iter().enumerate() {
             for &(i, other) in &self.jacobian[..=place] {
                 matrix.add(i, j, c * one * other);
+            }
+        }
+    }
+
+    /// Adds `F ∂²ℓ/∂q∂q`.
+    pub fn add_curvature(
+        &self,
+        (model, kinematics): (&Model<'g>, &Kinematics<'g>),
+        strain: &Strain,
+        tension: Expr<'g>,
+        matrix: &mut SymmetricMatrix<'g>,
+    ) {
+        match strain {
+            Strain::Coordinate(_) | Strain::Coupling { .. } => {}
+            Strain::Line(line) => {
+                for (part, ends) in line.parts().zip(self.points.windows(2)) {
+                    let tension = f64::from(part.falls) * tension;
+                    add_curvature_of_part((model, kinematics), (part, [ends[0], ends[1]]), tension, matrix);
+                }
+            }
+            Strain::Sliding(sliding) => pads::add_curvature((model, kinematics), sliding, tension, matrix),
+            Strain::Turning(_) => {
+                let slopes: Vec<_> = self.jacobian.iter().map(|(_, slope)| *slope).collect();
+                for (place, &(j, _)) in self.jacobian.iter().enumerate() {
+                    let by_j = model.graph.derivatives(&slopes[..=place], model.q[j]);
+                    for (&(i, _), second) in self.jacobian.iter().zip(by_j) {
+                        matrix.add(i, j, tension * second);
+                    }
+                }
             }
         }
     }
@@ -122,6 +154,44 @@ impl<'g> Strained<'g> {
             Some((place, Pull::of_force(*point, pull?)))
         };
         line.points.iter().zip(&self.points).zip(sums).filter_map(of_point).collect()
+    }
+}
+
+/// Adds `F ∂²d/∂q∂q` of the distance d between the ends of a part.
+fn add_curvature_of_part<'g>(
+    (model, kinematics): (&Model<'g>, &Kinematics<'g>),
+    (part, ends): (LinePart<'_>, [Vec3<'g>; 2]),
+    tension: Expr<'g>,
+    matrix: &mut SymmetricMatrix<'g>,
+) {
+    let way = ends[1] - ends[0];
+    let distance = way.dot(way).sqrt();
+    let (unit, across) = ((1.0 / distance) * way, tension / distance);
+    let of_second = model.chain.reach(part.ends[1]);
+    let pulled = tension * unit;
+    // Whether a coordinate moves the second end, and the velocity of its end relative to the other.
+    let moved = |id: CoordinateId| {
+        let generator = &kinematics.generators[id.0];
+        let on_second = of_second.contains(&id);
+        (id.0, on_second, if on_second { generator.velocity(ends[1]) } else { -generator.velocity(ends[0]) })
+    };
+    let changing: Vec<_> = model.chain.changing(part).into_iter().map(moved).collect();
+    for (place, (j, on_second, velocity)) in changing.iter().enumerate() {
+        let turned = across * (*velocity - unit.dot(*velocity) * unit);
+        let turning = velocity.cross(pulled);
+        for (i, other_on_second, other) in &changing[..=place] {
+            let mut second = other.dot(turned);
+            if on_second == other_on_second {
+                second = second + kinematics.generators[*i].omega.dot(turning);
+            }
+            matrix.add(*i, *j, second);
+        }
+    }
+    for (j, on_second, _) in changing {
+        if let Some(curvature) = kinematics.curvatures.iter().find(|curvature| curvature.first == j) {
+            let [end, force] = if on_second { [ends[1], pulled] } else { [ends[0], -pulled] };
+            curvature.add_works((end - curvature.pose.origin).cross(force), matrix);
+        }
     }
 }
 
