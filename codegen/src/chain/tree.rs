@@ -14,6 +14,13 @@ impl Chain {
         path
     }
 
+    /// The last body that carries both of two, or is one of them; `None` for the world.
+    #[must_use]
+    pub fn meeting(&self, bodies: [Option<BodyId>; 2]) -> Option<BodyId> {
+        let [one, other] = bodies.map(|body| body.map_or_else(Vec::new, |body| self.path(body)));
+        one.into_iter().zip(other).take_while(|(one, other)| one == other).last().map(|(body, _)| body)
+    }
+
     /// The coordinates that move a body, in the order of q.
     #[must_use]
     pub fn coordinates_of(&self, body: BodyId) -> Vec<CoordinateId> {

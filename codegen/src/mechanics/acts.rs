@@ -1,6 +1,7 @@
 //! What every kind of force is asked for.
 
 use super::model::Model;
+use super::tangent::Tangent;
 use super::vector::SymmetricMatrix;
 use crate::symbolic::Expr;
 
@@ -38,7 +39,7 @@ pub trait Acts<'g> {
     }
 
     /// Adds the tangent stiffness at rest, `∂²E/∂q∂q`, without that of oil, which follows from its volumes.
-    fn add_stiffness(&self, rest: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>);
+    fn add_stiffness(&self, rest: &Rest<'g>, tangent: &mut Tangent<'_, 'g>);
 
     /// Adds the damping at rest, `−∂f/∂q̇`.
     fn add_damping(&self, _rest: &Rest<'g>, _matrix: &mut SymmetricMatrix<'g>) {}

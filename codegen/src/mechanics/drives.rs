@@ -8,6 +8,7 @@ use super::model::Model;
 use super::power_limits::delivered;
 use super::profile;
 use super::saturation::Saturation;
+use super::tangent::Tangent;
 use super::vector::SymmetricMatrix;
 use crate::chain::{Drive, Value};
 use crate::symbolic::Expr;
@@ -56,7 +57,7 @@ impl<'g> Acts<'g> for Drives<'_, 'g> {
         }))
     }
 
-    fn add_stiffness(&self, rest: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    fn add_stiffness(&self, rest: &Rest<'g>, Tangent { matrix, .. }: &mut Tangent<'_, 'g>) {
         matrix.add_diagonal(linear(self.model).map(|(drive, s, _)| (drive.coordinate.0, self.model.number(s))));
         self.add_limited(rest, |drive| drive.1, matrix);
     }

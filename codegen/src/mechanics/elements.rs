@@ -5,6 +5,7 @@ use super::kinematics::Kinematics;
 use super::laws::{At, Law, law};
 use super::model::Model;
 use super::strains::Strained;
+use super::tangent::Tangent;
 use super::vector::SymmetricMatrix;
 use crate::chain::{Force, Group};
 use crate::symbolic::Expr;
@@ -73,13 +74,12 @@ impl<'g> Acts<'g> for Elements<'_, 'g> {
     }
 
     /// `∂F/∂s Jᵀ J + F ∂²s/∂q∂q`: the stiffness of the material and, since J depends on the pose, that of the geometry.
-    fn add_stiffness(&self, rest: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    fn add_stiffness(&self, rest: &Rest<'g>, tangent: &mut Tangent<'_, 'g>) {
         let (at, model) = (At::rest(self.model, rest.t), self.model);
         for Element { force, law, strained } in self.all() {
             let [stiffness, _] = law.slopes(at, strained.length, model.zero());
-            strained.add_square(stiffness, matrix);
             let tension = law.force(at, strained.length, model.zero());
-            strained.add_curvature((model, self.kinematics), &force.strain, tension, matrix);
+            strained.add_tangent((model, self.kinematics), &force.strain, [tension, stiffness], tangent);
         }
     }
 

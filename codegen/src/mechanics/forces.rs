@@ -10,6 +10,7 @@ use super::kinematics::Kinematics;
 use super::loads::Loads;
 use super::model::Model;
 use super::supports::Supports;
+use super::tangent::Tangent;
 use super::vector::SymmetricMatrix;
 use crate::chain::{Chain, Group};
 use crate::symbolic::Expr;
@@ -103,11 +104,9 @@ impl<'a, 'g> Forces<'a, 'g> {
         self.each().filter_map(|forces| forces.dissipation()).fold(self.model.zero(), |sum, power| sum + power)
     }
 
-    /// Tangent stiffness of all kinds at rest, without that of oil.
-    pub fn stiffness(&self, rest: &Rest<'g>) -> SymmetricMatrix<'g> {
-        let mut matrix = self.zero_matrix();
-        self.each().for_each(|forces| forces.add_stiffness(rest, &mut matrix));
-        matrix
+    /// Adds the tangent stiffness of all kinds at rest, without that of oil.
+    pub fn add_stiffness(&self, rest: &Rest<'g>, tangent: &mut Tangent<'_, 'g>) {
+        self.each().for_each(|forces| forces.add_stiffness(rest, tangent));
     }
 
     /// Damping of all kinds at rest.

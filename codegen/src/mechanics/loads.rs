@@ -10,7 +10,8 @@ use super::model::Model;
 use super::place::{Along, Place, Pull};
 use super::profile;
 use super::twist::Twist;
-use super::vector::{SymmetricMatrix, Vec3};
+use super::tangent::Tangent;
+use super::vector::Vec3;
 use crate::chain::{BodyId, CoordinateId, Load, LoadAxes, Profile, Value};
 use crate::symbolic::Expr;
 
@@ -36,9 +37,9 @@ impl<'g> Acts<'g> for Loads<'_, 'g> {
     /// and the contribution of curvatures: three multiplications per entry from two vectors per coordinate. For a force along fixed axes `∂f/∂q` is
     /// symmetric; for a moment, and for a force that turns with its link, it is not, and there is no potential. The latter adds
     /// `∂F/∂q_i = ω_i × F`, `½ ω_i · (J_j × F) + ½ ω_j · (J_i × F)`; the moment's, `½ (ω_i × M) · ω_j + ½ (ω_j × M) · ω_i`, is zero.
-    fn add_stiffness(&self, rest: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    fn add_stiffness(&self, rest: &Rest<'g>, tangent: &mut Tangent<'_, 'g>) {
         let (model, generators) = (self.model, &self.kinematics.generators);
-        let half = model.graph.constant(0.5);
+        let (half, zero) = (model.graph.constant(0.5), Vec3::zero(model.graph));
         for load in &model.chain.loads {
             let Applied { at, force, moment } = applied(model, self.kinematics, load, rest.t);
             let path = model.chain.coordinates_of(load.body);
@@ -50,18 +51,17 @@ impl<'g> Acts<'g> for Loads<'_, 'g> {
                     LoadAxes::Link => half * turning(*j),
                 };
                 let torque = torque + half * moving.omega.cross(moment);
-                for CoordinateId(i) in &path[..=place] {
-                    let mut work = generators[*i].omega.dot(torque);
-                    if load.axes == LoadAxes::Link {
-                        work = work - 0.5 * moving.omega.dot(turning(*i));
+                tangent.add(*j, [Some(BodyId(moving.body)), None], [zero, -torque]);
+                if load.axes == LoadAxes::Link {
+                    for CoordinateId(i) in &path[..=place] {
+                        tangent.matrix.add(*i, *j, 0.5 * moving.omega.dot(turning(*i)));
                     }
-                    matrix.add(*i, *j, -work);
                 }
             }
             for curvature in &self.kinematics.curvatures {
                 if model.chain.is_beyond(load.body, BodyId(curvature.body)) {
                     let torque = (at - curvature.pose.origin).cross(force) + moment;
-                    curvature.add_works(-torque, matrix);
+                    curvature.add_works(-torque, &mut tangent.matrix);
                 }
             }
         }

@@ -43,6 +43,7 @@ mod rotors;
 mod saturation;
 mod strains;
 mod supports;
+mod tangent;
 #[cfg(test)]
 mod tests;
 mod transforms;

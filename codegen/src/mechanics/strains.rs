@@ -6,16 +6,17 @@
 //!   j moves only one end: if it moves both, their distance stays the same. `ℓ̇ = J q̇`. For a coupling `ℓ = q_j − r q_i`, `J_j = 1`,
 //!   `J_i = −r`.
 //! : `∂²ℓ/∂q_i∂q_j` of a part that i and j change, with its distance d and `C_j` the velocity of its second end relative to its first at unit
-//!   rate of j, is `m (C_i · C_j − (u · C_i)(u · C_j))/d`, and in addition `ω_i · (C_j × u)` if i and j move the same end, i ≤ j: one loop over pairs of
-//!   coordinates, a few multiplications per entry.
+//!   rate of j, is `m (C_i · C_j − (u · C_i)(u · C_j))/d`, and in addition `m ω_i · (C_j × u)` if i and j move the same end, i ≤ j: j turns and moves the
+//!   forces at both ends, which i meets as in every [tangent](super::tangent).
 //! : for a beam as seen from a pad: [`pads`](super::pads); for a pin that turns: [`turning`](super::turning).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::kinematics::{Kinematics, Pose};
 use super::model::Model;
 use super::pads::{self, AtPad};
 use super::place::{Along, Place, Pull};
+use super::tangent::Tangent;
 use super::turning::Turned;
 use super::vector::{SymmetricMatrix, Vec3};
 use crate::chain::{Attachment, BodyId, CoordinateId, Line, LinePart, Strain};
@@ -110,22 +111,29 @@ impl<'g> Strained<'g> {
         }
     }
 
-    /// Adds `F ∂²ℓ/∂q∂q`.
-    pub fn add_curvature(
+    /// Adds `∂F/∂ℓ Jᵀ J + F ∂²ℓ/∂q∂q` of a force with the tension F: the stiffness of the material and, since J depends on the pose, that of the
+    /// geometry.
+    pub fn add_tangent(
         &self,
         (model, kinematics): (&Model<'g>, &Kinematics<'g>),
         strain: &Strain,
-        tension: Expr<'g>,
-        matrix: &mut SymmetricMatrix<'g>,
+        [tension, slope]: [Expr<'g>; 2],
+        tangent: &mut Tangent<'_, 'g>,
     ) {
-        match strain {
-            Strain::Coordinate(_) | Strain::Coupling { .. } => {}
-            Strain::Line(line) => {
-                for (part, ends) in line.parts().zip(self.points.windows(2)) {
-                    let tension = f64::from(part.falls) * tension;
-                    add_curvature_of_part((model, kinematics), (part, [ends[0], ends[1]]), tension, matrix);
+        if let Strain::Line(line) = strain {
+            for ((part, ends), pull) in line.parts().zip(self.points.windows(2)).zip(&self.pulls) {
+                let part = Part::new((model, kinematics), part, [ends[0], ends[1]]);
+                for &(j, column) in &self.jacobian {
+                    part.add(j, slope * column * *pull, tangent);
                 }
+                part.add_curvature((model, kinematics), tension, tangent);
             }
+            return;
+        }
+        let matrix = &mut tangent.matrix;
+        self.add_square(slope, matrix);
+        match strain {
+            Strain::Coordinate(_) | Strain::Coupling { .. } | Strain::Line(_) => {}
             Strain::Sliding(sliding) => pads::add_curvature((model, kinematics), sliding, tension, matrix),
             Strain::Turning(_) => {
                 let slopes: Vec<_> = self.jacobian.iter().map(|(_, slope)| *slope).collect();
@@ -157,40 +165,66 @@ impl<'g> Strained<'g> {
     }
 }
 
-/// Adds `F ∂²d/∂q∂q` of the distance d between the ends of a part.
-fn add_curvature_of_part<'g>(
-    (model, kinematics): (&Model<'g>, &Kinematics<'g>),
-    (part, ends): (LinePart<'_>, [Vec3<'g>; 2]),
-    tension: Expr<'g>,
-    matrix: &mut SymmetricMatrix<'g>,
-) {
-    let way = ends[1] - ends[0];
-    let distance = way.dot(way).sqrt();
-    let (unit, across) = ((1.0 / distance) * way, tension / distance);
-    let of_second = model.chain.reach(part.ends[1]);
-    let pulled = tension * unit;
-    // Whether a coordinate moves the second end, and the velocity of its end relative to the other.
-    let moved = |id: CoordinateId| {
-        let generator = &kinematics.generators[id.0];
-        let on_second = of_second.contains(&id);
-        (id.0, on_second, if on_second { generator.velocity(ends[1]) } else { -generator.velocity(ends[0]) })
-    };
-    let changing: Vec<_> = model.chain.changing(part).into_iter().map(moved).collect();
-    for (place, (j, on_second, velocity)) in changing.iter().enumerate() {
-        let turned = across * (*velocity - unit.dot(*velocity) * unit);
-        let turning = velocity.cross(pulled);
-        for (i, other_on_second, other) in &changing[..=place] {
-            let mut second = other.dot(turned);
-            if on_second == other_on_second {
-                second = second + kinematics.generators[*i].omega.dot(turning);
-            }
-            matrix.add(*i, *j, second);
+/// A straight part of a line at the present pose.
+struct Part<'g> {
+    falls: u32,
+    ends: [Vec3<'g>; 2],
+    /// The bodies of the ends, and the last one that carries both.
+    bodies: [Option<BodyId>; 2],
+    meeting: Option<BodyId>,
+    /// The coordinates that change it: whether each moves the second end, and the velocity of its second end relative to the first.
+    changing: Vec<(usize, bool, Vec3<'g>)>,
+}
+
+impl<'g> Part<'g> {
+    fn new(
+        (model, kinematics): (&Model<'g>, &Kinematics<'g>),
+        part: LinePart<'_>,
+        ends: [Vec3<'g>; 2],
+    ) -> Self {
+        let bodies = part.ends.map(|end| end.body);
+        let of_second: BTreeSet<CoordinateId> = model.chain.reach(part.ends[1]).into_iter().collect();
+        let moved = |id: CoordinateId| {
+            let (generator, on_second) = (&kinematics.generators[id.0], of_second.contains(&id));
+            (id.0, on_second, if on_second { generator.velocity(ends[1]) } else { -generator.velocity(ends[0]) })
+        };
+        Part {
+            falls: part.falls,
+            ends,
+            bodies,
+            meeting: model.chain.meeting(bodies),
+            changing: model.chain.changing(part).into_iter().map(moved).collect(),
         }
     }
-    for (j, on_second, _) in changing {
-        if let Some(curvature) = kinematics.curvatures.iter().find(|curvature| curvature.first == j) {
-            let [end, force] = if on_second { [ends[1], pulled] } else { [ends[0], -pulled] };
-            curvature.add_works((end - curvature.pose.origin).cross(force), matrix);
+
+    /// Adds to `S_j` a force on the second end, and its opposite on the first.
+    fn add(&self, j: usize, force: Vec3<'g>, tangent: &mut Tangent<'_, 'g>) {
+        for ((body, end), force) in self.bodies.into_iter().zip(self.ends).zip([-force, force]) {
+            tangent.add(j, [body, self.meeting], [force, end.cross(force)]);
+        }
+    }
+
+    /// Adds `F ∂²d/∂q∂q` of its distance d.
+    fn add_curvature(
+        &self,
+        (model, kinematics): (&Model<'g>, &Kinematics<'g>),
+        tension: Expr<'g>,
+        tangent: &mut Tangent<'_, 'g>,
+    ) {
+        let way = self.ends[1] - self.ends[0];
+        let distance = way.dot(way).sqrt();
+        let tension = f64::from(self.falls) * tension;
+        let (unit, across) = ((1.0 / distance) * way, tension / distance);
+        let pull = tension * unit;
+        let none = Vec3::zero(model.graph);
+        for &(j, on_second, velocity) in &self.changing {
+            self.add(j, across * (velocity - unit.dot(velocity) * unit), tangent);
+            let body = self.bodies[usize::from(on_second)];
+            tangent.add(j, [body, self.meeting], [none, velocity.cross(pull)]);
+            if let Some(curvature) = kinematics.curvatures.iter().find(|curvature| curvature.first == j) {
+                let [end, force] = if on_second { [self.ends[1], pull] } else { [self.ends[0], -pull] };
+                curvature.add_works((end - curvature.pose.origin).cross(force), &mut tangent.matrix);
+            }
         }
     }
 }

@@ -15,6 +15,7 @@ use super::acts::{Acts, Rest};
 use super::contact::Contact;
 use super::kinematics::Kinematics;
 use super::model::Model;
+use super::tangent::Tangent;
 use super::vector::{Rotation, Symmetric3, SymmetricMatrix, Vec3};
 
 /// The supports of the base.
@@ -43,7 +44,8 @@ impl<'g> Acts<'g> for Supports<'_, 'g> {
     }
 
     /// `J_iᵀ (−∂f/∂e) J_j − f · Ω_i Ω_j T r_E` at rest; linear kinematics have no second term.
-    fn add_stiffness(&self, _: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    fn add_stiffness(&self, _: &Rest<'g>, tangent: &mut Tangent<'_, 'g>) {
+        let matrix = &mut tangent.matrix;
         add_stiffness(self.model, self.kinematics, &self.model.zeros(), Stretched::tangent, matrix);
     }
 

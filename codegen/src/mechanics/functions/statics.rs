@@ -5,6 +5,7 @@ use crate::chain::CoordinateId;
 use crate::mechanics::acts::Rest;
 use crate::mechanics::columns::columns;
 use crate::mechanics::forces::{Kind, rest_at_start};
+use crate::mechanics::tangent::Tangent;
 use crate::mechanics::vector::SymmetricMatrix;
 use crate::mechanics::{cylinders, gravity};
 use crate::program::{Function, FunctionId, Shape};
@@ -55,9 +56,10 @@ impl<'g> Derivation<'g> {
 
     /// The stiffness without that of hydraulic drives, which follows from their oil volumes.
     fn stiffness(&self, rest: &Rest<'g>) -> SymmetricMatrix<'g> {
-        let mut matrix = self.forces().stiffness(rest);
-        gravity::stiffness(&self.model, &self.kinematics, &self.inertias, &mut matrix);
-        matrix
+        let mut tangent = Tangent::new(&self.model, &self.kinematics);
+        self.forces().add_stiffness(rest, &mut tangent);
+        gravity::add_stiffness(&self.model, &self.kinematics, &self.inertias, &mut tangent);
+        tangent.into_matrix(&self.model)
     }
 
     pub(super) fn linearise(&self) -> Function {
