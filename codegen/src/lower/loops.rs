@@ -1,6 +1,6 @@
 //! Loops: the values that they take, pass from iteration to iteration, and leave.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use super::SweepPosition;
 use crate::program::{Argument, Function};
@@ -84,7 +84,7 @@ pub struct Loop {
     /// Slots of the result, and their values.
     pub results: Vec<(Progression, ExprId)>,
     /// The position of each expression of the first visit in the loop.
-    pub(super) body: HashMap<ExprId, ExprId>,
+    pub(super) body: FxHashMap<ExprId, ExprId>,
 }
 
 /// A function with loops.

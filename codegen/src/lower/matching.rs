@@ -1,6 +1,6 @@
 //! Compares two visits operation by operation.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use crate::program::Program;
 
@@ -10,10 +10,10 @@ use crate::symbolic::{ExprId, Op};
 #[derive(Clone, Debug, Default)]
 pub(super) struct Match {
     /// Its expression for each expression of the first visit.
-    pub nodes: HashMap<ExprId, ExprId>,
+    pub nodes: FxHashMap<ExprId, ExprId>,
     /// Its operands from outside the visit, by the first visit's expression and the operand's index.
-    pub outside: HashMap<(ExprId, usize), ExprId>,
-    templates: HashMap<ExprId, ExprId>,
+    pub outside: FxHashMap<(ExprId, usize), ExprId>,
+    templates: FxHashMap<ExprId, ExprId>,
 }
 
 impl Match {
@@ -35,9 +35,9 @@ pub(super) fn matched(
     }
     let mut found = Match::default();
     // The previous partner of an operand from outside the visit.
-    let mut known: HashMap<ExprId, ExprId> = HashMap::new();
+    let mut known: FxHashMap<ExprId, ExprId> = FxHashMap::default();
     let mut stack: Vec<(ExprId, ExprId)> = expected.iter().copied().zip(others.iter().copied()).rev().collect();
-    let asked: HashMap<ExprId, ExprId> = stack.iter().copied().collect();
+    let asked: FxHashMap<ExprId, ExprId> = stack.iter().copied().collect();
     while let Some((a, b)) = stack.pop() {
         if let Some(paired) = found.nodes.get(&a) {
             if *paired != b {

@@ -7,7 +7,7 @@ mod longest_chain;
 mod product;
 mod shape;
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use crate::symbolic::{ExprId, Graph, Nodes, Op, SweepTrace, SymbolId};
 
@@ -24,9 +24,9 @@ pub struct Program {
     /// All operations, operands before their users.
     pub operations: Vec<Op>,
     /// The position of each operation.
-    pub index: HashMap<Op, ExprId>,
+    pub index: FxHashMap<Op, ExprId>,
     /// Names that the model gives to some of them.
-    pub names: HashMap<ExprId, String>,
+    pub names: FxHashMap<ExprId, String>,
     /// Inputs; [`SymbolId`] is the index in this list.
     pub symbols: Vec<Symbol>,
     /// The functions, in the order in which they are printed.

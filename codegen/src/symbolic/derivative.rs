@@ -1,5 +1,7 @@
 //! Derivatives of expressions with respect to a symbol, operation by operation.
 
+use rustc_hash::{FxHashMap, FxHashSet};
+
 use super::Expr;
 use super::graph::Graph;
 use super::op::{ExprId, Op};
@@ -39,28 +41,35 @@ impl Graph {
         let zero = self.constant(0.0);
         // Expressions with a smaller id than all inputs cannot depend on them.
         let first = by.iter().map(|x| x.id().index()).min().unwrap_or(0);
-        let last = of.iter().map(|f| f.id().index() + 1).max().unwrap_or(0);
-        let mut needed = vec![false; last];
-        for f in of {
-            needed[f.id().index()] = true;
+        let mut known: FxHashMap<ExprId, Expr<'g>> = FxHashMap::default();
+        for (x, change) in by.iter().zip(changes).filter(|(_, change)| !change.is_zero()) {
+            known.insert(x.id(), *change);
         }
-        for id in (first..last).rev().map(ExprId::at) {
-            if needed[id.index()] {
-                self.op(id).operands().for_each(|operand| needed[operand.index()] = true);
-            }
-        }
-        let mut known: Vec<Option<Expr<'g>>> = vec![None; last];
-        for (x, change) in by.iter().zip(changes).filter(|(x, _)| x.id().index() < last) {
-            known[x.id().index()] = (!change.is_zero()).then_some(*change);
-        }
-        for id in (first..last).map(ExprId::at).filter(|id| needed[id.index()]) {
-            let of = |operand: ExprId| known[operand.index()];
+        for id in self.between(first, of) {
+            let of = |operand: ExprId| known.get(&operand).copied();
             if self.op(id).operands().any(|operand| of(operand).is_some()) {
                 let change = rule(id, &|operand| of(operand).unwrap_or(zero));
-                known[id.index()] = (!change.is_zero()).then_some(change);
+                if !change.is_zero() {
+                    known.insert(id, change);
+                }
             }
         }
-        of.iter().map(|f| known[f.id().index()].unwrap_or(zero)).collect()
+        of.iter().map(|f| known.get(&f.id()).copied().unwrap_or(zero)).collect()
+    }
+
+    /// What expressions are made of, from a position on, operands before their users: as many steps as there are such nodes, however large the
+    /// graph is.
+    fn between(&self, first: usize, of: &[Expr<'_>]) -> Vec<ExprId> {
+        let mut waiting: Vec<ExprId> = of.iter().map(|f| f.id()).collect();
+        let mut seen = FxHashSet::default();
+        while let Some(id) = waiting.pop() {
+            if id.index() >= first && seen.insert(id) {
+                waiting.extend(self.op(id).operands());
+            }
+        }
+        let mut nodes: Vec<ExprId> = seen.into_iter().collect();
+        nodes.sort_unstable();
+        nodes
     }
 
     /// The derivative of a node from those of its operands.

@@ -1,7 +1,8 @@
 //! Hash-consed expression graph: every distinct expression exists once.
 
 use std::cell::RefCell;
-use std::collections::HashMap;
+
+use rustc_hash::FxHashMap;
 
 use super::op::{Constant, ExprId, Op, SymbolId};
 use super::trace::Recorder;
@@ -24,9 +25,9 @@ pub struct Nodes {
     /// All operations, operands before their users.
     pub operations: Vec<Op>,
     /// The position of each operation.
-    pub index: HashMap<Op, ExprId>,
+    pub index: FxHashMap<Op, ExprId>,
     /// Names that the model gives to some of them.
-    pub names: HashMap<ExprId, String>,
+    pub names: FxHashMap<ExprId, String>,
 }
 
 impl Graph {

@@ -1,6 +1,6 @@
 //! Replacing symbols by expressions.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use super::Expr;
 use super::graph::Graph;
@@ -13,7 +13,7 @@ impl Graph {
         self.expr(self.substituted(of.id(), &mut known))
     }
 
-    fn substituted(&self, id: ExprId, known: &mut HashMap<ExprId, ExprId>) -> ExprId {
+    fn substituted(&self, id: ExprId, known: &mut FxHashMap<ExprId, ExprId>) -> ExprId {
         if let Some(known) = known.get(&id) {
             return *known;
         }

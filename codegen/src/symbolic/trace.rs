@@ -1,6 +1,6 @@
 //! The expressions that a sweep over the bodies of a chain requests, body by body: lowering looks for repeated work here.
 
-use std::collections::HashSet;
+use rustc_hash::FxHashSet;
 
 use super::graph::Graph;
 use super::op::ExprId;
@@ -39,7 +39,7 @@ pub struct Visit {
 #[derive(Debug, Default)]
 pub(super) struct Recorder {
     trace: SweepTrace,
-    seen: HashSet<ExprId>,
+    seen: FxHashSet<ExprId>,
     sweeps: usize,
     at_a_body: bool,
 }

@@ -5,11 +5,13 @@
 //! so that the page can draw any pose, exaggerated and modal ones too. Three coordinates that turn by a rotation vector ρ
 //! share one factor, `exp(ξ_i ρ_1 + ξ_j ρ_2 + ξ_k ρ_3)`, with screws at ρ = 0: q⁰ is the pose with these at zero.
 
-use crane_codegen::chain::{BodyId, CoordinateId, Cylinder, Linkage, Pin, Point, Stage, Value as Number};
+use crane_codegen::chain::{
+    BodyId, Coordinate, CoordinateId, CoordinateKind, Cylinder, Linkage, Pin, Point, Stage, Value as Number,
+};
 use crane_live::LiveCrane;
 use crane_model::{
     AttachmentInfo, BodyInfo, CoordinateRole, Description, Tree,
-    dyn_crane::{DynCrane, DynDerivatives, DynModel},
+    dyn_crane::{DynCrane, DynModel},
 };
 use nalgebra::{Matrix4, Vector3};
 use serde_json::{Value, json};
@@ -60,7 +62,7 @@ pub fn scene(live: &LiveCrane, q: &[f64]) -> Value {
             json!({"rope": connector.is_rope, "points": points, "falls": connector.falls})
         })
         .collect();
-    let screws = screws(live, &reference, &frames);
+    let screws = screws(live, &reference);
     let cylinders = cylinders(live, (&screws, &frames));
     json!({
         "pose": q, "reference": reference, "vectors": is_vector, "bodies": bodies,
@@ -125,30 +127,18 @@ fn rows(frame: &Matrix4<f64>) -> Vec<f64> {
     frame.transpose().iter().copied().take(12).collect()
 }
 
-/// Screws of all coordinates in the world frame at pose `q`, `ξ̂ = ∂T/∂q_j T⁻¹`: direction ω, then velocity at the origin.
-fn screws(live: &LiveCrane, q: &[f64], frames: &[Matrix4<f64>]) -> Vec<[f64; 6]> {
-    let derivatives = (live as &dyn DynDerivatives).transform_derivatives_at(q);
-    let mut screws = Vec::with_capacity(q.len());
-    let mut first = 0;
-    let tree = (live as &dyn DynModel).tree();
-    for (index, (body, frame)) in live.description().bodies.iter().zip(frames).enumerate() {
-        // Of the coordinates that move a body, those of its own joint are the last.
-        let before = body.degrees_of_freedom - tree.own(index).len();
-        for derivative in &derivatives[first + before..first + body.degrees_of_freedom] {
-            let s = derivative * inverse(frame);
-            screws.push([s[(2, 1)], s[(0, 2)], s[(1, 0)], s[(0, 3)], s[(1, 3)], s[(2, 3)]]);
-        }
-        first += body.degrees_of_freedom;
-    }
-    screws
-}
-
-/// Inverse of a frame: `[Rᵀ, −Rᵀ p]`.
-fn inverse(frame: &Matrix4<f64>) -> Matrix4<f64> {
-    let rotation = frame.fixed_view::<3, 3>(0, 0).transpose();
-    let mut inverse = rotation.to_homogeneous();
-    inverse.fixed_view_mut::<3, 1>(0, 3).copy_from(&(-rotation * frame.fixed_view::<3, 1>(0, 3)));
-    inverse
+/// Screws of all coordinates in the world frame at pose `q`, direction ω, then velocity at the origin.
+fn screws(live: &LiveCrane, q: &[f64]) -> Vec<[f64; 6]> {
+    let (chain, parameters) = (live.chain(), live.parameters());
+    let screw = |(index, coordinate): (usize, &Coordinate)| {
+        let [point, along] = chain.axis(CoordinateId(index), q, parameters).map(Vector3::from);
+        let (omega, upsilon) = match coordinate.kind {
+            CoordinateKind::Rotation => (along, point.cross(&along)),
+            CoordinateKind::Translation => (Vector3::zeros(), along),
+        };
+        [omega.x, omega.y, omega.z, upsilon.x, upsilon.y, upsilon.z]
+    };
+    chain.coordinates.iter().enumerate().map(screw).collect()
 }
 
 /// Points of interest with the body that carries each.

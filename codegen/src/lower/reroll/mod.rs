@@ -6,7 +6,7 @@
 
 mod write;
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use super::loops::{Loop, Progression, Rerolled, Source};
 use super::matching::{Match, matched};
@@ -33,7 +33,7 @@ struct Plan {
     /// The loop under construction: its iterations and what their operands require.
     making: Loop,
     /// Sources of operands, by their expressions in each iteration.
-    sources: HashMap<Vec<ExprId>, Operands>,
+    sources: FxHashMap<Vec<ExprId>, Operands>,
     /// Operands from outside, by the expression that uses them and their index.
     sites: Vec<((ExprId, usize), Vec<ExprId>)>,
 }
@@ -55,8 +55,8 @@ pub(super) fn reroll(
         rank,
         angles,
         stumpff,
-        places: HashMap::new(),
-        moved: HashMap::new(),
+        places: FxHashMap::default(),
+        moved: FxHashMap::default(),
         rerolled: Rerolled::default(),
     };
     let visits = &function.trace.visits;
@@ -119,9 +119,9 @@ struct Rerolling<'a> {
     angles: Vec<Angle>,
     stumpff: Vec<StumpffArgument>,
     /// Expressions that loops compute: the loop, the expression of its first visit, and the iteration.
-    places: HashMap<ExprId, (usize, ExprId, usize)>,
+    places: FxHashMap<ExprId, (usize, ExprId, usize)>,
     /// Expressions outside of loops in terms of the values that loops leave.
-    moved: HashMap<ExprId, ExprId>,
+    moved: FxHashMap<ExprId, ExprId>,
     rerolled: Rerolled,
 }
 

@@ -1,6 +1,6 @@
 //! Writes loops, and what remains outside of them, as expressions of their own.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use super::{Operands, Plan, Rerolling, progression};
 use crate::lower::SweepPosition;
@@ -19,8 +19,8 @@ impl Rerolling<'_> {
     ) {
         making.ends = [&visits[0], &visits[visits.len() - 1]].map(SweepPosition::from);
         let number = self.rerolled.loops.len();
-        let mut symbols: HashMap<&[ExprId], ExprId> = HashMap::new();
-        let mut outside: HashMap<(ExprId, usize), ExprId> = HashMap::new();
+        let mut symbols: FxHashMap<&[ExprId], ExprId> = FxHashMap::default();
+        let mut outside: FxHashMap<(ExprId, usize), ExprId> = FxHashMap::default();
         for (site, operands) in &sites {
             let id = match (symbols.get(operands.as_slice()), &sources[operands]) {
                 (Some(known), _) => *known,
@@ -166,7 +166,7 @@ impl Rerolling<'_> {
     /// Decides where each slot of the result is written: in a loop if the indices of its slots form an arithmetic progression, otherwise
     /// outside.
     pub(super) fn return_rows_from_loops(&mut self, function: &Function) {
-        let mut rows: HashMap<(usize, ExprId), Vec<(usize, usize)>> = HashMap::new();
+        let mut rows: FxHashMap<(usize, ExprId), Vec<(usize, usize)>> = FxHashMap::default();
         if matches!(function.shape, Shape::Vector(_) | Shape::Factors(_) | Shape::Columns { .. } | Shape::Rows { .. }) {
             for (slot, value) in function.outputs.iter().enumerate() {
                 if let Some(&(of, template, iteration)) = self.places.get(value) {

@@ -2,7 +2,9 @@
 //! operations are close together, or result by result, which keeps fewer values at a time. Results are copied in batches, as soon as
 //! a batch of them is known.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
+
+use rustc_hash::FxHashMap;
 
 use crane_codegen::symbolic::{ExprId, Op};
 
@@ -100,7 +102,7 @@ struct Writer<'a> {
     graph: &'a Graph<'a>,
     selection: &'a Selection,
     line: Line,
-    fixed: HashMap<Key, Value>,
+    fixed: FxHashMap<Key, Value>,
     /// Values of every node and its negative.
     values: Vec<[Option<Value>; 2]>,
 }
@@ -129,7 +131,7 @@ impl Line {
             graph,
             selection,
             line: Line { results: entries.len(), ..Line::default() },
-            fixed: HashMap::new(),
+            fixed: FxHashMap::default(),
             values: vec![[None; 2]; graph.program.operations.len()],
         };
         let copied = entries.iter().map(|entry| match entry {
@@ -360,14 +362,14 @@ impl Writer<'_> {
 /// Results that wait for their values, or to be copied.
 struct Copies {
     /// Indices of the results that a node and its negative provide.
-    waiting: HashMap<ExprId, [Vec<usize>; 2]>,
+    waiting: FxHashMap<ExprId, [Vec<usize>; 2]>,
     /// Results that are known.
     known: Vec<Step>,
 }
 
 impl Copies {
     fn of(writer: &Writer, copied: &[Operand]) -> Self {
-        let mut copies = Copies { waiting: HashMap::new(), known: vec![] };
+        let mut copies = Copies { waiting: FxHashMap::default(), known: vec![] };
         for (place, operand) in copied.iter().enumerate() {
             match (writer.fixed_value(*operand), *operand) {
                 (Some(value), _) => copies.known.push(Step::Store { place, value }),
