@@ -15,6 +15,7 @@
 //! | largest stable step | `stability` | `std` |
 //! | moments about tipping lines | `tipping` | `std` |
 //! | stresses at the sections of beams | `sections` | `std` |
+//! | cycles of stress over a run, and their damage | `fatigue` | `std` |
 //! | the largest load within limits over ranges of poses | `envelope` | `std` |
 //! | cranes of any size through one pointer | `dyn_crane` | `std` |
 //!
@@ -40,6 +41,8 @@ pub mod dyn_crane;
 pub mod dynamics;
 #[cfg(feature = "std")]
 pub mod envelope;
+#[cfg(feature = "std")]
+pub mod fatigue;
 #[cfg(feature = "std")]
 mod feet;
 #[cfg(feature = "std")]

@@ -47,6 +47,12 @@ impl Place {
         &description.sections[self.section]
     }
 
+    /// Its moduli, of those of the sections.
+    pub fn section_moduli(&self, moduli: &[SectionModuli]) -> SectionModuli {
+        let of = |section: usize| moduli.get(section).copied().unwrap_or(SectionModuli::ZERO);
+        self.moduli.mean(of, |one, other, part| one.mean(&other, part))
+    }
+
     /// Name of the beam's link.
     pub fn beam<'a>(&self, description: &'a Description) -> &'a str {
         description.bodies[self.info(description).body].link.as_str()
@@ -165,8 +171,7 @@ pub fn stressed_sections(
 
 /// The stresses of a place; `None` where its moduli are not known.
 pub fn stressed(moduli: &[SectionModuli], place: Place) -> Option<StressedSection> {
-    let of = |section: usize| moduli.get(section).copied().unwrap_or(SectionModuli::ZERO);
-    let moduli = place.moduli.mean(of, |one, other, part| one.mean(&other, part));
+    let moduli = place.section_moduli(moduli);
     let stress = moduli.stress(&place.wrench)?;
     Some(StressedSection { place, stress, utilisation: moduli.utilisation(&stress) })
 }

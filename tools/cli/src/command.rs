@@ -11,7 +11,7 @@ use crate::{
     problem::Outcome,
     run, screen,
     selection::Registry,
-    sensitivity, simulate, stability, statics, strength,
+    fatigue, sensitivity, simulate, stability, statics, strength,
 };
 
 /// Does what the arguments ask for, with the cranes of a registry.
@@ -71,6 +71,7 @@ pub fn execute(mut arguments: Arguments, mut registry: Registry, out: &mut dyn W
         Some(Action::Margins(options)) => margins::margins(options, registry, out),
         Some(Action::Stability(options)) => stability::stability(options, registry, out),
         Some(Action::Strength(options)) => strength::strength(options, registry, out),
+        Some(Action::Fatigue(options)) => fatigue::fatigue(options, registry, out),
         Some(Action::Sensitivity(options)) => sensitivity::sensitivity(options, registry, out),
         Some(Action::Envelope(options)) => envelope::envelope(options, registry, out),
         Some(Action::Report(options)) => page::report(options, registry, out),

@@ -73,6 +73,7 @@ impl Output {
             Output::Simulate => include_str!("../schemas/simulate.json"),
             Output::Ensemble => include_str!("../schemas/ensemble.json"),
             Output::Strength => include_str!("../schemas/strength.json"),
+            Output::Fatigue => include_str!("../schemas/fatigue.json"),
             Output::Sensitivity => include_str!("../schemas/sensitivity.json"),
             Output::Envelope => include_str!("../schemas/envelope.json"),
             Output::Compare => include_str!("../schemas/compare.json"),

@@ -14,6 +14,7 @@ const GROUPS: [(&str, &[&str]); 4] = [
             "compare",
             "statics",
             "strength",
+            "fatigue",
             "sensitivity",
             "envelope",
             "simulate",

@@ -23,6 +23,7 @@ mod eval;
 mod example;
 mod exchange;
 mod explain;
+mod fatigue;
 mod figures;
 pub mod files;
 mod fmu;

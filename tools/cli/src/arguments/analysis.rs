@@ -33,6 +33,31 @@ pub struct Strength {
     pub results: Option<PathBuf>,
 }
 
+/// Fatigue of beams by a manoeuvre that repeats.
+#[derive(Debug, Args)]
+pub struct Fatigue {
+    #[command(flatten)]
+    pub analysis: Analysis,
+    #[command(flatten)]
+    pub timing: Timing,
+    /// How often the manoeuvre is repeated
+    #[arg(long, value_name = "NUMBER", value_parser = above_zero)]
+    pub cycles: f64,
+    /// Detail category: range of nominal stress that a part endures 2e6 times, as in `71MPa` for all beams and `outer=80MPa` for one; may be
+    /// given several times
+    #[arg(long = "category", value_name = "[BEAM=]STRESS", required = true)]
+    pub categories: Vec<String>,
+    /// Slope m of the curve of strength
+    #[arg(long, value_name = "NUMBER", default_value_t = 3.0, value_parser = above_zero)]
+    pub slope: f64,
+    /// Partial factor of the strength: the categories are divided by it
+    #[arg(long, value_name = "NUMBER", default_value_t = 1.0, value_parser = above_zero)]
+    pub safety_factor: f64,
+    /// CSV file for the stresses at the point of each place that suffers most
+    #[arg(short = 'o', long = "file", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub results: Option<PathBuf>,
+}
+
 /// The load and its limits.
 #[derive(Clone, Debug, Args)]
 pub struct LoadLimits {

@@ -14,7 +14,7 @@ use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 use crate::screen::Manner;
 
 pub use analysis::{
-    Controller, Envelope, Eval, EvalFormat, Linearise, LoadLimits, Margins, Modes, Quantity, Stability, Strength,
+    Controller, Envelope, Eval, EvalFormat, Fatigue, Linearise, LoadLimits, Margins, Modes, Quantity, Stability, Strength,
 };
 pub use crane::{
     Analysis, Check, Choice, DEFAULT_CRANE, Example, Explain, Format, Generate, Limits, List, New, Parameters,
@@ -98,6 +98,8 @@ pub enum Action {
     Statics(Statics),
     /// Compute tipping margin, stresses, loads on joints and ground, and the tipping load
     Strength(Strength),
+    /// Compute cycles of stress, damage and life of beams by a manoeuvre that repeats
+    Fatigue(Fatigue),
     /// Compute what moves deflections, forces, stresses, tipping and frequencies, and by how much
     Sensitivity(Sensitivity),
     /// Find the largest load within limits over ranges of poses: load chart, diagrams, data
@@ -165,6 +167,7 @@ impl Action {
             Action::Linearise(options) => Some(&mut options.analysis.crane),
             Action::Margins(options) => Some(&mut options.analysis.crane),
             Action::Strength(options) => Some(&mut options.analysis.crane),
+            Action::Fatigue(options) => Some(&mut options.analysis.crane),
             Action::Sensitivity(options) => Some(&mut options.analysis.crane),
             Action::Envelope(options) => Some(&mut options.analysis.crane),
             Action::Stability(options) => Some(&mut options.analysis.crane),
@@ -219,6 +222,8 @@ pub enum Output {
     Ensemble,
     /// Tipping margins, stresses and loads.
     Strength,
+    /// Damage and life of beams.
+    Fatigue,
     /// What moves the quantities of a crane at rest.
     Sensitivity,
     /// Largest loads.

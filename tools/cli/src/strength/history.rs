@@ -39,6 +39,12 @@ pub fn prefix(description: &Description, cut: Cut) -> Option<(String, [&'static 
     }
 }
 
+/// The name of a column about a cut of a beam.
+pub fn column(description: &Description, cut: usize, what: &str) -> String {
+    let prefix = description.cuts().get(cut).and_then(|cut| prefix(description, *cut));
+    prefix.map_or_else(|| what.to_owned(), |(prefix, _)| format!("{prefix}_{what}"))
+}
+
 /// The history in columns: `t`; for a tipping line `<from>_<to>_stabilising` and `_overturning`; for the ground, joints and
 /// sections the six components, and for sections whose moduli are known four stresses and the utilisation. A section within an element is named
 /// after the element and what is there, one at a pad on which the beam slides after the beam; of the latter, `x` is where it is on the beam.

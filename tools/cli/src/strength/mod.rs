@@ -14,7 +14,7 @@ use crane_page::history::{Instant, instants};
 use crane_page::tables::{Case, Report, VALUE, verdicts};
 
 use crate::{
-    arguments::Strength,
+    arguments::{Limits, Strength, Timing},
     files,
     integration::{progress, record_checked},
     problem::{Outcome, Problem},
@@ -23,6 +23,8 @@ use crate::{
 };
 
 use history::least_margin;
+pub use history::column;
+pub use tables::words;
 pub use loads::parameter as load_parameter;
 
 /// Prints loads and stability at rest, and along the manoeuvre if asked for.
@@ -49,7 +51,8 @@ pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) ->
         report.value("change_of_the_greatest_stress_with_twice_the_sections", change);
         report.caution(refinement::caution_of_stress(change).as_deref());
     }
-    let history = if options.run { Some(along(options, crane.as_ref(), &mut report)?) } else { None };
+    let timing = (&options.timing, options.analysis.crane.limits);
+    let history = if options.run { Some(along(timing, crane.as_ref(), &mut report)?) } else { None };
     for caution in cautions::of_pose(crane.as_ref(), &q, options.analysis.crane.limits.bend) {
         report.caution(Some(caution));
     }
@@ -77,17 +80,8 @@ pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) ->
 }
 
 /// Loads and stability along the manoeuvre, one entry per result.
-fn along(options: &Strength, crane: &dyn DynCrane, report: &mut Report) -> Outcome<Vec<Instant>> {
-    let start = options.timing.start(crane, false)?;
-    let settings = options.timing.settings(crane, &start, Method::RECOMMENDED)?;
-    let bar = progress(settings.duration);
-    let checks = (!options.timing.no_verify, options.analysis.crane.limits);
-    let recorded = record_checked(crane, &start, &settings, checks, &bar)?;
-    bar.finish_and_clear();
-    for caution in &recorded.cautions {
-        report.caution(Some(caution.as_str()));
-    }
-    let history = instants(crane, recorded.table.rows.iter());
+fn along(timing: (&Timing, Limits), crane: &dyn DynCrane, report: &mut Report) -> Outcome<Vec<Instant>> {
+    let history = history(timing, crane, report)?;
     let worst = least_margin(&history).ok_or_else(|| Problem::failed("the run has no results", ""))?;
     verdict(report, crane, worst, " of the run");
     stresses::verdict(report, crane.description(), &crane.section_moduli_at(), &history, " of the run");
@@ -95,6 +89,23 @@ fn along(options: &Strength, crane: &dyn DynCrane, report: &mut Report) -> Outco
         report.fact_as("time_of_the_least_tipping_margin", "time of the minimum tipping margin", worst.t, "s");
     }
     Ok(history)
+}
+
+/// Loads along the manoeuvre, one entry per result, with the cautions of the run.
+pub fn history(
+    (timing, limits): (&Timing, Limits),
+    crane: &dyn DynCrane,
+    report: &mut Report,
+) -> Outcome<Vec<Instant>> {
+    let start = timing.start(crane, false)?;
+    let settings = timing.settings(crane, &start, Method::RECOMMENDED)?;
+    let bar = progress(settings.duration);
+    let recorded = record_checked(crane, &start, &settings, (!timing.no_verify, limits), &bar)?;
+    bar.finish_and_clear();
+    for caution in &recorded.cautions {
+        report.caution(Some(caution.as_str()));
+    }
+    Ok(instants(crane, recorded.table.rows.iter()))
 }
 
 /// How far the crane is from tipping.

@@ -1,0 +1,284 @@
+//! Fatigue of beams: cycles of stress, counted by the rainflow method, and the damage that they do.
+//!
+//! A history of stress is a sequence of peaks and valleys. A range that lies within a larger one is a closed cycle; it is counted and taken out. What
+//! remains of a history that happens once are half cycles, of one that repeats there are only full ones. \[ASTM E1049-85, 5.4.4 and 5.4.5]
+//!
+//! With the detail category `Δσ_c`, the range that a part endures `2·10⁶` times, and the slope m of its curve of strength, cycles of the range `Δσ` end the
+//! part after `N = 2·10⁶ (Δσ_c/Δσ)^m`. Damages add up, `D = Σ n/N` \[Palmgren 1924; Miner 1945]; at 1 the life is over. There is no limit
+//! below which cycles do no harm.
+//!
+//! The stresses are nominal ones, of the section; what a notch or a weld makes of them is the category.
+
+use crate::sections::{Place, places};
+use crate::{Description, SectionModuli, Wrench};
+
+/// Cycles for which the range of a detail category is given.
+pub const CYCLES_OF_A_CATEGORY: f64 = 2e6;
+
+/// Points on the rim of a round section at which stresses are counted: the largest range is off by at most 0.1 %.
+const POINTS_ON_A_RIM: usize = 72;
+
+/// A cycle of stress.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cycle {
+    /// Difference of its ends, Pa.
+    pub range: f64,
+    /// Mean of its ends, Pa.
+    pub mean: f64,
+    /// 1, or 0.5 for a half cycle.
+    pub count: f64,
+    /// Where its ends are in the history.
+    pub ends: [usize; 2],
+}
+
+/// Indices of peaks and valleys, with the ends.
+fn turning_points(history: &[f64]) -> Vec<usize> {
+    let mut points: Vec<usize> = Vec::new();
+    for (index, value) in history.iter().enumerate() {
+        if points.last().is_some_and(|last| history[*last] == *value) {
+            continue;
+        }
+        if let [.., before, last] = points[..] {
+            if (history[last] > history[before]) == (*value > history[last]) {
+                points.pop();
+            }
+        }
+        points.push(index);
+    }
+    points
+}
+
+/// The cycles of a history that happens once: full and half ones, in the order in which they close.
+pub fn count_cycles(history: &[f64]) -> Vec<Cycle> {
+    let mut cycles = Vec::new();
+    let mut open: Vec<usize> = Vec::new();
+    let cycle = |count: f64, ends: [usize; 2]| {
+        let [one, other] = ends.map(|end| history[end]);
+        Cycle { range: (one - other).abs(), mean: 0.5 * (one + other), count, ends }
+    };
+    for point in turning_points(history) {
+        open.push(point);
+        while let [.., a, b, c] = open[..] {
+            if (history[c] - history[b]).abs() < (history[b] - history[a]).abs() {
+                break;
+            }
+            if open.len() == 3 {
+                cycles.push(cycle(0.5, [a, b]));
+                open.remove(0);
+            } else {
+                cycles.push(cycle(1.0, [a, b]));
+                open.truncate(open.len() - 3);
+                open.push(c);
+            }
+        }
+    }
+    cycles.extend(open.windows(2).map(|ends| cycle(0.5, [ends[0], ends[1]])));
+    cycles
+}
+
+/// The cycles of a history that repeats, all full: it is turned so that it begins and ends with its highest peak. The way from its end back to its
+/// beginning is a part of it.
+pub fn count_repeating_cycles(history: &[f64]) -> Vec<Cycle> {
+    let Some(highest) = (0..history.len()).max_by(|a, b| history[*a].total_cmp(&history[*b])) else { return Vec::new() };
+    let order: Vec<usize> = (highest..history.len()).chain(0..=highest).collect();
+    let turned: Vec<f64> = order.iter().map(|index| history[*index]).collect();
+    let mut open: Vec<usize> = Vec::new();
+    let mut cycles = Vec::new();
+    for point in turning_points(&turned) {
+        open.push(point);
+        while let [.., a, b, c] = open[..] {
+            if (turned[c] - turned[b]).abs() < (turned[b] - turned[a]).abs() {
+                break;
+            }
+            let [one, other] = [turned[a], turned[b]];
+            let (range, mean) = ((one - other).abs(), 0.5 * (one + other));
+            cycles.push(Cycle { range, mean, count: 1.0, ends: [order[a], order[b]] });
+            open.truncate(open.len() - 3);
+            open.push(c);
+        }
+    }
+    cycles
+}
+
+/// How much a part endures.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Detail {
+    /// `Δσ_c`, Pa.
+    pub category: f64,
+    /// m.
+    pub slope: f64,
+}
+
+impl Detail {
+    /// `N` of a range, Pa.
+    pub fn endured(&self, range: f64) -> f64 {
+        CYCLES_OF_A_CATEGORY * (self.category / range).powf(self.slope)
+    }
+
+    /// `Σ n/N`.
+    pub fn damage(&self, cycles: &[Cycle]) -> f64 {
+        cycles.iter().filter(|cycle| cycle.range > 0.0).map(|cycle| cycle.count / self.endured(cycle.range)).sum()
+    }
+}
+
+/// `s_m = Σ (Δσ/Δσ_max)^m n / 2·10⁶` of cycles that repeat, Δσ_max the largest range: how much a history uses of what the part endures at its
+/// largest range \[EN 13001-1, 4.4.4]. Zero without cycles.
+pub fn history_parameter(cycles: &[Cycle], slope: f64, repetitions: f64) -> f64 {
+    let largest = cycles.iter().map(|cycle| cycle.range).fold(0.0, f64::max);
+    if largest == 0.0 {
+        return 0.0;
+    }
+    let sum: f64 = cycles.iter().map(|cycle| cycle.count * (cycle.range / largest).powf(slope)).sum();
+    repetitions * sum / CYCLES_OF_A_CATEGORY
+}
+
+/// The class S of a stress history parameter: S0 up to 1/128, and each class twice as far, up to S9 with 4; `None` beyond.
+pub fn class(parameter: f64) -> Option<u8> {
+    (0..=9).find(|class| parameter <= 2f64.powi(i32::from(*class) - 7))
+}
+
+/// Normal stresses at points of the contour of a section that transmits a wrench, Pa: at four corners, or around the rim of a round section. Empty
+/// if the moduli are not known.
+pub fn contour(moduli: &SectionModuli, Wrench { force, moment }: &Wrench) -> Vec<f64> {
+    if moduli.area <= 0.0 {
+        return Vec::new();
+    }
+    let axial = force.x / moduli.area;
+    let (about_y, about_z) = (moment.y / moduli.bending_y, moment.z / moduli.bending_z);
+    if moduli.corners > 0.5 {
+        return [(1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0)].map(|(y, z)| axial + y * about_y + z * about_z).into();
+    }
+    let angle = |point: usize| std::f64::consts::TAU * point as f64 / POINTS_ON_A_RIM as f64;
+    (0..POINTS_ON_A_RIM).map(|point| axial + about_y * angle(point).sin() - about_z * angle(point).cos()).collect()
+}
+
+/// What a history does to a place of a beam.
+#[derive(Clone, Debug)]
+pub struct Fatigue {
+    /// The place, as it is first.
+    pub place: Place,
+    /// Stresses at the point of its contour that suffers most, Pa.
+    pub history: Vec<f64>,
+    /// Their cycles, of one repetition.
+    pub cycles: Vec<Cycle>,
+    /// Damage by one repetition.
+    pub damage: f64,
+}
+
+impl Fatigue {
+    /// The cycle of the largest range.
+    pub fn largest(&self) -> Option<&Cycle> {
+        self.cycles.iter().max_by(|a, b| a.range.total_cmp(&b.range))
+    }
+}
+
+/// What a history that repeats does to every place of a crane's beams whose moduli are known; `x` and `wrenches` at each instant, as
+/// [`places`](crate::sections::places) takes them, and the detail of each beam by the name of its link.
+pub fn of_history<'a>(
+    description: &Description,
+    moduli: &[SectionModuli],
+    instants: impl Iterator<Item = (&'a [f64], &'a [Wrench])>,
+    detail: impl Fn(&str) -> Detail,
+) -> Vec<Fatigue> {
+    // By section, since the order of places along a beam changes where it slides.
+    let in_order = |(x, wrenches): (&[f64], &[Wrench])| {
+        let mut places = places(description, x, wrenches);
+        places.sort_by_key(|place| place.section);
+        places
+    };
+    let instants: Vec<Vec<Place>> = instants.map(in_order).collect();
+    let of_place = |(index, place): (usize, &Place)| {
+        let at = |now: &Vec<Place>| contour(&now[index].section_moduli(moduli), &now[index].wrench);
+        let contours: Vec<Vec<f64>> = instants.iter().map(at).collect();
+        let detail = detail(place.beam(description));
+        let of_point = |point: usize| {
+            let history: Vec<f64> = contours.iter().map(|contour| contour[point]).collect();
+            let cycles = count_repeating_cycles(&history);
+            Fatigue { place: *place, damage: detail.damage(&cycles), history, cycles }
+        };
+        (0..contours[0].len()).map(of_point).max_by(|a, b| a.damage.total_cmp(&b.damage))
+    };
+    let mut found: Vec<Fatigue> = instants.first().into_iter().flatten().enumerate().filter_map(of_place).collect();
+    // Beam by beam, from the beginning to the end.
+    let mut beams: Vec<String> = Vec::new();
+    for fatigue in &found {
+        let beam = fatigue.place.beam(description);
+        if !beams.iter().any(|known| known == beam) {
+            beams.push(beam.to_owned());
+        }
+    }
+    let beam = |fatigue: &Fatigue| beams.iter().position(|name| name == fatigue.place.beam(description));
+    found.sort_by(|a, b| beam(a).cmp(&beam(b)).then(a.place.x.total_cmp(&b.place.x)));
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn counted(cycles: &[Cycle]) -> Vec<(f64, f64)> {
+        let mut ranges: Vec<f64> = cycles.iter().map(|cycle| cycle.range).collect();
+        ranges.sort_by(f64::total_cmp);
+        ranges.dedup();
+        let count = |range: f64| cycles.iter().filter(|cycle| cycle.range == range).map(|cycle| cycle.count).sum();
+        ranges.into_iter().map(|range| (range, count(range))).collect()
+    }
+
+    /// The example of ASTM E1049-85, Fig. 6.
+    const EXAMPLE: [f64; 9] = [-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0];
+
+    #[test]
+    fn example_of_the_standard() {
+        assert_eq!(counted(&count_cycles(&EXAMPLE)), [(3.0, 0.5), (4.0, 1.5), (6.0, 0.5), (8.0, 1.0), (9.0, 0.5)]);
+    }
+
+    /// The same history without end, by hand, from 5 on: −1 to 3 closes first, then −2 to 1, then 4 to −3, and 5 to −4 remains.
+    #[test]
+    fn a_history_that_repeats_has_full_cycles_only() {
+        assert_eq!(counted(&count_repeating_cycles(&EXAMPLE)), [(3.0, 1.0), (4.0, 1.0), (7.0, 1.0), (9.0, 1.0)]);
+        // Where it begins does not matter.
+        for shift in 1..EXAMPLE.len() - 1 {
+            let period = &EXAMPLE[..EXAMPLE.len() - 1];
+            let turned: Vec<f64> = period[shift..].iter().chain(&period[..shift]).copied().collect();
+            assert_eq!(counted(&count_repeating_cycles(&turned)), counted(&count_repeating_cycles(&EXAMPLE)), "{shift}");
+        }
+    }
+
+    #[test]
+    fn a_sine_is_one_cycle_per_period() {
+        let history: Vec<f64> = (0..=400).map(|k| (std::f64::consts::TAU * f64::from(k) / 100.0).sin()).collect();
+        let cycles = count_repeating_cycles(&history);
+        assert_eq!(counted(&cycles), [(2.0, 4.0)]);
+        // s = n/2·10⁶ exactly.
+        assert_eq!(history_parameter(&cycles, 3.0, 1e5), 4e5 / 2e6);
+        assert_eq!(class(0.2), Some(5));
+    }
+
+    #[test]
+    fn life_of_a_notched_part_by_hand() {
+        // 100 MPa on a category of 71 MPa: 2·10⁶ · 0.71³ cycles.
+        let detail = Detail { category: 71e6, slope: 3.0 };
+        assert!((detail.endured(100e6) - 715_822.0).abs() < 1e-6);
+        let cycles = count_repeating_cycles(&[0.0, 100e6]);
+        assert!((detail.damage(&cycles) * 715_822.0 - 1.0).abs() < 1e-12);
+        // Half of the range does an eighth of the damage.
+        let half = count_repeating_cycles(&[0.0, 50e6]);
+        assert!((detail.damage(&cycles) / detail.damage(&half) - 8.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn classes_double() {
+        let expected = [(0.0, Some(0)), (1.0 / 128.0, Some(0)), (0.008, Some(1)), (0.12, Some(4)), (4.0, Some(9)), (4.1, None)];
+        for (parameter, class_of_it) in expected {
+            assert_eq!(class(parameter), class_of_it, "{parameter}");
+        }
+    }
+
+    #[test]
+    fn nothing_happens_to_what_is_constant() {
+        assert_eq!(count_cycles(&[1.0; 5]), []);
+        assert_eq!(count_repeating_cycles(&[1.0; 5]), []);
+        assert_eq!(count_repeating_cycles(&[]), []);
+        assert_eq!(history_parameter(&[], 3.0, 1e5), 0.0);
+    }
+}
