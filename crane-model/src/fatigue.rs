@@ -117,7 +117,8 @@ impl Detail {
 
     /// `Σ n/N`.
     pub fn damage(&self, cycles: &[Cycle]) -> f64 {
-        cycles.iter().filter(|cycle| cycle.range > 0.0).map(|cycle| cycle.count / self.endured(cycle.range)).sum()
+        let damages = cycles.iter().filter(|cycle| cycle.range > 0.0).map(|cycle| cycle.count / self.endured(cycle.range));
+        damages.fold(0.0, |sum, damage| sum + damage)
     }
 }
 
@@ -130,6 +131,11 @@ pub fn history_parameter(cycles: &[Cycle], slope: f64, repetitions: f64) -> f64 
     }
     let sum: f64 = cycles.iter().map(|cycle| cycle.count * (cycle.range / largest).powf(slope)).sum();
     repetitions * sum / CYCLES_OF_A_CATEGORY
+}
+
+/// The range, Pa, of which one cycle does the damage of all of them: `(Σ n Δσ^m)^(1/m)`.
+pub fn equivalent_range(cycles: &[Cycle], slope: f64) -> f64 {
+    cycles.iter().map(|cycle| cycle.count * cycle.range.powf(slope)).sum::<f64>().powf(slope.recip())
 }
 
 /// The class S of a stress history parameter: S0 up to 1/128, and each class twice as far, up to S9 with 4; `None` beyond.
@@ -166,6 +172,11 @@ pub struct Fatigue {
 }
 
 impl Fatigue {
+    /// Repetitions until the damage is 1; `None` where there is none.
+    pub fn life(&self) -> Option<f64> {
+        (self.damage > 0.0).then(|| self.damage.recip())
+    }
+
     /// The cycle of the largest range.
     pub fn largest(&self) -> Option<&Cycle> {
         self.cycles.iter().max_by(|a, b| a.range.total_cmp(&b.range))

@@ -1,6 +1,6 @@
 //! External loads.
 
-use super::{BodyId, Profile, Value};
+use super::{BodyId, Chain, Parameter, ParameterId, Profile, Value};
 
 /// A force and a moment at a point of a body.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +19,28 @@ pub struct Load {
     pub axes: LoadAxes,
     /// Factor of both over time; `None` means 1.
     pub scale: Option<Profile>,
+}
+
+impl Chain {
+    /// The same crane with a factor of its weight and of all loads as one more live parameter, 1 by default; and the index of this parameter.
+    #[must_use]
+    pub fn with_load_factor(&self) -> (Chain, usize) {
+        let index = self.parameters.len();
+        let factor = || Value::Parameter(ParameterId(index));
+        let mut chain = self.clone();
+        chain.parameters.push(Parameter {
+            name: "factor_of_weight_and_loads".to_owned(),
+            unit: String::new(),
+            about: String::new(),
+            default: 1.0,
+            lower_bound: None,
+        });
+        let vectors = chain.loads.iter_mut().flat_map(|load| [&mut load.force, &mut load.moment]);
+        for number in vectors.chain([&mut chain.gravity]).flatten() {
+            *number = factor() * number.clone();
+        }
+        (chain, index)
+    }
 }
 
 /// Axes along which a load is given.

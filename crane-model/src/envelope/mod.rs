@@ -9,6 +9,8 @@
 //!
 //! [`critical_load`] uses the same search for the load that lifts the first foot and the load that tips the crane, at one pose.
 //!
+//! [`load_factor`] uses it for all weights and loads at once: buckling.
+//!
 //! Poses are rated in pieces: a piece is a row of neighbouring poses, each starting from the equilibrium of the previous one. Its result
 //! depends neither on what else is rated nor on the number of threads.
 
@@ -17,6 +19,7 @@ mod condition;
 mod coverage;
 mod critical;
 mod limits;
+mod load_factor;
 mod radius;
 mod rating;
 mod search;
@@ -27,6 +30,7 @@ pub use condition::Condition;
 pub use coverage::Coverage;
 pub use critical::{Critical, CriticalLoad, NoCriticalLoad, critical_load};
 pub use limits::{Limit, Limits, PartLimit};
+pub use load_factor::{Followed, LoadFactor, load_factor};
 pub use radius::SlewAxis;
 pub use rating::Rating;
 pub use sweep::{Envelope, Execution, PIECE, UNITS_OF_LOADS, is_load, only_mass, range_of_loads};

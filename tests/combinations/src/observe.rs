@@ -8,7 +8,8 @@ use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::Settings;
 use crane_model::envelope::{Axes, Envelope, Execution, Limits, PartLimit, Rating, only_mass};
-use crane_model::results::cautions;
+use crane_model::fatigue::{self, Detail};
+use crane_model::results::{Table, cautions, instants};
 use crane_model::runs::{Start, record};
 use crane_model::sections::stressed_sections;
 use crane_model::tipping::lines;
@@ -138,6 +139,11 @@ pub fn observe_with(source: &SourceFile, set: &[(String, f64)], run: bool) -> Re
     let settings = if run { base } else { Settings { duration: 1e-6, output: 1e-6, ..base } };
     let recorded = record(crane, &start, &settings, &mut |_| ControlFlow::Continue(()));
     let table = recorded.map_err(|failed| failed.to_string())?.table;
+    if run {
+        for (beam, range) in ranges(crane, &table) {
+            add(RUN.0, format!("{beam} stress by cycles of stress"), "Pa", range);
+        }
+    }
     let ends = [(REST.0, table.rows.first()), (RUN.0, table.rows.last().filter(|_| run))];
     for (group, row) in ends {
         for (column, value) in table.columns.iter().zip(row.into_iter().flatten()) {
@@ -165,6 +171,22 @@ fn stresses(crane: &dyn DynCrane, q: &[f64], wrenches: &[Wrench]) -> Vec<(String
     }
     greatest.into_iter().map(|(name, (unit, value))| (name, unit, value)).collect()
 }
+
+/// The range of which one cycle does the damage of a run, where it is greatest on each beam, Pa.
+fn ranges(crane: &dyn DynCrane, table: &Table) -> BTreeMap<String, f64> {
+    let history = instants(crane, table.rows.iter());
+    let states = history.iter().map(|instant| (instant.x.as_slice(), instant.wrenches.as_slice()));
+    let detail = Detail { category: 71e6, slope: SLOPE };
+    let mut greatest = BTreeMap::new();
+    for of in fatigue::of_history(crane.description(), &crane.section_moduli_at(), states, |_| detail) {
+        let range = greatest.entry(of.place.beam(crane.description()).to_owned()).or_insert(0.0);
+        *range = f64::max(*range, fatigue::equivalent_range(&of.cycles, SLOPE));
+    }
+    greatest
+}
+
+/// Slope of a curve of strength, of welds.
+const SLOPE: f64 = 3.0;
 
 /// The group of the loads of charts.
 pub const CHART: &str = "chart";

@@ -171,7 +171,7 @@ impl Subject<'_> {
         let damage = worst.damage * self.options.cycles;
         report.fact("greatest damage", damage, "");
         report.fact_as("place_of_the_greatest_damage", "place of it", worst.place.location(self.description), "");
-        report.fact_as("life", "life, in repetitions of the manoeuvre", life(worst), "");
+        report.fact_as("life", "life, in repetitions of the manoeuvre", worst.life(), "");
         if let Some(largest) = worst.largest() {
             let mut ends = largest.ends;
             ends.sort_by(|a, b| worst.history[*a].total_cmp(&worst.history[*b]));
@@ -184,11 +184,11 @@ impl Subject<'_> {
         let name = format!("stress history parameter s, m = {}", self.categories.slope);
         report.fact_as("history_parameter", name, parameter, "");
         report.fact_as("class", "class of it", class(parameter), "");
-        if damage >= 1.0 {
+        if let Some(life) = worst.life().filter(|_| damage >= 1.0) {
             let place = worst.place.location(self.description);
             report.caution(Some(format!(
                 "the life of {place} ends after {:.3e} of {:.3e} repetitions",
-                life(worst),
+                life,
                 self.options.cycles
             )));
         }
@@ -257,7 +257,7 @@ impl Subject<'_> {
                 parameter.into(),
                 class(parameter).into(),
                 (of.damage * self.options.cycles).into(),
-                life(of).into(),
+                of.life().into(),
             ];
             grid.row(words(&of.place, self.description).into_iter().chain(numbers).collect::<Vec<_>>());
         }
@@ -303,11 +303,6 @@ impl Subject<'_> {
         table.rows = self.history.iter().enumerate().map(row).collect();
         table
     }
-}
-
-/// Repetitions until the damage is 1.
-fn life(of: &Fatigue) -> f64 {
-    1.0 / of.damage
 }
 
 fn class(parameter: f64) -> String {

@@ -24,6 +24,9 @@ pub struct Strength {
     /// Also evaluate the manoeuvre: smallest tipping margin, extremes of all loads and their times
     #[arg(long, conflicts_with = "ranges")]
     pub run: bool,
+    /// Also find the factor of weight and all loads at which the crane buckles, by its stiffness at rest and by following its pose
+    #[arg(long, conflicts_with = "ranges")]
+    pub buckling: bool,
     /// Live parameter to use as the load: find the values at which the first foot lifts and the crane tips [default: the only
     /// parameter in kg]
     #[arg(long, value_name = "PARAMETER")]

@@ -1,10 +1,11 @@
 //! The live parameter that is the load, and the critical loads: that which lifts the first foot, and that which tips the crane.
 
+use crane_live::LiveCrane;
 use crane_model::{
     dyn_crane::DynCrane,
-    envelope::{Critical, CriticalLoad, critical_load, is_load, only_mass},
+    envelope::{Critical, CriticalLoad, Followed, LoadFactor, critical_load, is_load, load_factor, only_mass},
 };
-use crane_page::tables::Report;
+use crane_page::tables::{Cell, Report};
 
 use serde_json::{Map, Value, json};
 
@@ -35,6 +36,27 @@ pub fn parameter(crane: &dyn DynCrane, name: Option<&str>) -> Outcome<Option<usi
         return Err(Problem::usage(format!("`{name}` is in {}: it is not a load", parameters[found].unit), help));
     }
     Ok(Some(found))
+}
+
+/// Adds the factor of weight and all loads at which the crane buckles.
+pub fn factor(report: &mut Report, crane: LiveCrane) {
+    let (mut crane, parameter) = crane.with_load_factor();
+    let Some(LoadFactor { linearised, followed }) = load_factor(&mut crane, parameter) else { return };
+    let name = "critical factor of weight and loads";
+    let beyond = format!("above {}", LoadFactor::MOST);
+    let by_stiffness = match linearised {
+        Some(factor) => Cell::from(factor),
+        None if (&crane as &dyn DynCrane).loop_joints().is_empty() => beyond.as_str().into(),
+        None => "not computed for closed loops".into(),
+    };
+    report.line(format!("{name}, by the stiffness at rest"), by_stiffness, "");
+    let followed_to = followed.as_ref().map_or_else(|| beyond.as_str().into(), |followed| Cell::from(followed.factor));
+    report.line(format!("{name}, its pose followed"), followed_to, "");
+    if let Some(Followed { status, .. }) = &followed {
+        report.line("beyond it", status.to_string(), "");
+    }
+    let followed = followed.map(|Followed { factor, status }| json!({"factor": factor, "status": status.name()}));
+    report.value("critical_factor", json!({"linearised": linearised, "followed": followed}));
 }
 
 /// Adds the loads at which the first foot carries nothing, and at which the crane tips, or why there is none.

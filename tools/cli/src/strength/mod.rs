@@ -63,6 +63,9 @@ pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) ->
         loads::critical(&mut report, crane.as_mut(), index)?;
     }
     let crane = crane.as_ref();
+    if options.buckling {
+        loads::factor(&mut report, registry.live(crane)?);
+    }
     report.grid(stresses::table(crane.description(), &moduli, &rest));
     report.grid(tables::tipping(crane.description(), &rest.lines));
     if let Some(history) = &history {

@@ -75,6 +75,15 @@ impl LiveCrane {
         Self { library, description, loop_joints, stages, parameters, inputs, rooms: no_rooms() }
     }
 
+    /// The same crane, its parameters and inputs as they are, with a factor of its weight and of all loads as one more parameter, which is 1; and the
+    /// index of this parameter.
+    #[must_use]
+    pub fn with_load_factor(&self) -> (Self, usize) {
+        let (chain, index) = self.chain().with_load_factor();
+        let parameters = self.parameters.iter().copied().chain([1.0]).collect();
+        (Self { parameters, inputs: Arc::clone(&self.inputs), ..Self::new(chain) }, index)
+    }
+
     /// The chain from which it was made.
     #[must_use]
     pub fn chain(&self) -> &Chain {

@@ -3,6 +3,7 @@
 mod attachments;
 mod bending_cylinders;
 mod bristles;
+mod buckling;
 mod bytecode;
 mod cautions;
 mod connectors;

@@ -1,0 +1,92 @@
+//! How many times larger weight and loads may become before the crane buckles, or does not stand for another reason.
+
+use nalgebra::{DMatrix, SymmetricEigen};
+
+use super::{
+    Limits,
+    rating::{LoadSearch, Posed},
+    search::Range,
+};
+use crate::{
+    dyn_crane::DynCrane,
+    statics::{RestSearch, Status},
+};
+
+/// Relative accuracy of a factor.
+const ACCURACY: f64 = 1e-6;
+/// The largest factor considered.
+const MOST: f64 = 1000.0;
+/// Part of a factor by which another one is a little larger.
+const A_LITTLE: f64 = 1e-5;
+
+/// Critical factors of weight and loads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadFactor {
+    /// By the stiffness at rest with factor 1: the smallest λ > 1 with which `K + (λ − 1) ∂K/∂λ` is singular, all at this pose. `None` if no factor is
+    /// large enough, and for closed loops.
+    pub linearised: Option<f64>,
+    /// The largest factor up to which the crane rests, its pose followed from factor 1 on; `None` if it is above 1000.
+    pub followed: Option<Followed>,
+}
+
+/// The end of a path of poses.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Followed {
+    /// The factor.
+    pub factor: f64,
+    /// How statics ends with a little more, from the last pose.
+    pub status: Status,
+}
+
+impl LoadFactor {
+    /// The largest factor considered.
+    pub const MOST: f64 = MOST;
+}
+
+/// The critical factors of a crane with its drives at the beginning of their motions. `parameter` is the factor of its weight and loads, which is left at
+/// another value. `None` if the crane does not rest with factor 1.
+pub fn load_factor(crane: &mut dyn DynCrane, parameter: usize) -> Option<LoadFactor> {
+    let limits = Limits::none(crane.description());
+    let positions: Vec<f64> = crane.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
+    let range = Range { greatest: MOST, guess: 0.0, scale: 1.0, accuracy: ACCURACY };
+    let search = LoadSearch { limits: &limits, factor: 1.0, range, points: &[] };
+    let mut posed = Posed { crane, load: parameter, positions: &positions };
+    let begin = posed.find(1.0, None)?;
+    let linearised = if posed.crane.loop_joints().is_empty() {
+        let stiffness = |crane: &mut dyn DynCrane, factor: f64| stiffness(crane, (parameter, factor), (&begin.q, &positions));
+        stiffness(posed.crane, 1.0).zip(stiffness(posed.crane, 2.0)).and_then(|(one, two)| singular(one, two))
+    } else {
+        None
+    };
+    let first = posed.trial(1.0, begin, &search);
+    let (best, governing) = posed.find_largest(first, &search);
+    let followed = governing.and(best).map(|best| {
+        let more = best.load * (1.0 + A_LITTLE);
+        let set = posed.crane.set_parameter(parameter, more).is_ok();
+        let near = RestSearch { crane: posed.crane, positions: &positions }.find_near(&best.at.q).filter(|_| set);
+        Followed { factor: best.load, status: near.map_or(Status::NotConverged, |found| found.status) }
+    });
+    Some(LoadFactor { linearised: linearised.filter(|factor| *factor <= MOST), followed })
+}
+
+/// The tangent stiffness at a pose with a value of a parameter.
+fn stiffness(
+    crane: &mut dyn DynCrane,
+    (parameter, value): (usize, f64),
+    (q, positions): (&[f64], &[f64]),
+) -> Option<DMatrix<f64>> {
+    crane.set_parameter(parameter, value).ok()?;
+    let mut stiffness = DMatrix::zeros(q.len(), q.len());
+    crane.tangent_stiffness(0.0, q, positions, stiffness.as_mut_slice());
+    Some(stiffness)
+}
+
+/// The smallest λ > 1 at which `K₁ + (λ − 1)(K₂ − K₁)` is singular, from the eigenvalues ν of `−L⁻¹ (K₂ − K₁) L⁻ᵀ`, `K₁ = L Lᵀ`: `λ = 1 + 1/ν`.
+fn singular(one: DMatrix<f64>, two: DMatrix<f64>) -> Option<f64> {
+    let change = &one - two;
+    let lower = one.cholesky()?.l();
+    let half = lower.solve_lower_triangular(&change)?;
+    let whole = lower.solve_lower_triangular(&half.transpose())?;
+    let largest = SymmetricEigen::new(0.5 * (&whole + whole.transpose())).eigenvalues.max();
+    (largest > 0.0).then(|| 1.0 + largest.recip())
+}

@@ -1,0 +1,76 @@
+//! Critical factors of weight and loads against columns and beams in closed form.
+
+use std::f64::consts::PI;
+
+use crane_codegen::SourceFile;
+use crane_live::LiveCrane;
+use crane_model::envelope::{Followed, LoadFactor, load_factor};
+
+fn factors(text: String) -> LoadFactor {
+    let crane = LiveCrane::from_spec(&SourceFile::new("buckling.yaml", text)).expect("a crane");
+    let (mut crane, parameter) = crane.with_load_factor();
+    load_factor(&mut crane, parameter).expect("a crane at rest")
+}
+
+/// A post of a slender tube without weight, 6 m high, and a force in newtons at its top.
+fn post(sections: usize, force: [f64; 3]) -> String {
+    format!(
+        "format: 1\nname: post\nanalyses: [statics, dynamics]\ngravity: [0, 0, 0]\nlinks:\n  - name: post\n    placement: {{transform: {{rotation: {{y: -90 \
+         deg}}}}}}\n    beam:\n      length: 6\n      sections: {sections}\n      material: {{E: 2.1e11, G: 8.1e10, density: 100}}\n      section: {{tube: \
+         {{diameter: 0.06, thickness: 0.003}}}}\nloads:\n  - {{name: top, link: post, at: [6, 0, 0], force: {force:?}}}\n"
+    )
+}
+
+/// `E π (D⁴ − d⁴)/64` of the tube.
+fn bending_stiffness() -> f64 {
+    2.1e11 * PI * (0.06_f64.powi(4) - 0.054_f64.powi(4)) / 64.0
+}
+
+/// A column that is fixed at its foot buckles at `π² E J/(4 L²)`; the error of equal sections falls with their square.
+#[test]
+fn a_column_buckles_at_eulers_load() {
+    let euler = PI.powi(2) * bending_stiffness() / (4.0 * 36.0);
+    let error = |sections: usize| {
+        let LoadFactor { linearised, followed } = factors(post(sections, [0.0, 0.0, -0.1 * euler]));
+        let linearised = linearised.expect("it buckles");
+        let Followed { factor, .. } = followed.expect("it buckles");
+        // It is straight until it buckles.
+        assert!((factor / linearised - 1.0).abs() < 1e-4, "{factor} {linearised}");
+        linearised / 10.0 - 1.0
+    };
+    let [four, eight, sixteen] = [4, 8, 16].map(error);
+    assert!(eight.abs() < 0.01, "{eight}");
+    for ratio in [four / eight, eight / sixteen] {
+        assert!((ratio - 4.0).abs() < 0.1, "{four} {eight} {sixteen}");
+    }
+}
+
+/// A pull does not make it buckle.
+#[test]
+fn a_column_that_is_pulled_does_not_buckle() {
+    assert_eq!(factors(post(8, [0.0, 0.0, 1000.0])), LoadFactor { linearised: None, followed: None });
+}
+
+/// A cantilever of a narrow section tips sideways at `4.0126 √(E J_z G J_x)/L²` under a force at its end.
+/// \[S. Timoshenko, J. M. Gere, Theory of Elastic Stability, 1961, section 6.3]
+#[test]
+fn a_narrow_cantilever_buckles_sideways() {
+    let (length, bending, torsion) = (4.0_f64, 1e4_f64, 5e3_f64);
+    let critical = 4.0126 * (bending * torsion).sqrt() / length.powi(2);
+    // So stiff in its own plane that it stays straight until then.
+    let text = |sections: usize| {
+        format!(
+            "format: 1\nname: cantilever\nanalyses: [statics, dynamics]\ngravity: [0, 0, 0]\nlinks:\n  - name: beam\n    beam:\n      length: {length}\n      \
+             sections: {sections}\n      line_density: 1\n      section: {{numbers: {{area: 1e-3, Jy: {}, Jz: {}, Jo: {}}}}}\n      material: {{E: 1e11, G: \
+             1e11, density: 1000}}\nloads:\n  - {{name: tip, link: beam, at: [{length}, 0, 0], force: [0, 0, {}]}}\n",
+            1e10 / 1e11,
+            bending / 1e11,
+            torsion / 1e11,
+            -0.2 * critical,
+        )
+    };
+    let error = |sections: usize| factors(text(sections)).linearised.expect("it buckles") / 5.0 - 1.0;
+    let [eight, sixteen] = [8, 16].map(error);
+    assert!(eight.abs() < 0.01, "{eight} {sixteen}");
+    assert!(sixteen.abs() < 0.3 * eight.abs() + 1e-4, "{eight} {sixteen}");
+}
