@@ -21,12 +21,38 @@ pub struct Load {
     pub scale: Option<Profile>,
 }
 
+/// Partial factors of weights and loads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Combination {
+    /// Unique name.
+    pub name: String,
+    /// Factor of the weight of everything, above 0.
+    pub weight: f64,
+    /// Factors of the weight of masses in place of that one, by parameters in kg.
+    pub masses: Vec<(ParameterId, f64)>,
+    /// Factors of loads, by their indices; 1 of all others.
+    pub loads: Vec<(usize, f64)>,
+}
+
 impl Chain {
+    /// The same crane with weight and loads as a combination has them, and factors of parameters: the weight of everything is larger, and so are those of
+    /// masses with a factor of their own, of which the parameter makes up for the difference.
+    #[must_use]
+    pub fn combined(&self, combination: &Combination) -> (Chain, Vec<f64>) {
+        let mut chain = self.clone();
+        let of_load = |index: usize| combination.loads.iter().find(|(load, _)| *load == index).map_or(1.0, |(_, factor)| *factor);
+        chain.scale_weight_and_loads(&Value::from(combination.weight), |index| of_load(index).into());
+        let mut parameters = vec![1.0; self.parameters.len()];
+        for (ParameterId(index), factor) in &combination.masses {
+            parameters[*index] = factor / combination.weight;
+        }
+        (chain, parameters)
+    }
+
     /// The same crane with a factor of its weight and of all loads as one more live parameter, 1 by default; and the index of this parameter.
     #[must_use]
     pub fn with_load_factor(&self) -> (Chain, usize) {
         let index = self.parameters.len();
-        let factor = || Value::Parameter(ParameterId(index));
         let mut chain = self.clone();
         chain.parameters.push(Parameter {
             name: "factor_of_weight_and_loads".to_owned(),
@@ -35,11 +61,21 @@ impl Chain {
             default: 1.0,
             lower_bound: None,
         });
-        let vectors = chain.loads.iter_mut().flat_map(|load| [&mut load.force, &mut load.moment]);
-        for number in vectors.chain([&mut chain.gravity]).flatten() {
-            *number = factor() * number.clone();
-        }
+        let factor = Value::Parameter(ParameterId(index));
+        chain.scale_weight_and_loads(&factor, |_| factor.clone());
         (chain, index)
+    }
+
+    /// Multiplies gravity, and each load by its index.
+    fn scale_weight_and_loads(&mut self, of_weight: &Value, of_load: impl Fn(usize) -> Value) {
+        for number in &mut self.gravity {
+            *number = of_weight.clone() * number.clone();
+        }
+        for (index, load) in self.loads.iter_mut().enumerate() {
+            for number in [&mut load.force, &mut load.moment].into_iter().flatten() {
+                *number = of_load(index) * number.clone();
+            }
+        }
     }
 }
 

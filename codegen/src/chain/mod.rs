@@ -35,7 +35,7 @@ pub use drive::{Drive, Rotor, Transmission};
 pub use force::*;
 pub use frame::{Frame, Vector};
 pub use input::{Input, InputId};
-pub use load::{Load, LoadAxes};
+pub use load::{Combination, Load, LoadAxes};
 pub use loop_joint::{Across, LoopEquation, LoopJoint, LoopJointKind, normalised};
 pub use loops::Loops;
 pub(crate) use name::{CRATES, LONGEST_NAME};
@@ -86,6 +86,8 @@ pub struct Chain {
     pub forces: Vec<Force>,
     /// External forces and moments.
     pub loads: Vec<Load>,
+    /// Combinations of weights and loads.
+    pub combinations: Vec<Combination>,
     /// Hydraulic cylinders of driven joints.
     pub cylinders: Vec<Cylinder>,
     /// The pump that supplies the cylinders.

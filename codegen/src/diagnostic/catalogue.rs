@@ -483,6 +483,13 @@ catalogue! {
     /// A pad without `stiffness` is exact along y and z.
     E180 loose_pad(pad, direction) "{pad} does not hold along {direction}", "it has no `stiffness`, and `exact` lacks {direction}",
         "write `exact: [y, z]`, with `twist` if it holds against it, or give the `stiffness`";
+    /// A load that a combination names exists.
+    E181 unknown_load(name, help) "there is no load `{name}`", "not listed under `loads:`", "{help}";
+    /// A mass that a combination names is a live parameter.
+    E182 unknown_mass(name, help) "there is no live parameter `{name}`", "a mass with a factor of its own is one", "{help}";
+    /// A mass that a combination names is in kg.
+    E183 not_a_mass(combination, name, unit) "`{name}`, a mass of combination `{combination}`, is in {unit}", "its weight has a factor of its own",
+        "name a live parameter in kg; factors of forces and moments are given under `loads`";
 
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.

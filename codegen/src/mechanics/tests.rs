@@ -55,6 +55,7 @@ pub(super) fn double_pendulum() -> Chain {
         drives: vec![],
         forces: vec![],
         loads: vec![],
+        combinations: vec![],
         cylinders: Vec::new(),
         pump: None,
         loop_joints: vec![],

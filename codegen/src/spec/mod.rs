@@ -4,6 +4,7 @@
 //! The type of a key defines its allowed values; [`Spanned`] holds its location. An optional key is an `Option`.
 
 mod beam;
+mod combination;
 mod connector;
 mod cylinder;
 mod drive;
@@ -24,6 +25,7 @@ mod support;
 pub use beam::{
     Beam, BeamDamping, BeamPart, Bend, Directions, Element, Material, Moduli, Section, SectionJoint, Sections, Spring,
 };
+pub use combination::Combination;
 pub use connector::*;
 pub use cylinder::{Cylinder, HoseVolumes, Linkage, Pin, Pump, Side, Valve};
 pub use drive::{Curve, Drive, Motion, Ramp, Speed, Table, Trapezoid};
@@ -112,6 +114,8 @@ pub struct Crane {
     pub friction: Option<Spanned<Entries<Friction>>>,
     /// External forces and moments.
     pub loads: Option<Spanned<Vec<Spanned<Load>>>>,
+    /// Combinations of weights and loads with partial factors.
+    pub combinations: Option<Spanned<Vec<Spanned<Combination>>>>,
     /// Springs, gas springs and ropes between two points.
     pub connectors: Option<Spanned<Vec<Spanned<Connector>>>>,
     /// Coordinates that follow others: stages of telescopes, gears.

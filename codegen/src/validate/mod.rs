@@ -5,6 +5,7 @@
 
 mod base;
 mod beam;
+mod combinations;
 mod connectors;
 mod cylinders;
 mod drives;
@@ -237,6 +238,7 @@ impl<'a> Check<'a> {
         forces.extend(self.joint_dampers(crane, &drives));
         forces.extend(self.joint_forces(crane, &drives));
         let loads = self.loads(crane);
+        let combinations = self.combinations(crane, &loads);
         let cylinders = self.cylinders(crane, &drives);
         let pump = self.pump(crane);
         self.make_drives_hydraulic(crane, &cylinders, pump.as_ref(), &mut drives);
@@ -270,6 +272,7 @@ impl<'a> Check<'a> {
             drives,
             forces: [forces, connectors].concat(),
             loads,
+            combinations,
             cylinders,
             pump,
             loop_joints,

@@ -9,6 +9,7 @@
 pub mod changes;
 mod charts;
 pub mod check;
+mod combined;
 pub mod crane;
 pub mod cuts;
 pub mod descriptions;

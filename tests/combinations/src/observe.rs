@@ -98,8 +98,15 @@ pub fn live_with(source: &SourceFile, set: &[(String, f64)]) -> Result<LiveCrane
 /// # Errors
 /// As of [`observe`].
 pub fn observe_with(source: &SourceFile, set: &[(String, f64)], run: bool) -> Result<Numbers, String> {
-    let crane = live_with(source, set)?;
-    let crane: &dyn DynCrane = &crane;
+    observe_live(&live_with(source, set)?, run)
+}
+
+/// The same of a crane.
+///
+/// # Errors
+/// It does not stand, or does not run.
+pub fn observe_live(crane: &LiveCrane, run: bool) -> Result<Numbers, String> {
+    let crane: &dyn DynCrane = crane;
     let q = equilibrium(crane)?;
     let mut numbers = Numbers::new();
     let mut add = |group: &'static str, name: String, unit: &str, value: f64| {

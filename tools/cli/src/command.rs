@@ -6,12 +6,12 @@ use clap::CommandFactory;
 
 use crate::{
     arguments::{Action, Arguments},
-    check, compare, compiled, completions, ensemble, envelope, eval, example, exchange, explain, generate, help, info,
+    check, combinations, compare, compiled, completions, ensemble, envelope, eval, example, exchange, explain, fatigue, generate, help, info,
     linearise, margins, modes, new, page, poses,
     problem::Outcome,
     run, screen,
     selection::Registry,
-    fatigue, sensitivity, simulate, stability, statics, strength,
+    sensitivity, simulate, stability, statics, strength,
 };
 
 /// Does what the arguments ask for, with the cranes of a registry.
@@ -61,6 +61,12 @@ pub fn execute(mut arguments: Arguments, mut registry: Registry, out: &mut dyn W
         None => Ok(help::grouped(Arguments::command()).print_help()?),
         Some(Action::Compare(options)) => compare::compare_pair(options, registry, out),
         Some(Action::Run(options)) => run::run_crane(options, registry, out),
+        Some(Action::Statics(options)) if options.combined.combinations => {
+            combinations::statics(&options.analysis, registry, out)
+        }
+        Some(Action::Strength(options)) if options.combined.combinations => {
+            combinations::strength(&options.analysis, registry, out)
+        }
         Some(Action::Statics(options)) => statics::statics(&options.analysis, registry, out),
         Some(Action::Simulate(options)) => match &options.ensemble.table {
             Some(table) => ensemble::simulate(options, table, registry, out),

@@ -13,6 +13,7 @@
 
 mod arguments;
 mod check;
+mod combinations;
 mod command;
 mod compare;
 mod compiled;

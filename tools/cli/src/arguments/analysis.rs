@@ -8,7 +8,7 @@ use crane_live::FunctionId;
 use super::{
     crane::{Analysis, Choice},
     number::{above_zero, angle, count, duration, finite_number, margin, seconds},
-    poses::{Held, Poses},
+    poses::{Combined, Held, Poses},
     run::{Folder, Timing},
 };
 
@@ -20,16 +20,18 @@ pub struct Strength {
     #[command(flatten)]
     pub poses: Poses,
     #[command(flatten)]
+    pub combined: Combined,
+    #[command(flatten)]
     pub timing: Timing,
     /// Also evaluate the manoeuvre: smallest tipping margin, extremes of all loads and their times
-    #[arg(long, conflicts_with = "ranges")]
+    #[arg(long, conflicts_with_all = ["ranges", "combinations"])]
     pub run: bool,
     /// Also find the factor of weight and all loads at which the crane buckles, by its stiffness at rest and by following its pose
-    #[arg(long, conflicts_with = "ranges")]
+    #[arg(long, conflicts_with_all = ["ranges", "combinations"])]
     pub buckling: bool,
     /// Live parameter to use as the load: find the values at which the first foot lifts and the crane tips [default: the only
     /// parameter in kg]
-    #[arg(long, value_name = "PARAMETER")]
+    #[arg(long, value_name = "PARAMETER", conflicts_with = "combinations")]
     pub load: Option<String>,
     /// CSV file for the moments about the tipping lines and all loads during the run, or for the table of `--range`
     #[arg(short = 'o', long = "file", value_name = "FILE", value_hint = ValueHint::FilePath)]

@@ -35,6 +35,15 @@ pub struct Poses {
     pub point: Option<String>,
 }
 
+/// Combinations of weights and loads.
+#[derive(Clone, Copy, Debug, Args)]
+#[command(next_help_heading = "Pose")]
+pub struct Combined {
+    /// Compute all `combinations` of the spec, with their partial factors, side by side
+    #[arg(long, conflicts_with = "ranges")]
+    pub combinations: bool,
+}
+
 /// What changes with the numbers of a crane at rest.
 #[derive(Debug, Args)]
 pub struct Sensitivity {
@@ -90,6 +99,8 @@ pub struct Statics {
     pub analysis: Analysis,
     #[command(flatten)]
     pub poses: Poses,
+    #[command(flatten)]
+    pub combined: Combined,
     /// CSV file for the table of `--range`
     #[arg(short = 'o', long, value_name = "FILE.csv", value_hint = ValueHint::FilePath, requires = "ranges")]
     pub file: Option<PathBuf>,

@@ -61,7 +61,7 @@ fn a_narrow_cantilever_buckles_sideways() {
     let text = |sections: usize| {
         format!(
             "format: 1\nname: cantilever\nanalyses: [statics, dynamics]\ngravity: [0, 0, 0]\nlinks:\n  - name: beam\n    beam:\n      length: {length}\n      \
-             sections: {sections}\n      line_density: 1\n      section: {{numbers: {{area: 1e-3, Jy: {}, Jz: {}, Jo: {}}}}}\n      material: {{E: 1e11, G: \
+             sections: {sections}\n      section: {{numbers: {{area: 1e-3, Jy: {}, Jz: {}, Jo: {}}}}}\n      material: {{E: 1e11, G: \
              1e11, density: 1000}}\nloads:\n  - {{name: tip, link: beam, at: [{length}, 0, 0], force: [0, 0, {}]}}\n",
             1e10 / 1e11,
             bending / 1e11,

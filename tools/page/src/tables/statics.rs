@@ -63,9 +63,12 @@ impl<'a> Case<'a> {
 /// Reports how the statics of each crane ended, and for programs also whether all equilibria are stable.
 pub fn verdicts(report: &mut Report, cases: &[Case<'_>]) {
     let mut cranes = Vec::new();
-    for Case { label, crane, equilibrium } in cases {
-        let (name, residual) = (crane.description().name.as_str(), equilibrium.residual());
-        report.line(name, format!("{equilibrium}, relative residual {residual:.1e}"), "");
+    let name_of = |case: &Case<'_>| case.crane.description().name.to_string();
+    let are_one = cases.len() > 1 && cases.iter().all(|case| name_of(case) == name_of(&cases[0]));
+    for case @ Case { label, equilibrium, .. } in cases {
+        let (name, residual) = (name_of(case), equilibrium.residual());
+        let shown = if are_one { format!("{name}, {label}") } else { name.clone() };
+        report.line(shown, format!("{equilibrium}, relative residual {residual:.1e}"), "");
         cranes.push(json!({
             "label": label,
             "crane": name,

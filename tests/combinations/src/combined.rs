@@ -1,0 +1,50 @@
+//! A combination of weights and loads, and the same crane with its factors written out.
+
+use fastrand::Rng;
+use serde_json::{Value, json};
+
+use crate::observe::{differences, live, observe_live};
+use crate::tree::{Tree, numbers, source};
+
+/// The name of the check.
+pub const NAME: &str = "combinations and their factors written out";
+
+/// What differs; `None` for a crane without weights and loads that are numbers, or that does not rest with them.
+pub fn check_combined(tree: &Tree, seed: u64) -> Option<Vec<String>> {
+    let mut rng = Rng::with_seed(seed);
+    let mut factor = |least: f64, most: f64| least + (most - least) * rng.f64();
+    let (mut combined, mut written) = (tree.clone(), tree.clone());
+    let weight = factor(0.8, 1.2);
+    let gravity = tree.get("gravity").map_or(vec![0.0, 0.0, -9.81], numbers);
+    written["gravity"] = json!(gravity.iter().map(|g| weight * g).collect::<Vec<_>>());
+    let (mut loads, mut masses) = (json!({}), json!({}));
+    for load in written["loads"].as_array_mut().into_iter().flatten() {
+        let of_load = factor(0.5, 1.3);
+        loads[load["name"].as_str()?] = json!(of_load);
+        for key in ["force", "moment"] {
+            let Some(vector) = load.get_mut(key) else { continue };
+            *vector = json!(vector.as_array()?.iter().map(|x| Some(of_load * x.as_f64()?)).collect::<Option<Vec<_>>>()?);
+        }
+    }
+    for (name, parameter) in written["parameters"].as_object_mut().into_iter().flatten() {
+        if parameter["unit"] == "kg" {
+            let of_mass = factor(0.8, 1.2);
+            masses[name] = json!(of_mass);
+            parameter["value"] = json!(parameter["value"].as_f64()? * (of_mass / weight));
+        }
+    }
+    let mut combination = json!({"name": "lifting", "weight": weight});
+    for (key, factors) in [("loads", loads), ("masses", masses)] {
+        if factors.as_object().is_some_and(|factors| !factors.is_empty()) {
+            combination[key] = factors;
+        }
+    }
+    combined["combinations"] = Value::Array(vec![combination]);
+    let combined = live(&source(&combined)).ok()?;
+    let combined = combined.combined(&combined.chain().combinations[0]);
+    let second = observe_live(&live(&source(&written)).ok()?, false).ok()?;
+    Some(match observe_live(&combined, false) {
+        Ok(first) => differences([&first, &second], &|name| Some(name.to_owned()), &|_| 1.0),
+        Err(refused) => vec![refused],
+    })
+}
