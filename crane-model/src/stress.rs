@@ -1,7 +1,7 @@
 //! Stresses of beams from the forces and moments of their sections.
 //!
 //! The stresses are elastic, for a straight prismatic beam: they do not cover buckling of plates or of the beam, notches, welds,
-//! holes, load introduction or fatigue, and are not a verification by a design code.
+//! holes or load introduction, and are not a verification by a design code.
 
 #[cfg(feature = "std")]
 use crate::wrench::Wrench;
