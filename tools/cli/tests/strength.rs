@@ -352,3 +352,56 @@ fn critical_loads_are_found_or_their_absence_is_explained() {
     assert!(report["critical_loads"]["tipping"].is_null());
     assert_eq!(report["critical_loads"]["reasons"]["tipping"], "the crane has no supports");
 }
+
+/// 4000 kg at 1 m, 1.2 times, balance 100 kg at 4 m, 1.5 times; the truck of the spec has a margin of 0.9.
+#[test]
+fn combinations_have_their_own_margins_and_name_the_worst() {
+    let combinations = "combinations:\n  - {name: working, weight: 1.2, masses: {payload: 1.5}}\n  - {name: as_written}\n";
+    let report = strength("combined", &format!("{TRUCK}{combinations}"), &["--combinations"]);
+    let rows = report["combinations"].as_array().expect("a table");
+    assert_close("working", &rows[0]["tipping_margin"], 1.0 - 600.0 / 4800.0, COMPLIANCE);
+    assert_close("as written", &rows[1]["tipping_margin"], 0.9, COMPLIANCE);
+    let worst = report["worst_cases"].as_array().expect("a table");
+    let ground = worst.iter().find(|row| row["part"] == "ground" && row["quantity"] == "force of the joint").expect("the ground");
+    assert_eq!((&ground["with_the_combination"], &ground["with_combination"]), (&"working".into(), &"as_written".into()));
+    assert_close("weight", &ground["greatest"], (4000.0 * 1.2 + 150.0) * 9.81, COMPLIANCE);
+}
+
+/// A cantilever that is bent slowly and let go again: one cycle of `F L/W`, and the life of a detail by hand.
+#[test]
+fn a_cantilever_that_is_bent_and_let_go_lives_as_long_as_its_detail() {
+    let spec = "gravity: [0, 0, 0]
+links:
+  - name: beam
+    beam: {length: 2, sections: 2, material: {E: 2.1e11, G: 8.1e10, density: 7850}, section: {box: {height: 0.1, width: 0.1, thickness: 0.005}}, damping: {beta: 1e-3}}
+loads: [{name: pull, link: beam, at: [2, 0, 0], force: [0, 0, -3000], scale: {table: {times: [0, 4, 8], values: [0, 1, 0]}}}]
+run: {duration: 8, output: 0.02}
+";
+    let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("bent_and_let_go.yaml");
+    fs::write(&file, format!("format: 1\nname: bent\n{spec}")).expect("a file");
+    let run = |arguments: &[&str]| {
+        Command::new(env!("CARGO_BIN_EXE_crane")).arg("fatigue").arg(&file).args(arguments).output().expect("it starts")
+    };
+    let output = run(&["--cycles", "1e5", "--category", "71MPa", "--category", "beam=80 MPa", "--format", "json"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let report: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let modulus = (0.1_f64.powi(4) - 0.09_f64.powi(4)) / 12.0 / 0.05;
+    let range = 3000.0 * 2.0 / modulus;
+    // The load changes as slowly as the beam follows.
+    assert_close("range", &report["greatest_range"], range, 1e-3);
+    assert_close("life", &report["life"], 2e6 * (80e6 / range).powi(3), 3e-3);
+    assert_close("s", &report["history_parameter"], 1e5 / 2e6, 1e-3);
+    assert_eq!(report["class"], "S3");
+    assert!(report["place_of_the_greatest_damage"].as_str().is_some_and(|place| place.starts_with("beam, 0.000 m")), "{report}");
+    for (arguments, wanted) in [
+        (["--cycles", "1e5", "--category", "71"], "write 71MPa"),
+        (["--cycles", "1e5", "--category", "boom=71MPa"], "beams are beam"),
+        (["--cycles", "1e5", "--category", "71 kN"], "MPa"),
+        (["--cycles", "0", "--category", "71MPa"], "above 0"),
+    ] {
+        let output = run(&arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(text.contains(wanted), "{arguments:?}: {text}");
+    }
+}

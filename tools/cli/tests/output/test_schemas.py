@@ -101,6 +101,16 @@ def test_strength(output, crane_name, options):
     assert (found["tipping_margin"] is None) == (crane_name != "eight_link_flexible")
 
 
+def test_strength_with_buckling(output):
+    found = output("strength", "strength", "eight_link_flexible", "--buckling")
+    assert found["critical_factor"]["followed"] is None or found["critical_factor"]["followed"]["factor"] > 1
+
+
+def test_fatigue(output):
+    found = output("fatigue", "fatigue", "eight_link_flexible", "--cycles", "1e5", "--category", "71MPa", "--duration", "2", "--interval", "0.02")
+    assert found["life"] > 0 and {row["beam"] for row in found["fatigue"]} and found["units"]["fatigue"]["largest_range"] == "Pa"
+
+
 # A point of a load chart.
 LARGEST = ["--largest-load", "--tipping", "0.2", "--with", "links.boom.beam.section.box.height"]
 
