@@ -106,6 +106,27 @@ def test_strength_with_buckling(output):
     assert found["critical_factor"]["followed"] is None or found["critical_factor"]["followed"]["factor"] > 1
 
 
+COMBINED = """
+format: 1
+name: combined
+parameters: {payload: {value: 20, unit: kg}}
+links:
+  - {name: arm, joint: {revolute: {axis: y}}, beam: {length: 2, sections: 2, material: {E: 2.1e11, G: 8.1e10, density: 7850}, section: {box: {height: 0.1, width: 0.1, thickness: 0.005}}}}
+  - {name: load, mass: payload, com: [0, 0, 0]}
+drives: [{coordinate: arm_theta, stiffness: 1e6, damping: 1e3, motion: {hold: 0}}]
+points: [{name: tip, link: load, at: [0, 0, 0]}]
+combinations: [{name: working, weight: 1.2, masses: {payload: 1.5}}, {name: as_written}]
+"""
+
+
+def test_combinations(output):
+    found = output("strength", "strength", "-", "--combinations", text=COMBINED)
+    assert [row["combination"] for row in found["combinations"]] == ["working", "as_written"]
+    assert {row["with_the_combination"] for row in found["worst_cases"]} == {"working"}
+    found = output("statics", "statics", "-", "--combinations", text=COMBINED)
+    assert set(found["drives"][0]["value"]) == {"working", "as_written"}
+
+
 def test_fatigue(output):
     found = output("fatigue", "fatigue", "eight_link_flexible", "--cycles", "1e5", "--category", "71MPa", "--duration", "2", "--interval", "0.02")
     assert found["life"] > 0 and {row["beam"] for row in found["fatigue"]} and found["units"]["fatigue"]["largest_range"] == "Pa"
