@@ -21,8 +21,8 @@ use crate::{
 /// Categories in Pa below this are most likely meant in MPa.
 const LEAST_LIKELY_CATEGORY: f64 = 1e5;
 
-/// The start of the run may differ from its end by this part of the largest range before it is said.
-const CLOSED: f64 = 0.02;
+/// The start of the run may differ from its end by this part of the largest range before it is said: with a slope of 3 it does a thousandth of the damage.
+const CLOSED: f64 = 0.1;
 
 /// The damage may change by this part if every second result is left out, before it is a caution.
 const FINE: f64 = 0.05;

@@ -270,6 +270,22 @@ async function parts(page, phone) {
   const { left, top } = await at(page, () => document.querySelector("#view canvas").getBoundingClientRect().toJSON());
   await tap([left + 3, top + 120]);
   assert.deepEqual(await seen(), [null, ""]);
+  // What the picture shows stays so for the next crane, and the picture is a file.
+  await page.locator("#looks summary").click();
+  await page.locator("#factor").fill("1");
+  await page.locator("[data-look=arrows]").uncheck();
+  await page.locator("[data-look=use]").check();
+  assert.match(await at(page, () => document.querySelector("#looks b").textContent), /stress|utilisation|no beam/);
+  await page.screenshot({ path: picture(phone ? "phone_looks" : "looks") });
+  const download = page.waitForEvent("download");
+  await page.locator("#picture").click();
+  assert.match((await download).suggestedFilename(), /^knuckle_boom\.png$/);
+  await page.locator("#looks summary").click();
+  const look = () => at(page, () => {
+    const { factor, arrows, use } = globalThis.instrument.stage.viewer;
+    return { factor, arrows, use };
+  });
+  assert.deepEqual(await look(), { factor: 10, arrows: false, use: true });
   // Sliders become numbers of the spec, where it has one for them.
   await page.getByRole("button", { name: "Into the spec" }).click();
   await eventually(page, async () => assert.match(await at(page, () => globalThis.instrument.editor.text), /payload: \{value: 650, unit: kg/));

@@ -5,7 +5,7 @@ import { fragment } from "../instrument/src/link.js";
 import { chart } from "./chart.js";
 import { moves } from "./moves.js";
 import { PULLS, gradient } from "./colours.js";
-import { at, measured, place, read, readable, scaled, spoken } from "./data.js";
+import { at, measured, place, read, scaled, spoken } from "./data.js";
 import { save, table } from "./download.js";
 import { faults } from "./faults.js";
 import { follow, panels } from "./panels.js";
@@ -13,7 +13,7 @@ import { Player } from "./player.js";
 import { sign } from "./sign.js";
 import { modeText, tables } from "./tables.js";
 import { tiles } from "./tiles.js";
-import { Viewer } from "./viewer.js";
+import { Viewer, exaggeration } from "./viewer.js";
 
 /** Width of a plot on paper, two of which fit on A4 side by side, CSS pixels; that of a path, which has a line to itself. */
 const PAPER = { plot: 312, path: 520 };
@@ -149,11 +149,9 @@ function controls() {
   const flexible = crane.scene.bodies.some((body) => body.length > 0);
   const factor = $("#factor");
   const exaggerate = () => {
-    // 1, 2, 5, 10 … evenly along the slider.
-    const value = 10 ** Number(factor.value);
-    const shown = value < 10 ? Math.round(value * 10) / 10 : Math.round(value);
-    $("#factor_text").textContent = `× ${shown}`;
-    viewer.set({ factor: shown });
+    const { factor: larger, words } = exaggeration(factor.value);
+    $("#factor_text").textContent = words;
+    viewer.set({ factor: larger });
   };
   factor.addEventListener("input", exaggerate);
   exaggerate();
@@ -169,8 +167,7 @@ function controls() {
   check("#used", "use", viewer.used.beams.length);
   $("#used")?.addEventListener("change", ({ target }) => ($("#use_scale").hidden = !target.checked));
   $("#use_scale i").style.background = gradient;
-  const use = viewer.used.unit === "1" ? ["utilisation", "1, beyond red"] : ["equivalent stress", `${readable(viewer.full)} MPa`];
-  [$("#use_scale span").textContent, $("#use_scale b").textContent] = use;
+  [$("#use_scale span").textContent, $("#use_scale b").textContent] = viewer.useInWords;
   recording();
   document.querySelectorAll("[data-view]").forEach((button) => button.addEventListener("click", () => viewer.look(button.dataset.view)));
   const mode = $("#mode");

@@ -8,7 +8,7 @@ import { Line2 } from "three/examples/jsm/lines/Line2.js";
 import { LineGeometry } from "three/examples/jsm/lines/LineGeometry.js";
 import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
 import { BEYOND, curve, isDark, scale, smooth, style } from "./colours.js";
-import { at, place, range } from "./data.js";
+import { at, place, range, readable } from "./data.js";
 import { Figure, extent } from "./figure.js";
 import { Plain } from "./plain.js";
 import { margins, ordered, used } from "./strength.js";
@@ -66,6 +66,13 @@ export const VIEWS = {
   y: [0, -1, 0.06],
   top: [0, -0.02, 1],
 };
+
+/** The factor of deformations at a place of its slider, from 0 to 2: 1, 2, 5, 10 … evenly along it; and in words. */
+export function exaggeration(slider) {
+  const value = 10 ** Number(slider);
+  const factor = value < 10 ? Math.round(value * 10) / 10 : Math.round(value);
+  return { factor, words: `× ${factor}` };
+}
 
 /** Whether 3-D is drawn by the processor. */
 function inSoftware() {
@@ -498,6 +505,11 @@ export class Viewer {
     this.tip(here);
     this.figure.colour(this.use && !this.mode ? (name) => this.useAlong(name, here) : null);
     this.draw();
+  }
+
+  /** What the colours of beams mean, and what the end of their scale is. */
+  get useInWords() {
+    return this.used.unit === "1" ? ["utilisation", "1, beyond red"] : ["equivalent stress", `${readable(this.full)} MPa`];
   }
 
   /** Colour of a beam at a distance from its beginning, by its utilisation now; nothing at its tip is used. */

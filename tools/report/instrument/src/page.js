@@ -12,6 +12,7 @@ import { Engine, compile } from "./engine.js";
 import { Gallery } from "./gallery.js";
 import { MOST, fragment, shown as shownOf, text as textOf } from "./link.js";
 import { LoadChart } from "./load_chart.js";
+import { looks } from "./looks.js";
 import { Modes } from "./modes.js";
 import { Parts } from "./parts.js";
 import { entry, rewritten } from "./places.js";
@@ -388,6 +389,7 @@ function controls() {
     });
   });
   document.querySelectorAll("[data-view]").forEach((button) => button.addEventListener("click", () => stage.viewer?.look(button.dataset.view)));
+  looks($("#looks"), stage);
   $("#new").addEventListener("click", () => gallery.show(name));
   const file = $("#file");
   $("#open").addEventListener("click", () => file.click());
