@@ -60,7 +60,7 @@ pub fn for_each_key(tree: &mut Tree, act: &mut impl FnMut(&str, &mut Tree)) {
 }
 
 /// Keys in the order in which a person writes them.
-const ORDER: [&str; 25] = [
+const ORDER: [&str; 26] = [
     "format",
     "name",
     "title",
@@ -80,6 +80,7 @@ const ORDER: [&str; 25] = [
     "friction",
     "armature",
     "loads",
+    "combinations",
     "connectors",
     "loop_joints",
     "points",
