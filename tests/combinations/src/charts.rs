@@ -11,7 +11,7 @@ use fastrand::Rng;
 use serde_json::{Value, json};
 
 use crate::observe::live;
-use crate::tree::{Tree, source};
+use crate::tree::{Tree, source, without_unused_offset};
 
 /// The name of the check.
 pub const NAME: &str = "poses of charts are those of statics";
@@ -36,11 +36,10 @@ pub fn check_charts(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     let mut held = tree.clone();
     let entry = held["drives"].as_array_mut()?.iter_mut().find(|entry| entry["coordinate"] == name.as_str())?;
     let entry: &mut serde_json::Map<String, Value> = entry.as_object_mut()?;
-    // A chart's position is where the drive is; a motion is moved by an offset.
-    if entry.contains_key("offset") {
-        return None;
-    }
+    // A chart's position is where the drive is, as that of `--hold`: no input offsets it.
     entry.insert("motion".into(), json!({"hold": position}));
+    entry.remove("offset");
+    without_unused_offset(&mut held);
     let mut held = live(&source(&held)).ok()?;
     let load_name = description.parameters[load].name.to_string();
     let held_load = held.description().parameters.iter().position(|info| info.name == load_name.as_str())?;

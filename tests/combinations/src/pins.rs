@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use crate::crane::BOOM;
 use crate::descriptions::Second;
 use crate::observe::{equilibrium, live};
-use crate::tree::{Tree, entry, entry_mut, push, source};
+use crate::tree::{Tree, entry_mut, push, source, without_unused_offset};
 
 /// Step of differences of a length by the places of its pins, m: the error of a central difference is 1e-10 of it.
 const STEP: f64 = 1e-5;
@@ -119,10 +119,7 @@ pub fn as_loads(tree: &Tree, _: &mut Rng) -> Option<Second> {
         let entries = second.as_object_mut()?;
         entries.retain(|key, _| !matches!(key.as_str(), "cylinders" | "pump"));
     }
-    // An input that nothing uses is a mistake.
-    if entry(&second, "drives", "offset", "trim").is_none() && second["inputs"]["trim"].is_object() {
-        second["inputs"].as_object_mut()?.remove("trim");
-    }
+    without_unused_offset(&mut second);
     let cylinders: Vec<String> =
         with_oil.iter().filter_map(|own| Some(format!("{}_", own["name"].as_str()?))).collect();
     let same = move |name: &str| {

@@ -27,6 +27,15 @@ pub fn push(tree: &mut Tree, list: &str, new: Tree) {
     }
 }
 
+/// Without the input that offsets a drive, if none has it any more: an input that nothing uses is a mistake.
+pub fn without_unused_offset(tree: &mut Tree) {
+    if entry(tree, "drives", "offset", "trim").is_none()
+        && let Some(inputs) = tree.get_mut("inputs").and_then(Value::as_object_mut)
+    {
+        inputs.remove("trim");
+    }
+}
+
 /// The numbers of a list.
 #[must_use]
 pub fn numbers(tree: &Tree) -> Vec<f64> {

@@ -69,9 +69,13 @@ pub fn hold(held: &Held, ranges: &[String], name: &str, registry: &mut Registry)
     }
     let text = registry.spec(name).ok_or_else(|| Problem::failed(format!("{name} has no spec"), ""))?;
     let posed = |changes: &Changes| SourceFile::new(name, text).changed(&changes.text(name));
-    // Parameters of motions that no longer take place would be reported as unused.
-    let unused = unused_parameters(&posed(&changes));
-    changes.parameters.extend(unused.iter().map(|parameter| format!("  {parameter}: ~\n")));
+    // Inputs and parameters of motions that no longer take place would be reported as unused; an input may be all that uses a parameter.
+    for _ in 0..2 {
+        let [parameters, inputs] = unused(&posed(&changes));
+        let removed = |names: Vec<String>| names.into_iter().map(|name| format!("  {name}: ~\n"));
+        changes.parameters.extend(removed(parameters));
+        changes.inputs.extend(removed(inputs));
+    }
     let text = posed(&changes).text;
     registry.add(name, text);
     Ok(())
@@ -104,19 +108,22 @@ pub fn held_number(text: &str, kind: CoordinateKind, is_rate: bool) -> Outcome<f
     Ok(number)
 }
 
-/// Names of the parameters to which nothing refers, if there is no other mistake.
-fn unused_parameters(source: &SourceFile) -> Vec<String> {
-    /// The code of `rule::unused_parameter`.
-    const UNUSED: &str = "E027";
-    let mistakes = compile::load(source).err();
-    let mistakes = mistakes.iter().flat_map(Diagnostics::mistakes).filter(|mistake| mistake.code == UNUSED);
-    mistakes.filter_map(|mistake| source.text.get(mistake.span.start..mistake.span.end).map(str::to_owned)).collect()
+/// Parameters and inputs to which nothing refers.
+fn unused(source: &SourceFile) -> [Vec<String>; 2] {
+    /// The codes of `rule::unused_parameter` and `rule::unused_input`.
+    const UNUSED: [&str; 2] = ["E027", "E114"];
+    let found = compile::load(source).err();
+    UNUSED.map(|code| {
+        let mistakes = found.iter().flat_map(Diagnostics::mistakes).filter(|mistake| mistake.code == code);
+        mistakes.filter_map(|mistake| source.text.get(mistake.span.start..mistake.span.end).map(str::to_owned)).collect()
+    })
 }
 
 /// What is laid over a spec.
 #[derive(Default)]
 struct Changes {
     parameters: Vec<String>,
+    inputs: Vec<String>,
     drives: Vec<String>,
 }
 
@@ -126,13 +133,16 @@ impl Changes {
             [] => String::new(),
             lines => format!("{key}:\n{}", lines.concat()),
         };
-        format!("name: {name}\n{}{}", under("parameters", &self.parameters), under("drives", &self.drives))
+        let [parameters, inputs, drives] =
+            [("parameters", &self.parameters), ("inputs", &self.inputs), ("drives", &self.drives)].map(|(key, lines)| under(key, lines));
+        format!("name: {name}\n{parameters}{inputs}{drives}")
     }
 }
 
+/// A drive that holds a position instead of moving, and that no input offsets.
 fn held_at(description: &Description, drive: usize, position: &str) -> String {
     let coordinate = &description.coordinates[description.drives[drive].coordinate].name;
-    format!("  - {{coordinate: {coordinate}, motion: {{hold: {position}}}}}\n")
+    format!("  - {{coordinate: {coordinate}, motion: {{hold: {position}}}, offset: ~}}\n")
 }
 
 /// Name of the live parameter at whose value a drive holds.

@@ -107,3 +107,23 @@ fn a_drive_is_held_or_varied_and_held_once() {
     refused(&also(&["--range", "main_boom_theta=-1:0:3"]), &expected);
     refused(&also(&["--hold", "main_boom=-0.5"]), &["`main_boom_theta` is held twice"]);
 }
+
+/// A drive that is held is where it is held: neither the input that moves it nor the one that offsets it counts.
+#[test]
+fn held_drives_are_where_they_are_held() {
+    let spec = "format: 1
+name: held
+inputs: {lever: {value: 0.5, unit: rad}, trim: {value: 0.2, unit: rad}}
+links: [{name: arm, joint: {revolute: {axis: y}}, mass: 10, com: [1, 0, 0]}]
+drives: [{coordinate: arm_theta, stiffness: 1e9, motion: {input: lever}, offset: trim}]
+";
+    let file = folder("held_drives").join("held.yaml");
+    std::fs::create_dir_all(file.parent().expect("a folder")).expect("a folder");
+    std::fs::write(&file, spec).expect("a file");
+    let angle = |arguments: &[&str]| {
+        let found = json(&[&["statics", &file.to_string_lossy(), "--format", "json"], arguments].concat());
+        found["pose"][0]["value"].as_f64().expect("an angle")
+    };
+    assert!((angle(&[]) - 0.7).abs() < 1e-6);
+    assert!((angle(&["--hold", "arm_theta=0.3"]) - 0.3).abs() < 1e-6);
+}
