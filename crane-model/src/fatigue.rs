@@ -79,7 +79,9 @@ pub fn count_cycles(history: &[f64]) -> Vec<Cycle> {
 /// The cycles of a history that repeats, all full: it is turned so that it begins and ends with its highest peak. The way from its end back to its
 /// beginning is a part of it.
 pub fn count_repeating_cycles(history: &[f64]) -> Vec<Cycle> {
-    let Some(highest) = (0..history.len()).max_by(|a, b| history[*a].total_cmp(&history[*b])) else { return Vec::new() };
+    let Some(highest) = (0..history.len()).max_by(|a, b| history[*a].total_cmp(&history[*b])) else {
+        return Vec::new();
+    };
     let order: Vec<usize> = (highest..history.len()).chain(0..=highest).collect();
     let turned: Vec<f64> = order.iter().map(|index| history[*index]).collect();
     let mut open: Vec<usize> = Vec::new();
@@ -117,7 +119,8 @@ impl Detail {
 
     /// `Σ n/N`.
     pub fn damage(&self, cycles: &[Cycle]) -> f64 {
-        let damages = cycles.iter().filter(|cycle| cycle.range > 0.0).map(|cycle| cycle.count / self.endured(cycle.range));
+        let damages =
+            cycles.iter().filter(|cycle| cycle.range > 0.0).map(|cycle| cycle.count / self.endured(cycle.range));
         damages.fold(0.0, |sum, damage| sum + damage)
     }
 }
@@ -152,7 +155,9 @@ pub fn contour(moduli: &SectionModuli, Wrench { force, moment }: &Wrench) -> Vec
     let axial = force.x / moduli.area;
     let (about_y, about_z) = (moment.y / moduli.bending_y, moment.z / moduli.bending_z);
     if moduli.corners > 0.5 {
-        return [(1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0)].map(|(y, z)| axial + y * about_y + z * about_z).into();
+        return [(1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0)]
+            .map(|(y, z)| axial + y * about_y + z * about_z)
+            .into();
     }
     let angle = |point: usize| std::f64::consts::TAU * point as f64 / POINTS_ON_A_RIM as f64;
     (0..POINTS_ON_A_RIM).map(|point| axial + about_y * angle(point).sin() - about_z * angle(point).cos()).collect()
@@ -251,7 +256,11 @@ mod tests {
         for shift in 1..EXAMPLE.len() - 1 {
             let period = &EXAMPLE[..EXAMPLE.len() - 1];
             let turned: Vec<f64> = period[shift..].iter().chain(&period[..shift]).copied().collect();
-            assert_eq!(counted(&count_repeating_cycles(&turned)), counted(&count_repeating_cycles(&EXAMPLE)), "{shift}");
+            assert_eq!(
+                counted(&count_repeating_cycles(&turned)),
+                counted(&count_repeating_cycles(&EXAMPLE)),
+                "{shift}"
+            );
         }
     }
 
@@ -279,7 +288,8 @@ mod tests {
 
     #[test]
     fn classes_double() {
-        let expected = [(0.0, Some(0)), (1.0 / 128.0, Some(0)), (0.008, Some(1)), (0.12, Some(4)), (4.0, Some(9)), (4.1, None)];
+        let expected =
+            [(0.0, Some(0)), (1.0 / 128.0, Some(0)), (0.008, Some(1)), (0.12, Some(4)), (4.0, Some(9)), (4.1, None)];
         for (parameter, class_of_it) in expected {
             assert_eq!(class(parameter), class_of_it, "{parameter}");
         }

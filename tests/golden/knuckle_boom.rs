@@ -47,9 +47,9 @@
 //   dynamic_residual                   192       510
 //   joint_stiffness_and_damping          0        24
 //   static_residual                     53       314
-//   tangent_stiffness                   51       348
+//   tangent_stiffness                   51       386
 //   drive_forces_at_rest                 6         6
-//   linearise                          165       808
+//   linearise                          165       846
 
 use ::crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
 use ::crane_model::rt::{MassAndBias, fill, fma, mirror, sin_cos, symmetric};

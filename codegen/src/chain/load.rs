@@ -40,7 +40,8 @@ impl Chain {
     #[must_use]
     pub fn combined(&self, combination: &Combination) -> (Chain, Vec<f64>) {
         let mut chain = self.clone();
-        let of_load = |index: usize| combination.loads.iter().find(|(load, _)| *load == index).map_or(1.0, |(_, factor)| *factor);
+        let of_load =
+            |index: usize| combination.loads.iter().find(|(load, _)| *load == index).map_or(1.0, |(_, factor)| *factor);
         chain.scale_weight_and_loads(&Value::from(combination.weight), |index| of_load(index).into());
         let mut parameters = vec![1.0; self.parameters.len()];
         for (ParameterId(index), factor) in &combination.masses {

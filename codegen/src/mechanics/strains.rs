@@ -177,11 +177,7 @@ struct Part<'g> {
 }
 
 impl<'g> Part<'g> {
-    fn new(
-        (model, kinematics): (&Model<'g>, &Kinematics<'g>),
-        part: LinePart<'_>,
-        ends: [Vec3<'g>; 2],
-    ) -> Self {
+    fn new((model, kinematics): (&Model<'g>, &Kinematics<'g>), part: LinePart<'_>, ends: [Vec3<'g>; 2]) -> Self {
         let bodies = part.ends.map(|end| end.body);
         let of_second: BTreeSet<CoordinateId> = model.chain.reach(part.ends[1]).into_iter().collect();
         let moved = |id: CoordinateId| {

@@ -53,7 +53,8 @@ pub fn load_factor(crane: &mut dyn DynCrane, parameter: usize) -> Option<LoadFac
     let mut posed = Posed { crane, load: parameter, positions: &positions };
     let begin = posed.find(1.0, None)?;
     let linearised = if posed.crane.loop_joints().is_empty() {
-        let stiffness = |crane: &mut dyn DynCrane, factor: f64| stiffness(crane, (parameter, factor), (&begin.q, &positions));
+        let stiffness =
+            |crane: &mut dyn DynCrane, factor: f64| stiffness(crane, (parameter, factor), (&begin.q, &positions));
         stiffness(posed.crane, 1.0).zip(stiffness(posed.crane, 2.0)).and_then(|(one, two)| singular(one, two))
     } else {
         None

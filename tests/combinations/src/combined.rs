@@ -23,7 +23,8 @@ pub fn check_combined(tree: &Tree, seed: u64) -> Option<Vec<String>> {
         loads[load["name"].as_str()?] = json!(of_load);
         for key in ["force", "moment"] {
             let Some(vector) = load.get_mut(key) else { continue };
-            *vector = json!(vector.as_array()?.iter().map(|x| Some(of_load * x.as_f64()?)).collect::<Option<Vec<_>>>()?);
+            *vector =
+                json!(vector.as_array()?.iter().map(|x| Some(of_load * x.as_f64()?)).collect::<Option<Vec<_>>>()?);
         }
     }
     for (name, parameter) in written["parameters"].as_object_mut().into_iter().flatten() {

@@ -84,7 +84,11 @@ fn stressed(case: &Case<'_>, rest: &Instant) -> Vec<StressedSection> {
 /// One row per combination.
 fn overview(cases: &[Case<'_>], resting: &[(&Case<'_>, Instant)]) -> Grid {
     let headers = ["combination", "status", "utilisation", "stress [MPa]", "place", "tipping margin", "line"];
-    let mut grid = Grid::new("combinations", "Combinations at rest: where beams are used most, and the least tipping margin", &headers);
+    let mut grid = Grid::new(
+        "combinations",
+        "Combinations at rest: where beams are used most, and the least tipping margin",
+        &headers,
+    );
     for case in cases {
         let description = case.crane.description();
         let rest = resting.iter().find(|(other, _)| other.label == case.label).map(|(_, rest)| rest);
@@ -116,7 +120,11 @@ struct Series {
 /// Least and greatest value of each quantity, and with which combination.
 fn worst(resting: &[(&Case<'_>, Instant)]) -> Grid {
     let headers = ["part", "quantity", "least", "with combination", "greatest", "with the combination", "unit"];
-    let mut grid = Grid::new("worst_cases", "Least and greatest value of each part, and the combination with which it is", &headers);
+    let mut grid = Grid::new(
+        "worst_cases",
+        "Least and greatest value of each part, and the combination with which it is",
+        &headers,
+    );
     for Series { what, quantity, unit, values } in series(resting) {
         let with = |index: usize| resting[index].0.label;
         let order = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
@@ -143,7 +151,9 @@ fn series(resting: &[(&Case<'_>, Instant)]) -> Vec<Series> {
     let mut add = |what: &str, quantity, unit, values: Vec<f64>| {
         all.push(Series { what: what.to_owned(), quantity, unit, values });
     };
-    let each = |of: &dyn Fn(&Case<'_>, &Instant) -> f64| resting.iter().map(|(case, rest)| of(case, rest)).collect::<Vec<f64>>();
+    let each = |of: &dyn Fn(&Case<'_>, &Instant) -> f64| {
+        resting.iter().map(|(case, rest)| of(case, rest)).collect::<Vec<f64>>()
+    };
     let mut beams: Vec<&str> = Vec::new();
     for section in &description.sections {
         let link = description.bodies[section.body].link.as_str();
@@ -155,7 +165,11 @@ fn series(resting: &[(&Case<'_>, Instant)]) -> Vec<Series> {
         let greatest = |of: &dyn Fn(&StressedSection) -> Option<f64>| {
             each(&|case, rest| {
                 let sections = stressed(case, rest);
-                sections.iter().filter(|section| section.beam(description) == beam).filter_map(of).fold(f64::NAN, f64::max)
+                sections
+                    .iter()
+                    .filter(|section| section.beam(description) == beam)
+                    .filter_map(of)
+                    .fold(f64::NAN, f64::max)
             })
         };
         for (quantity, unit, values) in [
@@ -192,9 +206,8 @@ fn series(resting: &[(&Case<'_>, Instant)]) -> Vec<Series> {
         add(&cylinder.name, "pressure, rod's side", "bar", pressure(1));
     }
     for (index, connector) in description.connectors.iter().enumerate().filter(|(_, connector)| !connector.is_pin()) {
-        let values = each(&|case, _| {
-            case.crane.connector_tensions_at(0.0, &case.equilibrium.q, &at_rest(case))[index].force
-        });
+        let values =
+            each(&|case, _| case.crane.connector_tensions_at(0.0, &case.equilibrium.q, &at_rest(case))[index].force);
         add(&connector.name, "force", connector.kind.force_unit(), values);
     }
     for (index, drive) in description.drives.iter().enumerate() {

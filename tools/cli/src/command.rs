@@ -6,8 +6,8 @@ use clap::CommandFactory;
 
 use crate::{
     arguments::{Action, Arguments},
-    check, combinations, compare, compiled, completions, ensemble, envelope, eval, example, exchange, explain, fatigue, generate, help, info,
-    linearise, margins, modes, new, page, poses,
+    check, combinations, compare, compiled, completions, ensemble, envelope, eval, example, exchange, explain, fatigue,
+    generate, help, info, linearise, margins, modes, new, page, poses,
     problem::Outcome,
     run, screen,
     selection::Registry,

@@ -10,8 +10,7 @@ use crane_model::{
 use crane_page::tables::{Case, Cell, Grid, Report, Scale, VALUE, verdicts};
 
 use crate::{
-    arguments,
-    files,
+    arguments, files,
     problem::{Outcome, Problem},
     quantity,
     selection::Registry,
@@ -86,7 +85,10 @@ impl Categories {
             let (beam, text) = given.split_once('=').map_or((None, given.as_str()), |(beam, text)| (Some(beam), text));
             let category = quantity::number("Pa", text, "the detail category")?;
             if !(category > 0.0) {
-                return Err(Problem::usage(format!("the detail category {text} is not above 0"), "write for example 71MPa"));
+                return Err(Problem::usage(
+                    format!("the detail category {text} is not above 0"),
+                    "write for example 71MPa",
+                ));
             }
             if category < LEAST_LIKELY_CATEGORY {
                 return Err(Problem::usage(
@@ -176,7 +178,12 @@ impl Subject<'_> {
             let mut ends = largest.ends;
             ends.sort_by(|a, b| worst.history[*a].total_cmp(&worst.history[*b]));
             let [low, high] = ends.map(|index| self.history[index].t);
-            report.fact_as("greatest_range", "its largest range of stress", Cell::Shown(largest.range, Scale::Megapascal), "MPa");
+            report.fact_as(
+                "greatest_range",
+                "its largest range of stress",
+                Cell::Shown(largest.range, Scale::Megapascal),
+                "MPa",
+            );
             report.fact_as("time_of_the_valley", "time of the valley of this range", low, "s");
             report.fact_as("time_of_the_peak", "time of its peak", high, "s");
         }
@@ -188,8 +195,7 @@ impl Subject<'_> {
             let place = worst.place.location(self.description);
             report.caution(Some(format!(
                 "the life of {place} ends after {:.3e} of {:.3e} repetitions",
-                life,
-                self.options.cycles
+                life, self.options.cycles
             )));
         }
     }
@@ -203,7 +209,12 @@ impl Subject<'_> {
     fn accuracy(&self, report: &mut Report, worst: &Fatigue, coarse: Option<&Fatigue>) {
         let Some(coarse) = coarse.filter(|_| worst.damage > 0.0) else { return };
         let change = coarse.damage / worst.damage - 1.0;
-        report.fact_as("change_with_half_of_the_results", "change of the damage with half of the results", Cell::Change(change), "%");
+        report.fact_as(
+            "change_with_half_of_the_results",
+            "change of the damage with half of the results",
+            Cell::Change(change),
+            "%",
+        );
         if change.abs() > FINE {
             report.caution(Some(format!(
                 "with half of the results the damage changes by {:.0} %: peaks lie between results; take a shorter `--interval`",
@@ -214,7 +225,8 @@ impl Subject<'_> {
 
     /// Whether the manoeuvre ends as it begins.
     fn closing(&self, report: &mut Report, worst: &Fatigue) {
-        let (Some(first), Some(last), Some(largest)) = (worst.history.first(), worst.history.last(), worst.largest()) else {
+        let (Some(first), Some(last), Some(largest)) = (worst.history.first(), worst.history.last(), worst.largest())
+        else {
             return;
         };
         let jump = (last - first).abs();

@@ -356,14 +356,21 @@ fn critical_loads_are_found_or_their_absence_is_explained() {
 /// 4000 kg at 1 m, 1.2 times, balance 100 kg at 4 m, 1.5 times; the truck of the spec has a margin of 0.9.
 #[test]
 fn combinations_have_their_own_margins_and_name_the_worst() {
-    let combinations = "combinations:\n  - {name: working, weight: 1.2, masses: {payload: 1.5}}\n  - {name: as_written}\n";
+    let combinations =
+        "combinations:\n  - {name: working, weight: 1.2, masses: {payload: 1.5}}\n  - {name: as_written}\n";
     let report = strength("combined", &format!("{TRUCK}{combinations}"), &["--combinations"]);
     let rows = report["combinations"].as_array().expect("a table");
     assert_close("working", &rows[0]["tipping_margin"], 1.0 - 600.0 / 4800.0, COMPLIANCE);
     assert_close("as written", &rows[1]["tipping_margin"], 0.9, COMPLIANCE);
     let worst = report["worst_cases"].as_array().expect("a table");
-    let ground = worst.iter().find(|row| row["part"] == "ground" && row["quantity"] == "force of the joint").expect("the ground");
-    assert_eq!((&ground["with_the_combination"], &ground["with_combination"]), (&"working".into(), &"as_written".into()));
+    let ground = worst
+        .iter()
+        .find(|row| row["part"] == "ground" && row["quantity"] == "force of the joint")
+        .expect("the ground");
+    assert_eq!(
+        (&ground["with_the_combination"], &ground["with_combination"]),
+        (&"working".into(), &"as_written".into())
+    );
     assert_close("weight", &ground["greatest"], (4000.0 * 1.2 + 150.0) * 9.81, COMPLIANCE);
 }
 
@@ -392,7 +399,10 @@ run: {duration: 8, output: 0.02}
     assert_close("life", &report["life"], 2e6 * (80e6 / range).powi(3), 3e-3);
     assert_close("s", &report["history_parameter"], 1e5 / 2e6, 1e-3);
     assert_eq!(report["class"], "S3");
-    assert!(report["place_of_the_greatest_damage"].as_str().is_some_and(|place| place.starts_with("beam, 0.000 m")), "{report}");
+    assert!(
+        report["place_of_the_greatest_damage"].as_str().is_some_and(|place| place.starts_with("beam, 0.000 m")),
+        "{report}"
+    );
     for (arguments, wanted) in [
         (["--cycles", "1e5", "--category", "71"], "write 71MPa"),
         (["--cycles", "1e5", "--category", "boom=71MPa"], "beams are beam"),

@@ -115,7 +115,9 @@ fn unused(source: &SourceFile) -> [Vec<String>; 2] {
     let found = compile::load(source).err();
     UNUSED.map(|code| {
         let mistakes = found.iter().flat_map(Diagnostics::mistakes).filter(|mistake| mistake.code == code);
-        mistakes.filter_map(|mistake| source.text.get(mistake.span.start..mistake.span.end).map(str::to_owned)).collect()
+        mistakes
+            .filter_map(|mistake| source.text.get(mistake.span.start..mistake.span.end).map(str::to_owned))
+            .collect()
     })
 }
 
@@ -134,7 +136,8 @@ impl Changes {
             lines => format!("{key}:\n{}", lines.concat()),
         };
         let [parameters, inputs, drives] =
-            [("parameters", &self.parameters), ("inputs", &self.inputs), ("drives", &self.drives)].map(|(key, lines)| under(key, lines));
+            [("parameters", &self.parameters), ("inputs", &self.inputs), ("drives", &self.drives)]
+                .map(|(key, lines)| under(key, lines));
         format!("name: {name}\n{parameters}{inputs}{drives}")
     }
 }

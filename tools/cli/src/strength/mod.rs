@@ -22,10 +22,10 @@ use crate::{
     selection::Registry,
 };
 
-use history::least_margin;
 pub use history::column;
-pub use tables::words;
+use history::least_margin;
 pub use loads::parameter as load_parameter;
+pub use tables::words;
 
 /// Prints loads and stability at rest, and along the manoeuvre if asked for.
 pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
