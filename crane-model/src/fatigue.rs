@@ -216,14 +216,8 @@ pub fn of_history<'a>(
     };
     let mut found: Vec<Fatigue> = instants.first().into_iter().flatten().enumerate().filter_map(of_place).collect();
     // Beam by beam, from the beginning to the end.
-    let mut beams: Vec<String> = Vec::new();
-    for fatigue in &found {
-        let beam = fatigue.place.beam(description);
-        if !beams.iter().any(|known| known == beam) {
-            beams.push(beam.to_owned());
-        }
-    }
-    let beam = |fatigue: &Fatigue| beams.iter().position(|name| name == fatigue.place.beam(description));
+    let beams = description.beams();
+    let beam = |fatigue: &Fatigue| beams.iter().position(|name| *name == fatigue.place.beam(description));
     found.sort_by(|a, b| beam(a).cmp(&beam(b)).then(a.place.x.total_cmp(&b.place.x)));
     found
 }

@@ -74,6 +74,12 @@ pub fn location(description: &Description, section: usize, x: Option<f64>) -> St
 }
 
 impl Description {
+    /// Names of the links that are beams or ropes, in the order of their sections.
+    pub fn beams(&self) -> Vec<&str> {
+        let beams = self.sections_of_beams();
+        beams.into_iter().map(|beam| self.bodies[self.sections[beam.start].body].link.as_str()).collect()
+    }
+
     /// Indices of the sections of each beam.
     fn sections_of_beams(&self) -> Vec<Range<usize>> {
         let link = |section: usize| &self.bodies[self.sections[section].body].link;

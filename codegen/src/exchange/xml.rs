@@ -66,7 +66,9 @@ fn tag(name: &str, attributes: Attributes) -> String {
     format!("{name}{}", written.collect::<String>())
 }
 
-fn escaped(text: &str) -> String {
+/// Text as XML has it, in elements and in attributes.
+#[must_use]
+pub fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
 

@@ -10,6 +10,7 @@ use std::fmt::Write;
 use cylinders::Pins;
 
 use crate::chain::{Body, BodyId, Chain, CoordinateId, CoordinateKind, Frame, Vector};
+use crate::exchange::xml::escaped;
 
 const BLUE: &str = "#0072b2";
 const VERMILLION: &str = "#d55e00";
@@ -369,8 +370,4 @@ impl Sheet {
             self.texts
         )
     }
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

@@ -250,10 +250,12 @@ pub fn differences(
 }
 
 /// Where all numbers of a unit are smaller than this, they are rounding. At the end of a run, the error of rates is that of the pose, 1e-8,
-/// times the fastest frequency that its steps follow, some 10 1/s. A power is a flow times a pressure, some 1e7 Pa.
+/// times the fastest frequency that its steps follow, some 10 1/s. A power is a flow times a pressure, some 1e7 Pa. Stresses that stay as they are have
+/// ranges of 1e-12 of 1e8 Pa.
 fn floor(group: &str, unit: &str) -> f64 {
     match unit {
         "W" => 10.0,
+        "Pa" if group == RUN.0 => 1e3,
         _ if group == RUN.0 => 1e-2,
         _ => 1e-3,
     }

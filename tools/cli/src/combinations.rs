@@ -154,14 +154,7 @@ fn series(resting: &[(&Case<'_>, Instant)]) -> Vec<Series> {
     let each = |of: &dyn Fn(&Case<'_>, &Instant) -> f64| {
         resting.iter().map(|(case, rest)| of(case, rest)).collect::<Vec<f64>>()
     };
-    let mut beams: Vec<&str> = Vec::new();
-    for section in &description.sections {
-        let link = description.bodies[section.body].link.as_str();
-        if !beams.contains(&link) {
-            beams.push(link);
-        }
-    }
-    for beam in beams {
+    for beam in description.beams() {
         let greatest = |of: &dyn Fn(&StressedSection) -> Option<f64>| {
             each(&|case, rest| {
                 let sections = stressed(case, rest);

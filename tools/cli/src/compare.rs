@@ -4,7 +4,7 @@
 use std::{io::Write, mem, time::Instant};
 
 use crane_model::{Description, dyn_crane::DynCrane, dynamics::Method, results::Table};
-use crane_page::tables::{Case, FLEXIBLE, RIGID, caution_of_runs, deflection, equilibria, extremes, summary};
+use crane_page::tables::{Case, FLEXIBLE, RIGID, caution_of_runs, deflection, duties, equilibria, extremes, summary};
 
 use crate::{
     arguments::{Compare, ComparePair, Format, Parameters, spec_file},
@@ -153,6 +153,7 @@ fn side_by_side(
     caution_of_runs(&mut report, labelled.into_iter());
     report.grid(extremes(description, &labelled));
     report.grid(summary(&labelled));
+    report.grid(duties(description, &labelled));
     report.grid(file_list(folder, &written));
     if format == Format::Table {
         let (duration, method, step) = (settings[1].duration, settings[1].method, other_run.run.step);

@@ -79,7 +79,7 @@ struct Categories {
 
 impl Categories {
     fn read(options: &arguments::Fatigue, description: &Description) -> Outcome<Self> {
-        let beams = beams(description);
+        let beams = description.beams();
         let (mut others, mut own) = (None, Vec::<(String, f64)>::new());
         for given in &options.categories {
             let (beam, text) = given.split_once('=').map_or((None, given.as_str()), |(beam, text)| (Some(beam), text));
@@ -142,18 +142,6 @@ impl Categories {
             slope: self.slope,
         })
     }
-}
-
-/// Names of links that are beams, in order.
-fn beams(description: &Description) -> Vec<&str> {
-    let mut beams: Vec<&str> = Vec::new();
-    for section in &description.sections {
-        let link = description.bodies[section.body].link.as_str();
-        if !beams.contains(&link) {
-            beams.push(link);
-        }
-    }
-    beams
 }
 
 /// What is reported about.

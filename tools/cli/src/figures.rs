@@ -1,5 +1,6 @@
 //! Figures as SVG: panels of curves with labelled axes and one legend, in colours that colour-blind readers can distinguish.
 
+use crane_codegen::exchange::xml::escaped;
 use plotters::{
     coord::Shift,
     prelude::*,
@@ -147,9 +148,17 @@ pub fn titled(title: &[String], panels: &[Panel], columns: usize) -> Result<Stri
         })();
         drawn.map_err(|error| error.to_string())?;
     }
-    // The picture is as large as its pixels; the drawing inside keeps its finer units.
+    let axes = || panels.iter().map(|panel| format!("{} over {}", panel.y, panel.x)).collect::<Vec<_>>();
+    Ok(finished(&text, (width, height), &if title.is_empty() { axes() } else { title }))
+}
+
+/// A drawing as a picture: as large as its pixels, while the drawing inside keeps its finer units; and with a title, which screen readers speak and
+/// browsers show.
+pub fn finished(drawing: &str, (width, height): (u32, u32), title: &[String]) -> String {
     let size = |width: u32, height: u32| format!("width=\"{width}\" height=\"{height}\"");
-    Ok(text.replacen(&size(width, height), &size(width / PIXEL, height / PIXEL), 1))
+    let sized =
+        drawing.replacen(&size(width, height), &format!("{} role=\"img\"", size(width / PIXEL, height / PIXEL)), 1);
+    sized.replacen('>', &format!(">\n<title>{}</title>", escaped(&title.join("; "))), 1)
 }
 
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;

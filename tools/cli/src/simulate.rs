@@ -12,7 +12,7 @@ use crane_model::{
 };
 use crane_page::{
     record,
-    tables::{Grid, Report, VALUE, extremes, summary},
+    tables::{Grid, Report, VALUE, duties, extremes, summary},
 };
 use serde_json::Value;
 
@@ -67,6 +67,7 @@ pub fn simulate(options: &Run, registry: &Registry, out: &mut dyn Write) -> Outc
     }
     report.grid(extremes(crane.description(), &[(name, &recorded)]));
     report.grid(summary(&[(VALUE, &recorded)]));
+    report.grid(duties(crane.description(), &[(name, &recorded)]));
     report.grid(file_list(&options.folder.out, &written));
     options.analysis.format.print(&report, out)
 }

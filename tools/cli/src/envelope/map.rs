@@ -4,7 +4,7 @@ use plotters::prelude::*;
 
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use crate::figures::{FONT, PIXEL, SPACE, draw_title, folded, font, shade, tick, title_height};
+use crate::figures::{FONT, PIXEL, SPACE, draw_title, finished, folded, font, shade, tick, title_height};
 
 /// Coloured cells.
 #[derive(Clone)]
@@ -37,8 +37,7 @@ pub fn svg(map: &Map) -> Result<String, String> {
     let above = title_height(&title);
     let (width, height) = (SIZE.0, SIZE.1 + above);
     draw(map, &mut text, (&title, above)).map_err(|error| error.to_string())?;
-    let size = |width: u32, height: u32| format!("width=\"{width}\" height=\"{height}\"");
-    Ok(text.replacen(&size(width, height), &size(width / PIXEL, height / PIXEL), 1))
+    Ok(finished(&text, (width, height), &map.title))
 }
 
 fn draw(map: &Map, text: &mut String, title: (&[String], u32)) -> Result<(), Box<dyn std::error::Error>> {

@@ -8,7 +8,7 @@ use plotters::{
 
 use super::{Changes, tables::readable};
 use crate::{
-    figures::{Area, BLUE, Drawn, FONT, PIXEL, SPACE, VERMILLION, font, wrapped},
+    figures::{Area, BLUE, Drawn, FONT, PIXEL, SPACE, VERMILLION, finished, font, wrapped},
     problem::{Outcome, Problem},
 };
 
@@ -70,11 +70,11 @@ pub fn chart(changes: &Changes, change: f64) -> Outcome<String> {
     let height = ROW * (4 + i32::try_from(rows).unwrap_or(0));
     let size = (WIDTH.unsigned_abs(), height.unsigned_abs());
     let mut text = String::new();
+    let title = format!("{}: changes with {:+} % of each number", changes.crane, 100.0 * change);
     {
         let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
         let drawn = (|| {
             area.fill(&WHITE)?;
-            let title = format!("{}: changes with {:+} % of each number", changes.crane, 100.0 * change);
             write(&area, &title, (SPACE.cast_signed(), ROW), 1.2 * FONT, HPos::Left)?;
             let end = height - ROW * i32::try_from(still.len() + 1).unwrap_or(0);
             scale(&area, greatest, [3 * ROW, end])?;
@@ -90,8 +90,7 @@ pub fn chart(changes: &Changes, change: f64) -> Outcome<String> {
         })();
         drawn.map_err(|error| Problem::failed(format!("cannot draw the chart: {error}"), ""))?;
     }
-    let given = |(width, height): (u32, u32)| format!("width=\"{width}\" height=\"{height}\"");
-    Ok(text.replacen(&given(size), &given((size.0 / PIXEL, size.1 / PIXEL)), 1))
+    Ok(finished(&text, size, &[title]))
 }
 
 /// The bars of an output; `None` where nothing moves it.

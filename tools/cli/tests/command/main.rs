@@ -226,6 +226,7 @@ fn the_comparison_writes_figures() {
     for figure in ["path", "drives", "deviation"] {
         let svg = fs::read_to_string(out.join(format!("comparison_{figure}.svg"))).expect("a figure");
         assert!(svg.starts_with("<svg width=\"") && svg.trim_end().ends_with("</svg>"));
+        assert!(svg.contains("role=\"img\"") && svg.contains("<title>") && !svg.contains("<title></title>"), "{svg}");
         assert!(svg.contains("[m]") || svg.contains("[mm]") || svg.contains("[kN m]"), "{figure} has no units");
     }
 }

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `cell`, `grid`, `report` | fields, tables with named columns, tables in order with facts and cautions |
 //! | `statics` | cranes in equilibrium, side by side |
-//! | `runs` | extremes, work and time of runs |
+//! | `runs` | extremes, work and time of runs, what drives must be able to do |
 //! | `modes` | modes and the largest stable steps |
 //! | `page` | all tables of a page |
 //! | `mistakes` | mistakes of a spec and warnings about it, for programs |
@@ -26,5 +26,5 @@ pub use modes::{damped_mode, damped_modes, damping_ratio, names, stable_steps, u
 pub use page::of_page;
 pub use report::{FORMAT, Report};
 pub(crate) use runs::pace;
-pub use runs::{caution_of_runs, extremes, summary};
+pub use runs::{caution_of_runs, duties, extremes, summary};
 pub use statics::{Case, FLEXIBLE, RIGID, deflection, equilibria, verdicts};

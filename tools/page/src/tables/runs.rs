@@ -2,7 +2,7 @@
 
 use crane_model::{
     Description,
-    results::{Extremes, headlines},
+    results::{Extremes, Table, drive_effort, headlines},
     runs::Recorded,
 };
 
@@ -58,9 +58,78 @@ pub fn summary(runs: &[(&str, &Recorded)]) -> Grid {
     row("work of the drives".to_owned(), "J", &|run| last(run, "drive_work"));
     row("dissipated".to_owned(), "J", &|run| last(run, "dissipated_energy"));
     row("energy balance, largest error".to_owned(), "J", &|run| greatest(run, "energy_balance"));
+    row("energy of the pump".to_owned(), "J", &|run| Some(integral(&run.table, &column(&run.table, PUMP)?)));
+    row("power of the pump, maximum".to_owned(), "W", &|run| greatest(run, PUMP));
     if runs.iter().any(|(_, run)| run.wall.is_some()) {
         row("wall time".to_owned(), "s", &|run| Some(pace(run)?.0));
         row("real-time factor".to_owned(), "", &|run| Some(pace(run)?.1));
+    }
+    grid
+}
+
+/// The column with the power of the pump.
+const PUMP: &str = "pump_power";
+
+/// The values of a column; `None` if there is none of that name.
+fn column(table: &Table, name: &str) -> Option<Vec<f64>> {
+    table.values(name).map(Iterator::collect)
+}
+
+/// The integral of numbers over the times of a table, by the trapezoidal rule.
+fn integral(table: &Table, values: &[f64]) -> f64 {
+    let Some(t) = column(table, "t") else { return 0.0 };
+    t.windows(2).zip(values.windows(2)).map(|(t, values)| 0.5 * (values[0] + values[1]) * (t[1] - t[0])).sum()
+}
+
+/// What each drive must be able to do in some runs, a row per drive and run: to choose motors, gears and cylinders by. Powers are those of the drive on its
+/// joint, at the results.
+pub fn duties(description: &Description, runs: &[(&str, &Recorded)]) -> Grid {
+    let headers = [
+        "drive",
+        "crane",
+        "effort",
+        "rms effort",
+        "unit",
+        "rate",
+        "unit of rates",
+        "power [W]",
+        "braking power [W]",
+        "work [J]",
+        "braking work [J]",
+    ];
+    let alone = runs.len() < 2;
+    let headers: Vec<&str> = headers.into_iter().filter(|header| !alone || *header != "crane").collect();
+    let title = "Drives over the run: largest effort, its root mean square, fastest rate, largest power and work that it gives, and that it takes in as a brake";
+    let mut grid = Grid::new("duties", title, &headers);
+    for drive in description.drives.iter() {
+        let coordinate = &description.coordinates[drive.coordinate];
+        for (label, run) in runs {
+            let table = &run.table;
+            let effort = column(table, &drive_effort(&coordinate.name, coordinate.kind));
+            let rate = column(table, &format!("{}_rate", coordinate.name));
+            let (Some(effort), Some(rate), Some(t)) = (effort, rate, column(table, "t")) else { continue };
+            let duration = t.last().copied().unwrap_or_default() - t.first().copied().unwrap_or_default();
+            let power =
+                |sign: f64| effort.iter().zip(&rate).map(|(f, v)| (sign * f * v).max(0.0)).collect::<Vec<f64>>();
+            let [gives, brakes] = [1.0, -1.0].map(power);
+            let most = |values: &[f64]| values.iter().map(|value| value.abs()).fold(0.0, f64::max);
+            let squares: Vec<f64> = effort.iter().map(|effort| effort * effort).collect();
+            let rms = if duration > 0.0 { (integral(table, &squares) / duration).sqrt() } else { most(&effort) };
+            let kind = coordinate.kind;
+            let crane = (!alone).then(|| Cell::from(*label));
+            let numbers = [
+                most(&effort).into(),
+                rms.into(),
+                kind.force_unit().into(),
+                most(&rate).into(),
+                format!("{}/s", kind.unit()).into(),
+                most(&gives).into(),
+                most(&brakes).into(),
+                integral(table, &gives).into(),
+                integral(table, &brakes).into(),
+            ];
+            grid.row([coordinate.name.as_str().into()].into_iter().chain(crane).chain(numbers).collect::<Vec<_>>());
+        }
     }
     grid
 }
