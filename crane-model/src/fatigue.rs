@@ -38,10 +38,10 @@ fn turning_points(history: &[f64]) -> Vec<usize> {
         if points.last().is_some_and(|last| history[*last] == *value) {
             continue;
         }
-        if let [.., before, last] = points[..] {
-            if (history[last] > history[before]) == (*value > history[last]) {
-                points.pop();
-            }
+        if let [.., before, last] = points[..]
+            && (history[last] > history[before]) == (*value > history[last])
+        {
+            points.pop();
         }
         points.push(index);
     }
@@ -125,7 +125,7 @@ impl Detail {
     }
 }
 
-/// `s_m = Σ (Δσ/Δσ_max)^m n / 2·10⁶` of cycles that repeat, Δσ_max the largest range: how much a history uses of what the part endures at its
+/// `s_m = Σ (Δσ/Δσ_max)^m n / 2·10⁶` of cycles that repeat, `Δσ_max` the largest range: how much a history uses of what the part endures at its
 /// largest range \[EN 13001-1, 4.4.4]. Zero without cycles.
 pub fn history_parameter(cycles: &[Cycle], slope: f64, repetitions: f64) -> f64 {
     let largest = cycles.iter().map(|cycle| cycle.range).fold(0.0, f64::max);
@@ -189,7 +189,7 @@ impl Fatigue {
 }
 
 /// What a history that repeats does to every place of a crane's beams whose moduli are known; `x` and `wrenches` at each instant, as
-/// [`places`](crate::sections::places) takes them, and the detail of each beam by the name of its link.
+/// [`places`] takes them, and the detail of each beam by the name of its link.
 pub fn of_history<'a>(
     description: &Description,
     moduli: &[SectionModuli],

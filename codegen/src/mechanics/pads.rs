@@ -75,7 +75,7 @@ impl<'g> AtPad<'g> {
     }
 }
 
-/// A point or direction of a beam at a pad, and a direction of the pad, whose product is ℓ but for a constant of the pad.
+/// A point or direction of a beam at a pad, and a direction of the pad, whose product is ℓ except for a constant of the pad.
 struct Product<'g> {
     /// n or z.
     of_pad: Vec3<'g>,

@@ -1,13 +1,13 @@
 //! The tangent stiffness of forces at points, in a few operations per entry however many forces there are.
 //!
-//! A force at a point of a body is a wrench, and `f_i = Ω_i · Σ W` over the bodies beyond coordinate i. A coordinate j that is not before i leaves Ω_i
+//! A force at a point of a body is a wrench, and `f_i = Ω_i · Σ W` over the bodies beyond coordinate i. A coordinate j that is not before i leaves `Ω_i`
 //! as it is, so that
 //!
 //! ```text
 //! K_ij = −∂f_i/∂q_j = Ω_i · Σ S_j      S_j = −∂W/∂q_j, over the bodies beyond i;  i ≤ j
 //! ```
 //!
-//! A column is what a motion of j changes, a few wrenches on bodies, summed along the tree; it meets each Ω_i once. What acts between two bodies
+//! A column is what a motion of j changes, a few wrenches on bodies, summed along the tree; it meets each `Ω_i` once. What acts between two bodies
 //! changes nothing before the body from which both are reached: its wrenches end there.
 
 use std::collections::BTreeMap;
@@ -65,7 +65,9 @@ impl<'a, 'g> Tangent<'a, 'g> {
                 }
                 if let Some(parent) = bodies[body].parent {
                     let passed = begun.entry(parent).or_default();
-                    wrenches.into_iter().for_each(|(end, wrench)| add(passed, end, wrench));
+                    for (end, wrench) in wrenches {
+                        add(passed, end, wrench);
+                    }
                 }
             }
         }

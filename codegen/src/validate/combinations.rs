@@ -41,12 +41,11 @@ impl<'a> Check<'a> {
             for (load, factor) in entries(combination.loads.as_ref()) {
                 let factor = self.constant(factor, &subject("a load"), "", Limit::Any);
                 let Some(wanted) = self.name(load) else { continue };
-                match loads.iter().position(|load| load.name == wanted) {
-                    Some(index) => of_loads.push((index, factor)),
-                    None => {
-                        let help = suggest(wanted, loads.iter().map(|load| load.name.as_str()));
-                        self.report(rule::unknown_load(load.span, wanted, help));
-                    }
+                if let Some(index) = loads.iter().position(|load| load.name == wanted) {
+                    of_loads.push((index, factor));
+                } else {
+                    let help = suggest(wanted, loads.iter().map(|load| load.name.as_str()));
+                    self.report(rule::unknown_load(load.span, wanted, help));
                 }
             }
             combinations.push(Combination { name, weight, masses, loads: of_loads });
@@ -56,8 +55,8 @@ impl<'a> Check<'a> {
 }
 
 /// Factors by names.
-fn entries<'a>(
-    given: Option<&'a Spanned<Entries<Constant>>>,
-) -> impl Iterator<Item = &'a (Spanned<String>, Spanned<Constant>)> {
+fn entries(
+    given: Option<&Spanned<Entries<Constant>>>,
+) -> impl Iterator<Item = &(Spanned<String>, Spanned<Constant>)> {
     given.and_then(|given| given.value.as_ref()).into_iter().flat_map(|entries| &entries.0)
 }

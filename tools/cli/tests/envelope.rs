@@ -104,6 +104,36 @@ fn a_load_chart_is_the_equilibrium_of_moments() {
     assert!(!folder.join("truck_envelope.part.csv").exists());
 }
 
+/// A chart in tonnes beside the computed one: 0.8 · 4001 kg · 1 m / (radius − 1 m) about the sides, 10 % less than was given.
+#[test]
+fn a_given_chart_is_compared() {
+    let folder = folder("given");
+    let file = folder.join("given.csv");
+    fs::create_dir_all(&folder).expect("a folder");
+    let exact = |radius: f64| 0.8 * 4001.0 / (radius - 1.0);
+    let rows: String = [3.0, 5.0].map(|radius| format!("{radius},{}\n", exact(radius) / 0.9 / 1000.0)).concat();
+    fs::write(&file, format!("radius [m],load [t]\n{rows}9,1 t\n")).expect("a file");
+    let ranges = ["--range", "column=90deg", "--range", "arm_x=2:6:81", "--tipping", "0.2", "--format", "json"];
+    let given = ["--given", file.to_str().expect("a path")];
+    let output = run_command(&folder, &[&ranges[..], &given].concat());
+    assert_eq!(output.status.code(), Some(2), "a unit twice");
+    fs::write(&file, format!("radius [m],load [t]\n{rows}9,1\n")).expect("a file");
+    let output = run_command(&folder, &[&ranges[..], &given].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let output: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let beside = output["beside_the_given_chart"].as_array().expect("a table");
+    for (row, radius) in beside.iter().zip([3.0, 5.0]) {
+        assert!((row["given_load"].as_f64().unwrap() / (exact(radius) / 0.9) - 1.0).abs() < 1e-12);
+        // Both poses around a radius bear the load: that of the farther one, 0.05 m at most.
+        assert!((row["difference"].as_f64().unwrap() + 0.1).abs() < 0.025, "{row}");
+        assert!(row["limit"].as_str().unwrap().starts_with("tipping"), "{row}");
+    }
+    assert_eq!(beside[2]["limit"], "no pose");
+    fs::write(&file, "radius;load\n3;1\n").expect("a file");
+    let output = run_command(&folder, &[&ranges[..], &given].concat());
+    assert!(String::from_utf8_lossy(&output.stderr).contains("semicolons"), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
 /// Killed while it writes, with half a line after what was written: the second command continues, and the result has the same
 /// bytes as one that was never interrupted.
 #[test]

@@ -116,6 +116,9 @@ pub struct Envelope {
     /// Radii of the load chart, m, as in `4,6,8.5` [default: round ones]
     #[arg(long = "radius", value_name = "RADIUS", value_delimiter = ',', value_parser = above_zero)]
     pub radii: Vec<f64>,
+    /// Chart to compare with, such as that of a manual: a CSV file with the columns `radius` and `load`, as in `radius [m],load [t]`
+    #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
+    pub given: Option<PathBuf>,
     /// Threads [default: all of the machine]
     #[arg(long, value_name = "COUNT", value_parser = count)]
     pub threads: Option<NonZeroUsize>,

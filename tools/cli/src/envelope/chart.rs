@@ -5,6 +5,7 @@ use crane_page::tables::{Cell, Grid, Heading};
 use crate::figures::wrapped;
 
 use super::{
+    given::Given,
     letters::{legend, letter},
     rows::Row,
     surface::{Knot, Sheet, Surface, short},
@@ -132,6 +133,35 @@ impl Chart<'_> {
             grid
         };
         self.surface.sheets.iter().map(table).collect()
+    }
+
+    /// A given chart beside the largest loads of this one.
+    pub fn beside(&self, given: &Given) -> Grid {
+        let unit = &self.surface.unit;
+        let several = self.surface.sheets.len() > 1;
+        let headings = [
+            "case".to_owned(),
+            "radius [m]".to_owned(),
+            format!("given load [{unit}]"),
+            format!("largest load [{unit}]"),
+            "difference [%]".to_owned(),
+            "limit".to_owned(),
+        ];
+        let headings: Vec<&str> = headings.iter().map(String::as_str).skip(usize::from(!several)).collect();
+        let title = "The given chart, the largest load in the best pose of each radius, and its difference from the given one";
+        let mut grid = Grid::new("beside_the_given_chart", title, &headings);
+        for sheet in &self.surface.sheets {
+            for &[radius, load] in &given.0 {
+                let best = best_and_worst(sheet, radius).map(|[best, _]| best);
+                let computed = best.map_or(Cell::Empty, |best| rounded_down(best.load).into());
+                let difference = best.map_or(Cell::Empty, |best| Cell::Change(best.load / load - 1.0));
+                let limit = best.map_or(Cell::from(UNREACHED), |best| self.limit_words(&best).into());
+                let case = several.then(|| Cell::from(sheet.label.as_str()));
+                let numbers = [radius.into(), load.into(), computed, difference, limit];
+                grid.row(case.into_iter().chain(numbers).collect::<Vec<_>>());
+            }
+        }
+        grid
     }
 
     /// Loads over radius and height, for programs: case, place, load and limit.

@@ -2,6 +2,7 @@
 
 mod chart;
 mod figures;
+mod given;
 mod identity;
 mod letters;
 mod map;
@@ -38,6 +39,7 @@ use crate::{
 };
 
 use chart::Chart;
+use given::Given;
 pub use identity::facts as facts_of_chart;
 pub use map::{Map, svg as map_svg};
 pub use ranges::{point, read_ranges, shown, varied};
@@ -52,6 +54,8 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
     let crane = options.analysis.crane.open(registry)?;
     let (asked, layout) = ask(options, crane.as_ref())?;
     let description = crane.description();
+    let unit_of_load = &description.parameters[asked.load].unit;
+    let given = options.given.as_deref().map(|file| Given::read(file, unit_of_load)).transpose()?;
     files::folder(&options.folder.out)?;
     let name = format!("{}_envelope", description.name);
     let journal = options.folder.out.join(format!("{name}.part.csv"));
@@ -84,6 +88,12 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
             written.push(file);
         }
         chart.by_radius().into_iter().chain(chart.plates()).for_each(|grid| report.shown(grid));
+    }
+    if let Some(given) = &given {
+        match &chart {
+            Some(chart) => report.grid(chart.beside(given)),
+            None => report.caution(Some("no chart beside the given one: no range moves the load in or out")),
+        }
     }
     report.data(by_radius);
     report.data(by_place);
