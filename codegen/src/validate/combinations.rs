@@ -55,8 +55,6 @@ impl<'a> Check<'a> {
 }
 
 /// Factors by names.
-fn entries(
-    given: Option<&Spanned<Entries<Constant>>>,
-) -> impl Iterator<Item = &(Spanned<String>, Spanned<Constant>)> {
+fn entries(given: Option<&Spanned<Entries<Constant>>>) -> impl Iterator<Item = &(Spanned<String>, Spanned<Constant>)> {
     given.and_then(|given| given.value.as_ref()).into_iter().flat_map(|entries| &entries.0)
 }

@@ -131,7 +131,11 @@ fn a_given_chart_is_compared() {
     assert_eq!(beside[2]["limit"], "no pose");
     fs::write(&file, "radius;load\n3;1\n").expect("a file");
     let output = run_command(&folder, &[&ranges[..], &given].concat());
-    assert!(String::from_utf8_lossy(&output.stderr).contains("semicolons"), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(
+        String::from_utf8_lossy(&output.stderr).contains("semicolons"),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
 }
 
 /// Killed while it writes, with half a line after what was written: the second command continues, and the result has the same

@@ -148,7 +148,8 @@ impl Chart<'_> {
             "limit".to_owned(),
         ];
         let headings: Vec<&str> = headings.iter().map(String::as_str).skip(usize::from(!several)).collect();
-        let title = "The given chart, the largest load in the best pose of each radius, and its difference from the given one";
+        let title =
+            "The given chart, the largest load in the best pose of each radius, and its difference from the given one";
         let mut grid = Grid::new("beside_the_given_chart", title, &headings);
         for sheet in &self.surface.sheets {
             for &[radius, load] in &given.0 {

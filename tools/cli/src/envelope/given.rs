@@ -35,7 +35,10 @@ impl Given {
             let missing = COLUMNS.iter().zip(columns).find(|(_, found)| found.is_none()).map_or("", |(name, _)| *name);
             return Err(Problem::usage(
                 format!("{} has no column `{missing}`", path.display()),
-                format!("its header is `{}`; write `radius [m],load [{unit_of_load}]`", headers.iter().collect::<Vec<_>>().join(",")),
+                format!(
+                    "its header is `{}`; write `radius [m],load [{unit_of_load}]`",
+                    headers.iter().collect::<Vec<_>>().join(",")
+                ),
             ));
         };
         let mut points = Vec::new();
@@ -44,13 +47,17 @@ impl Given {
             let line = record.position().map_or(0, csv::Position::line);
             let number = |column: usize, unit: &str| {
                 let text = record.get(column).unwrap_or_default();
-                let with_unit = named(&headers[column]).1.map_or_else(|| text.to_owned(), |unit| format!("{text} {unit}"));
+                let with_unit =
+                    named(&headers[column]).1.map_or_else(|| text.to_owned(), |unit| format!("{text} {unit}"));
                 let subject = format!("the {} of {}, line {line},", named(&headers[column]).0, path.display());
                 let number = quantity::number(unit, &with_unit, &subject)?;
                 if number > 0.0 {
                     return Ok(number);
                 }
-                Err(Problem::usage(format!("{}, line {line}: {text} is not above 0", path.display()), "leave the row out"))
+                Err(Problem::usage(
+                    format!("{}, line {line}: {text} is not above 0", path.display()),
+                    "leave the row out",
+                ))
             };
             points.push([number(radius, "m")?, number(load, unit_of_load)?]);
         }
