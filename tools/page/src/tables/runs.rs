@@ -101,7 +101,7 @@ pub fn duties(description: &Description, runs: &[(&str, &Recorded)]) -> Grid {
     let headers: Vec<&str> = headers.into_iter().filter(|header| !alone || *header != "crane").collect();
     let title = "Drives over the run: largest effort, its root mean square, fastest rate, largest power and work that it gives, and that it takes in as a brake";
     let mut grid = Grid::new("duties", title, &headers);
-    for drive in description.drives.iter() {
+    for drive in &description.drives {
         let coordinate = &description.coordinates[drive.coordinate];
         for (label, run) in runs {
             let table = &run.table;
