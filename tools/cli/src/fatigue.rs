@@ -17,7 +17,7 @@ use crate::{
     strength::{self, words},
 };
 
-/// Categories in Pa below this are most likely meant in MPa.
+/// Categories below this, Pa, are most likely meant in megapascals.
 const LEAST_LIKELY_CATEGORY: f64 = 1e5;
 
 /// The start of the run may differ from its end by this part of the largest range before it is said: with a slope of 3 it does a thousandth of the damage.
@@ -52,8 +52,8 @@ pub fn fatigue(options: &arguments::Fatigue, registry: &Registry, out: &mut dyn 
     if let Some(worst) = greatest(&found) {
         subject.verdict(&mut report, worst);
         let every_second = categories.of(crane.description(), &moduli, history.iter().step_by(2));
-        subject.accuracy(&mut report, worst, greatest(&every_second));
-        subject.closing(&mut report, worst);
+        accuracy(&mut report, worst, greatest(&every_second));
+        closing(&mut report, worst);
         report.grid(subject.places(&found));
         report.grid(subject.cycles(worst));
     }
@@ -84,7 +84,7 @@ impl Categories {
         for given in &options.categories {
             let (beam, text) = given.split_once('=').map_or((None, given.as_str()), |(beam, text)| (Some(beam), text));
             let category = quantity::number("Pa", text, "the detail category")?;
-            if !(category > 0.0) {
+            if category <= 0.0 {
                 return Err(Problem::usage(
                     format!("the detail category {text} is not above 0"),
                     "write for example 71MPa",
@@ -193,40 +193,6 @@ impl Subject<'_> {
         cycle.ends.map(|index| self.history[index].t)
     }
 
-    /// How much the interval of results matters.
-    fn accuracy(&self, report: &mut Report, worst: &Fatigue, coarse: Option<&Fatigue>) {
-        let Some(coarse) = coarse.filter(|_| worst.damage > 0.0) else { return };
-        let change = coarse.damage / worst.damage - 1.0;
-        report.fact_as(
-            "change_with_half_of_the_results",
-            "change of the damage with half of the results",
-            Cell::Change(change),
-            "%",
-        );
-        if change.abs() > FINE {
-            report.caution(Some(format!(
-                "with half of the results the damage changes by {:.0} %: peaks lie between results; take a shorter `--interval`",
-                100.0 * change
-            )));
-        }
-    }
-
-    /// Whether the manoeuvre ends as it begins.
-    fn closing(&self, report: &mut Report, worst: &Fatigue) {
-        let (Some(first), Some(last), Some(largest)) = (worst.history.first(), worst.history.last(), worst.largest())
-        else {
-            return;
-        };
-        let jump = (last - first).abs();
-        if jump > CLOSED * largest.range {
-            report.caution(Some(format!(
-                "the manoeuvre does not end as it begins: where the damage is greatest, the stress differs by {:.1} MPa; this change is counted as part of \
-                 each repetition",
-                jump / 1e6
-            )));
-        }
-    }
-
     /// One row per place.
     fn places(&self, found: &[Fatigue]) -> Grid {
         let title = format!(
@@ -302,6 +268,40 @@ impl Subject<'_> {
         };
         table.rows = self.history.iter().enumerate().map(row).collect();
         table
+    }
+}
+
+/// How much the interval of results matters.
+fn accuracy(report: &mut Report, worst: &Fatigue, coarse: Option<&Fatigue>) {
+    let Some(coarse) = coarse.filter(|_| worst.damage > 0.0) else { return };
+    let change = coarse.damage / worst.damage - 1.0;
+    report.fact_as(
+        "change_with_half_of_the_results",
+        "change of the damage with half of the results",
+        Cell::Change(change),
+        "%",
+    );
+    if change.abs() > FINE {
+        report.caution(Some(format!(
+            "with half of the results the damage changes by {:.0} %: peaks lie between results; take a shorter `--interval`",
+            100.0 * change
+        )));
+    }
+}
+
+/// Whether the manoeuvre ends as it begins.
+fn closing(report: &mut Report, worst: &Fatigue) {
+    let (Some(first), Some(last), Some(largest)) = (worst.history.first(), worst.history.last(), worst.largest())
+    else {
+        return;
+    };
+    let jump = (last - first).abs();
+    if jump > CLOSED * largest.range {
+        report.caution(Some(format!(
+            "the manoeuvre does not end as it begins: where the damage is greatest, the stress differs by {:.1} MPa; this change is counted as part of \
+             each repetition",
+            jump / 1e6
+        )));
     }
 }
 

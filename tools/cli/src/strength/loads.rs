@@ -39,7 +39,7 @@ pub fn parameter(crane: &dyn DynCrane, name: Option<&str>) -> Outcome<Option<usi
 }
 
 /// Adds the factor of weight and all loads at which the crane buckles.
-pub fn factor(report: &mut Report, crane: LiveCrane) {
+pub fn factor(report: &mut Report, crane: &LiveCrane) {
     let (mut crane, parameter) = crane.with_load_factor();
     let Some(LoadFactor { linearised, followed }) = load_factor(&mut crane, parameter) else { return };
     let name = "critical factor of weight and loads";

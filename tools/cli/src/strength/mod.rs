@@ -64,7 +64,7 @@ pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) ->
     }
     let crane = crane.as_ref();
     if options.buckling {
-        loads::factor(&mut report, registry.live(crane)?);
+        loads::factor(&mut report, &registry.live(crane)?);
     }
     report.grid(stresses::table(crane.description(), &moduli, &rest));
     report.grid(tables::tipping(crane.description(), &rest.lines));
