@@ -4,7 +4,7 @@ mod quantities;
 
 use std::{io::Write, num::NonZeroUsize, path::Path};
 
-use crane_codegen::{Diagnostics, SourceFile, compile};
+use crane_codegen::{Diagnostics, SourceFile, compile, read};
 use crane_model::{
     CoordinateKind, Description,
     dyn_crane::DynCrane,
@@ -35,6 +35,8 @@ pub fn hold(held: &Held, ranges: &[String], name: &str, registry: &mut Registry)
     let description = crane.description();
     let mut changes = Changes::default();
     let mut is_held = vec![false; description.drives.len()];
+    let text = registry.spec(name).ok_or_else(|| Problem::failed(format!("{name} has no spec"), ""))?;
+    let offset = offset_drives(&SourceFile::new(name, text));
     let name_of = |drive: usize| format!("`{}`", description.coordinates[description.drives[drive].coordinate].name);
     for text in held {
         let (drive, _) = text.split_once('=').ok_or_else(|| {
@@ -52,7 +54,7 @@ pub fn hold(held: &Held, ranges: &[String], name: &str, registry: &mut Registry)
             let title = format!("{} is held twice", name_of(drive));
             return Err(Problem::usage(title, "leave one of the two out"));
         }
-        changes.drives.push(held_at(description, drive, &format!("{value:?}")));
+        changes.drives.push(held_at(description, drive, &format!("{value:?}"), &offset));
     }
     for axis in &read_ranges(ranges, description)?.0 {
         if let Varied::Drive(drive) = axis.varied {
@@ -64,10 +66,9 @@ pub fn hold(held: &Held, ranges: &[String], name: &str, registry: &mut Registry)
             let parameter = parameter_of(description, drive);
             let entry = format!("  {parameter}: {{value: {:?}, unit: {}}}\n", axis.values[0], info.kind.unit());
             changes.parameters.push(entry);
-            changes.drives.push(held_at(description, drive, &parameter));
+            changes.drives.push(held_at(description, drive, &parameter, &offset));
         }
     }
-    let text = registry.spec(name).ok_or_else(|| Problem::failed(format!("{name} has no spec"), ""))?;
     let posed = |changes: &Changes| SourceFile::new(name, text).changed(&changes.text(name));
     // Inputs and parameters of motions that no longer take place would be reported as unused; an input may be all that uses a parameter.
     for _ in 0..2 {
@@ -142,10 +143,19 @@ impl Changes {
     }
 }
 
+/// Coordinates whose drives have an offset.
+fn offset_drives(source: &SourceFile) -> Vec<String> {
+    let spec = read(source).ok();
+    let drives = spec.iter().filter_map(|spec| spec.crane.drives.as_ref()?.value.as_ref()).flatten();
+    let offset = drives.filter_map(|drive| drive.value.as_ref().filter(|drive| drive.offset.is_some()));
+    offset.filter_map(|drive| drive.coordinate.value.clone()).collect()
+}
+
 /// A drive that holds a position instead of moving, and that no input offsets.
-fn held_at(description: &Description, drive: usize, position: &str) -> String {
+fn held_at(description: &Description, drive: usize, position: &str, offset: &[String]) -> String {
     let coordinate = &description.coordinates[description.drives[drive].coordinate].name;
-    format!("  - {{coordinate: {coordinate}, motion: {{hold: {position}}}, offset: ~}}\n")
+    let without = if offset.iter().any(|own| *own == coordinate.as_str()) { ", offset: ~" } else { "" };
+    format!("  - {{coordinate: {coordinate}, motion: {{hold: {position}}}{without}}}\n")
 }
 
 /// Name of the live parameter at whose value a drive holds.
