@@ -27,7 +27,7 @@ catalogue! {
     /// A joint follows a joint of the file.
     U010 unknown_leader(joint, leader, help) "joint `{joint}` follows joint `{leader}`, which is not in the file", "no such joint", "{help}";
     /// Something moves.
-    U012 nothing_moves() "nothing in the robot can move", "no joint that rotates or slides", "leave a joint out of `--fix`";
+    U012 nothing_moves(help) "nothing in the robot can move", "no joint that rotates or slides", "{help}";
     /// A joint to be held is in the file.
     U013 unknown_joint(name, help) "there is no joint `{name}` to hold", "`--fix {name}`", "{help}";
     /// An axis has a direction.
