@@ -63,7 +63,8 @@ pub(super) fn groups<'r>(robot: &'r Robot, fixed: &[String]) -> Result<Vec<Group
     }
     if groups.len() == 1 && mistakes.is_empty() {
         let can_move = robot.joints.iter().any(|joint| !matches!(joint.motion, Motion::Fixed));
-        let help = if can_move { "leave a joint out of `--fix`" } else { "give a joint the type `revolute` or `prismatic`" };
+        let help =
+            if can_move { "leave a joint out of `--fix`" } else { "give a joint the type `revolute` or `prismatic`" };
         mistakes.push(rule::nothing_moves(Span::START, help));
     }
     if mistakes.is_empty() { Ok(groups) } else { Err(mistakes) }
