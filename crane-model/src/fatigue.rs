@@ -50,30 +50,8 @@ fn turning_points(history: &[f64]) -> Vec<usize> {
 
 /// The cycles of a history that happens once: full and half ones, in the order in which they close.
 pub fn count_cycles(history: &[f64]) -> Vec<Cycle> {
-    let mut cycles = Vec::new();
-    let mut open: Vec<usize> = Vec::new();
-    let cycle = |count: f64, ends: [usize; 2]| {
-        let [one, other] = ends.map(|end| history[end]);
-        Cycle { range: (one - other).abs(), mean: 0.5 * (one + other), count, ends }
-    };
-    for point in turning_points(history) {
-        open.push(point);
-        while let [.., a, b, c] = open[..] {
-            if (history[c] - history[b]).abs() < (history[b] - history[a]).abs() {
-                break;
-            }
-            if open.len() == 3 {
-                cycles.push(cycle(0.5, [a, b]));
-                open.remove(0);
-            } else {
-                cycles.push(cycle(1.0, [a, b]));
-                open.truncate(open.len() - 3);
-                open.push(c);
-            }
-        }
-    }
-    cycles.extend(open.windows(2).map(|ends| cycle(0.5, [ends[0], ends[1]])));
-    cycles
+    let order: Vec<usize> = (0..history.len()).collect();
+    count_in_order(history, &order, false)
 }
 
 /// The cycles of a history that repeats, all full: it is turned so that it begins and ends with its highest peak. The way from its end back to its
@@ -83,21 +61,35 @@ pub fn count_repeating_cycles(history: &[f64]) -> Vec<Cycle> {
         return Vec::new();
     };
     let order: Vec<usize> = (highest..history.len()).chain(0..=highest).collect();
-    let turned: Vec<f64> = order.iter().map(|index| history[*index]).collect();
-    let mut open: Vec<usize> = Vec::new();
-    let mut cycles = Vec::new();
-    for point in turning_points(&turned) {
+    count_in_order(history, &order, true)
+}
+
+/// The cycles of a history in an order of its values. Of one that repeats, ranges that contain its beginning are full cycles, and nothing remains.
+fn count_in_order(history: &[f64], order: &[usize], repeats: bool) -> Vec<Cycle> {
+    let values: Vec<f64> = order.iter().map(|index| history[*index]).collect();
+    let cycle = |count: f64, [a, b]: [usize; 2]| {
+        let [one, other] = [values[a], values[b]];
+        Cycle { range: (one - other).abs(), mean: 0.5 * (one + other), count, ends: [order[a], order[b]] }
+    };
+    let (mut cycles, mut open) = (Vec::new(), Vec::<usize>::new());
+    for point in turning_points(&values) {
         open.push(point);
         while let [.., a, b, c] = open[..] {
-            if (turned[c] - turned[b]).abs() < (turned[b] - turned[a]).abs() {
+            if (values[c] - values[b]).abs() < (values[b] - values[a]).abs() {
                 break;
             }
-            let [one, other] = [turned[a], turned[b]];
-            let (range, mean) = ((one - other).abs(), 0.5 * (one + other));
-            cycles.push(Cycle { range, mean, count: 1.0, ends: [order[a], order[b]] });
-            open.truncate(open.len() - 3);
-            open.push(c);
+            if open.len() == 3 && !repeats {
+                cycles.push(cycle(0.5, [a, b]));
+                open.remove(0);
+            } else {
+                cycles.push(cycle(1.0, [a, b]));
+                open.truncate(open.len() - 3);
+                open.push(c);
+            }
         }
+    }
+    if !repeats {
+        cycles.extend(open.windows(2).map(|ends| cycle(0.5, [ends[0], ends[1]])));
     }
     cycles
 }

@@ -126,8 +126,9 @@ impl Categories {
         }
     }
 
-    fn category(&self, beam: &str) -> f64 {
-        self.own.iter().find(|(name, _)| name == beam).map_or(self.others, |(_, category)| *category)
+    fn detail(&self, beam: &str) -> Detail {
+        let own = self.own.iter().find(|(name, _)| name == beam);
+        Detail { category: own.map_or(self.others, |(_, category)| *category), slope: self.slope }
     }
 
     fn of<'a>(
@@ -137,10 +138,7 @@ impl Categories {
         instants: impl Iterator<Item = &'a Instant>,
     ) -> Vec<Fatigue> {
         let states = instants.map(|instant| (instant.x.as_slice(), instant.wrenches.as_slice()));
-        fatigue::of_history(description, moduli, states, |beam| Detail {
-            category: self.category(beam),
-            slope: self.slope,
-        })
+        fatigue::of_history(description, moduli, states, |beam| self.detail(beam))
     }
 }
 
@@ -214,7 +212,7 @@ impl Subject<'_> {
         let mut grid = Grid::new("fatigue", title, &headers);
         for of in found {
             let parameter = self.parameter(of);
-            let category = self.categories.category(of.place.beam(self.description));
+            let Detail { category, .. } = self.categories.detail(of.place.beam(self.description));
             let range = of.largest().map_or(0.0, |cycle| cycle.range);
             let numbers = [
                 Cell::Shown(category, Scale::Megapascal),
@@ -235,10 +233,7 @@ impl Subject<'_> {
         let title = "Cycles of one repetition where the damage is greatest, and their parts of it";
         let headers = ["range [MPa]", "mean [MPa]", "count", "from [s]", "to [s]", "part of the damage [%]"];
         let mut grid = Grid::new("cycles", title, &headers);
-        let detail = Detail {
-            category: self.categories.category(worst.place.beam(self.description)),
-            slope: self.categories.slope,
-        };
+        let detail = self.categories.detail(worst.place.beam(self.description));
         let mut cycles = worst.cycles.clone();
         cycles.sort_by(|a, b| b.range.total_cmp(&a.range));
         for cycle in cycles {
