@@ -100,7 +100,7 @@ class Beam:
     """n + 1 rigid elements along x; spring k joins elements k and k + 1, each with its three directions.
 
     sections: moduli of all sections where forces are known, or None; those where the elements begin, until others are added. bend: angles
-    between neighbours at rest, about z and y. `portion(a, b)`: H of the beam between two places, about the first, and `moduli_beside(x)`:
+    between neighbours at rest, about z and y. borders: ends of the sections, unless elements are given one by one. `portion(a, b)`: H of the beam between two places, about the first, and `moduli_beside(x)`:
     those just before and just after a place, with `steps` where they jump; None if elements are given one by one.
     """
 
@@ -110,7 +110,8 @@ class Beam:
     damping: list
     sections: list
     allowable_stress: object = 0
-    bend: tuple = (0, 0)
+    bend: list = None
+    borders: list = None
     portion: object = None
     moduli_beside: object = None
     steps: tuple = ()
@@ -173,7 +174,44 @@ def read_shape(shape, size):
     raise ValueError(f"unknown section {shape!r}")
 
 
-def read_beam(spec, beam):
+# Places of a beam closer than this fraction of its length are one.
+ONE_PLACE = 1e-4
+
+
+def acting(keys, link):
+    """Where along a link something acts, as written: other links, loads, pins of cylinders with a valve, connectors, loop joints."""
+    points = [other["on"] for other in keys["links"] if isinstance(other.get("on"), dict) and isinstance(other["on"].get("at"), list)]
+    points += [load for load in keys.get("loads", []) if "at" in load]
+    for cylinder in keys.get("cylinders", []):
+        if "valve" in cylinder:
+            points += [cylinder["foot"], cylinder["head"]]
+            if "linkage" in cylinder:
+                points.append({"link": cylinder["foot"]["link"], "at": cylinder["linkage"]["pivot"]})
+    for joined in [*keys.get("connectors", []), *keys.get("loop_joints", [])]:
+        points += [joined["from"], joined["to"], *joined.get("over", [])]
+    return [point["at"][0] for point in points if point.get("link") == link]
+
+
+def borders_of(spec, link, count, length):
+    """Ends of all sections: at the beginning, wherever something acts, at the end, and evenly between them, where the sections are longest."""
+    if count == 0:
+        return [0, length]
+    whole, marks = spec.default(length), [(0.0, 0)]
+    for x, place in sorted(((spec.default(x), x) for x in map(spec.number, acting(spec.keys, link))), key=lambda both: both[0]):
+        if min(abs(x - marks[-1][0]), abs(x - whole)) > ONE_PLACE * whole and 0 <= x < whole:
+            marks.append((x, place))
+    marks.append((whole, length))
+    counts = [1] * (len(marks) - 1)
+    while sum(counts) < count:
+        sizes = [(marks[k + 1][0] - marks[k][0]) / counts[k] for k in range(len(counts))]
+        counts[next(k for k, size in enumerate(sizes) if size >= max(sizes) * (1 - 1e-9))] += 1
+    borders = []
+    for (_, begin), (_, end), parts in zip(marks, marks[1:], counts):
+        borders += [begin + (end - begin) / parts * k for k in range(parts)]
+    return [*borders, length]
+
+
+def read_beam(spec, beam, link):
     """A beam from sections, material and shape, or from its elements one by one."""
     if "elements" in beam:
         return read_elements(spec, beam)
@@ -184,14 +222,16 @@ def read_beam(spec, beam):
     E, G, density = (spec.number(material[key]) for key in ("E", "G", "density"))
     extra = spec.number(beam.get("extra_mass", 0))
 
-    sections = 0 if beam["sections"] == "rigid" else int(beam["sections"])
-    part = length / max(sections, 1)
-    lengths = [part / 2] + [part] * (sections - 1) + [part / 2] if sections else [length]
+    sections = written = 0 if beam["sections"] == "rigid" else int(beam["sections"])
+    borders = borders_of(spec, link, sections, length)
+    parts_of = [end - begin for begin, end in zip(borders, borders[1:])]
+    sections = len(parts_of) if sections else 0
+    lengths = [(one + other) / 2 for one, other in zip([0, *parts_of], [*parts_of, 0])] if sections else [length]
     if "parts" in beam:
         parts = Parts(spec, beam["parts"])
         begins = [sum(lengths[:k], 0.0) for k in range(sections + 1)]
         masses = [parts.inertia(begin, begin + l, density, extra) for begin, l in zip(begins, lengths)]
-        stiffness = [parts.stiffness(k * part, (k + 1) * part, E, G) for k in range(sections)]
+        stiffness = [parts.stiffness(*map(spec.default, borders[k : k + 2]), E, G) for k in range(sections)]
         moduli = [parts.section(begin).moduli for begin in begins]
         portion = lambda begin, end: parts.inertia(spec.default(begin), spec.default(end), density, extra)
         beside = lambda x: [parts.section(x, part).moduli for part in (parts.part_before(x), parts.part(x))]
@@ -199,7 +239,9 @@ def read_beam(spec, beam):
     else:
         section = read_section(spec, beam["section"])
         masses = [prism((density * section.area + extra) * l, l, section) for l in lengths]
-        stiffness = [dict(zip(DIRECTIONS, (E * section.Jz / part, E * section.Jy / part, G * section.Jo / part)))] * sections
+        stiffness = [
+            dict(zip(DIRECTIONS, (E * section.Jz / part, E * section.Jy / part, G * section.Jo / part))) for part in parts_of[:sections]
+        ]
         moduli = [section.moduli] * (sections + 1)
         portion = lambda begin, end: prism((density * section.area + extra) * (end - begin), end - begin, section)
         beside, steps = (lambda x: [section.moduli] * 2), ()
@@ -208,13 +250,17 @@ def read_beam(spec, beam):
         lengths=lengths,
         pseudo_inertias=masses,
         stiffness=stiffness,
-        damping=[read_damping(spec, beam.get("damping") or {}, each) for each in stiffness],
+        damping=[
+            read_damping(spec, beam.get("damping") or {}, each, length / written / part)
+            for each, part in zip(stiffness, parts_of)
+        ],
         sections=moduli,
         portion=portion,
         moduli_beside=beside,
         steps=steps,
         allowable_stress=spec.number(material.get("yield_stress", 0)) / spec.number(beam.get("safety_factor", 1.5)),
-        bend=tuple(spec.angle(bend.get(key, 0)) / max(sections, 1) for key in ("psi", "theta")),
+        bend=[tuple(spec.angle(bend.get(key, 0)) * part / length for key in ("psi", "theta")) for part in parts_of],
+        borders=borders,
     )
 
 
@@ -286,13 +332,14 @@ def prism(mass, length, section):
     return pseudo_inertia(mass, ca.vertcat(length / 2, 0, 0), tensor)
 
 
-def read_damping(spec, damping, stiffness):
-    """Damping per direction: `beta` times the stiffness, or `coefficients`."""
+def read_damping(spec, damping, stiffness, shorter):
+    """Damping per direction: `beta` times the stiffness, or `coefficients`, which are those of equal sections; this one is shorter by a factor."""
     if "beta" in damping:
         beta = damping["beta"]
         beta = beta if isinstance(beta, dict) else dict.fromkeys(DIRECTIONS, beta)
         return {direction: spec.number(beta.get(direction, 0)) * stiffness[direction] for direction in DIRECTIONS}
-    return read_directions(spec, damping.get("coefficients", {}))
+    given = read_directions(spec, damping.get("coefficients", {}))
+    return {direction: number * shorter for direction, number in given.items()}
 
 
 def read_directions(spec, written):

@@ -193,12 +193,14 @@ class Support:
 
 @dataclass
 class Span:
-    """A link as bodies in a row, and where each begins along the undeformed link; the pose of its tip, and the length of its last body."""
+    """A link as bodies in a row, and where each begins along the undeformed link; the pose of its tip, the length of its last body, and the ends of
+    a beam's sections."""
 
     bodies: list
     starts: list
     tip: object = None
     last: object = 0.0
+    borders: list = None
 
 
 @dataclass
@@ -409,16 +411,16 @@ def read_link_inertia(spec, link):
 
 def read_beam_bodies(crane, name, transform, written, place):
     """Adds the elements of a beam; returns its span."""
-    beam = read_beam(crane.spec, written)
+    beam = read_beam(crane.spec, written, name)
     crane.beams.append(beam)
-    span, start = Span([], []), 0.0
+    span, start = Span([], [], borders=beam.borders), 0.0
     for index, (length, pseudo_inertia) in enumerate(zip(beam.lengths, beam.pseudo_inertias)):
         element = f"{name}_{index}"
         if index > 0:
             motions = [crane.move(element, symbol, is_element=True) for symbol in DIRECTIONS]
             rotations = crane.coordinates[-3:]
             # A curved beam turns by half the angle of a section before its spring and by half after it.
-            about_z, about_y = beam.bend
+            about_z, about_y = beam.bend[index - 1] if beam.bend else (0, 0)
             half_bend = rotate_by_vector(ca.vertcat(0, about_y / 2, about_z / 2))
             transform = transform @ half_bend
             if written.get("section_joint", "symmetric") == "paper":

@@ -32,10 +32,23 @@ class Pad:
     """A pad, the stations of the beam that slides on it, and what is measured there."""
 
     stations: list
-    sections: int
-    length: object
+    borders: list
     s: ca.SX
     direction: str
+
+    @property
+    def length(self):
+        """Length of the beam."""
+        return self.borders[-1]
+
+    @property
+    def sections(self):
+        """Number of sections: springs, each in the middle of one."""
+        return len(self.stations) // 2 - 1
+
+    def within(self, k):
+        """How much of section k is before s."""
+        return (self.s - self.borders[k]) / (self.borders[k + 1] - self.borders[k])
 
     def strain(self, frames):
         """How far the axis of the beam is from the pad along y or z of the pad's body, or the sine of the twist."""
@@ -51,23 +64,21 @@ class Pad:
         start, end, s = middles[0], middles[-1], self.s
         if self.sections == 0:
             return start[:3, 3] + s * start[:3, 0]
-        d = self.length / self.sections
         curve = end[:3, 3] + (s - self.length) * end[:3, 0]
         for k in reversed(range(self.sections)):
-            tau = s / d - k
+            tau = self.within(k)
             first, joint, last = (frame[:3, 3] for frame in (middles[k], joints[k], middles[k + 1]))
             before, after = first + tau * (joint - first), joint + tau * (last - joint)
-            curve = ca.if_else(s < (k + 1) * d, before + tau * (after - before), curve)
+            curve = ca.if_else(s < self.borders[k + 1], before + tau * (after - before), curve)
         return ca.if_else(s < 0, start[:3, 3] + s * start[:3, 0], curve)
 
     def across(self, frames):
         """y of the beam at s, evenly from element to element."""
         middles, s = frames[: self.sections + 1], self.s
         turned = middles[-1][:3, 1]
-        d = self.length / max(self.sections, 1)
         for k in reversed(range(self.sections)):
-            tau = s / d - k
-            turned = ca.if_else(s < (k + 1) * d, (1 - tau) * middles[k][:3, 1] + tau * middles[k + 1][:3, 1], turned)
+            tau = self.within(k)
+            turned = ca.if_else(s < self.borders[k + 1], (1 - tau) * middles[k][:3, 1] + tau * middles[k + 1][:3, 1], turned)
         return ca.if_else(s < 0, middles[0][:3, 1], turned)
 
     def value(self):
@@ -84,8 +95,7 @@ class Pad:
 
     def on_elements(self):
         """Of each element of the beam: its body, the distance of the pad from its beginning, and 1 if the pad is on it, else 0."""
-        d = self.length / max(self.sections, 1)
-        begins = [0, *((k - 0.5) * d for k in range(1, self.sections + 1))]
+        begins = [0, *((self.borders[k] + self.borders[k + 1]) / 2 for k in range(self.sections))]
         begun = [1, *(ca.if_else(self.s > begin, 1, 0) for begin in begins[1:]), 0]
         for k, begin in enumerate(begins):
             s = ca.fmin(ca.fmax(self.s, 0), self.length)
@@ -114,9 +124,9 @@ def length_of(span):
 
 
 def stations_of(crane, span, index_of):
-    """Middles of the elements (of the first its beginning, of the last its end), then the joints between them, at the ends of the first ones."""
+    """Where the curve touches the elements (the first at its beginning, the last at its end), then the joints between them, at the ends of the first ones."""
     n = len(span.bodies) - 1
-    d = length_of(span) / max(n, 1)
+    half = [(end - begin) / 2 for begin, end in zip(span.borders, span.borders[1:])]
     middles, joints = [], []
 
     def station(element, at, x):
@@ -124,10 +134,10 @@ def stations_of(crane, span, index_of):
         return Station(index_of(crane, body), at, crane.spec.default(at), body.transform @ translate(x=x))
 
     for element in range(n + 1):
-        x = 0 if element == 0 else d / 2
+        x = 0 if element == 0 else half[element - 1]
         middles.append(station(element, x, x))
         if element < n:
-            end = d / 2 if element == 0 else d
+            end = x + half[element]
             joints.append(station(element, end, end))
     return middles + joints
 
@@ -151,6 +161,6 @@ def read_pads(crane, link, spans, index_of):
         vectors = [spec.vector(keys.get(key, [0, 0, 0])) for key in ("stiffness", "damping", "clearance")]
         for number, direction in enumerate(DIRECTIONS):
             if direction in keys.get("exact", []):
-                yield Pad(stations, len(beam.bodies) - 1, length_of(beam), s, direction), None
+                yield Pad(stations, beam.borders, s, direction), None
             elif spec.default(vectors[0][number]) != 0 or not vectors[0][number].is_constant():
-                yield Pad(stations, len(beam.bodies) - 1, length_of(beam), s, direction), [v[number] for v in vectors]
+                yield Pad(stations, beam.borders, s, direction), [v[number] for v in vectors]

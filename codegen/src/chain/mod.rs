@@ -27,7 +27,7 @@ mod tree;
 mod value;
 
 pub use beam::{Beam, Inside, Moduli, Outline, Section, Side};
-pub use beam_axis::BeamAxis;
+pub use beam_axis::{BeamAxis, Division, Stretch};
 pub use body::{Axis, Body, Coordinate, CoordinateKind, Inertia, Part, Step};
 pub use cut::Cut;
 pub use cylinder::{Cylinder, Linkage, Pin, Pump, Valve};

@@ -114,6 +114,12 @@ fn exact_sin_cos(angle: f64) -> (f64, f64) {
     }
 }
 
+impl Default for Value {
+    fn default() -> Self {
+        Value::ZERO
+    }
+}
+
 impl From<f64> for Value {
     fn from(constant: f64) -> Self {
         Value::Constant(constant)

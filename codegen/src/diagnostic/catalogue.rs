@@ -490,6 +490,9 @@ catalogue! {
     /// A mass that a combination names is in kg.
     E183 not_a_mass(combination, name, unit) "`{name}`, a mass of combination `{combination}`, is in {unit}", "its weight has a factor of its own",
         "name a live parameter in kg; factors of forces and moments are given under `loads`";
+    /// Live places along a beam, where sections end, keep their order.
+    E184 places_meet() "a place on a beam meets another one, or an end of the beam", "it is divided where something acts on it",
+        "give the place in the spec: then the beam is divided anew";
 
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.

@@ -2,7 +2,7 @@
 
 use super::inertia::{about_com, sum};
 use super::section::{CrossSection, Shape};
-use crate::chain::{Axis, Inertia, Moduli, Outline, Step, Value};
+use crate::chain::{Axis, Division, Inertia, Moduli, Outline, Step, Stretch, Value};
 
 /// An angle that changes no rotation, and whose square is not 0 even in single precision, rad.
 const NO_ANGLE: f64 = 1e-18;
@@ -34,20 +34,59 @@ pub(crate) struct Elements {
     pub elements: Vec<RigidElement>,
     /// Joints, one fewer than elements.
     pub joints: Vec<Joint>,
+    /// The sections, of a beam that is not given element by element.
+    pub division: Division,
 }
 
-/// Lengths of the elements of a beam of n equal sections, [Urbaś 2016, section 2.2]: a spring is in the middle of each
-/// section of length `d = l/n`, so that the elements are `d/2, d, …, d, d/2` long. Without sections it is one element.
-pub(crate) fn element_lengths(length: &Value, sections: usize) -> Vec<Value> {
-    if sections == 0 {
-        return vec![length.clone()];
+/// Places that are closer to each other than this fraction of their beam's length end one section, not two.
+const ONE_PLACE: f64 = 1e-4;
+/// A stretch is longer than another one if it is so by this fraction, because both are rounded numbers.
+const LONGER: f64 = 1e-9;
+
+/// Divides a beam into sections. One ends at every station, a place where something acts: on the border between two sections, a force or a couple
+/// bends every spring by its true moment, within a section it would not. Between the stations sections are equal, and as many as keep the longest
+/// one short. There are more than `count` only where the stations need more. `now` gives the numbers with default parameters.
+pub(crate) fn division(length: &Value, count: usize, mut stations: Vec<Value>, now: impl Fn(&Value) -> f64) -> Division {
+    if count == 0 {
+        return Division::default();
     }
-    let section = length.clone() / (sections as f64).into();
-    let half = 0.5 * section.clone();
-    let mut lengths = vec![section; sections + 1];
-    lengths[0] = half.clone();
-    lengths[sections] = half;
-    lengths
+    stations.sort_by(|a, b| now(a).total_cmp(&now(b)));
+    let whole = now(length);
+    let mut begins = vec![Value::ZERO];
+    for station in stations {
+        let x = now(&station);
+        let apart = |end: f64| (x - end).abs() > ONE_PLACE * whole;
+        if begins.last().is_some_and(|last| apart(now(last))) && apart(whole) && (0.0..whole).contains(&x) {
+            begins.push(station);
+        }
+    }
+    let ends: Vec<Value> = begins.iter().skip(1).cloned().chain([length.clone()]).collect();
+    let lengths: Vec<f64> = begins.iter().zip(&ends).map(|(begin, end)| now(end) - now(begin)).collect();
+    let mut counts = vec![1; lengths.len()];
+    for _ in lengths.len()..count {
+        let section = |stretch: usize| lengths[stretch] / counts[stretch] as f64;
+        let longest = (1..lengths.len())
+            .fold(0, |best, stretch| if section(stretch) > section(best) * (1.0 + LONGER) { stretch } else { best });
+        counts[longest] += 1;
+    }
+    let stretch = |((begin, end), sections): ((Value, Value), usize)| {
+        let section = (end - begin.clone()) / (sections as f64).into();
+        Stretch { sections, section, begin }
+    };
+    Division { stretches: begins.into_iter().zip(ends).zip(counts).map(stretch).collect() }
+}
+
+/// Lengths of the elements of a beam, [Urbaś 2016, section 2.2]: a spring is in the middle of each section, so that the elements of n sections of
+/// length `d = l/n` are `d/2, d, …, d, d/2` long, and one between two sections half of each. Without sections it is one element.
+pub(crate) fn element_lengths(length: &Value, division: &Division) -> Vec<Value> {
+    let sections: Vec<&Value> = division.each().map(|(_, section)| section).collect();
+    let (Some(first), Some(last)) = (sections.first(), sections.last()) else { return vec![length.clone()] };
+    let half = |section: &Value| 0.5 * section.clone();
+    let between = sections.windows(2).map(|pair| match pair {
+        [one, other] if one == other => (*one).clone(),
+        pair => half(pair[0]) + half(pair[1]),
+    });
+    [half(first)].into_iter().chain(between).chain([half(last)]).collect()
 }
 
 /// The rotation by the vector (0, θ, ψ), as steps: `Ry(θ)` or `Rz(ψ)` if only one angle is given, otherwise
@@ -324,12 +363,31 @@ mod tests {
         hollow_rectangle(&0.25.into(), &0.2.into(), &0.008.into())
     }
 
+    /// Lengths of the elements of a beam of 3.5 m on which something acts at these places.
+    fn elements(sections: usize, stations: &[f64]) -> Vec<f64> {
+        let stations = stations.iter().map(|x| Value::from(*x)).collect();
+        let division = division(&3.5.into(), sections, stations, |value| value.at(&[]));
+        element_lengths(&3.5.into(), &division).iter().map(|length| length.at(&[])).collect()
+    }
+
+    #[test]
+    fn sections_end_where_something_acts() {
+        // At 1 m: of four sections, three are behind it. Springs are in the middles: at 0.5 m and at 1 + 2.5/6 (1, 3, 5) m.
+        let behind = 2.5 / 3.0;
+        let expected = [0.5, 0.5 + 0.5 * behind, behind, behind, 0.5 * behind];
+        assert_eq!(elements(4, &[1.0]), expected);
+        // The same place twice, the ends, and places beyond them do not count.
+        assert_eq!(elements(4, &[1.0, 3.5, 1.00001, -0.5, 0.0, 7.0]), expected);
+        // Two places need three sections.
+        assert_eq!(elements(1, &[2.5, 0.5]), [0.25, 1.25, 1.5, 0.5]);
+        assert_eq!(elements(0, &[1.0]), [3.5]);
+    }
+
     #[test]
     fn elements_of_the_reference_boom() {
-        let lengths: Vec<f64> = element_lengths(&3.5.into(), 4).iter().map(|l| l.at(&[])).collect();
+        let lengths = elements(4, &[]);
         assert_eq!(lengths, [0.4375, 0.875, 0.875, 0.875, 0.4375]);
-        let one: Vec<f64> = element_lengths(&3.5.into(), 1).iter().map(|l| l.at(&[])).collect();
-        assert_eq!(one, [1.75, 1.75]);
+        assert_eq!(elements(1, &[]), [1.75, 1.75]);
 
         let line_density = Value::from(7850.0) * boom().area + 62.0896.into();
         let mass: f64 =

@@ -1,14 +1,14 @@
 //! The axis of a divided beam as a smooth curve.
 //!
 //! Rigid elements form a polyline whose corners are the springs. The quadratic B-spline with these corners as control points touches every
-//! inner element in its middle and has a continuous direction. It is stated here without a choice of the section that contains s: with n
-//! sections of length d, `σ = s/d`, `x̂_k` the direction of element k = 0 … n and `τ_k = clamp(σ − k, 0, 1)` the part of section k that is
-//! before s, the curve turns from `x̂_k` to `x̂_{k+1}` in section k, so that
+//! inner element at the border of its sections and has a continuous direction. It is stated here without a choice of the section that contains
+//! s: with n sections that begin at `s_k` and are `d_k` long, `x̂_k` the direction of element k = 0 … n and `τ_k = clamp((s − s_k)/d_k, 0, 1)`
+//! the part of section k that is before s, the curve turns from `x̂_k` to `x̂_{k+1}` in section k, so that
 //!
 //! ```text
-//! P′(s) = Σ e_k x̂_k      e_k = τ_{k−1} − τ_k,  τ_{−1} = 1, τ_n = 0             the share of element k in the direction
-//! P(s) = r_0 + Σ c_k x̂_k      c_k = ∫ e_k ds = d/2 (τ_{k−1}² + τ_k (2 − τ_k))      the way along element k
-//!                             c_0 = d (min(σ, 1) − τ_0²/2),  c_n = d (τ_{n−1}²/2 + max(0, σ − n))
+//! P′(s) = Σ e_k x̂_k      e_k = τ_{k−1} − τ_k,  τ_{−1} = 1, τ_n = 0                     the share of element k in the direction
+//! P(s) = r_0 + Σ c_k x̂_k      c_k = ∫ e_k ds = d_{k−1} τ_{k−1}²/2 + d_k τ_k (1 − τ_k/2)    the way along element k
+//!                             of the first also min(s, 0), of the last max(0, s − l)
 //! ```
 //!
 //! `r_0` is the beginning of the beam. Beyond both ends the curve continues straight on. A motion of the coordinate j, whose joint is that of
@@ -21,7 +21,7 @@ use std::collections::BTreeMap;
 use super::kinematics::{Kinematics, Pose};
 use super::model::Model;
 use super::vector::Vec3;
-use crate::chain::{Axis, BeamAxis, CoordinateId};
+use crate::chain::{Axis, BeamAxis, CoordinateId, Stretch};
 use crate::symbolic::Expr;
 
 /// The axis of a beam at s.
@@ -29,70 +29,88 @@ pub struct AxisPoint<'a, 'g> {
     model: &'a Model<'g>,
     kinematics: &'a Kinematics<'g>,
     axis: &'a BeamAxis,
-    /// `σ − n`, in sections.
-    past_end: Expr<'g>,
-    /// `min(σ, 0)`.
-    before_start: Expr<'g>,
     s: Expr<'g>,
+    /// Its sections, from the beginning to the end; of a rigid beam one without a spring.
+    sections: Vec<Section<'g>>,
+}
+
+/// A section as seen from s.
+#[derive(Clone, Copy)]
+struct Section<'g> {
+    /// Index of its stretch.
+    stretch: usize,
     /// d, m.
-    section: Expr<'g>,
-    /// `τ_k`
-    passed: Vec<Expr<'g>>,
+    length: Expr<'g>,
+    /// τ
+    passed: Expr<'g>,
+    /// `(s − its stretch's beginning)/d`, and this less the number of sections of the stretch.
+    sigma: [Expr<'g>; 2],
+    /// How many sections are between its middle and the end of its stretch.
+    to_end: f64,
 }
 
 impl<'a, 'g> AxisPoint<'a, 'g> {
     /// At the distance s from the beginning of the beam, m.
     pub fn new(model: &'a Model<'g>, kinematics: &'a Kinematics<'g>, axis: &'a BeamAxis, s: Expr<'g>) -> Self {
         let (zero, one) = (model.zero(), model.graph.constant(1.0));
-        let section = model.number(&axis.length) / axis.sections.max(1) as f64;
-        let sigma = s / section;
-        let passed = (0..axis.sections).map(|k| (sigma - k as f64).clamp(zero, one)).collect();
-        AxisPoint {
-            past_end: sigma - axis.sections as f64,
-            before_start: sigma.min(zero),
-            model,
-            kinematics,
-            axis,
-            s,
-            section,
-            passed,
-        }
+        let of_stretch = |(index, stretch): (usize, &Stretch)| {
+            let (length, count) = (model.number(&stretch.section), stretch.sections as f64);
+            let begin = if stretch.begin.is_zero() { s } else { s - model.number(&stretch.begin) };
+            let sigma = begin / length;
+            let section = |k: usize| Section {
+                stretch: index,
+                length,
+                passed: (sigma - k as f64).clamp(zero, one),
+                sigma: [sigma, sigma - count],
+                to_end: count - 0.5 - k as f64,
+            };
+            (0..stretch.sections).map(section).collect::<Vec<_>>()
+        };
+        AxisPoint { model, kinematics, axis, s, sections: axis.division.stretches.iter().enumerate().flat_map(of_stretch).collect() }
     }
 
     fn pose(&self, element: usize) -> &'a Pose<'g> {
         &self.kinematics.poses[self.axis.first.0 + element]
     }
 
-    /// `τ_{k−1}` and `τ_k` of an element.
-    fn passed_by(&self, element: usize) -> [Expr<'g>; 2] {
-        let before = element.checked_sub(1).map_or(self.model.graph.constant(1.0), |k| self.passed[k]);
-        [before, self.passed.get(element).copied().unwrap_or(self.model.zero())]
+    /// The sections before and after the middle of an element.
+    fn beside(&self, element: usize) -> [Option<&Section<'g>>; 2] {
+        [element.checked_sub(1).and_then(|k| self.sections.get(k)), self.sections.get(element)]
     }
 
     /// `e_k`
     fn share(&self, element: usize) -> Expr<'g> {
-        let [before, after] = self.passed_by(element);
-        before - after
+        let [before, after] = self.beside(element);
+        let before = before.map_or(self.model.graph.constant(1.0), |section| section.passed);
+        before - after.map_or(self.model.zero(), |section| section.passed)
     }
 
     /// `c_k`, m
     fn way(&self, element: usize) -> Expr<'g> {
-        let n = self.axis.sections;
-        let [before, after] = self.passed_by(element);
+        let zero = self.model.zero();
         // min(σ, 1) = τ_0 + min(σ, 0)
-        self.section
-            * match element {
-                0 if n == 0 => self.past_end,
-                0 => after + self.before_start - 0.5 * after.squared(),
-                k if k == n => 0.5 * before.squared() + self.past_end.max(self.model.zero()),
-                _ => 0.5 * (before.squared() + after * (2.0 - after)),
+        let along = |after: &Section<'g>| after.passed + after.sigma[0].min(zero) - 0.5 * after.passed.squared();
+        match self.beside(element) {
+            [None, None] => self.s,
+            [None, Some(after)] => after.length * along(after),
+            [Some(before), None] => {
+                before.length * (0.5 * before.passed.squared() + before.sigma[1].max(zero))
             }
+            [Some(before), Some(after)] => {
+                let [squared, rest] = [before.passed.squared(), after.passed * (2.0 - after.passed)];
+                if before.stretch == after.stretch {
+                    before.length * (0.5 * (squared + rest))
+                } else {
+                    0.5 * (before.length * squared + after.length * rest)
+                }
+            }
+        }
     }
 
     /// `Σ_{k ≥ m} f_k a_k` for every element m, a the given axis of the elements.
     fn sums(&self, axis: Axis, factor: impl Fn(usize) -> Expr<'g>) -> Vec<Vec3<'g>> {
         let mut sums: Vec<Vec3<'g>> = Vec::new();
-        for element in (0..=self.axis.sections).rev() {
+        for element in (0..=self.sections.len()).rev() {
             let own = factor(element) * self.pose(element).rotation.axis(axis);
             sums.push(sums.last().map_or(own, |beyond| own + *beyond));
         }
@@ -153,7 +171,7 @@ impl<'a, 'g> AxisPoint<'a, 'g> {
         let Self { model, kinematics, axis, s, .. } = self;
         let [free, _] = model.free_symbols();
         let anywhere = AxisPoint::new(model, kinematics, axis, free);
-        let shares: Vec<_> = (0..=axis.sections).map(|element| anywhere.share(element)).collect();
+        let shares: Vec<_> = (0..=self.sections.len()).map(|element| anywhere.share(element)).collect();
         let slopes = model.graph.derivatives(&shares, free);
         slopes.into_iter().map(|slope| model.graph.substitute(slope, &[(free, *s)])).collect()
     }
@@ -177,14 +195,12 @@ impl<'a, 'g> AxisPoint<'a, 'g> {
     /// For every element 1 if s is on it, otherwise 0: each begins at its spring, the first and the last go on beyond the ends.
     pub fn here(&self) -> Vec<Expr<'g>> {
         let (zero, one) = (self.model.zero(), self.model.graph.constant(1.0));
-        let n = self.axis.sections;
-        // σ > k − ½, from the distance to the end, which is there for a rigid beam, too.
-        let begun = |element: usize| match element {
-            0 => one,
-            k if k > n => zero,
-            k => (self.past_end + (n as f64 + 0.5 - k as f64)).select(one, zero),
+        // s is behind the middle of the section before, from the distance to the end of its stretch.
+        let begun = |element: usize| match element.checked_sub(1) {
+            None => one,
+            Some(k) => self.sections.get(k).map_or(zero, |before| (before.sigma[1] + before.to_end).select(one, zero)),
         };
-        (0..=n).map(|element| begun(element) - begun(element + 1)).collect()
+        (0..=self.sections.len()).map(|element| begun(element) - begun(element + 1)).collect()
     }
 }
 

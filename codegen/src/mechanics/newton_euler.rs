@@ -175,15 +175,16 @@ fn at_pad<'a, 'g: 'a>(
     on_element: &impl Fn(usize) -> Option<(&'a Motion<'g>, &'a [Action<'g>])>,
 ) -> Option<Wrench<'g>> {
     let (axis, zero) = (&sliding.beam, model.zero());
-    let (whole, d) = (model.number(&axis.length), model.number(&axis.length) / axis.sections.max(1) as f64);
+    let whole = model.number(&axis.length);
+    let springs: Vec<_> = axis.division.springs().map(|place| model.number(&place)).collect();
     let here = AxisPoint::new(model, kinematics, axis, pads::place(model, sliding).1).here();
     let s = pads::place_on_beam(model, sliding);
     let none = Vec3::zero(model.graph);
     let (mut wrench, mut masses) = ([none; 2], Masses::zero(model));
     let (mut omega, mut alpha, mut a, mut start) = (none, none, none, zero);
     for ((element, BodyId(body)), here) in axis.elements().enumerate().zip(here) {
-        let begins = if element == 0 { zero } else { (element as f64 - 0.5) * d };
-        let ends = if element == axis.sections { whole } else { (element as f64 + 0.5) * d };
+        let begins = element.checked_sub(1).map_or(zero, |spring| springs[spring]);
+        let ends = springs.get(element).copied().unwrap_or(whole);
         let (motion, applied) = on_element(body)?;
         let Velocities::Body { omega: own_omega } = &motion.velocities else { return None };
         let [force, moment] = swept.bodies[body]?;

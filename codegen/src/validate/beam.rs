@@ -1,11 +1,11 @@
-//! Beams: division into equal sections, and conversion of elements into bodies.
+//! Beams: division into sections, and conversion of elements into bodies.
 
 use super::elements::WRITTEN;
 use super::limits::Limit;
 use super::on::Attached;
 use super::section::Elastic;
-use super::{Check, Owner};
-use crate::chain::{self, Axis, Chain, CoordinateKind, Force, Group, Law, Outline, Spring, Step, Value};
+use super::{Carried, Check, Owner};
+use crate::chain::{self, Axis, Chain, CoordinateKind, Division, Force, Group, Law, Outline, Spring, Step, Value};
 use crate::diagnostic::{Span, rule};
 use crate::expand::beam::{self, Distribution, Elements, Joint, Part, RigidElement};
 use crate::spec::{Beam, BeamDamping, BeamPart, Bend, Directions, Either, Number, SectionJoint, Sections, Spanned};
@@ -21,14 +21,14 @@ const FEWER_SECTIONS: &str =
 const ROTATIONS: [Axis; 3] = [Axis::Z, Axis::Y, Axis::X];
 
 impl<'a> Check<'a> {
-    /// Appends the elements of a beam; returns their starts along x, and the tip along x of the last.
+    /// Appends the elements of a beam.
     pub(super) fn beam(
         &mut self,
         given: &'a Spanned<Beam>,
         link: &str,
         span: Span,
         attached: Attached,
-    ) -> (Vec<Value>, Value) {
+    ) -> Carried {
         let elements = given.value.as_ref().and_then(|inside| {
             let length = self.number(&inside.length, "`length`", "m", Limit::Positive);
             match &inside.elements {
@@ -36,7 +36,7 @@ impl<'a> Check<'a> {
                     self.push_beam(link, Vec::new(), None, None);
                     self.one_by_one(inside, &length, elements)
                 }
-                None => self.equal_sections(inside, (link, given.span), &length),
+                None => self.in_sections(inside, (link, given.span), &length),
             }
         });
         let count = |elements: &Elements| self.coordinates.len() + ROTATIONS.len() * elements.joints.len();
@@ -51,13 +51,13 @@ impl<'a> Check<'a> {
             ));
         }
         let section_joint = given.value.as_ref().and_then(|inside| inside.section_joint.as_ref()?.value);
-        let Some(Elements { elements, joints }) = elements.filter(|_| total <= Chain::MOST_COORDINATES) else {
+        let Some(elements) = elements.filter(|_| total <= Chain::MOST_COORDINATES) else {
             // The beam's coordinates are not known.
             self.unknown.links = true;
-            return (Vec::new(), Value::ZERO);
+            return Carried::default();
         };
         let section_joint = section_joint.unwrap_or(SectionJoint::Symmetric);
-        self.unroll((link, span), attached, (elements, joints), section_joint)
+        self.unroll((link, span), attached, elements, section_joint)
     }
 
     /// Appends rigid elements as bodies: element 0 on the link's joint, element i ≥ 1 at the end of the previous one,
@@ -67,9 +67,9 @@ impl<'a> Check<'a> {
         &mut self,
         (link, span): (&str, Span),
         mut attached: Attached,
-        (elements, joints): (Vec<RigidElement>, Vec<Joint>),
+        Elements { elements, joints, division }: Elements,
         section_joint: SectionJoint,
-    ) -> (Vec<Value>, Value) {
+    ) -> Carried {
         let rigid = joints.is_empty();
         let mut starts = Vec::new();
         let mut start = Value::ZERO;
@@ -114,11 +114,11 @@ impl<'a> Check<'a> {
             start = start + length.clone();
             tip = length;
         }
-        (starts, tip)
+        Carried { starts, tip, division }
     }
 
-    /// A beam of equal sections of one material, with one cross-section or with parts.
-    fn equal_sections(&mut self, beam: &'a Beam, (link, span): (&str, Span), length: &Value) -> Option<Elements> {
+    /// A beam of sections of one material, with one cross-section or with parts.
+    fn in_sections(&mut self, beam: &'a Beam, (link, span): (&str, Span), length: &Value) -> Option<Elements> {
         if let Some(springs) = &beam.springs {
             self.report(rule::missing_key(springs.span, "elements", "a beam with `springs`"));
         }
@@ -140,38 +140,44 @@ impl<'a> Check<'a> {
         let extra = self.number_or(beam.extra_mass.as_ref(), 0.0, "`extra_mass`", "kg/m", Limit::NotNegative);
         let damping = self.beam_damping(beam.damping.as_ref());
         let safety = self.number_or(beam.safety_factor.as_ref(), SAFETY_FACTOR, "`safety_factor`", "", Limit::Positive);
-        let half_bend = self.half_bend(beam.bend.as_ref(), sections);
+        let bend = self.bend(beam.bend.as_ref(), sections);
         let (Elastic { youngs, shear, density, yield_stress }, sections) = (material?, sections?);
+        let stations = self.stations.get(link).cloned().unwrap_or_default();
+        let stations = if parts.is_some() { stations.iter().map(|x| self.now(x).into()).collect() } else { stations };
+        let division = beam::division(length, sections, stations, |value| self.now(value));
+        self.keep_sections(&division, span);
+        let lengths = beam::element_lengths(length, &division);
         let divided = match (section, parts) {
             (Some(section), None) => {
                 let line_density = density * section.area.clone() + extra;
                 let element = |length| beam::prismatic(length, &line_density, &section);
-                let d = length.clone() / (sections.max(1) as f64).into();
                 Divided {
                     outlines: section.outline.iter().map(|outline| (Value::ZERO, outline.clone())).collect(),
-                    elements: beam::element_lengths(length, sections).into_iter().map(element).collect(),
-                    stiffness: vec![beam::stiffness(&youngs, &shear, &section, &d); sections],
+                    elements: lengths.into_iter().map(element).collect(),
+                    stiffness: division.each().map(|(_, d)| beam::stiffness(&youngs, &shear, &section, d)).collect(),
                     distribution: Distribution::Prismatic { line_density, section: Box::new(section) },
                 }
             }
             (None, Some(parts)) => {
-                let whole = length.as_constant()?;
-                let lengths = beam::element_lengths(length, sections).into_iter().map(|length| self.now(&length));
-                let (mut begin, d) = (0.0, whole / sections.max(1) as f64);
+                let mut begin = 0.0;
                 let ends: Vec<[f64; 2]> = lengths
+                    .iter()
                     .map(|length| {
-                        let ends = [begin, begin + length];
-                        begin += length;
+                        let ends = [begin, begin + self.now(length)];
+                        begin = ends[1];
                         ends
                     })
                     .collect();
                 let element = |ends: &[f64; 2]| beam::element_of_parts(&parts, *ends, &density, &extra);
-                let section = |k: usize| [k as f64 * d, (k + 1) as f64 * d];
-                let spring = |k: usize| beam::stiffness_of_parts(&parts, section(k), &youngs, &shear);
+                let stiffness = division.stretches.iter().flat_map(|stretch| {
+                    let ends = |k: usize| [k, k + 1].map(|k| self.now(&stretch.at(k as f64)));
+                    let spring = |k| beam::stiffness_of_parts(&parts, ends(k), &youngs, &shear);
+                    (0..stretch.sections).map(spring).collect::<Vec<_>>()
+                });
                 Divided {
                     outlines: beam::outlines_of_parts(&parts),
                     elements: ends.iter().map(element).collect(),
-                    stiffness: (0..sections).map(spring).collect(),
+                    stiffness: stiffness.collect(),
                     distribution: Distribution::Parts { parts, density, extra },
                 }
             }
@@ -179,9 +185,22 @@ impl<'a> Check<'a> {
         };
         let allowable = yield_stress.map(|stress| stress / safety);
         self.push_beam(link, divided.outlines, allowable, Some(divided.distribution));
-        let joint =
-            |stiffness: [Value; 3]| Joint { damping: damping.of(&stiffness), stiffness, half_bend: half_bend.clone() };
-        Some(Elements { elements: divided.elements, joints: divided.stiffness.into_iter().map(joint).collect() })
+        // What is given for a beam of equal sections, in a section of length d.
+        let equal = length.clone() / (sections.max(1) as f64).into();
+        let joint = |(stiffness, (_, d)): ([Value; 3], (Value, &Value))| Joint {
+            damping: damping.of(&stiffness, || if *d == equal { Value::ONE } else { equal.clone() / d.clone() }),
+            stiffness,
+            half_bend: bend.half_of(length, d, sections),
+        };
+        let joints = divided.stiffness.into_iter().zip(division.each()).map(joint).collect();
+        Some(Elements { elements: divided.elements, joints, division })
+    }
+
+    /// Live places stay between their neighbours.
+    fn keep_sections(&mut self, division: &Division, span: Span) {
+        for stretch in &division.stretches {
+            self.keep_positive(stretch.section.clone(), &rule::places_meet(span));
+        }
     }
 
     /// Parts with sections of their own.
@@ -230,17 +249,16 @@ impl<'a> Check<'a> {
         Some(Part { length: length.as_constant()?, from, to })
     }
 
-    /// Rotation of a curved beam by half the angle of a section: the rotation vector (0, θ/2n, ψ/2n).
-    fn half_bend(&mut self, given: Option<&'a Spanned<Bend>>, sections: Option<usize>) -> Vec<Step> {
-        let Some(bend) = given.and_then(|given| given.value.as_ref()) else { return Vec::new() };
+    /// How a beam is curved; straight by default.
+    fn bend(&mut self, given: Option<&'a Spanned<Bend>>, sections: Option<usize>) -> Curvature {
+        let Some(bend) = given.and_then(|given| given.value.as_ref()) else { return Curvature::default() };
         if let (Some(given), Some(0)) = (given, sections) {
             self.report(rule::bent_in_one_piece(given.span));
         }
-        let halves = 2.0 * sections.unwrap_or(1).max(1) as f64;
-        let [theta, psi] = [(&bend.theta, "`theta`"), (&bend.psi, "`psi`")].map(|(angle, subject)| {
-            angle.as_ref().map_or(Value::ZERO, |angle| self.angle(angle, subject) / halves.into())
-        });
-        beam::rotation_across(theta, psi)
+        let angles = [(&bend.theta, "`theta`"), (&bend.psi, "`psi`")];
+        Curvature(Some(angles.map(|(angle, subject)| {
+            angle.as_ref().map_or(Value::ZERO, |angle| self.angle(angle, subject))
+        })))
     }
 
     /// Number of sections; 0 for a rigid beam.
@@ -295,19 +313,39 @@ struct Divided {
     distribution: Distribution,
 }
 
+/// The angles θ and ψ between the beginning and the end of a curved beam, rad.
+#[derive(Default)]
+struct Curvature(Option<[Value; 2]>);
+
+impl Curvature {
+    /// Rotation by half the angle of a section of length d, a share d/l of the whole: the rotation vector (0, θ/2, ψ/2) of that share.
+    fn half_of(&self, length: &Value, d: &Value, sections: usize) -> Vec<Step> {
+        let Some(angles) = &self.0 else { return Vec::new() };
+        let equal = Value::from(sections.max(1) as f64);
+        let [theta, psi] = angles.clone().map(|angle| {
+            if *d == length.clone() / equal.clone() {
+                angle / (2.0 * equal.clone())
+            } else {
+                0.5 * angle * d.clone() / length.clone()
+            }
+        });
+        beam::rotation_across(theta, psi)
+    }
+}
+
 /// Damping of a beam's springs.
 enum Damping {
     /// Proportional to stiffness, s.
     Beta([Value; 3]),
-    /// Given directly, N m s/rad.
+    /// Given directly for equal sections, N m s/rad.
     Coefficients([Value; 3]),
 }
 
 impl Damping {
-    /// Coefficients for springs of the given stiffness, `d = β s`.
-    fn of(&self, stiffness: &[Value; 3]) -> [Value; 3] {
+    /// Coefficients for springs of the given stiffness, `d = β s`; those given directly times how much shorter their section is than equal ones.
+    fn of(&self, stiffness: &[Value; 3], shorter: impl Fn() -> Value) -> [Value; 3] {
         match self {
-            Damping::Coefficients(coefficients) => coefficients.clone(),
+            Damping::Coefficients(coefficients) => coefficients.clone().map(|given| given * shorter()),
             Damping::Beta(beta) => std::array::from_fn(|k| beta[k].clone() * stiffness[k].clone()),
         }
     }

@@ -2,7 +2,7 @@
 
 use super::Check;
 use super::limits::Limit;
-use crate::chain::Value;
+use crate::chain::{Division, Value};
 use crate::diagnostic::rule;
 use crate::expand::beam::{Elements, Joint, RigidElement};
 use crate::spec::{Beam, Directions, Element, Spanned, Spring};
@@ -53,7 +53,7 @@ impl<'a> Check<'a> {
         let broken = rule::beam_length(elements.span, whole, whole);
         self.keep_below(&sum, &((1.0 + WRITTEN) * length.clone()), &broken);
         self.keep_below(&((1.0 - WRITTEN) * length.clone()), &sum, &broken);
-        (elements_read.len() == joints.len() + 1).then_some(Elements { elements: elements_read, joints })
+        (elements_read.len() == joints.len() + 1).then_some(Elements { elements: elements_read, joints, division: Division::default() })
     }
 
     /// A rigid element as given.

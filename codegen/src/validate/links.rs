@@ -91,8 +91,7 @@ impl<'a> Check<'a> {
         attached.path.extend(self.placed(link, motion));
 
         let first = self.bodies.len();
-        let (starts, tip) = self.carried(link, name, attached);
-        let own = LinkBodies { first, starts, tip };
+        let own = LinkBodies { first, carried: self.carried(link, name, attached) };
         self.note_stage(link, outer, &own, coordinate);
         if !name.is_empty() && self.links.insert(name, own.clone()).is_some() {
             self.report(rule::duplicate_name(link.name.span, "links", name, "an earlier link"));

@@ -1,6 +1,6 @@
 //! Masses and inertias of links.
 
-use super::Check;
+use super::{Carried, Check};
 use super::inertias::Lump;
 use super::limits::Limit;
 use super::on::Attached;
@@ -10,8 +10,8 @@ use crate::expand::inertia::{self, Tensor};
 use crate::spec::{About, Body, Inertia, Link, Number, Spanned, Vector};
 
 impl<'a> Check<'a> {
-    /// Appends the bodies of a link; returns their starts along x, and the tip along x of the last.
-    pub(super) fn carried(&mut self, link: &'a Link, name: &'a str, attached: Attached) -> (Vec<Value>, Value) {
+    /// Appends the bodies of a link.
+    pub(super) fn carried(&mut self, link: &'a Link, name: &'a str, attached: Attached) -> Carried {
         let carried: Vec<(&str, Span)> = [
             ("mass", link.mass.as_ref().map(|given| given.span)),
             ("bodies", link.bodies.as_ref().map(|given| given.span)),
@@ -47,7 +47,7 @@ impl<'a> Check<'a> {
             chain::Body { name, link: link_name, parent, along, path, inertia, parts, length: Value::ZERO },
             link.name.span,
         );
-        (vec![Value::ZERO], Value::ZERO)
+        Carried { starts: vec![Value::ZERO], ..Carried::default() }
     }
 
     /// Checks that `com` and `inertia` of a link come with `mass`, and `mass` with `com`.

@@ -28,11 +28,12 @@ mod run;
 mod section;
 mod sections;
 mod slides_in;
+mod stations;
 
 use std::collections::BTreeMap;
 
 use crate::chain::{
-    self, Analyses, Body, BodyId, Bound, Chain, Coordinate, CoordinateId, Force, Input, Loops, Parameter, ParameterId,
+    self, Analyses, Body, BodyId, Bound, Chain, Coordinate, CoordinateId, Division, Force, Input, Loops, Parameter, ParameterId,
     Relation, Value,
 };
 use crate::diagnostic::{Diagnostics, Mistake, SourceFile, Span, rule};
@@ -125,15 +126,32 @@ enum Owner {
     Pads(String),
 }
 
+/// The bodies of a link along x.
+#[derive(Clone, Debug, Default)]
+struct Carried {
+    /// Their starts when undeformed, m; after a mistake in a beam or a rope, there are none.
+    starts: Vec<Value>,
+    /// The tip of the last one, m; 0 for a rigid link.
+    tip: Value,
+    /// The sections of a beam that is not given element by element.
+    division: Division,
+}
+
 /// The position of a link in the chain.
 #[derive(Clone, Debug)]
 struct LinkBodies {
     /// Index of its first body, if it has any.
     first: usize,
-    /// The starts of its bodies along x when undeformed, m; after a mistake in a beam or a rope, there are none.
-    starts: Vec<Value>,
-    /// The tip along x of its last body, m; 0 for a rigid link.
-    tip: Value,
+    /// Its bodies.
+    carried: Carried,
+}
+
+impl std::ops::Deref for LinkBodies {
+    type Target = Carried;
+
+    fn deref(&self) -> &Carried {
+        &self.carried
+    }
 }
 
 impl LinkBodies {
@@ -197,6 +215,8 @@ struct Check<'a> {
     links: BTreeMap<&'a str, LinkBodies>,
     /// Names of loop joints, as written.
     loop_names: Vec<&'a str>,
+    /// Places along beams where something acts on them, by link, m.
+    stations: BTreeMap<&'a str, Vec<Value>>,
     /// Stages of telescopes.
     stages: Vec<Stage<'a>>,
     /// Names of bodies and coordinates after expansion.
@@ -230,6 +250,7 @@ impl<'a> Check<'a> {
             None => [0.0, 0.0, -9.81].map(Value::from),
         };
         self.loop_names = loop_joints::given(crane).filter_map(|joint| joint.name.value.as_deref()).collect();
+        self.stations = self.stations(crane);
         self.links(&crane.links);
         self.possible_inertias();
         let supports = self.supports(crane);

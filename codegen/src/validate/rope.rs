@@ -2,7 +2,7 @@
 
 use super::limits::Limit;
 use super::on::Attached;
-use super::{Check, Owner};
+use super::{Carried, Check, Owner};
 use crate::chain::{self, Axis, CoordinateKind, Inertia, Step, Value};
 use crate::diagnostic::{Span, rule};
 use crate::spec::{HangingRope, Spanned};
@@ -13,19 +13,19 @@ const MOST_LINKS: f64 = 1000.0;
 const ROTATIONS: [Axis; 2] = [Axis::Z, Axis::Y];
 
 impl<'a> Check<'a> {
-    /// Appends the links of a rope; returns their starts along x, and the tip along x of the last.
+    /// Appends the links of a rope.
     pub(super) fn rope(
         &mut self,
         given: &'a Spanned<HangingRope>,
         link: &str,
         span: Span,
         mut attached: Attached,
-    ) -> (Vec<Value>, Value) {
+    ) -> Carried {
         let links = given.value.as_ref().and_then(|rope| Some((rope, self.links_of_rope(rope)?)));
         let Some((rope, count)) = links else {
             // The rope's coordinates are not known.
             self.unknown.links = true;
-            return (Vec::new(), Value::ZERO);
+            return Carried::default();
         };
         let length = self.number(&rope.length, "`length`", "m", Limit::Positive);
         let line_density = self.number(&rope.mass_per_length, "`mass_per_length`", "kg/m", Limit::Positive);
@@ -63,7 +63,7 @@ impl<'a> Check<'a> {
             start = start + length.clone();
             tip = length.clone();
         }
-        (starts, tip)
+        Carried { starts, tip, ..Carried::default() }
     }
 
     fn links_of_rope(&mut self, rope: &HangingRope) -> Option<u32> {

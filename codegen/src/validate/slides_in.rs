@@ -66,10 +66,10 @@ pub(super) fn slides_in(link: &Link) -> Option<&Spanned<SlidesIn>> {
 
 /// The axis of a beam; `None` if a mistake left it without bodies.
 fn axis_of(place: &LinkBodies) -> Option<BeamAxis> {
-    Some(BeamAxis { first: place.first()?, sections: place.starts.len() - 1, length: place.length() })
+    Some(BeamAxis { first: place.first()?, division: place.division.clone(), length: place.length() })
 }
 
-/// The key of a beam that is not straight and of equal sections, if it has one.
+/// The key of a beam that is not straight and divided into sections, if it has one.
 fn uneven(beam: &Beam) -> Option<(&'static str, Span)> {
     let bend = beam.bend.as_ref().map(|bend| ("bend", bend.span));
     bend.or(beam.elements.as_ref().map(|elements| ("elements", elements.span)))

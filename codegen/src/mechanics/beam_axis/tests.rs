@@ -1,7 +1,7 @@
 //! The curve against its definition and against differences.
 
 use super::AxisPoint;
-use crate::chain::{Axis, BeamAxis, BodyId, Chain, Value};
+use crate::chain::{Axis, BeamAxis, BodyId, Chain, Division, Stretch, Value};
 use crate::compile;
 use crate::diagnostic::SourceFile;
 use crate::mechanics::kinematics::Kinematics;
@@ -22,7 +22,13 @@ fn beam(sections: &str) -> Chain {
 }
 
 fn axis(sections: usize) -> BeamAxis {
-    BeamAxis { first: BodyId(1), sections, length: Value::from(LENGTH) }
+    let section = Value::from(LENGTH / sections.max(1) as f64);
+    let stretch = (sections > 0).then_some(Stretch { sections, section, begin: Value::ZERO });
+    BeamAxis {
+        first: BodyId(1),
+        division: Division { stretches: stretch.into_iter().collect() },
+        length: Value::from(LENGTH),
+    }
 }
 
 /// A pose of bending and twist without symmetry.
