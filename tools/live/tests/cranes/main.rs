@@ -1,5 +1,6 @@
 //! Live cranes: what they compute, against hand calculations, other descriptions of the same crane, and laws.
 
+mod attached_to_beams;
 mod attachments;
 mod bending_cylinders;
 mod bristles;
