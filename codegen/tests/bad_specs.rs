@@ -54,6 +54,8 @@ fn each_rule_has_a_bad_spec() {
         bad_specs().into_iter().filter_map(|(name, _)| Some(name.split_once('_')?.0.to_owned())).collect();
     // Warnings have specs and a test of their own (`implausible_specs.rs`).
     shown.extend(CATALOGUE.iter().map(|rule| rule.code.to_owned()).filter(|code| code.starts_with('W')));
+    // Broken by live parameters alone; see `stages/sections.rs`.
+    shown.insert("E184".into());
     // Too large for a file in a repository; see below.
     shown.insert("E001".into());
     for rule in CATALOGUE {

@@ -149,7 +149,7 @@ catalogue! {
     E060 sections(given) "a beam cannot have {given} sections", "expected an integer from 1 to 1000, or `rigid`",
         "write an integer such as 4, or `rigid`";
     /// A beam is given by sections or by elements.
-    E061 two_beams(key) "the beam is given in two ways: `{key}` and `elements`", "for a beam of equal sections",
+    E061 two_beams(key) "the beam is given in two ways: `{key}` and `elements`", "for a beam that is divided into sections",
         "give either `sections`, `material` and `section`, or `elements` and `springs`";
     /// Between n + 1 elements there are n springs, at least one.
     E062 springs(elements, springs) "{elements} elements cannot have {springs} springs", "expected one spring between neighbouring elements",
@@ -455,11 +455,11 @@ catalogue! {
     /// What a beam slides in is a beam.
     E172 slides_in_no_beam(link, outer) "link `{link}` slides in `{outer}`, which is not a beam", "only beams hold pads",
         "give `{outer}` a `beam:`, with `sections: rigid` if it does not bend";
-    /// The outer beam of a telescope is straight and has equal sections.
-    E173 uneven_outer(outer, key) "beam `{outer}`, in which another one slides, has `{key}`", "pads move on straight beams of equal sections",
+    /// The outer beam of a telescope is straight and divided into sections.
+    E173 uneven_outer(outer, key) "beam `{outer}`, in which another one slides, has `{key}`", "pads move on straight beams that are divided into sections",
         "describe `{outer}` by `sections`, `material` and `section` or `parts`, without `bend`";
-    /// The inner beam of a telescope is straight and has equal sections.
-    E174 uneven_slider(link, key) "beam `{link}` slides in another one, and has `{key}`", "pads move on straight beams of equal sections",
+    /// The inner beam of a telescope is straight and divided into sections.
+    E174 uneven_slider(link, key) "beam `{link}` slides in another one, and has `{key}`", "pads move on straight beams that are divided into sections",
         "describe it by `sections`, `material` and `section` or `parts`, without `bend`";
     /// The overlap of two beams of a telescope is within both.
     E175 overlap(link, overlap, length) "the overlap of `{link}` is {overlap} m, more than a beam of {length} m", "where the coordinate is 0, the inner beam is that far in the outer one",

@@ -9,7 +9,8 @@ use super::{Angle, Either, Inertia, Number, SlidesIn, Spanned, Vector};
 pub struct Beam {
     /// Length, m.
     pub length: Spanned<Number>,
-    /// Number of equal sections, an integer from 1 to 1000 (n springs between n + 1 rigid elements), or `rigid`.
+    /// Number of sections, an integer from 1 to 1000 (n springs between n + 1 rigid elements), or `rigid`. A section ends wherever something acts on
+    /// the beam; between these places they are equal, and at least one.
     pub sections: Option<Spanned<Sections>>,
     /// Material: the name of an entry of `materials`, or a mapping of its properties.
     pub material: Option<Spanned<Either<String, Material>>>,

@@ -51,29 +51,31 @@ const STATE: &str = "
 loads:
   - {name: early, link: FIRST, at: [1.2, 0.1, 0], force: [30, -20, 10], moment: [1, 2, 3]}
   - {name: late, link: SECOND, at: [LATE, 0, 0.2], force: [-10, 40, 25], axes: link}
+  - {name: middle, link: SECOND, at: [MIDDLE, 0, 0], force: [0, 0, 0]}
 ";
 const TAPERED: &str = "section: {box: {height: 0.3, width: 0.2, thickness: 0.01}}, to: {box: {height: 0.2, width: 0.15, thickness: 0.01}}";
 const THIN: &str = "section: {box: {height: 0.18, width: 0.12, thickness: 0.005}}";
 
 /// A beam of two parts, and the same beam as two, one fixed to the end of the other: wherever both have a section, it transmits the same, in any
-/// motion, and has the same moduli. The springs are at the same places; the step is in the middle of an element.
+/// motion, and has the same moduli. The springs are at the same places, since something acts at the step, where a section ends.
 #[test]
 fn a_beam_in_two_pieces_is_the_same_beam() {
-    let loads = |first: &str, second: &str, late: &str| {
-        STATE.replace("FIRST", first).replace("SECOND", second).replace("LATE", late)
+    let loads = |[first, second]: [&str; 2], [middle, late]: [&str; 2]| {
+        let on = STATE.replace("FIRST", first).replace("SECOND", second);
+        on.replace("LATE", late).replace("MIDDLE", middle)
     };
     let whole = crane(&format!(
         "links:
   - {{name: beam, joint: revolute, beam: {{length: 4, sections: 4, material: steel, extra_mass: 3, parts: [{{length: 2, {TAPERED}}}, {{length: 2, {THIN}}}]}}}}
   - {{name: load, mass: 70, com: [0.1, 0.2, 0.3]}}{}",
-        loads("beam", "beam", "3.1")
+        loads(["beam"; 2], ["2", "3.1"])
     ));
     let halves = crane(&format!(
         "links:
   - {{name: first, joint: revolute, beam: {{length: 2, sections: 2, material: steel, extra_mass: 3, parts: [{{length: 2, {TAPERED}}}]}}}}
   - {{name: second, beam: {{length: 2, sections: 2, material: steel, extra_mass: 3, {THIN}}}}}
   - {{name: load, mass: 70, com: [0.1, 0.2, 0.3]}}{}",
-        loads("first", "second", "1.1")
+        loads(["first", "second"], ["0", "1.1"])
     ));
     assert_eq!(whole.coordinates.len(), halves.coordinates.len());
     let count = whole.coordinates.len();
@@ -115,13 +117,13 @@ loads:
   - {{name: behind, link: beam, at: [-0.5, 0, 0], force: [1, 0, 0]}}
   - {{name: between, link: beam, at: [2, 0, 0], force: [1, 0, 0]}}
   - {{name: also, link: beam, at: [2, 0.1, 0], force: [1, 0, 0]}}
-  - {{name: at_spring, link: beam, at: [3, 0, 0], force: [1, 0, 0]}}
+  - {{name: inside, link: beam, at: [3, 0, 0], force: [1, 0, 0]}}
   - {{name: ahead, link: beam, at: [4.5, 0, 0], force: [1, 0, 0]}}
 "
     ));
     let found: Vec<(f64, Side, &str)> =
         chain.beams[0].sections.iter().map(|section| (section.x.at(&[]), section.side, section.at.as_str())).collect();
-    // The springs are at 1 m and 3 m.
+    // Sections end at 2 m and 3 m; the springs are at 1 m, 2.5 m and 3.5 m.
     let expected = [
         (0.0, Side::Before, "load behind"),
         (0.0, Side::After, "load behind"),
@@ -129,16 +131,40 @@ loads:
         (1.0, Side::After, "beginning of part 2"),
         (2.0, Side::Before, "load between and load also"),
         (2.0, Side::After, "load between and load also"),
-        (3.0, Side::Before, "load at_spring"),
-        (3.0, Side::After, "load at_spring"),
+        (2.5, Side::Both, ""),
+        (3.0, Side::Before, "load inside"),
+        (3.0, Side::After, "load inside"),
+        (3.5, Side::Both, ""),
         (4.0, Side::Before, "end and load ahead"),
         (4.0, Side::After, "end and load ahead"),
     ];
     assert_eq!(found, expected);
     // What acts behind the beginning or ahead of the end acts there.
-    let rest = [0.0; 7];
+    let rest = [0.0; 10];
     let forces: Vec<f64> = sections(&chain, [&rest, &rest, &rest]).iter().map(|(_, wrench, _)| wrench[0]).collect();
-    assert_eq!(forces, [5.0, 4.0, 4.0, 4.0, 4.0, 2.0, 2.0, 1.0, 1.0, 0.0]);
+    assert_eq!(forces, [5.0, 4.0, 4.0, 4.0, 4.0, 2.0, 2.0, 2.0, 1.0, 1.0, 1.0, 0.0]);
+}
+
+/// Sections end at live places, too, and move with them, up to the next place.
+#[test]
+fn live_places_keep_their_order() {
+    let chain = crane(
+        "parameters: {at: {value: 1.5, unit: m}}
+links:
+  - {name: beam, beam: {length: 4, sections: 3, material: steel, section: {circle: {diameter: 0.1}}}}
+loads:
+  - {name: moving, link: beam, at: [at, 0, 0], force: [1, 0, 0]}
+  - {name: fixed, link: beam, at: [3, 0, 0], force: [1, 0, 0]}
+",
+    );
+    let elements = |at: f64| chain.bodies.iter().map(|body| body.length.at(&[at])).collect::<Vec<_>>();
+    assert_eq!(elements(1.5), [0.75, 1.5, 1.25, 0.5]);
+    assert_eq!(elements(2.5), [1.25, 1.5, 0.75, 0.5]);
+    let refusal = |at: f64| chain.relations.iter().find(|relation| relation.margin.at(&[at]) <= 0.0);
+    assert!(refusal(2.999).is_none());
+    for at in [3.0, 3.5] {
+        assert_eq!(refusal(at).expect("it passes the other place").refusal.code, "E184");
+    }
 }
 
 /// The stress of a moment, linear over the section and `M/W` at its edge, adds up to the moment, whatever the shape; that of a normal force, to the

@@ -92,7 +92,7 @@ impl Feature {
         use Feature as F;
         match self {
             F::Rope => &[(F::Swing, "the hook hangs from one of them")],
-            F::Pads => &[(F::OneByOne, "pads are on beams of equal sections")],
+            F::Pads => &[(F::OneByOne, "pads are on beams that are divided into sections")],
             F::RigidDrive => &[(F::Bristles, "a prescribed joint does not stick, and both are on the slewing joint")],
             _ => &[],
         }

@@ -5,7 +5,7 @@ use crane_codegen::{
     spec::{Analysis, Link, Sections, Spanned},
 };
 use crane_live::LiveCrane;
-use crane_model::{dyn_crane::DynCrane, modes::undamped, sections::StressedSection};
+use crane_model::{Description, dyn_crane::DynCrane, modes::undamped, sections::StressedSection};
 use crane_page::{history::Instant, tables::Case};
 
 use crate::{problem::Outcome, selection::Registry};
@@ -30,27 +30,31 @@ struct OtherMesh {
 impl OtherMesh {
     /// With twice the sections, or half of them in a large crane, and the same parameters; `None` without sections to change.
     ///
-    /// Errors fall with the square of the number of sections, so that with r times fewer, `x_n − x_{n/r} = (r² − 1) (x − x_n)`, of which three
-    /// quarters show with twice as many.
+    /// Errors fall with the square of the number of sections, so that with r times as many, `x_{rn} − x_n = (1 − 1/r²) (x − x_n)`, and with r times
+    /// fewer, `x_n − x_{n/r} = (r² − 1) (x − x_n)`. Three quarters of `x − x_n` show with twice as many.
     fn of(crane: &dyn DynCrane, registry: &Registry) -> Option<Self> {
         let description = crane.description();
         let text = registry.spec(&description.name)?;
-        let half = |count: f64| (0.5 * count).ceil();
-        let (text, share) = if description.coordinates.len() <= MOST_COORDINATES {
-            (with(&description.name, text, |count| 2.0 * count)?, 1.0)
-        } else {
-            let (mut all, mut halves) = (0.0, 0.0);
-            let text = with(&description.name, text, |count| {
-                (all, halves) = (all + count, halves + half(count));
-                half(count)
-            })?;
-            let fewer: f64 = all / halves;
-            if fewer <= 1.0 {
-                return None;
-            }
-            (text, -0.75 / (fewer * fewer - 1.0))
+        // What the crane has, which is more than what is written where more acts on a beam.
+        let sections = |description: &Description, link: &str| {
+            let elements = description.bodies.iter().filter(|body| body.link == *link).count();
+            elements.saturating_sub(1) as f64
         };
+        let is_large = description.coordinates.len() > MOST_COORDINATES;
+        let mut divided = Vec::new();
+        let text = with(&description.name, text, |link, _| {
+            divided.push(link.to_owned());
+            let own = sections(description, link);
+            if is_large { (0.5 * own).ceil() } else { 2.0 * own }
+        })?;
         let mut crane_with = LiveCrane::from_spec(&SourceFile::new(description.name.to_string(), text)).ok()?;
+        let [own, other] = [description, (&crane_with as &dyn DynCrane).description()]
+            .map(|description| divided.iter().map(|link| sections(description, link)).sum::<f64>());
+        let more = other / own;
+        if !(more < 1.0 || more > 1.0) {
+            return None;
+        }
+        let share = if is_large { -0.75 / (more.powi(-2) - 1.0) } else { 0.75 / (1.0 - more.powi(-2)) };
         let values: Vec<f64> = (0..description.parameters.len()).map(|index| crane.parameter(index)).collect();
         DynCrane::set_parameters(&mut crane_with, &values).ok()?;
         Some(Self { crane: crane_with, share })
@@ -130,19 +134,22 @@ pub fn name(crane: &str, sections: usize) -> String {
 
 /// Spec of that crane.
 pub fn spec(crane: &str, text: &str, sections: usize) -> Option<String> {
-    with(&name(crane, sections), text, |_| sections as f64)
+    with(&name(crane, sections), text, |_, _| sections as f64)
 }
 
 /// The spec of a crane, extended under another name with other numbers of sections; `None` for a crane without sections.
 ///
 /// The ensemble functions are left out, as a run of one crane does not need them: they take rustc as long as all the rest.
-fn with(name: &str, text: &str, mut sections: impl FnMut(f64) -> f64) -> Option<String> {
+fn with(name: &str, text: &str, mut sections: impl FnMut(&str, f64) -> f64) -> Option<String> {
     let base = SourceFile::new(name, text);
     let spec = read(&base).ok()?.crane;
     let count = |given: &Spanned<Link>| {
         let link = given.value.as_ref()?;
         match link.beam.as_ref()?.value.as_ref()?.sections.as_ref()?.value? {
-            Sections::Count(count) => Some((link.name.value.as_ref()?.clone(), sections(count))),
+            Sections::Count(count) => {
+                let name = link.name.value.as_ref()?;
+                Some((name.clone(), sections(name, count)))
+            }
             Sections::Rigid => None,
         }
     };
