@@ -193,7 +193,7 @@ def acting(keys, link):
 
 
 def borders_of(spec, link, count, length):
-    """Ends of all sections: at the beginning, wherever something acts, at the end, and evenly between them, where the sections are longest."""
+    """Ends of all sections: at the beginning, wherever something acts, at the end, and evenly between them. At least `count` sections."""
     if count == 0:
         return [0, length]
     whole, marks = spec.default(length), [(0.0, 0)]
@@ -201,7 +201,7 @@ def borders_of(spec, link, count, length):
         if min(abs(x - marks[-1][0]), abs(x - whole)) > ONE_PLACE * whole and 0 <= x < whole:
             marks.append((x, place))
     marks.append((whole, length))
-    counts = [1] * (len(marks) - 1)
+    counts = [max(1, math.floor(count * (marks[k + 1][0] - marks[k][0]) / whole + 0.5)) for k in range(len(marks) - 1)]
     while sum(counts) < count:
         sizes = [(marks[k + 1][0] - marks[k][0]) / counts[k] for k in range(len(counts))]
         counts[next(k for k, size in enumerate(sizes) if size >= max(sizes) * (1 - 1e-9))] += 1

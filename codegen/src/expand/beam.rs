@@ -44,8 +44,9 @@ const ONE_PLACE: f64 = 1e-4;
 const LONGER: f64 = 1e-9;
 
 /// Divides a beam into sections. One ends at every station, a place where something acts: on the border between two sections, a force or a couple
-/// bends every spring by its true moment, within a section it would not. Between the stations sections are equal, and as many as keep the longest
-/// one short. There are more than `count` only where the stations need more. `now` gives the numbers with default parameters.
+/// bends every spring by its true moment, within a section it would not. Between two stations sections are equal, and as near in length to those of a
+/// beam without stations as a whole number of them allows; if they are fewer than `count`, the longest ones are divided. `now` gives the numbers with
+/// default parameters.
 pub(crate) fn division(length: &Value, count: usize, mut stations: Vec<Value>, now: impl Fn(&Value) -> f64) -> Division {
     if count == 0 {
         return Division::default();
@@ -62,8 +63,10 @@ pub(crate) fn division(length: &Value, count: usize, mut stations: Vec<Value>, n
     }
     let ends: Vec<Value> = begins.iter().skip(1).cloned().chain([length.clone()]).collect();
     let lengths: Vec<f64> = begins.iter().zip(&ends).map(|(begin, end)| now(end) - now(begin)).collect();
-    let mut counts = vec![1; lengths.len()];
-    for _ in lengths.len()..count {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most `count`
+    let equal = |length: &f64| ((count as f64 * length / whole).round() as usize).max(1);
+    let mut counts: Vec<usize> = lengths.iter().map(equal).collect();
+    for _ in counts.iter().sum()..count {
         let section = |stretch: usize| lengths[stretch] / counts[stretch] as f64;
         let longest = (1..lengths.len())
             .fold(0, |best, stretch| if section(stretch) > section(best) * (1.0 + LONGER) { stretch } else { best });
@@ -380,6 +383,9 @@ mod tests {
         assert_eq!(elements(4, &[1.0, 3.5, 1.00001, -0.5, 0.0, 7.0]), expected);
         // Two places need three sections.
         assert_eq!(elements(1, &[2.5, 0.5]), [0.25, 1.25, 1.5, 0.5]);
+        // Short ones are in addition to those of the rest; where rounding leaves too few, the longest are divided.
+        assert_eq!(elements(2, &[0.3, 0.1]), [0.05, 0.15, 0.9, 1.6, 0.8]);
+        assert_eq!(elements(5, &[0.98, 1.96, 2.94]), [0.245, 0.49, 0.735, 0.98, 0.77, 0.28]);
         assert_eq!(elements(0, &[1.0]), [3.5]);
     }
 
