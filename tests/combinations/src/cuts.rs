@@ -258,7 +258,7 @@ fn connectors(crane: &LiveCrane, motion: &Motion, transforms: &[Matrix4<f64>]) -
 }
 
 /// What a pad and the beam that slides on it exert on bodies: on the beam, on the element on which the pad is. Where the axis passes the pad follows
-/// by de Casteljau's algorithm: in each section it is the quadratic curve from the middle of an element over its end to the middle of the next
+/// by de Casteljau's algorithm: in each section it is the quadratic curve from its beginning, on one element, over the spring to its end, on the next
 /// one; it begins and ends where the beam does.
 fn pad_forces(
     crane: &LiveCrane,
@@ -268,14 +268,19 @@ fn pad_forces(
 ) -> Vec<(usize, Screw)> {
     let (chain, parameters) = (crane.chain(), crane.parameters());
     let Some(BodyId(carrier)) = pad.body else { return Vec::new() };
-    let (first, n, length) = (beam.first.0, beam.sections, beam.length.at(parameters));
+    let long = |body: usize| chain.bodies[body].length.at(parameters);
+    let (first, n, length) = (beam.first.0, beam.sections(), beam.length.at(parameters));
+    // Springs are at the ends of the elements, and in the middles of the sections.
+    let (mut springs, mut borders) = (Vec::new(), vec![0.0]);
+    for element in first..first + n {
+        springs.push(springs.last().unwrap_or(&0.0) + long(element));
+        borders.push(2.0 * springs[springs.len() - 1] - borders[borders.len() - 1]);
+    }
     let slid = q[coordinate.0];
     let s = start.at(parameters) + if *grows { slid } else { -slid };
-    let section = length / n.max(1) as f64;
-    let k = (1..n).take_while(|&k| k as f64 * section <= s).count();
-    let part = if n == 0 { 0.0 } else { s / section - k as f64 };
-    // Springs are in the middles of the sections.
-    let on = first + (0..n).take_while(|&k| (k as f64 + 0.5) * section < s).count();
+    let k = (1..n).take_while(|&k| borders[k] <= s).count();
+    let part = if n == 0 { 0.0 } else { (s - borders[k]) / (borders[k + 1] - borders[k]) };
+    let on = first + springs.iter().take_while(|spring| **spring < s).count();
     let axis = |body: usize, index: usize| -> Vector3<f64> { transforms[body].fixed_view::<3, 1>(0, index).into() };
     let [y, z] = [1, 2].map(|index| axis(carrier, index));
     if *direction == PadDirection::Twist {
@@ -289,15 +294,14 @@ fn pad_forces(
             })
             .collect();
     }
-    let long = |body: usize| chain.bodies[body].length.at(parameters);
     let points = if n == 0 || part < 0.0 {
         vec![(first, s, 1.0)]
     } else if part > 1.0 {
         vec![(first + n, long(first + n) + s - length, 1.0)]
     } else {
         let (from, to) = (first + k, first + k + 1);
-        let begin = if k == 0 { 0.0 } else { 0.5 * long(from) };
-        let end = if k + 1 == n { long(to) } else { 0.5 * long(to) };
+        let half = 0.5 * (borders[k + 1] - borders[k]);
+        let (begin, end) = (long(from) - half, half);
         let rest = 1.0 - part;
         vec![(from, begin, rest * rest), (from, long(from), 2.0 * part * rest), (to, end, part * part)]
     };

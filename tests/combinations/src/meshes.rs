@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::{Value, json};
 
 use crate::observe::{CHART, Number, Numbers, live, observe, rated_load};
-use crate::tree::{Tree, for_each_place, source};
+use crate::tree::{Tree, source};
 
 /// The name of the check.
 pub const NAME: &str = "finer meshes";
@@ -76,9 +76,9 @@ pub fn check_meshes(tree: &Tree) -> Option<Vec<String>> {
     Some(lines)
 }
 
-/// Moves all places on divided beams, and the steps between their parts, to the nearest border between sections of the coarsest mesh,
+/// Moves points of interest on divided beams, and the steps between their parts, to the nearest border between sections of the coarsest mesh,
 /// which is one of every other mesh too. Elsewhere the error does not fall with each refinement: it depends on where between two springs
-/// the place is.
+/// the place is. Where something acts, a section ends on every mesh.
 fn move_to_borders(tree: &mut Tree) {
     let lengths: BTreeMap<String, f64> = tree["links"]
         .as_array()
@@ -101,15 +101,9 @@ fn move_to_borders(tree: &mut Tree) {
         let section = length / f64::from(SECTIONS[0]);
         *x = json!((x_now / section).round() * section);
     };
-    for_each_place(tree, &mut |attached| {
-        let link = attached["link"].clone();
-        moved(&link, &mut attached["at"][0]);
-    });
-    for cylinder in tree["cylinders"].as_array_mut().into_iter().flatten() {
-        let link = cylinder["foot"]["link"].clone();
-        if let Some(x) = cylinder.pointer_mut("/linkage/pivot/0") {
-            moved(&link, x);
-        }
+    for point in tree["points"].as_array_mut().into_iter().flatten() {
+        let link = point["link"].clone();
+        moved(&link, &mut point["at"][0]);
     }
 }
 
