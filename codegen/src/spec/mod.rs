@@ -40,7 +40,7 @@ pub use placement::{AxisName, ClassicDh, ModifiedDh, Placement, Transform, Turn}
 pub use scalar::{Angle, Constant, FixedAngle, Number, Scalar, Vector};
 pub use schema::json_schema;
 pub use slides_in::{ExactDirection, Pad, Pads, SlidesIn};
-pub use spanned::{Either, Entries, Many, Spanned};
+pub use spanned::{Either, Entries, Many, Spanned, entries};
 pub use support::{Kinematics, Point, Support};
 
 use crate::diagnostic::{Mistake, Span};

@@ -70,3 +70,8 @@ impl<T: FromNode> FromNode for Many<T> {
         }
     }
 }
+
+/// The entries of a list that could be read; none if it is not given.
+pub fn entries<T>(list: Option<&Spanned<Vec<Spanned<T>>>>) -> impl Iterator<Item = &T> {
+    list.and_then(|list| list.value.as_deref()).unwrap_or_default().iter().filter_map(|entry| entry.value.as_ref())
+}

@@ -10,7 +10,7 @@ use crate::chain::{
     Turning, Value, Vector, normalised,
 };
 use crate::diagnostic::{Span, rule};
-use crate::spec::{self, Crane, Direction, Spanned};
+use crate::spec::{self, Crane, Direction, Spanned, entries};
 
 impl<'a> Check<'a> {
     /// Loop joints, and friction in their pins.
@@ -21,7 +21,7 @@ impl<'a> Check<'a> {
         connectors: &[Force],
     ) -> (Vec<LoopJoint>, Vec<Force>) {
         let (mut joints, mut forces) = (Vec::new(), Vec::new());
-        for written in given(crane) {
+        for written in entries(crane.loop_joints.as_ref()) {
             let name = self.name(&written.name).unwrap_or_default().to_owned();
             if !name.is_empty() {
                 self.register_loop_joint(&name, written.name.span, cylinders, connectors);
@@ -133,7 +133,7 @@ impl<'a> Check<'a> {
         let frames = chain.frames(&chain.guess, &self.defaults);
         let frame = |end: &crate::chain::Attachment| end.body.map_or(Frame::WORLD, |body| frames[body.0]);
         let mut joints = std::mem::take(&mut chain.loop_joints);
-        for (joint, given) in joints.iter_mut().zip(given(crane)) {
+        for (joint, given) in joints.iter_mut().zip(entries(crane.loop_joints.as_ref())) {
             if chain.closed_by(joint).into_iter().all(|coordinate| chain.is_prescribed(coordinate)) {
                 self.report(rule::prescribed_loop(given.name.span, &joint.name));
             }
@@ -169,12 +169,6 @@ impl<'a> Check<'a> {
             self.report(rule::ensemble_of_loops(item.span));
         }
     }
-}
-
-/// The loop joints as written.
-pub(super) fn given(crane: &Crane) -> impl Iterator<Item = &spec::LoopJoint> {
-    let given = crane.loop_joints.as_ref().and_then(|joints| joints.value.as_deref()).unwrap_or_default();
-    given.iter().filter_map(|joint| joint.value.as_ref())
 }
 
 /// The direction of the second body, normal to its axis, that lies along u of the first; `u = w × a` if u is nearly along that axis.

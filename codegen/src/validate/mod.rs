@@ -38,7 +38,7 @@ use crate::chain::{
 };
 use crate::diagnostic::{Diagnostics, Mistake, SourceFile, Span, rule};
 use crate::expand::beam::Distribution;
-use crate::spec::{self, Analysis, Crane, CraneSpec, Lookalike, Spanned};
+use crate::spec::{self, Analysis, Crane, CraneSpec, Lookalike, Spanned, entries};
 use crate::units::Quantity;
 use inertias::Judgement;
 use limits::Limit;
@@ -249,7 +249,7 @@ impl<'a> Check<'a> {
             Some(gravity) => self.vector(gravity, "`gravity`", "m/s²", Limit::Any),
             None => [0.0, 0.0, -9.81].map(Value::from),
         };
-        self.loop_names = loop_joints::given(crane).filter_map(|joint| joint.name.value.as_deref()).collect();
+        self.loop_names = entries(crane.loop_joints.as_ref()).filter_map(|joint| joint.name.value.as_deref()).collect();
         self.stations = self.stations(crane);
         self.links(&crane.links);
         self.possible_inertias();

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::{Check, loop_joints};
+use super::Check;
 use crate::chain::{ParameterId, Value};
 use crate::spec::{
-    Attachment, Connector, Crane, Cylinder, Either, LoopJoint, Number, On, Pin, Place, Scalar, Spanned, Vector,
+    Attachment, Connector, Crane, Cylinder, Either, LoopJoint, Number, On, Pin, Place, Scalar, Spanned, Vector, entries,
 };
 
 impl<'a> Check<'a> {
@@ -37,33 +37,28 @@ impl<'a> Check<'a> {
 /// All places of links at which something acts, with the links' names.
 fn places(crane: &Crane) -> Vec<(&str, &Vector)> {
     let mut places = Vec::new();
-    for on in given(Some(&crane.links)).filter_map(|link| link.on.as_ref()?.value.as_ref()) {
+    for on in entries(Some(&crane.links)).filter_map(|link| link.on.as_ref()?.value.as_ref()) {
         if let Either::Full(On { link, at: Some(Spanned { value: Some(Place::Point(at)), .. }) }) = on {
             places.extend(link.value.as_deref().map(|link| (link, at)));
         }
     }
-    let loads = given(crane.loads.as_ref()).filter_map(|load| Some((&load.link, load.at.as_ref()?)));
-    let pushing = given(crane.cylinders.as_ref()).filter(|cylinder| cylinder.valve.is_some());
+    let loads = entries(crane.loads.as_ref()).filter_map(|load| Some((&load.link, load.at.as_ref()?)));
+    let pushing = entries(crane.cylinders.as_ref()).filter(|cylinder| cylinder.valve.is_some());
     let pins = pushing.flat_map(|Cylinder { foot, head, linkage, .. }| {
         let of_pins = [foot, head].map(|pin| pin.value.as_ref().map(|Pin { link, at }| (link, at)));
         let pivot = linkage.as_ref().and_then(|linkage| Some(&linkage.value.as_ref()?.pivot));
         let pivot = foot.value.as_ref().zip(pivot).map(|(foot, pivot)| (&foot.link, pivot));
         of_pins.into_iter().chain([pivot]).flatten()
     });
-    let lines = given(crane.connectors.as_ref()).flat_map(|Connector { from, to, over, .. }| {
+    let lines = entries(crane.connectors.as_ref()).flat_map(|Connector { from, to, over, .. }| {
         let over = over.as_ref().and_then(|over| over.value.as_deref()).unwrap_or_default();
         [from, to].into_iter().chain(over)
     });
-    let joints = loop_joints::given(crane).flat_map(|LoopJoint { from, to, .. }| [from, to]);
+    let joints = entries(crane.loop_joints.as_ref()).flat_map(|LoopJoint { from, to, .. }| [from, to]);
     let attached = lines.chain(joints).filter_map(|end| end.value.as_ref());
     let attached = attached.filter_map(|Attachment { link, at }| Some((link.as_ref()?, at)));
     for (link, at) in loads.chain(pins).chain(attached) {
         places.extend(link.value.as_deref().zip(at.value.as_ref()));
     }
     places
-}
-
-/// The entries of a list that could be read.
-fn given<T>(list: Option<&Spanned<Vec<Spanned<T>>>>) -> impl Iterator<Item = &T> {
-    list.and_then(|list| list.value.as_deref()).unwrap_or_default().iter().filter_map(|entry| entry.value.as_ref())
 }

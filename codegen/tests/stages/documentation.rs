@@ -87,7 +87,7 @@ fn the_example_is_a_crane() {
     let chain =
         read(&source).and_then(|spec| validate(&spec, &source)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"));
     // Six of the base, two of joints, three of each of three sections, two of the chain.
-    assert_eq!(chain.coordinates.len(), 6 + 2 + 3 * 3 + 2);
+    assert_eq!(chain.coordinates.len(), 6 + 2 + 3 * 4 + 2);
 }
 
 #[test]

@@ -3,10 +3,10 @@
 use std::f64::consts::TAU;
 
 use super::lengths::is_far;
-use super::{Plausibility, items, rounded};
+use super::{Plausibility, rounded};
 use crate::chain::{Coordinate, CoordinateKind};
 use crate::diagnostic::{Span, rule};
-use crate::spec::{Angle, Input, Link, Motion, Placement, Scalar, Spanned, Turn};
+use crate::spec::{Angle, Input, Link, Motion, Placement, Scalar, Spanned, Turn, entries};
 
 /// Bare angles beyond a full turn look like degrees; with four ulp of tolerance, because `6.283185307179586` is 2π.
 const FULL_TURN: f64 = TAU * (1.0 + 4.0 * f64::EPSILON);
@@ -14,10 +14,10 @@ const FULL_TURN: f64 = TAU * (1.0 + 4.0 * f64::EPSILON);
 impl<'a> Plausibility<'a> {
     pub(super) fn angles(&mut self) {
         let crane = self.crane;
-        for link in items(Some(&crane.links)) {
+        for link in entries(Some(&crane.links)) {
             self.rotations(link);
         }
-        for drive in items(crane.drives.as_ref()) {
+        for drive in entries(crane.drives.as_ref()) {
             let name = drive.coordinate.value.as_deref().unwrap_or_default();
             if let Some(motion) = drive.motion.as_ref().and_then(|motion| motion.value.as_ref()) {
                 self.motion(motion, name);

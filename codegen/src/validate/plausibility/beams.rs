@@ -1,9 +1,9 @@
 //! Materials, cross-sections and damping of beams.
 
-use super::{Plausibility, items, rounded};
+use super::{Plausibility, rounded};
 use crate::chain::{CoordinateKind, Force, Group, Spring};
 use crate::diagnostic::{Span, rule};
-use crate::spec::{Beam, Either, Link, Material, Number, Section, Spanned};
+use crate::spec::{Beam, Either, Link, Material, Number, Section, Spanned, entries};
 
 /// Moduli of beam materials, from plastics (2e9 Pa) to tungsten (4e11 Pa), with a margin, Pa.
 const YOUNGS_MODULUS: std::ops::RangeInclusive<f64> = 1e9..=1e12;
@@ -48,7 +48,7 @@ impl Plausibility<'_> {
                 self.material(material, &format!("material `{name}`"));
             }
         }
-        for link in items(Some(&crane.links)) {
+        for link in entries(Some(&crane.links)) {
             if let Some(beam) = link.beam.as_ref().and_then(|beam| beam.value.as_ref()) {
                 self.beam(link, beam);
             }
@@ -67,7 +67,7 @@ impl Plausibility<'_> {
                 self.warn(rule::unsafe_factor(at, name, factor));
             }
         }
-        let of_parts = items(beam.parts.as_ref()).flat_map(|part| [Some(&part.section), part.to.as_ref()]);
+        let of_parts = entries(beam.parts.as_ref()).flat_map(|part| [Some(&part.section), part.to.as_ref()]);
         let sections = std::iter::once(beam.section.as_ref()).chain(of_parts).flatten();
         for section in sections.filter_map(|section| section.value.as_ref()) {
             self.section(section, &subject, self.number(&beam.length).0);
@@ -75,7 +75,7 @@ impl Plausibility<'_> {
     }
 
     pub(super) fn damping(&mut self) {
-        for link in items(Some(&self.crane.links)) {
+        for link in entries(Some(&self.crane.links)) {
             let damping = link.beam.as_ref().and_then(|beam| beam.value.as_ref()?.damping.as_ref());
             if let (Some(name), Some(damping)) = (&link.name.value, damping) {
                 self.damping_of(name, damping.span);

@@ -1,9 +1,9 @@
 //! Lengths of connectors compared with the distance between their points, and ratios of couplings.
 
-use super::{Plausibility, items, rounded};
+use super::{Plausibility, rounded};
 use crate::chain::{Force, Strain};
 use crate::diagnostic::rule;
-use crate::spec::ConnectorLaw;
+use crate::spec::{ConnectorLaw, entries};
 
 /// Usual lengths without force, as fractions of the distance between the points at the guess.
 const USUAL: [f64; 2] = [0.1, 10.0];
@@ -20,7 +20,7 @@ impl Plausibility<'_> {
     /// Couplings whose joint moves far more than the one that it follows.
     pub(super) fn couplings(&mut self) {
         let (crane, chain) = (self.crane, self.chain);
-        for given in items(crane.couplings.as_ref()) {
+        for given in entries(crane.couplings.as_ref()) {
             let named = |connector: &&Force| Some(&connector.name) == given.name.value.as_ref();
             let Some(connector) = chain.connectors().iter().find(named) else { continue };
             let Strain::Coupling { coordinate, leader, ratio } = &connector.strain else { continue };
@@ -35,7 +35,7 @@ impl Plausibility<'_> {
 
     /// Ropes whose axial stiffness is in another unit.
     pub(super) fn ropes(&mut self) {
-        for given in items(self.crane.connectors.as_ref()) {
+        for given in entries(self.crane.connectors.as_ref()) {
             let Some(ConnectorLaw::Rope(rope)) = &given.law.value else { continue };
             let Some((stiffness, at)) = rope.axial_stiffness.as_ref().map(|given| self.number(given)) else { continue };
             if stiffness < SOFTEST_ROPE {
@@ -48,7 +48,7 @@ impl Plausibility<'_> {
     /// A spring or rope whose length does not fit its points.
     pub(super) fn connectors(&mut self) {
         let (crane, chain) = (self.crane, self.chain);
-        for (given, connector) in items(crane.connectors.as_ref()).zip(chain.connectors()) {
+        for (given, connector) in entries(crane.connectors.as_ref()).zip(chain.connectors()) {
             let Some(line) = connector.strain.line() else { continue };
             let distance = chain.length(line, &chain.guess, &self.values);
             let Some(length) = connector.law.length(&self.values) else { continue };

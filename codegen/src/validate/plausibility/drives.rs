@@ -1,8 +1,9 @@
 //! Drives that are far too slow for their motions.
 
-use super::{Plausibility, items, rounded};
+use super::{Plausibility, rounded};
 use crate::chain::{CoordinateKind, Profile, Value};
 use crate::diagnostic::rule;
+use crate::spec::entries;
 
 /// Least share of the speed of its motion that a drive reaches.
 const SLOW: f64 = 0.01;
@@ -11,7 +12,7 @@ impl Plausibility<'_> {
     /// Efforts that a drive cannot deliver at some time.
     pub(super) fn efforts(&mut self) {
         let chain = self.chain;
-        for given in items(self.crane.drives.as_ref()) {
+        for given in entries(self.crane.drives.as_ref()) {
             let Some(span) = given.effort.as_ref().map(|given| given.span) else { continue };
             let named = |name: &str| given.coordinate.value.as_deref() == Some(name);
             let Some(drive) = chain.drives.iter().find(|drive| named(&chain.coordinates[drive.coordinate.0].name))
@@ -31,7 +32,7 @@ impl Plausibility<'_> {
 
     /// A drive that stays behind its whole motion: where its force falls to nothing, it acts as a damper so stiff that steps become tiny.
     pub(super) fn slow_drives(&mut self) {
-        for given in items(self.crane.drives.as_ref()) {
+        for given in entries(self.crane.drives.as_ref()) {
             let Some(span) = given.max_rate.as_ref().map(|given| given.span) else { continue };
             let named = |name: &str| given.coordinate.value.as_deref() == Some(name);
             let chain = self.chain;

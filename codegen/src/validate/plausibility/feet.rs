@@ -1,7 +1,8 @@
 //! Places, free play and friction of supports.
 
-use super::{Plausibility, items, rounded};
+use super::{Plausibility, rounded};
 use crate::diagnostic::rule;
+use crate::spec::entries;
 
 /// Height by which a foot may differ from the others, m: more than any slope or outrigger box.
 const HEIGHT: f64 = 1.0;
@@ -20,7 +21,7 @@ impl Plausibility<'_> {
             chain.supports.iter().map(|support| support.position.each_ref().map(|x| x.at(&self.values))).collect();
         let mut heights: Vec<f64> = places.iter().map(|position| position[2]).collect();
         heights.sort_by(f64::total_cmp);
-        for (index, (given, support)) in items(crane.supports.as_ref()).zip(&chain.supports).enumerate() {
+        for (index, (given, support)) in entries(crane.supports.as_ref()).zip(&chain.supports).enumerate() {
             let (name, position) = (&support.name, places[index]);
             let usual = heights[(heights.len() - 1) / 2];
             if places.len() > 2 && (position[2] - usual).abs() > HEIGHT {
@@ -41,7 +42,7 @@ impl Plausibility<'_> {
     pub(super) fn soft_feet(&mut self) {
         /// Least usual stiffness, N/m.
         const SOFTEST: f64 = 1e3;
-        for support in items(self.crane.supports.as_ref()) {
+        for support in entries(self.crane.supports.as_ref()) {
             let given = support.stiffness.value.as_ref().into_iter().flatten().map(|given| self.number(given));
             let soft = given.into_iter().find(|(stiffness, _)| *stiffness > 0.0 && *stiffness < SOFTEST);
             if let Some((stiffness, at)) = soft {
@@ -65,7 +66,7 @@ impl Plausibility<'_> {
 
     /// Supports whose coefficient of friction no usual ground has.
     pub(super) fn feet(&mut self) {
-        for support in items(self.crane.supports.as_ref()) {
+        for support in entries(self.crane.supports.as_ref()) {
             let Some(given) = &support.friction_coefficient else { continue };
             let (coefficient, span) = self.number(given);
             if !(FRICTION[0]..=FRICTION[1]).contains(&coefficient) {

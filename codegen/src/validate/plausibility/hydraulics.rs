@@ -2,10 +2,10 @@
 
 use std::ops::RangeInclusive;
 
-use super::{Plausibility, angles::positions, beams::in_metres, items, rounded};
+use super::{Plausibility, angles::positions, beams::in_metres, rounded};
 use crate::chain::{Chain, CoordinateKind, Cylinder as ChainCylinder, Linkage, Pin};
 use crate::diagnostic::{Span, rule};
-use crate::spec::{Constant, Cylinder, Motion, Pump, Spanned, Valve};
+use crate::spec::{Constant, Cylinder, Motion, Pump, Spanned, Valve, entries};
 
 /// A hydraulic quantity: its unit, its usual range, and how to write a number that was given in another unit.
 struct Usual {
@@ -61,7 +61,7 @@ impl Plausibility<'_> {
     pub(super) fn hydraulics(&mut self) {
         let before = self.warnings.len();
         let pump = self.crane.pump.as_ref().and_then(|pump| pump.value.as_ref());
-        for cylinder in items(self.crane.cylinders.as_ref()) {
+        for cylinder in entries(self.crane.cylinders.as_ref()) {
             self.cylinder(cylinder);
         }
         if let Some(pump) = pump {
@@ -175,7 +175,7 @@ impl Plausibility<'_> {
         const DIFFERENCE: f64 = 1e-4;
         let chain = self.chain;
         let mut q = self.pose_at_start();
-        for (given, cylinder) in items(self.crane.cylinders.as_ref()).zip(&chain.cylinders) {
+        for (given, cylinder) in entries(self.crane.cylinders.as_ref()).zip(&chain.cylinders) {
             if cylinder.linkage.is_none() {
                 let mut moved = |by: f64| {
                     q[cylinder.coordinate.0] += by;

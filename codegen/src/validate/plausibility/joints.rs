@@ -1,9 +1,9 @@
 //! Booms that no drive can raise, and drives that the weight of the crane overcomes.
 
-use super::{Plausibility, items, rounded};
+use super::{Plausibility, rounded};
 use crate::chain::{Body, BodyId, Chain, CoordinateId, CoordinateKind, Drive, Law};
 use crate::diagnostic::{Span, rule};
-use crate::spec::{Joint, Link};
+use crate::spec::{Joint, Link, entries};
 
 /// Cosine of the angle to the vertical below which an axis is not vertical: 2°.
 const VERTICAL: f64 = 0.9994;
@@ -19,7 +19,7 @@ fn named(link: &Link) -> &str {
 impl Plausibility<'_> {
     /// A beam whose joint turns about the vertical directly after another such joint.
     pub(super) fn swept_booms(&mut self) {
-        let links: Vec<&Link> = items(Some(&self.crane.links)).collect();
+        let links: Vec<&Link> = entries(Some(&self.crane.links)).collect();
         for boom in &links {
             let Some(before) = self.carrier(boom).and_then(|name| links.iter().find(|link| named(link) == name)) else {
                 continue;
@@ -71,7 +71,7 @@ impl Plausibility<'_> {
     /// Drives whose joints the weight of the crane moves far from the drive's position.
     pub(super) fn soft_drives(&mut self) {
         let (crane, chain) = (self.crane, self.chain);
-        for given in items(crane.drives.as_ref()) {
+        for given in entries(crane.drives.as_ref()) {
             let Some(span) = given.stiffness.as_ref().map(|given| given.span) else { continue };
             let named =
                 |drive: &&Drive| Some(&chain.coordinates[drive.coordinate.0].name) == given.coordinate.value.as_ref();
@@ -134,13 +134,13 @@ impl Plausibility<'_> {
             if slides { "N/m" } else { "N m/rad" }
         };
         let mut found = Vec::new();
-        for support in items(crane.supports.as_ref()) {
+        for support in entries(crane.supports.as_ref()) {
             let name = support.name.value.as_deref().unwrap_or_default();
             let numbers = support.stiffness.value.iter().flatten().map(|given| self.number(given));
             let help = "check the exponent: ground and feet have 1e6 to 1e9 N/m";
             found.extend(numbers.map(|number| (number, format!("the stiffness of support `{name}`"), "N/m", help)));
         }
-        for drive in items(crane.drives.as_ref()) {
+        for drive in entries(crane.drives.as_ref()) {
             let name = drive.coordinate.value.as_deref().unwrap_or_default();
             let number = drive.stiffness.as_ref().map(|given| self.number(given));
             let help = "check the exponent, or write `rigid: true`";
@@ -148,7 +148,7 @@ impl Plausibility<'_> {
                 number.map(|number| (number, format!("the stiffness of the drive of `{name}`"), units(name), help)),
             );
         }
-        for coupling in items(crane.couplings.as_ref()) {
+        for coupling in entries(crane.couplings.as_ref()) {
             let name = coupling.name.value.as_deref().unwrap_or_default();
             let unit = units(coupling.coordinate.value.as_deref().unwrap_or_default());
             let number = self.number(&coupling.stiffness);

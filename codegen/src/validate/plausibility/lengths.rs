@@ -1,9 +1,9 @@
 //! Lengths of beams, and positions within the crane.
 
 use super::beams::in_metres;
-use super::{Plausibility, items, rounded};
+use super::{Plausibility, rounded};
 use crate::diagnostic::{Span, rule};
-use crate::spec::{Either, Link, LoopJointKind, Number, On, Place, Placement, Spanned, Vector};
+use crate::spec::{Either, Link, LoopJointKind, Number, On, Place, Placement, Spanned, Vector, entries};
 
 /// Upper limit of lengths and distances in a crane, m.
 const LONGEST: f64 = 200.0;
@@ -11,28 +11,28 @@ const LONGEST: f64 = 200.0;
 impl Plausibility<'_> {
     pub(super) fn lengths(&mut self) {
         let crane = self.crane;
-        for (index, link) in items(Some(&crane.links)).enumerate() {
+        for (index, link) in entries(Some(&crane.links)).enumerate() {
             self.lengths_of(link, index == 0);
         }
-        for support in items(crane.supports.as_ref()) {
+        for support in entries(crane.supports.as_ref()) {
             let name = support.name.value.as_deref().unwrap_or_default();
             self.check_position(Some(&support.at), &format!("support `{name}`"));
         }
-        for load in items(crane.loads.as_ref()) {
+        for load in entries(crane.loads.as_ref()) {
             let name = load.name.value.as_deref().unwrap_or_default();
             self.check_position(load.at.as_ref(), &format!("load `{name}`"));
         }
-        for connector in items(crane.connectors.as_ref()) {
+        for connector in entries(crane.connectors.as_ref()) {
             let name = connector.name.value.as_deref().unwrap_or_default();
             let ends = [&connector.from, &connector.to].into_iter().filter_map(|end| end.value.as_ref());
-            for end in ends.chain(items(connector.over.as_ref())) {
+            for end in ends.chain(entries(connector.over.as_ref())) {
                 // Points of the world are not checked: the crane may stand anywhere.
                 if end.link.is_some() {
                     self.check_position(Some(&end.at), &format!("connector `{name}`"));
                 }
             }
         }
-        for joint in items(crane.loop_joints.as_ref()) {
+        for joint in entries(crane.loop_joints.as_ref()) {
             let what = format!("loop joint `{}`", joint.name.value.as_deref().unwrap_or_default());
             for end in [&joint.from, &joint.to].into_iter().filter_map(|end| end.value.as_ref()) {
                 if end.link.is_some() {
@@ -43,7 +43,7 @@ impl Plausibility<'_> {
                 self.check_length(&rod.length, &format!("the length of {what}"));
             }
         }
-        for point in items(crane.points.as_ref()) {
+        for point in entries(crane.points.as_ref()) {
             let name = point.name.value.as_deref().unwrap_or_default();
             self.check_position(Some(&point.at), &format!("point `{name}`"));
         }
@@ -64,7 +64,7 @@ impl Plausibility<'_> {
             self.check_position(Some(&given), &format!("the place of link `{name}` on another"));
         }
         self.check_position(link.com.as_ref(), &format!("the centre of mass of link `{name}`"));
-        for body in items(link.bodies.as_ref()) {
+        for body in entries(link.bodies.as_ref()) {
             let body_name = body.name.value.as_deref().unwrap_or_default();
             self.check_position(Some(&body.com), &format!("the centre of mass of body `{body_name}`"));
         }

@@ -1,8 +1,9 @@
 //! Loops that cannot be closed, and loop joints that hold what others hold.
 
-use super::{Plausibility, items, rounded};
+use super::{Plausibility, rounded};
 use crate::chain::{Across, Attachment, BodyId, CoordinateKind, Frame, LoopJoint, LoopJointKind, Vector};
 use crate::diagnostic::rule;
+use crate::spec::entries;
 
 /// Largest angle between the axes of a pin at the guess, degrees.
 const CROSSED: f64 = 60.0;
@@ -15,7 +16,7 @@ impl Plausibility<'_> {
     pub(super) fn loops(&mut self) {
         let (crane, chain) = (self.crane, self.chain);
         let frames = chain.frames(&chain.guess, &self.values);
-        for (index, (given, joint)) in items(crane.loop_joints.as_ref()).zip(&chain.loop_joints).enumerate() {
+        for (index, (given, joint)) in entries(crane.loop_joints.as_ref()).zip(&chain.loop_joints).enumerate() {
             let [longest, others] = self.sides(joint, &frames);
             if longest > others * (1.0 + SAME) + SAME {
                 self.warn(rule::open_polygon(given.name.span, &joint.name, rounded(longest), rounded(others)));
@@ -34,7 +35,7 @@ impl Plausibility<'_> {
                 self.warn(rule::held_twice(given.name.span, &joint.name, &other.name));
             }
             for end in [&given.from, &given.to].into_iter().filter_map(|end| end.value.as_ref()) {
-                let beam = items(Some(&crane.links)).find(|link| {
+                let beam = entries(Some(&crane.links)).find(|link| {
                     link.beam.is_some() && end.link.as_ref().is_some_and(|name| name.value == link.name.value)
                 });
                 let length =

@@ -1,8 +1,8 @@
 //! Masses and inertias compared with the crane.
 
-use super::{Plausibility, items, rounded};
+use super::{Plausibility, rounded};
 use crate::diagnostic::{Span, rule};
-use crate::spec::{Number, Scalar, Spanned};
+use crate::spec::{Number, Scalar, Spanned, entries};
 
 /// A live mass, probably the payload, below this fraction of the mass that carries it is probably in tonnes.
 const LIGHTEST_LIVE: f64 = 1.0 / 300.0;
@@ -24,7 +24,7 @@ impl Plausibility<'_> {
         let (crane, chain) = (self.crane, self.chain);
         let size = self.size();
         let most = SMALL.max(BEYOND * size);
-        for link in items(Some(&crane.links)) {
+        for link in entries(Some(&crane.links)) {
             let name = link.name.value.as_deref().unwrap_or_default();
             let subject = format!("link `{name}`");
             let inertia = chain.bodies.iter().find(|body| body.link == name).and_then(|body| body.inertia.as_ref());
@@ -65,7 +65,7 @@ impl Plausibility<'_> {
     /// A base that is far lighter than what it carries on feet that lift.
     pub(super) fn base(&mut self) {
         let (crane, chain) = (self.crane, self.chain);
-        let Some(link) = items(Some(&crane.links)).next() else { return };
+        let Some(link) = entries(Some(&crane.links)).next() else { return };
         let (Some(given), true) = (&link.mass, chain.supports.iter().any(|support| support.friction.is_some())) else {
             return;
         };
@@ -81,16 +81,16 @@ impl Plausibility<'_> {
     pub(super) fn masses(&mut self) {
         let crane = self.crane;
         let mut masses: Vec<(String, &Spanned<Number>)> = Vec::new();
-        for link in items(Some(&crane.links)) {
+        for link in entries(Some(&crane.links)) {
             let name = link.name.value.as_deref().unwrap_or_default();
             masses.extend(link.mass.as_ref().map(|mass| (format!("link `{name}`"), mass)));
-            masses.extend(items(link.bodies.as_ref()).map(|body| {
+            masses.extend(entries(link.bodies.as_ref()).map(|body| {
                 let name = body.name.value.as_deref().unwrap_or_default();
                 (format!("body `{name}`"), &body.mass)
             }));
         }
         let at_the_end =
-            items(Some(&crane.links)).last().is_some_and(|link| link.beam.is_none() && link.rope.is_none());
+            entries(Some(&crane.links)).last().is_some_and(|link| link.beam.is_none() && link.rope.is_none());
         let count = masses.len();
         for (index, (subject, given)) in masses.into_iter().enumerate() {
             let live = matches!(given.value.as_ref().map(|mass| &mass.0), Some(Scalar::Name(_)));

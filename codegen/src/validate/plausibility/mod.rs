@@ -108,8 +108,3 @@ impl<'a> Plausibility<'a> {
 pub(super) fn rounded(number: f64) -> f64 {
     format!("{number:.3e}").parse().unwrap_or(number)
 }
-
-/// Items of a list that may be missing.
-fn items<T>(given: Option<&Spanned<Vec<Spanned<T>>>>) -> impl Iterator<Item = &T> {
-    given.and_then(|given| given.value.as_ref()).into_iter().flatten().filter_map(|item| item.value.as_ref())
-}

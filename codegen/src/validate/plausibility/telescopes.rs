@@ -1,9 +1,9 @@
 //! Telescopes whose beams leave each other.
 
-use super::{Plausibility, angles::positions, items, rounded};
+use super::{Plausibility, angles::positions, rounded};
 use crate::chain::{CoordinateId, Stage, Strain};
 use crate::diagnostic::{Span, rule};
-use crate::spec::Motion;
+use crate::spec::{Motion, entries};
 
 /// Largest usual clearance of a pad, m, and against twist, rad.
 const WIDEST: [f64; 3] = [0.05, 0.05, 0.2];
@@ -13,7 +13,7 @@ const SOFTEST: f64 = 1e4;
 impl Plausibility<'_> {
     /// Pads whose clearance or stiffness is in another unit.
     pub(super) fn pads(&mut self) {
-        for link in items(Some(&self.crane.links)) {
+        for link in entries(Some(&self.crane.links)) {
             let slides = link.beam.as_ref().and_then(|beam| beam.value.as_ref()?.slides_in.as_ref()?.value.as_ref());
             let Some(pads) = slides.and_then(|slides| slides.pads.value.as_ref()) else { continue };
             let name = link.name.value.as_deref().unwrap_or_default();
@@ -85,7 +85,7 @@ impl Plausibility<'_> {
     fn reached(&self, coordinate: CoordinateId, leaders: usize) -> Vec<(f64, Span)> {
         let (crane, chain) = (self.crane, self.chain);
         let name = &chain.coordinates[coordinate.0].name;
-        let of_drives = items(crane.drives.as_ref()).filter(|drive| drive.coordinate.value.as_ref() == Some(name));
+        let of_drives = entries(crane.drives.as_ref()).filter(|drive| drive.coordinate.value.as_ref() == Some(name));
         let of_drives = of_drives.filter_map(|drive| drive.motion.as_ref()?.value.as_ref());
         let mut found: Vec<(f64, Span)> = of_drives.flat_map(|motion| self.stations(motion)).collect();
         let guess = crane.guess.as_ref().and_then(|guess| guess.value.as_ref());

@@ -1,0 +1,226 @@
+//! A rigid link of a robot replaced by a beam that bends.
+
+use std::fmt::Write as _;
+
+use crate::diagnostic::{Diagnostics, SourceFile};
+use crate::spec::{Crane, Either, Link, Number, On, Place, Placement, Scalar, Spanned, Turn, Vector, entries};
+
+/// Why a link cannot become a beam.
+#[derive(Clone, Debug)]
+pub enum Unbending {
+    /// The spec has mistakes.
+    Mistakes(Diagnostics),
+    /// What is wrong and what to write instead.
+    Refused(String),
+}
+
+/// Where the beam of a link ends.
+struct End<'a> {
+    /// The link that goes on from there.
+    next: &'a Link,
+    name: &'a str,
+    /// In the frame of the link, m.
+    at: [f64; 3],
+}
+
+/// The spec of a crane in which a beam takes the place of the mass and the inertia of a rigid link: from its frame to that of the link which goes on
+/// from it, `to` if there are several. The joint of the link stays; the beam is a link of its own, `<link>_beam`, whose x leads to that frame. `keys` are
+/// those of [`Beam`](crate::spec::Beam) besides `length`, a mapping in YAML.
+///
+/// # Errors
+/// The spec has mistakes, or the link cannot become a beam.
+pub fn with_beam(source: &SourceFile, link: &str, to: Option<&str>, keys: &str) -> Result<SourceFile, Unbending> {
+    let crane = crate::read(source).map_err(Unbending::Mistakes)?.crane;
+    let changes = changes(&crane, link, to, keys).map_err(Unbending::Refused)?;
+    Ok(source.changed(&changes))
+}
+
+fn changes(crane: &Crane, name: &str, to: Option<&str>, keys: &str) -> Result<String, String> {
+    let links: Vec<(&str, &Link)> = entries(Some(&crane.links)).filter_map(|link| Some((name_of(link)?, link))).collect();
+    let Some(index) = links.iter().position(|(other, _)| *other == name) else {
+        let known: Vec<&str> = links.iter().map(|(name, _)| *name).collect();
+        return Err(format!("there is no link `{name}`; the links are {}", known.join(", ")));
+    };
+    let link = links[index].1;
+    if link.beam.is_some() || link.rope.is_some() {
+        return Err(format!("`{name}` bends already: change its keys in the spec"));
+    }
+    if let Some(what) = attached(crane, name) {
+        return Err(format!("{what} is on `{name}`, and would not bend with it: write the beam in the spec, and move what is on it there"));
+    }
+    let beyond: Vec<(&str, &Link)> = links.iter().enumerate().filter(|(at, _)| carrier(&links, *at) == Some(name)).map(|(_, link)| *link).collect();
+    let end = end(&beyond, name, to)?;
+    let [x, y, z] = end.at;
+    let length = (x * x + y * y + z * z).sqrt();
+    // x of the beam is Rz(ψ) Ry(θ) x.
+    let (psi, theta) = (y.atan2(x), (-z).atan2(x.hypot(y)));
+    let beam = format!("{name}_beam");
+    if links.iter().any(|(other, _)| *other == beam) {
+        return Err(format!("there is a link `{beam}` already"));
+    }
+    let gone: String = [("mass", link.mass.is_some()), ("com", link.com.is_some()), ("inertia", link.inertia.is_some()), ("bodies", link.bodies.is_some())]
+        .into_iter()
+        .filter(|(_, given)| *given)
+        .map(|(key, _)| format!(", {key}: ~"))
+        .collect();
+    let mut text = format!("links:\n  - {{name: {name}{gone}}}\n");
+    let placed = |rotations: &str| format!("placement: {{transform: {{rotation: [{rotations}]}}}}");
+    let _ = writeln!(
+        text,
+        "  - name: {beam}\n    after: {name}\n    on: {name}\n    {}\n    beam:\n      length: {length:?}\n      {}",
+        placed(&format!("{{z: {psi:?}}}, {{y: {theta:?}}}")),
+        keys.trim_end().replace('\n', "\n      ")
+    );
+    for (other, of) in &beyond {
+        // What does not go on from the end of the beam stays on the frame of the link, which does not bend.
+        if *other != end.name {
+            if of.on.is_none() {
+                let _ = writeln!(text, "  - {{name: {other}, on: {name}}}");
+            }
+            continue;
+        }
+        let given = transform(end.next);
+        let translation = given.and_then(|given| given.translation.as_ref()).map_or("", |_| "translation: ~, ");
+        let mut rotations = format!("{{y: {:?}}}, {{z: {:?}}}", -theta, -psi);
+        for (axis, angle) in turns(end.next)? {
+            let _ = write!(rotations, ", {{{axis}: {angle:?}}}");
+        }
+        let _ = writeln!(text, "  - {{name: {other}, on: {beam}, placement: {{transform: {{{translation}rotation: [{rotations}]}}}}}}");
+    }
+    let on_beam = entries(crane.points.as_ref()).filter(|point| point.link.value.as_deref() == Some(name));
+    let mut points = String::new();
+    for point in on_beam {
+        let Some(at) = point.at.value.as_ref().and_then(numbers) else { continue };
+        let [x, y, z] = in_beam(at, psi, theta);
+        if let Some(point) = point.name.value.as_deref().filter(|_| (0.0..=length).contains(&x)) {
+            let _ = writeln!(points, "  - {{name: {point}, link: {beam}, at: [{x:?}, {y:?}, {z:?}]}}");
+        }
+    }
+    if !points.is_empty() {
+        let _ = write!(text, "points:\n{points}");
+    }
+    Ok(text)
+}
+
+/// The components of a vector along the axes of the beam.
+fn in_beam([x, y, z]: [f64; 3], psi: f64, theta: f64) -> [f64; 3] {
+    let (along, across) = (psi.cos() * x + psi.sin() * y, psi.cos() * y - psi.sin() * x);
+    [theta.cos() * along - theta.sin() * z, across, theta.sin() * along + theta.cos() * z]
+}
+
+/// Where the beam ends: at the link that is named, or at the only one that begins elsewhere than the beam.
+fn end<'a>(beyond: &[(&'a str, &'a Link)], name: &str, to: Option<&str>) -> Result<End<'a>, String> {
+    let chosen = match to {
+        Some(to) => beyond.iter().find(|(other, _)| *other == to).ok_or_else(|| {
+            let known: Vec<&str> = beyond.iter().map(|(other, _)| *other).collect();
+            format!("`{to}` does not go on from `{name}`; what does: {}", if known.is_empty() { "nothing".to_owned() } else { known.join(", ") })
+        })?,
+        None => {
+            let away = |link: &Link| placed_at(link).is_ok_and(|at| at.iter().any(|x| *x != 0.0));
+            let away: Vec<_> = beyond.iter().filter(|(_, link)| away(link)).collect();
+            match away[..] {
+                [one] => one,
+                [] => return Err(format!("no link goes on from `{name}` at another place than its own frame: a beam has no end there")),
+                _ => {
+                    let names: Vec<&str> = away.iter().map(|(other, _)| *other).collect();
+                    return Err(format!("several links go on from `{name}`: say where the beam ends, `to` one of {}", names.join(", ")));
+                }
+            }
+        }
+    };
+    let (other, next) = *chosen;
+    let at = placed_at(next)?;
+    if at.iter().all(|x| *x == 0.0) {
+        return Err(format!("`{other}` begins where `{name}` does: a beam between them has no length"));
+    }
+    Ok(End { next, name: other, at })
+}
+
+/// Where a link begins in the frame of the rigid link that carries it, m.
+fn placed_at(link: &Link) -> Result<[f64; 3], String> {
+    let name = name_of(link).unwrap_or_default();
+    let unread = || format!("the place of `{name}` is not given by numbers: write the beam in the spec");
+    let on = match link.on.as_ref().and_then(|on| on.value.as_ref()) {
+        Some(Either::Full(On { at: Some(Spanned { value: Some(Place::Point(_)), .. }), .. })) => return Err(unread()),
+        _ => [0.0; 3],
+    };
+    match link.placement.as_ref().map(|placement| &placement.value) {
+        None => Ok(on),
+        Some(Some(Placement::Transform(given))) => match &given.translation {
+            None => Ok(on),
+            Some(given) => given.value.as_ref().and_then(numbers).ok_or_else(unread),
+        },
+        _ => Err(format!("`{name}` is placed by a row of Denavit and Hartenberg: write its `placement` as a `transform`")),
+    }
+}
+
+fn transform(link: &Link) -> Option<&crate::spec::Transform> {
+    match link.placement.as_ref()?.value.as_ref()? {
+        Placement::Transform(given) => Some(given),
+        _ => None,
+    }
+}
+
+/// The rotations of a link's placement: axis and angle, rad.
+fn turns(link: &Link) -> Result<Vec<(&'static str, f64)>, String> {
+    let given = transform(link).and_then(|given| given.rotation.as_ref()?.value.as_ref());
+    let turns = given.map_or(&[][..], |given| &given.0);
+    let turn = |turn: &Spanned<Turn>| {
+        let (axis, angle) = match turn.value.as_ref()? {
+            Turn::X(angle) => ("x", angle),
+            Turn::Y(angle) => ("y", angle),
+            Turn::Z(angle) => ("z", angle),
+        };
+        Some((axis, scalar(&angle.value.as_ref()?.0)?))
+    };
+    let all: Option<Vec<_>> = turns.iter().map(turn).collect();
+    all.ok_or_else(|| format!("the rotation of `{}` is not given by numbers", name_of(link).unwrap_or_default()))
+}
+
+/// What acts on a link besides other links: it would have to move to the beam.
+fn attached(crane: &Crane, name: &str) -> Option<String> {
+    let on = |link: &Spanned<String>| link.value.as_deref() == Some(name);
+    let said = |kind: &str, of: &Spanned<String>| format!("{kind} `{}`", of.value.as_deref().unwrap_or_default());
+    let end = |end: &Spanned<crate::spec::Attachment>| {
+        end.value.as_ref().and_then(|end| end.link.as_ref()).is_some_and(on)
+    };
+    let load = entries(crane.loads.as_ref()).find(|load| on(&load.link)).map(|load| said("load", &load.name));
+    let pin = |pin: &Spanned<crate::spec::Pin>| pin.value.as_ref().is_some_and(|pin| on(&pin.link));
+    let cylinder = entries(crane.cylinders.as_ref()).find(|cylinder| pin(&cylinder.foot) || pin(&cylinder.head));
+    let connector = entries(crane.connectors.as_ref()).find(|connector| {
+        let over = connector.over.as_ref().and_then(|over| over.value.as_deref()).unwrap_or_default();
+        end(&connector.from) || end(&connector.to) || over.iter().any(end)
+    });
+    let joint = entries(crane.loop_joints.as_ref()).find(|joint| end(&joint.from) || end(&joint.to));
+    load.or_else(|| cylinder.map(|cylinder| said("cylinder", &cylinder.name)))
+        .or_else(|| connector.map(|connector| said("connector", &connector.name)))
+        .or_else(|| joint.map(|joint| said("loop joint", &joint.name)))
+}
+
+/// The name of the link that carries the one at this index: the previous one unless `on` names another.
+fn carrier<'a>(links: &[(&'a str, &'a Link)], index: usize) -> Option<&'a str> {
+    match links[index].1.on.as_ref() {
+        None => Some(links[index.checked_sub(1)?].0),
+        Some(on) => match on.value.as_ref()? {
+            Either::Short(name) => Some(name),
+            Either::Full(on) => on.link.value.as_deref(),
+        },
+    }
+}
+
+fn name_of(link: &Link) -> Option<&str> {
+    link.name.value.as_deref()
+}
+
+fn numbers(vector: &Vector) -> Option<[f64; 3]> {
+    let [x, y, z] = vector.each_ref().map(|Spanned { value, .. }| value.as_ref().and_then(|Number(number)| scalar(number)));
+    Some([x?, y?, z?])
+}
+
+fn scalar(scalar: &Scalar) -> Option<f64> {
+    match scalar {
+        Scalar::Number(number) => Some(*number),
+        Scalar::Quantity(quantity) => Some(quantity.value),
+        Scalar::Name(_) => None,
+    }
+}
