@@ -14,28 +14,37 @@ pub enum Unbending {
     Refused(String),
 }
 
+/// Where the beam of a link is to end.
+#[derive(Clone, Copy, Debug)]
+pub enum BeamEnd<'a> {
+    /// At the frame of the only link that goes on from another place.
+    Next,
+    /// At the frame of this link.
+    Link(&'a str),
+    /// At a point in the frame of the link that bends, m: no other link moves with the end.
+    Point([f64; 3]),
+}
+
 /// Where the beam of a link ends.
 struct End<'a> {
-    /// The link that goes on from there.
-    next: &'a Link,
-    name: &'a str,
+    /// The link that goes on from there, if any, with its name.
+    next: Option<(&'a str, &'a Link)>,
     /// In the frame of the link, m.
     at: [f64; 3],
 }
 
-/// The spec of a crane in which a beam takes the place of the mass and the inertia of a rigid link: from its frame to that of the link which goes on
-/// from it, `to` if there are several. The joint of the link stays; the beam is a link of its own, `<link>_beam`, whose x leads to that frame. `keys` are
+/// The spec of a crane in which a beam takes the place of the mass and the inertia of a rigid link: from its frame to `to`. The joint of the link stays; the beam is a link of its own, `<link>_beam`, whose x leads there. `keys` are
 /// those of [`Beam`](crate::spec::Beam) besides `length`, a mapping in YAML.
 ///
 /// # Errors
 /// The spec has mistakes, or the link cannot become a beam.
-pub fn with_beam(source: &SourceFile, link: &str, to: Option<&str>, keys: &str) -> Result<SourceFile, Unbending> {
+pub fn with_beam(source: &SourceFile, link: &str, to: BeamEnd<'_>, keys: &str) -> Result<SourceFile, Unbending> {
     let crane = crate::read(source).map_err(Unbending::Mistakes)?.crane;
     let changes = changes(&crane, link, to, keys).map_err(Unbending::Refused)?;
     Ok(source.changed(&changes))
 }
 
-fn changes(crane: &Crane, name: &str, to: Option<&str>, keys: &str) -> Result<String, String> {
+fn changes(crane: &Crane, name: &str, to: BeamEnd<'_>, keys: &str) -> Result<String, String> {
     let links: Vec<(&str, &Link)> = entries(Some(&crane.links)).filter_map(|link| Some((name_of(link)?, link))).collect();
     let Some(index) = links.iter().position(|(other, _)| *other == name) else {
         let known: Vec<&str> = links.iter().map(|(name, _)| *name).collect();
@@ -52,6 +61,9 @@ fn changes(crane: &Crane, name: &str, to: Option<&str>, keys: &str) -> Result<St
     let end = end(&beyond, name, to)?;
     let [x, y, z] = end.at;
     let length = (x * x + y * y + z * z).sqrt();
+    if length == 0.0 || !length.is_finite() {
+        return Err(format!("a beam from the frame of `{name}` to [{x}, {y}, {z}] has no length"));
+    }
     // x of the beam is Rz(ψ) Ry(θ) x.
     let (psi, theta) = (y.atan2(x), (-z).atan2(x.hypot(y)));
     let beam = format!("{name}_beam");
@@ -73,16 +85,16 @@ fn changes(crane: &Crane, name: &str, to: Option<&str>, keys: &str) -> Result<St
     );
     for (other, of) in &beyond {
         // What does not go on from the end of the beam stays on the frame of the link, which does not bend.
-        if *other != end.name {
+        let Some((_, next)) = end.next.filter(|(next, _)| next == other) else {
             if of.on.is_none() {
                 let _ = writeln!(text, "  - {{name: {other}, on: {name}}}");
             }
             continue;
-        }
-        let given = transform(end.next);
+        };
+        let given = transform(next);
         let translation = given.and_then(|given| given.translation.as_ref()).map_or("", |_| "translation: ~, ");
         let mut rotations = format!("{{y: {:?}}}, {{z: {:?}}}", -theta, -psi);
-        for (axis, angle) in turns(end.next)? {
+        for (axis, angle) in turns(next)? {
             let _ = write!(rotations, ", {{{axis}: {angle:?}}}");
         }
         let _ = writeln!(text, "  - {{name: {other}, on: {beam}, placement: {{transform: {{{translation}rotation: [{rotations}]}}}}}}");
@@ -108,32 +120,30 @@ fn in_beam([x, y, z]: [f64; 3], psi: f64, theta: f64) -> [f64; 3] {
     [theta.cos() * along - theta.sin() * z, across, theta.sin() * along + theta.cos() * z]
 }
 
-/// Where the beam ends: at the link that is named, or at the only one that begins elsewhere than the beam.
-fn end<'a>(beyond: &[(&'a str, &'a Link)], name: &str, to: Option<&str>) -> Result<End<'a>, String> {
-    let chosen = match to {
-        Some(to) => beyond.iter().find(|(other, _)| *other == to).ok_or_else(|| {
-            let known: Vec<&str> = beyond.iter().map(|(other, _)| *other).collect();
-            format!("`{to}` does not go on from `{name}`; what does: {}", if known.is_empty() { "nothing".to_owned() } else { known.join(", ") })
+/// Where the beam ends.
+fn end<'a>(beyond: &[(&'a str, &'a Link)], name: &str, to: BeamEnd<'_>) -> Result<End<'a>, String> {
+    let names = |links: &[(&str, &Link)]| links.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
+    let next = match to {
+        BeamEnd::Point(at) => return Ok(End { next: None, at }),
+        BeamEnd::Link(to) => *beyond.iter().find(|(other, _)| *other == to).ok_or_else(|| {
+            let known = if beyond.is_empty() { "nothing".to_owned() } else { names(beyond) };
+            format!("`{to}` does not go on from `{name}`; what does: {known}")
         })?,
-        None => {
+        BeamEnd::Next => {
             let away = |link: &Link| placed_at(link).is_ok_and(|at| at.iter().any(|x| *x != 0.0));
-            let away: Vec<_> = beyond.iter().filter(|(_, link)| away(link)).collect();
+            let away: Vec<_> = beyond.iter().copied().filter(|(_, link)| away(link)).collect();
             match away[..] {
                 [one] => one,
-                [] => return Err(format!("no link goes on from `{name}` at another place than its own frame: a beam has no end there")),
-                _ => {
-                    let names: Vec<&str> = away.iter().map(|(other, _)| *other).collect();
-                    return Err(format!("several links go on from `{name}`: say where the beam ends, `to` one of {}", names.join(", ")));
+                [] => {
+                    return Err(format!(
+                        "no link goes on from `{name}` at another place than its own frame: give the point `to` which the beam leads"
+                    ));
                 }
+                _ => return Err(format!("several links go on from `{name}`: the beam leads `to` one of {}", names(&away))),
             }
         }
     };
-    let (other, next) = *chosen;
-    let at = placed_at(next)?;
-    if at.iter().all(|x| *x == 0.0) {
-        return Err(format!("`{other}` begins where `{name}` does: a beam between them has no length"));
-    }
-    Ok(End { next, name: other, at })
+    Ok(End { next: Some(next), at: placed_at(next.1)? })
 }
 
 /// Where a link begins in the frame of the rigid link that carries it, m.

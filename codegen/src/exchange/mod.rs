@@ -13,7 +13,7 @@ mod springs;
 mod urdf;
 pub mod xml;
 
-pub use bending::{Unbending, with_beam};
+pub use bending::{BeamEnd, Unbending, with_beam};
 pub use import::{CATALOGUE, ImportOptions, Imported, import, with_includes};
 pub use mjcf::{Inexpressible, mjcf};
 pub use springs::springs;

@@ -3,6 +3,7 @@
 import difflib
 import html
 import itertools
+import json
 import math
 import os
 import warnings
@@ -159,6 +160,36 @@ class Crane(_native.Crane):
         inputs: by name; None lets an input follow the spec again. All functions of the crane use them.
         """
         return type(self)(self.source, parameters=parameters, invalid=invalid, like=self, inputs=inputs)
+
+    def with_beam(
+        self,
+        link: str,
+        /,
+        *,
+        sections: int,
+        material: str | Mapping[str, float | str],
+        section: Mapping[str, Any] | None = None,
+        to: str | Sequence[float] | None = None,
+        **beam: Any,
+    ) -> Self:
+        """The same crane with a rigid link that bends: `robot.with_beam("forearm_link", sections=4, material=..., section=...)`.
+
+        A beam leads from the frame of the link to that of the link which goes on from it. It takes the place of the mass and the inertia
+        of the link; its own follow from section, density and `extra_mass`. Its link is called `<link>_beam`, its coordinates
+        `<link>_beam_1_psi` and so on; those of the joints keep their names. Other links that go on from the link stay on its frame,
+        which does not bend; points of interest between both ends move with the beam.
+
+        sections: number of sections. material: the name of a material of the spec, or `{"E": ..., "G": ..., "density": ...}`, in Pa and kg/m³.
+        section: such as `{"tube": {"diameter": 0.1, "thickness": 0.003}}`, in m; other keys of a beam (`parts`, `extra_mass`, `damping`, …) as
+        in a spec.
+        to: the link at whose frame the beam ends, where several go on from `link`; or a point in the frame of `link`, m.
+
+        Raises ValueError if the link cannot become a beam, and SpecError for wrong keys of the beam.
+        """
+        keys = {"sections": sections, "material": material, "section": section, **beam}
+        text = "\n".join(f"{key}: {json.dumps(value)}" for key, value in keys.items() if value is not None)
+        to, point = (to, None) if to is None or isinstance(to, str) else (None, [float(x) for x in to])
+        return type(self)(self.source, text=self._with_beam(link, to, point, text), parameters=self.parameters, inputs=self.inputs)
 
     @property
     def parameters(self) -> dict[str, Any]:

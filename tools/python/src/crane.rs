@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 use crane_codegen::chain::{Profile, Transmission};
 use crane_codegen::compile::check_with;
 use crane_codegen::diagnostic::MAX_BYTES;
-use crane_codegen::exchange::ImportOptions;
+use crane_codegen::exchange::{BeamEnd, ImportOptions, Unbending};
 use crane_codegen::picture::picture;
 use crane_codegen::units::Quantity;
 use crane_codegen::{Checked, SourceFile, build, exchange, files};
@@ -187,6 +187,21 @@ impl Crane {
     #[pyo3(name = "_changed")]
     fn changed(&self, changes: &str) -> String {
         self.source.changed(changes).text
+    }
+
+    /// Its spec with a beam in the place of a rigid link, from the link's frame to another one's, or to a point in it; `keys` are those of the beam.
+    #[pyo3(name = "_with_beam", signature = (link, to, point, keys))]
+    fn with_beam(&self, py: Python<'_>, link: &str, to: Option<&str>, point: Option<[f64; 3]>, keys: &str) -> PyResult<String> {
+        let end = match (to, point) {
+            (Some(to), _) => BeamEnd::Link(to),
+            (None, Some(point)) => BeamEnd::Point(point),
+            (None, None) => BeamEnd::Next,
+        };
+        match exchange::with_beam(&self.source, link, end, keys) {
+            Ok(changed) => Ok(changed.text),
+            Err(Unbending::Mistakes(found)) => Err(spec_error(py, &found)),
+            Err(Unbending::Refused(why)) => Err(PyValueError::new_err(why)),
+        }
     }
 
     #[getter]

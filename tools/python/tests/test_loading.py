@@ -135,3 +135,75 @@ def test_a_text_extends_shipped_cranes_and_files(tmp_path, monkeypatch, knuckle)
         assert copied.name == "own" and copied.spec_hash == own.spec_hash
     with pytest.raises(crane.SpecError, match="own.yaml"):
         crane.load("own.yaml", text="format: 1\nextends: base.yaml\nname: own\n")
+
+
+# Two links and a hand on the second; the third axis is that of the wrist.
+TWO_LINKS = """<robot name="two"><link name="base"/>
+<link name="upper"><inertial><origin xyz="0 0 0.2"/><mass value="3"/><inertia ixx="0.05" iyy="0.05" izz="0.004"/></inertial></link>
+<link name="fore"><inertial><origin xyz="0 0 0.15"/><mass value="2"/><inertia ixx="0.03" iyy="0.03" izz="0.002"/></inertial></link>
+<link name="hand"><inertial><origin xyz="0 0 0.05"/><mass value="0.5"/><inertia ixx="0.001" iyy="0.001" izz="5e-4"/></inertial></link>
+<joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/><origin xyz="0 0 0.3"/><axis xyz="0 1 0"/></joint>
+<joint name="elbow" type="revolute"><parent link="upper"/><child link="fore"/><origin xyz="0 0.1 0.4"/><axis xyz="0 1 0"/></joint>
+<joint name="wrist" type="revolute"><parent link="fore"/><child link="hand"/><origin xyz="0.2 -0.1 0.3" rpy="0.1 0.2 0.3"/>
+<axis xyz="1 0 0"/></joint></robot>"""
+# The link `fore` as a beam, written by hand: from its frame to (0.2, -0.1, 0.3).
+BY_HAND = """format: 1
+name: by_hand
+materials: {alloy: {E: 7e10, G: 2.6e10, density: 2700}}
+links:
+  - {name: upper, placement: {transform: {translation: [0, 0, 0.3]}}, joint: {revolute: {axis: y}}, mass: 3, com: [0, 0, 0.2], inertia: {Ixx: 0.05, Iyy: 0.05, Izz: 0.004}}
+  - {name: fore, placement: {transform: {translation: [0, 0.1, 0.4]}}, joint: {revolute: {axis: y}}}
+  - name: fore_beam
+    placement: {transform: {rotation: [{z: PSI}, {y: THETA}]}}
+    beam: {length: LENGTH, sections: 4, material: alloy, section: {tube: {diameter: 0.04, thickness: 0.002}}}
+  - name: hand
+    placement: {transform: {rotation: [{y: BACK}, {z: ACROSS}, {z: 0.3}, {y: 0.2}, {x: 0.1}]}}
+    joint: {revolute: {axis: x}}
+    mass: 0.5
+    com: [0, 0, 0.05]
+    inertia: {Ixx: 0.001, Iyy: 0.001, Izz: 5e-4}
+"""
+ALLOY = {"E": 7e10, "G": 2.6e10, "density": 2700}
+
+
+def test_a_link_of_a_robot_bends():
+    robot = crane.from_urdf(TWO_LINKS)
+    bending = robot.with_beam("fore", sections=4, material=ALLOY, section={"tube": {"diameter": 0.04, "thickness": 0.002}})
+    assert [name for name in bending.coordinates if "beam" not in name] == robot.coordinates
+    psi, theta, length = np.arctan2(-0.1, 0.2), np.arctan2(-0.3, np.hypot(0.2, 0.1)), np.sqrt(0.14)
+    numbers = {"PSI": psi, "THETA": theta, "BACK": -theta, "ACROSS": -psi, "LENGTH": length}
+    text = BY_HAND
+    for name, number in numbers.items():
+        text = text.replace(name, repr(float(number)))
+    by_hand = crane.load("by_hand.yaml", text=text)
+    assert bending.coordinates == by_hand.coordinates
+    q = 0.1 * np.sin(1.0 + np.arange(bending.n))
+    v = 0.1 * np.cos(2.0 + np.arange(bending.n))
+    for one, other in ((bending.mass_matrix(q), by_hand.mass_matrix(q)), (bending.forward_dynamics(q, v), by_hand.forward_dynamics(q, v))):
+        # Rounding of the angles of the placement, through a mass matrix of condition 1e6.
+        assert np.allclose(one, other, rtol=1e-9, atol=1e-9 * np.abs(other).max())
+    frequencies = [c.modes(np.zeros(c.n)).frequency for c in (bending, by_hand)]
+    assert np.allclose(*frequencies, rtol=1e-9)
+    # Undeformed, the hand is where it was.
+    straight = np.zeros(bending.n)
+    for index, name in enumerate(robot.coordinates):
+        straight[bending.coordinates.index(name)] = 0.2 + 0.1 * index
+    rigid = robot.frames({"hand": "hand"}).poses([0.2, 0.3, 0.4])
+    assert np.allclose(bending.frames({"hand": "hand"}).poses(straight), rigid, atol=1e-12)
+
+
+def test_links_that_cannot_bend_say_why():
+    robot = crane.from_urdf(TWO_LINKS)
+    beam = {"sections": 2, "material": ALLOY, "section": {"circle": {"diameter": 0.02}}}
+    with pytest.raises(ValueError, match="there is no link `elbow`; the links are upper, fore, hand"):
+        robot.with_beam("elbow", **beam)
+    with pytest.raises(ValueError, match="give the point `to` which the beam leads"):
+        robot.with_beam("hand", **beam)
+    with pytest.raises(ValueError, match="`hand` does not go on from `upper`; what does: fore"):
+        robot.with_beam("upper", to="hand", **beam)
+    with pytest.raises(ValueError, match="`fore_beam` bends already"):
+        robot.with_beam("fore", **beam).with_beam("fore_beam", **beam)
+    with pytest.raises(crane.SpecError, match="E010"):
+        robot.with_beam("fore", thickness=3, **beam)
+    # A hand that bends has its end at a point.
+    assert robot.with_beam("hand", to=[0, 0, 0.1], **beam).n == robot.n + 6
