@@ -45,7 +45,8 @@ pub fn with_beam(source: &SourceFile, link: &str, to: BeamEnd<'_>, keys: &str) -
 }
 
 fn changes(crane: &Crane, name: &str, to: BeamEnd<'_>, keys: &str) -> Result<String, String> {
-    let links: Vec<(&str, &Link)> = entries(Some(&crane.links)).filter_map(|link| Some((name_of(link)?, link))).collect();
+    let links: Vec<(&str, &Link)> =
+        entries(Some(&crane.links)).filter_map(|link| Some((name_of(link)?, link))).collect();
     let Some(index) = links.iter().position(|(other, _)| *other == name) else {
         let known: Vec<&str> = links.iter().map(|(name, _)| *name).collect();
         return Err(format!("there is no link `{name}`; the links are {}", known.join(", ")));
@@ -55,9 +56,12 @@ fn changes(crane: &Crane, name: &str, to: BeamEnd<'_>, keys: &str) -> Result<Str
         return Err(format!("`{name}` bends already: change its keys in the spec"));
     }
     if let Some(what) = attached(crane, name) {
-        return Err(format!("{what} is on `{name}`, and would not bend with it: write the beam in the spec, and move what is on it there"));
+        return Err(format!(
+            "{what} is on `{name}`, and would not bend with it: write the beam in the spec, and move what is on it there"
+        ));
     }
-    let beyond: Vec<(&str, &Link)> = links.iter().enumerate().filter(|(at, _)| carrier(&links, *at) == Some(name)).map(|(_, link)| *link).collect();
+    let beyond: Vec<(&str, &Link)> =
+        links.iter().enumerate().filter(|(at, _)| carrier(&links, *at) == Some(name)).map(|(_, link)| *link).collect();
     let end = end(&beyond, name, to)?;
     let [x, y, z] = end.at;
     let length = (x * x + y * y + z * z).sqrt();
@@ -70,11 +74,16 @@ fn changes(crane: &Crane, name: &str, to: BeamEnd<'_>, keys: &str) -> Result<Str
     if links.iter().any(|(other, _)| *other == beam) {
         return Err(format!("there is a link `{beam}` already"));
     }
-    let gone: String = [("mass", link.mass.is_some()), ("com", link.com.is_some()), ("inertia", link.inertia.is_some()), ("bodies", link.bodies.is_some())]
-        .into_iter()
-        .filter(|(_, given)| *given)
-        .map(|(key, _)| format!(", {key}: ~"))
-        .collect();
+    let gone: String = [
+        ("mass", link.mass.is_some()),
+        ("com", link.com.is_some()),
+        ("inertia", link.inertia.is_some()),
+        ("bodies", link.bodies.is_some()),
+    ]
+    .into_iter()
+    .filter(|(_, given)| *given)
+    .map(|(key, _)| format!(", {key}: ~"))
+    .collect();
     let mut text = format!("links:\n  - {{name: {name}{gone}}}\n");
     let placed = |rotations: &str| format!("placement: {{transform: {{rotation: [{rotations}]}}}}");
     let _ = writeln!(
@@ -97,7 +106,10 @@ fn changes(crane: &Crane, name: &str, to: BeamEnd<'_>, keys: &str) -> Result<Str
         for (axis, angle) in turns(next)? {
             let _ = write!(rotations, ", {{{axis}: {angle:?}}}");
         }
-        let _ = writeln!(text, "  - {{name: {other}, on: {beam}, placement: {{transform: {{{translation}rotation: [{rotations}]}}}}}}");
+        let _ = writeln!(
+            text,
+            "  - {{name: {other}, on: {beam}, placement: {{transform: {{{translation}rotation: [{rotations}]}}}}}}"
+        );
     }
     let on_beam = entries(crane.points.as_ref()).filter(|point| point.link.value.as_deref() == Some(name));
     let mut points = String::new();
@@ -139,7 +151,12 @@ fn end<'a>(beyond: &[(&'a str, &'a Link)], name: &str, to: BeamEnd<'_>) -> Resul
                         "no link goes on from `{name}` at another place than its own frame: give the point `to` which the beam leads"
                     ));
                 }
-                _ => return Err(format!("several links go on from `{name}`: the beam leads `to` one of {}", names(&away))),
+                _ => {
+                    return Err(format!(
+                        "several links go on from `{name}`: the beam leads `to` one of {}",
+                        names(&away)
+                    ));
+                }
             }
         }
     };
@@ -160,7 +177,9 @@ fn placed_at(link: &Link) -> Result<[f64; 3], String> {
             None => Ok(on),
             Some(given) => given.value.as_ref().and_then(numbers).ok_or_else(unread),
         },
-        _ => Err(format!("`{name}` is placed by a row of Denavit and Hartenberg: write its `placement` as a `transform`")),
+        _ => Err(format!(
+            "`{name}` is placed by a row of Denavit and Hartenberg: write its `placement` as a `transform`"
+        )),
     }
 }
 
@@ -191,9 +210,8 @@ fn turns(link: &Link) -> Result<Vec<(&'static str, f64)>, String> {
 fn attached(crane: &Crane, name: &str) -> Option<String> {
     let on = |link: &Spanned<String>| link.value.as_deref() == Some(name);
     let said = |kind: &str, of: &Spanned<String>| format!("{kind} `{}`", of.value.as_deref().unwrap_or_default());
-    let end = |end: &Spanned<crate::spec::Attachment>| {
-        end.value.as_ref().and_then(|end| end.link.as_ref()).is_some_and(on)
-    };
+    let end =
+        |end: &Spanned<crate::spec::Attachment>| end.value.as_ref().and_then(|end| end.link.as_ref()).is_some_and(on);
     let load = entries(crane.loads.as_ref()).find(|load| on(&load.link)).map(|load| said("load", &load.name));
     let pin = |pin: &Spanned<crate::spec::Pin>| pin.value.as_ref().is_some_and(|pin| on(&pin.link));
     let cylinder = entries(crane.cylinders.as_ref()).find(|cylinder| pin(&cylinder.foot) || pin(&cylinder.head));
@@ -223,7 +241,8 @@ fn name_of(link: &Link) -> Option<&str> {
 }
 
 fn numbers(vector: &Vector) -> Option<[f64; 3]> {
-    let [x, y, z] = vector.each_ref().map(|Spanned { value, .. }| value.as_ref().and_then(|Number(number)| scalar(number)));
+    let [x, y, z] =
+        vector.each_ref().map(|Spanned { value, .. }| value.as_ref().and_then(|Number(number)| scalar(number)));
     Some([x?, y?, z?])
 }
 

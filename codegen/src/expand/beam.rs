@@ -47,7 +47,12 @@ const LONGER: f64 = 1e-9;
 /// bends every spring by its true moment, within a section it would not. Between two stations sections are equal, and as near in length to those of a
 /// beam without stations as a whole number of them allows; if they are fewer than `count`, the longest ones are divided. `now` gives the numbers with
 /// default parameters.
-pub(crate) fn division(length: &Value, count: usize, mut stations: Vec<Value>, now: impl Fn(&Value) -> f64) -> Division {
+pub(crate) fn division(
+    length: &Value,
+    count: usize,
+    mut stations: Vec<Value>,
+    now: impl Fn(&Value) -> f64,
+) -> Division {
     if count == 0 {
         return Division::default();
     }

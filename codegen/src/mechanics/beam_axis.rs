@@ -66,7 +66,13 @@ impl<'a, 'g> AxisPoint<'a, 'g> {
             };
             (0..stretch.sections).map(section).collect::<Vec<_>>()
         };
-        AxisPoint { model, kinematics, axis, s, sections: axis.division.stretches.iter().enumerate().flat_map(of_stretch).collect() }
+        AxisPoint {
+            model,
+            kinematics,
+            axis,
+            s,
+            sections: axis.division.stretches.iter().enumerate().flat_map(of_stretch).collect(),
+        }
     }
 
     fn pose(&self, element: usize) -> &'a Pose<'g> {
@@ -93,9 +99,7 @@ impl<'a, 'g> AxisPoint<'a, 'g> {
         match self.beside(element) {
             [None, None] => self.s,
             [None, Some(after)] => after.length * along(after),
-            [Some(before), None] => {
-                before.length * (0.5 * before.passed.squared() + before.sigma[1].max(zero))
-            }
+            [Some(before), None] => before.length * (0.5 * before.passed.squared() + before.sigma[1].max(zero)),
             [Some(before), Some(after)] => {
                 let [squared, rest] = [before.passed.squared(), after.passed * (2.0 - after.passed)];
                 if before.stretch == after.stretch {

@@ -22,13 +22,7 @@ const ROTATIONS: [Axis; 3] = [Axis::Z, Axis::Y, Axis::X];
 
 impl<'a> Check<'a> {
     /// Appends the elements of a beam.
-    pub(super) fn beam(
-        &mut self,
-        given: &'a Spanned<Beam>,
-        link: &str,
-        span: Span,
-        attached: Attached,
-    ) -> Carried {
+    pub(super) fn beam(&mut self, given: &'a Spanned<Beam>, link: &str, span: Span, attached: Attached) -> Carried {
         let elements = given.value.as_ref().and_then(|inside| {
             let length = self.number(&inside.length, "`length`", "m", Limit::Positive);
             match &inside.elements {
@@ -256,9 +250,9 @@ impl<'a> Check<'a> {
             self.report(rule::bent_in_one_piece(given.span));
         }
         let angles = [(&bend.theta, "`theta`"), (&bend.psi, "`psi`")];
-        Curvature(Some(angles.map(|(angle, subject)| {
-            angle.as_ref().map_or(Value::ZERO, |angle| self.angle(angle, subject))
-        })))
+        Curvature(Some(
+            angles.map(|(angle, subject)| angle.as_ref().map_or(Value::ZERO, |angle| self.angle(angle, subject))),
+        ))
     }
 
     /// Number of sections; 0 for a rigid beam.

@@ -53,7 +53,11 @@ impl<'a> Check<'a> {
         let broken = rule::beam_length(elements.span, whole, whole);
         self.keep_below(&sum, &((1.0 + WRITTEN) * length.clone()), &broken);
         self.keep_below(&((1.0 - WRITTEN) * length.clone()), &sum, &broken);
-        (elements_read.len() == joints.len() + 1).then_some(Elements { elements: elements_read, joints, division: Division::default() })
+        (elements_read.len() == joints.len() + 1).then_some(Elements {
+            elements: elements_read,
+            joints,
+            division: Division::default(),
+        })
     }
 
     /// A rigid element as given.

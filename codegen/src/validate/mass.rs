@@ -1,9 +1,9 @@
 //! Masses and inertias of links.
 
-use super::{Carried, Check};
 use super::inertias::Lump;
 use super::limits::Limit;
 use super::on::Attached;
+use super::{Carried, Check};
 use crate::chain::{self, BodyId, Part, Value};
 use crate::diagnostic::{Span, rule};
 use crate::expand::inertia::{self, Tensor};

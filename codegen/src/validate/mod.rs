@@ -33,8 +33,8 @@ mod stations;
 use std::collections::BTreeMap;
 
 use crate::chain::{
-    self, Analyses, Body, BodyId, Bound, Chain, Coordinate, CoordinateId, Division, Force, Input, Loops, Parameter, ParameterId,
-    Relation, Value,
+    self, Analyses, Body, BodyId, Bound, Chain, Coordinate, CoordinateId, Division, Force, Input, Loops, Parameter,
+    ParameterId, Relation, Value,
 };
 use crate::diagnostic::{Diagnostics, Mistake, SourceFile, Span, rule};
 use crate::expand::beam::Distribution;

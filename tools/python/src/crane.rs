@@ -191,7 +191,14 @@ impl Crane {
 
     /// Its spec with a beam in the place of a rigid link, from the link's frame to another one's, or to a point in it; `keys` are those of the beam.
     #[pyo3(name = "_with_beam", signature = (link, to, point, keys))]
-    fn with_beam(&self, py: Python<'_>, link: &str, to: Option<&str>, point: Option<[f64; 3]>, keys: &str) -> PyResult<String> {
+    fn with_beam(
+        &self,
+        py: Python<'_>,
+        link: &str,
+        to: Option<&str>,
+        point: Option<[f64; 3]>,
+        keys: &str,
+    ) -> PyResult<String> {
         let end = match (to, point) {
             (Some(to), _) => BeamEnd::Link(to),
             (None, Some(point)) => BeamEnd::Point(point),

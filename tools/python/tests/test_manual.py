@@ -1,7 +1,9 @@
 """Examples of the README and of the manual for Python."""
 
+import math
 import re
 
+import numpy as np
 import pytest
 from conftest import ROOT
 
@@ -21,6 +23,20 @@ def test_readme(tmp_path, monkeypatch):
     # The load is a point of 500 kg, 1.5 m below its hinge, whose coordinate is the last; one product, rounded.
     assert abs(names["A"][-1, -1] - 500 * 1.5**2) < 1e-9
     assert not names["run"].cautions
+
+
+def test_a_link_that_bends(tmp_path, monkeypatch):
+    """The robot of the page on exchange, with its link as a beam; its tip, a frame of the robot, moves with the beam."""
+    robot, *_ = blocks("docs/manual/exchange.md", "xml")
+    (tmp_path / "arm.urdf").write_text(robot)
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    exec("\n".join(blocks("docs/manual/exchange.md", "python")), names)
+    bending = names["bending"]
+    assert bending.coordinates == ["upper_theta", *(f"upper_beam_{k}_{angle}" for k in range(1, 5) for angle in ("psi", "theta", "phi"))]
+    tip = bending.points(0.1 * (bending.coordinates.index("upper_beam_4_theta") == np.arange(bending.n)))[0]
+    # The last spring is 0.1 m before the tip.
+    assert abs(tip[2] - (1 - 0.1 * math.sin(0.1))) < 1e-12
 
 
 def test_fitting(capsys):
