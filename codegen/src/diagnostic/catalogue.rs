@@ -367,9 +367,9 @@ catalogue! {
     /// A table refers to a column that its file has.
     E135 data_column(file, column, known) "`{file}` has no column `{column}`", "its columns: {known}",
         "the first row names the columns; a unit in brackets is not part of the name";
-    /// The columns of a data file are in SI units.
-    E136 data_unit(file, column, unit, help) "column `{column}` of `{file}` is in {unit}", "tables are in SI units: s, m, rad, N, N m",
-        "{help}; put the SI unit of the column in brackets, or leave it out";
+    /// The units of columns of a data file are in the table of units.
+    E136 data_unit(file, column, unit, help) "column `{column}` of `{file}` is in `{unit}`, which is not a unit", "its heading gives a unit in brackets",
+        "{help}; without a unit, numbers are in SI units";
     /// The rows of a data file contain numbers.
     E137 data_number(cell, column, help) "{cell} in column {column} is not a number", "a row of the table", "{help}";
     /// A data file has at most 1000 rows.

@@ -4,16 +4,12 @@ use csv::{ReaderBuilder, StringRecord, Trim};
 
 use crate::diagnostic::{Mistake, Part, SourceFile, Span, rule};
 use crate::node::{Content, Node};
+use crate::units::{Quantity, Unit, UnknownUnit, name_and_unit};
 
 /// Maximum number of rows: each becomes a polynomial that is evaluated at every step.
 const MOST: usize = 1000;
 /// Key whose value may name a file.
 const TABLE: &str = "table";
-/// Units of angles that are not SI units.
-const DEGREES: [&str; 3] = ["deg", "degrees", "°"];
-/// Units of values: those of coordinates, of forces and moments, and of factors.
-const UNITS: [&str; 6] = ["m", "rad", "N", "N m", "1", ""];
-
 /// Names of the files that tables of a spec refer to, with their locations.
 pub(super) fn files(tree: &Node) -> Vec<(&str, Span)> {
     let of_children = || children(tree).flat_map(files);
@@ -96,12 +92,6 @@ impl Node {
     }
 }
 
-/// A column: its name and its unit, which is given in brackets.
-fn name_and_unit(header: &str) -> (&str, Option<&str>) {
-    let bracketed = header.strip_suffix(']').and_then(|rest| rest.split_once('['));
-    bracketed.map_or((header, None), |(name, unit)| (name.trim_end(), Some(unit)))
-}
-
 /// Times and values of a file: its first column, and the one that is asked for, or the second.
 fn columns(data: &Part<'_>, (file, at): (&str, Span), column: Option<(&str, Span)>) -> Result<[Vec<Node>; 2], Mistake> {
     // Spreadsheets mark UTF-8 by a first character that is not part of the table.
@@ -136,35 +126,47 @@ fn columns(data: &Part<'_>, (file, at): (&str, Span), column: Option<(&str, Span
     if first.len() < 2 {
         return Err(rule::no_data(at, file, "it has a single column; columns are separated by commas"));
     }
-    for (column, known) in [(0, ["s", ""].as_slice()), (column, &UNITS)] {
-        if let Some((name, Some(unit))) =
-            names.get(column).filter(|(_, unit)| unit.is_some_and(|unit| !known.contains(&unit)))
-        {
-            let help = if DEGREES.contains(unit) { radians(1.0) } else { "convert it".into() };
-            return Err(rule::data_unit(at, file, *name, *unit, help));
+    let unit_of = |column: usize| {
+        let Some((name, Some(unit))) = names.get(column).copied().filter(|(_, unit)| unit.is_some_and(|unit| !["", "1"].contains(&unit)))
+        else {
+            return Ok(None);
+        };
+        match Unit::parse(unit) {
+            Ok(_) => Ok(Some(unit)),
+            Err(UnknownUnit { help, .. }) => Err(rule::data_unit(at, file, name, unit, help)),
         }
-    }
+    };
+    let units = [unit_of(0)?, unit_of(column)?];
     let rows = &rows[usize::from(has_header)..];
     if rows.len() > MOST {
         return Err(rule::long_table(at, file, rows.len(), MOST, rows.len().div_ceil(MOST)));
     }
-    let numbers = |column: usize| rows.iter().map(|row| number(data, row, column)).collect::<Result<Vec<_>, _>>();
-    Ok([numbers(0)?, numbers(column)?])
+    let numbers = |column: usize, unit: Option<&str>| {
+        let mut numbers = rows.iter().map(|row| number(data, row, column, unit)).collect::<Result<Vec<_>, _>>()?;
+        // The first one keeps its unit: its dimension is checked where the table stands.
+        if let (Some(unit), Some(row), Some(first)) = (unit, rows.first(), numbers.first_mut()) {
+            first.content = Content::Text(format!("{} {unit}", row.get(column).unwrap_or_default()));
+        }
+        Ok::<_, Mistake>(numbers)
+    };
+    Ok([numbers(0, units[0])?, numbers(column, units[1])?])
 }
 
-/// A cell as a number.
-fn number(data: &Part<'_>, row: &StringRecord, column: usize) -> Result<Node, Mistake> {
+/// A cell as a number, in SI units.
+fn number(data: &Part<'_>, row: &StringRecord, column: usize, unit: Option<&str>) -> Result<Node, Mistake> {
     let cell = row.get(column).unwrap_or_default();
     let begin = row.position().map_or(0, |position| usize::try_from(position.byte()).unwrap_or(0));
     let line = data.text.get(begin..).and_then(|rest| rest.lines().next()).unwrap_or_default();
     let span = Span { start: data.start + begin, end: data.start + begin + line.len() };
     let shown = if cell.is_empty() { "an empty cell".to_owned() } else { format!("`{cell}`") };
-    let degrees = DEGREES.iter().find_map(|unit| cell.strip_suffix(unit)?.trim_end().parse::<f64>().ok());
-    let help = || match degrees {
-        Some(degrees) => radians(degrees),
-        None => "write numbers with a decimal point, and commas between columns".into(),
+    let help = || match Quantity::parse(cell) {
+        Some(Ok(_)) => "write the unit once, in brackets behind the name of the column: `boom [deg]`".to_owned(),
+        _ => "write numbers with a decimal point, and commas between columns".to_owned(),
     };
-    let number = cell.parse().map_err(|_| rule::data_number(span, shown, column + 1, help()))?;
+    let mut number: f64 = cell.parse().map_err(|_| rule::data_number(span, shown, column + 1, help()))?;
+    if let Some(Some(Ok(quantity))) = unit.map(|unit| Quantity::parse(&format!("{cell} {unit}"))) {
+        number = quantity.value;
+    }
     Ok(Node { span, content: Content::Number(number) })
 }
 
@@ -183,11 +185,6 @@ fn other_separators(text: &str) -> Option<&'static str> {
         (_, true, false) => Some("tabs between columns"),
         _ => None,
     }
-}
-
-/// Advice for an angle in degrees.
-fn radians(degrees: f64) -> String {
-    format!("write angles in radians: {degrees} deg = {:.6} rad", degrees.to_radians())
 }
 
 /// What is wrong with a file, in words.

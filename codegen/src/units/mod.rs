@@ -7,6 +7,6 @@ mod quantity;
 mod table;
 mod unit;
 
-pub use quantity::{Quantity, WrongQuantity, number_in, split};
+pub use quantity::{Quantity, WrongQuantity, name_and_unit, number_in, split};
 pub use table::{Symbol, TABLE};
 pub use unit::{Dimension, Unit, UnknownUnit};

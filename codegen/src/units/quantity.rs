@@ -77,6 +77,13 @@ impl Quantity {
     }
 }
 
+/// The name and the unit of a column of a table, which its heading gives in brackets: `load [t]`.
+#[must_use]
+pub fn name_and_unit(heading: &str) -> (&str, Option<&str>) {
+    let bracketed = heading.trim().strip_suffix(']').and_then(|rest| rest.split_once('['));
+    bracketed.map_or((heading.trim(), None), |(name, unit)| (name.trim_end(), Some(unit.trim())))
+}
+
 /// Reads a number in an SI unit, or one with a unit of the same dimension: arguments of commands. `unit` may be any text; what is not in the table
 /// admits numbers alone. `subject` is what is set.
 ///

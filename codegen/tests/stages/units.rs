@@ -248,3 +248,30 @@ fn slips_of_units_are_told() {
         assert!(told.contains(words), "{parameter} {mass}: {told}");
     }
 }
+
+/// A data file whose headings have units, and a drive that follows it.
+fn following(headings: &str, rows: &str) -> SourceFile {
+    SourceFile::new(
+        "lift.yaml",
+        format!(
+            "--- # data: lift.csv\n{headings}\n{rows}--- # part: crane.yaml\nformat: 1\nname: lift\nlinks:\n  - {{name: boom, joint: revolute, mass: 100, com: [2, 0, \
+             0]}}\ndrives:\n  - {{coordinate: boom_psi, stiffness: 1e6, motion: {{table: {{file: lift.csv}}}}}}\n"
+        ),
+    )
+}
+
+#[test]
+fn columns_of_data_files_have_units() {
+    let motion = |headings: &str, rows: &str| {
+        let chain = check(&following(headings, rows)).unwrap_or_else(|mistakes| panic!("\n{mistakes}")).chain;
+        format!("{:?}", chain.drives[0])
+    };
+    let si = motion("t [s],boom [rad]", "0,0\n0.25,0.5235987755982988\n2,1.5707963267948966\n");
+    assert_eq!(motion("t [ms],boom [deg]", "0,0\n250,30\n2000,90\n"), si);
+    assert_eq!(motion("t,boom", "0,0\n0.25,0.5235987755982988\n2,1.5707963267948966\n"), si);
+    // The drive turns; the message is about the first row.
+    let refused = |headings: &str| check(&following(headings, "0,0\n1,2\n")).expect_err("a wrong unit").to_string();
+    let wrong = refused("t [s],boom [mm]");
+    assert!(wrong.contains("is in rad, and `0 mm` is a length") && wrong.matches("error").count() == 1, "{wrong}");
+    assert!(refused("t [m],boom [deg]").contains("is in s, and `0 m` is a length"));
+}

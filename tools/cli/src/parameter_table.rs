@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crane_codegen::units::{name_and_unit, number_in};
 use crane_model::{Description, dyn_crane::DynCrane};
 
 use crate::{
@@ -19,7 +20,7 @@ pub struct ParameterTable {
 }
 
 impl ParameterTable {
-    /// Reads a CSV file whose header names live parameters, with or without their units: `load_mass` or `load_mass [kg]`.
+    /// Reads a CSV file whose header names live parameters, each with a unit of its dimension or without: `load_mass`, `load_mass [kg]` or `load_mass [t]`.
     pub fn read(path: &Path, description: &Description) -> Outcome<Self> {
         let csv = files::csv(path);
         let unreadable = |error: csv::Error| {
@@ -36,16 +37,17 @@ impl ParameterTable {
             )
         };
         let mut csv = csv.map_err(unreadable)?;
-        let mut columns = Vec::new();
+        let (mut columns, mut units) = (Vec::new(), Vec::new());
         let headers = csv.headers().map_err(unreadable)?;
         files::check_separators(path, headers)?;
         for (column, header) in headers.iter().enumerate() {
             let at = Cell { path, line: 1, column: column + 1 };
-            let index = at.parameter(header, description)?;
+            let (index, unit) = at.parameter(header, description)?;
             if columns.contains(&index) {
                 return Err(at.problem(&format!("`{header}` occurs twice"), "give each parameter one column"));
             }
             columns.push(index);
+            units.push(unit);
         }
         let mut rows = Vec::new();
         for record in csv.records() {
@@ -53,8 +55,13 @@ impl ParameterTable {
             let line = record.position().map_or(0, csv::Position::line);
             let value = |(column, (text, &index)): (usize, (&str, &usize))| {
                 let (info, at) = (&description.parameters[index], Cell { path, line, column: column + 1 });
-                let number = text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
-                    let help = format!("write a finite number, in {}, such as {}", info.unit, info.default);
+                let with_unit = units[column].as_ref().map_or_else(|| text.to_owned(), |unit| format!("{text} {unit}"));
+                let number = number_in(&info.unit, &with_unit, &info.name).ok().filter(|number| number.is_finite());
+                let number = number.ok_or_else(|| {
+                    let help = match &units[column] {
+                        Some(unit) => format!("write a finite number, in {unit}"),
+                        None => format!("write a finite number, in {}, such as {}", info.unit, info.default),
+                    };
                     at.problem(&format!("`{text}` is not a valid value for {}", info.name), help)
                 })?;
                 info.check(number).map_err(|refused| {
@@ -109,20 +116,16 @@ impl Cell<'_> {
         Problem::usage(format!("{}, line {line}, column {column}: {what}", path.display()), help)
     }
 
-    /// The parameter that a header names.
-    fn parameter(&self, header: &str, description: &Description) -> Outcome<usize> {
-        let (name, unit) = match header.strip_suffix(']').and_then(|header| header.split_once('[')) {
-            Some((name, unit)) => (name.trim_end(), Some(unit)),
-            None => (header, None),
-        };
+    /// The parameter that a header names, and the unit of its column if that is another one of its dimension.
+    fn parameter(&self, header: &str, description: &Description) -> Outcome<(usize, Option<String>)> {
+        let (name, unit) = name_and_unit(header);
         let index = find_parameter(name, description).map_err(|(title, help)| self.problem(&title, help))?;
         let wanted = &description.parameters[index].unit;
-        match unit {
-            Some(unit) if *wanted != unit => {
-                Err(self
-                    .problem(&format!("{name} is in {wanted}, not in {unit}"), format!("write `{name} [{wanted}]`")))
-            }
-            _ => Ok(index),
+        let Some(unit) = unit.filter(|unit| wanted != unit) else { return Ok((index, None)) };
+        match number_in(wanted, &format!("1 {unit}"), name) {
+            Ok(_) => Ok((index, Some(unit.to_owned()))),
+            Err(_) => Err(self
+                .problem(&format!("{name} is in {wanted}, not in {unit}"), format!("write `{name} [{wanted}]`"))),
         }
     }
 }

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use crane_codegen::units::name_and_unit;
+
 use crate::{
     files,
     problem::{Outcome, Problem},
@@ -30,7 +32,7 @@ impl Given {
         let mut csv = files::csv(path).map_err(unreadable)?;
         let headers = csv.headers().map_err(unreadable)?.clone();
         files::check_separators(path, &headers)?;
-        let columns = COLUMNS.map(|wanted| headers.iter().position(|header| named(header).0 == wanted));
+        let columns = COLUMNS.map(|wanted| headers.iter().position(|header| name_and_unit(header).0 == wanted));
         let [Some(radius), Some(load)] = columns else {
             let missing = COLUMNS.iter().zip(columns).find(|(_, found)| found.is_none()).map_or("", |(name, _)| *name);
             return Err(Problem::usage(
@@ -48,8 +50,8 @@ impl Given {
             let number = |column: usize, unit: &str| {
                 let text = record.get(column).unwrap_or_default();
                 let with_unit =
-                    named(&headers[column]).1.map_or_else(|| text.to_owned(), |unit| format!("{text} {unit}"));
-                let subject = format!("the {} of {}, line {line},", named(&headers[column]).0, path.display());
+                    name_and_unit(&headers[column]).1.map_or_else(|| text.to_owned(), |unit| format!("{text} {unit}"));
+                let subject = format!("the {} of {}, line {line},", name_and_unit(&headers[column]).0, path.display());
                 let number = quantity::number(unit, &with_unit, &subject)?;
                 if number > 0.0 {
                     return Ok(number);
@@ -65,13 +67,5 @@ impl Given {
             return Err(Problem::usage(format!("{} has no rows", path.display()), "write a radius and a load per row"));
         }
         Ok(Self(points))
-    }
-}
-
-/// Name and unit of a column, `load [t]`.
-fn named(header: &str) -> (&str, Option<&str>) {
-    match header.split_once('[') {
-        Some((name, unit)) => (name.trim(), unit.strip_suffix(']').map(str::trim)),
-        None => (header.trim(), None),
     }
 }

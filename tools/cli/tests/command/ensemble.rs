@@ -17,7 +17,8 @@ fn a_table_with_mistakes_is_refused_with_its_place() {
         ("payload;length\n900;0,006\n", &["semicolons between columns", "commas between columns"][..]),
         ("payload,paylod\n1,2\n", &["line 1, column 2", "no live parameter `paylod`", "did you mean `payload`?"][..]),
         ("payload,payload\n1,2\n", &["line 1, column 2", "occurs twice"]),
-        ("payload [t]\n1\n", &["line 1, column 1", "in kg, not in t", "`payload [kg]`"]),
+        ("payload [bar]\n1\n", &["line 1, column 1", "in kg, not in bar", "`payload [kg]`"]),
+        ("payload [t]\nheavy\n", &["line 2, column 1", "write a finite number, in t"]),
         (
             "payload\n100\nheavy\n",
             &["line 3, column 1", "`heavy` is not a valid value for payload", "in kg, such as 800"],
@@ -105,7 +106,7 @@ fn an_ensemble_writes_a_row_for_every_crane() {
 fn an_ensemble_by_the_default_method_is_its_single_runs() {
     let out = folder("ensemble_bdf");
     let file = out.join("peaks.csv");
-    let loads_file = table("two_loads.csv", "payload [kg]\n200\n800\n");
+    let loads_file = table("two_loads.csv", "payload [t]\n0.2\n0.8\n");
     let arguments = ["simulate", "knuckle_boom", "--ensemble", &loads_file, "--duration", "1", "--format", "json"];
     let report = json(&[&arguments[..], &["-o", file.to_str().expect("a path")]].concat());
     assert_eq!(report["method"], "bdf");
