@@ -19,12 +19,7 @@ pub(crate) fn at(crane: &dyn DynCrane, q: &[f64]) -> Vec<f64> {
 fn overlap(stage: &StageInfo, sizes: &[[f64; 2]], frames: &[Matrix4<f64>]) -> f64 {
     let origin = |body: usize| -> Vector3<f64> { frames[body].fixed_view::<3, 1>(0, 3).into() };
     let [first, end] = stage.outer;
-    // Elements begin where the previous one ends. The first and the last one are equally long: half of a section.
-    let lengths: Vec<f64> = (first + 1..end).map(|body| (origin(body) - origin(body - 1)).norm()).collect();
-    let length = match lengths.first() {
-        Some(half) => half + lengths.iter().sum::<f64>(),
-        None => sizes[first][1],
-    };
+    let length: f64 = sizes[first..end].iter().map(|[_, length]| length).sum();
     let axis: Vector3<f64> = frames[first].fixed_view::<3, 1>(0, 0).into();
     length - axis.dot(&(origin(stage.inner) - origin(first)))
 }

@@ -34,6 +34,8 @@ links:
 drives:
   - {{coordinate: boom_psi, stiffness: 2e7, damping: 3e5, motion: {{hold: 25 deg}}}}
   - {{coordinate: stage_x, stiffness: 2e7, damping: 2e5, motion: {motion}}}
+loads:  # its sections are not equal
+  - {{name: lamp, link: boom, at: [1.1, 0, 0], force: [0, 0, -50]}}
 "
     );
     LiveCrane::from_spec(&SourceFile::new("telescope.yaml", text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
