@@ -174,8 +174,8 @@ def read_shape(shape, size):
     raise ValueError(f"unknown section {shape!r}")
 
 
-# Places of a beam closer than this fraction of its length are one.
-ONE_PLACE = 1e-4
+# Places of a beam closer to each other, or to an end, than this share of an equal section are one.
+NEAR = 0.1
 
 
 def acting(keys, link):
@@ -198,7 +198,7 @@ def borders_of(spec, link, count, length):
         return [0, length]
     whole, marks = spec.default(length), [(0.0, 0)]
     for x, place in sorted(((spec.default(x), x) for x in map(spec.number, acting(spec.keys, link))), key=lambda both: both[0]):
-        if min(abs(x - marks[-1][0]), abs(x - whole)) > ONE_PLACE * whole and 0 <= x < whole:
+        if min(abs(x - marks[-1][0]), abs(x - whole)) > NEAR * whole / count and 0 <= x < whole:
             marks.append((x, place))
     marks.append((whole, length))
     counts = [max(1, math.floor(count * (marks[k + 1][0] - marks[k][0]) / whole + 0.5)) for k in range(len(marks) - 1)]

@@ -38,8 +38,9 @@ pub(crate) struct Elements {
     pub division: Division,
 }
 
-/// Places that are closer to each other than this fraction of their beam's length end one section, not two.
-const ONE_PLACE: f64 = 1e-4;
+/// Places that are closer to each other, or to an end, than this share of an equal section end one section, not two: shorter sections are stiffer than
+/// steps of explicit methods bear.
+const NEAR: f64 = 0.1;
 /// A stretch is longer than another one if it is so by this fraction, because both are rounded numbers.
 const LONGER: f64 = 1e-9;
 
@@ -61,7 +62,7 @@ pub(crate) fn division(
     let mut begins = vec![Value::ZERO];
     for station in stations {
         let x = now(&station);
-        let apart = |end: f64| (x - end).abs() > ONE_PLACE * whole;
+        let apart = |end: f64| (x - end).abs() > NEAR * whole / count as f64;
         if begins.last().is_some_and(|last| apart(now(last))) && apart(whole) && (0.0..whole).contains(&x) {
             begins.push(station);
         }
@@ -388,8 +389,10 @@ mod tests {
         assert_eq!(elements(4, &[1.0, 3.5, 1.00001, -0.5, 0.0, 7.0]), expected);
         // Two places need three sections.
         assert_eq!(elements(1, &[2.5, 0.5]), [0.25, 1.25, 1.5, 0.5]);
-        // Short ones are in addition to those of the rest; where rounding leaves too few, the longest are divided.
-        assert_eq!(elements(2, &[0.3, 0.1]), [0.05, 0.15, 0.9, 1.6, 0.8]);
+        // Short ones are in addition to those of the rest, but places too near to each other or to an end share a border; where rounding leaves too few,
+        // the longest are divided.
+        assert_eq!(elements(2, &[0.4, 0.2]), [0.1, 0.2, 0.1 + 0.5 * 1.55, 1.55, 0.5 * 1.55]);
+        assert_eq!(elements(2, &[0.4, 0.3, 0.1]), [0.15, 0.15 + 0.5 * 1.6, 1.6, 0.5 * 1.6]);
         assert_eq!(elements(5, &[0.98, 1.96, 2.94]), [0.245, 0.49, 0.735, 0.98, 0.77, 0.28]);
         assert_eq!(elements(0, &[1.0]), [3.5]);
     }

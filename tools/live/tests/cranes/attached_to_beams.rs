@@ -40,9 +40,9 @@ fn turned(coordinates: &[(String, f64)], about: &str) -> f64 {
     coordinates.iter().filter(|(name, _)| name.ends_with(about)).map(|(_, angle)| angle).sum()
 }
 
-/// The places of attachments: a sequence that fills (0, 1) evenly.
+/// The places of attachments: a sequence that fills (0, 1) evenly, without places too near to the ends for sections of their own.
 fn places(count: usize) -> impl Iterator<Item = f64> {
-    (1..=count).map(|k| (0.618_033_988_75 * k as f64).fract().clamp(0.02, 0.98))
+    (1..=count).map(|k| (0.618_033_988_75 * k as f64).fract().clamp(0.11, 0.89))
 }
 
 /// A couple M at a turns the tip by `M a/EJ`, a force F by `F a²/2EJ`, and a torque T by `T a/GJ`, with any number of sections: the rest of the beam is
