@@ -127,7 +127,8 @@ fn columns(data: &Part<'_>, (file, at): (&str, Span), column: Option<(&str, Span
         return Err(rule::no_data(at, file, "it has a single column; columns are separated by commas"));
     }
     let unit_of = |column: usize| {
-        let Some((name, Some(unit))) = names.get(column).copied().filter(|(_, unit)| unit.is_some_and(|unit| !["", "1"].contains(&unit)))
+        let Some((name, Some(unit))) =
+            names.get(column).copied().filter(|(_, unit)| unit.is_some_and(|unit| !["", "1"].contains(&unit)))
         else {
             return Ok(None);
         };

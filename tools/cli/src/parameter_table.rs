@@ -124,8 +124,10 @@ impl Cell<'_> {
         let Some(unit) = unit.filter(|unit| wanted != unit) else { return Ok((index, None)) };
         match number_in(wanted, &format!("1 {unit}"), name) {
             Ok(_) => Ok((index, Some(unit.to_owned()))),
-            Err(_) => Err(self
-                .problem(&format!("{name} is in {wanted}, not in {unit}"), format!("write `{name} [{wanted}]`"))),
+            Err(_) => {
+                Err(self
+                    .problem(&format!("{name} is in {wanted}, not in {unit}"), format!("write `{name} [{wanted}]`")))
+            }
         }
     }
 }
