@@ -65,6 +65,11 @@ pub trait CraneModel<const N: usize>: Send + Sync {
         &[]
     }
 
+    /// Height of the section of the inner beam of a stage, m; 0 if the spec gives no shape.
+    fn stage_height(&self, _stage: usize) -> f64 {
+        0.0
+    }
+
     /// Sets the coordinates that rigid drives prescribe, and their rates, at time t. A crane without rigid drives has none.
     fn prescribe(&self, _t: f64, _q: &mut SVector<f64, N>, _v: &mut SVector<f64, N>) {}
 

@@ -54,11 +54,11 @@ impl Chain {
 
     /// The height of the section of the beam to which a body belongs, m; `None` if the spec gives no shape.
     #[must_use]
-    pub fn height_of(&self, BodyId(body): BodyId, parameters: &[f64]) -> Option<f64> {
+    pub fn height_of(&self, BodyId(body): BodyId) -> Option<&Value> {
         let link = &self.bodies[body].link;
         let Beam { outlines, .. } = self.beams.iter().find(|beam| beam.link == *link)?;
         let [height, _] = &outlines.first()?.1.size;
-        Some(height.at(parameters))
+        Some(height)
     }
 }
 

@@ -6,6 +6,7 @@ use syn::{Item, parse_quote};
 
 use super::arguments::argument_name;
 use super::arithmetic::{integer, literal};
+use super::limits::expression;
 use super::names::field_name;
 use super::number::Number;
 use super::print::plain;
@@ -197,23 +198,31 @@ fn common_methods(chain: &Chain) -> TokenStream {
     }
 }
 
-/// The method that lists the stages of telescopes; `None` without any.
+/// The methods that list the stages of telescopes and give the heights of their sections; `None` without any.
 fn stages(chain: &Chain) -> Option<TokenStream> {
-    let defaults = chain.parameter_defaults();
-    let stages: Vec<TokenStream> = chain
-        .stages()
-        .iter()
-        .map(|stage| {
-            let [first, end] = [stage.outer.first.0, stage.outer.last().0 + 1].map(integer);
-            let [inner, coordinate] = [stage.inner.0, stage.coordinate.0].map(integer);
-            let height = literal(chain.height_of(stage.inner, &defaults).unwrap_or(0.0));
-            quote!(StageInfo { outer: [#first, #end], inner: #inner, coordinate: #coordinate, height: #height })
-        })
-        .collect();
+    let stages = chain.stages();
+    let infos = stages.iter().map(|stage| {
+        let [first, end] = [stage.outer.first.0, stage.outer.last().0 + 1].map(integer);
+        let [inner, coordinate] = [stage.inner.0, stage.coordinate.0].map(integer);
+        quote!(StageInfo { outer: [#first, #end], inner: #inner, coordinate: #coordinate })
+    });
+    let parameters = parse_quote!(self.constants.params);
+    let heights = stages.iter().enumerate().map(|(index, stage)| {
+        let (index, height) = (integer(index), chain.height_of(stage.inner));
+        let height = height.map_or_else(|| literal(0.0), |height| expression(height, chain, &parameters));
+        quote!(#index => #height)
+    });
     (!stages.is_empty()).then(|| {
         quote! {
             fn stages(&self) -> &[StageInfo] {
-                &[#(#stages),*]
+                &[#(#infos),*]
+            }
+
+            fn stage_height(&self, stage: usize) -> f64 {
+                match stage {
+                    #(#heights,)*
+                    _ => 0.0,
+                }
             }
         }
     })

@@ -30,7 +30,7 @@ pub fn limits(chain: &Chain) -> Vec<Item> {
         quote!(PARAMETERS[#index].check(self.#name)?;)
     });
     let relations = chain.relations.iter().map(|Relation { margin, refusal: broken }| {
-        let (margin, broken) = (expression(margin, chain), refusal(broken));
+        let (margin, broken) = (expression(margin, chain, &variable("self")), refusal(broken));
         quote! {
             let margin = #margin;
             if margin.is_nan() || margin <= 0.0 {
@@ -69,12 +69,12 @@ fn refusal(Refusal { code, title, help }: &Refusal) -> TokenStream {
     quote!(Refusal { code: #code, title: #title, help: #help })
 }
 
-/// A number of the chain over the fields of `self`.
-fn expression(value: &Value, chain: &Chain) -> Expr {
-    let of = |value: &Value| expression(value, chain);
+/// A number of the chain over the fields of `parameters`.
+pub fn expression(value: &Value, chain: &Chain, parameters: &Expr) -> Expr {
+    let of = |value: &Value| expression(value, chain, parameters);
     match value {
         Value::Constant(c) => literal(*c),
-        Value::Parameter(ParameterId(index)) => field(variable("self"), &field_name(&chain.parameters[*index].name)),
+        Value::Parameter(ParameterId(index)) => field(parameters.clone(), &field_name(&chain.parameters[*index].name)),
         Value::Neg(a) => negative(of(a)),
         Value::Add(a, b) => match &**b {
             Value::Neg(b) => difference(of(a), of(b)),

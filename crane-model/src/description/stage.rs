@@ -9,6 +9,4 @@ pub struct StageInfo {
     pub inner: usize,
     /// Index of the coordinate along which it slides: the overlap becomes shorter as it grows.
     pub coordinate: usize,
-    /// Height of the section of the inner beam with default parameters, m; 0 if the spec gives no shape.
-    pub height: f64,
 }

@@ -68,6 +68,10 @@ impl<const N: usize, H: Deref<Target: CraneModel<N>> + Send + Sync> DynModel for
         self.0.stages()
     }
 
+    fn stage_height(&self, stage: usize) -> f64 {
+        self.0.stage_height(stage)
+    }
+
     fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]) {
         let (mut pose, mut rates) = (vector(q), vector(v));
         self.0.prescribe(t, &mut pose, &mut rates);

@@ -58,6 +58,9 @@ pub trait DynModel: Send + Sync {
     /// The beams that slide in others on pads.
     fn stages(&self) -> &[StageInfo];
 
+    /// Height of the section of the inner beam of a stage, m; 0 if the spec gives no shape.
+    fn stage_height(&self, stage: usize) -> f64;
+
     /// Sets the coordinates that rigid drives prescribe, and their rates, at time t.
     fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]);
 

@@ -3,7 +3,7 @@
 use super::Table;
 use crate::dyn_crane::DynCrane;
 use crate::nalgebra::{Matrix4, Vector3};
-use crate::{Description, StageInfo};
+use crate::StageInfo;
 
 /// The overlap of each stage with its outer beam at a pose, in the order of the stages, m; negative if it is out of the beam.
 pub(crate) fn at(crane: &dyn DynCrane, q: &[f64]) -> Vec<f64> {
@@ -26,9 +26,8 @@ fn overlap(stage: &StageInfo, sizes: &[[f64; 2]], frames: &[Matrix4<f64>]) -> f6
 
 /// Stages with an overlap that holds them poorly or not at all, at a pose.
 pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
-    let overlaps = at(crane, q);
-    let stages = crane.stages().iter().zip(overlaps);
-    stages.filter_map(|(stage, overlap)| caution(crane.description(), stage, (overlap, q), "")).collect()
+    let overlaps = at(crane, q).into_iter().enumerate();
+    overlaps.filter_map(|(stage, overlap)| caution(crane, stage, (overlap, q), "")).collect()
 }
 
 /// The same over a run, with the shortest overlap of each.
@@ -48,15 +47,16 @@ pub(super) fn of_run(crane: &dyn DynCrane, table: &Table) -> Vec<String> {
             }
         }
     }
-    let found = stages.iter().zip(&shortest);
+    let found = shortest.iter().enumerate();
     found
-        .filter_map(|(stage, (overlap, q, time))| {
-            caution(description, stage, (*overlap, q), &format!(", at {time:.2} s"))
-        })
+        .filter_map(|(stage, (overlap, q, time))| caution(crane, stage, (*overlap, q), &format!(", at {time:.2} s")))
         .collect()
 }
 
-fn caution(description: &Description, stage: &StageInfo, (overlap, q): (f64, &[f64]), when: &str) -> Option<String> {
+/// What to say of the stage of an index.
+fn caution(crane: &dyn DynCrane, stage: usize, (overlap, q): (f64, &[f64]), when: &str) -> Option<String> {
+    let (description, height) = (crane.description(), crane.stage_height(stage));
+    let stage = &crane.stages()[stage];
     let [inner, outer] = [stage.inner, stage.outer[0]].map(|body| &description.bodies[body].link);
     let name = &description.coordinates[stage.coordinate].name;
     let x = q[stage.coordinate];
@@ -65,11 +65,10 @@ fn caution(description: &Description, stage: &StageInfo, (overlap, q): (f64, &[f
             "{inner} is out of {outer}: its overlap is {overlap:.3} m with {name} at {x:.3} m{when}; nothing holds it there, and results mean nothing"
         ));
     }
-    (overlap < stage.height).then(|| {
+    (overlap < height).then(|| {
         format!(
-            "{inner} overlaps {outer} by only {overlap:.3} m with {name} at {x:.3} m{when}, less than the height of its section, {:.3} m: real pads \
-             are too long, and walls too weak, for such a hold",
-            stage.height
+            "{inner} overlaps {outer} by only {overlap:.3} m with {name} at {x:.3} m{when}, less than the height of its section, {height:.3} m: real pads \
+             are too long, and walls too weak, for such a hold"
         )
     })
 }

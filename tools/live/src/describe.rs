@@ -125,12 +125,10 @@ pub fn describe_loop_joints(chain: &Chain) -> Vec<LoopJointInfo> {
 
 /// The stages of its telescopes.
 pub fn describe_stages(chain: &Chain) -> Vec<StageInfo> {
-    let defaults = chain.parameter_defaults();
     let stage = |stage: &chain::Stage<'_>| StageInfo {
         outer: [stage.outer.first.0, stage.outer.last().0 + 1],
         inner: stage.inner.0,
         coordinate: stage.coordinate.0,
-        height: chain.height_of(stage.inner, &defaults).unwrap_or(0.0),
     };
     chain.stages().iter().map(stage).collect()
 }

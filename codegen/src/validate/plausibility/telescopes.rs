@@ -68,7 +68,7 @@ impl Plausibility<'_> {
     fn overlap(&mut self, stage: &Stage<'_>, x: f64, at: Span) {
         let chain = self.chain;
         let overlap = stage.overlap(x, &self.values);
-        let height = chain.height_of(stage.inner, &self.values).unwrap_or(0.0);
+        let height = chain.height_of(stage.inner).map_or(0.0, |height| height.at(&self.values));
         let [inner, outer] = [stage.inner, stage.outer.first].map(|body| &chain.bodies[body.0].link);
         let name = &chain.coordinates[stage.coordinate.0].name;
         let least = rounded(stage.overlap(0.0, &self.values) - height);

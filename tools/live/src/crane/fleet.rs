@@ -197,6 +197,10 @@ impl DynModel for Fleet {
         &[]
     }
 
+    fn stage_height(&self, _: usize) -> f64 {
+        0.0
+    }
+
     fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]) {
         self.call(FunctionId::PrescribedMotions, &Arguments { t, ..Arguments::none() }, |results| {
             for (drive, [position, rate]) in self.crane.chain().rigid_drives().zip(results.as_chunks().0) {

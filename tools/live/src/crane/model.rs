@@ -1,5 +1,6 @@
 //! Poses, forces, energies and motions of a live crane.
 
+use crane_codegen::chain::BodyId;
 use crane_codegen::program::FunctionId;
 use crane_model::dyn_crane::DynModel;
 use crane_model::nalgebra::Matrix4;
@@ -34,6 +35,11 @@ impl DynModel for LiveCrane {
 
     fn stages(&self) -> &[StageInfo] {
         &self.stages
+    }
+
+    fn stage_height(&self, stage: usize) -> f64 {
+        let height = self.stages.get(stage).and_then(|stage| self.chain().height_of(BodyId(stage.inner)));
+        height.map_or(0.0, |height| height.at(&self.parameters))
     }
 
     fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]) {

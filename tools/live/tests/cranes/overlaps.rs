@@ -17,7 +17,7 @@ fn crane(sections: &str, motion: &str) -> LiveCrane {
     let text = format!(
         "format: 1
 name: telescope
-parameters: {{reach: {{value: 4}}, inside: {{value: 3.5}}, payload: {{value: 50, unit: kg}}}}
+parameters: {{reach: {{value: 4}}, inside: {{value: 3.5}}, payload: {{value: 50, unit: kg}}, high: {{value: 0.26, unit: m}}}}
 materials: {{steel: {{E: 2.1e11, G: 8.1e10, density: 7850, yield_stress: 7e9}}}}
 links:
   - name: boom
@@ -27,7 +27,7 @@ links:
   - name: stage
     joint: {{prismatic: {{axis: x}}}}
     beam:
-      {{length: 3.8, sections: 2, material: steel, section: {{box: {{height: 0.26, width: 0.18, thickness: 0.007}}}}, damping: {{beta: 1e-3}},
+      {{length: 3.8, sections: 2, material: steel, section: {{box: {{height: high, width: 0.18, thickness: 0.007}}}}, damping: {{beta: 1e-3}},
        slides_in: {{beam: boom, overlap: inside, pads: {{front: {{stiffness: [2e8, 2e8, 4e6], damping: [2e5, 2e5, 4e3]}},
        rear: {{stiffness: [2e8, 2e8, 0], damping: [2e5, 2e5, 0]}}}}}}}}
   - {{name: load, mass: payload, com: [0, -0.1, 0]}}
@@ -60,6 +60,10 @@ fn a_pose_says_what_little_holds_a_stage() {
         assert!(short.contains(SHORT), "{sections}: {short}");
         assert!(!long.contains("overlap"), "{sections}: {long}");
     }
+    // The height is that of the live section.
+    let mut lower = crane("3", "{hold: 3.3}");
+    lower.set_parameter(3, 0.19).expect("a height");
+    assert!(!at_rest(&lower).contains("overlap"), "{}", at_rest(&lower));
 }
 
 /// The overlap does not depend on where the boom ends, but on what is in it.
