@@ -6,6 +6,7 @@ use fastrand::Rng;
 use serde_json::json;
 
 use crate::feature::{Feature as F, Features, excluded, with_needs};
+use crate::forms::vary;
 use crate::tree::{Tree, push};
 
 /// A random crane.
@@ -62,6 +63,7 @@ pub fn with_features(seed: u64, features: &Features) -> Tree {
     let rng = RefCell::new(Rng::with_seed(seed));
     let mut writer = Writer { rng, features, tree: json!({}), angles: [0.0; 3], stage: None };
     writer.write(seed);
+    vary(seed, &mut writer.tree);
     writer.tree
 }
 

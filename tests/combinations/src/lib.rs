@@ -15,6 +15,7 @@ pub mod cuts;
 pub mod descriptions;
 pub mod feature;
 mod fleets;
+mod forms;
 pub mod laws;
 pub mod meshes;
 pub mod observe;
