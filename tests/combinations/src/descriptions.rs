@@ -5,6 +5,7 @@ use fastrand::Rng;
 use serde_json::{Value, json};
 
 use crate::crane::BOOM;
+use crate::observe::live;
 use crate::pins;
 use crate::tree::{Tree, entry, entry_mut, for_each_key, for_each_place, numbers, push, source};
 
@@ -96,16 +97,30 @@ fn without_stresses_and_boom_elements(name: &str) -> Option<String> {
     without_boom_elements(name).filter(|name| !name.ends_with("stress"))
 }
 
-/// The boom in two beams with the same sections, joined by a fixed joint between two of them.
+/// Ends of the sections of a link, from its beginning to its end, m: springs are at the ends of elements, and in the middles of sections.
+fn borders(tree: &Tree, link: &str) -> Option<Vec<f64>> {
+    let crane = live(&source(tree)).ok()?;
+    let bodies = crane.chain().bodies.iter().filter(|body| body.link == link);
+    let lengths: Vec<f64> = bodies.map(|body| body.length.at(crane.parameters())).collect();
+    let (mut spring, mut borders) = (0.0, vec![0.0]);
+    for length in lengths.iter().take(lengths.len().saturating_sub(1)) {
+        spring += length;
+        borders.push(2.0 * spring - borders.last()?);
+    }
+    Some(borders)
+}
+
+/// The boom in two beams with the same sections, joined by a fixed joint between two of them; none if the halves are divided elsewhere.
 fn split_boom(tree: &Tree, rng: &mut Rng) -> Option<Second> {
     let mut second = tree.clone();
     let links = second["links"].as_array_mut()?;
     let at = links.iter().position(|link| link["name"] == "boom")?;
     let beam = links[at]["beam"].clone();
-    let sections = beam["sections"].as_u64().filter(|sections| *sections > 1)?;
-    let first = rng.u64(1..sections);
-    let share = first as f64 / sections as f64;
-    let cut = share * BOOM;
+    let ends = borders(tree, "boom")?;
+    let sections = ends.len().checked_sub(1).filter(|sections| *sections > 1)?;
+    let first = rng.usize(1..sections);
+    let cut = ends[first];
+    let share = cut / BOOM;
     let tapered = beam["parts"].as_array().into_iter().flatten().any(|part| part["to"].is_object());
     let mut halves = [beam.clone(), beam];
     for (half, (count, length)) in halves.iter_mut().zip([(first, cut), (sections - first, BOOM - cut)]) {
@@ -141,6 +156,12 @@ fn split_boom(tree: &Tree, rng: &mut Rng) -> Option<Second> {
     // The pivot of a linkage is on the link of the foot, and has to be split with it.
     let pivot = second["cylinders"].as_array().into_iter().flatten().any(|cylinder| cylinder["linkage"].is_object());
     if pivot {
+        return None;
+    }
+    let behind = borders(&second, "front")?.into_iter().map(|x| cut + x);
+    let ends_of_halves: Vec<f64> = borders(&second, "boom")?.into_iter().chain(behind.skip(1)).collect();
+    let same = |(one, other): (&f64, &f64)| (one - other).abs() < 1e-9;
+    if ends_of_halves.len() != ends.len() || !ends.iter().zip(&ends_of_halves).all(same) {
         return None;
     }
     Some(Second::of(&second).named(if tapered { without_stresses_and_boom_elements } else { without_boom_elements }))
@@ -204,23 +225,26 @@ fn boom_one_by_one(tree: &Tree, _: &mut Rng) -> Option<Second> {
     if beam["bend"].is_object() {
         return None;
     }
-    let sections = beam["sections"].as_u64()?;
-    let d = BOOM / sections as f64;
+    beam["sections"].as_u64()?;
+    let sections: Vec<f64> = borders(tree, "boom")?.windows(2).map(|ends| ends[1] - ends[0]).collect();
     let [_, jy, jz, jo] = box_section(&beam["section"])?;
-    let element = |k: u64| {
-        let length = if k == 0 || k == sections { 0.5 * d } else { d };
+    let halves = |k: usize| sections.get(k).map_or(0.0, |section| 0.5 * section);
+    let element = |k: usize| {
+        let length = k.checked_sub(1).map_or(0.0, halves) + halves(k);
         let (mass, [xx, yy, zz]) = piece_of_boom(&beam, length)?;
         Some(
             json!({"length": length, "mass": mass, "com": [0.5 * length, 0, 0], "inertia": {"Ixx": xx, "Iyy": yy, "Izz": zz}}),
         )
     };
-    let elements: Vec<Tree> = (0..=sections).map(element).collect::<Option<_>>()?;
-    let stiffness = [2.1e11 * jz / d, 2.1e11 * jy / d, 8.1e10 * jo / d];
-    let each = |factor: f64| json!({"psi": factor * stiffness[0], "theta": factor * stiffness[1], "phi": factor * stiffness[2]});
+    let elements: Vec<Tree> = (0..=sections.len()).map(element).collect::<Option<_>>()?;
     let beta = beam["damping"]["beta"].as_f64().unwrap_or(0.0);
-    let spring = json!({"stiffness": each(1.0), "damping": each(beta)});
-    link["beam"] =
-        json!({"length": BOOM, "elements": elements, "springs": vec![spring; usize::try_from(sections).ok()?]});
+    let spring = |d: &f64| {
+        let stiffness = [2.1e11 * jz / d, 2.1e11 * jy / d, 8.1e10 * jo / d];
+        let each = |factor: f64| json!({"psi": factor * stiffness[0], "theta": factor * stiffness[1], "phi": factor * stiffness[2]});
+        json!({"stiffness": each(1.0), "damping": each(beta)})
+    };
+    let springs: Vec<Tree> = sections.iter().map(spring).collect();
+    link["beam"] = json!({"length": BOOM, "elements": elements, "springs": springs});
     if beam["section_joint"].is_string() {
         link["beam"]["section_joint"] = beam["section_joint"].clone();
     }
