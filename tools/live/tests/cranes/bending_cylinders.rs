@@ -77,8 +77,8 @@ fn a_boom_bends_under_its_cylinder() {
     };
     let bodies = &crane.description().bodies;
     let of_head = bodies.iter().position(|body| body.name.as_ref() == "boom_2").expect("an element");
-    // Elements of symmetric sections begin at 0, 0.4, 1.2, 2.0, 2.8 and 3.6 m.
-    let head = position(of_head, [HEAD - 1.2, -0.1, 0.0]);
+    // A section ends at the head: two are 0.85 m long before it, three 0.767 m behind it. Elements begin at 0, 0.425, 1.275, 2.083, 2.85 and 3.617 m.
+    let head = position(of_head, [HEAD - 1.275, -0.1, 0.0]);
     let foot = position(0, [0.1, 0.0, -1.2]);
     let along = (head - foot).normalize();
     // Weights of the elements, each in its middle, and of the load.
