@@ -17,6 +17,7 @@ pub mod chain;
 pub mod compile;
 pub mod diagnostic;
 pub mod dump;
+pub mod edit;
 pub mod emit;
 pub mod emit_c;
 pub mod exchange;

@@ -4,7 +4,6 @@
 //! Exported files have the coordinates of the crane: one joint of one degree of freedom per coordinate, with its name, in the
 //! order of `q`.
 
-mod bending;
 mod import;
 mod mass;
 mod mjcf;
@@ -13,7 +12,6 @@ mod springs;
 mod urdf;
 pub mod xml;
 
-pub use bending::{BeamEnd, Unbending, with_beam};
 pub use import::{CATALOGUE, ImportOptions, Imported, import, with_includes};
 pub use mjcf::{Inexpressible, mjcf};
 pub use springs::springs;

@@ -1,9 +1,9 @@
 //! Beams that slide in beams on pads: how far a stage is in the outer beam.
 
 use super::Table;
+use crate::StageInfo;
 use crate::dyn_crane::DynCrane;
 use crate::nalgebra::{Matrix4, Vector3};
-use crate::StageInfo;
 
 /// The overlap of each stage with its outer beam at a pose, in the order of the stages, m; negative if it is out of the beam.
 pub(crate) fn at(crane: &dyn DynCrane, q: &[f64]) -> Vec<f64> {

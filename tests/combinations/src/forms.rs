@@ -96,12 +96,16 @@ fn values<'t>(tree: &'t mut Tree, mapping: &str) -> impl Iterator<Item = &'t mut
 /// A section of about the size of a box.
 fn section(rng: &mut Rng, given: &Value) -> Value {
     let side = |key: &str| given["box"][key].as_f64();
-    let (Some(height), Some(width), Some(wall)) = (side("height"), side("width"), side("thickness")) else { return given.clone() };
+    let (Some(height), Some(width), Some(wall)) = (side("height"), side("width"), side("thickness")) else {
+        return given.clone();
+    };
     match rng.u8(0..6) {
         0 => json!({"tube": {"diameter": height, "thickness": wall}}),
         1 => json!({"circle": {"diameter": round(0.5 * height)}}),
         2 => json!({"solid": {"height": round(0.5 * height), "width": round(0.5 * width)}}),
-        3 => json!({"welded_box": {"height": height, "width": width, "flange": round(1.2 * wall), "web": round(0.8 * wall)}}),
+        3 => {
+            json!({"welded_box": {"height": height, "width": width, "flange": round(1.2 * wall), "web": round(0.8 * wall)}})
+        }
         4 => json!({"numbers": {"area": 2.6e-3, "Jy": 4e-6, "Jz": 9e-6, "Jo": 8e-6,
             "moduli": {"Wy": 7e-5, "Wz": 1.1e-4, "Wt": 1.4e-4, "Ay": 1.3e-3, "Az": 9e-4}}}),
         _ => given.clone(),
@@ -114,7 +118,8 @@ fn mass(rng: &mut Rng, link: &mut Value) {
     let Some(whole) = given.as_f64() else { return };
     match rng.u8(0..3) {
         0 => {
-            link["inertia"] = json!({"about": "com", "Ixx": 14, "Iyy": 16, "Izz": 20, "Ixy": 0.5, "Ixz": -1, "Iyz": 0.3});
+            link["inertia"] =
+                json!({"about": "com", "Ixx": 14, "Iyy": 16, "Izz": 20, "Ixy": 0.5, "Ixz": -1, "Iyz": 0.3});
         }
         1 => {
             // About the frame: those of a body at the origin, and the mass at its centre.
@@ -128,9 +133,7 @@ fn mass(rng: &mut Rng, link: &mut Value) {
             for key in ["mass", "com", "inertia"] {
                 link.as_object_mut().and_then(|link| link.remove(key));
             }
-            let body = |name: &str, share: f64, x: f64| {
-                json!({"name": name, "mass": round(share * whole), "com": [x, 0.3, 0], "inertia": {"gyration": [0.3, 0.35, 0.4]}})
-            };
+            let body = |name: &str, share: f64, x: f64| json!({"name": name, "mass": round(share * whole), "com": [x, 0.3, 0], "inertia": {"gyration": [0.3, 0.35, 0.4]}});
             link["bodies"] = json!([body("deck", 0.7, 0.3), body("rail", 0.3, 0.6)]);
         }
     }

@@ -93,7 +93,9 @@ fn random_cranes_have_every_form_of_the_language() {
     let left_out = |(name, form): &Form| LEFT_OUT.iter().any(|(of, one, _)| of == name && (*one == "*" || one == form));
     let missing: Vec<&Form> = wanted.difference(&found).filter(|form| !left_out(form)).collect();
     assert!(missing.is_empty(), "no random crane has {missing:#?}");
-    let idle = |(of, one, _): &&(&str, &str, &str)| !wanted.difference(&found).any(|(name, form)| of == name && (*one == "*" || one == form));
+    let idle = |(of, one, _): &&(&str, &str, &str)| {
+        !wanted.difference(&found).any(|(name, form)| of == name && (*one == "*" || one == form))
+    };
     let there: Vec<_> = LEFT_OUT.iter().filter(idle).collect();
     assert!(there.is_empty(), "some random crane has {there:?}");
 }

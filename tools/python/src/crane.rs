@@ -7,10 +7,11 @@ use std::sync::{Mutex, PoisonError};
 use crane_codegen::chain::{Profile, Transmission};
 use crane_codegen::compile::check_with;
 use crane_codegen::diagnostic::MAX_BYTES;
-use crane_codegen::exchange::{BeamEnd, ImportOptions, Unbending};
+use crane_codegen::edit::{BeamEnd, Unbending};
+use crane_codegen::exchange::ImportOptions;
 use crane_codegen::picture::picture;
 use crane_codegen::units::Quantity;
-use crane_codegen::{Checked, SourceFile, build, exchange, files};
+use crane_codegen::{Checked, SourceFile, build, edit, exchange, files};
 use crane_live::LiveCrane;
 use crane_live::rows::Evaluation;
 use crane_model::Description;
@@ -204,7 +205,7 @@ impl Crane {
             (None, Some(point)) => BeamEnd::Point(point),
             (None, None) => BeamEnd::Next,
         };
-        match exchange::with_beam(&self.source, link, end, keys) {
+        match edit::with_beam(&self.source, link, end, keys) {
             Ok(changed) => Ok(changed.text),
             Err(Unbending::Mistakes(found)) => Err(spec_error(py, &found)),
             Err(Unbending::Refused(why)) => Err(PyValueError::new_err(why)),

@@ -71,10 +71,12 @@ fn everything_moves_with_the_element_at_its_own_place() {
             assert!((straight - Vector3::new(x, -SIDES[1], SIDES[0])).amax() < 1e-14, "{x}: {straight}");
             // Which springs move it: those before it. A section ends at the place, so that none is there.
             let lengths = crane.body_sizes_at();
-            let elements = crane.description().bodies.iter().zip(&lengths).filter(|(body, _)| body.link.as_ref() == "boom");
+            let elements =
+                crane.description().bodies.iter().zip(&lengths).filter(|(body, _)| body.link.as_ref() == "boom");
             let lengths: Vec<f64> = elements.map(|(_, [_, length])| *length).collect();
             for (j, coordinate) in coordinates.iter().enumerate() {
-                let Some(spring) = coordinate.name.strip_prefix("boom_").and_then(|name| name[..1].parse::<usize>().ok())
+                let Some(spring) =
+                    coordinate.name.strip_prefix("boom_").and_then(|name| name[..1].parse::<usize>().ok())
                 else {
                     continue;
                 };

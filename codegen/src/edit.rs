@@ -1,8 +1,9 @@
-//! A rigid link of a robot replaced by a beam that bends.
+//! Edits of specs: a rigid link of a robot replaced by a beam that bends.
 
 use std::fmt::Write as _;
 
 use crate::diagnostic::{Diagnostics, SourceFile};
+use crate::read::read;
 use crate::spec::{Crane, Either, Link, Number, On, Place, Placement, Scalar, Spanned, Turn, Vector, entries};
 
 /// Why a link cannot become a beam.
@@ -39,7 +40,7 @@ struct End<'a> {
 /// # Errors
 /// The spec has mistakes, or the link cannot become a beam.
 pub fn with_beam(source: &SourceFile, link: &str, to: BeamEnd<'_>, keys: &str) -> Result<SourceFile, Unbending> {
-    let crane = crate::read(source).map_err(Unbending::Mistakes)?.crane;
+    let crane = read(source).map_err(Unbending::Mistakes)?.crane;
     let changes = changes(&crane, link, to, keys).map_err(Unbending::Refused)?;
     Ok(source.changed(&changes))
 }
