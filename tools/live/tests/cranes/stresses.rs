@@ -166,10 +166,8 @@ fn the_peak_at_a_pin_converges_with_the_square_of_the_sections() {
         fine + (fine - coarse) / 3.0
     };
     let errors = [2, 4, 8, 16].map(|sections| (greatest(sections) - exact).abs() / exact);
-    assert!(errors[1] < 0.03, "{errors:?}");
-    // Whole numbers of sections on both sides of the pin do not double exactly: over three doublings.
-    let order = (errors[0] / errors[3]).log2() / 3.0;
-    assert!(order > 1.6, "{order}: {errors:?}");
+    // A section ends at the pin, so that only the pose is not exact. Whole numbers of sections on both sides do not double exactly: over three doublings.
+    assert!(errors[0] < 3e-4 && errors[3] < errors[0] / 8.0, "{errors:?}");
 }
 
 /// A force at every place of a beam, at ends of elements, inside them and at both ends: everywhere one section before and one after it, and
