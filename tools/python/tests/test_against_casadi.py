@@ -247,7 +247,7 @@ pump: {max_flow: 8e-4, pressure: 30e6}
 """
     )
     derived_crane = read_crane(file)
-    states = random_states(derived_crane, NEAR_AND_FAR, 7)
+    states = random_states(derived_crane, NEAR_AND_FAR, 8)
     derived = Derivations(derived_crane).evaluate(states)
     c = crane.load(str(file))
     names = ("transforms", "mass_matrix", "bias", "cylinder_states", "cylinder_jacobians", "static_residual", "tangent_stiffness")

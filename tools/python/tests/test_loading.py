@@ -182,7 +182,7 @@ def test_a_link_of_a_robot_bends():
     for one, other in ((bending.mass_matrix(q), by_hand.mass_matrix(q)), (bending.forward_dynamics(q, v), by_hand.forward_dynamics(q, v))):
         # Rounding of the angles of the placement, through a mass matrix of condition 1e6.
         assert np.allclose(one, other, rtol=1e-9, atol=1e-9 * np.abs(other).max())
-    frequencies = [c.modes(np.zeros(c.n)).frequency for c in (bending, by_hand)]
+    frequencies = [c.modes(np.zeros(c.n)).frequencies for c in (bending, by_hand)]
     assert np.allclose(*frequencies, rtol=1e-9)
     # Undeformed, the hand is where it was.
     straight = np.zeros(bending.n)
