@@ -5,7 +5,7 @@
 //! valve meets. A valve that opens slightly now and then leaves neither side full, which determines the pressures: `p + p′ = p_s + p_T`, with
 //! the tank's pressure `p_T`. With leakage past the piston the spool is open at rest, and its own slope counts.
 
-use super::{DampedMode, NoModes, SmallMotions, StateSpace, grows, held::add_cylinders};
+use super::{DampedMode, NoModes, SmallMotions, StateSpace, grows, held::add_cylinders, verdict::GROWTH};
 use crate::{
     dyn_crane::DynCrane,
     force_states::ForceStates,
@@ -17,6 +17,9 @@ use crate::{
 const ACCURATE: f64 = 1e-3;
 /// Smallest gain that is tried, as a fraction of the servo's own.
 const LEAST: f64 = 1e-6;
+
+/// How much faster than without servos a crane drifts that a servo drives away.
+const FASTER: f64 = 1.5;
 
 /// A servo whose loop with the crane is unstable about a pose at rest.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,8 +65,13 @@ pub fn unstable_servos(crane: &dyn DynCrane, t: f64, q: &[f64]) -> Result<Vec<Un
     let space = with_servos(crane, t, q)?;
     let n = space.unknowns().len();
     let rows: Vec<usize> = servos.iter().map(|servo| 2 * n + servo.spool).collect();
-    let loops = Loops { space, rows };
     let all = vec![1.0; servos.len()];
+    let mut loops = Loops { space, rows, drift: 0.0 };
+    // Without its servo a crane sinks onto a valve that leaks, faster the lower it is: no fault of the servos.
+    loops.drift = loops
+        .growing(&vec![0.0; all.len()])?
+        .filter(|mode| mode.eigenvalue.im.abs() < GROWTH)
+        .map_or(0.0, |mode| mode.eigenvalue.re);
     let Some(together) = loops.growing(&all)? else { return Ok(Vec::new()) };
     let alone = |index: usize, gain: f64| {
         let mut gains = vec![0.0; all.len()];
@@ -108,6 +116,8 @@ struct Loops {
     space: StateSpace,
     /// Rows of their spools, whose entries in the columns of the coordinates are proportional to the gains.
     rows: Vec<usize>,
+    /// How fast the crane drifts away without its servos, 1/s.
+    drift: f64,
 }
 
 impl Loops {
@@ -118,7 +128,9 @@ impl Loops {
         for (row, factor) in self.rows.iter().zip(factors) {
             space.matrix.view_mut((*row, 0), (1, n)).scale_mut(*factor);
         }
-        let growing = space.modes()?.into_iter().filter(|mode| grows(mode.eigenvalue));
+        let is_drift =
+            |mode: &DampedMode| mode.eigenvalue.im.abs() < GROWTH && mode.eigenvalue.re <= FASTER * self.drift;
+        let growing = space.modes()?.into_iter().filter(|mode| grows(mode.eigenvalue) && !is_drift(mode));
         Ok(growing.max_by(|a, b| a.eigenvalue.re.total_cmp(&b.eigenvalue.re)))
     }
 

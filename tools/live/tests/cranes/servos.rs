@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
 
-use crane_codegen::SourceFile;
+use crane_codegen::{SourceFile, build};
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::{InitialState, Method, Settings};
@@ -151,4 +151,25 @@ fn the_caution_names_the_servo_and_a_gain_that_is_stable() {
     let caution = cautions::of_servos(crane, 0.0, &rest.q).join("; ");
     assert!(caution.starts_with("servo of ram is unstable with slide at 26.5"), "{caution}");
     assert!(caution.contains("use a `gain` below 140 instead of 300 1/m"), "{caution}");
+}
+
+/// Oil leaks past the pistons of a crane with three servos: without them it sinks. This does not hide that two of them make it swing, with gains that are
+/// too high; a run with them ends with the crane on two feet.
+#[test]
+fn a_crane_that_sinks_without_its_servos_may_swing_by_them() {
+    let path = format!("{}/../../specs/eight_link_hydraulic.yaml", env!("CARGO_MANIFEST_DIR"));
+    let shipped = build::open(path.as_ref()).unwrap_or_else(|failure| panic!("{failure}"));
+    let names = ["boom_cylinder", "outer_boom_cylinder", "telescope_cylinder"];
+    let found = |gain: f64| {
+        let cylinders: String = names.map(|name| format!("  - {{name: {name}, valve: {{gain: {gain}}}}}\n")).concat();
+        let crane = LiveCrane::from_spec(&shipped.changed(&format!("cylinders:\n{cylinders}"))).expect("a crane");
+        let crane: &dyn DynCrane = &crane;
+        let rest = crane.equilibrium(&crane_model::statics::Settings::default());
+        let found = unstable_servos(crane, 0.0, &rest.q).expect("modes");
+        found.into_iter().map(|servo| (servo.cylinder, servo.gain)).collect::<Vec<_>>()
+    };
+    assert_eq!(found(3.0), []);
+    let swinging = found(25.0);
+    assert_eq!(swinging.iter().map(|(cylinder, _)| *cylinder).collect::<Vec<_>>(), [0, 1]);
+    assert!(swinging.iter().all(|(_, gain)| (3.0..25.0).contains(gain)), "{swinging:?}");
 }
