@@ -683,6 +683,7 @@ fn massless_frames(tree: &Tree, _: &mut Rng) -> Option<Second> {
 /// Keys whose numbers are proportional to the unit of mass.
 const WITH_MASS: &[&str] = &[
     "axial_stiffness",
+    "progression",
     "mass",
     "Ixx",
     "Iyy",
