@@ -295,7 +295,7 @@ fn other_names(tree: &Tree, _: &mut Rng) -> Option<Second> {
             *value = json!(renamed(name));
         }
     });
-    for list in ["damping", "stops", "friction", "guess"] {
+    for list in ["damping", "stops", "friction", "guess", "armature"] {
         if let Some(entries) = second.get(list).and_then(Value::as_object) {
             let entries: serde_json::Map<_, _> =
                 entries.iter().map(|(name, value)| (renamed(name), value.clone())).collect();

@@ -127,7 +127,7 @@ fn mass(rng: &mut Rng, link: &mut Value) {
             let [x, y, z] = at[..] else { return };
             let moment = |own: f64, a: f64, b: f64| round(own + whole * (a * a + b * b));
             link["inertia"] = json!({"about": "origin", "Ixx": moment(14.0, y, z), "Iyy": moment(16.0, x, z), "Izz": moment(20.0, x, y),
-                "Ixz": round(-whole * x * z)});
+                "Ixy": round(-whole * x * y), "Ixz": round(-whole * x * z), "Iyz": round(-whole * y * z)});
         }
         _ => {
             for key in ["mass", "com", "inertia"] {
