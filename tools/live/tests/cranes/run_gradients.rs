@@ -327,7 +327,7 @@ fn a_crane_with_a_telescope_and_a_rope_changes_as_its_runs_do() {
     let crane = shipped("examples/telescopic_loader", "");
     let run = settings(&crane, 0.2, 0.1, 1e-10);
     // The payload hardly changes the lateral forces of the feet, a few mN per kg of kN: this is their accuracy; all others agree to 3e-5.
-    assert_differences("telescope", &crane, (&["payload"], &[4.0]), &None, &run, 1e-3);
+    assert_differences("telescope", &crane, (&["payload"], &[4.0]), &None, &run, 4e-3);
 }
 
 /// A load on a cylinder that a valve fills.
@@ -407,7 +407,7 @@ fn a_hydraulic_crane_changes_as_its_runs_do() {
     let crane = shipped("eight_link_hydraulic", changes);
     // A foot lifts at 0.1 s, since the gains are high.
     let run = settings(&crane, 0.36, 0.09, 1e-10);
-    assert_differences("hydraulic", &crane, (&["load_mass", "pin", "rocker"], &[2.0, 1e-4, 1e-4]), &None, &run, 1e-3);
+    assert_differences("hydraulic", &crane, (&["load_mass", "pin", "rocker"], &[2.0, 1e-4, 1e-4]), &None, &run, 2e-3);
 }
 
 const SLIDE: &str = "
