@@ -75,16 +75,16 @@ fn changes(crane: &Crane, name: &str, to: BeamEnd<'_>, keys: &str) -> Result<Str
     if links.iter().any(|(other, _)| *other == beam) {
         return Err(format!("there is a link `{beam}` already"));
     }
-    let gone: String = [
+    let replaced = [
         ("mass", link.mass.is_some()),
         ("com", link.com.is_some()),
         ("inertia", link.inertia.is_some()),
         ("bodies", link.bodies.is_some()),
-    ]
-    .into_iter()
-    .filter(|(_, given)| *given)
-    .map(|(key, _)| format!(", {key}: ~"))
-    .collect();
+    ];
+    let mut gone = String::new();
+    for (key, _) in replaced.iter().filter(|(_, given)| *given) {
+        let _ = write!(gone, ", {key}: ~");
+    }
     let mut text = format!("links:\n  - {{name: {name}{gone}}}\n");
     let placed = |rotations: &str| format!("placement: {{transform: {{rotation: [{rotations}]}}}}");
     let _ = writeln!(

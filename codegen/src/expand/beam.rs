@@ -29,7 +29,7 @@ pub(crate) struct Joint {
 
 /// A beam of rigid elements with a joint between neighbours.
 #[derive(Clone, Debug)]
-pub(crate) struct Elements {
+pub(crate) struct DividedBeam {
     /// Elements, from the start to the tip.
     pub elements: Vec<RigidElement>,
     /// Joints, one fewer than elements.

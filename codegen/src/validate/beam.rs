@@ -7,7 +7,7 @@ use super::section::Elastic;
 use super::{Carried, Check, Owner};
 use crate::chain::{self, Axis, Chain, CoordinateKind, Division, Force, Group, Law, Outline, Spring, Step, Value};
 use crate::diagnostic::{Span, rule};
-use crate::expand::beam::{self, Distribution, Elements, Joint, Part, RigidElement};
+use crate::expand::beam::{self, Distribution, DividedBeam, Joint, Part, RigidElement};
 use crate::spec::{Beam, BeamDamping, BeamPart, Bend, Directions, Either, Number, SectionJoint, Sections, Spanned};
 
 /// Maximum number of sections of a beam.
@@ -33,7 +33,7 @@ impl<'a> Check<'a> {
                 None => self.in_sections(inside, (link, given.span), &length),
             }
         });
-        let count = |elements: &Elements| self.coordinates.len() + ROTATIONS.len() * elements.joints.len();
+        let count = |elements: &DividedBeam| self.coordinates.len() + ROTATIONS.len() * elements.joints.len();
         let total = elements.as_ref().map_or(0, count);
         if total > Chain::MOST_COORDINATES {
             self.report(rule::too_many(
@@ -61,7 +61,7 @@ impl<'a> Check<'a> {
         &mut self,
         (link, span): (&str, Span),
         mut attached: Attached,
-        Elements { elements, joints, division }: Elements,
+        DividedBeam { elements, joints, division }: DividedBeam,
         section_joint: SectionJoint,
     ) -> Carried {
         let rigid = joints.is_empty();
@@ -112,7 +112,7 @@ impl<'a> Check<'a> {
     }
 
     /// A beam of sections of one material, with one cross-section or with parts.
-    fn in_sections(&mut self, beam: &'a Beam, (link, span): (&str, Span), length: &Value) -> Option<Elements> {
+    fn in_sections(&mut self, beam: &'a Beam, (link, span): (&str, Span), length: &Value) -> Option<DividedBeam> {
         if let Some(springs) = &beam.springs {
             self.report(rule::missing_key(springs.span, "elements", "a beam with `springs`"));
         }
@@ -187,7 +187,7 @@ impl<'a> Check<'a> {
             half_bend: bend.half_of(length, d, sections),
         };
         let joints = divided.stiffness.into_iter().zip(division.each()).map(joint).collect();
-        Some(Elements { elements: divided.elements, joints, division })
+        Some(DividedBeam { elements: divided.elements, joints, division })
     }
 
     /// Live places stay between their neighbours.

@@ -4,7 +4,7 @@ use super::Check;
 use super::limits::Limit;
 use crate::chain::{Division, Value};
 use crate::diagnostic::rule;
-use crate::expand::beam::{Elements, Joint, RigidElement};
+use crate::expand::beam::{DividedBeam, Joint, RigidElement};
 use crate::spec::{Beam, Directions, Element, Spanned, Spring};
 
 /// The lengths of elements or parts may differ in sum from that of their beam by this fraction, because lengths are decimal numbers.
@@ -17,7 +17,7 @@ impl<'a> Check<'a> {
         beam: &'a Beam,
         length: &Value,
         elements: &Spanned<Vec<Spanned<Element>>>,
-    ) -> Option<Elements> {
+    ) -> Option<DividedBeam> {
         let beside = [
             ("sections", beam.sections.as_ref().map(|given| given.span)),
             ("material", beam.material.as_ref().map(|given| given.span)),
@@ -53,7 +53,7 @@ impl<'a> Check<'a> {
         let broken = rule::beam_length(elements.span, whole, whole);
         self.keep_below(&sum, &((1.0 + WRITTEN) * length.clone()), &broken);
         self.keep_below(&((1.0 - WRITTEN) * length.clone()), &sum, &broken);
-        (elements_read.len() == joints.len() + 1).then_some(Elements {
+        (elements_read.len() == joints.len() + 1).then_some(DividedBeam {
             elements: elements_read,
             joints,
             division: Division::default(),

@@ -51,7 +51,7 @@ impl OtherMesh {
         let [own, other] = [description, (&crane_with as &dyn DynCrane).description()]
             .map(|description| divided.iter().map(|link| sections(description, link)).sum::<f64>());
         let more = other / own;
-        if !(more < 1.0 || more > 1.0) {
+        if !more.is_finite() || (more - 1.0).abs() < f64::EPSILON {
             return None;
         }
         let share = if is_large { -0.75 / (more.powi(-2) - 1.0) } else { 0.75 / (1.0 - more.powi(-2)) };
