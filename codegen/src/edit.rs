@@ -6,6 +6,9 @@ use crate::diagnostic::{Diagnostics, SourceFile};
 use crate::read::read;
 use crate::spec::{Crane, Either, Link, Number, On, Place, Placement, Scalar, Spanned, Turn, Vector, entries};
 
+/// A point may be beyond the end of the beam by this fraction of its length, because both are rounded numbers.
+const WRITTEN: f64 = 1e-9;
+
 /// Why a link cannot become a beam.
 #[derive(Clone, Debug)]
 pub enum Unbending {
@@ -20,8 +23,8 @@ pub enum Unbending {
 pub enum BeamEnd<'a> {
     /// At the frame of the only link that goes on from another place.
     Next,
-    /// At the frame of this link.
-    Link(&'a str),
+    /// At the frame of the link of this name, which goes on from it, or at the point of interest of this name on it.
+    Named(&'a str),
     /// At a point in the frame of the link that bends, m: no other link moves with the end.
     Point([f64; 3]),
 }
@@ -63,7 +66,7 @@ fn changes(crane: &Crane, name: &str, to: BeamEnd<'_>, keys: &str) -> Result<Str
     }
     let beyond: Vec<(&str, &Link)> =
         links.iter().enumerate().filter(|(at, _)| carrier(&links, *at) == Some(name)).map(|(_, link)| *link).collect();
-    let end = end(&beyond, name, to)?;
+    let end = end(crane, &beyond, name, to)?;
     let [x, y, z] = end.at;
     let length = (x * x + y * y + z * z).sqrt();
     if length == 0.0 || !length.is_finite() {
@@ -117,7 +120,7 @@ fn changes(crane: &Crane, name: &str, to: BeamEnd<'_>, keys: &str) -> Result<Str
     for point in on_beam {
         let Some(at) = point.at.value.as_ref().and_then(numbers) else { continue };
         let [x, y, z] = in_beam(at, psi, theta);
-        if let Some(point) = point.name.value.as_deref().filter(|_| (0.0..=length).contains(&x)) {
+        if let Some(point) = point.name.value.as_deref().filter(|_| (0.0..=length * (1.0 + WRITTEN)).contains(&x)) {
             let _ = writeln!(points, "  - {{name: {point}, link: {beam}, at: [{x:?}, {y:?}, {z:?}]}}");
         }
     }
@@ -133,15 +136,29 @@ fn in_beam([x, y, z]: [f64; 3], psi: f64, theta: f64) -> [f64; 3] {
     [theta.cos() * along - theta.sin() * z, across, theta.sin() * along + theta.cos() * z]
 }
 
+/// The place of a point of interest on a link, m.
+fn point_on(crane: &Crane, link: &str, name: &str) -> Option<[f64; 3]> {
+    let mut points = entries(crane.points.as_ref());
+    let point =
+        points.find(|point| point.name.value.as_deref() == Some(name) && point.link.value.as_deref() == Some(link))?;
+    numbers(point.at.value.as_ref()?)
+}
+
 /// Where the beam ends.
-fn end<'a>(beyond: &[(&'a str, &'a Link)], name: &str, to: BeamEnd<'_>) -> Result<End<'a>, String> {
+fn end<'a>(crane: &Crane, beyond: &[(&'a str, &'a Link)], name: &str, to: BeamEnd<'_>) -> Result<End<'a>, String> {
     let names = |links: &[(&str, &Link)]| links.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
     let next = match to {
         BeamEnd::Point(at) => return Ok(End { next: None, at }),
-        BeamEnd::Link(to) => *beyond.iter().find(|(other, _)| *other == to).ok_or_else(|| {
-            let known = if beyond.is_empty() { "nothing".to_owned() } else { names(beyond) };
-            format!("`{to}` does not go on from `{name}`; what does: {known}")
-        })?,
+        BeamEnd::Named(to) => match (beyond.iter().find(|(other, _)| *other == to), point_on(crane, name, to)) {
+            (Some(link), _) => *link,
+            (None, Some(at)) => return Ok(End { next: None, at }),
+            (None, None) => {
+                let known = if beyond.is_empty() { "nothing".to_owned() } else { names(beyond) };
+                return Err(format!(
+                    "`{to}` is neither a link that goes on from `{name}` ({known}) nor a point of interest on it"
+                ));
+            }
+        },
         BeamEnd::Next => {
             let away = |link: &Link| placed_at(link).is_ok_and(|at| at.iter().any(|x| *x != 0.0));
             let away: Vec<_> = beyond.iter().copied().filter(|(_, link)| away(link)).collect();

@@ -182,7 +182,8 @@ class Crane(_native.Crane):
         sections: number of sections. material: the name of a material of the spec, or `{"E": ..., "G": ..., "density": ...}`, in Pa and kg/m³.
         section: such as `{"tube": {"diameter": 0.1, "thickness": 0.003}}`, in m; other keys of a beam (`parts`, `extra_mass`, `damping`, …) as
         in a spec.
-        to: the link at whose frame the beam ends, where several go on from `link`; or a point in the frame of `link`, m.
+        to: the link at whose frame the beam ends, where several go on from `link`; the point of interest on it at which it ends; or a point in its
+        frame, m.
 
         Raises ValueError if the link cannot become a beam, and SpecError for wrong keys of the beam.
         """

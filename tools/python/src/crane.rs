@@ -201,7 +201,7 @@ impl Crane {
         keys: &str,
     ) -> PyResult<String> {
         let end = match (to, point) {
-            (Some(to), _) => BeamEnd::Link(to),
+            (Some(to), _) => BeamEnd::Named(to),
             (None, Some(point)) => BeamEnd::Point(point),
             (None, None) => BeamEnd::Next,
         };

@@ -182,8 +182,9 @@ def test_a_link_of_a_robot_bends():
     for one, other in ((bending.mass_matrix(q), by_hand.mass_matrix(q)), (bending.forward_dynamics(q, v), by_hand.forward_dynamics(q, v))):
         # Rounding of the angles of the placement, through a mass matrix of condition 1e6.
         assert np.allclose(one, other, rtol=1e-9, atol=1e-9 * np.abs(other).max())
-    frequencies = [c.modes(np.zeros(c.n)).frequencies for c in (bending, by_hand)]
-    assert np.allclose(*frequencies, rtol=1e-9)
+    # Upright, the robot falls: some squares are negative.
+    squares = [c.modes(np.zeros(c.n)).omega_squared for c in (bending, by_hand)]
+    assert np.allclose(*squares, rtol=1e-8)
     # Undeformed, the hand is where it was.
     straight = np.zeros(bending.n)
     for index, name in enumerate(robot.coordinates):
@@ -199,7 +200,7 @@ def test_links_that_cannot_bend_say_why():
         robot.with_beam("elbow", **beam)
     with pytest.raises(ValueError, match="give the point `to` which the beam leads"):
         robot.with_beam("hand", **beam)
-    with pytest.raises(ValueError, match="`hand` does not go on from `upper`; what does: fore"):
+    with pytest.raises(ValueError, match=r"`hand` is neither a link that goes on from `upper` \(fore\) nor a point"):
         robot.with_beam("upper", to="hand", **beam)
     with pytest.raises(ValueError, match="`fore_beam` bends already"):
         robot.with_beam("fore", **beam).with_beam("fore_beam", **beam)
