@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use crate::diagnostic::{Diagnostics, SourceFile};
 use crate::read::read;
-use crate::spec::{Crane, Either, Link, Number, On, Place, Placement, Scalar, Spanned, Turn, Vector, entries};
+use crate::spec::{Crane, Either, Link, Number, On, Place, Placement, Spanned, Turn, Vector, acting, entries};
 
 /// A point may be beyond the end of the beam by this fraction of its length, because both are rounded numbers.
 const WRITTEN: f64 = 1e-9;
@@ -37,8 +37,9 @@ struct End<'a> {
     at: [f64; 3],
 }
 
-/// The spec of a crane in which a beam takes the place of the mass and the inertia of a rigid link: from its frame to `to`. The joint of the link stays; the beam is a link of its own, `<link>_beam`, whose x leads there. `keys` are
-/// those of [`Beam`](crate::spec::Beam) besides `length`, a mapping in YAML.
+/// The spec of a crane in which a beam takes the place of the mass and the inertia of a rigid link: from its frame to `to`. The
+/// joint of the link stays; the beam is a link of its own, `<link>_beam`, whose x leads there. `keys` are those of
+/// [`Beam`](crate::spec::Beam) besides `length`, a mapping in YAML.
 ///
 /// # Errors
 /// The spec has mistakes, or the link cannot become a beam.
@@ -218,7 +219,7 @@ fn turns(link: &Link) -> Result<Vec<(&'static str, f64)>, String> {
             Turn::Y(angle) => ("y", angle),
             Turn::Z(angle) => ("z", angle),
         };
-        Some((axis, scalar(&angle.value.as_ref()?.0)?))
+        Some((axis, angle.value.as_ref()?.0.number()?))
     };
     let all: Option<Vec<_>> = turns.iter().map(turn).collect();
     all.ok_or_else(|| format!("the rotation of `{}` is not given by numbers", name_of(link).unwrap_or_default()))
@@ -226,32 +227,14 @@ fn turns(link: &Link) -> Result<Vec<(&'static str, f64)>, String> {
 
 /// What acts on a link besides other links: it would have to move to the beam.
 fn attached(crane: &Crane, name: &str) -> Option<String> {
-    let on = |link: &Spanned<String>| link.value.as_deref() == Some(name);
-    let said = |kind: &str, of: &Spanned<String>| format!("{kind} `{}`", of.value.as_deref().unwrap_or_default());
-    let end =
-        |end: &Spanned<crate::spec::Attachment>| end.value.as_ref().and_then(|end| end.link.as_ref()).is_some_and(on);
-    let load = entries(crane.loads.as_ref()).find(|load| on(&load.link)).map(|load| said("load", &load.name));
-    let pin = |pin: &Spanned<crate::spec::Pin>| pin.value.as_ref().is_some_and(|pin| on(&pin.link));
-    let cylinder = entries(crane.cylinders.as_ref()).find(|cylinder| pin(&cylinder.foot) || pin(&cylinder.head));
-    let connector = entries(crane.connectors.as_ref()).find(|connector| {
-        let over = connector.over.as_ref().and_then(|over| over.value.as_deref()).unwrap_or_default();
-        end(&connector.from) || end(&connector.to) || over.iter().any(end)
-    });
-    let joint = entries(crane.loop_joints.as_ref()).find(|joint| end(&joint.from) || end(&joint.to));
-    load.or_else(|| cylinder.map(|cylinder| said("cylinder", &cylinder.name)))
-        .or_else(|| connector.map(|connector| said("connector", &connector.name)))
-        .or_else(|| joint.map(|joint| said("loop joint", &joint.name)))
+    let acting = acting(crane).into_iter().find(|acting| acting.link.value.as_deref() == Some(name))?;
+    Some(format!("{} `{}`", acting.kind, acting.name.value.as_deref().unwrap_or_default()))
 }
 
-/// The name of the link that carries the one at this index: the previous one unless `on` names another.
+/// The name of the link that carries the one at this index.
 fn carrier<'a>(links: &[(&'a str, &'a Link)], index: usize) -> Option<&'a str> {
-    match links[index].1.on.as_ref() {
-        None => Some(links[index.checked_sub(1)?].0),
-        Some(on) => match on.value.as_ref()? {
-            Either::Short(name) => Some(name),
-            Either::Full(on) => on.link.value.as_deref(),
-        },
-    }
+    let link = links[index].1;
+    link.named_on().or_else(|| link.on.is_none().then_some(links[index.checked_sub(1)?].0))
 }
 
 fn name_of(link: &Link) -> Option<&str> {
@@ -260,14 +243,6 @@ fn name_of(link: &Link) -> Option<&str> {
 
 fn numbers(vector: &Vector) -> Option<[f64; 3]> {
     let [x, y, z] =
-        vector.each_ref().map(|Spanned { value, .. }| value.as_ref().and_then(|Number(number)| scalar(number)));
+        vector.each_ref().map(|Spanned { value, .. }| value.as_ref().and_then(|Number(number)| number.number()));
     Some([x?, y?, z?])
-}
-
-fn scalar(scalar: &Scalar) -> Option<f64> {
-    match scalar {
-        Scalar::Number(number) => Some(*number),
-        Scalar::Quantity(quantity) => Some(quantity.value),
-        Scalar::Name(_) => None,
-    }
 }

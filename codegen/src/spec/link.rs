@@ -1,6 +1,6 @@
 //! Links, their joints and what they carry.
 
-use super::{AxisName, Beam, Constant, Either, Inertia, Number, On, Placement, Spanned, Vector};
+use super::{AxisName, Beam, Constant, Either, Inertia, Number, On, Placement, SlidesIn, Spanned, Vector};
 use crate::node::FromNode;
 
 /// A link: its placement, its joint, and its mass: `mass`, `com` and `inertia`, or several `bodies`, or a `beam`, or
@@ -28,6 +28,26 @@ pub struct Link {
     pub beam: Option<Spanned<Beam>>,
     /// A rope or chain along x, of rigid links that hang from each other; other links, such as a hook, are attached to its end.
     pub rope: Option<Spanned<HangingRope>>,
+}
+
+impl Link {
+    /// What it slides in, if it does.
+    #[must_use]
+    pub fn slides_in(&self) -> Option<&Spanned<SlidesIn>> {
+        self.beam.as_ref()?.value.as_ref()?.slides_in.as_ref()
+    }
+
+    /// The link that `on` names, or in which it slides; `None` where it goes on from the previous one.
+    #[must_use]
+    pub fn named_on(&self) -> Option<&str> {
+        if let Some(outer) = self.slides_in() {
+            return outer.value.as_ref()?.beam.value.as_deref();
+        }
+        match self.on.as_ref()?.value.as_ref()? {
+            Either::Short(name) => Some(name),
+            Either::Full(on) => on.link.value.as_deref(),
+        }
+    }
 }
 
 /// A rope or chain that does not stretch: slender rigid links end to end, each with a universal joint at its beginning.

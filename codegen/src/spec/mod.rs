@@ -3,6 +3,7 @@
 //!
 //! The type of a key defines its allowed values; [`Spanned`] holds its location. An optional key is an `Option`.
 
+mod acting;
 mod beam;
 mod combination;
 mod connector;
@@ -22,6 +23,7 @@ mod slides_in;
 mod spanned;
 mod support;
 
+pub use acting::{Acting, acting};
 pub use beam::{
     Beam, BeamDamping, BeamPart, Bend, Directions, Element, Material, Moduli, Section, SectionJoint, Sections, Spring,
 };

@@ -19,6 +19,18 @@ pub enum Scalar {
     Name(String),
 }
 
+impl Scalar {
+    /// The number that is written, in SI units; `None` for the name of a parameter.
+    #[must_use]
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Scalar::Number(number) => Some(*number),
+            Scalar::Quantity(quantity) => Some(quantity.value),
+            Scalar::Name(_) => None,
+        }
+    }
+}
+
 /// Reads a [`Scalar`], a name only where it is permitted; `expected` is what is permitted, in messages.
 fn read_scalar(reader: Reader, name: bool, expected: &str) -> Result<Scalar, Unread> {
     let unread = || Unread::Expected(expected.to_owned());

@@ -2,7 +2,7 @@
 
 use super::limits::Limit;
 use super::on::Attached;
-use super::slides_in::{Outer, slides_in};
+use super::slides_in::Outer;
 use super::{Check, LinkBodies, Owner};
 use crate::chain::{Axis, Body, BodyId, Chain, Coordinate, CoordinateId, CoordinateKind, Step, Value};
 use crate::diagnostic::{Span, rule};
@@ -50,7 +50,7 @@ impl<'a> Check<'a> {
         for (index, link) in links.iter().enumerate() {
             match &link.value {
                 Some(inside) => {
-                    previous = Some(if slides_in(inside).is_some() {
+                    previous = Some(if inside.slides_in().is_some() {
                         let (attached, outer) = self.slid(links, index).unzip();
                         // What a link is attached to after a mistake matters to no other check.
                         self.unknown.links |= attached.is_none();

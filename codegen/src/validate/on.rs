@@ -1,7 +1,6 @@
 //! What links are attached to.
 
 use super::limits::Limit;
-use super::slides_in::slides_in;
 use super::{Check, LinkBodies};
 use crate::chain::{BodyId, CoordinateId, Step, Value};
 use crate::diagnostic::{Span, rule, suggest};
@@ -168,17 +167,6 @@ fn name_of(link: &Spanned<Link>) -> Option<&str> {
     link.value.as_ref()?.name.value.as_deref()
 }
 
-/// The link that `on` names, or in which it slides.
-fn named_on(link: &Link) -> Option<&str> {
-    if let Some(outer) = slides_in(link) {
-        return outer.value.as_ref()?.beam.value.as_deref();
-    }
-    match link.on.as_ref()?.value.as_ref()? {
-        Either::Short(name) => Some(name),
-        Either::Full(on) => on.link.value.as_deref(),
-    }
-}
-
 /// Whether a link is attached to another one of that name, directly or through others.
 fn leads_to(links: &[Spanned<Link>], from: &Spanned<Link>, name: &str) -> bool {
     let index_of = |name: &str| links.iter().position(|link| name_of(link) == Some(name));
@@ -186,7 +174,7 @@ fn leads_to(links: &[Spanned<Link>], from: &Spanned<Link>, name: &str) -> bool {
     for _ in links {
         let Some(index) = at else { return false };
         let Some(link) = links[index].value.as_ref() else { return false };
-        at = match (named_on(link), &link.on) {
+        at = match (link.named_on(), &link.on) {
             (Some(on), _) => index_of(on),
             (None, None) => index.checked_sub(1),
             (None, Some(_)) => None,

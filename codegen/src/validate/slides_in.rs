@@ -8,7 +8,7 @@ use crate::chain::{
     LoopJointKind, PadDirection, Sliding, Spring, Step, Strain, Value,
 };
 use crate::diagnostic::{Span, rule};
-use crate::spec::{AxisName, Beam, ExactDirection, Joint, Link, Pad, SlidesIn, Spanned, Vector};
+use crate::spec::{AxisName, Beam, ExactDirection, Joint, Link, Pad, Spanned, Vector};
 
 /// An overlap may exceed a beam by this fraction of its length, because both are decimal numbers.
 const WRITTEN: f64 = 1e-9;
@@ -59,11 +59,6 @@ pub(super) struct Outer {
     overlap: Value,
 }
 
-/// What a link slides in, if it does.
-pub(super) fn slides_in(link: &Link) -> Option<&Spanned<SlidesIn>> {
-    link.beam.as_ref()?.value.as_ref()?.slides_in.as_ref()
-}
-
 /// The axis of a beam; `None` if a mistake left it without bodies.
 fn axis_of(place: &LinkBodies) -> Option<BeamAxis> {
     Some(BeamAxis { first: place.first()?, division: place.division.clone(), length: place.length() })
@@ -91,7 +86,7 @@ impl<'a> Check<'a> {
     pub(super) fn slid(&mut self, links: &'a [Spanned<Link>], index: usize) -> Option<(Attached, Outer)> {
         let link = links[index].value.as_ref()?;
         let name = link.name.value.as_deref().unwrap_or_default();
-        let given = slides_in(link)?.value.as_ref()?;
+        let given = link.slides_in()?.value.as_ref()?;
         self.joint_of_slider(link, name);
         let outer_name = given.beam.value.as_deref()?;
         let place = self.earlier_link(links, index, (outer_name, given.beam.span)).cloned();
@@ -137,7 +132,7 @@ impl<'a> Check<'a> {
 
     /// The motions of a link that slides in a beam besides that of its joint; none for other links.
     pub(super) fn held_motions(&mut self, link: &'a Link) -> Vec<Step> {
-        if slides_in(link).is_none() || !slides_along_x(link) {
+        if link.slides_in().is_none() || !slides_along_x(link) {
             return Vec::new();
         }
         let name = link.name.value.as_deref().unwrap_or_default();
@@ -150,7 +145,7 @@ impl<'a> Check<'a> {
 
     /// Notes a link that slides in a beam, after its bodies have been appended.
     pub(super) fn note_stage(&mut self, link: &'a Link, outer: Option<Outer>, own: &LinkBodies, first: CoordinateId) {
-        let Some(given) = slides_in(link).and_then(|given| given.value.as_ref()) else { return };
+        let Some(given) = link.slides_in().and_then(|given| given.value.as_ref()) else { return };
         let name = link.name.value.as_deref().unwrap_or_default();
         let pads = given.pads.value.as_ref().map(|pads| {
             [(&pads.front, "front"), (&pads.rear, "rear")]

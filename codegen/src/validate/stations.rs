@@ -4,13 +4,11 @@ use std::collections::BTreeMap;
 
 use super::Check;
 use crate::chain::{ParameterId, Value};
-use crate::spec::{
-    Attachment, Connector, Crane, Cylinder, Either, LoopJoint, Number, On, Pin, Place, Scalar, Spanned, Vector, entries,
-};
+use crate::spec::{Acting, Crane, Either, Number, On, Place, Scalar, Spanned, Vector, acting, entries};
 
 impl<'a> Check<'a> {
-    /// The places on all links, by name, m: of other links, loads, pins of cylinders that push, connectors and loop joints. Mistakes in them are
-    /// reported where they are read.
+    /// The places on all links, by name, m: of other links and of what acts on them. Mistakes in them are reported where they are
+    /// read.
     pub(super) fn stations(&self, crane: &'a Crane) -> BTreeMap<&'a str, Vec<Value>> {
         let mut stations: BTreeMap<&str, Vec<Value>> = BTreeMap::new();
         for (link, [x, ..]) in places(crane) {
@@ -24,11 +22,10 @@ impl<'a> Check<'a> {
     /// A number that is checked elsewhere; `None` if it cannot be read.
     fn quiet(&self, given: &Spanned<Number>) -> Option<Value> {
         let value = match &given.value.as_ref()?.0 {
-            Scalar::Number(number) => (*number).into(),
-            Scalar::Quantity(quantity) => quantity.value.into(),
             Scalar::Name(name) => {
                 Value::Parameter(ParameterId(self.parameters.iter().position(|parameter| parameter.name == *name)?))
             }
+            written => written.number()?.into(),
         };
         Some(value).filter(|value| self.now(value).is_finite())
     }
@@ -42,23 +39,8 @@ fn places(crane: &Crane) -> Vec<(&str, &Vector)> {
             places.extend(link.value.as_deref().map(|link| (link, at)));
         }
     }
-    let loads = entries(crane.loads.as_ref()).filter_map(|load| Some((&load.link, load.at.as_ref()?)));
-    let pushing = entries(crane.cylinders.as_ref()).filter(|cylinder| cylinder.valve.is_some());
-    let pins = pushing.flat_map(|Cylinder { foot, head, linkage, .. }| {
-        let of_pins = [foot, head].map(|pin| pin.value.as_ref().map(|Pin { link, at }| (link, at)));
-        let pivot = linkage.as_ref().and_then(|linkage| Some(&linkage.value.as_ref()?.pivot));
-        let pivot = foot.value.as_ref().zip(pivot).map(|(foot, pivot)| (&foot.link, pivot));
-        of_pins.into_iter().chain([pivot]).flatten()
-    });
-    let lines = entries(crane.connectors.as_ref()).flat_map(|Connector { from, to, over, .. }| {
-        let over = over.as_ref().and_then(|over| over.value.as_deref()).unwrap_or_default();
-        [from, to].into_iter().chain(over)
-    });
-    let joints = entries(crane.loop_joints.as_ref()).flat_map(|LoopJoint { from, to, .. }| [from, to]);
-    let attached = lines.chain(joints).filter_map(|end| end.value.as_ref());
-    let attached = attached.filter_map(|Attachment { link, at }| Some((link.as_ref()?, at)));
-    for (link, at) in loads.chain(pins).chain(attached) {
-        places.extend(link.value.as_deref().zip(at.value.as_ref()));
+    for Acting { link, at, .. } in acting(crane).into_iter().filter(|acting| acting.pushes) {
+        places.extend(link.value.as_deref().zip(at.and_then(|at| at.value.as_ref())));
     }
     places
 }

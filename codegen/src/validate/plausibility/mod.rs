@@ -77,9 +77,8 @@ impl<'a> Plausibility<'a> {
 
     fn scalar(&self, scalar: &Scalar) -> f64 {
         match scalar {
-            Scalar::Number(number) => *number,
-            Scalar::Quantity(quantity) => quantity.value,
             Scalar::Name(name) => self.value(name).unwrap_or(f64::NAN),
+            written => written.number().unwrap_or(f64::NAN),
         }
     }
 
