@@ -1,6 +1,6 @@
 //! External loads.
 
-use super::{BodyId, Chain, Parameter, ParameterId, Profile, Value};
+use super::{BodyId, Chain, Inertia, Parameter, ParameterId, Profile, Value};
 
 /// A force and a moment at a point of a body.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,19 +35,23 @@ pub struct Combination {
 }
 
 impl Chain {
-    /// The same crane with weight and loads as a combination has them, and factors of parameters: the weight of everything is larger, and so are those of
-    /// masses with a factor of their own, of which the parameter makes up for the difference.
-    #[must_use]
-    pub fn combined(&self, combination: &Combination) -> (Chain, Vec<f64>) {
-        let mut chain = self.clone();
+    /// The same crane with weight and loads as a combination has them. Gravity is that of the weight of everything; masses with a factor of
+    /// their own make up for the difference, whatever their parameters are.
+    pub(crate) fn combined(mut self, combination: &Combination) -> Chain {
         let of_load =
             |index: usize| combination.loads.iter().find(|(load, _)| *load == index).map_or(1.0, |(_, factor)| *factor);
-        chain.scale_weight_and_loads(&Value::from(combination.weight), |index| of_load(index).into());
-        let mut parameters = vec![1.0; self.parameters.len()];
-        for (ParameterId(index), factor) in &combination.masses {
-            parameters[*index] = factor / combination.weight;
+        self.scale_weight_and_loads(&Value::from(combination.weight), |index| of_load(index).into());
+        let of_mass = |id: ParameterId| {
+            let own = combination.masses.iter().find(|(mass, _)| *mass == id);
+            own.map_or(1.0, |(_, factor)| factor / combination.weight)
+        };
+        for Inertia { mass, first, second } in self.bodies.iter_mut().filter_map(|body| body.inertia.as_mut()) {
+            for number in std::iter::once(mass).chain(first).chain(second) {
+                *number = number.with_factors(&of_mass);
+            }
         }
-        (chain, parameters)
+        self.title = format!("{}, combination {}", self.title, combination.name);
+        self
     }
 
     /// The same crane with a factor of its weight and of all loads as one more live parameter, 1 by default; and the index of this parameter.

@@ -72,6 +72,23 @@ impl Value {
         }
     }
 
+    /// The same number with each parameter multiplied by a factor.
+    #[must_use]
+    pub fn with_factors(&self, factor: &impl Fn(ParameterId) -> f64) -> Value {
+        let same = |of: &Value| of.with_factors(factor);
+        match self {
+            Value::Constant(c) => Value::Constant(*c),
+            Value::Parameter(id) => Value::Parameter(*id) * Value::Constant(factor(*id)),
+            Value::Neg(a) => -same(a),
+            Value::Add(a, b) => same(a) + same(b),
+            Value::Mul(a, b) => same(a) * same(b),
+            Value::Div(a, b) => same(a) / same(b),
+            Value::Sin(a) => Value::Sin(Box::new(same(a))),
+            Value::Cos(a) => Value::Cos(Box::new(same(a))),
+            Value::Sqrt(a) => same(a).sqrt(),
+        }
+    }
+
     /// Square root.
     #[must_use]
     pub fn sqrt(self) -> Value {

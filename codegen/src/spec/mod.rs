@@ -118,6 +118,8 @@ pub struct Crane {
     pub loads: Option<Spanned<Vec<Spanned<Load>>>>,
     /// Combinations of weights and loads with partial factors.
     pub combinations: Option<Spanned<Vec<Spanned<Combination>>>>,
+    /// The one of `combinations` with which everything is computed. Default: none, weights and loads as written.
+    pub combination: Option<Spanned<String>>,
     /// Springs, gas springs and ropes between two points.
     pub connectors: Option<Spanned<Vec<Spanned<Connector>>>>,
     /// Coordinates that follow others: stages of telescopes, gears.

@@ -52,6 +52,18 @@ impl<'a> Check<'a> {
         }
         combinations
     }
+
+    /// The combination with which the crane is computed.
+    pub(super) fn combination(&mut self, crane: &'a Crane, known: &[Combination]) -> Option<Combination> {
+        let given = crane.combination.as_ref()?;
+        let wanted = given.value.as_deref()?;
+        let found = known.iter().find(|combination| combination.name == wanted);
+        if found.is_none() {
+            let help = suggest(wanted, known.iter().map(|combination| combination.name.as_str()));
+            self.report(rule::unknown_combination(given.span, wanted, help));
+        }
+        found.cloned()
+    }
 }
 
 /// Factors by names.

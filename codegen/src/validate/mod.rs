@@ -260,6 +260,7 @@ impl<'a> Check<'a> {
         forces.extend(self.joint_forces(crane, &drives));
         let loads = self.loads(crane);
         let combinations = self.combinations(crane, &loads);
+        let combination = self.combination(crane, &combinations);
         let cylinders = self.cylinders(crane, &drives);
         let pump = self.pump(crane);
         self.make_drives_hydraulic(crane, &cylinders, pump.as_ref(), &mut drives);
@@ -278,7 +279,7 @@ impl<'a> Check<'a> {
         self.something_moves(crane);
         self.every_parameter_used(crane);
         self.every_input_used(crane);
-        Chain {
+        let chain = Chain {
             title,
             name: name.to_owned(),
             spec_hash: source.hash(),
@@ -304,6 +305,10 @@ impl<'a> Check<'a> {
             run,
             analyses,
             loops: loops(crane.loops.as_ref()),
+        };
+        match combination {
+            Some(combination) => chain.combined(&combination),
+            None => chain,
         }
     }
 

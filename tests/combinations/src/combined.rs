@@ -41,8 +41,8 @@ pub fn check_combined(tree: &Tree, seed: u64) -> Option<Vec<String>> {
         }
     }
     combined["combinations"] = Value::Array(vec![combination]);
+    combined["combination"] = json!("lifting");
     let combined = live(&source(&combined)).ok()?;
-    let combined = combined.combined(&combined.chain().combinations[0]);
     let second = observe_live(&live(&source(&written)).ok()?, false).ok()?;
     Some(match observe_live(&combined, false) {
         Ok(first) => differences([&first, &second], &|name| Some(name.to_owned()), &|_| 1.0),

@@ -69,7 +69,7 @@ pub fn for_each_key(tree: &mut Tree, act: &mut impl FnMut(&str, &mut Tree)) {
 }
 
 /// Keys in the order in which a person writes them.
-const ORDER: [&str; 26] = [
+const ORDER: [&str; 27] = [
     "format",
     "name",
     "title",
@@ -90,6 +90,7 @@ const ORDER: [&str; 26] = [
     "armature",
     "loads",
     "combinations",
+    "combination",
     "connectors",
     "loop_joints",
     "points",

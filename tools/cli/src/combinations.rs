@@ -23,15 +23,12 @@ struct Combinations(Vec<(String, LiveCrane)>);
 impl Combinations {
     fn open(choice: &Choice, registry: &Registry) -> Outcome<Self> {
         let crane = choice.open(registry)?;
-        let live = registry.live(crane.as_ref())?;
-        let given = &live.chain().combinations;
-        if given.is_empty() {
-            return Err(Problem::usage(
-                format!("{} has no combinations", crane.description().name),
-                "add them to its spec, such as `combinations: [{name: lifting, weight: 1.2}]`",
-            ));
-        }
-        Ok(Self(given.iter().map(|one| (one.name.clone(), live.combined(one))).collect()))
+        let names = registry.combinations(crane.description().name.as_str())?;
+        let each = names.into_iter().map(|name| {
+            let combined = registry.live_combined(crane.as_ref(), &name)?;
+            Ok((name, combined))
+        });
+        each.collect::<Outcome<_>>().map(Self)
     }
 
     fn cases(&self) -> Vec<Case<'_>> {

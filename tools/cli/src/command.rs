@@ -30,6 +30,9 @@ pub fn execute(mut arguments: Arguments, mut registry: Registry, out: &mut dyn W
             choice.name = registry.add_rigid(&choice.name, "leave `--rigid` out")?;
         }
         let name = choice.name.clone();
+        if let Some(combination) = &choice.combination {
+            registry.combine(&name, combination)?;
+        }
         if let Some(poses) = arguments.action.as_ref().and_then(Action::poses) {
             poses::hold(&poses.held, &poses.ranges, &name, &mut registry)?;
         }

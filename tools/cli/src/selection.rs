@@ -2,7 +2,7 @@
 
 use std::{borrow::Cow, path::Path, sync::OnceLock};
 
-use crane_codegen::{SourceFile, chain::Chain, compile};
+use crane_codegen::{SourceFile, chain::Chain, compile, edit};
 use crane_live::LiveCrane;
 use crane_model::{Description, ParameterError, Refusal, dyn_crane::DynCrane};
 
@@ -173,6 +173,51 @@ impl Registry {
         Ok(self.add_read(chain, text))
     }
 
+    /// Computes a crane with one of the combinations of its spec from now on.
+    pub(super) fn combine(&mut self, name: &str, combination: &str) -> Outcome<()> {
+        let (chain, text) = self.combined(name, combination)?;
+        self.add_read(chain, text);
+        Ok(())
+    }
+
+    /// A live crane with the parameters and inputs of another one, and with a combination of the spec of both.
+    pub(super) fn live_combined(&self, crane: &dyn DynCrane, combination: &str) -> Outcome<LiveCrane> {
+        let (chain, _) = self.combined(crane.description().name.as_str(), combination)?;
+        with_numbers_of(crane, LiveCrane::new(chain))
+    }
+
+    /// A crane as its spec has it, with one of its combinations.
+    fn combined(&self, name: &str, combination: &str) -> Outcome<(Chain, String)> {
+        let known = self.combinations(name)?;
+        if !known.iter().any(|known| known == combination) {
+            let known: Vec<&str> = known.iter().map(String::as_str).collect();
+            let title = format!("{name} has no combination `{combination}`");
+            return Err(Problem::usage(title, meant(combination, &known, "combinations")));
+        }
+        let text = self.spec(name).unwrap_or_default();
+        let source = edit::combined(&SourceFile::new(name, text), combination);
+        let chain = compile::load(&source).map_err(Problem::mistakes)?;
+        Ok((chain, source.text))
+    }
+
+    /// Names of the combinations of a crane's spec: at least one.
+    ///
+    /// # Errors
+    /// There is no such crane, or it has none.
+    pub(super) fn combinations(&self, name: &str) -> Outcome<Vec<String>> {
+        self.crane(name)?;
+        let entry = self.entries.iter().find(|entry| entry.name == name);
+        let live = entry.ok_or_else(|| Problem::failed(format!("{name} has no spec"), ""))?.live()?;
+        let names: Vec<String> = live.chain().combinations.iter().map(|one| one.name.clone()).collect();
+        if names.is_empty() {
+            return Err(Problem::usage(
+                format!("{name} has no combinations"),
+                "add them to its spec, such as `combinations: [{name: lifting, weight: 1.2}]`",
+            ));
+        }
+        Ok(names)
+    }
+
     /// Names of all cranes.
     pub fn names(&self) -> Vec<&str> {
         self.entries.iter().map(|entry| entry.name.as_str()).collect()
@@ -203,14 +248,7 @@ impl Registry {
         let description = crane.description();
         let entry = self.entries.iter().find(|entry| entry.name == description.name.as_str());
         let entry = entry.ok_or_else(|| Problem::failed(format!("{} has no spec", description.name), ""))?;
-        let mut live = entry.live()?.clone();
-        let values: Vec<f64> = (0..description.parameters.len()).map(|index| crane.parameter(index)).collect();
-        DynCrane::set_parameters(&mut live, &values).map_err(|refused| {
-            let (title, help) = refusal_message(&refused);
-            Problem::usage(title, help)
-        })?;
-        let inputs: Vec<Option<f64>> = (0..description.inputs.len()).map(|index| crane.input(index)).collect();
-        Ok(live.with_inputs(&inputs))
+        with_numbers_of(crane, entry.live()?.clone())
     }
 
     /// A crane by its name.
@@ -231,6 +269,18 @@ impl Registry {
         };
         Err(Problem::usage(format!("there is no crane `{name}`"), help))
     }
+}
+
+/// A live crane with the parameters and inputs of another one of the same parameters and inputs.
+fn with_numbers_of(crane: &dyn DynCrane, mut live: LiveCrane) -> Outcome<LiveCrane> {
+    let description = crane.description();
+    let values: Vec<f64> = (0..description.parameters.len()).map(|index| crane.parameter(index)).collect();
+    DynCrane::set_parameters(&mut live, &values).map_err(|refused| {
+        let (title, help) = refusal_message(&refused);
+        Problem::usage(title, help)
+    })?;
+    let inputs: Vec<Option<f64>> = (0..description.inputs.len()).map(|index| crane.input(index)).collect();
+    Ok(live.with_inputs(&inputs))
 }
 
 /// Sets inputs `name=value`.

@@ -72,6 +72,9 @@ pub struct Choice {
     /// Replace beams that bend with rigid ones
     #[arg(long, conflicts_with = "compile")]
     pub rigid: bool,
+    /// Compute with the partial factors of one of the `combinations` of the spec
+    #[arg(long, value_name = "NAME", conflicts_with = "compile")]
+    pub combination: Option<String>,
     /// Compile the crane with rustc first (needs cargo) and keep it: up to 1.6 times as fast, for long studies
     #[arg(long)]
     pub compile: bool,

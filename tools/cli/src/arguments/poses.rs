@@ -40,7 +40,7 @@ pub struct Poses {
 #[command(next_help_heading = "Pose")]
 pub struct Combined {
     /// Compute all `combinations` of the spec, with their partial factors, side by side
-    #[arg(long, conflicts_with = "ranges")]
+    #[arg(long, conflicts_with_all = ["ranges", "combination"])]
     pub combinations: bool,
 }
 

@@ -9,7 +9,7 @@ mod systems;
 use std::fmt;
 use std::sync::{Arc, Mutex, TryLockError};
 
-use crane_codegen::chain::{Chain, Combination, Input};
+use crane_codegen::chain::{Chain, Input};
 use crane_codegen::program::{FunctionId, Shape};
 use crane_codegen::{Diagnostics, SourceFile, compile};
 use crane_model::dyn_crane::{DynCrane, DynModel};
@@ -73,14 +73,6 @@ impl LiveCrane {
         let inputs = Arc::new(not_set(&chain));
         let library = Arc::new(Library::new(chain));
         Self { library, description, loop_joints, stages, parameters, inputs, rooms: no_rooms() }
-    }
-
-    /// The same crane, its parameters and inputs as they are, with the weights and loads of a combination of its spec.
-    #[must_use]
-    pub fn combined(&self, combination: &Combination) -> Self {
-        let (chain, factors) = self.chain().combined(combination);
-        let parameters = self.parameters.iter().zip(factors).map(|(value, factor)| value * factor).collect();
-        Self { parameters, inputs: Arc::clone(&self.inputs), ..Self::new(chain) }
     }
 
     /// The same crane, its parameters and inputs as they are, with a factor of its weight and of all loads as one more parameter, which is 1; and the
