@@ -1,13 +1,18 @@
 //! A combination of weights and loads, and the same crane with its factors written out.
 
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::DynModel;
+use crane_model::envelope::only_mass;
 use fastrand::Rng;
 use serde_json::{Value, json};
 
-use crate::observe::{differences, live, observe_live};
+use crate::observe::{LOADS, differences, live, observe_live, rated_load};
 use crate::tree::{Tree, numbers, source};
 
 /// The name of the check.
 pub const NAME: &str = "combinations and their factors written out";
+/// Of loads of charts, relative: they are solved to rounding times the slopes of limits.
+const CHART: f64 = 1e-6;
 
 /// What differs; `None` for a crane without weights and loads that are numbers, or that does not rest with them.
 pub fn check_combined(tree: &Tree, seed: u64) -> Option<Vec<String>> {
@@ -43,9 +48,24 @@ pub fn check_combined(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     combined["combinations"] = Value::Array(vec![combination]);
     combined["combination"] = json!("lifting");
     let combined = live(&source(&combined)).ok()?;
-    let second = observe_live(&live(&source(&written)).ok()?, false).ok()?;
-    Some(match observe_live(&combined, false) {
+    let written = live(&source(&written)).ok()?;
+    let second = observe_live(&written, false).ok()?;
+    let mut wrong = match observe_live(&combined, false) {
         Ok(first) => differences([&first, &second], &|name| Some(name.to_owned()), &|_| 1.0),
         Err(refused) => vec![refused],
-    })
+    };
+    wrong.extend(loads_of_charts(&combined, &written));
+    Some(wrong)
+}
+
+/// What differs between the loads of charts: those of a combination are without its factor.
+fn loads_of_charts(combined: &LiveCrane, written: &LiveCrane) -> Option<String> {
+    let load = only_mass(combined.description())?;
+    let factor = written.parameters()[load] / combined.parameters()[load];
+    let [first, second] = [factor * rated_load(combined)?, rated_load(written)?];
+    // Where both searches end at the same bound, they are apart by the factor.
+    let is_bound = |load: f64| load >= LOADS[1] || load <= factor.max(1.0) * LOADS[0];
+    let off = (first - second).abs() > CHART * first;
+    (off && ![first, second, first / factor].into_iter().any(is_bound))
+        .then(|| format!("chart: {first:.9e} kg times its factor against {second:.9e}"))
 }

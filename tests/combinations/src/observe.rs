@@ -198,6 +198,9 @@ const SLOPE: f64 = 3.0;
 /// The group of the loads of charts.
 pub const CHART: &str = "chart";
 
+/// Between which loads a chart searches, kg.
+pub const LOADS: [f64; 2] = [1.0, 2e4];
+
 /// The load that a chart gives for the pose of the spec, kg: within stress, tipping, pressure, strokes, stops and efforts. `None` for a crane
 /// without a mass as a live parameter, and where the chart begins beyond a limit.
 #[must_use]
@@ -206,7 +209,7 @@ pub fn rated_load(crane: &LiveCrane) -> Option<f64> {
     let load = only_mass(whole.description())?;
     let none = Limits::none(whole.description());
     let limits = Limits { tipping: Some(0.05), utilisation: Some(1.0), of_parts: PartLimit::DEFAULT.to_vec(), ..none };
-    let asked = Envelope { axes: Axes::default(), load, loads: [1.0, 2e4], limits, factor: 1.0 };
+    let asked = Envelope { axes: Axes::default(), load, loads: LOADS, limits, factor: 1.0 };
     let found = std::sync::Mutex::new(Vec::new());
     let done = |_: usize, ratings: &[Rating]| {
         if let Ok(mut found) = found.lock() {

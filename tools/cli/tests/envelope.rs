@@ -138,6 +138,37 @@ fn a_given_chart_is_compared() {
     );
 }
 
+/// The load of a chart is without its factors, and the combination that allows least governs: 1.5 times the load tips 1.2 times the
+/// truck, before 1.1 times the load tips the truck.
+#[test]
+fn a_chart_has_the_loads_that_all_combinations_allow() {
+    let folder = folder("combinations");
+    let working = "{name: working, weight: 1.2, masses: {payload: 1.5}}";
+    let light = "{name: light, masses: {payload: 1.1}}";
+    fs::write(folder.join("truck.yaml"), format!("{TRUCK}combinations: [{light}, {working}]\n")).expect("a file");
+    let chart = |more: &[&str]| -> Value {
+        let ranges = ["--range", "column=90deg", "--range", "arm_x=3:5:2", "--format", "json"];
+        let output = run_command(&folder, &[&ranges[..], more].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice(&output.stdout).expect("JSON")
+    };
+    let as_written = chart(&[]);
+    for (more, limit, factor) in [
+        (&["--combinations"][..], "front_left – rear_left, working", 1.2 / 1.5),
+        (&["--combination", "light"], "front_left – rear_left", 1.0 / 1.1),
+    ] {
+        let combined = chart(more);
+        for place in ["least", "greatest"] {
+            let [own, load] = [&as_written, &combined].map(|chart| chart[place]["load"].as_f64().expect("a load"));
+            // The mass of the column, 1 kg in 4001, has the factor of the weight too.
+            assert!((load / own / factor - 1.0).abs() < 1e-6, "{load} against {factor} × {own}");
+            assert_eq!(combined[place]["of"], limit, "{combined}");
+        }
+    }
+    let left: Vec<_> = fs::read_dir(&folder).expect("a folder").flatten().map(|entry| entry.file_name()).collect();
+    assert!(!left.iter().any(|name| name.to_string_lossy().contains("part")), "{left:?}");
+}
+
 /// Killed while it writes, with half a line after what was written: the second command continues, and the result has the same
 /// bytes as one that was never interrupted.
 #[test]

@@ -374,6 +374,19 @@ fn combinations_have_their_own_margins_and_name_the_worst() {
     assert_close("weight", &ground["greatest"], (4000.0 * 1.2 + 150.0) * 9.81, COMPLIANCE);
 }
 
+/// A load that tips is that of the load's parameter, without its factor: 1.5 · 800 kg at 4 m balance 1.2 · 4000 kg at 1 m.
+#[test]
+fn a_load_that_tips_is_without_the_factors_of_its_combination() {
+    let combinations = "combinations: [{name: working, weight: 1.2, masses: {payload: 1.5}}]\n";
+    let truck = format!("{TRUCK}{combinations}");
+    let by_option = strength("one_of_them", &truck, &["--combination", "working"]);
+    let by_key = strength("by_key", &format!("{truck}combination: working\n"), &[]);
+    for report in [by_option, by_key] {
+        assert_close("margin", &report["tipping_margin"], 1.0 - 600.0 / 4800.0, COMPLIANCE);
+        assert_close("tips", &report["critical_loads"]["tipping"]["load"], 800.0, COMPLIANCE);
+    }
+}
+
 /// A cantilever that is bent slowly and let go again: one cycle of `F L/W`, and the life of a detail by hand.
 #[test]
 fn a_cantilever_that_is_bent_and_let_go_lives_as_long_as_its_detail() {

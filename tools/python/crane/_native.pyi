@@ -97,6 +97,9 @@ class Crane:
         """Its spec, YAML."""
     def _changed(self, changes: str) -> str:
         """Its spec with changes, YAML that extends it without naming it: a spec that `load(text=...)` takes."""
+    @property
+    def combinations(self) -> list[str]:
+        """Names of the combinations of weights and loads of its spec."""
     def _with_beam(self, link: str, to: str | None, point: list[float] | None, keys: str) -> str:
         """Its spec with a beam in the place of a rigid link, from the link's frame to another one's, or to a point in it; `keys` are those of the beam."""
     @property

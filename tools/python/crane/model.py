@@ -161,6 +161,17 @@ class Crane(_native.Crane):
         """
         return type(self)(self.source, parameters=parameters, invalid=invalid, like=self, inputs=inputs)
 
+    def combined(self, combination: str, /) -> Self:
+        """The same crane with the partial factors of one of the `combinations` of its spec: `crane.combined("lifting").statics()`.
+
+        Raises ValueError if it has no such combination.
+        """
+        if combination not in self.combinations:
+            known = ", ".join(self.combinations) or "none"
+            raise ValueError(f"{self.name} has no combination {combination!r}; its combinations: {known}")
+        changed = self._changed(f"combination: {combination}\n")
+        return type(self)(self.source, text=changed, parameters=self.parameters, inputs=self.inputs)
+
     def with_beam(
         self,
         link: str,

@@ -212,6 +212,12 @@ impl Crane {
         }
     }
 
+    /// Names of the combinations of weights and loads of its spec.
+    #[getter]
+    fn combinations(&self) -> Vec<&str> {
+        self.live.chain().combinations.iter().map(|combination| combination.name.as_str()).collect()
+    }
+
     #[getter]
     fn spec_hash(&self) -> &str {
         &self.live.description().spec_hash

@@ -193,6 +193,19 @@ def test_a_link_of_a_robot_bends():
     assert np.allclose(bending.frames({"hand": "hand"}).poses(straight), rigid, atol=1e-12)
 
 
+def test_combinations_are_cranes_of_their_own():
+    text = PENDULUM + "combinations: [{name: lifting, weight: 1.2, masses: {bob: 1.5}}]\n"
+    plain = crane.load("p.yaml", text=text)
+    assert plain.combinations == ["lifting"]
+    lifting = plain.combined("lifting")
+    assert lifting.parameters == plain.parameters
+    q = np.full(plain.n, 0.3)
+    weight = [c.static_residual(q)[0] for c in (plain, lifting)]
+    assert np.isclose(weight[1], 1.5 * weight[0], rtol=1e-14)
+    with pytest.raises(ValueError, match="lifting"):
+        plain.combined("test_load")
+
+
 def test_links_that_cannot_bend_say_why():
     robot = crane.from_urdf(TWO_LINKS)
     beam = {"sections": 2, "material": ALLOY, "section": {"circle": {"diameter": 0.02}}}

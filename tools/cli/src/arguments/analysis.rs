@@ -119,6 +119,9 @@ pub struct Envelope {
     /// Chart to compare with, such as that of a manual: a CSV file with the columns `radius` and `load`, as in `radius [m],load [t]`
     #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
     pub given: Option<PathBuf>,
+    /// Give the load that all `combinations` of the spec allow, and name the one that governs
+    #[arg(long, conflicts_with = "combination")]
+    pub combinations: bool,
     /// Threads [default: all of the machine]
     #[arg(long, value_name = "COUNT", value_parser = count)]
     pub threads: Option<NonZeroUsize>,

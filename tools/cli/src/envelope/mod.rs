@@ -58,15 +58,7 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
     let given = options.given.as_deref().map(|file| Given::read(file, unit_of_load)).transpose()?;
     files::folder(&options.folder.out)?;
     let name = format!("{}_envelope", description.name);
-    let journal = options.folder.out.join(format!("{name}.part.csv"));
-    let request = Request {
-        line: format!("{} {asked:?} {:?}", journal::identity(crane.as_ref()), layout.point),
-        of: "an envelope",
-        elsewhere: "choose another folder with `--out`",
-    };
-    let (journal, records) = Journal::open(&journal, &request, options.restart)?;
-    let kept = kept_rows(&records, &asked, &layout);
-    let rows = rate(&asked, &layout, crane.as_ref(), options.threads, &journal, kept)?;
+    let (rows, journals) = rows_of(options, registry, crane.as_ref(), (&asked, &layout))?;
     let seconds = screen::seconds_since(begin);
 
     let mut report = Report::default();
@@ -109,7 +101,7 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
     )?);
     let companion = format!("{name}.json");
     written.push(companion.clone());
-    journal.remove()?;
+    journals.into_iter().try_for_each(Journal::remove)?;
     report.grid(crate::simulate::file_list(&options.folder.out, &written));
     files::write_text(&options.folder.out.join(&companion), &format!("{:#}\n", report.json()))?;
     options.analysis.format.print(&report, out)?;
@@ -117,6 +109,40 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
         writeln!(out, "\n{}", wrapped(chart::NOTE, chart::SCREEN).join("\n"))?;
     }
     Ok(())
+}
+
+/// The rows of all poses, with all combinations if the arguments ask for them; and the journals, which have them until they are written.
+fn rows_of(
+    options: &Envelope,
+    registry: &Registry,
+    crane: &dyn DynCrane,
+    (asked, layout): (&crane_model::envelope::Envelope, &Layout),
+) -> Outcome<(Vec<Row>, Vec<Journal>)> {
+    let name = crane.description().name.as_str();
+    let rate = |crane: &dyn DynCrane, name: &str| -> Outcome<(Vec<Row>, Journal)> {
+        let file = options.folder.out.join(format!("{name}_envelope.part.csv"));
+        let request = Request {
+            line: format!("{} {asked:?} {:?}", journal::identity(crane), layout.point),
+            of: "an envelope",
+            elsewhere: "choose another folder with `--out`",
+        };
+        let (journal, records) = Journal::open(&file, &request, options.restart)?;
+        let kept = kept_rows(&records, asked, layout);
+        Ok((rate(asked, layout, crane, options.threads, &journal, kept)?, journal))
+    };
+    if !options.combinations {
+        let (rows, journal) = rate(crane, name)?;
+        return Ok((rows, vec![journal]));
+    }
+    let (mut least, mut journals): (Vec<Row>, _) = (Vec::new(), Vec::new());
+    for combination in registry.combinations(name)? {
+        let combined = registry.live_combined(crane, &combination)?;
+        let (mut rows, journal) = rate(&combined, &format!("{name}_{combination}"))?;
+        rows.iter_mut().for_each(|row| row.govern_with(&combination));
+        least = if least.is_empty() { rows } else { layout.least(least, rows) };
+        journals.push(journal);
+    }
+    Ok((least, journals))
 }
 
 /// What the arguments ask for.

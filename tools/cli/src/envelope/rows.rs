@@ -33,6 +33,14 @@ impl Row {
         let numbers = self.numbers.iter().copied().map(number_text);
         [pose.to_string(), kind, of].into_iter().chain(numbers).collect()
     }
+
+    /// The same, of a crane with this combination of weights and loads.
+    pub fn govern_with(&mut self, combination: &str) {
+        let [kind, of] = &mut self.governing;
+        if !kind.is_empty() {
+            *of = if of.is_empty() { combination.to_owned() } else { format!("{of}, {combination}") };
+        }
+    }
 }
 
 /// The columns of a row, and what is needed to make one.
@@ -105,6 +113,12 @@ impl Layout {
     pub fn load_of(&self, row: &Row) -> f64 {
         let load = row.numbers[self.load()];
         if load.is_nan() { 0.0 } else { load }
+    }
+
+    /// Pose by pose, the row with the smaller load; one without a load has the smallest.
+    pub fn least(&self, first: Vec<Row>, second: Vec<Row>) -> Vec<Row> {
+        let least = |(a, b)| if self.load_of(&b) < self.load_of(&a) { b } else { a };
+        first.into_iter().zip(second).map(least).collect()
     }
 
     /// The row of a pose.

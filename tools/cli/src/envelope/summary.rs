@@ -111,7 +111,7 @@ fn row_text(row: &Row, asked: &Envelope, layout: &Layout) -> [String; 3] {
     });
     let limit = match row.governing.each_ref().map(String::as_str) {
         ["", _] => "up to the maximum load considered".to_owned(),
-        ["equilibrium", _] => "limited by equilibrium".to_owned(),
+        ["equilibrium", ""] => "limited by equilibrium".to_owned(),
         [kind, of] => format!("limited by {kind}, {of}"),
     };
     let load = format!(
