@@ -51,6 +51,7 @@ impl Chain {
             }
         }
         self.title = format!("{}, combination {}", self.title, combination.name);
+        self.combination = Some(combination.name.clone());
         self
     }
 

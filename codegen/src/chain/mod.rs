@@ -88,6 +88,8 @@ pub struct Chain {
     pub loads: Vec<Load>,
     /// Combinations of weights and loads.
     pub combinations: Vec<Combination>,
+    /// The one with which it is computed: gravity, loads and masses have its factors.
+    pub combination: Option<String>,
     /// Hydraulic cylinders of driven joints.
     pub cylinders: Vec<Cylinder>,
     /// The pump that supplies the cylinders.

@@ -56,6 +56,7 @@ pub(super) fn double_pendulum() -> Chain {
         forces: vec![],
         loads: vec![],
         combinations: vec![],
+        combination: None,
         cylinders: Vec::new(),
         pump: None,
         loop_joints: vec![],

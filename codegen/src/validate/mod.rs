@@ -295,6 +295,7 @@ impl<'a> Check<'a> {
             forces: [forces, connectors].concat(),
             loads,
             combinations,
+            combination: None,
             cylinders,
             pump,
             loop_joints,

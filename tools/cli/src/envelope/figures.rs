@@ -33,9 +33,13 @@ impl Heading {
         /// Digits of the hash that distinguish specs.
         const DIGITS: usize = 12;
         let hash: String = layout.description.spec_hash.as_str().chars().take(DIGITS).collect();
+        let combinations = match layout.combinations.join(", ") {
+            none if none.is_empty() => none,
+            names => format!("; combinations {names}"),
+        };
         let factor = if asked.factor > 1.0 { format!(" of {} times the load", asked.factor) } else { String::new() };
         Self(vec![
-            format!("{}, spec {hash}", layout.description.name),
+            format!("{}, spec {hash}{combinations}", layout.description.name),
             format!("Limits{factor}: {}", coverage.considered.join("; ")),
             format!("Not considered: {}", coverage.not_considered.join("; ")),
         ])

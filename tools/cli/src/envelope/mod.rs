@@ -52,7 +52,12 @@ const MOST_POSES: usize = 10_000_000;
 pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let begin = Instant::now();
     let crane = options.analysis.crane.open(registry)?;
-    let (asked, layout) = ask(options, crane.as_ref())?;
+    let (asked, mut layout) = ask(options, crane.as_ref())?;
+    let name = crane.description().name.as_str();
+    layout.combinations = match options.combinations {
+        true => registry.combinations(name)?,
+        false => registry.live(crane.as_ref())?.chain().combination.iter().cloned().collect(),
+    };
     let description = crane.description();
     let unit_of_load = &description.parameters[asked.load].unit;
     let given = options.given.as_deref().map(|file| Given::read(file, unit_of_load)).transpose()?;
@@ -135,10 +140,10 @@ fn rows_of(
         return Ok((rows, vec![journal]));
     }
     let (mut least, mut journals): (Vec<Row>, _) = (Vec::new(), Vec::new());
-    for combination in registry.combinations(name)? {
-        let combined = registry.live_combined(crane, &combination)?;
+    for combination in &layout.combinations {
+        let combined = registry.live_combined(crane, combination)?;
         let (mut rows, journal) = rate(&combined, &format!("{name}_{combination}"))?;
-        rows.iter_mut().for_each(|row| row.govern_with(&combination));
+        rows.iter_mut().for_each(|row| row.govern_with(combination));
         least = if least.is_empty() { rows } else { layout.least(least, rows) };
         journals.push(journal);
     }

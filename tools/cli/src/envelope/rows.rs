@@ -53,6 +53,8 @@ pub struct Layout {
     pub slew: SlewAxis,
     /// The crane.
     pub description: Description,
+    /// Combinations of weights and loads with which the loads are found.
+    pub combinations: Vec<String>,
     axes: usize,
 }
 
@@ -86,7 +88,7 @@ impl Layout {
         for point in &description.points {
             column(format!("{point}_deflection"), "m");
         }
-        Self { columns, point, slew: SlewAxis::of(crane), axes: asked.axes.0.len(), description }
+        Self { columns, point, slew: SlewAxis::of(crane), axes: asked.axes.0.len(), description, combinations: Vec::new() }
     }
 
     /// Column of the largest load; radius, height, tipping margin and utilisation follow.

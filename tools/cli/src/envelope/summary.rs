@@ -25,6 +25,9 @@ pub fn facts(report: &mut Report, asked: &Envelope, layout: &Layout, coverage: &
     report.fact("crane", description.name.as_str(), "");
     report.fact_as("spec_hash", "hash of the spec", description.spec_hash.as_str(), "");
     report.fact("load", description.parameters[asked.load].name.as_str(), "");
+    if !layout.combinations.is_empty() {
+        report.fact("combinations", layout.combinations.join(", "), "");
+    }
     if asked.factor > 1.0 {
         report.line("loads multiplied by", asked.factor, "");
     }
