@@ -16,7 +16,7 @@ use crate::{
 /// Checks specs: confirms that they are valid, or reports what is wrong with each.
 pub fn check_specs(options: &Check, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     match options.format {
-        Format::Table => as_text(options, registry, out),
+        Format::Table | Format::Html => as_text(options, registry, out),
         Format::Json => as_json(options, registry, out),
     }
 }

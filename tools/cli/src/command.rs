@@ -6,8 +6,8 @@ use clap::CommandFactory;
 
 use crate::{
     arguments::{Action, Arguments},
-    check, combinations, compare, compiled, completions, ensemble, envelope, eval, example, exchange, explain, fatigue,
-    generate, help, info, linearise, margins, modes, new, page, poses,
+    book, check, combinations, compare, compiled, completions, ensemble, envelope, eval, example, exchange, explain,
+    fatigue, generate, help, info, linearise, margins, modes, new, page, poses,
     problem::Outcome,
     run, screen,
     selection::Registry,
@@ -47,7 +47,14 @@ pub fn execute(mut arguments: Arguments, mut registry: Registry, out: &mut dyn W
     if let Some(Action::Compare(options)) = &mut arguments.action {
         compare::load(options, &mut registry)?;
     }
-    let registry = &registry;
+    dispatch(&arguments, &registry, out)
+}
+
+/// Does what arguments ask for with cranes that have been read.
+///
+/// # Errors
+/// Those of the command.
+pub fn dispatch(arguments: &Arguments, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     if let Some(asked) = arguments.action.as_ref().and_then(poses::asked) {
         return poses::rows(&asked, registry, out);
     }
@@ -84,6 +91,7 @@ pub fn execute(mut arguments: Arguments, mut registry: Registry, out: &mut dyn W
         Some(Action::Sensitivity(options)) => sensitivity::sensitivity(options, registry, out),
         Some(Action::Envelope(options)) => envelope::envelope(options, registry, out),
         Some(Action::Report(options)) => page::report(options, registry, out),
+        Some(Action::Book(options)) => book::book(options, registry, out),
         Some(Action::Info(options)) => info::info(options, registry, out),
         Some(Action::Eval(options)) => eval::eval(options, registry, out),
         Some(Action::New(options)) => new::new(options, registry, out),

@@ -2,6 +2,7 @@
 
 use std::io::Write;
 
+use crane_codegen::chain::Chain;
 use crane_model::runs::{EQUILIBRIUM, GUESS};
 use crane_page::tables::{Cell, Grid, Report};
 
@@ -111,5 +112,19 @@ pub fn info(options: &Analysis, registry: &Registry, out: &mut dyn Write) -> Out
         points.row([point.as_str().into()]);
     }
     report.grid(points);
+    report.grid(combinations(registry.live(crane.as_ref())?.chain()));
     options.format.print(&report, out)
+}
+
+/// The partial factors of combinations of weights and loads.
+fn combinations(chain: &Chain) -> Grid {
+    let mut grid = Grid::new("combinations", "Combinations of weights and loads", &["combination", "of", "factor"]);
+    for combination in &chain.combinations {
+        let masses = combination.masses.iter().map(|(mass, factor)| (chain.parameters[mass.0].name.as_str(), *factor));
+        let loads = combination.loads.iter().map(|(load, factor)| (chain.loads[*load].name.as_str(), *factor));
+        for (of, factor) in [("weight", combination.weight)].into_iter().chain(masses).chain(loads) {
+            grid.row([combination.name.as_str().into(), of.into(), factor.into()]);
+        }
+    }
+    grid
 }

@@ -12,6 +12,7 @@
 //! ```
 
 mod arguments;
+mod book;
 mod check;
 mod combinations;
 mod command;

@@ -170,14 +170,33 @@ impl Registry {
                 Problem::failed(format!("{name} has no form with rigid beams: {}", mistakes.headline()), otherwise)
             }
         })?;
-        Ok(self.add_read(chain, text))
+        Ok(self.add_variant(name, chain, text))
     }
 
     /// Computes a crane with one of the combinations of its spec from now on.
     pub(super) fn combine(&mut self, name: &str, combination: &str) -> Outcome<()> {
         let (chain, text) = self.combined(name, combination)?;
-        self.add_read(chain, text);
+        self.add_variant(name, chain, text);
         Ok(())
+    }
+
+    /// Adds a crane whose spec is that of another one's file, changed; returns its name.
+    fn add_variant(&mut self, of: &str, chain: Chain, text: String) -> String {
+        let file = self.entries.iter().find(|entry| entry.name == of).map(|entry| entry.file.clone());
+        let name = self.add_read(chain, text);
+        if let (Some(file), Some(entry)) = (file, self.entries.last_mut()) {
+            entry.file = file;
+        }
+        name
+    }
+
+    /// What to write for a crane in place of the word CRANE: its file, or the name of a shipped one.
+    pub fn word_for(&self, name: &str) -> String {
+        let file = self.entries.iter().find(|entry| entry.name == name).map(|entry| entry.file.as_str());
+        let file = file.unwrap_or(name);
+        let own = file.strip_suffix(".yaml").unwrap_or(file);
+        let is_shipped = self.shipped.iter().any(|(shipped, _)| *shipped == own);
+        if is_shipped { own.to_owned() } else { file.to_owned() }
     }
 
     /// A live crane with the parameters and inputs of another one, and with a combination of the spec of both.

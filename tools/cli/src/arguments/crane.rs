@@ -21,6 +21,8 @@ pub enum Format {
     Table,
     /// For programs.
     Json,
+    /// For documents: a section of a page.
+    Html,
 }
 
 impl Format {
@@ -33,6 +35,7 @@ impl Format {
         match self {
             Format::Table => Ok(screen::print(report, out)?),
             Format::Json => Ok(writeln!(out, "{:#}", report.json())?),
+            Format::Html => Ok(write!(out, "{}", report.html())?),
         }
     }
 }

@@ -24,7 +24,7 @@ pub use crane::{
 pub use exchange::{CNumber, Export, Fmi, Import, Language};
 pub use number::seconds;
 pub use poses::{Held, Poses, Sensitivity, Statics};
-pub use run::{Compare, ComparePair, Ensemble, Page, Run, Simulate, Step, Timing};
+pub use run::{Book, Compare, ComparePair, Ensemble, Page, Run, Simulate, Step, Timing};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -42,6 +42,8 @@ Examples:
   crane simulate --ensemble loads.csv -o peaks.csv
                                        one run per row of a table of parameters
   crane report -o report.html          the crane in 3-D, plots and tables on one page
+  crane book my.yaml --chart \"--range boom_psi=0:60deg:13\" -o book.html
+                                       the crane, its spec and its results as one document to print
   crane strength --run                 tipping margin, stresses and joint loads, at rest and during the manoeuvre
   crane sensitivity --with load_mass,links.boom.beam.section.box.height
                                        what moves deflection, stresses, tipping and frequencies, and by how much
@@ -115,6 +117,8 @@ pub enum Action {
     Margins(Margins),
     /// Write statics, motion and modes as one HTML page with the crane in 3-D
     Report(Page),
+    /// Write a crane, its spec and its results as one document to print, with numbered sections
+    Book(Book),
     /// Compute the largest stable step of every method and what limits it
     Stability(Stability),
     /// Show coordinates, bodies, supports, drives and parameters of a crane
@@ -173,6 +177,7 @@ impl Action {
             Action::Envelope(options) => Some(&mut options.analysis.crane),
             Action::Stability(options) => Some(&mut options.analysis.crane),
             Action::Report(options) => Some(&mut options.crane),
+            Action::Book(options) => Some(&mut options.crane),
             Action::Eval(options) => Some(&mut options.crane),
             Action::Compare(_)
             | Action::New(_)

@@ -173,6 +173,27 @@ pub struct Page {
     pub instrument: Option<String>,
 }
 
+/// A document about a crane.
+#[derive(Debug, Args)]
+pub struct Book {
+    #[command(flatten)]
+    pub crane: Choice,
+    /// Add the load chart: options of `crane envelope`, as in `--chart "--range boom_psi=0:60deg:13 --tipping 0.1"`
+    #[arg(long, value_name = "OPTIONS", allow_hyphen_values = true)]
+    pub chart: Option<String>,
+    /// Add the manoeuvre: its figures, and the extremes of all loads during it
+    #[arg(long)]
+    pub run: bool,
+    /// Add fatigue by the manoeuvre: options of `crane fatigue`, as in `--fatigue "--cycles 2e5 --category 71MPa"`
+    #[arg(long, value_name = "OPTIONS", allow_hyphen_values = true)]
+    pub fatigue: Option<String>,
+    /// File to write
+    #[arg(short = 'o', long, value_name = "FILE", default_value = "book.html", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    #[command(flatten)]
+    pub folder: Folder,
+}
+
 /// The address of a page: none that a browser would run as a script.
 fn page_address(text: &str) -> Result<String, String> {
     let scheme = text.split_once(':').map(|(scheme, _)| scheme.trim().to_ascii_lowercase());

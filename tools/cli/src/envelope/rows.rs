@@ -88,7 +88,14 @@ impl Layout {
         for point in &description.points {
             column(format!("{point}_deflection"), "m");
         }
-        Self { columns, point, slew: SlewAxis::of(crane), axes: asked.axes.0.len(), description, combinations: Vec::new() }
+        Self {
+            columns,
+            point,
+            slew: SlewAxis::of(crane),
+            axes: asked.axes.0.len(),
+            description,
+            combinations: Vec::new(),
+        }
     }
 
     /// Column of the largest load; radius, height, tipping margin and utilisation follow.

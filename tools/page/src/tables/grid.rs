@@ -5,6 +5,7 @@ use std::{
     io::{self, Write},
 };
 
+use crane_codegen::exchange::xml::escaped;
 use serde_json::{Map, Value, json};
 
 use super::cell::{Cell, DIGITS_OF_DOCUMENTS, number_text, si};
@@ -160,6 +161,31 @@ impl Grid {
         let text = |cell: &Cell| cell.with_digits(DIGITS_OF_DOCUMENTS);
         let rows = self.rows.iter().map(|row| line(row.iter().map(text).collect()));
         [line(self.headers()), line(sides.collect())].into_iter().chain(rows).collect()
+    }
+
+    /// Its first rows as a figure of a page, or all of it.
+    pub(super) fn html(&self, most: usize) -> String {
+        /// More columns than this are set in smaller letters.
+        const MANY: usize = 8;
+        let class = if self.headings.len() > MANY { " class=\"wide\"" } else { "" };
+        let numeric: Vec<bool> = (0..self.headings.len()).map(|column| self.numeric(column)).collect();
+        let line = |tag: &str, cells: &mut dyn Iterator<Item = String>| {
+            let cells = cells.zip(&numeric).map(|(cell, is_number)| {
+                let side = if *is_number { " class=\"n\"" } else { "" };
+                format!("<{tag}{side}>{}</{tag}>", escaped(&cell))
+            });
+            format!("<tr>{}</tr>\n", cells.collect::<String>())
+        };
+        let head = line("th", &mut self.headers().into_iter());
+        let rows: String = self.rows.iter().take(most).map(|row| line("td", &mut row.iter().map(Cell::text))).collect();
+        let more = match self.rows.len().saturating_sub(most) {
+            0 => String::new(),
+            more => format!("<p class=\"more\">{more} more rows with <code>--all</code></p>\n"),
+        };
+        let title = escaped(&self.title);
+        format!(
+            "<figure class=\"table\">\n<figcaption>{title}</figcaption>\n<table{class}>\n<thead>\n{head}</thead>\n<tbody>\n{rows}</tbody>\n</table>\n{more}</figure>\n"
+        )
     }
 
     /// Prints its first rows for people, or all of it.

@@ -4,6 +4,8 @@ use std::io::{self, Write};
 
 use serde_json::{Map, Value, json};
 
+use crane_codegen::exchange::xml::escaped;
+
 use super::{Cell, Grid, cell::si};
 
 /// A named value.
@@ -119,6 +121,30 @@ impl Report {
             .chain(self.cautions.iter().map(|words| ["caution", words, ""].map(str::to_owned)))
             .collect();
         json!({"facts": facts, "grids": self.filled().map(|(grid, _)| grid.page()).collect::<Vec<_>>()})
+    }
+
+    /// Facts, cautions and tables as a section of a page; of each table as many rows as people see.
+    #[must_use]
+    pub fn html(&self) -> String {
+        let mut html = String::new();
+        let facts = self.facts.iter().map(|Fact { name, value, unit, .. }| {
+            let value = format!("{} {unit}", value.text());
+            format!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", escaped(name), escaped(value.trim_end()))
+        });
+        let facts: String = facts.collect();
+        if !facts.is_empty() {
+            html += &format!("<table class=\"facts\">\n{facts}</table>\n");
+        }
+        for words in &self.cautions {
+            html += &format!("<p class=\"caution\">caution: {}</p>\n", escaped(words));
+        }
+        for (grid, rows) in self.filled() {
+            match if self.all { usize::MAX } else { *rows } {
+                0 => {}
+                most => html += &grid.html(most),
+            }
+        }
+        html
     }
 
     /// Prints it for people, as the command does.

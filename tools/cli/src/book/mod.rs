@@ -1,0 +1,276 @@
+//! `crane book`: a crane, its spec and its results as one document to print.
+//!
+//! Each section is what a command prints, as `--format html` has it, under the command's words: a reader can compute it again.
+
+mod html;
+
+use std::{fs, io::Write, path::Path};
+
+use clap::Parser;
+use crane_codegen::{SourceFile, chain::Chain, exchange::xml::escaped, explain, picture::picture};
+
+use crate::{
+    arguments::{Arguments, Book},
+    command::dispatch,
+    files,
+    problem::{Outcome, Problem},
+    screen,
+    selection::Registry,
+};
+
+/// A section of the book, or why it is not there.
+struct Section {
+    title: &'static str,
+    /// What it is for.
+    about: &'static str,
+    /// The command and its options besides those of the crane; empty for a section that no command prints.
+    command: Vec<String>,
+    content: Content,
+}
+
+enum Content {
+    /// HTML.
+    Shown(String),
+    /// Why it is not there, and what to write for it.
+    LeftOut(String),
+}
+
+/// Computes all sections and writes the document.
+pub fn book(options: &Book, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    let crane = options.crane.open(registry)?;
+    let live = registry.live(crane.as_ref())?;
+    let chain = live.chain();
+    let binder = Binder { options, registry, chain };
+    let mut sections = vec![binder.crane()?, binder.spec()];
+    for asked in binder.asked() {
+        screen::remark(&format!("{}: {}", sections.len() + 1, asked.title));
+        sections.push(binder.computed(asked)?);
+    }
+    files::write_text(&options.file, &html::page(&binder.cover(), &sections))?;
+    writeln!(out, "{} written: open it in a browser and print it", options.file.display())?;
+    Ok(())
+}
+
+/// A section that a command computes.
+struct Asked {
+    title: &'static str,
+    about: &'static str,
+    /// The command and its options; why not, if there is nothing to compute.
+    command: Result<String, &'static str>,
+    /// Ends of the names of its figures.
+    figures: &'static [&'static str],
+}
+
+/// Computes sections.
+struct Binder<'a> {
+    options: &'a Book,
+    registry: &'a Registry,
+    chain: &'a Chain,
+}
+
+impl Binder<'_> {
+    /// Title, name, hash and program.
+    fn cover(&self) -> html::Cover {
+        let Chain { title, name, spec_hash, .. } = self.chain;
+        html::Cover { title: title.clone(), name: name.clone(), spec_hash: spec_hash.clone() }
+    }
+
+    /// What is asked for, in order.
+    fn asked(&self) -> Vec<Asked> {
+        let Self { options: Book { run, chart, fatigue, folder, .. }, chain, .. } = self;
+        let when = |holds: bool, command: &str, otherwise| if holds { Ok(command.to_owned()) } else { Err(otherwise) };
+        let given = |options: &Option<String>, command: &str, otherwise| {
+            options.as_ref().map(|options| format!("{command} {options}")).ok_or(otherwise)
+        };
+        let out = folder.out.display();
+        let bends = !chain.beams.is_empty();
+        let moves = !chain.drives.is_empty();
+        vec![
+            Asked {
+                title: "The crane at rest",
+                about: "Where the crane rests with its drives at the beginning of their motions, and what drives, feet and cylinders carry.",
+                command: Ok("statics".to_owned()),
+                figures: &[],
+            },
+            Asked {
+                title: "Strength and tipping",
+                about: "Stresses of beams at every place where something acts on them, forces of joints, and how far the crane is from tipping.",
+                command: Ok(if bends { "strength --buckling" } else { "strength" }.to_owned()),
+                figures: &[],
+            },
+            Asked {
+                title: "Combinations of weights and loads",
+                about: "The same with the partial factors of every combination of the spec, and which of them governs each part.",
+                command: when(
+                    !chain.combinations.is_empty() && options_without_combination(self.options),
+                    "strength --combinations",
+                    "the spec has no `combinations`, or the book is computed with one of them",
+                ),
+                figures: &[],
+            },
+            Asked {
+                title: "Load chart",
+                about: "The largest load within all limits, pose by pose.",
+                command: given(
+                    chart,
+                    &format!("envelope --out {out}"),
+                    "it needs the poses: add `--chart \"--range DRIVE=FROM:TO:COUNT\"`",
+                ),
+                figures: &["load_chart", "slew_diagram", "largest_load_map", "utilisation_map"],
+            },
+            Asked {
+                title: "Frequencies and damping",
+                about: "Small vibrations about the pose at rest.",
+                command: Ok("modes".to_owned()),
+                figures: &[],
+            },
+            Asked {
+                title: "The manoeuvre",
+                about: "The motion from rest that the spec describes.",
+                command: when(*run, &format!("simulate --out {out}"), "it was not asked for: add `--run`"),
+                figures: &["drives", "points", "feet", "cylinders"],
+            },
+            Asked {
+                title: "Loads during the manoeuvre",
+                about: "Extremes of stresses, of forces of joints and of the tipping margin, with their times.",
+                command: when(*run, "strength --run", "it was not asked for: add `--run`"),
+                figures: &[],
+            },
+            Asked {
+                title: "Fatigue",
+                about: "Cycles of stress by the manoeuvre, damage and life.",
+                command: given(
+                    fatigue,
+                    "fatigue",
+                    "it needs the number of cycles and the detail category: add `--fatigue \"--cycles NUMBER --category STRESS\"`",
+                ),
+                figures: &[],
+            },
+            Asked {
+                title: "Sensitivity",
+                about: "What moves the results, and by how much.",
+                command: when(
+                    !chain.parameters.is_empty() && moves,
+                    "sensitivity",
+                    "the spec has no live `parameters`, or no drive",
+                ),
+                figures: &[],
+            },
+        ]
+    }
+
+    /// What the crane consists of.
+    fn crane(&self) -> Outcome<Section> {
+        let drawn = html::figure(
+            &picture(self.chain),
+            "The crane as its spec describes it, in the undeformed pose of its guess",
+        );
+        let words = explain::explain(self.chain, None);
+        let tables = self.print("info")?;
+        Ok(Section {
+            title: "The crane",
+            about: "Its links, joints, masses, supports and drives, as the program understood the spec.",
+            command: self.shown("info"),
+            content: Content::Shown(format!("{drawn}<pre>{}</pre>\n{tables}", escaped(&words))),
+        })
+    }
+
+    /// The spec as it was written.
+    fn spec(&self) -> Section {
+        let name = &self.options.crane.name;
+        let text = self.registry.spec(name).unwrap_or_default();
+        let source = SourceFile::new(name, text);
+        let parts = source.parts().into_iter().map(|part| {
+            let name = Path::new(part.name).file_name().map_or(part.name.into(), |name| name.to_string_lossy());
+            format!("<h3>{}</h3>\n<pre class=\"spec\">{}</pre>\n", escaped(&name), escaped(part.text.trim_end()))
+        });
+        Section {
+            title: "The spec",
+            about: "All input, as it was written. Numbers without a unit are in SI units.",
+            command: Vec::new(),
+            content: Content::Shown(parts.collect()),
+        }
+    }
+
+    /// A section by its command.
+    fn computed(&self, asked: Asked) -> Outcome<Section> {
+        let Asked { title, about, command, figures } = asked;
+        let section = |command: Vec<String>, content| Section { title, about, command, content };
+        let command = match command {
+            Ok(command) => command,
+            Err(why) => return Ok(section(Vec::new(), Content::LeftOut(why.to_owned()))),
+        };
+        let content = match self.print(&command) {
+            Ok(tables) => Content::Shown(self.figures(&command, figures)? + &tables),
+            // Without a pose at rest there is no strength: the book says so where it would stand.
+            Err(Problem::Message { title, code, .. }) if code == crate::problem::FAILED => Content::LeftOut(title),
+            Err(problem) => return Err(problem),
+        };
+        Ok(section(self.shown(&command), content))
+    }
+
+    /// The words of a command as a reader would write it.
+    fn shown(&self, command: &str) -> Vec<String> {
+        let crane = &self.options.crane;
+        let mut command = words_of(command).into_iter();
+        let mut words: Vec<String> = command.next().into_iter().collect();
+        words.push(self.registry.word_for(&crane.name));
+        words.extend(crane.rigid.then(|| "--rigid".to_owned()));
+        words.extend(crane.combination.iter().flat_map(|name| ["--combination".to_owned(), name.clone()]));
+        words.extend(numbers_of(self.options));
+        words.extend(command);
+        words
+    }
+
+    /// What a command prints as a section of a page.
+    fn print(&self, command: &str) -> Outcome<String> {
+        let crane = &self.options.crane;
+        let mut words = vec!["crane".to_owned()];
+        let mut command = words_of(command).into_iter();
+        words.extend(command.next());
+        words.extend([crane.name.clone(), "--format".to_owned(), "html".to_owned()]);
+        words.extend(numbers_of(self.options));
+        words.extend(command);
+        let arguments = Arguments::try_parse_from(&words).map_err(|error| {
+            let title = error.to_string().lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
+            Problem::usage(title, format!("`{}` has other options", words[..2].join(" ")))
+        })?;
+        let mut printed = Vec::new();
+        dispatch(&arguments, self.registry, &mut printed)?;
+        Ok(String::from_utf8_lossy(&printed).into_owned())
+    }
+
+    /// The figures that a command wrote, by the ends of their names.
+    fn figures(&self, command: &str, ends: &[&str]) -> Outcome<String> {
+        let name = &self.chain.name;
+        let of = if command.starts_with("envelope") { "_envelope" } else { "" };
+        let mut shown = String::new();
+        for end in ends {
+            let file = self.options.folder.out.join(format!("{name}{of}_{end}.svg"));
+            if file.exists() {
+                let drawn = fs::read_to_string(&file).map_err(|error| Problem::file(&file, &error))?;
+                shown += &html::figure(&drawn, "");
+            }
+        }
+        Ok(shown)
+    }
+}
+
+/// Whether the book is computed with weights and loads as written.
+fn options_without_combination(options: &Book) -> bool {
+    options.crane.combination.is_none()
+}
+
+/// The options of the command that change numbers of the crane.
+fn numbers_of(options: &Book) -> Vec<String> {
+    let crane = &options.crane;
+    let each = |option: &'static str, values: &[String]| -> Vec<String> {
+        values.iter().flat_map(|value| [option.to_owned(), value.clone()]).collect()
+    };
+    [each("--set", &crane.parameters.settings), each("--input", &crane.inputs)].concat()
+}
+
+/// Words of a command, separated by blanks.
+fn words_of(command: &str) -> Vec<String> {
+    command.split_whitespace().map(str::to_owned).collect()
+}
