@@ -7,7 +7,7 @@ mod html;
 use std::{fs, io::Write, path::Path};
 
 use clap::Parser;
-use crane_codegen::{SourceFile, chain::Chain, exchange::xml::escaped, explain, picture::picture};
+use crane_codegen::{SourceFile, chain::Chain, exchange::xml::escaped, picture::picture};
 
 use crate::{
     arguments::{Arguments, Book},
@@ -95,14 +95,16 @@ impl Binder<'_> {
             Asked {
                 title: "Strength and tipping",
                 about: "Stresses of beams at every place where something acts on them, forces of joints, and how far the crane is from tipping.",
-                command: Ok(if bends { "strength --buckling" } else { "strength" }.to_owned()),
+                command: Ok(
+                    ["strength", if bends { " --buckling" } else { "" }, if *run { " --run" } else { "" }].concat()
+                ),
                 figures: &[],
             },
             Asked {
                 title: "Combinations of weights and loads",
                 about: "The same with the partial factors of every combination of the spec, and which of them governs each part.",
                 command: when(
-                    !chain.combinations.is_empty() && options_without_combination(self.options),
+                    !chain.combinations.is_empty() && is_as_written(self.options, chain),
                     "strength --combinations",
                     "the spec has no `combinations`, or the book is computed with one of them",
                 ),
@@ -129,12 +131,6 @@ impl Binder<'_> {
                 about: "The motion from rest that the spec describes.",
                 command: when(*run, &format!("simulate --out {out}"), "it was not asked for: add `--run`"),
                 figures: &["drives", "points", "feet", "cylinders"],
-            },
-            Asked {
-                title: "Loads during the manoeuvre",
-                about: "Extremes of stresses, of forces of joints and of the tipping margin, with their times.",
-                command: when(*run, "strength --run", "it was not asked for: add `--run`"),
-                figures: &[],
             },
             Asked {
                 title: "Fatigue",
@@ -165,13 +161,12 @@ impl Binder<'_> {
             &picture(self.chain),
             "The crane as its spec describes it, in the undeformed pose of its guess",
         );
-        let words = explain::explain(self.chain, None);
         let tables = self.print("info")?;
         Ok(Section {
             title: "The crane",
-            about: "Its links, joints, masses, supports and drives, as the program understood the spec.",
+            about: "Its coordinates, bodies, supports and drives, as the program understood the spec.",
             command: self.shown("info"),
-            content: Content::Shown(format!("{drawn}<pre>{}</pre>\n{tables}", escaped(&words))),
+            content: Content::Shown(drawn + &tables),
         })
     }
 
@@ -257,8 +252,8 @@ impl Binder<'_> {
 }
 
 /// Whether the book is computed with weights and loads as written.
-fn options_without_combination(options: &Book) -> bool {
-    options.crane.combination.is_none()
+fn is_as_written(options: &Book, chain: &Chain) -> bool {
+    options.crane.combination.is_none() && chain.combination.is_none()
 }
 
 /// The options of the command that change numbers of the crane.
