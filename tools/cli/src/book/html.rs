@@ -143,6 +143,7 @@ p { margin: 0 0 2.5mm; orphans: 3; widows: 3; }
 a { color: inherit; }
 nav ol { list-style: none; padding: 0; columns: 2; }
 section > h2 + p, .command { break-after: avoid; }
+.command, figcaption { break-inside: avoid; }
 code, pre { font-family: 'Liberation Mono', 'DejaVu Sans Mono', monospace; font-size: 8.5pt; }
 pre { white-space: pre-wrap; overflow-wrap: anywhere; border: 0.3mm solid #d5d9e0; padding: 2mm 3mm; line-height: 1.3; }
 table { border-collapse: collapse; font-size: 8.5pt; }
@@ -159,7 +160,7 @@ table.signed { width: 100%; margin: 8mm 0; table-layout: fixed; }
 table.signed td { height: 14mm; border: 0.3mm solid #8a93a3; }
 figure { margin: 5mm 0; }
 figure.drawn { break-inside: avoid; }
-figure.drawn svg { max-width: 100%; max-height: 150mm; height: auto; }
+figure.drawn svg { max-width: 100%; max-height: 105mm; height: auto; }
 figcaption { font-size: 9pt; margin: 1mm 0; break-after: avoid; }
 figure.drawn figcaption { break-before: avoid; }
 figure.table figcaption { counter-increment: tables; }

@@ -103,11 +103,7 @@ impl Binder<'_> {
             Asked {
                 title: "Combinations of weights and loads",
                 about: "The same with the partial factors of every combination of the spec, and which of them governs each part.",
-                command: when(
-                    !chain.combinations.is_empty() && is_as_written(self.options, chain),
-                    "strength --combinations",
-                    "the spec has no `combinations`, or the book is computed with one of them",
-                ),
+                command: self.combinations(),
                 figures: &[],
             },
             Asked {
@@ -153,6 +149,18 @@ impl Binder<'_> {
                 figures: &[],
             },
         ]
+    }
+
+    /// The command for all combinations, or why there is none.
+    fn combinations(&self) -> Result<String, &'static str> {
+        match (
+            self.options.crane.combination.as_ref().or(self.chain.combination.as_ref()),
+            &self.chain.combinations[..],
+        ) {
+            (Some(_), _) => Err("the book is computed with one of them"),
+            (None, []) => Err("the spec has none: add `combinations`"),
+            _ => Ok("strength --combinations".to_owned()),
+        }
     }
 
     /// What the crane consists of.
@@ -249,11 +257,6 @@ impl Binder<'_> {
         }
         Ok(shown)
     }
-}
-
-/// Whether the book is computed with weights and loads as written.
-fn is_as_written(options: &Book, chain: &Chain) -> bool {
-    options.crane.combination.is_none() && chain.combination.is_none()
 }
 
 /// The options of the command that change numbers of the crane.
