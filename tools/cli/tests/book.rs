@@ -10,8 +10,6 @@ use serde_json::Value;
 
 const COMBINED: &str = "extends: knuckle_boom
 name: combined
-parameters: {payload: {value: 300, unit: kg}}
-links: [{name: load, mass: payload}]
 combinations: [{name: lifting, weight: 1.1, masses: {payload: 1.3}}, {name: test, masses: {payload: 1.25}}]
 ";
 
@@ -45,7 +43,7 @@ fn sections(book: &str) -> Vec<(Vec<String>, &str)> {
 
 #[test]
 fn every_section_is_what_its_command_prints() {
-    let chart = ["--chart", "--range boom_psi=0:40deg:3", "--run"];
+    let chart = ["--chart", "--range main_boom_theta=-40deg:0:3", "--run"];
     for (name, arguments, count) in [
         ("cantilever", &["cantilever"][..], 4),
         ("eight_link_rigid", &["eight_link_rigid", "--set", "load_mass=300", "--run"], 6),
@@ -110,7 +108,7 @@ fn what_is_not_there_says_how_it_would_be() {
     let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));
     let wrong = command
         .current_dir(&folder)
-        .args(["book", "combined.yaml", "--chart", "--rnge boom_psi=1"])
+        .args(["book", "combined.yaml", "--chart", "--rnge main_boom_theta=1"])
         .output()
         .expect("it starts");
     let told = String::from_utf8_lossy(&wrong.stderr);
