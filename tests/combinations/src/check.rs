@@ -6,7 +6,7 @@ use crate::crane::{Case, with_features};
 use crate::feature::Features;
 use crate::observe::{CAUTIONS, differences, observe, observe_with};
 use crate::tree::{Tree, source, text};
-use crate::{changes, charts, combined, descriptions, fleets, laws, meshes, run_changes, shown};
+use crate::{changes, charts, combined, descriptions, fleets, laws, meshes, run_changes, servos, shown};
 
 /// A check that failed.
 #[derive(Clone, Debug)]
@@ -38,7 +38,15 @@ pub fn names() -> Vec<&'static str> {
     let described = descriptions::ALL.iter().map(|(name, _)| *name);
     described
         .chain(laws::ALL.iter().map(|(name, _)| *name))
-        .chain([meshes::NAME, changes::NAME, run_changes::NAME, fleets::NAME, charts::NAME, combined::NAME])
+        .chain([
+            meshes::NAME,
+            changes::NAME,
+            run_changes::NAME,
+            fleets::NAME,
+            charts::NAME,
+            combined::NAME,
+            servos::NAME,
+        ])
         .collect()
 }
 
@@ -79,6 +87,9 @@ fn apply(check: &str, tree: &Tree, seed: u64, run: bool) -> Option<Vec<String>> 
     }
     if check == combined::NAME {
         return combined::check_combined(tree, seed);
+    }
+    if check == servos::NAME {
+        return servos::check_servos(tree, seed);
     }
     if check == charts::NAME {
         return charts::check_charts(tree, seed);

@@ -21,5 +21,6 @@ pub mod meshes;
 pub mod observe;
 pub mod pins;
 pub mod run_changes;
+mod servos;
 mod shown;
 pub mod tree;
