@@ -3,6 +3,7 @@ import { readFile, writeFile } from "node:fs/promises";
 import { gzipAsync } from "@gfx/zopfli";
 import { build } from "esbuild";
 import { assemble, output } from "../page.js";
+import { lessons } from "./lessons.js";
 
 const [engine, target] = process.argv.slice(2);
 const folder = new URL("..", import.meta.url).pathname;
@@ -40,7 +41,7 @@ const examples = await Promise.all(EXAMPLES.map(async (path) => {
   return { name: `${name}.yaml`, title: /^title: (.*)$/m.exec(text)[1], picture: await picture(name), text };
 }));
 const fresh = { name: "new_crane.yaml", text: await file("src/new.yaml") };
-const given = JSON.stringify({ examples, fresh, schema: JSON.parse(await file("../../../specs/crane.schema.json")) }).replaceAll("<", "\\u003c");
+const given = JSON.stringify({ lessons: await lessons(), examples, fresh, schema: JSON.parse(await file("../../../specs/crane.schema.json")) }).replaceAll("<", "\\u003c");
 // A twentieth less than by zlib.
 const compressed = await gzipAsync(await readFile(engine), { numiterations: 5 });
 if (compressed.length > MOST) {

@@ -1,11 +1,12 @@
 // Compares numbers of the engine with those of the command: `node instrument/numbers.js ENGINE.wasm CRANE`, where CRANE is the command.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import { mkdtemp, readFile, readdir, rm } from "node:fs/promises";
+import { mkdtemp, readFile, readdir, rm, writeFile } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { basename, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { readable } from "../src/data.js";
+import { lessons } from "./lessons.js";
 import { start } from "./process.js";
 
 const [wasm, command] = process.argv.slice(2);
@@ -100,15 +101,22 @@ function digits({ grids }, what) {
 
 const begin = performance.now();
 const ask = await start(wasm);
-const files = (await readdir(SPECS)).filter((name) => name.endsWith(".yaml"));
-assert(files.length >= 9, "all shipped cranes");
-for (const file of files) {
-  const text = await readFile(join(SPECS, file), "utf8");
+const shipped = (await readdir(SPECS)).filter((name) => name.endsWith(".yaml")).map((name) => join(SPECS, name));
+assert(shipped.length >= 9, "all shipped cranes");
+const folder = await mkdtemp(join(tmpdir(), "crane-"));
+const taught = await Promise.all((await lessons()).map(async ({ name, text }) => {
+  await writeFile(join(folder, name), text);
+  return join(folder, name);
+}));
+assert.equal(taught.length, 8, "all lessons");
+for (const path of [...shipped, ...taught]) {
+  const file = basename(path);
+  const text = await readFile(path, "utf8");
   const opened = ask({ ask: "open", name: file, text });
   assert.equal(`${opened.name}.yaml`, file, JSON.stringify(opened.diagnostics));
   const rest = ask({ ask: "rest" });
   digits(rest.tables, file);
-  const native = crane(["statics", join(SPECS, file), "--format", "json"]);
+  const native = crane(["statics", path, "--format", "json"]);
   delete native.history;
   // The page, which answers while one types, does not compute a second mesh.
   delete native.changes_of_positions_with_twice_the_sections;
@@ -120,19 +128,20 @@ for (const file of files) {
     worst = Math.max(worst, off);
     assert(off <= SAME, `${file}: ${key} differs by ${off}`);
   }
-  const vibrations = crane(["modes", join(SPECS, file), "--format", "json"]).undamped;
+  const vibrations = crane(["modes", path, "--format", "json"]).undamped;
   const frequencies = ask({ ask: "modes" }).modes.map(({ frequency }) => frequency);
   const off = difference(frequencies, vibrations.map(({ frequency }) => frequency), `${file}: frequencies`);
   assert(off <= SAME, `${file}: frequencies differ by ${off}`);
-  const [ran, column] = await differenceOfRun(ask, join(SPECS, file), TOGETHER);
+  const [ran, column] = await differenceOfRun(ask, path, TOGETHER);
   assert(ran <= CLOSE, `${file}: ${column} of its run differs by ${ran}`);
   if (LONG.includes(basename(file, ".yaml"))) {
-    const [far, worst] = await differenceOfRun(ask, join(SPECS, file), null);
+    const [far, worst] = await differenceOfRun(ask, path, null);
     assert(far <= ESTIMATE, `${file}: ${worst} of its whole run differs by ${far} of the errors that both print`);
     console.log(`${basename(file, ".yaml")}: the whole run to ${far.toFixed(2)} of the printed errors (${worst})`);
   }
   console.log(`${basename(file, ".yaml")}: ${opened.coordinates} coordinates, statics to ${worst.toExponential(1)}, frequencies to ${off.toExponential(1)}, run to ${ran.toExponential(1)} (${column})`);
 }
+await rm(folder, { recursive: true });
 
 // Mistakes are those of the terminal, word for word.
 const wrong = "format: 1\nname: x\nlinks:\n  - {name: a, joint: revolut, masss: 3}\n";

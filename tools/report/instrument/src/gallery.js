@@ -1,15 +1,19 @@
-// What to start from: a new crane, or one of the examples, with their pictures.
+// What to start from: a new crane, one of the examples, with their pictures, or a lesson.
 import { element } from "../../src/element.js";
 
 export class Gallery {
   /** `host` is a dialog; `choose(spec)` is called with `{name, text}`. */
-  constructor(host, { examples, fresh }, choose) {
+  constructor(host, { lessons, examples, fresh }, choose) {
     this.host = host;
-    this.cards = [fresh, ...examples].map((one) => {
-      const title = one === fresh ? "New crane" : one.title;
-      const picture = one === fresh ? element("b", { textContent: "+", ariaHidden: "true" }) : element("img", { alt: "", src: `data:image/svg+xml,${encodeURIComponent(one.picture)}` });
-      const words = one === fresh ? "a boom on a pillar, to change" : one.name.replace(".yaml", "");
-      const card = element("button", { type: "button" }, picture, element("strong", { textContent: title }), element("span", { textContent: words }));
+    const letter = (textContent) => element("b", { textContent, ariaHidden: "true" });
+    const drawing = (picture) => element("img", { alt: "", src: `data:image/svg+xml,${encodeURIComponent(picture)}` });
+    const all = [
+      { one: fresh, sign: letter("+"), title: "New crane", words: "a boom on a pillar, to change" },
+      ...examples.map((one) => ({ one, sign: drawing(one.picture), title: one.title, words: one.name.replace(".yaml", "") })),
+      ...lessons.map((one) => ({ one, sign: letter(`${one.number}`), title: one.title, words: `lesson ${one.number} of the manual` })),
+    ];
+    this.cards = all.map(({ one, sign, title, words }) => {
+      const card = element("button", { type: "button" }, sign, element("strong", { textContent: title }), element("span", { textContent: words }));
       card.addEventListener("click", () => {
         host.close();
         choose(one);

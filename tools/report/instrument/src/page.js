@@ -35,7 +35,7 @@ const UNNAMED = "crane.yaml";
 const KEPT = "crane";
 
 const $ = (selector) => document.querySelector(selector);
-const { examples, fresh, schema } = JSON.parse($("#given").textContent);
+const { lessons, examples, fresh, schema } = JSON.parse($("#given").textContent);
 const root = document.documentElement;
 root.dataset.theme = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
 
@@ -59,7 +59,7 @@ faults((words) => note(words, "bad"));
 const modes = new Modes($("#modes"), { choose: (mode) => stage.vibrate(mode), swell: (factor) => stage.viewer?.set({ factor }) });
 const run = new Run($("#run"), stage, { ask, end: (words) => engine.end(words), given: () => rest.given, note });
 const chart = new LoadChart($("#load_chart"), { ask, given: () => rest.given });
-const gallery = new Gallery($("#gallery"), { examples, fresh }, start);
+const gallery = new Gallery($("#gallery"), { lessons, examples, fresh }, start);
 const parts = new Parts($("#part"), $("#view canvas"), stage, {
   find: ({ kind, name: own }) => entry(editor.text, kind, own),
   go: (place) => {
