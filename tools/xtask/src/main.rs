@@ -53,6 +53,8 @@ With words, only the jobs of these names and the steps whose titles contain one 
   release  what is published, in target/published: the command as one file for this machine and for Linux on aarch64, Python wheels for
            Linux on x86-64 and aarch64, packages of the crates, checksums
   aarch64  what is published for Linux on aarch64, tried in an emulator; needs a Debian with qemu-user-static
+  mutants [--seed N] [--count N] [--since COMMIT] [FILE …]
+           change operators of the sources, one at a time in one build, and run the tests: which change does none of them notice?
   bless    rewrite the files that tests compare with: goldens, snapshots, schema, docs/OPERATIONS.md, the gallery";
 
 fn main() -> ExitCode {
@@ -93,6 +95,7 @@ fn main() -> ExitCode {
             Step::check("command and wheel in the emulator", cross::rehearse),
         ],
         "bless" => bless_steps(),
+        "mutants" => return mutants(&arguments[1..]),
         "help" | "--help" | "-h" => {
             println!("{USAGE}");
             return ExitCode::SUCCESS;
@@ -122,6 +125,20 @@ fn main() -> ExitCode {
         return ExitCode::from(2);
     }
     run_steps(task, &chosen)
+}
+
+/// Searches for changes of operators that no test notices, by a program in a workspace of its own.
+fn mutants(arguments: &[String]) -> ExitCode {
+    let manifest = workspace::root().join("tools/mutants/Cargo.toml");
+    let mut command = Command::new(step::cargo());
+    command.args(["run", "--quiet", "--release", "--manifest-path"]).arg(manifest).arg("--").args(arguments);
+    match step::run_to_end(command.env("CARGO_TARGET_DIR", workspace::target().join("mutants/tool"))) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::FAILURE
+        }
+    }
 }
 
 /// With diffsol for comparison.
