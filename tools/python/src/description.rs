@@ -27,13 +27,13 @@ impl Crane {
         }
         all.set_item("coordinates", list(std::mem::take(&mut rows))?)?;
         all.set_item("bodies", describe_bodies(py, &self.live)?)?;
-        for info in &description.drives {
+        for (info, [start, _]) in description.drives.iter().zip(crane.drive_motions_at(0.0)) {
             let coordinate = &description.coordinates[info.coordinate];
             let row = PyDict::new(py);
             row.set_item("coordinate", &*coordinate.name)?;
             row.set_item("index", info.coordinate)?;
             row.set_item("unit", coordinate.kind.force_unit())?;
-            row.set_item("start", info.start)?;
+            row.set_item("start", start)?;
             rows.push(row);
         }
         all.set_item("drives", list(std::mem::take(&mut rows))?)?;

@@ -89,6 +89,13 @@ def test_names_and_units(flexible):
     assert flexible.replace(load_mass=[1.0, 2.0]).shape == [2]
 
 
+def test_drives_are_described_where_parameters_put_them():
+    drive = "drives: [{coordinate: rod_theta, stiffness: 1e4, motion: {hold: angle}}]"
+    text = PENDULUM.replace("bob: {value", "angle: {value: 0.1, unit: rad}, bob: {value") + drive
+    plain = crane.load("p.yaml", text=text)
+    assert [c.info["drives"][0]["start"] for c in (plain, plain.replace(angle=0.4))] == [0.1, 0.4]
+
+
 def test_a_crane_goes_through_a_pickle(flexible):
     changed = flexible.replace(load_mass=np.array([10.0, 20.0]))
     with warnings.catch_warnings():
