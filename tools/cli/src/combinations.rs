@@ -4,8 +4,9 @@ use std::io::Write;
 
 use crane_live::LiveCrane;
 use crane_model::{
-    Cut,
-    results::{Instant, cylinders_at},
+    Cut, Tension,
+    nalgebra::Vector3,
+    results::{CylinderState, Instant, cylinders_at},
     sections::StressedSection,
     tipping::governing,
 };
@@ -63,9 +64,8 @@ pub fn strength(options: &Analysis, registry: &Registry, out: &mut dyn Write) ->
     let cases = combinations.cases();
     let mut report = Report::default();
     verdicts(&mut report, &cases);
-    let resting: Vec<(&Case<'_>, Instant)> = (cases.iter().filter(|case| case.equilibrium.is_stable()))
-        .map(|case| (case, Instant::at_rest(case.crane, &case.equilibrium.q)))
-        .collect();
+    let stable = cases.iter().filter(|case| case.equilibrium.is_stable());
+    let resting: Vec<Resting<'_>> = stable.map(Resting::of).collect();
     report.grid(overview(&cases, &resting));
     report.grid(worst(&resting));
     report.show_all(options.all);
@@ -73,13 +73,38 @@ pub fn strength(options: &Analysis, registry: &Registry, out: &mut dyn Write) ->
     all_stable(&cases)
 }
 
-/// All places of beams whose stresses are known.
-fn stressed(case: &Case<'_>, rest: &Instant) -> Vec<StressedSection> {
-    rest.stressed_sections(case.crane.description(), &case.crane.section_moduli_at())
+/// What a crane carries at rest with a combination.
+struct Resting<'a> {
+    case: &'a Case<'a>,
+    instant: Instant,
+    /// All places of beams whose stresses are known.
+    sections: Vec<StressedSection>,
+    reactions: Vec<Vector3<f64>>,
+    cylinders: Vec<CylinderState>,
+    tensions: Vec<Tension>,
+    efforts: Vec<f64>,
+}
+
+impl<'a> Resting<'a> {
+    fn of(case: &'a Case<'a>) -> Self {
+        let (crane, q) = (case.crane, &case.equilibrium.q);
+        let still = vec![0.0; q.len()];
+        let instant = Instant::at_rest(crane, q);
+        let efforts = crane.drive_efforts_at_rest(q);
+        Self {
+            case,
+            sections: instant.stressed_sections(crane.description(), &crane.section_moduli_at()),
+            instant,
+            reactions: crane.support_reactions_at(q, &still),
+            cylinders: cylinders_at(crane, q, &still, &efforts),
+            tensions: crane.connector_tensions_at(0.0, q, &still),
+            efforts,
+        }
+    }
 }
 
 /// One row per combination.
-fn overview(cases: &[Case<'_>], resting: &[(&Case<'_>, Instant)]) -> Grid {
+fn overview(cases: &[Case<'_>], resting: &[Resting<'_>]) -> Grid {
     let headers = ["combination", "status", "utilisation", "stress [MPa]", "place", "tipping margin", "line"];
     let mut grid = Grid::new(
         "combinations",
@@ -88,9 +113,9 @@ fn overview(cases: &[Case<'_>], resting: &[(&Case<'_>, Instant)]) -> Grid {
     );
     for case in cases {
         let description = case.crane.description();
-        let rest = resting.iter().find(|(other, _)| other.label == case.label).map(|(_, rest)| rest);
-        let section = rest.and_then(|rest| stressed(case, rest).into_iter().max_by(StressedSection::by_use));
-        let line = rest.and_then(|rest| governing(&rest.lines));
+        let rest = resting.iter().find(|rest| rest.case.label == case.label);
+        let section = rest.and_then(|rest| rest.sections.iter().max_by(|a, b| StressedSection::by_use(a, b)));
+        let line = rest.and_then(|rest| governing(&rest.instant.lines));
         let feet = line.map(|line| line.feet.map(|foot| description.supports[foot].name.as_str()).join(" – "));
         let stress = section.map(|section| Cell::Shown(section.stress.equivalent, Scale::Megapascal));
         grid.row([
@@ -115,7 +140,7 @@ struct Series {
 }
 
 /// Least and greatest value of each quantity, and with which combination.
-fn worst(resting: &[(&Case<'_>, Instant)]) -> Grid {
+fn worst(resting: &[Resting<'_>]) -> Grid {
     let headers = ["part", "quantity", "least", "with combination", "greatest", "with the combination", "unit"];
     let mut grid = Grid::new(
         "worst_cases",
@@ -123,7 +148,7 @@ fn worst(resting: &[(&Case<'_>, Instant)]) -> Grid {
         &headers,
     );
     for Series { what, quantity, unit, values } in series(resting) {
-        let with = |index: usize| resting[index].0.label;
+        let with = |index: usize| resting[index].case.label;
         let order = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
         let indices = || 0..values.len();
         let (Some(least), Some(greatest)) = (indices().min_by(order), indices().rev().max_by(order)) else { continue };
@@ -141,25 +166,19 @@ fn worst(resting: &[(&Case<'_>, Instant)]) -> Grid {
 }
 
 /// The quantities of beams, joints, supports, cylinders, connectors and drives.
-fn series(resting: &[(&Case<'_>, Instant)]) -> Vec<Series> {
-    let Some((first, _)) = resting.first() else { return Vec::new() };
-    let description = first.crane.description();
+fn series(resting: &[Resting<'_>]) -> Vec<Series> {
+    let Some(first) = resting.first() else { return Vec::new() };
+    let description = first.case.crane.description();
     let mut all = Vec::new();
     let mut add = |what: &str, quantity, unit, values: Vec<f64>| {
         all.push(Series { what: what.to_owned(), quantity, unit, values });
     };
-    let each = |of: &dyn Fn(&Case<'_>, &Instant) -> f64| {
-        resting.iter().map(|(case, rest)| of(case, rest)).collect::<Vec<f64>>()
-    };
+    let each = |of: &dyn Fn(&Resting<'_>) -> f64| resting.iter().map(of).collect::<Vec<f64>>();
     for beam in description.beams() {
         let greatest = |of: &dyn Fn(&StressedSection) -> Option<f64>| {
-            each(&|case, rest| {
-                let sections = stressed(case, rest);
-                sections
-                    .iter()
-                    .filter(|section| section.beam(description) == beam)
-                    .filter_map(of)
-                    .fold(f64::NAN, f64::max)
+            each(&|rest| {
+                let own = rest.sections.iter().filter(|section| section.beam(description) == beam);
+                own.filter_map(of).fold(f64::NAN, f64::max)
             })
         };
         for (quantity, unit, values) in [
@@ -177,33 +196,25 @@ fn series(resting: &[(&Case<'_>, Instant)]) -> Vec<Series> {
             Cut::Joint { body } => description.bodies[*body].link.as_str(),
             Cut::Body { .. } | Cut::Inside { .. } => continue,
         };
-        add(name, "force of the joint", "N", each(&|_, rest| rest.wrenches[index].force.norm()));
-        add(name, "moment of the joint", "N m", each(&|_, rest| rest.wrenches[index].moment.norm()));
+        add(name, "force of the joint", "N", each(&|rest| rest.instant.wrenches[index].force.norm()));
+        add(name, "moment of the joint", "N m", each(&|rest| rest.instant.wrenches[index].moment.norm()));
     }
-    let at_rest = |case: &Case<'_>| vec![0.0; case.equilibrium.q.len()];
     for (index, support) in description.supports.iter().enumerate() {
-        let values = each(&|case, _| case.crane.support_reactions_at(&case.equilibrium.q, &at_rest(case))[index].z);
-        add(&support.name, "vertical force", "N", values);
+        add(&support.name, "vertical force", "N", each(&|rest| rest.reactions[index].z));
     }
     for (index, cylinder) in description.cylinders.iter().enumerate() {
-        let state = |case: &Case<'_>| {
-            let q = &case.equilibrium.q;
-            cylinders_at(case.crane, q, &at_rest(case), &case.crane.drive_efforts_at_rest(q)).into_iter().nth(index)
-        };
-        add(&cylinder.name, "force", "N", each(&|case, _| state(case).map_or(f64::NAN, |state| state.force)));
-        let pressure = |side: usize| each(&|case, _| state(case).map_or(f64::NAN, |state| state.pressures[side]));
+        let state = |rest: &Resting<'_>| rest.cylinders.get(index).map(|state| (state.force, state.pressures));
+        add(&cylinder.name, "force", "N", each(&|rest| state(rest).map_or(f64::NAN, |(force, _)| force)));
+        let pressure = |side: usize| each(&|rest| state(rest).map_or(f64::NAN, |(_, pressures)| pressures[side]));
         add(&cylinder.name, "pressure, piston's side", "bar", pressure(0));
         add(&cylinder.name, "pressure, rod's side", "bar", pressure(1));
     }
     for (index, connector) in description.connectors.iter().enumerate().filter(|(_, connector)| !connector.is_pin()) {
-        let values =
-            each(&|case, _| case.crane.connector_tensions_at(0.0, &case.equilibrium.q, &at_rest(case))[index].force);
-        add(&connector.name, "force", connector.kind.force_unit(), values);
+        add(&connector.name, "force", connector.kind.force_unit(), each(&|rest| rest.tensions[index].force));
     }
     for (index, drive) in description.drives.iter().enumerate() {
         let coordinate = &description.coordinates[drive.coordinate];
-        let values = each(&|case, _| case.crane.drive_efforts_at_rest(&case.equilibrium.q)[index]);
-        add(&coordinate.name, "effort", coordinate.kind.force_unit(), values);
+        add(&coordinate.name, "effort", coordinate.kind.force_unit(), each(&|rest| rest.efforts[index]));
     }
     all
 }
