@@ -23,7 +23,7 @@ impl<'a> Check<'a> {
             let weight = weight.map_or(1.0, |given| self.constant(given, &subject("the weight"), "", Limit::Positive));
             let mut masses = Vec::new();
             for (mass, factor) in entries(combination.masses.as_ref()) {
-                let factor = self.constant(factor, &subject("a mass"), "", Limit::NotNegative);
+                let factor = self.constant(factor, &subject("a mass"), "", Limit::Positive);
                 let Some(wanted) = self.name(mass) else { continue };
                 match self.parameters.iter().position(|parameter| parameter.name == wanted) {
                     Some(index) if self.parameters[index].unit == MASS => masses.push((ParameterId(index), factor)),

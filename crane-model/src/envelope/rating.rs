@@ -137,8 +137,11 @@ impl Posed<'_> {
             _ if spec_load == least => Some(empty.clone()),
             // On the way from the minimum to the largest load the crane rests; beyond, unless its rest has ended there.
             Some(load) if spec_load > factor * load && governing == Some(Limit::Equilibrium) => None,
-            Some(load) if spec_load > factor * load => self.change_load(factor * load, spec_load, loaded.clone()),
-            _ => self.change_load(least, spec_load, empty.clone()),
+            // A load may leave the pose of another one behind, as one that a side force swings about; then as statics finds it.
+            Some(load) if spec_load > factor * load => {
+                self.change_load(factor * load, spec_load, loaded.clone()).or_else(|| self.find(spec_load, near))
+            }
+            _ => self.change_load(least, spec_load, empty.clone()).or_else(|| self.find(spec_load, near)),
         });
         let deflections = with_spec_load.as_ref().map_or_else(Vec::new, |condition| condition.deflections(&empty));
         (Rating { load, governing, loaded: Some(loaded), with_spec_load, deflections }, Some(empty.q))

@@ -132,8 +132,10 @@ fn bent_beyond<'a>(angles: impl Iterator<Item = (&'a str, f64)>, limit: f64) -> 
     let (name, angle) = angles.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
     let degrees = angle.to_degrees();
     (degrees.abs() > limit).then(|| {
+        // With the digits of a limit below one degree.
+        let degrees = if limit < 1.0 { format!("{degrees:.2}°") } else { format!("{degrees:.0}°") };
         format!(
-            "{name} turns by {degrees:.0}° in one section, more than {limit}°: check E, G, the cross-section and their units; \
+            "{name} turns by {degrees} in one section, more than {limit}°: check E, G, the cross-section and their units; \
              if they are right, use more sections"
         )
     })

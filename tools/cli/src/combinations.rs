@@ -6,7 +6,7 @@ use crane_live::LiveCrane;
 use crane_model::{
     Cut, Tension,
     nalgebra::Vector3,
-    results::{CylinderState, Instant, cylinders_at},
+    results::{CylinderState, Instant, cautions, cylinders_at},
     sections::StressedSection,
     tipping::governing,
 };
@@ -66,6 +66,13 @@ pub fn strength(options: &Analysis, registry: &Registry, out: &mut dyn Write) ->
     verdicts(&mut report, &cases);
     let stable = cases.iter().filter(|case| case.equilibrium.is_stable());
     let resting: Vec<Resting<'_>> = stable.map(Resting::of).collect();
+    for Resting { case, .. } in &resting {
+        let of_pose = cautions::of_pose(case.crane, &case.equilibrium.q, options.crane.limits.bend);
+        for caution in of_pose.into_iter().map(Into::into).chain(cautions::of_strength(case.crane)) {
+            let caution: String = caution;
+            report.caution(Some(format!("{}: {caution}", case.label)));
+        }
+    }
     report.grid(overview(&cases, &resting));
     report.grid(worst(&resting));
     report.show_all(options.all);

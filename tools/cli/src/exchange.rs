@@ -22,7 +22,7 @@ use crate::{
     files, fmu,
     problem::{Outcome, Problem},
     screen,
-    selection::Registry,
+    selection::{Registry, with_combination},
     spec_file,
 };
 
@@ -49,7 +49,10 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
             ));
         }
     }
-    let (chain, spec) = registry.load(&options.crane.name, options.crane.strict)?;
+    let (mut chain, mut spec) = registry.load(&options.crane.name, options.crane.strict)?;
+    if let Some(combination) = &options.crane.combination {
+        (chain, spec) = with_combination(&chain, &spec, combination)?;
+    }
     if let Some(joint) = chain.loop_joints.first() {
         keep_loops(options, &chain.name, &joint.name)?;
     }

@@ -8,7 +8,10 @@ use crane_live::LiveCrane;
 use crane_model::{Description, dyn_crane::DynCrane, modes::undamped, sections::StressedSection};
 use crane_page::{history::Instant, tables::Case};
 
-use crate::{problem::Outcome, selection::Registry};
+use crate::{
+    problem::Outcome,
+    selection::{Registry, take_numbers},
+};
 
 /// Maximum number of coordinates of a crane that is also computed with twice the sections: more take seconds. Of larger ones, the change is estimated
 /// by half of the sections.
@@ -28,7 +31,7 @@ struct OtherMesh {
 }
 
 impl OtherMesh {
-    /// With twice the sections, or half of them in a large crane, and the same parameters; `None` without sections to change.
+    /// With twice the sections, or half of them in a large crane, and the same parameters and inputs; `None` without sections to change.
     ///
     /// Errors fall with the square of the number of sections, so that with r times as many, `x_{rn} − x_n = (1 − 1/r²) (x − x_n)`, and with r times
     /// fewer, `x_n − x_{n/r} = (r² − 1) (x − x_n)`. Three quarters of `x − x_n` show with twice as many.
@@ -55,8 +58,7 @@ impl OtherMesh {
             return None;
         }
         let share = if is_large { -0.75 / (more.powi(-2) - 1.0) } else { 0.75 / (1.0 - more.powi(-2)) };
-        let values: Vec<f64> = (0..description.parameters.len()).map(|index| crane.parameter(index)).collect();
-        DynCrane::set_parameters(&mut crane_with, &values).ok()?;
+        take_numbers(crane, &mut crane_with).ok()?;
         Some(Self { crane: crane_with, share })
     }
 

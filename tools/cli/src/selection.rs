@@ -4,7 +4,7 @@ use std::{borrow::Cow, path::Path, sync::OnceLock};
 
 use crane_codegen::{SourceFile, chain::Chain, compile, edit};
 use crane_live::LiveCrane;
-use crane_model::{Description, ParameterError, Refusal, dyn_crane::DynCrane};
+use crane_model::{Description, InputInfo, ParameterError, ParameterInfo, Refusal, dyn_crane::DynCrane};
 
 use crate::{
     arguments::{Choice, Parameters, STANDARD_INPUT},
@@ -207,16 +207,10 @@ impl Registry {
 
     /// A crane as its spec has it, with one of its combinations.
     fn combined(&self, name: &str, combination: &str) -> Outcome<(Chain, String)> {
-        let known = self.combinations(name)?;
-        if !known.iter().any(|known| known == combination) {
-            let known: Vec<&str> = known.iter().map(String::as_str).collect();
-            let title = format!("{name} has no combination `{combination}`");
-            return Err(Problem::usage(title, meant(combination, &known, "combinations")));
-        }
-        let text = self.spec(name).unwrap_or_default();
-        let source = edit::combined(&SourceFile::new(name, text), combination);
-        let chain = compile::load(&source).map_err(Problem::mistakes)?;
-        Ok((chain, source.text))
+        self.crane(name)?;
+        let entry = self.entries.iter().find(|entry| entry.name == name);
+        let live = entry.ok_or_else(|| Problem::failed(format!("{name} has no spec"), ""))?.live()?;
+        with_combination(live.chain(), self.spec(name).unwrap_or_default(), combination)
     }
 
     /// Names of the combinations of a crane's spec: at least one.
@@ -227,14 +221,7 @@ impl Registry {
         self.crane(name)?;
         let entry = self.entries.iter().find(|entry| entry.name == name);
         let live = entry.ok_or_else(|| Problem::failed(format!("{name} has no spec"), ""))?.live()?;
-        let names: Vec<String> = live.chain().combinations.iter().map(|one| one.name.clone()).collect();
-        if names.is_empty() {
-            return Err(Problem::usage(
-                format!("{name} has no combinations"),
-                "add them to its spec, such as `combinations: [{name: lifting, weight: 1.2}]`",
-            ));
-        }
-        Ok(names)
+        names_of_combinations(live.chain())
     }
 
     /// Names of all cranes.
@@ -290,16 +277,63 @@ impl Registry {
     }
 }
 
+/// Names of the combinations of a crane: at least one.
+fn names_of_combinations(chain: &Chain) -> Outcome<Vec<String>> {
+    let names: Vec<String> = chain.combinations.iter().map(|one| one.name.clone()).collect();
+    if names.is_empty() {
+        return Err(Problem::usage(
+            format!("{} has no combinations", chain.name),
+            "add them to its spec, such as `combinations: [{name: lifting, weight: 1.2}]`",
+        ));
+    }
+    Ok(names)
+}
+
+/// A crane with one of its combinations, and its spec.
+///
+/// # Errors
+/// It has no such combination, or the spec with it has mistakes.
+pub fn with_combination(chain: &Chain, spec: &str, combination: &str) -> Outcome<(Chain, String)> {
+    let known = names_of_combinations(chain)?;
+    if !known.iter().any(|known| known == combination) {
+        let known: Vec<&str> = known.iter().map(String::as_str).collect();
+        let title = format!("{} has no combination `{combination}`", chain.name);
+        return Err(Problem::usage(title, meant(combination, &known, "combinations")));
+    }
+    let source = edit::combined(&SourceFile::new(&chain.name, spec), combination);
+    let chain = compile::load(&source).map_err(Problem::mistakes)?;
+    Ok((chain, source.text))
+}
+
 /// A live crane with the parameters and inputs of another one of the same parameters and inputs.
 fn with_numbers_of(crane: &dyn DynCrane, mut live: LiveCrane) -> Outcome<LiveCrane> {
-    let description = crane.description();
-    let values: Vec<f64> = (0..description.parameters.len()).map(|index| crane.parameter(index)).collect();
-    DynCrane::set_parameters(&mut live, &values).map_err(|refused| {
+    take_numbers(crane, &mut live)?;
+    Ok(live)
+}
+
+/// Gives a variant of a crane, with other sections or none, the same numbers: parameters and inputs, by their names.
+///
+/// # Errors
+/// The variant refuses a parameter.
+pub fn take_numbers(of: &dyn DynCrane, variant: &mut dyn DynCrane) -> Outcome<()> {
+    let (own, others) = (of.description(), variant.description());
+    let parameter = |(index, info): (usize, &ParameterInfo)| {
+        let known = own.parameters.iter().position(|known| known.name == info.name);
+        known.map_or_else(|| variant.parameter(index), |known| of.parameter(known))
+    };
+    let parameters: Vec<f64> = others.parameters.iter().enumerate().map(parameter).collect();
+    let input = |(index, info): (usize, &InputInfo)| {
+        Some((index, of.input(own.inputs.iter().position(|known| known.name == info.name)?)))
+    };
+    let inputs: Vec<(usize, Option<f64>)> = others.inputs.iter().enumerate().filter_map(input).collect();
+    variant.set_parameters(&parameters).map_err(|refused| {
         let (title, help) = refusal_message(&refused);
         Problem::usage(title, help)
     })?;
-    let inputs: Vec<Option<f64>> = (0..description.inputs.len()).map(|index| crane.input(index)).collect();
-    Ok(live.with_inputs(&inputs))
+    for (index, value) in inputs {
+        variant.set_input(index, value);
+    }
+    Ok(())
 }
 
 /// Sets inputs `name=value`.

@@ -35,7 +35,8 @@ fn sections(book: &str) -> Vec<(Vec<String>, &str)> {
     let bodies = book.split("<p class=\"command\"><code>crane ").skip(1);
     let section = |text| -> Option<(Vec<String>, &str)> {
         let (command, rest) = str::split_once(text, "</code></p>\n")?;
-        let words = command.replace("&quot;", "\"").split(' ').map(str::to_owned).collect();
+        let plain = command.replace("&quot;", "\"").replace('\'', "");
+        let words = plain.split(' ').map(str::to_owned).collect();
         Some((words, rest.split_once("</section>")?.0))
     };
     bodies.filter_map(section).collect()
@@ -96,6 +97,35 @@ fn numbers_are_those_of_the_json() {
     }
 }
 
+fn refuses(folder: &Path, arguments: &[&str], words: &str) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));
+    let output =
+        command.current_dir(folder).args(["book", "combined.yaml"]).args(arguments).output().expect("it starts");
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {told}");
+    assert!(told.contains(words), "{arguments:?}: {told}");
+}
+
+/// Nothing holds the truck: it has no rest and no strength. The cover says so, and the command fails.
+#[test]
+fn a_crane_that_does_not_rest_has_a_book_that_says_so() {
+    let (_, folder) = book("fails", &["combined.yaml"]);
+    fs::write(folder.join("my falling.yaml"), FALLING).expect("a file");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));
+    command.current_dir(&folder).args(["book", "my falling.yaml", "-o", "falling.html", "--bend-limit", "1"]);
+    let output = command.output().expect("it starts");
+    assert_eq!(output.status.code(), Some(1), "{}", String::from_utf8_lossy(&output.stderr));
+    let book = fs::read_to_string(folder.join("falling.html")).expect("a book");
+    let (cover, _) = book.split_once("<nav>").expect("contents");
+    assert!(cover.contains("not computed: ") && !cover.contains("No section has a caution"), "{cover}");
+    assert!(book.contains("<code>crane statics 'my falling.yaml' --bend-limit 1</code>"), "quoted, with its limits");
+}
+
+const FALLING: &str = "format: 1
+name: falling
+links: [{name: truck, joint: free, mass: 100, com: [0, 0, 1], inertia: {Ixx: 10, Iyy: 10, Izz: 10}}]
+";
+
 #[test]
 fn what_is_not_there_says_how_it_would_be() {
     let (book, folder) = book("left_out", &["combined.yaml", "--combination", "lifting"]);
@@ -105,13 +135,20 @@ fn what_is_not_there_says_how_it_would_be() {
     }
     assert!(book.contains("combination lifting</h1>"), "the title has the combination");
     assert!(sections(&book).iter().all(|(words, _)| words.join(" ").contains("combined.yaml --combination lifting")));
-    let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));
-    let wrong = command
-        .current_dir(&folder)
-        .args(["book", "combined.yaml", "--chart", "--rnge main_boom_theta=1"])
-        .output()
-        .expect("it starts");
-    let told = String::from_utf8_lossy(&wrong.stderr);
-    assert_eq!(wrong.status.code(), Some(2));
-    assert!(told.contains("--rnge") && told.contains("crane envelope"), "{told}");
+    // Only figures of this book: not those of another chart in the same folder.
+    let two = ["--range", "main_boom_theta=-40deg:0:3", "--range", "knuckle_theta=0:40deg:3"];
+    crane(&folder, &[&["envelope", "combined.yaml", "--quiet"], &two[..]].concat());
+    let chart = ["--chart", "--range main_boom_theta=-40deg:0:3", "-o", "one.html"];
+    crane(&folder, &[&["book", "combined.yaml", "--quiet"], &chart[..]].concat());
+    let one = fs::read_to_string(folder.join("one.html")).expect("a book");
+    assert!(
+        one.contains("Load chart: largest") && !one.contains("the least over all else"),
+        "a map of the other chart"
+    );
+    refuses(&folder, &["--chart", "--rnge main_boom_theta=1"], "--rnge");
+    refuses(&folder, &["--chart", "--range main_boom_theta=1 --rigid"], "`--rigid` is not for a single section");
+    refuses(&folder, &["--chart", ""], "--range");
+    refuses(&folder, &["--chart", "--range 'main_boom_theta=1"], "has no second '");
+    let both = ["--combination", "test", "--chart", "--combinations --range main_boom_theta=0"];
+    refuses(&folder, &both, "cannot be used with");
 }

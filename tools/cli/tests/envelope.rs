@@ -165,6 +165,19 @@ fn a_chart_has_the_loads_that_all_combinations_allow() {
             assert_eq!(combined[place]["of"], limit, "{combined}");
         }
     }
+    // Of the crane's own load, the worse of both.
+    chart(&["--combinations"]);
+    let (header, rows) = table(&folder);
+    let margin = header.iter().position(|name| name.starts_with("tipping_margin")).expect("a column");
+    let margins =
+        |rows: &[Vec<String>]| -> Vec<f64> { rows.iter().map(|row| row[margin].parse().expect("a number")).collect() };
+    let alone = ["light", "working"].map(|name| {
+        chart(&["--combination", name]);
+        margins(&table(&folder).1)
+    });
+    for (pose, both) in margins(&rows).iter().enumerate() {
+        assert!((both - alone[0][pose].min(alone[1][pose])).abs() < 1e-9, "pose {pose}");
+    }
     let left: Vec<_> = fs::read_dir(&folder).expect("a folder").flatten().map(|entry| entry.file_name()).collect();
     assert!(!left.iter().any(|name| name.to_string_lossy().contains("part")), "{left:?}");
 }

@@ -374,6 +374,23 @@ fn combinations_have_their_own_margins_and_name_the_worst() {
     assert_close("weight", &ground["greatest"], (4000.0 * 1.2 + 150.0) * 9.81, COMPLIANCE);
 }
 
+/// The cautions of each combination carry its name, and a file that would not be written is refused.
+#[test]
+fn combinations_have_their_own_cautions() {
+    let combinations = "combinations: [{name: heavy, masses: {payload: 7}}, {name: light, masses: {payload: 0.5}}]\n";
+    let feet = TRUCK.replace("stiffness: [", "one_sided: true, stiffness: [");
+    let report = strength("own_cautions", &format!("{feet}{combinations}"), &["--combinations"]);
+    let cautions: Vec<&str> = report["cautions"].as_array().expect("a list").iter().filter_map(Value::as_str).collect();
+    assert!(cautions.iter().any(|one| one.starts_with("heavy: ")), "{cautions:?}");
+    assert!(!cautions.iter().any(|one| one.starts_with("light: ")), "{cautions:?}");
+    for command in ["strength", "statics"] {
+        let mut crane = Command::new(env!("CARGO_BIN_EXE_crane"));
+        let output =
+            crane.args([command, "knuckle_boom", "--combinations", "-o", "x.csv"]).output().expect("it starts");
+        assert_eq!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+}
+
 /// A load that tips is that of the load's parameter, without its factor: 1.5 · 800 kg at 4 m balance 1.2 · 4000 kg at 1 m.
 #[test]
 fn a_load_that_tips_is_without_the_factors_of_its_combination() {

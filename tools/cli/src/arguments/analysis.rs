@@ -34,7 +34,7 @@ pub struct Strength {
     #[arg(long, value_name = "PARAMETER", conflicts_with = "combinations")]
     pub load: Option<String>,
     /// CSV file for the moments about the tipping lines and all loads during the run, or for the table of `--range`
-    #[arg(short = 'o', long = "file", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    #[arg(short = 'o', long = "file", value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "combinations")]
     pub results: Option<PathBuf>,
 }
 

@@ -102,6 +102,6 @@ pub struct Statics {
     #[command(flatten)]
     pub combined: Combined,
     /// CSV file for the table of `--range`
-    #[arg(short = 'o', long, value_name = "FILE.csv", value_hint = ValueHint::FilePath, requires = "ranges")]
+    #[arg(short = 'o', long, value_name = "FILE.csv", value_hint = ValueHint::FilePath, requires = "ranges", conflicts_with = "combinations")]
     pub file: Option<PathBuf>,
 }

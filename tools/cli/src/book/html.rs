@@ -2,7 +2,7 @@
 
 use crane_codegen::exchange::xml::escaped;
 
-use super::{Content, Section};
+use super::{Content, Section, quoted};
 
 /// What stands on the cover, and at the foot of every page.
 pub struct Cover {
@@ -20,12 +20,16 @@ pub fn figure(svg: &str, caption: &str) -> String {
     format!("<figure class=\"drawn\">\n{svg}\n<figcaption>{caption}</figcaption>\n</figure>\n")
 }
 
+/// Before and behind a caution of a section.
+const CAUTION: &str = "<p class=\"caution\">caution: ";
+const END: &str = "</p>\n";
+
 /// The whole document.
 pub fn page(cover: &Cover, sections: &[Section]) -> String {
     let shown: Vec<(&Section, &str)> = sections
         .iter()
         .filter_map(|section| match &section.content {
-            Content::Shown(html) => Some((section, html.as_str())),
+            Content::Shown(html) | Content::Failed(_, html) => Some((section, html.as_str())),
             Content::LeftOut(_) => None,
         })
         .collect();
@@ -82,19 +86,30 @@ decides which rules apply, and whether the spec describes the crane.</p>
 /// A section with its heading and its command.
 fn section_of(number: usize, section: &Section, html: &str) -> String {
     let Section { title, about, command, .. } = section;
-    let command = match command.join(" ") {
+    let words: Vec<String> = command.iter().map(|word| quoted(word)).collect();
+    let command = match words.join(" ") {
         none if none.is_empty() => String::new(),
         words => format!("<p class=\"command\"><code>crane {}</code></p>\n", escaped(&words)),
     };
-    format!("<section id=\"s{number}\">\n<h2>{number} {title}</h2>\n<p>{about}</p>\n{command}{html}</section>\n")
+    let failed = match &section.content {
+        Content::Failed(why, _) => format!("{CAUTION}{}{END}", escaped(why)),
+        _ => String::new(),
+    };
+    format!(
+        "<section id=\"s{number}\">\n<h2>{number} {title}</h2>\n<p>{about}</p>\n{command}{failed}{html}</section>\n"
+    )
 }
 
 /// All cautions, with the sections in which they stand.
 fn cautions_of(shown: &[(&Section, &str)]) -> String {
     let mut lines: Vec<(&str, Vec<usize>)> = Vec::new();
-    for (number, (_, html)) in (1..).zip(shown) {
-        for rest in html.split("<p class=\"caution\">caution: ").skip(1) {
-            let words = rest.split("</p>").next().unwrap_or_default();
+    let mut failures: Vec<String> = Vec::new();
+    for (number, (section, html)) in (1..).zip(shown) {
+        if let Content::Failed(why, _) = &section.content {
+            failures.push(format!("<li>not computed: {} (section {number})</li>\n", escaped(why)));
+        }
+        for rest in html.split(CAUTION).skip(1) {
+            let words = rest.split(END).next().unwrap_or_default();
             match lines.iter_mut().find(|(known, _)| *known == words) {
                 Some((_, numbers)) if numbers.contains(&number) => {}
                 Some((_, numbers)) => numbers.push(number),
@@ -102,21 +117,22 @@ fn cautions_of(shown: &[(&Section, &str)]) -> String {
             }
         }
     }
-    if lines.is_empty() {
+    if lines.is_empty() && failures.is_empty() {
         return String::from("<p>No section has a caution.</p>\n");
     }
     let items = lines.into_iter().map(|(words, numbers)| {
         let numbers: Vec<String> = numbers.iter().map(ToString::to_string).collect();
         format!("<li>{words} (section {})</li>\n", numbers.join(", "))
     });
-    format!("<h2>Cautions</h2>\n<ul class=\"cautions\">\n{}</ul>\n", items.collect::<String>())
+    let items: String = failures.into_iter().chain(items).collect();
+    format!("<h2>Cautions</h2>\n<ul class=\"cautions\">\n{items}</ul>\n")
 }
 
 /// What is not in the document, with the reasons.
 fn rest_of(number: usize, sections: &[Section]) -> String {
     let left_out = sections.iter().filter_map(|section| match &section.content {
         Content::LeftOut(why) => Some(format!("<li>{}: {}.</li>\n", section.title, escaped(why))),
-        Content::Shown(_) => None,
+        Content::Shown(_) | Content::Failed(..) => None,
     });
     let left_out: String = left_out.collect();
     format!(

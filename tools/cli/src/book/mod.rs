@@ -9,11 +9,13 @@ use std::{fs, io::Write, path::Path};
 use clap::Parser;
 use crane_codegen::{SourceFile, chain::Chain, exchange::xml::escaped, picture::picture};
 
+use crane_model::results::cautions::BEND;
+
 use crate::{
     arguments::{Arguments, Book},
     command::dispatch,
     files,
-    problem::{Outcome, Problem},
+    problem::{FAILED, Outcome, Problem},
     screen,
     selection::Registry,
 };
@@ -33,10 +35,15 @@ enum Content {
     Shown(String),
     /// Why it is not there, and what to write for it.
     LeftOut(String),
+    /// Why it could not be computed, and what was printed before.
+    Failed(String, String),
 }
 
 /// Computes all sections and writes the document.
 pub fn book(options: &Book, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    for given in options.chart.iter().chain(&options.fatigue) {
+        check_options(given)?;
+    }
     let crane = options.crane.open(registry)?;
     let live = registry.live(crane.as_ref())?;
     let chain = live.chain();
@@ -48,7 +55,11 @@ pub fn book(options: &Book, registry: &Registry, out: &mut dyn Write) -> Outcome
     }
     files::write_text(&options.file, &html::page(&binder.cover(), &sections))?;
     writeln!(out, "{} written: open it in a browser and print it", options.file.display())?;
-    Ok(())
+    let failed = sections.iter().find_map(|section| match &section.content {
+        Content::Failed(why, _) => Some(format!("{}: {why}", section.title)),
+        _ => None,
+    });
+    failed.map_or(Ok(()), |why| Err(Problem::failed(why, "the book says so on its cover")))
 }
 
 /// A section that a command computes.
@@ -57,8 +68,6 @@ struct Asked {
     about: &'static str,
     /// The command and its options; why not, if there is nothing to compute.
     command: Result<String, &'static str>,
-    /// Ends of the names of its figures.
-    figures: &'static [&'static str],
 }
 
 /// Computes sections.
@@ -82,7 +91,7 @@ impl Binder<'_> {
         let given = |options: &Option<String>, command: &str, otherwise| {
             options.as_ref().map(|options| format!("{command} {options}")).ok_or(otherwise)
         };
-        let out = folder.out.display();
+        let out = quoted(&folder.out.display().to_string());
         let bends = !chain.beams.is_empty();
         let moves = !chain.drives.is_empty();
         vec![
@@ -90,7 +99,6 @@ impl Binder<'_> {
                 title: "The crane at rest",
                 about: "Where the crane rests with its drives at the beginning of their motions, and what drives, feet and cylinders carry.",
                 command: Ok("statics".to_owned()),
-                figures: &[],
             },
             Asked {
                 title: "Strength and tipping",
@@ -98,13 +106,11 @@ impl Binder<'_> {
                 command: Ok(
                     ["strength", if bends { " --buckling" } else { "" }, if *run { " --run" } else { "" }].concat()
                 ),
-                figures: &[],
             },
             Asked {
                 title: "Combinations of weights and loads",
                 about: "The same with the partial factors of every combination of the spec, and which of them governs each part.",
                 command: self.combinations(),
-                figures: &[],
             },
             Asked {
                 title: "Load chart",
@@ -114,19 +120,16 @@ impl Binder<'_> {
                     &format!("envelope --out {out}"),
                     "it needs the poses: add `--chart \"--range DRIVE=FROM:TO:COUNT\"`",
                 ),
-                figures: &["load_chart", "slew_diagram", "largest_load_map", "utilisation_map"],
             },
             Asked {
                 title: "Frequencies and damping",
                 about: "Small vibrations about the pose at rest.",
                 command: Ok("modes".to_owned()),
-                figures: &[],
             },
             Asked {
                 title: "The manoeuvre",
                 about: "The motion from rest that the spec describes.",
                 command: when(*run, &format!("simulate --out {out}"), "it was not asked for: add `--run`"),
-                figures: &["drives", "points", "feet", "cylinders"],
             },
             Asked {
                 title: "Fatigue",
@@ -136,7 +139,6 @@ impl Binder<'_> {
                     "fatigue",
                     "it needs the number of cycles and the detail category: add `--fatigue \"--cycles NUMBER --category STRESS\"`",
                 ),
-                figures: &[],
             },
             Asked {
                 title: "Sensitivity",
@@ -146,7 +148,6 @@ impl Binder<'_> {
                     "sensitivity",
                     "the spec has no live `parameters`, or no drive",
                 ),
-                figures: &[],
             },
         ]
     }
@@ -169,12 +170,13 @@ impl Binder<'_> {
             &picture(self.chain),
             "The crane as its spec describes it, in the undeformed pose of its guess",
         );
-        let tables = self.print("info")?;
+        let mut tables = Vec::new();
+        self.print("info", &mut tables)?;
         Ok(Section {
             title: "The crane",
             about: "Its coordinates, bodies, supports and drives, as the program understood the spec.",
-            command: self.shown("info"),
-            content: Content::Shown(drawn + &tables),
+            command: self.shown("info")?,
+            content: Content::Shown(drawn + &String::from_utf8_lossy(&tables)),
         })
     }
 
@@ -197,65 +199,84 @@ impl Binder<'_> {
 
     /// A section by its command.
     fn computed(&self, asked: Asked) -> Outcome<Section> {
-        let Asked { title, about, command, figures } = asked;
+        let Asked { title, about, command } = asked;
         let section = |command: Vec<String>, content| Section { title, about, command, content };
         let command = match command {
             Ok(command) => command,
             Err(why) => return Ok(section(Vec::new(), Content::LeftOut(why.to_owned()))),
         };
-        let content = match self.print(&command) {
-            Ok(tables) => Content::Shown(self.figures(&command, figures)? + &tables),
+        let mut printed = Vec::new();
+        let content = match self.print(&command, &mut printed) {
+            Ok(()) => {
+                let tables = String::from_utf8_lossy(&printed).into_owned();
+                Content::Shown(self.figures(&tables)? + &tables)
+            }
             // Without a pose at rest there is no strength: the book says so where it would stand.
-            Err(Problem::Message { title, code, .. }) if code == crate::problem::FAILED => Content::LeftOut(title),
+            Err(Problem::Message { title, code: FAILED, .. }) => {
+                Content::Failed(title, String::from_utf8_lossy(&printed).into_owned())
+            }
             Err(problem) => return Err(problem),
         };
-        Ok(section(self.shown(&command), content))
+        Ok(section(self.shown(&command)?, content))
     }
 
     /// The words of a command as a reader would write it.
-    fn shown(&self, command: &str) -> Vec<String> {
+    fn shown(&self, command: &str) -> Outcome<Vec<String>> {
         let crane = &self.options.crane;
-        let mut command = words_of(command).into_iter();
+        let mut command = words_of(command)?.into_iter();
         let mut words: Vec<String> = command.next().into_iter().collect();
         words.push(self.registry.word_for(&crane.name));
         words.extend(crane.rigid.then(|| "--rigid".to_owned()));
         words.extend(crane.combination.iter().flat_map(|name| ["--combination".to_owned(), name.clone()]));
         words.extend(numbers_of(self.options));
         words.extend(command);
-        words
+        Ok(words)
     }
 
-    /// What a command prints as a section of a page.
-    fn print(&self, command: &str) -> Outcome<String> {
-        let crane = &self.options.crane;
+    /// Prints a command as a section of a page.
+    fn print(&self, command: &str, out: &mut dyn Write) -> Outcome<()> {
         let mut words = vec!["crane".to_owned()];
-        let mut command = words_of(command).into_iter();
-        words.extend(command.next());
-        words.extend([crane.name.clone(), "--format".to_owned(), "html".to_owned()]);
-        words.extend(numbers_of(self.options));
-        words.extend(command);
+        words.extend(self.shown(command)?);
+        let begin = words[..2].join(" ");
+        // The crane has been read, with its combination or with rigid beams; here the words are only checked.
+        words[2].clone_from(&self.options.crane.name);
+        words.extend(["--format".to_owned(), "html".to_owned()]);
         let arguments = Arguments::try_parse_from(&words).map_err(|error| {
-            let title = error.to_string().lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
-            Problem::usage(title, format!("`{}` has other options", words[..2].join(" ")))
+            let text = error.to_string();
+            let lines = text.lines().take_while(|line| !line.is_empty()).map(str::trim);
+            let title = lines.collect::<Vec<_>>().join(" ").trim_start_matches("error: ").to_owned();
+            Problem::usage(title, format!("these are options of `{begin}`: see `{begin} --help`"))
         })?;
-        let mut printed = Vec::new();
-        dispatch(&arguments, self.registry, &mut printed)?;
-        Ok(String::from_utf8_lossy(&printed).into_owned())
+        dispatch(&arguments, self.registry, out)
     }
 
-    /// The figures that a command wrote, by the ends of their names.
-    fn figures(&self, command: &str, ends: &[&str]) -> Outcome<String> {
-        let name = &self.chain.name;
-        let of = if command.starts_with("envelope") { "_envelope" } else { "" };
+    /// The figures among the files that a section lists as written.
+    fn figures(&self, tables: &str) -> Outcome<String> {
         let mut shown = String::new();
-        for end in ends {
-            let file = self.options.folder.out.join(format!("{name}{of}_{end}.svg"));
-            if file.exists() {
-                let drawn = fs::read_to_string(&file).map_err(|error| Problem::file(&file, &error))?;
-                shown += &html::figure(&drawn, "");
+        for name in tables.split("<td>").filter_map(|cell| Some(cell.split_once("</td>")?.0)) {
+            if !name.ends_with(".svg") {
+                continue;
             }
+            let file = self.options.folder.out.join(name);
+            let drawn = fs::read_to_string(&file).map_err(|error| Problem::file(&file, &error))?;
+            shown += &html::figure(&drawn, "");
         }
         Ok(shown)
+    }
+}
+
+/// Options that belong to the book as a whole.
+const OWN: [&str; 8] = ["--combination", "--compile", "--format", "--help", "--out", "--rigid", "-h", "-o"];
+
+/// Refuses what is not for a section among its options.
+fn check_options(options: &str) -> Outcome<()> {
+    let words = words_of(options)?;
+    match words.iter().find(|word| OWN.contains(&word.split('=').next().unwrap_or_default())) {
+        Some(own) => {
+            let title = format!("`{own}` is not for a single section");
+            Err(Problem::usage(title, "leave it out, or give it to `crane book` itself if it has this option"))
+        }
+        None => Ok(()),
     }
 }
 
@@ -265,10 +286,35 @@ fn numbers_of(options: &Book) -> Vec<String> {
     let each = |option: &'static str, values: &[String]| -> Vec<String> {
         values.iter().flat_map(|value| [option.to_owned(), value.clone()]).collect()
     };
-    [each("--set", &crane.parameters.settings), each("--input", &crane.inputs)].concat()
+    let bend = crane.limits.bend;
+    let limits = if bend.total_cmp(&BEND).is_ne() { vec!["--bend-limit".to_owned(), bend.to_string()] } else { vec![] };
+    [each("--set", &crane.parameters.settings), each("--input", &crane.inputs), limits].concat()
 }
 
-/// Words of a command, separated by blanks.
-fn words_of(command: &str) -> Vec<String> {
-    command.split_whitespace().map(str::to_owned).collect()
+/// Words of a command, separated by blanks outside of quotation marks.
+fn words_of(command: &str) -> Outcome<Vec<String>> {
+    let (mut words, mut word, mut quote): (Vec<String>, Option<String>, Option<char>) = (Vec::new(), None, None);
+    for letter in command.chars() {
+        match (quote, letter) {
+            (Some(open), _) if letter == open => quote = None,
+            (None, '"' | '\'') => (quote, word) = (Some(letter), Some(word.unwrap_or_default())),
+            (None, _) if letter.is_whitespace() => words.extend(word.take()),
+            _ => word.get_or_insert_default().push(letter),
+        }
+    }
+    if let Some(open) = quote {
+        return Err(Problem::usage(format!("`{command}` has no second {open}"), "close the quotation"));
+    }
+    words.extend(word);
+    Ok(words)
+}
+
+/// A word as a shell reads it.
+fn quoted(word: &str) -> String {
+    let is_plain = |letter: char| letter.is_alphanumeric() || "_-./=:,+@%".contains(letter);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
 }

@@ -113,6 +113,11 @@ impl Layout {
         self.axes + 2
     }
 
+    /// Column of the tipping margin with the crane's own load; what this load does follows.
+    fn margin(&self) -> usize {
+        self.axes + 3
+    }
+
     /// Column of the utilisation with the crane's own load.
     pub fn utilisation(&self) -> usize {
         self.axes + 4
@@ -124,9 +129,23 @@ impl Layout {
         if load.is_nan() { 0.0 } else { load }
     }
 
-    /// Pose by pose, the row with the smaller load; one without a load has the smallest.
+    /// Pose by pose, load, place and limit of the row with the smaller load, of which one without a load has the smallest; and of what
+    /// the crane's own load does, the worse of both.
     pub fn least(&self, first: Vec<Row>, second: Vec<Row>) -> Vec<Row> {
-        let least = |(a, b)| if self.load_of(&b) < self.load_of(&a) { b } else { a };
+        let least = |(a, b)| {
+            let (mut row, other) = if self.load_of(&b) < self.load_of(&a) { (b, a) } else { (a, b) };
+            let own_load = row.numbers.iter_mut().zip(&other.numbers).enumerate().skip(self.margin());
+            for (column, (own, other)) in own_load {
+                let is_worse = match column == self.margin() {
+                    true => *other < *own,
+                    false => other.abs() > own.abs(),
+                };
+                if is_worse || own.is_nan() {
+                    *own = *other;
+                }
+            }
+            row
+        };
         first.into_iter().zip(second).map(least).collect()
     }
 

@@ -1,22 +1,13 @@
 //! The rigid crane to compare a flexible one with.
 
-use crane_model::{ParameterInfo, dyn_crane::DynCrane};
+use crane_model::dyn_crane::DynCrane;
 
-use crate::selection::Registry;
+use crate::selection::{Registry, take_numbers};
 
 /// The crane of the registry that equals `crane` except for its elements, with the same parameters.
 pub fn rigid(crane: &dyn DynCrane, registry: &Registry) -> Option<Box<dyn DynCrane>> {
-    let parameters = &crane.description().parameters;
     registry.all().flatten().find_map(|mut other| {
-        let position = |(index, parameter): (usize, &ParameterInfo)| match parameters
-            .iter()
-            .position(|position| position.name == parameter.name)
-        {
-            Some(position) => crane.parameter(position),
-            None => other.parameter(index),
-        };
-        let values: Vec<f64> = other.description().parameters.iter().enumerate().map(position).collect();
-        other.set_parameters(&values).ok()?;
+        take_numbers(crane, other.as_mut()).ok()?;
         is_rigid(crane, other.as_ref()).then_some(other)
     })
 }

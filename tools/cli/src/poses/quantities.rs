@@ -17,7 +17,7 @@ use super::posed;
 use crate::{
     figures::{Curve, Mark, PALETTE, Panel},
     problem::Outcome,
-    selection::{Registry, set_parameters},
+    selection::{Registry, take_numbers},
     variants,
 };
 
@@ -156,9 +156,7 @@ impl<'a> Subject<'a> {
         let mut values = Vec::new();
         if let Some(rigid) = &self.rigid {
             let mut rigid = rigid.boxed_clone();
-            let all: Vec<(usize, f64)> =
-                (0..crane.description().parameters.len()).map(|index| (index, crane.parameter(index))).collect();
-            set_parameters(rigid.as_mut(), &all)?;
+            take_numbers(crane, rigid.as_mut())?;
             values.push(moved(rigid.as_ref()));
         }
         if let Some(unloaded) = self.load {

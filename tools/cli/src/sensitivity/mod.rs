@@ -17,7 +17,7 @@ use crane_live::sensitivity::{
 };
 use crane_model::{
     Description,
-    dyn_crane::{DynCrane, DynModel},
+    dyn_crane::DynModel,
     envelope::{Axes, Envelope, SlewAxis},
 };
 use crane_page::tables::{Cell, Report};
@@ -28,7 +28,7 @@ use crate::{
     arguments::{Format, Sensitivity},
     envelope, files,
     problem::{Outcome, Problem, nearest},
-    selection::{Registry, find_parameter, set_parameters},
+    selection::{Registry, find_parameter, set_parameters, take_numbers},
     variants,
 };
 
@@ -395,12 +395,11 @@ fn rigid(
     let (twin, text) = variants::rigid(&crane.description().name, &source.text).ok()??;
     let source = SourceFile::new(twin, text);
     let mut rigid = LiveCrane::from_spec(&source).ok()?;
-    rigid.set_parameters(crane.parameters()).ok()?;
-    let inputs: Vec<Option<f64>> = (0..crane.description().inputs.len()).map(|index| crane.input(index)).collect();
+    take_numbers(crane, &mut rigid).ok()?;
     if rigid.parameters().len() != crane.parameters().len() {
         return None;
     }
-    let (rigid, settings) = (rigid.with_inputs(&inputs), sensitivity::Settings { frequencies: 0 });
+    let settings = sensitivity::Settings { frequencies: 0 };
     let mut found = derivatives(&rigid, parameters, &settings).ok()?;
     for place in places {
         let differences = FixedNumber::new(&source, place).ok()?.differentiate(&rigid, &found, &settings).ok()?;

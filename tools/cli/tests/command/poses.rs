@@ -67,6 +67,24 @@ fn deflection_over_angle_is_that_of_a_cantilever() {
     assert!((number(&tip["x"]) - number(&rows[1]["radius"])).abs() < 1e-9, "{tip}");
 }
 
+/// What the mesh leaves out is that of the crane with its inputs: the same as where they are written.
+#[test]
+fn estimates_of_the_mesh_are_with_the_inputs() {
+    let out = folder("inputs");
+    fs::create_dir_all(&out).expect("a folder");
+    let of = |name: &str, value: f64, more: &[&str]| {
+        let file = out.join(format!("{name}.yaml"));
+        let pulled = format!(
+            "inputs: {{pull: {{value: {value}, unit: N}}}}\nloads: [{{name: pull, link: arm, at: [4, 0, 0], force: [0, 1, 0], axes: link, scale: {{input: pull}}}}]\n"
+        );
+        fs::write(&file, format!("{ARM}{pulled}")).expect("a file");
+        let changes = json(&[&["statics", file.to_str().expect("a path"), "--format", "json"], more].concat());
+        number(&changes["changes_of_positions_with_twice_the_sections"]["tip"])
+    };
+    let (set, written) = (of("zero", 0.0, &["--input", "pull=1500"]), of("five", 1500.0, &[]));
+    assert!(written > 1e-5 && (set / written - 1.0).abs() < 1e-9, "{set} for {written}");
+}
+
 /// A clamped beam has no rigid form to compare it with: the column is missing, and the others are there.
 #[test]
 fn a_crane_that_only_bends_has_poses_too() {
