@@ -28,6 +28,9 @@ pub fn modes(options: &Modes, registry: &Registry, out: &mut dyn Write) -> Outco
     let limiting = limiting_modes(crane.as_ref(), 0.0, &case.equilibrium.q, &modes);
     let step = limit(&limiting, &Method::Rk4.stability()).map(|limit| limit.step);
     report.value("stable", true);
+    if modes.is_empty() {
+        report.line("vibrations", "none: rigid drives hold all joints", "");
+    }
     report.fact("largest stable step", Cell::from(step), "s");
     for caution in cautions::of_servos(crane.as_ref(), 0.0, &case.equilibrium.q) {
         report.caution(Some(caution));
