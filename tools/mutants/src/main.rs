@@ -69,8 +69,7 @@ fn search(asked: &Asked) -> Result<usize, String> {
     let files = files(asked, &root)?;
     let mut changes = draw::draw(&root, &files, asked)?;
     println!("{} changes in {} files, by seed {}", changes.len(), files.len(), asked.seed);
-    let tree = site::copy(&root)?;
-    let tests = run::build(&tree, &mut changes)?;
+    let tests = run::build(&site::Site::new(&root), &mut changes)?;
     let survivors = run::run(&tests, &changes)?;
     let mut unexplained = 0;
     println!("\nsurvivors");

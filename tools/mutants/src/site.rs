@@ -5,59 +5,62 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::CRATES;
 use crate::draw::Change;
-use crate::{CRATES, read};
 
 /// The environment variable that has the number of the change, from 1 on.
 pub const SWITCH: &str = "CRANE_MUTANT";
 
-/// Copies the workspace, as git knows it, to a place of its own; returns the copy's root.
-pub fn copy(root: &Path) -> Result<PathBuf, String> {
-    let tree = root.join("target/mutants/tree");
-    let output =
-        Command::new("git").current_dir(root).args(["ls-files"]).output().map_err(|error| format!("git: {error}"))?;
-    let listed = String::from_utf8_lossy(&output.stdout).into_owned();
-    for file in listed.lines() {
-        let (from, to) = (root.join(file), tree.join(file));
-        let Ok(bytes) = fs::read(&from) else { continue };
-        // What has not changed keeps its date, and is not built again.
-        if fs::read(&to).is_ok_and(|known| known == bytes) {
-            continue;
-        }
-        let failed = |error: std::io::Error| format!("{}: {error}", to.display());
-        fs::create_dir_all(to.parent().unwrap_or(&tree)).map_err(failed)?;
-        fs::write(&to, bytes).map_err(failed)?;
-    }
-    Ok(tree)
+/// A copy of the workspace, at a place of its own.
+pub struct Site {
+    root: PathBuf,
+    /// The root of the copy.
+    pub tree: PathBuf,
 }
 
-/// Writes the files of the copy with their changes as switches.
-pub fn write(tree: &Path, changes: &[Change], texts: &mut BTreeMap<PathBuf, String>) -> Result<(), String> {
-    for change in changes {
-        if !texts.contains_key(&change.file) {
-            texts.insert(change.file.clone(), read(&tree.join(&change.file))?);
-        }
+impl Site {
+    /// Where the copy of a workspace is.
+    pub fn new(root: &Path) -> Self {
+        Self { root: root.to_owned(), tree: root.join("target/mutants/tree") }
     }
-    for (file, text) in texts.iter() {
-        let mut here: Vec<(usize, &Change)> = (1..).zip(changes).filter(|(_, change)| change.file == *file).collect();
-        here.sort_by_key(|(_, change)| std::cmp::Reverse(change.range.start));
-        let mut text = text.clone();
-        for (number, Change { range, from, to, .. }) in here {
-            text.replace_range(
-                range.clone(),
-                &format!("(if crate::mutants::is({number}) {{ {to} }} else {{ {from} }})"),
-            );
+
+    /// Copies the files that git knows, with the changes as switches. What is there already keeps its date, and is not built again.
+    pub fn write(&self, changes: &[Change]) -> Result<(), String> {
+        let output = Command::new("git").current_dir(&self.root).args(["ls-files"]).output();
+        let listed = output.map_err(|error| format!("git: {error}"))?.stdout;
+        let mut of_files: BTreeMap<&Path, Vec<(usize, &Change)>> = BTreeMap::new();
+        for (number, change) in (1..).zip(changes) {
+            of_files.entry(&change.file).or_default().push((number, change));
         }
-        fs::write(tree.join(file), text).map_err(|error| format!("{}: {error}", file.display()))?;
-    }
-    for folder in CRATES {
-        let root = tree.join(folder).join("lib.rs");
-        let text = read(&root)?;
-        if !text.contains("mod mutants {") {
-            fs::write(&root, text + &switches()).map_err(|error| format!("{}: {error}", root.display()))?;
+        for file in String::from_utf8_lossy(&listed).lines() {
+            let Ok(mut bytes) = fs::read(self.root.join(file)) else { continue };
+            if let Some(changes) = of_files.get(Path::new(file)) {
+                bytes = switched(String::from_utf8_lossy(&bytes).into_owned(), changes).into_bytes();
+            }
+            if CRATES.iter().any(|folder| file.strip_prefix(folder) == Some("/lib.rs")) {
+                bytes.extend(switches().bytes());
+            }
+            let to = self.tree.join(file);
+            if fs::read(&to).is_ok_and(|known| known == bytes) {
+                continue;
+            }
+            let failed = |error: std::io::Error| format!("{}: {error}", to.display());
+            fs::create_dir_all(to.parent().unwrap_or(&self.tree)).map_err(failed)?;
+            fs::write(&to, bytes).map_err(failed)?;
         }
+        Ok(())
     }
-    Ok(())
+}
+
+/// A text with changes as switches.
+fn switched(mut text: String, changes: &[(usize, &Change)]) -> String {
+    let mut last_first = changes.to_vec();
+    last_first.sort_by_key(|(_, change)| std::cmp::Reverse(change.range.start));
+    for (number, Change { range, from, to, .. }) in last_first {
+        let switch = format!("(if crate::mutants::is({number}) {{ {to} }} else {{ {from} }})");
+        text.replace_range(range.clone(), &switch);
+    }
+    text
 }
 
 /// The module of a crate that knows which change is on.
