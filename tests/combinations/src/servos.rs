@@ -15,7 +15,7 @@ pub const NAME: &str = "servos and their stable gains";
 const NONE: f64 = 1e-9;
 /// A gain is stable this much below its limit and not this much above it: the limit is found to some thousandths.
 const BESIDE: f64 = 0.02;
-/// Growth of an oscillation, 1/s, that is no rounding and no drift.
+/// Growth of an oscillation, 1/s, beyond rounding and drift.
 const GROWS: f64 = 1e-2;
 /// Slower than this, 1/s, a growing motion sinks or slides.
 const OSCILLATES: f64 = 0.1;
@@ -31,7 +31,7 @@ pub fn check_servos(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     for (cylinder, _) in servos {
         let valve = &mut own["cylinders"][cylinder]["valve"];
         valve["gain"] = json!(10f64.powf(3.0 * rng.f64()));
-        // With much leakage the crane sinks by itself, which is no fault of the servos.
+        // With much leakage the crane sinks by itself, which the servos cannot help.
         valve["leakage"] = json!(1e-13 * 10f64.powf(1.5 * rng.f64()));
     }
     let crane = live(&source(&own)).ok()?;

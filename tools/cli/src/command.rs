@@ -91,7 +91,7 @@ pub fn dispatch(arguments: &Arguments, registry: &Registry, out: &mut dyn Write)
         Some(Action::Sensitivity(options)) => sensitivity::sensitivity(options, registry, out),
         Some(Action::Envelope(options)) => envelope::envelope(options, registry, out),
         Some(Action::Report(options)) => page::report(options, registry, out),
-        Some(Action::Book(options)) => book::book(options, registry, out),
+        Some(Action::Book(options)) => book::book(options, registry, dispatch, out),
         Some(Action::Info(options)) => info::info(options, registry, out),
         Some(Action::Eval(options)) => eval::eval(options, registry, out),
         Some(Action::New(options)) => new::new(options, registry, out),

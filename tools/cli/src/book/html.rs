@@ -64,8 +64,8 @@ pub fn page(cover: &Cover, sections: &[Section]) -> String {
 <tr><th scope=\"row\">program</th><td>crane {version}</td></tr>
 </table>
 <p>This document has what the program computed from the spec in section 2. Each section names the command that prints it again, and the hash
-changes with every letter of the spec. Section {last} says what was left out. The document is no verification by a standard: whoever signs it
-decides which rules apply, and whether the spec describes the crane.</p>
+changes with every letter of the spec. Section {last} says what was left out. The document does not verify the crane by a standard: the one who
+signs it decides which rules apply, and whether the spec describes the crane.</p>
 {cautions}<table class=\"signed\">
 <tr><th>computed by</th><th>checked by</th><th>date</th></tr>
 <tr><td></td><td></td><td></td></tr>

@@ -13,7 +13,6 @@ use crane_model::results::cautions::BEND;
 
 use crate::{
     arguments::{Arguments, Book},
-    command::dispatch,
     files,
     problem::{FAILED, Outcome, Problem},
     screen,
@@ -39,15 +38,18 @@ enum Content {
     Failed(String, String),
 }
 
-/// Computes all sections and writes the document.
-pub fn book(options: &Book, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+/// What does what arguments ask for.
+type Dispatch = fn(&Arguments, &Registry, &mut dyn Write) -> Outcome<()>;
+
+/// Computes all sections and writes the document; `dispatch` prints each.
+pub fn book(options: &Book, registry: &Registry, dispatch: Dispatch, out: &mut dyn Write) -> Outcome<()> {
     for given in options.chart.iter().chain(&options.fatigue) {
         check_options(given)?;
     }
     let crane = options.crane.open(registry)?;
     let live = registry.live(crane.as_ref())?;
     let chain = live.chain();
-    let binder = Binder { options, registry, chain };
+    let binder = Binder { options, registry, chain, dispatch };
     let mut sections = vec![binder.crane()?, binder.spec()];
     for asked in binder.asked() {
         screen::remark(&format!("{}: {}", sections.len() + 1, asked.title));
@@ -75,6 +77,7 @@ struct Binder<'a> {
     options: &'a Book,
     registry: &'a Registry,
     chain: &'a Chain,
+    dispatch: Dispatch,
 }
 
 impl Binder<'_> {
@@ -247,7 +250,7 @@ impl Binder<'_> {
             let title = lines.collect::<Vec<_>>().join(" ").trim_start_matches("error: ").to_owned();
             Problem::usage(title, format!("these are options of `{begin}`: see `{begin} --help`"))
         })?;
-        dispatch(&arguments, self.registry, out)
+        (self.dispatch)(&arguments, self.registry, out)
     }
 
     /// The figures among the files that a section lists as written.
