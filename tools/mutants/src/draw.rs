@@ -26,10 +26,15 @@ pub struct Change {
 }
 
 impl Change {
-    /// The change in a line, for lists.
+    /// The change in a line, with its place.
     pub fn line(&self) -> String {
+        format!("{} (line {})", self.name(), self.at)
+    }
+
+    /// The change in a line, for the list of those that change nothing: lines move.
+    pub fn name(&self) -> String {
         let short = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
-        format!("{}:{}: `{}` -> `{}`", self.file.display(), self.at, short(&self.from), short(&self.to))
+        format!("{}: `{}` -> `{}`", self.file.display(), short(&self.from), short(&self.to))
     }
 }
 

@@ -75,7 +75,7 @@ fn search(asked: &Asked) -> Result<usize, String> {
     println!("\nsurvivors");
     for change in survivors {
         let reason =
-            EQUIVALENT.lines().filter_map(|line| line.split_once(" # ")).find(|(line, _)| *line == change.line());
+            EQUIVALENT.lines().filter_map(|line| line.split_once(" # ")).find(|(line, _)| *line == change.name());
         unexplained += usize::from(reason.is_none());
         println!("  {}{}", change.line(), reason.map_or(String::new(), |(_, why)| format!(" # {why}")));
     }

@@ -279,3 +279,18 @@ fn byte(text: &str, row: u32, column: u32) -> usize {
     let line = text[start..].split('\n').next().unwrap_or_default();
     start + line.char_indices().nth(column.saturating_sub(1) as usize).map_or(line.len(), |(at, _)| at)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::byte;
+
+    /// Columns count characters, spans count bytes; beyond the end of a line is its end.
+    #[test]
+    fn a_place_in_a_line_is_a_byte() {
+        let text = "ab\ncdé f\ng";
+        assert_eq!(
+            [byte(text, 1, 1), byte(text, 2, 1), byte(text, 2, 4), byte(text, 2, 9), byte(text, 3, 1)],
+            [0, 3, 7, 9, 10]
+        );
+    }
+}

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use crane_codegen::SourceFile;
-use crane_live::LiveCrane;
+use crane_live::{Hold, LiveCrane, SteeredMotion};
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::{self, InitialState, Method, Sample, Settings, Watch};
 
@@ -131,4 +131,28 @@ fn a_controller_sets_inputs_between_steps() {
         // A few hundred steps with errors of 1e-9.
         assert!(off < 2e-6, "{method}: off by {off:.1e}");
     }
+}
+
+/// A motion that is made again from its memory goes on with the same bits, also with another crane of the same spec; one of another size, or
+/// cut short, is refused.
+#[test]
+fn a_motion_goes_on_from_its_memory() {
+    let crane = with_inputs();
+    let start = InitialState { q: vec![0.1, -0.1], v: vec![0.0, 0.2], x: Vec::new() };
+    let settings = Settings { method: Method::Bdf, ..Settings::of(crane.description()) };
+    let mut motion = SteeredMotion::new(&crane, 0.0, &start, &settings).expect("it begins");
+    let on = |motion: &mut SteeredMotion, pull: f64| -> Vec<f64> {
+        let changes = [(1, Some(0.2)), (2, Some(pull))];
+        let _ = motion.advance(0.25, changes, Hold::Linear, &mut |_| ControlFlow::Continue(())).expect("it goes on");
+        let Sample { q, v, .. } = motion.sample();
+        [q, v].concat()
+    };
+    on(&mut motion, 300.0);
+    let memory = motion.memory();
+    let mut again = SteeredMotion::recalled(&with_inputs(), &settings, &memory).expect("it is of this crane");
+    assert_eq!(on(&mut again, -100.0), on(&mut motion, -100.0));
+    assert!(SteeredMotion::recalled(&crane, &settings, &memory[..memory.len() - 1]).is_none());
+    let mut other = memory.clone();
+    other[1] = 0.5;
+    assert!(SteeredMotion::recalled(&crane, &settings, &other).is_none(), "half a state");
 }
