@@ -121,3 +121,36 @@ fn values_of_parameters_are_looked_at() {
     assert_eq!(with(0.3), ["W010"]);
     assert_eq!(with(8e5), ["W010"]);
 }
+
+/// An angle that is written in degrees is one; the same number set is in radians, and another parameter that is set does not matter.
+#[test]
+fn angles_that_are_set_are_in_radians() {
+    let text = "format: 1\nname: arm\nparameters: {load: {value: 10, unit: kg}, tilt: {value: 400 deg}}\nlinks:\n  \
+        - {name: arm, joint: {revolute: {axis: y}}, mass: load, com: [1, 0, 0]}\n\
+        drives: [{coordinate: arm_theta, stiffness: 1e5, motion: {hold: tilt}}]\n";
+    let source = SourceFile::new("arm.yaml", text);
+    let with = |set: &[(&str, f64)]| {
+        let checked = crane_codegen::compile::check_with(&source, set);
+        codes(&checked.unwrap_or_else(|found| panic!("{found}")).warnings)
+    };
+    assert_eq!(with(&[]), [""; 0]);
+    assert_eq!(with(&[("load", 11.0)]), [""; 0]);
+    assert_eq!(with(&[("tilt", 45.0)]), ["W008"]);
+}
+
+/// Beyond which beam a point is depends on the beam that it names, not on the first one.
+#[test]
+fn a_point_is_within_its_own_beam() {
+    let beam = |name: &str, length: f64| {
+        format!(
+            "  - {{name: {name}, joint: {{revolute: {{axis: y}}}}, beam: {{length: {length}, sections: rigid, material: steel, section: {{box: {{height: 0.3, width: 0.2, thickness: 0.008}}}}}}}}\n"
+        )
+    };
+    let text = format!(
+        "format: 1\nname: two\nmaterials: {{steel: {{E: 2.1e11, G: 8.1e10, density: 7850}}}}\nlinks:\n{}{}\
+         loop_joints: [{{name: h, from: {{at: [3.5, 0, 0]}}, to: {{link: long, at: [2.5, 0, 0]}}, joint: ball}}]\n",
+        beam("short", 1.0),
+        beam("long", 4.0)
+    );
+    assert!(!codes(&warnings("two", &text)).contains(&"W047"));
+}
