@@ -68,8 +68,7 @@ pub fn strength(options: &Analysis, registry: &Registry, out: &mut dyn Write) ->
     let resting: Vec<Resting<'_>> = stable.map(Resting::of).collect();
     for Resting { case, .. } in &resting {
         let of_pose = cautions::of_pose(case.crane, &case.equilibrium.q, options.crane.limits.bend);
-        for caution in of_pose.into_iter().map(Into::into).chain(cautions::of_strength(case.crane)) {
-            let caution: String = caution;
+        for caution in of_pose.into_iter().chain(cautions::of_strength(case.crane)) {
             report.caution(Some(format!("{}: {caution}", case.label)));
         }
     }

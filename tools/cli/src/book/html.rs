@@ -34,10 +34,10 @@ pub fn page(cover: &Cover, sections: &[Section]) -> String {
         })
         .collect();
     let last = shown.len() + 1;
-    let contents: String = (1..)
-        .zip(&shown)
-        .map(|(number, (section, _))| format!("<li><a href=\"#s{number}\">{number} {}</a></li>\n", section.title))
-        .collect();
+    let line = |(number, (section, _)): (usize, &(&Section, &str))| {
+        format!("<li><a href=\"#s{number}\">{number} {}</a></li>\n", section.title)
+    };
+    let contents = (1..).zip(&shown).map(line).collect::<Vec<_>>().concat();
     let body: String = (1..).zip(&shown).map(|(number, (section, html))| section_of(number, section, html)).collect();
     let Cover { title, name, spec_hash } = cover;
     let (title, short) = (escaped(title), spec_hash.chars().take(12).collect::<String>());

@@ -257,7 +257,7 @@ impl Binder<'_> {
     fn figures(&self, tables: &str) -> Outcome<String> {
         let mut shown = String::new();
         for name in tables.split("<td>").filter_map(|cell| Some(cell.split_once("</td>")?.0)) {
-            if !name.ends_with(".svg") {
+            if Path::new(name).extension().is_none_or(|extension| extension != "svg") {
                 continue;
             }
             let file = self.options.folder.out.join(name);

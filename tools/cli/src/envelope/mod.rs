@@ -54,9 +54,10 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
     let crane = options.analysis.crane.open(registry)?;
     let (asked, mut layout) = ask(options, crane.as_ref())?;
     let name = crane.description().name.as_str();
-    layout.combinations = match options.combinations {
-        true => registry.combinations(name)?,
-        false => registry.live(crane.as_ref())?.chain().combination.iter().cloned().collect(),
+    layout.combinations = if options.combinations {
+        registry.combinations(name)?
+    } else {
+        registry.live(crane.as_ref())?.chain().combination.iter().cloned().collect()
     };
     let description = crane.description();
     let unit_of_load = &description.parameters[asked.load].unit;
@@ -143,7 +144,9 @@ fn rows_of(
     for combination in &layout.combinations {
         let combined = registry.live_combined(crane, combination)?;
         let (mut rows, journal) = rate(&combined, &format!("{name}_{combination}"))?;
-        rows.iter_mut().for_each(|row| row.govern_with(combination));
+        for row in &mut rows {
+            row.govern_with(combination);
+        }
         least = if least.is_empty() { rows } else { layout.least(least, rows) };
         journals.push(journal);
     }

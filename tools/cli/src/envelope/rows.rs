@@ -136,10 +136,7 @@ impl Layout {
             let (mut row, other) = if self.load_of(&b) < self.load_of(&a) { (b, a) } else { (a, b) };
             let own_load = row.numbers.iter_mut().zip(&other.numbers).enumerate().skip(self.margin());
             for (column, (own, other)) in own_load {
-                let is_worse = match column == self.margin() {
-                    true => *other < *own,
-                    false => other.abs() > own.abs(),
-                };
+                let is_worse = if column == self.margin() { *other < *own } else { other.abs() > own.abs() };
                 if is_worse || own.is_nan() {
                     *own = *other;
                 }

@@ -197,7 +197,7 @@ pub fn rows(asked: &Asked<'_>, registry: &Registry, out: &mut dyn Write) -> Outc
     let description = crane.description();
     let axes = read_ranges(&poses.ranges, description)?;
     let point = envelope::point(poses.point.as_deref(), description)?;
-    let subject = quantities::Subject::new(crane.as_ref(), &axes, point, *wanted, registry)?;
+    let subject = quantities::Subject::new(crane.as_ref(), &axes, point, *wanted, registry);
     let bar = batches(axes.poses());
     let mut rows: Vec<Row> = Vec::new();
     for pose in 0..axes.poses() {

@@ -74,7 +74,7 @@ impl<'a> Subject<'a> {
         point: Option<usize>,
         wanted: Quantities,
         registry: &Registry,
-    ) -> Outcome<Self> {
+    ) -> Self {
         let description = crane.description();
         let rigid = match registry.spec(&description.name).map(|text| variants::rigid(&description.name, text)) {
             Some(Ok(Some((name, text)))) if matches!(wanted, Quantities::Statics) => {
@@ -87,7 +87,7 @@ impl<'a> Subject<'a> {
         let varies = |index| axes.0.iter().any(|axis| axis.varied == Varied::Parameter(index));
         let load = only_mass(description).filter(|load| !varies(*load) && matches!(wanted, Quantities::Statics));
         let load = load.map(|load| (load, range_of_loads(crane, load, None)[0]));
-        Ok(Self { crane, rigid, load, axes, point, slew: SlewAxis::of(crane), wanted })
+        Self { crane, rigid, load, axes, point, slew: SlewAxis::of(crane), wanted }
     }
 
     fn columns(&self) -> Vec<Column> {

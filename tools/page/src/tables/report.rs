@@ -126,25 +126,20 @@ impl Report {
     /// Facts, cautions and tables as a section of a page; of each table as many rows as people see.
     #[must_use]
     pub fn html(&self) -> String {
-        let mut html = String::new();
         let facts = self.facts.iter().map(|Fact { name, value, unit, .. }| {
             let value = format!("{} {unit}", value.text());
             format!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", escaped(name), escaped(value.trim_end()))
         });
-        let facts: String = facts.collect();
-        if !facts.is_empty() {
-            html += &format!("<table class=\"facts\">\n{facts}</table>\n");
-        }
-        for words in &self.cautions {
-            html += &format!("<p class=\"caution\">caution: {}</p>\n", escaped(words));
-        }
-        for (grid, rows) in self.filled() {
-            match if self.all { usize::MAX } else { *rows } {
-                0 => {}
-                most => html += &grid.html(most),
-            }
-        }
-        html
+        let facts = match facts.collect::<String>() {
+            none if none.is_empty() => none,
+            rows => format!("<table class=\"facts\">\n{rows}</table>\n"),
+        };
+        let cautions =
+            self.cautions.iter().map(|words| format!("<p class=\"caution\">caution: {}</p>\n", escaped(words)));
+        let seen = |rows: usize| if self.all { usize::MAX } else { rows };
+        let shown = self.filled().filter(|(_, rows)| seen(*rows) > 0);
+        let tables = shown.map(|(grid, rows)| grid.html(seen(*rows)));
+        std::iter::once(facts).chain(cautions).chain(tables).collect()
     }
 
     /// Prints it for people, as the command does.
