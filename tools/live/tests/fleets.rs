@@ -179,7 +179,10 @@ fn the_runs_of_a_fleet_are_those_of_its_cranes() {
         for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince] {
             let tolerance = 1e-7;
             let of_spec = Settings::of(crane.description());
-            let settings = Settings { method, duration: 1.5, tolerance, audit: false, ..of_spec };
+            // Short sections at pins and pads allow short explicit steps only.
+            let is_stiff = method == Method::DormandPrince && name == "specs/examples/telescopic_loader";
+            let duration = if is_stiff { 0.3 } else { 1.5 };
+            let settings = Settings { method, duration, tolerance, audit: false, ..of_spec };
             let (together, alone) = (runs(&crane, &rows, CRANES, &settings), runs(&crane, &rows, 1, &settings));
             let steps = |row: &Outcome| row.run.as_ref().map_or(0, |run| run.statistics.steps);
             assert!(together.iter().all(|row| steps(row) == steps(&together[0])), "{name}: all have the same steps");

@@ -153,6 +153,32 @@ fn a_mass_on_a_spring_has_the_derivatives_of_its_formula() {
     }
 }
 
+/// A damper of zero cannot be smaller: the force of the drive, `F = −k x − c v`, changes by the step to the other side alone. About c = 0,
+/// `∂x/∂c = x₀ (sin ωt/(2 m ω) − t cos ωt/(2 m))`.
+#[test]
+fn a_number_at_its_bound_changes_to_the_other_side() {
+    let damped = OSCILLATOR
+        .replace("parameters: {", "parameters: {c: {value: 0}, ")
+        .replace("stiffness: k,", "stiffness: k, damping: c,");
+    let crane = spec(&damped);
+    assert!(crane.clone().set_parameter(0, -1e-6).is_err(), "zero is the bound");
+    let x = 0.3;
+    let run = settings(&crane, 1.0, 0.05, 1e-9);
+    let (table, found) = gradients(&crane, &["c"], &Some((vec![x], vec![0.0])), &run);
+    let column = table.columns.iter().position(|column| column.name == "mass_x_drive_force").expect("a column");
+    let (k, m) = (400.0, 4.0);
+    let omega = f64::sqrt(k / m);
+    for (row, values) in table.rows.iter().enumerate() {
+        let t = values[0];
+        let (sin, cos) = (omega * t).sin_cos();
+        assert!((values[column] + k * x * cos).abs() < 1e-5 * k * x, "the force at {t} s");
+        let expected = -k * x * (sin / (2.0 * m * omega) - t * cos / (2.0 * m)) + x * omega * sin;
+        // Errors of the run, and of a difference to one side, grow with what the column changes: some 15 N s/m.
+        let off = (found[0][row][column] - expected).abs();
+        assert!(off < 1e-4 * 15.0, "∂F/∂c at {t} s: {} for {expected}", found[0][row][column]);
+    }
+}
+
 /// A mass that falls on a foot without a damper.
 ///
 /// Until `t₁ = √(2h/g)` it falls freely; then `z = e^(−δτ) (A cos ντ + B sin ντ) − mg/k` with τ = t − t₁.
