@@ -182,6 +182,54 @@ fn a_chart_has_the_loads_that_all_combinations_allow() {
     assert!(!left.iter().any(|name| name.to_string_lossy().contains("part")), "{left:?}");
 }
 
+/// A hook that the wind swings about hangs elsewhere with the least load: the margin with the crane's own load is that of statics all the
+/// same. The path from the one pose to the other ends on the way.
+#[test]
+fn the_own_load_of_a_pose_rests_as_statics_finds_it() {
+    let folder = folder("own_load");
+    fs::write(folder.join("truck.yaml"), WINDY).expect("a file");
+    let ranges = ["--range", "boom_psi=20deg", "--range", "column_psi=0:90deg:2"];
+    let output = run_command(&folder, &ranges);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let (header, rows) = table(&folder);
+    let margin = header.iter().position(|name| name.starts_with("tipping_margin")).expect("a column");
+    for (row, column) in rows.iter().zip(["column_psi=0", "column_psi=90deg"]) {
+        let mut strength = Command::new(env!("CARGO_BIN_EXE_crane"));
+        strength.current_dir(&folder).args(["strength", "truck.yaml", "--hold", "boom_psi=20deg", "--hold", column]);
+        let output = strength.args(["--format", "json"]).output().expect("it starts");
+        let found: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        let [of_chart, of_strength] = [row[margin].parse().ok(), found["tipping_margin"].as_f64()];
+        let (Some(of_chart), Some(of_strength)): (Option<f64>, _) = (of_chart, of_strength) else {
+            panic!("{column}: {of_chart:?} in the chart, {of_strength:?} by `strength`");
+        };
+        assert!((of_chart - of_strength).abs() < 1e-7, "{column}: {of_chart} and {of_strength}");
+    }
+}
+
+const WINDY: &str = "format: 1
+name: truck
+parameters: {payload: {value: 500, unit: kg}}
+materials: {steel: {E: 2.1e11, G: 8.1e10, density: 7850, yield_stress: 355e6}}
+links:
+  - {name: truck, joint: free, mass: 2500, com: [-0.5, 0, 0.8], inertia: {gyration: [0.8, 1.8, 1.8]}}
+  - {name: column, placement: {transform: {translation: [0, 0, 1]}}, joint: revolute, mass: 200, com: [0, 0, 0.6], inertia: {gyration: [0.4, 0.4, 0.1]}}
+  - name: boom
+    placement: {transform: {translation: [0, 0, 1.3], rotation: {x: 90 deg}}}
+    joint: revolute
+    beam: {length: 5, sections: 4, material: steel, damping: {beta: 1e-3}, section: {box: {height: 0.22, width: 0.16, thickness: 0.006}}}
+  - {name: hook, joint: revolute, mass: payload, com: [0, -1, 0]}
+supports:
+  - {name: front_left, one_sided: true, at: [1, 1.8, 0], stiffness: [1e7, 1e7, 2e7], damping: [1e5, 1e5, 1e5]}
+  - {name: front_right, one_sided: true, at: [1, -1.8, 0], stiffness: [1e7, 1e7, 2e7], damping: [1e5, 1e5, 1e5]}
+  - {name: rear_left, one_sided: true, at: [-2, 1.8, 0], stiffness: [1e7, 1e7, 2e7], damping: [1e5, 1e5, 1e5]}
+  - {name: rear_right, one_sided: true, at: [-2, -1.8, 0], stiffness: [1e7, 1e7, 2e7], damping: [1e5, 1e5, 1e5]}
+drives:
+  - {coordinate: column_psi, stiffness: 3e6, damping: 3e4, motion: {hold: 90 deg}}
+  - {coordinate: boom_psi, stiffness: 1e8, motion: {hold: 0}}
+loads: [{name: push, link: hook, at: [0, -1, 0], force: [0, 105, 0]}]
+damping: {hook_psi: 40}
+";
+
 /// Killed while it writes, with half a line after what was written: the second command continues, and the result has the same
 /// bytes as one that was never interrupted.
 #[test]
