@@ -86,10 +86,20 @@ pub fn unit(chain: &Chain, spec: &str) -> Outcome<PathBuf> {
     package.kept()?.map_or_else(|| package.compiled(), Ok)
 }
 
-/// The command as it was typed.
+/// The command as it was typed, as a shell reads it again.
 pub fn typed() -> String {
     env::var(AS_TYPED).unwrap_or_else(|_| {
-        let arguments: Vec<String> = env::args().skip(1).collect();
+        let arguments: Vec<String> = env::args().skip(1).map(|word| quoted(&word)).collect();
         format!("crane {}", arguments.join(" "))
     })
+}
+
+/// A word as a shell reads it.
+pub fn quoted(word: &str) -> String {
+    let is_plain = |letter: char| letter.is_alphanumeric() || "_-./=:,+@%".contains(letter);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
 }

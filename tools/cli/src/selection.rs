@@ -208,9 +208,8 @@ impl Registry {
     /// A crane as its spec has it, with one of its combinations.
     fn combined(&self, name: &str, combination: &str) -> Outcome<(Chain, String)> {
         self.crane(name)?;
-        let entry = self.entries.iter().find(|entry| entry.name == name);
-        let live = entry.ok_or_else(|| Problem::failed(format!("{name} has no spec"), ""))?.live()?;
-        with_combination(live.chain(), self.spec(name).unwrap_or_default(), combination)
+        let entry = self.entry(name)?;
+        with_combination(entry.live()?.chain(), &entry.spec, combination)
     }
 
     /// Names of the combinations of a crane's spec: at least one.
@@ -219,9 +218,7 @@ impl Registry {
     /// There is no such crane, or it has none.
     pub(super) fn combinations(&self, name: &str) -> Outcome<Vec<String>> {
         self.crane(name)?;
-        let entry = self.entries.iter().find(|entry| entry.name == name);
-        let live = entry.ok_or_else(|| Problem::failed(format!("{name} has no spec"), ""))?.live()?;
-        names_of_combinations(live.chain())
+        names_of_combinations(self.entry(name)?.live()?.chain())
     }
 
     /// Names of all cranes.
@@ -251,10 +248,12 @@ impl Registry {
 
     /// A live crane of the same spec and parameters, which has derivatives of transforms too.
     pub(super) fn live(&self, crane: &dyn DynCrane) -> Outcome<LiveCrane> {
-        let description = crane.description();
-        let entry = self.entries.iter().find(|entry| entry.name == description.name.as_str());
-        let entry = entry.ok_or_else(|| Problem::failed(format!("{} has no spec", description.name), ""))?;
-        with_numbers_of(crane, entry.live()?.clone())
+        with_numbers_of(crane, self.entry(&crane.description().name)?.live()?.clone())
+    }
+
+    fn entry(&self, name: &str) -> Outcome<&Entry> {
+        let entry = self.entries.iter().find(|entry| entry.name == name);
+        entry.ok_or_else(|| Problem::failed(format!("{name} has no spec"), ""))
     }
 
     /// A crane by its name.

@@ -2,7 +2,8 @@
 
 use crane_codegen::exchange::xml::escaped;
 
-use super::{Content, Section, quoted};
+use super::{Content, Section};
+use crate::compiled::quoted;
 
 /// What stands on the cover, and at the foot of every page.
 pub struct Cover {

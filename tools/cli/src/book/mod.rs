@@ -13,6 +13,7 @@ use crane_model::results::cautions::BEND;
 
 use crate::{
     arguments::{Arguments, Book},
+    compiled::quoted,
     files,
     problem::{FAILED, Outcome, Problem},
     screen,
@@ -24,7 +25,7 @@ struct Section {
     title: &'static str,
     /// What it is for.
     about: &'static str,
-    /// The command and its options besides those of the crane; empty for a section that no command prints.
+    /// The words of the command that prints it; empty for a section that no command prints.
     command: Vec<String>,
     content: Content,
 }
@@ -214,7 +215,7 @@ impl Binder<'_> {
                 let tables = String::from_utf8_lossy(&printed).into_owned();
                 Content::Shown(self.figures(&tables)? + &tables)
             }
-            // Without a pose at rest there is no strength: the book says so where it would stand.
+            // Where the crane does not rest, the book says so in place of its strength.
             Err(Problem::Message { title, code: FAILED, .. }) => {
                 Content::Failed(title, String::from_utf8_lossy(&printed).into_owned())
             }
@@ -310,14 +311,4 @@ fn words_of(command: &str) -> Outcome<Vec<String>> {
     }
     words.extend(word);
     Ok(words)
-}
-
-/// A word as a shell reads it.
-fn quoted(word: &str) -> String {
-    let is_plain = |letter: char| letter.is_alphanumeric() || "_-./=:,+@%".contains(letter);
-    if !word.is_empty() && word.chars().all(is_plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
-    }
 }
