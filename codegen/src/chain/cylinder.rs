@@ -2,7 +2,10 @@
 
 use std::f64::consts::PI;
 
-use super::{BodyId, Chain, CoordinateId, Value, frame::Vector};
+use super::{
+    BodyId, Chain, CoordinateId, Value,
+    frame::{Vector, cross},
+};
 
 /// The hydraulic cylinder of a driven joint.
 #[derive(Clone, Debug, PartialEq)]
@@ -150,8 +153,4 @@ fn difference(to: Vector, from: Vector) -> Vector {
 
 fn norm(vector: Vector) -> f64 {
     vector.iter().map(|x| x * x).sum::<f64>().sqrt()
-}
-
-fn cross(a: Vector, b: Vector) -> Vector {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

@@ -5,6 +5,12 @@ use super::{Axis, Body, BodyId, Chain, CoordinateId, CoordinateKind, Step};
 /// A point or a direction: x, y, z.
 pub type Vector = [f64; 3];
 
+/// Cross product.
+#[must_use]
+pub fn cross([a, b, c]: Vector, [x, y, z]: Vector) -> Vector {
+    [b * z - c * y, c * x - a * z, a * y - b * x]
+}
+
 /// A frame, expressed in another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {

@@ -33,7 +33,7 @@ pub use cut::Cut;
 pub use cylinder::{Cylinder, Linkage, Pin, Pump, Valve};
 pub use drive::{Drive, Rotor, Transmission};
 pub use force::*;
-pub use frame::{Frame, Vector};
+pub use frame::{Frame, Vector, cross};
 pub use input::{Input, InputId};
 pub use load::{Combination, Load, LoadAxes};
 pub use loop_joint::{Across, LoopEquation, LoopJoint, LoopJointKind, normalised};

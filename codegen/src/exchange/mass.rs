@@ -64,23 +64,43 @@ impl Lump {
         Some(Lump { mass, com, tensor })
     }
 
+    /// Neither mass nor moments.
+    pub(super) fn nothing() -> Lump {
+        Lump { mass: 0.0, com: [0.0; 3], tensor: [0.0; 6] }
+    }
+
     /// The nearest lump that is possible, if this one is not: with `S = ∫ r rᵀ dm = ½ tr(I) 1 − I` about the centre of mass, principal
     /// second moments below zero become zero. Then no principal moment exceeds the sum of the other two.
     pub(super) fn repaired(&self) -> Option<Lump> {
-        let [xx, yy, zz, xy, xz, yz] = self.tensor;
-        let half = 0.5 * (xx + yy + zz);
-        let second = principal_axes([half - xx, half - yy, half - zz, -xy, -xz, -yz]);
-        let size: f64 = second.iter().map(|(moment, _)| moment.abs()).sum();
-        if !second.iter().any(|(moment, _)| *moment < -WRITTEN * size) {
-            return None;
+        let mut repaired = self.clone();
+        let changed = repaired.change_moments(|moments| {
+            let half = 0.5 * moments.iter().sum::<f64>();
+            let second = moments.map(|moment| half - moment);
+            let size: f64 = second.iter().map(|moment| moment.abs()).sum();
+            if second.iter().all(|moment| *moment >= -WRITTEN * size) {
+                return moments;
+            }
+            let [a, b, c] = second.map(|moment| moment.max(0.0));
+            [b + c, a + c, a + b]
+        });
+        changed.then_some(repaired)
+    }
+
+    /// Changes the principal moments of inertia; returns whether they are others.
+    pub(super) fn change_moments(&mut self, change: impl FnOnce(Vector) -> Vector) -> bool {
+        let principal = principal_axes(self.tensor);
+        let moments = principal.map(|(moment, _)| moment);
+        let changed = change(moments);
+        if changed == moments {
+            return false;
         }
-        let element = |i: usize, j: usize| -> f64 {
-            second.iter().map(|(moment, axis)| moment.max(0.0) * axis[i] * axis[j]).sum()
+        let entry = |i: usize, j: usize| -> f64 {
+            principal.iter().zip(changed).map(|((_, axis), moment)| moment * axis[i] * axis[j]).sum()
         };
-        let [a, b, c] = [0, 1, 2].map(|i| element(i, i));
-        let tensor = [b + c, a + c, a + b, -element(0, 1), -element(0, 2), -element(1, 2)];
-        let size = a + b + c;
-        Some(Lump { tensor: tensor.map(|entry| without_rounding(entry, size)), ..self.clone() })
+        let size = changed.iter().map(|moment| moment.abs()).sum();
+        let tensor = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|(i, j)| entry(i, j));
+        self.tensor = tensor.map(|entry| without_rounding(entry, size));
+        true
     }
 
     /// The same expressed in the outer frame: `c' = p + R c`, `I' = R I Rᵀ`.

@@ -12,7 +12,7 @@ mod springs;
 mod urdf;
 pub mod xml;
 
-pub use import::{CATALOGUE, ImportOptions, Imported, import, with_includes};
+pub use import::{CATALOGUE, ImportOptions, Imported, Reference, ReferenceDynamics, import, with_includes};
 pub use mjcf::{Inexpressible, mjcf};
 pub use springs::springs;
 pub use urdf::urdf;

@@ -8,8 +8,8 @@ use crate::chain::{Frame, Value, Vector};
 /// if the pitch is a quarter turn, where only a combination of yaw and roll is determined.
 pub(super) fn roll_pitch_yaw(frame: &Frame) -> Vector {
     let [x, y, z] = frame.axes;
-    // Yaw is arbitrary if x points along the third axis: then it is set to zero.
-    let yaw = if x[0].hypot(x[1]) > 1e-9 { x[1].atan2(x[0]) } else { 0.0 };
+    // Yaw is arbitrary if x points along the third axis to rounding: then it is set to zero.
+    let yaw = if x[0].hypot(x[1]) > 1e-14 { x[1].atan2(x[0]) } else { 0.0 };
     let (sin, cos) = yaw.sin_cos();
     let pitch = (-x[2]).atan2(cos * x[0] + sin * x[1]);
     let roll = (sin * z[0] - cos * z[1]).atan2(cos * y[1] - sin * y[0]);

@@ -1,7 +1,7 @@
 //! Hydraulic cylinders in a picture: barrel and rod between their pins, rocker and link.
 
 use super::{GREY, INK, Joint, Sheet, VERMILLION};
-use crate::chain::{Chain, Cylinder, Frame, Linkage, Pin, Vector};
+use crate::chain::{Chain, Cylinder, Frame, Linkage, Pin, Vector, cross};
 
 /// Length of the barrel relative to the distance of the pins of the retracted cylinder.
 const BARREL: f64 = 0.9;
@@ -73,10 +73,6 @@ fn difference(a: Vector, b: Vector) -> Vector {
 
 fn dot(a: Vector, b: Vector) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-fn cross(a: Vector, b: Vector) -> Vector {
-    [0, 1, 2].map(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
 }
 
 #[cfg(test)]

@@ -4,10 +4,9 @@ use super::Check;
 use super::drives::units;
 use super::joints::WIDTH;
 use super::limits::Limit;
-use super::regular::cross;
 use crate::chain::{
     Across, Chain, CoordinateKind, Cylinder, Force, Frame, Friction, Group, Law, LoopJoint, LoopJointKind, Strain,
-    Turning, Value, Vector, normalised,
+    Turning, Value, Vector, cross, normalised,
 };
 use crate::diagnostic::{Span, rule};
 use crate::spec::{self, Crane, Direction, Spanned, entries};

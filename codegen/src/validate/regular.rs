@@ -4,7 +4,7 @@
 //! pivots of the mass matrix one by one: the inertia `D_j` that coordinate j feels with all later joints free.
 
 use super::{Check, Owner};
-use crate::chain::{Axis, BodyId, Chain, CoordinateId, CoordinateKind, Frame, Inertia, Vector};
+use crate::chain::{Axis, BodyId, Chain, CoordinateId, CoordinateKind, Frame, Inertia, Vector, cross};
 use crate::diagnostic::{Span, rule};
 use crate::spec::Crane;
 
@@ -15,10 +15,6 @@ const VANISHING: f64 = 1e-10;
 /// Forces have the moment first, velocities the angular velocity.
 type Spatial = [f64; 6];
 type SpatialInertia = [[f64; 6]; 6];
-
-pub(super) fn cross([a, b, c]: Vector, [x, y, z]: Vector) -> Vector {
-    [b * z - c * y, c * x - a * z, a * y - b * x]
-}
 
 fn dot(a: &Spatial, b: &Spatial) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()

@@ -7,6 +7,7 @@ use std::{
 
 use clap::ValueEnum;
 use crane_codegen::{
+    SourceFile,
     chain::{Bound, Chain, Refusal},
     compile,
     compile::NoFunction,
@@ -16,6 +17,8 @@ use crane_codegen::{
     exchange::{ImportOptions, Imported},
     program::Product,
 };
+
+use crane_live::{LiveCrane, imported::compare_with_file};
 
 use crate::{
     arguments::{CNumber, Export, Import, Language},
@@ -159,9 +162,19 @@ pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
             "give another file with `-o`, or replace it with `--force`; drives and other changes in it would be lost",
         ));
     }
-    let Imported { spec, left_out } =
+    let Imported { spec, left_out, reference } =
         exchange::import(&source, &ImportOptions { fixed: options.fixed.clone(), repair: options.repair })
             .map_err(Problem::mistakes)?;
+    // A spec with mistakes in the robot's own numbers is written, too: they are to be corrected there.
+    let chain = compile::load(&SourceFile::new("robot.yaml", spec.as_str())).ok();
+    if let (Some(chain), Some(reference)) = (chain, &reference) {
+        compare_with_file(&LiveCrane::new(chain), reference).map_err(|deviation| {
+            Problem::failed(
+                format!("the spec of this robot does not move as its file says: {deviation}"),
+                "this is a fault of `crane import`; please report it with the file",
+            )
+        })?;
+    }
     let Some(file) = &options.spec else {
         out.write_all(spec.as_bytes())?;
         // To standard error, not into the spec.
@@ -172,7 +185,6 @@ pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
     };
     files::write_text(file, &spec)?;
     writeln!(out, "{} written", file.display())?;
-    // Mistakes in the robot's own numbers are to be corrected in the written spec.
     let (Chain { name, bodies, coordinates, .. }, _) = spec_file::load(file, false)?;
     let (file, bodies, coordinates) = (file.display(), bodies.len(), coordinates.len());
     writeln!(out, "{name}: valid; {bodies} bodies, {coordinates} coordinates; next: `crane run {file}`")?;

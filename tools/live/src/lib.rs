@@ -30,6 +30,7 @@ mod derivatives;
 mod describe;
 mod dual;
 mod expansion;
+pub mod imported;
 mod inputs;
 pub mod layout;
 mod library;

@@ -13,12 +13,13 @@ use crane_codegen::picture::picture;
 use crane_codegen::units::Quantity;
 use crane_codegen::{Checked, SourceFile, build, edit, exchange, files};
 use crane_live::LiveCrane;
+use crane_live::imported::compare_with_file;
 use crane_live::rows::Evaluation;
 use crane_model::Description;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_quantities::FunctionId;
 use crane_specs::SPECS;
-use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyTypeError, PyValueError};
+use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -90,8 +91,15 @@ pub fn import_robot(
         })
     };
     let options = ImportOptions { fixed: fix, repair };
-    let imported = py.detach(|| exchange::import(&source, &options));
-    Ok(imported.map_err(|found| spec_error(py, &found))?.spec)
+    let imported = py.detach(|| exchange::import(&source, &options)).map_err(|found| spec_error(py, &found))?;
+    // Mistakes in the robot's own numbers are told when the spec is loaded.
+    let live = LiveCrane::from_spec(&SourceFile::new(named, imported.spec.as_str())).ok();
+    if let (Some(live), Some(reference)) = (live, &imported.reference) {
+        compare_with_file(&live, reference).map_err(|deviation| {
+            PyRuntimeError::new_err(format!("{named}: the spec does not move as the robot's file says: {deviation}"))
+        })?;
+    }
+    Ok(imported.spec)
 }
 
 /// The spec of a text, with those that it extends: shipped ones, or files of the working folder. That of another crane, `Crane.spec`,

@@ -211,11 +211,11 @@ fn onto_an_axis(direction: Vector) -> (Axis, Frame) {
 
 /// Names that are in use.
 #[derive(Default)]
-struct Names(BTreeSet<String>);
+pub(super) struct Names(BTreeSet<String>);
 
 impl Names {
     /// An identifier derived from a name, not in use yet.
-    fn unique(&mut self, name: &str) -> String {
+    pub(super) fn unique(&mut self, name: &str) -> String {
         self.free(identifier(name), |_, _| true)
     }
 

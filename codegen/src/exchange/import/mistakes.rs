@@ -21,9 +21,9 @@ catalogue! {
         "cut the loop at one of the two joints; a joint under `loop_joints:` of the spec then closes it";
     /// All links form one tree with one root.
     U008 not_a_tree(problem) "the links are not a tree: {problem}", "every link but the root is the child of one joint", "make every link but one the child of exactly one joint";
-    /// Joints rotate about an axis, slide along it, or are fixed.
-    U009 unsupported(joint, kind) "joint `{joint}` is {kind}, which is not supported", "supported: revolute, continuous, prismatic, fixed; hinge and slide in MJCF",
-        "hold it at zero with `--fix {joint}`, or replace it with joints of one axis each; for a free base write `joint: free` in the spec";
+    /// Joints are of a kind that URDF or MJCF has.
+    U009 unsupported(joint, kind) "joint `{joint}` is {kind}, which is no kind of joint",
+        "URDF: revolute, continuous, prismatic, planar, floating, fixed; MJCF: hinge, slide, ball, free", "write one of these kinds";
     /// A joint follows a joint of the file.
     U010 unknown_leader(joint, leader, help) "joint `{joint}` follows joint `{leader}`, which is not in the file", "no such joint", "{help}";
     /// Something moves.
@@ -58,4 +58,7 @@ catalogue! {
     U024 own_leader(joint) "joint `{joint}` follows itself", "directly, or over joints that follow it", "name another joint, or remove `mimic` or the equality";
     /// A joint is held or follows another one in one way.
     U025 second_equality(joint) "two equalities hold joint `{joint}`", "it already follows another joint, or is held", "remove one of them, or let the other joint follow this one";
+    /// Joints with several axes have neither springs nor dampers, friction or rotors of their own.
+    U026 not_plain(joint, kind) "joint `{joint}` is {kind} and has a spring, a damper, friction or a rotor", "of a joint with several axes these are not supported",
+        "set `stiffness`, `damping`, `frictionloss` and `armature` of this joint to 0, or hold it with `--fix {joint}`";
 }

@@ -1,7 +1,7 @@
 //! A robot described in URDF or MJCF as a spec: `crane import`.
 //!
 //! ```text
-//! SourceFile ─urdf::read_robot, mjcf::read_robot→ Robot ─groups::groups→ groups of links
+//! SourceFile ─urdf::read_robot, mjcf::read_robot→ Robot ─split::split_joints→ Robot ─groups::groups→ groups of links
 //!     ─links::links→ links of a spec ─yaml::write_spec→ text
 //! ```
 //!
@@ -14,12 +14,15 @@ mod includes;
 mod links;
 mod mistakes;
 mod mjcf;
+mod reference;
 mod robot;
+mod split;
 mod urdf;
 mod yaml;
 
 pub use includes::with_includes;
 pub use mistakes::CATALOGUE;
+pub use reference::{Reference, ReferenceDynamics};
 
 use crate::diagnostic::{Diagnostics, SourceFile};
 use document::Element;
@@ -34,12 +37,14 @@ pub struct ImportOptions {
 }
 
 /// A robot as a spec.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Imported {
     /// The spec, commented YAML.
     pub spec: String,
     /// What the robot has and the spec does not, and what was changed, one sentence each.
     pub left_out: Vec<String>,
+    /// The robot link by link, to compare the spec with; `None` if inertias were repaired.
+    pub reference: Option<Reference>,
 }
 
 /// The spec of a robot in URDF or MJCF; the root of the file decides which.
@@ -47,8 +52,8 @@ pub struct Imported {
 /// Without `repair`, masses and inertias are passed on unchanged; the validation of the spec checks them.
 ///
 /// # Errors
-/// Mistakes in the file, and structures that cannot be a crane: closed loops, and joints that are neither fixed nor about or along
-/// one axis.
+/// Mistakes in the file, and structures that cannot be a crane: closed loops, and joints that are neither fixed nor of a kind
+/// that the language of the file has not.
 pub fn import(source: &SourceFile, options: &ImportOptions) -> Result<Imported, Diagnostics> {
     let diagnostics = |mistakes| Diagnostics::new(source, mistakes);
     let document = document::parse(source).map_err(diagnostics)?;
@@ -60,13 +65,23 @@ pub fn import(source: &SourceFile, options: &ImportOptions) -> Result<Imported, 
         _ => Err(vec![mistakes::rule::not_a_robot(root.tag(), root.name())]),
     };
     let mut robot = robot.map_err(diagnostics)?;
+    let mistakes = split::split_joints(&mut robot, &options.fixed);
+    if !mistakes.is_empty() {
+        return Err(diagnostics(mistakes));
+    }
     let mut left_out = root.remarks();
     left_out.append(&mut robot.left_out);
     if robot.joints.iter().any(|joint| joint.range().is_some()) {
         left_out.push("Ranges of joints become comments: write `stops` for those that the crane reaches.".to_owned());
     }
     let groups = groups::groups(&robot, &options.fixed).map_err(diagnostics)?;
+    let unrepaired = left_out.len();
     let links = links::links(&groups, options.repair.then_some(&mut left_out));
+    let repaired = left_out.len() > unrepaired;
+    let lost = robot.couplings.iter().filter(|coupling| yaml::coupled(coupling, &links).is_none());
+    let told = lost.map(|coupling| format!("The spring `{}` is left out: one of its joints is held.", coupling.name));
+    left_out.extend(told);
     let spec = yaml::write_spec(&robot, &links, &left_out, source);
-    Ok(Imported { spec, left_out })
+    let reference = (!repaired).then(|| Reference::new(&robot, &links));
+    Ok(Imported { spec, left_out, reference })
 }

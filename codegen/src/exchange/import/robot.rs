@@ -11,6 +11,8 @@ pub(super) struct Robot {
     pub(super) name: String,
     pub(super) links: Vec<Link>,
     pub(super) joints: Vec<Joint>,
+    /// Springs and dampers between joints.
+    pub(super) couplings: Vec<Coupling>,
     /// Acceleration of gravity, m/s², if the file gives it.
     pub(super) gravity: Option<Vector>,
     /// What the file contains and a spec made from it does not, one sentence each.
@@ -86,11 +88,7 @@ impl Joint {
 
     /// The pose of its child at a position, m or rad, in that at zero.
     pub(super) fn moved_by(&self, position: f64) -> Frame {
-        match self.motion {
-            Motion::Revolute => about(self.axis, position),
-            Motion::Prismatic => Frame { origin: self.axis.map(|component| component * position), ..Frame::WORLD },
-            Motion::Fixed | Motion::Other(_) => Frame::WORLD,
-        }
+        self.motion.moved_by(self.axis, position)
     }
 
     /// Whether nothing acts on it: it has no force, rotor or constraint.
@@ -116,16 +114,61 @@ pub(super) struct Follows {
     pub(super) offset: f64,
 }
 
+/// A spring and a damper along `s = follower − ratio · leader`: `−k (s − offset) − d ṡ` on the follower.
+pub(super) struct Coupling {
+    pub(super) name: String,
+    pub(super) follower: String,
+    pub(super) leader: String,
+    pub(super) ratio: f64,
+    /// m or rad.
+    pub(super) offset: f64,
+    /// N m/rad or N/m.
+    pub(super) stiffness: f64,
+    /// N m s/rad or N s/m.
+    pub(super) damping: f64,
+}
+
 /// How a joint moves.
 pub(super) enum Motion {
     Fixed,
     Revolute,
     Prismatic,
+    /// Along and about several axes, one after the other. It is split before the robot is grouped.
+    Several {
+        /// The word for it in a file.
+        kind: &'static str,
+        /// In the frame of the child.
+        axes: Vec<SingleAxis>,
+        /// Where each of them starts, m or rad.
+        starts: Vec<f64>,
+    },
     /// In a way that cranes do not support.
     Other(Named),
 }
 
+impl Motion {
+    /// The pose that a position, m or rad, about or along a unit vector gives a frame.
+    pub(super) fn moved_by(&self, axis: Vector, position: f64) -> Frame {
+        match self {
+            Motion::Revolute => about(axis, position),
+            Motion::Prismatic => Frame { origin: axis.map(|component| component * position), ..Frame::WORLD },
+            Motion::Fixed | Motion::Several { .. } | Motion::Other(_) => Frame::WORLD,
+        }
+    }
+}
+
+/// One of several axes of a joint.
+pub(super) struct SingleAxis {
+    /// Of the name of its joint.
+    pub(super) ending: &'static str,
+    /// Whether the joint turns about it; otherwise it slides along it.
+    pub(super) turns: bool,
+    /// Unit vector.
+    pub(super) axis: Vector,
+}
+
 /// A name or a word, and its location.
+#[derive(Clone)]
 pub(super) struct Named {
     pub(super) name: String,
     pub(super) span: Span,

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::document::{Element, Reader};
 use super::mistakes::rule;
-use super::robot::{Follows, Joint, Link, Motion, Named, Robot};
+use super::robot::{Follows, Joint, Link, Motion, Named, Robot, SingleAxis};
 use crate::chain::{Axis, Frame, Value, Vector};
 use crate::diagnostic::Mistake;
 use crate::exchange::mass::Lump;
@@ -25,6 +25,7 @@ pub(super) fn read_robot(root: Element) -> Result<Robot, Vec<Mistake>> {
         name: root.text("name").unwrap_or("robot").to_owned(),
         links: Vec::new(),
         joints: Vec::new(),
+        couplings: Vec::new(),
         gravity: None,
         left_out: Vec::new(),
         no_drives: "URDF has no drives: every joint swings freely.",
@@ -111,10 +112,16 @@ impl Reader {
         let leader = node.child("mimic").and_then(|mimic| self.required(mimic, "joint", "<mimic>"));
         let follows = leader.map(|leader| Follows { leader, multiplier, offset });
         let kind = kind?;
+        // A fixed or floating joint has no axis, even if one is written.
+        let has_axis = !["fixed", "floating"].contains(&kind.name.as_str());
+        let axis = if has_axis { node.child("axis") } else { None };
+        let axis = axis.map_or([1.0, 0.0, 0.0], |given| self.direction(given, &name));
         let motion = match kind.name.as_str() {
             "fixed" => Motion::Fixed,
             "revolute" | "continuous" => Motion::Revolute,
             "prismatic" => Motion::Prismatic,
+            "floating" => Motion::Several { kind: "floating", axes: SingleAxis::free(), starts: vec![0.0; 6] },
+            "planar" => Motion::Several { kind: "planar", axes: SingleAxis::planar(axis), starts: vec![0.0; 3] },
             _ => Motion::Other(kind),
         };
         if let Some(limit) = node.child("limit") {
@@ -123,14 +130,11 @@ impl Reader {
         for inner in node.elements() {
             match inner.local_name() {
                 "safety_controller" | "calibration" => inner.leave_out(OF_DRIVES),
-                "axis" if matches!(motion, Motion::Fixed) => inner.leave_out("axes of fixed joints"),
+                "axis" if !has_axis => inner.leave_out("axes of fixed and floating joints"),
                 _ if inner.namespace().is_some() => inner.leave_out(OF_OTHERS),
                 _ => {}
             }
         }
-        // A fixed joint has no axis, even if one is written.
-        let axis = if matches!(motion, Motion::Fixed) { None } else { node.child("axis") };
-        let axis = axis.map_or([1.0, 0.0, 0.0], |given| self.direction(given, &name));
         let (damping, friction) = (damping.unwrap_or(0.0), friction.unwrap_or(0.0));
         let joint = Joint::new(&name, span, motion, [parent?, end?]);
         Some(Joint { placement, axis, limits, damping, friction, follows, ..joint })
@@ -145,12 +149,14 @@ impl Reader {
         };
         let joint_name = self.required(joint.read(), "name", "a transmission")?;
         let owner = format!("the transmission of joint `{}`", joint_name.name);
+        // Of a transmission without a rotor, the reduction means nothing here.
+        let has_rotor = node.descendants().any(|inner| inner.local_name() == "rotor_inertia");
         let (mut inertia, mut reduction) = (None, None);
         for part in node.elements().filter(|inner| inner.is("joint") || inner.is("actuator")).map(Element::read) {
             for given in part.elements() {
                 let number = match given.local_name() {
                     "rotor_inertia" => &mut inertia,
-                    "gear_ratio" | "mechanicalReduction" => &mut reduction,
+                    "gear_ratio" | "mechanicalReduction" if has_rotor => &mut reduction,
                     _ => {
                         given.leave_out(OF_DRIVES);
                         continue;

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use super::links::{SpecLink, SpecMotion, identifier};
-use super::robot::{Follows, Joint, Motion, Robot, Spring};
+use super::links::{Names, SpecLink, SpecMotion, identifier};
+use super::robot::{Coupling, Follows, Joint, Motion, Robot, Spring};
 use crate::chain::{Axis, Frame, Vector};
 use crate::diagnostic::{SourceFile, printable};
 use crate::exchange::mass::{Lump, clean, without_rounding};
@@ -52,7 +52,7 @@ pub(super) fn write_spec(robot: &Robot, links: &[SpecLink], remarks: &[String], 
     let rubbing: Vec<String> =
         rubbing.map(|(joint, name)| format!("{name}: {{coulomb: {}}}", decimal(joint.friction))).collect();
     text += &section("friction", "N m, N", &rubbing);
-    text += &couplings(links);
+    text += &couplings(robot, links);
     let points: Vec<_> = links.iter().flat_map(|link| link.points.iter().map(move |point| (link, point))).collect();
     if !points.is_empty() {
         text += "points:                         # frames without mass\n";
@@ -100,29 +100,46 @@ fn drive(joint: &Joint, coordinate: &str) -> Option<String> {
     Some(format!("- {{coordinate: {coordinate}, {law}{rotor}}}"))
 }
 
-/// Joints that follow others.
-fn couplings(links: &[SpecLink]) -> String {
-    let coordinate = |link: &SpecLink| link.motion.coordinates(&link.name).into_iter().next().unwrap_or_default();
-    let of_joint =
-        |name: &str| links.iter().find(|link| link.joint.is_some_and(|joint| joint.name == name)).map(coordinate);
-    let mut text = String::new();
-    for link in links {
-        let Some(Follows { leader, multiplier, offset }) = link.joint.and_then(|joint| joint.follows.as_ref()) else {
-            continue;
-        };
-        let (follower, Some(leading)) = (coordinate(link), of_joint(&leader.name)) else { continue };
-        let offset = if *offset == 0.0 { String::new() } else { format!("offset: {}, ", decimal(*offset)) };
-        let _ = writeln!(
-            text,
-            "  - {{name: {follower}_follows, coordinate: {follower}, follows: {leading}, ratio: {}, {offset}stiffness: 1e6, damping: 1e4}}",
-            decimal(*multiplier)
-        );
+/// The coordinate that a joint has in a spec; `None` if it does not move.
+fn coordinate_of(joint: &str, links: &[SpecLink]) -> Option<String> {
+    links.iter().flat_map(SpecLink::joints).find(|(other, _)| other.name == joint).map(|(_, name)| name)
+}
+
+/// The coordinates of a spring between joints; `None` if one of them does not move.
+pub(super) fn coupled(coupling: &Coupling, links: &[SpecLink]) -> Option<[String; 2]> {
+    Some([coordinate_of(&coupling.follower, links)?, coordinate_of(&coupling.leader, links)?])
+}
+
+/// Joints that follow others, and springs between joints.
+fn couplings(robot: &Robot, links: &[SpecLink]) -> String {
+    let mut lines = Vec::new();
+    let mut line = |name: &str, [follower, leading]: [String; 2], [ratio, offset]: [f64; 2], law: &str| {
+        let offset = if offset == 0.0 { String::new() } else { format!("offset: {}, ", decimal(offset)) };
+        let ratio = decimal(ratio);
+        lines.push(format!(
+            "- {{name: {name}, coordinate: {follower}, follows: {leading}, ratio: {ratio}, {offset}{law}}}"
+        ));
+    };
+    let mut names = Names::default();
+    let mut guessed = false;
+    for (joint, follower) in links.iter().flat_map(SpecLink::joints) {
+        let Some(Follows { leader, multiplier, offset }) = &joint.follows else { continue };
+        let Some(leading) = coordinate_of(&leader.name, links) else { continue };
+        guessed = true;
+        let name = names.unique(&format!("{follower}_follows"));
+        line(&name, [follower, leading], [*multiplier, *offset], "stiffness: 1e6, damping: 1e4");
     }
-    if text.is_empty() {
-        return text;
+    for coupling in &robot.couplings {
+        let Some(ends) = coupled(coupling, links) else { continue };
+        let law = format!("stiffness: {}, damping: {}", decimal(coupling.stiffness), decimal(coupling.damping));
+        line(&names.unique(&coupling.name), ends, [coupling.ratio, coupling.offset], &law);
     }
-    let comment = "couplings:                      # joints that follow others; the file gives no stiffness and damping: these are guesses\n";
-    [comment, &text, "\n"].concat()
+    let comment = if guessed {
+        "joints that follow others; where the file gives no stiffness and damping, 1e6 and 1e4 are guesses"
+    } else {
+        "springs between joints"
+    };
+    section("couplings", comment, &lines)
 }
 
 /// A link; `on` is the one that carries it, unless it is the previous one.

@@ -9,7 +9,8 @@ use super::{File, InertiaFromGeoms};
 use crate::chain::{Frame, Vector};
 use crate::exchange::import::document::{Element, value_span};
 use crate::exchange::import::mistakes::rule;
-use crate::exchange::import::robot::{Joint, Link, Motion, Named, Spring};
+use crate::exchange::import::robot::{Joint, Link, Motion, Named, SingleAxis, Spring};
+use crate::exchange::import::split::{free_name, positions_of_free};
 use crate::exchange::mass::Lump;
 use crate::exchange::rotation::about;
 
@@ -91,7 +92,7 @@ impl<'a, 'i> File<'a, 'i> {
         }
         let stands = stands && joints.is_empty();
         let lump = self.lump(&inside, &name, stands);
-        let lump = lump.filter(|lump| !lump.is_nothing()).map(|lump| lump.seen_through(&within));
+        let lump = self.masses.of_body(lump).filter(|lump| !lump.is_nothing()).map(|lump| lump.seen_through(&within));
         self.robot.links.push(Link { name: name.clone(), span, lump });
         self.contents(inside, &within, (&name, stands), open);
     }
@@ -155,12 +156,7 @@ impl<'a, 'i> File<'a, 'i> {
 
     /// A name for a link that no other link and no body has.
     fn free_name(&mut self, name: &str, ending: &str) -> String {
-        let first = format!("{name}{ending}");
-        let numbered = (2..).map(|number| format!("{first}_{number}"));
-        let mut candidates = std::iter::once(first.clone()).chain(numbered);
-        let free = candidates.find(|name| !self.names.contains(name)).unwrap_or(first);
-        self.names.insert(free.clone());
-        free
+        free_name(&mut self.names, &format!("{name}{ending}"))
     }
 
     /// A joint, and its anchor in the frame of its body. `here`: pose of the body, before this joint moves it, in the previous link.
@@ -183,6 +179,9 @@ impl<'a, 'i> File<'a, 'i> {
         let motion = match kind {
             "hinge" => Motion::Revolute,
             "slide" => Motion::Prismatic,
+            "ball" => Motion::Several { kind: "ball", axes: SingleAxis::ball(), starts: vec![0.0; 3] },
+            // Its positions are those of the body in the world.
+            "free" => Motion::Several { kind: "free", axes: SingleAxis::free(), starts: positions_of_free(here) },
             other => Motion::Other(Named { name: other.to_owned(), span }),
         };
         let turns = matches!(motion, Motion::Revolute);
@@ -194,7 +193,9 @@ impl<'a, 'i> File<'a, 'i> {
             direction
         });
         let axis = frame.direction(axis);
-        let anchor = frame.transform_point(self.numbers(node, class, "pos", &owner).unwrap_or([0.0; 3]));
+        let given = self.numbers(node, class, "pos", &owner).unwrap_or([0.0; 3]);
+        let (here, anchor) =
+            if kind == "free" { (&Frame::WORLD, [0.0; 3]) } else { (here, frame.transform_point(given)) };
         let mut number = |key| self.number(node, class, key, &owner).unwrap_or(0.0);
         let [stiffness, damping, friction, armature] =
             ["stiffness", "damping", "frictionloss", "armature"].map(&mut number);

@@ -41,7 +41,9 @@ impl<'a, 'i> File<'a, 'i> {
         let density = self.number(node, class, "density", &owner).unwrap_or(WATER);
         let kind = self.classes.text(node, class, "type").unwrap_or("sphere");
         let mesh = self.classes.text(node, class, "mesh").is_some();
-        if stands || mass.unwrap_or(density) == 0.0 || MASSLESS.contains(&kind) {
+        // Of a body that stands, the mass counts in the sum alone.
+        let counts = !stands || self.masses.total.is_some();
+        if !counts || mass.unwrap_or(density) == 0.0 || MASSLESS.contains(&kind) {
             return None;
         }
         let size = match self.classes.find(node, class, "size") {

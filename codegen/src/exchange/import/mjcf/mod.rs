@@ -6,13 +6,17 @@
 //! | `classes` | attributes with the defaults of their classes |
 //! | `pose` | positions and the five ways to write an orientation |
 //! | `geoms` | masses of bodies from their shapes |
-//! | `others` | gravity, equalities, key frames; elements that a spec cannot express |
+//! | `masses` | what `<compiler>` changes of masses |
+//! | `tendons` | fixed tendons: and equalities: linear equations and springs of joints |
+//! | `others` | gravity, key frames; elements that a spec cannot express |
 
 mod bodies;
 mod classes;
 mod geoms;
+mod masses;
 mod others;
 mod pose;
+mod tendons;
 
 use std::collections::BTreeSet;
 
@@ -22,18 +26,13 @@ use super::robot::Robot;
 use crate::diagnostic::Mistake;
 
 use classes::Classes;
+use masses::MassSettings;
 use pose::Angles;
 
 /// Elements that `MuJoCo` expands to others when it loads a file.
 const EXPANDED: [&str; 6] = ["include", "composite", "flexcomp", "replicate", "attach", "model"];
-/// Settings of `<compiler>` that change masses, and the values with which they do not.
-const OF_MASSES: [(&str, &str); 5] = [
-    ("boundmass", "0"),
-    ("boundinertia", "0"),
-    ("settotalmass", "-1"),
-    ("balanceinertia", "false"),
-    ("inertiagrouprange", "0 5"),
-];
+/// The groups of geoms with masses, unless `<compiler>` says otherwise.
+const GROUPS: &str = "0 5";
 
 /// Reads a file by its root; returns what could be read, and all mistakes.
 pub(super) fn read_robot(root: Element) -> Result<Robot, Vec<Mistake>> {
@@ -43,10 +42,12 @@ pub(super) fn read_robot(root: Element) -> Result<Robot, Vec<Mistake>> {
         classes: Classes::default(),
         angles: Angles::default(),
         inertia_from_geoms: InertiaFromGeoms::Auto,
+        masses: MassSettings::default(),
         robot: Robot {
             name: root.text("model").unwrap_or("robot").to_owned(),
             links: Vec::new(),
             joints: Vec::new(),
+            couplings: Vec::new(),
             gravity: None,
             left_out: Vec::new(),
             no_drives: "Actuators are not carried over: every joint swings freely.",
@@ -60,6 +61,7 @@ pub(super) fn read_robot(root: Element) -> Result<Robot, Vec<Mistake>> {
     let bodies = root.descendants().filter(|node| node.is("body"));
     file.names = bodies.filter_map(|node| node.text("name")).map(str::to_owned).collect();
     root.named("worldbody").for_each(|node| file.world(node));
+    file.masses.scale(&mut file.robot);
     file.others(root);
     file.classes.note_defaults();
     if file.reader.mistakes.is_empty() { Ok(file.robot) } else { Err(file.reader.mistakes) }
@@ -84,20 +86,24 @@ struct File<'a, 'i> {
     classes: Classes<'a, 'i>,
     angles: Angles,
     inertia_from_geoms: InertiaFromGeoms,
+    masses: MassSettings,
     robot: Robot,
 }
 
 impl<'a, 'i> File<'a, 'i> {
     /// `<compiler>`: how numbers are interpreted.
     fn compiler(&mut self, node: Element<'a, 'i>) {
-        for (key, harmless) in OF_MASSES {
-            let given = node.text(key).map(|given| given.split_whitespace().collect::<Vec<_>>().join(" "));
-            let number = |text: &str| text.parse::<f64>().ok();
-            let same = |given: &str| given == harmless || number(given).is_some_and(|n| Some(n) == number(harmless));
-            if given.is_some_and(|given| !same(&given)) {
-                self.reader.mistakes.push(rule::to_expand(node.tag(), format!("`{key}` of <compiler>")));
-            }
+        let groups = node.text("inertiagrouprange").map(|given| given.split_whitespace().collect::<Vec<_>>().join(" "));
+        if groups.is_some_and(|groups| groups != GROUPS) {
+            self.reader.mistakes.push(rule::to_expand(node.tag(), "`inertiagrouprange` of <compiler>"));
         }
+        let mut number = |key| self.number(node, None, key, "<compiler>");
+        let [mass, inertia, total] = ["boundmass", "boundinertia", "settotalmass"].map(&mut number);
+        let settings = &mut self.masses;
+        settings.least_mass = mass.unwrap_or(settings.least_mass);
+        settings.least_inertia = inertia.unwrap_or(settings.least_inertia);
+        settings.total = total.or(settings.total).filter(|total| *total > 0.0);
+        settings.balances = node.text("balanceinertia").map_or(settings.balances, |given| given == "true");
         self.angles.read(node, &mut self.reader);
         // Read where ranges are.
         node.attribute("autolimits");

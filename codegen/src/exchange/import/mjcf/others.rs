@@ -1,19 +1,19 @@
-//! Everything except bodies: gravity, equalities, key frames, and elements that a spec cannot express.
+//! Everything except bodies and equalities: gravity, key frames, and elements that a spec cannot express.
 
 use std::collections::BTreeMap;
 
 use super::File;
-use crate::chain::Vector;
+use crate::chain::{Frame, Vector};
 use crate::exchange::import::document::Element;
-use crate::exchange::import::mistakes::rule;
-use crate::exchange::import::robot::{Follows, Joint, Motion};
+use crate::exchange::import::robot::{Joint, Motion};
+use crate::exchange::import::split::{positions_of_ball, positions_of_free};
+use crate::exchange::rotation::from_quaternion;
 
 /// Default acceleration of gravity, m/s².
 const GRAVITY: Vector = [0.0, 0.0, -9.81];
 /// Sections that a spec cannot express, and what they belong to.
-const LEFT_OUT: [(&str, &str); 11] = [
+const LEFT_OUT: [(&str, &str); 10] = [
     ("actuator", "actuators"),
-    ("tendon", "tendons"),
     ("contact", "contacts"),
     ("extension", "plugins"),
     ("sensor", "sensors"),
@@ -34,11 +34,12 @@ impl<'a, 'i> File<'a, 'i> {
         let flags = self.options(root);
         let disabled = |keys: [&str; 2]| keys.iter().any(|key| flags.get(key) == Some(&true));
         self.contacts(root);
+        let tendons = self.tendons(root);
         for node in root.named("equality").flat_map(Element::elements) {
             if disabled(["equality", "constraint"]) {
                 node.leave_out("equalities that a flag disables");
             } else {
-                self.equality(node);
+                self.equality(node, &tendons);
             }
         }
         for joint in &mut self.robot.joints {
@@ -52,6 +53,15 @@ impl<'a, 'i> File<'a, 'i> {
                 joint.friction = 0.0;
             }
         }
+        for coupling in &mut self.robot.couplings {
+            if disabled(["spring", "passive"]) {
+                coupling.stiffness = 0.0;
+            }
+            if disabled(["damper", "passive"]) {
+                coupling.damping = 0.0;
+            }
+        }
+        self.robot.couplings.retain(|coupling| coupling.stiffness != 0.0 || coupling.damping != 0.0);
         let mut keys = root.named("keyframe").flat_map(Element::elements);
         let first = keys.by_ref().find(|node| node.has("qpos"));
         if let Some(key) = first {
@@ -112,70 +122,55 @@ impl<'a, 'i> File<'a, 'i> {
         flags
     }
 
-    /// Reads an equality that holds a joint or lets it follow another one; no other kind is supported.
-    fn equality(&mut self, node: Element<'a, 'i>) {
-        if self.classes.text(node, None, "active") == Some("false") {
-            return node.leave_out("equalities that are not active");
-        }
-        let _ = node.read();
-        if node.name() != "joint" {
-            return self.reader.mistakes.push(rule::closed_loop(node.tag(), format!("<{}>", node.name())));
-        }
-        let Some(follower) = self.reader.required(node, "joint1", "<joint> of <equality>") else { return };
-        let power = |exponent: usize| if exponent == 1 { 1.0 } else { 0.0 };
-        let given = self.classes.find(node, None, "polycoef");
-        let given = given.and_then(|given| self.reader.some_numbers(given, "`polycoef`")).unwrap_or_default();
-        let [zeroth, first, higher @ ..] =
-            [0, 1, 2, 3, 4].map(|exponent| given.get(exponent).copied().unwrap_or_else(|| power(exponent)));
-        let leader = if node.has("joint2") { self.reader.required(node, "joint2", "") } else { None };
-        if leader.is_some() && higher != [0.0; 3] {
-            return self.reader.mistakes.push(rule::not_linear(node.tag(), &follower.name));
-        }
-        let reference =
-            |robot: &[Joint], name: &str| robot.iter().find(|joint| joint.name == name).map(|joint| joint.reference);
-        let Some(of_follower) = reference(&self.robot.joints, &follower.name) else {
-            return self.reader.mistakes.push(rule::equality(follower.span, &follower.name));
-        };
-        let of_leader = leader.as_ref().map(|leader| reference(&self.robot.joints, &leader.name).unwrap_or(0.0));
-        node.leave_out_rest("softness of equalities");
-        let index = |robot: &[Joint], name: &str| robot.iter().position(|joint| joint.name == name);
-        let Some(at) = index(&self.robot.joints, &follower.name) else { return };
-        let taken = |joint: &Joint| joint.follows.is_some() || joint.held.is_some();
-        match (leader, of_leader) {
-            (Some(leader), Some(of_leader)) => {
-                // q₁ − ref₁ = c₀ + c₁ (q₂ − ref₂).
-                let offset = of_follower + zeroth - first * of_leader;
-                let other = index(&self.robot.joints, &leader.name).filter(|other| *other != at);
-                match other.filter(|other| taken(&self.robot.joints[at]) && !taken(&self.robot.joints[*other])) {
-                    // The same equation for the other joint.
-                    Some(other) if first != 0.0 => {
-                        let follows = Follows { leader: follower, multiplier: 1.0 / first, offset: -offset / first };
-                        self.robot.joints[other].follows = Some(follows);
-                    }
-                    _ if taken(&self.robot.joints[at]) => {
-                        self.reader.mistakes.push(rule::second_equality(follower.span, &follower.name));
-                    }
-                    _ => self.robot.joints[at].follows = Some(Follows { leader, multiplier: first, offset }),
-                }
-            }
-            _ if taken(&self.robot.joints[at]) => {
-                self.reader.mistakes.push(rule::second_equality(follower.span, &follower.name));
-            }
-            _ => self.robot.joints[at].held = Some(of_follower + zeroth),
-        }
-    }
-
     /// The pose of a key frame.
     fn start(&mut self, key: Element<'a, 'i>) {
         let Some(given) = key.attribute("qpos") else { return };
         let Some(pose) = self.reader.some_numbers(given, "`qpos` of a key frame") else { return };
-        let moving = |joint: &&mut Joint| !matches!(joint.motion, Motion::Fixed);
-        let count = self.robot.joints.iter_mut().filter(moving).count();
+        let counts: Vec<usize> = self.robot.joints.iter().map(|joint| joint.motion.positions_of_mujoco()).collect();
+        let count: usize = counts.iter().sum();
         if pose.len() == count {
-            self.robot.joints.iter_mut().filter(moving).zip(pose).for_each(|(joint, start)| joint.start = Some(start));
+            let mut rest = pose.as_slice();
+            for (joint, count) in self.robot.joints.iter_mut().zip(counts) {
+                let (own, others) = rest.split_at(count);
+                rest = others;
+                joint.start_at(own);
+            }
         } else {
-            let remark = format!("The key frame is left out: it has {} numbers for {count} joints.", pose.len());
+            let remark = format!("The key frame is left out: it has {} numbers instead of {count}.", pose.len());
             self.robot.left_out.push(remark);
+        }
+    }
+}
+
+impl Motion {
+    /// How many numbers of `qpos` it has.
+    fn positions_of_mujoco(&self) -> usize {
+        match self {
+            Motion::Fixed => 0,
+            Motion::Revolute | Motion::Prismatic | Motion::Other(_) => 1,
+            // A quaternion, with a position before it.
+            Motion::Several { kind: "free", .. } => 7,
+            Motion::Several { .. } => 4,
+        }
+    }
+}
+
+impl Joint {
+    /// Lets it start at its numbers of `qpos`.
+    fn start_at(&mut self, given: &[f64]) {
+        match (&mut self.motion, given) {
+            (Motion::Several { starts, .. }, [w, x, y, z]) => {
+                if let Some(pose) = from_quaternion([*w, *x, *y, *z]) {
+                    *starts = positions_of_ball(&pose);
+                }
+            }
+            (Motion::Several { starts, .. }, [a, b, c, w, x, y, z]) => {
+                if let Some(pose) = from_quaternion([*w, *x, *y, *z]) {
+                    *starts = positions_of_free(&Frame { origin: [*a, *b, *c], ..pose });
+                }
+            }
+            (_, [position]) => self.start = Some(*position),
+            _ => {}
         }
     }
 }

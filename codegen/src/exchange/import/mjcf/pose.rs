@@ -1,7 +1,7 @@
 //! Positions and orientations.
 
 use super::File;
-use crate::chain::{Axis, Frame, Value, Vector};
+use crate::chain::{Axis, Frame, Value, Vector, cross};
 use crate::exchange::import::document::{Element, Reader};
 use crate::exchange::import::mistakes::rule;
 use crate::exchange::rotation::{about, from_quaternion, length};
@@ -114,8 +114,4 @@ fn with_z_along(direction: Vector) -> Option<Frame> {
     let across = x.hypot(y);
     let axis = if across > 0.0 { [-y / across, x / across, 0.0] } else { [1.0, 0.0, 0.0] };
     Some(about(axis, across.atan2(z)))
-}
-
-fn cross([a, b, c]: Vector, [x, y, z]: Vector) -> Vector {
-    [b * z - c * y, c * x - a * z, a * y - b * x]
 }
