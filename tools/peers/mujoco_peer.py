@@ -2,6 +2,7 @@
 
 import mujoco
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 FLAGS = mujoco.mjtDisableBit
 # Nothing but the chain: no contact, no constraint, no sensor, no implicit damping; the forces are applied.
@@ -44,19 +45,68 @@ class MuJoCo:
 
 class LoadedFile(MuJoCo):
     """An MJCF file as MuJoCo loads it, with its own springs, dampers and rotors, and with the order of its joints; what `disabled` flags say
-    is off."""
+    is off.
+
+    Free and ball joints have the angles psi, theta, phi of `R = Rz Ry Rx` in place of quaternions. With MuJoCo's velocities `w = S(q) v`,
+    `A = Sᵀ M S`, `e = −Sᵀ (bias + M Ṡ v)`, `f = Sᵀ g`."""
 
     def __init__(self, path, disabled):
         self.model = mujoco.MjModel.from_xml_path(str(path))
         self.model.opt.disableflags |= int(disabled)
         self.data = mujoco.MjData(self.model)
-        self.order = np.arange(self.model.nv)
+        kinds = (mujoco.mjtJoint.mjJNT_FREE, mujoco.mjtJoint.mjJNT_BALL)
+        # Where the angles of each joint that turns freely begin among q and among MuJoCo's positions, without and with its place.
+        self.turning = []
+        self.plain = np.ones(self.model.nv, bool)
+        for kind, first, place in zip(self.model.jnt_type, self.model.jnt_dofadr, self.model.jnt_qposadr):
+            if kind in kinds:
+                places = 3 if kind == kinds[0] else 0
+                self.turning.append((first + places, place + places))
+                self.plain[first + places : first + places + 3] = False
+        self.positions = np.ones(self.model.nq, bool)
+        for _, place in self.turning:
+            self.positions[place : place + 4] = False
+
+    def move_to(self, q, v):
+        """Sets MuJoCo's state; returns S and Ṡ."""
+        rates, changes = np.eye(q.size), np.zeros((q.size, q.size))
+        self.data.qpos[self.positions] = q[self.plain]
+        for first, place in self.turning:
+            own = slice(first, first + 3)
+            self.data.qpos[place : place + 4] = np.roll(Rotation.from_euler("ZYX", q[own]).as_quat(), 1)
+            rates[own, own], changes[own, own] = angular_velocity(q[own], v[own])
+        self.data.qvel = rates @ v
+        return rates, changes
+
+    def evaluate(self, q, v, force):
+        """A, e and q̈ at a state with generalized forces."""
+        rates, changes = self.move_to(q, v)
+        self.data.qfrc_applied = np.linalg.solve(rates.T, force)
+        mujoco.mj_forward(self.model, self.data)
+        mass_matrix = np.zeros((self.model.nv, self.model.nv))
+        mujoco.mj_fullM(self.model, self.data, mass_matrix)
+        bias = -rates.T @ (self.data.qfrc_bias + mass_matrix @ changes @ v)
+        acceleration = np.linalg.solve(rates, self.data.qacc - changes @ v)
+        return rates.T @ mass_matrix @ rates, bias, acceleration
 
     def passive(self, q, v):
         """Forces of springs and dampers."""
-        self.data.qpos, self.data.qvel = q, v
+        rates, _ = self.move_to(q, v)
         mujoco.mj_forward(self.model, self.data)
-        return self.data.qfrc_passive.copy()
+        return rates.T @ self.data.qfrc_passive
+
+
+def angular_velocity(angles, rates):
+    """S with the angular velocity in the frame of a body `S (psi, theta, phi)˙`, `R = Rz(psi) Ry(theta) Rx(phi)`, and Ṡ."""
+    _, (sin_theta, sin_phi), (cos_theta, cos_phi) = angles, np.sin(angles[1:]), np.cos(angles[1:])
+    _, theta, phi = rates
+    matrix = np.array([[-sin_theta, 0, 1], [cos_theta * sin_phi, cos_phi, 0], [cos_theta * cos_phi, -sin_phi, 0]])
+    change = np.array([
+        [-cos_theta * theta, 0, 0],
+        [-sin_theta * sin_phi * theta + cos_theta * cos_phi * phi, -sin_phi * phi, 0],
+        [-sin_theta * cos_phi * theta - cos_theta * sin_phi * phi, -cos_phi * phi, 0],
+    ])
+    return matrix, change
 
 
 def with_springs(chain, springs, step):

@@ -1,4 +1,4 @@
-"""Random robots in MJCF with most features of the language: several joints per body, frames, classes, orientations, shapes."""
+"""Random robots in MJCF with most features of the language: joints of all kinds, several per body, frames, classes, shapes, tendons."""
 
 from xml.etree import ElementTree
 
@@ -15,7 +15,11 @@ class RandomRobot:
         self.degrees = self.rng.random() < 0.5
         self.root = ElementTree.Element("mujoco", model=f"random_{seed}")
         sequence = "".join(self.rng.choice(list(LETTERS), 3))
-        ElementTree.SubElement(self.root, "compiler", angle="degree" if self.degrees else "radian", eulerseq=sequence)
+        compiler = ElementTree.SubElement(self.root, "compiler", angle="degree" if self.degrees else "radian", eulerseq=sequence)
+        if self.rng.random() < 0.2:
+            compiler.set("settotalmass", text(self.rng.uniform(5, 50)))
+        if self.rng.random() < 0.2:
+            compiler.attrib.update(boundmass=text(3), boundinertia=text(0.5), balanceinertia="true")
         ElementTree.SubElement(self.root, "option", gravity=text(self.rng.uniform(-10, 10, 3)))
         outer = ElementTree.SubElement(self.root, "default")
         ElementTree.SubElement(outer, "joint", damping=text(self.rng.uniform(0, 3)))
@@ -26,6 +30,8 @@ class RandomRobot:
         parent = ElementTree.SubElement(self.root, "worldbody")
         for number in range(self.rng.integers(2, 6)):
             parent = self.body(parent, number)
+        if self.rng.random() < 0.5:
+            self.tendons()
 
     def document(self):
         """The file."""
@@ -38,9 +44,16 @@ class RandomRobot:
         body = ElementTree.SubElement(parent, "body", {"name": f"part_{number}", **self.pose()})
         if self.rng.random() < 0.3:
             body.set("childclass", "soft")
-        # The first body moves; of the others, some are fixed.
-        for _ in range(self.rng.integers(1 if number == 0 else 0, 4)):
-            self.joint(body)
+        kind = self.rng.random()
+        if number == 0 and kind < 0.3:
+            ElementTree.SubElement(body, "freejoint", name="root")
+        elif kind > 0.8:
+            anchor = self.rng.uniform(-0.5, 0.5, 3)
+            ElementTree.SubElement(body, "joint", type="ball", name=f"ball_{number}", pos=text(anchor), stiffness="0", damping="0")
+        else:
+            # The first body moves; of the others, some are fixed.
+            for _ in range(self.rng.integers(1 if number == 0 else 0, 4)):
+                self.joint(body)
         self.mass(body)
         if self.rng.random() < 0.5:
             ElementTree.SubElement(body, "site", {"name": f"point_{number}", **self.pose()})
@@ -65,10 +78,30 @@ class RandomRobot:
         if self.rng.random() < 0.5:
             joint.set("stiffness", text(self.rng.uniform(1, 50)))
             joint.set("springref", text(unit(self.rng.uniform(-1, 1))))
+        if self.rng.random() < 0.2:
+            joint.set("springdamper", text(self.rng.uniform(0.2, 2, 2)))
         if self.rng.random() < 0.3:
             joint.set("armature", text(self.rng.uniform(0.1, 2)))
         if self.rng.random() < 0.3:
             joint.set("range", text(unit(np.array([-1.5, 1.5]))))
+
+    def tendons(self):
+        """Fixed tendons of one and of two joints with springs and dampers."""
+        names = [f"joint_{number}" for number in range(self.joints)]
+        # The spring of a single joint is read where the joint has none.
+        without = [joint for joint in self.root.iter("joint") if joint.get("type") in ("hinge", "slide") and joint.get("name") in names]
+        plain = [joint.get("name") for joint in without if not {"stiffness", "springdamper", "class"} & joint.keys()]
+        plain = [name for name in plain if not any(name == inner.get("name") for body in self.root.iter("body") if body.get("childclass") for inner in body)]
+        groups = [self.rng.choice(names, 2, replace=False)] if len(names) > 1 else []
+        groups += [[plain[0]]] if plain else []
+        section = ElementTree.SubElement(self.root, "tendon")
+        for number, group in enumerate(groups):
+            fixed = ElementTree.SubElement(section, "fixed", name=f"tendon_{number}", stiffness=text(self.rng.uniform(1, 50)), damping="0.7")
+            if self.rng.random() < 0.5:
+                fixed.set("springlength", text(self.rng.uniform(0.1, 1)))
+            for joint in group:
+                share = self.rng.choice([-1, 1]) * self.rng.uniform(0.3, 2)
+                ElementTree.SubElement(fixed, "joint", joint=str(joint), coef=text(share))
 
     def mass(self, body):
         """An inertial frame, or shapes."""

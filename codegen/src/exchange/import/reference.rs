@@ -81,9 +81,23 @@ struct Moving {
 impl Reference {
     /// A robot whose joints have the coordinates of links of a spec.
     pub(super) fn new(robot: &Robot, links: &[SpecLink]) -> Self {
-        let joints: Vec<(&Joint, String)> = links.iter().flat_map(SpecLink::joints).collect();
-        let held: BTreeMap<&str, f64> =
-            links.iter().flat_map(|link| &link.held).map(|(joint, at)| (joint.name.as_str(), *at)).collect();
+        let held = links.iter().flat_map(|link| &link.held).map(|(joint, at)| (joint.name.as_str(), *at));
+        Self::with_joints(robot, links.iter().flat_map(SpecLink::joints).collect(), &held.collect())
+    }
+
+    /// The diagonal of A where every joint is at its `ref`, by the joints that move, with their names.
+    pub(super) fn diagonal_at_reference(robot: &Robot) -> Vec<(String, f64)> {
+        let moves = |joint: &&Joint| matches!(joint.motion, Motion::Revolute | Motion::Prismatic);
+        let joints: Vec<&Joint> = robot.joints.iter().filter(moves).collect();
+        let q: Vec<f64> = joints.iter().map(|joint| joint.reference).collect();
+        let named = joints.into_iter().map(|joint| (joint, joint.name.clone())).collect();
+        let reference = Self::with_joints(robot, named, &BTreeMap::new());
+        let mass_matrix = reference.dynamics(&q, &vec![0.0; q.len()]).mass_matrix;
+        reference.coordinates.into_iter().zip(mass_matrix.into_iter().step_by(q.len() + 1)).collect()
+    }
+
+    /// A robot that moves in some joints, whose coordinates have names; others stand where `held` says, or at zero.
+    fn with_joints(robot: &Robot, joints: Vec<(&Joint, String)>, held: &BTreeMap<&str, f64>) -> Self {
         let index = |name: &str| joints.iter().position(|(joint, _)| joint.name == name);
         let by_child: BTreeMap<&str, &Joint> =
             robot.joints.iter().map(|joint| (joint.child.name.as_str(), joint)).collect();

@@ -1,5 +1,7 @@
 //! A robot as a file describes it: links and joints with their locations.
 
+use super::groups::groups;
+use super::reference::Reference;
 use crate::chain::{Frame, Vector};
 use crate::diagnostic::Span;
 use crate::exchange::mass::Lump;
@@ -48,6 +50,8 @@ pub(super) struct Joint {
     pub(super) follows: Option<Follows>,
     /// Its spring.
     pub(super) spring: Option<Spring>,
+    /// Time constant, s, and damping ratio that its spring and damper are to give, and where the spring is relaxed, rad or m.
+    pub(super) oscillation: Option<[f64; 3]>,
     /// Inertia of its rotor, kg m² or kg.
     pub(super) armature: f64,
     /// The position at which it is held, m or rad.
@@ -74,6 +78,7 @@ impl Joint {
             friction: 0.0,
             follows: None,
             spring: None,
+            oscillation: None,
             armature: 0.0,
             held: None,
             start: None,
@@ -94,7 +99,7 @@ impl Joint {
     /// Whether nothing acts on it: it has no force, rotor or constraint.
     pub(super) fn is_plain(&self) -> bool {
         let forces = self.damping != 0.0 || self.friction != 0.0 || self.armature != 0.0;
-        !forces && self.spring.is_none() && self.held.is_none() && self.follows.is_none()
+        !forces && self.spring.is_none() && self.oscillation.is_none() && self.held.is_none() && self.follows.is_none()
     }
 }
 
@@ -172,4 +177,22 @@ pub(super) struct SingleAxis {
 pub(super) struct Named {
     pub(super) name: String,
     pub(super) span: Span,
+}
+
+impl Robot {
+    /// Springs and dampers that give joints their oscillations, with the inertia J that a joint moves where all are at their `ref`:
+    /// `k = J / (T ζ)²`, `d = 2 J / T`.
+    pub(super) fn set_oscillations(&mut self) {
+        // Links that are not a tree are refused later.
+        if self.joints.iter().all(|joint| joint.oscillation.is_none()) || groups(self, &[]).is_err() {
+            return;
+        }
+        for (name, inertia) in Reference::diagonal_at_reference(self) {
+            let Some(joint) = self.joints.iter_mut().find(|joint| joint.name == name) else { continue };
+            if let Some([time, ratio, rest]) = joint.oscillation {
+                joint.spring = Some(Spring { stiffness: inertia / (time * ratio).powi(2), rest });
+                joint.damping = 2.0 * inertia / time;
+            }
+        }
+    }
 }

@@ -202,9 +202,9 @@ impl<'a, 'i> File<'a, 'i> {
         let [reference, rest] = ["ref", "springref"].map(|key| number(key) * angle);
         let limited = self.classes.text(node, class, "limited") != Some("false");
         let range = self.numbers::<2>(node, class, "range", &owner).filter(|_| limited);
-        if self.classes.find(node, class, "springdamper").is_some() {
-            self.reader.mistakes.push(rule::to_expand(node.tag(), format!("`springdamper` of joint `{name}`")));
-        }
+        let oscillation =
+            self.numbers::<2>(node, class, "springdamper", &owner).filter(|[t, ratio]| *t > 0.0 && *ratio > 0.0);
+        let oscillation = oscillation.map(|[time, ratio]| [time, ratio, rest]);
         let back = if turns {
             about(axis, -reference)
         } else {
@@ -217,7 +217,22 @@ impl<'a, 'i> File<'a, 'i> {
         let plain = Joint::new(&name, span, motion, ends);
         // MuJoCo starts at `ref`.
         let start = (reference != 0.0).then_some(reference);
-        (Joint { placement, axis, limits, damping, friction, spring, armature, start, reference, ..plain }, anchor)
+        (
+            Joint {
+                placement,
+                axis,
+                limits,
+                damping,
+                friction,
+                spring,
+                oscillation,
+                armature,
+                start,
+                reference,
+                ..plain
+            },
+            anchor,
+        )
     }
 
     /// The mass of a body: its inertial frame, or its shapes.
