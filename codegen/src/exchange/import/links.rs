@@ -82,8 +82,13 @@ impl SpecMotion {
 
 /// The links of a spec, one per group; the fixed group is left out if it has no mass and carries one group.
 ///
-/// `repair`: inertias of links that are not possible become the nearest possible ones; what was changed is added to it.
-pub(super) fn links<'r>(groups: &[Group<'r>], mut repair: Option<&mut Vec<String>>) -> Vec<SpecLink<'r>> {
+/// `tied`: names of joints in springs or equations with other joints, which no free base can have. `repair`: inertias of links that are not
+/// possible become the nearest possible ones; what was changed is added to it.
+pub(super) fn links<'r>(
+    groups: &[Group<'r>],
+    tied: &BTreeSet<&str>,
+    mut repair: Option<&mut Vec<String>>,
+) -> Vec<SpecLink<'r>> {
     let mut names = Names::default();
     let mut links: Vec<SpecLink> = Vec::new();
     // For each group, its link, and the frame of that link expressed in the frame of the robot's link.
@@ -140,7 +145,7 @@ pub(super) fn links<'r>(groups: &[Group<'r>], mut repair: Option<&mut Vec<String
             links.push(link);
         }
     }
-    free_base(&mut links);
+    free_base(&mut links, tied);
     let mut points = Names(links.iter().flat_map(|link| link.motion.coordinates(&link.name)).collect());
     for (name, was, _) in links.iter_mut().flat_map(|link| &mut link.points) {
         *name = points.unique_point(was);
@@ -150,7 +155,7 @@ pub(super) fn links<'r>(groups: &[Group<'r>], mut repair: Option<&mut Vec<String
 
 /// Combines joints along x, y, z and about z, y, x at the start of the chain, which carry only the next joint, into a free
 /// base.
-fn free_base(links: &mut Vec<SpecLink>) {
+fn free_base(links: &mut Vec<SpecLink>, tied: &BTreeSet<&str>) {
     /// x, y, z, psi, theta, phi.
     const ORDER: [(bool, Axis); 6] =
         [(false, Axis::X), (false, Axis::Y), (false, Axis::Z), (true, Axis::Z), (true, Axis::Y), (true, Axis::X)];
@@ -158,7 +163,7 @@ fn free_base(links: &mut Vec<SpecLink>) {
     let mut next = 0;
     for (index, link) in links.iter().enumerate() {
         // A free base has neither springs nor dampers of its own.
-        if !link.joint.is_some_and(Joint::is_plain) {
+        if !link.joint.is_some_and(|joint| joint.is_plain() && !tied.contains(joint.name.as_str())) {
             return;
         }
         let motion = match link.motion {

@@ -77,7 +77,7 @@ pub fn import(source: &SourceFile, options: &ImportOptions) -> Result<Imported, 
     }
     let groups = groups::groups(&robot, &options.fixed).map_err(diagnostics)?;
     let unrepaired = left_out.len();
-    let links = links::links(&groups, options.repair.then_some(&mut left_out));
+    let links = links::links(&groups, &robot.tied(), options.repair.then_some(&mut left_out));
     let repaired = left_out.len() > unrepaired;
     let lost = robot.couplings.iter().filter(|coupling| yaml::coupled(coupling, &links).is_none());
     let told = lost.map(|coupling| format!("The spring `{}` is left out: one of its joints is held.", coupling.name));

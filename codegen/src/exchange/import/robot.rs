@@ -1,5 +1,7 @@
 //! A robot as a file describes it: links and joints with their locations.
 
+use std::collections::BTreeSet;
+
 use super::groups::groups;
 use super::reference::Reference;
 use crate::chain::{Frame, Vector};
@@ -180,6 +182,14 @@ pub(super) struct Named {
 }
 
 impl Robot {
+    /// Names of the joints in springs or equations with other joints.
+    pub(super) fn tied(&self) -> BTreeSet<&str> {
+        let springs = self.couplings.iter().flat_map(|coupling| [&coupling.follower, &coupling.leader]);
+        let following =
+            self.joints.iter().filter_map(|joint| Some([&joint.name, &joint.follows.as_ref()?.leader.name]));
+        springs.chain(following.flatten()).map(String::as_str).collect()
+    }
+
     /// Springs and dampers that give joints their oscillations, with the inertia J that a joint moves where all are at their `ref`:
     /// `k = J / (T ζ)²`, `d = 2 J / T`.
     pub(super) fn set_oscillations(&mut self) {
