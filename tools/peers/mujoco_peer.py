@@ -54,13 +54,13 @@ class LoadedFile(MuJoCo):
         self.model = mujoco.MjModel.from_xml_path(str(path))
         self.model.opt.disableflags |= int(disabled)
         self.data = mujoco.MjData(self.model)
-        kinds = (mujoco.mjtJoint.mjJNT_FREE, mujoco.mjtJoint.mjJNT_BALL)
+        free, ball = (int(kind) for kind in (mujoco.mjtJoint.mjJNT_FREE, mujoco.mjtJoint.mjJNT_BALL))
         # Where the angles of each joint that turns freely begin among q and among MuJoCo's positions, without and with its place.
         self.turning = []
         self.plain = np.ones(self.model.nv, bool)
         for kind, first, place in zip(self.model.jnt_type, self.model.jnt_dofadr, self.model.jnt_qposadr):
-            if kind in kinds:
-                places = 3 if kind == kinds[0] else 0
+            if kind in (free, ball):
+                places = 3 if kind == free else 0
                 self.turning.append((first + places, place + places))
                 self.plain[first + places : first + places + 3] = False
         self.positions = np.ones(self.model.nq, bool)

@@ -88,12 +88,12 @@ class RandomRobot:
     def tendons(self):
         """Fixed tendons of one and of two joints with springs and dampers."""
         names = [f"joint_{number}" for number in range(self.joints)]
-        # The spring of a single joint is read where the joint has none.
-        without = [joint for joint in self.root.iter("joint") if joint.get("type") in ("hinge", "slide") and joint.get("name") in names]
-        plain = [joint.get("name") for joint in without if not {"stiffness", "springdamper", "class"} & joint.keys()]
-        plain = [name for name in plain if not any(name == inner.get("name") for body in self.root.iter("body") if body.get("childclass") for inner in body)]
+        # The spring of a single joint is read where the joint has none of its own.
+        bodies = [body for body in self.root.iter("body") if body.get("childclass") is None]
+        joints = [joint for body in bodies for joint in body.findall("joint") if joint.get("name") in names]
+        plain = [joint.get("name") for joint in joints if not {"stiffness", "springdamper"}.intersection(joint.keys())]
         groups = [self.rng.choice(names, 2, replace=False)] if len(names) > 1 else []
-        groups += [[plain[0]]] if plain else []
+        groups += [plain[:1]] if plain else []
         section = ElementTree.SubElement(self.root, "tendon")
         for number, group in enumerate(groups):
             fixed = ElementTree.SubElement(section, "fixed", name=f"tendon_{number}", stiffness=text(self.rng.uniform(1, 50)), damping="0.7")

@@ -85,15 +85,16 @@ impl Reference {
         Self::with_joints(robot, links.iter().flat_map(SpecLink::joints).collect(), &held.collect())
     }
 
-    /// The diagonal of A where every joint is at its `ref`, by the joints that move, with their names.
-    pub(super) fn diagonal_at_reference(robot: &Robot) -> Vec<(String, f64)> {
+    /// `1/(A⁻¹)_jj` where every joint is at its `ref`: the inertia that a force on a joint meets while all others move freely. By the joints
+    /// that move, with their names.
+    pub(super) fn inertias_at_reference(robot: &Robot) -> Vec<(String, f64)> {
         let moves = |joint: &&Joint| matches!(joint.motion, Motion::Revolute | Motion::Prismatic);
         let joints: Vec<&Joint> = robot.joints.iter().filter(moves).collect();
         let q: Vec<f64> = joints.iter().map(|joint| joint.reference).collect();
         let named = joints.into_iter().map(|joint| (joint, joint.name.clone())).collect();
         let reference = Self::with_joints(robot, named, &BTreeMap::new());
         let mass_matrix = reference.dynamics(&q, &vec![0.0; q.len()]).mass_matrix;
-        reference.coordinates.into_iter().zip(mass_matrix.into_iter().step_by(q.len() + 1)).collect()
+        reference.coordinates.into_iter().zip(free_inertias(mass_matrix, q.len())).collect()
     }
 
     /// A robot that moves in some joints, whose coordinates have names; others stand where `held` says, or at zero.
@@ -241,6 +242,26 @@ impl Moving {
         let carried = plus(cross(self.alpha, way), cross(self.omega, cross(self.omega, way)));
         Moving { frame, omega, alpha, acceleration: plus(plus(self.acceleration, carried), own) }
     }
+}
+
+/// `1/(A⁻¹)_jj` of a positive definite n × n matrix: with `A = L Lᵀ`, `(A⁻¹)_jj = Σ_i (L⁻¹)_ij²`.
+fn free_inertias(mut a: Vec<f64>, n: usize) -> Vec<f64> {
+    for j in 0..n {
+        for i in j..n {
+            let sum: f64 = (0..j).map(|k| a[i * n + k] * a[j * n + k]).sum();
+            let rest = a[i * n + j] - sum;
+            a[i * n + j] = if i == j { rest.sqrt() } else { rest / a[j * n + j] };
+        }
+    }
+    let inertia = |j: usize| {
+        let mut column = vec![0.0; n];
+        for i in j..n {
+            let sum: f64 = (j..i).map(|k| a[i * n + k] * column[k]).sum();
+            column[i] = (f64::from(u8::from(i == j)) - sum) / a[i * n + i];
+        }
+        1.0 / column.iter().map(|entry| entry * entry).sum::<f64>()
+    };
+    (0..n).map(inertia).collect()
 }
 
 fn plus(a: Vector, b: Vector) -> Vector {

@@ -190,14 +190,14 @@ impl Robot {
         springs.chain(following.flatten()).map(String::as_str).collect()
     }
 
-    /// Springs and dampers that give joints their oscillations, with the inertia J that a joint moves where all are at their `ref`:
+    /// Springs and dampers that give joints their oscillations, with the inertia J that a force on the joint meets where all are at their `ref`:
     /// `k = J / (T ζ)²`, `d = 2 J / T`.
     pub(super) fn set_oscillations(&mut self) {
         // Links that are not a tree are refused later.
         if self.joints.iter().all(|joint| joint.oscillation.is_none()) || groups(self, &[]).is_err() {
             return;
         }
-        for (name, inertia) in Reference::diagonal_at_reference(self) {
+        for (name, inertia) in Reference::inertias_at_reference(self) {
             let Some(joint) = self.joints.iter_mut().find(|joint| joint.name == name) else { continue };
             if let Some([time, ratio, rest]) = joint.oscillation {
                 joint.spring = Some(Spring { stiffness: inertia / (time * ratio).powi(2), rest });
