@@ -555,3 +555,106 @@ fn what_is_not_understood_is_told() {
         assert!(with.left_out[0].starts_with("Not understood and left out: <unheard>"), "{:?}", with.left_out);
     }
 }
+
+/// Names of the coordinates of a robot in MJCF or URDF.
+fn coordinates(name: &str, text: &str) -> Vec<String> {
+    chain(&SourceFile::new("robot", spec(name, text))).coordinates.into_iter().map(|c| c.name).collect()
+}
+
+/// A body of 2 kg with moments of 0.1 kg m², its centre 0.4 m along x.
+const MASS: &str = "<inertial pos='0.4 0 0' mass='2' diaginertia='0.1 0.1 0.1'/>";
+
+#[test]
+fn joints_with_several_axes_become_joints_of_one_axis() {
+    let body = |joint: &str, inside: &str| {
+        format!("<mujoco><worldbody><body name='a' pos='1 2 3'>{joint}{MASS}{inside}</body></worldbody></mujoco>")
+    };
+    let arm = format!("<body name='b' pos='1 0 0'><joint name='j' type='ball' pos='0.1 0 0'/>{MASS}</body>");
+    let free = body("<freejoint name='root'/>", &arm);
+    let names = ["a_x", "a_y", "a_z", "a_psi", "a_theta", "a_phi", "b_1_psi", "b_2_theta", "b_phi"];
+    assert_eq!(coordinates("a.xml", &free), names);
+    // Positions of a free joint are those in the world, and it starts where the body is.
+    let crane = chain(&SourceFile::new("a", spec("a.xml", &free)));
+    assert_eq!(crane.guess[..6], [1.0, 2.0, 3.0, 0.0, 0.0, 0.0]);
+    // Half a turn about z of the root, a quarter turn about x of the ball.
+    let key = "<keyframe><key qpos='4 5 6 0 0 0 1 0.7071067811865476 0.7071067811865476 0 0'/></keyframe></mujoco>";
+    let posed = free.replace("</mujoco>", key);
+    let guess = chain(&SourceFile::new("a", spec("a.xml", &posed))).guess;
+    let expected = [4.0, 5.0, 6.0, std::f64::consts::PI, 0.0, 0.0, 0.0, 0.0, std::f64::consts::FRAC_PI_2];
+    for (found, expected) in guess.iter().zip(expected) {
+        // Angles of a quaternion of rounded numbers.
+        assert!((found - expected).abs() < 1e-15, "{guess:?}");
+    }
+    let urdf = |kind: &str| {
+        format!(
+            "<robot name='a'><link name='base'/><link name='b'><inertial><mass value='2'/>\
+             <inertia ixx='1' iyy='1' izz='1'/></inertial></link><joint name='j' type='{kind}'><parent link='base'/>\
+             <child link='b'/><axis xyz='0 0 1'/></joint></robot>"
+        )
+    };
+    assert_eq!(coordinates("a.urdf", &urdf("floating")), ["b_x", "b_y", "b_z", "b_psi", "b_theta", "b_phi"]);
+    assert_eq!(coordinates("a.urdf", &urdf("planar")), ["b_x", "b_y", "b_psi"]);
+    // All axes are held together, where they start.
+    let options = ImportOptions { fixed: vec!["root".to_owned()], ..ImportOptions::default() };
+    let held = exchange::import(&SourceFile::new("a.xml", free), &options).expect("a robot").spec;
+    let crane = chain(&SourceFile::new("a", held));
+    assert_eq!(crane.coordinates.len(), 3);
+    assert!((crane.frames(&[0.0; 3], &[])[1].origin[0] - 2.1).abs() < 1e-15);
+}
+
+/// Two equal bodies of 2 kg, together 3 kg; of moments 1, 2 and 4 kg m², the mean.
+#[test]
+fn masses_are_changed_as_the_compiler_of_mujoco_does() {
+    let bodies = "<body name='a'><joint axis='0 1 0'/><inertial pos='0 0 0' mass='2' diaginertia='1 2 4'/>\
+                  <body name='b'><joint axis='0 0 1'/><inertial pos='0.5 0 0' mass='2' diaginertia='0.1 0.1 0.1'/></body></body>";
+    let robot = |compiler: &str| {
+        let text = format!("<mujoco><compiler {compiler}/><worldbody>{bodies}</worldbody></mujoco>");
+        chain(&SourceFile::new("robot", spec("robot.xml", &text)))
+    };
+    let balanced = robot("settotalmass='3' balanceinertia='true'");
+    let mass = |body: usize| balanced.bodies[body].inertia.as_ref().map_or(0.0, |inertia| inertia.mass.at(&[]));
+    assert!((mass(0) - 1.5).abs() < 1e-15 && (mass(1) - 1.5).abs() < 1e-15);
+    // About y: three quarters of 7/3 of the first body and of `0.1 + 2 · 0.5²` of the second.
+    let about_y = quantity(&balanced, FunctionId::MassMatrix, &[0.0, 0.0], &[0.0, 0.0])[0];
+    assert!((about_y - 0.75 * (7.0 / 3.0 + 0.6)).abs() < 1e-14, "{about_y}");
+    let bounded = robot("balanceinertia='true' boundmass='5' boundinertia='0.3'");
+    let about_z = quantity(&bounded, FunctionId::MassMatrix, &[0.0, 0.0], &[0.0, 0.0])[3];
+    assert!((about_z - (0.3 + 5.0 * 0.25)).abs() < 1e-14, "{about_z}");
+}
+
+/// `L = 2 q₁ − q₂` with 5 N/m and 3 N s/m, relaxed at 0.4 m: of q₁, 20 N m/rad to `q₂/2 + 0.2`.
+#[test]
+fn fixed_tendons_are_springs_and_equations_of_joints() {
+    let body = |name: &str, inside: &str| {
+        format!("<body name='{name}'><joint name='j{name}' axis='0 1 0' ref='0.1'/>{MASS}{inside}</body>")
+    };
+    let robot = |tendon: &str, equality: &str| {
+        let bodies = body("a", &body("b", &body("c", "")));
+        let text = format!(
+            "<mujoco><compiler angle='radian'/><worldbody>{bodies}</worldbody><tendon><fixed name='t' {tendon}>\
+             <joint joint='ja' coef='2'/><joint joint='jb' coef='-1'/></fixed></tendon><equality>{equality}</equality></mujoco>"
+        );
+        exchange::import(&SourceFile::new("robot.xml", text), &ImportOptions::default())
+    };
+    let spring = robot("stiffness='5' damping='3' springlength='0.4'", "").expect("a robot").spec;
+    let line =
+        "- {name: t, coordinate: a_theta, follows: b_theta, ratio: 0.5, offset: 0.2, stiffness: 20, damping: 12}";
+    assert!(spring.contains(line), "{spring}");
+    // Without a rest length, it is relaxed where both joints are at their `springref`, which is 0.
+    assert!(robot("stiffness='5'", "").expect("a robot").spec.contains("ratio: 0.5, stiffness: 20, damping: 0}"));
+    // 2 (q₁ − 0.1) − (q₂ − 0.1) = 0.6.
+    let equation = robot("", "<tendon tendon1='t' polycoef='0.6 0 0 0 0'/>").expect("a robot").spec;
+    assert!(equation.contains("coordinate: a_theta, follows: b_theta, ratio: 0.5, offset: 0.35,"), "{equation}");
+    let three = robot("", "<joint joint1='jc'/><tendon tendon1='t'/><tendon tendon1='t' tendon2='t'/>");
+    assert!(three.expect_err("no joint").to_string().contains("the equality of 0 joints"));
+}
+
+/// A joint with J = 0.1 + 2 · 0.4² + 0.08 = 0.5 kg m², T = 0.5 s and ζ = 0.8: k = J/(T ζ)² = 3.125 N m/rad, d = 2 J/T = 2 N m s/rad.
+#[test]
+fn springs_and_dampers_of_a_time_constant_and_a_damping_ratio() {
+    let text = format!(
+        "<mujoco><worldbody><body name='a'><joint axis='0 1 0' springdamper='0.5 0.8' armature='0.08'/>{MASS}</body></worldbody></mujoco>"
+    );
+    let found = spec("a.xml", &text);
+    assert!(found.contains("stiffness: 3.125, damping: 2, motion: {hold: 0}, armature: 0.08}"), "{found}");
+}

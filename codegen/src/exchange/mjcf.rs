@@ -3,11 +3,14 @@
 use std::fmt;
 
 use super::mass::Lump;
-use super::rotation::quaternion;
+use super::rotation::{length as distance, quaternion};
 use super::springs::{JointSpring, linear_rows, on};
 use super::xml::{Xml, number_text, numbers};
 use super::{RADIUS, approximations, bars, hinged, origin, placements};
-use crate::chain::{BodyId, Chain, CoordinateId, CoordinateKind, Frame, Step, Support, SupportKinematics};
+use crate::chain::{
+    BodyId, Chain, CoordinateId, CoordinateKind, Frame, LoopJoint, LoopJointKind, Step, Support, SupportKinematics,
+    Value,
+};
 
 /// `MuJoCo` refuses moving bodies without mass or inertia: a massless frame, or a point, gets this value, kg or kg m². It is
 /// negligible against the mass of any crane.
@@ -33,12 +36,13 @@ impl std::error::Error for Inexpressible {}
 /// The MJCF text of a crane with the given parameter values.
 ///
 /// There is one joint per coordinate, with its name. Springs of elements, drives (held at their positions at t = 0) and passive
-/// damping become stiffness, damping and spring reference of joints, rotors become armature, rigid drives equality
-/// constraints; a linear support becomes three tendons, whose lengths are linear in the base's coordinates. The guess is the
-/// key frame `start`.
+/// damping become stiffness, damping and spring reference of joints, efforts of drives actuators with a constant force, rotors armature; a
+/// linear support becomes three tendons, whose lengths are linear in the base's coordinates. Rigid drives and joints that close loops become
+/// equality constraints, as stiff as `MuJoCo` allows: they yield by about 1e-4 of the acceleration that they prevent. The guess is the key
+/// frame `start`.
 ///
 /// # Errors
-/// A support with exact kinematics or one that lifts off, or a body with the name of the ground.
+/// A support with exact kinematics or one that lifts off, a line or a pad that closes a loop, or a body with the name of the ground.
 ///
 /// # Panics
 /// If `parameters` is shorter than the chain's list of parameters.
@@ -54,6 +58,14 @@ pub fn mjcf(chain: &Chain, parameters: &[f64]) -> Result<String, Inexpressible> 
         return Err(Inexpressible {
             title: format!("MJCF has no supports that lift off, such as `{}`", support.name),
             help: "remove `one_sided` for a crane whose feet are anchored, or export URDF with its file of springs"
+                .into(),
+        });
+    }
+    let inexpressible = |kind: &LoopJointKind| matches!(kind, LoopJointKind::Slide { .. } | LoopJointKind::Pad { .. });
+    if let Some(joint) = chain.loop_joints.iter().find(|joint| inexpressible(&joint.kind)) {
+        return Err(Inexpressible {
+            title: format!("MJCF has no joints such as `{}` that keep a point on a line and close a loop", joint.name),
+            help: "write a `ball`, a `pin` or a `rod` for it, or export a functional mock-up unit (`--format fmu`)"
                 .into(),
         });
     }
@@ -80,23 +92,38 @@ pub fn mjcf(chain: &Chain, parameters: &[f64]) -> Result<String, Inexpressible> 
     xml.close();
 
     xml.open("worldbody", &[]);
+    loop_sites(&mut xml, chain, None, parameters);
     bodies(&mut xml, chain, parameters);
     xml.close();
 
-    if !chain.supports.is_empty() {
+    let rods: Vec<(&LoopJoint, &Value)> = chain.loop_joints.iter().filter_map(as_rod).collect();
+    if !chain.supports.is_empty() || !rods.is_empty() {
         xml.open("tendon", &[]);
         for support in &chain.supports {
             tendons(&mut xml, chain, support, parameters);
         }
+        for (joint, _) in &rods {
+            xml.open("spatial", &[("name", joint.name.clone())]);
+            for site in sites_of(joint).map(|[site, _]| site) {
+                xml.leaf("site", &[("site", site)]);
+            }
+            xml.close();
+        }
         xml.close();
     }
-    if chain.rigid_drives().next().is_some() {
-        xml.open("equality", &[]);
-        for drive in chain.rigid_drives() {
-            let name = chain.coordinates[drive.coordinate.0].name.clone();
-            // q = q₀ + 0 + …
-            let held = [drive.profile.start(parameters), 0.0, 0.0, 0.0, 0.0];
-            xml.leaf("joint", &[("joint1", name), ("polycoef", numbers(&held))]);
+    equalities(&mut xml, chain, parameters);
+    let efforts = (0..chain.coordinates.len()).map(|index| (index, on(chain, CoordinateId(index), parameters).effort));
+    let efforts: Vec<(usize, f64)> = efforts.filter(|(_, effort)| *effort != 0.0).collect();
+    if !efforts.is_empty() {
+        xml.open("actuator", &[]);
+        for (index, effort) in efforts {
+            let joint = chain.coordinates[index].name.clone();
+            let no_gain =
+                [("gaintype", "fixed".to_owned()), ("gainprm", "0".to_owned()), ("biastype", "affine".to_owned())];
+            let [gain_type, gain, bias_type] = no_gain;
+            let name = format!("{joint}_effort");
+            let bias = numbers(&[effort, 0.0, 0.0]);
+            xml.leaf("general", &[("name", name), ("joint", joint), gain_type, gain, bias_type, ("biasprm", bias)]);
         }
         xml.close();
     }
@@ -152,10 +179,86 @@ fn bodies(xml: &mut Xml, chain: &Chain, parameters: &[f64]) {
             let at = point.position.each_ref().map(|value| value.at(parameters));
             xml.leaf("site", &[("name", point.name.clone()), ("pos", numbers(&at))]);
         }
+        loop_sites(xml, chain, Some(id), parameters);
     }
     for _ in open {
         xml.close();
     }
+}
+
+/// Length along the axis of a pin between its two sites, m.
+const ALONG_PIN: f64 = 0.1;
+
+/// Names of the sites of both ends of a joint that closes a loop: at the end, and along the axis of a pin.
+fn sites_of(joint: &LoopJoint) -> [[String; 2]; 2] {
+    ["from", "to"].map(|end| [format!("{}_{end}", joint.name), format!("{}_{end}_axis", joint.name)])
+}
+
+/// A rod that closes a loop, and its length.
+fn as_rod(joint: &LoopJoint) -> Option<(&LoopJoint, &Value)> {
+    match &joint.kind {
+        LoopJointKind::Rod { length } => Some((joint, length)),
+        _ => None,
+    }
+}
+
+/// Sites on a body, or in the world, of the joints that close loops.
+fn loop_sites(xml: &mut Xml, chain: &Chain, body: Option<BodyId>, parameters: &[f64]) {
+    for joint in &chain.loop_joints {
+        let axes = match &joint.kind {
+            LoopJointKind::Pin { across, to_axis } => Some([across.axis, *to_axis]),
+            _ => None,
+        };
+        for (end, [name, along]) in sites_of(joint).into_iter().enumerate() {
+            if joint.ends[end].body != body {
+                continue;
+            }
+            let at = joint.ends[end].position.each_ref().map(|value| value.at(parameters));
+            xml.leaf("site", &[("name", name), ("pos", numbers(&at))]);
+            if let Some(axes) = axes {
+                let beyond = [0, 1, 2].map(|i| at[i] + ALONG_PIN * axes[end][i]);
+                xml.leaf("site", &[("name", along), ("pos", numbers(&beyond))]);
+            }
+        }
+    }
+}
+
+/// Rigid drives and joints that close loops.
+fn equalities(xml: &mut Xml, chain: &Chain, parameters: &[f64]) {
+    if chain.rigid_drives().next().is_none() && chain.loop_joints.is_empty() {
+        return;
+    }
+    // Time constant and damping ratio of what is left of an error; the largest share of an acceleration that may be prevented.
+    let stiff = [("solref", numbers(&[2.0 * chain.run.step, 1.0])), ("solimp", numbers(&[0.9999, 0.9999, 0.001]))];
+    xml.open("equality", &[]);
+    for drive in chain.rigid_drives() {
+        let name = chain.coordinates[drive.coordinate.0].name.clone();
+        // q = q₀ + 0 + …
+        let held = [drive.profile.start(parameters), 0.0, 0.0, 0.0, 0.0];
+        xml.leaf("joint", &[&[("joint1", name), ("polycoef", numbers(&held))], stiff.as_slice()].concat());
+    }
+    let frames = chain.frames(&vec![0.0; chain.coordinates.len()], parameters);
+    for joint in &chain.loop_joints {
+        let [[from, from_axis], [to, to_axis]] = sites_of(joint);
+        if let Some((_, length)) = as_rod(joint) {
+            // From the length at q = 0.
+            let [from, to] = joint.ends.each_ref().map(|end| {
+                let at = end.position.each_ref().map(|value| value.at(parameters));
+                end.body.map_or(at, |BodyId(body)| frames[body].transform_point(at))
+            });
+            let change = length.at(parameters) - distance([0, 1, 2].map(|i| to[i] - from[i]));
+            let held = [change, 0.0, 0.0, 0.0, 0.0];
+            let tendon = [("tendon1", joint.name.clone()), ("polycoef", numbers(&held))];
+            xml.leaf("tendon", &[tendon.as_slice(), stiff.as_slice()].concat());
+            continue;
+        }
+        let pairs = [(from, to), (from_axis, to_axis)];
+        let count = if matches!(joint.kind, LoopJointKind::Pin { .. }) { 2 } else { 1 };
+        for (site1, site2) in pairs.into_iter().take(count) {
+            xml.leaf("connect", &[&[("site1", site1), ("site2", site2)], stiff.as_slice()].concat());
+        }
+    }
+    xml.close();
 }
 
 /// A joint with its spring, damper and rotor; `frame`: its pose in the frame of its body at `q = 0`.
@@ -167,7 +270,7 @@ fn joint(xml: &mut Xml, chain: &Chain, id: CoordinateId, frame: &Frame, paramete
         attributes.push(("pos", numbers(&frame.origin)));
     }
     attributes.push(("axis", numbers(&frame.axes[coordinate.axis.index()])));
-    let JointSpring { stiffness, damping, rest } = on(chain, id, parameters);
+    let JointSpring { stiffness, damping, rest, .. } = on(chain, id, parameters);
     let rotor = chain.rotors.iter().find(|rotor| rotor.coordinate == id);
     let armature = rotor.map_or(0.0, |rotor| rotor.armature.at(parameters));
     let spring = [("stiffness", stiffness), ("damping", damping), ("springref", rest), ("armature", armature)];

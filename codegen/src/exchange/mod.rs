@@ -62,15 +62,7 @@ pub fn approximations(chain: &Chain) -> Option<String> {
         "Cylinders with valves are left out: their joints have no drive and fall; add drives for them.".to_owned()
     });
     let limits = chain.has_limited_drives().then(|| "Limits of drives are left out.".to_owned());
-    let efforts: Vec<&str> = chain
-        .drives
-        .iter()
-        .filter(|drive| drive.effort().is_some())
-        .map(|drive| chain.coordinates[drive.coordinate.0].name.as_str())
-        .collect();
-    let efforts = (!efforts.is_empty())
-        .then(|| format!("Efforts of drives besides their springs are left out: {}.", efforts.join(", ")));
-    let lost: Vec<String> = [hinges, joints, loads, connectors, oil, efforts, limits].into_iter().flatten().collect();
+    let lost: Vec<String> = [hinges, joints, loads, connectors, oil, limits].into_iter().flatten().collect();
     (!lost.is_empty()).then(|| lost.join(" "))
 }
 

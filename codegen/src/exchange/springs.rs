@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::xml::{number_text, numbers};
 use crate::chain::{Chain, CoordinateId, Force, SupportKinematics, Vector};
 
-/// A spring and a damper on a coordinate: its force is `stiffness (rest − q) − damping q̇`.
+/// What acts on a coordinate: `stiffness (rest − q) − damping q̇ + effort`.
 #[derive(Default)]
 pub(super) struct JointSpring {
     /// N m/rad or N/m.
@@ -14,6 +14,8 @@ pub(super) struct JointSpring {
     pub(super) damping: f64,
     /// Position at which the spring is unstressed, rad or m: for a drive, its position at t = 0.
     pub(super) rest: f64,
+    /// Of a drive at t = 0, N m or N.
+    pub(super) effort: f64,
 }
 
 /// The spring of a coordinate: that of an element, of a drive held at its initial position, passive damping, or none.
@@ -25,12 +27,13 @@ pub(super) fn on(chain: &Chain, id: CoordinateId, parameters: &[f64]) -> JointSp
     if let Some(drive) = chain.drives.iter().find(|drive| drive.coordinate == id) {
         let rest = drive.profile.start(parameters);
         let (stiffness, damping) = drive.spring().map_or((0.0, 0.0), |(s, d)| (number(s), number(d)));
-        JointSpring { stiffness, damping, rest }
+        JointSpring { stiffness, damping, rest, effort: drive.effort().map_or(0.0, |effort| effort.start(parameters)) }
     } else {
         springs.next().map_or_else(JointSpring::default, |spring| JointSpring {
             stiffness: number(&spring.stiffness),
             damping: number(&spring.damping),
             rest: 0.0,
+            effort: 0.0,
         })
     }
 }
@@ -49,15 +52,15 @@ pub fn springs(chain: &Chain, parameters: &[f64]) -> String {
     text += "# URDF cannot contain them: A and e follow from the URDF file, the forces from this file.\n";
     let _ = writeln!(text, "gravity: {}   # m/s^2", list(&chain.gravity));
 
-    text +=
-        "\n# Force on a joint: stiffness * (rest - q) - damping * v. Drives are held at their positions at t = 0.\n";
+    text += "\n# Force on a joint: stiffness * (rest - q) - damping * v + effort. Drives are held at their positions and efforts at t = 0.\n";
     text += "# Revolute: N m/rad, N m s/rad, rad; prismatic: N/m, N s/m, m.\njoints:\n";
     for (index, coordinate) in chain.coordinates.iter().enumerate() {
-        let JointSpring { stiffness, damping, rest } = on(chain, CoordinateId(index), parameters);
-        if stiffness != 0.0 || damping != 0.0 {
+        let JointSpring { stiffness, damping, rest, effort } = on(chain, CoordinateId(index), parameters);
+        if stiffness != 0.0 || damping != 0.0 || effort != 0.0 {
             let [stiffness, damping, rest] = [stiffness, damping, rest].map(number_text);
-            let _ =
-                writeln!(text, "  {}: {{stiffness: {stiffness}, damping: {damping}, rest: {rest}}}", coordinate.name);
+            let effort = if effort == 0.0 { String::new() } else { format!(", effort: {}", number_text(effort)) };
+            let law = format!("stiffness: {stiffness}, damping: {damping}, rest: {rest}{effort}");
+            let _ = writeln!(text, "  {}: {{{law}}}", coordinate.name);
         }
     }
 

@@ -217,10 +217,10 @@ fn keep_loops(options: &Export, crane: &str, joint: &str) -> Outcome<()> {
     /// Functions of the equations of motion that have been solved, or of what follows from them.
     const SOLVED: [&str; 3] = ["forward_dynamics", "forward_dynamics_derivatives", "linearise"];
     match options.format {
-        Language::Fmu => Ok(()),
-        Language::Urdf | Language::Mjcf => Err(Problem::usage(
-            format!("{crane} has a loop, which `{joint}` closes; exported models are open chains"),
-            "export a functional mock-up unit (`--format fmu`) for co-simulation, or a spec without `loop_joints` and exact pads, and close the loop in the other program",
+        Language::Fmu | Language::Mjcf => Ok(()),
+        Language::Urdf => Err(Problem::usage(
+            format!("{crane} has a loop, which `{joint}` closes; URDF describes open chains"),
+            "export MJCF (`--format mjcf`) or a functional mock-up unit (`--format fmu`) for co-simulation, or a spec without `loop_joints` and exact pads, and close the loop in the other program",
         )),
         Language::C => match options.functions().iter().find(|name| SOLVED.contains(&Product::split(name).0)) {
             None => Ok(()),

@@ -52,8 +52,8 @@ pub struct Imported {
 /// Without `repair`, masses and inertias are passed on unchanged; the validation of the spec checks them.
 ///
 /// # Errors
-/// Mistakes in the file, and structures that cannot be a crane: closed loops, and joints that are neither fixed nor of a kind
-/// that the language of the file has not.
+/// Mistakes in the file, and structures that cannot be a crane: closed loops, joints of unknown kinds, and those with several
+/// axes on which forces act.
 pub fn import(source: &SourceFile, options: &ImportOptions) -> Result<Imported, Diagnostics> {
     let diagnostics = |mistakes| Diagnostics::new(source, mistakes);
     let document = document::parse(source).map_err(diagnostics)?;

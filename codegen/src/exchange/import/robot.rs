@@ -52,8 +52,10 @@ pub(super) struct Joint {
     pub(super) follows: Option<Follows>,
     /// Its spring.
     pub(super) spring: Option<Spring>,
-    /// Time constant, s, and damping ratio that its spring and damper are to give, and where the spring is relaxed, rad or m.
-    pub(super) oscillation: Option<[f64; 3]>,
+    /// Time constant, s, and damping ratio that its spring and damper are to give.
+    pub(super) oscillation: Option<[f64; 2]>,
+    /// Where springs on it are relaxed, rad or m.
+    pub(super) relaxed: f64,
     /// Inertia of its rotor, kg m² or kg.
     pub(super) armature: f64,
     /// The position at which it is held, m or rad.
@@ -81,6 +83,7 @@ impl Joint {
             follows: None,
             spring: None,
             oscillation: None,
+            relaxed: 0.0,
             armature: 0.0,
             held: None,
             start: None,
@@ -199,8 +202,8 @@ impl Robot {
         }
         for (name, inertia) in Reference::inertias_at_reference(self) {
             let Some(joint) = self.joints.iter_mut().find(|joint| joint.name == name) else { continue };
-            if let Some([time, ratio, rest]) = joint.oscillation {
-                joint.spring = Some(Spring { stiffness: inertia / (time * ratio).powi(2), rest });
+            if let Some([time, ratio]) = joint.oscillation {
+                joint.spring = Some(Spring { stiffness: inertia / (time * ratio).powi(2), rest: joint.relaxed });
                 joint.damping = 2.0 * inertia / time;
             }
         }

@@ -199,19 +199,18 @@ impl<'a, 'i> File<'a, 'i> {
         let mut number = |key| self.number(node, class, key, &owner).unwrap_or(0.0);
         let [stiffness, damping, friction, armature] =
             ["stiffness", "damping", "frictionloss", "armature"].map(&mut number);
-        let [reference, rest] = ["ref", "springref"].map(|key| number(key) * angle);
+        let [reference, relaxed] = ["ref", "springref"].map(|key| number(key) * angle);
         let limited = self.classes.text(node, class, "limited") != Some("false");
         let range = self.numbers::<2>(node, class, "range", &owner).filter(|_| limited);
         let oscillation =
             self.numbers::<2>(node, class, "springdamper", &owner).filter(|[t, ratio]| *t > 0.0 && *ratio > 0.0);
-        let oscillation = oscillation.map(|[time, ratio]| [time, ratio, rest]);
         let back = if turns {
             about(axis, -reference)
         } else {
             Frame { origin: axis.map(|component| -reference * component), ..Frame::WORLD }
         };
         let placement = here.outer(&Frame { origin: anchor, ..Frame::WORLD }).outer(&back);
-        let spring = (stiffness != 0.0).then_some(Spring { stiffness, rest });
+        let spring = (stiffness != 0.0).then_some(Spring { stiffness, rest: relaxed });
         let limits = range.filter(|[lower, upper]| lower < upper).map(|range| range.map(|limit| limit * angle));
         node.leave_out_rest("contacts, limits of drives and looks of joints");
         let plain = Joint::new(&name, span, motion, ends);

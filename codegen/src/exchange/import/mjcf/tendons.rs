@@ -68,12 +68,12 @@ impl<'a, 'i> File<'a, 'i> {
         Some(tendon)
     }
 
-    /// A spring and a damper along a tendon: `−k (L − L₀) − d L̇`. Without a rest length, or where it is −1, L₀ is that at `ref`.
+    /// A spring and a damper along a tendon: `−k (L − L₀) − d L̇`. Without a rest length, or where it is −1, L₀ is that where all joints
+    /// are relaxed.
     fn spring(&mut self, tendon: &FixedTendon, [stiffness, damping]: [f64; 2], rest: &[f64]) {
-        let at_reference =
-            || tendon.terms.iter().map(|(joint, share)| share * self.robot.joints[*joint].reference).sum();
+        let relaxed = || tendon.terms.iter().map(|(joint, share)| share * self.robot.joints[*joint].relaxed).sum();
         let rest = match rest {
-            [] | [-1.0] | [-1.0, -1.0] => Some(at_reference()),
+            [] | [-1.0] | [-1.0, -1.0] => Some(relaxed()),
             [one] => Some(*one),
             [low, high] if low == high => Some(*low),
             _ => None,
