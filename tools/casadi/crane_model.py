@@ -586,6 +586,11 @@ def read_load(crane, written, span):
     """A load; if it acts along the link's axes, it turns with the element that carries it."""
     spec = crane.spec
     at, force, moment = (spec.vector(written.get(key, [0, 0, 0])) for key in ("at", "force", "moment"))
+    if "wind" in written:
+        wind = written["wind"]
+        pressure = spec.number(wind["pressure"]) if "pressure" in wind else 0.5 * 1.25 * spec.number(wind["speed"]) ** 2
+        towards = spec.vector(wind["direction"])
+        force = pressure * spec.number(wind["area"]) * spec.number(wind["shape_factor"]) * towards / ca.norm_2(towards)
     body, local = carrier(spec, at, span)
     rotation = body.transform[:3, :3]
     scale = read_profile(spec, written["scale"], False, crane.time)[0] if "scale" in written else 1

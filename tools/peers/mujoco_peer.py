@@ -90,10 +90,10 @@ class LoadedFile(MuJoCo):
         return rates.T @ mass_matrix @ rates, bias, acceleration
 
     def passive(self, q, v):
-        """Forces of springs and dampers."""
+        """Forces of springs, dampers and actuators without commands."""
         rates, _ = self.move_to(q, v)
         mujoco.mj_forward(self.model, self.data)
-        return rates.T @ self.data.qfrc_passive
+        return rates.T @ (self.data.qfrc_passive + self.data.qfrc_actuator)
 
 
 def angular_velocity(angles, rates):

@@ -260,7 +260,7 @@ catalogue! {
     // Loads.
     /// A load has a force or a moment.
     E099 no_load(load) "load `{load}` has neither force nor moment", "pulls nowhere",
-        "write `force: [x, y, z]` in N or `moment: [x, y, z]` in N m";
+        "write `force: [x, y, z]` in N, `moment: [x, y, z]` in N m, or `wind`";
 
     // Curved beams.
     /// A curved beam has sections between which it is bent.
@@ -396,9 +396,9 @@ catalogue! {
     /// At least one coordinate between the points of a loop joint is free to move.
     E145 prescribed_loop(joint) "loop joint `{joint}` holds what rigid drives move", "all coordinates between its points are prescribed",
         "give one of these drives a `stiffness`, or leave its joint passive: the loop moves it";
-    /// The axis of a loop joint has a direction.
-    E146 loop_axis(joint) "the axis of loop joint `{joint}` has no direction", "all three numbers are 0",
-        "write a direction in the frame of the link, such as `[0, 1, 0]`";
+    /// Axes of loop joints and directions of wind are directions.
+    E146 no_direction(subject) "{subject} has no direction", "all three numbers are 0",
+        "write a direction, such as `[0, 1, 0]`";
     /// The two points of a rod are apart.
     E147 meeting_rod(joint) "the two points of rod `{joint}` coincide at the guess", "the rod between them has no direction",
         "write a `guess` at which the rod has about its length; a joint without length is a `ball`";
@@ -493,6 +493,11 @@ catalogue! {
     /// Live places along a beam, where sections end, keep their order.
     E184 places_meet() "a place on a beam meets another one, or an end of the beam", "it is divided where something acts on it",
         "give the place in the spec: then the beam is divided again";
+    /// A load has either a force or a wind.
+    E186 wind_and_force(load) "load `{load}` has a wind and a force", "the wind gives its force", "remove `force`, or write another load for it";
+    /// A wind has either a pressure or a speed.
+    E187 pressure_or_speed(load) "the wind of load `{load}` needs either a pressure or a speed", "one of the two gives its force",
+        "write `pressure: 250 Pa` or `speed: 20 m/s`";
     /// The `combination` with which a crane is computed is one of its `combinations`.
     E185 unknown_combination(name, help) "there is no combination `{name}`", "not listed under `combinations:`", "{help}";
 

@@ -1,6 +1,6 @@
 //! External loads.
 
-use super::{Motion, Spanned, Vector};
+use super::{Direction, Motion, Number, Spanned, Vector};
 use crate::node::FromNode;
 
 /// A force and a moment at a point of a link.
@@ -14,12 +14,29 @@ pub struct Load {
     pub at: Option<Spanned<Vector>>,
     /// Force along x, y, z, N. Default `[0, 0, 0]`.
     pub force: Option<Spanned<Vector>>,
+    /// Wind, whose force is in place of `force`.
+    pub wind: Option<Spanned<Wind>>,
     /// Moment about x, y, z, N m. Default `[0, 0, 0]`.
     pub moment: Option<Spanned<Vector>>,
     /// Whether x, y, z are the axes of the world or those of the link, with which the load turns. Default `world`.
     pub axes: Option<Spanned<Axes>>,
     /// Factor of force and moment over time, given like a motion of a drive. Default 1.
     pub scale: Option<Spanned<Motion>>,
+}
+
+/// The force of wind on an area: `pressure · shape_factor · area`, or `ρ/2 · speed² · shape_factor · area` with ρ = 1.25 kg/m³.
+#[derive(Clone, Debug, FromNode)]
+pub struct Wind {
+    /// Pressure where the wind is stopped, Pa. Either this or `speed`.
+    pub pressure: Option<Spanned<Number>>,
+    /// Speed, m/s. Either this or `pressure`.
+    pub speed: Option<Spanned<Number>>,
+    /// Area that faces the wind, m².
+    pub area: Spanned<Number>,
+    /// Shape factor, the drag coefficient of the area.
+    pub shape_factor: Spanned<Number>,
+    /// Direction in which it blows, along x, y, z, of any length.
+    pub direction: Spanned<Direction>,
 }
 
 /// Axes along which a load is given.

@@ -35,7 +35,7 @@ pub use inertia::{About, Inertia};
 pub use input::Input;
 pub use joint::{Bristle, Friction, Stops};
 pub use link::{BaseCoordinate, Body, HangingRope, Joint, JointAxis, Link};
-pub use load::{Axes, Load};
+pub use load::{Axes, Load, Wind};
 pub use loop_joint::{Direction, LoopJoint, LoopJointKind, LoopRod, PinAxis, SlideAxis};
 pub use on::{On, Place};
 pub use placement::{AxisName, ClassicDh, ModifiedDh, Placement, Transform, Turn};

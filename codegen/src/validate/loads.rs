@@ -2,9 +2,12 @@
 
 use super::Check;
 use super::limits::Limit;
-use crate::chain::{Load, LoadAxes};
+use crate::chain::{Load, LoadAxes, Value, normalised};
 use crate::diagnostic::rule;
-use crate::spec::{Axes, Crane};
+use crate::spec::{Axes, Crane, Spanned, Wind};
+
+/// Density of air in the formulas for wind, kg/m³: a pressure of v²/1.6.
+const DENSITY_OF_AIR: f64 = 1.25;
 
 impl<'a> Check<'a> {
     pub(super) fn loads(&mut self, crane: &'a Crane) -> Vec<Load> {
@@ -17,9 +20,15 @@ impl<'a> Check<'a> {
             }
             let subject = |what: &str| format!("the {what} of load `{name}`");
             let at = self.vector_or_zero(load.at.as_ref(), &subject("position"), "m", Limit::Any);
-            let force = self.vector_or_zero(load.force.as_ref(), &subject("force"), "N", Limit::Any);
+            let force = match load.wind.as_ref() {
+                Some(wind) => self.wind(wind, &name),
+                None => self.vector_or_zero(load.force.as_ref(), &subject("force"), "N", Limit::Any),
+            };
+            if let Some(force) = load.force.as_ref().filter(|_| load.wind.is_some()) {
+                self.report(rule::wind_and_force(force.span, &name));
+            }
             let moment = self.vector_or_zero(load.moment.as_ref(), &subject("moment"), "N m", Limit::Any);
-            if load.force.is_none() && load.moment.is_none() {
+            if load.force.is_none() && load.moment.is_none() && load.wind.is_none() {
                 self.report(rule::no_load(load.name.span, &name));
             }
             let axes = match load.axes.as_ref().and_then(|axes| axes.value) {
@@ -32,5 +41,28 @@ impl<'a> Check<'a> {
             }
         }
         loads
+    }
+    /// The force of wind, N.
+    fn wind(&mut self, given: &'a Spanned<Wind>, load: &str) -> [Value; 3] {
+        let Some(Wind { pressure, speed, area, shape_factor, direction }) = given.value.as_ref() else {
+            return [Value::ZERO; 3];
+        };
+        let subject = |what: &str| format!("the {what} of the wind of load `{load}`");
+        let pressure = match (pressure, speed) {
+            (Some(pressure), None) => self.number(pressure, &subject("pressure"), "Pa", Limit::NotNegative),
+            (None, Some(speed)) => {
+                let speed = self.number(speed, &subject("speed"), "m/s", Limit::NotNegative);
+                0.5 * DENSITY_OF_AIR * (speed.clone() * speed)
+            }
+            _ => {
+                self.report(rule::pressure_or_speed(given.span, load));
+                Value::ZERO
+            }
+        };
+        let area = self.number(area, &subject("area"), "m²", Limit::NotNegative);
+        let shape_factor = self.number(shape_factor, &subject("shape factor"), "", Limit::NotNegative);
+        let force = pressure * area * shape_factor;
+        let direction = self.direction(direction, &format!("the wind of load `{load}`"));
+        direction.map_or([Value::ZERO; 3], |direction| normalised(direction).map(|share| share * force.clone()))
     }
 }

@@ -9,7 +9,7 @@ use crate::chain::{
     Turning, Value, Vector, cross, normalised,
 };
 use crate::diagnostic::{Span, rule};
-use crate::spec::{self, Crane, Direction, Spanned, entries};
+use crate::spec::{self, Crane, entries};
 
 impl<'a> Check<'a> {
     /// Loop joints, and friction in their pins.
@@ -94,8 +94,9 @@ impl<'a> Check<'a> {
         match kind {
             spec::LoopJointKind::Ball => Some(LoopJointKind::Ball),
             spec::LoopJointKind::Pin(pin) => {
-                let axis = self.loop_axis(&pin.axis, name);
-                let to_axis = pin.to_axis.as_ref().map_or(axis, |given| self.loop_axis(given, name));
+                let place = format!("the axis of loop joint `{name}`");
+                let axis = self.direction(&pin.axis, &place);
+                let to_axis = pin.to_axis.as_ref().map_or(axis, |given| self.direction(given, &place));
                 Some(LoopJointKind::Pin { across: Across::to(axis?), to_axis: normalised(to_axis?) })
             }
             spec::LoopJointKind::Rod(rod) => {
@@ -103,25 +104,10 @@ impl<'a> Check<'a> {
                 Some(LoopJointKind::Rod { length: self.number(&rod.length, &place, "m", Limit::Positive) })
             }
             spec::LoopJointKind::Slide(slide) => {
-                let axis = self.loop_axis(&slide.axis, name);
+                let axis = self.direction(&slide.axis, &format!("the axis of loop joint `{name}`"));
                 Some(LoopJointKind::Slide { across: Across::to(axis?) })
             }
         }
-    }
-
-    /// A direction; `None` if it has none.
-    fn loop_axis(&mut self, given: &Spanned<Direction>, name: &str) -> Option<Vector> {
-        let place = format!("the axis of loop joint `{name}`");
-        let axis = given.value.as_ref()?.each_ref().map(|number| self.constant(number, &place, "", Limit::Any));
-        if axis.iter().any(|x| x.is_nan()) {
-            return None;
-        }
-        let size = axis.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
-        if size == 0.0 {
-            self.report(rule::loop_axis(given.span, name));
-        }
-        // The size of very large or small numbers would overflow when squared.
-        (size > 0.0).then(|| axis.map(|x| x / size))
     }
 
     /// Reports loop joints that nothing can move, and rods whose points coincide; makes both axes of a pin point the same way at the guess,

@@ -4,7 +4,7 @@ use super::Check;
 use super::limits::Limit;
 use crate::chain::{Parameter, ParameterId, Value};
 use crate::diagnostic::{Span, rule, suggest};
-use crate::spec::{Angle, Constant, Crane, FixedAngle, Number, Scalar, Spanned, Vector};
+use crate::spec::{Angle, Constant, Crane, Direction, FixedAngle, Number, Scalar, Spanned, Vector};
 use crate::units::{Quantity, Unit};
 
 /// Magnitudes outside this range, except zero, come from a slip in an exponent. Within it, no product or quotient in the
@@ -93,6 +93,20 @@ impl<'a> Check<'a> {
             Some(vector) => vector.each_ref().map(|number| self.number(number, subject, unit, limit)),
             None => [f64::NAN; 3].map(Value::from),
         }
+    }
+
+    /// A direction, its largest number ±1; `None` if it has none.
+    pub(super) fn direction(&mut self, given: &Spanned<Direction>, subject: &str) -> Option<crate::chain::Vector> {
+        let direction = given.value.as_ref()?.each_ref().map(|number| self.constant(number, subject, "", Limit::Any));
+        if direction.iter().any(|x| x.is_nan()) {
+            return None;
+        }
+        let size = direction.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
+        if size == 0.0 {
+            self.report(rule::no_direction(given.span, subject));
+        }
+        // The size of very large or small numbers would overflow when squared.
+        (size > 0.0).then(|| direction.map(|x| x / size))
     }
 
     /// Three optional numbers, zero by default, of two directions and a turn.

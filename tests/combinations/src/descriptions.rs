@@ -56,7 +56,7 @@ impl Second {
 pub type Description = fn(&Tree, &mut Rng) -> Option<Second>;
 
 /// All of them, with their names.
-pub const ALL: [(&str, Description); 23] = [
+pub const ALL: [(&str, Description); 24] = [
     ("beam split by a fixed joint", split_boom),
     ("beam given element by element", boom_one_by_one),
     ("rigid beam as a body", rigid_boom_as_body),
@@ -70,6 +70,7 @@ pub const ALL: [(&str, Description); 23] = [
     ("angles in degrees", degrees),
     ("lists in another order", other_order),
     ("weight as a force", weight_as_force),
+    ("forces as wind", wind_as_force),
     ("cylinders as forces at their pins", pins::as_loads),
     ("foot and head of cylinders exchanged", pins::exchanged),
     ("a loop joint holds what hangs", held_by_loop),
@@ -559,6 +560,34 @@ fn weight_as_force(tree: &Tree, _: &mut Rng) -> Option<Second> {
         (!inertia).then(|| name.to_owned())
     };
     Some(Second { moves: false, ..Second::of(&second).named(same) })
+}
+
+/// Forces of loads as wind: by its pressure or its speed, along their direction.
+fn wind_as_force(tree: &Tree, rng: &mut Rng) -> Option<Second> {
+    /// kg/m³
+    const AIR: f64 = 1.25;
+    let mut second = tree.clone();
+    let mut any = false;
+    for load in second.get_mut("loads").and_then(Value::as_array_mut).into_iter().flatten() {
+        let Some(force) = load["force"].as_array().filter(|force| force.iter().all(Value::is_number)) else { continue };
+        let direction: Vec<f64> = force.iter().filter_map(Value::as_f64).collect();
+        let size = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if size == 0.0 {
+            continue;
+        }
+        let (area, shape_factor) = (0.5 + rng.unit(), 1.0 + rng.unit());
+        let pressure = size / (area * shape_factor);
+        let mut wind = json!({"area": area, "shape_factor": shape_factor, "direction": direction});
+        if rng.bool() {
+            wind["pressure"] = json!(pressure);
+        } else {
+            wind["speed"] = json!((2.0 * pressure / AIR).sqrt());
+        }
+        load["wind"] = wind;
+        load.as_object_mut()?.remove("force");
+        any = true;
+    }
+    any.then(|| Second::of(&second))
 }
 
 /// The falls of a rope one by one: back and forth between its last sheave and its end.

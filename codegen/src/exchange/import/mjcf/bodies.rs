@@ -225,6 +225,7 @@ impl<'a, 'i> File<'a, 'i> {
                 friction,
                 spring,
                 oscillation,
+                relaxed,
                 armature,
                 start,
                 reference,
