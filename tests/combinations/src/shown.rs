@@ -4,7 +4,7 @@ use crane_codegen::exchange;
 use crane_live::LiveCrane;
 use crane_model::DriveInfo;
 use crane_model::dyn_crane::DynCrane;
-use crane_page::scene::scene;
+use crane_page::scene::Scene;
 use serde_json::Value;
 
 use crate::descriptions::Second;
@@ -21,7 +21,7 @@ pub fn differences(tree: &Tree, second: &Second) -> Vec<String> {
     };
     let mut lines = described([&written, &set]);
     let Ok(q) = equilibrium(&written as &dyn DynCrane) else { return lines };
-    different("scene", [&scene(&written, &q), &scene(&set, &q)], &mut lines);
+    different("scene", [&Scene::new(&written, &q).json(), &Scene::new(&set, &q).json()], &mut lines);
     let exported = |crane: &LiveCrane| {
         let (chain, parameters) = (crane.chain(), crane.parameters());
         let mjcf = exchange::mjcf(chain, parameters).unwrap_or_else(|failure| failure.title);

@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 
-use crane_codegen::chain::{Beam, Outline, Value as Number};
 use crane_live::LiveCrane;
 use crane_model::{
     CoordinateRole, Description,
@@ -11,6 +10,7 @@ use crane_model::{
     force_states::ForceStates,
     modes::{ComplexShape, Mode, NoModes, damped_with_shapes, undamped},
     results::{Column, Recording, Table},
+    statics::Equilibrium,
 };
 use nalgebra::{Complex, DVector};
 use serde_json::{Value, json};
@@ -19,7 +19,7 @@ use crate::{
     Program, Subject,
     history::{Instant, instants},
     record::{entries, record},
-    scene::scene,
+    scene::{Scene, Section, sections},
     strength::{self, extremes, packed},
     tables::damping_ratio,
 };
@@ -55,9 +55,7 @@ impl<'a> Shown<'a> {
     /// The same without its modes, which take longer than everything else of a crane at rest.
     pub fn without_modes(subject: &'a Subject<'a>) -> Self {
         let &Subject { crane, equilibrium, run, .. } = subject;
-        // Without an equilibrium there is at least a pose to look at.
-        let found = equilibrium.q.iter().all(|q| q.is_finite());
-        let pose = if found { equilibrium.q.clone() } else { crane.guess() };
+        let pose = shown_pose(crane, equilibrium);
         let (table, history) = match run {
             Some((_, recorded)) => (Cow::Borrowed(&recorded.table), instants(crane, recorded.table.rows.iter())),
             None => (Cow::Owned(rest(crane, &pose)), vec![Instant::at_rest(crane, &pose)]),
@@ -101,7 +99,7 @@ impl<'a> Shown<'a> {
             "label": label,
             "coordinates": coordinates,
             "drives": description.drives.iter().map(|drive| drive.coordinate).collect::<Vec<_>>(),
-            "scene": scene(live, &self.pose),
+            "scene": Scene::new(live, &self.pose).json(),
             "outlines": outlines(live),
             "modes": vibrations(&self.modes, description),
             "run": columns(&self.table, every),
@@ -110,6 +108,12 @@ impl<'a> Shown<'a> {
             "strength": strength::data(crane, &self.history, every),
         })
     }
+}
+
+/// The pose at rest; without an equilibrium there is at least the guess to look at.
+pub fn shown_pose(crane: &dyn DynCrane, equilibrium: &Equilibrium) -> Vec<f64> {
+    let found = equilibrium.q.iter().all(|q| q.is_finite());
+    if found { equilibrium.q.clone() } else { crane.guess() }
 }
 
 /// The single result of a crane at rest, with its drives at their start positions.
@@ -122,18 +126,10 @@ fn rest(crane: &dyn DynCrane, q: &[f64]) -> Table {
 
 /// Sections of the beams whose spec gives a shape, by the names of their links: height and width, m, of a stepped or tapered beam along it.
 fn outlines(live: &LiveCrane) -> Value {
-    let number = |number: &Number| number.at(live.parameters());
-    let of = |beam: &Beam| {
-        let along: Vec<[f64; 3]> = beam
-            .outlines
-            .iter()
-            .map(|(x, Outline { size: [height, width], .. })| [x, height, width].map(number))
-            .collect();
-        let greatest = |side: usize| along.iter().map(|sides| sides[side]).fold(0.0, f64::max);
-        let round = beam.outlines.first()?.1.round;
-        Some((beam.link.clone(), json!({"size": [greatest(1), greatest(2)], "along": along, "round": round})))
+    let written = |(name, Section { size, along, round }): (&str, Section)| {
+        (name.to_owned(), json!({"size": size, "along": along, "round": round}))
     };
-    live.chain().beams.iter().filter_map(of).collect()
+    sections(live).map(written).collect()
 }
 
 /// Modes of a stable equilibrium, each with the damping of the damped mode that moves in the same way.

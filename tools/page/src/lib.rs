@@ -7,6 +7,7 @@
 //! |---|---|
 //! | `crane` | what a crane is, how it is drawn, its run and its modes |
 //! | `scene` | what moves: frames of the bodies, and a screw for each coordinate |
+//! | [`shapes`] | the shapes of a crane as triangles, as glTF and as picture elements |
 //! | `figures` | key figures: tiles, and the summary to sign |
 //! | `strength` | utilisation of sections and tipping margins over a run |
 //! | `history` | internal forces and tipping lines over a run |
@@ -19,6 +20,7 @@ mod figures;
 pub mod history;
 mod record;
 pub mod scene;
+pub mod shapes;
 pub mod strength;
 pub mod tables;
 
@@ -27,6 +29,7 @@ use crane_model::{dyn_crane::DynCrane, dynamics::Settings, modes::NoModes, runs:
 use serde_json::{Value, json};
 
 use crane::Shown;
+pub use crane::shown_pose;
 pub use record::{Program, record};
 use tables::Report;
 

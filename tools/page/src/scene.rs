@@ -5,12 +5,15 @@
 //! so that the page can draw any pose, exaggerated and modal ones too. Three coordinates that turn by a rotation vector ρ
 //! share one factor, `exp(ξ_i ρ_1 + ξ_j ρ_2 + ξ_k ρ_3)`, with screws at ρ = 0: q⁰ is the pose with these at zero.
 
+use std::ops::Range;
+
 use crane_codegen::chain::{
-    BodyId, Coordinate, CoordinateId, CoordinateKind, Cylinder, Linkage, Pin, Point, Stage, Value as Number,
+    Beam, BodyId, Coordinate, CoordinateId, CoordinateKind, Cylinder, Linkage, Outline, Pin, Point, Stage,
+    Value as Number,
 };
 use crane_live::LiveCrane;
 use crane_model::{
-    AttachmentInfo, BodyInfo, CoordinateRole, Description, Tree,
+    AttachmentInfo, BodyInfo, ConnectorInfo, CoordinateRole, Description, Tree,
     dyn_crane::{DynCrane, DynModel},
 };
 use nalgebra::{Matrix4, Vector3};
@@ -18,57 +21,194 @@ use serde_json::{Value, json};
 
 use crate::bars::{Bar, bars};
 
-/// Frames, screws, supports, connectors, pads and points of a crane for pose `q`.
-pub fn scene(live: &LiveCrane, q: &[f64]) -> Value {
-    let crane: &dyn DynCrane = live;
-    let description = crane.description();
-    let is_vector: Vec<bool> =
-        description.coordinates.iter().map(|coordinate| coordinate.role == CoordinateRole::ElementVector).collect();
-    let reference: Vec<f64> = q.iter().zip(&is_vector).map(|(q, vector)| if *vector { 0.0 } else { *q }).collect();
-    let frames = crane.transforms_at(&reference);
-    let (tree, sizes) = ((live as &dyn DynModel).tree(), crane.body_sizes_at());
-    let bodies: Vec<Value> = description
-        .bodies
-        .iter()
-        .zip(&frames)
-        .enumerate()
-        .map(|(index, (body, frame))| {
-            let own = tree.own(index);
-            let (written, parameters) = (&live.chain().bodies[index], live.parameters());
+/// What is drawn of a crane, at one pose.
+pub struct Scene {
+    /// The pose.
+    pose: Vec<f64>,
+    /// The pose with rotation vectors at zero.
+    pub reference: Vec<f64>,
+    /// Whether a coordinate is a component of a rotation vector.
+    vectors: Vec<bool>,
+    /// Bodies, each after the one that carries it.
+    pub bodies: Vec<Body>,
+    /// A screw for each coordinate, in the world frame at the reference.
+    pub screws: Vec<[f64; 6]>,
+    /// Names of the supports and where they are in the frame of the base, m.
+    pub supports: Vec<(String, Vector3<f64>)>,
+    /// Springs and ropes.
+    pub connectors: Vec<Connector>,
+    /// Names of the points of interest, and where they are.
+    pub points: Vec<(String, Place)>,
+    /// Hydraulic cylinders.
+    pub cylinders: Vec<Barrel>,
+    /// Pads of telescopes.
+    pub pads: Vec<Pad>,
+    /// Bars to what nothing else reaches.
+    pub bars: Vec<Bar>,
+}
+
+/// A body as it is drawn.
+pub struct Body {
+    /// Its name.
+    pub name: String,
+    /// The link to which it belongs.
+    pub link: String,
+    /// Its mass, kg.
+    pub mass: f64,
+    /// Its length along x, m: 0 unless it is an element of a beam or a link of a rope.
+    pub length: f64,
+    /// The body that carries it.
+    pub parent: Option<usize>,
+    /// Where it is attached along its carrier, m.
+    along: f64,
+    /// The coordinates of its joint.
+    pub own: Range<usize>,
+    /// Its frame at the reference.
+    pub frame: Matrix4<f64>,
+    /// Whether it is a link of a rope or chain.
+    pub rope: bool,
+}
+
+/// A place of a body, in its frame, or of the world, m.
+#[derive(Clone, Copy)]
+pub struct Place {
+    /// The body; `None` for the world.
+    pub body: Option<usize>,
+    /// Where it is.
+    pub at: Vector3<f64>,
+}
+
+impl Place {
+    /// Where it is in the world while the bodies have these frames, m.
+    pub fn within(&self, frames: &[Matrix4<f64>]) -> Vector3<f64> {
+        self.body.map_or(self.at, |body| (frames[body] * self.at.push(1.0)).xyz())
+    }
+
+    fn json(&self) -> Value {
+        json!({"body": self.body, "at": <[f64; 3]>::from(self.at)})
+    }
+}
+
+/// A spring or a rope.
+pub struct Connector {
+    /// Its name.
+    pub name: String,
+    /// Whether it is a rope.
+    pub rope: bool,
+    /// Its ends, and the sheaves between.
+    pub points: Vec<Place>,
+    /// Parallel parts of a rope between its last two points.
+    pub falls: usize,
+}
+
+/// A hydraulic cylinder.
+pub struct Barrel {
+    /// Its name.
+    pub name: String,
+    /// Where the barrel is held.
+    pub foot: Place,
+    /// Where the rod, or the link beyond it, acts.
+    pub head: Place,
+    /// Rocker and link between rod and head.
+    pub linkage: Option<Rocker>,
+    /// Diameters, m.
+    pub bore: f64,
+    /// See `bore`.
+    pub rod: f64,
+    /// Distance of the pins when it is retracted, m.
+    pub retracted: f64,
+    /// The axis of the joint that it turns, in the frame of a body; none if that slides.
+    pub axis: Option<(usize, Vector3<f64>)>,
+}
+
+/// A rocker and a link between a rod and what it moves.
+pub struct Rocker {
+    /// About which the rocker turns.
+    pub pivot: Place,
+    /// Lengths, m.
+    pub rocker: f64,
+    /// See `rocker`.
+    pub link: f64,
+    /// On which side of the line from pivot to head the rod's pin is.
+    pub left: bool,
+}
+
+/// Pads between two beams of a telescope.
+pub struct Pad {
+    /// The body on which they are.
+    pub body: usize,
+    /// Where along it, m.
+    pub x: f64,
+    /// Names of the outer and the inner beam.
+    pub beams: [String; 2],
+}
+
+impl Scene {
+    /// The scene of a crane for pose `q`.
+    pub fn new(live: &LiveCrane, q: &[f64]) -> Self {
+        let crane: &dyn DynCrane = live;
+        let description = crane.description();
+        let vectors: Vec<bool> =
+            description.coordinates.iter().map(|coordinate| coordinate.role == CoordinateRole::ElementVector).collect();
+        let reference: Vec<f64> = q.iter().zip(&vectors).map(|(q, vector)| if *vector { 0.0 } else { *q }).collect();
+        let frames = crane.transforms_at(&reference);
+        let (tree, sizes) = ((live as &dyn DynModel).tree(), crane.body_sizes_at());
+        let body = |(index, (info, frame)): (usize, (&BodyInfo, &Matrix4<f64>))| {
             let [mass, length] = sizes[index];
+            Body {
+                name: info.name.to_string(),
+                link: info.link.to_string(),
+                mass,
+                length,
+                parent: tree.parent(index),
+                along: live.chain().bodies[index].along.at(live.parameters()),
+                own: tree.own(index),
+                frame: *frame,
+                rope: length > 0.0 && !deforms(description, &tree, info),
+            }
+        };
+        let bodies = description.bodies.iter().zip(&frames).enumerate().map(body).collect();
+        let names = description.supports.iter().map(|support| support.name.to_string());
+        let screws = screws(live, &reference);
+        Self {
+            pose: q.to_vec(),
+            vectors,
+            bodies,
+            supports: names.zip(crane.support_places_at()).collect(),
+            connectors: connectors(crane),
+            points: points(live),
+            cylinders: cylinders(live, (&screws, &frames)),
+            pads: pads(live),
+            bars: bars(live, &frames),
+            screws,
+            reference,
+        }
+    }
+
+    /// The scene for the script of a page.
+    pub fn json(&self) -> Value {
+        let body = |body: &Body| {
+            let Body { name, link, mass, length, parent, along, own, frame, rope } = body;
             json!({
-                "name": body.name.as_str(), "link": body.link.as_str(), "mass": mass, "length": length,
-                "parent": tree.parent(index), "along": written.along.at(parameters),
-                "moved_by": [own.start, own.end], "frame": rows(frame), "rope": length > 0.0 && !deforms(description, &tree, body),
+                "name": name, "link": link, "mass": mass, "length": length, "parent": parent, "along": along,
+                "moved_by": [own.start, own.end], "frame": rows(frame), "rope": rope,
             })
+        };
+        let connector = |Connector { rope, points, falls, .. }: &Connector| json!({"rope": rope, "points": points.iter().map(Place::json).collect::<Vec<_>>(), "falls": falls});
+        let point = |(name, Place { body, at }): &(String, Place)| json!({"name": name, "body": body, "at": <[f64; 3]>::from(*at)});
+        let support = |(name, at): &(String, Vector3<f64>)| json!({"name": name, "at": <[f64; 3]>::from(*at)});
+        let pad = |Pad { body, x, beams }: &Pad| json!({"body": body, "x": x, "beams": beams});
+        json!({
+            "pose": self.pose, "reference": self.reference, "vectors": self.vectors, "screws": self.screws,
+            "bodies": self.bodies.iter().map(body).collect::<Vec<_>>(),
+            "supports": self.supports.iter().map(support).collect::<Vec<_>>(),
+            "connectors": self.connectors.iter().map(connector).collect::<Vec<_>>(),
+            "points": self.points.iter().map(point).collect::<Vec<_>>(),
+            "cylinders": self.cylinders.iter().map(Barrel::json).collect::<Vec<_>>(),
+            "pads": self.pads.iter().map(pad).collect::<Vec<_>>(),
+            "bars": self.bars.iter().map(bar).collect::<Vec<_>>(),
         })
-        .collect();
-    let supports: Vec<Value> = description
-        .supports
-        .iter()
-        .zip(crane.support_places_at())
-        .map(|(support, place)| json!({"name": support.name.as_str(), "at": <[f64; 3]>::from(place)}))
-        .collect();
-    let attachments = crane.attachments_at();
-    let mut places = attachments.iter();
-    let connectors: Vec<Value> = description
-        .connectors
-        .iter()
-        .map(|connector| (connector, connector.points.iter().zip(places.by_ref().take(connector.points.len())).collect()))
-        .filter(|(connector, points): &(_, Vec<_>)| points.len() > 1 && !connector.is_pin())
-        .map(|(connector, points)| {
-            let point = |(point, at): (&AttachmentInfo, &Vector3<f64>)| json!({"body": point.body, "at": <[f64; 3]>::from(*at)});
-            let points: Vec<Value> = points.into_iter().map(point).collect();
-            json!({"rope": connector.is_rope, "points": points, "falls": connector.falls})
-        })
-        .collect();
-    let screws = screws(live, &reference);
-    let cylinders = cylinders(live, (&screws, &frames));
-    json!({
-        "pose": q, "reference": reference, "vectors": is_vector, "bodies": bodies,
-        "screws": screws, "supports": supports, "connectors": connectors, "points": points(live),
-        "cylinders": cylinders, "pads": pads(live), "bars": bars(live, &frames).iter().map(bar).collect::<Vec<_>>(),
-    })
+    }
 }
 
 fn bar(bar: &Bar) -> Value {
@@ -76,15 +216,28 @@ fn bar(bar: &Bar) -> Value {
     json!({"body": bar.body, "from": from, "to": to, "block": bar.block, "main": bar.main})
 }
 
+/// Springs and ropes between at least two points.
+fn connectors(crane: &dyn DynCrane) -> Vec<Connector> {
+    let attachments = crane.attachments_at();
+    let mut places = attachments.iter();
+    let mut of = |connector: &ConnectorInfo| {
+        let place = |(point, at): (&AttachmentInfo, &Vector3<f64>)| Place { body: point.body, at: *at };
+        let points: Vec<Place> = connector.points.iter().zip(places.by_ref()).map(place).collect();
+        let (name, falls) = (connector.name.to_string(), connector.falls);
+        (points.len() > 1 && !connector.is_pin()).then_some(Connector { name, rope: connector.is_rope, points, falls })
+    };
+    crane.description().connectors.iter().filter_map(&mut of).collect()
+}
+
 /// The pads of telescopes: at the end of the outer beam and at the beginning of the inner one, with the names of both links.
-fn pads(live: &LiveCrane) -> Vec<Value> {
+fn pads(live: &LiveCrane) -> Vec<Pad> {
     let chain = live.chain();
-    let link = |body: BodyId| chain.bodies[body.0].link.as_str();
+    let link = |body: BodyId| chain.bodies[body.0].link.clone();
     let of_stage = |stage: &Stage<'_>| {
         let beams = [link(stage.outer.first), link(stage.inner)];
         let last = stage.outer.last();
         let end = chain.bodies[last.0].length.at(live.parameters());
-        [(last, end), (stage.inner, 0.0)].map(|(body, x)| json!({"body": body.0, "x": x, "beams": beams}))
+        [(last, end), (stage.inner, 0.0)].map(|(body, x)| Pad { body: body.0, x, beams: beams.clone() })
     };
     chain.stages().iter().flat_map(of_stage).collect()
 }
@@ -97,29 +250,57 @@ fn deforms(description: &Description, tree: &Tree, body: &BodyInfo) -> bool {
 }
 
 /// Cylinders with their pins in the frames of the bodies that carry them; with the joint's axis, if it turns.
-fn cylinders(live: &LiveCrane, moving: (&[[f64; 6]], &[Matrix4<f64>])) -> Vec<Value> {
-    let chain = live.chain();
+fn cylinders(live: &LiveCrane, moving: (&[[f64; 6]], &[Matrix4<f64>])) -> Vec<Barrel> {
     let number = |number: &Number| number.at(live.parameters());
-    let pin = |pin: &Pin| json!({"body": pin.body.0, "at": pin.position.each_ref().map(number)});
+    let pin = |pin: &Pin| place(live, pin.body, &pin.position);
     let data = |cylinder: &Cylinder| {
-        let linkage = cylinder.linkage.as_ref().map(|Linkage { pivot, rocker, link, left }| {
-            json!({"pivot": pin(pivot), "rocker": number(rocker), "link": number(link), "left": left})
+        let linkage = cylinder.linkage.as_ref().map(|Linkage { pivot, rocker, link, left }| Rocker {
+            pivot: pin(pivot),
+            rocker: number(rocker),
+            link: number(link),
+            left: *left,
         });
-        json!({
-            "name": cylinder.name, "foot": pin(&cylinder.foot), "head": pin(&cylinder.head), "linkage": linkage,
-            "bore": cylinder.bore, "rod": cylinder.rod, "retracted": cylinder.retracted,
-            "axis": axis(live, cylinder.coordinate, moving),
-        })
+        Barrel {
+            name: cylinder.name.clone(),
+            foot: pin(&cylinder.foot),
+            head: pin(&cylinder.head),
+            linkage,
+            bore: cylinder.bore,
+            rod: cylinder.rod,
+            retracted: cylinder.retracted,
+            axis: axis(live, cylinder.coordinate, moving),
+        }
     };
-    chain.cylinders.iter().map(data).collect()
+    live.chain().cylinders.iter().map(data).collect()
+}
+
+impl Barrel {
+    fn json(&self) -> Value {
+        let linkage = self.linkage.as_ref().map(|Rocker { pivot, rocker, link, left }| {
+            json!({"pivot": pivot.json(), "rocker": rocker, "link": link, "left": left})
+        });
+        let axis = self.axis.map(|(body, along)| json!({"body": body, "along": <[f64; 3]>::from(along)}));
+        json!({
+            "name": self.name, "foot": self.foot.json(), "head": self.head.json(), "linkage": linkage,
+            "bore": self.bore, "rod": self.rod, "retracted": self.retracted, "axis": axis,
+        })
+    }
 }
 
 /// The axis about which a coordinate turns, in the frame of the first body that it moves; none if it slides.
-fn axis(live: &LiveCrane, coordinate: CoordinateId, (screws, frames): (&[[f64; 6]], &[Matrix4<f64>])) -> Option<Value> {
+fn axis(
+    live: &LiveCrane,
+    coordinate: CoordinateId,
+    (screws, frames): (&[[f64; 6]], &[Matrix4<f64>]),
+) -> Option<(usize, Vector3<f64>)> {
     let body = live.chain().coordinates[coordinate.0].body.0;
     let [x, y, z, ..] = screws[coordinate.0];
     let local = frames[body].fixed_view::<3, 3>(0, 0).transpose() * Vector3::new(x, y, z);
-    (local.norm() > 0.0).then(|| json!({"body": body, "along": <[f64; 3]>::from(local)}))
+    (local.norm() > 0.0).then_some((body, local))
+}
+
+fn place(live: &LiveCrane, BodyId(body): BodyId, position: &[Number; 3]) -> Place {
+    Place { body: Some(body), at: Vector3::from(position.each_ref().map(|x| x.at(live.parameters()))) }
 }
 
 /// The upper three rows.
@@ -142,9 +323,32 @@ fn screws(live: &LiveCrane, q: &[f64]) -> Vec<[f64; 6]> {
 }
 
 /// Points of interest with the body that carries each.
-fn points(live: &LiveCrane) -> Vec<Value> {
-    let number = |number: &Number| number.at(live.parameters());
-    let point =
-        |point: &Point| json!({"name": point.name, "body": point.body.0, "at": point.position.each_ref().map(number)});
+fn points(live: &LiveCrane) -> Vec<(String, Place)> {
+    let point = |point: &Point| (point.name.clone(), place(live, point.body, &point.position));
     live.chain().points.iter().map(point).collect()
+}
+
+/// The outline of a beam whose spec gives a shape.
+pub struct Section {
+    /// Largest height and width, m.
+    pub size: [f64; 2],
+    /// Distances along the beam, with height and width there, m.
+    pub along: Vec<[f64; 3]>,
+    /// Whether it is round.
+    pub round: bool,
+}
+
+/// Outlines of beams, by the names of their links.
+pub fn sections(live: &LiveCrane) -> impl Iterator<Item = (&str, Section)> {
+    let number = |number: &Number| number.at(live.parameters());
+    let of = move |beam: &Beam| {
+        let along: Vec<[f64; 3]> = beam
+            .outlines
+            .iter()
+            .map(|(x, Outline { size: [height, width], .. })| [x, height, width].map(number))
+            .collect();
+        let greatest = |side: usize| along.iter().map(|sides| sides[side]).fold(0.0, f64::max);
+        Some(Section { size: [greatest(1), greatest(2)], round: beam.outlines.first()?.1.round, along })
+    };
+    live.chain().beams.iter().filter_map(move |beam| Some((beam.link.as_str(), of(beam)?)))
 }

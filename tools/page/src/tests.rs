@@ -88,7 +88,7 @@ fn masses_are_those_of_the_live_parameters() {
     let mut live = live("knuckle_boom");
     for payload in [800.0, 650.0] {
         live.set_parameters(&[payload]).expect("a mass");
-        let scene = scene::scene(&live, &(&live as &dyn DynCrane).guess());
+        let scene = scene::Scene::new(&live, &(&live as &dyn DynCrane).guess()).json();
         let bodies = scene["bodies"].as_array().expect("bodies");
         let hook: f64 =
             bodies.iter().filter(|body| body["link"] == "hook").filter_map(|body| body["mass"].as_f64()).sum();
@@ -128,7 +128,7 @@ fn nothing_of_a_body_floats() {
     for (name, live) in shipped.chain(examples) {
         let crane: &dyn DynCrane = &live;
         let q = crane.guess();
-        let scene = crate::scene::scene(&live, &q);
+        let scene = crate::scene::Scene::new(&live, &q).json();
         let frames = crane.transforms_at(&q);
         let reach = 0.05 * frames.iter().map(|frame| frame.column(3).xyz().norm()).fold(1.0, f64::max);
         let vector = |value: &Value| -> Vector3<f64> {
@@ -177,7 +177,7 @@ fn nothing_of_a_body_floats() {
 fn what_lies_beyond_a_joint_is_drawn() {
     let live = example(EXAMPLES[1].0, EXAMPLES[1].1);
     let crane: &dyn DynCrane = &live;
-    let scene = crate::scene::scene(&live, &crane.guess());
+    let scene = crate::scene::Scene::new(&live, &crane.guess()).json();
     let jib = live.chain().bodies.iter().position(|body| body.link == "jib").expect("a jib");
     let to_head = scene["bars"]
         .as_array()

@@ -1,0 +1,101 @@
+//! Triangles of boxes, rods, balls and hooks.
+
+use std::f64::consts::{PI, TAU};
+
+use nalgebra::{Matrix3, Rotation3, Vector3};
+
+/// Triangles between corners, counter-clockwise as seen from outside.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    /// Corners, m.
+    pub corners: Vec<Vector3<f64>>,
+    /// Indices of the corners of each triangle.
+    pub triangles: Vec<[usize; 3]>,
+}
+
+impl Mesh {
+    /// A box from `from` to `to`, its ends in the middle of two sides, with these sizes across. Nothing if both are one place.
+    pub fn bar(from: Vector3<f64>, to: Vector3<f64>, [high, wide]: [f64; 2]) -> Self {
+        let turn = turned(Vector3::x(), to - from);
+        let ring = [[1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]];
+        let across = ring.map(|[y, z]| turn * Vector3::new(0.0, y * high / 2.0, z * wide / 2.0));
+        Self::between(&[from, to].map(|end| across.map(|across| end + across).to_vec()))
+    }
+
+    /// A box with its middle at `middle` and sides along the axes.
+    pub fn block(middle: Vector3<f64>, [x, y, z]: [f64; 3]) -> Self {
+        let half = Vector3::x() * (x / 2.0);
+        Self::bar(middle - half, middle + half, [y, z])
+    }
+
+    /// A round rod or frustum of `sides` faces.
+    pub fn rod(from: Vector3<f64>, to: Vector3<f64>, [first, last]: [f64; 2], sides: u32) -> Self {
+        let turn = turned(Vector3::x(), to - from);
+        let ring = |(end, radius): (Vector3<f64>, f64)| {
+            let corner = |side: u32| {
+                let (sin, cos) = (TAU * f64::from(side) / f64::from(sides)).sin_cos();
+                end + turn * Vector3::new(0.0, radius * cos, radius * sin)
+            };
+            (0..sides).map(corner).collect()
+        };
+        Self::between(&[(from, first), (to, last)].map(ring))
+    }
+
+    /// A ball.
+    pub fn ball(middle: Vector3<f64>, radius: f64) -> Self {
+        let (rings, sides) = (8, 16);
+        let ring = |ring: u32| {
+            let (out, along) = (PI * f64::from(ring) / f64::from(rings)).sin_cos();
+            let corner = |side: u32| {
+                let (sin, cos) = (TAU * f64::from(side) / f64::from(sides)).sin_cos();
+                middle + radius * Vector3::new(-along, out * cos, out * sin)
+            };
+            (0..sides).map(corner).collect()
+        };
+        Self::between(&(0..=rings).map(ring).collect::<Vec<_>>())
+    }
+
+    /// A hook about the origin, open towards `down`.
+    pub fn hook(down: Vector3<f64>, radius: f64, thickness: f64) -> Self {
+        let (rings, sides) = (20, 8);
+        let turn = turned(-Vector3::y(), down);
+        let ring = |ring: u32| {
+            let (sin, cos) = (1.6 * PI * f64::from(ring) / f64::from(rings)).sin_cos();
+            let out = Vector3::new(cos, sin, 0.0);
+            let corner = |side: u32| {
+                let (up, aside) = (TAU * f64::from(side) / f64::from(sides)).sin_cos();
+                turn * (radius * out + thickness * (aside * out - up * Vector3::z()))
+            };
+            (0..sides).map(corner).collect()
+        };
+        Self::between(&(0..=rings).map(ring).collect::<Vec<_>>())
+    }
+
+    /// The surface through rings of as many corners, clockwise as seen along the way from the first to the last, closed at both ends.
+    pub fn between(rings: &[Vec<Vector3<f64>>]) -> Self {
+        let sides = rings.first().map_or(0, Vec::len);
+        let last = sides * rings.len().saturating_sub(1);
+        let face = move |begin: usize, side: usize| {
+            let [a, b] = [begin + side, begin + (side + 1) % sides];
+            [[a, b, b + sides], [a, b + sides, a + sides]]
+        };
+        let around =
+            (0..last).step_by(sides.max(1)).flat_map(|begin| (0..sides).flat_map(move |side| face(begin, side)));
+        let ends =
+            (1..sides.saturating_sub(1)).flat_map(|side| [[0, side + 1, side], [last, last + side, last + side + 1]]);
+        Self { corners: rings.concat(), triangles: around.chain(ends).collect() }
+    }
+
+    /// Adds the triangles of another one.
+    pub fn add(&mut self, other: &Mesh) {
+        let first = self.corners.len();
+        self.corners.extend(&other.corners);
+        self.triangles.extend(other.triangles.iter().map(|triangle| triangle.map(|corner| corner + first)));
+    }
+}
+
+/// The shortest rotation that turns `from` towards `to`.
+fn turned(from: Vector3<f64>, to: Vector3<f64>) -> Matrix3<f64> {
+    let half_turn = || Rotation3::from_axis_angle(&Vector3::z_axis(), PI);
+    Rotation3::rotation_between(&from, &to).unwrap_or_else(half_turn).into_inner()
+}

@@ -1,0 +1,266 @@
+//! Shapes as picture elements: in perspective, nearest first, each triangle in one tone, on ground with a grid.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::{Figure, Owner};
+
+/// Half the angle of view, as its tangent: that of the page.
+const SLOPE: f64 = 0.305_730_681;
+/// Room around the crane, relative to what it occupies.
+const ROOM: f64 = 1.06;
+/// Samples across a picture element.
+const SAMPLES: usize = 2;
+/// Rows of the picture in memory as samples.
+const BAND: usize = 64;
+/// Where the sun is; shadows fall on the ground alone.
+const SUN: [f64; 3] = [-0.9, -0.7, 1.6];
+/// Colours of the sky, the ground and its grid, and the tone of a shadow.
+const SKY: [f64; 3] = [238.0, 242.0, 246.0];
+const FLOOR: [f64; 3] = [222.0, 226.0, 229.0];
+const GRID: [f64; 3] = [176.0, 184.0, 191.0];
+const SHADE: f64 = 0.82;
+/// Tone of a surface that is seen from its edge.
+const EDGE: f64 = 0.42;
+/// Width of a line of the grid, relative to its squares.
+const LINE: f64 = 0.02;
+
+/// From where a crane is seen, and the size of its picture.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    width: usize,
+    height: usize,
+    azimuth: f64,
+    elevation: f64,
+}
+
+impl View {
+    /// Largest width and height of a picture, picture elements.
+    pub const MOST: usize = 4096;
+    /// The azimuth of the page's view from the corner, rad.
+    pub const AZIMUTH: f64 = -2.245_537_269;
+    /// Its elevation, rad.
+    pub const ELEVATION: f64 = 0.369_527_292;
+
+    /// A view from `azimuth`, about z from x on, and `elevation` above the ground, rad.
+    ///
+    /// # Errors
+    /// The picture is too large or has no size, or an angle is not a finite number.
+    pub fn new([width, height]: [usize; 2], [azimuth, elevation]: [f64; 2]) -> Result<Self, String> {
+        let most = Self::MOST;
+        if ![width, height].iter().all(|side| (1..=most).contains(side)) {
+            return Err(format!("a picture of {width} × {height}: both sides must be 1 to {most} picture elements"));
+        }
+        if !azimuth.is_finite() || !elevation.is_finite() {
+            return Err(format!("a view from azimuth {azimuth}, elevation {elevation}: both must be finite numbers"));
+        }
+        Ok(Self { width, height, azimuth, elevation })
+    }
+
+    /// Directions to the right, up and towards the camera, as rows.
+    fn directions(&self) -> Matrix3<f64> {
+        let ((sin, cos), (up, out)) = (self.azimuth.sin_cos(), self.elevation.sin_cos());
+        let (right, towards) = (Vector3::new(-sin, cos, 0.0), Vector3::new(out * cos, out * sin, up));
+        Matrix3::from_rows(&[right.transpose(), towards.cross(&right).transpose(), towards.transpose()])
+    }
+}
+
+/// A triangle as the camera sees it: across and up in samples, and the reciprocal of the distance, m⁻¹.
+struct Triangle {
+    corners: [Vector3<f64>; 3],
+    colour: [u8; 3],
+}
+
+/// A camera that sees all of a crane.
+struct Camera {
+    /// Directions to the right, up and towards the camera, as rows.
+    turn: Matrix3<f64>,
+    place: Vector3<f64>,
+    /// Distance of the picture from the camera, and its middle, samples.
+    focus: f64,
+    middle: [f64; 2],
+    /// Nothing nearer is drawn, m.
+    near: f64,
+}
+
+impl Camera {
+    /// As near as shows all corners.
+    fn new(view: &View, corners: &[Vector3<f64>]) -> Self {
+        let turn = view.directions();
+        let seen: Vec<Vector3<f64>> = corners.iter().map(|corner| turn * corner).collect();
+        let [low, high] = range(&seen);
+        let size = (high - low).norm().max(1e-9);
+        let centre = (low + high) / 2.0;
+        let sides = [view.width, view.height].map(|side| (SAMPLES * side) as f64);
+        let least = sides[0].min(sides[1]);
+        let off = |corner: &Vector3<f64>| [0, 1].map(|axis| (corner[axis] - centre[axis]).abs() * least / sides[axis]);
+        let distance = seen.iter().map(|corner| corner.z + ROOM * off(corner).into_iter().fold(0.0, f64::max) / SLOPE);
+        let distance = distance.fold(f64::NEG_INFINITY, f64::max) + 0.02 * size;
+        let place = turn.transpose() * Vector3::new(centre.x, centre.y, distance);
+        Self { turn, place, focus: least / 2.0 / SLOPE, middle: sides.map(|side| side / 2.0), near: 0.01 * size }
+    }
+
+    /// A place as [`Triangle`] has it, unless it is too near or behind the camera.
+    fn see(&self, place: &Vector3<f64>) -> Option<Vector3<f64>> {
+        let seen = self.turn * (place - self.place);
+        let near = 1.0 / -seen.z;
+        (-seen.z >= self.near).then(|| {
+            Vector3::new(self.middle[0] + self.focus * seen.x * near, self.middle[1] - self.focus * seen.y * near, near)
+        })
+    }
+}
+
+fn range(places: &[Vector3<f64>]) -> [Vector3<f64>; 2] {
+    let ends = [Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)];
+    places.iter().fold(ends, |[low, high], place| [low.inf(place), high.sup(place)])
+}
+
+/// The picture of a figure, red, green and blue of each picture element, row by row from the top; `shown`: places that are to be in it, too, m.
+pub fn draw(figure: &Figure, view: &View, shown: &[Vector3<f64>]) -> Vec<u8> {
+    let corners: Vec<Vector3<f64>> = figure.shapes.iter().flat_map(|shape| figure.corners(shape)).collect();
+    let camera = Camera::new(view, &[&corners, shown].concat());
+    let [low, high] = range(&corners);
+    let ground = Ground { level: figure.ground, size: (high - low).norm(), centre: (low + high) / 2.0 };
+    let sees_ground = camera.place.z > ground.level;
+    let (mut shadows, mut triangles) = (Vec::new(), Vec::new());
+    // From beside the camera, so that faces differ.
+    let light = (camera.turn.transpose() * Vector3::new(-0.3, 0.45, 1.0)).normalize();
+    for shape in &figure.shapes {
+        let corners: Vec<Vector3<f64>> = figure.corners(shape).collect();
+        for triangle in &shape.mesh.triangles {
+            let places = triangle.map(|corner| corners[corner]);
+            let [a, b, c] = places;
+            let normal = (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default();
+            let tone = EDGE + (1.0 - EDGE) * normal.dot(&light).abs();
+            triangles.extend(seen(&camera, places, shape.paint.colour.map(|channel| byte(f64::from(channel) * tone))));
+            if sees_ground && shape.owner != Owner::World("ground".to_owned()) {
+                let fallen = places.map(|place| place - Vector3::from(SUN) * ((place.z - ground.level) / SUN[2]));
+                shadows.extend(seen(&camera, fallen, [0; 3]));
+            }
+        }
+    }
+    let band = |first: usize| {
+        let rows = BAND.min(view.height - first);
+        let mut band = Band::new(SAMPLES * first, SAMPLES * rows, SAMPLES * view.width);
+        if sees_ground {
+            band.lay(&camera, &ground, &shadows);
+        }
+        triangles.iter().for_each(|triangle| band.fill(triangle));
+        band.reduced()
+    };
+    (0..view.height).step_by(BAND).flat_map(band).collect()
+}
+
+fn seen(camera: &Camera, [a, b, c]: [Vector3<f64>; 3], colour: [u8; 3]) -> Option<Triangle> {
+    Some(Triangle { corners: [camera.see(&a)?, camera.see(&b)?, camera.see(&c)?], colour })
+}
+
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "limited to what a byte can hold")]
+fn byte(value: f64) -> u8 {
+    value.clamp(0.0, 255.0).round() as u8
+}
+
+/// Level ground under a crane.
+struct Ground {
+    level: f64,
+    /// Size and middle of the crane, m.
+    size: f64,
+    centre: Vector3<f64>,
+}
+
+impl Ground {
+    /// Its colour where a ray from the camera meets it; `None` in the sky. `across`: width of a sample at a distance of 1 m, m.
+    fn colour(&self, camera: &Camera, ray: &Vector3<f64>, across: f64, shade: f64) -> Option<[u8; 3]> {
+        let way = (self.level - camera.place.z) / ray.z;
+        if ray.z >= 0.0 || !way.is_finite() {
+            return None;
+        }
+        let place = camera.place + way * ray;
+        let square = 10_f64.powf((self.size.max(1e-6) / 12.0).log10().round());
+        let (width, blur) = (LINE * square, way * ray.norm_squared() * across / -ray.z);
+        // Distance of the nearest line; far away, the grid becomes a tone.
+        let nearest = [place.x, place.y].map(|x| (x / square - (x / square).round()).abs() * square);
+        let covered = ((width + blur) / 2.0 - nearest[0].min(nearest[1])) / blur.max(1e-12);
+        let line = covered.clamp(0.0, (width / blur.max(1e-12)).min(1.0));
+        let away = (place - self.centre).norm() / self.size.max(1e-9);
+        let haze = ((away - 0.8) / 3.0).clamp(0.0, 1.0);
+        let mix = |channel: usize| {
+            let own = shade * (FLOOR[channel] + line * (GRID[channel] - FLOOR[channel]));
+            byte(own + haze * (SKY[channel] - own))
+        };
+        Some([0, 1, 2].map(mix))
+    }
+}
+
+/// Some rows of samples.
+struct Band {
+    first: usize,
+    width: usize,
+    colours: Vec<[u8; 3]>,
+    /// Reciprocals of the distances, m⁻¹; 0 behind everything.
+    near: Vec<f64>,
+}
+
+impl Band {
+    fn new(first: usize, rows: usize, width: usize) -> Self {
+        let count = rows * width;
+        Self { first, width, colours: vec![SKY.map(byte); count], near: vec![0.0; count] }
+    }
+
+    /// Lays the ground behind everything, with shadows on it.
+    fn lay(&mut self, camera: &Camera, ground: &Ground, shadows: &[Triangle]) {
+        shadows.iter().for_each(|shadow| self.fill(shadow));
+        for index in 0..self.near.len() {
+            let shade = if std::mem::take(&mut self.near[index]) > 0.0 { SHADE } else { 1.0 };
+            let [x, y] = [index % self.width, self.first + index / self.width].map(|sample| sample as f64 + 0.5);
+            let ray = Vector3::new(x - camera.middle[0], camera.middle[1] - y, -camera.focus) / camera.focus;
+            let found = ground.colour(camera, &(camera.turn.transpose() * ray), 1.0 / camera.focus, shade);
+            self.colours[index] = found.unwrap_or(SKY.map(byte));
+        }
+    }
+
+    /// Draws a triangle where nothing is nearer.
+    fn fill(&mut self, Triangle { corners: [a, b, c], colour }: &Triangle) {
+        let edge = |from: &Vector3<f64>, to: &Vector3<f64>, x: f64, y: f64| {
+            (to.x - from.x) * (y - from.y) - (to.y - from.y) * (x - from.x)
+        };
+        let area = edge(a, b, c.x, c.y);
+        let rows = self.near.len() / self.width;
+        let [x, y] = [0, 1].map(|axis| [a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis])]);
+        if area == 0.0 || !area.is_finite() {
+            return;
+        }
+        for row in samples(y, self.first, rows) {
+            for column in samples(x, 0, self.width) {
+                let at = (column as f64 + 0.5, (self.first + row) as f64 + 0.5);
+                let shares = [(b, c), (c, a), (a, b)].map(|(from, to)| edge(from, to, at.0, at.1) / area);
+                let near = shares[0] * a.z + shares[1] * b.z + shares[2] * c.z;
+                let index = row * self.width + column;
+                if shares.iter().all(|share| *share >= 0.0) && near > self.near[index] {
+                    (self.near[index], self.colours[index]) = (near, *colour);
+                }
+            }
+        }
+    }
+
+    /// The picture elements: means of their samples.
+    fn reduced(&self) -> Vec<u8> {
+        let (rows, columns) = (self.near.len() / self.width / SAMPLES, self.width / SAMPLES);
+        let element = |row: usize, column: usize| {
+            let samples = (0..SAMPLES * SAMPLES).map(move |sample| {
+                (SAMPLES * row + sample / SAMPLES) * self.width + SAMPLES * column + sample % SAMPLES
+            });
+            let sum = samples.fold([0.0; 3], |sum, index| {
+                [0, 1, 2].map(|channel| sum[channel] + f64::from(self.colours[index][channel]))
+            });
+            sum.map(|sum| byte(sum / (SAMPLES * SAMPLES) as f64))
+        };
+        (0..rows).flat_map(|row| (0..columns).flat_map(move |column| element(row, column))).collect()
+    }
+}
+
+/// The samples whose middles lie within a range, from `first` on, of `count`.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "limited to the picture")]
+fn samples([least, most]: [f64; 2], first: usize, count: usize) -> std::ops::Range<usize> {
+    let limited = |end: f64| (end - first as f64).clamp(0.0, count as f64) as usize;
+    limited((least - 0.5).ceil())..limited((most + 0.5).floor())
+}
