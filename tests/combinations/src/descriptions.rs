@@ -575,7 +575,7 @@ fn wind_as_force(tree: &Tree, rng: &mut Rng) -> Option<Second> {
         if size == 0.0 {
             continue;
         }
-        let (area, shape_factor) = (0.5 + rng.unit(), 1.0 + rng.unit());
+        let (area, shape_factor) = (0.5 + rng.f64(), 1.0 + rng.f64());
         let pressure = size / (area * shape_factor);
         let mut wind = json!({"area": area, "shape_factor": shape_factor, "direction": direction});
         if rng.bool() {

@@ -7,7 +7,7 @@ use clap::CommandFactory;
 use crate::{
     arguments::{Action, Arguments},
     book, check, combinations, compare, compiled, completions, ensemble, envelope, eval, example, exchange, explain,
-    fatigue, generate, help, info, linearise, margins, modes, new, page, poses,
+    fatigue, generate, help, info, linearise, margins, modes, new, page, picture, poses,
     problem::Outcome,
     run, screen,
     selection::Registry,
@@ -39,8 +39,10 @@ pub fn execute(mut arguments: Arguments, mut registry: Registry, out: &mut dyn W
         if let Some(Action::Margins(options)) = &arguments.action {
             poses::hold(&options.held, &options.ranges, &name, &mut registry)?;
         }
+        if let Some(held) = arguments.action.as_ref().and_then(Action::held) {
+            poses::hold(held, &[], &name, &mut registry)?;
+        }
         if let Some(Action::Sensitivity(options)) = &mut arguments.action {
-            poses::hold(&options.held, &[], &name, &mut registry)?;
             sensitivity::make_live(options, &mut registry)?;
         }
     }
@@ -93,6 +95,7 @@ pub fn dispatch(arguments: &Arguments, registry: &Registry, out: &mut dyn Write)
         Some(Action::Report(options)) => page::report(options, registry, out),
         Some(Action::Book(options)) => book::book(options, registry, dispatch, out),
         Some(Action::Info(options)) => info::info(options, registry, out),
+        Some(Action::Picture(options)) => picture::picture(options, registry, out),
         Some(Action::Eval(options)) => eval::eval(options, registry, out),
         Some(Action::New(options)) => new::new(options, registry, out),
         Some(Action::Check(options)) => check::check_specs(options, registry, out),

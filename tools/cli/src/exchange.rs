@@ -1,9 +1,6 @@
 //! `crane export` and `crane import`: cranes for other programs, and from them.
 
-use std::{
-    io::Write,
-    path::{Path, PathBuf},
-};
+use std::{io::Write, path::Path};
 
 use clap::ValueEnum;
 use crane_codegen::{
@@ -22,7 +19,7 @@ use crane_live::{LiveCrane, imported::compare_with_file};
 
 use crate::{
     arguments::{CNumber, Export, Import, Language},
-    files, fmu,
+    files, fmu, picture,
     problem::{Outcome, Problem},
     screen,
     selection::{Registry, with_combination},
@@ -31,13 +28,14 @@ use crate::{
 
 /// Writes a crane as URDF, with its springs beside it, as MJCF, in C, or as a functional mock-up unit.
 pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
-    if options.crane.rigid {
+    let is_scene = options.format == Language::Gltf;
+    if options.crane.rigid && !is_scene {
         return Err(Problem::usage(
             "`--rigid` is not available with `export`",
             "write a spec that `extends` the crane with `sections: rigid`, and export that",
         ));
     }
-    if !options.crane.inputs.is_empty() {
+    if !options.crane.inputs.is_empty() && !is_scene {
         return Err(Problem::usage(
             "`--input` is not available with `export`",
             "set the input where the exported crane runs, or change its `value` in the spec",
@@ -52,6 +50,9 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
             ));
         }
     }
+    if is_scene {
+        return picture::scene(options, registry, out);
+    }
     let (mut chain, mut spec) = registry.load(&options.crane.name, options.crane.strict)?;
     if let Some(combination) = &options.crane.combination {
         (chain, spec) = with_combination(&chain, &spec, combination)?;
@@ -65,13 +66,7 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
         parameters[index] = value;
     }
     keep_rules(&chain, &parameters)?;
-    let suffix = match options.format {
-        Language::Urdf => "urdf",
-        Language::Mjcf => "xml",
-        Language::C => "c",
-        Language::Fmu => "fmu",
-    };
-    let file = options.file.clone().unwrap_or_else(|| PathBuf::from(format!("{}.{suffix}", chain.name)));
+    let file = options.file(&chain.name);
     let texts = match options.format {
         Language::Urdf => vec![
             (file.with_extension("springs.yaml"), exchange::springs(&chain, &parameters)),
@@ -98,6 +93,8 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
             let code = screen::working(&chain, || in_c(options, &chain, &parameters, &header))?;
             vec![(file.with_file_name(header), code.header), (file, code.source)]
         }
+        // Written above: it needs a pose.
+        Language::Gltf => Vec::new(),
         Language::Fmu => return fmu::write_unit(options, &file, chain, &spec, &parameters, registry.carried(), out),
     };
     for (file, _) in &texts {
@@ -217,7 +214,7 @@ fn keep_loops(options: &Export, crane: &str, joint: &str) -> Outcome<()> {
     /// Functions of the equations of motion that have been solved, or of what follows from them.
     const SOLVED: [&str; 3] = ["forward_dynamics", "forward_dynamics_derivatives", "linearise"];
     match options.format {
-        Language::Fmu | Language::Mjcf => Ok(()),
+        Language::Fmu | Language::Mjcf | Language::Gltf => Ok(()),
         Language::Urdf => Err(Problem::usage(
             format!("{crane} has a loop, which `{joint}` closes; URDF describes open chains"),
             "export MJCF (`--format mjcf`) or a functional mock-up unit (`--format fmu`) for co-simulation, or a spec without `loop_joints` and exact pads, and close the loop in the other program",

@@ -24,7 +24,7 @@ const GROUPS: [(&str, &[&str]); 4] = [
             "stability",
         ],
     ),
-    ("Show and hand on", &["report", "book", "export", "eval"]),
+    ("Show and hand on", &["report", "book", "picture", "export", "eval"]),
     ("For developers", &["generate", "operations", "schema", "completions"]),
 ];
 const OTHERS: &str = "Other commands";

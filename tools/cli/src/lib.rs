@@ -43,6 +43,7 @@ mod new;
 mod npz;
 mod page;
 mod parameter_table;
+mod picture;
 mod poses;
 mod problem;
 mod quantity;

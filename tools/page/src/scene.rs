@@ -164,7 +164,8 @@ impl Scene {
                 along: live.chain().bodies[index].along.at(live.parameters()),
                 own: tree.own(index),
                 frame: *frame,
-                rope: length > 0.0 && !deforms(description, &tree, info),
+                // A beam that does not deform is one body, with the name of its link.
+                rope: length > 0.0 && info.name != info.link && !deforms(description, &tree, info),
             }
         };
         let bodies = description.bodies.iter().zip(&frames).enumerate().map(body).collect();

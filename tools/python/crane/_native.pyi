@@ -125,6 +125,10 @@ class Crane:
         """Coordinates, bodies, drives, supports, points and parameters: names, units and descriptions."""
     def picture(self) -> str:
         """A picture of the chain: its bodies and coordinates at the guess, SVG."""
+    def _render(
+        self, q: ArrayLike, shown: ArrayLike, width: int, height: int, azimuth: float | None = None, elevation: float | None = None
+    ) -> NDArray[np.uint8]:
+        """A picture of the crane in a pose: `Crane.render`."""
     def _page(self, run: dict[str, Any] | None = None) -> str:
         """The crane in 3-D and in tables as an HTML page: at rest, or with a run of it."""
     def export(self, format: str) -> str:

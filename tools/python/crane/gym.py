@@ -11,6 +11,7 @@ from typing import Any
 import gymnasium
 import numpy as np
 from gymnasium.vector.utils import batch_space
+from numpy.typing import NDArray
 
 from .model import Crane, load
 from .results import Array
@@ -233,10 +234,14 @@ class CraneEnv(gymnasium.Env):
     or how the integration failed. Observations and rewards are those of the state reached.
     """
 
-    metadata = {"render_modes": []}
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 50}
 
-    def __init__(self, crane: Crane | str, **task: Any) -> None:
+    def __init__(self, crane: Crane | str, *, render_mode: str | None = None, **task: Any) -> None:
+        if render_mode is not None:
+            _known(render_mode, self.metadata["render_modes"], "render mode")
+        self.render_mode = render_mode
         self._episodes = _Episodes(crane, 1, Task(**task))
+        self.metadata = {**self.metadata, "render_fps": round(1 / self._episodes.task.dt)}
         self.observation_space, self.action_space = self._episodes.observation_space, self._episodes.action_space
 
     @property
@@ -260,6 +265,17 @@ class CraneEnv(gymnasium.Env):
         """Advances the crane by `dt` with an action."""
         reward, terminated, truncated, why = self._episodes.step(np.asarray(action)[None])
         return self._episodes.observations()[0], float(reward[0]), bool(terminated[0]), bool(truncated[0]), self._info(why[0])
+
+    def render(self) -> NDArray[np.uint8] | None:
+        """The crane as it is now, (480, 640, 3) red, green and blue, with `render_mode="rgb_array"`; else nothing."""
+        if self.render_mode is None:
+            return None
+        simulation = self._episodes._simulation
+        if simulation is None:
+            raise gymnasium.error.ResetNeeded("call reset() before render()")
+        crane = simulation.crane
+        # Room for where statics begins, too: the view then seldom moves with the crane.
+        return crane.render(simulation.q[0], shown=[crane.guess.reshape(-1), simulation.q[0]])
 
     def _info(self, why: str) -> dict[str, Any]:
         results = self._episodes.results()

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from . import _native, state_space
 from ._native import NoEquilibrium, real_array
@@ -134,6 +134,27 @@ class Crane(_native.Crane):
         Of a crane whose parameters are arrays, the page shows the first row.
         """
         return self._page()
+
+    def render(
+        self,
+        q: ArrayLike | None = None,
+        width: int = 640,
+        height: int = 480,
+        *,
+        azimuth: float | None = None,
+        elevation: float | None = None,
+        shown: ArrayLike = (),
+    ) -> NDArray[np.uint8]:
+        """A picture of the crane in a pose, as the page shows it in 3-D: (height, width, 3), red, green and blue.
+
+        q: the pose; the static equilibrium unless given. Of a crane whose parameters are arrays, the picture shows the first row.
+        width, height: picture elements, at most 4096 each.
+        azimuth, elevation: from where it is seen, about z from x on and above the ground, rad; from the page's corner unless given.
+        shown: poses (..., n) for which the picture has room, too: pictures of a motion with the same ones are seen from one place as long as
+        the crane stays among them.
+        """
+        q = self.statics().q if q is None else q
+        return self._render(q, shown if np.size(shown) else q, width, height, azimuth, elevation)
 
     def _repr_html_(self) -> str:
         """The page with a table of parameters and inputs, for notebooks."""

@@ -6,12 +6,17 @@ use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::{Run, Settings, Statistics};
 use crane_model::results::{Recording, Verification, cautions};
 use crane_model::runs::Recorded;
+use crane_page::shapes::{
+    Figure,
+    picture::{View, draw},
+};
 use crane_page::tables::{Case, of_page};
 use crane_page::{Program, Subject, Texts, page};
-use numpy::PyReadonlyArray2;
+use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray2};
 use pyo3::exceptions::{PyArithmeticError, PyValueError};
 use pyo3::prelude::*;
 
+use crate::arrays::Argument;
 use crate::crane::Crane;
 
 /// This package, in records of runs.
@@ -86,6 +91,40 @@ impl Given<'_> {
 
 #[pymethods]
 impl Crane {
+    /// The crane in pose `q`, as the page shows it in 3-D, height × width × 3; `shown`: poses for which there is room, too.
+    #[pyo3(name = "_render", signature = (q, shown, width, height, azimuth=None, elevation=None))]
+    #[expect(clippy::too_many_arguments, reason = "named arguments in Python")]
+    fn render<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        shown: &Bound<'py, PyAny>,
+        width: i64,
+        height: i64,
+        azimuth: Option<f64>,
+        elevation: Option<f64>,
+    ) -> PyResult<Bound<'py, PyArray3<u8>>> {
+        let view = View::new([width, height], azimuth, elevation).map_err(PyValueError::new_err)?;
+        let crane: &dyn DynCrane = &self.live;
+        let read = |name: &str, given| Argument::coordinates(name, given, crane.description());
+        let (pose, shown) = (read("q", q)?, read("shown", shown)?);
+        if !pose.shape.is_empty() {
+            let shape = &pose.shape;
+            return Err(PyValueError::new_err(format!("q: poses of shape {shape:?}: a picture shows one, as in q[0]")));
+        }
+        if !pose.numbers.iter().chain(&shown.numbers).all(|number| number.is_finite()) {
+            return Err(PyValueError::new_err("q: not all numbers are finite: give a pose that the crane can have"));
+        }
+        let elements = py.detach(|| {
+            let start = crane.guess();
+            let figure = |q: &[f64]| Figure::new(&self.live, &start, q);
+            let room: Vec<_> = shown.numbers.chunks(shown.width).flat_map(|q| figure(q).all_corners()).collect();
+            draw(&figure(&pose.numbers), &view, &room)
+        });
+        let [width, height] = view.sides();
+        PyArray1::from_vec(py, elements).reshape([height, width, 3])
+    }
+
     /// The crane in 3-D and in tables as an HTML page that needs no network: at rest, or with a run of it.
     #[pyo3(name = "_page", signature = (run=None))]
     fn page_with(&self, py: Python<'_>, run: Option<Given<'_>>) -> PyResult<String> {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum, ValueHint};
 
-use super::crane::Choice;
+use super::{crane::Choice, poses::Held};
 
 /// Language of other programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -17,6 +17,8 @@ pub enum Language {
     C,
     /// A functional mock-up unit for co-simulation and model exchange: the whole crane, ready to run elsewhere.
     Fmu,
+    /// What is drawn of the crane at rest, glTF 2.0: a node for each body, for Blender, viewers and pages; for a file `.glb` in one binary file.
+    Gltf,
 }
 
 /// Version of the functional mock-up interface.
@@ -56,10 +58,12 @@ pub enum CNumber {
 pub struct Export {
     #[command(flatten)]
     pub crane: Choice,
+    #[command(flatten, next_help_heading = "Pose, with --format gltf")]
+    pub held: Held,
     /// Language to write
     #[arg(long, value_enum)]
     pub format: Language,
-    /// File to write [default: the crane's name with .urdf, .xml, .c or .fmu]
+    /// File to write [default: the crane's name with .urdf, .xml, .c, .fmu or .gltf]
     #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: Option<PathBuf>,
     /// Functions to write in C, separated by commas, with `_vjp` or `_jvp` products with their derivatives; a wrong name lists all
@@ -79,19 +83,37 @@ pub struct Export {
 }
 
 impl Export {
+    /// The file to write.
+    pub fn file(&self, crane: &str) -> PathBuf {
+        let suffix = match self.format {
+            Language::Urdf => "urdf",
+            Language::Mjcf => "xml",
+            Language::C => "c",
+            Language::Fmu => "fmu",
+            Language::Gltf => "gltf",
+        };
+        self.file.clone().unwrap_or_else(|| PathBuf::from(format!("{crane}.{suffix}")))
+    }
+
     /// The functions to write in C.
     pub fn functions(&self) -> Vec<String> {
         self.functions.clone().unwrap_or_else(|| ["mass_matrix", "bias", "forward_dynamics"].map(str::to_owned).into())
     }
 
+    /// Whether what is drawn of the crane is written, for which its pose must be known.
+    pub fn is_scene(&self) -> bool {
+        self.format == Language::Gltf && !self.crane.compile
+    }
+
     /// The options that are for one language, whether they are given, and that language.
-    pub fn of_one_language(&self) -> [(&'static str, bool, Language); 5] {
+    pub fn of_one_language(&self) -> [(&'static str, bool, Language); 6] {
         [
             ("functions", self.functions.is_some(), Language::C),
             ("precision", self.precision.is_some(), Language::C),
             ("fmi", self.fmi.is_some(), Language::Fmu),
             ("library", !self.libraries.is_empty(), Language::Fmu),
             ("compile", self.crane.compile, Language::Fmu),
+            ("hold", !self.held.held.is_empty(), Language::Gltf),
         ]
     }
 }

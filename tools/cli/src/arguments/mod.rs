@@ -18,7 +18,7 @@ pub use analysis::{
     Strength,
 };
 pub use crane::{
-    Analysis, Check, Choice, DEFAULT_CRANE, Example, Explain, Format, Generate, Limits, List, New, Parameters,
+    Analysis, Check, Choice, DEFAULT_CRANE, Example, Explain, Format, Generate, Limits, List, New, Parameters, Picture,
     STANDARD_INPUT, spec_file,
 };
 pub use exchange::{CNumber, Export, Fmi, Import, Language};
@@ -61,6 +61,7 @@ Examples:
   crane new my-crane --from cantilever a Rust crate that compiles your own crane
   crane export my.yaml --format urdf -o my.urdf
                                        the crane for other programs, with its springs in my.springs.yaml
+  crane picture my.yaml -o my.png      the crane in 3-D as a picture
   crane import robot.urdf -o my.yaml   convert a robot in URDF or MJCF to a spec
   crane list                           the shipped cranes
   crane info                           coordinates, parameters, drives of a crane
@@ -123,6 +124,8 @@ pub enum Action {
     Stability(Stability),
     /// Show coordinates, bodies, supports, drives and parameters of a crane
     Info(Analysis),
+    /// Draw a crane at rest as it is in the report's 3-D, into a picture (PNG)
+    Picture(Picture),
     /// Evaluate quantities such as T, A and e at given states, for other programs
     Eval(Eval),
     /// Create a Rust crate for your own crane
@@ -147,7 +150,7 @@ pub enum Action {
         #[arg(value_name = "COMMAND", value_enum)]
         of: Option<Output>,
     },
-    /// Export a crane as URDF, MJCF, C or an FMU, for Pinocchio, MuJoCo, ROS, controllers, Simulink and others
+    /// Export a crane as URDF, MJCF, C, an FMU or glTF, for Pinocchio, MuJoCo, ROS, controllers, Simulink, Blender and others
     Export(Export),
     /// Convert a URDF or MJCF model to a spec
     Import(Import),
@@ -178,7 +181,9 @@ impl Action {
             Action::Stability(options) => Some(&mut options.analysis.crane),
             Action::Report(options) => Some(&mut options.crane),
             Action::Book(options) => Some(&mut options.crane),
+            Action::Picture(options) => Some(&mut options.crane),
             Action::Eval(options) => Some(&mut options.crane),
+            Action::Export(options) if options.is_scene() => Some(&mut options.crane),
             Action::Compare(_)
             | Action::New(_)
             | Action::Check(_)
@@ -202,6 +207,16 @@ impl Action {
             Action::Statics(options) => Some(&options.poses),
             Action::Strength(options) => Some(&options.poses),
             Action::Modes(options) => Some(&options.poses),
+            _ => None,
+        }
+    }
+
+    /// The drives that hold a position, where nothing is varied.
+    pub fn held(&self) -> Option<&Held> {
+        match self {
+            Action::Sensitivity(options) => Some(&options.held),
+            Action::Picture(options) => Some(&options.held),
+            Action::Export(options) if options.is_scene() => Some(&options.held),
             _ => None,
         }
     }

@@ -130,8 +130,13 @@ impl Figure {
     }
 
     /// The corners of a shape in the world, m.
-    pub fn corners<'a>(&'a self, shape: &'a Shape) -> impl Iterator<Item = Vector3<f64>> + 'a {
-        placed(shape, &self.frames)
+    pub fn corners(&self, shape: &Shape) -> Vec<Vector3<f64>> {
+        placed(shape, &self.frames).collect()
+    }
+
+    /// The corners of all shapes in the world, m.
+    pub fn all_corners(&self) -> Vec<Vector3<f64>> {
+        self.shapes.iter().flat_map(|shape| placed(shape, &self.frames)).collect()
     }
 }
 

@@ -10,8 +10,10 @@ const SLOPE: f64 = 0.305_730_681;
 const ROOM: f64 = 1.06;
 /// Samples across a picture element.
 const SAMPLES: usize = 2;
-/// Rows of the picture in memory as samples.
+/// Rows of the picture that are in memory as samples.
 const BAND: usize = 64;
+/// The direction of the corner from which the page shows a crane first.
+const CORNER: [f64; 3] = [-1.0, -1.25, 0.62];
 /// Where the sun is; shadows fall on the ground alone.
 const SUN: [f64; 3] = [-0.9, -0.7, 1.6];
 /// Colours of the sky, the ground and its grid, and the tone of a shadow.
@@ -36,24 +38,30 @@ pub struct View {
 impl View {
     /// Largest width and height of a picture, picture elements.
     pub const MOST: usize = 4096;
-    /// The azimuth of the page's view from the corner, rad.
-    pub const AZIMUTH: f64 = -2.245_537_269;
-    /// Its elevation, rad.
-    pub const ELEVATION: f64 = 0.369_527_292;
 
-    /// A view from `azimuth`, about z from x on, and `elevation` above the ground, rad.
+    /// A view of a picture with these sides from `azimuth`, about z from x on, and `elevation` above the ground, rad; from the page's corner where
+    /// they are not given.
     ///
     /// # Errors
     /// The picture is too large or has no size, or an angle is not a finite number.
-    pub fn new([width, height]: [usize; 2], [azimuth, elevation]: [f64; 2]) -> Result<Self, String> {
-        let most = Self::MOST;
-        if ![width, height].iter().all(|side| (1..=most).contains(side)) {
-            return Err(format!("a picture of {width} × {height}: both sides must be 1 to {most} picture elements"));
-        }
+    pub fn new(sides: [i64; 2], azimuth: Option<f64>, elevation: Option<f64>) -> Result<Self, String> {
+        let (most, [x, y, z]) = (Self::MOST, CORNER);
+        let side = |side: i64| usize::try_from(side).ok().filter(|side| (1..=most).contains(side));
+        let [Some(width), Some(height)] = sides.map(side) else {
+            let [width, height] = sides;
+            return Err(format!("a picture of {width} × {height}: write 1 to {most} picture elements for both sides"));
+        };
+        let azimuth = azimuth.unwrap_or_else(|| y.atan2(x));
+        let elevation = elevation.unwrap_or_else(|| z.atan2(x.hypot(y)));
         if !azimuth.is_finite() || !elevation.is_finite() {
-            return Err(format!("a view from azimuth {azimuth}, elevation {elevation}: both must be finite numbers"));
+            return Err(format!("a view from azimuth {azimuth}, elevation {elevation}: write finite numbers, rad"));
         }
         Ok(Self { width, height, azimuth, elevation })
+    }
+
+    /// Width and height of the picture.
+    pub fn sides(&self) -> [usize; 2] {
+        [self.width, self.height]
     }
 
     /// Directions to the right, up and towards the camera, as rows.
@@ -116,16 +124,15 @@ fn range(places: &[Vector3<f64>]) -> [Vector3<f64>; 2] {
 
 /// The picture of a figure, red, green and blue of each picture element, row by row from the top; `shown`: places that are to be in it, too, m.
 pub fn draw(figure: &Figure, view: &View, shown: &[Vector3<f64>]) -> Vec<u8> {
-    let corners: Vec<Vector3<f64>> = figure.shapes.iter().flat_map(|shape| figure.corners(shape)).collect();
+    let corners = figure.all_corners();
     let camera = Camera::new(view, &[&corners, shown].concat());
-    let [low, high] = range(&corners);
-    let ground = Ground { level: figure.ground, size: (high - low).norm(), centre: (low + high) / 2.0 };
+    let ground = Ground::new(figure.ground, range(&corners));
     let sees_ground = camera.place.z > ground.level;
     let (mut shadows, mut triangles) = (Vec::new(), Vec::new());
     // From beside the camera, so that faces differ.
     let light = (camera.turn.transpose() * Vector3::new(-0.3, 0.45, 1.0)).normalize();
     for shape in &figure.shapes {
-        let corners: Vec<Vector3<f64>> = figure.corners(shape).collect();
+        let corners = figure.corners(shape);
         for triangle in &shape.mesh.triangles {
             let places = triangle.map(|corner| corners[corner]);
             let [a, b, c] = places;
@@ -154,9 +161,9 @@ fn seen(camera: &Camera, [a, b, c]: [Vector3<f64>; 3], colour: [u8; 3]) -> Optio
     Some(Triangle { corners: [camera.see(&a)?, camera.see(&b)?, camera.see(&c)?], colour })
 }
 
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "limited to what a byte can hold")]
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast limits it to what a byte can hold")]
 fn byte(value: f64) -> u8 {
-    value.clamp(0.0, 255.0).round() as u8
+    (value + 0.5) as u8
 }
 
 /// Level ground under a crane.
@@ -165,29 +172,38 @@ struct Ground {
     /// Size and middle of the crane, m.
     size: f64,
     centre: Vector3<f64>,
+    /// Side of a square of the grid, m.
+    square: f64,
 }
 
 impl Ground {
-    /// Its colour where a ray from the camera meets it; `None` in the sky. `across`: width of a sample at a distance of 1 m, m.
-    fn colour(&self, camera: &Camera, ray: &Vector3<f64>, across: f64, shade: f64) -> Option<[u8; 3]> {
+    fn new(level: f64, [low, high]: [Vector3<f64>; 2]) -> Self {
+        let size = (high - low).norm().max(1e-9);
+        Self { level, size, centre: (low + high) / 2.0, square: 10_f64.powf((size / 12.0).log10().round()) }
+    }
+
+    /// Its colours where a ray from the camera meets it, in the sun and in shadow; those of the sky if it does not. `across`: width of a picture
+    /// element at a distance of 1 m, m.
+    fn colours(&self, camera: &Camera, ray: &Vector3<f64>, across: f64) -> [[u8; 3]; 2] {
         let way = (self.level - camera.place.z) / ray.z;
         if ray.z >= 0.0 || !way.is_finite() {
-            return None;
+            return [SKY.map(byte); 2];
         }
         let place = camera.place + way * ray;
-        let square = 10_f64.powf((self.size.max(1e-6) / 12.0).log10().round());
-        let (width, blur) = (LINE * square, way * ray.norm_squared() * across / -ray.z);
+        let (width, blur) = (LINE * self.square, way * ray.norm_squared() * across / -ray.z);
         // Distance of the nearest line; far away, the grid becomes a tone.
-        let nearest = [place.x, place.y].map(|x| (x / square - (x / square).round()).abs() * square);
-        let covered = ((width + blur) / 2.0 - nearest[0].min(nearest[1])) / blur.max(1e-12);
+        let off = |x: f64| (x / self.square - (x / self.square).round()).abs() * self.square;
+        let covered = ((width + blur) / 2.0 - off(place.x).min(off(place.y))) / blur.max(1e-12);
         let line = covered.clamp(0.0, (width / blur.max(1e-12)).min(1.0));
-        let away = (place - self.centre).norm() / self.size.max(1e-9);
-        let haze = ((away - 0.8) / 3.0).clamp(0.0, 1.0);
-        let mix = |channel: usize| {
-            let own = shade * (FLOOR[channel] + line * (GRID[channel] - FLOOR[channel]));
-            byte(own + haze * (SKY[channel] - own))
-        };
-        Some([0, 1, 2].map(mix))
+        let haze = (((place - self.centre).norm() / self.size - 0.8) / 3.0).clamp(0.0, 1.0);
+        let mut colours = [[0; 3]; 2];
+        for (colour, shade) in colours.iter_mut().zip([1.0, SHADE]) {
+            for channel in 0..3 {
+                let own = shade * (FLOOR[channel] + line * (GRID[channel] - FLOOR[channel]));
+                colour[channel] = byte(own + haze * (SKY[channel] - own));
+            }
+        }
+        colours
     }
 }
 
@@ -209,12 +225,17 @@ impl Band {
     /// Lays the ground behind everything, with shadows on it.
     fn lay(&mut self, camera: &Camera, ground: &Ground, shadows: &[Triangle]) {
         shadows.iter().for_each(|shadow| self.fill(shadow));
-        for index in 0..self.near.len() {
-            let shade = if std::mem::take(&mut self.near[index]) > 0.0 { SHADE } else { 1.0 };
-            let [x, y] = [index % self.width, self.first + index / self.width].map(|sample| sample as f64 + 0.5);
-            let ray = Vector3::new(x - camera.middle[0], camera.middle[1] - y, -camera.focus) / camera.focus;
-            let found = ground.colour(camera, &(camera.turn.transpose() * ray), 1.0 / camera.focus, shade);
-            self.colours[index] = found.unwrap_or(SKY.map(byte));
+        let across = SAMPLES as f64 / camera.focus;
+        for element in 0..self.near.len() / SAMPLES.pow(2) {
+            let (row, column) = (element / (self.width / SAMPLES), element % (self.width / SAMPLES));
+            let middle = |sample: usize| (sample + SAMPLES / 2) as f64;
+            let (right, down) = (middle(SAMPLES * column), middle(self.first + SAMPLES * row));
+            let ray = Vector3::new(right - camera.middle[0], camera.middle[1] - down, -camera.focus) / camera.focus;
+            let [sun, shade] = ground.colours(camera, &(camera.turn.transpose() * ray), across);
+            for index in self.samples_of(row, column) {
+                let shadowed = std::mem::take(&mut self.near[index]) > 0.0;
+                self.colours[index] = if shadowed { shade } else { sun };
+            }
         }
     }
 
@@ -230,31 +251,46 @@ impl Band {
             return;
         }
         for row in samples(y, self.first, rows) {
+            let up = (self.first + row) as f64 + 0.5;
+            // Shares of the corners in the middle of the first sample, and how they change from one to the next.
+            let share =
+                |from: &Vector3<f64>, to: &Vector3<f64>| [edge(from, to, 0.5, up) / area, (from.y - to.y) / area];
+            let ([p, p_step], [r, r_step], [s, s_step]) = (share(b, c), share(c, a), share(a, b));
             for column in samples(x, 0, self.width) {
-                let at = (column as f64 + 0.5, (self.first + row) as f64 + 0.5);
-                let shares = [(b, c), (c, a), (a, b)].map(|(from, to)| edge(from, to, at.0, at.1) / area);
-                let near = shares[0] * a.z + shares[1] * b.z + shares[2] * c.z;
+                let x = column as f64;
+                let (p, r, s) = (p + x * p_step, r + x * r_step, s + x * s_step);
+                let near = p * a.z + r * b.z + s * c.z;
                 let index = row * self.width + column;
-                if shares.iter().all(|share| *share >= 0.0) && near > self.near[index] {
+                if p >= 0.0 && r >= 0.0 && s >= 0.0 && near > self.near[index] {
                     (self.near[index], self.colours[index]) = (near, *colour);
                 }
             }
         }
     }
 
+    /// Indices of the samples of a picture element.
+    fn samples_of(&self, row: usize, column: usize) -> impl Iterator<Item = usize> + use<> {
+        let first = SAMPLES * (row * self.width + column);
+        let width = self.width;
+        (0..SAMPLES.pow(2)).map(move |sample| first + sample / SAMPLES * width + sample % SAMPLES)
+    }
+
     /// The picture elements: means of their samples.
     fn reduced(&self) -> Vec<u8> {
         let (rows, columns) = (self.near.len() / self.width / SAMPLES, self.width / SAMPLES);
-        let element = |row: usize, column: usize| {
-            let samples = (0..SAMPLES * SAMPLES).map(move |sample| {
-                (SAMPLES * row + sample / SAMPLES) * self.width + SAMPLES * column + sample % SAMPLES
-            });
-            let sum = samples.fold([0.0; 3], |sum, index| {
-                [0, 1, 2].map(|channel| sum[channel] + f64::from(self.colours[index][channel]))
-            });
-            sum.map(|sum| byte(sum / (SAMPLES * SAMPLES) as f64))
-        };
-        (0..rows).flat_map(|row| (0..columns).flat_map(move |column| element(row, column))).collect()
+        let mut elements = vec![0; 3 * rows * columns];
+        for (element, mean) in elements.chunks_exact_mut(3).enumerate() {
+            let mut sum = [0; 3];
+            for index in self.samples_of(element / columns, element % columns) {
+                for (sum, channel) in sum.iter_mut().zip(self.colours[index]) {
+                    *sum += usize::from(channel);
+                }
+            }
+            for (mean, sum) in mean.iter_mut().zip(sum) {
+                *mean = byte(sum as f64 / SAMPLES.pow(2) as f64);
+            }
+        }
+        elements
     }
 }
 
