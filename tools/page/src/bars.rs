@@ -85,7 +85,7 @@ pub fn bars(live: &LiveCrane, frames: &[Matrix4<f64>]) -> Vec<Bar> {
         let mut own: Vec<&Anchor> = anchors.iter().filter(|anchor| anchor.body == body).collect();
         let mut segments = drawn(live, body, frames, &own);
         let beam = beam_size(live, body);
-        let near = near.max(beam);
+        let near = if beam > 0.0 { beam } else { near };
         // Points and pins from the farthest on, then masses, which are often on the way to them.
         own.sort_by(|a, b| a.mass.is_some().cmp(&b.mass.is_some()).then(b.at.norm().total_cmp(&a.at.norm())));
         for anchor in own {

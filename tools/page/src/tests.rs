@@ -10,13 +10,13 @@ pub(crate) fn live(name: &str) -> LiveCrane {
 }
 
 /// The examples.
-const EXAMPLES: [(&str, &str); 3] = [
+pub(crate) const EXAMPLES: [(&str, &str); 3] = [
     ("loader_crane", include_str!("../../../specs/examples/loader_crane.yaml")),
     ("parallel_harvester", include_str!("../../../specs/examples/parallel_harvester.yaml")),
     ("telescopic_loader", include_str!("../../../specs/examples/telescopic_loader.yaml")),
 ];
 
-fn example(name: &str, text: &str) -> LiveCrane {
+pub(crate) fn example(name: &str, text: &str) -> LiveCrane {
     LiveCrane::new(compile::load(&SourceFile::new(name, text)).unwrap_or_else(|mistakes| panic!("{mistakes}")))
 }
 

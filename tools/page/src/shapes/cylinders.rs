@@ -45,3 +45,15 @@ pub fn parts(cylinder: &Barrel, size: f64, frames: &[Matrix4<f64>]) -> Vec<(Pain
     );
     parts
 }
+
+/// The proportions as the page's script has them.
+#[cfg(test)]
+pub fn written() -> [String; 5] {
+    [
+        format!("const LEAST = {LEAST};"),
+        format!("const BARREL = {OUTER};"),
+        format!("const BAR = {SIDE};"),
+        format!("const LENGTH = {LENGTH};"),
+        format!("const PIN = {{ length: {LONG}, radius: {RADIUS} }};"),
+    ]
+}

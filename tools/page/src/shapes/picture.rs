@@ -117,7 +117,7 @@ impl Camera {
     }
 }
 
-fn range(places: &[Vector3<f64>]) -> [Vector3<f64>; 2] {
+pub(super) fn range(places: &[Vector3<f64>]) -> [Vector3<f64>; 2] {
     let ends = [Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)];
     places.iter().fold(ends, |[low, high], place| [low.inf(place), high.sup(place)])
 }

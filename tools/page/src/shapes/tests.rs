@@ -1,1 +1,265 @@
+use crane_model::statics::Settings;
+use nalgebra::UnitQuaternion;
+use serde_json::Value;
 
+use super::{
+    picture::{View, draw},
+    *,
+};
+use crate::{
+    Program,
+    tests::{EXAMPLES, example, live},
+};
+
+const PROGRAM: Program = Program { name: "test", version: "0" };
+
+fn cranes() -> impl Iterator<Item = (&'static str, LiveCrane)> {
+    let shipped = crane_specs::SPECS.iter().map(|(name, _)| (*name, live(name)));
+    shipped.chain(EXAMPLES.map(|(name, text)| (name, example(name, text))))
+}
+
+fn figure(live: &LiveCrane) -> Figure {
+    let q = (live as &dyn DynCrane).equilibrium(&Settings::default()).q;
+    Figure::new(live, &q, &q)
+}
+
+/// The parts of a GLB file.
+fn parts(bytes: &[u8]) -> (Value, &[u8]) {
+    let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().expect("a word")) as usize;
+    assert_eq!((&bytes[..4], word(4), word(8)), (&b"glTF"[..], 2, bytes.len()));
+    let text = word(12);
+    assert_eq!((&bytes[16..20], &bytes[24 + text..28 + text]), (&b"JSON"[..], &b"BIN\0"[..]));
+    assert_eq!(28 + text + word(20 + text), bytes.len());
+    (serde_json::from_slice(&bytes[20..20 + text]).expect("JSON"), &bytes[28 + text..])
+}
+
+/// Frames of all nodes in the world of a spec.
+fn frames(document: &Value) -> Vec<Matrix4<f64>> {
+    fn visit(nodes: &Value, index: usize, outer: Matrix4<f64>, found: &mut [Matrix4<f64>]) {
+        let node = &nodes[index];
+        let numbers = |key: &str| -> Vec<f64> { serde_json::from_value(node[key].clone()).unwrap_or_default() };
+        let mut own = Matrix4::identity();
+        if let [x, y, z, w] = numbers("rotation")[..] {
+            own = UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z)).to_homogeneous();
+        }
+        if let [x, y, z] = numbers("translation")[..] {
+            own = Matrix4::new_translation(&Vector3::new(x, y, z)) * own;
+        }
+        found[index] = outer * own;
+        for child in node["children"].as_array().into_iter().flatten() {
+            visit(nodes, child.as_u64().expect("an index") as usize, found[index], found);
+        }
+    }
+    let nodes = &document["nodes"];
+    let mut found = vec![Matrix4::zeros(); nodes.as_array().expect("nodes").len()];
+    // Back from y up.
+    let upright = Matrix4::from_axis_angle(&Vector3::x_axis(), std::f64::consts::FRAC_PI_2);
+    visit(nodes, 0, upright, &mut found);
+    found
+}
+
+/// Nodes have the names and places of bodies and points at rest, to the rounding of a product of frames; corners are single precision.
+#[test]
+fn nodes_and_corners_are_where_bodies_and_points_are() {
+    for (name, live) in cranes() {
+        let (figure, crane) = (figure(&live), &live as &dyn DynCrane);
+        let q = crane.equilibrium(&Settings::default()).q;
+        let bytes = gltf::binary(&figure, name, PROGRAM);
+        let (document, numbers) = parts(&bytes);
+        let found = frames(&document);
+        let size = figure.all_corners().iter().map(nalgebra::Matrix::norm).fold(1.0, f64::max);
+        let names: Vec<&str> =
+            document["nodes"].as_array().expect("nodes").iter().filter_map(|node| node["name"].as_str()).collect();
+        let bodies = live.chain().bodies.iter().map(|body| body.name.as_str()).zip(crane.transforms_at(&q));
+        let points = live.chain().points.iter().map(|point| point.name.as_str());
+        let points = points.zip(crane.points_at(&q).into_iter().map(|at| Matrix4::new_translation(&at)));
+        for (index, (part, frame)) in bodies.chain(points).enumerate() {
+            assert_eq!(names[index + 1], part, "{name}");
+            let off = (found[index + 1] - frame).column(3).norm();
+            assert!(off < 1e-12 * size, "{name}: {part} is {off} m from its place");
+        }
+        let mut corners = Vec::new();
+        for (node, frame) in document["nodes"].as_array().expect("nodes").iter().zip(&found) {
+            let Some(mesh) = node["mesh"].as_u64() else { continue };
+            for primitive in document["meshes"][mesh as usize]["primitives"].as_array().expect("primitives") {
+                let accessor =
+                    &document["accessors"][primitive["attributes"]["POSITION"].as_u64().expect("corners") as usize];
+                let view = &document["bufferViews"][accessor["bufferView"].as_u64().expect("a view") as usize];
+                let [first, length] =
+                    ["byteOffset", "byteLength"].map(|key| view[key].as_u64().expect("a place") as usize);
+                let number = |bytes: &[u8]| f64::from(f32::from_le_bytes(bytes.try_into().expect("a number")));
+                let all: Vec<f64> = numbers[first..first + length].chunks(4).map(number).collect();
+                corners.extend(all.chunks(3).map(|at| (frame * Vector3::from_row_slice(at).push(1.0)).xyz()));
+            }
+        }
+        let range = |corners: &[Vector3<f64>]| {
+            let [low, high] = [Vector3::inf, Vector3::sup]
+                .map(|of| corners.iter().copied().reduce(|a, b| of(&a, &b)).expect("corners"));
+            [low, high]
+        };
+        let expected = figure.all_corners();
+        assert_eq!(corners.len(), expected.len(), "{name}");
+        for (found, expected) in range(&corners).iter().zip(range(&expected)) {
+            assert!((found - expected).norm() < 1e-6 * size, "{name}: {found} instead of {expected}");
+        }
+    }
+}
+
+/// Surfaces are closed: every edge belongs to two triangles, once in each direction.
+#[test]
+fn shapes_are_closed() {
+    for (name, live) in cranes() {
+        for shape in &figure(&live).shapes {
+            let edges = || shape.mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+            let known: std::collections::HashSet<[usize; 2]> = edges().collect();
+            assert!(edges().all(|[a, b]| known.contains(&[b, a])), "{name}: {:?} {}", shape.owner, shape.paint.name);
+            assert_eq!(known.len(), edges().count(), "{name}: {:?} {}", shape.owner, shape.paint.name);
+        }
+    }
+}
+
+/// From shape to shape, boxes around them meet: whatever is drawn hangs together with the rest.
+#[test]
+fn nothing_that_is_drawn_floats() {
+    for (name, live) in cranes() {
+        let figure = figure(&live);
+        let boxes: Vec<[Vector3<f64>; 2]> =
+            figure.shapes.iter().map(|shape| picture::range(&figure.corners(shape))).collect();
+        let meet = |a: &[Vector3<f64>; 2], b: &[Vector3<f64>; 2]| {
+            (0..3).all(|axis| a[0][axis] <= b[1][axis] + 1e-6 && b[0][axis] <= a[1][axis] + 1e-6)
+        };
+        let (mut reached, mut left) = (vec![boxes[0]], boxes[1..].to_vec());
+        while let Some(next) = left.iter().position(|one| reached.iter().any(|other| meet(one, other))) {
+            reached.push(left.swap_remove(next));
+        }
+        assert!(left.is_empty(), "{name}: {left:?}");
+    }
+}
+
+/// Stages that do not bend are beams; they were drawn as ropes once.
+#[test]
+fn stages_are_no_ropes() {
+    let live = example(EXAMPLES[0].0, EXAMPLES[0].1);
+    let figure = figure(&live);
+    let ropes: Vec<&str> = figure.scene.bodies.iter().filter(|body| body.rope).map(|body| body.name.as_str()).collect();
+    assert_eq!(ropes, ["slings_1"]);
+    let stage = figure.scene.bodies.iter().position(|body| body.name == "stage_one").expect("a stage");
+    let shape = figure.shapes.iter().find(|shape| shape.owner == Owner::Body(stage)).expect("a shape");
+    let [low, high] = picture::range(&shape.mesh.corners);
+    // 3 m long, 170 mm high, 130 mm wide, as in the spec.
+    assert!((high - low - Vector3::new(3.0, 0.17, 0.13)).norm() < 1e-9, "{}", high - low);
+}
+
+/// Only boxes, in sight of no ground.
+fn boxes(given: &[([f64; 3], [f64; 3], Paint)]) -> Figure {
+    let mut figure = figure(&live("double_pendulum"));
+    let owner = || Owner::World("box".to_owned());
+    figure.shapes = given
+        .iter()
+        .map(|&(middle, size, paint)| Shape { owner: owner(), paint, mesh: Mesh::block(middle.into(), size) })
+        .collect();
+    figure.ground = 1e3;
+    figure
+}
+
+/// A box of 1 × 2 × 1 m, seen from along x: its front is `(0.5 + 1.06 · 0.5/tan 17° + 0.02 √6) − 0.5 = 1.783` m away, so that its edges are
+/// `50 · 0.5/(1.783 tan 17°) = 45.9` elements above and below the middle of the picture, and 91.7 beside it.
+#[test]
+fn a_box_is_where_perspective_puts_it() {
+    let view = View::new([200, 100], Some(0.0), Some(0.0)).expect("a view");
+    let image = draw(&boxes(&[([0.0; 3], [1.0, 2.0, 1.0], LOAD)]), &view, &[]);
+    assert_eq!(image.len(), 200 * 100 * 3);
+    let element =
+        |row: usize, column: usize| <[u8; 3]>::try_from(&image[3 * (200 * row + column)..][..3]).expect("an element");
+    // Its tone is 0.42 + 0.58 cos of the angle to the light.
+    let tone = 0.42 + 0.58 / (1.0_f64 + 0.3 * 0.3 + 0.45 * 0.45).sqrt();
+    let front = LOAD.colour.map(|channel| (f64::from(channel) * tone).round() as u8);
+    let sky = [238, 242, 246];
+    for (row, column, expected) in [
+        (50, 100, front),
+        (4, 100, front),
+        (3, 100, sky),
+        (95, 100, front),
+        (96, 100, sky),
+        (50, 9, front),
+        (50, 7, sky),
+        (50, 190, front),
+        (50, 192, sky),
+    ] {
+        assert_eq!(element(row, column), expected, "row {row}, column {column}");
+    }
+}
+
+/// What is nearer hides what is behind it, in whatever order they come.
+#[test]
+fn the_nearer_box_is_seen() {
+    let view = View::new([64, 64], Some(0.0), Some(0.0)).expect("a view");
+    let (near, far) = (([1.0, 0.0, 0.0], [0.5; 3], LINK), ([-1.0, 0.0, 0.0], [1.5; 3], LOAD));
+    let [one, other] = [[near, far], [far, near]].map(|order| draw(&boxes(&order), &view, &[]));
+    assert_eq!(one, other);
+    // Red over blue of the middle is that of the nearer one.
+    let middle = &one[3 * (64 * 32 + 32)..];
+    let ratio = |colour: &[u8]| f64::from(colour[0]) / f64::from(colour[2]);
+    // Tones are rounded to whole numbers, of at least 30.
+    assert!((ratio(middle) / ratio(&LINK.colour) - 1.0).abs() < 0.03, "{:?}", &middle[..3]);
+}
+
+/// No crane leaves its picture: the outermost elements are those of the sky alone.
+#[test]
+fn whole_cranes_are_in_their_pictures() {
+    let view = |elevation| View::new([96, 64], None, Some(elevation)).expect("a view");
+    for (name, live) in cranes() {
+        // In sight of no ground.
+        let figure = Figure { ground: 1e3, ..figure(&live) };
+        for elevation in [0.37, 0.0, -0.5, 1.57] {
+            let image = draw(&figure, &view(elevation), &[]);
+            let is_sky = |row: usize, column: usize| image[3 * (96 * row + column)..][..3] == [238, 242, 246];
+            let border = (0..96)
+                .flat_map(|column| [(0, column), (63, column)])
+                .chain((0..64).flat_map(|row| [(row, 0), (row, 95)]));
+            assert!(border.clone().all(|(row, column)| is_sky(row, column)), "{name}, {elevation} rad");
+            let crane = (0..64)
+                .flat_map(|row| (0..96).map(move |column| (row, column)))
+                .filter(|&(row, column)| !is_sky(row, column));
+            assert!(crane.count() > 60, "{name}, {elevation} rad");
+        }
+    }
+}
+
+#[test]
+fn pictures_are_bounded() {
+    assert!(View::new([4096, 1], None, None).is_ok());
+    for sides in [[0, 1], [1, 4097], [-1, 9], [i64::MAX, i64::MIN]] {
+        let refused = View::new(sides, None, None).expect_err("a bound");
+        assert!(refused.contains("write 1 to 4096 picture elements"), "{refused}");
+    }
+    assert!(View::new([1, 1], Some(f64::NAN), None).is_err());
+}
+
+/// Numbers that stand in the page's script, too: colours and proportions.
+#[test]
+fn proportions_are_those_of_the_page() {
+    let script =
+        [include_str!("../../../report/src/figure.js"), include_str!("../../../report/src/cylinders.js")].concat();
+    for paint in [BASE, LINK, FLEXIBLE, STAGE, SLIDE, LOAD, PIN, PASSIVE, BARREL, ROD, LINKAGE, PAD] {
+        let [red, green, blue] = paint.colour;
+        let written = format!("{}: 0x{red:02x}{green:02x}{blue:02x}", paint.name);
+        assert!(script.contains(&written), "{written}");
+    }
+    let [least, most] = THICKNESS;
+    for written in [
+        format!("const FILLING = {FILLING};"),
+        format!("const THICKNESS = [{least}, {most}];"),
+        format!("const RADIUS = {{ spring: {SPRING}, rope: {ROPE}, hook: {HOOK}, sheave: {SHEAVE} }};"),
+        format!("const LEVEL = {LEVEL};"),
+        format!("const HEIGHT = {HEIGHT};"),
+        format!("const LEG = {LEG};"),
+        format!("const MARGIN = {MARGIN};"),
+        format!("{BLOCK} * this.size"),
+    ]
+    .into_iter()
+    .chain(cylinders::written())
+    {
+        assert!(script.contains(&written), "{written}");
+    }
+}
