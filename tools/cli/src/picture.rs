@@ -54,7 +54,7 @@ fn figure(choice: &Choice, registry: &Registry) -> Outcome<(String, Figure)> {
     let name = crane.description().name.to_string();
     let case = Case::new(&name, crane.as_ref());
     if !case.equilibrium.is_stable() {
-        screen::remark(&format!("{name} is not at rest as it is drawn: `crane statics` tells why"));
+        screen::remark(&format!("{name} is not at rest as it is drawn: see `crane statics`"));
     }
     let q = shown_pose(crane.as_ref(), &case.equilibrium);
     let figure = Figure::new(&registry.live(crane.as_ref())?, &q, &q);

@@ -174,3 +174,22 @@ def test_an_episode_ends_when_the_crane_tips():
         env.reset(seed=0)
         *_, terminated, _, info = env.step([0.0])
         assert terminated is ends and info["why"] == ("tipping" if ends else "")
+
+
+def test_a_rendered_crane_moves():
+    """Pictures are those of `Crane.render` in the state reached; without a render mode there are none."""
+    env = environment(render_mode="rgb_array", dt=0.1)
+    assert (env.metadata["render_modes"], env.metadata["render_fps"]) == (["rgb_array"], 10)
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        env.render()
+    env.reset(seed=3)
+    first = env.render()
+    assert (first.shape, first.dtype) == ((480, 640, 3), np.uint8)
+    np.testing.assert_array_equal(env.render(), first)
+    env.step(np.ones(1))
+    assert (env.render() != first).any()
+    silent = environment()
+    silent.reset(seed=3)
+    assert silent.render() is None
+    with pytest.raises(ValueError, match="no render mode 'human': write one of rgb_array"):
+        environment(render_mode="human")

@@ -118,3 +118,36 @@ def test_a_crane_that_does_not_rest_has_a_page(pendulum):
         falling.statics()
     (shown,) = data(falling.page())["cranes"]
     assert shown["modes"] == [] and len(shown["scene"]["pose"]) == 1
+
+
+def test_a_pose_is_rendered(knuckle):
+    """The crane is more colourful than the ground; it looks different from above, and smaller where there is room for other poses."""
+    q = knuckle.statics().q
+    image = knuckle.render(q, 120, 80)
+    assert (image.shape, image.dtype) == ((80, 120, 3), np.uint8)
+    np.testing.assert_array_equal(knuckle.render(width=120, height=80), image)
+    np.testing.assert_array_equal(knuckle.render(np.stack([q, -q]).T.copy().T[0].tolist(), 120, 80), image)
+    covered = lambda image: np.mean(np.ptp(image.astype(int), axis=2) > 25)
+    # Links are narrow: a twentieth of the picture. Room for a boom of three times the length halves that.
+    assert 0.03 < covered(image) < 0.1
+    extended = q + [0, 0, 10, 0]
+    assert covered(knuckle.render(q, 120, 80, shown=[q, extended])) < 0.6 * covered(image)
+    assert (knuckle.render(q, 120, 80, elevation=1.5) != image).any() and (knuckle.render(q, 120, 80, azimuth=1.5) != image).any()
+    moved = knuckle.render(q + 0.2, 120, 80, shown=[q, q + 0.2])
+    assert (moved != knuckle.render(q, 120, 80, shown=[q, q + 0.2])).any()
+
+
+@pytest.mark.parametrize(
+    "given, message",
+    [
+        ({"width": 4097}, "4097 × 480: write 1 to 4096 picture elements"),
+        ({"height": -1}, "640 × -1: write 1 to 4096"),
+        ({"azimuth": np.inf}, "azimuth inf.*: write finite numbers, rad"),
+        ({"q": np.zeros((2, 4))}, "a picture shows one"),
+        ({"q": np.full(4, np.nan)}, "not all numbers are finite"),
+        ({"q": np.zeros(3)}, "3 numbers in its last axis"),
+    ],
+)
+def test_what_cannot_be_rendered_is_refused(knuckle, given, message):
+    with pytest.raises(ValueError, match=message):
+        knuckle.render(**given)

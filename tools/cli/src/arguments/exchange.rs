@@ -1,10 +1,10 @@
-//! Files of other programs.
+//! Files of other programs, and pictures.
 
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum, ValueHint};
 
-use super::{crane::Choice, poses::Held};
+use super::{crane::Choice, number::angle, poses::Held};
 
 /// Language of other programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -116,6 +116,30 @@ impl Export {
             ("hold", !self.held.held.is_empty(), Language::Gltf),
         ]
     }
+}
+
+/// A picture of a crane.
+#[derive(Debug, Args)]
+pub struct Picture {
+    #[command(flatten)]
+    pub crane: Choice,
+    #[command(flatten)]
+    pub held: Held,
+    /// File to write [default: the crane's name with .png]
+    #[arg(short = 'o', long, value_name = "FILE.png", value_hint = ValueHint::FilePath)]
+    pub file: Option<PathBuf>,
+    /// Width, picture elements
+    #[arg(long, value_name = "COUNT", default_value_t = 1200)]
+    pub width: i64,
+    /// Height, picture elements
+    #[arg(long, value_name = "COUNT", default_value_t = 800)]
+    pub height: i64,
+    /// Direction from which the crane is seen, about z from x on, as in `30deg` or in rad [default: the corner from which the report shows it]
+    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true, value_parser = angle)]
+    pub azimuth: Option<f64>,
+    /// Angle above the ground from which it is seen, likewise
+    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true, value_parser = angle)]
+    pub elevation: Option<f64>,
 }
 
 /// A spec from another program's file.

@@ -21,7 +21,7 @@ pub use crane::{
     Analysis, Check, Choice, DEFAULT_CRANE, Example, Explain, Format, Generate, Limits, List, New, Parameters, Picture,
     STANDARD_INPUT, spec_file,
 };
-pub use exchange::{CNumber, Export, Fmi, Import, Language};
+pub use exchange::{CNumber, Export, Fmi, Import, Language, Picture};
 pub use number::seconds;
 pub use poses::{Held, Poses, Sensitivity, Statics};
 pub use run::{Book, Compare, ComparePair, Ensemble, Page, Run, Simulate, Step, Timing};

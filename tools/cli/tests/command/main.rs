@@ -6,6 +6,7 @@ mod ensemble;
 mod margins;
 mod messages;
 mod new;
+mod pictures;
 mod places;
 mod poses;
 mod runs;
