@@ -18,7 +18,7 @@ pub use analysis::{
     Strength,
 };
 pub use crane::{
-    Analysis, Check, Choice, DEFAULT_CRANE, Example, Explain, Format, Generate, Limits, List, New, Parameters, Picture,
+    Analysis, Check, Choice, DEFAULT_CRANE, Example, Explain, Format, Generate, Limits, List, New, Parameters,
     STANDARD_INPUT, spec_file,
 };
 pub use exchange::{CNumber, Export, Fmi, Import, Language, Picture};

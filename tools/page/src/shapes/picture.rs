@@ -151,7 +151,9 @@ pub fn draw(figure: &Figure, view: &View, shown: &[Vector3<f64>]) -> Vec<u8> {
         if sees_ground {
             band.lay(&camera, &ground, &shadows);
         }
-        triangles.iter().for_each(|triangle| band.fill(triangle));
+        for triangle in &triangles {
+            band.fill(triangle);
+        }
         band.reduced()
     };
     (0..view.height).step_by(BAND).flat_map(band).collect()
@@ -193,7 +195,7 @@ impl Ground {
         let (width, blur) = (LINE * self.square, way * ray.norm_squared() * across / -ray.z);
         // Distance of the nearest line; far away, the grid becomes a tone.
         let off = |x: f64| (x / self.square - (x / self.square).round()).abs() * self.square;
-        let covered = ((width + blur) / 2.0 - off(place.x).min(off(place.y))) / blur.max(1e-12);
+        let covered = (f64::midpoint(width, blur) - off(place.x).min(off(place.y))) / blur.max(1e-12);
         let line = covered.clamp(0.0, (width / blur.max(1e-12)).min(1.0));
         let haze = (((place - self.centre).norm() / self.size - 0.8) / 3.0).clamp(0.0, 1.0);
         let mut colours = [[0; 3]; 2];
@@ -224,7 +226,9 @@ impl Band {
 
     /// Lays the ground behind everything, with shadows on it.
     fn lay(&mut self, camera: &Camera, ground: &Ground, shadows: &[Triangle]) {
-        shadows.iter().for_each(|shadow| self.fill(shadow));
+        for shadow in shadows {
+            self.fill(shadow);
+        }
         let across = SAMPLES as f64 / camera.focus;
         for element in 0..self.near.len() / SAMPLES.pow(2) {
             let (row, column) = (element / (self.width / SAMPLES), element % (self.width / SAMPLES));

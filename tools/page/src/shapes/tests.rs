@@ -33,6 +33,11 @@ fn parts(bytes: &[u8]) -> (Value, &[u8]) {
     (serde_json::from_slice(&bytes[20..20 + text]).expect("JSON"), &bytes[28 + text..])
 }
 
+/// An index or a length.
+fn whole(value: &Value) -> usize {
+    serde_json::from_value(value.clone()).expect("a whole number")
+}
+
 /// Frames of all nodes in the world of a spec.
 fn frames(document: &Value) -> Vec<Matrix4<f64>> {
     fn visit(nodes: &Value, index: usize, outer: Matrix4<f64>, found: &mut [Matrix4<f64>]) {
@@ -47,7 +52,7 @@ fn frames(document: &Value) -> Vec<Matrix4<f64>> {
         }
         found[index] = outer * own;
         for child in node["children"].as_array().into_iter().flatten() {
-            visit(nodes, child.as_u64().expect("an index") as usize, found[index], found);
+            visit(nodes, whole(child), found[index], found);
         }
     }
     let nodes = &document["nodes"];
@@ -80,13 +85,13 @@ fn nodes_and_corners_are_where_bodies_and_points_are() {
         }
         let mut corners = Vec::new();
         for (node, frame) in document["nodes"].as_array().expect("nodes").iter().zip(&found) {
-            let Some(mesh) = node["mesh"].as_u64() else { continue };
-            for primitive in document["meshes"][mesh as usize]["primitives"].as_array().expect("primitives") {
-                let accessor =
-                    &document["accessors"][primitive["attributes"]["POSITION"].as_u64().expect("corners") as usize];
-                let view = &document["bufferViews"][accessor["bufferView"].as_u64().expect("a view") as usize];
-                let [first, length] =
-                    ["byteOffset", "byteLength"].map(|key| view[key].as_u64().expect("a place") as usize);
+            if node["mesh"].is_null() {
+                continue;
+            }
+            for primitive in document["meshes"][whole(&node["mesh"])]["primitives"].as_array().expect("primitives") {
+                let accessor = &document["accessors"][whole(&primitive["attributes"]["POSITION"])];
+                let view = &document["bufferViews"][whole(&accessor["bufferView"])];
+                let [first, length] = ["byteOffset", "byteLength"].map(|key| whole(&view[key]));
                 let number = |bytes: &[u8]| f64::from(f32::from_le_bytes(bytes.try_into().expect("a number")));
                 let all: Vec<f64> = numbers[first..first + length].chunks(4).map(number).collect();
                 corners.extend(all.chunks(3).map(|at| (frame * Vector3::from_row_slice(at).push(1.0)).xyz()));
@@ -189,9 +194,8 @@ fn a_box_is_where_perspective_puts_it() {
     assert_eq!(image.len(), 200 * 100 * 3);
     let element =
         |row: usize, column: usize| <[u8; 3]>::try_from(&image[3 * (200 * row + column)..][..3]).expect("an element");
-    // Its tone is 0.42 + 0.58 cos of the angle to the light.
-    let tone = 0.42 + 0.58 / (1.0_f64 + 0.3 * 0.3 + 0.45 * 0.45).sqrt();
-    let front = LOAD.colour.map(|channel| (f64::from(channel) * tone).round() as u8);
+    // Its tone is 0.42 + 0.58/√(1 + 0.3² + 0.45²) = 0.9302, from the angle to the light, of (165, 120, 79).
+    let front = [153, 112, 73];
     let sky = [238, 242, 246];
     for (row, column, expected) in [
         (50, 100, front),
