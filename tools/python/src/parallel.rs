@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{LazyLock, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -13,6 +13,9 @@ use pyo3::prelude::*;
 
 /// How many threads a call uses; 0: as many as the machine has.
 static THREADS: AtomicUsize = AtomicUsize::new(0);
+
+/// How many the machine has. Asked once: the system takes longer to answer than a small crane to step.
+static CORES: LazyLock<usize> = LazyLock::new(|| thread::available_parallelism().map_or(1, std::num::NonZeroUsize::get));
 
 /// Sets how many threads a call uses; None: as many as the machine has.
 #[pyfunction]
@@ -29,7 +32,7 @@ pub fn set_threads(count: Option<usize>) -> PyResult<()> {
 #[pyfunction]
 pub fn threads() -> usize {
     match THREADS.load(Ordering::Relaxed) {
-        0 => thread::available_parallelism().map_or(1, std::num::NonZeroUsize::get),
+        0 => *CORES,
         count => count,
     }
 }
