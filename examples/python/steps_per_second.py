@@ -1,6 +1,7 @@
 """How many cranes can be stepped per second: 64 at 50 Hz, with smooth inputs that move linearly over each step, on all threads.
 
     python steps_per_second.py 3        # rounds, of which the fastest counts
+    python steps_per_second.py 9 env    # one crane: an environment of Gymnasium against `Simulation.step`, medians of rounds by turns
 """
 
 import sys
@@ -26,10 +27,14 @@ METHODS = [("bdf", 2e-5), ("rosw4", 2e-5), ("bdf", 1e-3), ("rosw4", 1e-3)]
 COUNT, STEP, STEPS = 64, 0.02, 200
 
 
+def steered(name: str) -> crane.Crane:
+    """The crane with its inputs."""
+    return crane.load(f"{name}_steered.yaml", text=f"format: 1\nextends: {name}\nname: {name}_steered\n{CRANES[name][0]}")
+
+
 def measure(name: str, method: str, tolerance: float, rounds: int) -> str:
     """The rate of the fastest round."""
-    changes, inputs = CRANES[name]
-    c = crane.load(f"{name}_steered.yaml", text=f"format: 1\nextends: {name}\nname: {name}_steered\n{changes}")
+    inputs, c = CRANES[name][1], steered(name)
     cranes = c.vector_simulation(COUNT, method=method, tolerance=tolerance)
     phases = np.random.default_rng(0).uniform(0, 2 * np.pi, (len(inputs), COUNT))
 
@@ -48,7 +53,40 @@ def measure(name: str, method: str, tolerance: float, rounds: int) -> str:
     return f"{name}, {c.n} coordinates, {method} {tolerance:g}: {rate:,.0f} steps per s, {each:.1f} evaluations per step"
 
 
+def compare(name: str, rounds: int) -> str:
+    """Steps per second of one crane as an environment, with a target, reward and `info`, and of its simulation alone, with equal inputs."""
+    from crane.gym import CraneEnv, reach
+
+    inputs, c = CRANES[name][1], steered(name)
+    bands = {key: (middle - abs(size), middle + abs(size)) for key, (middle, size) in inputs.items()}
+    target = c.coordinates[0]
+    task = {"targets": {target: (-0.1, 0.1)}, "reward": reach(target), "dt": STEP, "duration": 1e9, "tolerance": 1e-3}
+    env, simulation = CraneEnv(c, actions=bands, hold="linear", **task), c.simulation(tolerance=1e-3)
+    env.reset(seed=0)
+    phases = np.random.default_rng(0).uniform(0, 2 * np.pi, len(inputs))
+
+    def rate(step, values) -> float:
+        begin = time.perf_counter()
+        for each in values:
+            step(each)
+        return STEPS / (time.perf_counter() - begin)
+
+    rates = []
+    for number in range(rounds + 1):
+        shares = np.sin(1.5 * STEP * np.arange(number * STEPS, (number + 1) * STEPS)[:, None] + phases)
+        values = [{key: low + 0.5 * (share + 1) * (high - low) for (key, (low, high)), share in zip(bands.items(), row, strict=True)} for row in shares.tolist()]
+        turns = [(0, env.step, shares), (1, lambda each: simulation.step(STEP, each, hold="linear"), values)]
+        rates.append([found for _, found in sorted((place, rate(step, given)) for place, step, given in turns[:: 1 - number % 2 * 2])])
+    # The first round warms up.
+    found = np.array(rates[1:])
+    alone, ratio = np.median(found[:, 1]), np.median(found[:, 0] / found[:, 1])
+    return f"{name}: {np.median(found[:, 0]):,.0f} steps per s in an environment, {alone:,.0f} of a simulation alone, ratio {ratio:.2f}"
+
+
 if __name__ == "__main__":
+    if sys.argv[2:] == ["env"]:
+        print(*(compare(crane_name, int(sys.argv[1])) for crane_name in CRANES), sep="\n")
+        sys.exit()
     for crane_name in CRANES:
         for kind in METHODS:
             print(measure(crane_name, *kind, int(sys.argv[1]) if len(sys.argv) > 1 else 3), flush=True)

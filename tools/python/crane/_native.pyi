@@ -1,6 +1,6 @@
 """The native part of `crane`."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -58,6 +58,9 @@ class Motions:
     def advance(self, dt: float, steps: int, inputs: dict[str, Any], linear: bool) -> tuple[Array, Array, Array]:
         """Advances all by `dt`, s, several times, with new values of inputs by name: numbers, arrays (rows) or (steps, rows), or None for that
         of the spec. Returns times (steps, rows), and poses and rates (steps, rows, n); rows that fail stay at their last state."""
+    def steer(self, dt: float, places: Sequence[int], values: Array, linear: bool) -> Array:
+        """Advances all by `dt`, s, with new values, (rows, inputs), of inputs by their places in the spec. Returns times, poses and rates, (rows, 1 + 2 n): as
+        `advance` does, for callers to whom its arrays would take longer than the step."""
     def states(self) -> tuple[Array, Array, Array, Array, Array]:
         """States reached: times (rows), poses and rates (rows, n), states of forces (rows, states), and work of the drives, dissipated energy
         and work of the loads since the start, J, (rows, 3)."""

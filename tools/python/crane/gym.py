@@ -6,18 +6,25 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import reduce
+from operator import add
 from typing import Any
 
 import gymnasium
 import numpy as np
+from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
+from ._native import real_array
 from .model import Crane, load
 from .results import Array
+from .simulation import is_linear
 from .vector_simulation import VectorSimulation
 
 Band = tuple[float, float]
+# Booleans, numbers of rows, or texts.
+Rows = NDArray[Any]
 Results = Mapping[str, Array]
 Reward = Callable[[Results], Array]
 
@@ -33,20 +40,24 @@ def reach(
     a hanging load. effort: results that shall be small, such as actions (`action_slew`).
     """
     given = ([of] if isinstance(of, str) else of for of in (targets, swing, effort))
-    return _Reach(*(dict(of) if isinstance(of, Mapping) else dict.fromkeys(of, 1.0) for of in given))
+    missed, *small = (dict(of) if isinstance(of, Mapping) else dict.fromkeys(of, 1.0) for of in given)
+    # Distances as arrays: NumPy takes longer to read a number than to divide by it.
+    scales = [{name: np.array(scale, dtype=float) for name, scale in of.items()} for of in (missed, small[0] | small[1])]
+    return _Reach([(name, f"{name}_target", scale) for name, scale in scales[0].items()], list(scales[1].items()))
 
 
 @dataclass(frozen=True)
 class _Reach:
-    """The reward that `reach` makes: distances that count as 1, by name."""
+    """The reward that `reach` makes: results, with their targets, and distances that count as 1."""
 
-    targets: dict[str, float]
-    swing: dict[str, float]
-    effort: dict[str, float]
+    missed: list[tuple[str, str, Array]]
+    small: list[tuple[str, Array]]
 
     def __call__(self, results: Results) -> Array:
-        missed = sum(((results[name] - results[f"{name}_target"]) / scale) ** 2 for name, scale in self.targets.items())
-        return -missed - sum((results[name] / scale) ** 2 for name, scale in {**self.swing, **self.effort}.items())
+        missed = [(results[name] - results[target]) / scale for name, target, scale in self.missed]
+        small = [results[name] / scale for name, scale in self.small]
+        sums = [reduce(add, (each * each for each in of)) for of in (missed, small) if of]
+        return -reduce(add, sums) if sums else np.zeros(1)
 
 
 @dataclass(frozen=True)
@@ -95,8 +106,8 @@ class _Episodes:
         self.task, self.count = task, count
         if self.crane.shape:
             raise ValueError("the parameters are arrays: give bands, from which each episode draws its own")
-        coordinates, points = self.crane.coordinates, self.crane.info["points"]
-        self._inputs = [of["name"] for of in self.crane.info["inputs"]]
+        coordinates, points, inputs = self.crane.coordinates, self.crane.info["points"], self.crane.info["inputs"]
+        self._inputs = [of["name"] for of in inputs]
         if not task.actions:
             raise ValueError("actions: name at least one input of the spec, as in actions={'slew': (-1, 1)}")
         for name in (*task.actions, *task.starts):
@@ -105,31 +116,50 @@ class _Episodes:
             _known(name, self.crane.parameters, "live parameter")
         bounds = {name: self._bounds(name) if band is None else band for name, band in task.actions.items()}
         self._actions = list(bounds)
-        of_spec = {of["name"]: of["default"] for of in self.crane.info["inputs"] if of["name"] in task.actions}
-        self._defaults = {**of_spec, **self.crane.inputs}
-        self._low, self._high = (np.array([bounds[name][side] for name in bounds], dtype=float) for side in (0, 1))
+        self._action_names = [f"action_{name}" for name in bounds]
+        # Over the rows: NumPy takes twice as long to broadcast.
+        self._low, most = (np.tile([float(bounds[name][side]) for name in bounds], (count, 1)) for side in (0, 1))
+        self._half = 0.5 * (most - self._low)
+        self._one, self._least = np.ones_like(self._low), -np.ones_like(self._low)
+        self._steered = [self._inputs.index(name) for name in bounds]
+        self._linear = is_linear("linear" if task.rates else task.hold)
+        self._dt = np.array(task.dt)
         for name, (low, high) in {**bounds, **task.targets, **task.bands, **task.starts, **task.limits}.items():
             if not low <= high:
                 raise ValueError(f"{name!r}: ({low}, {high}): write the least value first")
-        # Where each result is: q, v, or the points, of which those that are asked for are computed.
-        self._places: dict[str, tuple[str, Any]] = {}
-        for j, name in enumerate(coordinates):
-            self._places[name], self._places[f"{name}_rate"] = ("q", j), ("v", j)
-        for i, point in enumerate(points):
-            for k, axis in enumerate("xyz"):
-                self._places[f"{point}_{axis}"], self._places[f"{point}_{axis}_rate"] = ("points", (i, k)), ("velocities", (i, k))
+        # Where episodes begin: inputs that follow motions of the spec are NaN.
+        self._parameters = self.crane.parameters
+        followed = {of["name"] for of in inputs if of["moves"]}.difference(task.actions)
+        self._defaults = {of["name"]: np.nan if of["name"] in followed else of["default"] for of in inputs} | self.crane.inputs
+        # Where each result is: an array and its column.
+        self._state = [f"{name}{of}" for of in ("", "_rate") for name in coordinates]
+        given = [*(f"{name}_target" for name in task.targets), *(f"input_{name}" for name in self._inputs)]
+        axes = [f"{point}_{axis}" for point in points for axis in "xyz"]
+        arrays = {"states": ["t", *self._state, *given], "points": axes, "velocities": [f"{name}_rate" for name in axes]}
+        self._places = {name: (array, column) for array, names in arrays.items() for column, name in enumerate(names)}
         for name in (*task.targets, *task.limits):
-            _known(name, self._places, "result")
-        everything = [*self._places, *(f"{name}_target" for name in task.targets), *(f"input_{name}" for name in self._inputs)]
-        self.names = list(task.observations) or [*(f"{name}{of}" for of in ("", "_rate") for name in coordinates), *everything[len(self._places) :]]
+            _known(name, [of for of in self._places if of not in ("t", *given)], "result")
+        self.names = list(task.observations) or arrays["states"][1:]
         for name in (*self.names, *task.scales):
-            _known(name, everything, "observation")
+            _known(name, [of for of in self._places if of != "t"], "observation")
         self._scales = np.array([task.scales.get(name, 1.0) for name in self.names])
+        # What is told of every step: observations first, then the rest of `info`.
+        self.told = list(dict.fromkeys([*self.names, *given, "t"]))
+        self._told = [array for array in arrays if any(self._places[name][0] == array for name in self.told)]
+        names = [name for array in self._told for name in arrays[array]]
+        self._columns = np.array([names.index(name) for name in self.told])
+        # A slice is a view; names that are twice among the observations need an index.
+        once = len(set(self.names)) == len(self.names)
+        self._observed = slice(len(self.names)) if once else [self.told.index(name) for name in self.names]
+        self._limits = [(name, np.array(low, dtype=float), np.array(high, dtype=float)) for name, (low, high) in task.limits.items()]
+        # Targets and inputs of all rows, and which of them are actions.
+        self._given = np.zeros((count, len(given)))
+        self._acted = np.array([given.index(f"input_{name}") for name in self._actions])
         self._simulation: VectorSimulation | None = None
         self._random: list[np.random.Generator] = [np.random.default_rng() for _ in range(count)]
-        self._targets = {name: np.zeros(count) for name in task.targets}
-        self._steps = np.zeros(count, dtype=int)
-        self._most_steps = max(1, round(task.duration / task.dt))
+        self._steps = np.zeros(count)
+        self._fine = np.full(count, "", dtype=object)
+        self._most_steps = np.array(max(1, round(task.duration / task.dt)))
         self.observation_space = gymnasium.spaces.Box(-np.inf, np.inf, (len(self.names),), np.float64)
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (len(self._actions),), np.float32)
 
@@ -139,26 +169,61 @@ class _Episodes:
             raise ValueError(f"actions[{name!r}]: the spec has no bounds for it; write them, as in actions={{{name!r}: (-1, 1)}}")
         return bounds
 
+    @property
+    def begun(self) -> bool:
+        """Whether there are episodes."""
+        return self._simulation is not None
+
+    @property
+    def cranes(self) -> Crane:
+        """The cranes of all rows, with their parameters."""
+        return self.crane if self._simulation is None else self._simulation.crane
+
     def seed(self, seeds: Sequence[int | None]) -> None:
         """New random numbers in rows whose seed is given."""
         for row, seed in enumerate(seeds):
             if seed is not None:
                 self._random[row] = np.random.default_rng(seed)
 
-    def reset(self, rows: Array) -> None:
-        """Begins new episodes in some rows."""
-        task = self.task
+    def reset(self, rows: Rows, options: Mapping[str, Any] | None = None) -> "_Results":
+        """Begins new episodes in some rows; what options give is not drawn."""
+        task, options = self.task, dict(options or {})
+        start, targets = (dict(options.pop(of, {})) for of in ("start", "targets"))
+        for names, known, what in (
+            (options, [*self._parameters, "start", "targets"], "option"),
+            (start, [*self._inputs, *self._state], "input or coordinate"),
+            (targets, task.targets, "target"),
+        ):
+            for name, value in names.items():
+                names[_known(name, known, what)] = self._rows(name, value)[rows]
+        # The same numbers are drawn with and without options.
         drawn = [{of: self._draw(row, bands) for of, bands in self._drawn_from().items()} for row in rows]
-        for of in task.targets:
-            self._targets[of][rows] = [each["targets"][of] for each in drawn]
-        parameters = {of: np.array([each["bands"][of] for each in drawn]) for of in task.bands}
-        inputs = {**self._defaults, **{of: np.array([each["starts"][of] for each in drawn]) for of in task.starts}}
+        drawn_of = {of: {name: np.array([each[of][name] for each in drawn]) for name in bands} for of, bands in self._drawn_from().items()}
+        changed = {**drawn_of["bands"], **options}
+        inputs = {**self._defaults, **drawn_of["starts"], **{of: value for of, value in start.items() if of in self._inputs}}
         if self._simulation is None:
-            cranes = self.crane.replace(**parameters) if parameters else self.crane
+            cranes = self.crane.replace(**changed) if changed else self.crane
             self._simulation = cranes.vector_simulation(self.count, method=task.method, tolerance=task.tolerance, inputs=inputs)
         else:
-            self._simulation.reset(rows, inputs=inputs, **parameters)
+            self._simulation.reset(rows, inputs=inputs, **{**self._parameters, **changed})
+        moved = [name for name in start if name not in self._inputs]
+        if moved:
+            state = np.concatenate((self._simulation.q, self._simulation.v), axis=1)[rows]
+            for name in moved:
+                state[:, self._state.index(name)] = start[name]
+            self._simulation.reset(rows, q=state[:, : self.crane.n], v=state[:, self.crane.n :])
+        targets = {**drawn_of["targets"], **targets}
+        self._given[rows] = np.column_stack([*(targets[of] for of in task.targets), *(self._simulation.inputs[of][rows] for of in self._inputs)])
         self._steps[rows] = 0
+        reached = self._simulation.state
+        return _Results(self, np.column_stack((reached.t, reached.q, reached.v)))
+
+    def _rows(self, name: str, value: Any) -> Array:
+        """An option for each row: one number, or as many as there are rows."""
+        numbers = real_array(name, value)
+        if numbers.shape not in ((), (1,), (self.count,)):
+            raise ValueError(f"option {name!r} has shape {numbers.shape}: give one number" + (f", or {self.count} of them" if self.count > 1 else ""))
+        return np.full(self.count, numbers)
 
     def _drawn_from(self) -> dict[str, Mapping[str, Band]]:
         return {"targets": self.task.targets, "bands": self.task.bands, "starts": self.task.starts}
@@ -166,58 +231,65 @@ class _Episodes:
     def _draw(self, row: int, bands: Mapping[str, Band]) -> dict[str, float]:
         return {name: self._random[row].uniform(low, high) for name, (low, high) in bands.items()}
 
-    def step(self, actions: Array) -> tuple[Array, Array, Array, dict[str, Array]]:
-        """Advances all rows: rewards, terminations, truncations, and why: texts, empty where an episode goes on."""
+    def step(self, actions: Array) -> tuple["_Results", Array, Rows, Rows, Rows]:
+        """Advances all rows: results, rewards, terminations, truncations, and why: texts, empty where an episode goes on."""
         task, simulation = self.task, self._simulation
         if simulation is None:
             raise gymnasium.error.ResetNeeded("call reset() before step()")
-        shares = np.clip(np.asarray(actions, dtype=float).reshape(self.count, len(self._actions)), -1.0, 1.0)
-        values = self._low + 0.5 * (shares + 1.0) * (self._high - self._low)
-        now = simulation.inputs
-        inputs = {name: now[name] + values[:, j] * task.dt if task.rates else values[:, j] for j, name in enumerate(self._actions)}
-        simulation.step(task.dt, inputs, hold="linear" if task.rates else task.hold, invalid="nan")
-        self._steps += 1
-        results = self.results()
-        results.update({f"action_{name}": values[:, j] for j, name in enumerate(self._actions)})
-        why = np.array([reason or "" for reason in simulation.failures], dtype=object)
-        for name, (low, high) in task.limits.items():
+        shares = np.asarray(actions, dtype=float).reshape(self.count, len(self._actions))
+        values = self._low + (np.minimum(np.maximum(shares, self._least), self._one) + self._one) * self._half
+        inputs = self._given.take(self._acted, axis=1) + values * self._dt if task.rates else values
+        rows = simulation._steer(task.dt, self._actions, self._steered, inputs, self._linear)
+        self._given[:, self._acted] = inputs
+        self._steps += 1.0
+        results = _Results(self, rows)
+        for name, column in zip(self._action_names, values.T, strict=True):
+            results[name] = column
+        failures = simulation.failures
+        why = np.array([reason or "" for reason in failures], dtype=object) if any(failures) else self._fine
+        for name, low, high in self._limits:
             out = (results[name] < low) | (results[name] > high)
-            why[(why == "") & out] = f"{name} left its limits"
+            if out.any():
+                why = np.where((why == "") & out, f"{name} left its limits", why)
         if task.tipping is not None:
             margin = simulation.crane.strength(simulation.q, simulation.v, t=simulation.t).tipping_margin
-            why[(why == "") & (margin < task.tipping)] = "tipping"
-        terminations = why != ""
-        rewards = np.broadcast_to(np.asarray(task.reward(results), dtype=float), (self.count,)) + task.penalty * terminations
-        truncations = (self._steps >= self._most_steps) & ~terminations
-        return rewards, terminations, truncations, why
-
-    def results(self) -> dict[str, Array]:
-        """Results by name, (rows) each; those of points are computed when one of them is read."""
-        return _Results(self)
-
-    def observations(self) -> Array:
-        results = self.results()
-        return np.stack([results[name] for name in self.names], axis=-1) / self._scales
+            why = np.where((why == "") & (margin < task.tipping), "tipping", why)
+        rewards = np.empty(self.count)
+        rewards[:] = task.reward(results)
+        terminations, truncations = why.astype(bool), self._steps >= self._most_steps
+        if why is not self._fine:
+            rewards += task.penalty * terminations
+            truncations &= ~terminations
+        return results, rewards, terminations, truncations, why
 
 
-class _Results(dict):
-    """Results of the present states, each computed when it is first read."""
+class _Results(dict[str, Array]):
+    """Results of the present states by name, (rows) each; those of points are computed when one of them is first read."""
 
-    def __init__(self, episodes: _Episodes) -> None:
-        simulation = episodes._simulation
-        super().__init__({f"{name}_target": value.copy() for name, value in episodes._targets.items()})
-        self.update({f"input_{name}": value for name, value in simulation.inputs.items()}, t=simulation.t, dt=np.float64(episodes.task.dt))
-        self._places, self._simulation, self._cranes = episodes._places, simulation, episodes.crane
-        self._arrays: dict[str, Array] = {"q": simulation.q, "v": simulation.v}
+    def __init__(self, episodes: _Episodes, rows: Array) -> None:
+        self["dt"] = episodes._dt
+        self._episodes, self._rows = episodes, rows
+        self._arrays = {"states": np.concatenate((rows, episodes._given), axis=1)}
+
+    def _array(self, of: str) -> Array:
+        if of not in self._arrays:
+            crane, (q, v) = self._episodes.cranes, np.split(self._rows[:, 1:], 2, axis=1)
+            found = crane.points(q) if of == "points" else crane.point_velocities(q, v)
+            self._arrays[of] = found.reshape(len(found), -1)
+        return self._arrays[of]
 
     def __missing__(self, name: str) -> Array:
-        kind, place = self._places[_known(name, self._places, "result")]
-        if kind not in self._arrays:
-            of, (q, v) = self._simulation.crane, (self._simulation.q, self._simulation.v)
-            self._arrays[kind] = of.points(q) if kind == "points" else of.point_velocities(q, v)
-        array = self._arrays[kind]
-        self[name] = array[:, place] if isinstance(place, int) else array[:, place[0], place[1]]
-        return self[name]
+        places = self._episodes._places
+        array, column = places[name if name in places else _known(name, places, "result")]
+        self[name] = found = self._array(array)[:, column]
+        return found
+
+    def told(self) -> tuple[Array, Array]:
+        """Observations, (rows, names), and what is told, (rows, told)."""
+        episodes = self._episodes
+        arrays = [self._array(of) for of in episodes._told]
+        told = (arrays[0] if len(arrays) == 1 else np.concatenate(arrays, axis=1)).take(episodes._columns, axis=1)
+        return told[:, episodes._observed] / episodes._scales, told
 
 
 def _known(name: str, of: Any, what: str) -> str:
@@ -254,17 +326,19 @@ class CraneEnv(gymnasium.Env):
         """What each number of an observation is."""
         return list(self._episodes.names)
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
-        """Begins a new episode."""
+    def reset(self, *, seed: int | None = None, options: Mapping[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
+        """Begins a new episode. options, for this episode alone: live parameters by name, `{"payload": 300}`; "start", first values of inputs,
+        and of coordinates and their rates, which otherwise are at rest, `{"start": {"slew": 0.1, "load_phi_rate": 0.2}}`; and "targets".
+        """
         super().reset(seed=seed)
         self._episodes.seed([seed])
-        self._episodes.reset(np.array([0]))
-        return self._episodes.observations()[0], self._info("")
+        return self._told(self._episodes.reset(np.array([0]), options), "")
 
     def step(self, action: Array) -> tuple[Array, float, bool, bool, dict[str, Any]]:
         """Advances the crane by `dt` with an action."""
-        reward, terminated, truncated, why = self._episodes.step(np.asarray(action)[None])
-        return self._episodes.observations()[0], float(reward[0]), bool(terminated[0]), bool(truncated[0]), self._info(why[0])
+        results, rewards, terminations, truncations, why = self._episodes.step(action)
+        observation, info = self._told(results, why[0])
+        return observation, float(rewards[0]), bool(terminations[0]), bool(truncations[0]), info
 
     def render(self) -> NDArray[np.uint8] | None:
         """The crane as it is now, (480, 640, 3) red, green and blue, with `render_mode="rgb_array"`; else nothing."""
@@ -277,23 +351,29 @@ class CraneEnv(gymnasium.Env):
         # Room for where statics begins, too: the view then seldom moves with the crane.
         return crane.render(simulation.q[0], shown=[crane.guess.reshape(-1), simulation.q[0]])
 
-    def _info(self, why: str) -> dict[str, Any]:
-        results = self._episodes.results()
-        names = [*self._episodes.names, *(name for name in results if name != "dt")]
-        return {"why": why, **{name: float(results[name][0]) for name in names}}
+    def _told(self, results: _Results, why: str) -> tuple[Array, dict[str, Any]]:
+        observations, told = results.told()
+        info = dict(zip(self._episodes.told, told[0].tolist(), strict=True))
+        info["why"] = why
+        return observations[0], info
 
 
 class CraneVectorEnv(gymnasium.vector.VectorEnv):
     """Many cranes as a vector environment of Gymnasium, stepped together on all threads: `Task` explains the arguments.
 
-    An episode that ends begins again at the next step, whose action is ignored and whose reward is 0 (`AutoresetMode.NEXT_STEP`).
+    autoreset_mode: what follows an episode that ends, as in Gymnasium's own vector environments, member or value of `AutoresetMode`. "NextStep": it
+    begins again at the next step, whose action is ignored and whose reward is 0. "SameStep": at once, with the last observation and `info` in
+    `final_obs` and `final_info`. "Disabled": when `reset(options={"reset_mask": ...})` says so, (rows), true where it shall.
+    `metadata["autoreset_mode"]` says which. `info` has arrays (rows), each with a mask, `_why` of `why`, as Gymnasium makes them.
     `reset(seed=s)` seeds row i with s + i: it has the episodes of a `CraneEnv` that is reset with that seed, to the last bit.
     """
 
-    metadata = {"render_modes": [], "autoreset_mode": gymnasium.vector.AutoresetMode.NEXT_STEP}
+    metadata = {"render_modes": []}
 
-    def __init__(self, crane: Crane | str, num_envs: int, **task: Any) -> None:
+    def __init__(self, crane: Crane | str, num_envs: int, *, autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP, **task: Any) -> None:
         self._episodes = _Episodes(crane, num_envs, Task(**task))
+        self._mode = AutoresetMode(autoreset_mode)
+        self.metadata = {**self.metadata, "autoreset_mode": self._mode}
         self.num_envs = num_envs
         self.single_observation_space, self.single_action_space = self._episodes.observation_space, self._episodes.action_space
         self.observation_space = batch_space(self.single_observation_space, num_envs)
@@ -310,28 +390,66 @@ class CraneVectorEnv(gymnasium.vector.VectorEnv):
         """What each number of an observation is."""
         return list(self._episodes.names)
 
-    def reset(self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
-        """Begins new episodes in all rows, or in those of `options["reset_mask"]`."""
+    def reset(
+        self, *, seed: int | Sequence[int | None] | None = None, options: Mapping[str, Any] | None = None
+    ) -> tuple[Array, dict[str, Any]]:
+        """Begins new episodes in all rows, or in those where `options["reset_mask"]` is true; other options as of `CraneEnv.reset`, numbers or
+        arrays (rows).
+        """
         if isinstance(seed, int | np.integer):
             seed = [int(seed) + row for row in range(self.num_envs)]
         seeds = [None] * self.num_envs if seed is None else list(seed)
         if len(seeds) != self.num_envs:
             raise ValueError(f"seed: {len(seeds)} numbers for {self.num_envs} environments")
-        self._episodes.seed(seeds)
-        mask = (options or {}).get("reset_mask")
-        rows = np.arange(self.num_envs) if mask is None or self._episodes._simulation is None else np.flatnonzero(mask)
-        self._episodes.reset(rows)
-        self._ended[rows] = False
-        return self._episodes.observations(), {}
+        options = dict(options or {})
+        mask = self._mask(options.pop("reset_mask", None))
+        self._episodes.seed([seed if begins else None for seed, begins in zip(seeds, mask, strict=True)])
+        results = self._episodes.reset(np.flatnonzero(mask), options)
+        self._ended[mask] = False
+        return self._told(results, np.full(self.num_envs, "", dtype=object), mask)
+
+    def _mask(self, given: Any) -> Rows:
+        """Which rows begin again."""
+        if given is None:
+            return np.ones(self.num_envs, dtype=bool)
+        mask = np.asarray(given)
+        if mask.dtype != bool or mask.shape != (self.num_envs,) or not mask.any():
+            raise ValueError(f"options['reset_mask']: write an array of {self.num_envs} booleans, at least one of them true")
+        if not self._episodes.begun and not mask.all():
+            raise gymnasium.error.ResetNeeded("call reset() of all rows before that of some")
+        return mask
 
     def step(self, actions: Array) -> tuple[Array, Array, Array, Array, dict[str, Any]]:
         """Advances all cranes by `dt`."""
-        again = np.flatnonzero(self._ended)
-        before = self._episodes
-        rewards, terminations, truncations, why = before.step(actions)
-        if len(again):
-            before.reset(again)
-            rewards[again], terminations[again], truncations[again], why[again] = 0.0, False, False, ""
-        self._ended = terminations | truncations
-        info = {"why": why, "_why": why != ""} if (why != "").any() else {}
-        return before.observations(), rewards, terminations, truncations, info
+        again = self._ended
+        if self._mode == AutoresetMode.DISABLED and again.any():
+            rows = np.flatnonzero(again).tolist()
+            raise gymnasium.error.ResetNeeded(f"episodes of rows {rows} have ended: reset(options={{'reset_mask': ...}}) begins new ones")
+        results, rewards, terminations, truncations, why = self._episodes.step(actions)
+        final: dict[str, Any] = {}
+        if self._mode == AutoresetMode.NEXT_STEP and again.any():
+            results = self._episodes.reset(np.flatnonzero(again))
+            rewards[again], terminations[again], truncations[again] = 0.0, False, False
+            why = np.where(again, "", why)
+        ended = terminations | truncations
+        if self._mode == AutoresetMode.SAME_STEP and ended.any():
+            observations, info = self._told(results, why, ended)
+            last = np.full(self.num_envs, None, dtype=object)
+            for row in np.flatnonzero(ended):
+                last[row] = observations[row]
+            final = {"final_obs": last, "_final_obs": ended, "final_info": info, "_final_info": ended}
+            results = self._episodes.reset(np.flatnonzero(ended))
+            why = np.where(ended, "", why)
+        self._ended = ended
+        observations, info = self._told(results, why, np.ones(self.num_envs, dtype=bool))
+        return observations, rewards, terminations, truncations, final | info
+
+    def _told(self, results: _Results, why: Rows, rows: Rows) -> tuple[Array, dict[str, Any]]:
+        """Observations of all rows, and `info` of some: each result with a mask of these rows, and zero in the others."""
+        observations, told = results.told()
+        reasons = why.copy()
+        reasons[~rows] = None
+        info: dict[str, Any] = {"why": reasons, "_why": rows}
+        for name, values in zip(self._episodes.told, np.where(rows, told.T, 0.0), strict=True):
+            info[name], info[f"_{name}"] = values, rows
+        return observations, info

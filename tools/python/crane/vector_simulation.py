@@ -87,7 +87,7 @@ class VectorSimulation:
 
     def _read(self) -> None:
         t, q, v, *_ = self._motions.states()
-        self._state = VectorState(t, q, v)
+        self._state: VectorState | Array = VectorState(t, q, v)
 
     def __getstate__(self) -> dict[str, Any]:
         if any(self.failures):
@@ -121,22 +121,25 @@ class VectorSimulation:
     @property
     def state(self) -> VectorState:
         """The present states."""
+        if isinstance(self._state, np.ndarray):
+            t, q, v = np.split(self._state, (1, 1 + self._base.n), axis=1)
+            self._state = VectorState(t[:, 0], q, v)
         return self._state
 
     @property
     def t(self) -> Array:
         """Times, (rows), s."""
-        return self._state.t
+        return self.state.t
 
     @property
     def q(self) -> Array:
         """Coordinates, (rows, n), m and rad."""
-        return self._state.q
+        return self.state.q
 
     @property
     def v(self) -> Array:
         """Rates, (rows, n), m/s and rad/s."""
-        return self._state.v
+        return self.state.v
 
     @property
     def failures(self) -> list[str | None]:
@@ -156,9 +159,23 @@ class VectorSimulation:
         invalid: "raise" raises if a row fails; "nan" goes on with the others. A row that fails stays at its last state until it is reset:
         `failures` says why.
         """
-        path = self._advance(dt, 1, inputs, hold, invalid)
-        self._state = VectorState(*(numbers[0] for numbers in path))
-        return self._state
+        t, q, v = self._advance(dt, 1, inputs, hold, invalid)
+        self._state = state = VectorState(t[0], q[0], v[0])
+        return state
+
+    def _steer(self, dt: float, names: Sequence[str], places: Sequence[int], values: Array, linear: bool) -> Array:
+        """A step with values, (rows, inputs), of inputs that are set, by names and their places in the spec: times, poses and rates, (rows, 1 + 2 n).
+        Rows that fail stay, as with `invalid="nan"`."""
+        try:
+            rows = self._motions.steer(dt, places, values, linear)
+        except BaseException:
+            self._read()
+            raise
+        # Divided when it is asked for: that takes longer than what else there is to do.
+        self._state = rows
+        for name, column in zip(names, values.T, strict=True):
+            self._inputs[name][:] = column
+        return rows
 
     def run(
         self, dt: float, steps: int, inputs: Mapping[str, ArrayLike] | None = None, *, hold: str = "constant", invalid: str = "raise"
@@ -212,7 +229,7 @@ class VectorSimulation:
         rows = np.arange(self._count) if rows is None else np.atleast_1d(np.asarray(rows))
         rows = np.flatnonzero(rows) if rows.dtype == bool else rows.astype(np.intp)
         if len(rows) == 0:
-            return self._state
+            return self.state
         if not ((rows >= 0) & (rows < self._count)).all() or len(set(rows.tolist())) < len(rows):
             raise ValueError(f"rows={rows.tolist()}: write different ones from 0 to {self._count - 1}")
         before = self._parameters, self._inputs
@@ -224,7 +241,7 @@ class VectorSimulation:
             self._parameters, self._inputs = before
             raise
         self._read()
-        return self._state
+        return self.state
 
     def _changed(self, of: dict[str, Array], new: Mapping[str, ArrayLike], rows: Array, what: str) -> dict[str, Array]:
         changed = {name: value.copy() for name, value in of.items()}
@@ -237,4 +254,4 @@ class VectorSimulation:
 
 def _rows(value: ArrayLike, count: int) -> Array:
     """A number for each row."""
-    return np.array(np.broadcast_to(np.asarray(value, dtype=float), (count,)))
+    return np.full(count, value, dtype=float)

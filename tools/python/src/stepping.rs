@@ -10,7 +10,7 @@ use crane_model::dynamics::{InitialState, Sample, Settings, Stopped};
 use crane_model::force_states::{self, ForceStates};
 use crane_model::runs::ensemble::Case;
 use crane_model::runs::{Reason, Start};
-use numpy::PyArrayMethods;
+use numpy::{PyArrayDyn, PyArrayMethods};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -163,35 +163,8 @@ impl Motions {
         inputs: &Bound<'py, PyDict>,
         linear: bool,
     ) -> PyResult<Bound<'py, PyTuple>> {
-        let (least, greatest) = Settings::TIMES;
-        if !(least..=greatest).contains(&dt) {
-            return Err(PyValueError::new_err(format!("dt={dt}: write a number from {least:e} to {greatest:e}, in s")));
-        }
         let (changes, count) = (self.changes(inputs, steps)?, self.rows.len());
-        let hold = if linear { Hold::Linear } else { Hold::Constant };
-        let of_row = |row: usize, off: &dyn Fn() -> bool| {
-            let mut now = self.row(row);
-            let Row { motion, failed } = &mut *now;
-            let mut path = Vec::with_capacity(steps * (2 * self.n + 1));
-            for step in 0..steps {
-                if failed.is_none() {
-                    let value = |(index, values): &(usize, Option<Vec<f64>>)| {
-                        (*index, values.as_ref().map(|values| values[step * count + row]))
-                    };
-                    *failed = match motion.advance(dt, changes.iter().map(value), hold, &mut |_| unless(off())) {
-                        Ok(ControlFlow::Continue(())) => None,
-                        Ok(ControlFlow::Break(())) => Some(Failure::Interrupted),
-                        Err(stopped) => Some(Failure::Stopped(stopped)),
-                    };
-                }
-                let Sample { t, q, v, .. } = motion.sample();
-                path.push(t);
-                path.extend_from_slice(q);
-                path.extend_from_slice(v);
-            }
-            path
-        };
-        let paths = map_rows(py, count, of_row)?;
+        let paths = self.paths(py, dt, steps, &changes, linear)?;
         let (mut t, mut q, mut v) = (Vec::new(), Vec::new(), Vec::new());
         let width = 2 * self.n + 1;
         for step in 0..steps {
@@ -206,6 +179,30 @@ impl Motions {
         let shape = [steps, count];
         let numbers = [array(py, t, &shape, &[])?, array(py, q, &shape, &[self.n])?, array(py, v, &shape, &[self.n])?];
         PyTuple::new(py, numbers.map(fixed))
+    }
+
+    /// Advances all by `dt`, s, with new values, (rows, inputs), of inputs by their places in the spec. Returns times, poses and rates, (rows, 1 + 2 n): as
+    /// `advance` does, for callers to whom its arrays would take longer than the step.
+    fn steer<'py>(
+        &self,
+        py: Python<'py>,
+        dt: f64,
+        places: Vec<usize>,
+        values: &Bound<'py, PyAny>,
+        linear: bool,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let count = self.rows.len();
+        let given = Argument::of_width("values", values, places.len(), "one for each input")?;
+        if given.shape != [count] || given.numbers.iter().any(|number| !number.is_finite()) {
+            return Err(PyValueError::new_err(format!("values: give {count} rows of finite numbers")));
+        }
+        if let Some(unknown) = places.iter().find(|place| **place >= self.inputs.len()) {
+            return Err(PyIndexError::new_err(format!("input {unknown}: there are {}", self.inputs.len())));
+        }
+        let column = |j: usize| given.numbers.iter().skip(j).step_by(places.len()).copied().collect();
+        let changes: Changes = places.iter().enumerate().map(|(j, place)| (*place, Some(column(j)))).collect();
+        let rows = self.paths(py, dt, 1, &changes, linear)?;
+        array(py, rows.concat(), &[count], &[1 + 2 * self.n]).map(fixed)
     }
 
     /// States reached: times (rows), poses and rates (rows, n), states of forces (rows, states), and work of the drives, dissipated energy and
@@ -285,6 +282,44 @@ impl Motions {
 impl Motions {
     fn row(&self, row: usize) -> std::sync::MutexGuard<'_, Row> {
         self.rows[row].lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Time, pose and rates of every row after each of several steps of `dt`, s; rows that fail stay at their last state.
+    fn paths(
+        &self,
+        py: Python<'_>,
+        dt: f64,
+        steps: usize,
+        changes: &Changes,
+        linear: bool,
+    ) -> PyResult<Vec<Vec<f64>>> {
+        let (least, greatest) = Settings::TIMES;
+        if !(least..=greatest).contains(&dt) {
+            return Err(PyValueError::new_err(format!("dt={dt}: write a number from {least:e} to {greatest:e}, in s")));
+        }
+        let (count, hold) = (self.rows.len(), if linear { Hold::Linear } else { Hold::Constant });
+        map_rows(py, count, |row, off| {
+            let mut now = self.row(row);
+            let Row { motion, failed } = &mut *now;
+            let mut path = Vec::with_capacity(steps * (2 * self.n + 1));
+            for step in 0..steps {
+                if failed.is_none() {
+                    let value = |(index, values): &(usize, Option<Vec<f64>>)| {
+                        (*index, values.as_ref().map(|values| values[step * count + row]))
+                    };
+                    *failed = match motion.advance(dt, changes.iter().map(value), hold, &mut |_| unless(off())) {
+                        Ok(ControlFlow::Continue(())) => None,
+                        Ok(ControlFlow::Break(())) => Some(Failure::Interrupted),
+                        Err(stopped) => Some(Failure::Stopped(stopped)),
+                    };
+                }
+                let Sample { t, q, v, .. } = motion.sample();
+                path.push(t);
+                path.extend_from_slice(q);
+                path.extend_from_slice(v);
+            }
+            path
+        })
     }
 
     fn check_row(&self, row: usize) -> PyResult<()> {

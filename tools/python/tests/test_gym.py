@@ -13,6 +13,7 @@ from conftest import ROOT
 gymnasium = pytest.importorskip("gymnasium")
 
 from crane.gym import CraneEnv, CraneVectorEnv, reach  # noqa: E402
+from gymnasium.vector import AutoresetMode, SyncVectorEnv  # noqa: E402
 from test_stepping import STEERED  # noqa: E402
 
 spec = importlib.util.spec_from_file_location("slewing", ROOT / "examples/python/slewing.py")
@@ -85,6 +86,103 @@ def test_rows_are_single_environments_to_the_last_bit():
     assert together.observation_space.contains(observed) and together.action_space.contains(actions)
 
 
+def same(ours, theirs):
+    """Compares what both vector environments tell, to the last bit."""
+    if isinstance(theirs, dict):
+        assert ours.keys() == theirs.keys()
+        for name in theirs:
+            same(ours[name], theirs[name])
+    elif theirs.dtype == object:
+        assert ours.dtype == object
+        for one, other in zip(ours, theirs, strict=True):
+            np.testing.assert_array_equal(one, other)
+    else:
+        np.testing.assert_array_equal(ours, theirs, strict=True)
+
+
+@pytest.mark.parametrize("mode", AutoresetMode)
+def test_episodes_follow_each_other_as_in_gymnasium(mode):
+    """Over terminations and truncations, step by step. Episodes that begin outside the limits end at once, others later or after ten steps."""
+    changes = {"limits": {"column_psi": (-0.15, 0.15)}, "penalty": -3.0}
+    ours = vector(4, autoreset_mode=mode.value, **changes)
+    theirs = SyncVectorEnv([lambda: environment(**changes)] * 4, autoreset_mode=mode)
+    assert ours.metadata["autoreset_mode"] is theirs.metadata["autoreset_mode"] is mode
+    same(dict(enumerate(ours.reset(seed=3))), dict(enumerate(theirs.reset(seed=3))))
+    random, seen = np.random.default_rng(1), set()
+    for step in range(32):
+        actions = random.uniform(-1, 1, (4, 1)).astype(np.float32)
+        found, expected = ours.step(actions), theirs.step(actions)
+        same(dict(enumerate(found)), dict(enumerate(expected)))
+        terminated, truncated = found[2:4]
+        seen |= {(bool(one), bool(other)) for one, other in zip(terminated, truncated, strict=True)}
+        ended = terminated | truncated
+        if mode == AutoresetMode.DISABLED and ended.any():
+            with pytest.raises(gymnasium.error.ResetNeeded, match="have ended"):
+                ours.step(actions)
+            options = {"load_mass": 300.0 + step} if step % 2 else {}
+            resets = [env.reset(seed=[step, None, None, 7], options={"reset_mask": ended, **options}) for env in (ours, theirs)]
+            same(*(dict(enumerate(reset)) for reset in resets))
+    assert seen == {(False, False), (True, False), (False, True)}
+
+
+def test_options_are_for_one_episode():
+    env = environment()
+    plain, told = env.reset(seed=5)
+    mass = env._episodes._simulation.parameters["load_mass"][0]
+    start = {"slew": 0.3, "load_phi": 0.2, "pin_theta_rate": 0.1}
+    observed, info = env.reset(seed=5, options={"load_mass": 3.0, "start": start, "targets": {"column_psi": 0.7}})
+    simulation = env._episodes._simulation
+    assert simulation.parameters["load_mass"] == 3.0 and info["input_slew"] == 0.3 and info["column_psi_target"] == 0.7
+    # The coordinates that are given; the column rests where the input of the start holds it, to the sag of its drive.
+    q, v = (dict(zip(env.crane.coordinates, of[0], strict=True)) for of in (simulation.q, simulation.v))
+    assert q["load_phi"] == 0.2 and v == {"column_psi": 0.0, "pin_theta": 0.1, "load_phi": 0.0}
+    assert q["column_psi"] == pytest.approx(0.3, abs=1e-9) and info["column_psi"] == observed[0]
+    # The same crane elsewhere: the first step is that of a simulation with these numbers.
+    crane_of = env.crane.replace(load_mass=3.0, inputs={"slew": 0.3})
+    alone = crane_of.vector_simulation(1, q=simulation.q, v=simulation.v)
+    env.step([1.0])
+    np.testing.assert_array_equal(simulation.q, alone.step(0.02, {"slew": 0.3 + 0.5 * 0.02}, hold="linear").q)
+    # The next episode is what it would have been: the same numbers were drawn.
+    np.testing.assert_array_equal(env.reset(seed=5)[0], plain)
+    assert env._episodes._simulation.parameters["load_mass"][0] == mass
+    # Without bands, too: parameters and inputs go back to those of the spec.
+    fixed = environment(bands={}, starts={})
+    fixed.reset(options={"load_mass": 3.0, "start": {"slew": 0.1}})
+    fixed.reset()
+    assert fixed._episodes._simulation.parameters["load_mass"] == 800 and fixed._episodes._simulation.inputs["slew"] == 0.0
+
+    together = vector(3)
+    together.reset(seed=5)
+    masses = np.array([3.0, 4.0, 5.0])
+    _, info = together.reset(options={"reset_mask": np.array([True, False, True]), "load_mass": masses, "start": {"slew": 0.1}})
+    now = together._episodes._simulation.parameters["load_mass"]
+    assert now[[0, 2]].tolist() == [3.0, 5.0] and now[1] > 200 and info["_input_slew"].tolist() == [True, False, True]
+    assert info["input_slew"].tolist() == [0.1, 0.0, 0.1]
+
+
+def test_options_that_do_not_exist_are_refused():
+    env, together = environment(), vector(2)
+    for options, words in [
+        ({"mass": 3.0}, "no option 'mass': write one of load_mass, start, targets"),
+        ({"reset_mask": np.array([True])}, "no option 'reset_mask'"),
+        ({"start": {"slow": 1.0}}, "no input or coordinate 'slow': write one of slew, column_psi, pin_theta, load_phi, column_psi_rate"),
+        ({"targets": {"tip_x": 1.0}}, "no target 'tip_x': write one of column_psi"),
+        ({"load_mass": [1.0, 2.0]}, r"'load_mass' has shape \(2,\): give one number$"),
+        ({"load_mass": -3.0}, "load_mass"),
+    ]:
+        with pytest.raises(ValueError, match=words):
+            env.reset(options=options)
+    with pytest.raises(ValueError, match=r"shape \(3,\): give one number, or 2 of them"):
+        together.reset(options={"load_mass": np.ones(3)})
+    with pytest.raises(gymnasium.error.ResetNeeded, match="all rows"):
+        together.reset(options={"reset_mask": np.array([True, False])})
+    for mask in ([1, 0], [True], [False, False]):
+        with pytest.raises(ValueError, match="2 booleans, at least one of them true"):
+            together.reset(options={"reset_mask": mask})
+    with pytest.raises(ValueError, match="not a valid AutoresetMode"):
+        vector(2, autoreset_mode="never")
+
+
 def test_states_are_copied_within_an_episode():
     env = environment()
     env.reset(seed=3)
@@ -99,7 +197,7 @@ def test_rewards_are_those_of_the_results():
     env = environment(starts={}, targets={"column_psi": (0.4, 0.4)})
     env.reset(seed=1)
     observed, reward, *_, info = env.step([1.0])
-    swing = env._episodes.results()["load_phi_rate"][0]
+    swing = env._episodes._simulation.v[0, env.crane.coordinates.index("load_phi")]
     assert reward == pytest.approx(-(((observed[0] - 0.4) / 0.5) ** 2) - swing**2 - 0.1**2, rel=1e-12)
     # The greatest rate for one step of 0.02 s, and what the crane is.
     assert info["input_slew"] == pytest.approx(0.01) and info["column_psi"] == observed[0]
@@ -122,6 +220,10 @@ def test_an_episode_ends_at_limits_and_when_it_fails():
         if terminated:
             break
     assert terminated and not truncated and info["why"] == "column_psi left its limits" and reward < -99
+    # Terminated in its last step, it is not truncated as well.
+    at_once = environment(limits={"column_psi": (-0.1, 0.1)}, starts={"slew": (0.2, 0.2)}, duration=0.02)
+    at_once.reset(seed=1)
+    assert at_once.step([0.0])[2:4] == (True, False)
     failing = environment(tolerance=1e-12, bands={}, starts={})
     failing.reset(seed=1)
     failing._episodes._simulation.reset([0], q=failing._episodes._simulation.q, v=np.full((1, 3), 1e9))
