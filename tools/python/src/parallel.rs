@@ -15,7 +15,8 @@ use pyo3::prelude::*;
 static THREADS: AtomicUsize = AtomicUsize::new(0);
 
 /// How many the machine has. Asked once: the system takes longer to answer than a small crane to step.
-static CORES: LazyLock<usize> = LazyLock::new(|| thread::available_parallelism().map_or(1, std::num::NonZeroUsize::get));
+static CORES: LazyLock<usize> =
+    LazyLock::new(|| thread::available_parallelism().map_or(1, std::num::NonZeroUsize::get));
 
 /// Sets how many threads a call uses; None: as many as the machine has.
 #[pyfunction]

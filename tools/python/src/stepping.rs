@@ -285,14 +285,7 @@ impl Motions {
     }
 
     /// Time, pose and rates of every row after each of several steps of `dt`, s; rows that fail stay at their last state.
-    fn paths(
-        &self,
-        py: Python<'_>,
-        dt: f64,
-        steps: usize,
-        changes: &Changes,
-        linear: bool,
-    ) -> PyResult<Vec<Vec<f64>>> {
+    fn paths(&self, py: Python<'_>, dt: f64, steps: usize, changes: &Changes, linear: bool) -> PyResult<Vec<Vec<f64>>> {
         let (least, greatest) = Settings::TIMES;
         if !(least..=greatest).contains(&dt) {
             return Err(PyValueError::new_err(format!("dt={dt}: write a number from {least:e} to {greatest:e}, in s")));
