@@ -90,8 +90,9 @@ class Fit(Mapping[str, float]):
     intervals: (numbers, 2), 95 % intervals from the covariance: of a normal distribution if the noise was stated and is the one that is there, else
     of Student's t. covariance: (numbers, numbers), without what is not known.
     indistinct: combinations of numbers that the measurements do not tell apart, in words; unknown: (numbers, combinations), these combinations.
-    chi2: χ² per degree of freedom, over what has a stated noise if anything has; degrees: degrees of freedom, values less numbers.
-    status: "converged", "at a bound", "misfit" (residuals are far above the stated noise, or no noise), "not identifiable" or "not converged":
+    chi2: χ² per degree of freedom, over what has a stated noise if anything has; degrees: degrees of freedom, values less numbers; independent: as
+    many as intervals have, fewer where residuals follow each other.
+    status: "converged", "at a bound", "misfit" (residuals are far above the stated noise, or follow each other), "not identifiable" or "not converged":
     the worst that applies. cautions: all that is to be said about the fit. series: what was measured, and what the fitted crane says.
     crane: the crane with the fitted values. statistics: evaluations of all experiments, and of their derivatives.
     """
@@ -109,6 +110,7 @@ class Fit(Mapping[str, float]):
     at_bound: tuple[str, ...]
     chi2: float
     degrees: int
+    independent: float = field(repr=False)
     noise_stated: bool
     quantile: float = field(repr=False)
     estimated: bool = field(repr=False)
@@ -233,7 +235,7 @@ class Fit(Mapping[str, float]):
         values, vectors = np.linalg.eigh(self.covariance)
         normal = rng.standard_normal((draws, len(self.names)))
         if self.estimated and self.degrees > 0:
-            normal *= np.sqrt(self.degrees / rng.chisquare(self.degrees, (draws, 1)))
+            normal *= np.sqrt(self.independent / rng.chisquare(self.independent, (draws, 1)))
         sets = np.clip(self.estimates + normal * np.sqrt(np.maximum(values, 0.0)) @ vectors.T, *self.bounds.T)
         live = [place for place, name in enumerate(self.names) if name in self.crane.parameters]
         computed = []

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from .coloured import coefficient, score_covariance
 from .experiments import Experiment
 from .fit_problem import Problem, scipy
 from .fit_result import Fit, SeriesFit
@@ -23,8 +24,10 @@ REMAINING = 0.1
 OUTLIER = 6.0
 # χ² per degree of freedom above which residuals are far above the stated noise, if they are so significantly.
 FAR_ABOVE = 1.5
-# Correlation of successive residuals of a run above which they are not noise, and above which that is mentioned.
-NO_NOISE, MENTIONED = 0.7, 0.3
+# Correlation of successive residuals above which they are not noise. Noise is coloured from the correlation on that chance does not explain, within
+# limits: few values do not excuse a large one, and a small one of many values hardly changes intervals.
+NO_NOISE = 0.7
+COLOURED = (0.1, 0.3)
 # Part of values that must be exceeded by chance for a misfit to be significant.
 BY_CHANCE = 1e-3
 
@@ -63,6 +66,7 @@ def _result(problem: Problem, solved: Solved, wall_time: float) -> Fit:
     special = scipy().special
     p, residuals, jacobian = solved.p, solved.residuals, solved.jacobian
     total = len(residuals)
+    series = _series(problem, solved)
     at_bound = problem.at_bound(p, jacobian.T @ residuals)
     free = ~at_bound
     scales = problem.sizes(p)
@@ -70,19 +74,34 @@ def _result(problem: Problem, solved: Solved, wall_time: float) -> Fit:
     degrees = total - int(found.known.sum())
     stated = np.concatenate([np.full(len(one.measured), one.noise is not None) for one in problem.series])
     own = max(degrees * stated.sum() / total, 0.0)
+    numbers = int(found.known.sum())
+    colours = [_colour(one, numbers, total) for one in series]
+    # Squares of coloured noise scatter as fewer independent ones do (Bartlett's formula), and means of it, too.
+    squares, means = (_independent(series, colours, power) for power in (2, 1))
     chi2 = float(np.sum(residuals[stated] ** 2)) if stated.any() else float(np.sum(residuals**2))
     own_degrees = own if stated.any() else float(degrees)
     reduced = chi2 / own_degrees if own_degrees > 0 else np.nan
-    significant = bool(own_degrees > 0 and stated.any() and chi2 > special.chdtri(own_degrees, BY_CHANCE))
+    share = float(squares[stated].mean()) if stated.any() else 1.0
+    significant = bool(own_degrees > 0 and stated.any() and chi2 * share > special.chdtri(own_degrees * share, BY_CHANCE))
     spread = float(np.sqrt(reduced)) if significant else 1.0
     # Deviations are known if the noise was stated and is the one that is there, and estimated otherwise.
-    estimated = significant or not stated.all()
-    quantile = float(special.stdtrit(degrees, 0.975) if estimated and degrees > 0 else special.ndtri(0.975))
+    estimated = significant or not stated.all() or any(colours)
+    independent = float(degrees * means.mean())
+    quantile = float(special.stdtrit(independent, 0.975) if estimated and degrees > 0 else special.ndtri(0.975))
     found = directions(jacobian[:, free], scales[free], problem.accuracy, quantile)
 
     count = len(p)
     covariance = np.zeros((count, count))
-    covariance[np.ix_(free, free)] = spread**2 * found.covariance
+    own_covariance = spread**2 * found.covariance
+    if any(colours) and degrees > 0:
+        scores = [
+            score_covariance(jacobian[rows][:, free], residuals[rows], colour) * total / degrees
+            if colour
+            else spread**2 * jacobian[rows][:, free].T @ jacobian[rows][:, free]
+            for rows, colour in zip(problem.rows, colours, strict=True)
+        ]
+        own_covariance = found.covariance @ np.sum(scores, axis=0) @ found.covariance
+    covariance[np.ix_(free, free)] = own_covariance
     unknown = np.zeros((count, found.unknown.shape[1]))
     unknown[free] = found.unknown
     deviations = np.sqrt(np.diag(covariance))
@@ -99,10 +118,9 @@ def _result(problem: Problem, solved: Solved, wall_time: float) -> Fit:
 
     names = [name for name, is_free in zip(problem.names, free, strict=True) if is_free]
     indistinct = describe(found, names, p[free], misfit)
-    series = _series(problem, solved)
     remaining = float(np.linalg.norm(next_step(problem, p, jacobian, residuals)[1])) / spread
     converged = remaining < REMAINING
-    status, cautions = _judge(problem, solved, converged, remaining, indistinct, at_bound, reduced, significant, series)
+    status, cautions = _judge(problem, solved, converged, remaining, indistinct, at_bound, reduced, significant, series, colours)
     problem.values(p)
     cautions += [caution for model in problem.models for caution in model.cautions()]
     live = {name: float(value) for name, value in zip(problem.names, p, strict=True) if name in problem.crane.parameters}
@@ -120,6 +138,7 @@ def _result(problem: Problem, solved: Solved, wall_time: float) -> Fit:
         at_bound=tuple(name for name, there in zip(problem.names, at_bound, strict=True) if there),
         chi2=reduced,
         degrees=degrees,
+        independent=independent,
         noise_stated=bool(stated.all()),
         quantile=quantile,
         estimated=bool(estimated),
@@ -142,6 +161,21 @@ def _series(problem: Problem, solved: Solved) -> tuple[SeriesFit, ...]:
     return tuple(found)
 
 
+def _colour(one: SeriesFit, numbers: int, total: int) -> float:
+    """Coefficient of coloured noise; 0 for white noise."""
+    if one.follows is None:
+        return 0.0
+    count = len(one.measured)
+    by_chance = float(-scipy().special.ndtri(BY_CHANCE)) / np.sqrt(count)
+    return coefficient(one.follows, count, numbers, total) if one.follows > np.clip(by_chance, *COLOURED) else 0.0
+
+
+def _independent(series: Sequence[SeriesFit], colours: Sequence[float], power: int) -> Array:
+    """(values): what part of an independent value each is worth, for means (power 1) or for means of squares (2)."""
+    parts = [np.full(len(one.measured), (1 - colour**power) / (1 + colour**power)) for one, colour in zip(series, colours, strict=True)]
+    return np.concatenate(parts)
+
+
 def _judge(
     problem: Problem,
     solved: Solved,
@@ -152,6 +186,7 @@ def _judge(
     reduced: float,
     significant: bool,
     series: Sequence[SeriesFit],
+    colours: Sequence[float],
 ) -> tuple[str, list[str]]:
     """The status of a fit, the worst word that applies, and all that is to be said about it."""
     status, cautions = "converged", []
@@ -159,7 +194,6 @@ def _judge(
         status = "at a bound"
         there = [name for name, is_there in zip(problem.names, at_bound, strict=True) if is_there]
         cautions.append(f"{', '.join(there)} ended at a bound: the intervals of the others hold for this value; is the bound right, and the model?")
-    dependent = [one for one in series if one.follows is not None and one.follows > NO_NOISE and not one.noise_stated]
     if significant and reduced > FAR_ABOVE:
         status = "misfit"
         cautions.append(
@@ -168,8 +202,6 @@ def _judge(
         )
     elif significant:
         cautions.append(f"residuals are {np.sqrt(reduced):.2f} times the stated noise, more than by chance; intervals are widened by this factor")
-    elif dependent:
-        status = "misfit"
     elif problem.stated.any() and reduced < 0.5 and np.isfinite(reduced) and sum(len(one.measured) for one in series) > 20:
         cautions.append(f"residuals are only {np.sqrt(reduced):.2g} of the stated noise: intervals are wider than need be")
     if len(solved.minima) > 1:
@@ -178,13 +210,15 @@ def _judge(
         others = sorted(minimum for minimum in solved.minima if minimum >= lowest + 1.0)
         if others:
             cautions.append(f"{same} of {len(solved.minima)} starts ended here, the others at minima with χ² higher by {others[0] - lowest:.3g} or more")
-    for one in series:
-        follows = one.follows
-        if follows is not None and follows > MENTIONED:
+    for one, colour in zip(series, colours, strict=True):
+        if colour and one.follows is not None:
+            count = len(one.measured)
             cautions.append(
-                f"{one.experiment}: residuals of {one.column} follow each other (correlation {follows:.2f}): they are not noise of single values, "
-                "but what the model leaves out; intervals are too narrow"
+                f"{one.experiment}: residuals of {one.column} follow each other (correlation {one.follows:.2f}): {count} values are worth about "
+                f"{count * (1 - colour) / (1 + colour):.0f} independent ones; intervals allow for coloured noise, but not for what the model leaves out"
             )
+            if one.follows > NO_NOISE:
+                status = "misfit"
         cautions += one.outliers(OUTLIER)
     if indistinct:
         status = "not identifiable"
