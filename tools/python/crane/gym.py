@@ -143,7 +143,7 @@ class _Episodes:
         for name in (*self.names, *task.scales):
             _known(name, [of for of in self._places if of != "t"], "observation")
         self._scales = np.array([task.scales.get(name, 1.0) for name in self.names])
-        # What is told of every step: observations first, then the rest of `info`.
+        # What `info` has: observations first.
         self.told = list(dict.fromkeys([*self.names, *given, "t"]))
         self._told = [array for array in arrays if any(self._places[name][0] == array for name in self.told)]
         names = [name for array in self._told for name in arrays[array]]
