@@ -1,7 +1,9 @@
 """Frames on links, chosen at the call: poses, Jacobians, velocities, accelerations."""
 
 import json
+import warnings
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -36,9 +38,7 @@ class Frames:
                 points.append({"name": f"{name}_{corner}", "link": link, "at": [float(x) for x in at + offset]})
         removed = [{"name": point, "remove": True} for point in crane.info["points"]]
         changes = f"points: {json.dumps(removed + points)}\n"
-        self._crane = type(crane)(
-            crane.source, text=crane._changed(changes), parameters=crane.parameters, invalid="raise", inputs=crane.inputs
-        )
+        self._crane = _with(crane, changes)
 
     def __repr__(self) -> str:
         return f"Frames({', '.join(self.names)})"
@@ -81,6 +81,61 @@ class Frames:
         x, y, z = np.moveaxis(omega, -1, 0)
         alpha = alpha + np.stack([-y * z, -z * x, x * y], axis=-1)
         return np.concatenate([origin, np.einsum("...ik,...k->...i", rotation, alpha)], axis=-1)
+
+
+    def regressor(self, q: ArrayLike, v: ArrayLike, a: ArrayLike) -> Array:
+        """(..., n, 10 frames): Y of `A q̈ − e = Y π` for masses that are fixed to the frames, in N and N m per parameter; π has for each frame its mass m,
+        m c of its centre, and the moments about the origin (not the centre) Ixx, Ixy, Ixz, Iyy, Iyz, Izz, in its axes; kg, kg m, kg m².
+
+        With frames of all rigid links, `Y π` is `Crane.inverse_dynamics` of a crane without beams. C. G. Atkeson, C. H. An, J. M. Hollerbach, Estimation
+        of inertial parameters of manipulator loads and links, Int. J. Robotics Research 5(3), 1986.
+        """
+        into = np.swapaxes(self.poses(q)[..., :3, :3], -1, -2)
+        twists, accelerations = self.velocities(q, v), self.accelerations(q, v, a)
+        b = np.einsum("...ik,...k->...i", into, accelerations[..., :3] - self._gravity[..., None, :])
+        omega, alpha = (np.einsum("...ik,...k->...i", into, of[..., 3:]) for of in (twists, accelerations))
+        # Newton and Euler about the origin, in the axes of the frame: m b + α × m c + ω × (ω × m c), and m c × b + I α + ω × I ω.
+        wrenches = np.zeros((*b.shape[:-1], 6, 10))
+        wrenches[..., :3, 0] = b
+        wrenches[..., :3, 1:4] = _cross(alpha) + _cross(omega) @ _cross(omega)
+        wrenches[..., 3:, 1:4] = -_cross(b)
+        wrenches[..., 3:, 4:] = _moments(alpha) + _cross(omega) @ _moments(omega)
+        jacobians = self.jacobians(q)
+        own = np.concatenate([into @ jacobians[..., :3, :], into @ jacobians[..., 3:, :]], axis=-2)
+        matrices = np.moveaxis(np.swapaxes(own, -1, -2) @ wrenches, -3, -2)
+        return matrices.reshape(*matrices.shape[:-2], -1)
+
+    @cached_property
+    def _gravity(self) -> Array:
+        """(..., 3): acceleration of gravity, m/s², which may follow live parameters: that with which masses slide along the axes of the last link."""
+        masses = [{"name": f"along_{axis}", "joint": {"prismatic": {"axis": axis}}, "mass": 1, "com": [0, 0, 0]} for axis in "xyz"]
+        with warnings.catch_warnings():
+            # Masses that are light for a crane.
+            warnings.simplefilter("ignore")
+            crane = _with(self._crane, f"links: {json.dumps(masses)}\n")
+        axes = crane.transforms(crane.guess)[..., -1, :3, :3]
+        moved = np.diagonal(crane.mass_matrix(crane.guess), axis1=-2, axis2=-1)
+        sliding = crane.bias(crane.guess, np.zeros(crane.n)) / moved
+        gravity: Array = np.einsum("...ik,...k->...i", axes, sliding[..., -3:])
+        return gravity
+
+
+def _with(crane: "Crane", changes: str) -> "Crane":
+    """The crane with a change of its spec."""
+    return type(crane)(crane.source, text=crane._changed(changes), parameters=crane.parameters, invalid="raise", inputs=crane.inputs)
+
+
+def _cross(vectors: Array) -> Array:
+    """(..., 3, 3): the matrix of w ↦ vector × w."""
+    return np.swapaxes(np.cross(vectors[..., None, :], np.eye(3)), -1, -2)
+
+
+def _moments(vectors: Array) -> Array:
+    """(..., 3, 6): I w as a matrix times Ixx, Ixy, Ixz, Iyy, Iyz, Izz."""
+    found = np.zeros((*vectors.shape, 6))
+    for row, places in enumerate(((0, 1, 2), (1, 3, 4), (2, 4, 5))):
+        found[..., row, places] = vectors
+    return found
 
 
 def _turning(rotation: Array, y: Array, z: Array) -> Array:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import crane
+from conftest import PENDULUM
 
 # An element of a beam with a symmetric joint of sections, a rigid link beyond it, a branch.
 CASES = [
@@ -68,3 +69,35 @@ def test_places_that_make_no_sense_are_refused():
         c.frames({"tool": ("hook", [0.0, 1.0])})
     with pytest.raises(crane.SpecError, match="hok"):
         c.frames({"tool": "hok"})
+
+
+def test_a_regressor_times_parameters_is_inverse_dynamics():
+    """A rod of the fixture's numbers, moments moved to its pin by hand, with gravity that is not upright; 1e-12 of the torques is rounding."""
+    c = crane.load("pendulum.yaml", text=PENDULUM + "gravity: [1.5, -0.5, -9]\n")
+    rng = np.random.default_rng(2)
+    q, v, a = rng.normal(size=(3, 2, 5, 1))
+    matrix = c.frames({"rod": "rod"}).regressor(q, v, a)
+    assert matrix.shape == (2, 5, 1, 10)
+    parameters = [2.0, 0.0, 0.0, 2.0 * -1.5, 0.001 + 2.0 * 1.5**2, 0.0, 0.0, 0.05 + 2.0 * 1.5**2, 0.0, 0.05]
+    np.testing.assert_allclose(matrix @ parameters, c.inverse_dynamics(q, v, a), rtol=1e-12)
+
+
+def test_a_regressor_is_what_a_mass_on_a_flexible_crane_adds():
+    """300 kg more of the log, whose centre is 1 m below the grapple: of forces up to 1e6 N m, the difference rounds to 1e-10 of the largest."""
+    c, more = crane.load("eight_link_flexible"), crane.load("eight_link_flexible", load_mass=800.0)
+    q, v, a = at_random(c, 4)
+    log = np.zeros(10)
+    log[[0, 4, 7, 9]] = 300.0 * np.array([1.0, 0.148324**2, 1.15931**2, 1.15931**2])
+    added = more.inverse_dynamics(q, v, a) - c.inverse_dynamics(q, v, a)
+    np.testing.assert_allclose(c.frames({"log": ("grapple", [0.0, 0.0, 1.0])}).regressor(q, v, a) @ log, added, atol=1e-10 * np.abs(added).max())
+
+
+@pytest.mark.parametrize("name", ["knuckle_boom", "eight_link_rigid"])
+def test_regressors_identify_cranes(name):
+    """Parameters by least squares from states at random predict other states: all that is rigid is a sum of columns, whatever the spec has."""
+    c = crane.load(name)
+    frames = c.frames({body["link"]: body["link"] for body in c.info["bodies"]})
+    (q, v, a), others = at_random(c, 60), np.random.default_rng(6).normal(size=(3, 8, c.n))
+    found = np.linalg.lstsq(np.concatenate(frames.regressor(q, v, a)), np.concatenate(c.inverse_dynamics(q, v, a)), rcond=None)[0]
+    expected = c.inverse_dynamics(*others)
+    np.testing.assert_allclose(frames.regressor(*others) @ found, expected, atol=1e-9 * np.abs(expected).max())
