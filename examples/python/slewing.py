@@ -1,6 +1,6 @@
 """A crane learns to slew without swinging its load: augmented random search for a linear policy, in NumPy alone.
 
-    python examples/python/slewing.py              # some 15 s on two cores
+    python examples/python/slewing.py              # some 5 s on two cores
     python examples/python/slewing.py --rounds 3   # a second
 
 The policy is a matrix: the rate at which the column slews, from the angles and rates of the column and of the load. A plain drive, with which it
