@@ -88,10 +88,9 @@ class RandomRobot:
     def tendons(self):
         """Fixed tendons of one and of two joints with springs and dampers."""
         names = [f"joint_{number}" for number in range(self.joints)]
-        # The spring of a single joint is read where the joint has none of its own.
-        bodies = [body for body in self.root.iter("body") if body.get("childclass") is None]
-        joints = [joint for body in bodies for joint in body.findall("joint") if joint.get("name") in names]
-        plain = [joint.get("name") for joint in joints if not {"stiffness", "springdamper"}.intersection(joint.keys())]
+        # The spring of a single joint is read where the inertia does not determine another one.
+        joints = [joint for joint in self.root.find("worldbody").iter("joint") if joint.get("name") in names]
+        plain = [joint.get("name") for joint in joints if joint.get("springdamper") is None]
         groups = [self.rng.choice(names, 2, replace=False)] if len(names) > 1 else []
         groups += [plain[:1]] if plain else []
         section = ElementTree.SubElement(self.root, "tendon")

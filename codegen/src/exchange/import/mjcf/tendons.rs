@@ -79,11 +79,14 @@ impl<'a, 'i> File<'a, 'i> {
             _ => None,
         };
         match (tendon.terms.as_slice(), rest) {
-            (&[(joint, share)], Some(rest)) if self.robot.joints[joint].spring.is_none() => {
+            (&[(joint, share)], Some(rest)) if self.robot.joints[joint].oscillation.is_none() => {
                 let joint = &mut self.robot.joints[joint];
                 joint.damping += damping * share * share;
-                let of_joint = Spring { stiffness: stiffness * share * share, rest: rest / share };
-                joint.spring = (stiffness != 0.0).then_some(of_joint);
+                let (own, at) = joint.spring.as_ref().map_or((0.0, 0.0), |spring| (spring.stiffness, spring.rest));
+                // Two springs side by side.
+                let [added, sum] = [stiffness * share * share, own + stiffness * share * share];
+                let both = Spring { stiffness: sum, rest: (own * at + added * rest / share) / sum };
+                joint.spring = (sum != 0.0).then_some(both);
             }
             (&[(follower, one), (leader, other)], Some(rest)) => {
                 let name_of = |joint: usize| self.robot.joints[joint].name.clone();
