@@ -493,13 +493,13 @@ catalogue! {
     /// Live places along a beam, where sections end, keep their order.
     E184 places_meet() "a place on a beam meets another one, or an end of the beam", "it is divided where something acts on it",
         "give the place in the spec: then the beam is divided again";
+    /// The `combination` with which a crane is computed is one of its `combinations`.
+    E185 unknown_combination(name, help) "there is no combination `{name}`", "not listed under `combinations:`", "{help}";
     /// A load has either a force or a wind.
     E186 wind_and_force(load) "load `{load}` has a wind and a force", "the wind gives its force", "remove `force`, or write another load for it";
     /// A wind has either a pressure or a speed.
     E187 pressure_or_speed(load) "the wind of load `{load}` needs either a pressure or a speed", "one of the two gives its force",
         "write `pressure: 250 Pa` or `speed: 20 m/s`";
-    /// The `combination` with which a crane is computed is one of its `combinations`.
-    E185 unknown_combination(name, help) "there is no combination `{name}`", "not listed under `combinations:`", "{help}";
 
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.

@@ -46,8 +46,8 @@ catalogue! {
     /// A joint follows another one in proportion.
     U019 not_linear(joint) "joint `{joint}` does not follow its leader in proportion", "powers of the leader's position are not supported",
         "write `polycoef` with two numbers other than 0: offset and ratio";
-    /// An equality names a joint that is in the file.
-    U020 equality(joint) "an equality names joint `{joint}`, which is not in the file", "no such joint", "correct the name of the joint";
+    /// An equality or a tendon names a joint that is in the file.
+    U020 equality(joint, help) "an equality or a tendon names joint `{joint}`, which is not in the file", "no such joint", "{help}";
     /// Classes of defaults are in the file.
     U021 unknown_class(class, help) "there is no class `{class}` of defaults", "no <default> of this name", "{help}";
     /// An orientation is written in one way.

@@ -1,7 +1,7 @@
 //! Equalities and fixed tendons: linear equations `Σ a (q − ref) = c` and springs between joints.
 
 use super::File;
-use crate::diagnostic::Span;
+use crate::diagnostic::{Span, suggest};
 use crate::exchange::import::document::Element;
 use crate::exchange::import::mistakes::rule;
 use crate::exchange::import::robot::{Coupling, Follows, Joint, Named, Spring};
@@ -112,7 +112,8 @@ impl<'a, 'i> File<'a, 'i> {
     fn index_of(&mut self, joint: &Named) -> Option<usize> {
         let found = self.robot.joints.iter().position(|other| other.name == joint.name);
         if found.is_none() {
-            self.reader.mistakes.push(rule::equality(joint.span, &joint.name));
+            let help = suggest(&joint.name, self.robot.joints.iter().map(|joint| joint.name.as_str()));
+            self.reader.mistakes.push(rule::equality(joint.span, &joint.name, help));
         }
         found
     }
