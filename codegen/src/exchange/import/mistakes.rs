@@ -22,7 +22,7 @@ catalogue! {
     /// All links form one tree with one root.
     U008 not_a_tree(problem) "the links are not a tree: {problem}", "every link but the root is the child of one joint", "make every link but one the child of exactly one joint";
     /// Joints are of a kind that URDF or MJCF has.
-    U009 unsupported(joint, kind) "joint `{joint}` is {kind}, which is no kind of joint",
+    U009 unsupported(joint, kind) "joint `{joint}` has the unknown type `{kind}`",
         "URDF: revolute, continuous, prismatic, planar, floating, fixed; MJCF: hinge, slide, ball, free", "write one of these kinds";
     /// A joint follows a joint of the file.
     U010 unknown_leader(joint, leader, help) "joint `{joint}` follows joint `{leader}`, which is not in the file", "no such joint", "{help}";

@@ -69,7 +69,7 @@ pub fn import(source: &SourceFile, options: &ImportOptions) -> Result<Imported, 
     if !mistakes.is_empty() {
         return Err(diagnostics(mistakes));
     }
-    robot.set_oscillations();
+    reference::set_oscillations(&mut robot);
     let mut left_out = root.remarks();
     left_out.append(&mut robot.left_out);
     if robot.joints.iter().any(|joint| joint.range().is_some()) {

@@ -9,6 +9,7 @@
 
 use std::collections::BTreeMap;
 
+use super::groups::groups;
 use super::links::SpecLink;
 use super::robot::{Coupling, Joint, Motion, Robot, Spring};
 use crate::chain::{Frame, Vector, cross};
@@ -215,6 +216,22 @@ impl Reference {
                 result.mass_matrix[row * n + column] +=
                     mass * dot(along, other_along) + dot(about, inertia(other_about));
             }
+        }
+    }
+}
+
+/// Sets springs and dampers that give joints their oscillations, with the inertia J that a force on the joint meets where all are at their
+/// `ref`: `k = J / (T ζ)²`, `d = 2 J / T`.
+pub(super) fn set_oscillations(robot: &mut Robot) {
+    // Links that are not a tree are refused later.
+    if robot.joints.iter().all(|joint| joint.oscillation.is_none()) || groups(robot, &[]).is_err() {
+        return;
+    }
+    for (name, inertia) in Reference::inertias_at_reference(robot) {
+        let Some(joint) = robot.joints.iter_mut().find(|joint| joint.name == name) else { continue };
+        if let Some([time, ratio]) = joint.oscillation {
+            joint.spring = Some(Spring { stiffness: inertia / (time * ratio).powi(2), rest: joint.relaxed });
+            joint.damping = 2.0 * inertia / time;
         }
     }
 }

@@ -2,8 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use super::groups::groups;
-use super::reference::Reference;
 use crate::chain::{Frame, Vector};
 use crate::diagnostic::Span;
 use crate::exchange::mass::Lump;
@@ -191,21 +189,5 @@ impl Robot {
         let following =
             self.joints.iter().filter_map(|joint| Some([&joint.name, &joint.follows.as_ref()?.leader.name]));
         springs.chain(following.flatten()).map(String::as_str).collect()
-    }
-
-    /// Springs and dampers that give joints their oscillations, with the inertia J that a force on the joint meets where all are at their `ref`:
-    /// `k = J / (T ζ)²`, `d = 2 J / T`.
-    pub(super) fn set_oscillations(&mut self) {
-        // Links that are not a tree are refused later.
-        if self.joints.iter().all(|joint| joint.oscillation.is_none()) || groups(self, &[]).is_err() {
-            return;
-        }
-        for (name, inertia) in Reference::inertias_at_reference(self) {
-            let Some(joint) = self.joints.iter_mut().find(|joint| joint.name == name) else { continue };
-            if let Some([time, ratio]) = joint.oscillation {
-                joint.spring = Some(Spring { stiffness: inertia / (time * ratio).powi(2), rest: joint.relaxed });
-                joint.damping = 2.0 * inertia / time;
-            }
-        }
     }
 }
