@@ -26,6 +26,9 @@ pub fn check_combined(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     for load in written["loads"].as_array_mut().into_iter().flatten() {
         let of_load = factor(0.5, 1.3);
         loads[load["name"].as_str()?] = json!(of_load);
+        if let Some(area) = load.pointer_mut("/wind/area") {
+            *area = json!(of_load * area.as_f64()?);
+        }
         for key in ["force", "moment"] {
             let Some(vector) = load.get_mut(key) else { continue };
             *vector =

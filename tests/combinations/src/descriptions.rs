@@ -8,6 +8,7 @@ use crate::crane::BOOM;
 use crate::observe::live;
 use crate::pins;
 use crate::tree::{Tree, entry, entry_mut, for_each_key, for_each_place, numbers, push, source};
+use crate::wind;
 
 /// The name in a second description of a number of the first.
 pub type Rename = Box<dyn Fn(&str) -> Option<String>>;
@@ -70,7 +71,7 @@ pub const ALL: [(&str, Description); 24] = [
     ("angles in degrees", degrees),
     ("lists in another order", other_order),
     ("weight as a force", weight_as_force),
-    ("forces as wind", wind_as_force),
+    ("forces as wind, wind as forces", wind_as_force),
     ("cylinders as forces at their pins", pins::as_loads),
     ("foot and head of cylinders exchanged", pins::exchanged),
     ("a loop joint holds what hangs", held_by_loop),
@@ -333,6 +334,9 @@ fn turned(tree: &Tree, _: &mut Rng) -> Option<Second> {
                 load[key] = json!(turn(&numbers(&load[key])));
             }
         }
+        if load["axes"] != "link" && load["wind"].is_object() {
+            load["wind"]["direction"] = json!(turn(&numbers(&load["wind"]["direction"])));
+        }
     }
     for connector in second.get_mut("connectors").and_then(Value::as_array_mut).into_iter().flatten() {
         let turned = |point: &mut Tree| {
@@ -562,32 +566,12 @@ fn weight_as_force(tree: &Tree, _: &mut Rng) -> Option<Second> {
     Some(Second { moves: false, ..Second::of(&second).named(same) })
 }
 
-/// Forces of loads as wind: by its pressure or its speed, along their direction.
+/// Forces of loads as wind, and wind as forces.
 fn wind_as_force(tree: &Tree, rng: &mut Rng) -> Option<Second> {
-    /// kg/m³
-    const AIR: f64 = 1.25;
     let mut second = tree.clone();
-    let mut any = false;
-    for load in second.get_mut("loads").and_then(Value::as_array_mut).into_iter().flatten() {
-        let Some(force) = load["force"].as_array().filter(|force| force.iter().all(Value::is_number)) else { continue };
-        let direction: Vec<f64> = force.iter().filter_map(Value::as_f64).collect();
-        let size = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
-        if size == 0.0 {
-            continue;
-        }
-        let (area, shape_factor) = (0.5 + rng.f64(), 1.0 + rng.f64());
-        let pressure = size / (area * shape_factor);
-        let mut wind = json!({"area": area, "shape_factor": shape_factor, "direction": direction});
-        if rng.bool() {
-            wind["pressure"] = json!(pressure);
-        } else {
-            wind["speed"] = json!((2.0 * pressure / AIR).sqrt());
-        }
-        load["wind"] = wind;
-        load.as_object_mut()?.remove("force");
-        any = true;
-    }
-    any.then(|| Second::of(&second))
+    let loads = second.get_mut("loads").and_then(Value::as_array_mut)?;
+    let exchanged = loads.iter_mut().filter_map(|load| wind::exchange(load, rng).then_some(())).count();
+    (exchanged > 0).then(|| Second::of(&second))
 }
 
 /// The falls of a rope one by one: back and forth between its last sheave and its end.
@@ -777,6 +761,10 @@ fn heavier(tree: &mut Tree, within: &str) {
                             double(end);
                         }
                     }
+                    continue;
+                }
+                if within == "wind" && key == "speed" {
+                    *value = json!(HEAVIER.sqrt() * value.as_f64().unwrap_or(0.0));
                     continue;
                 }
                 // Where damping is a time over a length or a time, not a force over a rate.

@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 
 use crate::crane::round;
 use crate::tree::{Tree, entry_mut};
+use crate::wind;
 
 /// Writes some parts of a crane in other forms, chosen by its seed. Its other random numbers do not depend on this.
 pub fn vary(seed: u64, tree: &mut Tree) {
@@ -40,6 +41,13 @@ pub fn vary(seed: u64, tree: &mut Tree) {
     }
     for load in entries(tree, "loads").filter(|load| load["axes"].is_null()) {
         load["axes"] = json!("world");
+    }
+    // With random numbers of its own, so that all others stay.
+    let mut gusts = Rng::with_seed(seed ^ 0xa1a1);
+    for load in entries(tree, "loads") {
+        if gusts.bool() {
+            wind::exchange(load, &mut gusts);
+        }
     }
     for connector in entries(tree, "connectors") {
         if let Some(mut spring) = connector["law"]["spring"].as_object().cloned().filter(|_| rng.bool()) {

@@ -24,3 +24,4 @@ pub mod run_changes;
 mod servos;
 mod shown;
 pub mod tree;
+mod wind;
