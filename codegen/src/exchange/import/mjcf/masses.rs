@@ -20,7 +20,7 @@ impl MassSettings {
     /// The mass of a body.
     pub(super) fn of_body(&self, lump: Option<Lump>) -> Option<Lump> {
         let bounded = self.least_mass > 0.0 || self.least_inertia > 0.0;
-        let Some(mut lump) = lump.or_else(|| bounded.then(Lump::nothing)) else { return None };
+        let mut lump = lump.or_else(|| bounded.then(Lump::nothing))?;
         lump.mass = lump.mass.max(self.least_mass);
         let least = self.least_inertia;
         let balances = self.balances;

@@ -140,15 +140,15 @@ impl<'a, 'i> File<'a, 'i> {
             return self.reader.mistakes.push(rule::not_linear(node.tag(), &follower.name));
         }
         node.leave_out_rest("softness of equalities");
-        let mut terms_of = |named: &Named| match kind {
-            "joint" => Some(vec![(self.index_of(named)?, 1.0)]),
-            _ => {
-                let found = tendons.iter().find(|tendon| tendon.name == named.name);
-                if found.is_none() {
-                    self.reader.mistakes.push(rule::closed_loop(named.span, format!("of tendon `{}`", named.name)));
-                }
-                found.map(|tendon| tendon.terms.clone())
+        let mut terms_of = |named: &Named| {
+            if kind == "joint" {
+                return Some(vec![(self.index_of(named)?, 1.0)]);
             }
+            let found = tendons.iter().find(|tendon| tendon.name == named.name);
+            if found.is_none() {
+                self.reader.mistakes.push(rule::closed_loop(named.span, format!("of tendon `{}`", named.name)));
+            }
+            found.map(|tendon| tendon.terms.clone())
         };
         // L₁ − c₁ L₂ = c₀, each L from that at `ref`.
         let Some(own) = terms_of(&follower) else { return };
