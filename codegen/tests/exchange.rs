@@ -664,3 +664,32 @@ fn springs_and_dampers_of_a_time_constant_and_a_damping_ratio() {
     let found = spec("a.xml", &text);
     assert!(found.contains("stiffness: 3.125, damping: 2, motion: {hold: 0}, armature: 0.08}"), "{found}");
 }
+
+#[test]
+fn what_an_import_cannot_keep_is_told() {
+    let robot = |compiler: &str, inside: &str, fixed: &[&str]| {
+        let bodies = format!(
+            "<body name='a'><freejoint name='root'/>{MASS}<body name='b'><joint name='j' axis='0 1 0'/>{MASS}\
+             <body name='c'><joint name='k' axis='0 1 0'/>{MASS}</body></body></body>"
+        );
+        let text = format!("<mujoco><compiler {compiler}/><worldbody>{bodies}</worldbody>{inside}</mujoco>");
+        let options =
+            ImportOptions { fixed: fixed.iter().map(ToString::to_string).collect(), ..ImportOptions::default() };
+        exchange::import(&SourceFile::new("robot.xml", text), &options)
+    };
+    // A follower that is held leaves its leader free.
+    let tied = "<equality><joint joint1='k' joint2='j'/></equality>";
+    let held = robot("", tied, &["k"]).expect("a robot").left_out;
+    let told = "Joint `k` is held, and no longer follows `j`, which moves freely.";
+    assert!(held.contains(&told.to_owned()), "{held:?}");
+    // Bodies without shapes keep their inertial frames.
+    let crane = chain(&SourceFile::new("a", robot("inertiafromgeom='true'", "", &[]).expect("a robot").spec));
+    let mass = |body: &crane_codegen::chain::Body| body.inertia.as_ref().map_or(0.0, |inertia| inertia.mass.at(&[]));
+    assert!((crane.bodies.iter().map(mass).sum::<f64>() - 6.0).abs() < 1e-15);
+    // A quaternion without length is no rotation; the place counts.
+    let key = "<keyframe><key qpos='1 2 3 0 0 0 0 0.3 0.2'/></keyframe>";
+    let guess = chain(&SourceFile::new("a", robot("", key, &[]).expect("a robot").spec)).guess;
+    assert_eq!(guess, [1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 0.3, 0.2]);
+    let global = robot("coordinate='global'", "", &[]).expect_err("not local");
+    assert_eq!(global.mistakes()[0].code, "U016");
+}

@@ -96,8 +96,9 @@ catalogue! {
     E034 wrong_dimension(subject, problem, help) "{subject} {problem}", "another dimension", "{help}";
     /// Units are those of the table.
     E035 unknown_unit(subject, written, symbol, help) "{subject} cannot be `{written}`: there is no unit `{symbol}`", "not a unit", "{help}";
-    /// A parameter or an input whose value has a unit is in an SI unit.
-    E036 not_si(subject, unit, si) "{subject} has a value with a unit, but is shown in {unit}", "values are kept in SI units", "write `unit: {si}`";
+    /// Parameters and inputs are in SI units, unless their unit is a word of its own.
+    E036 not_si(subject, unit, si) "{subject} is in {unit}, which is not an SI unit", "values are kept in SI units",
+        "write `unit: {si}`, and the value in {si} or with its unit";
 
     // Links.
     /// A crane has at least one link.

@@ -189,9 +189,10 @@ fn bodies(xml: &mut Xml, chain: &Chain, parameters: &[f64]) {
 /// Length along the axis of a pin between its two sites, m.
 const ALONG_PIN: f64 = 0.1;
 
-/// Names of the sites of both ends of a joint that closes a loop: at the end, and along the axis of a pin.
+/// Names of the sites of both ends of a joint that closes a loop: at the end, and along the axis of a pin. No point of a spec has a dot in its
+/// name.
 fn sites_of(joint: &LoopJoint) -> [[String; 2]; 2] {
-    ["from", "to"].map(|end| [format!("{}_{end}", joint.name), format!("{}_{end}_axis", joint.name)])
+    ["from", "to"].map(|end| [format!("{}.{end}", joint.name), format!("{}.{end}.axis", joint.name)])
 }
 
 /// A rod that closes a loop, and its length.

@@ -19,7 +19,7 @@ pub use urdf::urdf;
 
 use std::fmt::Write;
 
-use crate::chain::{Body, BodyId, Chain, Frame, Group, Step, Vector};
+use crate::chain::{Body, BodyId, Chain, Frame, Group, Step, Strain, Vector};
 
 /// The origin of a crane, and the values of its parameters.
 fn origin(chain: &Chain, parameters: &[f64]) -> String {
@@ -56,13 +56,28 @@ pub fn approximations(chain: &Chain) -> Option<String> {
         .any(|group| !chain.of(*group).is_empty())
         .then(|| "End stops and friction of joints are left out.".to_owned());
     let loads = (!chain.loads.is_empty()).then(|| "Loads applied from outside are left out.".to_owned());
-    let connectors = (!chain.connectors().is_empty())
-        .then(|| "Springs and ropes between points and couplings of coordinates are left out.".to_owned());
+    let has = |of_kind: fn(&Strain) -> bool| chain.connectors().iter().any(|connector| of_kind(&connector.strain));
+    let connectors = [
+        (has(|strain| matches!(strain, Strain::Line(_))), "Springs and ropes between points are left out."),
+        (has(|strain| matches!(strain, Strain::Coupling { .. })), "Couplings of coordinates are left out."),
+        (
+            has(|strain| matches!(strain, Strain::Sliding(_))),
+            "Pads of telescopes are left out: nothing but its drive holds a stage.",
+        ),
+        (
+            has(|strain| matches!(strain, Strain::Turning(_))),
+            "Friction and damping of pins that close loops are left out.",
+        ),
+    ];
+    let connectors = connectors.into_iter().filter(|(has, _)| *has).map(|(_, text)| Some(text.to_owned()));
+    let loops = (!chain.loop_joints.is_empty())
+        .then(|| "The start is the guess, in which loops may be open; statics closes them.".to_owned());
     let oil = chain.has_valves().then(|| {
         "Cylinders with valves are left out: their joints have no drive and fall; add drives for them.".to_owned()
     });
     let limits = chain.has_limited_drives().then(|| "Limits of drives are left out.".to_owned());
-    let lost: Vec<String> = [hinges, joints, loads, connectors, oil, limits].into_iter().flatten().collect();
+    let lost = [hinges, joints, loads].into_iter().chain(connectors).chain([loops, oil, limits]).flatten();
+    let lost: Vec<String> = lost.collect();
     (!lost.is_empty()).then(|| lost.join(" "))
 }
 

@@ -156,10 +156,13 @@ impl<'a> Check<'a> {
     /// The value of a parameter or an input, which has the unit that the spec gives it, if any: words of its own admit numbers alone.
     pub(super) fn in_own_unit(&mut self, given: &Spanned<FixedAngle>, subject: &str, unit: Option<&str>) -> f64 {
         let known = unit.and_then(|unit| Some((unit, Unit::parse(unit).ok()?)));
-        if let (Some(FixedAngle(Scalar::Quantity(quantity))), Some(unit)) = (&given.value, unit)
-            && !known.is_some_and(|(_, known)| known.is_si())
-        {
-            let si = quantity.dimension.si_unit();
+        let in_si = match (&given.value, &known) {
+            (_, Some((_, known))) if known.is_si() => None,
+            (Some(FixedAngle(Scalar::Quantity(quantity))), _) => Some(quantity.dimension.si_unit()),
+            (Some(_), Some((_, known))) => Some(known.dimension.si_unit()),
+            _ => None,
+        };
+        if let (Some(si), Some(unit)) = (in_si, unit) {
             self.report(rule::not_si(given.span, subject, unit, si));
             return f64::NAN;
         }

@@ -79,6 +79,12 @@ pub fn import(source: &SourceFile, options: &ImportOptions) -> Result<Imported, 
     let unrepaired = left_out.len();
     let links = links::links(&groups, &robot.tied(), options.repair.then_some(&mut left_out));
     let repaired = left_out.len() > unrepaired;
+    let held = robot.joints.iter().filter(|joint| options.fixed.contains(&joint.name));
+    left_out.extend(held.filter_map(|joint| {
+        let leader = &joint.follows.as_ref()?.leader.name;
+        let free = !options.fixed.contains(leader);
+        free.then(|| format!("Joint `{}` is held, and no longer follows `{leader}`, which moves freely.", joint.name))
+    }));
     let lost = robot.couplings.iter().filter(|coupling| yaml::coupled(coupling, &links).is_none());
     let told = lost.map(|coupling| format!("The spring `{}` is left out: one of its joints is held.", coupling.name));
     left_out.extend(told);

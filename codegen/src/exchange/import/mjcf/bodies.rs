@@ -240,7 +240,12 @@ impl<'a, 'i> File<'a, 'i> {
         let owner = format!("the mass of body `{name}`");
         let inertial = inside.iter().find(|inner| inner.node.name() == "inertial");
         let geoms = || inside.iter().filter(|inner| inner.node.name() == "geom");
-        match (inertial, self.inertia_from_geoms) {
+        // MuJoCo keeps the inertial frame of a body without shapes.
+        let from_geoms = match self.inertia_from_geoms {
+            InertiaFromGeoms::Always if inertial.is_some() && geoms().next().is_none() => InertiaFromGeoms::Auto,
+            other => other,
+        };
+        match (inertial, from_geoms) {
             (Some(&Placed { node, ref frame, .. }), InertiaFromGeoms::Auto | InertiaFromGeoms::Never) => {
                 geoms().for_each(|geom| geom.node.leave_out(SHAPES));
                 let placement = frame.outer(&self.pose(node.read(), None, &owner));

@@ -105,6 +105,9 @@ impl<'a, 'i> File<'a, 'i> {
         settings.total = total.or(settings.total).filter(|total| *total > 0.0);
         settings.balances = node.text("balanceinertia").map_or(settings.balances, |given| given == "true");
         self.angles.read(node, &mut self.reader);
+        if node.text("coordinate").is_some_and(|given| given != "local") {
+            self.reader.mistakes.push(rule::to_expand(node.tag(), "`coordinate` of <compiler>"));
+        }
         // Read where ranges are.
         node.attribute("autolimits");
         if let Some(given) = node.text("inertiafromgeom") {

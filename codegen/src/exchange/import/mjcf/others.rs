@@ -100,10 +100,10 @@ impl<'a, 'i> File<'a, 'i> {
             if option.has("gravity") {
                 self.robot.gravity = self.numbers(option, None, "gravity", "<option>");
             }
-            for key in ["density", "viscosity"] {
-                if option.text(key).is_some_and(|given| given.parse() != Ok(0.0)) {
-                    self.robot.left_out.push("Forces of the surrounding medium are left out.".to_owned());
-                }
+            let acts = |key: &&str| option.text(key).is_some_and(|given| given.parse() != Ok(0.0));
+            // All of them are read.
+            if ["density", "viscosity"].iter().filter(|key| acts(key)).count() > 0 {
+                self.robot.left_out.push("Forces of the surrounding medium are left out.".to_owned());
             }
             for flag in option.named("flag") {
                 for key in FLAGS {
@@ -155,19 +155,20 @@ impl Motion {
     }
 }
 
+/// The orientation of a quaternion; without length, as `MuJoCo` reads it, none.
+fn orientation(quaternion: [f64; 4]) -> Frame {
+    from_quaternion(quaternion).unwrap_or(Frame::WORLD)
+}
+
 impl Joint {
     /// Lets it start at its numbers of `qpos`.
     fn start_at(&mut self, given: &[f64]) {
         match (&mut self.motion, given) {
             (Motion::Several { starts, .. }, [w, x, y, z]) => {
-                if let Some(pose) = from_quaternion([*w, *x, *y, *z]) {
-                    *starts = positions_of_ball(&pose);
-                }
+                *starts = positions_of_ball(&orientation([*w, *x, *y, *z]));
             }
             (Motion::Several { starts, .. }, [a, b, c, w, x, y, z]) => {
-                if let Some(pose) = from_quaternion([*w, *x, *y, *z]) {
-                    *starts = positions_of_free(&Frame { origin: [*a, *b, *c], ..pose });
-                }
+                *starts = positions_of_free(&Frame { origin: [*a, *b, *c], ..orientation([*w, *x, *y, *z]) });
             }
             (_, [position]) => self.start = Some(*position),
             _ => {}

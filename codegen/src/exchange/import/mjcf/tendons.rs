@@ -101,8 +101,12 @@ impl<'a, 'i> File<'a, 'i> {
                 });
             }
             _ => {
-                let why =
-                    if rest.is_none() { "it is slack over a range" } else { "it acts on too many joints or springs" };
+                let why = match (rest, tendon.terms.len()) {
+                    (None, _) => "it is slack over a range",
+                    (_, 0) => "it acts on no joint",
+                    (_, 1) => "the inertia determines another spring of its joint",
+                    _ => "it acts on more than two joints",
+                };
                 self.robot.left_out.push(format!("The spring of tendon `{}` is left out: {why}.", tendon.name));
             }
         }
