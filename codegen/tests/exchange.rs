@@ -686,7 +686,7 @@ fn what_an_import_cannot_keep_is_told() {
     let crane = chain(&SourceFile::new("a", robot("inertiafromgeom='true'", "", &[]).expect("a robot").spec));
     let mass = |body: &crane_codegen::chain::Body| body.inertia.as_ref().map_or(0.0, |inertia| inertia.mass.at(&[]));
     assert!((crane.bodies.iter().map(mass).sum::<f64>() - 6.0).abs() < 1e-15);
-    // A quaternion without length is no rotation; the place counts.
+    // A quaternion without length does not turn; the place counts.
     let key = "<keyframe><key qpos='1 2 3 0 0 0 0 0.3 0.2'/></keyframe>";
     let guess = chain(&SourceFile::new("a", robot("", key, &[]).expect("a robot").spec)).guess;
     assert_eq!(guess, [1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 0.3, 0.2]);
