@@ -4,7 +4,6 @@ use std::{io::Write, path::Path};
 
 use clap::ValueEnum;
 use crane_codegen::{
-    SourceFile,
     chain::{Bound, Chain, Refusal},
     compile,
     compile::NoFunction,
@@ -15,7 +14,7 @@ use crane_codegen::{
     program::Product,
 };
 
-use crane_live::{LiveCrane, imported::compare_with_file};
+use crane_live::imported::check_import;
 
 use crate::{
     arguments::{CNumber, Export, Import, Language},
@@ -159,19 +158,15 @@ pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
             "give another file with `-o`, or replace it with `--force`; drives and other changes in it would be lost",
         ));
     }
-    let Imported { spec, left_out, reference } =
-        exchange::import(&source, &ImportOptions { fixed: options.fixed.clone(), repair: options.repair })
-            .map_err(Problem::mistakes)?;
-    // A spec with mistakes in the robot's own numbers is written, too: they are to be corrected there.
-    let chain = compile::load(&SourceFile::new("robot.yaml", spec.as_str())).ok();
-    if let (Some(chain), Some(reference)) = (chain, &reference) {
-        compare_with_file(&LiveCrane::new(chain), reference).map_err(|deviation| {
-            Problem::failed(
-                format!("the spec of this robot does not move as its file says: {deviation}"),
-                "this is a fault of `crane import`; please report it with the file",
-            )
-        })?;
-    }
+    let imported = exchange::import(&source, &ImportOptions { fixed: options.fixed.clone(), repair: options.repair })
+        .map_err(Problem::mistakes)?;
+    check_import(&imported).map_err(|deviation| {
+        Problem::failed(
+            format!("the spec of this robot does not move as its file says: {deviation}"),
+            "this is a fault of `crane import`; please report it with the file",
+        )
+    })?;
+    let Imported { spec, left_out, .. } = imported;
     let Some(file) = &options.spec else {
         out.write_all(spec.as_bytes())?;
         // To standard error, not into the spec.

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use crane_codegen::exchange::{Reference, ReferenceDynamics};
+use crane_codegen::SourceFile;
+use crane_codegen::exchange::{Imported, Reference, ReferenceDynamics};
 use crane_model::dyn_crane::{DynDynamics, DynModel};
 
 use crate::LiveCrane;
@@ -27,6 +28,17 @@ impl fmt::Display for Deviation {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(out, "{} is {:.6e} by the spec and {:.6e} by the robot's file", self.what, self.by_spec, self.by_file)
     }
+}
+
+/// Compares the spec of a robot with its file: [`compare_with_file`], unless inertias were repaired. A spec with mistakes in the robot's own numbers
+/// passes: they are told, and corrected, there.
+///
+/// # Errors
+/// As of [`compare_with_file`].
+pub fn check_import(imported: &Imported) -> Result<(), Deviation> {
+    let Some(reference) = &imported.reference else { return Ok(()) };
+    let crane = LiveCrane::from_spec(&SourceFile::new("robot.yaml", imported.spec.as_str()));
+    crane.map_or(Ok(()), |crane| compare_with_file(&crane, reference))
 }
 
 /// Compares A, e and, where springs and dampers are all that acts, f of an imported crane with the robot's file, in three poses in motion.

@@ -13,7 +13,7 @@ use crane_codegen::picture::picture;
 use crane_codegen::units::Quantity;
 use crane_codegen::{Checked, SourceFile, build, edit, exchange, files};
 use crane_live::LiveCrane;
-use crane_live::imported::compare_with_file;
+use crane_live::imported::check_import;
 use crane_live::rows::Evaluation;
 use crane_model::Description;
 use crane_model::dyn_crane::{DynCrane, DynModel};
@@ -92,13 +92,9 @@ pub fn import_robot(
     };
     let options = ImportOptions { fixed: fix, repair };
     let imported = py.detach(|| exchange::import(&source, &options)).map_err(|found| spec_error(py, &found))?;
-    // Mistakes in the robot's own numbers are told when the spec is loaded.
-    let live = LiveCrane::from_spec(&SourceFile::new(named, imported.spec.as_str())).ok();
-    if let (Some(live), Some(reference)) = (live, &imported.reference) {
-        compare_with_file(&live, reference).map_err(|deviation| {
-            PyRuntimeError::new_err(format!("{named}: the spec does not move as the robot's file says: {deviation}"))
-        })?;
-    }
+    py.detach(|| check_import(&imported)).map_err(|deviation| {
+        PyRuntimeError::new_err(format!("{named}: the spec does not move as the robot's file says: {deviation}"))
+    })?;
     Ok(imported.spec)
 }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use super::groups::Group;
 use super::robot::{Joint, Motion};
+use super::split::free_name;
 use crate::chain::{Axis, CRATES, Frame, LONGEST_NAME, Vector};
 use crate::exchange::mass::{Lump, clean};
 use crate::exchange::rotation::along_z;
@@ -221,7 +222,7 @@ pub(super) struct Names(BTreeSet<String>);
 impl Names {
     /// An identifier derived from a name, not in use yet.
     pub(super) fn unique(&mut self, name: &str) -> String {
-        self.free(identifier(name), |_, _| true)
+        self.free(&identifier(name), |_, _| true)
     }
 
     /// The same for a point, whose result columns, `<point>_x` …, must differ from those of the coordinates.
@@ -229,15 +230,11 @@ impl Names {
         let fits = |taken: &BTreeSet<String>, name: &str| {
             ["x", "y", "z"].iter().all(|letter| !taken.contains(&format!("{name}_{letter}")))
         };
-        self.free(identifier(name), fits)
+        self.free(&identifier(name), fits)
     }
 
-    fn free(&mut self, name: String, fits: impl Fn(&BTreeSet<String>, &str) -> bool) -> String {
-        let numbered = (2..).map(|number| format!("{name}_{number}"));
-        let mut candidates = std::iter::once(name.clone()).chain(numbered);
-        let free = candidates.find(|name| !self.0.contains(name) && fits(&self.0, name)).unwrap_or(name);
-        self.0.insert(free.clone());
-        free
+    fn free(&mut self, name: &str, fits: impl Fn(&BTreeSet<String>, &str) -> bool) -> String {
+        free_name(&mut self.0, name, fits)
     }
 }
 

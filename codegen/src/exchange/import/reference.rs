@@ -14,6 +14,7 @@ use super::links::SpecLink;
 use super::robot::{Coupling, Joint, Motion, Robot, Spring};
 use crate::chain::{Frame, Vector, cross};
 use crate::exchange::mass::Lump;
+use crate::exchange::rotation::length;
 
 /// Acceleration of gravity of a spec that gives none, m/s².
 const GRAVITY: Vector = [0.0, 0.0, -9.81];
@@ -211,7 +212,7 @@ impl Reference {
         for &(row, along, about) in &columns {
             let [linear, angular] = [dot(along, force), dot(about, moment)];
             result.bias[row][0] -= linear + angular;
-            result.bias[row][1] += (norm(along) * norm(force)).max(linear.abs()) + angular.abs();
+            result.bias[row][1] += (length(along) * length(force)).max(linear.abs()) + angular.abs();
             for &(column, other_along, other_about) in &columns {
                 result.mass_matrix[row * n + column] +=
                     mass * dot(along, other_along) + dot(about, inertia(other_about));
@@ -295,8 +296,4 @@ fn scaled(by: f64, a: Vector) -> Vector {
 
 fn dot(a: Vector, b: Vector) -> f64 {
     (0..3).map(|i| a[i] * b[i]).sum()
-}
-
-fn norm(a: Vector) -> f64 {
-    dot(a, a).sqrt()
 }

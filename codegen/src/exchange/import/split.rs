@@ -90,7 +90,7 @@ pub(super) fn split_joints(robot: &mut Robot, fixed: &[String]) -> Vec<Mistake> 
             let child = if index == last {
                 joint.child.clone()
             } else {
-                let name = free_name(&mut names, &format!("{}_{}", joint.child.name, index + 1));
+                let name = free_name(&mut names, &format!("{}_{}", joint.child.name, index + 1), |_, _| true);
                 robot.links.push(Link { name: name.clone(), span: joint.span, lump: None });
                 Named { name, span: joint.span }
             };
@@ -100,11 +100,15 @@ pub(super) fn split_joints(robot: &mut Robot, fixed: &[String]) -> Vec<Mistake> 
     mistakes
 }
 
-/// A name that is not in use yet: `first`, or with a number behind it.
-pub(super) fn free_name(names: &mut BTreeSet<String>, first: &str) -> String {
+/// A name that is not in use yet and that fits, which is in use from here on: `first`, or with a number behind it.
+pub(super) fn free_name(
+    names: &mut BTreeSet<String>,
+    first: &str,
+    fits: impl Fn(&BTreeSet<String>, &str) -> bool,
+) -> String {
     let numbered = (2..).map(|number| format!("{first}_{number}"));
     let mut candidates = std::iter::once(first.to_owned()).chain(numbered);
-    let free = candidates.find(|name| !names.contains(name)).unwrap_or_default();
+    let free = candidates.find(|name| !names.contains(name) && fits(names, name)).unwrap_or_else(|| first.to_owned());
     names.insert(free.clone());
     free
 }
