@@ -12,11 +12,13 @@
 //! C. Canudas de Wit, H. Olsson, K. J. Åström, P. Lischinsky: A new model for control of systems with
 //! friction, IEEE Transactions on Automatic Control 40 (1995).
 
+use crane_quantities::ColumnKind;
 use nalgebra::DMatrixViewMut;
 
 use crate::{
     BristleInfo, Description,
     dyn_crane::{DynDynamics, DynModel},
+    results::column_name,
     stateful_force::{Evaluated, ForceState, Row, StateAt, StatefulForce, StatefulForces},
 };
 
@@ -160,7 +162,7 @@ pub(crate) fn efforts(description: &Description, v: &[f64], x: &[f64]) -> Vec<(u
 
 /// Name of the column of results with the deflection in a joint.
 pub(crate) fn column(coordinate: &str) -> String {
-    format!("{coordinate}_bristle")
+    column_name(ColumnKind::Bristle, coordinate, false)
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@
 //! Generated functions contain f with a = 0. The runtime adds the difference, which is zero until a foot has slid. At rest, without a
 //! history, f is that with a = 0, and a run begins with `a = e − g e`, from which no foot slides further.
 
+use crane_quantities::ColumnKind;
 use nalgebra::{DMatrix, DMatrixViewMut, Vector3};
 
 use crate::{
@@ -463,14 +464,14 @@ impl Slid {
     }
 }
 
-/// Name of the column of results with a of a foot along an axis.
-pub(crate) fn column(foot: &str, axis: &str) -> String {
-    format!("{foot}_slid_{axis}")
+/// Name of the column of results with a of a foot along x, 0, or y, 1.
+pub(crate) fn column(foot: &str, axis: usize) -> String {
+    [foot, ColumnKind::Slid.endings(false)[axis]].concat()
 }
 
 /// Names of the columns of several feet in the order of their states, which is that of a fleet, too: all along x, then all along y.
 pub(crate) fn columns<N: AsRef<str>>(feet: impl Iterator<Item = N> + Clone) -> impl Iterator<Item = String> {
-    ["x", "y"].into_iter().flat_map(move |axis| feet.clone().map(move |foot| column(foot.as_ref(), axis)))
+    (0..2).flat_map(move |axis| feet.clone().map(move |foot| column(foot.as_ref(), axis)))
 }
 
 /// The anchors of feet: a of each, along x and y.

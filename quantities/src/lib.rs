@@ -6,9 +6,11 @@
 
 #![no_std]
 
+mod column_kind;
 mod count;
 mod function_id;
 mod table;
 
+pub use column_kind::{ColumnKind, END, PEAKS, Size, Strain};
 pub use count::{Count, Extent, Item};
 pub use function_id::{Argument, FunctionId, PythonArguments, RuntimeTrait};

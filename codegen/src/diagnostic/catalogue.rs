@@ -73,9 +73,9 @@ catalogue! {
     /// A parameter is used somewhere.
     E027 unused_parameter(name) "parameter `{name}` is never used", "nothing refers to it",
         "use `{name}` in place of a number, or remove it";
-    /// The result columns of a point, `<point>_x`, `_y`, `_z`, differ from all other columns.
-    E028 shared_column(point, column) "point `{point}` uses a result column that is taken", "column `{column}` already exists",
-        "rename the point, for example to `{point}_point`";
+    /// No two columns of results and no two variables of a unit for co-simulation have the same name: `<point>_x`, `<coordinate>_rate`, parameters.
+    E028 shared_column(one, other, column) "{one} and {other} would share a name", "in results, both are called `{column}`",
+        "choose another name for one of the two";
     /// Every entry of a list begins with `-`.
     E029 missing_dash(key, list) "a `-` is missing before `{key}`", "a new entry of `{list}` begins here",
         "write `- {key}:`, with the `-` below those of the other entries; or remove the second `{key}`";

@@ -5,6 +5,7 @@
 
 mod base;
 mod beam;
+mod columns;
 mod combinations;
 mod connectors;
 mod cylinders;
@@ -82,6 +83,7 @@ pub fn check_with(spec: &CraneSpec, source: &SourceFile, set: &[(&str, f64)]) ->
     let mut chain = check.crane(&spec.crane, source);
     if check.mistakes.is_empty() {
         // The mass matrix exists only if there are no other mistakes.
+        check.shared_columns(&chain, &spec.crane);
         check.regular(&chain, &spec.crane);
         check.connectors_apart(&chain, &spec.crane);
         check.loops_move(&mut chain, &spec.crane);
@@ -272,7 +274,7 @@ impl<'a> Check<'a> {
         connectors.extend(in_pins);
         rotors.extend(self.rotors(crane, &drives));
         self.beam_sections(&loads, &cylinders, &connectors, &loop_joints);
-        let points = self.points(crane, &supports);
+        let points = self.points(crane);
         let guess = self.guess(crane, &drives, &connectors);
         let run = self.run(crane.run.as_ref());
         let analyses = self.analyses(crane.analyses.as_ref());

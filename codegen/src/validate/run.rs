@@ -3,19 +3,18 @@
 use super::Check;
 use super::drives::units;
 use super::limits::Limit;
-use crate::chain::{BodyId, CoordinateId, Drive, Force, Point, Run, Support, Transmission, Value};
-use crate::diagnostic::{Span, rule, suggest};
+use crate::chain::{BodyId, CoordinateId, Drive, Force, Point, Run, Transmission, Value};
+use crate::diagnostic::{rule, suggest};
 use crate::spec::{self, Constant, Crane, Spanned};
 
 impl<'a> Check<'a> {
-    pub(super) fn points(&mut self, crane: &'a Crane, supports: &[Support]) -> Vec<Point> {
+    pub(super) fn points(&mut self, crane: &'a Crane) -> Vec<Point> {
         let given = crane.points.as_ref().and_then(|points| points.value.as_deref()).unwrap_or_default();
         let mut points = Vec::new();
         for point in given.iter().filter_map(|point| point.value.as_ref()) {
             let name = self.name(&point.name).unwrap_or_default().to_owned();
             if !name.is_empty() {
                 self.register_name("points", &name, "an earlier point".into(), point.name.span);
-                self.own_columns(&name, supports, point.name.span);
             }
             let at = self.vector(&point.at, &format!("the position of point `{name}`"), "m", Limit::Any);
             if let Some((body, position)) = self.attach(&point.link, at) {
@@ -23,17 +22,6 @@ impl<'a> Check<'a> {
             }
         }
         points
-    }
-
-    /// Tables of results have columns for points, coordinates and support forces, whose names must differ.
-    fn own_columns(&mut self, point: &str, supports: &[Support], span: Span) {
-        let reactions =
-            supports.iter().flat_map(|support| ["x", "y", "z"].map(|axis| format!("{}_reaction_{axis}", support.name)));
-        let mut columns = self.coordinates.iter().map(|coordinate| coordinate.name.clone()).chain(reactions);
-        let shared = |column: &String| matches!(column.strip_prefix(point), Some("_x" | "_y" | "_z"));
-        if let Some(column) = columns.find(shared) {
-            self.report(rule::shared_column(span, point, column));
-        }
     }
 
     /// The body of a link that carries a point, and the position on it: for a beam, the element that contains the point's x. `None` if the

@@ -1,5 +1,7 @@
 //! Joints that close loops.
 
+use crane_quantities::ColumnKind;
+
 use super::{AttachmentInfo, List, Text};
 
 /// A joint that closes a loop.
@@ -49,6 +51,11 @@ impl LoopEquationInfo {
         if self.is_moment { "rad/s" } else { "m/s" }
     }
 
+    /// What the column with what it transmits shows.
+    pub const fn effort(&self) -> ColumnKind {
+        if self.is_moment { ColumnKind::LoopMoment } else { ColumnKind::LoopForce }
+    }
+
     /// Unit of what it transmits.
     pub const fn force_unit(&self) -> &'static str {
         if self.is_moment { "N m" } else { "N" }
@@ -57,7 +64,6 @@ impl LoopEquationInfo {
     /// Name of the column of results with what it transmits, of a joint with a name.
     #[cfg(feature = "std")]
     pub fn column(&self, joint: &str) -> String {
-        let what = if self.is_moment { "moment" } else { "force" };
-        format!("{joint}_{what}_{}", self.direction).trim_end_matches('_').to_owned()
+        [joint, self.effort().ending_along(&self.direction)].concat()
     }
 }

@@ -12,6 +12,8 @@ mod stage;
 #[cfg(feature = "std")]
 mod tree;
 
+use crane_quantities::{ColumnKind, Strain};
+
 pub use links::fill_links;
 pub use loop_joint::{LoopEquationInfo, LoopJointInfo};
 pub use parameter::{Bound, ParameterError, ParameterInfo, Refusal};
@@ -133,6 +135,11 @@ pub enum CoordinateKind {
 }
 
 impl CoordinateKind {
+    /// Whether it is an angle.
+    pub const fn turns(self) -> bool {
+        matches!(self, CoordinateKind::Rotation)
+    }
+
     /// Unit of the coordinate.
     pub const fn unit(self) -> &'static str {
         match self {
@@ -398,15 +405,20 @@ impl ConnectorInfo {
         self.points.len() == 2 && self.kind == CoordinateKind::Rotation
     }
 
-    /// What its length is called: that of the line through its points, where the axis of a beam passes a pad, the slip of a coupling, or the
-    /// angle of a pin.
-    pub fn length_name(&self) -> &'static str {
+    /// What its length is: that of the line through its points, where the axis of a beam passes a pad, the slip of a coupling, or the angle
+    /// of a pin.
+    pub fn strain(&self) -> Strain {
         match self.points.len() {
-            _ if self.is_pin() => "angle",
-            0 => "slip",
-            1 => "offset",
-            _ => "length",
+            _ if self.is_pin() => Strain::Angle,
+            0 => Strain::Slip,
+            1 => Strain::Offset,
+            _ => Strain::Length,
         }
+    }
+
+    /// What the column with its force or torque shows.
+    pub fn effort(&self) -> ColumnKind {
+        if self.is_pin() { ColumnKind::PinFriction } else { ColumnKind::ConnectorEffort }
     }
 
     /// Whether one of its points is pulled towards the world.

@@ -1,6 +1,8 @@
 //! Where contacts begin and end: a foot meets the ground, a joint its stop, a rope becomes taut.
 
-use crate::{Description, Tension, dyn_crane::DynModel};
+use crane_quantities::ColumnKind;
+
+use crate::{Description, Tension, Text, dyn_crane::DynModel, results::column_name};
 
 /// The contacts of a crane: one-sided supports, end stops and ropes, in this order.
 pub struct Contacts {
@@ -41,10 +43,10 @@ impl Contacts {
         let feet = description.supports.iter().filter(|support| support.one_sided).map(|support| &support.name);
         let stops = description.stops.iter().map(|&stop| &description.coordinates[stop].name);
         let ropes = description.connectors.iter().filter(|connector| connector.is_rope).map(|rope| &rope.name);
-        let kinds = [("contact", feet.collect::<Vec<_>>()), ("stop", stops.collect()), ("tension", ropes.collect())];
-        kinds
-            .iter()
-            .flat_map(|(kind, names)| names.iter().map(move |name| format!("{name}_{kind}_indicator")))
+        let named = |kind| move |part: &Text| column_name(kind, part, false);
+        let feet = feet.map(named(ColumnKind::FootIndicator));
+        feet.chain(stops.map(named(ColumnKind::StopIndicator)))
+            .chain(ropes.map(named(ColumnKind::RopeIndicator)))
             .collect()
     }
 

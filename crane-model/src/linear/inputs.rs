@@ -4,12 +4,12 @@ use nalgebra::DVector;
 
 use super::{Linearisable, NoModel, Output};
 use crate::{
-    CoordinateRole, Description,
+    ColumnKind, CoordinateInfo, CoordinateRole, Description,
     dyn_crane::DynCrane,
     force_states::motion_at,
     hydraulics,
     modes::StateSpace,
-    results::{Column, drive_effort, quantities_at, quantities_with},
+    results::{Column, column_name, drive_effort, quantities_at, quantities_with},
     stateful_force::StateAt,
 };
 
@@ -50,6 +50,9 @@ impl Input {
     /// Its name and unit.
     pub fn column(self, description: &Description) -> Column {
         let coordinate = |drive: usize| &description.coordinates[description.drives[drive].coordinate];
+        let of_motion = |kind: ColumnKind, info: &CoordinateInfo| {
+            (column_name(kind, &info.name, info.kind.turns()), kind.unit(info.kind.turns()).to_owned())
+        };
         let (name, unit) = match self {
             Input::Spec(index) => {
                 let info = &description.inputs[index];
@@ -57,11 +60,11 @@ impl Input {
             }
             Input::Motion(drive) => {
                 let info = coordinate(drive);
-                (format!("{}_prescribed", info.name), info.kind.unit().to_owned())
+                of_motion(ColumnKind::Prescribed, info)
             }
             Input::Rate(drive) => {
                 let info = coordinate(drive);
-                (format!("{}_prescribed_rate", info.name), format!("{}/s", info.kind.unit()))
+                of_motion(ColumnKind::PrescribedRate, info)
             }
             Input::Effort(drive) => {
                 let info = coordinate(drive);
@@ -69,10 +72,10 @@ impl Input {
             }
             Input::Valve(drive) => {
                 let cylinder = cylinder_of(description, drive).unwrap_or_default();
-                (format!("{cylinder}_valve"), "1".to_owned())
+                (column_name(ColumnKind::Valve, cylinder, false), ColumnKind::Valve.unit(false).to_owned())
             }
         };
-        Column { name, unit }
+        Column::new(name, unit)
     }
 }
 

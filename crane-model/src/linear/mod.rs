@@ -272,7 +272,7 @@ fn states(crane: &dyn DynCrane, space: &StateSpace) -> Vec<Column> {
     let description = crane.description();
     let coordinates = space.unknowns().iter().map(|&index| &description.coordinates[index]);
     let rates = coordinates.clone();
-    let column = |name: String, unit: String| Column { name, unit };
+    let column = |name: String, unit: String| Column::new(name, unit);
     let all = quantities(description, crane.loop_joints());
     let of_forces = force_states::columns_of_small_motions(description).into_iter().map(|name| {
         let unit =

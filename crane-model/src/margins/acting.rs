@@ -45,11 +45,11 @@ impl Acting {
         match self {
             Acting::Motion(drive) => {
                 let info = info(drive);
-                Column { name: info.name.to_string(), unit: info.kind.unit().to_owned() }
+                Column::new(info.name.as_str(), info.kind.unit())
             }
             Acting::Rate(drive) => {
                 let info = info(drive);
-                Column { name: format!("{}_rate", info.name), unit: format!("{}/s", info.kind.unit()) }
+                Column::new(format!("{}_rate", info.name), format!("{}/s", info.kind.unit()))
             }
             Acting::On(input) => input.column(description),
         }

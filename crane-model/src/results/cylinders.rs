@@ -1,6 +1,8 @@
 //! Hydraulic cylinders of driven joints: their columns in results, and cautions about them.
 
-use super::{Extremes, Table};
+use crane_quantities::ColumnKind;
+
+use super::{Extremes, Table, column_name};
 use crate::{
     CoordinateRole, CylinderInfo, Description, DriveInfo, Text,
     dyn_crane::{DynCrane, DynImplicit},
@@ -70,52 +72,37 @@ fn with_cylinders(description: &Description) -> usize {
 /// The first cylinder of a run whose linkage cannot be assembled, and when, s.
 pub(crate) fn unassembled(description: &Description, table: &Table) -> Option<(Text, f64)> {
     description.cylinders.iter().find_map(|info| {
-        let [(length, _), ..] = columns(&info.name);
+        let [length, ..] = columns(&info.name);
         let row = table.values(&length)?.position(f64::is_nan)?;
         Some((info.name.clone(), table.rows[row][0]))
     })
 }
 
-/// Names and units of the columns of a cylinder.
-pub(super) fn columns(name: &str) -> [(String, &'static str); 6] {
-    [
-        ("length", "m"),
-        ("speed", "m/s"),
-        ("force", "N"),
-        ("piston_pressure", "Pa"),
-        ("rod_pressure", "Pa"),
-        ("flow", "m³/s"),
-    ]
-    .map(|(what, unit)| (format!("{name}_{what}"), unit))
-}
-
-/// Names of the columns with pressures: of all cylinders, and of a pump whose oil moves them.
-pub(super) fn pressures(description: &Description) -> Vec<String> {
-    let of_cylinders =
-        description.cylinders.iter().flat_map(|cylinder| columns(&cylinder.name)).filter(|(_, unit)| *unit == "Pa");
-    of_cylinders.map(|(name, _)| name).chain(description.has_valves().then(|| "pump_pressure".to_owned())).collect()
+/// Names of the columns of a cylinder.
+fn columns(name: &str) -> [String; 6] {
+    ColumnKind::OF_CYLINDER.map(|kind| column_name(kind, name, false))
 }
 
 /// Adds the columns of all cylinders, of the pump, and of the openings of valves.
 pub(super) fn add_columns(description: &Description, table: &mut Table) {
-    for (name, unit) in description.cylinders.iter().flat_map(|cylinder| columns(&cylinder.name)) {
-        table.add(name, unit);
+    for cylinder in &description.cylinders {
+        ColumnKind::OF_CYLINDER.into_iter().for_each(|kind| table.add_of(kind, &cylinder.name, false));
     }
     for _ in 0..with_cylinders(description) {
-        table.add("pump_flow", "m³/s");
-        table.add("pump_power", "W");
+        table.add_of(ColumnKind::Flow, "pump", false);
+        table.add_of(ColumnKind::Power, "pump", false);
     }
     if description.has_valves() {
-        table.add("pump_pressure", "Pa");
+        table.add_of(ColumnKind::PumpPressure, "pump", false);
     }
     for cylinder in description.cylinders.iter().filter(|cylinder| cylinder.valve.is_some()) {
-        table.add(spool(&cylinder.name), "");
+        table.add_of(ColumnKind::Valve, &cylinder.name, false);
     }
 }
 
 /// Name of the column with the opening of a cylinder's valve, −1 to 1.
 pub(crate) fn spool(cylinder: &str) -> String {
-    format!("{cylinder}_valve")
+    column_name(ColumnKind::Valve, cylinder, false)
 }
 
 /// Values of the columns of a cylinder.
@@ -160,7 +147,7 @@ pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
 pub(super) fn of_run(description: &Description, table: &Table) -> Vec<String> {
     let mut found = Vec::new();
     for info in &description.cylinders {
-        let [length, _, _, piston, rod, _] = columns(&info.name).map(|(column, _)| Extremes::of(table, &column));
+        let [length, _, _, piston, rod, _] = columns(&info.name).map(|column| Extremes::of(table, &column));
         found.extend(out_of_stroke(info, &length, true));
         found.extend(over_pressure(info, [piston, rod], true));
     }
@@ -236,7 +223,7 @@ fn falls_behind(description: &Description, info: &CylinderInfo, table: &Table) -
 /// A cylinder whose suction valves let in too little oil: pressures are relative to the atmosphere, so that none can be below −1 bar.
 fn below_vacuum(info: &CylinderInfo, table: &Table) -> Option<String> {
     const VACUUM: f64 = -1e5;
-    let [.., piston, rod, _] = columns(&info.name).map(|(column, _)| Extremes::of(table, &column));
+    let [.., piston, rod, _] = columns(&info.name).map(|column| Extremes::of(table, &column));
     let sides = [("piston", piston), ("rod", rod)];
     let (side, least) = sides.into_iter().find(|(_, pressure)| pressure.minimum < VACUUM)?;
     Some(format!(
@@ -300,7 +287,7 @@ impl HighestPressure {
 
 /// The highest pressure in a cylinder over a run.
 pub fn highest_pressure(info: &CylinderInfo, table: &Table) -> HighestPressure {
-    let [.., piston, rod, _] = columns(&info.name).map(|(column, _)| Extremes::of(table, &column));
+    let [.., piston, rod, _] = columns(&info.name).map(|column| Extremes::of(table, &column));
     HighestPressure::of([piston, rod])
 }
 

@@ -34,8 +34,8 @@ const SLIDES: f64 = 1e-3;
 /// Reports which feet slide in a run, how far from where they stood at its beginning, and when they are furthest from there.
 fn sliding(description: &Description, table: &Table) -> Option<String> {
     let furthest = |support: &SupportInfo| {
-        let values = |axis: &str| Some(table.values(&feet::column(&support.name, axis))?.collect::<Vec<f64>>());
-        let [x, y] = ["x", "y"].map(values);
+        let values = |axis: usize| Some(table.values(&feet::column(&support.name, axis))?.collect::<Vec<f64>>());
+        let [x, y] = [0, 1].map(values);
         let gaps: Vec<f64> = table.values(&support_gap(&support.name))?.collect();
         let (x, y) = (x?, y?);
         let ways = x.iter().zip(&y).map(|(at_x, at_y)| (at_x - x[0]).hypot(at_y - y[0]));

@@ -1,16 +1,8 @@
 //! The most important columns of a run, by kind.
 
-use super::{Extremes, Table, connector_force, cylinders, drive_effort};
-use crate::Description;
+use crane_quantities::{ColumnKind, Size};
 
-/// The measure of a quantity's size, relative to which its error is judged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Size {
-    /// The largest absolute value.
-    Peak,
-    /// The range from the minimum to the maximum.
-    Range,
-}
+use super::{Column, Extremes, Table};
 
 /// Columns of one kind, whose sizes are comparable.
 #[derive(Clone, Debug)]
@@ -18,19 +10,19 @@ pub struct Kind {
     /// Names of the columns.
     pub names: Vec<String>,
     /// Their unit.
-    pub unit: &'static str,
+    pub unit: String,
     /// The measure of their size, in words.
     pub measure: &'static str,
     size: Size,
 }
 
 impl Kind {
-    fn new(names: Vec<String>, unit: &'static str, size: Size) -> Self {
+    fn new(names: Vec<String>, unit: &str, size: Size) -> Self {
         let measure = match size {
             Size::Peak => "peak",
             Size::Range => "range",
         };
-        Self { names, unit, measure, size }
+        Self { names, unit: unit.to_owned(), measure, size }
     }
 
     /// Size of a quantity.
@@ -48,7 +40,7 @@ impl Kind {
         const NOISE: f64 = 1e-6;
         /// The same for forces and moments.
         const ROUNDING: f64 = 1e-9;
-        match (self.size, self.unit) {
+        match (self.size, self.unit.as_str()) {
             (Size::Peak, "N" | "N m") => ROUNDING * force,
             (Size::Peak, _) => 0.0,
             (Size::Range, _) => NOISE * Extremes::of(table, name).size(),
@@ -56,31 +48,33 @@ impl Kind {
     }
 }
 
-/// The most important columns of a run: efforts of the drives, paths of the points, vertical forces of the supports, pressures of
-/// cylinders and pump, forces of connectors.
-pub fn headlines(description: &Description) -> Vec<Kind> {
-    let efforts = |unit: &str| -> Vec<String> {
-        let coordinates = description.drives.iter().map(|drive| &description.coordinates[drive.coordinate]);
-        let of_unit = coordinates.filter(|coordinate| coordinate.kind.force_unit() == unit);
-        of_unit.map(|coordinate| drive_effort(&coordinate.name, coordinate.kind)).collect()
-    };
-    let each_axis =
-        |name: String| ["x", "y", "z"].map(|axis| format!("{name}_{axis}")).into_iter().collect::<Vec<String>>();
-    let points = description.points.iter().flat_map(|point| each_axis(point.to_string())).collect();
-    let supports = description.supports.iter().map(|support| format!("{}_reaction_z", support.name));
-    let connectors = |unit: &str| -> Vec<String> {
-        let of_unit = description.connectors.iter().filter(|connector| connector.kind.force_unit() == unit);
-        of_unit.map(connector_force).collect()
-    };
-    vec![
-        Kind::new(efforts("N m"), "N m", Size::Peak),
-        Kind::new(efforts("N"), "N", Size::Peak),
-        Kind::new(points, "m", Size::Range),
-        Kind::new(supports.collect(), "N", Size::Peak),
-        Kind::new(cylinders::pressures(description), "Pa", Size::Peak),
-        Kind::new(connectors("N"), "N", Size::Peak),
-        Kind::new(connectors("N m"), "N m", Size::Peak),
-    ]
+/// The most important columns of a run, those of similar kinds and one unit together, in the order in which they are shown: efforts of the drives,
+/// paths of the points, vertical forces of the supports, pressures, forces of connectors, what joints that close loops transmit.
+pub fn headlines(columns: &[Column]) -> Vec<Kind> {
+    let mut kinds: Vec<(usize, Kind)> = Vec::new();
+    for column in columns {
+        let Some(size) = column.kind.headline() else { continue };
+        let rank = rank(column.kind);
+        let known = kinds.iter_mut().find(|(other, kind)| *other == rank && kind.unit == column.unit);
+        match known {
+            Some((_, kind)) => kind.names.push(column.name.clone()),
+            None => kinds.push((rank, Kind::new(vec![column.name.clone()], &column.unit, size))),
+        }
+    }
+    kinds.sort_by_key(|(rank, kind)| (*rank, kind.unit != "N m"));
+    kinds.into_iter().map(|(_, kind)| kind).collect()
+}
+
+/// The place of a kind of columns among the headlines.
+fn rank(kind: ColumnKind) -> usize {
+    match kind {
+        ColumnKind::DriveEffort => 0,
+        ColumnKind::PointPosition => 1,
+        ColumnKind::VerticalReaction => 2,
+        ColumnKind::PistonPressure | ColumnKind::RodPressure | ColumnKind::PumpPressure => 3,
+        ColumnKind::ConnectorEffort | ColumnKind::PinFriction => 4,
+        _ => 5,
+    }
 }
 
 #[cfg(test)]

@@ -27,7 +27,7 @@ pub use history::{Instant, instants};
 pub use peaks::Peaks;
 pub(crate) use recording::{FleetRecording, quantities_with};
 pub use recording::{Recording, connector_force, drive_effort, quantities, quantities_at, stop_effort, support_gap};
-pub use table::{Column, Table};
+pub use table::{Column, Table, column_name};
 pub use verification::Verification;
 
 pub use crate::hydraulics::{CylinderState, cylinders_at};

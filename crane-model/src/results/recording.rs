@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use crane_quantities::ColumnKind;
 use nalgebra::Vector3;
 
 use crate::{
@@ -11,7 +12,7 @@ use crate::{
     feet::{self, Slid},
     force_states,
     hydraulics::{self, Oil},
-    results::{Column, Table, cylinders},
+    results::{Column, Table, column_name, cylinders},
     stateful_force::StateAt,
 };
 
@@ -235,109 +236,104 @@ pub fn quantities(description: &Description, loop_joints: &[LoopJointInfo]) -> V
 fn quantities_of(description: &Description, loop_joints: &[LoopJointInfo], extent: Extent) -> Vec<Column> {
     let all = extent == Extent::All;
     let mut table = Table::default();
-    table.add("t", "s");
-    for coordinate in &description.coordinates {
-        table.add(coordinate.name.as_str(), coordinate.kind.unit());
+    let coordinates = &description.coordinates;
+    table.add_of(ColumnKind::Time, "t", false);
+    for coordinate in coordinates {
+        table.add_of(ColumnKind::Position, &coordinate.name, coordinate.kind.turns());
     }
     let of_drives = description.drives.iter().map(|drive| drive.coordinate);
-    let rates: Vec<usize> = if all { (0..description.coordinates.len()).collect() } else { of_drives.collect() };
-    for coordinate in rates.into_iter().map(|index| &description.coordinates[index]) {
-        table.add(format!("{}_rate", coordinate.name), format!("{}/s", coordinate.kind.unit()));
+    let rates: Vec<usize> = if all { (0..coordinates.len()).collect() } else { of_drives.collect() };
+    for coordinate in rates.into_iter().map(|index| &coordinates[index]) {
+        table.add_of(ColumnKind::Rate, &coordinate.name, coordinate.kind.turns());
     }
     for drive in &description.drives {
-        let coordinate = &description.coordinates[drive.coordinate];
-        table.add(format!("{}_prescribed", coordinate.name), coordinate.kind.unit());
-        table.add(drive_effort(&coordinate.name, coordinate.kind), coordinate.kind.force_unit());
+        let coordinate = &coordinates[drive.coordinate];
+        table.add_of(ColumnKind::Prescribed, &coordinate.name, coordinate.kind.turns());
+        table.add_of(ColumnKind::DriveEffort, &coordinate.name, coordinate.kind.turns());
     }
     cylinders::add_columns(description, &mut table);
     for point in &description.points {
-        for axis in ["x", "y", "z"] {
-            table.add(format!("{point}_{axis}"), "m");
-        }
-        for axis in ["x", "y", "z"].into_iter().filter(|_| all) {
-            table.add(format!("{point}_v{axis}"), "m/s");
+        table.add_of(ColumnKind::PointPosition, point, false);
+        if all {
+            table.add_of(ColumnKind::PointVelocity, point, false);
         }
     }
     for support in &description.supports {
-        for axis in ["x", "y", "z"] {
-            table.add(format!("{}_reaction_{axis}", support.name), "N");
-        }
-    }
-    for support in description.supports.iter().filter(|support| support.one_sided) {
-        table.add(support_gap(&support.name), "m");
+        table.add_of(ColumnKind::LateralReaction, &support.name, false);
+        table.add_of(ColumnKind::VerticalReaction, &support.name, false);
     }
     let feet = description.supports.iter().filter(|support| support.one_sided);
-    for column in feet::columns(feet.map(|support| support.name.as_str())) {
-        table.add(column, "m");
+    for foot in feet.clone() {
+        table.add_of(ColumnKind::Gap, &foot.name, false);
     }
-    for coordinate in description.coordinates.iter().filter(|coordinate| all && coordinate.role.is_element()) {
-        table.add(format!("{}_moment", coordinate.name), coordinate.kind.force_unit());
+    for name in feet::columns(feet.map(|support| support.name.as_str())) {
+        let kind = ColumnKind::Slid;
+        table.columns.push(Column { name, unit: kind.unit(false).to_owned(), kind });
     }
-    for (coordinates, what) in [(&description.stops, "stop"), (&description.frictions, "friction")] {
-        for &coordinate in coordinates {
-            let coordinate = &description.coordinates[coordinate];
-            table.add(effort(&coordinate.name, what, coordinate.kind), coordinate.kind.force_unit());
+    for coordinate in coordinates.iter().filter(|coordinate| all && coordinate.role.is_element()) {
+        table.add_of(ColumnKind::ElementMoment, &coordinate.name, coordinate.kind.turns());
+    }
+    let of_joints =
+        [(&description.stops, ColumnKind::StopEffort), (&description.frictions, ColumnKind::FrictionEffort)];
+    for (joints, kind) in of_joints {
+        for &coordinate in joints {
+            table.add_of(kind, &coordinates[coordinate].name, coordinates[coordinate].kind.turns());
         }
     }
     for joint in &description.bristles {
-        let coordinate = &description.coordinates[joint.coordinate];
-        table.add(bristles::column(&coordinate.name), coordinate.kind.unit());
+        let coordinate = &coordinates[joint.coordinate];
+        table.add_of(ColumnKind::Bristle, &coordinate.name, coordinate.kind.turns());
     }
     for connector in &description.connectors {
-        let (what, unit) = (connector.length_name(), connector.kind.unit());
-        table.add(format!("{}_{what}", connector.name), unit);
-        table.add(format!("{}_{what}_rate", connector.name), format!("{unit}/s"));
-        table.add(connector_force(connector), connector.kind.force_unit());
+        let (strain, turns) = (connector.strain(), connector.kind.turns());
+        table.add_of(ColumnKind::Strain(strain), &connector.name, turns);
+        table.add_of(ColumnKind::StrainRate(strain), &connector.name, turns);
+        table.add_of(connector.effort(), &connector.name, turns);
     }
     for joint in loop_joints {
         for equation in &joint.equations {
-            table.add(equation.column(&joint.name), equation.force_unit());
+            let kind = equation.effort();
+            let unit = kind.unit(equation.is_moment).to_owned();
+            table.columns.push(Column { name: equation.column(&joint.name), unit, kind });
         }
     }
     if !all {
         return table.columns;
     }
     for (name, _) in Energies::default().parts(description) {
-        table.add(format!("{name}_energy"), "J");
+        table.add_of(ColumnKind::Energy, name, false);
     }
     table.columns
 }
 
 /// Names and units of the quantities that only a run has: work, dissipated energy and energy balance.
 fn audited(description: &Description) -> Vec<Column> {
-    let load_work = (!description.loads.is_empty()).then_some("load_work");
-    let names = ["drive_work", "dissipated_energy"].into_iter().chain(load_work).chain(["energy_balance"]);
-    names.map(|energy| Column { name: energy.to_owned(), unit: "J".to_owned() }).collect()
+    let mut table = Table::default();
+    table.add_of(ColumnKind::Work, "drive", false);
+    table.add_of(ColumnKind::Dissipated, "dissipated", false);
+    if !description.loads.is_empty() {
+        table.add_of(ColumnKind::Work, "load", false);
+    }
+    table.add_of(ColumnKind::Balance, "energy", false);
+    table.columns
 }
 
 /// Name of the column with the gap under a one-sided support.
 pub fn support_gap(support: &str) -> String {
-    format!("{support}_gap")
+    column_name(ColumnKind::Gap, support, false)
 }
 
 /// Name of the column with the force or torque of a connector.
 pub fn connector_force(connector: &ConnectorInfo) -> String {
-    match connector.kind {
-        CoordinateKind::Rotation if connector.is_pin() => format!("{}_friction_torque", connector.name),
-        CoordinateKind::Translation => format!("{}_force", connector.name),
-        CoordinateKind::Rotation => format!("{}_torque", connector.name),
-    }
+    column_name(connector.effort(), &connector.name, connector.kind.turns())
 }
 
 /// Name of the column with the torque or force of a drive.
 pub fn drive_effort(coordinate: &str, kind: CoordinateKind) -> String {
-    effort(coordinate, "drive", kind)
+    column_name(ColumnKind::DriveEffort, coordinate, kind.turns())
 }
 
 /// Name of the column with the torque or force of a coordinate's end stops.
 pub fn stop_effort(coordinate: &str, kind: CoordinateKind) -> String {
-    effort(coordinate, "stop", kind)
-}
-
-/// Name of the column with the torque or force of what acts on a coordinate.
-fn effort(coordinate: &str, of: &str, kind: CoordinateKind) -> String {
-    match kind {
-        CoordinateKind::Translation => format!("{coordinate}_{of}_force"),
-        CoordinateKind::Rotation => format!("{coordinate}_{of}_torque"),
-    }
+    column_name(ColumnKind::StopEffort, coordinate, kind.turns())
 }

@@ -5,7 +5,7 @@
 //! lie beyond the results is not an error of the steps, and is counted apart.
 
 use super::{Extremes, Table, headlines};
-use crate::{Description, dynamics};
+use crate::dynamics;
 
 /// Tolerance of the finer run relative to that of the run.
 const FINER: f64 = 0.1;
@@ -73,8 +73,8 @@ impl Verification {
     }
 
     /// Reports quantities whose error may exceed one percent of their size, the worst by name.
-    pub fn cautions(&self, description: &Description, table: &Table) -> Vec<String> {
-        let doubtful = self.doubtful(description, table);
+    pub fn cautions(&self, table: &Table) -> Vec<String> {
+        let doubtful = self.doubtful(table);
         let mut cautions = Vec::new();
         for between in [false, true] {
             let of_kind: Vec<&Doubtful> = doubtful.iter().filter(|quantity| quantity.between == between).collect();
@@ -105,10 +105,10 @@ impl Verification {
     }
 
     /// Quantities whose error may exceed one percent of their size.
-    fn doubtful(&self, description: &Description, table: &Table) -> Vec<Doubtful> {
+    fn doubtful(&self, table: &Table) -> Vec<Doubtful> {
         let force = table.largest_force();
         let mut found = Vec::new();
-        for kind in headlines(description) {
+        for kind in headlines(&table.columns) {
             let sizes: Vec<f64> = kind.names.iter().map(|name| kind.size(&Extremes::of(table, name))).collect();
             let greatest = sizes.iter().copied().fold(0.0, f64::max);
             for (name, size) in kind.names.iter().zip(sizes) {
@@ -117,7 +117,7 @@ impl Verification {
                 if difference > CAUTION * size.max(NEGLIGIBLE * greatest) && difference > kind.noise(table, name, force)
                 {
                     let share = difference / size.max(f64::MIN_POSITIVE);
-                    let (unit, measure) = (kind.unit, kind.measure);
+                    let (unit, measure) = (kind.unit.clone(), kind.measure);
                     found.push(Doubtful { name: name.clone(), difference, unit, share, measure, between });
                 }
             }
@@ -130,7 +130,7 @@ impl Verification {
 struct Doubtful {
     name: String,
     difference: f64,
-    unit: &'static str,
+    unit: String,
     /// The error relative to its size.
     share: f64,
     /// The measure of its size, in words.

@@ -200,7 +200,7 @@ pub fn check(
                     // An unstable loop makes small differences grow; this is not chaos.
                     found.divergence = None;
                 }
-                recorded.cautions.extend(found.cautions(description, &recorded.table));
+                recorded.cautions.extend(found.cautions(&recorded.table));
                 recorded.verification = Some(found);
             }
             Err(failed) => {

@@ -3,12 +3,13 @@
 use crane_codegen::chain::{Group, Law as ForceLaw, Profile, Transmission};
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynDynamics, DynModel, DynStatics};
-use crane_model::dynamics::{Method, Settings};
+use crane_model::dynamics::{Contacts, Method, Settings};
 use crane_model::nalgebra::{DMatrix, DVector};
-use crane_model::results::Instant;
+use crane_model::results::{Instant, Peaks, quantities};
 use crane_model::runs::{Start, record};
 use crane_model::{Cut, modes};
 use fastrand::Rng;
+use std::collections::HashSet;
 use std::ops::ControlFlow;
 
 use crate::cuts::{Motion, imbalances, jumps};
@@ -19,7 +20,8 @@ use crate::tree::{Tree, source};
 pub type Law = fn(&LiveCrane, &[f64], &mut Rng) -> Option<Result<(), String>>;
 
 /// All of them, with their names.
-pub const ALL: [(&str, Law); 13] = [
+pub const ALL: [(&str, Law); 14] = [
+    ("results have names of their own", results_are_named),
     ("accelerations solve A a = e + f", accelerations_solve),
     ("power of all forces", power),
     ("rate of the kinetic energy", kinetic_energy),
@@ -34,6 +36,23 @@ pub const ALL: [(&str, Law); 13] = [
     ("drives at rest as at the start of a run", efforts_at_rest),
     ("eight cranes as one", lanes),
 ];
+
+/// Columns of a run, their extremes and indicators of contacts have different names, all of them known to the check of a spec.
+fn results_are_named(crane: &LiveCrane, _: &[f64], _: &mut Rng) -> Option<Result<(), String>> {
+    let known = crane.chain().result_names();
+    let columns = quantities(crane.description(), crane.loop_joints()).into_iter().chain(Peaks::columns(crane));
+    let names = columns.map(|column| column.name).chain(Contacts::names(crane.description()));
+    let mut seen = HashSet::new();
+    for name in names {
+        if !known.owners.contains_key(&name) {
+            return Some(Err(format!("`{name}` is not known to the check of a spec")));
+        }
+        if !seen.insert(name.clone()) {
+            return Some(Err(format!("two results are called `{name}`")));
+        }
+    }
+    Some(Ok(()))
+}
 
 /// Checks a law on the crane of a spec.
 ///

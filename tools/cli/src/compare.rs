@@ -151,7 +151,7 @@ fn side_by_side(
 
     let labelled = [(first, one_run), (second, other_run)];
     caution_of_runs(&mut report, labelled.into_iter());
-    report.grid(extremes(description, &labelled));
+    report.grid(extremes(&labelled));
     report.grid(summary(&labelled));
     report.grid(duties(description, &labelled));
     report.grid(file_list(folder, &written));

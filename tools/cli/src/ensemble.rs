@@ -11,7 +11,6 @@ use std::{
 
 use crane_codegen::SourceFile;
 use crane_model::{
-    Description,
     dyn_crane::DynCrane,
     dynamics::{self, Method},
     results::{Column, Peaks},
@@ -71,7 +70,7 @@ pub fn simulate(options: &Simulate, given: &Path, registry: &Registry, out: &mut
     let begin = Instant::now();
     let (journal, records) =
         Journal::open(&path.with_extension("part.csv"), &request(crane, &settings, &table), *restart)?;
-    let header = header(description, &table);
+    let header = header(crane, &table);
     let mut kept = kept_rows(&records, table.rows.len(), header.len());
     // Rows that run together depend on each other, so that the others of an incomplete piece would become different ones.
     for piece in kept.chunks_mut(ensemble::rows_together(crane, &settings)) {
@@ -87,7 +86,7 @@ pub fn simulate(options: &Simulate, given: &Path, registry: &Registry, out: &mut
     let cases: Vec<Case> = fresh.iter().map(|row| Case::from(parameters[*row].clone())).collect();
     let done = |index: usize, outcome: &Row| {
         let row = fresh[index];
-        let fields = fields(description, &table.rows[row], outcome);
+        let fields = fields(crane, &table.rows[row], outcome);
         let mut state = state.lock().unwrap_or_else(PoisonError::into_inner);
         if state.1.is_ok() {
             state.1 = journal.add([[vec![row.to_string()], fields.clone()].concat()]);
@@ -198,19 +197,19 @@ fn settings(
 }
 
 /// Headings: parameters, peaks and time reached with their units, cautions and status.
-fn header(description: &Description, table: &ParameterTable) -> Vec<String> {
-    let parameters = table.columns.iter().map(|&index| &description.parameters[index]);
-    let parameters = parameters.map(|info| Column { name: info.name.to_string(), unit: info.unit.to_string() });
-    let time = Column { name: "time".to_owned(), unit: "s".to_owned() };
-    let columns = parameters.chain(Peaks::columns(description)).chain([time]).map(|column| column.to_string());
+fn header(crane: &dyn DynCrane, table: &ParameterTable) -> Vec<String> {
+    let parameters = table.columns.iter().map(|&index| &crane.description().parameters[index]);
+    let parameters = parameters.map(|info| Column::new(info.name.as_str(), info.unit.as_str()));
+    let time = Column::new("time", "s");
+    let columns = parameters.chain(Peaks::columns(crane)).chain([time]).map(|column| column.to_string());
     columns.chain(["cautions".to_owned(), "status".to_owned()]).collect()
 }
 
 /// Parameters, peaks, time reached, cautions and status of a crane, without line ends.
-fn fields(description: &Description, parameters: &[f64], row: &Row) -> Vec<String> {
+fn fields(crane: &dyn DynCrane, parameters: &[f64], row: &Row) -> Vec<String> {
     let values: Vec<Option<f64>> = match &row.peaks {
         Some(peaks) => peaks.values().map(Some).collect(),
-        None => vec![None; Peaks::columns(description).len()],
+        None => vec![None; Peaks::columns(crane).len()],
     };
     let numbers = parameters.iter().copied().map(Some).chain(values).chain([Some(row.time())]);
     let numbers = numbers.map(|number| number.map_or_else(String::new, number_text));

@@ -46,7 +46,7 @@ pub fn run_crane(options: &Run, registry: &Registry, out: &mut dyn Write) -> Out
     written.push(page);
 
     let labelled: Vec<_> = labels.zip(&runs).collect();
-    report.grid_first(extremes(description, &labelled));
+    report.grid_first(extremes(&labelled));
     report.grid(summary(&labelled));
     report.grid(duties(description, &labelled));
     report.grid(file_list(folder, &written));

@@ -65,7 +65,7 @@ pub fn simulate(options: &Run, registry: &Registry, out: &mut dyn Write) -> Outc
     for caution in &recorded.cautions {
         report.caution(Some(caution.as_str()));
     }
-    report.grid(extremes(crane.description(), &[(name, &recorded)]));
+    report.grid(extremes(&[(name, &recorded)]));
     report.grid(summary(&[(VALUE, &recorded)]));
     report.grid(duties(crane.description(), &[(name, &recorded)]));
     report.grid(file_list(&options.folder.out, &written));

@@ -2,7 +2,8 @@
 
 use crane_codegen::SourceFile;
 use crane_model::dynamics::Contacts;
-use crane_model::{CoordinateRole, Description, LoopJointInfo, force_states, results};
+use crane_model::results::{self, column_name};
+use crane_model::{ColumnKind, CoordinateRole, Description, LoopJointInfo, force_states};
 
 /// What a variable is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,12 +52,6 @@ pub struct Variable {
 /// their moments, energies and accelerations can be read as well, but are not outputs, because they are many.
 pub fn list(description: &Description, loop_joints: &[LoopJointInfo]) -> Vec<Variable> {
     let n = description.coordinates.len();
-    let moments: Vec<String> = description
-        .coordinates
-        .iter()
-        .filter(|coordinate| coordinate.role.is_element())
-        .map(|coordinate| format!("{}_moment", coordinate.name))
-        .collect();
     let states = force_states::columns(description);
     let mut units = vec![String::new(); states.len()];
     let quantities = results::quantities(description, loop_joints).into_iter().enumerate().map(|(index, column)| {
@@ -72,7 +67,7 @@ pub fn list(description: &Description, loop_joints: &[LoopJointInfo]) -> Vec<Var
         let is_output = match source {
             Source::Position(i) | Source::Rate(i) => !description.coordinates[i].role.is_element(),
             Source::Own(_) => true,
-            Source::Quantity(_) => column.unit != "J" && !moments.contains(&column.name),
+            Source::Quantity(_) => !matches!(column.kind, ColumnKind::Energy | ColumnKind::ElementMoment),
             _ => false,
         };
         let about = match source {
@@ -85,8 +80,8 @@ pub fn list(description: &Description, loop_joints: &[LoopJointInfo]) -> Vec<Var
         Variable { name, unit: column.unit, about, source, is_output }
     });
     let accelerations = description.coordinates.iter().enumerate().map(|(index, coordinate)| Variable {
-        name: format!("{}_acceleration", coordinate.name),
-        unit: format!("{}/s2", coordinate.kind.unit()),
+        name: column_name(ColumnKind::Acceleration, &coordinate.name, coordinate.kind.turns()),
+        unit: ColumnKind::Acceleration.unit(coordinate.kind.turns()).to_owned(),
         about: String::new(),
         source: Source::Acceleration(index),
         is_output: false,
@@ -111,7 +106,7 @@ pub fn list(description: &Description, loop_joints: &[LoopJointInfo]) -> Vec<Var
     });
     let mut all: Vec<Variable> = quantities.chain(accelerations).collect();
     all.extend(states.iter().zip(units).enumerate().map(|(index, (state, unit))| Variable {
-        name: format!("{state}_rate"),
+        name: column_name(ColumnKind::StateRate, state, false),
         unit: format!("{}/s", if unit.is_empty() { "1" } else { &unit }),
         about: String::new(),
         source: Source::OwnRate(index),

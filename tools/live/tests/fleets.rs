@@ -7,7 +7,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use crane_codegen::build;
 use crane_codegen::program::{Count, Extent, FunctionId, Item};
 use crane_live::LiveCrane;
-use crane_model::Description;
 use crane_model::dyn_crane::{DynCrane, DynEnsemble, DynModel};
 use crane_model::dynamics::{Method, Settings};
 use crane_model::results::Peaks;
@@ -193,14 +192,14 @@ fn the_runs_of_a_fleet_are_those_of_its_cranes() {
             let all = evaluations(&together[0]);
             assert!(all < 3 * most, "{name}, {method:?}: {all} evaluations together, {most} alone");
             for (lane, pair) in together.iter().zip(&alone).enumerate() {
-                assert_close(&format!("{name}, {method:?}, crane {lane}"), pair, 1e3 * tolerance, crane.description());
+                assert_close(&format!("{name}, {method:?}, crane {lane}"), pair, 1e3 * tolerance, &crane);
             }
         }
     }
 }
 
 /// Two runs of a crane end alike, with the same cautions and peaks.
-fn assert_close(what: &str, (together, alone): (&Outcome, &Outcome), allowed: f64, description: &Description) {
+fn assert_close(what: &str, (together, alone): (&Outcome, &Outcome), allowed: f64, crane: &LiveCrane) {
     let ends = |outcome: &Outcome| [outcome.end.q.clone(), outcome.end.v.clone()].concat();
     for (i, (together, alone)) in ends(together).iter().zip(ends(alone)).enumerate() {
         let error = (together - alone).abs() / (1.0 + alone.abs());
@@ -215,7 +214,7 @@ fn assert_close(what: &str, (together, alone): (&Outcome, &Outcome), allowed: f6
         outcome.peaks.as_ref().unwrap_or_else(|| panic!("{what}: {:?}", outcome.run)).values().collect::<Vec<_>>()
     };
     let (together, alone) = (peaks(together), peaks(alone));
-    let columns = Peaks::columns(description);
+    let columns = Peaks::columns(crane);
     for ((column, together), own) in columns.iter().zip(together).zip(&alone) {
         let alike = columns.iter().zip(&alone).filter(|(other, _)| other.unit == column.unit);
         let largest = alike.fold(0.0, |largest: f64, (_, peak)| largest.max(peak.abs()));
@@ -271,6 +270,6 @@ fn rows_that_fill_less_than_half_of_a_fleet_run_alone() {
     let six = runs(&crane, &rows[..6], 6, &settings);
     assert_ne!(ends(&six), ends(&alone)[..6]);
     for (lane, pair) in six.iter().zip(&alone).enumerate() {
-        assert_close(&format!("crane {lane} of six"), pair, 1e-3, crane.description());
+        assert_close(&format!("crane {lane} of six"), pair, 1e-3, &crane);
     }
 }

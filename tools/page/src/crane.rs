@@ -175,7 +175,7 @@ fn columns(table: &Table, every: usize) -> Value {
     let numbers = (0..table.columns.len()).flat_map(|column| rows.iter().map(move |row| row[column]));
     let described = |(index, column): (usize, &Column)| {
         let [least, most] = extremes(table.rows.iter().map(|row| row[index]));
-        json!({"name": column.name, "unit": column.unit, "least": least, "most": most})
+        json!({"name": column.name, "unit": column.unit, "part": column.part(), "kind": column.kind.name(), "least": least, "most": most})
     };
     let columns: Vec<Value> = table.columns.iter().enumerate().map(described).collect();
     json!({"columns": columns, "rows": rows.len(), "every": every, "data": packed(numbers)})
@@ -194,7 +194,10 @@ mod tests {
         table.rows = (0..7_i32).map(f64::from).map(|t| vec![t, if t == 4.0 { 9.0 } else { t }]).collect();
         let written = columns(&table, 3);
         assert_eq!((&written["rows"], &written["every"]), (&json!(3), &json!(3)));
-        assert_eq!(written["columns"][1], json!({"name": "x", "unit": "m", "least": 0.0, "most": 9.0}));
+        assert_eq!(
+            written["columns"][1],
+            json!({"name": "x", "unit": "m", "part": "x", "kind": "other", "least": 0.0, "most": 9.0})
+        );
         assert_eq!(extremes([f64::NAN, 2.0, f64::NAN, -1.0].into_iter()), [-1.0, 2.0]);
     }
 }

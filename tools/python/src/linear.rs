@@ -148,7 +148,7 @@ impl Crane {
         all.set_item("decay", array(py, decay, &joined.shape, &[])?)?;
         for (name, columns) in [("states", &model.states), ("inputs", &model.inputs), ("outputs", &model.outputs)] {
             let (names, units): (Vec<&str>, Vec<&str>) =
-                columns.iter().map(|Column { name, unit }| (name.as_str(), unit.as_str())).unzip();
+                columns.iter().map(|Column { name, unit, .. }| (name.as_str(), unit.as_str())).unzip();
             all.set_item(name, names)?;
             all.set_item(format!("{}_units", &name[..name.len() - 1]), units)?;
         }

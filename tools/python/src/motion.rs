@@ -324,7 +324,7 @@ impl Crane {
             return Err(PyRuntimeError::new_err(describe(first, shape)));
         }
         warn_of_rows(py, &bad, shape)?;
-        let columns = Peaks::columns(description);
+        let columns = Peaks::columns(crane);
         let values = outcomes.iter().flat_map(|outcome| match &outcome.peaks {
             Some(peaks) => peaks.values().collect(),
             None => vec![f64::NAN; columns.len()],

@@ -16,7 +16,7 @@ export function decoded(data) {
  */
 export const known = (value) => value != null && Number.isFinite(value);
 
-/** A recorded run: columns by name, each `{name, unit, values, least, most}`; the extremes are those of the whole run, also where rows are left out. */
+/** A recorded run: columns by name, each `{name, unit, part, kind, values, least, most}`: what it shows of which part; the extremes are those of the whole run, also where rows are left out. */
 function run({ columns, rows, every, data }) {
   const bytes = Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0));
   const numbers = new Float32Array(bytes.buffer);

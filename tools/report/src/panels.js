@@ -53,7 +53,7 @@ export function panels(data, player, root = document) {
     }));
     if (curves.length) overTime("supports", `reaction_${axis}`, `Support reactions along ${axis}`, `F${axis}`, "N", curves, axis === "z" ? 300 : 230);
   }
-  const gaps = named(crane, "_gap");
+  const gaps = ofKind(crane, "gap");
   if (gaps.length) overTime("supports", "gaps", "Feet above the ground", "gap", "m", gaps);
   const along = moments(add, overTime, crane);
   along.push(...strength(add, overTime, crane));
@@ -63,19 +63,17 @@ export function panels(data, player, root = document) {
   return { plots, along };
 }
 
-/** Curves of all columns whose names have this ending. */
-function named(crane, ending) {
-  const found = crane.run.list.filter(({ name }) => name.endsWith(ending));
-  return found.map(({ name }, colour) => ({
-    label: spoken(name.slice(0, -ending.length)), colour, values: crane.run.column(name).values, dashed: colour >= 4,
-  }));
+/** Curves of all columns that show one kind of quantity, in a unit if one is given. */
+function ofKind(crane, kind, unit) {
+  const found = crane.run.list.filter((column) => column.kind === kind && (!unit || column.unit === unit));
+  return found.map(({ part, values }, colour) => ({ label: spoken(part), colour, values, dashed: colour >= 4 }));
 }
 
 /** Friction and stops of joints. */
 function joints(overTime, crane) {
   for (const [what, title] of [["friction", "Friction of the joints"], ["stop", "End stops"]]) {
     for (const [effort, unit] of [["torque", "N m"], ["force", "N"]]) {
-      const curves = named(crane, `_${what}_${effort}`);
+      const curves = ofKind(crane, `${what}_effort`, unit);
       if (curves.length) overTime("drives", `${what}_${effort}`, title, effort, unit, curves);
     }
   }
@@ -83,8 +81,8 @@ function joints(overTime, crane) {
 
 /** Pressures, forces, flows and valves of the cylinders, and what the pump delivers. */
 function hydraulics(overTime, crane) {
-  const [pistons, rods] = ["_piston_pressure", "_rod_pressure"].map((ending) => named(crane, ending));
-  const pump = crane.run.column("pump_pressure");
+  const [pistons, rods] = ["piston_pressure", "rod_pressure"].map((kind) => ofKind(crane, kind));
+  const [pump] = ofKind(crane, "pump_pressure");
   pistons.forEach(({ label, values }, index) => {
     const curves = [{ label: "at the piston", values }, { label: "at the rod", values: rods[index].values }];
     if (pump) curves.push({ label: "of the pump", values: pump.values, dashed: true });
@@ -92,16 +90,13 @@ function hydraulics(overTime, crane) {
     overTime("hydraulics", `pressures_${index}`, `${label}: pressures`, "pressure", "Pa", coloured);
   });
   if (!pistons.length) return;
-  const ending = (name) => crane.run.list.find((column) => column.name === `${name.replaceAll(" ", "_")}_force`);
-  const forces = pistons.filter(({ label }) => ending(label)).map(({ label }, colour) => ({
-    label, colour, values: crane.run.column(ending(label).name).values,
-  }));
+  const forces = ofKind(crane, "cylinder_force");
   if (forces.length) overTime("hydraulics", "cylinder_forces", "Forces of the cylinders, positive where they push", "force", "N", forces);
-  const valves = named(crane, "_valve");
+  const valves = ofKind(crane, "valve");
   if (valves.length) overTime("hydraulics", "valves", "Openings of the valves: 1 extends, −1 retracts", "opening", "1", valves);
-  const flows = named(crane, "_flow").map((curve) => ({ ...curve, dashed: curve.label === "pump" }));
+  const flows = ofKind(crane, "flow").map((curve) => ({ ...curve, dashed: curve.label === "pump" }));
   overTime("hydraulics", "flows", "Flows of oil", "flow", "m³/s", flows);
-  overTime("hydraulics", "pump_power", "Power of the pump", "power", "W", [{ label: "pump", colour: 0, values: crane.run.column("pump_power").values }]);
+  overTime("hydraulics", "pump_power", "Power of the pump", "power", "W", ofKind(crane, "power"));
 }
 
 /** Paths of the points of interest, in the plane in which they move most. */
@@ -212,13 +207,9 @@ function stability(overTime, crane) {
 }
 
 function energy(overTime, crane, both) {
-  const change = (name) => {
-    const { values } = crane.run.column(name);
-    return values.map((value) => value - values[0]);
-  };
-  const parts = ["kinetic", "gravity", "support", "element", "drive"].map((part) => `${part}_energy`);
-  const curves = [...parts, "drive_work", "dissipated_energy"]
-    .map((name, colour) => ({ label: spoken(name), colour, values: change(name) }))
+  const change = (values) => values.map((value) => value - values[0]);
+  const curves = crane.run.list.filter(({ kind }) => ["energy", "work", "dissipated"].includes(kind))
+    .map(({ name, values }, colour) => ({ label: spoken(name), colour, values: change(values) }))
     .filter(({ values }) => values.some((value) => value !== 0));
   overTime("energy", "energies", "Energies, change since the start", "energy", "J", curves, 300);
   overTime("energy", "balance", "Error of the energy balance", "E − E₀ − W + D", "J", both("energy_balance"), 300);

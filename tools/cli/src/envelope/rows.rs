@@ -63,7 +63,7 @@ impl Layout {
     pub fn new(asked: &Envelope, crane: &dyn DynCrane, point: Option<usize>) -> Self {
         let description = crane.description().clone();
         let mut columns = Vec::new();
-        let mut column = |name: String, unit: &str| columns.push(Column { name, unit: unit.to_owned() });
+        let mut column = |name: String, unit: &str| columns.push(Column::new(name, unit));
         for axis in &asked.axes.0 {
             match axis.varied {
                 Varied::Drive(drive) => {

@@ -7,7 +7,7 @@ use crane_live::sensitivity::runs::{self, Along, METHOD, NotAsked, run_with_grad
 use crane_live::sensitivity::{self, Group, Output};
 use crane_model::{
     dyn_crane::DynModel,
-    results::{Table, headlines},
+    results::{Column, Table},
     runs::{Measure, Start},
 };
 
@@ -66,7 +66,7 @@ pub fn sensitivity(
     let table = &recorded.table;
     // Integrals by the audit of a run have none.
     let has_derivatives = |index: usize| gradients.iter().flatten().all(|row| !row[index].is_nan());
-    let asked = asked(request, description, table, &has_derivatives)?;
+    let asked = asked(request, table, &has_derivatives)?;
     let column = |rows: &[Vec<f64>], index: usize| -> Vec<f64> { rows.iter().map(|row| row[index]).collect() };
     let t = column(&table.rows, 0);
     let mut found = sensitivity::Sensitivity {
@@ -103,16 +103,10 @@ pub fn sensitivity(
 }
 
 /// The columns that are asked for; peaks of the most important ones if none are, of all with `--all`.
-fn asked(
-    request: &Request<'_>,
-    description: &crane_model::Description,
-    table: &Table,
-    has_derivatives: &dyn Fn(usize) -> bool,
-) -> Outcome<Vec<Asked>> {
+fn asked(request: &Request<'_>, table: &Table, has_derivatives: &dyn Fn(usize) -> bool) -> Outcome<Vec<Asked>> {
     if request.outputs.is_empty() {
-        let main: Vec<String> = headlines(description).into_iter().flat_map(|kind| kind.names).collect();
-        let is_main = |name: &String| request.all || main.contains(name);
-        let columns = (1..table.columns.len()).filter(|&index| is_main(&table.columns[index].name));
+        let is_main = |column: &Column| request.all || column.kind.headline().is_some();
+        let columns = (1..table.columns.len()).filter(|&index| is_main(&table.columns[index]));
         let columns = columns.filter(|&index| has_derivatives(index));
         return Ok(columns.map(|index| (index, Measure::Peak)).collect());
     }

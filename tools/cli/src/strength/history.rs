@@ -1,7 +1,7 @@
 //! Loads and moments about tipping lines over a run.
 
 use crane_model::{
-    Cut, Description, SectionInfo, SectionModuli, Stress, Wrench,
+    ColumnKind, Cut, Description, SectionInfo, SectionModuli, Stress, Wrench,
     results::Table,
     sections::StressedSection,
     tipping::{TippingLine, governing},
@@ -53,9 +53,8 @@ pub fn table(description: &Description, moduli: &[SectionModuli], history: &[Ins
     table.add("t", "s");
     for line in history.first().map_or(&[][..], |instant| &instant.lines) {
         let [from, to] = line.feet.map(|foot| description.supports[foot].name.as_str());
-        for what in ["stabilising", "overturning"] {
-            table.add(format!("{from}_{to}_{what}"), "N m");
-        }
+        let (kind, line) = (ColumnKind::TippingMoment, format!("{from}_{to}"));
+        kind.endings(false).iter().for_each(|ending| table.add(format!("{line}{ending}"), kind.unit(false)));
     }
     let cuts = description.cuts();
     for (prefix, components) in cuts.iter().filter_map(|cut| prefix(description, *cut)) {

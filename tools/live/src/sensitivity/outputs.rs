@@ -2,8 +2,8 @@
 
 use crane_codegen::program::FunctionId;
 use crane_model::dyn_crane::DynModel;
-use crane_model::results::{connector_force, drive_effort, support_gap};
-use crane_model::{CylinderInfo, Description};
+use crane_model::results::{column_name, connector_force, drive_effort, support_gap};
+use crane_model::{ColumnKind, CylinderInfo, Description};
 
 use super::rest::Rest;
 use super::source::Source;
@@ -38,7 +38,7 @@ pub(super) fn outputs(source: &mut Source<'_>, rest: &Rest, q: &[Dual8], multipl
     let tensions = source.at(FunctionId::ConnectorTensions, q);
     let both = lengths.chunks_exact(2).zip(tensions.chunks_exact(3));
     for (connector, (length, tension)) in description.connectors.iter().zip(both) {
-        let strain = format!("{}_{}", connector.name, connector.length_name());
+        let strain = column_name(ColumnKind::Strain(connector.strain()), &connector.name, connector.kind.turns());
         all.push((named(strain, connector.kind.unit(), Group::Connectors), length[0]));
         let force = named(connector_force(connector), connector.kind.force_unit(), Group::Connectors);
         all.push((force, tension[0]));

@@ -43,7 +43,7 @@ fn ensembles_have_the_cautions_and_extremes_of_single_runs() {
         let table = crane_model::runs::record(&crane, &start, &settings, &mut |_| ControlFlow::Continue(()))
             .expect("a run")
             .table;
-        let columns = Peaks::columns(crane.description());
+        let columns = Peaks::columns(&crane);
         let values: Vec<f64> = rows[0].peaks.as_ref().expect("peaks").values().collect();
         assert_eq!(columns.len(), values.len());
         let mut pressures = 0;

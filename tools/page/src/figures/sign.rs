@@ -52,8 +52,8 @@ pub(crate) fn summary(crane: &Shown<'_>, figures: &[Figure], command: Option<&st
         let text = format!("{} ({})", figure.value, figure.note);
         Line { verdict: figure.verdict, ..Line::new(figure.title.clone(), text) }
     }));
-    lines.push(Line::new("largest difference from a finer run", errors(crane, recorded)));
-    lines.push(Line { texts: cautions(crane, recorded), ..Line::new("cautions", "") });
+    lines.push(Line::new("largest difference from a finer run", errors(recorded)));
+    lines.push(Line { texts: cautions(recorded), ..Line::new("cautions", "") });
     lines.push(Line::new("program", format!("{} {}", program.name, program.version)));
     lines.push(Line::new("hash of the spec", description.spec_hash.as_str()));
     lines.extend(command.map(|command| Line::new("command", command)));
@@ -80,25 +80,24 @@ fn analysis(settings: &Settings, recorded: &Recorded) -> String {
 }
 
 /// The largest difference from a finer run for each kind of quantity.
-fn errors(crane: &Shown<'_>, recorded: &Recorded) -> String {
+fn errors(recorded: &Recorded) -> String {
     let Some(verification) = &recorded.verification else { return "not estimated".to_owned() };
-    let of_kind = headlines(crane.subject.crane.description()).into_iter().filter_map(|kind| {
+    let of_kind = headlines(&recorded.table.columns).into_iter().filter_map(|kind| {
         let differences = kind.names.iter().filter_map(|name| verification.difference(&recorded.table, name));
         let greatest = differences.filter(|difference| difference.is_finite()).max_by(f64::total_cmp)?;
         let sizes = kind.names.iter().map(|name| Extremes::of(&recorded.table, name).size());
         let size = sizes.fold(0.0, f64::max);
-        let (factor, unit) = if kind.unit == "Pa" { (1e-5, "bar") } else { (1.0, kind.unit) };
-        Some(format!("{} {unit} (of up to {})", uncertain(factor * greatest), super::quantity(size, kind.unit)))
+        let (factor, unit) = if kind.unit == "Pa" { (1e-5, "bar") } else { (1.0, kind.unit.as_str()) };
+        Some(format!("{} {unit} (of up to {})", uncertain(factor * greatest), super::quantity(size, &kind.unit)))
     });
     let all: Vec<String> = of_kind.collect();
     if all.is_empty() { "not estimated".to_owned() } else { all.join("; ") }
 }
 
 /// Cautions in order of importance: those about the crane, then one about the accuracy of the run. The tables have all of them.
-fn cautions(crane: &Shown<'_>, recorded: &Recorded) -> Vec<String> {
-    let description = crane.subject.crane.description();
+fn cautions(recorded: &Recorded) -> Vec<String> {
     let verification = recorded.verification.as_ref();
-    let inexact = verification.map_or_else(Vec::new, |found| found.cautions(description, &recorded.table));
+    let inexact = verification.map_or_else(Vec::new, |found| found.cautions(&recorded.table));
     let about_crane = recorded.cautions.iter().filter(|caution| !inexact.contains(caution));
     let mut shown: Vec<String> = about_crane.cloned().collect();
     match inexact.as_slice() {

@@ -34,7 +34,7 @@ pub fn of_page(cases: &[Case<'_>], runs: &[&Recorded], bend: f64, changes: Optio
     let Some(case) = cases.last() else { return Ok(report) };
     let description = case.crane.description();
     if !labelled.is_empty() {
-        report.grid(extremes(description, &labelled));
+        report.grid(extremes(&labelled));
         report.grid(summary(&labelled));
         report.grid(duties(description, &labelled));
     }

@@ -14,14 +14,15 @@ fn instant(time: f64) -> f64 {
 }
 
 /// Extremes of all headlines of some runs, a row per quantity and run.
-pub fn extremes(description: &Description, runs: &[(&str, &Recorded)]) -> Grid {
+pub fn extremes(runs: &[(&str, &Recorded)]) -> Grid {
     let headers =
         ["quantity", "crane", "minimum", "time of minimum", "maximum", "time of maximum", "error", "missed", "unit"];
     let alone = runs.len() < 2;
     let headers: Vec<&str> = headers.into_iter().filter(|header| !alone || *header != "crane").collect();
     let title = "Extremes of the run with their times in s, the largest difference from a finer run, and what they miss between two results";
     let mut grid = Grid::new("extremes", title, &headers);
-    for kind in headlines(description) {
+    let columns = runs.first().map_or(&[][..], |(_, run)| &run.table.columns);
+    for kind in headlines(columns) {
         for name in &kind.names {
             for (label, run) in runs {
                 if run.table.values(name).is_none() {
@@ -33,7 +34,7 @@ pub fn extremes(description: &Description, runs: &[(&str, &Recorded)]) -> Grid {
                 let numbers = [minimum, instant(time_of_minimum), maximum, instant(time_of_maximum)].map(Cell::from);
                 let crane = (!alone).then(|| Cell::from(*label));
                 let row = [Cell::from(name.as_str())].into_iter().chain(crane).chain(numbers);
-                grid.row(row.chain(uncertain).chain([kind.unit.into()]).collect::<Vec<_>>());
+                grid.row(row.chain(uncertain).chain([kind.unit.as_str().into()]).collect::<Vec<_>>());
             }
         }
     }

@@ -278,7 +278,7 @@ fn connectors(cases: &[Case<'_>]) -> Option<Grid> {
             let words = [connector.name.as_str().into(), quantity.into()];
             grid.row(words.into_iter().chain(cells).chain([unit.into()]).collect::<Vec<_>>());
         };
-        row(connector.length_name(), connector.kind.unit(), |(length, _)| *length);
+        row(connector.strain().name(), connector.kind.unit(), |(length, _)| *length);
         // At rest, nothing rubs.
         if !connector.is_pin() {
             row("force", connector.kind.force_unit(), |(_, tension)| tension.force);
