@@ -158,10 +158,15 @@ impl StressedSection {
         self.place.location(description)
     }
 
+    /// Orders sections by equivalent stress.
+    pub fn by_stress(a: &Self, b: &Self) -> Ordering {
+        a.stress.equivalent.total_cmp(&b.stress.equivalent)
+    }
+
     /// Orders sections by utilisation; where no beam has a yield stress, by equivalent stress.
     pub fn by_use(a: &Self, b: &Self) -> Ordering {
         let used = |section: &Self| section.utilisation.unwrap_or(0.0);
-        used(a).total_cmp(&used(b)).then(a.stress.equivalent.total_cmp(&b.stress.equivalent))
+        used(a).total_cmp(&used(b)).then(Self::by_stress(a, b))
     }
 }
 

@@ -29,9 +29,12 @@ impl DampedMode {
         self.eigenvalue.norm() / TAU
     }
 
-    /// [Damping ratio](damping_ratio).
+    /// [Damping ratio](damping_ratio); 0 where it is the rounding of its eigenvalue, whose parts are known to some 1e-12 of its size.
     pub fn damping_ratio(&self) -> f64 {
-        damping_ratio(self.eigenvalue)
+        /// No crane is damped so little.
+        const ROUNDING: f64 = 1e-9;
+        let ratio = damping_ratio(self.eigenvalue);
+        if ratio.abs() < ROUNDING { 0.0 } else { ratio }
     }
 }
 

@@ -10,6 +10,7 @@ mod state_space;
 mod steady;
 mod undamped;
 mod verdict;
+mod vibrations;
 
 pub(crate) use damped::eigenvalues;
 pub use damped::{ComplexShape, DampedMode, damped, damped_with_shapes};
@@ -22,6 +23,7 @@ pub use state_space::StateSpace;
 pub use steady::{Held, NotSteady, Steady, steady};
 pub use undamped::{Mode, undamped};
 pub use verdict::{GROWTH, damping_ratio, grows};
+pub use vibrations::{Vibration, vibrations};
 
 use std::{error::Error, fmt};
 

@@ -71,7 +71,7 @@ fn sentence(description: &Description, UnstableServo { cylinder, mode, gain }: &
          instead of {set_gain} 1/m{without}",
         info.name,
         links.join(" and "),
-        mode.eigenvalue.im / std::f64::consts::TAU,
+        mode.frequency(),
         mode.eigenvalue.re.recip(),
         rounded_down(*gain)
     )

@@ -83,14 +83,13 @@ pub fn changes(case: &Case<'_>, registry: &Registry) -> Outcome<Option<Vec<f64>>
     Ok(Some(pairs.map_while(|(own, other)| Some(mesh.share * (other? / own? - 1.0))).collect()))
 }
 
-/// Relative change of the maximum stress of beams at rest with twice the sections, by utilisation where there is a yield stress; `None` for
-/// a crane without stresses or sections, or without a stable pose.
+/// Relative change of the maximum equivalent stress of beams at rest with twice the sections; `None` for a crane without stresses or sections, or
+/// without a stable pose.
 pub fn change_of_stress(case: &Case<'_>, registry: &Registry) -> Option<f64> {
     let greatest = |case: &Case<'_>| {
         let rest = Instant::at_rest(case.crane, &case.equilibrium.q);
         let sections = rest.stressed_sections(case.crane.description(), &case.crane.section_moduli_at());
-        let section = sections.into_iter().max_by(StressedSection::by_use)?;
-        Some(section.utilisation.unwrap_or(section.stress.equivalent))
+        sections.into_iter().max_by(StressedSection::by_stress).map(|section| section.stress.equivalent)
     };
     let own = greatest(case).filter(|stress| *stress > 0.0)?;
     let mesh = OtherMesh::of(case.crane, registry)?;

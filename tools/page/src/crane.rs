@@ -8,11 +8,10 @@ use crane_model::{
     dyn_crane::DynCrane,
     dynamics::Sample,
     force_states::ForceStates,
-    modes::{ComplexShape, Mode, NoModes, damped_with_shapes, undamped},
+    modes::{NoModes, Vibration, vibrations},
     results::{Column, Recording, Table},
     statics::Equilibrium,
 };
-use nalgebra::{Complex, DVector};
 use serde_json::{Value, json};
 
 use crate::{
@@ -21,7 +20,6 @@ use crate::{
     record::{entries, record},
     scene::{Scene, Section, sections},
     strength::{self, extremes, packed},
-    tables::damping_ratio,
 };
 
 /// Maximum number of rows of a run in a page; a longer run is thinned, so that the page stays small enough to mail.
@@ -38,13 +36,6 @@ pub(crate) struct Shown<'a> {
     pub history: Vec<Instant>,
     /// Modes at rest, lowest first; none unless the pose is a stable equilibrium, or if they were not asked for.
     pub modes: Vec<Vibration>,
-}
-
-/// A mode at rest.
-pub(crate) struct Vibration {
-    pub mode: Mode,
-    /// Damping ratio, of the damped mode that moves in the same way.
-    pub damping: Option<f64>,
 }
 
 impl<'a> Shown<'a> {
@@ -101,7 +92,7 @@ impl<'a> Shown<'a> {
             "drives": description.drives.iter().map(|drive| drive.coordinate).collect::<Vec<_>>(),
             "scene": Scene::new(live, &self.pose).json(),
             "outlines": outlines(live),
-            "modes": vibrations(&self.modes, description),
+            "modes": modes_data(&self.modes, description),
             "run": columns(&self.table, every),
             "record": run.map(|(settings, recorded)| record(crane, settings, recorded, program)),
             "repeat": run.map(|(settings, recorded)| entries(crane, settings, recorded, program)),
@@ -137,36 +128,20 @@ pub(crate) fn modes(subject: &Subject<'_>) -> Result<Vec<Vibration>, NoModes> {
     if !subject.equilibrium.is_stable() {
         return Ok(Vec::new());
     }
-    let motions = subject.crane.small_motions_at(&subject.equilibrium.q);
-    // A mode whose damping is not found is shown without.
-    let damped = damped_with_shapes(&motions).unwrap_or_default();
-    let damping = |mode: &Mode| {
-        /// Share of a mode's motion that another one must have to count as the same.
-        const SAME: f64 = 0.7;
-        let unknowns: Vec<f64> = motions.unknowns.iter().map(|&unknown| mode.shape[unknown]).collect();
-        let weighted = (&motions.mass * DVector::from_vec(unknowns)).map(Complex::from);
-        // Both are normalised by the mass matrix.
-        let share = |shape: &ComplexShape| weighted.dotc(shape).norm_sqr();
-        let alike = damped.iter().map(|(mode, shape)| (share(shape), mode));
-        let (share, damped) = alike.max_by(|a, b| a.0.total_cmp(&b.0))?;
-        (share > SAME).then(|| damping_ratio(damped))
-    };
-    Ok(undamped(&motions)?.into_iter().map(|mode| Vibration { damping: damping(&mode), mode }).collect())
+    vibrations(&subject.crane.small_motions_at(&subject.equilibrium.q))
 }
 
-/// Modes for the page.
-pub(crate) fn vibrations(modes: &[Vibration], description: &Description) -> Value {
-    modes.iter().map(|mode| mode.data(description)).collect()
-}
-
-impl Vibration {
-    /// Frequency, Hz, damping ratio, shape in generalized coordinates.
-    fn data(&self, description: &Description) -> Value {
-        let Self { mode, damping } = self;
+/// Modes for the page: frequency, Hz, damping ratio, shape in generalized coordinates.
+pub(crate) fn modes_data(modes: &[Vibration], description: &Description) -> Value {
+    let data = |vibration: &Vibration| {
+        let mode = &vibration.mode;
         let names: Vec<&str> =
             mode.dominating.iter().map(|&index| description.coordinates[index].name.as_str()).collect();
-        json!({"frequency": mode.frequency(), "damping": damping, "shape": mode.shape.as_slice(), "moves": names})
-    }
+        json!({
+            "frequency": mode.frequency(), "damping": vibration.damping_ratio(), "shape": mode.shape.as_slice(), "moves": names,
+        })
+    };
+    modes.iter().map(data).collect()
 }
 
 /// Names, units and values of every `every`-th row, column by column; the extremes are those of all rows.

@@ -104,7 +104,7 @@ pub fn modes(subject: &Subject<'_>) -> Result<Value, NoModes> {
     let description = subject.crane.description();
     let modes = crane::modes(subject)?;
     let figures: Vec<_> = figures::vibration(&modes, description).into_iter().collect();
-    Ok(json!({"modes": crane::vibrations(&modes, description), "figures": figures::json(&figures)}))
+    Ok(json!({"modes": crane::modes_data(&modes, description), "figures": figures::json(&figures)}))
 }
 
 fn written(shown: &[Shown<'_>], texts: Texts<'_>, program: Program) -> Value {

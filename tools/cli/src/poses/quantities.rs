@@ -6,7 +6,7 @@ use crane_model::{
     CoordinateKind, Description,
     dyn_crane::{DynCrane, DynModel},
     envelope::{Axes, Condition, SlewAxis, Varied, only_mass, range_of_loads},
-    modes::{damped, undamped},
+    modes::{Vibration, vibrations},
     nalgebra::Vector3,
     results::cylinders_at,
     statics,
@@ -226,21 +226,12 @@ fn of_strength(crane: &dyn DynCrane, q: Vec<f64>) -> Vec<Option<f64>> {
     values
 }
 
-/// The lowest frequencies of undamped modes, and damping ratios of the damped modes of about these frequencies.
+/// The lowest frequencies of undamped modes, and the damping ratios of the damped modes that move in the same way.
 fn of_modes(crane: &dyn DynCrane, q: &[f64], count: usize) -> Outcome<Vec<Option<f64>>> {
-    let motions = crane.small_motions_at(q);
-    let with_damping = damped(&motions)?;
-    let undamped = undamped(&motions)?;
+    let vibrations = vibrations(&crane.small_motions_at(q))?;
     let pair = |mode: usize| {
-        let frequency = undamped.get(mode).and_then(crane_model::modes::Mode::frequency);
-        let ratio = frequency.and_then(|frequency| {
-            let off = |mode: &crane_model::modes::DampedMode| (mode.frequency() - frequency).abs();
-            with_damping
-                .iter()
-                .min_by(|a, b| off(a).total_cmp(&off(b)))
-                .map(crane_model::modes::DampedMode::damping_ratio)
-        });
-        [frequency, ratio]
+        let vibration = vibrations.get(mode);
+        [vibration.and_then(|vibration| vibration.mode.frequency()), vibration.and_then(Vibration::damping_ratio)]
     };
     Ok((0..count).flat_map(pair).collect())
 }

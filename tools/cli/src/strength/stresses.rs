@@ -1,12 +1,17 @@
 //! Stresses of beams, and how far they use the allowable stress.
 
+use std::cmp::Ordering;
+
 use crane_model::{Description, SectionModuli, Stress, sections::StressedSection};
 use crane_page::history::Instant;
 use crane_page::tables::{Cell, Grid, Report, Scale};
 
 use super::tables::words;
 
-/// Reports the section with the highest utilisation, at rest or over a run.
+type Order = fn(&StressedSection, &StressedSection) -> Ordering;
+
+/// Reports the greatest utilisation and the greatest stress with their places, at rest or over a run. Where beams have different allowable
+/// stresses, they may be at different places.
 pub fn verdict(
     report: &mut Report,
     description: &Description,
@@ -18,24 +23,25 @@ pub fn verdict(
         let sections = instant.stressed_sections(description, moduli);
         sections.into_iter().map(|section| (instant.t, section))
     });
-    let greatest = sections.max_by(|(_, a), (_, b)| StressedSection::by_use(a, b));
-    let Some((t, section)) = greatest else { return };
-    let StressedSection { stress, utilisation, .. } = section;
-    let location = section.location(description);
-    let key = |name: &str| format!("{name}{of_what}").replace(' ', "_");
-    if let Some(utilisation) = utilisation {
-        report.fact_as(&key("greatest utilisation"), format!("maximum utilisation{of_what}"), utilisation, "");
-    }
-    let equivalent = format!("maximum equivalent stress{of_what}");
-    report.fact_as(
-        &key("greatest equivalent stress"),
-        equivalent,
-        Cell::Shown(stress.equivalent, Scale::Megapascal),
-        "MPa",
-    );
-    report.fact_as(&key("place of the greatest stress"), format!("place of the maximum stress{of_what}"), location, "");
-    if !of_what.is_empty() {
-        report.fact_as("time_of_the_greatest_stress", "time of the maximum stress", t, "s");
+    let sections: Vec<(f64, StressedSection)> = sections.collect();
+    let mut fact = |what: &str, of_what: &str, value: Cell, unit: &str| {
+        let key = format!("{what}{of_what}").replace(' ', "_").replace("maximum", "greatest");
+        report.fact_as(&key, format!("{what}{of_what}"), value, unit);
+    };
+    for (order, use_counts) in [(StressedSection::by_use as Order, true), (StressedSection::by_stress, false)] {
+        let Some((t, section)) = sections.iter().max_by(|(_, a), (_, b)| order(a, b)) else { return };
+        let (name, place) = if use_counts { ("utilisation", "utilisation") } else { ("equivalent stress", "stress") };
+        let stress = Cell::Shown(section.stress.equivalent, Scale::Megapascal);
+        let (value, unit) = match section.utilisation {
+            Some(utilisation) if use_counts => (utilisation.into(), ""),
+            None if use_counts => continue,
+            _ => (stress, "MPa"),
+        };
+        fact(&format!("maximum {name}"), of_what, value, unit);
+        fact(&format!("place of the maximum {place}"), of_what, section.location(description).into(), "");
+        if !of_what.is_empty() {
+            fact(&format!("time of the maximum {place}"), "", (*t).into(), "s");
+        }
     }
 }
 

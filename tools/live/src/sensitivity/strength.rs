@@ -28,6 +28,8 @@ type Twin = [Vector; 2];
 pub(super) struct Strength {
     /// The section that uses most of each beam.
     sections: Vec<StressedSection>,
+    /// The section of all with the greatest utilisation, and that with the greatest stress.
+    greatest: Option<[StressedSection; 2]>,
     /// The tipping line with the smallest margin.
     line: Option<TippingLine>,
     links: Vec<LinkCut>,
@@ -48,9 +50,11 @@ impl Strength {
             return None;
         }
         let mut sections: Vec<StressedSection> = Vec::new();
-        for section in
-            stressed_sections(description, &crane.section_moduli_at(), &crane.section_places_at(&rest.q), &wrenches)
-        {
+        let all =
+            stressed_sections(description, &crane.section_moduli_at(), &crane.section_places_at(&rest.q), &wrenches);
+        let used = all.iter().copied().max_by(StressedSection::by_use);
+        let stressed = all.iter().copied().max_by(StressedSection::by_stress);
+        for section in all {
             let same = |known: &&mut StressedSection| known.beam(description) == section.beam(description);
             match sections.iter_mut().find(same) {
                 Some(known) if StressedSection::by_use(known, &section).is_lt() => *known = section,
@@ -61,7 +65,7 @@ impl Strength {
         let lines = lines(crane, 0.0, &rest.q, &still, &still);
         let line = governing(&lines).copied().filter(|line| line.margin().is_finite());
         let links = if line.is_some() { link_cuts(crane) } else { Vec::new() };
-        Some(Self { sections, line, links })
+        Some(Self { sections, greatest: used.zip(stressed).map(<[_; 2]>::from), line, links })
     }
 
     /// Stress and utilisation of every beam at its governing section, the largest of all, and the margin of the governing tipping line.
@@ -73,9 +77,12 @@ impl Strength {
         let description = source.crane.description();
         let wrenches = wrenches_at(source, q, multipliers);
         let moduli = source.at(FunctionId::SectionModuli, q);
-        let worst = self.sections.iter().max_by(|a, b| StressedSection::by_use(a, b));
-        let each = self.sections.iter().map(|section| (section, section.beam(description).to_owned() + "_"));
-        for (section, beam) in worst.map(|section| (section, "greatest_".to_owned())).into_iter().chain(each) {
+        let each = self.sections.iter().map(|section| (section, section.beam(description).to_owned() + "_", [true; 2]));
+        let greatest = self.greatest.iter().flat_map(|[used, stressed]| {
+            [(used, [true, false]), (stressed, [false, true])]
+                .map(|(section, what)| (section, "greatest_".to_owned(), what))
+        });
+        for (section, beam, [use_counts, stress_counts]) in greatest.chain(each) {
             let moduli: [Dual8; 8] = std::array::from_fn(|number| {
                 let of = |section: usize| moduli[8 * section + number];
                 section.place.moduli.mean(of, |one, other, part| one + Dual8::constant(part) * (other - one))
@@ -85,15 +92,17 @@ impl Strength {
                 place: section.location(description),
                 ..named(format!("{beam}{name}"), unit, Group::Stresses)
             };
-            if section.utilisation.is_some() {
-                all.push((named("utilisation", ""), stress / moduli[7]));
+            if use_counts && section.utilisation.is_some() {
+                all.push((named("utilisation", "1"), stress / moduli[7]));
             }
-            all.push((named("equivalent_stress", "Pa"), stress));
+            if stress_counts {
+                all.push((named("equivalent_stress", "Pa"), stress));
+            }
         }
         if let Some(line) = &self.line {
             let [from, to] = line.feet.map(|foot| description.supports[foot].name.as_str());
             let margin = self.margin(source, line.feet, q, multipliers, wrenches);
-            let output = Output { place: format!("{from} – {to}"), ..named("tipping_margin", "", Group::Tipping) };
+            let output = Output { place: format!("{from} – {to}"), ..named("tipping_margin", "1", Group::Tipping) };
             all.push((output, margin));
         }
         all

@@ -1,11 +1,11 @@
 //! What bending beams do: utilisation, deflection, vibration.
 
-use crane_model::{Description, sections::StressedSection};
+use crane_model::{Description, modes::Vibration, sections::StressedSection};
 use nalgebra::Vector3;
 
 use super::{Figure, quantity, spoken};
 use crate::{
-    crane::{Shown, Vibration},
+    crane::Shown,
     tables::{readable, uncertain},
 };
 
@@ -62,7 +62,8 @@ pub(crate) fn vibration(modes: &[Vibration], description: &Description) -> Optio
     let lowest = modes.first()?;
     let names = lowest.mode.dominating.iter().take(2).map(|&index| spoken(&description.coordinates[index].name));
     let names = names.collect::<Vec<_>>().join(", ");
-    let damping = lowest.damping.map_or_else(String::new, |ratio| format!("; damping ratio {}", uncertain(ratio)));
+    let damping =
+        lowest.damping_ratio().map_or_else(String::new, |ratio| format!("; damping ratio {}", uncertain(ratio)));
     let value = format!("{} Hz", readable(lowest.mode.frequency()?));
     Some(Figure::new("lowest_frequency", "lowest frequency at rest", value, names + &damping))
 }

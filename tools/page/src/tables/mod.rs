@@ -22,7 +22,7 @@ pub use cell::{Cell, Scale, number_text};
 pub(crate) use cell::{readable, uncertain};
 pub use grid::{Grid, Heading, VALUE};
 pub use mistakes::diagnostics;
-pub use modes::{damped_mode, damped_modes, damping_ratio, names, stable_steps, undamped_modes};
+pub use modes::{damped_mode, damped_modes, names, stable_steps, undamped_modes};
 pub use page::of_page;
 pub use report::{FORMAT, Report};
 pub(crate) use runs::pace;

@@ -50,22 +50,13 @@ pub fn damped_modes(description: &Description, modes: &[DampedMode]) -> Grid {
     grid
 }
 
-/// Damping ratio of a mode; 0 where it is the rounding of its eigenvalue, whose parts are known to some 1e-12 of its size.
-#[must_use]
-pub fn damping_ratio(mode: &DampedMode) -> f64 {
-    /// No crane is damped so little.
-    const ROUNDING: f64 = 1e-9;
-    let ratio = mode.damping_ratio();
-    if ratio.abs() < ROUNDING { 0.0 } else { ratio }
-}
-
 /// Number, frequency, damping ratio and eigenvalue of a damped mode.
 pub fn damped_mode(index: usize, mode: &DampedMode) -> Vec<Cell> {
     vec![
         (index + 1).into(),
         // An overdamped mode has no frequency.
         (mode.eigenvalue.im != 0.0).then(|| mode.frequency()).into(),
-        damping_ratio(mode).into(),
+        mode.damping_ratio().into(),
         mode.eigenvalue.re.into(),
         mode.eigenvalue.im.into(),
     ]
