@@ -79,7 +79,7 @@ pub mod statics;
 #[cfg(feature = "std")]
 pub mod tipping;
 
-pub use crane_quantities::{ColumnKind, Count};
+pub use crane_quantities::{ColumnKind, Count, DisplayUnit};
 #[cfg(feature = "std")]
 pub use description::Tree;
 pub use description::{

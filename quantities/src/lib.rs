@@ -8,9 +8,11 @@
 
 mod column_kind;
 mod count;
+mod display_unit;
 mod function_id;
 mod table;
 
 pub use column_kind::{ColumnKind, END, PEAKS, Size, Strain};
+pub use display_unit::DisplayUnit;
 pub use count::{Count, Extent, Item};
 pub use function_id::{Argument, FunctionId, PythonArguments, RuntimeTrait};

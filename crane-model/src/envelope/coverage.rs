@@ -1,5 +1,7 @@
 //! What a load chart takes into account, in words that stand beside it.
 
+use crane_quantities::DisplayUnit;
+
 use super::{Limits, PartLimit};
 use crate::{CylinderInfo, Description, dyn_crane::DynCrane, tipping};
 
@@ -105,7 +107,6 @@ impl Coverage {
     }
 
     fn cylinders(&mut self, description: &Description, limits: &Limits) {
-        const BAR: f64 = 1e5;
         if description.cylinders.is_empty() {
             return;
         }
@@ -116,7 +117,7 @@ impl Coverage {
         for info in &description.cylinders {
             match info.max_pressure {
                 Some(pressure) => {
-                    self.add(considered, format!("the relief valves of {} at {} bar", info.name, pressure / BAR));
+                    self.add(considered, format!("the relief valves of {} at {} bar", info.name, DisplayUnit::Bar.shown(pressure)));
                 }
                 None => self.add(false, format!("the pressure in {}: it has no `max_pressure`", info.name)),
             }
@@ -124,7 +125,7 @@ impl Coverage {
         let all = names(&|_| true).join(", ");
         match description.pump.and_then(|pump| pump.pressure) {
             Some(pressure) => {
-                let bar = pressure / BAR;
+                let bar = DisplayUnit::Bar.shown(pressure);
                 self.add(limits.has(PartLimit::Pump), format!("the {bar} bar of the pump at {all}"));
             }
             None => self.add(false, "the pressure of the pump: the spec does not give it".to_owned()),

@@ -1,6 +1,6 @@
 //! Hydraulic cylinders of driven joints: their columns in results, and cautions about them.
 
-use crane_quantities::ColumnKind;
+use crane_quantities::{ColumnKind, DisplayUnit};
 
 use super::{Extremes, Table, column_name};
 use crate::{
@@ -9,10 +9,6 @@ use crate::{
     hydraulics::{CylinderState, cylinders_at},
 };
 
-/// Pa
-const BAR: f64 = 1e5;
-/// m³/s
-const LITRE_PER_MINUTE: f64 = 1e-3 / 60.0;
 /// Flow from which a cylinder's pressure counts in full for the pump, m³/s: 0.6 l/min, about what a mobile valve meters at least.
 const LEAST_FLOW: f64 = 1e-5;
 /// A drive stiffer than the oil of its cylinder by this factor or more is no longer a model of it.
@@ -162,8 +158,8 @@ pub(super) fn of_run(description: &Description, table: &Table) -> Vec<String> {
     found.extend(limit.map(|limit| {
         format!(
             "the cylinders take up to {:.1} l/min, at {time:.2} s; the pump delivers {:.1} l/min",
-            flow / LITRE_PER_MINUTE,
-            limit / LITRE_PER_MINUTE
+            DisplayUnit::LitrePerMinute.shown(flow),
+            DisplayUnit::LitrePerMinute.shown(limit)
         )
     }));
     found
@@ -179,7 +175,7 @@ fn short_of_oil(description: &Description, table: &Table) -> Option<String> {
     let time = table.time_of(rows.iter().filter(|flow| **flow >= ALL * limit).count());
     Some(format!(
         "the pump is at its maximum flow, {:.1} l/min, for {time:.2} s, first at {:.2} s: cylinders lag behind their motions",
-        limit / LITRE_PER_MINUTE,
+        DisplayUnit::LitrePerMinute.shown(limit),
         table.rows[first][0]
     ))
 }
@@ -229,7 +225,7 @@ fn below_vacuum(info: &CylinderInfo, table: &Table) -> Option<String> {
     Some(format!(
         "{} would need {:.2} bar on the side of its {side}, at {:.2} s, less than a vacuum: oil would cavitate there",
         info.name,
-        least.minimum / 1e5,
+        DisplayUnit::Bar.shown(least.minimum),
         least.time_of_minimum
     ))
 }
@@ -297,10 +293,10 @@ fn over_pressure(info: &CylinderInfo, sides: [Extremes; 2], moves: bool) -> Opti
     Some(format!(
         "{} needs {:.0} bar on the side of its {}{}: its relief valve opens at {:.0} bar",
         info.name,
-        highest.pressure / BAR,
+        DisplayUnit::Bar.shown(highest.pressure),
         highest.side,
         when(highest.time, moves),
-        limit / BAR
+        DisplayUnit::Bar.shown(limit)
     ))
 }
 

@@ -4,6 +4,8 @@
 //! the coarser one. The additional results of the finer run show what a quantity does between two results, above all its peaks: how far these
 //! lie beyond the results is not an error of the steps, and is counted apart.
 
+use crane_quantities::DisplayUnit;
+
 use super::{Extremes, Table, headlines};
 use crate::dynamics;
 
@@ -80,6 +82,7 @@ impl Verification {
             let of_kind: Vec<&Doubtful> = doubtful.iter().filter(|quantity| quantity.between == between).collect();
             let Some(worst) = of_kind.iter().max_by(|a, b| a.share.total_cmp(&b.share)) else { continue };
             let Doubtful { name, difference, unit, share, measure, .. } = worst;
+            let display = DisplayUnit::always(unit);
             let others = match of_kind.len() - 1 {
                 0 => String::new(),
                 1 => ", and one other quantity by less".to_owned(),
@@ -91,7 +94,9 @@ impl Verification {
                 "a finer run differs by that much; use a smaller tolerance or step"
             };
             cautions.push(format!(
-                "{name} may be off by {difference:.2e} {unit}, {:.1} % of its {measure}{others}: {remedy}",
+                "{name} may be off by {:.2e} {}, {:.1} % of its {measure}{others}: {remedy}",
+                display.map_or(*difference, |display| display.shown(*difference)),
+                display.map_or(unit.as_str(), |display| display.unit()),
                 100.0 * share
             ));
         }

@@ -4,13 +4,13 @@ use std::io::Write;
 
 use crane_live::LiveCrane;
 use crane_model::{
-    Cut, Tension,
+    Cut, DisplayUnit, Tension,
     nalgebra::Vector3,
     results::{CylinderState, Instant, cautions, cylinders_at},
     sections::StressedSection,
     tipping::governing,
 };
-use crane_page::tables::{Case, Cell, Grid, Report, Scale, equilibria, verdicts};
+use crane_page::tables::{Case, Cell, Grid, Report, equilibria, verdicts};
 
 use crate::{
     arguments::{Analysis, Choice},
@@ -123,7 +123,7 @@ fn overview(cases: &[Case<'_>], resting: &[Resting<'_>]) -> Grid {
         let section = rest.and_then(|rest| rest.sections.iter().max_by(|a, b| StressedSection::by_use(a, b)));
         let line = rest.and_then(|rest| governing(&rest.instant.lines));
         let feet = line.map(|line| line.feet.map(|foot| description.supports[foot].name.as_str()).join(" – "));
-        let stress = section.map(|section| Cell::Shown(section.stress.equivalent, Scale::Megapascal));
+        let stress = section.map(|section| Cell::Shown(section.stress.equivalent, DisplayUnit::Megapascal));
         grid.row([
             case.label.into(),
             case.equilibrium.status.name().into(),
@@ -165,7 +165,7 @@ fn worst(resting: &[Resting<'_>]) -> Grid {
             with(least).into(),
             Cell::shown(values[greatest], unit),
             with(greatest).into(),
-            Scale::of(unit).map_or(unit.into(), Cell::ShownUnit),
+            DisplayUnit::of(unit).map_or(unit.into(), Cell::ShownUnit),
         ]);
     }
     grid

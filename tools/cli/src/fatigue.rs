@@ -3,11 +3,11 @@
 use std::io::Write;
 
 use crane_model::{
-    Description, SectionModuli,
+    Description, DisplayUnit, SectionModuli,
     fatigue::{self, Cycle, Detail, Fatigue},
     results::{Instant, Table},
 };
-use crane_page::tables::{Case, Cell, Grid, Report, Scale, VALUE, verdicts};
+use crane_page::tables::{Case, Cell, Grid, Report, VALUE, verdicts};
 
 use crate::{
     arguments, files,
@@ -167,7 +167,7 @@ impl Subject<'_> {
             report.fact_as(
                 "greatest_range",
                 "its largest range of stress",
-                Cell::Shown(largest.range, Scale::Megapascal),
+                Cell::Shown(largest.range, DisplayUnit::Megapascal),
                 "MPa",
             );
             report.fact_as("time_of_the_valley", "time of the valley of this range", low, "s");
@@ -215,8 +215,8 @@ impl Subject<'_> {
             let Detail { category, .. } = self.categories.detail(of.place.beam(self.description));
             let range = of.largest().map_or(0.0, |cycle| cycle.range);
             let numbers = [
-                Cell::Shown(category, Scale::Megapascal),
-                Cell::Shown(range, Scale::Megapascal),
+                Cell::Shown(category, DisplayUnit::Megapascal),
+                Cell::Shown(range, DisplayUnit::Megapascal),
                 Cell::Count(of.cycles.len()),
                 parameter.into(),
                 class(parameter).into(),
@@ -240,12 +240,12 @@ impl Subject<'_> {
             let [from, to] = self.times(&cycle);
             let part = detail.damage(&[cycle]) / worst.damage;
             grid.row([
-                Cell::Shown(cycle.range, Scale::Megapascal),
-                Cell::Shown(cycle.mean, Scale::Megapascal),
+                Cell::Shown(cycle.range, DisplayUnit::Megapascal),
+                Cell::Shown(cycle.mean, DisplayUnit::Megapascal),
                 cycle.count.into(),
                 from.into(),
                 to.into(),
-                Cell::Shown(part, Scale::Percent),
+                Cell::Shown(part, DisplayUnit::Percent),
             ]);
         }
         grid

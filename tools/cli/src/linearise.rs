@@ -334,9 +334,9 @@ fn states(description: &Description, motion: &Motion) -> Grid {
     let mut grid = Grid::new("motion", "Motion: pose, rates and accelerations", &headings);
     for (index, info) in description.coordinates.iter().enumerate() {
         let is_angle = info.kind.unit() == "rad";
-        let cell = |value: f64| if is_angle { Cell::Angle(value) } else { Cell::Number(value) };
+        let cell = |value: f64| if is_angle { Cell::of_unit(value, "rad") } else { Cell::Number(value) };
         let [unit, of_rates] =
-            if is_angle { [Cell::AngleUnit, "rad/s, rad/s²".into()] } else { ["m".into(), "m/s, m/s²".into()] };
+            if is_angle { [Cell::unit_of("rad"), "rad/s, rad/s²".into()] } else { ["m".into(), "m/s, m/s²".into()] };
         let (rate, acceleration) = (motion.v[index].into(), motion.a[index].into());
         grid.row([info.name.as_str().into(), cell(motion.q[index]), unit, rate, acceleration, of_rates]);
     }

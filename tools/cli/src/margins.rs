@@ -253,7 +253,7 @@ fn table(axes: &Axes, description: &Description, rows: &[Row]) -> Grid {
     let mut grid = Grid::new("margins", title, &headings);
     for row in rows {
         let axis = |(value, (_, unit, _)): (&f64, &(String, String, f64))| {
-            if unit == "°" { Cell::Angle(*value) } else { Cell::Number(*value) }
+            if unit == "°" { Cell::of_unit(*value, "rad") } else { Cell::Number(*value) }
         };
         let mut cells: Vec<Cell> = row.values.iter().zip(&of_axes).map(axis).collect();
         match &row.found {

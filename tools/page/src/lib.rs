@@ -25,7 +25,7 @@ pub mod strength;
 pub mod tables;
 
 use crane_live::LiveCrane;
-use crane_model::{dyn_crane::DynCrane, dynamics::Settings, modes::NoModes, runs::Recorded, statics::Equilibrium};
+use crane_model::{DisplayUnit, dyn_crane::DynCrane, dynamics::Settings, modes::NoModes, runs::Recorded, statics::Equilibrium};
 use serde_json::{Value, json};
 
 use crane::Shown;
@@ -130,7 +130,18 @@ fn written(shown: &[Shown<'_>], texts: Texts<'_>, program: Program) -> Value {
         "command": command,
         "spec": spec,
         "instrument": instrument,
+        "display": display_units(),
     })
+}
+
+/// Units in which people read numbers: the unit in SI, the factor from it, and the sizes for which they are used, in SI.
+fn display_units() -> Value {
+    let row = |unit: DisplayUnit| {
+        let [least, below] = unit.sizes()?;
+        let below = below.is_finite().then_some(below);
+        Some(json!({"si": unit.si(), "unit": unit.unit(), "factor": unit.shown(1.0), "least": least, "below": below}))
+    };
+    DisplayUnit::ALL.into_iter().filter_map(row).collect()
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ export const read = () => decoded(JSON.parse(document.getElementById("data").tex
 
 /** The same with the numbers of runs unpacked. */
 export function decoded(data) {
+  display = data.display;
   for (const crane of data.cranes) crane.run = run(crane.run);
   const crane = data.cranes.at(-1);
   return { ...data, crane, rigid: data.cranes.length > 1 ? data.cranes[0] : null };
@@ -78,22 +79,22 @@ export const readable = (value) => significant(value, 4);
 /** A number with its unit; a ratio has none. */
 export const measured = (value, unit) => (unit && unit !== "1" ? `${readable(value)} ${unit}` : readable(value));
 
-/** Larger units for larger numbers: N to kN, J to kJ, m to mm. */
+/** Units in which people read numbers: rows of the table that the command puts into the page. */
+let display = [];
+
+/** The unit for readers of numbers in a unit of SI, and its factor: bar for Pa; kN for large forces. */
 export function scaled(unit, values) {
   const [low, high] = range(values);
-  const size = Math.max(Math.abs(low), Math.abs(high));
-  if (["N", "N m", "J", "W"].includes(unit) && size >= 1e4) return { unit: `k${unit}`, factor: 1e-3 };
-  if (unit === "Pa") return { unit: "bar", factor: 1e-5 };
-  if (unit === "m³/s") return { unit: "l/min", factor: 6e4 };
-  if (unit === "m" && size > 0 && size < 0.5) return { unit: "mm", factor: 1e3 };
-  return { unit, factor: 1 };
+  const size = Math.max(Math.abs(low), Math.abs(high), 0);
+  const fits = ({ si, least, below }) => si === unit && size >= least && (below === null || size < below);
+  return display.find(fits) ?? { unit, factor: 1 };
 }
 
 /** Degrees in a radian. */
 export const DEGREES = 180 / Math.PI;
 
-/** The unit in which angles and their rates are shown, and its factor; `null` for other units. */
-export const turned = (unit) => (unit === "rad" || unit === "rad/s" ? { unit: unit.replace("rad", "°"), factor: DEGREES } : null);
+/** The unit in which numbers of any size are shown, and its factor: ° for rad; that of SI where there is none. */
+export const always = (unit) => display.find(({ si, least, below }) => si === unit && least === 0 && below === null) ?? { unit, factor: 1 };
 
 /** A name for readers: spaces instead of underscores. */
 export const spoken = (name) => name.replaceAll("_", " ");

@@ -1,6 +1,7 @@
 //! Tables of what moves what.
 
 use crane_live::sensitivity::Group;
+use crane_model::DisplayUnit;
 use crane_page::tables::{Cell, Grid, Heading, number_text};
 
 use super::Changes;
@@ -93,12 +94,12 @@ fn short_labels(names: &[&str]) -> Vec<String> {
 
 /// Factor and unit in which people read a quantity.
 pub fn readable(unit: &'static str, group: Group) -> (f64, &'static str) {
-    match (unit, group) {
-        ("Pa", Group::Stresses) => (1e-6, "MPa"),
-        ("Pa", _) => (1e-5, "bar"),
-        ("m", _) => (1e3, "mm"),
-        _ => (1.0, unit),
-    }
+    let display = match (unit, group) {
+        ("Pa", Group::Stresses) => Some(DisplayUnit::Megapascal),
+        ("m", _) => Some(DisplayUnit::Millimetre),
+        _ => DisplayUnit::always(unit),
+    };
+    display.map_or((1.0, unit), |display| (display.shown(1.0), display.unit()))
 }
 
 /// All changes, for programs.

@@ -2,9 +2,9 @@
 
 use std::cmp::Ordering;
 
-use crane_model::{Description, SectionModuli, Stress, sections::StressedSection};
+use crane_model::{Description, DisplayUnit, SectionModuli, Stress, sections::StressedSection};
 use crane_page::history::Instant;
-use crane_page::tables::{Cell, Grid, Report, Scale};
+use crane_page::tables::{Cell, Grid, Report};
 
 use super::tables::words;
 
@@ -31,7 +31,7 @@ pub fn verdict(
     for (order, use_counts) in [(StressedSection::by_use as Order, true), (StressedSection::by_stress, false)] {
         let Some((t, section)) = sections.iter().max_by(|(_, a), (_, b)| order(a, b)) else { return };
         let (name, place) = if use_counts { ("utilisation", "utilisation") } else { ("equivalent stress", "stress") };
-        let stress = Cell::Shown(section.stress.equivalent, Scale::Megapascal);
+        let stress = Cell::Shown(section.stress.equivalent, DisplayUnit::Megapascal);
         let (value, unit) = match section.utilisation {
             Some(utilisation) if use_counts => (utilisation.into(), ""),
             None if use_counts => continue,
@@ -54,7 +54,7 @@ pub fn table(description: &Description, moduli: &[SectionModuli], rest: &Instant
     let mut grid = Grid::new("stresses", title, &headers);
     for StressedSection { place, stress, utilisation } in rest.stressed_sections(description, moduli) {
         let Stress { normal, shear, torsion, equivalent } = stress;
-        let stresses = [normal, shear, torsion, equivalent].map(|pascal| Cell::Shown(pascal, Scale::Megapascal));
+        let stresses = [normal, shear, torsion, equivalent].map(|pascal| Cell::Shown(pascal, DisplayUnit::Megapascal));
         let row = words(&place, description).into_iter().chain(stresses).chain([utilisation.into()]);
         grid.row(row.collect::<Vec<_>>());
     }

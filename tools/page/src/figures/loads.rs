@@ -57,8 +57,9 @@ pub(super) fn reactions(crane: &Shown<'_>) -> Option<Figure> {
     let least = (0..all.len()).min_by(|&a, &b| all[a].minimum.total_cmp(&all[b].minimum))?;
     let most = (0..all.len()).max_by(|&a, &b| all[a].maximum.total_cmp(&all[b].maximum))?;
     let (low, high) = (all[least].minimum, all[most].maximum);
-    let (factor, unit) = scaled("N", low.abs().max(high.abs()));
-    let value = format!("{} … {} {unit}", readable(factor * low), readable(factor * high));
+    let size = low.abs().max(high.abs());
+    let [(from, unit), (to, _)] = [low, high].map(|force| scaled(force, size, "N"));
+    let value = format!("{} … {} {unit}", readable(from), readable(to));
     let lifted = lifts(description, &crane.table);
     let pulled = pulls(description, &crane.table);
     let lifts = |verb: &str| {

@@ -12,6 +12,7 @@ pub mod sign;
 
 pub(crate) use beams::vibration;
 
+use crane_model::DisplayUnit;
 use serde_json::{Value, json};
 
 use crate::{crane::Shown, tables::readable};
@@ -113,18 +114,14 @@ pub(crate) fn json(figures: &[Figure]) -> Value {
 
 /// A quantity for readers: four digits, in a larger or smaller unit where that reads better; pressures in bar.
 pub(crate) fn quantity(value: f64, unit: &str) -> String {
-    let (factor, unit) = scaled(unit, value.abs());
-    format!("{} {unit}", readable(factor * value)).trim_end().to_owned()
+    let (value, unit) = scaled(value, value.abs(), unit);
+    format!("{} {unit}", readable(value)).trim_end().to_owned()
 }
 
-/// The unit for readers in which a quantity of some size is shown, and the factor to it.
-fn scaled(unit: &str, size: f64) -> (f64, String) {
-    match unit {
-        "N" | "N m" | "J" | "W" if size >= 1e4 => (1e-3, format!("k{unit}")),
-        "Pa" => (1e-5, "bar".to_owned()),
-        "m" if size > 0.0 && size < 0.5 => (1e3, "mm".to_owned()),
-        _ => (1.0, unit.to_owned()),
-    }
+/// A number in the unit for readers in which quantities of some size are shown, and the unit.
+fn scaled(number: f64, size: f64, unit: &str) -> (f64, &str) {
+    let display = DisplayUnit::for_size(unit, size);
+    display.map_or((number, unit), |display| (display.shown(number), display.unit()))
 }
 
 /// A name for readers: spaces instead of underscores.

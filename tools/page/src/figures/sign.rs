@@ -13,7 +13,7 @@ use super::{Figure, Verdict, verdict};
 use crate::{
     Program,
     crane::Shown,
-    tables::{readable, uncertain},
+    tables::{Cell, readable},
 };
 
 /// A line of the summary.
@@ -87,8 +87,8 @@ fn errors(recorded: &Recorded) -> String {
         let greatest = differences.filter(|difference| difference.is_finite()).max_by(f64::total_cmp)?;
         let sizes = kind.names.iter().map(|name| Extremes::of(&recorded.table, name).size());
         let size = sizes.fold(0.0, f64::max);
-        let (factor, unit) = if kind.unit == "Pa" { (1e-5, "bar") } else { (1.0, kind.unit.as_str()) };
-        Some(format!("{} {unit} (of up to {})", uncertain(factor * greatest), super::quantity(size, &kind.unit)))
+        let [error, unit] = [Cell::error_of_unit(greatest, &kind.unit), Cell::unit_of(&kind.unit)];
+        Some(format!("{} {} (of up to {})", error.text(), unit.text(), super::quantity(size, &kind.unit)))
     });
     let all: Vec<String> = of_kind.collect();
     if all.is_empty() { "not estimated".to_owned() } else { all.join("; ") }

@@ -1,70 +1,12 @@
 //! Fields of tables: what people read, and what programs do.
 
+use crane_model::DisplayUnit;
 use serde_json::Value;
-
-/// A unit in which people read numbers that are in SI for programs and in files.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scale {
-    /// °, for rad.
-    Degree,
-    /// Of pressures, for Pa.
-    Bar,
-    /// Of stresses, for Pa.
-    Megapascal,
-    /// For m.
-    Millimetre,
-    /// Of a ratio.
-    Percent,
-}
-
-impl Scale {
-    const ALL: [Scale; 5] = [Scale::Degree, Scale::Bar, Scale::Megapascal, Scale::Millimetre, Scale::Percent];
-
-    /// The scale of a unit; `None` for units that everybody reads.
-    #[must_use]
-    pub fn of(unit: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|scale| scale.unit() == unit)
-    }
-
-    /// Its unit.
-    #[must_use]
-    pub fn unit(self) -> &'static str {
-        match self {
-            Scale::Degree => "°",
-            Scale::Bar => "bar",
-            Scale::Megapascal => "MPa",
-            Scale::Millimetre => "mm",
-            Scale::Percent => "%",
-        }
-    }
-
-    /// The unit in SI.
-    #[must_use]
-    pub fn si(self) -> &'static str {
-        match self {
-            Scale::Degree => "rad",
-            Scale::Bar | Scale::Megapascal => "Pa",
-            Scale::Millimetre => "m",
-            Scale::Percent => "1",
-        }
-    }
-
-    /// A number in SI as people read it.
-    fn shown(self, number: f64) -> f64 {
-        match self {
-            Scale::Degree => number.to_degrees(),
-            Scale::Bar => number / 1e5,
-            Scale::Megapascal => number / 1e6,
-            Scale::Millimetre => number * 1e3,
-            Scale::Percent => number * 100.0,
-        }
-    }
-}
 
 /// The unit of a column in SI.
 pub(super) fn si(unit: &str) -> &str {
-    match Scale::of(unit) {
-        Some(scale) => scale.si(),
+    match DisplayUnit::of(unit) {
+        Some(unit) => unit.si(),
         None => unit,
     }
 }
@@ -80,14 +22,12 @@ pub enum Cell {
     Error(f64),
     /// An absolute error, in the unit of its row: two digits are enough.
     Uncertainty(f64),
-    /// An angle, rad: in degrees for people.
-    Angle(f64),
-    /// The unit of angles in its row, rad: degrees for people.
-    AngleUnit,
+    /// An absolute error in SI that people read in another unit.
+    ShownUncertainty(f64, DisplayUnit),
     /// A number in SI that people read in another unit.
-    Shown(f64, Scale),
+    Shown(f64, DisplayUnit),
     /// The unit of such numbers in its row.
-    ShownUnit(Scale),
+    ShownUnit(DisplayUnit),
     /// A relative change, with its sign; % for people.
     Change(f64),
     /// Several names.
@@ -132,7 +72,25 @@ impl Cell {
     /// A number in SI that people read in a unit; `unit` may be one of SI.
     #[must_use]
     pub fn shown(number: f64, unit: &str) -> Self {
-        Scale::of(unit).map_or(Cell::Number(number), |scale| Cell::Shown(number, scale))
+        DisplayUnit::of(unit).map_or(Cell::Number(number), |unit| Cell::Shown(number, unit))
+    }
+
+    /// A number in a unit of SI, as people read all numbers of that unit: pressures in bar, angles in degrees.
+    #[must_use]
+    pub fn of_unit(number: f64, si: &str) -> Self {
+        DisplayUnit::always(si).map_or(Cell::Number(number), |unit| Cell::Shown(number, unit))
+    }
+
+    /// An absolute error in that unit.
+    #[must_use]
+    pub fn error_of_unit(error: f64, si: &str) -> Self {
+        DisplayUnit::always(si).map_or(Cell::Uncertainty(error), |unit| Cell::ShownUncertainty(error, unit))
+    }
+
+    /// That unit.
+    #[must_use]
+    pub fn unit_of(si: &str) -> Self {
+        DisplayUnit::always(si).map_or_else(|| si.into(), Cell::ShownUnit)
     }
 
     /// Its number as people read it.
@@ -140,17 +98,16 @@ impl Cell {
     pub fn number(&self) -> Option<f64> {
         match self {
             Cell::Number(number) | Cell::Error(number) | Cell::Uncertainty(number) => Some(*number),
-            Cell::Angle(radians) => Some(radians.to_degrees()),
-            Cell::Shown(number, scale) => Some(scale.shown(*number)),
+            Cell::Shown(number, unit) | Cell::ShownUncertainty(number, unit) => Some(unit.shown(*number)),
             Cell::Change(change) => Some(100.0 * change),
-            Cell::Text(_) | Cell::AngleUnit | Cell::ShownUnit(_) | Cell::Names(_) | Cell::Count(_) | Cell::Empty => {
+            Cell::Text(_) | Cell::ShownUnit(_) | Cell::Names(_) | Cell::Count(_) | Cell::Empty => {
                 None
             }
         }
     }
 
     /// What people read: four digits, degrees.
-    pub(super) fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         self.with_digits(DIGITS)
     }
 
@@ -169,12 +126,11 @@ impl Cell {
         match self {
             Cell::Text(text) => text.clone(),
             Cell::Number(number) => with_digits(*number, digits),
-            Cell::Angle(radians) => with_digits(radians.to_degrees(), digits),
-            Cell::AngleUnit => "°".to_owned(),
-            Cell::Shown(number, scale) => with_digits(scale.shown(*number), digits),
-            Cell::ShownUnit(scale) => scale.unit().to_owned(),
+            Cell::Shown(number, unit) => with_digits(unit.shown(*number), digits),
+            Cell::ShownUnit(unit) => unit.unit().to_owned(),
             Cell::Error(error) => format!("{error:.1e}"),
             Cell::Uncertainty(error) => uncertain(*error),
+            Cell::ShownUncertainty(error, unit) => uncertain(unit.shown(*error)),
             Cell::Change(change) => format!("{:+.2}", 100.0 * change),
             Cell::Names(names) => names.join(", "),
             Cell::Count(count) => count.to_string(),
@@ -196,12 +152,11 @@ impl Cell {
             Cell::Number(number)
             | Cell::Error(number)
             | Cell::Uncertainty(number)
-            | Cell::Angle(number)
             | Cell::Shown(number, _)
+            | Cell::ShownUncertainty(number, _)
             | Cell::Change(number) => (*number).into(),
-            Cell::ShownUnit(scale) => scale.si().into(),
+            Cell::ShownUnit(unit) => unit.si().into(),
             Cell::Names(names) => names.as_slice().into(),
-            Cell::AngleUnit => "rad".into(),
             Cell::Count(count) => (*count).into(),
             Cell::Empty => Value::Null,
         }
@@ -273,11 +228,11 @@ mod tests {
         ] {
             assert_eq!(Cell::Number(number).text(), text);
         }
-        let angle = Cell::Angle(std::f64::consts::FRAC_PI_3);
+        let angle = Cell::of_unit(std::f64::consts::FRAC_PI_3, "rad");
         assert_eq!((angle.text().as_str(), angle.json()), ("60.00", std::f64::consts::FRAC_PI_3.into()));
         let pressure = Cell::shown(2.35e7, "bar");
         assert_eq!((pressure.text().as_str(), pressure.json()), ("235", Value::from(2.35e7)));
-        let unit = Cell::ShownUnit(Scale::Bar);
+        let unit = Cell::ShownUnit(DisplayUnit::Bar);
         assert_eq!((unit.text().as_str(), unit.json()), ("bar", Value::from("Pa")));
         let change = Cell::Change(0.0123);
         assert_eq!((change.text().as_str(), change.json()), ("+1.23", Value::from(0.0123)));

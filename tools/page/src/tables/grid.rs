@@ -121,7 +121,7 @@ impl Grid {
     /// Whether a column contains only numbers.
     fn numeric(&self, column: usize) -> bool {
         self.rows.iter().all(|row| {
-            !matches!(row.get(column), Some(Cell::Text(_) | Cell::Names(_) | Cell::AngleUnit | Cell::ShownUnit(_)))
+            !matches!(row.get(column), Some(Cell::Text(_) | Cell::Names(_) | Cell::ShownUnit(_)))
         }) && !self.rows.is_empty()
     }
 
@@ -141,10 +141,9 @@ impl Grid {
             Cell::Number(number)
             | Cell::Error(number)
             | Cell::Uncertainty(number)
-            | Cell::Angle(number)
             | Cell::Shown(number, _)
+            | Cell::ShownUncertainty(number, _)
             | Cell::Change(number) => number_text(*number),
-            Cell::AngleUnit => "rad".to_owned(),
             Cell::ShownUnit(scale) => scale.si().to_owned(),
             Cell::Empty => String::new(),
             other => other.text(),

@@ -18,7 +18,7 @@ mod report;
 mod runs;
 mod statics;
 
-pub use cell::{Cell, Scale, number_text};
+pub use cell::{Cell, number_text};
 pub(crate) use cell::{readable, uncertain};
 pub use grid::{Grid, Heading, VALUE};
 pub use mistakes::diagnostics;

@@ -30,11 +30,13 @@ pub fn extremes(runs: &[(&str, &Recorded)]) -> Grid {
                 }
                 let Extremes { minimum, time_of_minimum, maximum, time_of_maximum } = Extremes::of(&run.table, name);
                 let found = run.verification.as_ref().and_then(|found| found.find_errors(&run.table, name));
-                let uncertain = [0, 1].map(|k| found.map_or(Cell::Empty, |found| Cell::Uncertainty(found[k])));
-                let numbers = [minimum, instant(time_of_minimum), maximum, instant(time_of_maximum)].map(Cell::from);
+                let uncertain =
+                    [0, 1].map(|k| found.map_or(Cell::Empty, |found| Cell::error_of_unit(found[k], &kind.unit)));
+                let [least, most] = [minimum, maximum].map(|value| Cell::of_unit(value, &kind.unit));
+                let numbers = [least, instant(time_of_minimum).into(), most, instant(time_of_maximum).into()];
                 let crane = (!alone).then(|| Cell::from(*label));
                 let row = [Cell::from(name.as_str())].into_iter().chain(crane).chain(numbers);
-                grid.row(row.chain(uncertain).chain([kind.unit.as_str().into()]).collect::<Vec<_>>());
+                grid.row(row.chain(uncertain).chain([Cell::unit_of(&kind.unit)]).collect::<Vec<_>>());
             }
         }
     }

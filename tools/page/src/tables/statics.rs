@@ -1,7 +1,7 @@
 //! Cranes in equilibrium, one or several side by side.
 
 use crane_model::{
-    ConnectorInfo, CoordinateInfo, CoordinateKind, Description, Tension,
+    ConnectorInfo, CoordinateInfo, Description, DisplayUnit, Tension,
     dyn_crane::DynCrane,
     results::{CylinderState, cautions, cylinders_at},
     runs::{Failed, Reason},
@@ -10,7 +10,7 @@ use crane_model::{
 use nalgebra::Vector3;
 use serde_json::json;
 
-use super::{Cell, Grid, Heading, Report, Scale, VALUE};
+use super::{Cell, Grid, Heading, Report, VALUE};
 
 /// Label of a crane that is compared with itself with rigid beams.
 pub const FLEXIBLE: &str = "flexible";
@@ -134,8 +134,8 @@ pub fn deflection(first: &Case<'_>, second: &Case<'_>) -> Grid {
         };
         let displacement = to - from;
         let [x, y, z, distance] = [displacement.x, displacement.y, displacement.z, displacement.norm()]
-            .map(|displacement| Cell::Shown(displacement, Scale::Millimetre));
-        grid.row([name.as_str().into(), x, y, z, distance, Cell::ShownUnit(Scale::Millimetre)]);
+            .map(|displacement| Cell::Shown(displacement, DisplayUnit::Millimetre));
+        grid.row([name.as_str().into(), x, y, z, distance, Cell::ShownUnit(DisplayUnit::Millimetre)]);
     }
     grid
 }
@@ -154,13 +154,11 @@ fn widest<'c, 'a>(cases: &'c [Case<'a>]) -> Option<&'c Case<'a>> {
 fn pose(cases: &[Case<'_>]) -> Grid {
     let mut grid = Grid::with_headings("pose", "Pose", headings("coordinate", cases));
     for coordinate in widest(cases).map_or(&[][..], Case::coordinates) {
-        let (cell, unit): (fn(f64) -> Cell, Cell) = match coordinate.kind {
-            CoordinateKind::Translation => (Cell::Number, coordinate.kind.unit().into()),
-            CoordinateKind::Rotation => (Cell::Angle, Cell::AngleUnit),
-        };
-        let values =
-            cases.iter().map(|case| case.value(&coordinate.name, &case.equilibrium.q).map_or(Cell::Empty, cell));
-        let row: Vec<Cell> = [coordinate.name.as_str().into()].into_iter().chain(values).chain([unit]).collect();
+        let unit = coordinate.kind.unit();
+        let value = |case: &Case<'_>| case.value(&coordinate.name, &case.equilibrium.q);
+        let values = cases.iter().map(|case| value(case).map_or(Cell::Empty, |value| Cell::of_unit(value, unit)));
+        let name = Cell::from(coordinate.name.as_str());
+        let row: Vec<Cell> = [name].into_iter().chain(values).chain([Cell::unit_of(unit)]).collect();
         grid.row(row);
     }
     grid
@@ -200,7 +198,7 @@ fn cylinders(cases: &[Case<'_>]) -> Option<Grid> {
             let values = states.iter().map(|states| states.get(index).and_then(value));
             let values = values.map(|value| value.map_or(Cell::Empty, |value| Cell::shown(value, unit)));
             let named: [Cell; 2] = [info.name.as_str().into(), quantity.into()];
-            let unit = Scale::of(unit).map_or(unit.into(), Cell::ShownUnit);
+            let unit = DisplayUnit::of(unit).map_or(unit.into(), Cell::ShownUnit);
             grid.row(named.into_iter().chain(values).chain([unit]).collect::<Vec<Cell>>());
         };
         row("length", "m", &|state| Some(state.length));
@@ -244,7 +242,7 @@ fn friction(cases: &[Case<'_>]) -> Option<Grid> {
     let description = cases.iter().map(|case| case.crane.description()).find(|description| description.has_feet())?;
     let title =
         "Friction of feet on the ground: lateral force over the largest that the ground holds; at 100 % a foot slides";
-    let unit = || Scale::of("%").map_or("%".into(), Cell::ShownUnit);
+    let unit = || DisplayUnit::of("%").map_or("%".into(), Cell::ShownUnit);
     let mut grid = Grid::with_headings("friction", title, headings("support", cases));
     let used: Vec<_> = cases.iter().map(|case| case.crane.friction_utilisations_at(&case.equilibrium.q)).collect();
     for (index, support) in description.supports.iter().enumerate().filter(|(_, support)| support.one_sided) {
@@ -274,9 +272,10 @@ fn connectors(cases: &[Case<'_>]) -> Option<Grid> {
     let values: Vec<_> = cases.iter().map(at_rest).collect();
     for (index, connector) in first.crane.description().connectors.iter().enumerate() {
         let mut row = |quantity: &str, unit: &str, of: fn(&(f64, Tension)) -> f64| {
-            let cells = values.iter().map(|values| Cell::from(values.get(index).map(of)));
+            let cell = |values: &Vec<_>| values.get(index).map_or(Cell::Empty, |value| Cell::of_unit(of(value), unit));
             let words = [connector.name.as_str().into(), quantity.into()];
-            grid.row(words.into_iter().chain(cells).chain([unit.into()]).collect::<Vec<_>>());
+            let cells = values.iter().map(cell);
+            grid.row(words.into_iter().chain(cells).chain([Cell::unit_of(unit)]).collect::<Vec<_>>());
         };
         row(connector.strain().name(), connector.kind.unit(), |(length, _)| *length);
         // At rest, nothing rubs.

@@ -1,7 +1,7 @@
 // Driving: the motion of the crane in real time, with levers.
 import uPlot from "uplot";
 import { curve, style } from "../../src/colours.js";
-import { DEGREES, known, readable, scaled, spoken, tickText, turned } from "../../src/data.js";
+import { DEGREES, known, readable, scaled, spoken, tickText } from "../../src/data.js";
 import { save, table } from "../../src/download.js";
 import { element } from "../../src/element.js";
 import { Levers } from "./levers.js";
@@ -180,7 +180,7 @@ export class Drive {
       this.chart?.destroy();
       this.column = Number(choice.value);
       const { name, unit } = list[this.column];
-      this.shown = turned(unit) ?? scaled(unit, [this.rest[this.column] || 1]);
+      this.shown = scaled(unit, [this.rest[this.column] || 1]);
       this.chart = new uPlot({
         width: host.clientWidth || 400, height: 170, legend: { show: false }, cursor: { show: false }, scales: { x: { time: false } },
         axes: [axis("t [s]", { size: 34 }), axis(`${spoken(name)} [${this.shown.unit}]`, { size: 58 })],

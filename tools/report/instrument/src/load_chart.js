@@ -1,5 +1,5 @@
 // Load charts: the largest load within limits over the positions of one or two drives.
-import { DEGREES, measured, readable, spoken, turned } from "../../src/data.js";
+import { DEGREES, measured, readable, spoken, always } from "../../src/data.js";
 import { element } from "../../src/element.js";
 import { Plot } from "../../src/plot.js";
 import { grid } from "../../src/tables.js";
@@ -126,7 +126,7 @@ export class LoadChart {
   show({ poses, load, unit, point }, along, by) {
     const { drives, name } = this.crane;
     const drive = (range) => drives[range.drive];
-    const shown = (range) => turned(drive(range).unit) ?? { unit: "m", factor: 1 };
+    const shown = (range) => always(drive(range).unit);
     const [x, y] = [shown(along), by && shown(by)];
     const rows = Array.from({ length: by?.count ?? 1 }, (_, k) => poses.slice(k * along.count, (k + 1) * along.count));
     const label = (row) => (by ? `${spoken(drive(by).name)} ${measured(row[0].at[0] * y.factor, y.unit)}` : spoken(load));

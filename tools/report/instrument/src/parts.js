@@ -1,5 +1,5 @@
 // The parts of the crane: chosen in the picture or from a list, marked, and found in the spec.
-import { at, known, measured, place, spoken, turned } from "../../src/data.js";
+import { at, known, measured, place, spoken, always } from "../../src/data.js";
 import { element } from "../../src/element.js";
 
 /** Farthest that a pointer moves in a click, CSS pixels: what moves it farther turns the view. */
@@ -62,7 +62,7 @@ function facts({ scene, coordinates, run }, { kind, name }, t) {
     const column = run.column(name);
     const number = column && at(column.values, now);
     if (!known(number)) return [];
-    const { unit, factor } = turned(column.unit) ?? { unit: column.unit, factor: 1 };
+    const { unit, factor } = always(column.unit);
     return [`${label} ${measured(number * factor, unit)}`];
   };
   if (kind === "cylinders") return ["length", "force"].flatMap((what) => value(`${name}_${what}`, what));
