@@ -52,7 +52,9 @@ impl DisplayUnit {
     /// The unit for all numbers of a unit of SI; `None` for units that everybody reads.
     #[must_use]
     pub fn always(si: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|known| known.si() == si && matches!(known.sizes(), Some([least, _]) if least == 0.0))
+        Self::ALL
+            .into_iter()
+            .find(|known| known.si() == si && matches!(known.sizes(), Some([least, _]) if least == 0.0))
     }
 
     /// The unit for a number of some size, in a unit of SI, where it stands alone or in a plot.
@@ -69,10 +71,9 @@ impl DisplayUnit {
             DisplayUnit::Degree | DisplayUnit::DegreePerSecond | DisplayUnit::Bar | DisplayUnit::LitrePerMinute => {
                 Some([0.0, f64::INFINITY])
             }
-            DisplayUnit::Kilonewton
-            | DisplayUnit::KilonewtonMetre
-            | DisplayUnit::Kilojoule
-            | DisplayUnit::Kilowatt => Some([1e4, f64::INFINITY]),
+            DisplayUnit::Kilonewton | DisplayUnit::KilonewtonMetre | DisplayUnit::Kilojoule | DisplayUnit::Kilowatt => {
+                Some([1e4, f64::INFINITY])
+            }
             DisplayUnit::Millimetre => Some([f64::MIN_POSITIVE, 0.5]),
             DisplayUnit::Megapascal | DisplayUnit::Percent => None,
         }
@@ -121,10 +122,9 @@ impl DisplayUnit {
             DisplayUnit::Bar => number / 1e5,
             DisplayUnit::Megapascal => number / 1e6,
             DisplayUnit::LitrePerMinute => number * 6e4,
-            DisplayUnit::Kilonewton
-            | DisplayUnit::KilonewtonMetre
-            | DisplayUnit::Kilojoule
-            | DisplayUnit::Kilowatt => number / 1e3,
+            DisplayUnit::Kilonewton | DisplayUnit::KilonewtonMetre | DisplayUnit::Kilojoule | DisplayUnit::Kilowatt => {
+                number / 1e3
+            }
             DisplayUnit::Millimetre => number * 1e3,
             DisplayUnit::Percent => number * 100.0,
         }

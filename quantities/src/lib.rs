@@ -13,6 +13,6 @@ mod function_id;
 mod table;
 
 pub use column_kind::{ColumnKind, END, PEAKS, Size, Strain};
-pub use display_unit::DisplayUnit;
 pub use count::{Count, Extent, Item};
+pub use display_unit::DisplayUnit;
 pub use function_id::{Argument, FunctionId, PythonArguments, RuntimeTrait};

@@ -87,6 +87,12 @@ impl Condition {
         self.points.iter().zip(&from.points).map(|(to, from)| (to - from).norm()).collect()
     }
 
+    /// The limits that it is beyond; deflections are measured from here.
+    pub fn exceeded(&self, crane: &dyn DynCrane, limits: &Limits) -> Vec<Limit> {
+        let slacks = self.slacks(crane.description(), &limits.with_max_efforts(crane), &self.points);
+        slacks.into_iter().filter(|(_, slack)| *slack < 0.0).map(|(limit, _)| limit).collect()
+    }
+
     /// The remaining margin to each limit, relative to the limit except for tipping: 0 at the limit, negative beyond.
     pub(super) fn slacks(
         &self,

@@ -117,7 +117,10 @@ impl Coverage {
         for info in &description.cylinders {
             match info.max_pressure {
                 Some(pressure) => {
-                    self.add(considered, format!("the relief valves of {} at {} bar", info.name, DisplayUnit::Bar.shown(pressure)));
+                    self.add(
+                        considered,
+                        format!("the relief valves of {} at {} bar", info.name, DisplayUnit::Bar.shown(pressure)),
+                    );
                 }
                 None => self.add(false, format!("the pressure in {}: it has no `max_pressure`", info.name)),
             }

@@ -190,14 +190,14 @@ impl Limit {
             Limit::Utilisation { .. } => "utilisation",
             Limit::Effort { .. } => "effort",
             Limit::Deflection { .. } => "deflection",
-            Limit::Pressure { .. } => "pressure",
-            Limit::Pump { .. } => "pump",
-            Limit::Stroke { .. } => "stroke",
-            Limit::Stop { .. } => "stop",
-            Limit::Sliding { .. } => "sliding",
-            Limit::LiftOff { .. } => "lift-off",
-            Limit::Slack { .. } => "slack",
-            Limit::Overlap { .. } => "overlap",
+            Limit::Pressure { .. } => PartLimit::Pressure.name(),
+            Limit::Pump { .. } => PartLimit::Pump.name(),
+            Limit::Stroke { .. } => PartLimit::Stroke.name(),
+            Limit::Stop { .. } => PartLimit::Stops.name(),
+            Limit::Sliding { .. } => PartLimit::Sliding.name(),
+            Limit::LiftOff { .. } => PartLimit::LiftOff.name(),
+            Limit::Slack { .. } => PartLimit::SlackRopes.name(),
+            Limit::Overlap { .. } => PartLimit::Overlap.name(),
         }
     }
 

@@ -31,6 +31,6 @@ pub use coverage::Coverage;
 pub use critical::{Critical, CriticalLoad, NoCriticalLoad, critical_load};
 pub use limits::{Limit, Limits, PartLimit};
 pub use load_factor::{Followed, LoadFactor, load_factor};
-pub use radius::SlewAxis;
+pub use radius::{SlewAxis, only_point};
 pub use rating::Rating;
 pub use sweep::{Envelope, Execution, PIECE, UNITS_OF_LOADS, is_load, only_mass, range_of_loads};

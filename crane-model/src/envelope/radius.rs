@@ -2,7 +2,13 @@
 
 use nalgebra::{Matrix2, Vector2, Vector3};
 
-use crate::{CoordinateKind, dyn_crane::DynCrane};
+use crate::{CoordinateKind, Description, dyn_crane::DynCrane};
+
+/// The point of interest whose radius and height are shown unless another one is chosen: the only one; otherwise, `None`, it is the origin of the
+/// last link.
+pub fn only_point(description: &Description) -> Option<usize> {
+    (description.points.len() == 1).then_some(0)
+}
 
 /// A vertical axis about which the crane slews.
 #[derive(Clone, Copy, Debug, PartialEq)]

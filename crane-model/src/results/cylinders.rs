@@ -121,6 +121,7 @@ pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
         let still = |value| Extremes::at(0.0, value);
         found.extend(out_of_stroke(info, &still(state.length), false));
         found.extend(over_pressure(info, state.pressures.map(still), false));
+        found.extend(beyond_pump(description, info, state));
         let DriveInfo { coordinate, .. } = description.drives[info.drive];
         let (stiffness, coordinate) = (stiffness[info.drive], &description.coordinates[coordinate]);
         let oil = state.oil_stiffness(info).filter(|oil| info.valve.is_none() && stiffness > STIFFER * oil);
@@ -285,6 +286,21 @@ impl HighestPressure {
 pub fn highest_pressure(info: &CylinderInfo, table: &Table) -> HighestPressure {
     let [.., piston, rod, _] = columns(&info.name).map(|column| Extremes::of(table, &column));
     HighestPressure::of([piston, rod])
+}
+
+/// A cylinder that holds more than the pump can move.
+fn beyond_pump(description: &Description, info: &CylinderInfo, state: &CylinderState) -> Option<String> {
+    let pump = description.pump.and_then(|pump| pump.pressure)?;
+    let highest = HighestPressure::of(state.pressures.map(|pressure| Extremes::at(0.0, pressure)));
+    (highest.pressure > pump).then(|| {
+        format!(
+            "{} holds {:.0} bar on the side of its {}: the {:.0} bar of the pump do not move it against its load",
+            info.name,
+            DisplayUnit::Bar.shown(highest.pressure),
+            highest.side,
+            DisplayUnit::Bar.shown(pump)
+        )
+    })
 }
 
 fn over_pressure(info: &CylinderInfo, sides: [Extremes; 2], moves: bool) -> Option<String> {

@@ -4,7 +4,9 @@ use crane_codegen::chain::{Group, Law as ForceLaw, Profile, Transmission};
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynDynamics, DynModel, DynStatics};
 use crane_model::dynamics::{Contacts, Method, Settings};
+use crane_model::envelope::{Condition, Limits, PartLimit};
 use crane_model::nalgebra::{DMatrix, DVector};
+use crane_model::results::cautions::{BEND, of_pose};
 use crane_model::results::{Instant, Peaks, quantities};
 use crane_model::runs::{Start, record};
 use crane_model::{Cut, modes};
@@ -20,7 +22,8 @@ use crate::tree::{Tree, source};
 pub type Law = fn(&LiveCrane, &[f64], &mut Rng) -> Option<Result<(), String>>;
 
 /// All of them, with their names.
-pub const ALL: [(&str, Law); 14] = [
+pub const ALL: [(&str, Law); 15] = [
+    ("limits of charts are cautions at rest", limits_are_cautions),
     ("results have names of their own", results_are_named),
     ("accelerations solve A a = e + f", accelerations_solve),
     ("power of all forces", power),
@@ -52,6 +55,44 @@ fn results_are_named(crane: &LiveCrane, _: &[f64], _: &mut Rng) -> Option<Result
         }
     }
     Some(Ok(()))
+}
+
+/// A limit of charts that the crane is beyond is a caution at rest that names the part, and without one nothing is overstressed, tips or is out of
+/// its stroke.
+fn limits_are_cautions(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Result<(), String>> {
+    let crane: &dyn DynCrane = crane;
+    let positions: Vec<f64> = crane.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
+    let limits = Limits {
+        tipping: Some(0.0),
+        utilisation: Some(1.0),
+        of_parts: PartLimit::DEFAULT.to_vec(),
+        ..Limits::none(crane.description())
+    };
+    let exceeded = Condition::at(crane, q.to_vec(), &positions).exceeded(crane, &limits);
+    let cautions = of_pose(crane, q, BEND);
+    let is_told = |part: &str| cautions.iter().any(|caution| caution.contains(part));
+    for limit in &exceeded {
+        let location = limit.location(crane);
+        let part = location.split(", ").next().unwrap_or_default();
+        if !is_told(part) {
+            return Some(Err(format!(
+                "{} of {location} is exceeded, and no caution says so: {cautions:?}",
+                limit.kind()
+            )));
+        }
+    }
+    let words = [
+        "overstressed",
+        "tips over the line",
+        "its stroke is from",
+        "its relief valve opens",
+        "of the pump do not move",
+    ];
+    let said = cautions.iter().find(|caution| words.iter().any(|words| caution.contains(words)));
+    Some(
+        said.filter(|_| exceeded.is_empty())
+            .map_or(Ok(()), |caution| Err(format!("no limit is exceeded, but: {caution}"))),
+    )
 }
 
 /// Checks a law on the crane of a spec.

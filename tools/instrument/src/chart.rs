@@ -5,7 +5,7 @@ use crane_model::{
     dyn_crane::{DynCrane, DynModel},
     envelope::{
         Axes, Axis, Envelope, Execution, Limit, Limits, PartLimit, Rating, SlewAxis, Varied, is_load, only_mass,
-        range_of_loads,
+        only_point, range_of_loads,
     },
 };
 use serde_json::{Value, json};
@@ -36,7 +36,7 @@ pub fn chart(crane: &LiveCrane, wanted: &Wanted) -> Outcome<Value> {
     let load = load.ok_or("choose the live parameter that is the load: a mass, a force, a moment or a factor")?;
     let point = match &wanted.point {
         Some(name) => description.points.iter().position(|own| own == name.as_str()),
-        None => (!description.points.is_empty()).then_some(0),
+        None => only_point(description),
     };
     let axes = axes(&wanted.ranges, description.drives.len())?;
     let limits = Limits {

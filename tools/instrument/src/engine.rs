@@ -152,10 +152,11 @@ fn described(live: &LiveCrane, warnings: &Value) -> Value {
         .drives
         .iter()
         .zip(&live.chain().drives)
-        .map(|(info, drive)| {
+        .zip(starts(live))
+        .map(|((info, drive), start)| {
             let coordinate = &description.coordinates[info.coordinate];
             json!({
-                "name": coordinate.name.as_str(), "unit": coordinate.kind.unit(), "start": info.start,
+                "name": coordinate.name.as_str(), "unit": coordinate.kind.unit(), "start": start,
                 "lever": match levers::kind(drive) { levers::Kind::Valve => "valve", levers::Kind::Speed => "speed" },
                 "full": levers::full_speed(coordinate.kind, info.max_rate), "stops": [stops(info.coordinate, End::Lower), stops(info.coordinate, End::Upper)],
             })

@@ -29,7 +29,7 @@ const MOST_ROWS: usize = 4000;
 pub(crate) struct Shown<'a> {
     pub subject: &'a Subject<'a>,
     /// Pose at rest.
-    pose: Vec<f64>,
+    pub pose: Vec<f64>,
     /// Its run, or its single result at rest.
     pub table: Cow<'a, Table>,
     /// What it carries at each result.

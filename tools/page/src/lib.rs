@@ -25,7 +25,9 @@ pub mod strength;
 pub mod tables;
 
 use crane_live::LiveCrane;
-use crane_model::{DisplayUnit, dyn_crane::DynCrane, dynamics::Settings, modes::NoModes, runs::Recorded, statics::Equilibrium};
+use crane_model::{
+    DisplayUnit, dyn_crane::DynCrane, dynamics::Settings, modes::NoModes, runs::Recorded, statics::Equilibrium,
+};
 use serde_json::{Value, json};
 
 use crane::Shown;

@@ -135,7 +135,7 @@ class _Episodes:
         self._state = [f"{name}{of}" for of in ("", "_rate") for name in coordinates]
         given = [*(f"{name}_target" for name in task.targets), *(f"input_{name}" for name in self._inputs)]
         axes = [f"{point}_{axis}" for point in points for axis in "xyz"]
-        arrays = {"states": ["t", *self._state, *given], "points": axes, "velocities": [f"{name}_rate" for name in axes]}
+        arrays = {"states": ["t", *self._state, *given], "points": axes, "velocities": [f"{point}_v{axis}" for point in points for axis in "xyz"]}
         self._places = {name: (array, column) for array, names in arrays.items() for column, name in enumerate(names)}
         for name in (*task.targets, *task.limits):
             _known(name, [of for of in self._places if of not in ("t", *given)], "result")

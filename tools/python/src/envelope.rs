@@ -6,7 +6,7 @@ use crane_model::Description;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::envelope::{
     Axes, Axis, Condition, Coverage, Envelope, Execution, Limit, Limits, PartLimit, Rating, SlewAxis, Varied, is_load,
-    only_mass, range_of_loads,
+    only_mass, only_point, range_of_loads,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -66,7 +66,7 @@ impl Crane {
         let crane: &dyn DynCrane = &self.live;
         let description = crane.description();
         let point = asked.point.as_deref().map(|name| index_of(name, "point", &points(description))).transpose()?;
-        let point = point.or((description.points.len() == 1).then_some(0));
+        let point = point.or(only_point(description));
         let envelope = asked.envelope(crane)?;
         let poses = envelope.axes.poses();
         let ratings: Mutex<Vec<Option<Rating>>> = Mutex::new(vec![None; poses]);

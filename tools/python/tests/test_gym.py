@@ -23,7 +23,7 @@ spec.loader.exec_module(slewing)
 TASK = {
     "actions": {"slew": (-0.5, 0.5)},
     "rates": True,
-    "observations": ["column_psi", "column_psi_rate", "load_x", "load_x_rate", "column_psi_target", "input_slew"],
+    "observations": ["column_psi", "column_psi_rate", "load_x", "load_vx", "column_psi_target", "input_slew"],
     "targets": {"column_psi": (-1.0, 1.0)},
     "bands": {"load_mass": (200.0, 1500.0)},
     "starts": {"slew": (-0.2, 0.2)},

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use crane_codegen::units::split;
 use crane_model::{
     CoordinateKind, Description,
-    envelope::{Axes, Axis, Varied},
+    envelope::{Axes, Axis, Varied, only_point},
 };
 
 use crate::problem::{Outcome, Problem, nearest};
@@ -139,7 +139,7 @@ pub fn limits(given: &[String], option: &str, what: &str, names: &[&str]) -> Out
 pub fn point(name: Option<&str>, description: &Description) -> Outcome<Option<usize>> {
     let names = super::points(description);
     let Some(name) = name else {
-        return Ok((names.len() == 1).then_some(0));
+        return Ok(only_point(description));
     };
     names.iter().position(|point| *point == name).map(Some).ok_or_else(|| {
         let guess = nearest(name, names.iter().copied());

@@ -86,7 +86,7 @@ impl Layout {
             column(drive_effort(&coordinate.name, coordinate.kind), coordinate.kind.force_unit());
         }
         for point in &description.points {
-            column(format!("{point}_deflection"), "m");
+            column(format!("{point}_deflection_by_the_load"), "m");
         }
         Self {
             columns,

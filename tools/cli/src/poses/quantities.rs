@@ -249,8 +249,8 @@ pub fn table(subject: &Subject<'_>, rows: &[Row]) -> Grid {
     let mut grid = Grid::new("poses", "Poses at rest", &headings);
     for row in rows {
         let settings = row.settings.iter().zip(&axes);
-        let settings =
-            settings.map(|(value, (.., angle))| if *angle { Cell::of_unit(*value, "rad") } else { Cell::Number(*value) });
+        let settings = settings
+            .map(|(value, (.., angle))| if *angle { Cell::of_unit(*value, "rad") } else { Cell::Number(*value) });
         let values = row.values.iter().zip(&columns);
         let values = values.map(|(value, column)| value.map_or(Cell::Empty, |value| Cell::shown(value, column.unit)));
         grid.row(settings.chain(values).chain([row.status.as_str().into()]).collect::<Vec<_>>());

@@ -47,7 +47,9 @@ pub(super) fn deflection(crane: &Shown<'_>, rigid: &Shown<'_>) -> Option<Figure>
         ))
     });
     let ways: Vec<_> = ways.collect();
-    let rest = ways.iter().filter_map(|(_, distances)| distances.first().copied()).max_by(f64::total_cmp)?;
+    // A run may start elsewhere.
+    let [own, other] = [crane, rigid].map(|shown| shown.subject.crane.points_at(&shown.pose));
+    let rest = own.iter().zip(&other).map(|(own, other)| (own - other).norm()).max_by(f64::total_cmp)?;
     let all = ways.iter().flat_map(|(point, distances)| {
         distances.iter().zip(&crane.table.rows).map(move |(distances, row)| (point, *distances, row[0]))
     });

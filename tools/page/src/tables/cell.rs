@@ -100,9 +100,7 @@ impl Cell {
             Cell::Number(number) | Cell::Error(number) | Cell::Uncertainty(number) => Some(*number),
             Cell::Shown(number, unit) | Cell::ShownUncertainty(number, unit) => Some(unit.shown(*number)),
             Cell::Change(change) => Some(100.0 * change),
-            Cell::Text(_) | Cell::ShownUnit(_) | Cell::Names(_) | Cell::Count(_) | Cell::Empty => {
-                None
-            }
+            Cell::Text(_) | Cell::ShownUnit(_) | Cell::Names(_) | Cell::Count(_) | Cell::Empty => None,
         }
     }
 

@@ -120,9 +120,10 @@ impl Grid {
 
     /// Whether a column contains only numbers.
     fn numeric(&self, column: usize) -> bool {
-        self.rows.iter().all(|row| {
-            !matches!(row.get(column), Some(Cell::Text(_) | Cell::Names(_) | Cell::ShownUnit(_)))
-        }) && !self.rows.is_empty()
+        self.rows
+            .iter()
+            .all(|row| !matches!(row.get(column), Some(Cell::Text(_) | Cell::Names(_) | Cell::ShownUnit(_))))
+            && !self.rows.is_empty()
     }
 
     /// Its texts as printed, for a page, and what they leave out.
