@@ -2,7 +2,7 @@
 
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynModel};
-use crane_model::statics::{Diagnosis, Equilibrium, Settings, Status};
+use crane_model::statics::{Diagnosis, Equilibrium, Settings};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -45,9 +45,9 @@ impl Found {
         Self { equilibrium, diagnosis, efforts, reactions, points }
     }
 
-    /// Whether the pose is an equilibrium of some kind.
+    /// Whether the crane is at rest.
     fn rests(&self) -> bool {
-        matches!(self.equilibrium.status, Status::Converged | Status::Unstable { .. })
+        self.equilibrium.rests()
     }
 }
 

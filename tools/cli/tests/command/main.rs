@@ -10,6 +10,7 @@ mod pictures;
 mod places;
 mod poses;
 mod runs;
+mod same_numbers;
 mod sensitivity;
 mod units;
 
