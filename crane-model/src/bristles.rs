@@ -17,8 +17,8 @@ use nalgebra::DMatrixViewMut;
 
 use crate::{
     BristleInfo, Description,
+    column::column_name,
     dyn_crane::{DynDynamics, DynModel},
-    results::column_name,
     stateful_force::{Evaluated, ForceState, Row, StateAt, StatefulForce, StatefulForces},
 };
 

@@ -35,6 +35,8 @@ mod wrench;
 #[cfg(feature = "std")]
 mod bristles;
 #[cfg(feature = "std")]
+mod column;
+#[cfg(feature = "std")]
 mod crane;
 #[cfg(feature = "std")]
 pub mod dyn_crane;

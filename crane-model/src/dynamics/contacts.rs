@@ -2,7 +2,7 @@
 
 use crane_quantities::ColumnKind;
 
-use crate::{Description, Tension, Text, dyn_crane::DynModel, results::column_name};
+use crate::{Description, Tension, Text, column::column_name, dyn_crane::DynModel};
 
 /// The contacts of a crane: one-sided supports, end stops and ropes, in this order.
 pub struct Contacts {

@@ -27,7 +27,8 @@ pub use history::{Instant, instants};
 pub use peaks::Peaks;
 pub(crate) use recording::{FleetRecording, quantities_with};
 pub use recording::{Recording, connector_force, drive_effort, quantities, quantities_at, stop_effort, support_gap};
-pub use table::{Column, Table, column_name};
+pub use table::Table;
 pub use verification::Verification;
 
+pub use crate::column::{Column, column_name};
 pub use crate::hydraulics::{CylinderState, cylinders_at};

@@ -2,8 +2,8 @@
 
 use crane_quantities::{ColumnKind, END, PEAKS};
 
-use super::{Column, Extremes, Table, recording::quantities, table::columns_of};
-use crate::{Description, dyn_crane::DynCrane};
+use super::{Column, Extremes, Table, recording::quantities};
+use crate::{Description, column::columns_of, dyn_crane::DynCrane};
 
 /// Signed extremes with their times, and final values, over the samples of a run.
 ///
