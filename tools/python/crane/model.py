@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _native, state_space
 from ._native import NoEquilibrium, real_array
+from .closed import Closed
 from .frames import Frames
 from .notebook import embed
 from .results import (
@@ -95,7 +96,7 @@ def _load_again(source: str, text: str, parameters: dict[str, Any], inputs: dict
         return Crane(source, text=text, parameters=parameters, invalid="nan", inputs=inputs)
 
 
-class Crane(_native.Crane):
+class Crane(Closed, _native.Crane):
     """A crane with its live parameters. It never changes; `replace` makes another.
 
     n: number of coordinates. States are arrays (..., n): coordinates q in m and rad, rates v in m/s and rad/s, both in the order
@@ -106,6 +107,8 @@ class Crane(_native.Crane):
     the results of such rows NaN and warns with InvalidRowWarning. Several threads may use one crane; it can be pickled, and
     used after a fork.
     """
+
+    _instead = "a crane never changes: `c.replace(NAME=...)` makes one with another value of a live parameter, `c.replace(inputs={'NAME': ...})` of an input"
 
     def __reduce__(self) -> tuple:
         return _load_again, (self.source, self.spec, self.parameters, self.inputs)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ._native import real_array
+from .closed import Closed
 from .results import Array
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ class State:
     x: Array = field(default_factory=lambda: np.zeros(0))
 
 
-class Simulation:
+class Simulation(Closed):
     """A crane in motion, step by step.
 
     >>> import crane
@@ -53,6 +54,11 @@ class Simulation:
     from the present state: from then on the same calls give the same numbers, to the last bit. A copy, by `copy.deepcopy` or `pickle`, has
     the history, too, and goes on as the original does, to the last bit.
     """
+
+    _instead = (
+        "NAME of a simulation cannot be set: `step(dt, NAME=...)` sets a live parameter, `step(dt, inputs={'NAME': ...})` an input; "
+        "`restore` a state; method and tolerance are arguments of `crane.simulation`"
+    )
 
     def __init__(
         self,

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ._native import real_array
+from .closed import Closed
 from .results import Array
 from .simulation import is_linear
 
@@ -28,7 +29,7 @@ class VectorState:
     v: Array
 
 
-class VectorSimulation:
+class VectorSimulation(Closed):
     """Cranes of one spec in motion, each with its own parameters, state and inputs: rows that are stepped together, on all threads and without
     Python's lock.
 
@@ -40,6 +41,11 @@ class VectorSimulation:
     Every row gives the numbers of a `Simulation` with the same calls, to the last bit. A copy, by `copy.deepcopy` or `pickle`, has the history
     of the method, too, and goes on as the original does, to the last bit.
     """
+
+    _instead = (
+        "NAME of a simulation cannot be set: `reset(rows, NAME=...)` sets a live parameter, `step(dt, inputs={'NAME': ...})` an input; "
+        "method and tolerance are arguments of `crane.vector_simulation`"
+    )
 
     def __init__(
         self,

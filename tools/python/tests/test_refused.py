@@ -98,3 +98,16 @@ def test_no_panic_comes_out_of_internal_functions(knuckle, given):
             pass
         except BaseException as panic:
             raise AssertionError(f"call {number}") from panic
+
+
+def test_attributes_that_nobody_reads_are_refused(knuckle: Crane) -> None:
+    with pytest.raises(AttributeError, match=r"never changes: `c\.replace\(payload=\.\.\.\)`"):
+        knuckle.payload = 100.0
+    simulation = knuckle.simulation()
+    with pytest.raises(AttributeError, match=r"`step\(dt, payload=\.\.\.\)` sets a live parameter"):
+        simulation.payload = 100.0
+    with pytest.raises(AttributeError, match="method and tolerance are arguments"):
+        simulation.method = "rk4"
+    with pytest.raises(AttributeError, match=r"`reset\(rows, payload=\.\.\.\)`"):
+        knuckle.vector_simulation(2).payload = 100.0
+    assert knuckle.parameters["payload"] == 800.0

@@ -211,7 +211,20 @@ fn with_digits(number: f64, digits: i32) -> String {
 
 #[cfg(test)]
 mod tests {
+    use crane_codegen::units::Unit;
+
     use super::*;
+
+    /// Units for people are those that specs may have, too: the same factors, up to their rounding.
+    #[test]
+    fn units_for_people_are_those_of_specs() {
+        for unit in DisplayUnit::ALL {
+            let [shown, si] = [unit.unit(), unit.si()].map(|unit| Unit::parse(unit).expect("a unit"));
+            assert_eq!((shown.dimension, si.is_si()), (si.dimension, true), "{unit:?}");
+            let factor = 10_f64.powi(shown.tens) * 60_f64.powi(shown.sixties) * 1_f64.to_radians().powi(shown.degrees);
+            assert!((unit.shown(factor) - 1.0).abs() < 1e-15, "{unit:?}");
+        }
+    }
 
     #[test]
     fn people_read_four_digits_and_degrees() {
