@@ -144,6 +144,11 @@ pub fn run_ensemble(
     finished.into_iter().map(|(_, outcome)| outcome).collect()
 }
 
+/// The constant step of all rows unless one is asked for, s: that of the spec, if it is given, as far as it is safe for the first and the last row.
+pub fn constant_step(of_spec: Option<f64>, safe: f64) -> f64 {
+    of_spec.map_or(safe, |step| step.min(safe))
+}
+
 /// How many rows, one after the other, run as a fleet: the digits of their results depend on each other. Otherwise 1.
 pub fn rows_together(crane: &dyn DynCrane, settings: &Settings) -> usize {
     match Way::of(crane, &[], settings) {

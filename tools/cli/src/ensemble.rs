@@ -190,8 +190,17 @@ fn settings(
     let crane_step = base.description().step;
     let (step, from) = match timing.step {
         Some(Step::Seconds(step)) => (step, "`--step`"),
-        None if crane_step <= settings.step => (crane_step, "the spec; safe for the first and last row"),
-        _ => (settings.step, "the largest step that is safe for the first and last row"),
+        asked => {
+            let of_spec = asked.is_none().then_some(crane_step);
+            let step = ensemble::constant_step(of_spec, settings.step);
+            let is_of_spec = of_spec.is_some_and(|of_spec| of_spec <= step);
+            let from = if is_of_spec {
+                "the spec; safe for the first and last row"
+            } else {
+                "the largest step that is safe for the first and last row"
+            };
+            (step, from)
+        }
     };
     Ok((dynamics::Settings { step, audit: false, ..settings }, from))
 }

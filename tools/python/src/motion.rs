@@ -24,7 +24,7 @@ use crate::mistakes::{BadRow, Invalid, NoEquilibrium, describe, warn_of_rows};
 use crate::parallel::{Watch, threads};
 
 /// Options of a run, as given.
-#[derive(FromPyObject)]
+#[derive(Clone, FromPyObject)]
 pub struct Timing {
     #[pyo3(item)]
     method: Option<String>,
@@ -299,16 +299,27 @@ impl Crane {
         let (shape, rows) = self.cases(q, v, inputs)?;
         let (shape, count) = (&shape, rows.len());
         let settings = Settings { audit: false, ..timing.settings(description)? };
+        // A step that was asked for is judged; otherwise a safe one is found.
+        let safe_timing = Timing { safe_step: timing.step.is_none(), ..timing.clone() };
         let watch = Watch::reporting(progress, count);
         let outcomes = py.detach(|| {
             let mut settings = settings;
             if !settings.method.is_adaptive() {
                 // A step that is stable for the first and the last row, if these have a start.
+                let mut safe = f64::INFINITY;
                 for row in [rows.first(), rows.last()].into_iter().flatten() {
                     if let Ok((case, start)) = ensemble::ready(crane, row) {
-                        settings.step = settings.step.min(timing.stable(case.as_ref(), &start)?.step);
+                        safe = safe.min(safe_timing.stable(case.as_ref(), &start)?.step);
                     }
                 }
+                settings.step = match timing.step {
+                    Some(step) => step,
+                    None if safe.is_finite() => {
+                        ensemble::constant_step((!timing.safe_step).then_some(settings.step), safe)
+                    }
+                    // None has a start: each says why.
+                    None => settings.step,
+                };
             }
             let cancelled = |caller: bool| if caller { watch.look() } else { watch.is_off() };
             let execution = Execution { threads: threads(), done: &|_, _| watch.count(), cancelled: &cancelled };

@@ -100,7 +100,7 @@ def test_no_panic_comes_out_of_internal_functions(knuckle, given):
             raise AssertionError(f"call {number}") from panic
 
 
-def test_attributes_that_nobody_reads_are_refused(knuckle: Crane) -> None:
+def test_attributes_that_nobody_reads_are_refused(knuckle):
     with pytest.raises(AttributeError, match=r"never changes: `c\.replace\(payload=\.\.\.\)`"):
         knuckle.payload = 100.0
     simulation = knuckle.simulation()
