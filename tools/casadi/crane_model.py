@@ -11,7 +11,7 @@ from cuts import Cut
 from cylinders import Cylinder, pin_of_rocker, turning_axis
 from inertias import read_pseudo_inertia
 from loop_joints import LoopJoint, read_loop_joint, read_pin
-from profiles import read_profile
+from profiles import read_motion, read_profile
 from sections import add_sections
 from telescopes import length_of, read_pads, slide
 from transforms import classic_dh, modified_dh, place, rotate, rotate_by_vector, translate, translate_along
@@ -545,7 +545,7 @@ def read_drive(crane, written):
     """A drive: spring and damper between a prescribed motion and its coordinate [Urbaś 2016, Eqs. (19)-(21)], or neither."""
     spec = crane.spec
     coordinate = crane.coordinate(written["coordinate"])
-    motion, interval = read_profile(spec, written.get("motion", {"hold": 0}), coordinate.is_rotation, crane.time)
+    motion, interval = read_motion(spec, written, coordinate.is_rotation, crane.time)
     effort = read_profile(spec, written["effort"], False, crane.time)[0] if "effort" in written else 0
     if "offset" in written:
         motion += read_profile(spec, {"input": written["offset"]}, coordinate.is_rotation, crane.time)[0]
@@ -646,8 +646,7 @@ def read_connector(crane, written, spans):
             points.append(at)
         along.append(at[0])
     ((kind, law),) = written["law"].items()
-    motion = law.get("motion", {"hold": law.get("length")})
-    length = read_profile(spec, motion, False, crane.time)[0]
+    length = read_motion(spec, {"motion": {"hold": law.get("length")}, **law}, False, crane.time)[0]
     stiffness, damping, push, progression = (spec.number(law.get(key, 0)) for key in ("stiffness", "damping", "force", "progression"))
     if "axial_stiffness" in law:
         stiffness = spec.number(law["axial_stiffness"]) / length

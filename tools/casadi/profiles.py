@@ -96,6 +96,18 @@ def hermite(time, times, values, slopes):
     return ca.if_else(time < times[0], values[0], position)
 
 
+def read_motion(spec, part, is_rotation, time):
+    """The same of a drive or a rope, with its emergency stop: the motion's own time has the rate 1, falls evenly to 0, and stays there."""
+    motion = part.get("motion", {"hold": 0})
+    if "halt" not in part:
+        return read_profile(spec, motion, is_rotation, time)
+    at, within = (spec.number(part["halt"][key]) for key in ("at", "within"))
+    slowing = time - at
+    own = ca.if_else(time < at, time, ca.if_else(slowing < within, at + slowing - slowing**2 / (2 * within), at + within / 2))
+    position, _ = read_profile(spec, motion, is_rotation, own)
+    return position, (spec.default(at), spec.default(at + within))
+
+
 def read_profile(spec, motion, is_rotation, time):
     """`q_dr(t)` and the interval in which it moves, from a drive's `motion:`."""
     ((kind, written),) = motion.items()

@@ -38,6 +38,16 @@ pub enum Profile {
     },
     /// An input: constant while it is set, otherwise the given motion.
     Input(InputId, Box<Profile>),
+    /// An emergency stop: from `at` on, the motion runs in a time θ that slows down evenly and stands still after `within`: with
+    /// `u = clamp(t − at, 0, T)`, `θ = min(t, at) + u − u²/2T`. It stays on its way, and its rate falls in proportion.
+    Halted {
+        /// The motion.
+        motion: Box<Profile>,
+        /// When it begins to slow down, s.
+        at: Value,
+        /// T, s.
+        within: Value,
+    },
     /// The sum of two motions.
     Sum(Box<[Profile; 2]>),
     /// Cubic pieces through given positions.
@@ -56,6 +66,7 @@ impl Profile {
         match self {
             Profile::Input(..) => true,
             Profile::Sum(parts) => parts.iter().any(Profile::has_input),
+            Profile::Halted { motion, .. } => motion.has_input(),
             _ => false,
         }
     }
@@ -72,6 +83,7 @@ impl Profile {
                 vec![ramp.from.clone(), ramp.to.clone()]
             }
             Profile::Input(_, unless_set) => unless_set.stations(),
+            Profile::Halted { motion, .. } => motion.stations(),
             Profile::Sum(_) => Vec::new(),
             Profile::Table { from, segments } => {
                 let reached = |position: &mut f64, segment: &Segment| {
@@ -102,11 +114,29 @@ impl Profile {
                 vec![[begin.clone(), end]]
             }
             Profile::Input(_, unless_set) => unless_set.pieces(),
+            Profile::Halted { motion, at, within } => {
+                let pieces = motion.pieces().into_iter().map(|ends| ends.map(|end| when(end, at, within)));
+                pieces.chain([[at.clone(), at.clone() + within.clone()]]).collect()
+            }
             Profile::Sum(parts) => parts.iter().flat_map(Profile::pieces).collect(),
             Profile::Table { segments, .. } => {
                 segments.iter().map(|piece| [piece.begin.into(), (piece.begin + piece.duration).into()]).collect()
             }
         }
+    }
+}
+
+/// When the time of a motion that is halted is `end`; live times after the halt has begun stay as they are.
+fn when(end: Value, at: &Value, within: &Value) -> Value {
+    let numbers = (end.as_constant(), at.as_constant(), within.as_constant());
+    let (Some(time), Some(begin), Some(whole)) = numbers else { return end };
+    let passed = (time - begin).max(0.0);
+    if time <= begin {
+        end
+    } else if passed < 0.5 * whole {
+        (begin + whole * (1.0 - libm::sqrt(1.0 - 2.0 * passed / whole))).into()
+    } else {
+        (begin + whole).into()
     }
 }
 

@@ -29,6 +29,8 @@ impl Profile {
                 from.at(parameters) + rate.at(parameters) * (passed - lost)
             }
             Profile::Input(_, unless_set) => unless_set.start(parameters),
+            // No halt begins before a run.
+            Profile::Halted { motion, .. } => motion.start(parameters),
             Profile::Sum(parts) => parts.iter().map(|part| part.start(parameters)).sum(),
             Profile::Table { from, segments } => segments.iter().fold(*from, |position, segment| {
                 position + segment.rise((-segment.begin).max(0.0).min(segment.duration))

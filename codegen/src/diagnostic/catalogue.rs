@@ -501,6 +501,9 @@ catalogue! {
     /// A wind has either a pressure or a speed.
     E187 pressure_or_speed(load) "the wind of load `{load}` needs either a pressure or a speed", "one of the two gives its force",
         "write `pressure: 250 Pa` or `speed: 20 m/s`";
+    /// A motion that halts is not an input.
+    E188 halted_input(name) "`halt` of `{name}` cannot stop an input", "its motion is set from outside",
+        "stop the input instead, and remove `halt`; or give it a motion over time, such as `motion: {{speed: {{rate: 0.2}}}}`";
 
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.

@@ -48,6 +48,10 @@ pub fn position<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Expr<'
             let [value, free, rate] = model.input(*input);
             value + rate * t + free * position(model, unless_set, t)
         }
+        Profile::Halted { motion, at, within } => {
+            let [theta, ..] = slowed(model, at, within, t);
+            position(model, motion, theta)
+        }
         Profile::Sum(parts) => {
             let [one, other] = parts.each_ref().map(|part| position(model, part, t));
             one + other
@@ -92,6 +96,10 @@ pub fn rate<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Expr<'g> {
             let [_, free, own] = model.input(*input);
             own + free * rate(model, unless_set, t)
         }
+        Profile::Halted { motion, at, within } => {
+            let [theta, speed, _] = slowed(model, at, within, t);
+            rate(model, motion, theta) * speed
+        }
         Profile::Sum(parts) => {
             let [one, other] = parts.each_ref().map(|part| rate(model, part, t));
             one + other
@@ -119,6 +127,10 @@ pub fn acceleration<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Ex
         // A speed that jumps does so before a run; otherwise its drive would not be rigid.
         // An input that is set may jump between steps: no rigid drive follows it.
         Profile::Hold(_) | Profile::Speed { ramp: None, .. } | Profile::Input(..) => model.zero(),
+        Profile::Halted { motion, at, within } => {
+            let [theta, speed, slowing] = slowed(model, at, within, t);
+            acceleration(model, motion, theta) * speed.squared() + rate(model, motion, theta) * slowing
+        }
         Profile::Sum(parts) => {
             let [one, other] = parts.each_ref().map(|part| acceleration(model, part, t));
             one + other
@@ -150,6 +162,17 @@ pub fn acceleration<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Ex
             with_jumps(model, t, varying, (segments, Segment::curvature))
         }
     }
+}
+
+/// The time θ of a motion that is halted, s, and its first and second derivative by t.
+fn slowed<'g>(model: &Model<'g>, at: &Value, within: &Value, t: Expr<'g>) -> [Expr<'g>; 3] {
+    let (zero, one) = (model.zero(), model.graph.constant(1.0));
+    let (begin, whole) = (model.number(at), model.number(within));
+    let per_second = one / whole;
+    let passed = t - begin;
+    let u = passed.clamp(zero, whole);
+    let [begun, ended] = bounds(model, at, within, t);
+    [t - passed.max(zero) + u * (1.0 - u * (0.5 * per_second)), 1.0 - u * per_second, (ended - begun) * per_second]
 }
 
 /// A sum over the pieces of a curve, and the jumps of a derivative between them. At both ends of the curve, it is that within.

@@ -1,6 +1,6 @@
 //! Connectors: elements between two points.
 
-use super::{Angle, Constant, Motion, Number, Spanned, Vector};
+use super::{Angle, Constant, Halt, Motion, Number, Spanned, Vector};
 use crate::node::FromNode;
 
 /// A spring, gas spring or rope between two points, which pulls or pushes them along the line between them. A rope may run over sheaves.
@@ -83,4 +83,6 @@ pub struct Rope {
     pub length: Option<Spanned<Number>>,
     /// Unstretched length over time, m, instead of `length`: a winch.
     pub motion: Option<Spanned<Motion>>,
+    /// An emergency stop of the winch. Default: none.
+    pub halt: Option<Spanned<Halt>>,
 }

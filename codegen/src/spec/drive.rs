@@ -26,8 +26,19 @@ pub struct Drive {
     pub armature: Option<Spanned<Number>>,
     /// Motion of the spring's far end, or of the joint of a rigid drive; required unless the drive has neither.
     pub motion: Option<Spanned<Motion>>,
+    /// An emergency stop of the motion. Default: none.
+    pub halt: Option<Spanned<Halt>>,
     /// The input that is added to the motion, rad or m. Default: none.
     pub offset: Option<Spanned<String>>,
+}
+
+/// An emergency stop: the motion slows down along its way and ends.
+#[derive(Clone, Debug, FromNode)]
+pub struct Halt {
+    /// Time from which it slows down, s.
+    pub at: Spanned<Number>,
+    /// Time in which it comes to rest, s.
+    pub within: Spanned<Number>,
 }
 
 /// Motion of a drive; before it begins and, unless it is a speed, after it ends, the drive holds its position.

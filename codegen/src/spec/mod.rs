@@ -30,7 +30,7 @@ pub use beam::{
 pub use combination::Combination;
 pub use connector::*;
 pub use cylinder::{Cylinder, HoseVolumes, Linkage, Pin, Pump, Side, Valve};
-pub use drive::{Curve, Drive, Motion, Ramp, Speed, Table, Trapezoid};
+pub use drive::{Curve, Drive, Halt, Motion, Ramp, Speed, Table, Trapezoid};
 pub use inertia::{About, Inertia};
 pub use input::Input;
 pub use joint::{Bristle, Friction, Stops};

@@ -221,6 +221,7 @@ impl<'a> Check<'a> {
             }
             (None, Some(motion)) => {
                 let profile = motion.value.as_ref().and_then(|value| self.motion(value, Some("m"), motion.span));
+                let profile = profile.map(|profile| self.halted(profile, rope.halt.as_ref(), name));
                 profile.unwrap_or(wrong)
             }
             _ => {

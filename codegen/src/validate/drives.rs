@@ -8,7 +8,7 @@ use crate::chain::{
 };
 use crate::diagnostic::{Span, rule};
 use crate::expand::curve;
-use crate::spec::{self, Angle, Crane, Curve, Motion, Number, Scalar, Spanned, Table};
+use crate::spec::{self, Angle, Crane, Curve, Halt, Motion, Number, Scalar, Spanned, Table};
 
 /// Units for a coordinate.
 pub(super) struct Units {
@@ -65,6 +65,7 @@ impl<'a> Check<'a> {
                 }
                 None => Some(Profile::Hold(Value::ZERO)),
             };
+            let profile = profile.map(|profile| self.halted(profile, drive.halt.as_ref(), name));
             self.motion_moves(drive, given.span, name);
             let offset = drive.offset.as_ref().map(|offset| self.input(offset));
             let Some(id) = coordinate else {
@@ -279,6 +280,22 @@ impl<'a> Check<'a> {
             Motion::Table(table) => self.table(table, unit, span)?,
             Motion::Input(name) => self.input(name)?,
         })
+    }
+
+    /// The motion of a part with its emergency stop.
+    pub(super) fn halted(&mut self, motion: Profile, halt: Option<&Spanned<Halt>>, name: &str) -> Profile {
+        let Some((given, halt)) = halt.and_then(|given| Some((given, given.value.as_ref()?))) else { return motion };
+        let at = self.number(&halt.at, "`at` of `halt`", "s", Limit::NotNegative);
+        let within = self.number(&halt.within, "`within` of `halt`", "s", Limit::Positive);
+        match motion {
+            // A drive that is held for an analysis keeps its halt.
+            Profile::Hold(_) => motion,
+            Profile::Input(..) => {
+                self.report(rule::halted_input(given.span, name));
+                motion
+            }
+            _ => Profile::Halted { motion: Box::new(motion), at, within },
+        }
     }
 
     /// The rate of a motion of something with a unit; `90 deg` is 90° per second.

@@ -30,10 +30,15 @@ pub fn vary(seed: u64, tree: &mut Tree) {
     {
         column["joint"] = json!({"revolute": {"axis": "z"}});
     }
+    // With random numbers of its own, so that all others stay.
+    let mut halts = Rng::with_seed(seed ^ 0x4a17);
     for drive in entries(tree, "drives") {
         if let Some(quintic) = drive["motion"]["quintic"].as_object().cloned() {
             let slews = drive["coordinate"] == "column_psi" && drive["rigid"] != true;
             drive["motion"] = motion(&mut rng, slews, quintic.into());
+        }
+        if drive["motion"]["hold"].is_null() && drive["motion"]["input"].is_null() && halts.u8(0..3) == 0 {
+            drive["halt"] = halt(&mut halts);
         }
         if drive["max_effort"].is_number() && rng.bool() {
             (drive["max_rate"], drive["max_power"]) = (json!(0.4), json!(5e4));
@@ -42,7 +47,11 @@ pub fn vary(seed: u64, tree: &mut Tree) {
     for load in entries(tree, "loads").filter(|load| load["axes"].is_null()) {
         load["axes"] = json!("world");
     }
-    // With random numbers of its own, so that all others stay.
+    for rope in entries(tree, "connectors").filter_map(|connector| connector.get_mut("law")?.get_mut("rope")) {
+        if rope["motion"].is_object() && halts.bool() {
+            rope["halt"] = halt(&mut halts);
+        }
+    }
     let mut gusts = Rng::with_seed(seed ^ 0xa1a1);
     for load in entries(tree, "loads") {
         if gusts.bool() {
@@ -145,6 +154,11 @@ fn mass(rng: &mut Rng, link: &mut Value) {
             link["bodies"] = json!([body("deck", 0.7, 0.3), body("rail", 0.3, 0.6)]);
         }
     }
+}
+
+/// An emergency stop while most motions move.
+fn halt(rng: &mut Rng) -> Value {
+    json!({"at": round(0.2 + 0.5 * rng.f64()), "within": round(0.1 + 0.5 * rng.f64())})
 }
 
 /// A motion between the same positions, or a slow one without end.

@@ -58,6 +58,7 @@ impl Plausibility<'_> {
             | Profile::Trapezoid { ramp, .. } => ((at(&ramp.to) - at(&ramp.from)) / at(&ramp.duration)).abs(),
             Profile::Speed { rate, .. } => at(rate).abs(),
             Profile::Input(_, unless_set) => self.mean_speed(unless_set),
+            Profile::Halted { motion, .. } => self.mean_speed(motion),
             Profile::Sum(parts) => parts.iter().map(|part| self.mean_speed(part)).fold(0.0, f64::max),
             Profile::Table { segments, .. } => {
                 let speeds = segments.iter().map(|piece| (piece.rise(piece.duration) / piece.duration).abs());

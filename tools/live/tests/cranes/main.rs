@@ -16,6 +16,7 @@ mod efforts;
 mod energy_audit;
 mod exact_pads;
 mod feet;
+mod halts;
 mod hot_cranes;
 mod hung_chains;
 mod hydraulics;
