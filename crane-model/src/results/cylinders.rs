@@ -120,8 +120,8 @@ pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
     for (info, state) in description.cylinders.iter().zip(&states) {
         let still = |value| Extremes::at(0.0, value);
         found.extend(out_of_stroke(info, &still(state.length), false));
-        found.extend(over_pressure(info, state.pressures.map(still), false));
-        found.extend(beyond_pump(description, info, state));
+        let weak = over_pressure(info, state.pressures.map(still), false);
+        found.extend(weak.or_else(|| beyond_pump(description, info, state)));
         let DriveInfo { coordinate, .. } = description.drives[info.drive];
         let (stiffness, coordinate) = (stiffness[info.drive], &description.coordinates[coordinate]);
         let oil = state.oil_stiffness(info).filter(|oil| info.valve.is_none() && stiffness > STIFFER * oil);

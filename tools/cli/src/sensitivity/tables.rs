@@ -99,6 +99,8 @@ pub fn readable(unit: &'static str, group: Group) -> (f64, &'static str) {
         ("m", _) => Some(DisplayUnit::Millimetre),
         _ => DisplayUnit::always(unit),
     };
+    // People need no unit of a ratio.
+    let unit = if unit == "1" { "" } else { unit };
     display.map_or((1.0, unit), |display| (display.shown(1.0), display.unit()))
 }
 
