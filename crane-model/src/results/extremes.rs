@@ -54,12 +54,12 @@ impl Extremes {
         Self { minimum: value, time_of_minimum: t, maximum: value, time_of_maximum: t }
     }
 
-    /// Includes a later value.
+    /// Includes a later value. The first that is no number is the result: extremes without it would be wrong.
     pub fn widen(&mut self, t: f64, value: f64) {
-        if value < self.minimum {
+        if value < self.minimum || (value.is_nan() && !self.minimum.is_nan()) {
             (self.minimum, self.time_of_minimum) = (value, t);
         }
-        if value > self.maximum {
+        if value > self.maximum || (value.is_nan() && !self.maximum.is_nan()) {
             (self.maximum, self.time_of_maximum) = (value, t);
         }
     }
@@ -77,5 +77,9 @@ mod tests {
         }
         let expected = Extremes { minimum: -3.0, time_of_minimum: 1.0, maximum: 2.0, time_of_maximum: 2.0 };
         assert_eq!(extremes, expected);
+        extremes.widen(5.0, f64::NAN);
+        extremes.widen(6.0, 9.0);
+        let Extremes { minimum, time_of_minimum, maximum, time_of_maximum } = extremes;
+        assert!(minimum.is_nan() && maximum.is_nan() && [time_of_minimum, time_of_maximum] == [5.0, 5.0]);
     }
 }
