@@ -290,11 +290,22 @@ class Crane:
         return self.bodies[-1]
 
 
+def read_gravity(spec):
+    """Gravity in the axes of the ground. A slope is turned back: first about z until it falls along x, then about y."""
+    gravity = spec.vector(spec.get("gravity", [0, 0, -9.81]))
+    slope = spec.get("slope", None)
+    if slope is None:
+        return gravity
+    angle, towards = (spec.position(slope.get(key, 0), True) for key in ("angle", "towards"))
+    inclined = ca.vertcat(-gravity[2] * ca.sin(angle), 0, gravity[2] * ca.cos(angle))
+    return ca.mtimes(rotate("z", towards)[:3, :3], inclined)
+
+
 def read_crane(path):
     """The crane of a YAML file."""
     spec = CraneSpec(path)
     time = ca.SX.sym("t")
-    crane = Crane(spec, spec.keys["name"], time, spec.vector(spec.get("gravity", [0, 0, -9.81])))
+    crane = Crane(spec, spec.keys["name"], time, read_gravity(spec))
     spans = read_links(crane)
     base = crane.bodies[0]
     for written in spec.get("supports", []):

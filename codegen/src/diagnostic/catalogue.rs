@@ -504,6 +504,11 @@ catalogue! {
     /// A motion that halts is not an input.
     E188 halted_input(name) "`halt` of `{name}` cannot stop an input", "its motion is set from outside",
         "stop the input instead, and remove `halt`; or give it a motion over time, such as `motion: {{speed: {{rate: 0.2}}}}`";
+    /// With a slope, gravity is along z.
+    E189 slope_twice() "`slope` turns a gravity that is inclined already", "`gravity` has a part along x or y",
+        "write `gravity: [0, 0, -9.81]` or leave it out; or remove `slope`";
+    /// A slope is less steep than 90°.
+    E190 steep_slope(angle, degrees) "the ground is inclined by {angle} rad", "90° or more", "angles are in rad: write `{degrees} deg` for degrees";
 
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.

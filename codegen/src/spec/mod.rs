@@ -73,6 +73,15 @@ pub(crate) struct Lookalike {
     pub known: String,
 }
 
+/// An inclined ground.
+#[derive(Clone, Debug, FromNode)]
+pub struct Slope {
+    /// Inclination, rad.
+    pub angle: Spanned<Angle>,
+    /// The direction in which it falls, about z from x, rad. Default 0.
+    pub towards: Option<Spanned<Angle>>,
+}
+
 /// A crane: links attached to each other, from the base to the tips. Every number is in SI units; the name of an entry of
 /// `parameters` can replace a number, which keeps it live at run time.
 #[derive(Clone, Debug, FromNode)]
@@ -90,6 +99,8 @@ pub struct Crane {
     pub title: Option<Spanned<String>>,
     /// Acceleration of gravity in the world frame, m/s². Default `[0, 0, -9.81]`.
     pub gravity: Option<Spanned<Vector>>,
+    /// The ground is a slope: `gravity`, which is then along z, is turned. Default: none.
+    pub slope: Option<Spanned<Slope>>,
     /// Quantities to compute; the rest is left out of the generated code. Default `[statics, dynamics, modes]`.
     pub analyses: Option<Spanned<Vec<Spanned<Analysis>>>>,
     /// Whether generated code loops over equal elements or is written out. Default `auto`.

@@ -39,7 +39,7 @@ use crate::chain::{
 };
 use crate::diagnostic::{Diagnostics, Mistake, SourceFile, Span, rule};
 use crate::expand::beam::Distribution;
-use crate::spec::{self, Analysis, Crane, CraneSpec, Lookalike, Spanned, entries};
+use crate::spec::{self, Analysis, Crane, CraneSpec, Lookalike, Slope, Spanned, entries};
 use crate::units::Quantity;
 use inertias::Judgement;
 use limits::Limit;
@@ -251,6 +251,7 @@ impl<'a> Check<'a> {
             Some(gravity) => self.vector(gravity, "`gravity`", "m/s²", Limit::Any),
             None => [0.0, 0.0, -9.81].map(Value::from),
         };
+        let gravity = self.on_slope(gravity, crane.slope.as_ref());
         self.loop_names = entries(crane.loop_joints.as_ref()).filter_map(|joint| joint.name.value.as_deref()).collect();
         self.stations = self.stations(crane);
         self.links(&crane.links);
@@ -320,6 +321,26 @@ impl<'a> Check<'a> {
         if !version.is_nan() && version.to_bits() != 1f64.to_bits() {
             self.report(rule::wrong_format(crane.format.span, version));
         }
+    }
+
+    /// Gravity on an inclined ground, in the axes of the ground: `g (sin α cos φ, sin α sin φ, −cos α)`.
+    fn on_slope(&mut self, gravity: [Value; 3], slope: Option<&Spanned<Slope>>) -> [Value; 3] {
+        let Some((given, slope)) = slope.and_then(|given| Some((given, given.value.as_ref()?))) else { return gravity };
+        let angle = self.position(&slope.angle, Some("rad"), "`angle` of `slope`");
+        let towards = slope.towards.as_ref();
+        let towards =
+            towards.map_or(Value::ZERO, |towards| self.position(towards, Some("rad"), "`towards` of `slope`"));
+        let [x, y, z] = gravity;
+        if !x.is_zero() || !y.is_zero() {
+            self.report(rule::slope_twice(given.span));
+        }
+        let steep = self.now(&angle);
+        if steep.abs() >= std::f64::consts::FRAC_PI_2 {
+            self.report(rule::steep_slope(slope.angle.span, steep, plausibility::rounded(steep)));
+        }
+        let ((sin, cos), (across, along)) = (angle.sin_cos(), towards.sin_cos());
+        let down = -z.clone() * sin;
+        [down.clone() * along, down * across, z * cos]
     }
 
     fn something_moves(&mut self, crane: &Crane) {

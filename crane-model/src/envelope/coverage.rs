@@ -182,14 +182,14 @@ impl Coverage {
         let loads: Vec<&str> = crane.description().loads.iter().map(|load| load.name.as_str()).collect();
         if !loads.is_empty() {
             self.add(true, format!("the loads {}, as at the beginning of a run", loads.join(", ")));
-            self.add(false, "a slope of the ground, unless `gravity` is one".to_owned());
+            self.add(false, "a slope of the ground, unless the spec has one".to_owned());
             return;
         }
         self.add(false, "wind: the spec has no loads".to_owned());
         let weight = tipping::total_load(crane, &crane.guess());
         let slope = weight.xy().norm() / weight.norm();
         if slope > SLOPE {
-            self.add(true, format!("a slope of the ground of {:.2}°, by `gravity`", slope.asin().to_degrees()));
+            self.add(true, format!("a slope of the ground of {:.2}°", slope.asin().to_degrees()));
         } else {
             self.add(false, "a slope of the ground".to_owned());
         }

@@ -158,7 +158,7 @@ fn shrunk(case: &Case, mut failure: Failure, run: bool) -> Failure {
             }
         }
     }
-    for key in ["gravity", "friction", "stops", "damping", "guess"] {
+    for key in ["slope", "gravity", "friction", "stops", "damping", "guess"] {
         let mut smaller = tree.clone();
         let removed = smaller.as_object_mut().and_then(|entries| entries.remove(key));
         if removed.is_some() && fails(&smaller, &mut failure) {

@@ -7,7 +7,7 @@ use fastrand::Rng;
 use serde_json::{Value, json};
 
 use crate::observe::{LOADS, differences, live, observe_live, rated_load};
-use crate::tree::{Tree, numbers, source};
+use crate::tree::{Tree, gravity, set_gravity, source};
 
 /// The name of the check.
 pub const NAME: &str = "combinations and their factors written out";
@@ -20,8 +20,7 @@ pub fn check_combined(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     let mut factor = |least: f64, most: f64| least + (most - least) * rng.f64();
     let (mut combined, mut written) = (tree.clone(), tree.clone());
     let weight = factor(0.8, 1.2);
-    let gravity = tree.get("gravity").map_or(vec![0.0, 0.0, -9.81], numbers);
-    written["gravity"] = json!(gravity.iter().map(|g| weight * g).collect::<Vec<_>>());
+    set_gravity(&mut written, &gravity(tree).iter().map(|g| weight * g).collect::<Vec<_>>());
     let (mut loads, mut masses) = (json!({}), json!({}));
     for load in written["loads"].as_array_mut().into_iter().flatten() {
         let of_load = factor(0.5, 1.3);

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use crate::crane::BOOM;
 use crate::observe::live;
 use crate::pins;
-use crate::tree::{Tree, entry, entry_mut, for_each_key, for_each_place, numbers, push, source};
+use crate::tree::{Tree, entry, entry_mut, for_each_key, for_each_place, gravity, numbers, push, set_gravity, source};
 use crate::wind;
 
 /// The name in a second description of a number of the first.
@@ -57,7 +57,8 @@ impl Second {
 pub type Description = fn(&Tree, &mut Rng) -> Option<Second>;
 
 /// All of them, with their names.
-pub const ALL: [(&str, Description); 24] = [
+pub const ALL: [(&str, Description); 25] = [
+    ("slope written as gravity", slope_as_gravity),
     ("beam split by a fixed joint", split_boom),
     ("beam given element by element", boom_one_by_one),
     ("rigid beam as a body", rigid_boom_as_body),
@@ -318,6 +319,14 @@ fn turn(vector: &[f64]) -> [f64; 3] {
     [cz * x - sz * vector[1], sz * x + cz * vector[1], z]
 }
 
+/// A slope of the ground as the gravity that it means.
+fn slope_as_gravity(tree: &Tree, _: &mut Rng) -> Option<Second> {
+    tree.get("slope")?;
+    let mut second = tree.clone();
+    set_gravity(&mut second, &gravity(tree));
+    Some(Second::of(&second))
+}
+
 /// A crane on a fixed base, turned together with gravity and everything in the world.
 fn turned(tree: &Tree, _: &mut Rng) -> Option<Second> {
     let mut second = tree.clone();
@@ -326,8 +335,7 @@ fn turned(tree: &Tree, _: &mut Rng) -> Option<Second> {
         return None;
     }
     base["placement"] = json!({"transform": {"rotation": [{"z": TURN[0]}, {"y": TURN[1]}]}});
-    let gravity = second.get("gravity").map_or(vec![0.0, 0.0, -9.81], numbers);
-    second["gravity"] = json!(turn(&gravity));
+    set_gravity(&mut second, &turn(&gravity(tree)));
     for load in second.get_mut("loads").and_then(Value::as_array_mut).into_iter().flatten() {
         for key in ["force", "moment"] {
             if load["axes"] != "link" && load[key].is_array() {
@@ -545,7 +553,7 @@ fn other_order(tree: &Tree, rng: &mut Rng) -> Option<Second> {
 /// Half of the weight of the hook's load as a force at its centre of mass: the same at rest.
 fn weight_as_force(tree: &Tree, _: &mut Rng) -> Option<Second> {
     let mut second = tree.clone();
-    let gravity = tree.get("gravity").map_or(vec![0.0, 0.0, -9.81], numbers);
+    let gravity = gravity(tree);
     let hook = entry_mut(&mut second, "links", "name", "hook")?;
     let at = hook["com"].clone();
     let half = if hook["mass"] == "payload" {

@@ -4,7 +4,7 @@ use fastrand::Rng;
 use serde_json::{Value, json};
 
 use crate::crane::round;
-use crate::tree::{Tree, entry_mut};
+use crate::tree::{Tree, entry_mut, gravity};
 use crate::wind;
 
 /// Writes some parts of a crane in other forms, chosen by its seed. Its other random numbers do not depend on this.
@@ -51,6 +51,12 @@ pub fn vary(seed: u64, tree: &mut Tree) {
         if rope["motion"].is_object() && halts.bool() {
             rope["halt"] = halt(&mut halts);
         }
+    }
+    if halts.bool() {
+        let gravity = gravity(tree);
+        let [along, size] = [gravity[0].hypot(gravity[1]), gravity.iter().map(|g| g * g).sum::<f64>().sqrt()];
+        tree["gravity"] = json!([0, 0, -size]);
+        tree["slope"] = json!({"angle": along.atan2(-gravity[2]), "towards": gravity[1].atan2(gravity[0])});
     }
     let mut gusts = Rng::with_seed(seed ^ 0xa1a1);
     for load in entries(tree, "loads") {

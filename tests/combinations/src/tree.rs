@@ -68,12 +68,28 @@ pub fn for_each_key(tree: &mut Tree, act: &mut impl FnMut(&str, &mut Tree)) {
     }
 }
 
+/// Gravity in the axes of the ground, m/s².
+pub fn gravity(tree: &Tree) -> Vec<f64> {
+    let vertical = tree.get("gravity").map_or(vec![0.0, 0.0, -9.81], numbers);
+    let Some(slope) = tree.get("slope") else { return vertical };
+    let [angle, towards] = ["angle", "towards"].map(|key| slope[key].as_f64().unwrap_or_default());
+    let [along, down] = [-vertical[2] * angle.sin(), vertical[2] * angle.cos()];
+    vec![along * towards.cos(), along * towards.sin(), down]
+}
+
+/// Gives a crane another gravity.
+pub fn set_gravity(tree: &mut Tree, gravity: &[f64]) {
+    tree["gravity"] = serde_json::json!(gravity);
+    tree.as_object_mut().and_then(|entries| entries.remove("slope"));
+}
+
 /// Keys in the order in which a person writes them.
-const ORDER: [&str; 27] = [
+const ORDER: [&str; 28] = [
     "format",
     "name",
     "title",
     "gravity",
+    "slope",
     "loops",
     "parameters",
     "inputs",

@@ -62,7 +62,8 @@ impl Writer {
                 format!("stiffness: {stiffness}, damping: {damping}{limit}")
             };
             // Every third crane halts what moves, within the times at which its states are.
-            let halt = if seed % 3 == 1 && !motion.starts_with("{hold") { ", halt: {at: 0.7, within: 0.6}" } else { "" };
+            let halt =
+                if seed % 3 == 1 && !motion.starts_with("{hold") { ", halt: {at: 0.7, within: 0.6}" } else { "" };
             let offset = if seed % 4 == 2 && !rigid { ", offset: shift" } else { "" };
             self.line(&format!("  - {{coordinate: {coordinate}, {spring}, {rotor}motion: {motion}{halt}{offset}}}"));
         }

@@ -74,7 +74,8 @@ fn a_motion_that_halts_stays_on_its_way() {
     };
     let (halted, free) = (crane(", halt: {at: 1.5, within: 0.8}"), crane(""));
     let at = |crane: &LiveCrane, t: f64| (crane as &dyn DynCrane).drive_motions_at(t)[0];
-    for (t, theta, speed) in [(1.0, 1.0, 1.0), (1.5, 1.5, 1.0), (1.7, 1.675, 0.75), (2.1, 1.875, 0.25), (9.0, 1.9, 0.0)] {
+    for (t, theta, speed) in [(1.0, 1.0, 1.0), (1.5, 1.5, 1.0), (1.7, 1.675, 0.75), (2.1, 1.875, 0.25), (9.0, 1.9, 0.0)]
+    {
         let [position, rate] = at(&halted, t);
         let [own_position, own_rate] = at(&free, theta);
         assert!((position - own_position).abs() < 1e-14, "{t} s: {position}, {own_position}");
