@@ -106,7 +106,7 @@ pub fn generate_c(
     let is_straight =
         |function: &&Function| !matches!(function.shape, Shape::Columns { .. } | Shape::TransformFactors { .. });
     let known: Vec<FunctionId> = program.functions.iter().filter(is_straight).map(|function| function.id).collect();
-    let closes_loops = !chain.loop_joints.is_empty();
+    let closes_loops = chain.has_loops();
     let with_products: Vec<FunctionId> = known.iter().copied().filter(|id| has_products(*id, closes_loops)).collect();
     let is_missing = |(name, product): &(&str, Option<Product>)| {
         let ids = if product.is_some() { &with_products } else { &known };

@@ -65,7 +65,7 @@ pub enum ColumnKind {
     PinFriction,
     /// A force that a joint that closes a loop transmits.
     LoopForce,
-    /// A moment that it transmits.
+    /// A moment that it transmits, or the torque of a rigid coupling.
     LoopMoment,
     /// A part of the energy; its part is `kinetic` and so on.
     Energy,
@@ -181,7 +181,7 @@ impl ColumnKind {
             ColumnKind::ConnectorEffort => &["_force"],
             ColumnKind::PinFriction => &["_friction_torque"],
             ColumnKind::LoopForce => &["_force", "_force_x", "_force_y", "_force_z", "_force_u", "_force_w"],
-            ColumnKind::LoopMoment => &["_moment_x", "_moment_y", "_moment_z", "_moment_u", "_moment_w"],
+            ColumnKind::LoopMoment => &["_torque", "_moment_x", "_moment_y", "_moment_z", "_moment_u", "_moment_w"],
             ColumnKind::Energy | ColumnKind::Dissipated => &["_energy"],
             ColumnKind::Work => &["_work"],
             ColumnKind::Balance => &["_balance"],
@@ -192,7 +192,7 @@ impl ColumnKind {
         }
     }
 
-    /// The ending along a direction of a loop joint: `x`, `y`, `z`, `u`, `w`, or none.
+    /// The ending along a direction of a loop joint: `x`, `y`, `z`, `u`, `w`, or none, as of rods and couplings.
     #[must_use]
     pub fn ending_along(self, direction: &str) -> &'static str {
         let along = |ending: &&&'static str| ending.rsplit('_').next() == Some(direction);

@@ -207,10 +207,11 @@ impl Force {
 
     /// How a coordinate follows another one, if it is a coupling with a spring.
     #[must_use]
-    pub fn follower(&self) -> Option<Follower<'_>> {
+    pub fn follower(&self) -> Option<Follower> {
         let Strain::Coupling { coordinate, leader, ratio } = &self.strain else { return None };
         let Spring { length, .. } = self.spring()?;
-        Some(Follower { coordinate: *coordinate, leader: *leader, ratio, length })
+        let (coordinate, leader) = (*coordinate, *leader);
+        Some(Follower { coordinate, leader, ratio: ratio.clone(), offset: length.clone() })
     }
 
     /// Number of intervals in which its winch moves smoothly.
@@ -220,22 +221,31 @@ impl Force {
     }
 }
 
-/// A coordinate that follows another one.
-#[derive(Clone, Copy, Debug)]
-pub struct Follower<'a> {
-    /// The coordinate.
+/// A coordinate that follows another one: `q_j = r q_i + c`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Follower {
+    /// The coordinate, j.
     pub coordinate: CoordinateId,
-    /// That which it follows.
+    /// That which it follows, i.
     pub leader: CoordinateId,
-    ratio: &'a Value,
-    length: &'a Value,
+    /// r
+    pub ratio: Value,
+    /// c, m or rad.
+    pub offset: Value,
 }
 
-impl Follower<'_> {
-    /// Where it is without force if the other one is at `leading`, m or rad.
+impl Follower {
+    /// Where it is if the other one is at `leading`, m or rad.
     #[must_use]
     pub fn place(&self, leading: f64, parameters: &[f64]) -> f64 {
-        self.length.at(parameters) + self.ratio.at(parameters) * leading
+        self.offset.at(parameters) + self.ratio.at(parameters) * leading
+    }
+
+    /// Both coordinates, in the order of q.
+    #[must_use]
+    pub fn coordinates(&self) -> Vec<CoordinateId> {
+        let Self { coordinate: one, leader: other, .. } = self;
+        vec![*one.min(other), *one.max(other)]
     }
 }
 
@@ -252,6 +262,12 @@ impl Chain {
     #[must_use]
     pub fn connectors(&self) -> &[Force] {
         self.of(Group::Connectors)
+    }
+
+    /// Coordinates that follow others, through springs or exactly.
+    pub fn followers(&self) -> impl Iterator<Item = Follower> + '_ {
+        let exact = self.rigid_couplings.iter().map(|coupling| coupling.follower.clone());
+        self.connectors().iter().filter_map(Force::follower).chain(exact)
     }
 
     /// Springs and dampers between the elements of flexible links.

@@ -1,6 +1,6 @@
-//! Joints that close loops: equations between two attachments, φ(q) = 0.
+//! Joints that close loops, equations between two attachments, φ(q) = 0; and exact couplings, equations between two coordinates.
 
-use super::{Attachment, Axis, Chain, CoordinateId, PadDirection, Sliding, Value, Vector};
+use super::{Attachment, Axis, Chain, CoordinateId, CoordinateKind, Follower, PadDirection, Sliding, Value, Vector};
 
 /// A joint between two attachments that are already connected through other joints.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +42,17 @@ pub enum LoopJointKind {
     },
 }
 
+/// A coupling that holds exactly: `q_j − r q_i − c = 0`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RigidCoupling {
+    /// Unique name.
+    pub name: String,
+    /// The coordinate and the one that it follows.
+    pub follower: Follower,
+    /// Whether it transmits a torque to the coordinate instead of a force.
+    pub kind: CoordinateKind,
+}
+
 /// Two unit vectors u, w normal to an axis a, with `u × w = a`, and their names.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Across {
@@ -53,10 +64,10 @@ pub struct Across {
     pub axis: Vector,
 }
 
-/// One of the equations of a joint.
+/// One of the equations of a joint or a coupling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LoopEquation {
-    /// The direction of its force or moment; empty for a rod.
+    /// The direction of its force or moment; empty for a rod and a coupling.
     pub direction: &'static str,
     /// Whether it transmits a moment, N m, instead of a force, N.
     pub is_moment: bool,
@@ -106,6 +117,28 @@ impl LoopJointKind {
     }
 }
 
+impl RigidCoupling {
+    /// The word for it.
+    pub const KIND: &str = "coupling";
+
+    /// Its equation.
+    #[must_use]
+    pub fn equation(&self) -> LoopEquation {
+        LoopEquation { direction: "", is_moment: self.kind == CoordinateKind::Rotation }
+    }
+}
+
+impl LoopEquation {
+    /// The word for what it transmits.
+    fn what(self) -> &'static str {
+        match self {
+            Self { is_moment: false, .. } => "force",
+            Self { direction: "", .. } => "torque",
+            Self { .. } => "moment",
+        }
+    }
+}
+
 /// The equation of a direction in which a pad holds a beam.
 fn at_pad(direction: PadDirection) -> LoopEquation {
     match direction {
@@ -141,14 +174,23 @@ pub fn normalised(vector: Vector) -> Vector {
 }
 
 impl Chain {
-    /// Names of all equations of loop joints, in order: `<joint> force <direction>` or `<joint> moment <direction>`.
+    /// Names of all equations of loop joints and exact couplings, in order: `<joint> force <direction>` or `<joint> moment <direction>`, and
+    /// `<coupling> force` or `<coupling> torque`.
     pub fn loop_equations(&self) -> impl Iterator<Item = String> + '_ {
-        self.loop_joints.iter().flat_map(|joint| {
-            joint.kind.equations().into_iter().map(|LoopEquation { direction, is_moment }| {
-                let what = if is_moment { "moment" } else { "force" };
-                format!("{} {what} {direction}", joint.name).trim_end().to_owned()
-            })
-        })
+        let name = |name: &str, equation: LoopEquation| {
+            format!("{name} {} {}", equation.what(), equation.direction).trim_end().to_owned()
+        };
+        let of_joints = self
+            .loop_joints
+            .iter()
+            .flat_map(move |joint| joint.kind.equations().into_iter().map(move |equation| name(&joint.name, equation)));
+        of_joints.chain(self.rigid_couplings.iter().map(move |coupling| name(&coupling.name, coupling.equation())))
+    }
+
+    /// Whether some equations tie coordinates to each other.
+    #[must_use]
+    pub fn has_loops(&self) -> bool {
+        !self.loop_joints.is_empty() || !self.rigid_couplings.is_empty()
     }
 
     /// The coordinates that move the ends of a joint against each other, in the order of q.

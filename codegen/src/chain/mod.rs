@@ -37,7 +37,7 @@ pub use force::*;
 pub use frame::{Frame, Vector, cross};
 pub use input::{Input, InputId};
 pub use load::{Combination, Load, LoadAxes};
-pub use loop_joint::{Across, LoopEquation, LoopJoint, LoopJointKind, normalised};
+pub use loop_joint::{Across, LoopEquation, LoopJoint, LoopJointKind, RigidCoupling, normalised};
 pub use loops::Loops;
 pub(crate) use name::{CRATES, LONGEST_NAME};
 pub use parameter::{Bound, Parameter, Refusal, Relation};
@@ -98,6 +98,8 @@ pub struct Chain {
     pub pump: Option<Pump>,
     /// Joints that close loops.
     pub loop_joints: Vec<LoopJoint>,
+    /// Couplings that hold exactly.
+    pub rigid_couplings: Vec<RigidCoupling>,
     /// Inputs that are set between steps.
     pub inputs: Vec<Input>,
     /// Rotors that joints drive through gears.

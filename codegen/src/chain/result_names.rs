@@ -153,11 +153,14 @@ impl ResultNames {
             kinds.extend(connector.is_rope().then_some(ColumnKind::RopeIndicator));
             self.add_part("connector", &connector.name, turns, &kinds);
         }
-        for joint in &chain.loop_joints {
-            for equation in joint.kind.equations() {
+        let of_joints = chain.loop_joints.iter().map(|joint| ("loop joint", &joint.name, joint.kind.equations()));
+        let rigid = chain.rigid_couplings.iter();
+        let of_couplings = rigid.map(|coupling| ("connector", &coupling.name, vec![coupling.equation()]));
+        for (what, part, equations) in of_joints.chain(of_couplings) {
+            for equation in equations {
                 let kind = if equation.is_moment { ColumnKind::LoopMoment } else { ColumnKind::LoopForce };
-                let name = format!("{}{}", joint.name, kind.ending_along(equation.direction));
-                self.add_column(kind, name, &format!("loop joint `{}`", joint.name));
+                let name = format!("{part}{}", kind.ending_along(equation.direction));
+                self.add_column(kind, name, &format!("{what} `{part}`"));
             }
         }
     }

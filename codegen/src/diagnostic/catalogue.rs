@@ -218,11 +218,10 @@ catalogue! {
     /// Rotors turn with joints; the rotor of a driven joint belongs to its drive.
     E086 no_rotor(coordinate, owner, help) "coordinate `{coordinate}` has no rotor", "it belongs to {owner}",
         "{help}";
-    /// A drive has a stiffness, is rigid, or has an effort.
-    E087 no_transmission(coordinate) "drive `{coordinate}` has no stiffness", "none of `stiffness`, `rigid: true` and `effort`",
-        "write its `stiffness:`, `rigid: true` if the coordinate follows the motion exactly, or `effort:`, its torque or force";
-    /// A rigid drive has neither stiffness, damping nor effort.
-    E088 rigid_spring(coordinate, key) "drive `{coordinate}` is rigid and has `{key}`", "a rigid drive has no spring and no damper, and its effort follows from its motion",
+    /// A drive has a stiffness, is rigid, or has an effort; a coupling has a stiffness or is rigid.
+    E087 no_transmission(subject, none, help) "{subject} has no stiffness", "{none}", "write its `stiffness:`, {help}";
+    /// A rigid drive has neither stiffness, damping nor effort, a rigid coupling neither stiffness nor damping.
+    E088 rigid_spring(subject, key, follows) "{subject} is rigid and has `{key}`", "it has no spring and no damper, and its {follows}",
         "remove either `{key}` or `rigid: true`";
     /// The speed of a rigid drive does not jump.
     E089 jumps(coordinate, time) "the speed of rigid drive `{coordinate}` jumps at {time}",
@@ -394,18 +393,18 @@ catalogue! {
     /// At least one coordinate moves the points of a loop joint against each other.
     E144 rigid_loop(joint) "loop joint `{joint}` closes no loop", "there is no joint between its points",
         "attach it to links on both sides of a joint, or to a link and the world";
-    /// At least one coordinate between the points of a loop joint is free to move.
-    E145 prescribed_loop(joint) "loop joint `{joint}` holds what rigid drives move", "all coordinates between its points are prescribed",
-        "give one of these drives a `stiffness`, or leave its joint passive: the loop moves it";
+    /// At least one coordinate between the points of a loop joint, or of a rigid coupling, is free to move.
+    E145 prescribed_loop(subject, mover) "{subject} holds what rigid drives move", "all coordinates that it ties are prescribed",
+        "give one of these drives a `stiffness`, or leave its joint passive: the {mover} moves it";
     /// Axes of loop joints and directions of wind are directions.
     E146 no_direction(subject) "{subject} has no direction", "all three numbers are 0",
         "write a direction, such as `[0, 1, 0]`";
     /// The two points of a rod are apart.
     E147 meeting_rod(joint) "the two points of rod `{joint}` coincide at the guess", "the rod between them has no direction",
         "write a `guess` at which the rod has about its length; a joint without length is a `ball`";
-    /// Eight cranes per call cannot have loops.
-    E148 ensemble_of_loops() "`ensemble` cannot be combined with loop joints", "eight cranes per call are for open chains",
-        "remove `ensemble`: runs of many cranes then compute them one by one";
+    /// Eight cranes per call cannot have loops or rigid couplings.
+    E148 ensemble_of_loops(what, help) "`ensemble` cannot be combined with {what}", "eight cranes per call are for open chains",
+        "remove `ensemble`: runs of many cranes then compute them one by one{help}";
     /// Of the joints that close loops, only pins have friction and damping.
     E149 friction_of_no_pin(joint, key, kind) "loop joint `{joint}` has `{key}`, but is a `{kind}`", "only a `pin` has friction and damping",
         "remove `{key}`, or write `joint: {{pin: {{axis: …}}}}` with the direction about which it turns";

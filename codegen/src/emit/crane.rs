@@ -169,7 +169,7 @@ fn common_methods(chain: &Chain) -> TokenStream {
         )
     };
     let inputs = input_methods(chain);
-    let loop_joints = (!chain.loop_joints.is_empty()).then(|| {
+    let loop_joints = chain.has_loops().then(|| {
         quote!(
             fn loop_joints(&self) -> &[LoopJointInfo] {
                 &LOOP_JOINTS

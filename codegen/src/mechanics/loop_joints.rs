@@ -1,4 +1,4 @@
-//! Joints that close loops: equations φ(q) = 0 between two bodies, their rows J = ∂φ/∂q, and what they transmit.
+//! Joints that close loops: equations φ(q) = 0 between two bodies, their rows J = ∂φ/∂q, and what they transmit; and exact couplings.
 //!
 //! Notation
 //! : R the axes of the first body; p₁, p₂ the points in the world; a the axis on the second body in the world.
@@ -17,6 +17,8 @@
 //! On a pad slides the [axis of a beam](super::beam_axis): p₂ = P(σ) and, against twist, a = y(σ) depend on the place `σ = σ₀ ± q_k`, too.
 //! Then `∂p₂/∂q_k` has the additional term ± P′, and ẍ₂ has `2 σ̇ Σ q̇_j ∂P′/∂q_j + σ̇² P″`.
 //!
+//! An exact coupling is `φ = q_j − r q_i − c`: its row has two constant entries, and `J̇ q̇ = 0`.
+//!
 //! λ are the forces and moments that the second body exerts on the first, along the directions of the equations: the generalized forces
 //! are `f = −Jᵀ λ`.
 
@@ -27,7 +29,8 @@ use super::pads::{self, AtPad};
 use super::place::{Along, Place};
 use super::vector::{Rotation, Vec3};
 use crate::chain::{
-    Across, Attachment, Axis, BodyId, CoordinateId, LoopJoint, LoopJointKind, PadDirection, Sliding, Vector,
+    Across, Attachment, Axis, BodyId, CoordinateId, Follower, LoopJoint, LoopJointKind, PadDirection, RigidCoupling,
+    Sliding, Vector,
 };
 use crate::symbolic::Expr;
 
@@ -303,12 +306,17 @@ fn all<'g>(model: &Model<'g>) -> impl Iterator<Item = (Closed<'g>, Vec<Equation>
     model.chain.loop_joints.iter().map(|joint| (Closed::new(model, joint), equations(&joint.kind)))
 }
 
-/// φ, φ̇ and J̇ q̇ of every equation.
+/// φ, φ̇ and J̇ q̇ of every equation, those of couplings last.
 pub fn states<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     let of_joint = |(closed, equations): (Closed<'g>, Vec<Equation>)| -> Vec<Expr<'g>> {
         equations.into_iter().flat_map(|equation| closed.state(model, equation)).collect()
     };
-    all(model).flat_map(of_joint).collect()
+    let of_coupling = |RigidCoupling { follower, .. }: &RigidCoupling| {
+        let Follower { coordinate: CoordinateId(j), leader: CoordinateId(i), ratio, offset } = follower;
+        let slip = |of: &[Expr<'g>]| of[*j] - model.number(ratio) * of[*i];
+        [slip(&model.q) - model.number(offset), slip(&model.v), model.zero()]
+    };
+    all(model).flat_map(of_joint).chain(model.chain.rigid_couplings.iter().flat_map(of_coupling)).collect()
 }
 
 /// J, row by row.
@@ -316,7 +324,13 @@ pub fn jacobians<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     let of_joint = |(closed, equations): (Closed<'g>, Vec<Equation>)| -> Vec<Expr<'g>> {
         equations.into_iter().flat_map(|equation| closed.row(model, equation)).collect()
     };
-    all(model).flat_map(of_joint).collect()
+    let of_coupling = |RigidCoupling { follower, .. }: &RigidCoupling| {
+        let mut row = model.zeros();
+        row[follower.coordinate.0] = model.graph.constant(1.0);
+        row[follower.leader.0] = -model.number(&follower.ratio);
+        row
+    };
+    all(model).flat_map(of_joint).chain(model.chain.rigid_couplings.iter().flat_map(of_coupling)).collect()
 }
 
 /// Force and moment about the world's origin on both bodies, in the world, for a unit λ of each equation of a joint.

@@ -60,6 +60,7 @@ pub(super) fn double_pendulum() -> Chain {
         cylinders: Vec::new(),
         pump: None,
         loop_joints: vec![],
+        rigid_couplings: vec![],
         inputs: vec![],
         rotors: vec![],
         points: vec![Point { name: "tip".into(), body: BodyId(1), position: [c(LENGTH[1]), Value::ZERO, Value::ZERO] }],

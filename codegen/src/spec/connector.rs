@@ -29,7 +29,7 @@ pub struct Attachment {
     pub at: Spanned<Vector>,
 }
 
-/// A coupling: one coordinate follows another through a spring and a damper.
+/// A coupling: one coordinate follows another, through a spring and a damper or exactly.
 #[derive(Clone, Debug, FromNode)]
 pub struct Coupling {
     /// Name, a `snake_case` identifier.
@@ -42,10 +42,12 @@ pub struct Coupling {
     pub ratio: Spanned<Number>,
     /// Position of `coordinate` when `follows` is at 0, m or rad. Default 0.
     pub offset: Option<Spanned<Angle>>,
-    /// Stiffness, N/m or N m/rad, of the coordinate that follows.
-    pub stiffness: Spanned<Number>,
+    /// Stiffness, N/m or N m/rad, of the coordinate that follows; required unless the coupling is rigid.
+    pub stiffness: Option<Spanned<Number>>,
     /// Damping, N s/m or N m s/rad. Default 0.
     pub damping: Option<Spanned<Number>>,
+    /// Whether the coordinate follows exactly. Default false.
+    pub rigid: Option<Spanned<bool>>,
 }
 
 macro_rules! laws {

@@ -1,14 +1,14 @@
 //! Connectors: elements between two points, and couplings of coordinates.
 
 use super::Check;
-use super::drives::{Units, units};
+use super::drives::units;
 use super::limits::Limit;
 use crate::chain::{
-    self, Attachment, Chain, CoordinateKind, Cylinder, Force, Group, Law, Line, LinePart, Profile, Rope, RopeStiffness,
-    Spring, Strain, Value,
+    self, Attachment, Chain, CoordinateKind, Cylinder, Follower, Force, Group, Law, Line, LinePart, Profile,
+    RigidCoupling, Rope, RopeStiffness, Spring, Strain, Value,
 };
 use crate::diagnostic::{Span, rule};
-use crate::spec::{self, Crane, Number, Spanned};
+use crate::spec::{self, Crane, Number, Spanned, entries};
 
 /// Maximum number of falls of a rope.
 const MOST_FALLS: f64 = 100.0;
@@ -34,7 +34,6 @@ impl<'a> Check<'a> {
             }
             connectors.push(Force { group: Group::Connectors, name, strain: Strain::Line(line), law });
         }
-        connectors.extend(self.couplings(crane, cylinders));
         connectors
     }
 
@@ -86,11 +85,10 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// Couplings of two coordinates.
-    fn couplings(&mut self, crane: &'a Crane, cylinders: &[Cylinder]) -> Vec<Force> {
-        let given = crane.couplings.as_ref().and_then(|couplings| couplings.value.as_deref()).unwrap_or_default();
-        let mut couplings = Vec::new();
-        for coupling in given.iter().filter_map(|coupling| coupling.value.as_ref()) {
+    /// Couplings of two coordinates: those with springs, and those that hold exactly.
+    pub(super) fn couplings(&mut self, crane: &'a Crane, cylinders: &[Cylinder]) -> (Vec<Force>, Vec<RigidCoupling>) {
+        let (mut springs, mut exact) = (Vec::new(), Vec::new());
+        for coupling in entries(crane.couplings.as_ref()) {
             let name = self.name(&coupling.name).unwrap_or_default().to_owned();
             if !name.is_empty() {
                 self.register_connector(&name, coupling.name.span, cylinders);
@@ -102,7 +100,6 @@ impl<'a> Check<'a> {
             }
             let kind = self.kind_of(coordinate);
             let place = |what: &str| format!("the {what} of coupling `{name}`");
-            let Units { stiffness, damping, .. } = units(kind);
             let turns = [kind, self.kind_of(leader)].map(|kind| kind != Some(CoordinateKind::Translation));
             let unit = match turns {
                 [false, true] => "m/rad",
@@ -111,17 +108,65 @@ impl<'a> Check<'a> {
             };
             let ratio = self.number(&coupling.ratio, &place("ratio"), unit, Limit::Any);
             let offset = coupling.offset.as_ref();
-            let law = Law::Spring(Spring {
-                stiffness: self.number(&coupling.stiffness, &place("stiffness"), stiffness, Limit::NotNegative),
-                damping: self.number_or(coupling.damping.as_ref(), 0.0, &place("damping"), damping, Limit::NotNegative),
-                length: offset.map_or(Value::ZERO, |offset| self.position(offset, units(kind).position, "`offset`")),
-            });
-            if let (Some(coordinate), Some(leader)) = (coordinate, leader) {
+            let offset = offset.map_or(Value::ZERO, |offset| self.position(offset, units(kind).position, "`offset`"));
+            let spring = self.spring_of(coupling, &name, kind);
+            let (Some(coordinate), Some(leader)) = (coordinate, leader) else { continue };
+            if let Some([stiffness, damping]) = spring {
+                let law = Law::Spring(Spring { stiffness, damping, length: offset });
                 let strain = Strain::Coupling { coordinate, leader, ratio };
-                couplings.push(Force { group: Group::Connectors, name, strain, law });
+                springs.push(Force { group: Group::Connectors, name, strain, law });
+            } else {
+                let kind = self.coordinates[coordinate.0].kind;
+                exact.push(RigidCoupling { name, follower: Follower { coordinate, leader, ratio, offset }, kind });
             }
         }
-        couplings
+        (springs, exact)
+    }
+
+    /// Stiffness and damping of a coupling; `None` if it is rigid.
+    fn spring_of(&mut self, coupling: &spec::Coupling, name: &str, kind: Option<CoordinateKind>) -> Option<[Value; 2]> {
+        let units = units(kind);
+        let keys = [
+            ("stiffness", coupling.stiffness.as_ref(), units.stiffness),
+            ("damping", coupling.damping.as_ref(), units.damping),
+        ];
+        let numbers = keys.map(|(key, given, unit)| {
+            let place = format!("the {key} of coupling `{name}`");
+            given.map(|given| self.number(given, &place, unit, Limit::NotNegative))
+        });
+        let subject = format!("coupling `{name}`");
+        if coupling.rigid.as_ref().is_some_and(|rigid| rigid.value == Some(true)) {
+            for (key, given, _) in keys {
+                if let Some(given) = given {
+                    let follows = "force follows from the motion";
+                    self.report(rule::rigid_spring(given.span, subject.clone(), key, follows));
+                }
+            }
+            return None;
+        }
+        let [stiffness, damping] = numbers;
+        // An invalid value of `rigid` has been reported already.
+        let unread = coupling.rigid.as_ref().is_some_and(|rigid| rigid.value.is_none());
+        if stiffness.is_none() && !unread {
+            self.report(rule::no_transmission(
+                coupling.name.span,
+                subject,
+                "neither `stiffness` nor `rigid: true`",
+                "or `rigid: true` if the coordinate follows exactly",
+            ));
+        }
+        Some([stiffness.unwrap_or(f64::NAN.into()), damping.unwrap_or(Value::ZERO)])
+    }
+
+    /// Reports rigid couplings of coordinates that rigid drives prescribe.
+    pub(super) fn couplings_move(&mut self, chain: &Chain, crane: &Crane) {
+        for given in entries(crane.couplings.as_ref()) {
+            let named = |coupling: &&RigidCoupling| Some(&coupling.name) == given.name.value.as_ref();
+            let Some(RigidCoupling { name, follower, .. }) = chain.rigid_couplings.iter().find(named) else { continue };
+            if follower.coordinates().into_iter().all(|coordinate| chain.is_prescribed(coordinate)) {
+                self.report(rule::prescribed_loop(given.name.span, format!("coupling `{name}`"), "coupling"));
+            }
+        }
     }
 
     /// Reports connectors of which neighbouring points coincide at the guess.

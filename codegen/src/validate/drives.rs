@@ -139,7 +139,8 @@ impl<'a> Check<'a> {
                 ("max_power", drive.max_power.as_ref().map(|given| given.span)),
             ] {
                 if let Some(span) = span {
-                    self.report(rule::rigid_spring(span, name, key));
+                    let subject = format!("drive `{name}`");
+                    self.report(rule::rigid_spring(span, subject, key, "effort follows from its motion"));
                 }
             }
             return Transmission::Rigid;
@@ -147,7 +148,12 @@ impl<'a> Check<'a> {
         // An invalid value of `rigid` has been reported already.
         let unread = drive.rigid.as_ref().is_some_and(|rigid| rigid.value.is_none());
         if stiffness.is_none() && drive.effort.is_none() && !unread {
-            self.report(rule::no_transmission(span, name));
+            self.report(rule::no_transmission(
+                span,
+                format!("drive `{name}`"),
+                "none of `stiffness`, `rigid: true` and `effort`",
+                "`rigid: true` if the coordinate follows the motion exactly, or `effort:`, its torque or force",
+            ));
         }
         let max_effort = drive.max_effort.as_ref().map(|given| {
             let subject = format!("the maximum effort of drive `{name}`");

@@ -13,17 +13,12 @@ use crate::spec::{self, Crane, entries};
 
 impl<'a> Check<'a> {
     /// Loop joints, and friction in their pins.
-    pub(super) fn loop_joints(
-        &mut self,
-        crane: &'a Crane,
-        cylinders: &[Cylinder],
-        connectors: &[Force],
-    ) -> (Vec<LoopJoint>, Vec<Force>) {
+    pub(super) fn loop_joints(&mut self, crane: &'a Crane, cylinders: &[Cylinder]) -> (Vec<LoopJoint>, Vec<Force>) {
         let (mut joints, mut forces) = (Vec::new(), Vec::new());
         for written in entries(crane.loop_joints.as_ref()) {
             let name = self.name(&written.name).unwrap_or_default().to_owned();
             if !name.is_empty() {
-                self.register_loop_joint(&name, written.name.span, cylinders, connectors);
+                self.register_loop_joint(&name, written.name.span, cylinders);
             }
             let what = format!("loop joint `{name}`");
             let [from, to] = [&written.from, &written.to].map(|end| self.attachment(end, &format!("an end of {what}")));
@@ -77,11 +72,11 @@ impl<'a> Check<'a> {
     }
 
     /// Like cylinders and connectors, loop joints have result columns for their forces.
-    pub(super) fn register_loop_joint(&mut self, name: &str, span: Span, cylinders: &[Cylinder], connectors: &[Force]) {
+    pub(super) fn register_loop_joint(&mut self, name: &str, span: Span, cylinders: &[Cylinder]) {
         self.register_name("loop joints", name, "an earlier loop joint".into(), span);
         let other = if cylinders.iter().any(|cylinder| cylinder.name == name) {
             "a cylinder"
-        } else if connectors.iter().any(|connector| connector.name == name) {
+        } else if self.expanded.has("connectors", name) {
             "a connector"
         } else {
             return;
@@ -120,7 +115,7 @@ impl<'a> Check<'a> {
         let mut joints = std::mem::take(&mut chain.loop_joints);
         for (joint, given) in joints.iter_mut().zip(entries(crane.loop_joints.as_ref())) {
             if chain.closed_by(joint).into_iter().all(|coordinate| chain.is_prescribed(coordinate)) {
-                self.report(rule::prescribed_loop(given.name.span, &joint.name));
+                self.report(rule::prescribed_loop(given.name.span, format!("loop joint `{}`", joint.name), "loop"));
             }
             match &mut joint.kind {
                 LoopJointKind::Pin { across, to_axis } => {
@@ -150,8 +145,13 @@ impl<'a> Check<'a> {
         chain.loop_joints = joints;
         let ensemble = crane.analyses.iter().flat_map(|list| list.value.iter().flatten());
         let mut ensemble = ensemble.filter(|item| item.value == Some(spec::Analysis::Ensemble));
-        if let (Some(item), false) = (ensemble.next(), chain.loop_joints.is_empty()) {
-            self.report(rule::ensemble_of_loops(item.span));
+        let what = if chain.loop_joints.is_empty() {
+            ("rigid couplings", ", or give couplings a `stiffness`")
+        } else {
+            ("loop joints", "")
+        };
+        if let (Some(item), true) = (ensemble.next(), chain.has_loops()) {
+            self.report(rule::ensemble_of_loops(item.span, what.0, what.1));
         }
     }
 }

@@ -87,6 +87,7 @@ pub fn check_with(spec: &CraneSpec, source: &SourceFile, set: &[(&str, f64)]) ->
         check.regular(&chain, &spec.crane);
         check.connectors_apart(&chain, &spec.crane);
         check.loops_move(&mut chain, &spec.crane);
+        check.couplings_move(&chain, &spec.crane);
         check.keep_masses(&mut chain);
     }
     if !check.mistakes.is_empty() {
@@ -268,15 +269,19 @@ impl<'a> Check<'a> {
         let pump = self.pump(crane);
         self.make_drives_hydraulic(crane, &cylinders, pump.as_ref(), &mut drives);
         let mut connectors = self.connectors(crane, &cylinders);
+        let (couplings, rigid_couplings) = self.couplings(crane, &cylinders);
+        connectors.extend(couplings);
         let (pads, exact_pads) = self.pads(&cylinders);
         connectors.extend(pads);
-        let (mut loop_joints, in_pins) = self.loop_joints(crane, &cylinders, &connectors);
+        let (mut loop_joints, in_pins) = self.loop_joints(crane, &cylinders);
         loop_joints.extend(exact_pads);
         connectors.extend(in_pins);
         rotors.extend(self.rotors(crane, &drives));
         self.beam_sections(&loads, &cylinders, &connectors, &loop_joints);
         let points = self.points(crane);
-        let guess = self.guess(crane, &drives, &connectors);
+        let exact = rigid_couplings.iter().map(|coupling| coupling.follower.clone());
+        let followers: Vec<chain::Follower> = connectors.iter().filter_map(Force::follower).chain(exact).collect();
+        let guess = self.guess(crane, &drives, &followers);
         let run = self.run(crane.run.as_ref());
         let analyses = self.analyses(crane.analyses.as_ref());
         self.something_moves(crane);
@@ -302,6 +307,7 @@ impl<'a> Check<'a> {
             cylinders,
             pump,
             loop_joints,
+            rigid_couplings,
             inputs: std::mem::take(&mut self.inputs),
             rotors,
             points,

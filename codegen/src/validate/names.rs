@@ -25,6 +25,11 @@ impl Names {
             std::collections::btree_map::Entry::Occupied(taken) => Err(taken.get().clone()),
         }
     }
+
+    /// Whether a name is taken.
+    pub(super) fn has(&self, kind: &'static str, name: &str) -> bool {
+        self.0.contains_key(&(kind, name.to_owned()))
+    }
 }
 
 /// The only coordinate of the link that the name of a coordinate begins with: `inner_psi` for `inner_theta` or `inner_boom_psi`.

@@ -3,7 +3,7 @@
 use super::Check;
 use super::drives::units;
 use super::limits::Limit;
-use crate::chain::{BodyId, CoordinateId, Drive, Force, Point, Run, Transmission, Value};
+use crate::chain::{BodyId, CoordinateId, Drive, Follower, Point, Run, Transmission, Value};
 use crate::diagnostic::{rule, suggest};
 use crate::spec::{self, Constant, Crane, Spanned};
 
@@ -41,7 +41,7 @@ impl<'a> Check<'a> {
     }
 
     /// As written, where drives begin, or where the coordinates are that others follow; otherwise 0.
-    pub(super) fn guess(&mut self, crane: &'a Crane, drives: &[Drive], connectors: &[Force]) -> Vec<f64> {
+    pub(super) fn guess(&mut self, crane: &'a Crane, drives: &[Drive], followers: &[Follower]) -> Vec<f64> {
         let mut guess = vec![None; self.coordinates.len()];
         for drive in drives.iter().filter(|drive| drive.holds()) {
             guess[drive.coordinate.0] = Some(drive.profile.start(&self.defaults));
@@ -59,8 +59,8 @@ impl<'a> Check<'a> {
             guess[id.0] = Some(position);
         }
         // A coordinate that follows one that follows another is known one pass later.
-        for _ in connectors {
-            for follower in connectors.iter().filter_map(Force::follower) {
+        for _ in followers {
+            for follower in followers {
                 if let (None, Some(leading)) = (guess[follower.coordinate.0], guess[follower.leader.0]) {
                     guess[follower.coordinate.0] = Some(follower.place(leading, &self.defaults));
                 }

@@ -281,7 +281,7 @@ impl<'a> Check<'a> {
                 }
                 if !held.is_empty() {
                     let name = format!("{link}_{which}");
-                    self.register_loop_joint(&name, span, cylinders, &[]);
+                    self.register_loop_joint(&name, span, cylinders);
                     let ends = [pad, on_axis(beam.first, Value::ZERO)];
                     joints.push(LoopJoint { name, ends, kind: LoopJointKind::Pad { held } });
                 }

@@ -30,7 +30,9 @@ impl Description {
             Count::DrivePieces => self.drives.iter().map(|drive| drive.pieces).sum(),
             Count::LoadPieces => self.loads.iter().map(|load| load.pieces).sum(),
             Count::WinchPieces => self.connectors.iter().map(|connector| connector.pieces).sum(),
-            Count::Attachments => self.points_of_connectors() + 2 * loop_joints.len(),
+            Count::Attachments => {
+                self.points_of_connectors() + loop_joints.iter().flat_map(|joint| &joint.ends).flatten().count()
+            }
             Count::Derivatives => degrees.sum(),
             Count::SecondDerivatives => degrees.map(|n| n * (n + 1) / 2).sum(),
             Count::Axes => 3,

@@ -1,19 +1,19 @@
-//! Joints that close loops.
+//! Joints that close loops, and exact couplings.
 
 use crane_quantities::ColumnKind;
 
 use super::{AttachmentInfo, List, Text};
 
-/// A joint that closes a loop.
+/// A joint that closes a loop, or a coupling that holds exactly.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoopJointInfo {
     /// Name.
     pub name: Text,
-    /// `ball`, `pin`, `rod`, `slide`, or `pad`: what holds a stage of a telescope exactly.
+    /// `ball`, `pin`, `rod`, `slide`, `pad`, what holds a stage of a telescope exactly, or `coupling`.
     pub kind: Text,
-    /// Its points; the directions of its forces are in the axes of the first.
-    pub ends: [AttachmentInfo; 2],
-    /// The coordinates that move its points against each other: the first, and the one after the last.
+    /// Its points; the directions of its forces are in the axes of the first. A coupling has none.
+    pub ends: Option<[AttachmentInfo; 2]>,
+    /// The coordinates that move its points against each other, or that it ties: the first, and the one after the last.
     pub spanned: [usize; 2],
     /// Its equations.
     pub equations: List<LoopEquationInfo>,
@@ -29,12 +29,34 @@ impl LoopJointInfo {
     pub fn is_pad(&self) -> bool {
         self.kind.as_str() == "pad"
     }
+
+    /// Whether it ties two coordinates.
+    pub fn is_coupling(&self) -> bool {
+        self.ends.is_none()
+    }
+
+    /// Whether it holds something to the world.
+    pub fn holds_to_world(&self) -> bool {
+        self.ends.iter().flatten().any(|end| end.body.is_none())
+    }
+
+    /// What it does to the crane, for messages: `loop joint P ties coordinates to each other`.
+    #[cfg(feature = "std")]
+    pub fn ties(&self) -> String {
+        let kind = if self.is_coupling() { "coupling" } else { "loop joint" };
+        format!("{kind} {} ties coordinates to each other", self.name)
+    }
+
+    /// What a user can do instead of leaving it out, for messages; empty where there is nothing.
+    pub fn remedy(&self) -> &'static str {
+        if self.is_coupling() { ", or give the coupling a `stiffness` instead of `rigid: true`" } else { "" }
+    }
 }
 
-/// An equation of a joint that closes a loop.
+/// An equation of a joint that closes a loop, or of a coupling.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LoopEquationInfo {
-    /// The direction of its force or moment; empty for a rod, whose force is along it.
+    /// The direction of its force or moment; empty for a rod, whose force is along it, and for a coupling.
     pub direction: Text,
     /// Whether it transmits a moment, N m, instead of a force, N.
     pub is_moment: bool,
@@ -59,6 +81,15 @@ impl LoopEquationInfo {
     /// Unit of what it transmits.
     pub const fn force_unit(&self) -> &'static str {
         if self.is_moment { "N m" } else { "N" }
+    }
+
+    /// The word for what it transmits.
+    pub fn what(&self) -> &'static str {
+        match (self.is_moment, self.direction.as_str()) {
+            (false, _) => "force",
+            (true, "") => "torque",
+            (true, _) => "moment",
+        }
     }
 
     /// Name of the column of results with what it transmits, of a joint with a name.

@@ -12,7 +12,7 @@ pub(crate) fn geometric_stiffness(crane: &(impl DynModel + ?Sized), q: &[f64], m
     let n = q.len();
     let mut matrix = DMatrix::zeros(n, n);
     let (mut states, mut v) = (vec![Vector3::zeros(); multipliers.len()], vec![0.0; n]);
-    let spans = crane.loop_joints().iter().map(|joint| joint.spanned);
+    let spans = crane.loop_joints().iter().filter(|joint| !joint.is_coupling()).map(|joint| joint.spanned);
     let spanned: Vec<usize> = (0..n).filter(|j| spans.clone().any(|[first, end]| (first..end).contains(j))).collect();
     let mut along = |coordinates: &[usize]| {
         for &j in coordinates {

@@ -12,7 +12,8 @@
 //!
 //! `(G⁺)_kk` is the block of joint k: `δ_k` is the least singular value of D where there is one loop, and the distance of its equations from
 //! those of all others where there are more. Of two directions the angle is the one between them. Equations that are dependent at every
-//! pose are not counted: G⁺ leaves out as many of the least eigenvalues as are zero in general.
+//! pose are not counted: G⁺ leaves out as many of the least eigenvalues as are zero in general. Couplings have no directions: a coordinate that
+//! one ties to a coordinate that is held counts as held.
 
 use std::ops::Range;
 
@@ -69,7 +70,8 @@ struct Directions {
 }
 
 impl Directions {
-    /// Of the loops of a crane, evaluated at the pose; without equations if there are none but pads, which hold beams and close no linkage.
+    /// Of the loops of a crane, evaluated at the pose; without equations if there are none but pads, which hold beams and close no linkage, and
+    /// couplings.
     fn new(crane: &(impl DynModel + ?Sized), loops: &Loops, q: &[f64]) -> Self {
         let (n, all) = (q.len(), crane.loop_joints());
         let mut joints = Vec::new();
@@ -77,7 +79,7 @@ impl Directions {
         for (index, joint) in all.iter().enumerate() {
             let own = equation..equation + joint.equations.len();
             equation = own.end;
-            if !joint.is_pad() {
+            if closes_linkage(joint) {
                 let count = if joint.is_rod() { 3 } else { own.len() };
                 joints.push((index, own, rows..rows + count));
                 rows += count;
@@ -118,8 +120,8 @@ impl Directions {
             let least = if turns(j) { LEVER } else { 0.0 };
             column *= if length > NOTHING { 1.0 / length.max(least) } else { 0.0 };
         }
-        let role = |j: usize| coordinates[j].role;
-        let is_driven = |j: &usize| matches!(role(*j), CoordinateRole::Driven | CoordinateRole::Prescribed);
+        let is_driven = |j: &usize| matches!(coordinates[*j].role, CoordinateRole::Driven | CoordinateRole::Prescribed);
+        let held = held(crane, loops, n);
         let moved = |j: &usize| squares[*j].sqrt() > NOTHING;
         let with = |columns: Vec<usize>| {
             let mut own = DMatrix::zeros(rows, columns.len() + extra.len());
@@ -132,7 +134,7 @@ impl Directions {
             own
         };
         let driven = (0..n).filter(moved).any(|j| is_driven(&j));
-        let free = driven.then(|| with((0..n).filter(|j| moved(j) && role(*j) == CoordinateRole::Passive).collect()));
+        let free = driven.then(|| with((0..n).filter(|j| moved(j) && !held[*j]).collect()));
         let matrix = with((0..n).filter(moved).collect());
         Self { joints: joints.into_iter().map(|(index, _, rows)| (index, rows)).collect(), matrix, free, size }
     }
@@ -171,6 +173,33 @@ impl Directions {
     }
 }
 
+/// Whether the equations of a joint are directions of a linkage.
+fn closes_linkage(joint: &LoopJointInfo) -> bool {
+    !joint.is_pad() && !joint.is_coupling()
+}
+
+/// Which coordinates a drive, the stiffness of a beam, or a coupling to one of these holds.
+fn held(crane: &(impl DynModel + ?Sized), loops: &Loops, n: usize) -> Vec<bool> {
+    let coordinates = &crane.description().coordinates;
+    let mut held: Vec<bool> = coordinates.iter().map(|info| info.role != CoordinateRole::Passive).collect();
+    let mut equation = 0;
+    let mut coupled = Vec::new();
+    for joint in crane.loop_joints() {
+        if joint.is_coupling() {
+            let row = &loops.jacobian()[equation * n..][..n];
+            coupled.push((0..n).filter(|j| row[*j] != 0.0).collect::<Vec<_>>());
+        }
+        equation += joint.equations.len();
+    }
+    // A coordinate that is tied to one that is tied to another is known one pass later.
+    for _ in &coupled {
+        for both in coupled.iter().filter(|both| both.iter().any(|j| held[*j])).cloned().collect::<Vec<_>>() {
+            both.into_iter().for_each(|j| held[j] = true);
+        }
+    }
+    held
+}
+
 /// `G⁺` without the given number of least eigenvalues, which are zero at every pose.
 fn inverse(products: &DMatrix<f64>, zeros: usize) -> DMatrix<f64> {
     /// Rounding of eigenvalues.
@@ -203,15 +232,16 @@ fn motions(crane: &(impl DynModel + ?Sized), q: &[f64], joints: &[usize]) -> Vec
     let mut frames = vec![Matrix4::identity(); description.bodies.len()];
     let mut attachments = vec![Vector3::zeros(); crane.count(Count::Attachments)];
     crane.attachments(&mut attachments);
-    let (ends, _) = attachments[description.points_of_connectors()..].as_chunks::<2>();
+    // Couplings, which have no points, come last.
+    let (places, _) = attachments[description.points_of_connectors()..].as_chunks::<2>();
     let relative = |frames: &[Matrix4<f64>], index: usize| {
-        let joint = &all[index];
+        let Some(ends) = &all[index].ends else { return Vector3::zeros() };
         let in_world = |end: usize| {
-            let at = ends[index][end].push(1.0);
-            joint.ends[end].body.map_or(at, |body| frames[body] * at).xyz()
+            let at = places[index][end].push(1.0);
+            ends[end].body.map_or(at, |body| frames[body] * at).xyz()
         };
         let [one, other] = [0, 1].map(in_world);
-        match joint.ends[0].body {
+        match ends[0].body {
             Some(body) => frames[body].fixed_view::<3, 3>(0, 0).transpose() * (other - one),
             None => other - one,
         }
@@ -280,7 +310,7 @@ fn closed_nearby(crane: &(impl DynModel + ?Sized), q: &[f64], size: f64) -> Opti
     let mut pose = q.to_vec();
     let joints = crane.loop_joints();
     for (j, (number, info)) in pose.iter_mut().zip(&*crane.description().coordinates).enumerate() {
-        let spans = |joint: &LoopJointInfo| !joint.is_pad() && (joint.spanned[0]..joint.spanned[1]).contains(&j);
+        let spans = |joint: &LoopJointInfo| closes_linkage(joint) && (joint.spanned[0]..joint.spanned[1]).contains(&j);
         if joints.iter().any(spans) && !info.role.is_element() {
             let unit = if info.kind == CoordinateKind::Rotation { 1.0 } else { size };
             // Any numbers in which no linkage has its branch.

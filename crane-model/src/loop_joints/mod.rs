@@ -40,7 +40,7 @@ pub(crate) use starts::{close_start, close_state};
 use nalgebra::Vector3;
 
 use crate::{
-    CoordinateKind, Count, LoopJointInfo,
+    CoordinateKind, Count, LoopEquationInfo, LoopJointInfo,
     dyn_crane::{DynDynamics, DynModel},
     interleaved,
 };
@@ -119,8 +119,10 @@ impl Loops {
     /// Storage for the loop joints of a crane.
     pub fn new(crane: &(impl DynModel + ?Sized)) -> Self {
         let (n, cranes) = (crane.size(), crane.cranes());
+        // The row of a coupling has no length of its own to compare with others, even if it transmits a torque.
         let moments = |joint: &LoopJointInfo| {
-            joint.equations.iter().step_by(cranes).map(|equation| equation.is_moment).collect::<Vec<_>>()
+            let is_moment = |equation: &LoopEquationInfo| equation.is_moment && !joint.is_coupling();
+            joint.equations.iter().step_by(cranes).map(is_moment).collect::<Vec<_>>()
         };
         let groups: Vec<Vec<bool>> = crane.loop_joints().iter().map(moments).collect();
         let count = groups.iter().map(Vec::len).sum();

@@ -18,8 +18,10 @@ use crate::{
 pub struct Gap {
     /// The joint.
     pub joint: String,
-    /// The direction; empty for a rod.
+    /// The direction; empty for a rod and a coupling.
     pub direction: String,
+    /// Whether it is a coupling.
+    pub is_coupling: bool,
     /// The gap, m or rad, or its rate, m/s or rad/s.
     pub gap: f64,
     /// Its unit.
@@ -30,19 +32,24 @@ impl Gap {
     /// Of an equation of a crane.
     pub(crate) fn of(crane: &(impl DynModel + ?Sized), Open { equation, gap, is_rate }: Open) -> Self {
         let (joint, info) = equation_of(crane.loop_joints(), equation);
+        let is_coupling = joint.is_coupling();
         // That of an axis is a sine.
-        let gap = if info.is_moment && !is_rate && gap <= 1.0 { gap.asin() } else { gap };
+        let gap = if info.is_moment && !is_coupling && !is_rate && gap <= 1.0 { gap.asin() } else { gap };
         let unit = if is_rate { info.rate_unit() } else { info.unit() };
-        Self { joint: joint.name.to_string(), direction: info.direction.to_string(), gap, unit }
+        Self { joint: joint.name.to_string(), direction: info.direction.to_string(), is_coupling, gap, unit }
     }
 }
 
 impl std::fmt::Display for Gap {
     /// `joint p is open by 3.20 mm along x`
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { joint, direction, gap, unit } = self;
+        let Self { joint, direction, is_coupling, gap, unit } = self;
         let along = if direction.is_empty() { "its length" } else { direction };
         match *unit {
+            "m" if *is_coupling => write!(f, "coupling {joint} is off by {:.3} mm", gap * 1e3),
+            "m/s" if *is_coupling => write!(f, "coupling {joint} slips at {:.3} mm/s", gap * 1e3),
+            "rad/s" if *is_coupling => write!(f, "coupling {joint} slips at {:.3} °/s", gap.to_degrees()),
+            _ if *is_coupling => write!(f, "coupling {joint} is off by {:.3}°", gap.to_degrees()),
             "m" => write!(f, "joint {joint} is open by {:.3} mm along {along}", gap * 1e3),
             "m/s" => write!(f, "joint {joint} opens at {:.3} mm/s along {along}", gap * 1e3),
             "rad/s" => write!(
@@ -94,7 +101,10 @@ pub fn undetermined(crane: &(impl DynModel + ?Sized), q: &[f64]) -> Vec<String> 
     let name = |row| {
         let (joint, LoopEquationInfo { direction, is_moment }) = equation_of(crane.loop_joints(), row);
         let way = if *is_moment { "about" } else { "along" };
-        format!("{} {} {way} {direction}", joint.kind, joint.name).trim_end().trim_end_matches(" along").to_owned()
+        match direction.as_str() {
+            "" => format!("{} {}", joint.kind, joint.name),
+            direction => format!("{} {} {way} {direction}", joint.kind, joint.name),
+        }
     };
     dependent.map(name).collect()
 }
@@ -245,7 +255,7 @@ pub(crate) fn add_to_wrenches(
     crane.loop_wrenches(q, &mut of_equations);
     let joints = crane.loop_joints().iter();
     let counts = joints.flat_map(|joint| {
-        let counts = !to_world || joint.ends.iter().any(|end| end.body.is_none());
+        let counts = !to_world || joint.holds_to_world();
         std::iter::repeat_n(counts, joint.equations.len())
     });
     for ((multiplier, own), counts) in multipliers.iter().zip(of_equations.chunks_exact(out.len())).zip(counts) {

@@ -1,9 +1,9 @@
 //! Start of the static solution.
 
-use nalgebra::SVector;
+use nalgebra::{SVector, Vector3};
 
 use crate::{
-    CraneModel, Tension,
+    Count, CraneModel, Tension,
     dyn_crane::{DynModel, Instance},
 };
 
@@ -52,24 +52,13 @@ pub(super) fn guess_with(crane: &(impl DynModel + ?Sized), positions: impl Itera
 /// Moves coordinates that follow others: a coupling that the guess of the description leaves without force remains so.
 fn follow_couplings(crane: &(impl DynModel + ?Sized), q: &mut [f64], has_moved: &mut [bool]) {
     let description = crane.description();
-    let (n, count) = (q.len(), description.connectors.len());
-    let couplings: Vec<usize> = (0..count).filter(|&index| description.connectors[index].points.is_empty()).collect();
-    if couplings.is_empty() {
-        return;
-    }
-    let rest = vec![0.0; n];
-    let (mut tensions, mut jacobians) = (vec![Tension::ZERO; count], vec![0.0; count * n]);
-    crane.connector_tensions(0.0, &description.guess, &rest, &mut tensions);
-    crane.connector_jacobians(&description.guess, &mut jacobians);
+    let couplings = relaxed_couplings(crane, &description.guess);
     let is_driven = |coordinate: usize| description.drives.iter().any(|drive| drive.coordinate == coordinate);
     // A coordinate that follows one that follows another is known one pass later.
     for _ in &couplings {
-        for &index in &couplings {
-            let row = &jacobians[index * n..(index + 1) * n];
-            let Tension { force, stiffness, .. } = tensions[index];
-            let is_at_rest = force.abs() <= ROUNDING * stiffness.abs();
-            let mut coupled = (0..n).filter(|&i| row[i] != 0.0);
-            let (Some(one), Some(other), true) = (coupled.next(), coupled.next(), is_at_rest) else { continue };
+        for row in &couplings {
+            let mut coupled = (0..row.len()).filter(|&i| row[i] != 0.0);
+            let (Some(one), Some(other)) = (coupled.next(), coupled.next()) else { continue };
             for (follower, leader) in [(one, other), (other, one)] {
                 if has_moved[leader] && !has_moved[follower] && !is_driven(follower) {
                     q[follower] -= row[leader] / row[follower] * (q[leader] - description.guess[leader]);
@@ -78,4 +67,25 @@ fn follow_couplings(crane: &(impl DynModel + ?Sized), q: &mut [f64], has_moved: 
             }
         }
     }
+}
+
+/// The rows of the couplings that are without force at a pose, or that hold exactly and are closed there.
+fn relaxed_couplings(crane: &(impl DynModel + ?Sized), q: &[f64]) -> Vec<Vec<f64>> {
+    let (description, n) = (crane.description(), q.len());
+    let (count, equations) = (description.connectors.len(), crane.count(Count::LoopEquations));
+    let rest = vec![0.0; n];
+    let (mut tensions, mut jacobians) = (vec![Tension::ZERO; count], vec![0.0; count * n]);
+    crane.connector_tensions(0.0, q, &rest, &mut tensions);
+    crane.connector_jacobians(q, &mut jacobians);
+    let is_relaxed = |index: &usize| {
+        let Tension { force, stiffness, .. } = tensions[*index];
+        description.connectors[*index].points.is_empty() && force.abs() <= ROUNDING * stiffness.abs()
+    };
+    let springs = (0..count).filter(is_relaxed).map(|index| jacobians[index * n..][..n].to_vec());
+    let (mut states, mut rows) = (vec![Vector3::zeros(); equations], vec![0.0; equations * n]);
+    crane.loop_states(q, &rest, &mut states);
+    crane.loop_jacobians(q, &mut rows);
+    let ties = crane.loop_joints().iter().flat_map(|joint| joint.equations.iter().map(|_| joint.is_coupling()));
+    let exact = ties.enumerate().filter(|(index, ties)| *ties && states[*index].x.abs() <= ROUNDING);
+    springs.chain(exact.map(|(index, _)| rows[index * n..][..n].to_vec())).collect()
 }

@@ -111,16 +111,23 @@ fn points_of(connector: &chain::Force) -> &[chain::Attachment] {
     connector.strain.points()
 }
 
-/// The joints of a chain that close loops.
+/// The joints of a chain that close loops, and its exact couplings.
 pub fn describe_loop_joints(chain: &Chain) -> Vec<LoopJointInfo> {
     let joint = |joint: &chain::LoopJoint| LoopJointInfo {
         name: joint.name.clone().into(),
         kind: joint.kind.name().into(),
-        ends: joint.ends.each_ref().map(attachment_info),
+        ends: Some(joint.ends.each_ref().map(attachment_info)),
         spanned: Chain::range(&chain.closed_by(joint)),
         equations: joint.kind.equations().into_iter().map(equation_info).collect(),
     };
-    chain.loop_joints.iter().map(joint).collect()
+    let coupling = |coupling: &chain::RigidCoupling| LoopJointInfo {
+        name: coupling.name.clone().into(),
+        kind: chain::RigidCoupling::KIND.into(),
+        ends: None,
+        spanned: Chain::range(&coupling.follower.coordinates()),
+        equations: std::iter::once(equation_info(coupling.equation())).collect(),
+    };
+    chain.loop_joints.iter().map(joint).chain(chain.rigid_couplings.iter().map(coupling)).collect()
 }
 
 /// The stages of its telescopes.

@@ -131,7 +131,8 @@ fn the_lists_of_a_fleet_are_those_of_its_cranes() {
                         }
                         Count::Attachments => {
                             let points = crane.description().connectors.iter().map(|connector| connector.points.len());
-                            points.chain(std::iter::repeat_n(2, crane.loop_joints().len())).collect()
+                            let ends = crane.loop_joints().iter().map(|joint| joint.ends.iter().flatten().count());
+                            points.chain(ends).collect()
                         }
                         Count::LoadPieces => crane.description().loads.iter().map(|load| load.pieces).collect(),
                         _ => vec![1; each[0].len() / len],

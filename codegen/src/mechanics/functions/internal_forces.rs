@@ -24,7 +24,7 @@ impl Derivation<'_> {
         if model.chain.connectors().iter().any(|connector| connector.strain.joins_bodies()) {
             functions.push(self.connector_wrenches());
         }
-        if !model.chain.loop_joints.is_empty() {
+        if model.chain.has_loops() {
             functions.push(self.loop_wrenches());
         }
         if !model.chain.supports.is_empty() {

@@ -1,4 +1,4 @@
-//! Joints that close loops.
+//! Joints that close loops, and exact couplings.
 
 use super::Derivation;
 use crate::mechanics::{loop_joints, newton_euler};
@@ -21,10 +21,10 @@ impl<'g> Derivation<'g> {
         Some(self.function(FunctionId::LoopDynamics, outputs.collect()).by(trace.clone()))
     }
 
-    /// The equations of loop joints and their derivatives.
+    /// The equations of loop joints and exact couplings, and their derivatives.
     pub(super) fn loop_joints(&self) -> Vec<Function> {
         let model = &self.model;
-        if model.chain.loop_joints.is_empty() {
+        if !model.chain.has_loops() {
             return Vec::new();
         }
         vec![
@@ -33,11 +33,13 @@ impl<'g> Derivation<'g> {
         ]
     }
 
-    /// What loop joints contribute to the internal forces, for a unit force or moment of each equation.
+    /// What loop joints contribute to the internal forces, for a unit force or moment of each equation. Couplings act along joints, whose
+    /// internal forces include them as they do those of drives.
     pub(super) fn loop_wrenches(&self) -> Function {
         let (model, kinematics) = (&self.model, &self.kinematics);
         let joints = &model.chain.loop_joints;
-        let of_equations = joints.iter().flat_map(|joint| loop_joints::actions(model, kinematics, joint));
+        let of_joints = joints.iter().flat_map(|joint| loop_joints::actions(model, kinematics, joint));
+        let of_equations = of_joints.chain(model.chain.rigid_couplings.iter().map(|_| Vec::new()));
         let wrenches =
             of_equations.flat_map(|actions| newton_euler::transmitted(model, kinematics, &self.factors, actions));
         let wrenches: Vec<_> = wrenches.collect();

@@ -1,9 +1,8 @@
 //! Lengths of connectors compared with the distance between their points, and ratios of couplings.
 
 use super::{Plausibility, rounded};
-use crate::chain::{Force, Strain};
 use crate::diagnostic::rule;
-use crate::spec::{ConnectorLaw, entries};
+use crate::spec::{ConnectorLaw, Spanned, entries};
 
 /// Usual lengths without force, as fractions of the distance between the points at the guess.
 const USUAL: [f64; 2] = [0.1, 10.0];
@@ -21,14 +20,13 @@ impl Plausibility<'_> {
     pub(super) fn couplings(&mut self) {
         let (crane, chain) = (self.crane, self.chain);
         for given in entries(crane.couplings.as_ref()) {
-            let named = |connector: &&Force| Some(&connector.name) == given.name.value.as_ref();
-            let Some(connector) = chain.connectors().iter().find(named) else { continue };
-            let Strain::Coupling { coordinate, leader, ratio } = &connector.strain else { continue };
-            let [follower, other] = [coordinate, leader].map(|id| &chain.coordinates[id.0]);
-            let ratio = ratio.at(&self.values);
+            let named =
+                |name: &Spanned<String>| chain.coordinates.iter().find(|one| Some(&one.name) == name.value.as_ref());
+            let (Some(follower), Some(other)) = (named(&given.coordinate), named(&given.follows)) else { continue };
+            let (ratio, _) = self.number(&given.ratio);
             if follower.kind == other.kind && ratio.abs() > RATIO {
-                let names = [&follower.name, &other.name];
-                self.warn(rule::high_ratio(given.ratio.span, &connector.name, rounded(ratio), names[0], names[1]));
+                let name = given.name.value.as_deref().unwrap_or_default();
+                self.warn(rule::high_ratio(given.ratio.span, name, rounded(ratio), &follower.name, &other.name));
             }
         }
     }

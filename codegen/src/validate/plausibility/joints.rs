@@ -151,8 +151,9 @@ impl Plausibility<'_> {
         for coupling in entries(crane.couplings.as_ref()) {
             let name = coupling.name.value.as_deref().unwrap_or_default();
             let unit = units(coupling.coordinate.value.as_deref().unwrap_or_default());
-            let number = self.number(&coupling.stiffness);
-            found.push((number, format!("the stiffness of coupling `{name}`"), unit, "check the exponent"));
+            let number = coupling.stiffness.as_ref().map(|given| self.number(given));
+            let help = "check the exponent, or write `rigid: true`";
+            found.extend(number.map(|number| (number, format!("the stiffness of coupling `{name}`"), unit, help)));
         }
         for ((number, span), what, unit, help) in found {
             if number > STIFFEST {

@@ -1,7 +1,7 @@
 //! Telescopes whose beams leave each other.
 
 use super::{Plausibility, angles::positions, rounded};
-use crate::chain::{CoordinateId, Stage, Strain};
+use crate::chain::{CoordinateId, Stage};
 use crate::diagnostic::{Span, rule};
 use crate::spec::{Motion, entries};
 
@@ -93,13 +93,9 @@ impl Plausibility<'_> {
             guess.into_iter().flat_map(|guess| &guess.0).filter(|(given, _)| given.value.as_ref() == Some(name));
         found.extend(guess.filter_map(|(_, at)| Some((self.scalar(&at.value.as_ref()?.0), at.span))));
         let Some(leaders) = leaders.checked_sub(1) else { return found };
-        for connector in chain.connectors() {
-            if let Strain::Coupling { coordinate: follower, leader, ratio } = &connector.strain
-                && *follower == coordinate
-            {
-                let ratio = ratio.at(&self.values);
-                found.extend(self.reached(*leader, leaders).into_iter().map(|(x, at)| (ratio * x, at)));
-            }
+        for follower in chain.followers().filter(|follower| follower.coordinate == coordinate) {
+            let ratio = follower.ratio.at(&self.values);
+            found.extend(self.reached(follower.leader, leaders).into_iter().map(|(x, at)| (ratio * x, at)));
         }
         found
     }

@@ -125,7 +125,7 @@ impl Fleet {
                 spread(results, connectors.iter().map(|connector| connector.pieces), out);
             }
             Extent::List(_, Count::Attachments) => {
-                let ends = std::iter::repeat_n(2, self.crane.loop_joints.len());
+                let ends = self.crane.loop_joints.iter().map(|joint| joint.ends.iter().flatten().count());
                 spread(results, connectors.iter().map(|connector| connector.points.len()).chain(ends), out);
             }
             Extent::List(_, Count::DrivePieces) => spread(results, drives.iter().map(|drive| drive.pieces), out),

@@ -172,12 +172,8 @@ fn without_internal(source: &mut Source<'_>, q: &[Dual8], multipliers: &[Dual8],
     }
     if !multipliers.is_empty() {
         let joints = crane.loop_joints().iter();
-        let holds: Vec<bool> = joints
-            .flat_map(|joint| {
-                let holds = joint.ends.iter().any(|end| end.body.is_none());
-                std::iter::repeat_n(holds, joint.equations.len())
-            })
-            .collect();
+        let holds: Vec<bool> =
+            joints.flat_map(|joint| std::iter::repeat_n(joint.holds_to_world(), joint.equations.len())).collect();
         let rows = source.at(FunctionId::LoopWrenches, q);
         add(&mut wrenches, &negative(multipliers), &rows, |equation| !holds[equation]);
     }

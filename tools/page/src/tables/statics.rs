@@ -298,8 +298,7 @@ fn loop_joints(cases: &[Case<'_>]) -> Option<Grid> {
     let joints = first.crane.loop_joints().iter();
     let equations = joints.flat_map(|joint| joint.equations.iter().map(move |equation| (joint, equation)));
     for (index, (joint, equation)) in equations.enumerate() {
-        let what = if equation.is_moment { "moment" } else { "force" };
-        let quantity = format!("{what} {}", equation.direction);
+        let quantity = format!("{} {}", equation.what(), equation.direction);
         let cells = values.iter().map(|values| Cell::from(values.get(index).copied()));
         let words = [joint.name.as_str().into(), quantity.trim_end().to_owned().into()];
         grid.row(words.into_iter().chain(cells).chain([equation.force_unit().into()]).collect::<Vec<_>>());
