@@ -334,7 +334,8 @@ def read_crane(path):
     for written in spec.get("connectors", []):
         crane.connectors.append(read_connector(crane, written, spans))
     for written in spec.get("couplings", []):
-        crane.connectors.append(read_coupling(crane, written))
+        if not written.get("rigid"):
+            crane.connectors.append(read_coupling(crane, written))
     exact = []
     for link in spec.keys["links"]:
         if "slides_in" in link.get("beam", {}):
@@ -350,6 +351,9 @@ def read_crane(path):
         if "friction" in written or "damping" in written:
             crane.connectors.append(read_friction_of_pin(crane, written, spans))
     crane.loop_joints += exact
+    for written in spec.get("couplings", []):
+        if written.get("rigid"):
+            crane.loop_joints.append(read_rigid_coupling(crane, written))
     for written in spec.get("points", []):
         crane.points[written["name"]] = read_point(spec, written, spans[written["link"]])
     add_sections(crane, [spans[link["name"]] for link in spec.keys["links"] if "beam" in link or "rope" in link])
@@ -666,14 +670,24 @@ def read_connector(crane, written, spans):
     return Connector(bodies, points, along, defaults, strain, kind == "rope", stiffness, damping, length, push, progression, falls)
 
 
-def read_coupling(crane, written):
-    """A coordinate that follows another one through a spring and a damper."""
+def read_slip(crane, written):
+    """How far a coordinate is from one that it follows in proportion, and how far it is to be."""
     spec = crane.spec
     own, leader = (crane.coordinate(written[key]) for key in ("coordinate", "follows"))
-    stiffness, damping = (spec.number(written.get(key, 0)) for key in ("stiffness", "damping"))
-    strain = own.q - spec.number(written["ratio"]) * leader.q
-    offset = spec.position(written.get("offset", 0), own.is_rotation)
+    return own.q - spec.number(written["ratio"]) * leader.q, spec.position(written.get("offset", 0), own.is_rotation)
+
+
+def read_coupling(crane, written):
+    """A coordinate that follows another one through a spring and a damper."""
+    stiffness, damping = (crane.spec.number(written.get(key, 0)) for key in ("stiffness", "damping"))
+    strain, offset = read_slip(crane, written)
     return Connector([], [], [], [], strain, False, stiffness, damping, offset, 0)
+
+
+def read_rigid_coupling(crane, written):
+    """A coordinate that follows another one exactly: an equation between them, which holds no link."""
+    slip, offset = read_slip(crane, written)
+    return LoopJoint(written["name"], [slip - offset], [])
 
 
 def read_friction_of_pin(crane, written, spans):

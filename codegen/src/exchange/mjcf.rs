@@ -8,8 +8,8 @@ use super::springs::{JointSpring, linear_rows, on};
 use super::xml::{Xml, number_text, numbers};
 use super::{RADIUS, approximations, bars, hinged, origin, placements};
 use crate::chain::{
-    BodyId, Chain, CoordinateId, CoordinateKind, Frame, LoopJoint, LoopJointKind, Step, Support, SupportKinematics,
-    Value,
+    BodyId, Chain, CoordinateId, CoordinateKind, Follower, Frame, LoopJoint, LoopJointKind, RigidCoupling, Step,
+    Support, SupportKinematics, Value,
 };
 
 /// `MuJoCo` refuses moving bodies without mass or inertia: a massless frame, or a point, gets this value, kg or kg m². It is
@@ -37,8 +37,8 @@ impl std::error::Error for Inexpressible {}
 ///
 /// There is one joint per coordinate, with its name. Springs of elements, drives (held at their positions at t = 0) and passive
 /// damping become stiffness, damping and spring reference of joints, efforts of drives actuators with a constant force, rotors armature; a
-/// linear support becomes three tendons, whose lengths are linear in the base's coordinates. Rigid drives and joints that close loops become
-/// equality constraints, as stiff as `MuJoCo` allows: they yield by about 1e-4 of the acceleration that they prevent. The guess is the key
+/// linear support becomes three tendons, whose lengths are linear in the base's coordinates. Rigid drives, rigid couplings and joints that close
+/// loops become equality constraints, as stiff as `MuJoCo` allows: they yield by about 1e-4 of the acceleration that they prevent. The guess is the key
 /// frame `start`.
 ///
 /// # Errors
@@ -224,9 +224,9 @@ fn loop_sites(xml: &mut Xml, chain: &Chain, body: Option<BodyId>, parameters: &[
     }
 }
 
-/// Rigid drives and joints that close loops.
+/// Rigid drives, rigid couplings and joints that close loops.
 fn equalities(xml: &mut Xml, chain: &Chain, parameters: &[f64]) {
-    if chain.rigid_drives().next().is_none() && chain.loop_joints.is_empty() {
+    if chain.rigid_drives().next().is_none() && !chain.has_loops() {
         return;
     }
     // Time constant and damping ratio of what is left of an error; the largest share of an acceleration that may be prevented.
@@ -237,6 +237,13 @@ fn equalities(xml: &mut Xml, chain: &Chain, parameters: &[f64]) {
         // q = q₀ + 0 + …
         let held = [drive.profile.start(parameters), 0.0, 0.0, 0.0, 0.0];
         xml.leaf("joint", &[&[("joint1", name), ("polycoef", numbers(&held))], stiff.as_slice()].concat());
+    }
+    for RigidCoupling { follower: Follower { coordinate, leader, ratio, offset }, .. } in &chain.rigid_couplings {
+        let [follower, leader] = [coordinate, leader].map(|id| chain.coordinates[id.0].name.clone());
+        // q_j = c + r q_i + 0 + …
+        let law = [offset.at(parameters), ratio.at(parameters), 0.0, 0.0, 0.0];
+        let ties = [("joint1", follower), ("joint2", leader), ("polycoef", numbers(&law))];
+        xml.leaf("joint", &[ties.as_slice(), stiff.as_slice()].concat());
     }
     let frames = chain.frames(&vec![0.0; chain.coordinates.len()], parameters);
     for joint in &chain.loop_joints {

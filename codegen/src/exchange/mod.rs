@@ -59,7 +59,7 @@ pub fn approximations(chain: &Chain) -> Option<String> {
     let has = |of_kind: fn(&Strain) -> bool| chain.connectors().iter().any(|connector| of_kind(&connector.strain));
     let connectors = [
         (has(|strain| matches!(strain, Strain::Line(_))), "Springs and ropes between points are left out."),
-        (has(|strain| matches!(strain, Strain::Coupling { .. })), "Couplings of coordinates are left out."),
+        (has(|strain| matches!(strain, Strain::Coupling { .. })), "Couplings with springs are left out."),
         (
             has(|strain| matches!(strain, Strain::Sliding(_))),
             "Pads of telescopes are left out: nothing but its drive holds a stage.",

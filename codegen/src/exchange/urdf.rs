@@ -4,7 +4,7 @@ use super::mass::Lump;
 use super::rotation::{along_z, length, roll_pitch_yaw};
 use super::xml::{Xml, number_text, numbers};
 use super::{RADIUS, approximations, bars, hinged, origin, placements};
-use crate::chain::{BodyId, Chain, CoordinateKind, Frame, Step, Vector};
+use crate::chain::{BodyId, Chain, CoordinateId, CoordinateKind, Follower, Frame, Step, Vector};
 
 /// URDF requires limits for joints that are not `continuous`, which would have two coordinates in Pinocchio. The crane has no
 /// limits: this value is used for positions (rad or m), velocities (rad/s or m/s) and efforts (N m or N).
@@ -13,7 +13,8 @@ pub(super) const NO_LIMIT: [f64; 3] = [1e3, 1e3, 1e9];
 /// The URDF text of a crane with the given parameter values.
 ///
 /// There is one joint per coordinate, with its name; a body with several coordinates has massless links between them. Names of
-/// fixed joints end in `_mount`; points of interest are massless links.
+/// fixed joints end in `_mount`; points of interest are massless links. A joint that a rigid coupling ties to another one mimics it; of
+/// several such couplings of one joint, URDF can express only one.
 ///
 /// # Panics
 /// If `parameters` is shorter than the chain's list of parameters.
@@ -45,7 +46,8 @@ pub fn urdf(chain: &Chain, parameters: &[f64]) -> String {
             let child = if is_last { body.name.clone() } else { format!("{}_frame", coordinate.name) };
             let mut axis = [0.0; 3];
             axis[coordinate.axis.index()] = 1.0;
-            joint(&mut xml, &coordinate.name, (&parent, &child), &placement, Some((kind, axis)));
+            let moves = Moves { kind, axis, mimics: mimics(chain, *id, parameters) };
+            joint(&mut xml, &coordinate.name, (&parent, &child), &placement, Some(moves));
             if !is_last {
                 xml.leaf("link", &[("name", child.clone())]);
             }
@@ -71,20 +73,40 @@ pub fn urdf(chain: &Chain, parameters: &[f64]) -> String {
 /// The fixed link.
 const WORLD: &str = "world";
 
-/// A joint of one coordinate with its kind and axis, or a fixed joint.
-fn joint(xml: &mut Xml, name: &str, (parent, child): (&str, &str), placement: &Frame, moves: Option<(&str, Vector)>) {
-    let kind = moves.map_or("fixed", |(kind, _)| kind);
+/// How a joint moves.
+struct Moves {
+    /// The word for it in URDF.
+    kind: &'static str,
+    axis: Vector,
+    /// What it mimics, as attributes.
+    mimics: Option<[(&'static str, String); 3]>,
+}
+
+/// The joint that a coordinate follows exactly, `multiplier · leader + offset`.
+fn mimics(chain: &Chain, id: CoordinateId, parameters: &[f64]) -> Option<[(&'static str, String); 3]> {
+    let Follower { leader, ratio, offset, .. } =
+        chain.rigid_couplings.iter().map(|coupling| &coupling.follower).find(|follower| follower.coordinate == id)?;
+    let [ratio, offset] = [ratio, offset].map(|value| number_text(value.at(parameters)));
+    Some([("joint", chain.coordinates[leader.0].name.clone()), ("multiplier", ratio), ("offset", offset)])
+}
+
+/// A joint of one coordinate, or a fixed joint.
+fn joint(xml: &mut Xml, name: &str, (parent, child): (&str, &str), placement: &Frame, moves: Option<Moves>) {
+    let kind = moves.as_ref().map_or("fixed", |moves| moves.kind);
     xml.open("joint", &[("name", name.to_owned()), ("type", kind.to_owned())]);
     xml.leaf("parent", &[("link", parent.to_owned())]);
     xml.leaf("child", &[("link", child.to_owned())]);
     if *placement != Frame::WORLD {
         xml.leaf("origin", &pose(placement));
     }
-    if let Some((_, axis)) = moves {
+    if let Some(Moves { axis, mimics, .. }) = moves {
         let [far, fast, strong] = NO_LIMIT.map(number_text);
         xml.leaf("axis", &[("xyz", numbers(&axis))]);
         let limits = [("lower", format!("-{far}")), ("upper", far), ("velocity", fast), ("effort", strong)];
         xml.leaf("limit", &limits);
+        if let Some(mimics) = mimics {
+            xml.leaf("mimic", &mimics);
+        }
     }
     xml.close();
 }

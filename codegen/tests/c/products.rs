@@ -126,7 +126,7 @@ fn differences(name: &str, chain: &Chain, inputs: &[Option<f64>], only: Option<F
     let program = derive(&straight, EVERYTHING);
     let mut rows = Vec::new();
     for function in &program.functions {
-        if has_products(function.id, !chain.loop_joints.is_empty()) && only.is_none_or(|only| only == function.id) {
+        if has_products(function.id, chain.has_loops()) && only.is_none_or(|only| only == function.id) {
             let jacobian = jacobian(&program, function, &parts(chain, function, inputs));
             let (weights, changes) = (numbers(jacobian[0].len(), 7.0), numbers(jacobian.len(), 8.0));
             rows.push((function, weights, changes, jacobian));

@@ -40,14 +40,19 @@ impl LoopJointInfo {
         self.ends.iter().flatten().any(|end| end.body.is_none())
     }
 
-    /// What it does to the crane, for messages: `loop joint P ties coordinates to each other`.
+    /// What it is, for messages.
     #[cfg(feature = "std")]
-    pub fn ties(&self) -> String {
-        let kind = if self.is_coupling() { "coupling" } else { "loop joint" };
-        format!("{kind} {} ties coordinates to each other", self.name)
+    pub fn words(&self) -> String {
+        format!("{} {}", if self.is_coupling() { "rigid coupling" } else { "loop joint" }, self.name)
     }
 
-    /// What a user can do instead of leaving it out, for messages; empty where there is nothing.
+    /// What distinguishes the crane from an open chain, for messages.
+    #[cfg(feature = "std")]
+    pub fn closes(&self) -> String {
+        if self.is_coupling() { self.words() } else { format!("the loop that {} closes", self.name) }
+    }
+
+    /// What else a user can do where an open chain is needed, for messages; empty where there is nothing.
     pub fn remedy(&self) -> &'static str {
         if self.is_coupling() { ", or give the coupling a `stiffness` instead of `rigid: true`" } else { "" }
     }

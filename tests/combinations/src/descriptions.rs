@@ -57,7 +57,7 @@ impl Second {
 pub type Description = fn(&Tree, &mut Rng) -> Option<Second>;
 
 /// All of them, with their names.
-pub const ALL: [(&str, Description); 25] = [
+pub const ALL: [(&str, Description); 26] = [
     ("slope written as gravity", slope_as_gravity),
     ("beam split by a fixed joint", split_boom),
     ("beam given element by element", boom_one_by_one),
@@ -76,6 +76,7 @@ pub const ALL: [(&str, Description); 25] = [
     ("cylinders as forces at their pins", pins::as_loads),
     ("foot and head of cylinders exchanged", pins::exchanged),
     ("a loop joint holds what hangs", held_by_loop),
+    ("a rigid coupling the other way around", coupled_the_other_way),
     ("branches in another order", branches_exchanged),
     ("rope link by link", rope_link_by_link),
     ("falls as sheaves", falls_as_sheaves),
@@ -668,6 +669,18 @@ fn held_by_loop(tree: &Tree, _: &mut Rng) -> Option<Second> {
         "joint": "ball"});
     push(&mut second, "loop_joints", joint);
     Some(Second::of(&second))
+}
+
+/// What followed leads: `q_i = q_j/r − c/r`. The coupling's force is then that on what leads.
+fn coupled_the_other_way(tree: &Tree, _: &mut Rng) -> Option<Second> {
+    let mut second = tree.clone();
+    let coupling =
+        entry_mut(&mut second, "couplings", "name", "chains").filter(|coupling| coupling["rigid"] == true)?;
+    let (ratio, offset) = (coupling["ratio"].as_f64()?, coupling["offset"].as_f64()?);
+    let [follower, leader] = ["coordinate", "follows"].map(|key| coupling[key].clone());
+    (coupling["coordinate"], coupling["follows"]) = (leader, follower);
+    (coupling["ratio"], coupling["offset"]) = (json!(1.0 / ratio), json!(-offset / ratio));
+    Some(Second::of(&second).named(|name| (!name.contains("chains")).then(|| name.to_owned())))
 }
 
 /// The second arm before what the column carried first.

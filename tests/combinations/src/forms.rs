@@ -86,6 +86,13 @@ pub fn vary(seed: u64, tree: &mut Tree) {
             foot["free_play"] = json!([0.001, 0, round(-0.01 * rng.f64())]);
         }
     }
+    let mut ties = Rng::with_seed(seed ^ 0xc0c0);
+    for coupling in entries(tree, "couplings").filter_map(Value::as_object_mut).filter(|_| ties.bool()) {
+        for key in ["stiffness", "damping"] {
+            coupling.remove(key);
+        }
+        coupling.insert("rigid".to_owned(), json!(true));
+    }
     for cylinder in entries(tree, "cylinders") {
         if cylinder["valve"].is_object() && rng.bool() {
             cylinder["valve"]["feed_forward"] = json!(0.9);

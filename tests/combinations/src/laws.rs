@@ -138,7 +138,7 @@ fn by_differences(steps: [f64; 2], compare: impl Fn(f64) -> Result<(), String>) 
 
 /// `A q̈ = e + f`, in the rows of unknowns, of open chains.
 fn accelerations_solve(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Result<(), String>> {
-    if !crane.chain().loop_joints.is_empty() {
+    if crane.chain().has_loops() {
         return None;
     }
     let (t, q, v) = state(crane, pose, rng);

@@ -144,11 +144,12 @@ fn check(quantity: Quantity, crane: &LiveCrane) -> Outcome<()> {
         Some(Refusal::TooLarge) => {
             format!("is there up to {} coordinates", LiveCrane::MOST_COORDINATES_OF_DERIVATIVES)
         }
-        Some(Refusal::Loop(joint)) => format!("depends on the loop that {joint} closes"),
+        Some(Refusal::Loop(joint)) => format!("depends on {}", joint.closes()),
     };
+    let or = if let Some(Refusal::Loop(joint)) = refusal { joint.remedy() } else { "" };
     Err(Problem::usage(
         format!("`{}` of {} {why}", quantity.name(), crane.description().name),
-        "ask for other `--quantities`, or simulate: results contain these states and the forces",
+        format!("ask for other `--quantities`, or simulate: results contain these states and the forces{or}"),
     ))
 }
 

@@ -4,7 +4,7 @@ use std::{io::Write, path::Path};
 
 use clap::ValueEnum;
 use crane_codegen::{
-    chain::{Bound, Chain, Refusal},
+    chain::{Bound, Chain, LoopJoint, Refusal, RigidCoupling},
     compile,
     compile::NoFunction,
     diagnostic::MAX_BYTES,
@@ -56,9 +56,7 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
     if let Some(combination) = &options.crane.combination {
         (chain, spec) = with_combination(&chain, &spec, combination)?;
     }
-    if let Some(joint) = chain.loop_joints.first() {
-        keep_loops(options, &chain.name, &joint.name)?;
-    }
+    keep_loops(options, &chain)?;
     let mut parameters = chain.parameter_defaults();
     let known: Vec<(&str, &str)> = chain.parameters.iter().map(|p| (p.name.as_str(), p.unit.as_str())).collect();
     for (index, value) in options.crane.parameters.read(&chain.name, &known)? {
@@ -205,23 +203,49 @@ fn keep_rules(chain: &Chain, values: &[f64]) -> Outcome<()> {
 }
 
 /// A problem if an exported model would lack the loops of a crane.
-fn keep_loops(options: &Export, crane: &str, joint: &str) -> Outcome<()> {
+fn keep_loops(options: &Export, chain: &Chain) -> Outcome<()> {
     /// Functions of the equations of motion that have been solved, or of what follows from them.
     const SOLVED: [&str; 3] = ["forward_dynamics", "forward_dynamics_derivatives", "linearise"];
+    let Chain { name: crane, loop_joints, rigid_couplings, .. } = chain;
     match options.format {
         Language::Fmu | Language::Mjcf | Language::Gltf => Ok(()),
-        Language::Urdf => Err(Problem::usage(
-            format!("{crane} has a loop, which `{joint}` closes; URDF describes open chains"),
-            "export MJCF (`--format mjcf`) or a functional mock-up unit (`--format fmu`) for co-simulation, or a spec without `loop_joints` and exact pads, and close the loop in the other program",
-        )),
-        Language::C => match options.functions().iter().find(|name| SOLVED.contains(&Product::split(name).0)) {
-            None => Ok(()),
-            Some(name) => Err(Problem::usage(
-                format!(
-                    "`{name}` of {crane} in C would be that of the open chain, without `{joint}`, which closes a loop"
+        Language::Urdf => {
+            if let Some(LoopJoint { name, .. }) = loop_joints.first() {
+                return Err(Problem::usage(
+                    format!("{crane} has a loop, which `{name}` closes; URDF describes open chains"),
+                    "export MJCF (`--format mjcf`) or a functional mock-up unit (`--format fmu`) for co-simulation, or a spec without `loop_joints` and exact pads, and close the loop in the other program",
+                ));
+            }
+            let follows = |coupling: &RigidCoupling| coupling.follower.coordinate;
+            let second = |(index, coupling): &(usize, &RigidCoupling)| {
+                rigid_couplings[..*index].iter().any(|other| follows(other) == follows(coupling))
+            };
+            rigid_couplings.iter().enumerate().find(second).map_or(Ok(()), |(_, coupling)| {
+                Err(Problem::usage(
+                    format!("`{}` makes a joint of {crane} follow a second one; in URDF a joint mimics one other", coupling.name),
+                    "write the coupling the other way around, with the `coordinate` under `follows`, or export MJCF (`--format mjcf`)",
+                ))
+            })
+        }
+        Language::C => {
+            let Some(function) = options.functions().iter().find(|name| SOLVED.contains(&Product::split(name).0))
+            else {
+                return Ok(());
+            };
+            let (what, or) = match (loop_joints.first(), rigid_couplings.first()) {
+                (Some(joint), _) => (format!("`{}`, which closes a loop", joint.name), ""),
+                (_, Some(coupling)) => (
+                    format!("the rigid coupling `{}`", coupling.name),
+                    ", or give the coupling a `stiffness` instead of `rigid: true`",
                 ),
-                "export `bias`, `forces`, `solve_mass`, `loop_states` and `loop_jacobians` with `--functions`, and solve for the forces of the loop: docs/manual/loops.md has the formula",
-            )),
-        },
+                (None, None) => return Ok(()),
+            };
+            Err(Problem::usage(
+                format!("`{function}` of {crane} in C would be that of the open chain, without {what}"),
+                format!(
+                    "export `bias`, `forces`, `solve_mass`, `loop_states` and `loop_jacobians` with `--functions`, and solve for the forces of the loop: docs/manual/loops.md has the formula{or}"
+                ),
+            ))
+        }
     }
 }

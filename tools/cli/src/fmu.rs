@@ -84,7 +84,10 @@ pub fn write_unit(
         out,
         "{file} written: FMI {}, co-simulation{}, {}{}; {size:.1} MB",
         version.number(),
-        if crane.chain().loop_joints.is_empty() { " and model exchange" } else { " alone because of its loops" },
+        match crane.loop_joints().first() {
+            None => " and model exchange".to_owned(),
+            Some(joint) => format!(" alone because of {}", joint.closes()),
+        },
         if is_compiled { "compiled, " } else { "" },
         systems.join(", ")
     )?)

@@ -4,7 +4,7 @@ use std::{io::Write, path::Path};
 
 use crane_live::LiveCrane;
 use crane_model::{
-    Description,
+    Description, LoopJointInfo,
     dyn_crane::{DynCrane, DynModel},
     dynamics, force_states,
     linear::{About, Drift, Forces, LinearModel},
@@ -61,12 +61,15 @@ pub fn linearise(options: &Linearise, registry: &Registry, out: &mut dyn Write) 
     let description = crane.description();
     let is_closed = description.has_hidden_forces() || !crane.loop_joints().is_empty();
     if is_closed && !options.held.is_empty() {
+        let or = crane.loop_joints().first().map_or("", LoopJointInfo::remedy);
         return Err(Problem::usage(
             format!(
-                "{} has loops, valves or joints that stick: nothing else can hold its coordinates",
+                "{} has loops, rigid couplings, valves or joints that stick: nothing else can hold its coordinates",
                 description.name
             ),
-            "let its drives hold them, `motion: {hold: 30 deg}` in the spec, or give a moment of a run with `--from`",
+            format!(
+                "let its drives hold them, `motion: {{hold: 30 deg}}` in the spec, or give a moment of a run with `--from`{or}"
+            ),
         ));
     }
     let latest = dynamics::Settings::TIMES.1;

@@ -1,19 +1,19 @@
 //! Functions whose results do not follow from time, pose and rates alone, or which closed loops change.
 
 use crane_codegen::program::FunctionId;
-use crane_model::dyn_crane::DynModel;
+use crane_model::{LoopJointInfo, dyn_crane::DynModel};
 
 use crate::LiveCrane;
 
 /// Why a function of a state is not what a user asks for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Refusal<'a> {
     /// Some forces have states of their own, which belong to a run.
     ForceStates,
     /// The crane has more than [`LiveCrane::MOST_COORDINATES_OF_DERIVATIVES`].
     TooLarge,
-    /// The function is that of the open chain, and this joint closes a loop.
-    Loop(&'a str),
+    /// The function is that of the open chain, and this joint closes a loop, or this coupling is rigid.
+    Loop(&'a LoopJointInfo),
 }
 
 impl LiveCrane {
@@ -48,6 +48,6 @@ impl LiveCrane {
             }
             _ => false,
         };
-        self.loop_joints().first().filter(|_| loops_matter).map(|joint| Refusal::Loop(&joint.name))
+        self.loop_joints().first().filter(|_| loops_matter).map(Refusal::Loop)
     }
 }

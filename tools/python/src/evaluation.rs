@@ -132,7 +132,7 @@ impl Crane {
                 let most = crane_live::LiveCrane::MOST_COORDINATES_OF_DERIVATIVES;
                 format!("is offered up to {most} coordinates, and the crane has {}", self.live.size())
             }
-            Some(Refusal::Loop(joint)) => format!("depends on the loop that {joint} closes"),
+            Some(Refusal::Loop(joint)) => format!("depends on {}", joint.closes()),
         };
         let instead = match function {
             FunctionId::Linearise => "use modes(q)",
@@ -143,7 +143,8 @@ impl Crane {
             _ => "use simulate, whose columns contain them",
         };
         let name = &self.live.description().name;
-        Err(PyValueError::new_err(format!("{} of {name} {why}: {instead}", function.name())))
+        let or = if let Some(Refusal::Loop(joint)) = refusal { joint.remedy() } else { "" };
+        Err(PyValueError::new_err(format!("{} of {name} {why}: {instead}{or}", function.name())))
     }
 
     /// States of the forces of a crane that has some, in words.

@@ -166,11 +166,13 @@ impl Crane {
             return Ok(*id);
         }
         let description = self.live.description();
-        let is_closed = name == FunctionId::ForwardDynamics.name() && !self.live.loop_joints().is_empty();
-        let words = if is_closed {
+        let joint = self.live.loop_joints().first().filter(|_| name == FunctionId::ForwardDynamics.name());
+        let words = if let Some(joint) = joint {
             format!(
-                "{name} of {} depends on its closed loops: use the products of dynamic_residual, loop_states and loop_jacobians",
-                description.name
+                "{name} of {} depends on {}: use the products of dynamic_residual, loop_states and loop_jacobians{}",
+                description.name,
+                joint.closes(),
+                joint.remedy()
             )
         } else {
             let known: Vec<&str> = known().map(|id| id.name()).collect();

@@ -226,9 +226,10 @@ impl Crane {
         }
         if let Some(joint) = self.live.loop_joints().first() {
             return Err(PyValueError::new_err(format!(
-                "{} has a loop, which {} closes: use modes(q), about poses at rest, or state_space",
+                "{} has {}: use modes(q), about poses at rest, or state_space{}",
                 self.live.description().name,
-                joint.name
+                joint.closes(),
+                joint.remedy()
             )));
         }
         Ok(())

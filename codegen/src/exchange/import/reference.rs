@@ -141,8 +141,7 @@ impl Reference {
             })
         });
         forces.extend(couplings);
-        let plain =
-            |(joint, _): &(&Joint, String)| joint.friction == 0.0 && joint.held.is_none() && joint.follows.is_none();
+        let plain = |(joint, _): &(&Joint, String)| joint.friction == 0.0 && joint.held.is_none();
         Reference {
             links: order.iter().map(of_link).collect(),
             gravity: robot.gravity.unwrap_or(GRAVITY),

@@ -4,7 +4,6 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::links::{Names, SpecLink, SpecMotion, identifier};
-use super::reference::Reference;
 use super::robot::{Coupling, Follows, Joint, Motion, Robot, Spring};
 use crate::chain::{Axis, Frame, Vector};
 use crate::diagnostic::{SourceFile, printable};
@@ -101,9 +100,6 @@ fn drive(joint: &Joint, coordinate: &str) -> Option<String> {
     Some(format!("- {{coordinate: {coordinate}, {law}{rotor}}}"))
 }
 
-/// Frequency of a joint that follows another one, without its leader's motion, rad/s: 200 Hz. Files give none.
-const FOLLOWING: f64 = 400.0 * std::f64::consts::PI;
-
 /// The coordinate that a joint has in a spec; `None` if it does not move.
 fn coordinate_of(joint: &str, links: &[SpecLink]) -> Option<String> {
     links.iter().flat_map(SpecLink::joints).find(|(other, _)| other.name == joint).map(|(_, name)| name)
@@ -125,31 +121,18 @@ fn couplings(robot: &Robot, links: &[SpecLink]) -> String {
         ));
     };
     let mut names = Names::default();
-    let follows = robot.joints.iter().any(|joint| joint.follows.is_some());
-    let inertias = if follows { Reference::inertias_at_reference(robot) } else { Vec::new() };
-    let mut guessed = false;
     for (joint, follower) in links.iter().flat_map(SpecLink::joints) {
         let Some(Follows { leader, multiplier, offset }) = &joint.follows else { continue };
         let Some(leading) = coordinate_of(&leader.name, links) else { continue };
-        guessed = true;
         let name = names.unique(&format!("{follower}_follows"));
-        let inertia = inertias.iter().find(|(other, _)| *other == joint.name).map(|(_, inertia)| *inertia);
-        let inertia = inertia.filter(|inertia| inertia.is_finite()).unwrap_or(1.0);
-        let law =
-            format!("stiffness: {:.1e}, damping: {:.1e}", inertia * FOLLOWING * FOLLOWING, 2.0 * inertia * FOLLOWING);
-        line(&name, [follower, leading], [*multiplier, *offset], &law);
+        line(&name, [follower, leading], [*multiplier, *offset], "rigid: true");
     }
     for coupling in &robot.couplings {
         let Some(ends) = coupled(coupling, links) else { continue };
         let law = format!("stiffness: {}, damping: {}", decimal(coupling.stiffness), decimal(coupling.damping));
         line(&names.unique(&coupling.name), ends, [coupling.ratio, coupling.offset], &law);
     }
-    let comment = if guessed {
-        "joints that follow others; where the file gives no stiffness, it is a guess for 200 Hz, critically damped"
-    } else {
-        "springs between joints"
-    };
-    section("couplings", comment, &lines)
+    section("couplings", "joints that follow others, exactly or through springs", &lines)
 }
 
 /// A link; `on` is the one that carries it, unless it is the previous one.

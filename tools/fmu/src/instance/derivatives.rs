@@ -143,8 +143,9 @@ impl Instance {
             }
             if let (Source::Position(_) | Source::Rate(_), Some(joint)) = (source, self.crane.loop_joints().first()) {
                 return Err(Fault::Error(format!(
-                    "{name} cannot change alone: loop joint {} ties it to others; ask for derivatives with respect to inputs",
-                    joint.name
+                    "{name} cannot change alone: {} ties it to others; ask for derivatives with respect to inputs{}",
+                    joint.words(),
+                    joint.remedy()
                 )));
             }
             match *source {

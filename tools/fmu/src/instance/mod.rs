@@ -363,9 +363,9 @@ impl Instance {
     pub fn set_continuous_states(&mut self, states: &[f64]) -> Result<(), Fault> {
         if let Some(joint) = self.crane.loop_joints().first() {
             return Err(Fault::Error(format!(
-                "loop joint {} ties coordinates to each other, and what an importer integrates would drift off the loop: use the unit for \
-                 co-simulation",
-                joint.name
+                "{} ties coordinates to each other, and what an importer integrates would drift apart: use the unit for co-simulation{}",
+                joint.words(),
+                joint.remedy()
             )));
         }
         self.check_states(states.len())?;

@@ -35,6 +35,7 @@ mod loops;
 mod motion_derivatives;
 mod overlaps;
 mod rates;
+mod rigid_couplings;
 mod rope;
 mod rows;
 mod run_gradients;
