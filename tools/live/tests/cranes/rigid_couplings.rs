@@ -22,7 +22,7 @@ fn crane(text: &str) -> LiveCrane {
 }
 
 /// Two pendulums on the ground that swing in the x-z plane, 0 is downwards; the second follows the first by a ratio that is live.
-fn pendulums(ratio: f64, coupling: &str, more: &str) -> LiveCrane {
+fn pendulums(ratio: f64, more: &str) -> LiveCrane {
     let link = |index: usize| {
         format!(
             "- {{name: {}, on: ground, placement: {{transform: {{translation: [{index}, 0, 0]}}}}, joint: {{revolute: {{axis: y}}}}, mass: {}, \
@@ -35,7 +35,7 @@ fn pendulums(ratio: f64, coupling: &str, more: &str) -> LiveCrane {
     };
     crane(&format!(
         "format: 1\nname: pendulums\nanalyses: [statics, dynamics, modes, internal_forces]\nparameters: {{r: {{value: {ratio}}}}}\n\
-         links:\n- {{name: ground}}\n{}{}couplings: [{{name: gear, coordinate: two_theta, follows: one_theta, ratio: r, offset: {OFFSET}, {coupling}}}]\n{more}",
+         links:\n- {{name: ground}}\n{}{}couplings: [{{name: gear, coordinate: two_theta, follows: one_theta, ratio: r, offset: {OFFSET}, rigid: true}}]\n{more}",
         link(0),
         link(1)
     ))
@@ -79,8 +79,8 @@ fn geared_pendulums_accelerate_as_one() {
     let (theta, rate) = (0.7, -1.4);
     for ratio in [2.0, -0.5] {
         // As written, and as set.
-        let written = pendulums(ratio, "rigid: true", "");
-        let mut set = pendulums(0.1, "rigid: true", "");
+        let written = pendulums(ratio, "");
+        let mut set = pendulums(0.1, "");
         set.set_parameters(&[ratio]).unwrap_or_else(|broken| panic!("{broken}"));
         for crane in [&written, &set] {
             let crane: &dyn DynCrane = crane;
@@ -119,7 +119,7 @@ fn geared_pendulums_accelerate_as_one() {
 #[test]
 fn runs_stay_on_the_coupling_and_keep_energy() {
     let ratio = 2.0;
-    let crane = pendulums(ratio, "rigid: true", "");
+    let crane = pendulums(ratio, "");
     let crane: &dyn DynCrane = &crane;
     let [first, second] = [0, 1].map(|i| MASSES[i] * GRAVITY * CENTRES[i]);
     let energy = |theta: f64, rate: f64| {
@@ -159,7 +159,7 @@ fn runs_stay_on_the_coupling_and_keep_energy() {
 fn rest_and_vibration_are_those_of_one_coordinate() {
     let (ratio, aim, stiffness) = (2.0, 0.5, 300.0);
     let drive = format!("drives: [{{coordinate: one_theta, stiffness: {stiffness}, motion: {{hold: {aim}}}}}]\n");
-    let crane = pendulums(ratio, "rigid: true", &drive);
+    let crane = pendulums(ratio, &drive);
     let crane: &dyn DynCrane = &crane;
     assert_eq!(crane.guess(), [aim, ratio * aim + OFFSET], "the guess follows the coupling");
     let equilibrium = crane.equilibrium(&statics::Settings::default());
@@ -280,4 +280,34 @@ fn a_coupling_that_a_loop_says_already_is_named() {
     let other = linkage(1.5);
     let gap = loop_joints::gap_at(&other as &dyn DynCrane, &q).map(|gap| gap.to_string());
     assert_eq!(gap.as_deref(), Some("coupling gear is off by 8.594°"));
+}
+
+/// A four-bar whose rocker a drive moves is at a dead centre of it where the crank is in line with the pins on the ground; that of a lever which
+/// gears tie to the crank then holds the loop.
+#[test]
+fn a_coordinate_that_is_tied_to_a_driven_one_is_held() {
+    let bars = |drive: &str| {
+        crane(&format!(
+            "format: 1\nname: bars\ngravity: [0, 0, 0]\nlinks:\n- {{name: ground}}\n\
+             - {{name: crank, on: ground, joint: {{revolute: {{axis: y}}}}, mass: 3, com: [0.2, 0, 0], inertia: {{gyration: [0.1, 0.2, 0.2]}}}}\n\
+             - {{name: coupler, placement: {{transform: {{translation: [0.4, 0, 0]}}}}, joint: {{revolute: {{axis: y}}}}, mass: 3, com: [0.5, 0, 0], inertia: {{gyration: [0.1, 0.2, 0.2]}}}}\n\
+             - {{name: rocker, placement: {{transform: {{translation: [1.1, 0, 0]}}}}, joint: {{revolute: {{axis: y}}}}, mass: 3, com: [0.5, 0, 0], inertia: {{gyration: [0.1, 0.2, 0.2]}}}}\n\
+             - {{name: lever, on: ground, joint: {{revolute: {{axis: y}}}}, mass: 3, com: [0.5, 0, 0], inertia: {{gyration: [0.1, 0.2, 0.2]}}}}\n\
+             loop_joints: [{{name: hinge, from: {{at: [1.2, 0, 0]}}, to: {{link: rocker, at: [0.9, 0, 0]}}, joint: {{slide: {{axis: [0, 1, 0]}}}}}}]\n\
+             couplings: [{{name: gear, coordinate: lever_theta, follows: crank_theta, ratio: 2, rigid: true}}]\n\
+             drives: [{{coordinate: {drive}, stiffness: 4e3, motion: {{hold: 0}}}}]\n"
+        ))
+    };
+    // The triangle of the crank's end and both ends of the rocker, with the crank at 0.01 rad.
+    let way = [1.2 - 0.4 * 0.01_f64.cos(), -0.4 * 0.01_f64.sin()];
+    let distance = way[0].hypot(way[1]);
+    let corner = |a: f64, b: f64, c: f64| ((a * a + b * b - c * c) / (2.0 * a * b)).acos();
+    let coupler = way[1].atan2(way[0]) + corner(distance, 1.1, 0.9);
+    let rocker = corner(1.1, 0.9, distance) - std::f64::consts::PI;
+    // Rotations about y turn x downwards.
+    let q = [-0.01, 0.01 - coupler, -rocker, -0.02];
+    let cautions = |drive: &str| loop_joints::cautions(&bars(drive) as &dyn DynCrane, &q);
+    let found = cautions("rocker_theta");
+    assert!(found.len() == 1 && found[0].contains("dead centre of its drives"), "{found:?}");
+    assert!(cautions("lever_theta").is_empty(), "{:?}", cautions("lever_theta"));
 }

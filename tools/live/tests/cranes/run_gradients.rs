@@ -347,6 +347,21 @@ fn loops_with_rigid_drives_change_as_their_runs_do() {
     assert_differences("harvester", &crane, (&["head_mass", "lift", "pin"], &[12.0, 0.01, 1e-3]), &None, &run, 3e-5);
 }
 
+/// A pendulum that drives another one through gears with a live ratio and play.
+#[test]
+fn rigid_couplings_change_as_their_runs_do() {
+    let crane = spec(
+        "format: 1\nname: geared\nparameters: {ratio: {value: 1.6}, play: {value: 0.2, unit: rad}, mass: {value: 3, unit: kg}}\nlinks:\n\
+         - {name: one, joint: {revolute: {axis: y}}, mass: 5, com: [0.5, 0, 0.1], inertia: {gyration: [0.2, 0.2, 0.2]}}\n\
+         - {name: two, placement: {transform: {translation: [1, 0, 0]}}, joint: {revolute: {axis: y}}, mass: mass, com: [0.4, 0, 0], inertia: {gyration: [0.2, 0.2, 0.2]}}\n\
+         couplings: [{name: gear, coordinate: two_theta, follows: one_theta, ratio: ratio, offset: play, rigid: true}]\n\
+         drives: [{coordinate: one_theta, stiffness: 300, damping: 8, motion: {quintic: {from: 0.3, to: -0.4, duration: 0.5}}}]\n\
+         points: [{name: tip, link: two, at: [1, 0, 0]}]\n",
+    );
+    let run = settings(&crane, 0.8, 0.1, 1e-11);
+    assert_differences("geared", &crane, (&["ratio", "play", "mass"], &[1e-2, 1e-2, 0.05]), &None, &run, 3e-5);
+}
+
 /// Ropes with falls, a telescope on pads, feet.
 #[test]
 fn a_crane_with_a_telescope_and_a_rope_changes_as_its_runs_do() {

@@ -128,6 +128,13 @@ fn loops_with_rigid_drives_change_as_their_equilibria_do() {
     assert_derivatives("harvester", &shipped("examples/parallel_harvester", changes), 2, FINE);
 }
 
+#[test]
+fn a_rigid_coupling_with_live_numbers_changes_as_its_equilibria_do() {
+    let changes = "parameters:\n  gear: {value: 0.95}\n  lag: {value: 0.02, unit: m}\ncouplings: [{name: chain, rigid: true, stiffness: ~, \
+                   damping: ~, ratio: gear, offset: lag}]\n";
+    assert_derivatives("chain", &shipped("examples/loader_crane", changes), 2, FINE);
+}
+
 /// The numbers themselves, against those of the runtime.
 #[test]
 fn outputs_have_the_values_of_the_runtime() {
