@@ -1,10 +1,11 @@
 """Robots in MJCF as the compiler imports them, compared with MuJoCo on the same files."""
 
+import mujoco
 import numpy as np
 
 from agree import compare_all, computed, dense_solution
 from comparison import compare
-from mujoco_peer import DISABLED, LoadedFile
+from mujoco_peer import DISABLED, FLAGS, LoadedFile
 from random_mjcf import RandomRobot
 from states import States
 
@@ -38,4 +39,21 @@ def compare_import(path, spec, evaluate, options):
         ours["forward_dynamics"] = dense_solution(ours)
     theirs = computed(library, states, np.zeros(shape))
     forces = np.array([library.passive(*state) for state in zip(q, v)])
-    return [*compare_all(theirs, ours, states), compare("forces", forces, ours["forces"], states.groups)]
+    comparisons = [*compare_all(theirs, ours, states), compare("forces", forces, ours["forces"], states.groups)]
+    if library.model.neq:
+        comparisons += compare_equalities(path, ours, states)
+    return comparisons
+
+
+def compare_equalities(path, ours, states):
+    """Compares gaps and rows of equalities of hinges and slides, which yield in MuJoCo, with those of rigid couplings."""
+    library = LoadedFile(path, int(DISABLED) & ~int(FLAGS.mjDSBL_CONSTRAINT | FLAGS.mjDSBL_EQUALITY))
+    library.model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+    gaps, rows = [], []
+    for q, v in zip(states.q, states.v):
+        library.move_to(q, v)
+        mujoco.mj_forward(library.model, library.data)
+        gaps.append(library.data.efc_pos.copy())
+        rows.append(library.data.efc_J.copy().ravel())
+    pairs = {"gaps": (np.array(gaps), ours["loop_states"][:, ::3]), "rows of gaps": (np.array(rows), ours["loop_jacobians"])}
+    return [compare(name, theirs, found, states.groups) for name, (theirs, found) in pairs.items()]

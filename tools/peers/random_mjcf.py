@@ -1,4 +1,5 @@
-"""Random robots in MJCF with most features of the language: joints of all kinds, several per body, frames, classes, shapes, tendons."""
+"""Random robots in MJCF with most features of the language: joints of all kinds, several per body, frames, classes, shapes, tendons, joints
+that follow others."""
 
 from xml.etree import ElementTree
 
@@ -32,6 +33,8 @@ class RandomRobot:
             parent = self.body(parent, number)
         if self.rng.random() < 0.5:
             self.tendons()
+        if self.joints > 1 and seed % 2:
+            self.equality()
 
     def document(self):
         """The file."""
@@ -101,6 +104,13 @@ class RandomRobot:
             for joint in group:
                 share = self.rng.choice([-1, 1]) * self.rng.uniform(0.3, 2)
                 ElementTree.SubElement(fixed, "joint", joint=str(joint), coef=text(share))
+
+    def equality(self):
+        """A joint that follows another one."""
+        first, second = self.rng.choice(self.joints, 2, replace=False)
+        law = [*self.rng.uniform(-1, 1, 2), 0, 0, 0]
+        section = ElementTree.SubElement(self.root, "equality")
+        ElementTree.SubElement(section, "joint", joint1=f"joint_{first}", joint2=f"joint_{second}", polycoef=text(law))
 
     def mass(self, body):
         """An inertial frame, or shapes."""

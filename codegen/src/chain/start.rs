@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::{Chain, Force, Profile, Ramp};
+use super::{Chain, Follower, Profile, Ramp};
 
 impl Profile {
     /// `q_dr(0)` with the given parameter values and no input set, rad or m.
@@ -52,8 +52,9 @@ impl Chain {
             }
         }
         // A follower may lead another one.
-        for _ in self.connectors() {
-            for follower in self.connectors().iter().filter_map(Force::follower) {
+        let followers: Vec<Follower> = self.followers().collect();
+        for _ in &followers {
+            for follower in &followers {
                 let [own, leader] = [follower.coordinate, follower.leader].map(|id| id.0);
                 if self.guess[own] == follower.place(self.guess[leader], &defaults) {
                     guess[own] = follower.place(guess[leader], parameters);

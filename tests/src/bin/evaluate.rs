@@ -3,7 +3,7 @@
 //! `evaluate list` prints the cranes, one per line. `evaluate layout CRANE` describes one as JSON. `evaluate values CRANE` reads records
 //! `t, q[N], v[N], parameters[P]` from standard input until its end, and writes for each all quantities in the order of the layout: 64-bit
 //! little-endian numbers, matrices row by row. A YAML file instead of a crane's name is run by the interpreter, which provides T, A, e,
-//! forces, accelerations, the residual and stiffness of statics, internal forces, and what there is of connectors.
+//! forces, accelerations, the residual and stiffness of statics, internal forces, and what there is of connectors and loops.
 
 use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::Path;
@@ -119,7 +119,8 @@ fn interpreted(file: &str) -> Result<Interpreted, String> {
 /// Functions of an interpreted crane, in order, and the shapes of their results.
 fn functions(chain: &Chain) -> Vec<(&'static str, Vec<usize>)> {
     let (n, bodies) = (chain.coordinates.len(), chain.bodies.len());
-    let [cuts, connectors] = [Count::Cuts, Count::Connectors].map(|count| chain.count(count));
+    let [cuts, connectors, equations] =
+        [Count::Cuts, Count::Connectors, Count::LoopEquations].map(|count| chain.count(count));
     vec![
         ("transforms", vec![bodies, 4, 4]),
         ("mass_matrix", vec![n, n]),
@@ -136,6 +137,8 @@ fn functions(chain: &Chain) -> Vec<(&'static str, Vec<usize>)> {
         ("connector_jacobians", vec![connectors, n]),
         ("connector_tensions", vec![connectors, 3]),
         ("connector_wrenches", vec![connectors, cuts, 6]),
+        ("loop_states", vec![equations, 3]),
+        ("loop_jacobians", vec![equations, n]),
     ]
 }
 

@@ -228,8 +228,8 @@ fn keep_loops(options: &Export, chain: &Chain) -> Outcome<()> {
             })
         }
         Language::C => {
-            let Some(function) = options.functions().iter().find(|name| SOLVED.contains(&Product::split(name).0))
-            else {
+            let functions = options.functions();
+            let Some(function) = functions.iter().find(|name| SOLVED.contains(&Product::split(name).0)) else {
                 return Ok(());
             };
             let (what, or) = match (loop_joints.first(), rigid_couplings.first()) {

@@ -10,7 +10,7 @@ use std::{
 use crane_codegen::chain::Chain;
 use crane_fmu::{description, resources};
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, DynModel};
 use zip::{CompressionMethod, ZipWriter, result::ZipError, write::SimpleFileOptions};
 
 use crate::{
@@ -86,7 +86,8 @@ pub fn write_unit(
         version.number(),
         match crane.loop_joints().first() {
             None => " and model exchange".to_owned(),
-            Some(joint) => format!(" alone because of {}", joint.closes()),
+            Some(joint) if joint.is_coupling() => format!(" alone because of {}", joint.words()),
+            Some(_) => " alone because of its loops".to_owned(),
         },
         if is_compiled { "compiled, " } else { "" },
         systems.join(", ")

@@ -214,6 +214,49 @@ fn what_is_exported_of_closed_loops_says_what_it_lacks() {
 }
 
 #[test]
+fn rigid_couplings_are_exported_and_refused_with_what_to_write_instead() {
+    let out = folder("couplings");
+    fs::create_dir_all(&out).expect("a folder");
+    let file = |name: &str| out.join(name).to_str().expect("a path").to_owned();
+    let link = |name: &str| {
+        format!(
+            "  - {{name: {name}, joint: revolute, mass: 2, com: [0.5, 0, 0], inertia: {{Ixx: 1, Iyy: 1, Izz: 1}}}}\n"
+        )
+    };
+    let coupling = |name: &str, coordinate: &str, follows: &str| {
+        format!("  - {{name: {name}, coordinate: {coordinate}, follows: {follows}, ratio: -2, rigid: true}}\n")
+    };
+    let links = format!("format: 1\nname: geared\nlinks:\n{}{}{}", link("one"), link("two"), link("three"));
+    let (spec, twice) = (file("geared.yaml"), file("twice.yaml"));
+    let gear = coupling("gear", "two_psi", "one_psi");
+    fs::write(&spec, format!("{links}couplings:\n{gear}")).expect("a spec");
+    let second = coupling("belt", "two_psi", "three_psi");
+    fs::write(&twice, format!("{links}couplings:\n{gear}{second}")).expect("a spec");
+    assert!(crane(&["export", &spec, "--format", "urdf", "-o", &file("geared.urdf")]).status.success());
+    let urdf = fs::read_to_string(file("geared.urdf")).expect("a file");
+    assert!(urdf.contains("<mimic joint=\"one_psi\" multiplier=\"-2\" offset=\"0\"/>"), "{urdf}");
+    refused(
+        &["export", &twice, "--format", "urdf", "-o", &file("twice.urdf")],
+        &["`belt` makes a joint of geared follow a second one", "`--format mjcf`"],
+    );
+    let instead = "give the coupling a `stiffness` instead of `rigid: true`";
+    refused(
+        &["export", &spec, "--format", "c", "-o", &file("geared.c")],
+        &["without the rigid coupling `gear`", "`loop_jacobians`", instead],
+    );
+    refused(
+        &["eval", &spec, "--quantities", "linearise"],
+        &["`linearise` of geared depends on rigid coupling gear", instead],
+    );
+    let output = crane(&["export", &spec, "--format", "fmu", "-o", &file("geared.fmu")]);
+    assert!(
+        text(&output.stdout).contains("co-simulation alone because of rigid coupling gear"),
+        "{}",
+        text(&output.stderr)
+    );
+}
+
+#[test]
 fn the_comparison_writes_figures() {
     let out = folder("comparison");
     let output = crane(&["--duration", "0.02", "--out", out.to_str().expect("a path")]);

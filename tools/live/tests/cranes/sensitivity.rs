@@ -132,7 +132,8 @@ fn loops_with_rigid_drives_change_as_their_equilibria_do() {
 fn a_rigid_coupling_with_live_numbers_changes_as_its_equilibria_do() {
     let changes = "parameters:\n  gear: {value: 0.95}\n  lag: {value: 0.02, unit: m}\ncouplings: [{name: chain, rigid: true, stiffness: ~, \
                    damping: ~, ratio: gear, offset: lag}]\n";
-    assert_derivatives("chain", &shipped("examples/loader_crane", changes), 2, FINE);
+    // Its masses follow the coupling over metres: differences of the lowest frequency have an error of 3e-6.
+    assert_derivatives("chain", &shipped("examples/loader_crane", changes), 2, 1e-5);
 }
 
 /// The numbers themselves, against those of the runtime.

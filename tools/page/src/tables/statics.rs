@@ -286,13 +286,21 @@ fn connectors(cases: &[Case<'_>]) -> Option<Grid> {
     Some(grid)
 }
 
-/// Forces and moments of the joints that close loops.
+/// Forces and moments of the joints that close loops and of rigid couplings.
 fn loop_joints(cases: &[Case<'_>]) -> Option<Grid> {
     let first = cases.iter().find(|case| !case.crane.loop_joints().is_empty())?;
     let mut headings = headings("joint", cases);
     headings.insert(1, "quantity".into());
-    let title =
+    let of_joints =
         "Joints that close loops: what `to` exerts on `from`, in the axes of `from`; rods are positive in tension";
+    let of_couplings = "Rigid couplings: what resists the coordinate that follows";
+    let [joints, couplings] =
+        [false, true].map(|couplings| first.crane.loop_joints().iter().any(|joint| joint.is_coupling() == couplings));
+    let title = match (joints, couplings) {
+        (true, true) => format!("{of_joints}. {of_couplings}"),
+        (_, true) => of_couplings.to_owned(),
+        (_, false) => of_joints.to_owned(),
+    };
     let mut grid = Grid::with_headings("loop_joints", title, headings);
     let values: Vec<_> = cases.iter().map(|case| case.crane.loop_forces_at_rest(&case.equilibrium.q)).collect();
     let joints = first.crane.loop_joints().iter();
