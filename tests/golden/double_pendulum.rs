@@ -16,7 +16,7 @@
 //   end stops: the spec has none
 //   friction of joints: the spec has none
 //   loads applied from outside: the spec has none
-//   springs and ropes between points, couplings of coordinates: the spec has none
+//   springs and ropes between points, couplings with springs: the spec has none
 //   live parameters: the spec has none: all numbers are compiled in
 //   everything out of the crane's plane: all joints rotate about one direction, none translates along it
 //   static residual and tangent stiffness: `analyses` does not include statics

@@ -14,7 +14,7 @@
 //   end stops: the spec has none
 //   friction of joints: the spec has none
 //   loads applied from outside: the spec has none
-//   springs and ropes between points, couplings of coordinates: the spec has none
+//   springs and ropes between points, couplings with springs: the spec has none
 //   everything out of the crane's plane: all joints rotate about one direction, none translates along it
 //   internal forces: `analyses` does not include internal_forces
 //   ∂T/∂q and ∂²T/∂q∂q: `analyses` does not include derivatives

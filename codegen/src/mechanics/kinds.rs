@@ -69,5 +69,5 @@ const LOADS: Row =
 const CONNECTORS: Row = Row {
     forces: FunctionId::ConnectorForces,
     energy: Some(FunctionId::ConnectorEnergy),
-    absent: ("springs and ropes between points, couplings of coordinates", "the spec has none"),
+    absent: ("springs and ropes between points, couplings with springs", "the spec has none"),
 };

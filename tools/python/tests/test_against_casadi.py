@@ -157,6 +157,32 @@ def test_accelerations_of_closed_loops(tmp_path):
     np.testing.assert_allclose(c.forward_dynamics(q, v, states.time), expected, rtol=0, atol=1e-9 * np.abs(expected).max())
 
 
+def test_accelerations_with_rigid_couplings(tmp_path):
+    """A screw and a belt beside a rod that closes a loop: in a run, accelerations by Lagrange's multipliers as above, and equations."""
+    from comparison import compare
+    from crane_model import read_crane
+    from derivations import Derivations
+    from states import States, random_states
+
+    derived_crane = read_crane(ROOT / "tools/casadi/geared.yaml")
+    derivations = Derivations(derived_crane)
+    states = random_states(derived_crane, NEAR_AND_FAR, 1)
+    derived = derivations.evaluate(states)
+    parameters = dict(zip(derived_crane.spec.defaults, states.parameters.T, strict=True))
+    c = crane.load(ROOT / "tools/casadi/geared.yaml", **parameters)
+    found = on_paper(c, states.time, states.q, states.v, ["loop_states", "loop_jacobians"])
+    for quantity, values in found.items():
+        comparison = compare(quantity, derived[quantity], values, states.groups)
+        assert comparison.passed, comparison.row()
+    c = crane.load(ROOT / "tools/casadi/geared.yaml", rest=0.3)
+    run = c.simulate(duration=1, output=0.1, tolerance=1e-9, verify=False)
+    q, v = (np.stack([run[f"{name}{end}"] for name in c.coordinates], axis=1) for end in ("", "_rate"))
+    np.testing.assert_allclose(q[:, 2], 0.05 * q[:, 0] + 0.3, rtol=0, atol=1e-15)
+    states = States(np.array(run["t"]), q, v, np.tile([0.05, 0.3], (len(q), 1)))
+    expected = derivations.closed_accelerations(derivations.evaluate(states))
+    np.testing.assert_allclose(c.forward_dynamics(q, v, states.time), expected, rtol=0, atol=1e-9 * np.abs(expected).max())
+
+
 def test_a_beam_of_parts(tmp_path):
     """A stepped, tapered, curved beam with a live dimension: CasADi integrates with 24 points per part, we with ten or in closed form."""
     from comparison import compare

@@ -295,3 +295,30 @@ def test_a_rendered_crane_moves():
     assert silent.render() is None
     with pytest.raises(ValueError, match="no render mode 'human': write one of rgb_array"):
         environment(render_mode="human")
+
+
+@pytest.mark.parametrize("given", ["one_theta", "two_theta"])
+def test_what_a_rigid_coupling_ties_starts_together(given):
+    """In an episode that begins where one of both coordinates is given, the other is where the coupling has it, as are their rates."""
+    geared = crane.load(
+        "geared.yaml",
+        text="""format: 1
+name: geared
+inputs: {push: {value: 0, unit: N m}}
+links:
+  - {name: one, joint: {revolute: {axis: y}}, mass: 5, com: [0, 0, -0.5], inertia: {gyration: [0.2, 0.2, 0.2]}}
+  - {name: two, placement: {transform: {translation: [0, 0, -1]}}, joint: {revolute: {axis: y}}, mass: 3, com: [0, 0, -0.4], inertia: {gyration: [0.2, 0.2, 0.2]}}
+couplings: [{name: gear, coordinate: two_theta, follows: one_theta, ratio: 2, offset: 0.1, rigid: true}]
+drives: [{coordinate: one_theta, effort: {input: push}}]
+""",
+    )
+    task = {"actions": {"push": (-1, 1)}, "observations": ["one_theta", "two_theta", "one_theta_rate", "two_theta_rate"], "duration": 0.2}
+    env = CraneVectorEnv(geared, 3, **task, reward=reach({}, swing=["one_theta_rate"]))
+    places = np.array([0.1, 0.3, -0.2])
+    observed, _ = env.reset(seed=1, options={"start": {given: places, f"{given}_rate": 0.5}})
+    one, two, one_rate, two_rate = observed.T
+    np.testing.assert_array_equal(one if given == "one_theta" else two, places)
+    np.testing.assert_allclose([two, two_rate], [2 * one + 0.1, 2 * one_rate], rtol=0, atol=1e-15)
+    for _ in range(3):
+        observed, *_ = env.step(np.ones((3, 1), np.float32))
+    np.testing.assert_allclose(observed[:, 1], 2 * observed[:, 0] + 0.1, rtol=0, atol=1e-15)

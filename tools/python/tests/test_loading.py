@@ -51,6 +51,32 @@ ROBOT = """<robot name="arm"><link name="base"/>
 <joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/></joint></robot>"""
 
 
+GRIPPER = """<robot name="gripper"><link name="base"/><link name="palm"><inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial></link>
+<link name="left"><inertial><origin xyz="0 0.02 0.05"/><mass value="0.2"/><inertia ixx="1e-4" iyy="1e-4" izz="1e-4"/></inertial></link>
+<link name="right"><inertial><origin xyz="0 -0.02 0.05"/><mass value="0.3"/><inertia ixx="1e-4" iyy="1e-4" izz="1e-4"/></inertial></link>
+<joint name="wrist" type="revolute"><parent link="base"/><child link="palm"/><axis xyz="0 1 0"/></joint>
+<joint name="one" type="prismatic"><parent link="palm"/><child link="left"/><axis xyz="0 1 0"/></joint>
+<joint name="two" type="prismatic"><parent link="palm"/><child link="right"/><axis xyz="0 1 0"/><mimic joint="one" multiplier="-1" offset="0.01"/></joint></robot>"""
+
+
+def test_a_joint_that_mimics_another_follows_it_exactly_in_every_way_to_move():
+    # The fingers move against each other, along y, about which the wrist turns: (m₁ + m₂) ÿ = g_y (m₁ − m₂).
+    text = crane.from_urdf(GRIPPER).spec + "gravity: [0, 3, -9.81]\n"
+    gripper = crane.load("gripper.yaml", text=text)
+    q, v = np.array([[0.3, 0.01, 0.0], [-0.2, 0.02, -0.01]]), np.array([[0.5, 0.1, -0.1], [0.0, -0.2, 0.2]])
+    accelerations = gripper.forward_dynamics(q, v)
+    expected = 3 * (0.2 - 0.3) / (0.2 + 0.3)
+    np.testing.assert_allclose(accelerations[:, 1:], [[expected, -expected]] * 2, rtol=0, atol=1e-13)
+    run = gripper.simulate(q=[0, 0.005, 0.005], duration=0.2, output=0.1)
+    # F on the follower: m₂ (ÿ₂ − g_y) = −F.
+    np.testing.assert_allclose(run["right_y_follows_force"], 0.3 * (3 + expected), rtol=0, atol=1e-6)
+    stepped = gripper.vector_simulation(9, q=np.repeat(q[:1], 9, axis=0), v=np.repeat(v[:1], 9, axis=0))
+    stepped.step(0.1)
+    np.testing.assert_allclose(stepped.q[:, 2], 0.01 - stepped.q[:, 1], rtol=0, atol=1e-15)
+    with pytest.raises(ValueError, match="rigid coupling right_y_follows.*give the coupling a `stiffness` instead of `rigid: true`"):
+        gripper.forward_dynamics_derivatives(q, v)
+
+
 def test_robots_load_from_files_and_texts(tmp_path):
     for name in ("arm.urdf", "ARM.URDF"):
         (tmp_path / name).write_text(ROBOT)
