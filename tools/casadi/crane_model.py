@@ -347,7 +347,7 @@ def read_crane(path):
                 law = (False, stiffness, damping, 0, 0)
                 crane.connectors.append(Connector([], [], [], [], pad.value(), *law, clearance=clearance, pad=pad))
     for written in spec.get("loop_joints", []):
-        crane.loop_joints.append(read_loop_joint(spec, written, spans, carrier))
+        crane.loop_joints.append(read_loop_joint(crane, written, spans, carrier, read_guess(crane)))
         if "friction" in written or "damping" in written:
             crane.connectors.append(read_friction_of_pin(crane, written, spans))
     crane.loop_joints += exact

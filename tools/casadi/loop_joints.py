@@ -43,8 +43,16 @@ def across(axis):
     return axis, first, np.cross(axis, first)
 
 
-def read_loop_joint(spec, written, spans, carrier):
+def seen_at(crane, one, other, guess):
+    """The axes of the first link as the second sees them at the guess."""
+    entries = lambda rotation: ca.vertsplit(ca.vec(ca.substitute(rotation, crane.q, guess)))
+    values = lambda rotation: np.array([crane.spec.default(entry) for entry in entries(rotation)]).reshape(3, 3).T
+    return values(other).T @ values(one)
+
+
+def read_loop_joint(crane, written, spans, carrier, guess):
     """What is zero: points together, directions of axes, distances from a line, or from a length."""
+    spec = crane.spec
     (one, point), (other, end) = (frame_of(written[key], spans, spec, carrier) for key in ("from", "to"))
     way = one.T @ (end - point)
     joint = written["joint"]
@@ -58,8 +66,9 @@ def read_loop_joint(spec, written, spans, carrier):
         gaps = [ca.dot(ca.SX(first), way), ca.dot(ca.SX(second), way)]
     else:
         axis, first, second = across(keys["axis"])
-        along = np.array(keys.get("to_axis", keys["axis"]), float)
-        turned = one.T @ (other @ ca.SX(along / np.linalg.norm(along)))
+        along, *_ = across(keys.get("to_axis", keys["axis"]))
+        # Both axes point the same way at the guess.
+        turned = one.T @ (other @ ca.SX(along * np.sign(along @ seen_at(crane, one, other, guess) @ axis)))
         gaps = [way, -ca.dot(ca.SX(second), turned), ca.dot(ca.SX(first), turned)]
     ends = [end_of(written[key], spans, spec, carrier) for key in ("from", "to")]
     return LoopJoint(written["name"], gaps, [(body, at[0]) for body, at in ends if body is not None])
@@ -85,12 +94,11 @@ class Pin:
 
 def read_pin(crane, written, spans, carrier, guess, friction):
     """The angle between two directions normal to the axis, one of each link, which are alike at the guess."""
-    spec, keys = crane.spec, written["joint"]["pin"]
-    (one, _), (other, _) = (frame_of(written[key], spans, spec, carrier) for key in ("from", "to"))
+    keys = written["joint"]["pin"]
+    (one, _), (other, _) = (frame_of(written[key], spans, crane.spec, carrier) for key in ("from", "to"))
     axis, first, second = across(keys["axis"])
     along, *_ = across(keys.get("to_axis", keys["axis"]))
-    values = lambda rotation: np.array([spec.default(ca.substitute(entry, crane.q, guess)) for entry in ca.vertsplit(ca.vec(rotation))]).reshape(3, 3).T
-    seen = values(other).T @ values(one)
+    seen = seen_at(crane, one, other, guess)
     # Both axes point the same way at the guess.
     along = along * np.sign(along @ seen @ axis)
     # Of the two directions normal to the axis of the first link, the one that is less along that of the second.
@@ -106,9 +114,9 @@ def read_pin(crane, written, spans, carrier, guess, friction):
     moment = at_rest(ca.gradient(angle, spin))
     ends = []
     for key, own in (("from", moment), ("to", -moment)):
-        body, at = None, spec.vector(written[key]["at"])
+        body, at = None, crane.spec.vector(written[key]["at"])
         if "link" in written[key]:
-            carried, at = carrier(spec, at, spans[written[key]["link"]])
+            carried, at = carrier(crane.spec, at, spans[written[key]["link"]])
             body = next(index for index, known in enumerate(crane.bodies) if known is carried)
         ends.append((body, at[0], own))
     return Pin(at_rest(angle), friction, ends)

@@ -78,10 +78,13 @@ impl Plausibility<'_> {
             let Some(drive) = chain.drives.iter().find(named) else { continue };
             let stiffness = drive.oil().or_else(|| drive.spring().map(|(stiffness, _)| stiffness));
             let Some(stiffness) = stiffness.map(|stiffness| stiffness.at(&self.values)) else { continue };
-            // Other springs, ropes and stops may hold the joint instead.
-            let held = chain.connectors().iter().any(|connector| {
-                let [first, end] = Chain::range(&chain.spanned(&connector.strain));
-                !matches!(connector.law, Law::Friction(_)) && (first..end).contains(&drive.coordinate.0)
+            // Other springs, ropes, stops and couplings may hold the joint instead.
+            let springs = chain.connectors().iter().filter(|connector| !matches!(connector.law, Law::Friction(_)));
+            let spanned = springs.map(|connector| chain.spanned(&connector.strain));
+            let coupled = chain.rigid_couplings.iter().map(|coupling| coupling.follower.coordinates());
+            let held = spanned.chain(coupled).any(|spanned| {
+                let [first, end] = Chain::range(&spanned);
+                (first..end).contains(&drive.coordinate.0)
             });
             let sag = self.effort_of_weight(drive.coordinate).abs() / stiffness;
             if stiffness > 0.0 && sag > SAG && !held && drive.max_effort().is_none() && drive.effort().is_none() {
