@@ -83,7 +83,7 @@ class VectorSimulation(Closed):
                 raise ValueError(f"inputs[{name!r}]: it follows a motion of the spec in some rows; set it in all, or in none")
         q = crane.statics(t=t).q if q is None and t != 0.0 else q
         states = [None if state is None else np.broadcast_to(real_array("a state", state), (len(rows), crane.n)) for state in (q, v)]
-        if not inputs and not crane.shape and states == [None, None]:
+        if not inputs and not crane.shape and q is None and v is None:
             states[0] = np.broadcast_to(crane.statics(t=t).q, (len(rows), crane.n))
         return crane._motions(self._timing, False, float(t), *states, [], inputs or None)
 
