@@ -183,18 +183,21 @@ fn held(crane: &(impl DynModel + ?Sized), loops: &Loops, n: usize) -> Vec<bool> 
     let coordinates = &crane.description().coordinates;
     let mut held: Vec<bool> = coordinates.iter().map(|info| info.role != CoordinateRole::Passive).collect();
     let mut equation = 0;
-    let mut coupled = Vec::new();
+    let mut coupled: Vec<Vec<usize>> = Vec::new();
     for joint in crane.loop_joints() {
         if joint.is_coupling() {
             let row = &loops.jacobian()[equation * n..][..n];
-            coupled.push((0..n).filter(|j| row[*j] != 0.0).collect::<Vec<_>>());
+            coupled.push((0..n).filter(|j| row[*j] != 0.0).collect());
         }
         equation += joint.equations.len();
     }
     // A coordinate that is tied to one that is tied to another is known one pass later.
     for _ in &coupled {
-        for both in coupled.iter().filter(|both| both.iter().any(|j| held[*j])).cloned().collect::<Vec<_>>() {
-            both.into_iter().for_each(|j| held[j] = true);
+        for both in &coupled {
+            let is_held = both.iter().any(|j| held[*j]);
+            for j in both {
+                held[*j] = is_held;
+            }
         }
     }
     held
