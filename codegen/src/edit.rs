@@ -2,9 +2,11 @@
 
 use std::fmt::Write as _;
 
-use crate::diagnostic::{Diagnostics, SourceFile};
+use crate::diagnostic::{Diagnostics, SourceFile, quoted};
 use crate::read::read;
-use crate::spec::{Crane, Either, Link, Number, On, Place, Placement, Spanned, Turn, Vector, acting, entries};
+use crate::spec::{
+    Crane, Either, Link, Number, On, Place, Placement, Point, Spanned, Transform, Turn, Vector, acting, entries,
+};
 
 /// A point may be beyond the end of the beam by this fraction of its length, because both are rounded numbers.
 const WRITTEN: f64 = 1e-9;
@@ -113,26 +115,41 @@ fn changes(crane: &Crane, name: &str, to: BeamEnd<'_>, keys: &str) -> Result<Str
         };
         let given = transform(next);
         let translation = given.and_then(|given| given.translation.as_ref()).map_or("", |_| "translation: ~, ");
-        let mut rotations = format!("{{y: {:?}}}, {{z: {:?}}}", -theta, -psi);
-        for (axis, angle) in turns(next)? {
-            let _ = write!(rotations, ", {{{axis}: {angle:?}}}");
-        }
+        let rotations = rotations_in_beam(given, other, psi, theta)?;
         let _ = writeln!(
             text,
             "  - {{name: {other}, on: {beam}, placement: {{transform: {{{translation}rotation: [{rotations}]}}}}}}"
         );
     }
-    let on_beam = entries(crane.points.as_ref()).filter(|point| point.link.value.as_deref() == Some(name));
+    let on_link =
+        |link: &Option<Spanned<String>>| link.as_ref().is_some_and(|link| link.value.as_deref() == Some(name));
+    let on_beam = |x: &f64| (0.0..=length * (1.0 + WRITTEN)).contains(x);
     let mut points = String::new();
-    for point in on_beam {
-        let Some(at) = point.at.value.as_ref().and_then(numbers) else { continue };
+    for point in entries(crane.points.as_ref()).filter(|point| on_link(&point.link)) {
+        let Some(at) = numbers_or_zero(point.at.as_ref()) else { continue };
         let [x, y, z] = in_beam(at, psi, theta);
-        if let Some(point) = point.name.value.as_deref().filter(|_| (0.0..=length * (1.0 + WRITTEN)).contains(&x)) {
+        if let Some(point) = point.name.value.as_deref().filter(|_| on_beam(&x)) {
             let _ = writeln!(points, "  - {{name: {point}, link: {beam}, at: [{x:?}, {y:?}, {z:?}]}}");
         }
     }
     if !points.is_empty() {
         let _ = write!(text, "points:\n{points}");
+    }
+    let mut frames = String::new();
+    for frame in entries(crane.frames.as_ref()).filter(|frame| on_link(&frame.link)) {
+        let given = frame.transform.as_ref().and_then(|transform| transform.value.as_ref());
+        let Some(at) = numbers_or_zero(given.and_then(|given| given.translation.as_ref())) else { continue };
+        let [x, y, z] = in_beam(at, psi, theta);
+        let Some(frame) = frame.name.value.as_deref().filter(|_| on_beam(&x)) else { continue };
+        let turned = rotations_in_beam(given, frame, psi, theta)?;
+        let _ = writeln!(
+            frames,
+            "  - {{name: {}, link: {beam}, transform: {{translation: [{x:?}, {y:?}, {z:?}], rotation: [{turned}]}}}}",
+            quoted(frame)
+        );
+    }
+    if !frames.is_empty() {
+        let _ = write!(text, "frames:\n{frames}");
     }
     Ok(text)
 }
@@ -143,12 +160,21 @@ fn in_beam([x, y, z]: [f64; 3], psi: f64, theta: f64) -> [f64; 3] {
     [theta.cos() * along - theta.sin() * z, across, theta.sin() * along + theta.cos() * z]
 }
 
+/// The rotations of a transformation of the link, from the axes of the beam.
+fn rotations_in_beam(given: Option<&Transform>, name: &str, psi: f64, theta: f64) -> Result<String, String> {
+    let mut rotations = format!("{{y: {:?}}}, {{z: {:?}}}", -theta, -psi);
+    for (axis, angle) in turns(given, name)? {
+        let _ = write!(rotations, ", {{{axis}: {angle:?}}}");
+    }
+    Ok(rotations)
+}
+
 /// The place of a point of interest on a link, m.
 fn point_on(crane: &Crane, link: &str, name: &str) -> Option<[f64; 3]> {
     let mut points = entries(crane.points.as_ref());
-    let point =
-        points.find(|point| point.name.value.as_deref() == Some(name) && point.link.value.as_deref() == Some(link))?;
-    numbers(point.at.value.as_ref()?)
+    let on_link = |point: &&Point| point.link.as_ref().is_some_and(|on| on.value.as_deref() == Some(link));
+    let point = points.find(|point| point.name.value.as_deref() == Some(name) && on_link(point))?;
+    numbers_or_zero(point.at.as_ref())
 }
 
 /// Where the beam ends.
@@ -208,16 +234,16 @@ fn placed_at(link: &Link) -> Result<[f64; 3], String> {
     }
 }
 
-fn transform(link: &Link) -> Option<&crate::spec::Transform> {
+fn transform(link: &Link) -> Option<&Transform> {
     match link.placement.as_ref()?.value.as_ref()? {
         Placement::Transform(given) => Some(given),
         _ => None,
     }
 }
 
-/// The rotations of a link's placement: axis and angle, rad.
-fn turns(link: &Link) -> Result<Vec<(&'static str, f64)>, String> {
-    let given = transform(link).and_then(|given| given.rotation.as_ref()?.value.as_ref());
+/// The rotations of a transformation of what has this name: axis and angle, rad.
+fn turns(given: Option<&Transform>, name: &str) -> Result<Vec<(&'static str, f64)>, String> {
+    let given = given.and_then(|given| given.rotation.as_ref()?.value.as_ref());
     let turns = given.map_or(&[][..], |given| &given.0);
     let turn = |turn: &Spanned<Turn>| {
         let (axis, angle) = match turn.value.as_ref()? {
@@ -228,7 +254,7 @@ fn turns(link: &Link) -> Result<Vec<(&'static str, f64)>, String> {
         Some((axis, angle.value.as_ref()?.0.number()?))
     };
     let all: Option<Vec<_>> = turns.iter().map(turn).collect();
-    all.ok_or_else(|| format!("the rotation of `{}` is not given by numbers", name_of(link).unwrap_or_default()))
+    all.ok_or_else(|| format!("the rotation of `{name}` is not given by numbers"))
 }
 
 /// What acts on a link besides other links: it would have to move to the beam.
@@ -245,6 +271,10 @@ fn carrier<'a>(links: &[(&'a str, &'a Link)], index: usize) -> Option<&'a str> {
 
 fn name_of(link: &Link) -> Option<&str> {
     link.name.value.as_deref()
+}
+
+fn numbers_or_zero(given: Option<&Spanned<Vector>>) -> Option<[f64; 3]> {
+    given.map_or(Some([0.0; 3]), |given| numbers(given.value.as_ref()?))
 }
 
 fn numbers(vector: &Vector) -> Option<[f64; 3]> {

@@ -104,6 +104,8 @@ pub struct Chain {
     pub inputs: Vec<Input>,
     /// Rotors that joints drive through gears.
     pub rotors: Vec<Rotor>,
+    /// Frames with names of their own.
+    pub frames: Vec<NamedFrame>,
     /// Points of interest.
     pub points: Vec<Point>,
     /// Start of the static solution; one number per coordinate, m or rad.
@@ -114,6 +116,56 @@ pub struct Chain {
     pub analyses: Analyses,
     /// When repeated work becomes a loop.
     pub loops: Loops,
+}
+
+/// A frame with a name of its own, fixed to a body or to the world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedFrame {
+    /// Unique name, any text.
+    pub name: String,
+    /// The body that carries it; `None` for the world.
+    pub body: Option<BodyId>,
+    /// The way to it from the frame of the body: translations and rotations.
+    pub path: Vec<Step>,
+}
+
+impl NamedFrame {
+    /// Its pose in the frame of the body, or in the world.
+    ///
+    /// # Panics
+    /// If `parameters` is shorter than the chain's list of parameters.
+    #[must_use]
+    pub fn pose(&self, chain: &Chain, parameters: &[f64]) -> Frame {
+        self.path.iter().fold(Frame::WORLD, |frame, step| frame.after(step, chain, &[], parameters))
+    }
+
+    /// A point given in it, in the frame of the body, m.
+    #[must_use]
+    pub fn transform_point(&self, local: [Value; 3]) -> [Value; 3] {
+        self.path.iter().rfold(local, |[x, y, z], step| match step {
+            Step::Translate([a, b, c]) => [x + a.clone(), y + b.clone(), z + c.clone()],
+            Step::Rotate { axis, sin, cos } => {
+                let turned = |u: Value, w: Value| {
+                    (cos.clone() * u.clone() - sin.clone() * w.clone(), sin.clone() * u + cos.clone() * w)
+                };
+                match axis {
+                    Axis::X => {
+                        let (y, z) = turned(y, z);
+                        [x, y, z]
+                    }
+                    Axis::Y => {
+                        let (z, x) = turned(z, x);
+                        [x, y, z]
+                    }
+                    Axis::Z => {
+                        let (x, y) = turned(x, y);
+                        [x, y, z]
+                    }
+                }
+            }
+            Step::Move(_) | Step::RotationVector(_) => [x, y, z],
+        })
+    }
 }
 
 /// A point of interest fixed to a body.

@@ -508,6 +508,11 @@ catalogue! {
         "write `gravity: [0, 0, -9.81]` or leave it out; or remove `slope`";
     /// A slope is less steep than 90°.
     E190 steep_slope(angle, degrees) "the ground is inclined by {angle} rad", "90° or more", "angles are in rad: write `{degrees} deg` for degrees";
+    /// A point is either on a link or in a frame.
+    E191 link_or_frame(point) "point `{point}` needs either a link or a frame", "one of the two says where `at` is given",
+        "write `link:` with a link, or `frame:` with one of `frames`";
+    /// A frame that carries a point exists, and is on a link.
+    E192 unknown_frame(name, help) "there is no frame `{name}` on a link", "not listed under `frames:` with a `link`", "{help}";
 
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.

@@ -21,6 +21,17 @@ pub(crate) fn printable(message: &str) -> String {
     line
 }
 
+/// Whether a text has no characters that break or reverse a line.
+pub(crate) fn is_one_line(text: &str) -> bool {
+    let turns = |c| matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    !text.chars().any(|c| c.is_control() || turns(c))
+}
+
+/// A text of one line as YAML has it in quotes.
+pub(crate) fn quoted(text: &str) -> String {
+    format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
+}
+
 /// Turns a table of rules into one constructor per rule, in the module `rule`, and into `CATALOGUE`.
 macro_rules! catalogue {
     ($($(#[doc = $about:literal])+ $code:ident $name:ident($($word:ident),*) $title:literal, $label:literal, $help:literal;)+) => {

@@ -9,7 +9,7 @@ mod source;
 pub use catalogue::CATALOGUE;
 pub(crate) use catalogue::rule;
 pub use definition::Rule;
-pub(crate) use definition::{catalogue, printable};
+pub(crate) use definition::{catalogue, is_one_line, printable, quoted};
 pub(crate) use nearest::{list, suggest};
 pub use nearest::{nearest, similar};
 pub use source::{MAX_BYTES, Part, SourceFile, Span, WrongPlace};

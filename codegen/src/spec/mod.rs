@@ -43,7 +43,7 @@ pub use scalar::{Angle, Constant, FixedAngle, Number, Scalar, Vector};
 pub use schema::json_schema;
 pub use slides_in::{ExactDirection, Pad, Pads, SlidesIn};
 pub use spanned::{Either, Entries, Many, Spanned, entries};
-pub use support::{Kinematics, Point, Support};
+pub use support::{Kinematics, NamedFrame, Point, Support};
 
 use crate::diagnostic::{Mistake, Span};
 use crate::node::FromNode;
@@ -141,6 +141,8 @@ pub struct Crane {
     pub cylinders: Option<Spanned<Vec<Spanned<Cylinder>>>>,
     /// The pump that supplies the cylinders.
     pub pump: Option<Spanned<Pump>>,
+    /// Frames on links, by which points and calls of Python may refer to places.
+    pub frames: Option<Spanned<Vec<Spanned<NamedFrame>>>>,
     /// Points of interest, whose motion is reported.
     pub points: Option<Spanned<Vec<Spanned<Point>>>>,
     /// Starting point of the static solution, by coordinate, rad or m. Default: a driven coordinate at its drive's position at

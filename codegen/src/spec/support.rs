@@ -1,6 +1,6 @@
-//! Supports of the base, and points of interest.
+//! Supports of the base, frames on links, and points of interest.
 
-use super::{Number, Spanned, Vector};
+use super::{Number, Spanned, Transform, Vector};
 use crate::node::FromNode;
 
 /// A support of a free base: three springs and dampers along the axes of the world.
@@ -41,8 +41,21 @@ pub enum Kinematics {
 pub struct Point {
     /// Name, a `snake_case` identifier.
     pub name: Spanned<String>,
-    /// The link that carries it.
-    pub link: Spanned<String>,
-    /// Its position in the frame of the link (for a beam: undeformed), m.
-    pub at: Spanned<Vector>,
+    /// The link that carries it; not with `frame`.
+    pub link: Option<Spanned<String>>,
+    /// The one of `frames` in which `at` is given.
+    pub frame: Option<Spanned<String>>,
+    /// Its position in the frame of the link (for a beam: undeformed), or in `frame`, m. Default `[0, 0, 0]`.
+    pub at: Option<Spanned<Vector>>,
+}
+
+/// A frame with a name of its own, which need not be an identifier.
+#[derive(Clone, Debug, FromNode)]
+pub struct NamedFrame {
+    /// Name.
+    pub name: Spanned<String>,
+    /// The link that carries it. Default: the world.
+    pub link: Option<Spanned<String>>,
+    /// Its pose in the frame of the link (for a beam: undeformed), or in the world. Default: that of the link.
+    pub transform: Option<Spanned<Transform>>,
 }

@@ -7,7 +7,9 @@ use super::{Check, LinkBodies, Owner};
 use crate::chain::{Axis, Body, BodyId, Chain, Coordinate, CoordinateId, CoordinateKind, Step, Value};
 use crate::diagnostic::{Span, rule};
 use crate::expand::placement;
-use crate::spec::{Angle, AxisName, BaseCoordinate, Joint, JointAxis, Link, Number, Placement, Spanned, Turn};
+use crate::spec::{
+    Angle, AxisName, BaseCoordinate, Joint, JointAxis, Link, Number, Placement, Spanned, Transform, Turn,
+};
 
 impl From<AxisName> for Axis {
     fn from(name: AxisName) -> Self {
@@ -200,23 +202,24 @@ impl<'a> Check<'a> {
                 placement::classic_dh(a, &alpha, d, &theta, motion)
             }
             Some(Placement::Transform(transform)) => {
-                let place = "`translation`";
-                let translation = self.vector_or_zero(transform.translation.as_ref(), place, "m", Limit::Any);
-                let list = transform.rotation.as_ref().and_then(|rotation| rotation.value.as_ref());
-                let turns: Vec<_> = list
-                    .into_iter()
-                    .flat_map(|list| &list.0)
-                    .filter_map(|turn| turn.value.as_ref())
-                    .map(|turn| match turn {
-                        Turn::X(angle) => (Axis::X, self.angle(angle, "`rotation`")),
-                        Turn::Y(angle) => (Axis::Y, self.angle(angle, "`rotation`")),
-                        Turn::Z(angle) => (Axis::Z, self.angle(angle, "`rotation`")),
-                    })
-                    .collect();
+                let (translation, turns) = self.transform(transform);
                 placement::transform(translation, &turns, motion)
             }
             None => motion,
         }
+    }
+
+    /// Translation and rotations.
+    pub(super) fn transform(&mut self, given: &Transform) -> ([Value; 3], Vec<(Axis, Value)>) {
+        let translation = self.vector_or_zero(given.translation.as_ref(), "`translation`", "m", Limit::Any);
+        let list = given.rotation.as_ref().and_then(|rotation| rotation.value.as_ref());
+        let turns = list.into_iter().flat_map(|list| &list.0).filter_map(|turn| turn.value.as_ref());
+        let turns = turns.map(|turn| match turn {
+            Turn::X(angle) => (Axis::X, self.angle(angle, "`rotation`")),
+            Turn::Y(angle) => (Axis::Y, self.angle(angle, "`rotation`")),
+            Turn::Z(angle) => (Axis::Z, self.angle(angle, "`rotation`")),
+        });
+        (translation, turns.collect())
     }
 
     fn row(

@@ -278,7 +278,8 @@ impl<'a> Check<'a> {
         connectors.extend(in_pins);
         rotors.extend(self.rotors(crane, &drives));
         self.beam_sections(&loads, &cylinders, &connectors, &loop_joints);
-        let points = self.points(crane);
+        let frames = self.frames(crane);
+        let points = self.points(crane, &frames);
         let exact = rigid_couplings.iter().map(|coupling| coupling.follower.clone());
         let followers: Vec<chain::Follower> = connectors.iter().filter_map(Force::follower).chain(exact).collect();
         let guess = self.guess(crane, &drives, &followers);
@@ -310,6 +311,7 @@ impl<'a> Check<'a> {
             rigid_couplings,
             inputs: std::mem::take(&mut self.inputs),
             rotors,
+            frames,
             points,
             guess,
             run,

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{Check, Owner};
 use crate::chain::{CRATES, CoordinateId, LONGEST_NAME};
-use crate::diagnostic::{Span, rule, suggest};
+use crate::diagnostic::{Span, is_one_line, rule, suggest};
 use crate::spec::Spanned;
 
 /// Keywords of Rust that cannot be raw identifiers either.
@@ -79,8 +79,7 @@ impl Check<'_> {
     pub(super) fn text(&mut self, given: Option<&Spanned<String>>, subject: &str) -> Option<String> {
         let given = given?;
         let text = given.value.as_ref()?;
-        let turns = |c| matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-        if text.chars().any(|c| c.is_control() || turns(c)) {
+        if !is_one_line(text) {
             self.report(rule::not_one_line(given.span, subject));
         }
         Some(text.clone())

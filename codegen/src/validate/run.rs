@@ -1,27 +1,77 @@
-//! Points of interest, the guess of the static solution, and the settings of a run.
+//! Frames and points of interest, the guess of the static solution, and the settings of a run.
 
 use super::Check;
 use super::drives::units;
 use super::limits::Limit;
-use crate::chain::{BodyId, CoordinateId, Drive, Follower, Point, Run, Transmission, Value};
+use crate::chain::{BodyId, CoordinateId, Drive, Follower, NamedFrame, Point, Run, Transmission, Value};
 use crate::diagnostic::{rule, suggest};
-use crate::spec::{self, Constant, Crane, Spanned};
+use crate::expand::placement;
+use crate::spec::{self, Constant, Crane, Spanned, entries};
 
 impl<'a> Check<'a> {
-    pub(super) fn points(&mut self, crane: &'a Crane) -> Vec<Point> {
-        let given = crane.points.as_ref().and_then(|points| points.value.as_deref()).unwrap_or_default();
+    pub(super) fn frames(&mut self, crane: &'a Crane) -> Vec<NamedFrame> {
+        let mut frames = Vec::new();
+        for frame in entries(crane.frames.as_ref()) {
+            let name = self.text(Some(&frame.name), "the name of a frame").unwrap_or_default();
+            self.register_name("frames", &name, "an earlier frame".into(), frame.name.span);
+            let transform = frame.transform.as_ref().and_then(|transform| transform.value.as_ref());
+            let (at, turns) =
+                transform.map_or_else(|| ([Value::ZERO; 3], Vec::new()), |transform| self.transform(transform));
+            let place = frame
+                .link
+                .as_ref()
+                .map_or(Some((None, at.clone())), |link| self.attach(link, at).map(|(body, at)| (Some(body), at)));
+            if let Some((body, at)) = place {
+                frames.push(NamedFrame { name, body, path: placement::transform(at, &turns, Vec::new()) });
+            }
+        }
+        frames
+    }
+
+    pub(super) fn points(&mut self, crane: &'a Crane, frames: &[NamedFrame]) -> Vec<Point> {
         let mut points = Vec::new();
-        for point in given.iter().filter_map(|point| point.value.as_ref()) {
+        for point in entries(crane.points.as_ref()) {
             let name = self.name(&point.name).unwrap_or_default().to_owned();
             if !name.is_empty() {
                 self.register_name("points", &name, "an earlier point".into(), point.name.span);
             }
-            let at = self.vector(&point.at, &format!("the position of point `{name}`"), "m", Limit::Any);
-            if let Some((body, position)) = self.attach(&point.link, at) {
+            let subject = format!("the position of point `{name}`");
+            let at = self.vector_or_zero(point.at.as_ref(), &subject, "m", Limit::Any);
+            let place = match (&point.link, &point.frame) {
+                (Some(link), None) => self.attach(link, at),
+                (None, Some(frame)) => self.in_frame(crane, frame, frames, at),
+                _ => {
+                    self.report(rule::link_or_frame(point.name.span, &name));
+                    None
+                }
+            };
+            if let Some((body, position)) = place {
                 points.push(Point { name, body, position });
             }
         }
         points
+    }
+
+    /// The body that carries a frame, and on it a position given in the frame. `None` if the frame does not exist, or is not on a link.
+    fn in_frame(
+        &mut self,
+        crane: &Crane,
+        given: &Spanned<String>,
+        frames: &[NamedFrame],
+        at: [Value; 3],
+    ) -> Option<(BodyId, [Value; 3])> {
+        let name = given.value.as_deref()?;
+        if let Some((frame, body)) = frames.iter().find(|frame| frame.name == name).and_then(|it| Some((it, it.body?)))
+        {
+            return Some((body, frame.transform_point(at)));
+        }
+        // One on an unknown link has been reported.
+        let on_link = |frame: &spec::NamedFrame| frame.link.is_some() && frame.name.value.as_deref() == Some(name);
+        if !entries(crane.frames.as_ref()).any(on_link) {
+            let known = frames.iter().filter(|frame| frame.body.is_some()).map(|frame| frame.name.as_str());
+            self.report(rule::unknown_frame(given.span, name, suggest(name, known)));
+        }
+        None
     }
 
     /// The body of a link that carries a point, and the position on it: for a beam, the element that contains the point's x. `None` if the

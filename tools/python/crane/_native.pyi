@@ -136,6 +136,8 @@ class Crane:
         """The crane in 3-D and in tables as an HTML page: at rest, or with a run of it."""
     def export(self, format: str) -> str:
         """The crane for other programs: "urdf", "springs" (what URDF cannot express, YAML) or "mjcf", with the present parameters."""
+    def _frame_poses(self) -> Array:
+        """(..., frames, 4, 4): poses of the frames that the spec names, each in the frame of its body, or in the world; m."""
     def _parameter_rows(self, index: int) -> Any:
         """Values of a live parameter, by its place, over the leading axes."""
     def _equilibria(

@@ -4,7 +4,7 @@ import json
 import warnings
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +14,9 @@ from .results import Array
 
 if TYPE_CHECKING:
     from .model import Crane
+
+# A link or a frame that the spec names, and a place in it, m: the origin unless given.
+Place: TypeAlias = str | tuple[str, ArrayLike]
 
 # Points of a frame, in its axes, m: two axes have the third, and on a beam they stay with the rigid element of the first.
 _OFFSETS = ((0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -26,16 +29,29 @@ class Frames:
     the world; so have Jacobians and accelerations.
     """
 
-    def __init__(self, crane: "Crane", frames: Mapping[str, str | tuple[str, ArrayLike]]) -> None:
+    def __init__(self, crane: "Crane", frames: "str | Sequence[str] | Mapping[str, Place]") -> None:
+        if isinstance(frames, str):
+            frames = [frames]
+        if not isinstance(frames, Mapping):
+            frames = {name: name for name in frames}
         self.names = tuple(frames)
+        known = crane.info["frames"]
+        named = {frame["name"]: index for index, frame in enumerate(known)}
         points = []
-        for name, place in frames.items():
+        # By index, the corners of frames in the world, (..., 3, 3).
+        self._standing: dict[int, Array] = {}
+        for index, (name, place) in enumerate(frames.items()):
             link, at = (place, (0.0, 0.0, 0.0)) if isinstance(place, str) else place
             at = real_array(f"frame {name!r}", at)
             if at.shape != (3,):
                 raise ValueError(f"frame {name!r}: write (link, [x, y, z]), m in the axes of the link; the place has shape {at.shape}")
+            if link in named and known[named[link]]["link"] is None:
+                pose = crane._frame_poses()[..., named[link], :3, :]
+                self._standing[index] = (at + np.array(_OFFSETS)) @ np.swapaxes(pose[..., :3], -1, -2) + pose[..., None, :, 3]
+                continue
+            on = "frame" if link in named else "link"
             for corner, offset in enumerate(_OFFSETS):
-                points.append({"name": f"{name}_{corner}", "link": link, "at": [float(x) for x in at + offset]})
+                points.append({"name": f"frame_{index}_{corner}", on: link, "at": [float(x) for x in at + offset]})
         removed = [{"name": point, "remove": True} for point in crane.info["points"]]
         changes = f"points: {json.dumps(removed + points)}\n"
         self._crane = _with(crane, changes)
@@ -43,15 +59,22 @@ class Frames:
     def __repr__(self) -> str:
         return f"Frames({', '.join(self.names)})"
 
-    def _corners(self, numbers: Array, axis: int) -> tuple[Array, Array, Array]:
-        """Origin, and differences of both other points from it, of numbers whose axis `axis` is that of the points."""
+    def _corners(self, numbers: Array, axis: int, of_places: bool = False) -> tuple[Array, Array, Array]:
+        """Origin, and differences of both other points from it, of numbers whose axis `axis` is that of the points. `of_places`: whether they are places;
+        other numbers are zero for what does not move."""
         numbers = np.moveaxis(numbers, axis, 0)
-        origin, one, other = (np.moveaxis(numbers[corner :: len(_OFFSETS)], 0, axis) for corner in range(len(_OFFSETS)))
+        every = np.zeros((len(self.names), len(_OFFSETS), *numbers.shape[1:]))
+        moving = [index for index in range(len(self.names)) if index not in self._standing]
+        every[moving] = numbers.reshape(len(moving), *every.shape[1:])
+        if of_places:
+            for index, corners in self._standing.items():
+                every[index] = np.moveaxis(np.broadcast_to(corners, (*every.shape[2:-1], *corners.shape[-2:])), -2, 0)
+        origin, one, other = (np.moveaxis(every[:, corner], 0, axis) for corner in range(len(_OFFSETS)))
         return origin, one - origin, other - origin
 
     def poses(self, q: ArrayLike) -> Array:
         """(..., frames, 4, 4): transformations to the world; m."""
-        origin, y, z = self._corners(self._crane.points(q), -2)
+        origin, y, z = self._corners(self._crane.points(q), -2, of_places=True)
         pose = np.zeros((*origin.shape[:-1], 4, 4))
         for column, of in enumerate((np.cross(y, z), y, z, origin)):
             pose[..., :3, column] = of
@@ -81,7 +104,6 @@ class Frames:
         x, y, z = np.moveaxis(omega, -1, 0)
         alpha = alpha + np.stack([-y * z, -z * x, x * y], axis=-1)
         return np.concatenate([origin, np.einsum("...ik,...k->...i", rotation, alpha)], axis=-1)
-
 
     def regressor(self, q: ArrayLike, v: ArrayLike, a: ArrayLike) -> Array:
         """(..., n, 10 frames): Y of `A q̈ − e = Y π` for masses that are fixed to the frames, in N and N m per parameter; π has for each frame its mass m,

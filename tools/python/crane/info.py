@@ -96,6 +96,13 @@ class Section(TypedDict):
     place: str
 
 
+class Frame(TypedDict):
+    """A frame that the spec names, and its link; `None` for the world."""
+
+    name: str
+    link: str | None
+
+
 class Info(TypedDict):
     """A crane. `run`: duration, step of rk4 and interval of results that the spec asks for, s."""
 
@@ -109,5 +116,6 @@ class Info(TypedDict):
     inputs: list[Input]
     cuts: list[Cut]
     sections: list[Section]
+    frames: list[Frame]
     points: list[str]
     run: tuple[float, float, float]

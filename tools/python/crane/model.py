@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _native, state_space
 from ._native import NoEquilibrium, real_array
 from .closed import Closed
-from .frames import Frames
+from .frames import Frames, Place
 from .notebook import embed
 from .results import (
     Array,
@@ -451,9 +451,12 @@ class Crane(Closed, _native.Crane):
         numbers = [float(number) for number in (p, i, d, filter, *lead, delay, lag)]
         return state_space.margins(self, model, powers, numbers, invalid)
 
-    def frames(self, frames: Mapping[str, str | tuple[str, ArrayLike]]) -> Frames:
+    def frames(self, frames: str | Sequence[str] | Mapping[str, Place]) -> Frames:
         """Frames fixed to links, by names of their own: `{"tool": ("grapple", [0, 0, -0.5])}`, an origin in the frame of a link, m, with the axes of
         the link (on a beam, of the rigid element there); `{"tool": "grapple"}` is the frame of the link.
+
+        Instead of a link, a name may be one of `frames` of the spec (`Crane.info["frames"]`), which come first: those of an imported robot are the frames
+        of its file. Names alone, `"tool0"` or `["tool0", "base_link"]`, are those frames or links under these names.
         """
         return Frames(self, frames)
 

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
-use crane_codegen::chain::{Profile, Transmission};
+use crane_codegen::chain::{Frame, Profile, Transmission};
 use crane_codegen::compile::check_with;
 use crane_codegen::diagnostic::MAX_BYTES;
 use crane_codegen::edit::{BeamEnd, Unbending};
@@ -294,6 +294,22 @@ impl Crane {
             ([value], []) => Ok(value.into_pyobject(py)?.into_any()),
             _ => Ok(crate::arrays::array(py, values, &self.parameters.shape, &[])?.into_any()),
         }
+    }
+
+    /// (..., frames, 4, 4): poses of the frames that the spec names, each in the frame of its body, or in the world; m.
+    #[pyo3(name = "_frame_poses")]
+    fn frame_poses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let chain = self.live.chain();
+        let poses = crate::parallel::map_rows(py, self.parameters.rows(), |row, _| {
+            let live = self.of_row(row);
+            let poses = chain.frames.iter().map(|frame| frame.pose(chain, live.parameters()));
+            let entries = poses.flat_map(|Frame { axes: [x, y, z], origin }| {
+                let row = move |i: usize| [x[i], y[i], z[i], origin[i]];
+                [row(0), row(1), row(2), [0.0, 0.0, 0.0, 1.0]].concat()
+            });
+            entries.collect::<Vec<f64>>()
+        })?;
+        Ok(crate::arrays::array(py, poses.concat(), &self.parameters.shape, &[chain.frames.len(), 4, 4])?.into_any())
     }
 
     /// (..., n): where statics begins, m and rad; NaN for parameters that break a rule.

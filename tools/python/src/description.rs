@@ -76,6 +76,13 @@ impl Crane {
             rows.push(row);
         }
         all.set_item("inputs", list(std::mem::take(&mut rows))?)?;
+        for frame in &self.live.chain().frames {
+            let row = PyDict::new(py);
+            row.set_item("name", &frame.name)?;
+            row.set_item("link", frame.body.map(|body| &*description.bodies[body.0].link))?;
+            rows.push(row);
+        }
+        all.set_item("frames", list(std::mem::take(&mut rows))?)?;
         let places = crane.section_places_at(&description.guess);
         let place_of = |section: usize| (!description.sections[section].slides).then(|| places[section]);
         for cut in description.cuts() {

@@ -1,5 +1,7 @@
 """Frames on links against transformations of the bodies, whose derivatives the package has."""
 
+import xml.etree.ElementTree as ET
+
 import numpy as np
 import pytest
 
@@ -101,3 +103,117 @@ def test_regressors_identify_cranes(name):
     found = np.linalg.lstsq(np.concatenate(frames.regressor(q, v, a)), np.concatenate(c.inverse_dynamics(q, v, a)), rcond=None)[0]
     expected = c.inverse_dynamics(*others)
     np.testing.assert_allclose(frames.regressor(*others) @ found, expected, atol=1e-9 * np.abs(expected).max())
+
+
+# Axes that lie along no axis of a frame, links that fixed joints merge, also with the ground, and a name that no spec can have for a link.
+ROBOT = """<robot name="arm">
+  <link name="base"/>
+  <link name="Stand"/>
+  <link name="upper"><inertial><origin xyz="0.4 0 0.1"/><mass value="6"/><inertia ixx="0.3" iyy="0.4" izz="0.5" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="bracket"><inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="wrist-2 link"><inertial><mass value="2"/><inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="tool0"/>
+  <link name="camera"/>
+  <joint name="floor" type="fixed"><parent link="base"/><child link="Stand"/><origin xyz="0.1 0.2 1" rpy="0.3 -0.2 0.5"/></joint>
+  <joint name="shoulder" type="revolute"><parent link="Stand"/><child link="upper"/><origin xyz="0 0 0.2" rpy="0 1 0"/><axis xyz="0 -1 0"/></joint>
+  <joint name="plate" type="fixed"><parent link="upper"/><child link="bracket"/><origin xyz="0.3 0 0.1" rpy="0.1 0.2 0.3"/></joint>
+  <joint name="wrist" type="continuous"><parent link="bracket"/><child link="wrist-2 link"/><origin xyz="0.5 0 0" rpy="0 0 -1.2"/><axis xyz="1 2 -2"/></joint>
+  <joint name="flange" type="fixed"><parent link="wrist-2 link"/><child link="tool0"/><origin xyz="0 0.1 0.2" rpy="1 -0.4 2"/></joint>
+  <joint name="mount" type="fixed"><parent link="upper"/><child link="camera"/><origin xyz="0.05 0 0.2" rpy="-1.1 0 0"/></joint>
+</robot>"""
+
+
+def posed(rotation, at):
+    pose = np.eye(4)
+    pose[:3, :3], pose[:3, 3] = rotation, at
+    return pose
+
+
+def about(axis, angle):
+    """Rodrigues' formula."""
+    x, y, z = np.asarray(axis) / np.linalg.norm(axis)
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+
+
+def of_urdf(text, angles):
+    """Poses of all links in the world by the names of the file, with the joints, in the order of the file, at angles."""
+    robot, angles = ET.fromstring(text), iter(angles)
+    poses = {"base": np.eye(4)}
+    for joint in robot.iter("joint"):
+        origin = joint.find("origin")
+        roll, pitch, yaw = (float(word) for word in origin.get("rpy", "0 0 0").split())
+        fixed = about([0, 0, 1], yaw) @ about([0, 1, 0], pitch) @ about([1, 0, 0], roll)
+        axis = joint.find("axis")
+        turned = np.eye(3) if axis is None else about([float(word) for word in axis.get("xyz").split()], next(angles))
+        place = posed(fixed @ turned, [float(word) for word in origin.get("xyz").split()])
+        poses[joint.find("child").get("link")] = poses[joint.find("parent").get("link")] @ place
+    return poses
+
+
+def test_links_of_a_robot_are_where_its_file_has_them():
+    """Some ten products of numbers of size 1, of which the spec has 15 digits: 1e-14."""
+    robot = crane.from_urdf(ROBOT)
+    q = np.random.default_rng(7).uniform(-3, 3, (5, 2))
+    expected = [of_urdf(ROBOT, row) for row in q]
+    names = list(expected[0])
+    frames = robot.frames(names)
+    assert frames.names == tuple(names)
+    wanted = np.array([[row[name] for name in names] for row in expected])
+    np.testing.assert_allclose(frames.poses(q), wanted, atol=1e-13)
+    np.testing.assert_array_equal(robot.frames("tool0").poses(q), frames.poses(q)[:, [names.index("tool0")]])
+    # What stands on the ground does not move.
+    v, a = np.random.default_rng(8).normal(size=(2, 5, 2))
+    standing = [names.index("base"), names.index("Stand")]
+    for moves in (frames.velocities(q, v), frames.accelerations(q, v, a), frames.jacobians(q).sum(axis=-1)):
+        assert not moves[:, standing].any() and moves.any()
+    # A place in the axes of the file, and the same as a point of interest.
+    place = frames.poses(q)[:, names.index("upper")] @ [0.4, 0.0, 0.1, 1.0]
+    np.testing.assert_allclose(robot.frames({"centre": ("upper", [0.4, 0.0, 0.1])}).poses(q)[:, 0, :3, 3], place[:, :3], atol=1e-13)
+    points = crane.load("robot.yaml", text=robot._changed("points: [{name: centre, frame: upper, at: [0.4, 0, 0.1]}, {name: tip, frame: tool0}]"))
+    found = points.points(q)[:, [points.info["points"].index(name) for name in ("centre", "tip")]]
+    np.testing.assert_allclose(found, np.stack([place[:, :3], wanted[:, names.index("tool0"), :3, 3]], axis=1), atol=1e-13)
+
+
+def test_bodies_and_sites_of_mjcf_are_where_the_file_has_them():
+    """A body that turns about an anchor beside its frame, from `ref`: MuJoCo's documentation of joints, with matrices by hand."""
+    robot = crane.from_mjcf(
+        """<mujoco><compiler angle="radian"/><worldbody><body name="Post" pos="0 0 1">
+        <body name="arm" pos="0.1 0 0.2" euler="0.3 0 0"><joint name="hinge" axis="1 1 0" pos="0 0 0.1" ref="0.5"/>
+        <inertial pos="0.2 0 0" mass="1" diaginertia="0.1 0.1 0.1"/>
+        <site name="grip" pos="0.3 0 0" euler="0 0.4 0"/><body name="hand" pos="0.4 0 0"><site name="tip" pos="0 0 0.1"/></body></body></body></worldbody></mujoco>"""
+    )
+    angle, anchor = 1.3, np.array([0.0, 0.0, 0.1])
+    turned = about([1, 1, 0], angle - 0.5)
+    arm = posed(about([1, 0, 0], 0.3), [0.1, 0.0, 1.2]) @ posed(turned, anchor - turned @ anchor)
+    hand = arm @ posed(np.eye(3), [0.4, 0, 0])
+    expected = {
+        "world": np.eye(4),
+        "Post": posed(np.eye(3), [0, 0, 1]),
+        "arm": arm,
+        "hand": hand,
+        "grip": arm @ posed(about([0, 1, 0], 0.4), [0.3, 0, 0]),
+        "tip": hand @ posed(np.eye(3), [0, 0, 0.1]),
+    }
+    np.testing.assert_allclose(robot.frames(list(expected)).poses([angle]), list(expected.values()), atol=1e-13)
+
+
+def test_frames_go_with_a_link_that_bends():
+    """An unloaded beam lies where the link was. The frame of the link is turned by half a turn about z."""
+    robot = crane.from_urdf(ROBOT)
+    tube = {"tube": {"diameter": 0.06, "thickness": 0.002}}
+    bending = robot.with_beam("upper", sections=3, material={"E": 7e10, "G": 2.6e10, "density": 2700}, section=tube, to=(-0.5, 0.1, 0.2))
+    links = {frame["name"]: frame["link"] for frame in bending.info["frames"]}
+    assert links["camera"] == links["bracket"] == "upper_beam"
+    q, whole = np.array([0.7, -0.4]), np.zeros(bending.n)
+    whole[[bending.coordinates.index(name) for name in robot.coordinates]] = q
+    names = ["upper", "bracket", "camera", "tool0"]
+    np.testing.assert_allclose(bending.frames(names).poses(whole), robot.frames(names).poses(q), atol=1e-13)
+
+
+def test_frames_in_the_world_follow_live_parameters():
+    text = PENDULUM.replace("parameters: {", "parameters: {height: {value: 2, unit: m}, ")
+    c = crane.load("pendulum.yaml", text=text + "frames: [{name: mast top, transform: {translation: [0, 0, height], rotation: {x: 90 deg}}}]\n")
+    poses = c.replace(height=np.array([1.0, 3.0])).frames({"top": ("mast top", [0, 0.5, 0]), "rod": "rod"}).poses([0.0])
+    np.testing.assert_array_equal(poses[:, 0, :3, 3], [[0, 0, 1.5], [0, 0, 3.5]])
+    np.testing.assert_array_equal(poses[0, 0, :3, 2], [0, -1, 0])

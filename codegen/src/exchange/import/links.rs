@@ -29,6 +29,20 @@ pub(super) struct SpecLink<'r> {
     pub(super) turned: bool,
     /// Joints in it that do not move, and where they stand, m or rad.
     pub(super) held: Vec<(&'r Joint, f64)>,
+    /// Frames of the file that move with it.
+    pub(super) frames: Vec<FileFrame<'r>>,
+}
+
+/// A frame of the file: its name, and its pose in the frame of the link of the spec, or in the world.
+pub(super) type FileFrame<'r> = (&'r str, Frame);
+
+/// What a robot's groups of links become.
+pub(super) struct Links<'r> {
+    pub(super) links: Vec<SpecLink<'r>>,
+    /// Frames of the file that do not move.
+    pub(super) standing: Vec<FileFrame<'r>>,
+    /// Frames of the file between axes of a free base, which a spec does not have.
+    pub(super) lost: Vec<&'r str>,
 }
 
 /// How it moves.
@@ -81,7 +95,7 @@ impl SpecMotion {
     }
 }
 
-/// The links of a spec, one per group; the fixed group is left out if it has no mass and carries one group.
+/// Links of a spec, one per group; the fixed group is left out if it has no mass and carries one group.
 ///
 /// `tied`: names of joints in springs or equations with other joints, which no free base can have. `repair`: inertias of links that are not
 /// possible become the nearest possible ones; what was changed is added to it.
@@ -89,7 +103,8 @@ pub(super) fn links<'r>(
     groups: &[Group<'r>],
     tied: &BTreeSet<&str>,
     mut repair: Option<&mut Vec<String>>,
-) -> Vec<SpecLink<'r>> {
+) -> Links<'r> {
+    let mut standing = Vec::new();
     let mut names = Names::default();
     let mut links: Vec<SpecLink> = Vec::new();
     // For each group, its link, and the frame of that link expressed in the frame of the robot's link.
@@ -121,11 +136,13 @@ pub(super) fn links<'r>(
             points: Vec::new(),
             turned: rotated != Frame::WORLD,
             held: group.held.clone(),
+            frames: Vec::new(),
         };
         let mut bodies = Names::default();
         let ends = group.links.len() > 1 && link.joint.is_some();
         for (index, (member, frame)) in group.links.iter().enumerate() {
             let pose = rotated.local(frame);
+            link.frames.extend(member.frame.map(|own| (member.name.as_str(), pose.outer(&own))));
             match &member.lump {
                 Some(lump) => link.bodies.push((bodies.unique(&member.name), lump.seen_through(&pose))),
                 None if ends && index > 0 => link.points.push((String::new(), &member.name, clean(pose.origin))),
@@ -144,19 +161,21 @@ pub(super) fn links<'r>(
                 changes.extend(link.repair());
             }
             links.push(link);
+        } else {
+            standing.extend(link.frames);
         }
     }
-    free_base(&mut links, tied);
+    let lost = free_base(&mut links, tied);
     let mut points = Names(links.iter().flat_map(|link| link.motion.coordinates(&link.name)).collect());
     for (name, was, _) in links.iter_mut().flat_map(|link| &mut link.points) {
         *name = points.unique_point(was);
     }
-    links
+    Links { links, standing, lost }
 }
 
 /// Combines joints along x, y, z and about z, y, x at the start of the chain, which carry only the next joint, into a free
-/// base.
-fn free_base(links: &mut Vec<SpecLink>, tied: &BTreeSet<&str>) {
+/// base. Returns the frames of the file between them.
+fn free_base<'r>(links: &mut Vec<SpecLink<'r>>, tied: &BTreeSet<&str>) -> Vec<&'r str> {
     /// x, y, z, psi, theta, phi.
     const ORDER: [(bool, Axis); 6] =
         [(false, Axis::X), (false, Axis::Y), (false, Axis::Z), (true, Axis::Z), (true, Axis::Y), (true, Axis::X)];
@@ -165,20 +184,20 @@ fn free_base(links: &mut Vec<SpecLink>, tied: &BTreeSet<&str>) {
     for (index, link) in links.iter().enumerate() {
         // A free base has neither springs nor dampers of its own.
         if !link.joint.is_some_and(|joint| joint.is_plain() && !tied.contains(joint.name.as_str())) {
-            return;
+            return Vec::new();
         }
         let motion = match link.motion {
             SpecMotion::Prismatic(axis) => (false, axis),
             SpecMotion::Revolute(axis) => (true, axis),
-            _ => return,
+            _ => return Vec::new(),
         };
-        let Some(found) = ORDER[next..].iter().position(|other| *other == motion) else { return };
+        let Some(found) = ORDER[next..].iter().position(|other| *other == motion) else { return Vec::new() };
         if index > 0 && (link.placement != Frame::WORLD || link.on != Some(index - 1)) {
-            return;
+            return Vec::new();
         }
         // It carries nothing else.
         if links.iter().skip(index + 2).any(|other| other.on == Some(index)) && link.bodies.is_empty() {
-            return;
+            return Vec::new();
         }
         next += found + 1;
         motions.push(motion);
@@ -186,18 +205,21 @@ fn free_base(links: &mut Vec<SpecLink>, tied: &BTreeSet<&str>) {
             break;
         }
     }
+    let mut lost = Vec::new();
     // A single motion is an ordinary joint.
     if motions.len() > 1 && links.get(motions.len() - 1).is_some_and(|base| !base.bodies.is_empty()) {
         let placement = links[0].placement;
         let removed = motions.len() - 1;
-        let before = links.drain(..removed).filter_map(|link| link.joint).collect();
+        let before: Vec<SpecLink> = links.drain(..removed).collect();
+        lost.extend(before.iter().flat_map(|link| &link.frames).map(|(name, _)| *name));
         for link in links.iter_mut() {
             link.on = link.on.and_then(|on| on.checked_sub(removed));
         }
-        links[0].before = before;
+        links[0].before = before.into_iter().filter_map(|link| link.joint).collect();
         links[0].placement = placement;
         links[0].motion = SpecMotion::Free(motions);
     }
+    lost
 }
 
 /// A frame with an axis along a direction, and which axis that is: x, y or z. The frame is expressed in the frame of the

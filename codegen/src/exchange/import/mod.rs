@@ -6,7 +6,8 @@
 //! ```
 //!
 //! Links connected by fixed joints become one link of several bodies; massless frames at their ends become points. Joints
-//! keep their coordinates: if the axis of a joint is not x, y or z, the frame of the link is rotated so that it is.
+//! keep their coordinates: if the axis of a joint is not x, y or z, the frame of the link is rotated so that it is. Frames of the file that
+//! are no longer those of links with their names are `frames` of the spec.
 
 mod document;
 mod groups;
@@ -26,6 +27,7 @@ pub use reference::{Reference, ReferenceDynamics};
 
 use crate::diagnostic::{Diagnostics, SourceFile};
 use document::Element;
+use links::Links;
 
 /// How a robot is converted.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -77,7 +79,7 @@ pub fn import(source: &SourceFile, options: &ImportOptions) -> Result<Imported, 
     }
     let groups = groups::groups(&robot, &options.fixed).map_err(diagnostics)?;
     let unrepaired = left_out.len();
-    let links = links::links(&groups, &robot.tied(), options.repair.then_some(&mut left_out));
+    let Links { links, standing, lost } = links::links(&groups, &robot.tied(), options.repair.then_some(&mut left_out));
     let repaired = left_out.len() > unrepaired;
     let held = robot.joints.iter().filter(|joint| options.fixed.contains(&joint.name));
     left_out.extend(held.filter_map(|joint| {
@@ -85,10 +87,14 @@ pub fn import(source: &SourceFile, options: &ImportOptions) -> Result<Imported, 
         let free = !options.fixed.contains(leader);
         free.then(|| format!("Joint `{}` is held, and no longer follows `{leader}`, which moves freely.", joint.name))
     }));
+    if !lost.is_empty() {
+        let lost: Vec<String> = lost.into_iter().map(|name| format!("`{name}`")).collect();
+        left_out.push(format!("Frames between axes of the free base are left out: {}.", lost.join(", ")));
+    }
     let lost = robot.couplings.iter().filter(|coupling| yaml::coupled(coupling, &links).is_none());
     let told = lost.map(|coupling| format!("The spring `{}` is left out: one of its joints is held.", coupling.name));
     left_out.extend(told);
-    let spec = yaml::write_spec(&robot, &links, &left_out, source);
+    let spec = yaml::write_spec(&robot, &links, &standing, &left_out, source);
     let reference = (!repaired).then(|| Reference::new(&robot, &links));
     Ok(Imported { spec, left_out, reference })
 }

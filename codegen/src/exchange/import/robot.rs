@@ -28,6 +28,8 @@ pub(super) struct Link {
     pub(super) name: String,
     pub(super) span: Span,
     pub(super) lump: Option<Lump>,
+    /// Pose in it of the frame to which the file gives its name; `None` if the file has none.
+    pub(super) frame: Option<Frame>,
 }
 
 /// A joint between two links.

@@ -62,7 +62,7 @@ impl Reader {
             .filter(|inner| inner.is("visual") || inner.is("collision"))
             .for_each(|shape| shape.leave_out(SHAPES));
         let lump = node.child("inertial").and_then(|inertial| self.lump(inertial, &name.name));
-        Some(Link { name: name.name, span: name.span, lump })
+        Some(Link { name: name.name, span: name.span, lump, frame: Some(Frame::WORLD) })
     }
 
     fn lump(&mut self, node: Element, link: &str) -> Option<Lump> {

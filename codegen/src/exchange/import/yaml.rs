@@ -3,24 +3,30 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use super::links::{Names, SpecLink, SpecMotion, identifier};
+use super::links::{FileFrame, Names, SpecLink, SpecMotion, identifier};
 use super::robot::{Coupling, Follows, Joint, Motion, Robot, Spring};
 use crate::chain::{Axis, Frame, Vector};
-use crate::diagnostic::{SourceFile, printable};
+use crate::diagnostic::{SourceFile, is_one_line, printable, quoted};
 use crate::exchange::mass::{Lump, clean, without_rounding};
 use crate::exchange::rotation::roll_pitch_yaw;
 use crate::exchange::xml::number_text;
 
 /// The text of a spec.
 ///
-/// `remarks`: what the spec lacks of the robot, which stands at its head.
-pub(super) fn write_spec(robot: &Robot, links: &[SpecLink], remarks: &[String], source: &SourceFile) -> String {
+/// `standing`: frames of the robot in the world. `remarks`: what the spec lacks of the robot, which stands at its head.
+pub(super) fn write_spec(
+    robot: &Robot,
+    links: &[SpecLink],
+    standing: &[FileFrame],
+    remarks: &[String],
+    source: &SourceFile,
+) -> String {
     let file = Path::new(&source.name).file_name().unwrap_or_default().to_string_lossy();
     let (file, robot_name) = (plain(&file), plain(&robot.name));
     let mut text = format!("# The robot {robot_name}, from {file}. SI units; angles in rad, or written as `90 deg`.\n");
     text += "# Positions, velocities and zero positions of joints are those of the robot.\n";
     if links.iter().any(|link| link.turned) {
-        text += "# Frames of links are those of the robot, except where `frame turned` says that z lies along the joint's axis.\n";
+        text += "# Frames of links are those of the robot, except where `frame turned` says that z lies along the joint's axis; `frames` has the robot's.\n";
     }
     if !remarks.is_empty() {
         text += "# What the robot has and this spec does not:\n";
@@ -53,6 +59,8 @@ pub(super) fn write_spec(robot: &Robot, links: &[SpecLink], remarks: &[String], 
         rubbing.map(|(joint, name)| format!("{name}: {{coulomb: {}}}", decimal(joint.friction))).collect();
     text += &section("friction", "N m, N", &rubbing);
     text += &couplings(robot, links);
+    let frames: Vec<String> = frames(links, standing);
+    text += &section("frames", "of the robot, by its names", &frames);
     let points: Vec<_> = links.iter().flat_map(|link| link.points.iter().map(move |point| (link, point))).collect();
     if !points.is_empty() {
         text += "points:                         # frames without mass\n";
@@ -75,6 +83,20 @@ pub(super) fn write_spec(robot: &Robot, links: &[SpecLink], remarks: &[String], 
         );
     }
     text
+}
+
+/// Frames of the robot, except those that are links of the spec with the same name.
+fn frames(links: &[SpecLink], standing: &[FileFrame]) -> Vec<String> {
+    let of_links = links.iter().flat_map(|link| link.frames.iter().map(move |frame| (Some(link.name.as_str()), frame)));
+    let all = standing.iter().map(|frame| (None, frame)).chain(of_links);
+    let own = |(link, (name, pose)): &(Option<&str>, &FileFrame)| *link != Some(*name) || placement(pose).is_some();
+    let written = all.filter(own).filter(|(_, (name, _))| is_one_line(name));
+    let line = |(link, (name, pose)): (Option<&str>, &FileFrame)| {
+        let link = link.map_or_else(String::new, |link| format!(", link: {link}"));
+        let transform = placement(pose).map_or_else(String::new, |given| format!(", transform: {{{given}}}"));
+        format!("- {{name: {}{link}{transform}}}", quoted(name))
+    };
+    written.map(line).collect()
 }
 
 /// A key with a comment and the lines under it; empty if there are none.

@@ -45,7 +45,7 @@ impl Plausibility<'_> {
         }
         for point in entries(crane.points.as_ref()) {
             let name = point.name.value.as_deref().unwrap_or_default();
-            self.check_position(Some(&point.at), &format!("point `{name}`"));
+            self.check_position(point.at.as_ref(), &format!("point `{name}`"));
         }
     }
 

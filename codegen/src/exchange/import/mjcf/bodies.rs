@@ -40,7 +40,8 @@ impl<'a, 'i> File<'a, 'i> {
     /// Everything in the world.
     pub(super) fn world(&mut self, world: Element<'a, 'i>) {
         if self.robot.links.is_empty() {
-            self.robot.links.push(Link { name: WORLD.to_owned(), span: world.tag(), lump: None });
+            let frame = Some(Frame::WORLD);
+            self.robot.links.push(Link { name: WORLD.to_owned(), span: world.tag(), lump: None, frame });
         }
         let mut open = Vec::new();
         let inside = self.elements(world, world.text("childclass"));
@@ -78,7 +79,7 @@ impl<'a, 'i> File<'a, 'i> {
             let (read, at) = self.joint(joint, (&name, index), ends, &here);
             self.robot.joints.push(read);
             if !last {
-                self.robot.links.push(Link { name: link.clone(), span, lump: None });
+                self.robot.links.push(Link { name: link.clone(), span, lump: None, frame: None });
             }
             carrier = link;
             within = Frame { origin: at.map(|x| -x), ..Frame::WORLD };
@@ -93,7 +94,7 @@ impl<'a, 'i> File<'a, 'i> {
         let stands = stands && joints.is_empty();
         let lump = self.lump(&inside, &name, stands);
         let lump = self.masses.of_body(lump).filter(|lump| !lump.is_nothing()).map(|lump| lump.seen_through(&within));
-        self.robot.links.push(Link { name: name.clone(), span, lump });
+        self.robot.links.push(Link { name: name.clone(), span, lump, frame: named.map(|_| within) });
         self.contents(inside, &within, (&name, stands), open);
     }
 
@@ -150,7 +151,7 @@ impl<'a, 'i> File<'a, 'i> {
         let ends = [link, &free_name].map(|end| Named { name: end.to_owned(), span });
         let joint = Joint::new(&format!("{free_name} is a site"), span, Motion::Fixed, ends);
         self.robot.joints.push(Joint { placement, ..joint });
-        self.robot.links.push(Link { name: free_name, span, lump: None });
+        self.robot.links.push(Link { name: free_name, span, lump: None, frame: Some(Frame::WORLD) });
         site.node.leave_out_rest(SHAPES);
     }
 
