@@ -39,6 +39,12 @@ fn shipped() -> Vec<Chain> {
     specs.map(|path| chain(&build::open(&path).expect("a shipped spec"))).collect()
 }
 
+/// With the guess as the start.
+fn mjcf(crane: &Chain) -> Result<String, exchange::Inexpressible> {
+    let parameters = crane.parameter_defaults();
+    exchange::mjcf(crane, &parameters, &[], (&crane.guess_at(&parameters), "guess"))
+}
+
 fn snapshot(name: &str, text: &str) {
     insta::with_settings!({ prepend_module_to_snapshot => false, snapshot_path => "exchange", omit_expression => true }, {
         insta::assert_snapshot!(name, text);
@@ -67,7 +73,7 @@ fn unsupported_robots_are_refused_with_the_reason() {
 #[test]
 fn a_crane_comes_back_from_urdf() {
     for crane in shipped() {
-        let urdf = exchange::urdf(&crane, &crane.parameter_defaults());
+        let urdf = exchange::urdf(&crane, &crane.parameter_defaults(), &[]);
         let spec = spec(&format!("{}.urdf", crane.name), &urdf);
         let back = chain(&SourceFile::new(&crane.name, spec));
         assert_eq!(back.coordinates.len(), crane.coordinates.len());
@@ -189,15 +195,15 @@ fn what_is_written_is_for_people_to_read() {
     let cranes = shipped();
     let named = |name: &str| cranes.iter().find(|crane| crane.name == name).expect("a shipped crane");
     let (planar, rigid) = (named("knuckle_boom"), named("eight_link_rigid"));
-    let urdf = exchange::urdf(planar, &planar.parameter_defaults());
+    let urdf = exchange::urdf(planar, &planar.parameter_defaults(), &[]);
     snapshot("knuckle_boom.urdf", &urdf);
     snapshot("knuckle_boom.springs.yaml", &exchange::springs(planar, &planar.parameter_defaults()));
-    snapshot("knuckle_boom.xml", &exchange::mjcf(planar, &planar.parameter_defaults()).expect("expressible"));
+    snapshot("knuckle_boom.xml", &mjcf(planar).expect("expressible"));
     snapshot("knuckle_boom.yaml", &spec("knuckle_boom.urdf", &urdf));
     // A live parameter is written with the value that it is set to.
-    let heavy = exchange::urdf(rigid, &[800.0]);
+    let heavy = exchange::urdf(rigid, &[800.0], &[]);
     assert!(heavy.contains("load_mass = 800 kg") && heavy.contains("<mass value=\"1076\"/>"));
-    snapshot("eight_link_rigid.xml", &exchange::mjcf(rigid, &rigid.parameter_defaults()).expect("expressible"));
+    snapshot("eight_link_rigid.xml", &mjcf(rigid).expect("expressible"));
 }
 
 /// A robot arm with everything that the import converts.
@@ -208,7 +214,7 @@ fn a_crane_comes_back_from_mjcf() {
     let mut compared = 0;
     for crane in shipped() {
         let defaults = crane.parameter_defaults();
-        let Ok(mjcf) = exchange::mjcf(&crane, &defaults) else { continue };
+        let Ok(mjcf) = mjcf(&crane) else { continue };
         let back = chain(&SourceFile::new(&crane.name, spec(&format!("{}.xml", crane.name), &mjcf)));
         assert_eq!(back.coordinates.len(), crane.coordinates.len());
         for (old, new) in crane.coordinates.iter().zip(&back.coordinates) {
@@ -422,7 +428,7 @@ fn efforts_of_drives_are_exported() {
                 drives:\n  - {coordinate: boom_psi, stiffness: 1e5, motion: {hold: 0}, effort: {hold: 700}}\n";
     let crane = chain(&SourceFile::new("effort", spec));
     assert_eq!(exchange::approximations(&crane), None);
-    let mjcf = exchange::mjcf(&crane, &[]).expect("it can be expressed");
+    let mjcf = mjcf(&crane).expect("it can be expressed");
     assert!(mjcf.contains("gainprm=\"0\" biastype=\"affine\" biasprm=\"700 0 0\""), "{mjcf}");
     let springs = exchange::springs(&crane, &[]);
     assert!(springs.contains("boom_psi: {stiffness: 100000, damping: 0, rest: 0, effort: 700}"), "{springs}");

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::look::{Form, Look, colours, on as looks_on};
 use super::mass::Lump;
 use super::rotation::{length as distance, quaternion};
 use super::springs::{JointSpring, linear_rows, on};
@@ -38,15 +39,21 @@ impl std::error::Error for Inexpressible {}
 /// There is one joint per coordinate, with its name. Springs of elements, drives (held at their positions at t = 0) and passive
 /// damping become stiffness, damping and spring reference of joints, efforts of drives actuators with a constant force, rotors armature; a
 /// linear support becomes three tendons, whose lengths are linear in the base's coordinates. Rigid drives, rigid couplings and joints that close
-/// loops become equality constraints, as stiff as `MuJoCo` allows: they yield by about 1e-4 of the acceleration that they prevent. The guess is the key
-/// frame `start`.
+/// loops become equality constraints, as stiff as `MuJoCo` allows: they yield by about 1e-4 of the acceleration that they prevent.
+///
+/// `looks`: geoms without contacts, in group 2; without any, a capsule represents each body. `start`: the pose of the key frame `start`, and what it is.
 ///
 /// # Errors
 /// A support with exact kinematics or one that lifts off, a line or a pad that closes a loop, or a body with the name of the ground.
 ///
 /// # Panics
-/// If `parameters` is shorter than the chain's list of parameters.
-pub fn mjcf(chain: &Chain, parameters: &[f64]) -> Result<String, Inexpressible> {
+/// If `parameters` or `start` are shorter than the chain's lists of parameters and of coordinates.
+pub fn mjcf(
+    chain: &Chain,
+    parameters: &[f64],
+    looks: &[Look],
+    (start, about_start): (&[f64], &str),
+) -> Result<String, Inexpressible> {
     if let Some(support) = chain.supports.iter().find(|support| support.kinematics == SupportKinematics::Exact) {
         return Err(Inexpressible {
             title: format!("MJCF has no springs along the world's axes, which support `{}` needs", support.name),
@@ -79,6 +86,7 @@ pub fn mjcf(chain: &Chain, parameters: &[f64]) -> Result<String, Inexpressible> 
     if let Some(text) = approximations(chain) {
         xml.comment(&text);
     }
+    xml.comment(&format!("Key frame `start`: {about_start}."));
     xml.open("mujoco", &[("model", chain.name.clone())]);
     xml.leaf("compiler", &[("angle", "radian".into()), ("inertiafromgeom", "false".into())]);
     let gravity = chain.gravity.each_ref().map(|value| value.at(parameters));
@@ -86,14 +94,19 @@ pub fn mjcf(chain: &Chain, parameters: &[f64]) -> Result<String, Inexpressible> 
     let [timestep, integrator] = step;
     xml.leaf("option", &[("gravity", numbers(&gravity)), timestep, integrator]);
     xml.open("default", &[]);
-    let seen = [("contype", "0".into()), ("conaffinity", "0".into()), ("mass", "0".into())];
-    let [contype, conaffinity, mass] = seen;
-    xml.leaf("geom", &[("type", "capsule".into()), ("size", number_text(RADIUS)), contype, conaffinity, mass]);
+    let seen = [("contype", "0"), ("conaffinity", "0"), ("mass", "0"), ("group", "2")];
+    let mut seen: Vec<(&str, String)> = seen.iter().map(|(key, value)| (*key, (*value).to_owned())).collect();
+    if looks.is_empty() {
+        seen.splice(0..0, [("type", "capsule".to_owned()), ("size", number_text(RADIUS))]);
+    }
+    xml.leaf("geom", &seen);
     xml.close();
+    assets(&mut xml, looks);
 
     xml.open("worldbody", &[]);
+    looks_on(looks, None).for_each(|look| geom(&mut xml, look));
     loop_sites(&mut xml, chain, None, parameters);
-    bodies(&mut xml, chain, parameters);
+    bodies(&mut xml, chain, parameters, looks);
     xml.close();
 
     let rods: Vec<(&LoopJoint, &Value)> = chain.loop_joints.iter().filter_map(as_rod).collect();
@@ -130,14 +143,13 @@ pub fn mjcf(chain: &Chain, parameters: &[f64]) -> Result<String, Inexpressible> 
     xml.open("keyframe", &[]);
     // MuJoCo lists joints in the order of the file.
     let order = chain.depth_first().into_iter().flat_map(|body| &chain.bodies[body.0].path).flat_map(Step::coordinates);
-    let start = chain.guess_at(parameters);
-    let guess: Vec<f64> = order.map(|id| start[id.0]).collect();
-    xml.leaf("key", &[("name", "start".into()), ("qpos", numbers(&guess))]);
+    let positions: Vec<f64> = order.map(|id| start[id.0]).collect();
+    xml.leaf("key", &[("name", "start".into()), ("qpos", numbers(&positions))]);
     Ok(xml.finish())
 }
 
 /// All bodies, each within the one that carries it.
-fn bodies(xml: &mut Xml, chain: &Chain, parameters: &[f64]) {
+fn bodies(xml: &mut Xml, chain: &Chain, parameters: &[f64], looks: &[Look]) {
     let placements = placements(chain, parameters);
     let bars = bars(chain, &placements, parameters);
     let rest = vec![0.0; chain.coordinates.len()];
@@ -172,7 +184,8 @@ fn bodies(xml: &mut Xml, chain: &Chain, parameters: &[f64]) {
             None if moves => inertial(xml, &Lump { mass: LEAST, com: [0.0; 3], tensor: [0.0; 6] }),
             None => {}
         }
-        if let Some(end) = bars[index] {
+        looks_on(looks, Some(id)).for_each(|look| geom(xml, look));
+        if let Some(end) = bars[index].filter(|_| looks.is_empty()) {
             xml.leaf("geom", &[("fromto", numbers(&[[0.0; 3], end].concat()))]);
         }
         for point in chain.points.iter().filter(|point| point.body.0 == index) {
@@ -184,6 +197,38 @@ fn bodies(xml: &mut Xml, chain: &Chain, parameters: &[f64]) {
     for _ in open {
         xml.close();
     }
+}
+
+/// Colours and meshes.
+fn assets(xml: &mut Xml, looks: &[Look]) {
+    if looks.is_empty() {
+        return;
+    }
+    xml.open("asset", &[]);
+    for (name, colour) in colours(looks) {
+        xml.leaf("material", &[("name", name.to_owned()), ("rgba", colour)]);
+    }
+    for look in looks {
+        if let Form::Mesh { name, file } = &look.form {
+            // Surfaces are not solids to be weighed.
+            xml.leaf("mesh", &[("name", name.clone()), ("file", file.clone()), ("inertia", "shell".into())]);
+        }
+    }
+    xml.close();
+}
+
+fn geom(xml: &mut Xml, Look { frame, form, paint, .. }: &Look) {
+    let (kind, shape) = match form {
+        Form::Box(sides) => ("box", ("size", numbers(&sides.map(|side| side / 2.0)))),
+        Form::Cylinder { radius, length } => ("cylinder", ("size", numbers(&[*radius, length / 2.0]))),
+        Form::Sphere(radius) => ("sphere", ("size", number_text(*radius))),
+        Form::Mesh { name, .. } => ("mesh", ("mesh", name.clone())),
+    };
+    let mut attributes = vec![("type", kind.to_owned()), shape, ("material", (*paint).to_owned())];
+    if *frame != Frame::WORLD {
+        attributes.extend([("pos", numbers(&frame.origin)), ("quat", numbers(&quaternion(frame)))]);
+    }
+    xml.leaf("geom", &attributes);
 }
 
 /// Length along the axis of a pin between its two sites, m.

@@ -5,6 +5,7 @@
 //! order of `q`.
 
 mod import;
+mod look;
 mod mass;
 mod mjcf;
 mod rotation;
@@ -13,10 +14,12 @@ mod urdf;
 pub mod xml;
 
 pub use import::{CATALOGUE, ImportOptions, Imported, Reference, ReferenceDynamics, import, with_includes};
+pub use look::{Form, Look};
 pub use mjcf::{Inexpressible, mjcf};
 pub use springs::springs;
 pub use urdf::urdf;
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use crate::chain::{Body, BodyId, Chain, Frame, Group, Step, Strain, Vector};
@@ -70,13 +73,11 @@ pub fn approximations(chain: &Chain) -> Option<String> {
         ),
     ];
     let connectors = connectors.into_iter().filter(|(has, _)| *has).map(|(_, text)| Some(text.to_owned()));
-    let loops = (!chain.loop_joints.is_empty())
-        .then(|| "The start is the guess, in which loops may be open; statics closes them.".to_owned());
     let oil = chain.has_valves().then(|| {
         "Cylinders with valves are left out: their joints have no drive and fall; add drives for them.".to_owned()
     });
     let limits = chain.has_limited_drives().then(|| "Limits of drives are left out.".to_owned());
-    let lost = [hinges, joints, loads].into_iter().chain(connectors).chain([loops, oil, limits]).flatten();
+    let lost = [hinges, joints, loads].into_iter().chain(connectors).chain([oil, limits]).flatten();
     let lost: Vec<String> = lost.collect();
     (!lost.is_empty()).then(|| lost.join(" "))
 }
@@ -87,6 +88,16 @@ fn placements(chain: &Chain, parameters: &[f64]) -> Vec<Frame> {
     let along =
         |path: &[Step]| path.iter().fold(Frame::WORLD, |frame, step| frame.after(step, chain, &rest, parameters));
     chain.bodies.iter().map(|body| along(&body.path)).collect()
+}
+
+/// A name that is not in use yet and that fits, which is in use from here on: `first`, or with a number behind it.
+#[must_use]
+pub fn free_name(names: &mut BTreeSet<String>, first: &str, fits: impl Fn(&BTreeSet<String>, &str) -> bool) -> String {
+    let numbered = (2..).map(|number| format!("{first}_{number}"));
+    let mut candidates = std::iter::once(first.to_owned()).chain(numbered);
+    let free = candidates.find(|name| !names.contains(name) && fits(names, name)).unwrap_or_else(|| first.to_owned());
+    names.insert(free.clone());
+    free
 }
 
 /// The end of the bar that represents a body in pictures, from the origin of its frame: the first body that it carries, or its centre of mass.

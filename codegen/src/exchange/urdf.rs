@@ -1,5 +1,6 @@
 //! A crane as URDF: kinematics and masses; springs and dampers are in a second file.
 
+use super::look::{Form, Look, colours, on};
 use super::mass::Lump;
 use super::rotation::{along_z, length, roll_pitch_yaw};
 use super::xml::{Xml, number_text, numbers};
@@ -14,12 +15,12 @@ pub(super) const NO_LIMIT: [f64; 3] = [1e3, 1e3, 1e9];
 ///
 /// There is one joint per coordinate, with its name; a body with several coordinates has massless links between them. Names of
 /// fixed joints end in `_mount`; points of interest are massless links. A joint that a rigid coupling ties to another one mimics it; of
-/// several such couplings of one joint, URDF can express only one.
+/// several such couplings of one joint, URDF can express only one. `looks` are its visuals; without any, a bar represents each body.
 ///
 /// # Panics
 /// If `parameters` is shorter than the chain's list of parameters.
 #[must_use]
-pub fn urdf(chain: &Chain, parameters: &[f64]) -> String {
+pub fn urdf(chain: &Chain, parameters: &[f64], looks: &[Look]) -> String {
     let mut xml = Xml::new(&origin(chain, parameters));
     xml.open("robot", &[("name", chain.name.clone())]);
     if let Some(text) = approximations(chain) {
@@ -29,20 +30,28 @@ pub fn urdf(chain: &Chain, parameters: &[f64]) -> String {
     // A crane may have a link with the name of the world.
     let taken = chain.bodies.iter().any(|body| body.name == WORLD);
     let ground = if taken { format!("{WORLD}_0") } else { WORLD.to_owned() };
-    xml.leaf("link", &[("name", ground.clone())]);
-    let bars = bars(chain, &placements(chain, parameters), parameters);
-    for (body, bar) in chain.bodies.iter().zip(bars) {
+    for (name, colour) in colours(looks) {
+        xml.open("material", &[("name", name.to_owned())]);
+        xml.leaf("color", &[("rgba", colour)]);
+        xml.close();
+    }
+    link(&mut xml, &ground, None, on(looks, None), None);
+    let mut bars = bars(chain, &placements(chain, parameters), parameters);
+    if !looks.is_empty() {
+        bars.fill(None);
+    }
+    for (index, (body, bar)) in chain.bodies.iter().zip(bars).enumerate() {
         let mut parent = body.parent.map_or(&ground, |BodyId(parent)| &chain.bodies[parent].name).clone();
         let mut placement = Frame::WORLD;
         let path = hinged(&body.path);
-        for (index, step) in path.iter().enumerate() {
+        for (place, step) in path.iter().enumerate() {
             let Step::Move(id) = step else {
                 placement = placement.after(step, chain, &[], parameters);
                 continue;
             };
             let coordinate = &chain.coordinates[id.0];
             let kind = if coordinate.kind == CoordinateKind::Rotation { "revolute" } else { "prismatic" };
-            let is_last = index + 1 == path.len();
+            let is_last = place + 1 == path.len();
             let child = if is_last { body.name.clone() } else { format!("{}_frame", coordinate.name) };
             let mut axis = [0.0; 3];
             axis[coordinate.axis.index()] = 1.0;
@@ -57,7 +66,7 @@ pub fn urdf(chain: &Chain, parameters: &[f64]) -> String {
             joint(&mut xml, &format!("{}_mount", body.name), (&parent, &body.name), &placement, None);
         }
         let mass = body.inertia.as_ref().map(|inertia| Lump::of(inertia, parameters));
-        link(&mut xml, &body.name, mass.as_ref(), bar);
+        link(&mut xml, &body.name, mass.as_ref(), on(looks, Some(BodyId(index))), bar);
     }
     for point in &chain.points {
         let at = point.position.each_ref().map(|value| value.at(parameters));
@@ -111,10 +120,17 @@ fn joint(xml: &mut Xml, name: &str, (parent, child): (&str, &str), placement: &F
     xml.close();
 }
 
-/// A body: its mass, and the bar that represents it.
-fn link(xml: &mut Xml, name: &str, mass: Option<&Lump>, bar: Option<Vector>) {
+/// A body: its mass, and what is shown of it: parts, or the bar that represents it.
+fn link<'a>(
+    xml: &mut Xml,
+    name: &str,
+    mass: Option<&Lump>,
+    looks: impl Iterator<Item = &'a Look>,
+    bar: Option<Vector>,
+) {
     let named = [("name", name.to_owned())];
-    if mass.is_none() && bar.is_none() {
+    let mut looks = looks.peekable();
+    if mass.is_none() && bar.is_none() && looks.peek().is_none() {
         return xml.leaf("link", &named);
     }
     xml.open("link", &named);
@@ -126,14 +142,34 @@ fn link(xml: &mut Xml, name: &str, mass: Option<&Lump>, bar: Option<Vector>) {
         xml.leaf("inertia", &entries.collect::<Vec<_>>());
         xml.close();
     }
+    for Look { frame, form, paint, .. } in looks {
+        visual(xml, frame, form, Some(paint));
+    }
     if let Some(end) = bar {
-        xml.open("visual", &[]);
         let middle = end.map(|component| component / 2.0);
-        xml.leaf("origin", &pose(&Frame { origin: middle, ..along_z(end) }));
-        xml.open("geometry", &[]);
-        xml.leaf("cylinder", &[("radius", number_text(RADIUS)), ("length", number_text(length(end)))]);
-        xml.close();
-        xml.close();
+        let form = Form::Cylinder { radius: RADIUS, length: length(end) };
+        visual(xml, &Frame { origin: middle, ..along_z(end) }, &form, None);
+    }
+    xml.close();
+}
+
+fn visual(xml: &mut Xml, frame: &Frame, form: &Form, paint: Option<&str>) {
+    xml.open("visual", &[]);
+    if *frame != Frame::WORLD {
+        xml.leaf("origin", &pose(frame));
+    }
+    xml.open("geometry", &[]);
+    match form {
+        Form::Box(sides) => xml.leaf("box", &[("size", numbers(sides))]),
+        Form::Cylinder { radius, length } => {
+            xml.leaf("cylinder", &[("radius", number_text(*radius)), ("length", number_text(*length))]);
+        }
+        Form::Sphere(radius) => xml.leaf("sphere", &[("radius", number_text(*radius))]),
+        Form::Mesh { file, .. } => xml.leaf("mesh", &[("filename", file.clone())]),
+    }
+    xml.close();
+    if let Some(paint) = paint {
+        xml.leaf("material", &[("name", paint.to_owned())]);
     }
     xml.close();
 }

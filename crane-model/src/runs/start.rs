@@ -13,6 +13,11 @@ pub const EQUILIBRIUM: &str = "static equilibrium, at rest";
 /// Start of a crane whose spec does not.
 pub const GUESS: &str = "guess, at rest";
 
+/// The same of a crane with loops.
+pub const GUESS_CLOSED: &str = "guess, moved onto the loops, at rest";
+/// The same of a crane whose loops do not close.
+pub const GUESS_OPEN: &str = "guess, whose loops are open, at rest";
+
 /// The same with given rates.
 pub const EQUILIBRIUM_MOVING: &str = "static equilibrium, with given rates";
 /// The same with given rates.
@@ -47,6 +52,16 @@ impl Start {
         } else {
             Ok(Self::guess(crane))
         }
+    }
+
+    /// The start of [`Start::of`] or, where there is none, the guess; [`Start::what`] says which, and whether the guess is on the loops.
+    pub fn of_or_guess(crane: &dyn DynCrane) -> Self {
+        let mut start = Self::of(crane).unwrap_or_else(|_| Self::guess(crane));
+        if !start.rests && crane.loop_equations() > 0 {
+            let closed = start.close_state(crane, 0.0).is_ok();
+            if closed { GUESS_CLOSED } else { GUESS_OPEN }.clone_into(&mut start.what);
+        }
+        start
     }
 
     /// The start of a crane at time `t`, s, with another pose, at rest, or with other rates, where these are given.

@@ -24,8 +24,9 @@ pub fn differences(tree: &Tree, second: &Second) -> Vec<String> {
     different("scene", [&Scene::new(&written, &q).json(), &Scene::new(&set, &q).json()], &mut lines);
     let exported = |crane: &LiveCrane| {
         let (chain, parameters) = (crane.chain(), crane.parameters());
-        let mjcf = exchange::mjcf(chain, parameters).unwrap_or_else(|failure| failure.title);
-        [exchange::urdf(chain, parameters), exchange::springs(chain, parameters), mjcf]
+        let mjcf = exchange::mjcf(chain, parameters, &[], (&chain.guess_at(parameters), "guess"))
+            .unwrap_or_else(|failure| failure.title);
+        [exchange::urdf(chain, parameters, &[]), exchange::springs(chain, parameters), mjcf]
     };
     for (name, (written, set)) in ["URDF", "springs", "MJCF"].iter().zip(exported(&written).iter().zip(exported(&set)))
     {

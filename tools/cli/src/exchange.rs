@@ -1,6 +1,10 @@
 //! `crane export` and `crane import`: cranes for other programs, and from them.
 
-use std::{io::Write, path::Path};
+use std::{
+    collections::BTreeMap,
+    io::Write,
+    path::{Path, PathBuf},
+};
 
 use clap::ValueEnum;
 use crane_codegen::{
@@ -10,11 +14,13 @@ use crane_codegen::{
     diagnostic::MAX_BYTES,
     emit_c::{CCode, Precision},
     exchange,
-    exchange::{ImportOptions, Imported},
+    exchange::{ImportOptions, Imported, Look},
     program::Product,
 };
 
-use crane_live::imported::check_import;
+use crane_live::{LiveCrane, imported::check_import};
+use crane_model::{dyn_crane::DynCrane, runs::Start};
+use crane_page::shapes::{Figure, looks::looks};
 
 use crate::{
     arguments::{CNumber, Export, Import, Language},
@@ -64,14 +70,23 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
     }
     keep_rules(&chain, &parameters)?;
     let file = options.file(&chain.name);
+    let mut meshes = BTreeMap::new();
+    let mut start = None;
     let texts = match options.format {
-        Language::Urdf => vec![
-            (file.with_extension("springs.yaml"), exchange::springs(&chain, &parameters)),
-            (file, exchange::urdf(&chain, &parameters)),
-        ],
+        Language::Urdf => {
+            let (_, looks, surfaces) = shown(&chain, &parameters, &file)?;
+            meshes = surfaces;
+            vec![
+                (file.with_extension("springs.yaml"), exchange::springs(&chain, &parameters)),
+                (file.clone(), exchange::urdf(&chain, &parameters, &looks)),
+            ]
+        }
         Language::Mjcf => {
-            let text = exchange::mjcf(&chain, &parameters);
-            vec![(file, text.map_err(|failure| Problem::failed(failure.title, failure.help))?)]
+            let (pose, looks, surfaces) = shown(&chain, &parameters, &file)?;
+            let text = exchange::mjcf(&chain, &parameters, &looks, (&pose.q, &pose.what));
+            meshes = surfaces;
+            start = Some(pose.what);
+            vec![(file.clone(), text.map_err(|failure| Problem::failed(failure.title, failure.help))?)]
         }
         Language::C => {
             let by_forces = ["forces", "forward_dynamics"];
@@ -88,7 +103,7 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
             }
             let header = beside(&file)?;
             let code = screen::working(&chain, || in_c(options, &chain, &parameters, &header))?;
-            vec![(file.with_file_name(header), code.header), (file, code.source)]
+            vec![(file.with_file_name(header), code.header), (file.clone(), code.source)]
         }
         // Written above: it needs a pose.
         Language::Gltf => Vec::new(),
@@ -101,11 +116,37 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
         files::write_text(file, text)?;
         writeln!(out, "{} written", file.display())?;
     }
+    for (name, surface) in &meshes {
+        files::write_file(&file.with_file_name(name), |file| file.write_all(surface))?;
+    }
+    if !meshes.is_empty() {
+        writeln!(out, "{} written, with {} meshes", folder_of_meshes(&file).display(), meshes.len())?;
+    }
+    if let Some(start) = start {
+        writeln!(out, "Key frame `start`: {start}.")?;
+    }
     // The C code covers the whole crane.
     if let (false, Some(text)) = (options.format == Language::C, exchange::approximations(&chain)) {
         writeln!(out, "{text}")?;
     }
     Ok(())
+}
+
+/// Start of an exported crane, what is shown of it there, and the files of meshes that this needs, by their paths from the exported file.
+fn shown(chain: &Chain, parameters: &[f64], file: &Path) -> Outcome<(Start, Vec<Look>, BTreeMap<String, Vec<u8>>)> {
+    let mut live = LiveCrane::new(chain.clone());
+    live.set_parameters(parameters).map_err(|refused| Problem::failed(refused.to_string(), "give another value"))?;
+    let start = Start::of_or_guess(&live);
+    let figure = Figure::new(&live, &start.q, &start.q);
+    let folder = folder_of_meshes(file);
+    let folder = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let (looks, meshes) = looks(&figure, &folder);
+    Ok((start, looks, meshes))
+}
+
+/// The folder beside an exported file with the meshes that it shows.
+fn folder_of_meshes(file: &Path) -> PathBuf {
+    file.with_extension("meshes")
 }
 
 /// Name of the header of a source in C: that of the source with `.h`.

@@ -17,6 +17,7 @@ use crane_live::imported::check_import;
 use crane_live::rows::Evaluation;
 use crane_model::Description;
 use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::runs::Start;
 use crane_quantities::FunctionId;
 use crane_specs::SPECS;
 use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyRuntimeError, PyTypeError, PyValueError};
@@ -277,10 +278,13 @@ impl Crane {
         }
         let (chain, parameters) = (self.live.chain(), self.live.parameters());
         match format {
-            "urdf" => Ok(exchange::urdf(chain, parameters)),
+            "urdf" => Ok(exchange::urdf(chain, parameters, &[])),
             "springs" => Ok(exchange::springs(chain, parameters)),
-            "mjcf" => exchange::mjcf(chain, parameters)
-                .map_err(|failure| PyValueError::new_err(format!("{}; {}", failure.title, failure.help))),
+            "mjcf" => {
+                let start = Start::of_or_guess(&self.live);
+                exchange::mjcf(chain, parameters, &[], (&start.q, &start.what))
+                    .map_err(|failure| PyValueError::new_err(format!("{}; {}", failure.title, failure.help)))
+            }
             other => Err(PyValueError::new_err(format!("format={other:?}: write \"urdf\", \"springs\" or \"mjcf\""))),
         }
     }

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use super::groups::Group;
 use super::robot::{Joint, Motion};
-use super::split::free_name;
 use crate::chain::{Axis, CRATES, Frame, LONGEST_NAME, Vector};
+use crate::exchange::free_name;
 use crate::exchange::mass::{Lump, clean};
 use crate::exchange::rotation::along_z;
 

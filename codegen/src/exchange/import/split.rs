@@ -10,6 +10,7 @@ use super::mistakes::rule;
 use super::robot::{Joint, Link, Motion, Named, Robot, SingleAxis};
 use crate::chain::{Across, Frame, Vector};
 use crate::diagnostic::Mistake;
+use crate::exchange::free_name;
 use crate::exchange::rotation::roll_pitch_yaw;
 
 const UNITS: [Vector; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -98,17 +99,4 @@ pub(super) fn split_joints(robot: &mut Robot, fixed: &[String]) -> Vec<Mistake> 
         }
     }
     mistakes
-}
-
-/// A name that is not in use yet and that fits, which is in use from here on: `first`, or with a number behind it.
-pub(super) fn free_name(
-    names: &mut BTreeSet<String>,
-    first: &str,
-    fits: impl Fn(&BTreeSet<String>, &str) -> bool,
-) -> String {
-    let numbered = (2..).map(|number| format!("{first}_{number}"));
-    let mut candidates = std::iter::once(first.to_owned()).chain(numbered);
-    let free = candidates.find(|name| !names.contains(name) && fits(names, name)).unwrap_or_else(|| first.to_owned());
-    names.insert(free.clone());
-    free
 }

@@ -27,6 +27,20 @@ fn a_picture_has_the_size_that_is_asked_for() {
     refused(&["picture", "--azimuth", "1 m"], &["write an angle"]);
 }
 
+/// What is drawn is part of the files for other programs; surfaces of beams that bend are files beside them.
+#[test]
+fn urdf_and_mjcf_show_the_crane() {
+    let urdf = String::from_utf8(written(&["export", "cantilever", "--format", "urdf"], "urdf")).expect("text");
+    let mesh = urdf.split('"').find(|word| word.ends_with(".stl")).expect("a mesh").to_owned();
+    let surface = fs::read(folder("written_by_export").join(&mesh)).expect("a surface");
+    assert!(surface.len() > 84 && mesh.starts_with("crane.meshes/"), "{mesh}");
+    assert!(urdf.contains("<visual>") && urdf.contains("<material name=\"flexible\">"), "{urdf}");
+    let mjcf = String::from_utf8(written(&["export", "cantilever", "--format", "mjcf"], "xml")).expect("text");
+    assert!(mjcf.contains(&format!("file=\"{mesh}\"")), "{mjcf}");
+    assert!(mjcf.contains("contype=\"0\" conaffinity=\"0\" mass=\"0\" group=\"2\""), "{mjcf}");
+    assert!(mjcf.contains("Key frame `start`: static equilibrium, at rest."), "{mjcf}");
+}
+
 /// glTF shows the pose that `statics` finds with the same options.
 #[test]
 fn gltf_has_the_pose_that_is_held() {

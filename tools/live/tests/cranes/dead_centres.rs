@@ -39,6 +39,34 @@ fn four_bar([crank, coupler, rocker, ground]: [f64; 4], turn: f64, joint: &str, 
     ))
 }
 
+/// A guess from which the loop is open by 0.2 m, of a crane for which statics is not asked; and one that a drive holds at rest.
+#[test]
+fn an_exported_crane_starts_on_its_loops() {
+    let guess = "analyses: [dynamics]\nguess: {crank_psi: 60 deg, coupler_psi: -25 deg, rocker_psi: -110 deg}";
+    let crane = four_bar([0.4, 1.1, 0.9, 1.2], 0.0, "ball", guess);
+    let start = Start::of_or_guess(&crane);
+    assert_eq!(start.what, "guess, moved onto the loops, at rest");
+    // From the end of the third bar to the pin in the ground.
+    let gap = |q: &[f64]| {
+        let angles = [q[0], q[0] + q[1], q[0] + q[1] + q[2]];
+        let end =
+            |of: fn(f64) -> f64| [0.4, 1.1, 0.9].iter().zip(angles).map(|(bar, angle)| bar * of(angle)).sum::<f64>();
+        f64::hypot(end(f64::cos) - 1.2, end(f64::sin))
+    };
+    let open = gap(&crane.chain().guess);
+    assert!((0.15..0.2).contains(&open), "{open}");
+    assert!(gap(&start.q) < 1e-12, "{}", gap(&start.q));
+    // At rest where statics finds it.
+    let held = format!(
+        "guess: {{coupler_psi: -25 deg, rocker_psi: -110 deg}}\ndrives: [{{coordinate: crank_psi, stiffness: 4e3, damping: 60, motion: {{hold: 1.1}}}}]"
+    );
+    let start = Start::of_or_guess(&four_bar([0.4, 1.1, 0.9, 1.2], 0.0, "ball", &held));
+    assert_eq!((start.what.as_str(), start.rests), ("static equilibrium, at rest", true));
+    // The bars do not reach the ground's other end.
+    let far = Start::of_or_guess(&four_bar([0.4, 0.1, 0.1, 1.2], 0.0, "ball", "analyses: [dynamics]"));
+    assert_eq!(far.what, "guess, whose loops are open, at rest");
+}
+
 const SLIDE: &str = "{slide: {axis: [0, 1, 0]}}";
 
 fn cautions(crane: &LiveCrane, q: &[f64]) -> Vec<Caution> {

@@ -1,8 +1,10 @@
 //! Shapes as glTF 2.0 (Khronos Group, glTF 2.0 Specification, 2021): a node per body, named as in the spec, in those that carry them.
 
+use std::collections::BTreeSet;
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use base64::{Engine, engine::general_purpose::STANDARD};
+use crane_codegen::exchange::free_name;
 use nalgebra::{Matrix4, Rotation3, UnitQuaternion, Vector3};
 use serde_json::{Value, json};
 
@@ -53,10 +55,13 @@ fn length(bytes: usize) -> [u8; 4] {
 fn document(figure: &Figure, name: &str, program: Program) -> (Value, Vec<u8>) {
     let Figure { scene, frames, shapes, .. } = figure;
     let mut document = Document { nodes: vec![Value::Null], ..Document::default() };
+    // Other programs find nodes by their names.
+    let mut names = BTreeSet::new();
+    let mut free = |name: &str| free_name(&mut names, name, |_, _| true);
     for (index, (body, frame)) in scene.bodies.iter().zip(frames).enumerate() {
         let carrier = body.parent.map_or_else(Matrix4::identity, |parent| frames[parent]);
         let mut node = place(&(carrier.try_inverse().unwrap_or_else(Matrix4::identity) * frame));
-        node["name"] = body.name.as_str().into();
+        node["name"] = free(&body.name).into();
         document.dress(&mut node, &Owner::Body(index), shapes);
         document.nodes.push(node);
     }
@@ -67,21 +72,24 @@ fn document(figure: &Figure, name: &str, program: Program) -> (Value, Vec<u8>) {
     }
     for (point, place) in &scene.points {
         children[place.body.map_or(0, |body| body + 1)].push(document.nodes.len());
-        document.nodes.push(json!({"name": point, "translation": <[f64; 3]>::from(place.at)}));
+        document.nodes.push(json!({"name": free(point), "translation": <[f64; 3]>::from(place.at)}));
     }
     let mut last = None;
     for Shape { owner, .. } in shapes {
-        if let Owner::World(part) = owner
-            && last != Some(owner)
-        {
-            let mut node = json!({"name": part});
+        let part = match owner {
+            Owner::Body(_) => continue,
+            Owner::Ground => "ground",
+            Owner::Part(part) => part.as_str(),
+        };
+        if last != Some(owner) {
+            let mut node = json!({"name": free(part)});
             document.dress(&mut node, owner, shapes);
             children[0].push(document.nodes.len());
             document.nodes.push(node);
             last = Some(owner);
         }
     }
-    document.nodes[0] = json!({"name": name, "rotation": [-FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2]});
+    document.nodes[0] = json!({"name": free(name), "rotation": [-FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2]});
     for (node, children) in document.nodes.iter_mut().zip(children).filter(|(_, children)| !children.is_empty()) {
         node["children"] = children.into();
     }

@@ -4,6 +4,9 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
+use crane_codegen::chain::Frame;
+use crane_codegen::exchange::Form;
+
 /// Triangles between corners, counter-clockwise as seen from outside.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
@@ -11,6 +14,15 @@ pub struct Mesh {
     pub corners: Vec<Vector3<f64>>,
     /// Indices of the corners of each triangle.
     pub triangles: Vec<[usize; 3]>,
+    /// The solid that the triangles approximate, and its pose, if it is one that other programs know.
+    pub solid: Option<(Frame, Form)>,
+}
+
+/// A frame about the middle between two places, whose axis of this index is the first column of a rotation.
+fn about_middle(turn: &Matrix3<f64>, [from, to]: [Vector3<f64>; 2], along: usize) -> Frame {
+    let mut axes = [0, 1, 2].map(|axis| turn.column(axis).into_owned().into());
+    axes.rotate_right(along);
+    Frame { axes, origin: ((from + to) / 2.0).into() }
 }
 
 impl Mesh {
@@ -19,7 +31,8 @@ impl Mesh {
         let turn = turned(Vector3::x(), to - from);
         let ring = [[1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]];
         let across = ring.map(|[y, z]| turn * Vector3::new(0.0, y * high / 2.0, z * wide / 2.0));
-        Self::between(&[from, to].map(|end| across.map(|across| end + across).to_vec()))
+        let solid = (about_middle(&turn, [from, to], 0), Form::Box([(to - from).norm(), high, wide]));
+        Self { solid: Some(solid), ..Self::between(&[from, to].map(|end| across.map(|across| end + across).to_vec())) }
     }
 
     /// A box with its middle at `middle` and sides along the axes.
@@ -38,7 +51,9 @@ impl Mesh {
             };
             (0..sides).map(corner).collect()
         };
-        Self::between(&[(from, first), (to, last)].map(ring))
+        let round = || Form::Cylinder { radius: first, length: (to - from).norm() };
+        let solid = (first.to_bits() == last.to_bits()).then(|| (about_middle(&turn, [from, to], 2), round()));
+        Self { solid, ..Self::between(&[(from, first), (to, last)].map(ring)) }
     }
 
     /// A ball.
@@ -52,7 +67,8 @@ impl Mesh {
             };
             (0..sides).map(corner).collect()
         };
-        Self::between(&(0..=rings).map(ring).collect::<Vec<_>>())
+        let solid = (Frame { origin: middle.into(), ..Frame::WORLD }, Form::Sphere(radius));
+        Self { solid: Some(solid), ..Self::between(&(0..=rings).map(ring).collect::<Vec<_>>()) }
     }
 
     /// A hook about the origin, open towards `down`.
@@ -83,12 +99,13 @@ impl Mesh {
             (0..last).step_by(sides.max(1)).flat_map(|begin| (0..sides).flat_map(move |side| face(begin, side)));
         let ends =
             (1..sides.saturating_sub(1)).flat_map(|side| [[0, side + 1, side], [last, last + side, last + side + 1]]);
-        Self { corners: rings.concat(), triangles: around.chain(ends).collect() }
+        Self { corners: rings.concat(), triangles: around.chain(ends).collect(), solid: None }
     }
 
     /// Adds the triangles of another one.
     pub fn add(&mut self, other: &Mesh) {
         let first = self.corners.len();
+        self.solid = None;
         self.corners.extend(&other.corners);
         self.triangles.extend(other.triangles.iter().map(|triangle| triangle.map(|corner| corner + first)));
     }

@@ -5,11 +5,13 @@
 //! | `mesh` | triangles of boxes, rods, balls and hooks |
 //! | `beam`, `cylinders` | beams that bend, hydraulic cylinders |
 //! | [`gltf`] | the shapes for other programs |
+//! | [`looks`] | the shapes as URDF and MJCF have them |
 //! | [`picture`] | the shapes as picture elements |
 
 mod beam;
 mod cylinders;
 pub mod gltf;
+pub mod looks;
 mod mesh;
 pub mod picture;
 
@@ -76,8 +78,10 @@ const PAD: Paint = paint("pad", 0x00f2_f2ee);
 pub enum Owner {
     /// A body, by its index: the shape is in its frame.
     Body(usize),
-    /// A connector, a cylinder or the ground, by its name: the shape is in the world.
-    World(String),
+    /// The ground: the shape is in the world.
+    Ground,
+    /// A connector, a cylinder or a loop joint, by its name: the shape is in the world, and follows several bodies.
+    Part(String),
 }
 
 /// A part of a crane in one colour.
@@ -143,7 +147,7 @@ impl Figure {
 fn placed<'a>(shape: &'a Shape, frames: &'a [Matrix4<f64>]) -> impl Iterator<Item = Vector3<f64>> + 'a {
     let body = match shape.owner {
         Owner::Body(body) => Some(body),
-        Owner::World(_) => None,
+        Owner::Ground | Owner::Part(_) => None,
     };
     shape.mesh.corners.iter().map(move |at| Place { body, at: *at }.within(frames))
 }
@@ -240,7 +244,7 @@ impl<'a> Builder<'a> {
         scene.connectors.iter().for_each(|connector| self.connector(connector));
         for cylinder in &scene.cylinders {
             let parts = cylinders::parts(cylinder, self.size, self.frames);
-            let owner = || Owner::World(cylinder.name.clone());
+            let owner = || Owner::Part(cylinder.name.clone());
             self.shapes.extend(parts.into_iter().map(|(paint, mesh)| Shape { owner: owner(), paint, mesh }));
         }
     }
@@ -249,8 +253,8 @@ impl<'a> Builder<'a> {
         self.shapes.push(Shape { owner: Owner::Body(body), paint, mesh });
     }
 
-    fn fixed(&mut self, name: &str, paint: Paint, mesh: Mesh) {
-        self.shapes.push(Shape { owner: Owner::World(name.to_owned()), paint, mesh });
+    fn fixed(&mut self, owner: Owner, paint: Paint, mesh: Mesh) {
+        self.shapes.push(Shape { owner, paint, mesh });
     }
 
     /// A square box between places of a body, unless it has no length.
@@ -498,10 +502,10 @@ impl<'a> Builder<'a> {
         // A beam that begins at the origin is clamped to a wall.
         let wall = body.length > 0.0 && self.is_nothing(first);
         let normal = if wall { self.reference[0].column(0).xyz() } else { Vector3::z() };
-        self.fixed("ground", BASE, Mesh::rod(-normal * (0.5 * side), Vector3::zeros(), [2.0 * side; 2], 40));
+        self.fixed(Owner::Ground, BASE, Mesh::rod(-normal * (0.5 * side), Vector3::zeros(), [2.0 * side; 2], 40));
         let slides = self.coordinates[body.own.clone()].iter().any(|own| own.kind == CoordinateKind::Translation);
         if !slides && !self.is_nothing(first) {
-            self.fixed("ground", BASE, Mesh::bar(Vector3::zeros(), first, [1.1 * side; 2]));
+            self.fixed(Owner::Ground, BASE, Mesh::bar(Vector3::zeros(), first, [1.1 * side; 2]));
         }
     }
 
@@ -559,11 +563,11 @@ impl<'a> Builder<'a> {
             let aside = aside.try_normalize(0.0).unwrap_or_default() * (4.0 * radius);
             for fall in 0..falls {
                 let from = from + aside * (fall as f64 - (falls - 1) as f64 / 2.0);
-                self.fixed(&connector.name, paint, Mesh::rod(from, from + way, [radius; 2], 16));
+                self.fixed(Owner::Part(connector.name.clone()), paint, Mesh::rod(from, from + way, [radius; 2], 16));
             }
         }
         for sheave in places.iter().skip(1).take(places.len().saturating_sub(2)) {
-            self.fixed(&connector.name, PIN, Mesh::ball(*sheave, SHEAVE * self.size));
+            self.fixed(Owner::Part(connector.name.clone()), PIN, Mesh::ball(*sheave, SHEAVE * self.size));
         }
     }
 }

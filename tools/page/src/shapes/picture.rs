@@ -139,7 +139,7 @@ pub fn draw(figure: &Figure, view: &View, shown: &[Vector3<f64>]) -> Vec<u8> {
             let normal = (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default();
             let tone = EDGE + (1.0 - EDGE) * normal.dot(&light).abs();
             triangles.extend(seen(&camera, places, shape.paint.colour.map(|channel| byte(f64::from(channel) * tone))));
-            if sees_ground && shape.owner != Owner::World("ground".to_owned()) {
+            if sees_ground && shape.owner != Owner::Ground {
                 let fallen = places.map(|place| place - Vector3::from(SUN) * ((place.z - ground.level) / SUN[2]));
                 shadows.extend(seen(&camera, fallen, [0; 3]));
             }

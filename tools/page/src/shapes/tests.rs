@@ -123,6 +123,72 @@ fn shapes_are_closed() {
     }
 }
 
+/// Corners of the triangles lie on the solid that URDF and MJCF get, and reach its ends; to the rounding of places some 10 m away.
+#[test]
+fn solids_are_those_of_the_triangles() {
+    use crane_codegen::exchange::Form;
+    for (name, live) in cranes() {
+        let figure = figure(&live);
+        let (looks, files) = looks::looks(&figure, "meshes");
+        assert_eq!(looks.len(), figure.shapes.iter().filter(|shape| !matches!(shape.owner, Owner::Part(_))).count());
+        for (frame, form, mesh) in figure
+            .shapes
+            .iter()
+            .filter_map(|shape| shape.mesh.solid.as_ref().map(|(frame, form)| (frame, form, &shape.mesh)))
+        {
+            let within: Vec<Vector3<f64>> = (mesh.corners.iter())
+                .map(|corner| {
+                    frame.local(&crane_codegen::chain::Frame { origin: (*corner).into(), ..*frame }).origin.into()
+                })
+                .collect();
+            let off = match form {
+                Form::Box(sides) => {
+                    let beside = |at: &Vector3<f64>| (2.0 * at.abs() - Vector3::from(*sides)).amax();
+                    within.iter().map(beside).fold(0.0, f64::max)
+                }
+                Form::Cylinder { radius, length } => {
+                    let beside =
+                        |at: &Vector3<f64>| (at.xy().norm() - radius).abs().max((at.z.abs() - length / 2.0).abs());
+                    within.iter().map(beside).fold(0.0, f64::max)
+                }
+                Form::Sphere(radius) => within.iter().map(|at| (at.norm() - radius).abs()).fold(0.0, f64::max),
+                Form::Mesh { .. } => panic!("{name}: triangles are no solid"),
+            };
+            assert!(off < 1e-13 * 10.0, "{name}: {form:?} is {off} m from its triangles");
+        }
+        let meshes = looks.iter().filter_map(|look| match &look.form {
+            Form::Mesh { file, .. } => Some(file.as_str()),
+            _ => None,
+        });
+        let meshes: std::collections::BTreeSet<&str> = meshes.collect();
+        assert!(meshes.into_iter().eq(files.keys().map(String::as_str)), "{name}");
+        for (file, bytes) in &files {
+            let count = u32::from_le_bytes(bytes[80..84].try_into().expect("a number")) as usize;
+            assert_eq!(bytes.len(), 84 + 50 * count, "{name}: {file}");
+            let number = |at: usize| f64::from(f32::from_le_bytes(bytes[at..at + 4].try_into().expect("a number")));
+            let shape = figure.shapes.iter().filter(|shape| shape.mesh.solid.is_none());
+            let first = [96, 100, 104].map(number);
+            let begins = |mesh: &Mesh| (mesh.corners[mesh.triangles[0][0]] - Vector3::from(first)).norm() < 1e-6;
+            assert!(shape.map(|shape| &shape.mesh).any(begins), "{name}: {file} begins at {first:?}");
+        }
+    }
+}
+
+/// A point may have the name of its link, and a spring that of a point.
+#[test]
+fn no_two_nodes_share_a_name() {
+    let text = "format: 1\nname: bob\nlinks:\n- {name: bob, joint: {revolute: {axis: y}}, mass: 2, com: [0, 0, -1]}\n\
+                points: [{name: bob, link: bob, at: [0, 0, -1]}, {name: ground, link: bob, at: [0, 0, -2]}]\n\
+                connectors: [{name: bob, from: {at: [1, 0, 0]}, to: {link: bob, at: [0, 0, -1]}, law: {spring: {stiffness: 10, length: 1}}}]\n";
+    let live =
+        LiveCrane::from_spec(&crane_codegen::SourceFile::new("bob.yaml", text)).unwrap_or_else(|told| panic!("{told}"));
+    let document: Value = serde_json::from_str(&gltf::text(&figure(&live), "bob", PROGRAM)).expect("JSON");
+    let mut names: Vec<&str> =
+        document["nodes"].as_array().expect("nodes").iter().filter_map(|node| node["name"].as_str()).collect();
+    names.sort_unstable();
+    assert_eq!(names, ["bob", "bob_2", "bob_3", "bob_4", "ground", "ground_2"]);
+}
+
 /// From shape to shape, whatever is drawn hangs together with the rest: a corner, the middle of a triangle or of all corners of one lies in the
 /// other, which is convex but for hooks and bent beams; to a thousandth of the crane's size.
 #[test]
@@ -176,7 +242,7 @@ fn stages_are_no_ropes() {
 /// Only boxes, in sight of no ground.
 fn boxes(given: &[([f64; 3], [f64; 3], Paint)]) -> Figure {
     let mut figure = figure(&live("double_pendulum"));
-    let owner = || Owner::World("box".to_owned());
+    let owner = || Owner::Part("box".to_owned());
     figure.shapes = given
         .iter()
         .map(|&(middle, size, paint)| Shape { owner: owner(), paint, mesh: Mesh::block(middle.into(), size) })

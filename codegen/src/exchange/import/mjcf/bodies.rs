@@ -7,10 +7,11 @@ use super::geoms::SHAPES;
 use super::pose::unit;
 use super::{File, InertiaFromGeoms};
 use crate::chain::{Frame, Vector};
+use crate::exchange::free_name;
 use crate::exchange::import::document::{Element, value_span};
 use crate::exchange::import::mistakes::rule;
 use crate::exchange::import::robot::{Joint, Link, Motion, Named, SingleAxis, Spring};
-use crate::exchange::import::split::{free_name, positions_of_free};
+use crate::exchange::import::split::positions_of_free;
 use crate::exchange::mass::Lump;
 use crate::exchange::rotation::about;
 
