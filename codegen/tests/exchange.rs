@@ -188,6 +188,14 @@ fn a_joint_that_mimics_a_held_one_is_held_where_it_follows() {
         format!("{:?}", crane.bodies.iter().map(|body| &body.inertia).collect::<Vec<_>>())
     };
     assert_eq!(com(followed), com(hand("", 0.3, &["wrist", "finger"])));
+    // The other way round, the wrist is at (0 − 0.3)/2 rad; if both are to be held, it leads.
+    let led = hand("<mimic joint='wrist' multiplier='2' offset='0.3'/>", 0.0, &["finger"]);
+    assert!(led.contains("held at zero: finger; held at -0.15 rad: wrist"), "{led}");
+    let both = hand("<mimic joint='wrist' multiplier='2' offset='0.3'/>", 0.0, &["finger", "wrist"]);
+    assert!(both.contains("Joint `finger` is held at 0.3, where `wrist` puts it, and not at 0."), "{both}");
+    // Where it follows at no rate, the wrist is anywhere.
+    let apart = hand("<mimic joint='wrist' multiplier='0' offset='0.3'/>", 0.0, &["finger"]);
+    assert!(apart.contains("held at zero: finger") && apart.contains("# joint wrist"), "{apart}");
 }
 
 #[test]
@@ -213,7 +221,6 @@ const ARM: &str = include_str!("robots/arm.xml");
 fn a_crane_comes_back_from_mjcf() {
     let mut compared = 0;
     for crane in shipped() {
-        let defaults = crane.parameter_defaults();
         let Ok(mjcf) = mjcf(&crane) else { continue };
         let back = chain(&SourceFile::new(&crane.name, spec(&format!("{}.xml", crane.name), &mjcf)));
         assert_eq!(back.coordinates.len(), crane.coordinates.len());
@@ -704,11 +711,10 @@ fn what_an_import_cannot_keep_is_told() {
             ImportOptions { fixed: fixed.iter().map(ToString::to_string).collect(), ..ImportOptions::default() };
         exchange::import(&SourceFile::new("robot.xml", text), &options)
     };
-    // A follower that is held leaves its leader free.
+    // A follower that is held holds its leader.
     let tied = "<equality><joint joint1='k' joint2='j'/></equality>";
-    let held = robot("", tied, &["k"]).expect("a robot").left_out;
-    let told = "Joint `k` is held, and no longer follows `j`, which moves freely.";
-    assert!(held.contains(&told.to_owned()), "{held:?}");
+    let held = robot("", tied, &["k"]).expect("a robot").spec;
+    assert!(held.contains("held at zero: j, k"), "{held}");
     // Bodies without shapes keep their inertial frames.
     let crane = chain(&SourceFile::new("a", robot("inertiafromgeom='true'", "", &[]).expect("a robot").spec));
     let mass = |body: &crane_codegen::chain::Body| body.inertia.as_ref().map_or(0.0, |inertia| inertia.mass.at(&[]));

@@ -48,6 +48,13 @@ impl Quantity {
         }))
     }
 
+    /// A plain number and the unit that stands beside it; `None` if there is none in the table.
+    #[must_use]
+    pub fn labelled(value: f64, unit: &str) -> Option<Quantity> {
+        let dimension = Unit::parse(unit).ok().filter(|_| !unit.trim().is_empty())?.dimension;
+        Some(Quantity { value, dimension, written: format!("{value} {unit}") })
+    }
+
     /// What is wrong with it where a number in an SI unit must stand, and what to write instead.
     #[must_use]
     pub fn wrong_for(&self, unit: &str) -> Option<WrongQuantity> {

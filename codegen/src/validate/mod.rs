@@ -184,7 +184,7 @@ struct Check<'a> {
     /// Default values of the parameters, at which live numbers are checked.
     defaults: Vec<f64>,
     /// Their values as written, if with a unit.
-    written: Vec<Option<&'a Quantity>>,
+    written: Vec<Option<Quantity>>,
     /// The units of the numbers so far, by their locations.
     units: Vec<(Span, String)>,
     /// Whether some number refers to each parameter.

@@ -34,14 +34,15 @@ impl<'a> Check<'a> {
                 None => (f64::NAN, None, None),
             };
             let written = match parameter.value.as_ref().and_then(|parameter| parameter.value.value.as_ref()) {
-                Some(FixedAngle(Scalar::Quantity(quantity))) => Some(&**quantity),
-                _ => None,
+                Some(FixedAngle(Scalar::Quantity(quantity))) => Some((**quantity).clone()),
+                // Words of its own give no dimension.
+                _ => unit.as_deref().and_then(|unit| Quantity::labelled(default, unit)),
             };
+            let of_value = written.as_ref().map(|quantity| quantity.dimension.si_unit());
             self.written.push(written);
-            let of_value = || written.map(|quantity| quantity.dimension.si_unit());
             self.parameters.push(Parameter {
                 name: name.to_owned(),
-                unit: unit.or_else(of_value).unwrap_or_default(),
+                unit: unit.or(of_value).unwrap_or_default(),
                 about: about.unwrap_or_default(),
                 default,
                 lower_bound: None,
@@ -185,8 +186,12 @@ impl<'a> Check<'a> {
             None => return reported,
             Some(Scalar::Name(name)) => {
                 let Some(id) = self.parameter(name, span) else { return reported };
-                let written = self.written[id.0];
-                return if self.has_dimension(written, span, subject, unit) { Value::Parameter(id) } else { reported };
+                let written = self.written[id.0].clone();
+                return if self.has_dimension(written.as_ref(), span, subject, unit) {
+                    Value::Parameter(id)
+                } else {
+                    reported
+                };
             }
             Some(Scalar::Number(number)) => *number,
             Some(Scalar::Quantity(quantity)) => {

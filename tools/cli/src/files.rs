@@ -54,6 +54,21 @@ pub fn check_place(path: &Path) -> Outcome<()> {
     Ok(())
 }
 
+/// The one of some endings that a file has, in letters of either size.
+///
+/// # Errors
+/// It has none of them.
+pub fn ending<'e>(path: &Path, endings: &[&'e str]) -> Outcome<&'e str> {
+    let own = path.extension().unwrap_or_default();
+    endings.iter().find(|ending| own.eq_ignore_ascii_case(ending)).copied().ok_or_else(|| {
+        let listed: Vec<String> = endings.iter().map(|ending| format!("`.{ending}`")).collect();
+        Problem::usage(
+            format!("cannot write {}", path.display()),
+            format!("name a file that ends in {}", listed.join(" or ")),
+        )
+    })
+}
+
 /// Creates a folder if it is missing.
 ///
 /// # Errors

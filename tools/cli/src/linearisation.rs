@@ -18,18 +18,11 @@ use crate::{
 /// `numpy.load`. Rows and columns are the coordinates that can move: not those that rigid drives prescribe.
 pub fn write_linearisation(file: &Path, description: &Description, q: &[f64], motions: &SmallMotions) -> Outcome<()> {
     let arrays = arrays(q, motions)?;
-    match file.extension().and_then(|end| end.to_str()) {
-        Some("npz") => {
-            let bytes =
-                npz(&arrays).map_err(|error| Problem::failed(format!("cannot make an archive: {error}"), ""))?;
-            files::write_file(file, |out| out.write_all(&bytes))
-        }
-        Some("json") => files::write_text(file, &format!("{:#}\n", json(description, motions, &arrays))),
-        _ => Err(Problem::usage(
-            format!("`--matrices {}` ends in neither .json nor .npz", file.display()),
-            "give the file one of these endings",
-        )),
+    if files::ending(file, &["json", "npz"])? == "json" {
+        return files::write_text(file, &format!("{:#}\n", json(description, motions, &arrays)));
     }
+    let bytes = npz(&arrays).map_err(|error| Problem::failed(format!("cannot make an archive: {error}"), ""))?;
+    files::write_file(file, |out| out.write_all(&bytes))
 }
 
 fn arrays(q: &[f64], motions: &SmallMotions) -> Outcome<Vec<Array>> {

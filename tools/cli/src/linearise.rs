@@ -401,12 +401,7 @@ fn arrays(motion: &Motion, small: Option<&SmallMotions>, model: &LinearModel, fo
 
 /// Writes an archive.
 fn write_archive(file: &Path, arrays: &[Array]) -> Outcome<()> {
-    if file.extension().is_none_or(|end| end != "npz") {
-        return Err(Problem::usage(
-            format!("`--file {}` does not end in .npz", file.display()),
-            "give it that ending; `--format json` prints the same as JSON",
-        ));
-    }
+    files::ending(file, &["npz"])?;
     let bytes = npz(arrays).map_err(|error| Problem::failed(format!("cannot make an archive: {error}"), ""))?;
     files::write_file(file, |out| out.write_all(&bytes))
 }

@@ -47,10 +47,13 @@ struct Asked {
     least: f64,
 }
 
+/// Endings of the file with the table, and of that with a map.
+const ENDINGS: [&str; 2] = ["csv", "svg"];
+
 /// Computes margins over all poses, prints them, and writes a table or a map.
 pub fn margins(options: &arguments::Margins, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     if let Some(file) = &options.file {
-        check_kind(file)?;
+        files::ending(file, &ENDINGS)?;
     }
     let crane = registry.live(options.analysis.crane.open(registry)?.as_ref())?;
     let description = crane.description();
@@ -71,16 +74,6 @@ pub fn margins(options: &arguments::Margins, registry: &Registry, out: &mut dyn 
         return Err(Problem::failed(format!("there are no margins: {why}"), "see the column `status`"));
     }
     Ok(())
-}
-
-fn check_kind(file: &Path) -> Outcome<()> {
-    match file.extension().and_then(|extension| extension.to_str()) {
-        Some("svg" | "csv") => Ok(()),
-        _ => Err(Problem::usage(
-            format!("cannot write {}", file.display()),
-            "name a file that ends in `.csv`, or in `.svg` for a map over two ranges",
-        )),
-    }
 }
 
 fn ask(options: &arguments::Margins, crane: &LiveCrane) -> Outcome<Asked> {
@@ -283,7 +276,7 @@ fn table(axes: &Axes, description: &Description, rows: &[Row]) -> Grid {
 
 /// Writes the table, or a map of the phase margin.
 fn write(file: &Path, grid: &Grid, axes: &Axes, asked: &Asked, description: &Description, rows: &[Row]) -> Outcome<()> {
-    if file.extension().is_some_and(|extension| extension == "csv") {
+    if files::ending(file, &ENDINGS)? == "csv" {
         let (header, fields) = grid.fields();
         return files::write_fields(file, header, fields);
     }

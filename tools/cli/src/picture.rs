@@ -24,6 +24,7 @@ use crate::{
 pub fn picture(options: &Picture, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let view = View::new([options.width, options.height], options.azimuth, options.elevation)
         .map_err(|refused| Problem::usage(refused, "write a size such as `--width 1200 --height 800`"))?;
+    options.file.as_deref().map_or(Ok("png"), |file| files::ending(file, &["png"]))?;
     let (name, figure) = figure(&options.crane, registry)?;
     let file = options.file.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.png")));
     let elements = draw(&figure, &view, &[]);
@@ -38,9 +39,10 @@ pub fn picture(options: &Picture, registry: &Registry, out: &mut dyn Write) -> O
 
 /// Writes what is drawn of a crane as glTF.
 pub fn scene(options: &Export, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    let ending = options.file.as_deref().map_or(Ok("gltf"), |file| files::ending(file, &["gltf", "glb"]))?;
     let (name, figure) = figure(&options.crane, registry)?;
     let file = options.file(&name);
-    if file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("glb")) {
+    if ending == "glb" {
         files::write_file(&file, |file| file.write_all(&gltf::binary(&figure, &name, files::PROGRAM)))?;
     } else {
         files::write_text(&file, &gltf::text(&figure, &name, files::PROGRAM))?;

@@ -19,8 +19,8 @@ pub(super) struct Group<'r> {
     pub(super) held: Vec<(&'r Joint, f64)>,
 }
 
-/// The groups of a robot with some of its joints held, each followed by all beyond it; the first group is fixed.
-pub(super) fn groups<'r>(robot: &'r Robot, fixed: &[String]) -> Result<Vec<Group<'r>>, Vec<Mistake>> {
+/// The groups of a robot with some of its joints held, `fixed` on request, each followed by all beyond it; the first group is fixed.
+pub(super) fn groups<'r>(robot: &'r Robot, fixed: &[String], held: &Held<'r>) -> Result<Vec<Group<'r>>, Vec<Mistake>> {
     let mut mistakes = Vec::new();
     names(robot, fixed, &mut mistakes);
     let root = root(robot, &mut mistakes);
@@ -43,7 +43,7 @@ pub(super) fn groups<'r>(robot: &'r Robot, fixed: &[String]) -> Result<Vec<Group
             group.links.push((member, frame));
             for joint in children.get(member.name.as_str()).into_iter().flatten().rev() {
                 let placed = frame.outer(&joint.placement);
-                if let Some(position) = standing(&by_name, fixed, joint) {
+                if let Some(position) = standing(&by_name, held, joint) {
                     let moved = placed.outer(&joint.moved_by(position));
                     open.extend(link(&joint.child.name).map(|link| (link, moved)));
                     group.held.extend((!matches!(joint.motion, Motion::Fixed)).then_some((*joint, position)));
@@ -145,12 +145,37 @@ fn circular<'r>(robot: &'r Robot, by_name: &ByName<'r>) -> BTreeSet<&'r str> {
     circular
 }
 
-/// Where a joint stands that does not move, m or rad: at zero if it is fixed, where the file holds it if it is held on request, or where it
-/// follows one that does not move.
-fn standing(by_name: &ByName, fixed: &[String], joint: &Joint) -> Option<f64> {
+/// Positions of joints that are held, by name, m or rad.
+pub(super) type Held<'r> = BTreeMap<&'r str, f64>;
+
+/// Where joints are that are held on request: where the file holds them, else at zero. The joint that one of them follows is held where that puts it,
+/// unless it is to be held itself, or its position does not matter.
+pub(super) fn held<'r>(robot: &'r Robot, fixed: &[String]) -> Held<'r> {
+    let by_name = by_name(robot);
+    let asked = |joint: &&Joint| fixed.contains(&joint.name) && !matches!(joint.motion, Motion::Fixed);
+    let mut held: Held =
+        robot.joints.iter().filter(asked).map(|joint| (&*joint.name, joint.held.unwrap_or(0.0))).collect();
+    for start in robot.joints.iter().filter(asked) {
+        let mut joint = start;
+        // It ends at the latest after all joints, also if they follow each other in a circle, which is a mistake.
+        for _ in &robot.joints {
+            let (Some(follows), Some(leader)) = (&joint.follows, leader(&by_name, joint)) else { break };
+            let movable = follows.multiplier != 0.0 && !matches!(leader.motion, Motion::Fixed);
+            if !movable || held.contains_key(&*leader.name) {
+                break;
+            }
+            held.insert(&leader.name, (held[&*joint.name] - follows.offset) / follows.multiplier);
+            joint = leader;
+        }
+    }
+    held
+}
+
+/// Where a joint stands that does not move, m or rad: at zero if it is fixed, where it is held, or where it follows one that does not move.
+fn standing(by_name: &ByName, held: &Held, joint: &Joint) -> Option<f64> {
     let on_its_own = |joint: &Joint| match joint.motion {
         Motion::Fixed => Some(0.0),
-        _ => fixed.contains(&joint.name).then(|| joint.held.unwrap_or(0.0)),
+        _ => held.get(&*joint.name).copied(),
     };
     if matches!(joint.motion, Motion::Fixed) {
         return Some(0.0);

@@ -77,15 +77,21 @@ pub fn import(source: &SourceFile, options: &ImportOptions) -> Result<Imported, 
     if robot.joints.iter().any(|joint| joint.range().is_some()) {
         left_out.push("Ranges of joints become comments: write `stops` for those that the crane reaches.".to_owned());
     }
-    let groups = groups::groups(&robot, &options.fixed).map_err(diagnostics)?;
+    let held = groups::held(&robot, &options.fixed);
+    let groups = groups::groups(&robot, &options.fixed, &held).map_err(diagnostics)?;
     let unrepaired = left_out.len();
     let Links { links, standing, lost } = links::links(&groups, &robot.tied(), options.repair.then_some(&mut left_out));
     let repaired = left_out.len() > unrepaired;
-    let held = robot.joints.iter().filter(|joint| options.fixed.contains(&joint.name));
-    left_out.extend(held.filter_map(|joint| {
+    // Two joints that follow one need not be where it puts both.
+    let stopped = groups.iter().flat_map(|group| &group.held);
+    left_out.extend(stopped.filter_map(|(joint, position)| {
+        let asked = *held.get(joint.name.as_str())?;
         let leader = &joint.follows.as_ref()?.leader.name;
-        let free = !options.fixed.contains(leader);
-        free.then(|| format!("Joint `{}` is held, and no longer follows `{leader}`, which moves freely.", joint.name))
+        let elsewhere = (asked - position).abs() > 1e-12 * asked.abs().max(1.0);
+        elsewhere.then(|| {
+            let [position, asked] = [*position, asked].map(yaml::decimal);
+            format!("Joint `{}` is held at {position}, where `{leader}` puts it, and not at {asked}.", joint.name)
+        })
     }));
     if !lost.is_empty() {
         let lost: Vec<String> = lost.into_iter().map(|name| format!("`{name}`")).collect();

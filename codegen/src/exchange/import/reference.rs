@@ -9,7 +9,7 @@
 
 use std::collections::BTreeMap;
 
-use super::groups::groups;
+use super::groups::{Held, groups};
 use super::links::SpecLink;
 use super::robot::{Coupling, Joint, Motion, Robot, Spring};
 use crate::chain::{Frame, Vector, cross};
@@ -224,7 +224,7 @@ impl Reference {
 /// `ref`: `k = J / (T ζ)²`, `d = 2 J / T`.
 pub(super) fn set_oscillations(robot: &mut Robot) {
     // Links that are not a tree are refused later.
-    if robot.joints.iter().all(|joint| joint.oscillation.is_none()) || groups(robot, &[]).is_err() {
+    if robot.joints.iter().all(|joint| joint.oscillation.is_none()) || groups(robot, &[], &Held::new()).is_err() {
         return;
     }
     for (name, inertia) in Reference::inertias_at_reference(robot) {

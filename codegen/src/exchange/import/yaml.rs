@@ -268,7 +268,7 @@ fn angle(angle: f64) -> String {
 }
 
 /// The shortest decimal number that is equal up to a few rounding errors: 0.3 for 0.30000000000000004.
-fn decimal(number: f64) -> String {
+pub(super) fn decimal(number: f64) -> String {
     /// About five rounding errors.
     const ROUNDING: f64 = 1e-15;
     /// Smaller numbers are not allowed in a spec (E033): they are residues of rounding.

@@ -230,17 +230,11 @@ fn print(options: &Sensitivity, mut report: Report, changes: &Changes, out: &mut
 
 /// Writes the changes as a table or as a chart.
 fn write(file: &Path, changes: &Changes, change: f64) -> Outcome<()> {
-    match file.extension().and_then(|extension| extension.to_str()) {
-        Some("svg") => files::write_text(file, &chart::chart(changes, change)?),
-        Some("csv") => {
-            let (header, rows) = tables::rows(changes);
-            files::write_fields(file, header.into_iter(), rows.into_iter())
-        }
-        _ => {
-            let title = format!("cannot write {}", file.display());
-            Err(Problem::usage(title, "name a file that ends in `.csv` or `.svg`"))
-        }
+    if files::ending(file, &["csv", "svg"])? == "svg" {
+        return files::write_text(file, &chart::chart(changes, change)?);
     }
+    let (header, rows) = tables::rows(changes);
+    files::write_fields(file, header.into_iter(), rows.into_iter())
 }
 
 /// The largest load of the pose.

@@ -410,7 +410,7 @@ fn a_moment_of_a_run_is_linearised() {
     refused(&["linearise", "knuckle_boom", "--hold", "main_boom_theta_rate=-1e308"], &["out of range", "rad/s"]);
     refused(&["linearise", "knuckle_boom", "--time", "1e308"], &["out of range", "seconds"]);
     refused(&["linearise", "double_pendulum", "--hold", "upper_theta=30"], &["`--hold upper_theta=30deg`"]);
-    refused(&["linearise", "double_pendulum", "-o", "a.json"], &["does not end in .npz"]);
+    refused(&["linearise", "double_pendulum", "-o", "a.json"], &["cannot write a.json", "ends in `.npz`"]);
     refused(&["linearise", "eight_link_hydraulic", "--hold", "boom_psi=0"], &["valves", "motion: {hold: 30 deg}"]);
     refused(
         &["linearise", "knuckle_boom", "--on", "main_bom_theta_prescribed"],

@@ -25,17 +25,30 @@ fn a_picture_has_the_size_that_is_asked_for() {
     assert_eq!(written(&[&aside[..7], &["-1.5707963267948966"]].concat(), "png"), written(&aside, "png"));
     refused(&["picture", "--width", "4097"], &["4097 × 800", "1 to 4096 picture elements", "--width 1200"]);
     refused(&["picture", "--azimuth", "1 m"], &["write an angle"]);
+    refused(&["picture", "-o", "crane.jpg"], &["cannot write crane.jpg", "ends in `.png`"]);
+    refused(
+        &["export", "--format", "gltf", "-o", "crane.obj"],
+        &["cannot write crane.obj", "ends in `.gltf` or `.glb`"],
+    );
+    assert_eq!(&written(&["export", "knuckle_boom", "--format", "gltf"], "GLB")[..4], b"glTF");
 }
 
 /// What is drawn is part of the files for other programs; surfaces of beams that bend are files beside them.
 #[test]
 fn urdf_and_mjcf_show_the_crane() {
-    let urdf = String::from_utf8(written(&["export", "cantilever", "--format", "urdf"], "urdf")).expect("text");
+    let out = folder("shown");
+    let exported = |format: &str, name: &str| {
+        let file = out.join(name);
+        let output = crane(&["export", "cantilever", "--format", format, "-o", &file.display().to_string()]);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        fs::read_to_string(file).expect("a file")
+    };
+    let urdf = exported("urdf", "crane.urdf");
     let mesh = urdf.split('"').find(|word| word.ends_with(".stl")).expect("a mesh").to_owned();
-    let surface = fs::read(folder("written_by_export").join(&mesh)).expect("a surface");
+    let surface = fs::read(out.join(&mesh)).expect("a surface");
     assert!(surface.len() > 84 && mesh.starts_with("crane.meshes/"), "{mesh}");
     assert!(urdf.contains("<visual>") && urdf.contains("<material name=\"flexible\">"), "{urdf}");
-    let mjcf = String::from_utf8(written(&["export", "cantilever", "--format", "mjcf"], "xml")).expect("text");
+    let mjcf = exported("mjcf", "crane.xml");
     assert!(mjcf.contains(&format!("file=\"{mesh}\"")), "{mjcf}");
     assert!(mjcf.contains("contype=\"0\" conaffinity=\"0\" mass=\"0\" group=\"2\""), "{mjcf}");
     assert!(mjcf.contains("Key frame `start`: static equilibrium, at rest."), "{mjcf}");

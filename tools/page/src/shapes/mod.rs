@@ -80,7 +80,7 @@ pub enum Owner {
     Body(usize),
     /// The ground: the shape is in the world.
     Ground,
-    /// A connector, a cylinder or a loop joint, by its name: the shape is in the world, and follows several bodies.
+    /// A connector or a cylinder, by its name: the shape is in the world, and follows several bodies.
     Part(String),
 }
 
