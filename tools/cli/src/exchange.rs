@@ -1,7 +1,6 @@
 //! `crane export` and `crane import`: cranes for other programs, and from them.
 
 use std::{
-    collections::BTreeMap,
     io::Write,
     path::{Path, PathBuf},
 };
@@ -20,7 +19,10 @@ use crane_codegen::{
 
 use crane_live::{LiveCrane, imported::check_import};
 use crane_model::{dyn_crane::DynCrane, runs::Start};
-use crane_page::shapes::{Figure, looks::looks};
+use crane_page::shapes::{
+    Figure,
+    looks::{Surfaces, looks},
+};
 
 use crate::{
     arguments::{CNumber, Export, Import, Language},
@@ -70,7 +72,7 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
     }
     keep_rules(&chain, &parameters)?;
     let file = options.file(&chain.name);
-    let mut meshes = BTreeMap::new();
+    let mut meshes = Surfaces::new();
     let mut start = None;
     let texts = match options.format {
         Language::Urdf => {
@@ -132,8 +134,8 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
     Ok(())
 }
 
-/// Start of an exported crane, what is shown of it there, and the files of meshes that this needs, by their paths from the exported file.
-fn shown(chain: &Chain, parameters: &[f64], file: &Path) -> Outcome<(Start, Vec<Look>, BTreeMap<String, Vec<u8>>)> {
+/// Start of an exported crane, what is shown of it there, and the files that this needs.
+fn shown(chain: &Chain, parameters: &[f64], file: &Path) -> Outcome<(Start, Vec<Look>, Surfaces)> {
     let mut live = LiveCrane::new(chain.clone());
     live.set_parameters(parameters).map_err(|refused| Problem::failed(refused.to_string(), "give another value"))?;
     let start = Start::of_or_guess(&live);

@@ -38,7 +38,8 @@ pub(super) type FileFrame<'r> = (&'r str, Frame);
 
 /// What a robot's groups of links become.
 pub(super) struct Links<'r> {
-    pub(super) links: Vec<SpecLink<'r>>,
+    /// Links of the spec.
+    pub(super) of_spec: Vec<SpecLink<'r>>,
     /// Frames of the file that do not move.
     pub(super) standing: Vec<FileFrame<'r>>,
     /// Frames of the file between axes of a free base, which a spec does not have.
@@ -170,7 +171,7 @@ pub(super) fn links<'r>(
     for (name, was, _) in links.iter_mut().flat_map(|link| &mut link.points) {
         *name = points.unique_point(was);
     }
-    Links { links, standing, lost }
+    Links { of_spec: links, standing, lost }
 }
 
 /// Combines joints along x, y, z and about z, y, x at the start of the chain, which carry only the next joint, into a free

@@ -80,7 +80,8 @@ pub fn import(source: &SourceFile, options: &ImportOptions) -> Result<Imported, 
     let held = groups::held(&robot, &options.fixed);
     let groups = groups::groups(&robot, &options.fixed, &held).map_err(diagnostics)?;
     let unrepaired = left_out.len();
-    let Links { links, standing, lost } = links::links(&groups, &robot.tied(), options.repair.then_some(&mut left_out));
+    let Links { of_spec: links, standing, lost } =
+        links::links(&groups, &robot.tied(), options.repair.then_some(&mut left_out));
     let repaired = left_out.len() > unrepaired;
     // Two joints that follow one need not be where it puts both.
     let stopped = groups.iter().flat_map(|group| &group.held);

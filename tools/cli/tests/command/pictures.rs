@@ -44,7 +44,7 @@ fn urdf_and_mjcf_show_the_crane() {
         fs::read_to_string(file).expect("a file")
     };
     let urdf = exported("urdf", "crane.urdf");
-    let mesh = urdf.split('"').find(|word| word.ends_with(".stl")).expect("a mesh").to_owned();
+    let mesh = urdf.split('"').find(|word| word.contains(".stl")).expect("a mesh").to_owned();
     let surface = fs::read(out.join(&mesh)).expect("a surface");
     assert!(surface.len() > 84 && mesh.starts_with("crane.meshes/"), "{mesh}");
     assert!(urdf.contains("<visual>") && urdf.contains("<material name=\"flexible\">"), "{urdf}");

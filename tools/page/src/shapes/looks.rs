@@ -8,11 +8,14 @@ use nalgebra::Vector3;
 
 use super::{Figure, Mesh, Owner, Shape};
 
-/// The looks of a crane and, by their paths, the files of triangles that they need. `folder`: where these are, as the exported file names it.
+/// Files of triangles, STL, by their paths from the exported file.
+pub type Surfaces = BTreeMap<String, Vec<u8>>;
+
+/// The looks of a crane, and the files that they need. `folder`: where these are, as the exported file names it.
 ///
 /// Cylinders, springs and ropes lead from body to body, which no link does: they are left out.
-pub fn looks(figure: &Figure, folder: &str) -> (Vec<Look>, BTreeMap<String, Vec<u8>>) {
-    let mut files = BTreeMap::new();
+pub fn looks(figure: &Figure, folder: &str) -> (Vec<Look>, Surfaces) {
+    let mut files = Surfaces::new();
     let mut looks: Vec<Look> = Vec::new();
     for Shape { owner, paint, mesh } in &figure.shapes {
         let (body, of) = match owner {
