@@ -120,8 +120,9 @@ impl Directions {
             let least = if turns(j) { LEVER } else { 0.0 };
             column *= if length > NOTHING { 1.0 / length.max(least) } else { 0.0 };
         }
-        let is_driven = |j: &usize| matches!(coordinates[*j].role, CoordinateRole::Driven | CoordinateRole::Prescribed);
-        let held = held(crane, loops, n);
+        let is_driven = |role| matches!(role, CoordinateRole::Driven | CoordinateRole::Prescribed);
+        let driven = tied(crane, loops, is_driven);
+        let held = tied(crane, loops, |role| role != CoordinateRole::Passive);
         let moved = |j: &usize| squares[*j].sqrt() > NOTHING;
         let with = |columns: Vec<usize>| {
             let mut own = DMatrix::zeros(rows, columns.len() + extra.len());
@@ -133,7 +134,7 @@ impl Directions {
             }
             own
         };
-        let driven = (0..n).filter(moved).any(|j| is_driven(&j));
+        let driven = (0..n).filter(moved).any(|j| driven[j]);
         let free = driven.then(|| with((0..n).filter(|j| moved(j) && !held[*j]).collect()));
         let matrix = with((0..n).filter(moved).collect());
         Self { joints: joints.into_iter().map(|(index, _, rows)| (index, rows)).collect(), matrix, free, size }
@@ -178,10 +179,11 @@ fn closes_linkage(joint: &LoopJointInfo) -> bool {
     !joint.is_pad() && !joint.is_coupling()
 }
 
-/// Which coordinates a drive, the stiffness of a beam, or a coupling to one of these holds.
-fn held(crane: &(impl DynModel + ?Sized), loops: &Loops, n: usize) -> Vec<bool> {
+/// Which coordinates have a role, or are coupled to one that has it.
+fn tied(crane: &(impl DynModel + ?Sized), loops: &Loops, has_role: impl Fn(CoordinateRole) -> bool) -> Vec<bool> {
     let coordinates = &crane.description().coordinates;
-    let mut held: Vec<bool> = coordinates.iter().map(|info| info.role != CoordinateRole::Passive).collect();
+    let n = coordinates.len();
+    let mut held: Vec<bool> = coordinates.iter().map(|info| has_role(info.role)).collect();
     let mut equation = 0;
     let mut coupled: Vec<Vec<usize>> = Vec::new();
     for joint in crane.loop_joints() {
