@@ -151,8 +151,9 @@ fn rigid_couplings_come_back_from_urdf_and_mjcf() {
         ),
     ));
     let parameters = [2.0];
-    let urdf = exchange::urdf(&geared, &parameters);
-    let mjcf = exchange::mjcf(&geared, &parameters).expect("rigid couplings are equalities");
+    let urdf = exchange::urdf(&geared, &parameters, &[]);
+    let mjcf = exchange::mjcf(&geared, &parameters, &[], (&geared.guess_at(&parameters), "guess"))
+        .expect("rigid couplings are equalities");
     for (name, text) in [("geared.urdf", urdf), ("geared.xml", mjcf)] {
         let back = chain(&SourceFile::new("geared", spec(name, &text)));
         assert_eq!(ties(&back), [(1, 0, 2.0, -0.25), (2, 1, -0.125, 0.0)], "{name}");

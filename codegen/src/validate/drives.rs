@@ -307,13 +307,22 @@ impl<'a> Check<'a> {
     /// The rate of a motion of something with a unit; `90 deg` is 90° per second.
     fn rate(&mut self, given: &Spanned<Angle>, unit: Option<&str>) -> Value {
         let rate = unit.map(|unit| if unit.is_empty() { "1/s".to_owned() } else { format!("{unit}/s") });
-        if let (Some("rad"), Some(Angle(Scalar::Quantity(quantity)))) = (unit, &given.value)
-            && quantity.wrong_for("rad").is_none()
-        {
+        if unit == Some("rad") && given.value.as_ref().is_some_and(|Angle(scalar)| self.is_angle(scalar)) {
             self.units.push((given.span, "rad/s".to_owned()));
             return self.position(given, unit, "`rate`");
         }
         self.position(given, rate.as_deref(), "`rate`")
+    }
+
+    /// Whether a number is written as an angle, or is a parameter that is one.
+    fn is_angle(&self, scalar: &Scalar) -> bool {
+        let known = |name: &String| self.parameters.iter().position(|parameter| parameter.name == *name);
+        let quantity = match scalar {
+            Scalar::Quantity(quantity) => Some(&**quantity),
+            Scalar::Name(name) => known(name).and_then(|index| self.written[index].as_ref()),
+            Scalar::Number(_) => None,
+        };
+        quantity.is_some_and(|quantity| quantity.wrong_for("rad").is_none())
     }
 
     fn ramp(

@@ -185,6 +185,8 @@ struct Check<'a> {
     defaults: Vec<f64>,
     /// Their values as written, if with a unit.
     written: Vec<Option<Quantity>>,
+    /// Whether their values are plain numbers, with or without a unit beside them.
+    labelled: Vec<bool>,
     /// The units of the numbers so far, by their locations.
     units: Vec<(Span, String)>,
     /// Whether some number refers to each parameter.

@@ -38,6 +38,11 @@ impl<'a> Check<'a> {
                 // Words of its own give no dimension.
                 _ => unit.as_deref().and_then(|unit| Quantity::labelled(default, unit)),
             };
+            let is_quantity = parameter
+                .value
+                .as_ref()
+                .is_some_and(|parameter| matches!(parameter.value.value, Some(FixedAngle(Scalar::Quantity(_)))));
+            self.labelled.push(!is_quantity);
             let of_value = written.as_ref().map(|quantity| quantity.dimension.si_unit());
             self.written.push(written);
             self.parameters.push(Parameter {
@@ -186,7 +191,9 @@ impl<'a> Check<'a> {
             None => return reported,
             Some(Scalar::Name(name)) => {
                 let Some(id) = self.parameter(name, span) else { return reported };
-                let written = self.written[id.0].clone();
+                // A factor of a load with unit numbers may be a force: only the unit of a plain number says so.
+                let is_factor = self.labelled[id.0] && matches!(unit, Some("" | "1"));
+                let written = self.written[id.0].clone().filter(|_| !is_factor);
                 return if self.has_dimension(written.as_ref(), span, subject, unit) {
                     Value::Parameter(id)
                 } else {

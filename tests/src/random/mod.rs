@@ -115,7 +115,7 @@ impl Writer {
     /// The live parameters that the crane uses.
     fn parameters(&self) -> String {
         let rows = [
-            ("payload", "{value: 7.5, unit: kg}"),
+            ("payload", "{value: 7.5}"),
             ("reach", "{value: 0.6, unit: m}"),
             ("modulus", "{value: 1.1e7, unit: Pa}"),
             ("ground", "{value: 4.0e3, unit: N/m}"),
