@@ -148,9 +148,7 @@ impl ColumnKind {
             ColumnKind::PrescribedRate => &["_prescribed_rate"],
             ColumnKind::DriveEffort if turns => &["_drive_torque"],
             ColumnKind::DriveEffort => &["_drive_force"],
-            ColumnKind::CylinderLength => &["_length"],
             ColumnKind::CylinderSpeed => &["_speed"],
-            ColumnKind::CylinderForce => &["_force"],
             ColumnKind::PistonPressure => &["_piston_pressure"],
             ColumnKind::RodPressure => &["_rod_pressure"],
             ColumnKind::Flow => &["_flow"],
@@ -169,7 +167,7 @@ impl ColumnKind {
             ColumnKind::FrictionEffort if turns => &["_friction_torque"],
             ColumnKind::FrictionEffort => &["_friction_force"],
             ColumnKind::Bristle => &["_bristle"],
-            ColumnKind::Strain(Strain::Length) => &["_length"],
+            ColumnKind::CylinderLength | ColumnKind::Strain(Strain::Length) => &["_length"],
             ColumnKind::Strain(Strain::Slip) => &["_slip"],
             ColumnKind::Strain(Strain::Offset) => &["_offset"],
             ColumnKind::Strain(Strain::Angle) => &["_angle"],
@@ -178,7 +176,7 @@ impl ColumnKind {
             ColumnKind::StrainRate(Strain::Offset) => &["_offset_rate"],
             ColumnKind::StrainRate(Strain::Angle) => &["_angle_rate"],
             ColumnKind::ConnectorEffort if turns => &["_torque"],
-            ColumnKind::ConnectorEffort => &["_force"],
+            ColumnKind::CylinderForce | ColumnKind::ConnectorEffort => &["_force"],
             ColumnKind::PinFriction => &["_friction_torque"],
             ColumnKind::LoopForce => &["_force", "_force_x", "_force_y", "_force_z", "_force_u", "_force_w"],
             ColumnKind::LoopMoment => &["_torque", "_moment_x", "_moment_y", "_moment_z", "_moment_u", "_moment_w"],
@@ -205,12 +203,12 @@ impl ColumnKind {
     pub const fn unit(self, turns: bool) -> &'static str {
         match self {
             ColumnKind::Time => "s",
-            ColumnKind::Position | ColumnKind::Prescribed | ColumnKind::Bristle if turns => "rad",
-            ColumnKind::Rate | ColumnKind::PrescribedRate if turns => "rad/s",
+            ColumnKind::Position | ColumnKind::Prescribed | ColumnKind::Bristle | ColumnKind::Strain(_) if turns => {
+                "rad"
+            }
+            ColumnKind::Rate | ColumnKind::PrescribedRate | ColumnKind::StrainRate(_) if turns => "rad/s",
             ColumnKind::Acceleration if turns => "rad/s2",
             ColumnKind::Acceleration => "m/s2",
-            ColumnKind::Strain(_) if turns => "rad",
-            ColumnKind::StrainRate(_) if turns => "rad/s",
             ColumnKind::Position
             | ColumnKind::Prescribed
             | ColumnKind::Bristle

@@ -73,20 +73,17 @@ impl ResultNames {
     fn add_part(&mut self, what: &str, part: &str, turns: bool, kinds: &[ColumnKind]) {
         let owner = if what.is_empty() { format!("the {part}") } else { format!("{what} `{part}`") };
         for kind in kinds {
-            kind.endings(turns).iter().for_each(|ending| self.add_column(*kind, format!("{part}{ending}"), &owner));
+            kind.endings(turns).iter().for_each(|ending| self.add_column(*kind, &format!("{part}{ending}"), &owner));
         }
     }
 
-    fn add_column(&mut self, kind: ColumnKind, name: String, owner: &str) {
-        self.add(name.clone(), owner);
-        if kind.has_peaks() {
-            PEAKS.iter().for_each(|ending| self.add(format!("{name}{ending}"), owner));
-        }
-        if kind == ColumnKind::PointPosition {
-            self.add(format!("{name}{END}"), owner);
-        }
-        if kind.is_state() {
-            ColumnKind::StateRate.endings(false).iter().for_each(|ending| self.add(format!("{name}{ending}"), owner));
+    fn add_column(&mut self, kind: ColumnKind, name: &str, owner: &str) {
+        self.add(name.to_owned(), owner);
+        let peaks = PEAKS.iter().filter(|_| kind.has_peaks());
+        let end = (kind == ColumnKind::PointPosition).then_some(&END);
+        let rates = ColumnKind::StateRate.endings(false).iter().filter(|_| kind.is_state());
+        for ending in peaks.chain(end).chain(rates) {
+            self.add(format!("{name}{ending}"), owner);
         }
     }
 
@@ -160,7 +157,7 @@ impl ResultNames {
             for equation in equations {
                 let kind = if equation.is_moment { ColumnKind::LoopMoment } else { ColumnKind::LoopForce };
                 let name = format!("{part}{}", kind.ending_along(equation.direction));
-                self.add_column(kind, name, &format!("{what} `{part}`"));
+                self.add_column(kind, &name, &format!("{what} `{part}`"));
             }
         }
     }

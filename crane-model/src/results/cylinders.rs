@@ -82,7 +82,9 @@ fn columns(name: &str) -> [String; 6] {
 /// Adds the columns of all cylinders, of the pump, and of the openings of valves.
 pub(super) fn add_columns(description: &Description, table: &mut Table) {
     for cylinder in &description.cylinders {
-        ColumnKind::OF_CYLINDER.into_iter().for_each(|kind| table.add_of(kind, &cylinder.name, false));
+        for kind in ColumnKind::OF_CYLINDER {
+            table.add_of(kind, &cylinder.name, false);
+        }
     }
     for _ in 0..with_cylinders(description) {
         table.add_of(ColumnKind::Flow, "pump", false);

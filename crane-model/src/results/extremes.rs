@@ -54,7 +54,7 @@ impl Extremes {
         Self { minimum: value, time_of_minimum: t, maximum: value, time_of_maximum: t }
     }
 
-    /// Includes a later value. The first that is no number is the result: extremes without it would be wrong.
+    /// Includes a later value. The first NaN is the result: extremes without it would be wrong.
     pub fn widen(&mut self, t: f64, value: f64) {
         if value < self.minimum || (value.is_nan() && !self.minimum.is_nan()) {
             (self.minimum, self.time_of_minimum) = (value, t);

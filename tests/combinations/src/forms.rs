@@ -53,10 +53,7 @@ pub fn vary(seed: u64, tree: &mut Tree) {
         }
     }
     if halts.bool() {
-        let gravity = gravity(tree);
-        let [along, size] = [gravity[0].hypot(gravity[1]), gravity.iter().map(|g| g * g).sum::<f64>().sqrt()];
-        tree["gravity"] = json!([0, 0, -size]);
-        tree["slope"] = json!({"angle": along.atan2(-gravity[2]), "towards": gravity[1].atan2(gravity[0])});
+        slope(tree);
     }
     let mut gusts = Rng::with_seed(seed ^ 0xa1a1);
     for load in entries(tree, "loads") {
@@ -167,6 +164,14 @@ fn mass(rng: &mut Rng, link: &mut Value) {
             link["bodies"] = json!([body("deck", 0.7, 0.3), body("rail", 0.3, 0.6)]);
         }
     }
+}
+
+/// The same gravity by a slope of the ground.
+fn slope(tree: &mut Tree) {
+    let gravity = gravity(tree);
+    let [along, size] = [gravity[0].hypot(gravity[1]), gravity.iter().map(|g| g * g).sum::<f64>().sqrt()];
+    tree["gravity"] = json!([0, 0, -size]);
+    tree["slope"] = json!({"angle": along.atan2(-gravity[2]), "towards": gravity[1].atan2(gravity[0])});
 }
 
 /// An emergency stop while most motions move.

@@ -57,10 +57,8 @@ fn an_exported_crane_starts_on_its_loops() {
     assert!((0.15..0.2).contains(&open), "{open}");
     assert!(gap(&start.q) < 1e-12, "{}", gap(&start.q));
     // At rest where statics finds it.
-    let held = format!(
-        "guess: {{coupler_psi: -25 deg, rocker_psi: -110 deg}}\ndrives: [{{coordinate: crank_psi, stiffness: 4e3, damping: 60, motion: {{hold: 1.1}}}}]"
-    );
-    let start = Start::of_or_guess(&four_bar([0.4, 1.1, 0.9, 1.2], 0.0, "ball", &held));
+    let held = "guess: {coupler_psi: -25 deg, rocker_psi: -110 deg}\ndrives: [{coordinate: crank_psi, stiffness: 4e3, damping: 60, motion: {hold: 1.1}}]";
+    let start = Start::of_or_guess(&four_bar([0.4, 1.1, 0.9, 1.2], 0.0, "ball", held));
     assert_eq!((start.what.as_str(), start.rests), ("static equilibrium, at rest", true));
     // The bars do not reach the ground's other end.
     let far = Start::of_or_guess(&four_bar([0.4, 0.1, 0.1, 1.2], 0.0, "ball", "analyses: [dynamics]"));
