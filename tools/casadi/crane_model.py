@@ -355,7 +355,7 @@ def read_crane(path):
         if written.get("rigid"):
             crane.loop_joints.append(read_rigid_coupling(crane, written))
     for written in spec.get("points", []):
-        crane.points[written["name"]] = read_point(spec, written, spans[written["link"]])
+        crane.points[written["name"]] = read_point(spec, written, spans)
     add_sections(crane, [spans[link["name"]] for link in spec.keys["links"] if "beam" in link or "rope" in link])
     crane.guess = read_guess(crane)
     return crane
@@ -698,13 +698,19 @@ def read_friction_of_pin(crane, written, spans):
     return Connector([], [], [], [], pin.angle, False, 0, friction.viscous, 0, 0, pin=pin)
 
 
-def read_point(spec, written, span):
-    """Where a point of a link is in the world; on a beam, the element that contains its x carries it.
+def read_point(spec, written, spans):
+    """Where a point of a link or a frame is in the world; on a beam, the element that contains its x, or the frame's, carries it.
 
     At a spring, that is the element that begins there, up to rounding of the lengths.
     """
-    body, local = carrier(spec, spec.vector(written["at"]), span)
-    return place(body.transform, local)
+    at = spec.vector(written.get("at", [0, 0, 0]))
+    if "frame" not in written:
+        body, local = carrier(spec, at, spans[written["link"]])
+        return place(body.transform, local)
+    (frame,) = (frame for frame in spec.keys["frames"] if frame["name"] == written["frame"])
+    transform = read_placement(spec, "transform", frame.get("transform") or {})
+    body, origin = carrier(spec, transform[:3, 3], spans[frame["link"]])
+    return place(body.transform @ translate(origin[0], origin[1], origin[2]), transform[:3, :3] @ at)
 
 
 def carrier(spec, at, span):
