@@ -129,3 +129,69 @@ pub fn token(description: &Description, variables: &[Variable]) -> String {
         variables.iter().map(|variable| format!("{} [{}]", variable.name, variable.unit)).collect();
     format!("{}-{}", description.spec_hash, SourceFile::new("variables", lines.join("\n")).hash())
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use crane_live::LiveCrane;
+    use crane_model::dyn_crane::DynModel;
+    use crane_model::results::Peaks;
+
+    use super::*;
+
+    /// Names that results of other parts have, or almost have.
+    const WORDS: [&str; 16] = [
+        "a", "b", "a_theta", "b_x", "tip", "tip_x", "tip_end", "pump", "pump_flow", "time", "a_theta_rate", "drive_work",
+        "foot", "foot_gap", "b_force", "b_length_rate",
+    ];
+
+    /// Parts of all kinds with names drawn from these.
+    fn spec(mut word: impl FnMut() -> &'static str) -> String {
+        let [one, other, parameter, input, point, cylinder, rope, foot] = std::array::from_fn(|_| word());
+        format!(
+            "format: 1\nname: named\nparameters: {{{parameter}: {{value: 5, unit: kg}}}}\ninputs: {{{input}: {{unit: N}}}}\nlinks:\n\
+             - {{name: base, joint: free, mass: 100, com: [0, 0, 1], inertia: {{gyration: [1, 1, 1]}}}}\n\
+             - {{name: {one}, joint: {{revolute: {{axis: y}}}}, mass: 10, com: [1, 0, 0], inertia: {{gyration: [1, 1, 1]}}}}\n\
+             - {{name: {other}, joint: {{prismatic: {{axis: x}}}}, mass: {parameter}, com: [0, 0, 0]}}\n\
+             supports: [{{name: {foot}, at: [1, 0, 0], one_sided: true, stiffness: [1e6, 1e6, 1e6]}}]\n\
+             drives: [{{coordinate: {one}_theta, stiffness: 1e5, motion: {{hold: 0}}}}]\n\
+             cylinders: [{{name: {cylinder}, coordinate: {one}_theta, foot: {{link: base, at: [0.3, 0, -1]}}, head: {{link: {one}, at: [1, 0, -0.1]}}, \
+             bore: 0.1, rod: 0.05, retracted: 0.9, stroke: 0.8}}]\n\
+             connectors: [{{name: {rope}, from: {{at: [0, 0, 5]}}, to: {{link: {one}, at: [1, 0, 0]}}, law: {{rope: {{stiffness: 1e4, length: 4}}}}}}]\n\
+             loads: [{{name: push, link: {one}, at: [1, 0, 0], force: [0, 0, 1], scale: {{input: {input}}}}}]\n\
+             points: [{{name: {point}, link: {one}, at: [1, 0, 0]}}]\n"
+        )
+    }
+
+    /// A crane whose names `check` accepts has no two variables, and no two columns of an ensemble, of one name.
+    #[test]
+    fn accepted_names_are_those_of_one_result_each() {
+        let mut state = 1_u64;
+        let mut word = || {
+            // Knuth's generator; its upper bits.
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            WORDS[usize::try_from(state >> 33).expect("31 bits") % WORDS.len()]
+        };
+        let (mut accepted, mut shared) = (0, 0);
+        for _ in 0..400 {
+            let text = spec(&mut word);
+            let crane = match LiveCrane::from_spec(&SourceFile::new("named.yaml", text.as_str())) {
+                Ok(crane) => crane,
+                Err(mistakes) => {
+                    shared += usize::from(mistakes.to_string().contains("E028"));
+                    continue;
+                }
+            };
+            accepted += 1;
+            let variables = list(crane.description(), crane.loop_joints());
+            let names: BTreeSet<&str> = variables.iter().map(|variable| variable.name.as_str()).collect();
+            assert_eq!(names.len(), variables.len(), "{text}");
+            let columns = Peaks::columns(&crane);
+            let own = crane.description().parameters.iter().map(|info| info.name.as_str());
+            let all: Vec<&str> = own.chain(columns.iter().map(|column| column.name.as_str())).collect();
+            assert_eq!(all.iter().collect::<BTreeSet<_>>().len(), all.len(), "{text}");
+        }
+        assert!(accepted > 50 && shared > 100, "{accepted} accepted, {shared} with a shared name");
+    }
+}

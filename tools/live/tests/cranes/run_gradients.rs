@@ -262,18 +262,18 @@ fn motions_that_begin_and_end_later_move_the_run() {
         "
 format: 1
 name: swinging
-parameters: {far: {value: 0.8}, begin: {value: 0.3}, time: {value: 0.9}}
+parameters: {far: {value: 0.8}, begin: {value: 0.3}, span: {value: 0.9}}
 analyses: [statics, dynamics]
 links:
   - {name: arm, placement: {transform: {rotation: {x: 90 deg}}}, joint: revolute, mass: 20, com: [0.5, 0, 0], inertia: {Ixx: 1, Iyy: 2, Izz: 2}}
   - {name: load, placement: {transform: {translation: [1, 0, 0]}}, joint: revolute, mass: 10, com: [0, -0.5, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}}
-drives: [{coordinate: arm_psi, stiffness: 2e4, damping: 300, motion: {trapezoid: {from: 0.2, to: far, begin: begin, duration: time}}}]
+drives: [{coordinate: arm_psi, stiffness: 2e4, damping: 300, motion: {trapezoid: {from: 0.2, to: far, begin: begin, duration: span}}}]
 ",
     );
     // A jump changes derivatives by all of their size within a step, and is right to 1e-4 of it. No result is at the begin or the end of the
     // motion, on whose two sides derivatives differ.
     let run = settings(&crane, 1.96, 0.07, 1e-10);
-    let numbers = (&["far", "begin", "time"][..], &[0.01, 1e-3, 3e-3][..]);
+    let numbers = (&["far", "begin", "span"][..], &[0.01, 1e-3, 3e-3][..]);
     assert_differences("trapezoid", &crane, numbers, &None, &run, 3e-4);
 }
 

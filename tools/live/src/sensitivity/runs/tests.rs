@@ -171,13 +171,13 @@ fn the_adjoint_mode_is_the_transpose_of_the_forward_mode() {
 const SWINGING: &str = "
 format: 1
 name: swinging
-parameters: {far: {value: 0.8}, begin: {value: 0.3}, time: {value: 0.9}, mass: {value: 10}}
+parameters: {far: {value: 0.8}, begin: {value: 0.3}, span: {value: 0.9}, mass: {value: 10}}
 inputs: {gust: {value: 0, unit: N}}
 analyses: [statics, dynamics]
 links:
   - {name: arm, placement: {transform: {rotation: {x: 90 deg}}}, joint: revolute, mass: 20, com: [0.5, 0, 0], inertia: {Ixx: 1, Iyy: 2, Izz: 2}}
   - {name: load, placement: {transform: {translation: [1, 0, 0]}}, joint: revolute, mass: mass, com: [0, -0.5, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}}
-drives: [{coordinate: arm_psi, stiffness: 2e4, damping: 300, motion: {trapezoid: {from: 0.2, to: far, begin: begin, duration: time}}}]
+drives: [{coordinate: arm_psi, stiffness: 2e4, damping: 300, motion: {trapezoid: {from: 0.2, to: far, begin: begin, duration: span}}}]
 loads: [{name: wind, link: load, at: [0, -0.5, 0], force: [1, 0, 0], scale: {input: gust}}]
 friction:
   load_psi: {coulomb: 20, breakaway: 25, stribeck: 0.02, viscous: 3, bristle: {stiffness: 2e4, damping: 90}}
