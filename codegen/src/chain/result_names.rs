@@ -7,8 +7,7 @@ use crane_quantities::{ColumnKind, END, PEAKS, Strain as StrainKind};
 use super::{Chain, CoordinateId, CoordinateKind, Force, Strain};
 
 /// Columns and variables that a run has of the crane as a whole: time, and energies by the names of their parts.
-const OF_CRANE: [(&str, ColumnKind); 13] = [
-    ("t", ColumnKind::Time),
+const OF_CRANE: [(&str, ColumnKind); 12] = [
     ("time", ColumnKind::Time),
     ("kinetic", ColumnKind::Energy),
     ("gravity", ColumnKind::Energy),
@@ -54,6 +53,8 @@ impl Chain {
         for input in &self.inputs {
             names.add_part("input", &input.name, false, &[ColumnKind::Other]);
         }
+        // The time of a table stands beside no parameters; where it does, it is called `time`.
+        names.owners.entry("t".to_owned()).or_insert_with(|| "a result of every run".to_owned());
         names
     }
 }

@@ -173,8 +173,12 @@ links:
     let equivalent = normal.hypot(3.0f64.sqrt() * (981.0 + weight) * first / (second * 2.0 * wall));
     // The inner beam tilts the outer one by 4e-4 rad.
     assert_close("utilisation", &report["greatest_utilisation"], 1.25 * equivalent / 355e6, 1e-4);
+    assert_eq!(report["place_of_the_greatest_utilisation"], "outer, 0.000 m from its start");
+    // The greatest stress is another one, of the inner beam where it is clamped.
+    let normal = (981.0 * 3.0 + weight * 4.5) * (height / 2.0) / second;
+    let equivalent = normal.hypot(3.0f64.sqrt() * (981.0 + 3.0 * weight) * first / (second * 2.0 * wall));
     assert_close("stress", &report["greatest_equivalent_stress"], equivalent, 1e-4);
-    assert_eq!(report["place_of_the_greatest_stress"], "outer, 0.000 m from its start");
+    assert_eq!(report["place_of_the_greatest_stress"], "inner, 0.000 m from its start");
     let of_inner = report["stresses"][0]["equivalent"].as_f64().expect("a number");
     assert!(report["stresses"][0]["beam"] == "inner" && of_inner > 2.0 * equivalent, "{of_inner}");
 }

@@ -8,7 +8,7 @@ use super::{crane, folder, json, refused, text};
 
 /// A written file, by its end, in a folder of its command.
 fn written(arguments: &[&str], end: &str) -> Vec<u8> {
-    let file = folder(&format!("written_by_{}", arguments[0])).join(format!("crane.{end}"));
+    let file = folder(&format!("{}_written_as_{end}", arguments[0])).join(format!("crane.{end}"));
     let output = crane(&[arguments, &["-o", &file.display().to_string()]].concat());
     assert!(output.status.success(), "{}", text(&output.stderr));
     fs::read(file).expect("a file")
