@@ -353,6 +353,6 @@ fn parameters_that_are_angles_are_in_degrees_too() {
     assert_eq!(sign::parameter("payload", 930.0, "kg"), "payload = 930 kg");
     assert_eq!(
         [quantity(114_460.0, "N m"), quantity(2.1e7, "Pa"), quantity(0.021_344, "m")],
-        ["114.5 kN m", "210.0 bar", "21.34 mm"]
+        ["114.5 kN m", "210 bar", "21.34 mm"]
     );
 }
