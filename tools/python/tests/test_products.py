@@ -131,7 +131,7 @@ def test_what_has_no_products_is_refused():
     with pytest.raises(ValueError, match="4 coordinates"):
         c.jvp("points", {"q": 1.0}, c.guess)
     harvester = crane.load(str(ROOT / "specs/examples/parallel_harvester.yaml"))
-    with pytest.raises(ValueError, match="closed loops"):
+    with pytest.raises(ValueError, match="depends on the loop that parallel_pin closes"):
         harvester.vjp("forward_dynamics", np.ones(harvester.n), harvester.guess, harvester.guess)
     assert harvester.vjp("loop_states", np.ones(harvester._product_shape("loop_states")), harvester.guess, harvester.guess)["q"].any()
     with pytest.raises(ValueError, match="no a: it depends on q, v, t; times are t="):
