@@ -128,11 +128,13 @@ pub fn changes(changes: &Changes) -> Grid {
 
 /// What moves what: for every output the numbers that move it most, with bars.
 pub fn bars(changes: &Changes, all: bool) -> Grid {
+    /// A relative change that is printed as 0.00 %: rounding gets no bar.
+    const NOTHING: f64 = 5e-5;
     let title = "What moves what: relative changes, for every output the largest first";
     let mut grid = Grid::new("bars", title, &["output", "parameter", "relative [%]", ""]);
     let pairs = || changes.shown.iter().flat_map(|&output| changes.order.iter().map(move |&place| (place, output)));
     let shares = pairs().filter_map(|(place, output)| changes.relative(place, output));
-    let greatest = shares.fold(f64::MIN_POSITIVE, |size: f64, share| size.max(share.abs()));
+    let greatest = shares.fold(NOTHING, |size: f64, share| size.max(share.abs()));
     for &index in &changes.shown {
         let share = |place: usize| changes.relative(place, index).map(|share| (place, share));
         let mut shares: Vec<(usize, f64)> = changes.order.iter().filter_map(|&place| share(place)).collect();
