@@ -73,7 +73,7 @@ fn unsupported_robots_are_refused_with_the_reason() {
 #[test]
 fn a_crane_comes_back_from_urdf() {
     for crane in shipped() {
-        let urdf = exchange::urdf(&crane, &crane.parameter_defaults(), &[]);
+        let urdf = exchange::urdf(&crane, &crane.parameter_defaults(), &[]).expect("an open chain");
         let spec = spec(&format!("{}.urdf", crane.name), &urdf);
         let back = chain(&SourceFile::new(&crane.name, spec));
         assert_eq!(back.coordinates.len(), crane.coordinates.len());
@@ -151,7 +151,7 @@ fn rigid_couplings_come_back_from_urdf_and_mjcf() {
         ),
     ));
     let parameters = [2.0];
-    let urdf = exchange::urdf(&geared, &parameters, &[]);
+    let urdf = exchange::urdf(&geared, &parameters, &[]).expect("rigid couplings are mimicked");
     let mjcf = exchange::mjcf(&geared, &parameters, &[], (&geared.guess_at(&parameters), "guess"))
         .expect("rigid couplings are equalities");
     for (name, text) in [("geared.urdf", urdf), ("geared.xml", mjcf)] {
@@ -204,13 +204,13 @@ fn what_is_written_is_for_people_to_read() {
     let cranes = shipped();
     let named = |name: &str| cranes.iter().find(|crane| crane.name == name).expect("a shipped crane");
     let (planar, rigid) = (named("knuckle_boom"), named("eight_link_rigid"));
-    let urdf = exchange::urdf(planar, &planar.parameter_defaults(), &[]);
+    let urdf = exchange::urdf(planar, &planar.parameter_defaults(), &[]).expect("an open chain");
     snapshot("knuckle_boom.urdf", &urdf);
     snapshot("knuckle_boom.springs.yaml", &exchange::springs(planar, &planar.parameter_defaults()));
     snapshot("knuckle_boom.xml", &mjcf(planar).expect("expressible"));
     snapshot("knuckle_boom.yaml", &spec("knuckle_boom.urdf", &urdf));
     // A live parameter is written with the value that it is set to.
-    let heavy = exchange::urdf(rigid, &[800.0], &[]);
+    let heavy = exchange::urdf(rigid, &[800.0], &[]).expect("an open chain");
     assert!(heavy.contains("load_mass = 800 kg") && heavy.contains("<mass value=\"1076\"/>"));
     snapshot("eight_link_rigid.xml", &mjcf(rigid).expect("expressible"));
 }

@@ -1,13 +1,11 @@
 //! A crane as MJCF: kinematics, masses, springs, dampers and supports.
 
-use std::fmt;
-
 use super::look::{Form, Look, colours, on as looks_on};
 use super::mass::Lump;
 use super::rotation::{length as distance, quaternion};
 use super::springs::{JointSpring, linear_rows, on};
 use super::xml::{Xml, number_text, numbers};
-use super::{RADIUS, approximations, bars, hinged, origin, placements};
+use super::{Inexpressible, RADIUS, approximations, bars, hinged, origin, placements};
 use crate::chain::{
     BodyId, Chain, CoordinateId, CoordinateKind, Follower, Frame, LoopJoint, LoopJointKind, RigidCoupling, Step,
     Support, SupportKinematics, Value,
@@ -16,23 +14,6 @@ use crate::chain::{
 /// `MuJoCo` refuses moving bodies without mass or inertia: a massless frame, or a point, gets this value, kg or kg m². It is
 /// negligible against the mass of any crane.
 const LEAST: f64 = 1e-14;
-
-/// A part of a crane that MJCF cannot express.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Inexpressible {
-    /// What cannot be expressed, in the user's own names, and why.
-    pub title: String,
-    /// What to do instead.
-    pub help: String,
-}
-
-impl fmt::Display for Inexpressible {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}; {}", self.title, self.help)
-    }
-}
-
-impl std::error::Error for Inexpressible {}
 
 /// The MJCF text of a crane with the given parameter values.
 ///

@@ -5,6 +5,7 @@
 //! order of `q`.
 
 mod import;
+mod inexpressible;
 mod look;
 mod mass;
 mod mjcf;
@@ -14,8 +15,9 @@ mod urdf;
 pub mod xml;
 
 pub use import::{CATALOGUE, ImportOptions, Imported, Reference, ReferenceDynamics, import, with_includes};
+pub use inexpressible::Inexpressible;
 pub use look::{Form, Look};
-pub use mjcf::{Inexpressible, mjcf};
+pub use mjcf::mjcf;
 pub use springs::springs;
 pub use urdf::urdf;
 

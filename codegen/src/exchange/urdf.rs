@@ -4,23 +4,55 @@ use super::look::{Form, Look, colours, on};
 use super::mass::Lump;
 use super::rotation::{along_z, length, roll_pitch_yaw};
 use super::xml::{Xml, number_text, numbers};
-use super::{RADIUS, approximations, bars, hinged, origin, placements};
-use crate::chain::{BodyId, Chain, CoordinateId, CoordinateKind, Follower, Frame, Step, Vector};
+use super::{Inexpressible, RADIUS, approximations, bars, hinged, origin, placements};
+use crate::chain::{
+    BodyId, Chain, CoordinateId, CoordinateKind, Follower, Frame, LoopJoint, RigidCoupling, Step, Vector,
+};
 
 /// URDF requires limits for joints that are not `continuous`, which would have two coordinates in Pinocchio. The crane has no
 /// limits: this value is used for positions (rad or m), velocities (rad/s or m/s) and efforts (N m or N).
 pub(super) const NO_LIMIT: [f64; 3] = [1e3, 1e3, 1e9];
 
+/// URDF describes open chains in which a joint mimics one other.
+fn expressible(chain: &Chain) -> Result<(), Inexpressible> {
+    let Chain { name: crane, loop_joints, rigid_couplings, .. } = chain;
+    if let Some(LoopJoint { name, .. }) = loop_joints.first() {
+        return Err(Inexpressible {
+            title: format!("{crane} has a loop, which `{name}` closes; URDF describes open chains"),
+            help: "export MJCF (`--format mjcf`) or a functional mock-up unit (`--format fmu`) for co-simulation, or a spec without `loop_joints` and exact \
+                   pads, and close the loop in the other program"
+                .into(),
+        });
+    }
+    let follows = |coupling: &RigidCoupling| coupling.follower.coordinate;
+    let second = |(index, coupling): &(usize, &RigidCoupling)| {
+        rigid_couplings[..*index].iter().any(|other| follows(other) == follows(coupling))
+    };
+    rigid_couplings.iter().enumerate().find(second).map_or(Ok(()), |(_, coupling)| {
+        Err(Inexpressible {
+            title: format!(
+                "`{}` makes a joint of {crane} follow a second one; in URDF a joint mimics one other",
+                coupling.name
+            ),
+            help: "write the coupling the other way around, with the `coordinate` under `follows`, or export MJCF (`--format mjcf`)"
+                .into(),
+        })
+    })
+}
+
 /// The URDF text of a crane with the given parameter values.
 ///
 /// There is one joint per coordinate, with its name; a body with several coordinates has massless links between them. Names of
-/// fixed joints end in `_mount`; points of interest are massless links. A joint that a rigid coupling ties to another one mimics it; of
-/// several such couplings of one joint, URDF can express only one. `looks` are its visuals; without any, a bar represents each body.
+/// fixed joints end in `_mount`; points of interest are massless links. A joint that a rigid coupling ties to another one mimics it.
+/// `looks` are its visuals; without any, a bar represents each body.
+///
+/// # Errors
+/// A closed loop, or several rigid couplings of one joint.
 ///
 /// # Panics
 /// If `parameters` is shorter than the chain's list of parameters.
-#[must_use]
-pub fn urdf(chain: &Chain, parameters: &[f64], looks: &[Look]) -> String {
+pub fn urdf(chain: &Chain, parameters: &[f64], looks: &[Look]) -> Result<String, Inexpressible> {
+    expressible(chain)?;
     let mut xml = Xml::new(&origin(chain, parameters));
     xml.open("robot", &[("name", chain.name.clone())]);
     if let Some(text) = approximations(chain) {
@@ -76,7 +108,7 @@ pub fn urdf(chain: &Chain, parameters: &[f64], looks: &[Look]) -> String {
         joint(&mut xml, &format!("{name}_mount"), (carrier, &name), &placement, None);
         xml.leaf("link", &[("name", name)]);
     }
-    xml.finish()
+    Ok(xml.finish())
 }
 
 /// The fixed link.

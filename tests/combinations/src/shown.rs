@@ -26,7 +26,11 @@ pub fn differences(tree: &Tree, second: &Second) -> Vec<String> {
         let (chain, parameters) = (crane.chain(), crane.parameters());
         let mjcf = exchange::mjcf(chain, parameters, &[], (&chain.guess_at(parameters), "guess"))
             .unwrap_or_else(|failure| failure.title);
-        [exchange::urdf(chain, parameters, &[]), exchange::springs(chain, parameters), mjcf]
+        [
+            exchange::urdf(chain, parameters, &[]).unwrap_or_else(|failure| failure.to_string()),
+            exchange::springs(chain, parameters),
+            mjcf,
+        ]
     };
     for (name, (written, set)) in ["URDF", "springs", "MJCF"].iter().zip(exported(&written).iter().zip(exported(&set)))
     {

@@ -206,7 +206,7 @@ fn a_tree_comes_back_from_urdf_and_mjcf() {
     let tree = crane(&format!("format: 1\nname: tree\nlinks:\n{}", links.concat()));
     let values = tree.chain.parameter_defaults();
     let files = [
-        exchange::urdf(&tree.chain, &values, &[]),
+        exchange::urdf(&tree.chain, &values, &[]).expect("an open chain"),
         exchange::mjcf(&tree.chain, &values, &[], (&tree.chain.guess_at(&values), "guess")).expect("expressible"),
     ];
     for text in files {

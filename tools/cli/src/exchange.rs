@@ -7,7 +7,7 @@ use std::{
 
 use clap::ValueEnum;
 use crane_codegen::{
-    chain::{Bound, Chain, LoopJoint, Refusal, RigidCoupling},
+    chain::{Bound, Chain, Refusal},
     compile,
     compile::NoFunction,
     diagnostic::MAX_BYTES,
@@ -78,9 +78,10 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
         Language::Urdf => {
             let (_, looks, surfaces) = shown(&chain, &parameters, &file)?;
             meshes = surfaces;
+            let text = exchange::urdf(&chain, &parameters, &looks);
             vec![
                 (file.with_extension("springs.yaml"), exchange::springs(&chain, &parameters)),
-                (file.clone(), exchange::urdf(&chain, &parameters, &looks)),
+                (file.clone(), text.map_err(|failure| Problem::usage(failure.title, failure.help))?),
             ]
         }
         Language::Mjcf => {
@@ -251,25 +252,7 @@ fn keep_loops(options: &Export, chain: &Chain) -> Outcome<()> {
     const SOLVED: [&str; 3] = ["forward_dynamics", "forward_dynamics_derivatives", "linearise"];
     let Chain { name: crane, loop_joints, rigid_couplings, .. } = chain;
     match options.format {
-        Language::Fmu | Language::Mjcf | Language::Gltf => Ok(()),
-        Language::Urdf => {
-            if let Some(LoopJoint { name, .. }) = loop_joints.first() {
-                return Err(Problem::usage(
-                    format!("{crane} has a loop, which `{name}` closes; URDF describes open chains"),
-                    "export MJCF (`--format mjcf`) or a functional mock-up unit (`--format fmu`) for co-simulation, or a spec without `loop_joints` and exact pads, and close the loop in the other program",
-                ));
-            }
-            let follows = |coupling: &RigidCoupling| coupling.follower.coordinate;
-            let second = |(index, coupling): &(usize, &RigidCoupling)| {
-                rigid_couplings[..*index].iter().any(|other| follows(other) == follows(coupling))
-            };
-            rigid_couplings.iter().enumerate().find(second).map_or(Ok(()), |(_, coupling)| {
-                Err(Problem::usage(
-                    format!("`{}` makes a joint of {crane} follow a second one; in URDF a joint mimics one other", coupling.name),
-                    "write the coupling the other way around, with the `coordinate` under `follows`, or export MJCF (`--format mjcf`)",
-                ))
-            })
-        }
+        Language::Fmu | Language::Mjcf | Language::Gltf | Language::Urdf => Ok(()),
         Language::C => {
             let functions = options.functions();
             let Some(function) = functions.iter().find(|name| SOLVED.contains(&Product::split(name).0)) else {

@@ -142,8 +142,22 @@ mod tests {
 
     /// Names that results of other parts have, or almost have.
     const WORDS: [&str; 16] = [
-        "a", "b", "a_theta", "b_x", "tip", "tip_x", "tip_end", "pump", "pump_flow", "time", "a_theta_rate", "drive_work",
-        "foot", "foot_gap", "b_force", "b_length_rate",
+        "a",
+        "b",
+        "a_theta",
+        "b_x",
+        "tip",
+        "tip_x",
+        "tip_end",
+        "pump",
+        "pump_flow",
+        "time",
+        "a_theta_rate",
+        "drive_work",
+        "foot",
+        "foot_gap",
+        "b_force",
+        "b_length_rate",
     ];
 
     /// Parts of all kinds with names drawn from these.

@@ -277,13 +277,13 @@ impl Crane {
             return Err(PyValueError::new_err("the parameters are arrays: export a crane with one value of each"));
         }
         let (chain, parameters) = (self.live.chain(), self.live.parameters());
+        let refused = |failure: exchange::Inexpressible| PyValueError::new_err(failure.to_string());
         match format {
-            "urdf" => Ok(exchange::urdf(chain, parameters, &[])),
+            "urdf" => exchange::urdf(chain, parameters, &[]).map_err(refused),
             "springs" => Ok(exchange::springs(chain, parameters)),
             "mjcf" => {
                 let start = Start::of_or_guess(&self.live);
-                exchange::mjcf(chain, parameters, &[], (&start.q, &start.what))
-                    .map_err(|failure| PyValueError::new_err(format!("{}; {}", failure.title, failure.help)))
+                exchange::mjcf(chain, parameters, &[], (&start.q, &start.what)).map_err(refused)
             }
             other => Err(PyValueError::new_err(format!("format={other:?}: write \"urdf\", \"springs\" or \"mjcf\""))),
         }

@@ -4,6 +4,7 @@ import crane
 import numpy as np
 import pytest
 from crane import _native
+from conftest import ROOT
 from every_function import ARRAYS, TIMING, Duck, arrays_of, batched, call, given  # noqa: F401
 
 REFUSED = {
@@ -111,3 +112,9 @@ def test_attributes_that_nobody_reads_are_refused(knuckle):
     with pytest.raises(AttributeError, match=r"`reset\(rows, payload=\.\.\.\)`"):
         knuckle.vector_simulation(2).payload = 100.0
     assert knuckle.parameters["payload"] == 800.0
+
+
+def test_loops_are_no_urdf():
+    harvester = crane.load(str(ROOT / "specs/examples/parallel_harvester.yaml"))
+    with pytest.raises(ValueError, match="has a loop, which `parallel_pin` closes; URDF describes open chains"):
+        harvester.export("urdf")
