@@ -3,8 +3,7 @@
     python public_robots.py --crane target/release/crane --evaluate target/release/evaluate FOLDER... [--states 5] [--seed 1]
 
 Files that the library cannot load, or in which nothing moves, are passed over, and so are copies. A, e and, of MJCF, forces without friction
-and without the guesses for joints that follow others are compared to 1e-9 of the
-largest entry. Prints each robot that is refused or differs, and a summary.
+are compared to 1e-9 of the largest entry. Prints each robot that is refused or differs, and a summary.
 Exit code 0 if none differs.
 """
 
