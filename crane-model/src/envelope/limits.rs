@@ -90,6 +90,16 @@ impl Limits {
         }
     }
 
+    /// Those that a chart has unless others are asked for: no foot beyond tipping, the allowable stress, and what no crane can exceed.
+    pub fn usual(description: &Description) -> Self {
+        Self {
+            tipping: Some(0.0),
+            utilisation: Some(1.0),
+            of_parts: PartLimit::DEFAULT.to_vec(),
+            ..Self::none(description)
+        }
+    }
+
     /// Whether a kind is among the limits.
     pub fn has(&self, kind: PartLimit) -> bool {
         self.of_parts.contains(&kind)

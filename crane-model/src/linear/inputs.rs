@@ -155,7 +155,7 @@ pub(super) fn effect<C: Linearisable>(
 
 /// Where the position of the motion of a coordinate's drive is among outputs.
 fn prescribed_output(outputs: &[Output], coordinate: &str) -> Option<usize> {
-    outputs.iter().position(|output| output.column.name.strip_suffix("_prescribed") == Some(coordinate))
+    outputs.iter().position(|output| output.column.kind == ColumnKind::Prescribed && output.column.part() == coordinate)
 }
 
 /// How much the force of a drive on its coordinate grows with the position, 0, or the rate, 1, of its motion: it depends on their differences

@@ -23,9 +23,11 @@ pub use outputs::{Output, outputs};
 
 use std::{error::Error, fmt};
 
+use crane_quantities::ColumnKind;
 use nalgebra::{Complex, DMatrix, DVector};
 
 use crate::{
+    column::columns_of,
     dyn_crane::{DynCrane, DynLineariseMotion, DynMotionDerivatives},
     force_states::{self, ForceStates, states_of_small_motions},
     modes::{DampedMode, NoModes, SmallMotions, StateSpace, eigenvalues, grows},
@@ -270,18 +272,15 @@ fn drift_of(crane: &dyn DynCrane, moment: &StateAt<'_>, space: &StateSpace, forc
 /// Names and units of the states.
 fn states(crane: &dyn DynCrane, space: &StateSpace) -> Vec<Column> {
     let description = crane.description();
-    let coordinates = space.unknowns().iter().map(|&index| &description.coordinates[index]);
-    let rates = coordinates.clone();
-    let column = |name: String, unit: String| Column::new(name, unit);
+    let of_coordinates = |kind: ColumnKind| {
+        let coordinates = space.unknowns().iter().map(|&index| &description.coordinates[index]);
+        coordinates.flat_map(move |info| columns_of(kind, &info.name, info.kind.turns()))
+    };
     let all = quantities(description, crane.loop_joints());
     let of_forces = force_states::columns_of_small_motions(description).into_iter().map(|name| {
         let unit =
             all.iter().find(|column| column.name == name).map_or_else(|| "1".to_owned(), |found| found.unit.clone());
-        column(name, unit)
+        Column::new(name, unit)
     });
-    coordinates
-        .map(|info| column(info.name.to_string(), info.kind.unit().to_owned()))
-        .chain(rates.map(|info| column(format!("{}_rate", info.name), format!("{}/s", info.kind.unit()))))
-        .chain(of_forces)
-        .collect()
+    of_coordinates(ColumnKind::Position).chain(of_coordinates(ColumnKind::Rate)).chain(of_forces).collect()
 }

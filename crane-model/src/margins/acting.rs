@@ -1,6 +1,12 @@
 //! What a loop acts on, by its name.
 
-use crate::{Description, DriveInfo, linear::Input, results::Column};
+use crane_quantities::ColumnKind;
+
+use crate::{
+    Description, DriveInfo,
+    linear::Input,
+    results::{Column, column_name},
+};
 
 /// What a loop acts on, of a drive or of the spec.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,7 +27,7 @@ impl Acting {
             let is_it = |drive: &DriveInfo| description.coordinates[drive.coordinate].name == name;
             description.drives.iter().position(is_it)
         };
-        let rate = || name.strip_suffix("_rate").and_then(drive).map(Acting::Rate);
+        let rate = || name.strip_suffix(ColumnKind::Rate.endings(false)[0]).and_then(drive).map(Acting::Rate);
         drive(name).map(Acting::Motion).or_else(rate).or_else(|| Input::named(name, description).map(Acting::On))
     }
 
@@ -49,7 +55,10 @@ impl Acting {
             }
             Acting::Rate(drive) => {
                 let info = info(drive);
-                Column::new(format!("{}_rate", info.name), format!("{}/s", info.kind.unit()))
+                Column::new(
+                    column_name(ColumnKind::Rate, &info.name, info.kind.turns()),
+                    ColumnKind::Rate.unit(info.kind.turns()),
+                )
             }
             Acting::On(input) => input.column(description),
         }

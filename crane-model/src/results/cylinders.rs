@@ -9,6 +9,8 @@ use crate::{
     hydraulics::{CylinderState, cylinders_at},
 };
 
+/// The part whose columns are those of the pump.
+pub(super) const PUMP: &str = "pump";
 /// Flow from which a cylinder's pressure counts in full for the pump, m³/s: 0.6 l/min, about what a mobile valve meters at least.
 const LEAST_FLOW: f64 = 1e-5;
 /// A drive stiffer than the oil of its cylinder by this factor or more is no longer a model of it.
@@ -87,11 +89,11 @@ pub(super) fn add_columns(description: &Description, table: &mut Table) {
         }
     }
     for _ in 0..with_cylinders(description) {
-        table.add_of(ColumnKind::Flow, "pump", false);
-        table.add_of(ColumnKind::Power, "pump", false);
+        table.add_of(ColumnKind::Flow, PUMP, false);
+        table.add_of(ColumnKind::Power, PUMP, false);
     }
     if description.has_valves() {
-        table.add_of(ColumnKind::PumpPressure, "pump", false);
+        table.add_of(ColumnKind::PumpPressure, PUMP, false);
     }
     for cylinder in description.cylinders.iter().filter(|cylinder| cylinder.valve.is_some()) {
         table.add_of(ColumnKind::Valve, &cylinder.name, false);
@@ -156,7 +158,8 @@ pub(super) fn of_run(description: &Description, table: &Table) -> Vec<String> {
         found.extend(description.cylinders.iter().filter_map(|info| below_vacuum(info, table)));
         return found;
     }
-    let Extremes { maximum: flow, time_of_maximum: time, .. } = Extremes::of(table, "pump_flow");
+    let Extremes { maximum: flow, time_of_maximum: time, .. } =
+        Extremes::of(table, &column_name(ColumnKind::Flow, PUMP, false));
     let limit = description.pump.map(|pump| pump.max_flow).filter(|limit| flow > *limit);
     found.extend(limit.map(|limit| {
         format!(
@@ -173,7 +176,7 @@ fn short_of_oil(description: &Description, table: &Table) -> Option<String> {
     /// Fraction of the maximum flow from which it counts as maximum.
     const ALL: f64 = 0.999;
     let limit = description.pump?.max_flow;
-    let rows: Vec<f64> = table.values("pump_flow")?.collect();
+    let rows: Vec<f64> = table.values(&column_name(ColumnKind::Flow, PUMP, false))?.collect();
     let first = rows.iter().position(|flow| *flow >= ALL * limit)?;
     let time = table.time_of(rows.iter().filter(|flow| **flow >= ALL * limit).count());
     Some(format!(
@@ -191,7 +194,7 @@ fn falls_behind(description: &Description, info: &CylinderInfo, table: &Table) -
     const OPEN: f64 = 0.999;
     info.valve.filter(|valve| !valve.commanded)?;
     let coordinate = &description.coordinates[description.drives[info.drive].coordinate];
-    let wanted = format!("{}_prescribed", coordinate.name);
+    let wanted = column_name(ColumnKind::Prescribed, &coordinate.name, coordinate.kind.turns());
     let range = Extremes::of(table, &wanted);
     let travel = range.maximum - range.minimum;
     let behind =

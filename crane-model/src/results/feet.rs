@@ -1,8 +1,9 @@
 //! Cautions about feet: they pull, which the model is not valid for, they lift off, or the crane tips over.
 
+use crane_quantities::ColumnKind;
 use nalgebra::Vector3;
 
-use super::{Extremes, Table, support_gap};
+use super::{Extremes, Table, column_name, support_gap};
 use crate::{Description, SupportInfo, TIPPED, dyn_crane::DynCrane, feet};
 
 /// Fraction of the maximum reaction below which a pull is a rounding error.
@@ -66,7 +67,7 @@ pub struct Lift<'a> {
 pub fn lifts<'a>(description: &'a Description, table: &Table) -> Vec<Lift<'a>> {
     let one_sided = description.supports.iter().filter(|support| support.one_sided);
     let lift = |support: &'a SupportInfo| {
-        let Extremes { minimum, time_of_minimum, .. } = Extremes::of(table, &reaction(&support.name));
+        let Extremes { minimum, time_of_minimum, .. } = Extremes::of(table, &vertical_reaction(&support.name));
         let gap = Extremes::of(table, &support_gap(&support.name));
         (minimum <= 0.0).then_some(Lift {
             foot: &support.name,
@@ -91,7 +92,7 @@ pub struct Pull<'a> {
 
 /// The feet that pull the crane down in a run.
 pub fn pulls<'a>(description: &'a Description, table: &Table) -> Vec<Pull<'a>> {
-    let of = |support: &'a SupportInfo| (support, Extremes::of(table, &reaction(&support.name)));
+    let of = |support: &'a SupportInfo| (support, Extremes::of(table, &vertical_reaction(&support.name)));
     let reactions: Vec<_> = description.supports.iter().map(of).collect();
     let greatest = reactions.iter().map(|(_, reaction)| reaction.size()).fold(0.0, f64::max);
     let pull = |(support, reaction): (&'a SupportInfo, Extremes)| {
@@ -102,9 +103,9 @@ pub fn pulls<'a>(description: &'a Description, table: &Table) -> Vec<Pull<'a>> {
     reactions.into_iter().filter_map(pull).collect()
 }
 
-/// The column with the vertical force of a foot.
-fn reaction(foot: &str) -> String {
-    format!("{foot}_reaction_z")
+/// Name of the column with the vertical force of a support.
+pub fn vertical_reaction(foot: &str) -> String {
+    column_name(ColumnKind::VerticalReaction, foot, false)
 }
 
 /// Feet that pull the crane down over a run, and those that lift off.
@@ -140,7 +141,7 @@ pub fn tips_over(description: &Description, table: &Table) -> Option<TipsOver> {
     let lifts = description.supports.iter().any(|support| support.one_sided);
     let over = table.rows.iter().position(|row| lifts && description.has_tipped(&start, &pose(row)))?;
     let presses = |row: &[f64], name: &str| {
-        let column = reaction(name);
+        let column = vertical_reaction(name);
         table.columns.iter().position(|known| known.name == column).is_some_and(|index| row[index] > 0.0)
     };
     let about = table.rows[..=over].iter().rev().find_map(|row| {

@@ -1,6 +1,8 @@
 //! Drives at the limit of their effort.
 
-use super::{Table, drive_effort};
+use crane_quantities::ColumnKind;
+
+use super::{Table, column_name, drive_effort};
 use crate::{
     dyn_crane::DynCrane,
     statics::{REACHED, Reached, reached},
@@ -35,9 +37,10 @@ pub(super) fn of_run(crane: &dyn DynCrane, table: &Table) -> Vec<String> {
     let cautions = limits.filter_map(|(drive, limit)| {
         let (limit, coordinate) = (limit?, &description.coordinates[drive.coordinate]);
         let index_of = |name: &str| table.columns.iter().position(|column| column.name == name);
+        let named = |kind| column_name(kind, &coordinate.name, coordinate.kind.turns());
         let effort = index_of(&drive_effort(&coordinate.name, coordinate.kind))?;
-        let (actual, prescribed) = (index_of(&coordinate.name)?, index_of(&format!("{}_prescribed", coordinate.name))?);
-        let (rate, unit) = (index_of(&format!("{}_rate", coordinate.name))?, coordinate.kind.unit());
+        let (actual, prescribed) = (index_of(&coordinate.name)?, index_of(&named(ColumnKind::Prescribed))?);
+        let (rate, unit) = (index_of(&named(ColumnKind::Rate))?, coordinate.kind.unit());
         // Effort, power and rate, as in the words below.
         let met = |row: &[f64]| {
             let power = row[effort] * row[rate];

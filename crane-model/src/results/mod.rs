@@ -21,7 +21,7 @@ pub mod verification;
 pub(crate) use cylinders::unassembled;
 pub use cylinders::{HighestPressure, beyond_stroke, highest_pressure};
 pub use extremes::Extremes;
-pub use feet::{Lift, Pull, TipsOver, lifts, pulls, tips_over};
+pub use feet::{Lift, Pull, TipsOver, lifts, pulls, tips_over, vertical_reaction};
 pub use headlines::{Kind, headlines};
 pub use history::{Instant, instants};
 pub use peaks::Peaks;

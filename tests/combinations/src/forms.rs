@@ -55,6 +55,7 @@ pub fn vary(seed: u64, tree: &mut Tree) {
     if halts.bool() {
         slope(tree);
     }
+    // Likewise.
     let mut gusts = Rng::with_seed(seed ^ 0xa1a1);
     for load in entries(tree, "loads") {
         if gusts.bool() {

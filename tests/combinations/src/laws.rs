@@ -4,7 +4,7 @@ use crane_codegen::chain::{Group, Law as ForceLaw, Profile, Transmission};
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynDynamics, DynModel, DynStatics};
 use crane_model::dynamics::{Contacts, Method, Settings};
-use crane_model::envelope::{Condition, Limits, PartLimit};
+use crane_model::envelope::{Condition, Limits};
 use crane_model::nalgebra::{DMatrix, DVector};
 use crane_model::results::cautions::{BEND, of_pose};
 use crane_model::results::{Instant, Peaks, quantities};
@@ -62,12 +62,7 @@ fn results_are_named(crane: &LiveCrane, _: &[f64], _: &mut Rng) -> Option<Result
 fn limits_are_cautions(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Result<(), String>> {
     let crane: &dyn DynCrane = crane;
     let positions: Vec<f64> = crane.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
-    let limits = Limits {
-        tipping: Some(0.0),
-        utilisation: Some(1.0),
-        of_parts: PartLimit::DEFAULT.to_vec(),
-        ..Limits::none(crane.description())
-    };
+    let limits = Limits::usual(crane.description());
     let exceeded = Condition::at(crane, q.to_vec(), &positions).exceeded(crane, &limits);
     let cautions = of_pose(crane, q, BEND);
     let is_told = |part: &str| cautions.iter().any(|caution| caution.contains(part));

@@ -246,32 +246,29 @@ fn keep_rules(chain: &Chain, values: &[f64]) -> Outcome<()> {
     refused.map_or(Ok(()), |(title, refusal)| Err(Problem::usage(title, refusal.help.as_str())))
 }
 
-/// A problem if an exported model would lack the loops of a crane.
+/// A problem if C would lack the loops of a crane: other formats have them, or refuse them.
 fn keep_loops(options: &Export, chain: &Chain) -> Outcome<()> {
     /// Functions of the equations of motion that have been solved, or of what follows from them.
     const SOLVED: [&str; 3] = ["forward_dynamics", "forward_dynamics_derivatives", "linearise"];
-    let Chain { name: crane, loop_joints, rigid_couplings, .. } = chain;
-    match options.format {
-        Language::Fmu | Language::Mjcf | Language::Gltf | Language::Urdf => Ok(()),
-        Language::C => {
-            let functions = options.functions();
-            let Some(function) = functions.iter().find(|name| SOLVED.contains(&Product::split(name).0)) else {
-                return Ok(());
-            };
-            let (what, or) = match (loop_joints.first(), rigid_couplings.first()) {
-                (Some(joint), _) => (format!("`{}`, which closes a loop", joint.name), ""),
-                (_, Some(coupling)) => (
-                    format!("the rigid coupling `{}`", coupling.name),
-                    ", or give the coupling a `stiffness` instead of `rigid: true`",
-                ),
-                (None, None) => return Ok(()),
-            };
-            Err(Problem::usage(
-                format!("`{function}` of {crane} in C would be that of the open chain, without {what}"),
-                format!(
-                    "export `bias`, `forces`, `solve_mass`, `loop_states` and `loop_jacobians` with `--functions`, and solve for the forces of the loop: docs/manual/loops.md has the formula{or}"
-                ),
-            ))
-        }
+    if !matches!(options.format, Language::C) {
+        return Ok(());
     }
+    let functions = options.functions();
+    let Some(function) = functions.iter().find(|name| SOLVED.contains(&Product::split(name).0)) else {
+        return Ok(());
+    };
+    let (what, or) = match (chain.loop_joints.first(), chain.rigid_couplings.first()) {
+        (Some(joint), _) => (format!("`{}`, which closes a loop", joint.name), ""),
+        (_, Some(coupling)) => (
+            format!("the rigid coupling `{}`", coupling.name),
+            ", or give the coupling a `stiffness` instead of `rigid: true`",
+        ),
+        (None, None) => return Ok(()),
+    };
+    Err(Problem::usage(
+        format!("`{function}` of {} in C would be that of the open chain, without {what}", chain.name),
+        format!(
+            "export `bias`, `forces`, `solve_mass`, `loop_states` and `loop_jacobians` with `--functions`, and solve for the forces of the loop: docs/manual/loops.md has the formula{or}"
+        ),
+    ))
 }

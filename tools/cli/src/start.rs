@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crane_model::{
-    CoordinateRole, Description,
+    ColumnKind, CoordinateRole, Description,
     dyn_crane::DynCrane,
     force_states::{self, ForceStates},
     loop_joints::Given,
@@ -19,7 +19,7 @@ use crate::{
 };
 
 /// Suffix of a coordinate's name in the name of its rate.
-const RATE: &str = "_rate";
+const RATE: &str = ColumnKind::Rate.endings(false)[0];
 
 /// Difference from the motion of a rigid drive above which a start contradicts it, m, rad and their rates.
 const PRESCRIBED: f64 = 1e-9;

@@ -4,8 +4,8 @@ use crane_live::LiveCrane;
 use crane_model::{
     dyn_crane::{DynCrane, DynModel},
     envelope::{
-        Axes, Axis, Envelope, Execution, Limit, Limits, PartLimit, Rating, SlewAxis, Varied, is_load, only_mass,
-        only_point, range_of_loads,
+        Axes, Axis, Envelope, Execution, Limit, Limits, Rating, SlewAxis, Varied, is_load, only_mass, only_point,
+        range_of_loads,
     },
 };
 use serde_json::{Value, json};
@@ -39,12 +39,7 @@ pub fn chart(crane: &LiveCrane, wanted: &Wanted) -> Outcome<Value> {
         None => only_point(description),
     };
     let axes = axes(&wanted.ranges, description.drives.len())?;
-    let limits = Limits {
-        tipping: Some(0.0),
-        utilisation: Some(1.0),
-        of_parts: PartLimit::DEFAULT.to_vec(),
-        ..Limits::none(description)
-    };
+    let limits = Limits::usual(description);
     let loads = range_of_loads(crane, load, None);
     let envelope = Envelope { axes, load, loads, limits, factor: 1.0 };
     let pieces: Vec<usize> = (0..envelope.pieces()).collect();

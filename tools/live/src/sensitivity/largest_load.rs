@@ -12,9 +12,10 @@
 
 use std::sync::{Mutex, PoisonError};
 
+use crane_model::ColumnKind;
 use crane_model::dyn_crane::DynModel;
 use crane_model::envelope::{Condition, Envelope, Execution, Limit, Rating, UNITS_OF_LOADS};
-use crane_model::results::{connector_force, drive_effort};
+use crane_model::results::{column_name, connector_force, drive_effort, vertical_reaction};
 
 use super::whole::{CURVED, in_unit};
 use super::{Changing, Differences, FixedNumber, Group, Output, Sensitivity};
@@ -234,10 +235,16 @@ impl LargestLoad {
             }
             Limit::Pressure { cylinder, rod } | Limit::Pump { cylinder, rod } => {
                 let name = &description.cylinders[cylinder].name;
-                output(&format!("{name}_{}_pressure", if rod { "rod" } else { "piston" }))
+                output(&column_name(
+                    if rod { ColumnKind::RodPressure } else { ColumnKind::PistonPressure },
+                    name,
+                    false,
+                ))
             }
-            Limit::Stroke { cylinder } => output(&format!("{}_length", description.cylinders[cylinder].name)),
-            Limit::LiftOff { foot } => output(&format!("{}_reaction_z", description.supports[foot].name)),
+            Limit::Stroke { cylinder } => {
+                output(&column_name(ColumnKind::CylinderLength, &description.cylinders[cylinder].name, false))
+            }
+            Limit::LiftOff { foot } => output(&vertical_reaction(&description.supports[foot].name)),
             Limit::Slack { rope } => output(&connector_force(&description.connectors[rope])),
             Limit::Equilibrium
             | Limit::Sliding { .. }

@@ -2,7 +2,7 @@
 
 use crane_model::{
     CylinderInfo,
-    results::{Extremes, beyond_stroke, drive_effort, highest_pressure, lifts, pulls, tips_over},
+    results::{Extremes, beyond_stroke, drive_effort, highest_pressure, lifts, pulls, tips_over, vertical_reaction},
     tipping::governing,
 };
 
@@ -52,7 +52,7 @@ pub(super) fn reactions(crane: &Shown<'_>) -> Option<Figure> {
     let all: Vec<Extremes> = description
         .supports
         .iter()
-        .map(|support| Extremes::of(&crane.table, &format!("{}_reaction_z", support.name)))
+        .map(|support| Extremes::of(&crane.table, &vertical_reaction(&support.name)))
         .collect();
     let least = (0..all.len()).min_by(|&a, &b| all[a].minimum.total_cmp(&all[b].minimum))?;
     let most = (0..all.len()).max_by(|&a, &b| all[a].maximum.total_cmp(&all[b].maximum))?;

@@ -152,7 +152,7 @@ fn solids_are_those_of_the_triangles() {
                     within.iter().map(beside).fold(0.0, f64::max)
                 }
                 Form::Sphere(radius) => within.iter().map(|at| (at.norm() - radius).abs()).fold(0.0, f64::max),
-                Form::Mesh { .. } => panic!("{name}: triangles are no solid"),
+                Form::Mesh { .. } => panic!("{name}: triangles are not a solid"),
             };
             assert!(off < 1e-13 * 10.0, "{name}: {form:?} is {off} m from its triangles");
         }

@@ -1,8 +1,8 @@
 //! Runs: minimum and maximum values, when they occur, and how far off they may be; work, energy balance and time.
 
 use crane_model::{
-    Description,
-    results::{Extremes, Table, drive_effort, headlines},
+    ColumnKind, Description,
+    results::{Extremes, Table, column_name, drive_effort, headlines},
     runs::Recorded,
 };
 
@@ -109,7 +109,7 @@ pub fn duties(description: &Description, runs: &[(&str, &Recorded)]) -> Grid {
         for (label, run) in runs {
             let table = &run.table;
             let effort = column(table, &drive_effort(&coordinate.name, coordinate.kind));
-            let rate = column(table, &format!("{}_rate", coordinate.name));
+            let rate = column(table, &column_name(ColumnKind::Rate, &coordinate.name, coordinate.kind.turns()));
             let (Some(effort), Some(rate), Some(t)) = (effort, rate, column(table, "t")) else { continue };
             let duration = t.last().copied().unwrap_or_default() - t.first().copied().unwrap_or_default();
             let power =
