@@ -92,8 +92,8 @@ pub struct Pull<'a> {
 
 /// The feet that pull the crane down in a run.
 pub fn pulls<'a>(description: &'a Description, table: &Table) -> Vec<Pull<'a>> {
-    let of = |support: &'a SupportInfo| (support, Extremes::of(table, &vertical_reaction(&support.name)));
-    let reactions: Vec<_> = description.supports.iter().map(of).collect();
+    let with_extremes = |support: &'a SupportInfo| (support, Extremes::of(table, &vertical_reaction(&support.name)));
+    let reactions: Vec<_> = description.supports.iter().map(with_extremes).collect();
     let greatest = reactions.iter().map(|(_, reaction)| reaction.size()).fold(0.0, f64::max);
     let pull = |(support, reaction): (&'a SupportInfo, Extremes)| {
         let Extremes { minimum, time_of_minimum, .. } = reaction;

@@ -59,8 +59,8 @@ pub fn check_place(path: &Path) -> Outcome<()> {
 /// # Errors
 /// It has none of them.
 pub fn ending<'e>(path: &Path, endings: &[&'e str]) -> Outcome<&'e str> {
-    let own = path.extension().unwrap_or_default();
-    endings.iter().find(|ending| own.eq_ignore_ascii_case(ending)).copied().ok_or_else(|| {
+    let written = path.extension().unwrap_or_default();
+    endings.iter().find(|ending| written.eq_ignore_ascii_case(ending)).copied().ok_or_else(|| {
         let listed: Vec<String> = endings.iter().map(|ending| format!("`.{ending}`")).collect();
         Problem::usage(
             format!("cannot write {}", path.display()),

@@ -202,8 +202,8 @@ mod tests {
             let names: BTreeSet<&str> = variables.iter().map(|variable| variable.name.as_str()).collect();
             assert_eq!(names.len(), variables.len(), "{text}");
             let columns = Peaks::columns(&crane);
-            let own = crane.description().parameters.iter().map(|info| info.name.as_str());
-            let all: Vec<&str> = own.chain(columns.iter().map(|column| column.name.as_str())).collect();
+            let parameters = crane.description().parameters.iter().map(|info| info.name.as_str());
+            let all: Vec<&str> = parameters.chain(columns.iter().map(|column| column.name.as_str())).collect();
             assert_eq!(all.iter().collect::<BTreeSet<_>>().len(), all.len(), "{text}");
         }
         assert!(accepted > 50 && shared > 100, "{accepted} accepted, {shared} with a shared name");

@@ -89,8 +89,8 @@ pub(super) fn write_spec(
 fn frames(links: &[SpecLink], standing: &[FileFrame]) -> Vec<String> {
     let of_links = links.iter().flat_map(|link| link.frames.iter().map(move |frame| (Some(link.name.as_str()), frame)));
     let all = standing.iter().map(|frame| (None, frame)).chain(of_links);
-    let own = |(link, (name, pose)): &(Option<&str>, &FileFrame)| *link != Some(*name) || placement(pose).is_some();
-    let written = all.filter(own).filter(|(_, (name, _))| is_one_line(name));
+    let differs = |(link, (name, pose)): &(Option<&str>, &FileFrame)| *link != Some(*name) || placement(pose).is_some();
+    let written = all.filter(differs).filter(|(_, (name, _))| is_one_line(name));
     let line = |(link, (name, pose)): (Option<&str>, &FileFrame)| {
         let link = link.map_or_else(String::new, |link| format!(", link: {link}"));
         let transform = placement(pose).map_or_else(String::new, |given| format!(", transform: {{{given}}}"));

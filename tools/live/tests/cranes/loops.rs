@@ -148,6 +148,11 @@ fn end(
     last
 }
 
+/// One second with a method, at steps or a tolerance that leave little error.
+pub(crate) fn one_second(crane: &dyn DynCrane, method: Method) -> Settings {
+    Settings { method, duration: 1.0, step: 1e-3, output: 0.01, tolerance: 1e-9, ..Settings::of(crane.description()) }
+}
+
 fn difference(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
@@ -187,14 +192,7 @@ fn a_four_bar_moves_as_lagranges_equation_in_one_coordinate() {
     for (method, accuracy) in
         [(Method::Rk4, 1e-8), (Method::DormandPrince, 1e-6), (Method::Rosenbrock, 1e-6), (Method::Bdf, 2e-5)]
     {
-        let settings = Settings {
-            method,
-            duration: 1.0,
-            step: 1e-3,
-            output: 0.01,
-            tolerance: 1e-9,
-            ..Settings::of(bars.description())
-        };
+        let settings = one_second(bars, method);
         let mut worst = [0.0_f64; 2];
         let [q, v] = end(bars, &settings, &state, &mut |sample| {
             let here = gap(bars, sample.q, sample.v);

@@ -10,6 +10,8 @@ use crane_model::nalgebra::DVector;
 use crane_model::results::{Recording, Table};
 use crane_model::{Cut, loop_joints, modes, statics};
 
+use super::loops::one_second;
+
 const GRAVITY: f64 = 9.81;
 /// Masses, kg, distances of their centres from the joints, m, and inertias about the joints, kg m².
 const MASSES: [f64; 2] = [3.0, 5.0];
@@ -86,18 +88,19 @@ fn geared_pendulums_accelerate_as_one() {
             let crane: &dyn DynCrane = crane;
             let start = state(ratio, theta, rate);
             let (q, v) = (&start.q, &start.v);
-            let found = crane.accelerations_at(0.0, q, v);
+            let accelerations = crane.accelerations_at(0.0, q, v);
             let [acceleration, force] = by_hand(ratio, theta);
             // A few rounding errors of numbers of size 10.
             assert!(
-                (found[0] - acceleration).abs() < 1e-13 && (found[1] - ratio * acceleration).abs() < 1e-13,
-                "{found}"
+                (accelerations[0] - acceleration).abs() < 1e-13
+                    && (accelerations[1] - ratio * acceleration).abs() < 1e-13,
+                "{accelerations}"
             );
             let table = run(crane, Settings { duration: 0.01, ..Settings::of(crane.description()) }, &start);
             let first = column(&table, "gear_torque").next();
             assert!(first.is_some_and(|first| (first - force).abs() < 1e-12), "{first:?} N m instead of {force}");
             // About its axis, a joint transmits what the coupling does: each pendulum exerts −Q on the ground.
-            let wrenches = crane.internal_forces_at(0.0, q, v, found.as_slice());
+            let wrenches = crane.internal_forces_at(0.0, q, v, accelerations.as_slice());
             let cuts = crane.description().cuts();
             // The ground is body 0.
             let about = |joint: usize| {
@@ -131,15 +134,7 @@ fn runs_stay_on_the_coupling_and_keep_energy() {
     for (method, accuracy) in
         [(Method::Rk4, 1e-8), (Method::DormandPrince, 1e-6), (Method::Rosenbrock, 1e-6), (Method::Bdf, 1e-4)]
     {
-        let settings = Settings {
-            method,
-            duration: 1.0,
-            step: 1e-3,
-            output: 0.01,
-            tolerance: 1e-9,
-            ..Settings::of(crane.description())
-        };
-        let table = run(crane, settings, &state(ratio, 0.7, -1.4));
+        let table = run(crane, one_second(crane, method), &state(ratio, 0.7, -1.4));
         let [q, v] = ["", "_rate"].map(|of| {
             let both = ["one", "two"].map(|name| column(&table, &format!("{name}_theta{of}")).collect::<Vec<f64>>());
             both[0].iter().copied().zip(both[1].clone()).collect::<Vec<_>>()
@@ -189,24 +184,27 @@ fn a_geared_chain_has_the_inertia_of_both_motions() {
     ));
     let chain: &dyn DynCrane = &chain;
     let (q, v) = ([0.4, 0.2, ratio * 0.4], [1.1, -0.3, ratio * 1.1]);
-    let found = chain.accelerations_at(0.0, &q, &v);
+    let accelerations = chain.accelerations_at(0.0, &q, &v);
     let (inertia, bias) = (chain.mass_matrix_at(&q), chain.bias_at(&q, &v));
     let both = |i: usize, j: usize| inertia[(i, j)] + ratio * inertia[(2, j)];
     // Of the motions that leave the coupling closed.
-    let of = |i: usize| {
+    let row = |i: usize| {
         if i == 0 {
             [both(0, 0) + ratio * both(0, 2), both(0, 1)]
         } else {
             [inertia[(1, 0)] + ratio * inertia[(1, 2)], inertia[(1, 1)]]
         }
     };
-    let [[a, b], [c, d]] = [of(0), of(1)];
+    let [[a, b], [c, d]] = [row(0), row(1)];
     let right = [bias[0] + ratio * bias[2], bias[1]];
     let expected =
         DVector::from_vec(vec![(d * right[0] - b * right[1]), (a * right[1] - c * right[0])]) / (a * d - b * c);
     // A few rounding errors of numbers of size 10.
-    assert!((found[0] - expected[0]).abs() < 1e-13 && (found[1] - expected[1]).abs() < 1e-13, "{found} {expected}");
-    assert!((found[2] - ratio * expected[0]).abs() < 1e-13);
+    assert!(
+        (accelerations[0] - expected[0]).abs() < 1e-13 && (accelerations[1] - expected[1]).abs() < 1e-13,
+        "{accelerations} {expected}"
+    );
+    assert!((accelerations[2] - ratio * expected[0]).abs() < 1e-13);
 }
 
 /// The chain of a telescope: by virtual work the drive carries the second stage's weight twice, and the chain carries it once.
@@ -308,8 +306,11 @@ fn a_coordinate_that_is_tied_to_a_driven_one_is_held() {
     let q = [-0.01, 0.01 - coupler, -rocker, -2.0 * rocker];
     let cautions = |drive: &str| loop_joints::cautions(&bars(drive) as &dyn DynCrane, &q);
     for drive in ["rocker_theta", "lever_theta"] {
-        let found = cautions(drive);
-        assert!(found.len() == 1 && found[0].contains("dead centre of its drives"), "{drive}: {found:?}");
+        let cautions_of_drive = cautions(drive);
+        assert!(
+            cautions_of_drive.len() == 1 && cautions_of_drive[0].contains("dead centre of its drives"),
+            "{drive}: {cautions_of_drive:?}"
+        );
     }
     assert!(cautions("crank_theta").is_empty(), "{:?}", cautions("crank_theta"));
 }
