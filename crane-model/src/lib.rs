@@ -86,9 +86,9 @@ pub use crane_quantities::{ColumnKind, Count, DisplayUnit};
 pub use description::Tree;
 pub use description::{
     AttachmentInfo, BodyInfo, Bound, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole,
-    CylinderInfo, Description, DriveInfo, InputInfo, LARGE_TILT, List, LoadInfo, LoopEquationInfo, LoopJointInfo,
-    NEAR_SINGULAR, ParameterError, ParameterInfo, PumpInfo, Refusal, SectionInfo, Side, StageInfo, SupportInfo, TIPPED,
-    Text, ValveInfo, fill_links,
+    CylinderInfo, Description, DriveInfo, EventInfo, InputInfo, JoinsInfo, LARGE_TILT, List, LoadInfo,
+    LoopEquationInfo, LoopJointInfo, NEAR_SINGULAR, ParameterError, ParameterInfo, PumpInfo, Refusal, SectionInfo,
+    Side, StageInfo, SupportInfo, TIPPED, Text, ValveInfo, fill_links,
 };
 pub use methods::Entry;
 pub use model::{

@@ -69,7 +69,7 @@ pub enum ColumnKind {
     LoopMoment,
     /// A part of the energy; its part is `kinetic` and so on.
     Energy,
-    /// Work that went into the crane; its part is `drive` or `load`.
+    /// Work that went into the crane; its part is `drive`, `load` or `event`.
     Work,
     /// Energy that has left it; its part is `dissipated`.
     Dissipated,

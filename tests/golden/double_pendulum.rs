@@ -105,6 +105,7 @@ pub const DESCRIPTION: Description = Description {
     duration: 10.0,
     step: 0.001,
     output: 0.01,
+    events: List::Static(&[]),
 };
 
 const BLANK: Matrix4<f64> = Matrix4::new(

@@ -164,6 +164,7 @@ pub const DESCRIPTION: Description = Description {
     duration: 10.0,
     step: 0.001,
     output: 0.01,
+    events: List::Static(&[]),
 };
 
 /// Values that stay live at run time.

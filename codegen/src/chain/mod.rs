@@ -9,6 +9,7 @@ mod count;
 mod cut;
 mod cylinder;
 mod drive;
+mod event;
 mod force;
 mod frame;
 mod input;
@@ -33,6 +34,7 @@ pub use body::{Axis, Body, Coordinate, CoordinateKind, Inertia, Part, Step};
 pub use cut::Cut;
 pub use cylinder::{Cylinder, Linkage, Pin, Pump, Valve};
 pub use drive::{Drive, Rotor, Transmission};
+pub use event::{Event, Joins};
 pub use force::*;
 pub use frame::{Frame, Vector, cross};
 pub use input::{Input, InputId};
@@ -112,6 +114,8 @@ pub struct Chain {
     pub guess: Vec<f64>,
     /// Settings of a run.
     pub run: Run,
+    /// What happens during a run, in the order of time.
+    pub events: Vec<Event>,
     /// What the user wants to compute; the rest is left out.
     pub analyses: Analyses,
     /// When repeated work becomes a loop.

@@ -7,7 +7,7 @@ use crane_quantities::{ColumnKind, END, PEAKS, Strain as StrainKind};
 use super::{Chain, CoordinateId, CoordinateKind, Force, Strain};
 
 /// Columns and variables that a run has of the crane as a whole: time, and energies by the names of their parts.
-const OF_CRANE: [(&str, ColumnKind); 12] = [
+const OF_CRANE: [(&str, ColumnKind); 13] = [
     ("time", ColumnKind::Time),
     ("kinetic", ColumnKind::Energy),
     ("gravity", ColumnKind::Energy),
@@ -18,6 +18,7 @@ const OF_CRANE: [(&str, ColumnKind); 12] = [
     ("connector", ColumnKind::Energy),
     ("drive", ColumnKind::Work),
     ("load", ColumnKind::Work),
+    ("event", ColumnKind::Work),
     ("dissipated", ColumnKind::Dissipated),
     ("energy", ColumnKind::Balance),
 ];

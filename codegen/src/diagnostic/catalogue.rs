@@ -513,6 +513,15 @@ catalogue! {
         "write `link:` with a link, or `frame:` with one of `frames`";
     /// A frame that carries a point exists, and is on a link.
     E192 unknown_frame(name, help) "there is no frame `{name}` on a link", "not listed under `frames:` with a `link`", "{help}";
+    /// An event sets parameters.
+    E193 nothing_set(event) "event `{event}` sets nothing", "it changes the values of parameters", "write `set: {{payload: 0}}`, with parameters by name";
+    /// What events set obeys the rules for parameters.
+    E194 event_breaks_rule(event, what, help) "after event `{event}`, {what}", "these values are set together", "{help}";
+    /// Masses that join with a velocity have a point.
+    E195 joins_without_point(event) "what joins at event `{event}` has a velocity and no point", "its momentum acts at its centre of mass",
+        "write `point:` with the one of `points` at which it is";
+    /// The point at which masses join exists.
+    E196 unknown_point(name, help) "there is no point `{name}`", "not listed under `points:`", "{help}";
 
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.

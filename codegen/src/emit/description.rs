@@ -7,8 +7,8 @@ use syn::{Item, parse_quote};
 use super::arithmetic::{integer, literal};
 use super::print::constant;
 use crate::chain::{
-    Attachment, BodyId, Bristle, Chain, CoordinateId, CoordinateKind, Cylinder, Drive, Force, Profile, Side,
-    SupportKinematics, Valve,
+    Attachment, BodyId, Bristle, Chain, CoordinateId, CoordinateKind, Cylinder, Drive, Event, Force, Joins, Profile,
+    Side, SupportKinematics, Valve,
 };
 
 /// The sizes and the `DESCRIPTION`.
@@ -137,6 +137,7 @@ fn description_constant(chain: &Chain) -> Item {
         },
     );
     let points = chain.points.iter().map(|point| text(&point.name));
+    let events = list(chain.events.iter().map(event_info));
     let parameters = if chain.parameters.is_empty() { quote!(&[]) } else { quote!(&PARAMETERS) };
     let statics = chain.analyses.statics;
     let guess = chain.guess.iter().map(|&x| literal(x));
@@ -173,8 +174,26 @@ fn description_constant(chain: &Chain) -> Item {
             duration: #duration,
             step: #step,
             output: #output,
+            events: #events,
         };
     }
+}
+
+fn event_info(event: &Event) -> TokenStream {
+    let (name, time) = (text(&event.name), literal(event.time));
+    let changes = list(event.changes.iter().map(|(id, value)| {
+        let (index, value) = (integer(id.0), literal(*value));
+        quote!((#index, #value))
+    }));
+    let joins = event.joins.map_or_else(
+        || quote!(None),
+        |Joins { velocity, point }| {
+            let ([x, y, z], point) = (velocity.map(literal), point.map(integer));
+            let point = point.map_or_else(|| quote!(None), |point| quote!(Some(#point)));
+            quote!(Some(JoinsInfo { velocity: [#x, #y, #z], point: #point }))
+        },
+    );
+    quote!(EventInfo { name: #name, time: #time, changes: #changes, joins: #joins })
 }
 
 /// Text of a description.

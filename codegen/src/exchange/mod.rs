@@ -79,7 +79,8 @@ pub fn approximations(chain: &Chain) -> Option<String> {
         "Cylinders with valves are left out: their joints have no drive and fall; add drives for them.".to_owned()
     });
     let limits = chain.has_limited_drives().then(|| "Limits of drives are left out.".to_owned());
-    let lost = [hinges, joints, loads].into_iter().chain(connectors).chain([oil, limits]).flatten();
+    let events = (!chain.events.is_empty()).then(|| "Events of runs are left out.".to_owned());
+    let lost = [hinges, joints, loads].into_iter().chain(connectors).chain([oil, limits, events]).flatten();
     let lost: Vec<String> = lost.collect();
     (!lost.is_empty()).then(|| lost.join(" "))
 }

@@ -67,6 +67,7 @@ pub(super) fn double_pendulum() -> Chain {
         points: vec![Point { name: "tip".into(), body: BodyId(1), position: [c(LENGTH[1]), Value::ZERO, Value::ZERO] }],
         guess: vec![0.0; 2],
         run: Run { duration: 1.0, step: 1e-3, output: 1e-2 },
+        events: Vec::new(),
         analyses: Analyses::ALL,
         loops: Loops::Auto,
     }

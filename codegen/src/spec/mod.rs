@@ -9,6 +9,7 @@ mod combination;
 mod connector;
 mod cylinder;
 mod drive;
+mod event;
 mod inertia;
 mod input;
 mod joint;
@@ -31,6 +32,7 @@ pub use combination::Combination;
 pub use connector::*;
 pub use cylinder::{Cylinder, HoseVolumes, Linkage, Pin, Pump, Side, Valve};
 pub use drive::{Curve, Drive, Halt, Motion, Ramp, Speed, Table, Trapezoid};
+pub use event::{Event, Joins};
 pub use inertia::{About, Inertia};
 pub use input::Input;
 pub use joint::{Bristle, Friction, Stops};
@@ -150,6 +152,8 @@ pub struct Crane {
     pub guess: Option<Spanned<Entries<FixedAngle>>>,
     /// Settings of a run.
     pub run: Option<Spanned<Run>>,
+    /// What happens during a run: loads are dropped or gripped, ropes break.
+    pub events: Option<Spanned<Vec<Spanned<Event>>>>,
 }
 
 /// A kind of computation.

@@ -11,6 +11,7 @@ mod connectors;
 mod cylinders;
 mod drives;
 mod elements;
+mod events;
 mod inertias;
 mod inputs;
 mod joints;
@@ -89,6 +90,7 @@ pub fn check_with(spec: &CraneSpec, source: &SourceFile, set: &[(&str, f64)]) ->
         check.loops_move(&mut chain, &spec.crane);
         check.couplings_move(&chain, &spec.crane);
         check.keep_masses(&mut chain);
+        check.events_allowed(&chain, &spec.crane);
     }
     if !check.mistakes.is_empty() {
         return Err(Diagnostics::new(source, misspelt(check.mistakes, &spec.lookalikes)));
@@ -286,6 +288,7 @@ impl<'a> Check<'a> {
         let followers: Vec<chain::Follower> = connectors.iter().filter_map(Force::follower).chain(exact).collect();
         let guess = self.guess(crane, &drives, &followers);
         let run = self.run(crane.run.as_ref());
+        let events = self.events(crane, &points);
         let analyses = self.analyses(crane.analyses.as_ref());
         self.something_moves(crane);
         self.every_parameter_used(crane);
@@ -317,6 +320,7 @@ impl<'a> Check<'a> {
             points,
             guess,
             run,
+            events,
             analyses,
             loops: loops(crane.loops.as_ref()),
         };

@@ -229,7 +229,7 @@ impl<'a> Check<'a> {
         wrong.is_none()
     }
 
-    fn parameter(&mut self, name: &str, span: Span) -> Option<ParameterId> {
+    pub(super) fn parameter(&mut self, name: &str, span: Span) -> Option<ParameterId> {
         if let Some(index) = self.parameters.iter().position(|parameter| parameter.name == name) {
             self.used[index] = true;
             return Some(ParameterId(index));

@@ -1,6 +1,7 @@
 //! Metadata of a crane.
 
 mod count;
+mod event;
 #[cfg(feature = "std")]
 mod fleet;
 mod links;
@@ -14,6 +15,7 @@ mod tree;
 
 use crane_quantities::{ColumnKind, Strain};
 
+pub use event::{EventInfo, JoinsInfo};
 pub use links::fill_links;
 pub use loop_joint::{LoopEquationInfo, LoopJointInfo};
 pub use parameter::{Bound, ParameterError, ParameterInfo, Refusal};
@@ -72,6 +74,8 @@ pub struct Description {
     pub step: f64,
     /// Interval of recorded results, s.
     pub output: f64,
+    /// What happens during a run, in the order of time.
+    pub events: List<EventInfo>,
 }
 
 impl Description {

@@ -4,7 +4,7 @@
 //! [`LaneDynamics`] or [`DynBlock`]: a crane's motion does not depend on the other lanes. With adaptive methods the cranes are a
 //! [fleet](crate::dyn_crane::DynEnsemble::fleet), one crane with the coordinates of all: the crane with the largest error decides on each step.
 
-use std::convert::Infallible;
+use std::{convert::Infallible, ops::ControlFlow};
 
 use nalgebra::SVector;
 
@@ -107,6 +107,17 @@ pub fn simulate_dyn(
     settings: &Settings,
     observe: &mut dyn FnMut(usize, &Sample<'_>),
 ) -> Result<Vec<Result<Run, Stopped>>, ParameterError> {
+    if !crane.description().events.is_empty() {
+        // Lanes do not change their parameters during a run.
+        let run = |(index, member): (usize, &Member)| {
+            let mut watch = |sample: &Sample<'_>| {
+                observe(index, sample);
+                ControlFlow::Continue(())
+            };
+            Ok(with_parameters(crane, &member.parameters)?.simulate(&member.start, settings, &mut watch))
+        };
+        return members.iter().enumerate().map(run).collect();
+    }
     let lanes = crane.lanes();
     let mut results = Vec::with_capacity(members.len());
     for (index, members) in members.chunks(lanes).enumerate() {
@@ -285,7 +296,19 @@ impl<'a> Batch<'a> {
             for (lane, _) in results.iter().enumerate().filter(|(_, result)| result.is_ok()) {
                 self.lane(lane, &self.q, &mut q);
                 self.lane(lane, &self.v, &mut v);
-                observe(lane, &Sample { t: begin, q: &q, v: &v, x: &[], work: 0.0, dissipated: 0.0, load_work: 0.0 });
+                observe(
+                    lane,
+                    &Sample {
+                        t: begin,
+                        q: &q,
+                        v: &v,
+                        x: &[],
+                        work: 0.0,
+                        dissipated: 0.0,
+                        load_work: 0.0,
+                        event_work: 0.0,
+                    },
+                );
             }
             if interval == intervals || results.iter().all(Result::is_err) {
                 break;

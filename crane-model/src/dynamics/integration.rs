@@ -189,7 +189,12 @@ impl<'a, S: Stepper + ?Sized> Integration<'a, S> {
         let (q, rest) = self.motion.split_at(self.crane.size());
         let (v, x) = rest.split_at(q.len());
         let [work, dissipated, load_work] = self.energy.as_ref().map_or([0.0; INTEGRALS], |energy| energy.values);
-        Sample { t: self.time, q, v, x, work, dissipated, load_work }
+        Sample { t: self.time, q, v, x, work, dissipated, load_work, event_work: 0.0 }
+    }
+
+    /// The next step that reaches a result ends there.
+    pub(super) fn end_step_at_result(&mut self) {
+        self.is_steered = true;
     }
 
     /// The motion.

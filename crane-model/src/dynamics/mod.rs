@@ -19,6 +19,8 @@ pub mod ensemble;
 #[cfg(feature = "std")]
 mod equations;
 #[cfg(feature = "std")]
+mod events;
+#[cfg(feature = "std")]
 mod force_state_update;
 #[cfg(feature = "std")]
 pub mod gradients;
@@ -66,6 +68,8 @@ pub use constant::Rk4;
 #[cfg(feature = "std")]
 pub use contacts::Contacts;
 #[cfg(feature = "std")]
+pub use events::{Phases, simulate_events, without_events};
+#[cfg(feature = "std")]
 pub use integration::Integration;
 #[cfg(feature = "std")]
 pub use method::{Method, UnknownMethod};
@@ -75,6 +79,8 @@ pub use norm::EffortAccuracy;
 pub use run::{Run, Sample};
 #[cfg(feature = "std")]
 pub use settings::Settings;
+#[cfg(feature = "std")]
+pub(crate) use simulation::Samples;
 #[cfg(feature = "std")]
 pub use simulation::{Watch, run, simulate, simulate_dyn, simulate_from, simulate_watched};
 #[cfg(feature = "std")]

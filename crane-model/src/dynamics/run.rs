@@ -20,6 +20,8 @@ pub struct Sample<'a> {
     pub dissipated: f64,
     /// Work done by the applied loads since t = 0, J; 0 without audit.
     pub load_work: f64,
+    /// Energy that came with events since t = 0, J; negative for what left.
+    pub event_work: f64,
 }
 
 /// Summary of a run.

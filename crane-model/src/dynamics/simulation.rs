@@ -38,7 +38,7 @@ pub trait Watch {
 }
 
 /// Passes samples to a function.
-struct Samples<'a>(&'a mut dyn FnMut(&Sample<'_>) -> ControlFlow<()>);
+pub(crate) struct Samples<'a>(pub(crate) &'a mut dyn FnMut(&Sample<'_>) -> ControlFlow<()>);
 
 impl Watch for Samples<'_> {
     fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {

@@ -28,6 +28,8 @@ pub enum Cause {
     OpenLoop,
     /// Rigid drives move a loop beyond its reach: [`Stopped::coordinate`] names them.
     BeyondReach,
+    /// An event cannot happen: [`Stopped::coordinate`] says which, and why.
+    Event,
 }
 
 /// A run that stopped early, and where.
@@ -158,6 +160,7 @@ impl Stopped {
                  loop",
                 self.coordinate
             ),
+            Cause::Event => "change what it sets, or remove it; a run that ends before it is not concerned".to_owned(),
             Cause::MassMatrix => format!(
                 "give the links that {} moves a `mass` above zero, in kg, and an `inertia`, in kg m², if it only rotates them, or \
                  write `joint: fixed`; a parameter may have been set to zero",
@@ -188,6 +191,7 @@ impl fmt::Display for Stopped {
             Cause::BeyondReach => {
                 write!(f, "at t = {time:.6} s the rigid drive of {coordinate} moves its loop beyond its reach")
             }
+            Cause::Event => write!(f, "event {coordinate}, at t = {time:.6} s"),
             Cause::MassMatrix => write!(
                 f,
                 "the mass matrix is not positive definite at t = {time:.6} s: {coordinate} ({value:.3e} {unit}) moves nothing \

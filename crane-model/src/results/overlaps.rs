@@ -3,6 +3,7 @@
 use super::Table;
 use crate::StageInfo;
 use crate::dyn_crane::DynCrane;
+use crate::dynamics::Phases;
 use crate::nalgebra::{Matrix4, Vector3};
 
 /// The overlap of each stage with its outer beam at a pose, in the order of the stages, m; negative if it is out of the beam.
@@ -37,9 +38,9 @@ pub(super) fn of_run(crane: &dyn DynCrane, table: &Table) -> Vec<String> {
     if stages.is_empty() {
         return Vec::new();
     }
-    let mut shortest: Vec<(f64, Vec<f64>, f64)> = Vec::new();
+    let (phases, mut shortest) = (Phases::of(crane), Vec::<(f64, Vec<f64>, f64)>::new());
     for (sample, q) in table.poses(description).enumerate() {
-        let overlaps = at(crane, q);
+        let overlaps = at(phases.at(table.rows[sample][0]), q);
         shortest.resize(overlaps.len(), (f64::INFINITY, Vec::new(), 0.0));
         for (least, overlap) in shortest.iter_mut().zip(overlaps) {
             if overlap < least.0 {

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use crate::{
     ConnectorInfo, CoordinateKind, Description, LoopJointInfo, bristles,
     dyn_crane::{DynCrane, Energies},
-    dynamics::Sample,
+    dynamics::{Phases, Sample},
     feet::{self, Slid},
     force_states,
     hydraulics::{self, Oil},
@@ -27,9 +27,10 @@ use crate::{
 /// `<connector>_force`; for a coupling `<coupling>_slip`, `<coupling>_slip_rate` and `<coupling>_force` or `_torque`; for a pad `<pad>_offset` and so on; for a loop joint with
 /// friction `<joint>_angle`, `<joint>_angle_rate` and `<joint>_friction_torque`; for a joint that closes a loop `<joint>_force` or `<joint>_force_x` and
 /// `<joint>_moment_x`, as many as it has equations; energies.
-/// `energy_balance` is `E(t) − E(0) − drive_work − load_work + dissipated_energy`, the error of the run if it is audited.
+/// `energy_balance` is `E(t) − E(0) − drive_work − load_work − event_work + dissipated_energy`, the error of the run if it is audited.
 pub struct Recording<'a> {
     crane: &'a dyn DynCrane,
+    phases: Phases<'a>,
     extent: Extent,
     table: Table,
     energy_at_start: f64,
@@ -48,20 +49,32 @@ impl<'a> Recording<'a> {
     /// A recording without samples.
     pub fn new(crane: &'a dyn DynCrane) -> Self {
         let columns = [quantities(crane.description(), crane.loop_joints()), audited(crane.description())].concat();
-        Self { crane, extent: Extent::All, table: Table { columns, rows: Vec::new() }, energy_at_start: 0.0 }
+        Self {
+            crane,
+            phases: Phases::of(crane),
+            extent: Extent::All,
+            table: Table { columns, rows: Vec::new() },
+            energy_at_start: 0.0,
+        }
     }
 
     /// A recording without samples, of only what peaks and cautions need.
     pub(crate) fn of_peaks(crane: &'a dyn DynCrane) -> Self {
         let columns = quantities_of(crane.description(), crane.loop_joints(), Extent::Peaks);
-        Self { crane, extent: Extent::Peaks, table: Table { columns, rows: Vec::new() }, energy_at_start: 0.0 }
+        Self {
+            crane,
+            phases: Phases::of(crane),
+            extent: Extent::Peaks,
+            table: Table { columns, rows: Vec::new() },
+            energy_at_start: 0.0,
+        }
     }
 
     /// Adds a sample.
     pub fn push(&mut self, sample: &Sample<'_>) {
-        let &Sample { t, q, v, x, work, dissipated, load_work } = sample;
+        let &Sample { t, q, v, x, work, dissipated, load_work, event_work } = sample;
         let mut row = Vec::with_capacity(self.table.columns.len());
-        let energies = push_quantities(self.crane, self.extent, &StateAt { t, q, v, x }, &[], &mut row);
+        let energies = push_quantities(self.phases.at(t), self.extent, &StateAt { t, q, v, x }, &[], &mut row);
         if let Some(energy) = energies.as_ref().map(Energies::total) {
             if self.table.rows.is_empty() {
                 self.energy_at_start = energy;
@@ -70,7 +83,10 @@ impl<'a> Recording<'a> {
             if !self.crane.description().loads.is_empty() {
                 row.push(load_work);
             }
-            row.push(energy - self.energy_at_start - work - load_work + dissipated);
+            if !self.crane.description().events.is_empty() {
+                row.push(event_work);
+            }
+            row.push(energy - self.energy_at_start - work - load_work - event_work + dissipated);
         }
         self.table.rows.push(row);
     }
@@ -313,6 +329,9 @@ fn audited(description: &Description) -> Vec<Column> {
     table.add_of(ColumnKind::Dissipated, "dissipated", false);
     if !description.loads.is_empty() {
         table.add_of(ColumnKind::Work, "load", false);
+    }
+    if !description.events.is_empty() {
+        table.add_of(ColumnKind::Work, "event", false);
     }
     table.add_of(ColumnKind::Balance, "energy", false);
     table.columns

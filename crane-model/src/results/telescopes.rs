@@ -2,6 +2,7 @@
 
 use super::Table;
 use crate::dyn_crane::DynCrane;
+use crate::dynamics::Phases;
 use crate::{BodyInfo, CoordinateInfo, CoordinateKind, Description, Text};
 
 /// Overlaps below this length, m, are those of a stage that is drawn out.
@@ -29,9 +30,9 @@ pub(super) fn of_run(crane: &dyn DynCrane, table: &Table) -> Vec<String> {
     if stages.is_empty() {
         return Vec::new();
     }
-    let mut greatest = Vec::new();
-    for q in table.poses(description) {
-        let overlaps = overlaps(crane, &stages, q);
+    let (phases, mut greatest) = (Phases::of(crane), Vec::new());
+    for (row, q) in table.rows.iter().zip(table.poses(description)) {
+        let overlaps = overlaps(phases.at(row[0]), &stages, q);
         greatest.resize(overlaps.len(), 0.0);
         for (greatest, overlap) in greatest.iter_mut().zip(overlaps) {
             *greatest = overlap.max(*greatest);

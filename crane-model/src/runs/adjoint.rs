@@ -11,6 +11,7 @@ use crate::{
     dynamics::{
         Sample, Settings, Watch,
         gradients::{Around, Covector, PullBacks, Slopes, Trace, difference, size_of},
+        without_events,
     },
     force_states::ForceStates,
     results::{Recording, quantities_at},
@@ -42,6 +43,7 @@ pub fn record_adjoint(
     let begin = clock();
     let (mut states, mut trace) = (Vec::new(), None);
     let mut recorded = record_by(crane, start, settings, |recording| {
+        without_events(crane.description(), settings, "runs with derivatives")?;
         let mut recorder = Recorder { recording, states: &mut states, proceed: &mut *proceed };
         let found = Trace::new(crane, &start.state(), probes, settings, &mut recorder)?;
         Ok(trace.insert(found).run())

@@ -171,6 +171,10 @@ enum Way {
 impl Way {
     /// The fastest way.
     fn of(crane: &dyn DynCrane, rows: &[Case], settings: &Settings) -> Self {
+        // Neither fleets nor lanes change their parameters during a run.
+        if !crane.description().events.is_empty() {
+            return Way::Alone;
+        }
         if settings.method.is_adaptive() {
             let fleet = if settings.audit { None } else { crane.fleet(&[crane]) };
             return fleet.map_or(Way::Alone, |fleet| Way::AsFleet { cranes: fleet.cranes() });
@@ -313,7 +317,7 @@ fn alone(crane: &dyn DynCrane, row: &Case, settings: &Settings, off: &dyn Fn() -
 /// Runs a crane from its start.
 fn alone_from(crane: &dyn DynCrane, start: &Start, settings: &Settings, off: &dyn Fn() -> bool) -> Outcome {
     let mut gathering = Gathering::new(crane, off);
-    let run = dynamics::simulate_watched(crane, &start.state(), settings, &mut gathering);
+    let run = dynamics::simulate_events(crane, &start.state(), settings, &mut gathering);
     gathering.finish(run)
 }
 

@@ -8,6 +8,7 @@ use crate::{
     dynamics::{
         Sample, Settings,
         gradients::{self, Slopes, WatchDerivatives, forward_difference, size_of},
+        without_events,
     },
     force_states::ForceStates,
     results::{Recording, quantities_at},
@@ -32,6 +33,7 @@ pub fn record_gradients(
 ) -> Result<(Recorded, Gradients), Failed> {
     let mut states = Vec::new();
     let recorded = record_by(crane, start, settings, |recording| {
+        without_events(crane.description(), settings, "runs with derivatives")?;
         let mut recorder = Recorder { recording, states: &mut states, proceed };
         gradients::simulate(crane, &start.state(), slopes, along, settings, &mut recorder)
     })?;

@@ -108,7 +108,7 @@ pub fn record(
 ) -> Result<Recorded, Failed> {
     record_by(crane, start, settings, |recording| {
         let mut recorder = Recorder { recording, proceed };
-        dynamics::simulate_watched(crane, &start.state(), settings, &mut recorder)
+        dynamics::simulate_events(crane, &start.state(), settings, &mut recorder)
     })
 }
 

@@ -47,6 +47,7 @@ pub const fn description(
         duration: 10.0,
         step: 1e-3,
         output: 0.01,
+        events: List::Static(&[]),
     }
 }
 

@@ -6,7 +6,7 @@ use crate::crane::{Case, with_features};
 use crate::feature::Features;
 use crate::observe::{CAUTIONS, differences, observe, observe_with};
 use crate::tree::{Tree, source, text};
-use crate::{changes, charts, combined, descriptions, fleets, laws, meshes, run_changes, servos, shown};
+use crate::{changes, charts, combined, descriptions, events, fleets, laws, meshes, run_changes, servos, shown};
 
 /// A check that failed.
 #[derive(Clone, Debug)]
@@ -45,6 +45,7 @@ pub fn names() -> Vec<&'static str> {
             fleets::NAME,
             charts::NAME,
             combined::NAME,
+            events::NAME,
             servos::NAME,
         ])
         .collect()
@@ -87,6 +88,9 @@ fn apply(check: &str, tree: &Tree, seed: u64, run: bool) -> Option<Vec<String>> 
     }
     if check == combined::NAME {
         return combined::check_combined(tree, seed);
+    }
+    if check == events::NAME {
+        return events::check_events(tree, seed);
     }
     if check == servos::NAME {
         return servos::check_servos(tree, seed);

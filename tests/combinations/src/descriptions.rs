@@ -483,7 +483,7 @@ fn numbers_set(tree: &Tree, rng: &mut Rng) -> Option<Second> {
 }
 
 /// A crane some of whose numbers are live parameters, and their names.
-fn with_parameters(tree: &Tree) -> Option<(Tree, Vec<String>)> {
+pub(crate) fn with_parameters(tree: &Tree) -> Option<(Tree, Vec<String>)> {
     let mut second = tree.clone();
     let mut made = serde_json::Map::new();
     let mut live = |name: &str, value: &mut Tree| {

@@ -13,6 +13,7 @@ mod combined;
 pub mod crane;
 pub mod cuts;
 pub mod descriptions;
+mod events;
 pub mod feature;
 mod fleets;
 mod forms;

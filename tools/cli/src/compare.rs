@@ -4,7 +4,7 @@
 use std::{io::Write, mem, time::Instant};
 
 use crane_model::{Description, dyn_crane::DynCrane, dynamics::Method, results::Table};
-use crane_page::tables::{Case, FLEXIBLE, RIGID, caution_of_runs, deflection, duties, equilibria, extremes, summary};
+use crane_page::tables::{Case, FLEXIBLE, RIGID, add_runs, caution_of_runs, deflection, equilibria, extremes};
 
 use crate::{
     arguments::{Compare, ComparePair, Format, Parameters, spec_file},
@@ -152,8 +152,7 @@ fn side_by_side(
     let labelled = [(first, one_run), (second, other_run)];
     caution_of_runs(&mut report, labelled.into_iter());
     report.grid(extremes(&labelled));
-    report.grid(summary(&labelled));
-    report.grid(duties(description, &labelled));
+    add_runs(&mut report, other.as_ref(), &labelled);
     report.grid(file_list(folder, &written));
     if format == Format::Table {
         let (duration, method, step) = (settings[1].duration, settings[1].method, other_run.run.step);

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use crane_model::dynamics::Method;
-use crane_page::tables::{caution_of_runs, deflection, duties, equilibria, extremes, summary};
+use crane_page::tables::{add_runs, caution_of_runs, deflection, equilibria, extremes};
 
 use crate::{
     arguments::Run,
@@ -47,8 +47,7 @@ pub fn run_crane(options: &Run, registry: &Registry, out: &mut dyn Write) -> Out
 
     let labelled: Vec<_> = labels.zip(&runs).collect();
     report.grid_first(extremes(&labelled));
-    report.grid(summary(&labelled));
-    report.grid(duties(description, &labelled));
+    add_runs(&mut report, crane, &labelled);
     report.grid(file_list(folder, &written));
     report.show_all(options.analysis.all);
     options.analysis.format.print(&report, out)

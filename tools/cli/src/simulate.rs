@@ -12,7 +12,7 @@ use crane_model::{
 };
 use crane_page::{
     record,
-    tables::{Grid, Report, VALUE, duties, extremes, summary},
+    tables::{Grid, Report, VALUE, add_runs, extremes},
 };
 use serde_json::Value;
 
@@ -66,8 +66,7 @@ pub fn simulate(options: &Run, registry: &Registry, out: &mut dyn Write) -> Outc
         report.caution(Some(caution.as_str()));
     }
     report.grid(extremes(&[(name, &recorded)]));
-    report.grid(summary(&[(VALUE, &recorded)]));
-    report.grid(duties(crane.description(), &[(name, &recorded)]));
+    add_runs(&mut report, crane, &[(VALUE, &recorded)]);
     report.grid(file_list(&options.folder.out, &written));
     options.analysis.format.print(&report, out)
 }

@@ -3,8 +3,8 @@
 use crane_codegen::chain::{self, BodyId, Chain, CoordinateId, CoordinateKind as Kind, Profile, SupportKinematics};
 use crane_model::{
     AttachmentInfo, BodyInfo, Bound, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole,
-    CylinderInfo, Description, DriveInfo, InputInfo, LoadInfo, LoopEquationInfo, LoopJointInfo, ParameterInfo,
-    PumpInfo, Refusal, SectionInfo, Side, StageInfo, SupportInfo, ValveInfo,
+    CylinderInfo, Description, DriveInfo, EventInfo, InputInfo, JoinsInfo, LoadInfo, LoopEquationInfo, LoopJointInfo,
+    ParameterInfo, PumpInfo, Refusal, SectionInfo, Side, StageInfo, SupportInfo, ValveInfo,
 };
 
 /// What the bodies of a chain with branches are attached to, as the compiler writes it.
@@ -103,6 +103,16 @@ pub fn describe(chain: &Chain) -> Description {
         duration: chain.run.duration,
         step: chain.run.step,
         output: chain.run.output,
+        events: chain.events.iter().map(event_info).collect(),
+    }
+}
+
+fn event_info(event: &chain::Event) -> EventInfo {
+    EventInfo {
+        name: event.name.clone().into(),
+        time: event.time,
+        changes: event.changes.iter().map(|(id, value)| (id.0, *value)).collect(),
+        joins: event.joins.map(|chain::Joins { velocity, point }| JoinsInfo { velocity, point }),
     }
 }
 

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use crane_model::dyn_crane::DynCrane;
-use crane_model::dynamics::{InitialState, Integration, Run, Sample, Settings, Stopped};
+use crane_model::dynamics::{InitialState, Integration, Run, Sample, Settings, Stopped, without_events};
 use self_cell::self_cell;
 
 self_cell!(
@@ -21,13 +21,14 @@ impl Motion {
     /// From a state at a time, s.
     ///
     /// # Errors
-    /// As [`Integration::new`].
+    /// As [`Integration::new`], and a motion step by step has no events.
     pub fn new(
         crane: Box<dyn DynCrane>,
         begin: f64,
         start: &InitialState,
         settings: &Settings,
     ) -> Result<Self, Stopped> {
+        without_events(crane.description(), settings, "motions that go on step by step")?;
         Moving::try_new(crane, |crane| Integration::new(crane.as_ref(), begin, start, settings)).map(Self)
     }
 

@@ -111,7 +111,7 @@ pub fn shown_pose(crane: &dyn DynCrane, equilibrium: &Equilibrium) -> Vec<f64> {
 fn rest(crane: &dyn DynCrane, q: &[f64]) -> Table {
     let (v, x) = (vec![0.0; q.len()], ForceStates::new(crane.description()).holding(crane, 0.0, q));
     let mut recording = Recording::new(crane);
-    recording.push(&Sample { t: 0.0, q, v: &v, x: &x, work: 0.0, dissipated: 0.0, load_work: 0.0 });
+    recording.push(&Sample { t: 0.0, q, v: &v, x: &x, work: 0.0, dissipated: 0.0, load_work: 0.0, event_work: 0.0 });
     recording.into_table()
 }
 

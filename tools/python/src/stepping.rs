@@ -211,7 +211,7 @@ impl Motions {
         let mut all: [Vec<f64>; 5] = Default::default();
         for row in 0..self.rows.len() {
             let now = self.row(row);
-            let Sample { t, q, v, x, work, dissipated, load_work } = now.motion.sample();
+            let Sample { t, q, v, x, work, dissipated, load_work, .. } = now.motion.sample();
             for (all, own) in all.iter_mut().zip([&[t], q, v, x, &[work, dissipated, load_work]]) {
                 all.extend_from_slice(own);
             }

@@ -14,6 +14,7 @@ mod cylinders;
 mod dead_centres;
 mod efforts;
 mod energy_audit;
+mod events;
 mod exact_pads;
 mod feet;
 mod halts;

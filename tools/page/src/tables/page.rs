@@ -3,8 +3,8 @@
 use crane_model::runs::{Failed, POSES, Reason, Recorded, Start, manoeuvre};
 
 use super::{
-    Case, Report, VALUE, caution_of_runs, damped_modes, deflection, duties, equilibria, extremes, stable_steps,
-    summary, undamped_modes,
+    Case, Report, VALUE, add_runs, caution_of_runs, damped_modes, deflection, equilibria, extremes, stable_steps,
+    undamped_modes,
 };
 
 /// Coordinates of the largest crane whose modes are computed at all [`POSES`] along the manoeuvre.
@@ -35,8 +35,7 @@ pub fn of_page(cases: &[Case<'_>], runs: &[&Recorded], bend: f64, changes: Optio
     let description = case.crane.description();
     if !labelled.is_empty() {
         report.grid(extremes(&labelled));
-        report.grid(summary(&labelled));
-        report.grid(duties(description, &labelled));
+        add_runs(&mut report, case.crane, &labelled);
     }
     if case.equilibrium.is_stable() {
         let modes = undamped_modes(case, changes).map_err(|error| Reason::Modes(error).of(&description.name))?;

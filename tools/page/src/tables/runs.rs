@@ -2,6 +2,7 @@
 
 use crane_model::{
     ColumnKind, Description,
+    dyn_crane::DynCrane,
     results::{Extremes, Table, column_name, drive_effort, headlines},
     runs::Recorded,
 };
@@ -44,7 +45,7 @@ pub fn extremes(runs: &[(&str, &Recorded)]) -> Grid {
 }
 
 /// Work, energy balance and time of runs, one column each.
-pub fn summary(runs: &[(&str, &Recorded)]) -> Grid {
+fn summary(runs: &[(&str, &Recorded)]) -> Grid {
     let values = runs.iter().map(|(label, _)| Heading::of(label, VALUE));
     let headings = [Heading::from("quantity")].into_iter().chain(values).chain(["unit".into()]).collect();
     let mut grid = Grid::with_headings("summary", "Run", headings);
@@ -59,6 +60,7 @@ pub fn summary(runs: &[(&str, &Recorded)]) -> Grid {
     let greatest = |run: &Recorded, column: &str| run.table.values(column).map(|v| v.map(f64::abs).fold(0.0, f64::max));
     let last = |run: &Recorded, column: &str| run.table.values(column).and_then(Iterator::last);
     row("work of the drives".to_owned(), "J", &|run| last(run, "drive_work"));
+    row("energy that came with events".to_owned(), "J", &|run| last(run, "event_work"));
     row("dissipated".to_owned(), "J", &|run| last(run, "dissipated_energy"));
     row("energy balance, largest error".to_owned(), "J", &|run| greatest(run, "energy_balance"));
     row("energy of the pump".to_owned(), "J", &|run| Some(integral(&run.table, &column(&run.table, PUMP)?)));
@@ -84,9 +86,34 @@ fn integral(table: &Table, values: &[f64]) -> f64 {
     t.windows(2).zip(values.windows(2)).map(|(t, values)| 0.5 * (values[0] + values[1]) * (t[1] - t[0])).sum()
 }
 
+/// Adds the tables of some runs of a crane: its events, work and time, and what its drives do.
+pub fn add_runs(report: &mut Report, crane: &dyn DynCrane, runs: &[(&str, &Recorded)]) {
+    report.grid(events(crane, runs));
+    report.grid(summary(runs));
+    report.grid(duties(crane.description(), runs));
+}
+
+/// What happens during some runs, a row per event and parameter.
+fn events(crane: &dyn DynCrane, runs: &[(&str, &Recorded)]) -> Grid {
+    let mut grid = Grid::new("events", "Events of the run", &["event", "time [s]", "parameter", "from", "to", "unit"]);
+    let description = crane.description();
+    let mut values: Vec<f64> = (0..description.parameters.len()).map(|index| crane.parameter(index)).collect();
+    let end = runs.iter().map(|(_, run)| run.run.time).fold(0.0, f64::max);
+    for event in description.events.iter().filter(|event| event.time <= end) {
+        for &(index, value) in event.changes.iter() {
+            let parameter = &description.parameters[index];
+            let before = std::mem::replace(&mut values[index], value);
+            let [from, to] = [before, value].map(|value| Cell::of_unit(value, &parameter.unit));
+            let named = [event.name.as_str().into(), event.time.into(), parameter.name.as_str().into()];
+            grid.row(named.into_iter().chain([from, to, Cell::unit_of(&parameter.unit)]).collect::<Vec<_>>());
+        }
+    }
+    grid
+}
+
 /// What each drive must be able to do in some runs, a row per drive and run: to choose motors, gears and cylinders by. Powers are those of the drive on its
 /// joint, at the results.
-pub fn duties(description: &Description, runs: &[(&str, &Recorded)]) -> Grid {
+fn duties(description: &Description, runs: &[(&str, &Recorded)]) -> Grid {
     let headers = [
         "drive",
         "crane",

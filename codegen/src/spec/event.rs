@@ -1,0 +1,26 @@
+//! Events of a run.
+
+use super::{Constant, Entries, FixedAngle, Spanned};
+use crate::node::FromNode;
+
+/// Something that happens at a time of a run: from then on, parameters have other values.
+#[derive(Clone, Debug, FromNode)]
+pub struct Event {
+    /// Name, a `snake_case` identifier.
+    pub name: Spanned<String>,
+    /// When, s.
+    pub at: Spanned<Constant>,
+    /// The values of parameters from then on, by name.
+    pub set: Spanned<Entries<FixedAngle>>,
+    /// How masses that are added moved before. Default: with the crane.
+    pub joins: Option<Spanned<Joins>>,
+}
+
+/// How masses that join the crane moved before: with them, their momentum joins it, and rates jump.
+#[derive(Clone, Debug, FromNode)]
+pub struct Joins {
+    /// Their velocity along the axes of the world, m/s. Default: `[0, 0, 0]`, at rest.
+    pub velocity: Option<Spanned<[Spanned<Constant>; 3]>>,
+    /// The point of interest at which their centre of mass is; required with a `velocity`.
+    pub point: Option<Spanned<String>>,
+}

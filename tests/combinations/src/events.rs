@@ -1,0 +1,128 @@
+//! A run with an event, and the same run in two parts, of two cranes.
+
+use std::ops::ControlFlow;
+
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::dynamics::{InitialState, Sample, Settings, Watch, simulate_from, simulate_watched};
+use crane_model::results::quantities_at;
+use crane_model::runs::{Start, imbalance, record};
+use fastrand::Rng;
+use serde_json::json;
+
+use crate::descriptions::with_parameters;
+use crate::observe::{equilibrium, live};
+use crate::tree::{Tree, source};
+
+/// The name of the check.
+pub const NAME: &str = "events and runs in two parts";
+/// Length of the run and its interval of results, s.
+const RUN: [f64; 2] = [0.3, 0.05];
+/// When events happen, s: between two results, or at one.
+const TIMES: [f64; 2] = [0.13, 0.15];
+/// Tolerance of the runs, and largest difference relative to the largest number of a column and unit: steps end at other times.
+const TOLERANCE: [f64; 2] = [1e-8, 1e-4];
+/// Largest error of the balance of energy, relative to what is exchanged.
+const IMBALANCE: f64 = 1e-3;
+
+/// What differs; `None` for a crane without live numbers, that does not stand, or whose runs end early.
+pub fn check_events(tree: &Tree, seed: u64) -> Option<Vec<String>> {
+    let mut rng = Rng::with_seed(seed);
+    let (mut with_event, names) = with_parameters(tree)?;
+    let mut after = live(&source(&with_event)).ok()?;
+    let before = after.clone();
+    let name = names.get(rng.usize(0..names.len().max(1)))?;
+    let index = before.description().parameters.iter().position(|info| info.name == name.as_str())?;
+    let value = before.parameters()[index] * (0.7 + 0.6 * rng.f64());
+    after.set_parameter(index, value).ok()?;
+    let time = TIMES[rng.usize(0..TIMES.len())];
+    with_event["events"] = json!([{"name": "change", "at": time, "set": {name: value}}]);
+    let crane = match live(&source(&with_event)) {
+        Ok(crane) => crane,
+        Err(refused) => return Some(vec![refused.to_string()]),
+    };
+    let q = equilibrium(&before).ok()?;
+    let v: Vec<f64> = q.iter().map(|_| 0.02 * (2.0 * rng.f64() - 1.0)).collect();
+    let start = Start { v, q, x: Vec::new(), what: String::new(), rests: false };
+    let settings = Settings {
+        duration: RUN[0],
+        output: RUN[1],
+        tolerance: TOLERANCE[0],
+        audit: true,
+        most_steps: 60_000,
+        ..Settings::of(crane.description())
+    };
+    let rows = in_two_parts([&before, &after], time, &start.state(), &settings)?;
+    let table = match record(&crane, &start, &settings, &mut |_| ControlFlow::Continue(())) {
+        Ok(recorded) => recorded.table,
+        Err(failed) => return Some(vec![failed.to_string()]),
+    };
+    let mut wrong = Vec::new();
+    for (place, column) in table.columns.iter().take(rows[0].len()).enumerate() {
+        let alike = |other: usize| table.columns[other].unit == column.unit && table.columns[other].kind == column.kind;
+        let of_kind = (0..rows[0].len()).filter(|other| alike(*other));
+        let size = of_kind.flat_map(|other| rows.iter().map(move |row| row[other].abs())).fold(1e-6, f64::max);
+        for (one, other) in table.rows.iter().zip(&rows) {
+            let off = (one[place] - other[place]).abs();
+            if off.is_nan() || off > TOLERANCE[1] * size {
+                let (t, unit) = (one[0], &column.unit);
+                wrong.push(format!("{} at {t} s: {:e} against {:e} {unit}", column.name, one[place], other[place]));
+                break;
+            }
+        }
+    }
+    let off = imbalance(&table, 1.0);
+    if off > IMBALANCE {
+        wrong.push(format!("the balance of energy is off by {off:e}, with an event that sets {name}"));
+    }
+    Some(wrong)
+}
+
+/// All quantities at the results of a run whose crane is another one from a time on, s.
+fn in_two_parts(
+    [before, after]: [&LiveCrane; 2],
+    time: f64,
+    start: &InitialState,
+    settings: &Settings,
+) -> Option<Vec<Vec<f64>>> {
+    let mut rows = Vec::new();
+    let mut first = Part { crane: before, keeps: &|t| t < time, rows: &mut rows, end: start.clone() };
+    let whole = |t: f64| (t / settings.output).round() * settings.output;
+    let until = if (whole(time) - time).abs() < 1e-9 { settings.output } else { time };
+    let of_first = Settings { duration: time, output: until.min(settings.output), ..*settings };
+    simulate_watched(before, start, &of_first, &mut first).ok()?;
+    let mut end = first.end;
+    // Results before the event, at the interval of the run.
+    let on_grid = |t: f64| (whole(t) - t).abs() < 1e-9;
+    rows.retain(|row: &Vec<f64>| on_grid(row[0]));
+    let mut begin = time;
+    if !on_grid(time) {
+        let next = (time / settings.output).ceil() * settings.output;
+        let mut nothing = Part { crane: after, keeps: &|_| false, rows: &mut rows, end: end.clone() };
+        let to_result = Settings { duration: next - time, output: next - time, ..*settings };
+        simulate_from(after, begin, &end, &to_result, &mut nothing).ok()?;
+        (begin, end) = (next, nothing.end);
+    }
+    let mut second = Part { crane: after, keeps: &|_| true, rows: &mut rows, end: end.clone() };
+    let rest = Settings { duration: settings.duration - begin, ..*settings };
+    simulate_from(after, begin, &end, &rest, &mut second).ok()?;
+    Some(rows)
+}
+
+/// The results of a part of a run, and where it ended.
+struct Part<'a> {
+    crane: &'a dyn DynCrane,
+    keeps: &'a dyn Fn(f64) -> bool,
+    rows: &'a mut Vec<Vec<f64>>,
+    end: InitialState,
+}
+
+impl Watch for Part<'_> {
+    fn sample(&mut self, &Sample { t, q, v, x, .. }: &Sample<'_>) -> ControlFlow<()> {
+        if (self.keeps)(t) {
+            self.rows.push(quantities_at(self.crane, t, (q, v), x));
+        }
+        self.end = InitialState { q: q.to_vec(), v: v.to_vec(), x: x.to_vec() };
+        ControlFlow::Continue(())
+    }
+}

@@ -1,0 +1,160 @@
+//! Events of runs: what leaves, what joins, what gives way, against closed forms.
+
+use std::ops::ControlFlow;
+
+use crane_codegen::SourceFile;
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::dynamics::{Method, Settings};
+use crane_model::results::{Table, instants};
+use crane_model::runs::{Start, imbalance, record};
+
+const GRAVITY: f64 = 9.81;
+
+fn crane(text: &str) -> LiveCrane {
+    LiveCrane::from_spec(&SourceFile::new("events.yaml", text.to_owned()))
+        .unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
+}
+
+fn settings(crane: &LiveCrane, method: Method, duration: f64) -> Settings {
+    let settings =
+        Settings { method, tolerance: 1e-10, duration, output: 0.01, audit: true, ..Settings::of(crane.description()) };
+    if method == Method::Rosenbrock { Settings { tolerance: 1e-8, ..settings } } else { settings }
+}
+
+fn run(crane: &LiveCrane, method: Method, duration: f64) -> Table {
+    let settings = settings(crane, method, duration);
+    let crane: &dyn DynCrane = crane;
+    let start = Start::of(crane).expect("a start");
+    record(crane, &start, &settings, &mut |_| ControlFlow::Continue(()))
+        .unwrap_or_else(|failed| panic!("{failed}"))
+        .table
+}
+
+fn column(table: &Table, name: &str) -> Vec<f64> {
+    table.values(name).unwrap_or_else(|| panic!("no column {name}")).collect()
+}
+
+/// A hook of 90 kg and its load on a spring of 50 kN/m without damping; at 0.505 s, between two results, the load is dropped.
+const LIFT: &str = "format: 1\nname: lift\nparameters: {load: {value: 590, unit: kg}}\n\
+    links: [{name: hook, joint: {prismatic: {axis: z}}, mass: load, com: [0, 0, 0]}]\n\
+    drives: [{coordinate: hook_z, stiffness: 5e4, motion: {hold: 0}}]\n\
+    points: [{name: hoisted, link: hook}]\nanalyses: [statics, dynamics, modes, internal_forces]\n";
+
+/// What is left swings about its own rest, z = −(g/k)(m⁺ + Δm cos ω(t − t₀)): twice the load's deflection up.
+#[test]
+fn a_load_that_is_dropped_lets_its_spring_swing() {
+    let lift = crane(&format!("{LIFT}events: [{{name: drop, at: 505 ms, set: {{load: 90 kg}}}}]\n"));
+    let omega = (5e4_f64 / 90.0).sqrt();
+    for method in Method::ALL {
+        let table = run(&lift, method, 1.5);
+        let (t, z, force) = (column(&table, "t"), column(&table, "hook_z"), column(&table, "hook_z_drive_force"));
+        for ((t, z), force) in t.iter().zip(&z).zip(&force) {
+            let share = if *t < 0.505 { 1.0 } else { (omega * (t - 0.505)).cos() };
+            let expected = -(GRAVITY / 5e4) * (90.0 + 500.0 * share);
+            // Of a swing of 0.1 m; constant steps are 1e-4 s, where ω h is 2.4e-3.
+            assert!((z - expected).abs() < 1e-6, "{method:?}, {t} s: {z}, {expected}");
+            assert!((force + 5e4 * z).abs() < 1e-6 * 5e4, "{method:?}, {t} s: {force}");
+        }
+        // What leaves takes its energy, m g z and no speed, with it; that of the spring stays.
+        let left = column(&table, "event_work");
+        let expected = 500.0 * GRAVITY * GRAVITY * 590.0 / 5e4;
+        assert!((left.last().expect("rows") - expected).abs() < 1e-5 * expected, "{method:?}: {left:?}");
+        assert!(imbalance(&table, 0.0) < 1e-5, "{method:?}: {}", imbalance(&table, 0.0));
+        // Internal forces after it are those of the crane without the load: what the link exerts on the ground is the force of the drive.
+        let whole: &dyn DynCrane = &lift;
+        for (instant, force) in instants(whole, table.rows.iter()).iter().zip(&force) {
+            let transmitted = instant.wrenches[0].force[2];
+            assert!((transmitted + force).abs() < 1e-6 * 5e4, "{method:?}, {} s: {transmitted}, {force}", instant.t);
+        }
+    }
+}
+
+/// At the time of a result, the result is that after the event.
+#[test]
+fn a_result_at_an_event_is_after_it() {
+    let lift = crane(&format!("{LIFT}events: [{{name: drop, at: 0.5, set: {{load: 90}}}}]\n"));
+    let table = run(&lift, Method::DormandPrince, 0.6);
+    let (t, left) = (column(&table, "t"), column(&table, "event_work"));
+    for (t, left) in t.iter().zip(&left) {
+        assert_eq!(*t >= 0.5, *left != 0.0, "{t} s: {left} J");
+    }
+    assert_eq!(t.len(), 61);
+}
+
+/// A trolley of 100 kg that rolls at 0.4 m/s takes up a log of 300 kg: p = Σ m v, whatever the log did before.
+#[test]
+fn momentum_joins_with_what_is_gripped() {
+    let trolley = |joins: &str| {
+        crane(&format!(
+            "format: 1\nname: trolley\nparameters: {{load: {{value: 100, unit: kg}}}}\n\
+             links:\n- {{name: trolley, joint: {{prismatic: {{axis: x}}}}, mass: load, com: [0, 0, 0]}}\n\
+             points: [{{name: grapple, link: trolley}}]\nanalyses: [dynamics]\n\
+             events: [{{name: grip, at: 1, set: {{load: 400}}{joins}}}]\n"
+        ))
+    };
+    for (joins, velocity) in
+        [("", 0.4), (", joins: {}", 0.1), (", joins: {velocity: [1 m/s, 0, 9], point: grapple}", 0.85)]
+    {
+        let crane = trolley(joins);
+        let settings = settings(&crane, Method::DormandPrince, 2.0);
+        let crane: &dyn DynCrane = &crane;
+        let start = Start::with(crane, 0.0, None, Some(&[0.4])).expect("a start");
+        let table = record(crane, &start, &settings, &mut |_| ControlFlow::Continue(())).expect("a run").table;
+        let rate = column(&table, "trolley_x_rate");
+        assert!((rate.last().expect("rows") - velocity).abs() < 1e-12, "{joins}: {rate:?}");
+        let gained = 0.5 * 400.0 * velocity * velocity - 0.5 * 100.0 * 0.16;
+        assert!((column(&table, "event_work").last().expect("rows") - gained).abs() < 1e-10, "{joins}");
+        assert!(imbalance(&table, 0.0) < 1e-9, "{joins}");
+    }
+}
+
+/// A pendulum of 20 kg m² catches 5 kg at 2 m that fly at 3 m/s across it: (J + m L²) ω = m L u. Its trolley is held by a rigid drive.
+#[test]
+fn a_pendulum_catches_what_flies() {
+    let crane = crane(
+        "format: 1\nname: pendulum\nparameters: {caught: {value: 0, unit: kg}}\n\
+         links:\n- {name: trolley, joint: {prismatic: {axis: x}}, mass: 100, com: [0, 0, 0]}\n\
+         - {name: rod, joint: {revolute: {axis: y}}, mass: 10, com: [0, 0, -1], inertia: {Ixx: 10, Iyy: 10, Izz: 0.1}}\n\
+         - {name: basket, placement: {transform: {translation: [0, 0, -2]}}, joint: fixed, mass: caught, com: [0, 0, 0]}\n\
+         drives: [{coordinate: trolley_x, rigid: true, motion: {speed: {rate: 0.5}}}]\n\
+         points: [{name: basket, link: basket}]\nanalyses: [statics, dynamics]\n\
+         events: [{name: catch, at: 1, set: {caught: 5}, joins: {velocity: [3.5, 0, 0], point: basket}}]\n",
+    );
+    let table = run(&crane, Method::DormandPrince, 1.0 + 1e-9);
+    // Seen from the trolley, it flies at 3 m/s; the rod turns about y, its end at z = −2 m moves along −x.
+    let expected = -5.0 * 2.0 * 3.0 / (20.0 + 5.0 * 4.0);
+    let [rate, trolley] = ["rod_theta_rate", "trolley_x_rate"].map(|name| *column(&table, name).last().expect("rows"));
+    assert!((rate - expected).abs() < 1e-7, "{rate}, {expected}");
+    assert_eq!(trolley, 0.5);
+}
+
+/// An event that breaks a rule says which; runs with derivatives and motions step by step say that they have none.
+#[test]
+fn events_that_cannot_happen_are_refused() {
+    let mistakes = |events: &str| {
+        let text = format!("{LIFT}events: [{events}]\n");
+        LiveCrane::from_spec(&SourceFile::new("events.yaml", text)).expect_err("a mistake").to_string()
+    };
+    for (events, code) in [
+        ("{name: drop, at: 1, set: {load: 0}}", "E194"),
+        ("{name: drop, at: 1, set: {}}", "E193"),
+        ("{name: drop, at: 1, set: {lod: 90}}", "did you mean `load`"),
+        ("{name: drop, at: 1, set: {load: 90 m}}", "E034"),
+        ("{name: drop, at: 0, set: {load: 90}}", "E031"),
+        ("{name: drop, at: 1, set: {load: 90}}, {name: drop, at: 2, set: {load: 80}}", "an earlier event"),
+        ("{name: grip, at: 1, set: {load: 900}, joins: {velocity: [1, 0, 0]}}", "E195"),
+        ("{name: grip, at: 1, set: {load: 900}, joins: {point: hoistd}}", "E196"),
+    ] {
+        let told = mistakes(events);
+        assert!(told.contains(code), "{events}:\n{told}");
+    }
+    let lift = crane(&format!("{LIFT}events: [{{name: drop, at: 0.5, set: {{load: 90}}}}]\n"));
+    let of_steps = settings(&lift, Method::DormandPrince, f64::INFINITY);
+    let start = Start::of(&lift as &dyn DynCrane).expect("a start").state();
+    let Err(stopped) = crane_live::Motion::new(Box::new(lift), 0.0, &start, &of_steps) else { panic!("it goes on") };
+    assert_eq!(
+        stopped.to_string(),
+        "event `drop` does not happen in motions that go on step by step, at t = 0.500000 s"
+    );
+}
