@@ -113,7 +113,8 @@ fn told(spec: &Value, place: &str, number: &Value) -> Vec<(String, String)> {
 #[test]
 fn a_wrong_dimension_is_told_at_every_numeric_key() {
     /// Keys whose unit depends on what they belong to, or is their own: their descriptions need not name it.
-    const VARIES: [&str; 13] = [
+    const VARIES: [&str; 14] = [
+        "Event.set.*",
         "Input.value",
         "Parameter.value",
         "Motion.hold",

@@ -24,14 +24,19 @@ pub struct Instant {
 }
 
 impl Instant {
-    /// At rest.
+    /// At rest, with the drives and loads of t = 0.
     pub fn at_rest(crane: &dyn DynCrane, q: &[f64]) -> Self {
+        Self::at_rest_with(crane, 0.0, q)
+    }
+
+    /// At rest, with the drives and loads of a time, s.
+    pub fn at_rest_with(crane: &dyn DynCrane, t: f64, q: &[f64]) -> Self {
         let rest = vec![0.0; q.len()];
         Self {
-            t: 0.0,
-            lines: lines(crane, 0.0, q, &rest, &rest),
+            t,
+            lines: lines(crane, t, q, &rest, &rest),
             x: crane.section_places_at(q),
-            wrenches: crane.internal_forces_at(0.0, q, &rest, &rest),
+            wrenches: crane.internal_forces_at(t, q, &rest, &rest),
         }
     }
 

@@ -10,7 +10,7 @@ use crate::{
     dyn_crane::{DynCrane, Energies},
     dynamics::{Phases, Sample},
     feet::{self, Slid},
-    force_states,
+    force_states::{self, ForceStates},
     hydraulics::{self, Oil},
     results::{Column, Table, column_name, cylinders},
     stateful_force::StateAt,
@@ -89,6 +89,13 @@ impl<'a> Recording<'a> {
             row.push(energy - self.energy_at_start - work - load_work - event_work + dissipated);
         }
         self.table.rows.push(row);
+    }
+
+    /// Adds a pose at rest at a time, s.
+    pub fn push_rest(&mut self, t: f64, q: &[f64]) {
+        let crane = self.phases.at(t);
+        let (v, x) = (vec![0.0; q.len()], ForceStates::new(crane.description()).holding(crane, t, q));
+        self.push(&Sample { t, q, v: &v, x: &x, work: 0.0, dissipated: 0.0, load_work: 0.0, event_work: 0.0 });
     }
 
     /// The samples so far.

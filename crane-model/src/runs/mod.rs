@@ -7,6 +7,7 @@ mod failed;
 mod gradients;
 mod manoeuvre;
 mod measure;
+mod quasi_static;
 mod recorded;
 mod start;
 
@@ -16,5 +17,6 @@ pub use failed::{Failed, Reason};
 pub use gradients::{Gradients, record_gradients};
 pub use manoeuvre::{Bound, POSES, Pose, SAFE, limiting_modes, manoeuvre, step_limit};
 pub use measure::Measure;
+pub use quasi_static::QuasiStatic;
 pub use recorded::{Recorded, check, imbalance, record, record_checked};
 pub use start::{EQUILIBRIUM, EQUILIBRIUM_MOVING, GUESS, GUESS_MOVING, Start};

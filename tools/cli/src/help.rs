@@ -15,6 +15,7 @@ const GROUPS: [(&str, &[&str]); 4] = [
             "statics",
             "strength",
             "fatigue",
+            "factors",
             "sensitivity",
             "envelope",
             "simulate",

@@ -159,7 +159,7 @@ pub fn styled(bar: ProgressBar) -> ProgressBar {
 }
 
 /// Advances a bar with the time of a run.
-fn show(bar: &ProgressBar) -> impl FnMut(f64) -> ControlFlow<()> {
+pub fn show(bar: &ProgressBar) -> impl FnMut(f64) -> ControlFlow<()> {
     let mut shown = 0;
     move |t| {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a length for the eye")]

@@ -25,6 +25,7 @@ mod eval;
 mod example;
 mod exchange;
 mod explain;
+mod factors;
 mod fatigue;
 mod figures;
 pub mod files;

@@ -449,3 +449,34 @@ run: {duration: 8, output: 0.02}
         assert!(text.contains(wanted), "{arguments:?}: {text}");
     }
 }
+
+/// A load that comes at once onto a spring without damping lets it swing by as much as it deflects: (M + 2m)/(M + m) of the force at rest.
+#[test]
+fn a_load_that_comes_at_once_counts_twice() {
+    let spec = "format: 1\nname: sudden\nparameters: {load: {value: 90, unit: kg}}
+links: [{name: hook, joint: {prismatic: {axis: z}}, mass: load, com: [0, 0, 0]}]
+drives: [{coordinate: hook_z, stiffness: 5e4, motion: {hold: 0}}]
+analyses: [statics, dynamics, modes, internal_forces]
+run: {duration: 2, output: 0.01}
+events: [{name: load, at: 0.5, set: {load: 590}}]
+";
+    let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("sudden.yaml");
+    fs::write(&file, spec).expect("a file");
+    let run = |arguments: &[&str]| {
+        Command::new(env!("CARGO_BIN_EXE_crane")).arg("factors").arg(&file).args(arguments).output().expect("it starts")
+    };
+    let output =
+        run(&["--hoisting-class", "hc2", "--hoisting-speed", "0.5", "--tolerance", "1e-8", "--format", "json"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let report: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    // Results are 0.01 s apart, a period is 0.68 s: a peak between two of them is missed by up to (ω h/2)²/2 = 1.1e-3 of the swing.
+    assert_close("factor", &report["greatest_factor"], (90.0 + 1000.0) / 590.0, 1e-3);
+    assert_close("tabulated", &report["tabulated_factor"], 1.1 + 0.34 * 0.5, 1e-12);
+    let force = &report["factors"][0];
+    assert_eq!(force["quantity"], "hook_z_drive_force");
+    assert_close("at rest before", &force["minimum_at_rest"], 90.0 * 9.81, 1e-6);
+    assert_close("at rest after", &force["maximum_at_rest"], 590.0 * 9.81, 1e-6);
+    assert_eq!(report["events"][0]["from"], 90.0);
+    let output = run(&["--hoisting-class", "hc2"]);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("--hoisting-speed"), "{output:?}");
+}

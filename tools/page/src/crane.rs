@@ -6,8 +6,6 @@ use crane_live::LiveCrane;
 use crane_model::{
     CoordinateRole, Description,
     dyn_crane::DynCrane,
-    dynamics::Sample,
-    force_states::ForceStates,
     modes::{NoModes, Vibration, vibrations},
     results::{Column, Recording, Table},
     statics::Equilibrium,
@@ -109,9 +107,8 @@ pub fn shown_pose(crane: &dyn DynCrane, equilibrium: &Equilibrium) -> Vec<f64> {
 
 /// The single result of a crane at rest, with its drives at their start positions.
 fn rest(crane: &dyn DynCrane, q: &[f64]) -> Table {
-    let (v, x) = (vec![0.0; q.len()], ForceStates::new(crane.description()).holding(crane, 0.0, q));
     let mut recording = Recording::new(crane);
-    recording.push(&Sample { t: 0.0, q, v: &v, x: &x, work: 0.0, dissipated: 0.0, load_work: 0.0, event_work: 0.0 });
+    recording.push_rest(0.0, q);
     recording.into_table()
 }
 

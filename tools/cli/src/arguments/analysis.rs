@@ -63,6 +63,34 @@ pub struct Fatigue {
     pub results: Option<PathBuf>,
 }
 
+/// Dynamic factors of a manoeuvre.
+#[derive(Debug, Args)]
+pub struct Factors {
+    #[command(flatten)]
+    pub analysis: Analysis,
+    #[command(flatten)]
+    pub timing: Timing,
+    /// Hoisting class of EN 1991-3, whose factor φ₂ is printed beside those that are computed
+    #[arg(long, value_enum, value_name = "CLASS", requires = "hoisting_speed")]
+    pub hoisting_class: Option<HoistingClass>,
+    /// Steady speed of hoisting of that class, m/s
+    #[arg(long, value_name = "NUMBER", value_parser = above_zero, requires = "hoisting_class")]
+    pub hoisting_speed: Option<f64>,
+}
+
+/// A hoisting class.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum HoistingClass {
+    /// Gentle.
+    Hc1,
+    /// Moderate.
+    Hc2,
+    /// Hard.
+    Hc3,
+    /// Violent.
+    Hc4,
+}
+
 /// The load and its limits.
 #[derive(Clone, Debug, Args)]
 pub struct LoadLimits {

@@ -14,8 +14,8 @@ use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 use crate::screen::Manner;
 
 pub use analysis::{
-    Controller, Envelope, Eval, EvalFormat, Fatigue, Linearise, LoadLimits, Margins, Modes, Quantity, Stability,
-    Strength,
+    Controller, Envelope, Eval, EvalFormat, Factors, Fatigue, HoistingClass, Linearise, LoadLimits, Margins, Modes,
+    Quantity, Stability, Strength,
 };
 pub use crane::{
     Analysis, Check, Choice, DEFAULT_CRANE, Example, Explain, Format, Generate, Limits, List, New, Parameters,
@@ -104,6 +104,8 @@ pub enum Action {
     Strength(Strength),
     /// Compute cycles of stress, damage and life of beams by a manoeuvre that repeats
     Fatigue(Fatigue),
+    /// Compute dynamic factors: what a manoeuvre makes of forces and stresses at rest along it
+    Factors(Factors),
     /// Compute what moves deflections, forces, stresses, tipping and frequencies, and by how much
     Sensitivity(Sensitivity),
     /// Find the largest load within limits over ranges of poses: load chart, diagrams, data
@@ -176,6 +178,7 @@ impl Action {
             Action::Margins(options) => Some(&mut options.analysis.crane),
             Action::Strength(options) => Some(&mut options.analysis.crane),
             Action::Fatigue(options) => Some(&mut options.analysis.crane),
+            Action::Factors(options) => Some(&mut options.analysis.crane),
             Action::Sensitivity(options) => Some(&mut options.analysis.crane),
             Action::Envelope(options) => Some(&mut options.analysis.crane),
             Action::Stability(options) => Some(&mut options.analysis.crane),
@@ -245,6 +248,8 @@ pub enum Output {
     Strength,
     /// Damage and life of beams.
     Fatigue,
+    /// Dynamic factors.
+    Factors,
     /// What moves the quantities of a crane at rest.
     Sensitivity,
     /// Largest loads.

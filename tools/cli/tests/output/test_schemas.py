@@ -133,6 +133,11 @@ def test_fatigue(output):
     assert found["life"] > 0 and {row["beam"] for row in found["fatigue"]} and found["units"]["fatigue"]["largest_range"] == "Pa"
 
 
+def test_factors(output):
+    found = output("factors", "factors", "eight_link_flexible", "--duration", "1", "--interval", "0.02")
+    assert any(row["quantity"] == "stress of boom" for row in found["factors"]) or found["greatest_factor"] > 0
+
+
 # A point of a load chart.
 LARGEST = ["--largest-load", "--tipping", "0.2", "--with", "links.boom.beam.section.box.height"]
 

@@ -87,6 +87,12 @@ impl Cell {
         DisplayUnit::always(si).map_or(Cell::Uncertainty(error), |unit| Cell::ShownUncertainty(error, unit))
     }
 
+    /// A time of a result, s, without the rounding of its sum: 2.28 instead of 2.2800000000000002.
+    #[must_use]
+    pub fn instant(time: f64) -> Self {
+        format!("{time:.9}").parse().unwrap_or(time).into()
+    }
+
     /// That unit.
     #[must_use]
     pub fn unit_of(si: &str) -> Self {

@@ -9,11 +9,6 @@ use crane_model::{
 
 use super::{Cell, Grid, Heading, Report, VALUE};
 
-/// A time without the rounding of its sum: 2.28 instead of 2.2800000000000002.
-fn instant(time: f64) -> f64 {
-    format!("{time:.9}").parse().unwrap_or(time)
-}
-
 /// Extremes of all headlines of some runs, a row per quantity and run.
 pub fn extremes(runs: &[(&str, &Recorded)]) -> Grid {
     let headers =
@@ -34,7 +29,7 @@ pub fn extremes(runs: &[(&str, &Recorded)]) -> Grid {
                 let uncertain =
                     [0, 1].map(|k| found.map_or(Cell::Empty, |found| Cell::error_of_unit(found[k], &kind.unit)));
                 let [least, most] = [minimum, maximum].map(|value| Cell::of_unit(value, &kind.unit));
-                let numbers = [least, instant(time_of_minimum).into(), most, instant(time_of_maximum).into()];
+                let numbers = [least, Cell::instant(time_of_minimum), most, Cell::instant(time_of_maximum)];
                 let crane = (!alone).then(|| Cell::from(*label));
                 let row = [Cell::from(name.as_str())].into_iter().chain(crane).chain(numbers);
                 grid.row(row.chain(uncertain).chain([Cell::unit_of(&kind.unit)]).collect::<Vec<_>>());
@@ -88,17 +83,16 @@ fn integral(table: &Table, values: &[f64]) -> f64 {
 
 /// Adds the tables of some runs of a crane: its events, work and time, and what its drives do.
 pub fn add_runs(report: &mut Report, crane: &dyn DynCrane, runs: &[(&str, &Recorded)]) {
-    report.grid(events(crane, runs));
+    add_events(report, crane, runs.iter().map(|(_, run)| run.run.time).fold(0.0, f64::max));
     report.grid(summary(runs));
     report.grid(duties(crane.description(), runs));
 }
 
-/// What happens during some runs, a row per event and parameter.
-fn events(crane: &dyn DynCrane, runs: &[(&str, &Recorded)]) -> Grid {
+/// Adds what happens up to the end of a run, s, a row per event and parameter.
+pub fn add_events(report: &mut Report, crane: &dyn DynCrane, end: f64) {
     let mut grid = Grid::new("events", "Events of the run", &["event", "time [s]", "parameter", "from", "to", "unit"]);
     let description = crane.description();
     let mut values: Vec<f64> = (0..description.parameters.len()).map(|index| crane.parameter(index)).collect();
-    let end = runs.iter().map(|(_, run)| run.run.time).fold(0.0, f64::max);
     for event in description.events.iter().filter(|event| event.time <= end) {
         for &(index, value) in event.changes.iter() {
             let parameter = &description.parameters[index];
@@ -108,7 +102,7 @@ fn events(crane: &dyn DynCrane, runs: &[(&str, &Recorded)]) -> Grid {
             grid.row(named.into_iter().chain([from, to, Cell::unit_of(&parameter.unit)]).collect::<Vec<_>>());
         }
     }
-    grid
+    report.grid(grid);
 }
 
 /// What each drive must be able to do in some runs, a row per drive and run: to choose motors, gears and cylinders by. Powers are those of the drive on its
