@@ -163,6 +163,8 @@ pub fn simulate_events(
     }
     let intervals = divided(end, settings.output).0;
     let (mut done, mut state, mut next, mut begin) = (Done::default(), start.clone(), 0, 0.0);
+    let energy = |crane: &dyn DynCrane, sample: &Sample<'_>| crane.energies_of(sample).total();
+    let mut energy_before = None;
     let mut events = description.events.iter().zip(&phases.later).filter(|(event, _)| event.time < end);
     let mut present = crane;
     loop {
@@ -170,6 +172,8 @@ pub fn simulate_events(
         let until = event.map_or(end, |(event, _)| event.time);
         let settings = Settings { duration: until - begin, ..*settings };
         let mut integration = Integration::new(present, begin, &state, &settings)?;
+        // Rigid drives and loops may have moved what the event left.
+        done.energies[3] += energy_before.map_or(0.0, |before| energy(present, &integration.sample()) - before);
         while next <= intervals {
             let result = (settings.output * next as f64).min(end);
             if result > until || (event.is_some() && result >= until) {
@@ -194,12 +198,9 @@ pub fn simulate_events(
         }
         let sample = done.add_to(integration.sample());
         let v = rates_after([present, after.as_ref()], event.joins.as_ref(), sample.q, sample.v);
-        let energy = |crane: &dyn DynCrane, v| crane.energies_of(&Sample { v, ..sample }).total();
-        let energies = [sample.work, sample.dissipated, sample.load_work, sample.event_work];
-        let change = energy(after.as_ref(), &v) - energy(present, sample.v);
+        energy_before = Some(energy(present, &sample));
+        done.energies = [sample.work, sample.dissipated, sample.load_work, sample.event_work];
         state = InitialState { q: sample.q.to_vec(), v, x: sample.x.to_vec() };
-        done.energies = energies;
-        done.energies[3] += change;
         (present, begin) = (after.as_ref(), until);
     }
 }

@@ -84,7 +84,7 @@ pub fn set_gravity(tree: &mut Tree, gravity: &[f64]) {
 }
 
 /// Keys in the order in which a person writes them.
-const ORDER: [&str; 28] = [
+const ORDER: [&str; 29] = [
     "format",
     "name",
     "title",
@@ -113,12 +113,15 @@ const ORDER: [&str; 28] = [
     "guess",
     "run",
     "analyses",
+    "events",
 ];
 
 /// The text of a spec, ready to be run: one line per entry.
 #[must_use]
 pub fn text(tree: &Tree) -> String {
     let mut text = String::new();
+    let others = tree.as_object().into_iter().flatten().map(|(key, _)| key).find(|key| !ORDER.contains(&key.as_str()));
+    assert!(others.is_none(), "a random crane has the key {others:?}, which has no place in a file");
     for key in ORDER {
         match tree.get(key) {
             Some(Value::Array(entries)) if entries.iter().any(Value::is_object) => {

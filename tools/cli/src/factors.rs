@@ -20,8 +20,8 @@ use crate::{
 
 /// Poses at rest along the manoeuvre, at most.
 const POSES: usize = 200;
-/// What is less than this part of the largest of its unit at rest has no factor: it is hardly there.
-const HARDLY: f64 = 1e-3;
+/// What is less than this part of the largest of its unit at rest has no factor: it is not what the crane carries.
+const HARDLY: f64 = 0.05;
 
 /// Prints the factors of everything that a crane carries.
 pub fn factors(options: &arguments::Factors, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
