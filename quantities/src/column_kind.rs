@@ -100,6 +100,8 @@ pub enum Strain {
     Offset,
     /// The angle of a pin.
     Angle,
+    /// How deep a point is below the ground.
+    Depth,
 }
 
 impl Strain {
@@ -111,6 +113,7 @@ impl Strain {
             Strain::Slip => "slip",
             Strain::Offset => "offset",
             Strain::Angle => "angle",
+            Strain::Depth => "depth",
         }
     }
 }
@@ -171,10 +174,12 @@ impl ColumnKind {
             ColumnKind::Strain(Strain::Slip) => &["_slip"],
             ColumnKind::Strain(Strain::Offset) => &["_offset"],
             ColumnKind::Strain(Strain::Angle) => &["_angle"],
+            ColumnKind::Strain(Strain::Depth) => &["_depth"],
             ColumnKind::StrainRate(Strain::Length) => &["_length_rate"],
             ColumnKind::StrainRate(Strain::Slip) => &["_slip_rate"],
             ColumnKind::StrainRate(Strain::Offset) => &["_offset_rate"],
             ColumnKind::StrainRate(Strain::Angle) => &["_angle_rate"],
+            ColumnKind::StrainRate(Strain::Depth) => &["_depth_rate"],
             ColumnKind::ConnectorEffort if turns => &["_torque"],
             ColumnKind::CylinderForce | ColumnKind::ConnectorEffort => &["_force"],
             ColumnKind::PinFriction => &["_friction_torque"],

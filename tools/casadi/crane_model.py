@@ -148,6 +148,7 @@ class Connector:
     clearance: object = 0
     pad: object = None
     pin: object = None
+    is_contact: bool = False
 
     def pulls(self, within=False):
         """Forces on the points at a tension of 1 N: minus the slopes of the length, `within`: of the parts between two bodies."""
@@ -163,6 +164,10 @@ class Connector:
             yield from self.pad.actions()
         elif self.pin is not None:
             yield from self.pin.wrenches(within)
+        elif self.is_contact:
+            up = ca.SX([0, 0, 1])
+            if not within:
+                yield self.bodies[0], self.along[0], up, ca.cross(self.points[0], up)
         elif self.points:
             for body, point, along, pull in zip(self.bodies, self.points, self.along, self.pulls(within)):
                 yield body, along, pull, ca.cross(point, pull)
@@ -333,6 +338,8 @@ def read_crane(path):
                 drive.opening = read_opening(crane, written["valve"])
     for written in spec.get("connectors", []):
         crane.connectors.append(read_connector(crane, written, spans))
+    for written in spec.get("contacts", []):
+        crane.connectors.append(read_contact(crane, written, spans))
     for written in spec.get("couplings", []):
         if not written.get("rigid"):
             crane.connectors.append(read_coupling(crane, written))
@@ -668,6 +675,17 @@ def read_connector(crane, written, spans):
     falls = int(written.get("falls", 1))
     strain, defaults = length_over(points, falls), [spec.default(at) for at in along]
     return Connector(bodies, points, along, defaults, strain, kind == "rope", stiffness, damping, length, push, progression, falls)
+
+
+def read_contact(crane, written, spans):
+    """A point and the ground below it, which carries it as far as it is deeper than its height."""
+    spec = crane.spec
+    body, at = carrier(spec, spec.vector(written.get("at", [0, 0, 0])), spans[written["link"]])
+    point = place(body.transform, at)
+    stiffness, damping, height = (spec.number(written.get(key, 0)) for key in ("stiffness", "damping", "height"))
+    index = next(i for i, other in enumerate(crane.bodies) if other is body)
+    law = (True, stiffness, damping, 0, 0)
+    return Connector([index], [point], [at[0]], [spec.default(at[0])], height - point[2], *law, is_contact=True)
 
 
 def read_slip(crane, written):

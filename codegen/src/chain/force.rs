@@ -70,7 +70,7 @@ macro_rules! laws {
 
 point_laws!(laws);
 
-/// A rope, `F = k σ max(0, 1 + a σ̇)` with `σ = max(0, s − ℓ₀(t))`.
+/// A rope, or the ground below a point, with the depth as its strain and no length of its own: `F = k σ max(0, 1 + a σ̇)` with `σ = max(0, s − ℓ₀(t))`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rope {
     /// k.
@@ -177,7 +177,11 @@ impl Force {
     pub fn coordinate(&self) -> Option<CoordinateId> {
         match self.strain {
             Strain::Coordinate(id) => Some(id),
-            Strain::Line(_) | Strain::Coupling { .. } | Strain::Sliding(_) | Strain::Turning(_) => None,
+            Strain::Line(_)
+            | Strain::Coupling { .. }
+            | Strain::Sliding(_)
+            | Strain::Turning(_)
+            | Strain::Depth { .. } => None,
         }
     }
 
@@ -193,7 +197,13 @@ impl Force {
     /// Whether it is a rope.
     #[must_use]
     pub fn is_rope(&self) -> bool {
-        matches!(self.law, Law::Rope(_))
+        matches!(self.law, Law::Rope(_)) && !self.is_contact()
+    }
+
+    /// Whether it is the contact of a point with the ground.
+    #[must_use]
+    pub fn is_contact(&self) -> bool {
+        matches!(self.strain, Strain::Depth { .. })
     }
 
     /// The motion of its winch.

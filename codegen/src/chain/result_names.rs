@@ -150,6 +150,7 @@ impl ResultNames {
             let (strain, effort) = strain_and_effort(connector);
             let mut kinds = vec![ColumnKind::Strain(strain), ColumnKind::StrainRate(strain), effort];
             kinds.extend(connector.is_rope().then_some(ColumnKind::RopeIndicator));
+            kinds.extend(connector.is_contact().then_some(ColumnKind::FootIndicator));
             self.add_part("connector", &connector.name, turns, &kinds);
         }
         let of_joints = chain.loop_joints.iter().map(|joint| ("loop joint", &joint.name, joint.kind.equations()));
@@ -171,6 +172,7 @@ fn strain_and_effort(connector: &Force) -> (StrainKind, ColumnKind) {
         Strain::Turning(_) => (StrainKind::Angle, ColumnKind::PinFriction),
         Strain::Coupling { .. } => (StrainKind::Slip, ColumnKind::ConnectorEffort),
         Strain::Sliding(_) => (StrainKind::Offset, ColumnKind::ConnectorEffort),
+        Strain::Depth { .. } => (StrainKind::Depth, ColumnKind::ConnectorEffort),
         Strain::Line(_) | Strain::Coordinate(_) => (StrainKind::Length, ColumnKind::ConnectorEffort),
     }
 }

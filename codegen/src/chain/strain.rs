@@ -24,6 +24,13 @@ pub enum Strain {
     Sliding(Box<Sliding>),
     /// How far a pin has turned, rad.
     Turning(Box<Turning>),
+    /// `h − z`: how deep a point is below a height, m.
+    Depth {
+        /// The point.
+        point: Attachment,
+        /// h, m.
+        height: Value,
+    },
 }
 
 /// The angle of the second of two bodies against the first about the pin between them, 0 at the guess.
@@ -96,17 +103,22 @@ impl Strain {
     pub fn line(&self) -> Option<&Line> {
         match self {
             Strain::Line(line) => Some(line),
-            Strain::Coordinate(_) | Strain::Coupling { .. } | Strain::Sliding(_) | Strain::Turning(_) => None,
+            Strain::Coordinate(_)
+            | Strain::Coupling { .. }
+            | Strain::Sliding(_)
+            | Strain::Turning(_)
+            | Strain::Depth { .. } => None,
         }
     }
 
-    /// The points of a line, the point of a pad, both ends of a pin, or none.
+    /// The points of a line, the point of a pad or on the ground, both ends of a pin, or none.
     #[must_use]
     pub fn points(&self) -> &[Attachment] {
         match self {
             Strain::Line(line) => &line.points,
             Strain::Sliding(sliding) => std::slice::from_ref(&sliding.pad),
             Strain::Turning(turning) => &turning.ends,
+            Strain::Depth { point, .. } => std::slice::from_ref(point),
             Strain::Coordinate(_) | Strain::Coupling { .. } => &[],
         }
     }
@@ -116,7 +128,11 @@ impl Strain {
     pub fn sliding(&self) -> Option<&Sliding> {
         match self {
             Strain::Sliding(sliding) => Some(sliding),
-            Strain::Coordinate(_) | Strain::Coupling { .. } | Strain::Line(_) | Strain::Turning(_) => None,
+            Strain::Coordinate(_)
+            | Strain::Coupling { .. }
+            | Strain::Line(_)
+            | Strain::Turning(_)
+            | Strain::Depth { .. } => None,
         }
     }
 
@@ -127,7 +143,7 @@ impl Strain {
             Strain::Line(line) => line.parts().any(LinePart::joins_bodies),
             Strain::Sliding(_) => true,
             Strain::Turning(turning) => turning.ends.iter().all(|end| end.body.is_some()),
-            Strain::Coordinate(_) | Strain::Coupling { .. } => false,
+            Strain::Coordinate(_) | Strain::Coupling { .. } | Strain::Depth { .. } => false,
         }
     }
 }
@@ -170,6 +186,7 @@ impl Chain {
             Strain::Coupling { coordinate: one, leader: other, .. } => vec![*one.min(other), *one.max(other)],
             Strain::Sliding(sliding) => self.changing_at(sliding),
             Strain::Turning(turning) => self.turned_by(turning),
+            Strain::Depth { point, .. } => self.reach(point),
         }
     }
 
@@ -178,7 +195,7 @@ impl Chain {
     pub fn read_by(&self, strain: &Strain) -> Vec<CoordinateId> {
         match strain {
             Strain::Line(line) => line.points.iter().flat_map(|point| self.reach(point)).collect(),
-            Strain::Coordinate(_) | Strain::Coupling { .. } => self.spanned(strain),
+            Strain::Coordinate(_) | Strain::Coupling { .. } | Strain::Depth { .. } => self.spanned(strain),
             Strain::Turning(turning) => turning.ends.iter().flat_map(|end| self.reach(end)).collect(),
             // All that move the pad, the beam or both.
             Strain::Sliding(sliding) => [self.reach(&sliding.pad), self.coordinates_of(sliding.beam.last())].concat(),
@@ -189,7 +206,7 @@ impl Chain {
     #[must_use]
     pub fn kind_of(&self, strain: &Strain) -> CoordinateKind {
         match strain {
-            Strain::Line(_) => CoordinateKind::Translation,
+            Strain::Line(_) | Strain::Depth { .. } => CoordinateKind::Translation,
             Strain::Turning(_) => CoordinateKind::Rotation,
             Strain::Sliding(sliding) => match sliding.direction {
                 PadDirection::Along(_) => CoordinateKind::Translation,

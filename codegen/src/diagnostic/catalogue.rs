@@ -522,6 +522,8 @@ catalogue! {
         "write `point:` with the one of `points` at which it is";
     /// The point at which masses join exists.
     E196 unknown_point(name, help) "there is no point `{name}`", "not listed under `points:`", "{help}";
+    /// A point that the ground may carry moves.
+    E197 rigid_contact(name) "the point of contact `{name}` never moves", "no coordinate moves this link", "name a link that moves, or remove the contact";
 
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.

@@ -239,7 +239,7 @@ fn role(chain: &Chain, coordinate: usize) -> TokenStream {
 
 fn connector_info(chain: &Chain, connector: &Force) -> TokenStream {
     let name = text(&connector.name);
-    let is_rope = connector.is_rope();
+    let (is_rope, is_contact) = (connector.is_rope(), connector.is_contact());
     let [first, end] = Chain::range(&chain.spanned(&connector.strain)).map(integer);
     let pieces = integer(connector.pieces());
     let line = connector.strain.line();
@@ -249,7 +249,7 @@ fn connector_info(chain: &Chain, connector: &Force) -> TokenStream {
         CoordinateKind::Translation => quote!(CoordinateKind::Translation),
         CoordinateKind::Rotation => quote!(CoordinateKind::Rotation),
     };
-    quote!(ConnectorInfo { name: #name, points: #points, falls: #falls, kind: #kind, is_rope: #is_rope, spanned: [#first, #end], pieces: #pieces })
+    quote!(ConnectorInfo { name: #name, points: #points, falls: #falls, kind: #kind, is_rope: #is_rope, is_contact: #is_contact, spanned: [#first, #end], pieces: #pieces })
 }
 
 /// A point of a body or of the world.

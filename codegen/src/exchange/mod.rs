@@ -65,6 +65,7 @@ pub fn approximations(chain: &Chain) -> Option<String> {
     let connectors = [
         (has(|strain| matches!(strain, Strain::Line(_))), "Springs and ropes between points are left out."),
         (has(|strain| matches!(strain, Strain::Coupling { .. })), "Couplings with springs are left out."),
+        (has(|strain| matches!(strain, Strain::Depth { .. })), "Contacts with the ground are left out."),
         (
             has(|strain| matches!(strain, Strain::Sliding(_))),
             "Pads of telescopes are left out: nothing but its drive holds a stage.",

@@ -8,6 +8,7 @@
 //! : `∂²ℓ/∂q_i∂q_j` of a part that i and j change, with its distance d and `C_j` the velocity of its second end relative to its first at unit
 //!   rate of j, is `m (C_i · C_j − (u · C_i)(u · C_j))/d`, and in addition `m ω_i · (C_j × u)` if i and j move the same end, i ≤ j: j turns and moves the
 //!   forces at both ends, which i meets as in every [tangent](super::tangent).
+//! : for a point and the ground `ℓ = h − z`, `J_j = −e_z · ∂p/∂q_j`; a force F pushes the point with `F e_z`, and its tangent is that of a load.
 //! : for a beam as seen from a pad: [`pads`](super::pads); for a pin that turns: [`turning`](super::turning).
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -18,8 +19,8 @@ use super::pads::{self, AtPad};
 use super::place::{Along, Place, Pull};
 use super::tangent::Tangent;
 use super::turning::Turned;
-use super::vector::{SymmetricMatrix, Vec3};
-use crate::chain::{Attachment, BodyId, CoordinateId, Line, LinePart, Strain};
+use super::vector::{Rotation, SymmetricMatrix, Vec3};
+use crate::chain::{Attachment, Axis, BodyId, CoordinateId, Line, LinePart, Strain, Value};
 use crate::symbolic::Expr;
 
 /// A strain at the present pose.
@@ -63,6 +64,7 @@ impl<'g> Strained<'g> {
                 let Turned { angle, jacobian, pulls } = Turned::new(model, kinematics, turning);
                 Strained { on_bodies: pulls, ..Strained::without_points(angle, jacobian) }
             }
+            Strain::Depth { point: end, height } => Strained::of_depth(model, kinematics, end, height),
             Strain::Coupling { coordinate: CoordinateId(j), leader: CoordinateId(i), ratio } => {
                 let ratio = model.number(ratio);
                 let mut jacobian = vec![(*j, model.graph.constant(1.0)), (*i, -ratio)];
@@ -74,6 +76,18 @@ impl<'g> Strained<'g> {
 
     fn without_points(length: Expr<'g>, jacobian: Vec<(usize, Expr<'g>)>) -> Self {
         Strained { length, jacobian, points: Vec::new(), pulls: Vec::new(), on_bodies: Vec::new() }
+    }
+
+    fn of_depth(model: &Model<'g>, kinematics: &Kinematics<'g>, end: &Attachment, height: &Value) -> Self {
+        let (point, up) = (point(model, kinematics, end), Rotation::identity(model.graph).axis(Axis::Z));
+        let slope = |id: CoordinateId| (id.0, -up.dot(kinematics.generators[id.0].velocity(point)));
+        let jacobian = model.chain.reach(end).into_iter().map(slope).collect();
+        let place = end.body.map(|body| Place { body, along: Along::Fixed(end.position[0].clone()) });
+        let pulls = place.map(|place| (place, Pull::of_force(point, up)));
+        Strained {
+            on_bodies: pulls.into_iter().collect(),
+            ..Strained::without_points(model.number(height) - up.dot(point), jacobian)
+        }
     }
 
     fn of_line(model: &Model<'g>, kinematics: &Kinematics<'g>, line: &Line) -> Self {
@@ -135,6 +149,18 @@ impl<'g> Strained<'g> {
         match strain {
             Strain::Coordinate(_) | Strain::Coupling { .. } | Strain::Line(_) => {}
             Strain::Sliding(sliding) => pads::add_curvature((model, kinematics), sliding, tension, matrix),
+            Strain::Depth { point: end, .. } => {
+                let (point, down) =
+                    (point(model, kinematics, end), -tension * Rotation::identity(model.graph).axis(Axis::Z));
+                let none = Vec3::zero(model.graph);
+                for &(j, _) in &self.jacobian {
+                    let velocity = kinematics.generators[j].velocity(point);
+                    tangent.add(j, [end.body, None], [none, velocity.cross(down)]);
+                    if let Some(curvature) = kinematics.curvatures.iter().find(|curvature| curvature.first == j) {
+                        curvature.add_works((point - curvature.pose.origin).cross(down), &mut tangent.matrix);
+                    }
+                }
+            }
             Strain::Turning(_) => {
                 let slopes: Vec<_> = self.jacobian.iter().map(|(_, slope)| *slope).collect();
                 for (place, &(j, _)) in self.jacobian.iter().enumerate() {

@@ -50,6 +50,23 @@ pub struct Coupling {
     pub rigid: Option<Spanned<bool>>,
 }
 
+/// A point of a link that the ground carries while it touches it, without friction.
+#[derive(Clone, Debug, FromNode)]
+pub struct Contact {
+    /// Name, a `snake_case` identifier.
+    pub name: Spanned<String>,
+    /// The link.
+    pub link: Spanned<String>,
+    /// The point, in the frame of the link (for a beam: undeformed), m. Default `[0, 0, 0]`.
+    pub at: Option<Spanned<Vector>>,
+    /// Height of the ground there, along z of the world, m. Default 0.
+    pub height: Option<Spanned<Number>>,
+    /// Stiffness of ground and point, N/m.
+    pub stiffness: Spanned<Number>,
+    /// Relative increase of the force with the rate at which the point sinks in, as a fraction, s/m. Default 0.
+    pub damping: Option<Spanned<Number>>,
+}
+
 macro_rules! laws {
     ($($(#[$doc:meta])* $law:ident as $written:ident: $expecting:literal {
         $($(#[$key_doc:meta])* $key:ident: $number:ty, $limit:ident $unit:literal;)*

@@ -135,6 +135,8 @@ pub struct Crane {
     pub combination: Option<Spanned<String>>,
     /// Springs, gas springs and ropes between two points.
     pub connectors: Option<Spanned<Vec<Spanned<Connector>>>>,
+    /// Points that the ground carries while they touch it: loads that lie there, legs of a head.
+    pub contacts: Option<Spanned<Vec<Spanned<Contact>>>>,
     /// Coordinates that follow others: stages of telescopes, gears.
     pub couplings: Option<Spanned<Vec<Spanned<Coupling>>>>,
     /// Joints that close loops of links.

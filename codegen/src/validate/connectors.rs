@@ -37,6 +37,34 @@ impl<'a> Check<'a> {
         connectors
     }
 
+    /// Points that the ground carries.
+    pub(super) fn contacts(&mut self, crane: &'a Crane, cylinders: &[Cylinder]) -> Vec<Force> {
+        let mut contacts = Vec::new();
+        for contact in entries(crane.contacts.as_ref()) {
+            let name = self.name(&contact.name).unwrap_or_default().to_owned();
+            if !name.is_empty() {
+                self.register_connector(&name, contact.name.span, cylinders);
+            }
+            let place = |what: &str| format!("the {what} of contact `{name}`");
+            let at = self.vector_or_zero(contact.at.as_ref(), &place("point"), "m", Limit::Any);
+            let height = self.number_or(contact.height.as_ref(), 0.0, &place("height"), "m", Limit::Any);
+            let stiffness = self.number(&contact.stiffness, &place("stiffness"), "N/m", Limit::Positive);
+            let damping = self.number_or(contact.damping.as_ref(), 0.0, &place("damping"), "s/m", Limit::NotNegative);
+            let Some((body, position)) = self.attach(&contact.link, at) else { continue };
+            if self.coordinates_of(Some(body)).is_empty() {
+                self.report(rule::rigid_contact(contact.link.span, &name));
+            }
+            let point = Attachment { body: Some(body), position };
+            let law = Law::Rope(Rope {
+                stiffness: RopeStiffness::Whole(stiffness),
+                damping,
+                length: Profile::Hold(Value::ZERO),
+            });
+            contacts.push(Force { group: Group::Connectors, name, strain: Strain::Depth { point, height }, law });
+        }
+        contacts
+    }
+
     /// The line from one end of a connector over its sheaves to the other.
     fn line(&mut self, connector: &'a spec::Connector, name: &str) -> Option<Line> {
         self.only_ropes_run(connector, name);

@@ -273,6 +273,7 @@ impl<'a> Check<'a> {
         let pump = self.pump(crane);
         self.make_drives_hydraulic(crane, &cylinders, pump.as_ref(), &mut drives);
         let mut connectors = self.connectors(crane, &cylinders);
+        connectors.extend(self.contacts(crane, &cylinders));
         let (couplings, rigid_couplings) = self.couplings(crane, &cylinders);
         connectors.extend(couplings);
         let (pads, exact_pads) = self.pads(&cylinders);

@@ -392,6 +392,8 @@ pub struct ConnectorInfo {
     pub kind: CoordinateKind,
     /// Whether it is a rope, which pulls and never pushes.
     pub is_rope: bool,
+    /// Whether it is the contact of a point with the ground, which carries it and never holds it.
+    pub is_contact: bool,
     /// A range of coordinates that contains those that change its length: the first, and the one after the last.
     pub spanned: [usize; 2],
     /// The number of intervals in which its winch moves smoothly.
@@ -401,7 +403,12 @@ pub struct ConnectorInfo {
 impl ConnectorInfo {
     /// Whether it is a pad on which a beam slides.
     pub fn is_pad(&self) -> bool {
-        self.points.len() == 1
+        self.points.len() == 1 && !self.is_contact
+    }
+
+    /// Whether it acts at times only: a rope that is taut, a point that touches the ground.
+    pub fn lets_go(&self) -> bool {
+        self.is_rope || self.is_contact
     }
 
     /// Whether it is the friction in a pin: nothing else turns about points.
@@ -409,11 +416,12 @@ impl ConnectorInfo {
         self.points.len() == 2 && self.kind == CoordinateKind::Rotation
     }
 
-    /// What its length is: that of the line through its points, where the axis of a beam passes a pad, the slip of a coupling, or the angle
-    /// of a pin.
+    /// What its length is: that of the line through its points, where the axis of a beam passes a pad, the slip of a coupling, the angle of a pin, or how deep
+    /// a point is below the ground.
     pub fn strain(&self) -> Strain {
         match self.points.len() {
             _ if self.is_pin() => Strain::Angle,
+            _ if self.is_contact => Strain::Depth,
             0 => Strain::Slip,
             1 => Strain::Offset,
             _ => Strain::Length,
@@ -427,7 +435,7 @@ impl ConnectorInfo {
 
     /// Whether one of its points is pulled towards the world.
     pub fn holds_to_world(&self) -> bool {
-        !self.is_pin() && self.points.iter().any(|point| point.body.is_none())
+        self.is_contact || !self.is_pin() && self.points.iter().any(|point| point.body.is_none())
     }
 }
 

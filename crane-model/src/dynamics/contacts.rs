@@ -1,10 +1,10 @@
-//! Where contacts begin and end: a foot meets the ground, a joint its stop, a rope becomes taut.
+//! Where contacts begin and end: a foot or another point meets the ground, a joint its stop, a rope becomes taut.
 
 use crane_quantities::ColumnKind;
 
-use crate::{Description, Tension, Text, column::column_name, dyn_crane::DynModel};
+use crate::{ConnectorInfo, Description, Tension, Text, column::column_name, dyn_crane::DynModel};
 
-/// The contacts of a crane: one-sided supports, end stops and ropes, in this order.
+/// The contacts of a crane: one-sided supports, end stops, ropes and other points on the ground, in this order.
 pub struct Contacts {
     feet: Vec<usize>,
     stops: Vec<usize>,
@@ -21,7 +21,7 @@ impl Contacts {
         Self {
             feet: (0..supports.len()).filter(|foot| supports[*foot].one_sided).collect(),
             stops: stops.to_vec(),
-            ropes: (0..connectors.len()).filter(|rope| connectors[*rope].is_rope).collect(),
+            ropes: (0..connectors.len()).filter(|rope| connectors[*rope].lets_go()).collect(),
             gaps: vec![[0.0; 2]; supports.len()],
             forces: vec![0.0; crane.size()],
             tensions: vec![Tension::ZERO; connectors.len()],
@@ -42,12 +42,15 @@ impl Contacts {
     pub fn names(description: &Description) -> Vec<String> {
         let feet = description.supports.iter().filter(|support| support.one_sided).map(|support| &support.name);
         let stops = description.stops.iter().map(|&stop| &description.coordinates[stop].name);
-        let ropes = description.connectors.iter().filter(|connector| connector.is_rope).map(|rope| &rope.name);
+        let lets_go = description.connectors.iter().filter(|connector| connector.lets_go());
         let named = |kind| move |part: &Text| column_name(kind, part, false);
         let feet = feet.map(named(ColumnKind::FootIndicator));
-        feet.chain(stops.map(named(ColumnKind::StopIndicator)))
-            .chain(ropes.map(named(ColumnKind::RopeIndicator)))
-            .collect()
+        let of_connector = |connector: &ConnectorInfo| {
+            named(if connector.is_contact { ColumnKind::FootIndicator } else { ColumnKind::RopeIndicator })(
+                &connector.name,
+            )
+        };
+        feet.chain(stops.map(named(ColumnKind::StopIndicator))).chain(lets_go.map(of_connector)).collect()
     }
 
     /// Gives `take` an indicator of each contact, in order: negative while the contact is closed, positive while it is open. That of a foot is

@@ -244,6 +244,10 @@ fn connectors(crane: &LiveCrane, motion: &Motion, transforms: &[Matrix4<f64>]) -
         if let Strain::Sliding(sliding) = &connector.strain {
             forces.extend(pad_forces(crane, sliding, tension.force, (motion.q, transforms)));
         }
+        if let Strain::Depth { point, .. } = &connector.strain {
+            let up = force_at(point_of(crane, point, transforms), tension.force * Vector3::z());
+            forces.extend(point.body.map(|body| (body.0, up)));
+        }
         let Some(Line { points, falls }) = connector.strain.line() else { continue };
         for (index, ends) in points.windows(2).enumerate() {
             let [one, other] = [&ends[0], &ends[1]].map(|end| point_of(crane, end, transforms));

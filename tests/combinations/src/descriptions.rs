@@ -332,7 +332,8 @@ fn slope_as_gravity(tree: &Tree, _: &mut Rng) -> Option<Second> {
 fn turned(tree: &Tree, _: &mut Rng) -> Option<Second> {
     let mut second = tree.clone();
     let base = entry_mut(&mut second, "links", "name", "truck")?;
-    if base["joint"] != "fixed" {
+    // The ground does not turn.
+    if base["joint"] != "fixed" || !tree["contacts"].is_null() {
         return None;
     }
     base["placement"] = json!({"transform": {"rotation": [{"z": TURN[0]}, {"y": TURN[1]}]}});

@@ -56,6 +56,15 @@ pub fn vary(seed: u64, tree: &mut Tree) {
         slope(tree);
     }
     // Likewise.
+    let mut ground = Rng::with_seed(seed ^ 0x6a6a);
+    if ground.u8(0..5) == 0 {
+        // As soft as what floats: on most poses it carries some hundred newtons, and changes little else.
+        let height = if ground.u8(0..4) == 0 { -5.0 } else { 4.0 };
+        let at = [0.1, round(0.2 * ground.f64()), -0.1];
+        tree["contacts"] =
+            json!([{"name": "lies", "link": "hook", "at": at, "height": height, "stiffness": 200, "damping": 0.2}]);
+    }
+    // Likewise.
     let mut gusts = Rng::with_seed(seed ^ 0xa1a1);
     for load in entries(tree, "loads") {
         if gusts.bool() {

@@ -84,7 +84,7 @@ pub fn set_gravity(tree: &mut Tree, gravity: &[f64]) {
 }
 
 /// Keys in the order in which a person writes them.
-const ORDER: [&str; 29] = [
+const ORDER: [&str; 30] = [
     "format",
     "name",
     "title",
@@ -108,6 +108,7 @@ const ORDER: [&str; 29] = [
     "combinations",
     "combination",
     "connectors",
+    "contacts",
     "loop_joints",
     "points",
     "guess",

@@ -63,6 +63,7 @@ pub fn describe(chain: &Chain) -> Description {
         falls: connector.strain.line().map_or(1, |line| line.falls as usize),
         kind: kind_of(chain.kind_of(&connector.strain)),
         is_rope: connector.is_rope(),
+        is_contact: connector.is_contact(),
         spanned: Chain::range(&chain.spanned(&connector.strain)),
         pieces: connector.pieces(),
     });

@@ -8,6 +8,8 @@ mod buckling;
 mod bytecode;
 mod cautions;
 mod connectors;
+mod contacts;
+
 mod critical_loads;
 mod curved_beams;
 mod cylinders;
