@@ -5,7 +5,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use crane_codegen::chain::{Analyses, Chain, Follower, RigidCoupling};
+use crane_codegen::chain::{Analyses, Chain, Follower, Frame, RigidCoupling};
 use crane_codegen::exchange::ImportOptions;
 use crane_codegen::program::{FunctionId, Inputs};
 use crane_codegen::{SourceFile, build, compile, exchange, mechanics};
@@ -157,6 +157,67 @@ fn rigid_couplings_come_back_from_urdf_and_mjcf() {
     for (name, text) in [("geared.urdf", urdf), ("geared.xml", mjcf)] {
         let back = chain(&SourceFile::new("geared", spec(name, &text)));
         assert_eq!(ties(&back), [(1, 0, 2.0, -0.25), (2, 1, -0.125, 0.0)], "{name}");
+    }
+}
+
+/// Names of joints, and poses of frames in the world with each joint, by its name, at a position of its own.
+fn places(crane: &Chain) -> (Vec<&str>, Vec<(&str, Frame)>) {
+    let defaults = crane.parameter_defaults();
+    let mut q = vec![0.0; crane.coordinates.len()];
+    for joint in &crane.joints {
+        q[joint.coordinate.expect("a joint that moves").0] = 0.3 * joint.name.len() as f64;
+    }
+    let bodies = crane.frames(&q, &defaults);
+    let mut frames: Vec<(&str, Frame)> =
+        bodies.iter().zip(&crane.bodies).map(|(at, body)| (&*body.name, *at)).collect();
+    frames.extend(crane.frames.iter().map(|frame| {
+        let at = frame.pose(crane, &defaults);
+        (&*frame.name, frame.body.map_or(at, |body| bodies[body.0].outer(&at)))
+    }));
+    (crane.joints.iter().map(|joint| &*joint.name).collect(), frames)
+}
+
+/// Links that are turned, that fixed joints merge, also with the ground, and that have no names of the language. Angles are written with all
+/// digits, and five products of matrices round to 1e-15.
+#[test]
+fn names_of_frames_and_joints_come_back_from_urdf_and_mjcf() {
+    let heavy = "<inertial><mass value='2'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>";
+    let joint = |name: &str, kind: &str, [parent, child]: [&str; 2], rest: &str| {
+        format!(
+            "<joint name='{name}' type='{kind}'><parent link='{parent}'/><child link='{child}'/><origin xyz='0.3 0 0.1' rpy='0.1 -0.2 0.3'/>{rest}</joint>"
+        )
+    };
+    let urdf = format!(
+        "<robot name='arm'><link name='base'/><link name='Stand'/><link name='upper'>{heavy}</link><link name='boom_theta_frame'>{heavy}</link>\
+         <link name='fore &amp; &quot;rod&quot;'>{heavy}</link><link name='tool 0'/>{}{}{}{}{}</robot>",
+        joint("floor", "fixed", ["base", "Stand"], ""),
+        joint("plate", "fixed", ["upper", "boom_theta_frame"], ""),
+        joint("elbow &lt;2>", "continuous", ["boom_theta_frame", "fore &amp; &quot;rod&quot;"], "<axis xyz='1 2 -2'/>"),
+        joint("upper_mount", "continuous", ["Stand", "upper"], "<axis xyz='0 -1 0'/>"),
+        joint("flange", "fixed", ["fore &amp; &quot;rod&quot;", "tool 0"], ""),
+    );
+    let crane = chain(&SourceFile::new("arm", spec("arm.urdf", &urdf)));
+    let (joints, frames) = places(&crane);
+    assert_eq!(joints, ["elbow <2>", "upper_mount"]);
+    let of_file = ["base", "Stand", "upper", "boom_theta_frame", "fore & \"rod\"", "tool 0"];
+    let parameters = crane.parameter_defaults();
+    let urdf = exchange::urdf(&crane, &parameters, &[]).expect("an open chain");
+    for (name, text) in [("arm.urdf", urdf), ("arm.xml", mjcf(&crane).expect("an arm"))] {
+        let back = chain(&SourceFile::new("arm", spec(name, &text)));
+        let (mut joints_back, frames_back) = places(&back);
+        // In the order of coordinates, as the export has them.
+        joints_back.sort_unstable();
+        assert_eq!(joints_back, joints, "{name}");
+        for wanted in of_file {
+            // Of a name that a link has, too, the frame is meant.
+            let of = |frames: &[(&str, Frame)]| frames.iter().rfind(|(name, _)| *name == wanted).map(|(_, at)| *at);
+            let [Some(at), Some(back)] = [of(&frames), of(&frames_back)] else {
+                panic!("{name}: no `{wanted}`\n{text}")
+            };
+            let entries = |frame: Frame| [frame.axes.concat(), frame.origin.to_vec()].concat();
+            let apart = entries(at).into_iter().zip(entries(back)).map(|(one, other)| (one - other).abs());
+            assert!(apart.fold(0.0, f64::max) < 1e-14, "{name}: `{wanted}`\n{text}");
+        }
     }
 }
 
@@ -512,6 +573,19 @@ fn a_site_and_a_body_of_one_name_are_a_point_and_a_link() {
 }
 
 #[test]
+fn a_link_and_a_site_may_have_the_name_of_the_ground() {
+    let text = "format: 1\nname: a\nlinks: [{name: world, joint: revolute, mass: 2, com: [1, 0, 0]}]\nframes: [{name: world, link: world, transform: {translation: [0.5, 0, 0]}}]";
+    let crane = chain(&SourceFile::new("a", text));
+    let back = chain(&SourceFile::new("a", spec("a.xml", &mjcf(&crane).expect("a link"))));
+    let names: Vec<&str> = back.frames.iter().map(|frame| &*frame.name).collect();
+    assert_eq!((&*back.bodies[0].name, names), ("world_2", vec!["world", "world_site"]));
+    let urdf = exchange::urdf(&crane, &[], &[]).expect("a link");
+    let back = chain(&SourceFile::new("a", spec("a.urdf", &urdf)));
+    let names: Vec<&str> = back.frames.iter().map(|frame| &*frame.name).collect();
+    assert_eq!((&*back.bodies[0].name, names), ("world_2", vec!["world_3", "world"]));
+}
+
+#[test]
 fn a_joint_starts_at_its_ref() {
     let text = "<mujoco><compiler angle='radian'/><worldbody><body name='a'><joint axis='0 1 0' ref='0.4'/>\
                 <inertial pos='0.4 0 0' mass='2' diaginertia='0.1 0.1 0.1'/></body></worldbody></mujoco>";
@@ -569,9 +643,10 @@ fn limits_without_end_and_other_namespaces_are_read() {
 /// An attribute that no reader asks for is listed wherever it stands, unless all of its element is left out; so is an element.
 #[test]
 fn what_is_not_understood_is_told() {
-    for (file, left_out) in
-        [("branches.urdf", &[][..]), ("arm.xml", &["<motor ", "<position ", "<weld ", "<geom name=\"ground\""])]
-    {
+    for (file, left_out) in [
+        ("branches.urdf", &[][..]),
+        ("arm.xml", &["<motor ", "<position ", "<weld ", "<geom name=\"ground\"", "<geom type=\"mesh\""]),
+    ] {
         let text = std::fs::read_to_string(Path::new("tests/robots").join(file)).expect("a robot");
         let import =
             |text: &str| exchange::import(&SourceFile::new(file, text), &ImportOptions::default()).expect(file);
@@ -594,6 +669,35 @@ fn what_is_not_understood_is_told() {
         let inner = text.find("</joint>").or(text.find("</body>")).expect("an end");
         let with = import(&format!("{}<unheard/>{}", &text[..inner], &text[inner..]));
         assert!(with.left_out[0].starts_with("Not understood and left out: <unheard>"), "{:?}", with.left_out);
+    }
+}
+
+/// What is read and has no effect where it stands.
+#[test]
+fn what_acts_on_nothing_is_told() {
+    let told = |name: &str, text: &str| {
+        spec(name, text).lines().filter(|line| line.starts_with("#   Left out")).collect::<String>()
+    };
+    let robot = include_str!("robots/namespace.urdf");
+    let fixed = robot.find("type=\"fixed\"").expect("a fixed joint");
+    let inner = fixed + robot[fixed..].find('>').expect("an end") + 1;
+    let (before, after) = robot.split_at(inner);
+    let left_out = told(
+        "a.urdf",
+        &format!("{before}<dynamics damping='1'/><limit lower='0' upper='1' effort='1' velocity='1'/>{after}"),
+    );
+    assert!(left_out.contains("what acts on fixed joints: <dynamics>, <limit>."), "{left_out}");
+    let tendons =
+        "<fixed name='slack'><joint joint='j' coef='2'/></fixed><fixed name='held'><joint joint='k' coef='1'/></fixed>";
+    let text = format!(
+        "<mujoco><worldbody><body name='stand'><geom size='1'/></body><body name='a'><joint type='free' pos='0 0 1'/>{MASS}\
+         <body name='b'><joint name='j' axis='0 1 0'/>{MASS}<body name='c'><joint name='k' axis='0 1 0'/>{MASS}</body></body></body></worldbody>\
+         <tendon>{tendons}</tendon><equality><tendon tendon1='held'/></equality></mujoco>"
+    );
+    let left_out = told("a.xml", &text);
+    for remark in ["tendons that exert no force: <fixed>.", "contacts, shapes and colours: <geom>", "`pos` of <joint>"]
+    {
+        assert!(left_out.contains(remark), "{remark}: {left_out}");
     }
 }
 

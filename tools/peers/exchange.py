@@ -70,11 +70,9 @@ class Urdf(Pinocchio):
         self.back = np.argsort(self.order)
 
     def order_of(self, spec, coordinates):
-        """Which coordinate of the spec each joint is: Pinocchio visits branches by name, the import as they are in the file. The import notes
-        the joint beside each link."""
-        moved = {joint: link for link, joint in re.findall(r"- name: (\S+) +# joint ([^;\n]+)", spec.read_text(encoding="utf-8"))}
-        names = [coordinate.rpartition("_")[0] for coordinate in coordinates]
-        return np.array([names.index(moved[joint]) for joint in list(self.model.names)[1:]])
+        """Which coordinate of the spec each joint is: Pinocchio visits branches by name, the import as they are in the file."""
+        of = {joint["name"]: joint.get("coordinate") for joint in YAML(typ="safe").load(spec)["joints"]}
+        return np.array([coordinates.index(of[joint]) for joint in list(self.model.names)[1:]])
 
     def configuration(self, angles):
         """To Pinocchio, a continuous joint is a point on a circle."""

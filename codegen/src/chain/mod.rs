@@ -108,6 +108,8 @@ pub struct Chain {
     pub rotors: Vec<Rotor>,
     /// Frames with names of their own.
     pub frames: Vec<NamedFrame>,
+    /// Joints with names of their own.
+    pub joints: Vec<NamedJoint>,
     /// Points of interest.
     pub points: Vec<Point>,
     /// Start of the static solution; one number per coordinate, m or rad.
@@ -120,6 +122,17 @@ pub struct Chain {
     pub analyses: Analyses,
     /// When repeated work becomes a loop.
     pub loops: Loops,
+}
+
+/// A joint with a name of its own, at `q_j + at`, or, without a coordinate, at `at`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedJoint {
+    /// Unique name, any text.
+    pub name: String,
+    /// Its coordinate, j; `None` if it does not move.
+    pub coordinate: Option<CoordinateId>,
+    /// m or rad.
+    pub at: f64,
 }
 
 /// A frame with a name of its own, fixed to a body or to the world.

@@ -1,11 +1,14 @@
 //! A crane as MJCF: kinematics, masses, springs, dampers and supports.
 
+use std::collections::BTreeSet;
+
 use super::look::{Form, Look, colours, on as looks_on};
 use super::mass::Lump;
+use super::names::{self, Place};
 use super::rotation::{length as distance, quaternion};
 use super::springs::{JointSpring, linear_rows, on};
 use super::xml::{Xml, number_text, numbers};
-use super::{Inexpressible, RADIUS, approximations, bars, hinged, origin, placements};
+use super::{Inexpressible, RADIUS, approximations, bars, free_name, hinged, origin, placements};
 use crate::chain::{
     BodyId, Chain, CoordinateId, CoordinateKind, Follower, Frame, LoopJoint, LoopJointKind, RigidCoupling, Step,
     Support, SupportKinematics, Value,
@@ -17,7 +20,8 @@ const LEAST: f64 = 1e-14;
 
 /// The MJCF text of a crane with the given parameter values.
 ///
-/// There is one joint per coordinate, with its name. Springs of elements, drives (held at their positions at t = 0) and passive
+/// There is one joint per coordinate, with its name, or that of `joints` of the spec. Frames and points of interest are sites; a body with the name
+/// of the ground or of a frame elsewhere gets a number, and so does a point. Springs of elements, drives (held at their positions at t = 0) and passive
 /// damping become stiffness, damping and spring reference of joints, efforts of drives actuators with a constant force, rotors armature; a
 /// linear support becomes three tendons, whose lengths are linear in the base's coordinates. Rigid drives, rigid couplings and joints that close
 /// loops become equality constraints, as stiff as `MuJoCo` allows: they yield by about 1e-4 of the acceleration that they prevent.
@@ -25,7 +29,7 @@ const LEAST: f64 = 1e-14;
 /// `looks`: geoms without contacts, in group 2; without any, a capsule represents each body. `start`: the pose of the key frame `start`, and what it is.
 ///
 /// # Errors
-/// A support with exact kinematics or one that lifts off, a line or a pad that closes a loop, or a body with the name of the ground.
+/// A support with exact kinematics or one that lifts off, or a line or a pad that closes a loop.
 ///
 /// # Panics
 /// If `parameters` or `start` are shorter than the chain's lists of parameters and of coordinates.
@@ -57,12 +61,6 @@ pub fn mjcf(
                 .into(),
         });
     }
-    if chain.bodies.iter().any(|body| body.name == "world") {
-        return Err(Inexpressible {
-            title: "MuJoCo calls the ground `world`, but a link of this crane has that name".into(),
-            help: "give the link another name".into(),
-        });
-    }
     let mut xml = Xml::new(&origin(chain, parameters));
     if let Some(text) = approximations(chain) {
         xml.comment(&text);
@@ -86,15 +84,17 @@ pub fn mjcf(
 
     xml.open("worldbody", &[]);
     looks_on(looks, None).for_each(|look| geom(&mut xml, look));
+    let (joints, sites) = (names::joints(chain), sites(chain, parameters));
+    sites_on(&mut xml, &sites, None);
     loop_sites(&mut xml, chain, None, parameters);
-    bodies(&mut xml, chain, parameters, looks);
+    bodies(&mut xml, chain, parameters, (looks, &sites, &joints));
     xml.close();
 
     let rods: Vec<(&LoopJoint, &Value)> = chain.loop_joints.iter().filter_map(as_rod).collect();
     if !chain.supports.is_empty() || !rods.is_empty() {
         xml.open("tendon", &[]);
         for support in &chain.supports {
-            tendons(&mut xml, chain, support, parameters);
+            tendons(&mut xml, chain, support, (parameters, &joints));
         }
         for (joint, _) in &rods {
             xml.open("spatial", &[("name", joint.name.clone())]);
@@ -105,13 +105,13 @@ pub fn mjcf(
         }
         xml.close();
     }
-    equalities(&mut xml, chain, parameters);
+    equalities(&mut xml, chain, (parameters, &joints));
     let efforts = (0..chain.coordinates.len()).map(|index| (index, on(chain, CoordinateId(index), parameters).effort));
     let efforts: Vec<(usize, f64)> = efforts.filter(|(_, effort)| *effort != 0.0).collect();
     if !efforts.is_empty() {
         xml.open("actuator", &[]);
         for (index, effort) in efforts {
-            let joint = chain.coordinates[index].name.clone();
+            let joint = joints[index].clone();
             let no_gain =
                 [("gaintype", "fixed".to_owned()), ("gainprm", "0".to_owned()), ("biastype", "affine".to_owned())];
             let [gain_type, gain, bias_type] = no_gain;
@@ -130,7 +130,10 @@ pub fn mjcf(
 }
 
 /// All bodies, each within the one that carries it.
-fn bodies(xml: &mut Xml, chain: &Chain, parameters: &[f64], looks: &[Look]) {
+fn bodies(xml: &mut Xml, chain: &Chain, parameters: &[f64], (looks, sites, joints): (&[Look], &[Place], &[String])) {
+    let mut taken: BTreeSet<String> = names::frames(chain, parameters).into_iter().map(|frame| frame.name).collect();
+    taken.insert(names::WORLD.to_owned());
+    let names = names::bodies(chain, &mut taken);
     let placements = placements(chain, parameters);
     let bars = bars(chain, &placements, parameters);
     let rest = vec![0.0; chain.coordinates.len()];
@@ -143,7 +146,7 @@ fn bodies(xml: &mut Xml, chain: &Chain, parameters: &[f64], looks: &[Look]) {
         }
         open.push(id);
         let attributes = [
-            ("name", body.name.clone()),
+            ("name", names[index].clone()),
             ("pos", numbers(&placement.origin)),
             ("quat", numbers(&quaternion(placement))),
         ];
@@ -152,7 +155,7 @@ fn bodies(xml: &mut Xml, chain: &Chain, parameters: &[f64], looks: &[Look]) {
         let path = hinged(&body.path);
         for step in &path {
             if let Step::Move(id) = step {
-                joint(xml, chain, *id, &placement.local(&frame), parameters);
+                joint(xml, chain, (*id, &joints[id.0]), &placement.local(&frame), parameters);
             }
             frame = frame.after(step, chain, &rest, parameters);
         }
@@ -169,14 +172,37 @@ fn bodies(xml: &mut Xml, chain: &Chain, parameters: &[f64], looks: &[Look]) {
         if let Some(end) = bars[index].filter(|_| looks.is_empty()) {
             xml.leaf("geom", &[("fromto", numbers(&[[0.0; 3], end].concat()))]);
         }
-        for point in chain.points.iter().filter(|point| point.body.0 == index) {
-            let at = point.position.each_ref().map(|value| value.at(parameters));
-            xml.leaf("site", &[("name", point.name.clone()), ("pos", numbers(&at))]);
-        }
+        sites_on(xml, sites, Some(id));
         loop_sites(xml, chain, Some(id), parameters);
     }
     for _ in open {
         xml.close();
+    }
+}
+
+/// Frames, and the points of interest that are not the origins of frames with their names.
+fn sites(chain: &Chain, parameters: &[f64]) -> Vec<Place> {
+    let mut sites = names::frames(chain, parameters);
+    let stands_for = |frame: &Place, point: &Place| {
+        (frame.body, frame.frame.origin, &frame.name) == (point.body, point.frame.origin, &point.name)
+    };
+    let mut points = names::points(chain, parameters);
+    points.retain(|point| !sites.iter().any(|frame| stands_for(frame, point)));
+    sites.extend(points);
+    let mut taken: BTreeSet<String> = chain.loop_joints.iter().flat_map(sites_of).flatten().collect();
+    for site in &mut sites {
+        site.name = free_name(&mut taken, &site.name, |_, _| true);
+    }
+    sites
+}
+
+fn sites_on(xml: &mut Xml, sites: &[Place], body: Option<BodyId>) {
+    for Place { name, frame, .. } in sites.iter().filter(|site| site.body == body) {
+        let mut attributes = vec![("name", name.clone()), ("pos", numbers(&frame.origin))];
+        if frame.axes != Frame::WORLD.axes {
+            attributes.push(("quat", numbers(&quaternion(frame))));
+        }
+        xml.leaf("site", &attributes);
     }
 }
 
@@ -251,7 +277,7 @@ fn loop_sites(xml: &mut Xml, chain: &Chain, body: Option<BodyId>, parameters: &[
 }
 
 /// Rigid drives, rigid couplings and joints that close loops.
-fn equalities(xml: &mut Xml, chain: &Chain, parameters: &[f64]) {
+fn equalities(xml: &mut Xml, chain: &Chain, (parameters, joints): (&[f64], &[String])) {
     if chain.rigid_drives().next().is_none() && !chain.has_loops() {
         return;
     }
@@ -259,13 +285,13 @@ fn equalities(xml: &mut Xml, chain: &Chain, parameters: &[f64]) {
     let stiff = [("solref", numbers(&[2.0 * chain.run.step, 1.0])), ("solimp", numbers(&[0.9999, 0.9999, 0.001]))];
     xml.open("equality", &[]);
     for drive in chain.rigid_drives() {
-        let name = chain.coordinates[drive.coordinate.0].name.clone();
+        let name = joints[drive.coordinate.0].clone();
         // q = q₀ + 0 + …
         let held = [drive.profile.start(parameters), 0.0, 0.0, 0.0, 0.0];
         xml.leaf("joint", &[&[("joint1", name), ("polycoef", numbers(&held))], stiff.as_slice()].concat());
     }
     for RigidCoupling { follower: Follower { coordinate, leader, ratio, offset }, .. } in &chain.rigid_couplings {
-        let [follower, leader] = [coordinate, leader].map(|id| chain.coordinates[id.0].name.clone());
+        let [follower, leader] = [coordinate, leader].map(|id| joints[id.0].clone());
         // q_j = c + r q_i + 0 + …
         let law = [offset.at(parameters), ratio.at(parameters), 0.0, 0.0, 0.0];
         let ties = [("joint1", follower), ("joint2", leader), ("polycoef", numbers(&law))];
@@ -296,10 +322,10 @@ fn equalities(xml: &mut Xml, chain: &Chain, parameters: &[f64]) {
 }
 
 /// A joint with its spring, damper and rotor; `frame`: its pose in the frame of its body at `q = 0`.
-fn joint(xml: &mut Xml, chain: &Chain, id: CoordinateId, frame: &Frame, parameters: &[f64]) {
+fn joint(xml: &mut Xml, chain: &Chain, (id, name): (CoordinateId, &String), frame: &Frame, parameters: &[f64]) {
     let coordinate = &chain.coordinates[id.0];
     let kind = if coordinate.kind == CoordinateKind::Rotation { "hinge" } else { "slide" };
-    let mut attributes = vec![("name", coordinate.name.clone()), ("type", kind.to_owned())];
+    let mut attributes = vec![("name", name.clone()), ("type", kind.to_owned())];
     if frame.origin != [0.0; 3] {
         attributes.push(("pos", numbers(&frame.origin)));
     }
@@ -323,7 +349,7 @@ fn inertial(xml: &mut Xml, Lump { mass, com, tensor }: &Lump) {
 }
 
 /// The three tendons of a linear support.
-fn tendons(xml: &mut Xml, chain: &Chain, support: &Support, parameters: &[f64]) {
+fn tendons(xml: &mut Xml, chain: &Chain, support: &Support, (parameters, joints): (&[f64], &[String])) {
     let at = |values: &[crate::chain::Value; 3]| values.each_ref().map(|value| value.at(parameters));
     let (stiffness, damping, free_play) = (at(&support.stiffness), at(&support.damping), at(&support.free_play));
     for (axis, row) in linear_rows(at(&support.position)).iter().enumerate() {
@@ -345,7 +371,7 @@ fn tendons(xml: &mut Xml, chain: &Chain, support: &Support, parameters: &[f64]) 
         ];
         xml.open("fixed", &attributes);
         for (id, share) in moved {
-            let name = chain.coordinates[id.0].name.clone();
+            let name = joints[id.0].clone();
             xml.leaf("joint", &[("joint", name), ("coef", number_text(share))]);
         }
         xml.close();

@@ -9,6 +9,7 @@ mod inexpressible;
 mod look;
 mod mass;
 mod mjcf;
+mod names;
 mod rotation;
 mod springs;
 mod urdf;

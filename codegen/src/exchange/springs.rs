@@ -2,8 +2,10 @@
 
 use std::fmt::Write;
 
+use super::names;
 use super::xml::{number_text, numbers};
 use crate::chain::{Chain, CoordinateId, Force, SupportKinematics, Vector};
+use crate::diagnostic::quoted;
 
 /// What acts on a coordinate: `stiffness (rest − q) − damping q̇ + effort`.
 #[derive(Default)]
@@ -52,30 +54,35 @@ pub fn springs(chain: &Chain, parameters: &[f64]) -> String {
     text += "# URDF cannot contain them: A and e follow from the URDF file, the forces from this file.\n";
     let _ = writeln!(text, "gravity: {}   # m/s^2", list(&chain.gravity));
 
+    let keys: Vec<String> = names::joints(chain)
+        .into_iter()
+        .zip(&chain.coordinates)
+        .map(|(name, coordinate)| if name == coordinate.name { name } else { quoted(&name) })
+        .collect();
     text += "\n# Force on a joint: stiffness * (rest - q) - damping * v + effort. Drives are held at their positions and efforts at t = 0.\n";
     text += "# Revolute: N m/rad, N m s/rad, rad; prismatic: N/m, N s/m, m.\njoints:\n";
-    for (index, coordinate) in chain.coordinates.iter().enumerate() {
+    for (index, joint) in keys.iter().enumerate() {
         let JointSpring { stiffness, damping, rest, effort } = on(chain, CoordinateId(index), parameters);
         if stiffness != 0.0 || damping != 0.0 || effort != 0.0 {
             let [stiffness, damping, rest] = [stiffness, damping, rest].map(number_text);
             let effort = if effort == 0.0 { String::new() } else { format!(", effort: {}", number_text(effort)) };
             let law = format!("stiffness: {stiffness}, damping: {damping}, rest: {rest}{effort}");
-            let _ = writeln!(text, "  {}: {{{law}}}", coordinate.name);
+            let _ = writeln!(text, "  {joint}: {{{law}}}");
         }
     }
 
     if chain.rigid_drives().next().is_some() {
         text += "\n# Joints whose motion rigid drives prescribe: positions at t = 0, rad or m.\nprescribed:\n";
         for drive in chain.rigid_drives() {
-            let name = &chain.coordinates[drive.coordinate.0].name;
-            let _ = writeln!(text, "  {name}: {}", number_text(drive.profile.start(parameters)));
+            let joint = &keys[drive.coordinate.0];
+            let _ = writeln!(text, "  {joint}: {}", number_text(drive.profile.start(parameters)));
         }
     }
     if !chain.rotors.is_empty() {
         text += "\n# Inertia of the joints' rotors, added to the diagonal of A, kg m^2 or kg.\narmature:\n";
         for rotor in &chain.rotors {
-            let name = &chain.coordinates[rotor.coordinate.0].name;
-            let _ = writeln!(text, "  {name}: {}", number_text(rotor.armature.at(parameters)));
+            let joint = &keys[rotor.coordinate.0];
+            let _ = writeln!(text, "  {joint}: {}", number_text(rotor.armature.at(parameters)));
         }
     }
 
@@ -111,8 +118,8 @@ pub fn springs(chain: &Chain, parameters: &[f64]) -> String {
     }
 
     text += "\n# Start of the static solution, rad and m.\nguess:\n";
-    for (coordinate, guess) in chain.coordinates.iter().zip(chain.guess_at(parameters)) {
-        let _ = writeln!(text, "  {}: {}", coordinate.name, number_text(guess));
+    for (joint, guess) in keys.iter().zip(chain.guess_at(parameters)) {
+        let _ = writeln!(text, "  {joint}: {}", number_text(guess));
     }
     text
 }

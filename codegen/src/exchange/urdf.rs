@@ -1,10 +1,13 @@
 //! A crane as URDF: kinematics and masses; springs and dampers are in a second file.
 
+use std::collections::BTreeSet;
+
 use super::look::{Form, Look, colours, on};
 use super::mass::Lump;
+use super::names::Place;
 use super::rotation::{along_z, length, roll_pitch_yaw};
 use super::xml::{Xml, number_text, numbers};
-use super::{Inexpressible, RADIUS, approximations, bars, hinged, origin, placements};
+use super::{Inexpressible, RADIUS, approximations, bars, free_name, hinged, names, origin, placements};
 use crate::chain::{
     BodyId, Chain, CoordinateId, CoordinateKind, Follower, Frame, LoopJoint, RigidCoupling, Step, Vector,
 };
@@ -42,8 +45,9 @@ fn expressible(chain: &Chain) -> Result<(), Inexpressible> {
 
 /// The URDF text of a crane with the given parameter values.
 ///
-/// There is one joint per coordinate, with its name; a body with several coordinates has massless links between them. Names of
-/// fixed joints end in `_mount`; points of interest are massless links. A joint that a rigid coupling ties to another one mimics it.
+/// There is one joint per coordinate, with its name, or that of `joints` of the spec; a body with several coordinates has massless links
+/// between them. Names of fixed joints end in `_mount`; frames and points of interest are massless links. A body with the name of a frame elsewhere gets
+/// a number. A joint that a rigid coupling ties to another one mimics it.
 /// `looks` are its visuals; without any, a bar represents each body.
 ///
 /// # Errors
@@ -59,9 +63,15 @@ pub fn urdf(chain: &Chain, parameters: &[f64], looks: &[Look]) -> Result<String,
         xml.comment(&text);
     }
     xml.comment("Stiffness and damping of the joints are in the springs file, not here.");
+    let frames = names::frames(chain, parameters);
+    let mut taken: BTreeSet<String> = frames.iter().map(|frame| frame.name.clone()).collect();
+    let bodies = names::bodies(chain, &mut taken);
+    let mut free = |name: &str| free_name(&mut taken, name, |_, _| true);
     // A crane may have a link with the name of the world.
-    let taken = chain.bodies.iter().any(|body| body.name == WORLD);
-    let ground = if taken { format!("{WORLD}_0") } else { WORLD.to_owned() };
+    let ground = free(names::WORLD);
+    let joints = names::joints(chain);
+    let mut mounts: BTreeSet<String> = joints.iter().cloned().collect();
+    let mut mount = |name: &str| free_name(&mut mounts, &format!("{name}_mount"), |_, _| true);
     for (name, colour) in colours(looks) {
         xml.open("material", &[("name", name.to_owned())]);
         xml.leaf("color", &[("rgba", colour)]);
@@ -73,7 +83,8 @@ pub fn urdf(chain: &Chain, parameters: &[f64], looks: &[Look]) -> Result<String,
         bars.fill(None);
     }
     for (index, (body, bar)) in chain.bodies.iter().zip(bars).enumerate() {
-        let mut parent = body.parent.map_or(&ground, |BodyId(parent)| &chain.bodies[parent].name).clone();
+        let name = &bodies[index];
+        let mut parent = body.parent.map_or(&ground, |BodyId(parent)| &bodies[parent]).clone();
         let mut placement = Frame::WORLD;
         let path = hinged(&body.path);
         for (place, step) in path.iter().enumerate() {
@@ -84,35 +95,31 @@ pub fn urdf(chain: &Chain, parameters: &[f64], looks: &[Look]) -> Result<String,
             let coordinate = &chain.coordinates[id.0];
             let kind = if coordinate.kind == CoordinateKind::Rotation { "revolute" } else { "prismatic" };
             let is_last = place + 1 == path.len();
-            let child = if is_last { body.name.clone() } else { format!("{}_frame", coordinate.name) };
+            let child = if is_last { name.clone() } else { free(&format!("{}_frame", coordinate.name)) };
             let mut axis = [0.0; 3];
             axis[coordinate.axis.index()] = 1.0;
-            let moves = Moves { kind, axis, mimics: mimics(chain, *id, parameters) };
-            joint(&mut xml, &coordinate.name, (&parent, &child), &placement, Some(moves));
+            let moves = Moves { kind, axis, mimics: mimics(chain, &joints, *id, parameters) };
+            joint(&mut xml, &joints[id.0], (&parent, &child), &placement, Some(moves));
             if !is_last {
                 xml.leaf("link", &[("name", child.clone())]);
             }
             (parent, placement) = (child, Frame::WORLD);
         }
-        if parent != body.name {
-            joint(&mut xml, &format!("{}_mount", body.name), (&parent, &body.name), &placement, None);
+        if parent != *name {
+            joint(&mut xml, &mount(name), (&parent, name), &placement, None);
         }
         let mass = body.inertia.as_ref().map(|inertia| Lump::of(inertia, parameters));
-        link(&mut xml, &body.name, mass.as_ref(), on(looks, Some(BodyId(index))), bar);
+        link(&mut xml, name, mass.as_ref(), on(looks, Some(BodyId(index))), bar);
     }
-    for point in &chain.points {
-        let at = point.position.each_ref().map(|value| value.at(parameters));
-        let placement = Frame { origin: at, ..Frame::WORLD };
-        let carrier = &chain.bodies[point.body.0].name;
-        let name = format!("{}_point", point.name);
-        joint(&mut xml, &format!("{name}_mount"), (carrier, &name), &placement, None);
+    let points = names::points(chain, parameters).into_iter();
+    let points = points.map(|point| Place { name: free(&format!("{}_point", point.name)), ..point });
+    for Place { name, body, frame } in frames.into_iter().chain(points) {
+        let carrier = body.map_or(&ground, |BodyId(body)| &bodies[body]);
+        joint(&mut xml, &mount(&name), (carrier, &name), &frame, None);
         xml.leaf("link", &[("name", name)]);
     }
     Ok(xml.finish())
 }
-
-/// The fixed link.
-const WORLD: &str = "world";
 
 /// How a joint moves.
 struct Moves {
@@ -124,11 +131,16 @@ struct Moves {
 }
 
 /// The joint that a coordinate follows exactly, `multiplier · leader + offset`.
-fn mimics(chain: &Chain, id: CoordinateId, parameters: &[f64]) -> Option<[(&'static str, String); 3]> {
+fn mimics(
+    chain: &Chain,
+    joints: &[String],
+    id: CoordinateId,
+    parameters: &[f64],
+) -> Option<[(&'static str, String); 3]> {
     let Follower { leader, ratio, offset, .. } =
         chain.rigid_couplings.iter().map(|coupling| &coupling.follower).find(|follower| follower.coordinate == id)?;
     let [ratio, offset] = [ratio, offset].map(|value| number_text(value.at(parameters)));
-    Some([("joint", chain.coordinates[leader.0].name.clone()), ("multiplier", ratio), ("offset", offset)])
+    Some([("joint", joints[leader.0].clone()), ("multiplier", ratio), ("offset", offset)])
 }
 
 /// A joint of one coordinate, or a fixed joint.

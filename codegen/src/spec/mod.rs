@@ -45,7 +45,7 @@ pub use scalar::{Angle, Constant, FixedAngle, Number, Scalar, Vector};
 pub use schema::json_schema;
 pub use slides_in::{ExactDirection, Pad, Pads, SlidesIn};
 pub use spanned::{Either, Entries, Many, Spanned, entries};
-pub use support::{Kinematics, NamedFrame, Point, Support};
+pub use support::{Kinematics, NamedFrame, NamedJoint, Point, Support};
 
 use crate::diagnostic::{Mistake, Span};
 use crate::node::FromNode;
@@ -147,6 +147,8 @@ pub struct Crane {
     pub pump: Option<Spanned<Pump>>,
     /// Frames on links, by which points and calls of Python may refer to places.
     pub frames: Option<Spanned<Vec<Spanned<NamedFrame>>>>,
+    /// Joints under the names and in the order of a robot's file, for calls of Python. Default: coordinates under theirs.
+    pub joints: Option<Spanned<Vec<Spanned<NamedJoint>>>>,
     /// Points of interest, whose motion is reported.
     pub points: Option<Spanned<Vec<Spanned<Point>>>>,
     /// Starting point of the static solution, by coordinate, rad or m. Default: a driven coordinate at its drive's position at

@@ -1,6 +1,6 @@
-//! Supports of the base, frames on links, and points of interest.
+//! Supports of the base, names of frames and joints, and points of interest.
 
-use super::{Number, Spanned, Transform, Vector};
+use super::{FixedAngle, Number, Spanned, Transform, Vector};
 use crate::node::FromNode;
 
 /// A support of a free base: three springs and dampers along the axes of the world.
@@ -58,4 +58,15 @@ pub struct NamedFrame {
     pub link: Option<Spanned<String>>,
     /// Its pose in the frame of the link (for a beam: undeformed), or in the world. Default: that of the link.
     pub transform: Option<Spanned<Transform>>,
+}
+
+/// A joint with a name of its own, which need not be an identifier.
+#[derive(Clone, Debug, FromNode)]
+pub struct NamedJoint {
+    /// Name.
+    pub name: Spanned<String>,
+    /// Its coordinate. Default: none, since it does not move.
+    pub coordinate: Option<Spanned<String>>,
+    /// Its position where the coordinate is zero or, without one, always, rad or m. Default 0.
+    pub at: Option<Spanned<FixedAngle>>,
 }

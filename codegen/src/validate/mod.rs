@@ -284,6 +284,7 @@ impl<'a> Check<'a> {
         rotors.extend(self.rotors(crane, &drives));
         self.beam_sections(&loads, &cylinders, &connectors, &loop_joints);
         let frames = self.frames(crane);
+        let joints = self.joints(crane);
         let points = self.points(crane, &frames);
         let exact = rigid_couplings.iter().map(|coupling| coupling.follower.clone());
         let followers: Vec<chain::Follower> = connectors.iter().filter_map(Force::follower).chain(exact).collect();
@@ -318,6 +319,7 @@ impl<'a> Check<'a> {
             inputs: std::mem::take(&mut self.inputs),
             rotors,
             frames,
+            joints,
             points,
             guess,
             run,

@@ -1,9 +1,9 @@
-//! Frames and points of interest, the guess of the static solution, and the settings of a run.
+//! Frames, names of joints and points of interest, the guess of the static solution, and the settings of a run.
 
 use super::Check;
 use super::drives::units;
 use super::limits::Limit;
-use crate::chain::{BodyId, CoordinateId, Drive, Follower, NamedFrame, Point, Run, Transmission, Value};
+use crate::chain::{BodyId, CoordinateId, Drive, Follower, NamedFrame, NamedJoint, Point, Run, Transmission, Value};
 use crate::diagnostic::{rule, suggest};
 use crate::expand::placement;
 use crate::spec::{self, Constant, Crane, Spanned, entries};
@@ -26,6 +26,20 @@ impl<'a> Check<'a> {
             }
         }
         frames
+    }
+
+    pub(super) fn joints(&mut self, crane: &'a Crane) -> Vec<NamedJoint> {
+        let mut joints = Vec::new();
+        for joint in entries(crane.joints.as_ref()) {
+            let name = self.text(Some(&joint.name), "the name of a joint").unwrap_or_default();
+            self.register_name("joints", &name, "an earlier joint".into(), joint.name.span);
+            let coordinate = joint.coordinate.as_ref().and_then(|given| self.coordinate(given));
+            let kind = coordinate.map(|CoordinateId(index)| self.coordinates[index].kind);
+            let subject = format!("`at` of joint `{name}`");
+            let at = joint.at.as_ref().map_or(0.0, |at| self.fixed(at, &subject, units(kind).position));
+            joints.push(NamedJoint { name, coordinate, at });
+        }
+        joints
     }
 
     pub(super) fn points(&mut self, crane: &'a Crane, frames: &[NamedFrame]) -> Vec<Point> {

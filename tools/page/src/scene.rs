@@ -8,8 +8,8 @@
 use std::ops::Range;
 
 use crane_codegen::chain::{
-    Beam, BodyId, Coordinate, CoordinateId, CoordinateKind, Cylinder, Linkage, Outline, Pin, Point, Stage,
-    Value as Number,
+    Beam, BodyId, Coordinate, CoordinateId, CoordinateKind, Cylinder, Linkage, LoopJoint, LoopJointKind, Outline, Pin,
+    Point, Stage, Value as Number,
 };
 use crane_live::LiveCrane;
 use crane_model::{
@@ -35,8 +35,10 @@ pub struct Scene {
     pub screws: Vec<[f64; 6]>,
     /// Names of the supports and where they are in the frame of the base, m.
     pub supports: Vec<(String, Vector3<f64>)>,
-    /// Springs and ropes.
+    /// Springs and ropes, and rods that close loops.
     pub connectors: Vec<Connector>,
+    /// Pins and balls that close loops.
+    pub hinges: Vec<Hinge>,
     /// Names of the points of interest, and where they are.
     pub points: Vec<(String, Place)>,
     /// Hydraulic cylinders.
@@ -89,7 +91,15 @@ impl Place {
     }
 }
 
-/// A spring or a rope.
+/// A pin, which may slide along its axis, or a ball that closes a loop.
+pub struct Hinge {
+    /// Where it is, on one of the bodies that it holds.
+    pub place: Place,
+    /// The axis of a pin in the frame of this body; none of a ball.
+    pub axis: Option<Vector3<f64>>,
+}
+
+/// A spring, a rope or a rod.
 pub struct Connector {
     /// Its name.
     pub name: String,
@@ -176,7 +186,8 @@ impl Scene {
             vectors,
             bodies,
             supports: names.zip(crane.support_places_at()).collect(),
-            connectors: connectors(crane),
+            connectors: connectors(crane).into_iter().chain(rods(live)).collect(),
+            hinges: live.chain().loop_joints.iter().filter_map(|joint| hinge(live, joint)).collect(),
             points: points(live),
             cylinders: cylinders(live, (&screws, &frames)),
             pads: pads(live),
@@ -198,12 +209,14 @@ impl Scene {
         let connector = |Connector { rope, points, falls, .. }: &Connector| json!({"rope": rope, "points": points.iter().map(Place::json).collect::<Vec<_>>(), "falls": falls});
         let point = |(name, Place { body, at }): &(String, Place)| json!({"name": name, "body": body, "at": <[f64; 3]>::from(*at)});
         let support = |(name, at): &(String, Vector3<f64>)| json!({"name": name, "at": <[f64; 3]>::from(*at)});
+        let hinge = |Hinge { place: Place { body, at }, axis }: &Hinge| json!({"body": body, "at": <[f64; 3]>::from(*at), "axis": axis.map(<[f64; 3]>::from)});
         let pad = |Pad { body, x, beams }: &Pad| json!({"body": body, "x": x, "beams": beams});
         json!({
             "pose": self.pose, "reference": self.reference, "vectors": self.vectors, "screws": self.screws,
             "bodies": self.bodies.iter().map(body).collect::<Vec<_>>(),
             "supports": self.supports.iter().map(support).collect::<Vec<_>>(),
             "connectors": self.connectors.iter().map(connector).collect::<Vec<_>>(),
+            "hinges": self.hinges.iter().map(hinge).collect::<Vec<_>>(),
             "points": self.points.iter().map(point).collect::<Vec<_>>(),
             "cylinders": self.cylinders.iter().map(Barrel::json).collect::<Vec<_>>(),
             "pads": self.pads.iter().map(pad).collect::<Vec<_>>(),
@@ -228,6 +241,28 @@ fn connectors(crane: &dyn DynCrane) -> Vec<Connector> {
         (points.len() > 1 && !connector.is_pin()).then_some(Connector { name, rope: connector.is_rope, points, falls })
     };
     crane.description().connectors.iter().filter_map(&mut of).collect()
+}
+
+/// Rods that close loops.
+fn rods(live: &LiveCrane) -> impl Iterator<Item = Connector> {
+    let joints = live.chain().loop_joints.iter().filter(|joint| matches!(joint.kind, LoopJointKind::Rod { .. }));
+    joints.map(|joint| {
+        let points = joint.ends.iter().map(|end| place(live, end.body, &end.position)).collect();
+        Connector { name: joint.name.clone(), rope: false, points, falls: 1 }
+    })
+}
+
+/// The pin or the ball of a joint that closes a loop, on the first of its bodies that is not the ground and has its axis.
+fn hinge(live: &LiveCrane, joint: &LoopJoint) -> Option<Hinge> {
+    let [from, to] = &joint.ends;
+    let held = match &joint.kind {
+        LoopJointKind::Pin { across, to_axis } => vec![(from, Some(across.axis)), (to, Some(*to_axis))],
+        LoopJointKind::Slide { across } => vec![(from, Some(across.axis))],
+        LoopJointKind::Ball => vec![(from, None), (to, None)],
+        LoopJointKind::Rod { .. } | LoopJointKind::Pad { .. } => Vec::new(),
+    };
+    let (end, axis) = held.into_iter().find(|(end, _)| end.body.is_some())?;
+    Some(Hinge { place: place(live, end.body, &end.position), axis: axis.map(Vector3::from) })
 }
 
 /// The pads of telescopes: at the end of the outer beam and at the beginning of the inner one, with the names of both links.
@@ -300,8 +335,9 @@ fn axis(
     (local.norm() > 0.0).then_some((body, local))
 }
 
-fn place(live: &LiveCrane, BodyId(body): BodyId, position: &[Number; 3]) -> Place {
-    Place { body: Some(body), at: Vector3::from(position.each_ref().map(|x| x.at(live.parameters()))) }
+fn place(live: &LiveCrane, body: impl Into<Option<BodyId>>, position: &[Number; 3]) -> Place {
+    let at = Vector3::from(position.each_ref().map(|x| x.at(live.parameters())));
+    Place { body: body.into().map(|BodyId(body)| body), at }
 }
 
 /// The upper three rows.

@@ -28,6 +28,7 @@ from ._native import (
 from .fit_result import Band, Fit
 from .fitting import fit
 from .frames import Frames
+from .joints import JointStates
 from .model import Crane, from_mjcf, from_urdf, load
 from .results import (
     Energies,
@@ -59,6 +60,7 @@ __all__ = [
     "Fit",
     "Frames",
     "InvalidRowWarning",
+    "JointStates",
     "Linearisation",
     "Margins",
     "Modes",

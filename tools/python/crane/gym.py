@@ -17,6 +17,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from ._native import real_array
+from .loops import closed
 from .model import Crane, load
 from .results import Array
 from .simulation import is_linear
@@ -27,9 +28,6 @@ Band = tuple[float, float]
 Rows = NDArray[Any]
 Results = Mapping[str, Array]
 Reward = Callable[[Results], Array]
-# Iterations that close loops at a start, and gaps up to which they are closed, m and rad.
-_NEWTON = 20
-_CLOSED = 1e-12
 
 
 def reach(
@@ -214,31 +212,14 @@ class _Episodes:
             state = np.concatenate((self._simulation.q, self._simulation.v), axis=1)
             for name in moved:
                 state[rows, self._state.index(name)] = start[name]
-            q, v = (numbers[rows] for numbers in self._closed(state, moved))
-            self._simulation.reset(rows, q=q, v=v)
+            q, v = np.split(state, 2, axis=1)
+            q, v, _ = closed(self.cranes, q, v, moved)
+            self._simulation.reset(rows, q=q[rows], v=v[rows])
         targets = {**drawn_of["targets"], **targets}
         self._given[rows] = np.column_stack([*(targets[of] for of in task.targets), *(self._simulation.inputs[of][rows] for of in self._inputs)])
         self._steps[rows] = 0
         reached = self._simulation.state
         return _Results(self, np.column_stack((reached.t, reached.q, reached.v)))
-
-    def _closed(self, state: Array, given: Sequence[str]) -> tuple[Array, Array]:
-        """Poses and rates, with those that are not given moved onto loops and rigid couplings by Newton's method."""
-        cranes, n = self.cranes, self.crane.n
-        q, v = state[:, :n], state[:, n:]
-        prescribed = [info["name"] for info in self.crane.info["coordinates"] if info["role"] == "prescribed"]
-        kept = {*given, *prescribed, *(f"{name}_rate" for name in prescribed)}
-        free, free_rates = ([i for i in range(n) if self._state[first + i] not in kept] for first in (0, n))
-        gaps = cranes.loop_states(q, v)[..., 0]
-        for _ in range(_NEWTON if gaps.size else 0):
-            if np.abs(gaps).max() < _CLOSED:
-                break
-            q[:, free] -= (np.linalg.pinv(cranes.loop_jacobians(q)[..., free]) @ gaps[..., None])[..., 0]
-            gaps = cranes.loop_states(q, v)[..., 0]
-        if gaps.size:
-            jacobians = cranes.loop_jacobians(q)
-            v[:, free_rates] -= (np.linalg.pinv(jacobians[..., free_rates]) @ (jacobians @ v[..., None]))[..., 0]
-        return q, v
 
     def _rows(self, name: str, value: Any) -> Array:
         """An option for each row: one number, or as many as there are rows."""

@@ -103,6 +103,14 @@ class Frame(TypedDict):
     link: str | None
 
 
+class NamedJoint(TypedDict):
+    """A joint that the spec names, and its coordinate; `None` if it does not move. It is at the coordinate plus `at`, m or rad."""
+
+    name: str
+    coordinate: str | None
+    at: float
+
+
 class Info(TypedDict):
     """A crane. `run`: duration, step of rk4 and interval of results that the spec asks for, s."""
 
@@ -117,5 +125,6 @@ class Info(TypedDict):
     cuts: list[Cut]
     sections: list[Section]
     frames: list[Frame]
+    joints: list[NamedJoint]
     points: list[str]
     run: tuple[float, float, float]

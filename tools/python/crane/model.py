@@ -17,6 +17,7 @@ from . import _native, state_space
 from ._native import NoEquilibrium, real_array
 from .closed import Closed
 from .frames import Frames, Place
+from .joints import JointStates, coordinates_of, joint_states
 from .notebook import embed
 from .results import (
     Array,
@@ -459,6 +460,25 @@ class Crane(Closed, _native.Crane):
         of its file. Names alone, `"tool0"` or `["tool0", "base_link"]`, are those frames or links under these names.
         """
         return Frames(self, frames)
+
+    def joint_states(self, q: ArrayLike, v: ArrayLike | None = None) -> JointStates:
+        """Positions and velocities of joints, by the names and in the order of the robot's file, as `sensor_msgs/JointState` of ROS has them:
+        `(name, position, velocity)`, both (..., joints), rad and m; at rest without v.
+
+        Joints are those of `joints` of the spec (`Crane.info["joints"]`), of which imported robots have all that their file lets move, also those that
+        follow others or are held; else coordinates under their own names. A joint with several axes is one joint per axis, as
+        in the file's notes.
+        """
+        return joint_states(self, q, v)
+
+    def coordinates_of(self, positions: Mapping[str, ArrayLike], q: ArrayLike | None = None) -> Array:
+        """(..., n): the pose in which joints are at these positions, rad or m, by the names that `joint_states` gives them.
+
+        q: (..., n), where the others are; the guess unless given. Joints that follow those given, exactly, follow them; loops are closed.
+
+        Raises ValueError if there is no such joint, or no such pose.
+        """
+        return coordinates_of(self, positions, q)
 
     def steady_motion(
         self,

@@ -1,5 +1,7 @@
 //! What a crane consists of: names, units and numbers that do not change.
 
+use crane_codegen::chain::{CoordinateId, NamedFrame, NamedJoint};
+use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::{BodyInfo, ConnectorInfo, Cut, Description, SectionInfo};
 use pyo3::prelude::*;
@@ -76,13 +78,8 @@ impl Crane {
             rows.push(row);
         }
         all.set_item("inputs", list(std::mem::take(&mut rows))?)?;
-        for frame in &self.live.chain().frames {
-            let row = PyDict::new(py);
-            row.set_item("name", &frame.name)?;
-            row.set_item("link", frame.body.map(|body| &*description.bodies[body.0].link))?;
-            rows.push(row);
-        }
-        all.set_item("frames", list(std::mem::take(&mut rows))?)?;
+        all.set_item("frames", describe_frames(py, &self.live)?)?;
+        all.set_item("joints", describe_joints(py, &self.live)?)?;
         let places = crane.section_places_at(&description.guess);
         let place_of = |section: usize| (!description.sections[section].slides).then(|| places[section]);
         for cut in description.cuts() {
@@ -113,6 +110,31 @@ impl Crane {
         all.set_item("run", (description.duration, description.step, description.output))?;
         Ok(all)
     }
+}
+
+/// Frames that the spec names.
+fn describe_frames<'py>(py: Python<'py>, live: &LiveCrane) -> PyResult<Bound<'py, PyList>> {
+    let bodies = &(live as &dyn DynCrane).description().bodies;
+    let describe = |frame: &NamedFrame| {
+        let row = PyDict::new(py);
+        row.set_item("name", &frame.name)?;
+        row.set_item("link", frame.body.map(|body| &*bodies[body.0].link))?;
+        Ok(row)
+    };
+    PyList::new(py, live.chain().frames.iter().map(describe).collect::<PyResult<Vec<_>>>()?)
+}
+
+/// Joints that the spec names.
+fn describe_joints<'py>(py: Python<'py>, live: &LiveCrane) -> PyResult<Bound<'py, PyList>> {
+    let coordinates = &live.chain().coordinates;
+    let describe = |joint: &NamedJoint| {
+        let row = PyDict::new(py);
+        row.set_item("name", &joint.name)?;
+        row.set_item("coordinate", joint.coordinate.map(|CoordinateId(index)| &*coordinates[index].name))?;
+        row.set_item("at", joint.at)?;
+        Ok(row)
+    };
+    PyList::new(py, live.chain().joints.iter().map(describe).collect::<PyResult<Vec<_>>>()?)
 }
 
 /// Springs, ropes and couplings, one dictionary each.

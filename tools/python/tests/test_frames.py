@@ -137,15 +137,17 @@ def about(axis, angle):
 
 
 def of_urdf(text, angles):
-    """Poses of all links in the world by the names of the file, with the joints, in the order of the file, at angles."""
-    robot, angles = ET.fromstring(text), iter(angles)
+    """Poses of all links in the world by the names of the file, with the joints, by name or in the order of the file, at angles."""
+    robot = ET.fromstring(text)
+    if not isinstance(angles, dict):
+        angles = dict(zip((joint.get("name") for joint in robot.iter("joint") if joint.get("type") != "fixed"), angles, strict=True))
     poses = {"base": np.eye(4)}
     for joint in robot.iter("joint"):
         origin = joint.find("origin")
         roll, pitch, yaw = (float(word) for word in origin.get("rpy", "0 0 0").split())
         fixed = about([0, 0, 1], yaw) @ about([0, 1, 0], pitch) @ about([1, 0, 0], roll)
         axis = joint.find("axis")
-        turned = np.eye(3) if axis is None else about([float(word) for word in axis.get("xyz").split()], next(angles))
+        turned = np.eye(3) if axis is None else about([float(word) for word in axis.get("xyz").split()], angles[joint.get("name")])
         place = posed(fixed @ turned, [float(word) for word in origin.get("xyz").split()])
         poses[joint.find("child").get("link")] = poses[joint.find("parent").get("link")] @ place
     return poses
@@ -217,3 +219,66 @@ def test_frames_in_the_world_follow_live_parameters():
     poses = c.replace(height=np.array([1.0, 3.0])).frames({"top": ("mast top", [0, 0.5, 0]), "rod": "rod"}).poses([0.0])
     np.testing.assert_array_equal(poses[:, 0, :3, 3], [[0, 0, 1.5], [0, 0, 3.5]])
     np.testing.assert_array_equal(poses[0, 0, :3, 2], [0, -1, 0])
+
+
+# Of two branches, of which the file describes the wrist between the finger and its tip. The tip follows the finger, backwards and from where it is not at zero.
+FINGER = """<link name="finger"><inertial><mass value="0.1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="tip"><inertial><mass value="0.1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="finger 1" type="revolute"><parent link="upper"/><child link="finger"/><origin xyz="0 0.1 0" rpy="0.2 0 0"/><axis xyz="0 0 -1"/></joint>"""
+TIP = """<joint name="finger 2" type="revolute"><parent link="finger"/><child link="tip"/><origin xyz="0 -0.1 0"/><axis xyz="0 1 1"/>
+    <mimic joint="finger 1" multiplier="-0.5" offset="0.25"/></joint>"""
+HAND = ROBOT.replace('<joint name="mount"', f'{TIP}<joint name="mount"').replace('<joint name="wrist"', f'{FINGER}<joint name="wrist"')
+
+
+def test_joints_have_the_names_order_sign_and_zero_of_the_file():
+    """Links are where the file has them with its joints at the positions asked; fixed joints are none. Products of some ten matrices round to 1e-14."""
+    robot = crane.from_urdf(HAND)
+    names = ("shoulder", "finger 1", "wrist", "finger 2")
+    positions = np.random.default_rng(9).uniform(-1, 1, (3, 5))
+    given = dict(zip(("wrist", "finger 1", "shoulder"), positions, strict=True))
+    q = robot.coordinates_of(given)
+    assert q.shape == (5, robot.n)
+    state = robot.joint_states(q, np.arange(robot.n))
+    assert state.name == names
+    # The order of q is another one, so that the test can fail.
+    assert [joint["coordinate"] for joint in robot.info["joints"]] != robot.coordinates
+    expected = {**given, "finger 2": 0.25 - 0.5 * given["finger 1"]}
+    np.testing.assert_allclose(state.position, np.stack([expected[name] for name in names], axis=-1), atol=1e-14)
+    rates = {joint["name"]: robot.coordinates.index(joint["coordinate"]) for joint in robot.info["joints"]}
+    np.testing.assert_array_equal(state.velocity, np.broadcast_to([rates[name] for name in names], (5, 4)))
+    links = [link.get("name") for link in ET.fromstring(HAND).iter("link")]
+    for row in range(5):
+        poses = of_urdf(HAND, dict(zip(names, state.position[row], strict=True)))
+        np.testing.assert_allclose(robot.frames(links).poses(q[row]), [poses[link] for link in links], atol=1e-13)
+    # The one that follows tells where the other one is.
+    np.testing.assert_allclose(robot.coordinates_of({"finger 2": 0.5, "shoulder": 1.0}), robot.coordinates_of({"finger 1": -0.5, "shoulder": 1.0}), atol=1e-14)
+    # Those that are not given stay.
+    np.testing.assert_array_equal(robot.coordinates_of({"wrist": 0.0}, q)[:, :3], q[:, :3])
+    with pytest.raises(ValueError, match="no pose has these positions: .* open by 0.5"):
+        robot.coordinates_of({"finger 1": 0.0, "finger 2": 0.75})
+    with pytest.raises(ValueError, match="there is no joint 'elbow': write one of shoulder, finger 1"):
+        robot.coordinates_of({"elbow": 0.0})
+    with pytest.raises(ValueError, match="q needs 4 numbers in its last axis"):
+        robot.joint_states(np.zeros(3))
+
+
+def test_held_joints_stand_and_joints_of_several_axes_are_one_per_axis():
+    held = crane.from_urdf(HAND, fix=["finger 2"])
+    np.testing.assert_allclose(held.joint_states([0.1, 0.2]).position, [0.1, 0.5, 0.2, 0.0], atol=1e-15)
+    with pytest.raises(ValueError, match="'finger 1' is held at 0.5"):
+        held.coordinates_of({"finger 1": 0.0})
+    np.testing.assert_array_equal(held.coordinates_of({"finger 1": 0.5, "wrist": 0.3}), [0.0, 0.3])
+    heavy = '<link name="Stand"><inertial><mass value="9"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+    floating = HAND.replace('name="floor" type="fixed"', 'name="floor" type="floating"').replace('<link name="Stand"/>', heavy)
+    names = crane.from_urdf(floating).joint_states(np.zeros(10)).name
+    assert names[:7] == ("floor_x", "floor_y", "floor_z", "floor_psi", "floor_theta", "floor_phi", "shoulder")
+
+
+def test_joints_of_a_crane_are_its_coordinates(knuckle):
+    q = np.arange(knuckle.n) / 8
+    state = knuckle.joint_states(q)
+    assert state.name == tuple(knuckle.coordinates) and not state.velocity.any()
+    np.testing.assert_array_equal(state.position, q)
+    assert crane.load("knuckle_boom").coordinates_of(dict(zip(state.name, q, strict=True))).tolist() == q.tolist()
+    named = crane.load("pendulum.yaml", text=PENDULUM + "joints: [{name: Pin 1, coordinate: rod_theta, at: 0.5}]\n")
+    assert named.joint_states([0.25]).position == [0.75] and named.coordinates_of({"Pin 1": 0.75}) == [0.25]

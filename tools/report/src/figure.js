@@ -110,6 +110,7 @@ export class Figure {
     this.pads();
     this.ropes();
     this.pins();
+    this.hinges();
     bodies.forEach((_, p) => this.kinematics.carriedBy(p).length || this.end(p));
     this.bars();
     this.stand();
@@ -260,6 +261,16 @@ export class Figure {
       const geometry = new CylinderGeometry(radius, radius, height, 28);
       this.part(p, this.mesh(geometry, role === "driven" ? COLOURS.pin : COLOURS.passive), local);
     });
+  }
+
+  /** Pins and balls that close loops. */
+  hinges() {
+    for (const { body, at, axis } of this.crane.scene.hinges) {
+      const side = this.thickness(this.kinematics.bodies[body].mass, 0);
+      const turn = new Quaternion().setFromUnitVectors(Y, axis ? new Vector3(...axis) : Y);
+      const geometry = axis ? new CylinderGeometry(0.5 * side, 0.5 * side, 1.35 * side, 28) : new SphereGeometry(0.6 * side, 20, 12);
+      this.part(body, this.mesh(geometry, COLOURS.passive), new Matrix4().compose(new Vector3(...at), turn, new Vector3(1, 1, 1)));
+    }
   }
 
   /** What the last body of a branch carries: a stem to its points, a rod through them, or a block of its mass. */

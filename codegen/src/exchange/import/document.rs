@@ -128,6 +128,11 @@ impl<'a, 'i> Element<'a, 'i> {
         self.node.attributes().map(|attribute| attribute.name())
     }
 
+    /// The texts of its attributes; this does not read them.
+    pub(super) fn values(self) -> impl Iterator<Item = &'a str> {
+        self.node.attributes().map(|attribute| attribute.value())
+    }
+
     /// The text between its tags.
     pub(super) fn content(self) -> &'a str {
         self.node.text().unwrap_or_default().trim()

@@ -7,7 +7,7 @@
 //!
 //! Links connected by fixed joints become one link of several bodies; massless frames at their ends become points. Joints
 //! keep their coordinates: if the axis of a joint is not x, y or z, the frame of the link is rotated so that it is. Frames of the file that
-//! are no longer those of links with their names are `frames` of the spec.
+//! are no longer those of links with their names are `frames` of the spec; `joints` has the names and the order of its joints.
 
 mod document;
 mod groups;
@@ -84,8 +84,8 @@ pub fn import(source: &SourceFile, options: &ImportOptions) -> Result<Imported, 
         links::links(&groups, &robot.tied(), options.repair.then_some(&mut left_out));
     let repaired = left_out.len() > unrepaired;
     // Two joints that follow one need not be where it puts both.
-    let stopped = groups.iter().flat_map(|group| &group.held);
-    left_out.extend(stopped.filter_map(|(joint, position)| {
+    let stopped: Vec<_> = groups.iter().flat_map(|group| group.held.iter().copied()).collect();
+    left_out.extend(stopped.iter().filter_map(|(joint, position)| {
         let asked = *held.get(joint.name.as_str())?;
         let leader = &joint.follows.as_ref()?.leader.name;
         let elsewhere = (asked - position).abs() > 1e-12 * asked.abs().max(1.0);
@@ -101,7 +101,7 @@ pub fn import(source: &SourceFile, options: &ImportOptions) -> Result<Imported, 
     let lost = robot.couplings.iter().filter(|coupling| yaml::coupled(coupling, &links).is_none());
     let told = lost.map(|coupling| format!("The spring `{}` is left out: one of its joints is held.", coupling.name));
     left_out.extend(told);
-    let spec = yaml::write_spec(&robot, &links, &standing, &left_out, source);
+    let spec = yaml::write_spec(&robot, &links, &standing, &stopped, &left_out, source);
     let reference = (!repaired).then(|| Reference::new(&robot, &links));
     Ok(Imported { spec, left_out, reference })
 }

@@ -59,6 +59,7 @@ pub(super) fn positions_of_ball(pose: &Frame) -> Vec<f64> {
 pub(super) fn split_joints(robot: &mut Robot, fixed: &[String]) -> Vec<Mistake> {
     let mut mistakes = Vec::new();
     let mut names: BTreeSet<String> = robot.links.iter().map(|link| link.name.clone()).collect();
+    let mut joint_names: BTreeSet<String> = robot.joints.iter().map(|joint| joint.name.clone()).collect();
     for joint in std::mem::take(&mut robot.joints) {
         let Motion::Several { kind, axes, starts } = &joint.motion else {
             robot.joints.push(joint);
@@ -74,7 +75,8 @@ pub(super) fn split_joints(robot: &mut Robot, fixed: &[String]) -> Vec<Mistake> 
             .map(|(index, (&SingleAxis { ending, turns, axis }, start))| {
                 let motion = if turns { Motion::Revolute } else { Motion::Prismatic };
                 let ends = [joint.parent.clone(), joint.child.clone()];
-                let single = Joint::new(&format!("{}_{ending}", joint.name), joint.span, motion, ends);
+                let name = free_name(&mut joint_names, &format!("{}_{ending}", joint.name), |_, _| true);
+                let single = Joint::new(&name, joint.span, motion, ends);
                 let placement = if index == 0 { joint.placement } else { Frame::WORLD };
                 Joint { placement, axis, start: (*start != 0.0).then_some(*start), ..single }
             })

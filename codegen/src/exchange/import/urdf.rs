@@ -94,6 +94,10 @@ impl Reader {
         let parent = self.end(node, "parent", &owner);
         let end = self.end(node, "child", &owner);
         let placement = self.placement(node, &owner);
+        // What is left out first stays so when it is read.
+        let is_fixed = kind.as_ref().is_some_and(|kind| kind.name == "fixed");
+        let of_moving = |inner: &Element| is_fixed && ["dynamics", "limit", "mimic"].contains(&inner.local_name());
+        node.elements().filter(of_moving).for_each(|inner| inner.leave_out("what acts on fixed joints"));
         let mut number = |element, key| {
             let given = node.child(element).filter(|given| given.has(key))?;
             self.numbers(given, key, &format!("`{key}` of {owner}")).map(|[number]| number)

@@ -13,11 +13,13 @@ use crate::exchange::xml::number_text;
 
 /// The text of a spec.
 ///
-/// `standing`: frames of the robot in the world. `remarks`: what the spec lacks of the robot, which stands at its head.
+/// `standing`: frames of the robot in the world. `stopped`: joints that do not move, and where they stand, m or rad. `remarks`: what the spec
+/// lacks of the robot, which stands at its head.
 pub(super) fn write_spec(
     robot: &Robot,
     links: &[SpecLink],
     standing: &[FileFrame],
+    stopped: &[(&Joint, f64)],
     remarks: &[String],
     source: &SourceFile,
 ) -> String {
@@ -59,6 +61,7 @@ pub(super) fn write_spec(
         rubbing.map(|(joint, name)| format!("{name}: {{coulomb: {}}}", decimal(joint.friction))).collect();
     text += &section("friction", "N m, N", &rubbing);
     text += &couplings(robot, links);
+    text += &section("joints", "of the robot, by its names, in its order", &joint_names(robot, links, stopped));
     let frames: Vec<String> = frames(links, standing);
     text += &section("frames", "of the robot, by its names", &frames);
     let points: Vec<_> = links.iter().flat_map(|link| link.points.iter().map(move |point| (link, point))).collect();
@@ -97,6 +100,19 @@ fn frames(links: &[SpecLink], standing: &[FileFrame]) -> Vec<String> {
         format!("- {{name: {}{link}{transform}}}", quoted(name))
     };
     written.map(line).collect()
+}
+
+/// Joints of the robot that can move, in its order.
+fn joint_names(robot: &Robot, links: &[SpecLink], stopped: &[(&Joint, f64)]) -> Vec<String> {
+    let line = |joint: &Joint| {
+        let held = || stopped.iter().find(|(other, _)| other.name == joint.name);
+        let place = match coordinate_of(&joint.name, links) {
+            Some(coordinate) => format!("coordinate: {coordinate}"),
+            None => format!("at: {}", decimal(held()?.1)),
+        };
+        is_one_line(&joint.name).then(|| format!("- {{name: {}, {place}}}", quoted(&joint.name)))
+    };
+    robot.joints.iter().filter_map(line).collect()
 }
 
 /// A key with a comment and the lines under it; empty if there are none.

@@ -21,7 +21,7 @@ use crane_live::LiveCrane;
 use crane_model::{CoordinateInfo, CoordinateKind, CoordinateRole, dyn_crane::DynCrane};
 use nalgebra::{Matrix4, Vector3};
 
-use crate::scene::{Body, Connector, Pad, Place, Scene, Section, sections};
+use crate::scene::{Body, Connector, Hinge, Pad, Place, Scene, Section, sections};
 pub use mesh::Mesh;
 
 /// Mass per volume within the outline of a link, kg/m³: about a third of steel's.
@@ -230,6 +230,7 @@ impl<'a> Builder<'a> {
             self.part(index, PIN, Mesh::rod(Vector3::zeros(), Vector3::x() * body.length, rope, 12));
         }
         self.pins();
+        self.hinges();
         for index in 0..scene.bodies.len() {
             if scene.bodies.iter().all(|body| body.parent != Some(index)) {
                 self.end(index);
@@ -434,6 +435,22 @@ impl<'a> Builder<'a> {
             let [radius, height] = if upright { [1.1, 0.5] } else { [0.5, 1.35] }.map(|part| part * side);
             let half = self.local(body, Vector3::new(x, y, z)).normalize() * (height / 2.0);
             self.part(body, if driven { PIN } else { PASSIVE }, Mesh::rod(-half, half, [radius; 2], 28));
+        }
+    }
+
+    /// Pins and balls that close loops.
+    fn hinges(&mut self) {
+        for Hinge { place, axis } in &self.scene.hinges {
+            let Some(body) = place.body else { continue };
+            let side = self.thickness(self.scene.bodies[body].mass, 0.0);
+            let mesh = match axis {
+                Some(axis) => {
+                    let half = axis * (0.675 * side);
+                    Mesh::rod(place.at - half, place.at + half, [0.5 * side; 2], 28)
+                }
+                None => Mesh::ball(place.at, 0.6 * side),
+            };
+            self.part(body, PASSIVE, mesh);
         }
     }
 

@@ -239,6 +239,28 @@ fn stages_are_no_ropes() {
     assert!((high - low - Vector3::new(3.0, 0.17, 0.13)).norm() < 1e-9, "{}", high - low);
 }
 
+/// The pin of the parallel cylinder lies across the crane where the spec has it on the column, 1.35 times as long as its column is thick, and half as thick. A rod is
+/// drawn from end to end, as a spring is.
+#[test]
+fn what_closes_a_loop_is_drawn() {
+    let (name, text) =
+        EXAMPLES.into_iter().find(|(name, _)| *name == "parallel_harvester").expect("a crane with a loop");
+    let figure = figure(&example(name, text));
+    let place = Vector3::new(-0.23, 0.0, 2.19);
+    let own = figure.shapes.iter().filter(|shape| shape.owner == Owner::Body(0));
+    let middles = own.map(|shape| (shape, picture::range(&shape.mesh.corners)));
+    let (pin, [low, high]) =
+        middles.into_iter().find(|(_, [low, high])| ((low + high) / 2.0 - place).norm() < 1e-9).expect("a pin");
+    assert_eq!(pin.paint, PASSIVE);
+    assert!(((high - low).y / (high - low).x - 1.35).abs() < 1e-9, "{}", high - low);
+    let tied = text
+        .replace("joint: {slide: {axis: [0, 1, 0]}}", "joint: {rod: {length: 0.5}}")
+        .replace("at: [2.2, 0, 0]}\n    joint", "at: [2.2, 0.5, 0]}\n    joint");
+    let live = example(name, &tied);
+    let figure = Figure::new(&live, &live.chain().guess, &live.chain().guess);
+    assert!(figure.shapes.iter().any(|shape| shape.owner == Owner::Part("parallel_pin".into())), "no rod");
+}
+
 /// Only boxes, in sight of no ground.
 fn boxes(given: &[([f64; 3], [f64; 3], Paint)]) -> Figure {
     let mut figure = figure(&live("double_pendulum"));

@@ -13,10 +13,9 @@ use crate::exchange::import::mistakes::rule;
 use crate::exchange::import::robot::{Joint, Link, Motion, Named, SingleAxis, Spring};
 use crate::exchange::import::split::positions_of_free;
 use crate::exchange::mass::Lump;
+use crate::exchange::names::WORLD;
 use crate::exchange::rotation::about;
 
-/// The link that carries everything.
-const WORLD: &str = "world";
 /// Elements that move a body.
 const JOINTS: [&str; 2] = ["joint", "freejoint"];
 
@@ -195,9 +194,10 @@ impl<'a, 'i> File<'a, 'i> {
             direction
         });
         let axis = frame.direction(axis);
-        let given = self.numbers(node, class, "pos", &owner).unwrap_or([0.0; 3]);
-        let (here, anchor) =
-            if kind == "free" { (&Frame::WORLD, [0.0; 3]) } else { (here, frame.transform_point(given)) };
+        // MuJoCo has free joints at the origin of their body.
+        let is_free = kind == "free";
+        let given = if is_free { None } else { self.numbers(node, class, "pos", &owner) }.unwrap_or([0.0; 3]);
+        let (here, anchor) = if is_free { (&Frame::WORLD, [0.0; 3]) } else { (here, frame.transform_point(given)) };
         let mut number = |key| self.number(node, class, key, &owner).unwrap_or(0.0);
         let [stiffness, damping, friction, armature] =
             ["stiffness", "damping", "frictionloss", "armature"].map(&mut number);

@@ -23,27 +23,23 @@ impl<'a, 'i> File<'a, 'i> {
     /// A shape in the frame of its body; `None` if it has no mass. `stands`: whether the body is fixed, so that its mass does not matter.
     pub(super) fn shape(&mut self, shape: &Placed<'a, 'i>, body: &str, stands: bool) -> Option<Lump> {
         let &Placed { node, ref frame, class } = shape;
-        let lump = self.solid(node, frame, class, body, stands);
+        // Of a body that stands, the mass counts in the sum alone.
+        if stands && self.masses.total.is_none() {
+            node.leave_out(SHAPES);
+            return None;
+        }
+        let lump = self.solid(node, frame, class, body);
         node.read().leave_out_rest(SHAPES);
         lump
     }
 
-    fn solid(
-        &mut self,
-        node: Element<'a, 'i>,
-        frame: &Frame,
-        class: Option<&str>,
-        body: &str,
-        stands: bool,
-    ) -> Option<Lump> {
+    fn solid(&mut self, node: Element<'a, 'i>, frame: &Frame, class: Option<&str>, body: &str) -> Option<Lump> {
         let owner = format!("a geom of body `{body}`");
         let mass = self.number(node, class, "mass", &owner);
         let density = self.number(node, class, "density", &owner).unwrap_or(WATER);
         let kind = self.classes.text(node, class, "type").unwrap_or("sphere");
         let mesh = self.classes.text(node, class, "mesh").is_some();
-        // Of a body that stands, the mass counts in the sum alone.
-        let counts = !stands || self.masses.total.is_some();
-        if !counts || mass.unwrap_or(density) == 0.0 || MASSLESS.contains(&kind) {
+        if mass.unwrap_or(density) == 0.0 || MASSLESS.contains(&kind) {
             return None;
         }
         let size = match self.classes.find(node, class, "size") {

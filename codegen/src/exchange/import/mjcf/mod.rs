@@ -24,6 +24,7 @@ use super::document::{Element, Reader};
 use super::mistakes::rule;
 use super::robot::Robot;
 use crate::diagnostic::Mistake;
+use crate::exchange::names::WORLD;
 
 use classes::Classes;
 use masses::MassSettings;
@@ -59,7 +60,7 @@ pub(super) fn read_robot(root: Element) -> Result<Robot, Vec<Mistake>> {
     root.named("compiler").for_each(|node| file.compiler(node));
     file.classes = Classes::read(root, &mut file.reader);
     let bodies = root.descendants().filter(|node| node.is("body"));
-    file.names = bodies.filter_map(|node| node.text("name")).map(str::to_owned).collect();
+    file.names = bodies.filter_map(|node| node.text("name")).chain([WORLD]).map(str::to_owned).collect();
     root.named("worldbody").for_each(|node| file.world(node));
     file.masses.scale(&mut file.robot);
     file.others(root);

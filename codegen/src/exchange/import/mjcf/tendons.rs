@@ -30,9 +30,17 @@ impl<'a, 'i> File<'a, 'i> {
     /// The fixed tendons; those with springs act on joints. Others are left out.
     pub(super) fn tendons(&mut self, root: Element<'a, 'i>) -> Vec<FixedTendon> {
         let mut tendons = Vec::new();
+        let equalities = || root.elements().filter(|section| section.is("equality")).flat_map(Element::elements);
         for node in root.named("tendon").flat_map(Element::elements) {
             if node.is("fixed") {
-                tendons.extend(self.fixed_tendon(node.read()));
+                let held = |name: &str| equalities().flat_map(Element::values).any(|value| value == name);
+                let acts = |key: &str| self.classes.text(node, None, key).is_some_and(|given| given.parse() != Ok(0.0));
+                if acts("stiffness") || acts("damping") || node.text("name").is_some_and(held) {
+                    let _ = node.read();
+                } else {
+                    node.leave_out("tendons that exert no force");
+                }
+                tendons.extend(self.fixed_tendon(node));
             } else {
                 node.leave_out("tendons over sites");
             }
