@@ -74,7 +74,7 @@ impl StatefulForces for Bristles {
         mut by_states: Option<DMatrixViewMut<'_, f64>>,
     ) {
         for (state, (joint, force)) in self.joints().zip(forces).enumerate() {
-            let slope = joint.evaluate(state, moment.x[state], moment.v[joint.coordinate], force);
+            let slope = evaluate(joint, state, moment.x[state], moment.v[joint.coordinate], force);
             rates[state] = slope.rate;
             if let Some(matrix) = &mut by_states {
                 matrix[(state, state)] = slope.by_deflection;
@@ -93,7 +93,7 @@ impl StatefulForces for Bristles {
     fn steepen(&self, moment: &StateAt<'_>, c: f64, forces: &mut [StatefulForce]) {
         for (z, (joint, force)) in moment.x.iter().zip(self.joints().zip(forces)) {
             let rate = moment.v[joint.coordinate];
-            let slip = joint.stiffness / joint.level(rate);
+            let slip = joint.stiffness / level(joint, rate);
             if c * slip * rate.abs() < STICKING {
                 force.rates_by_speed[0] = 1.0 + (slip * z).abs();
                 force.by_speed = -joint.damping * force.rates_by_speed[0];
@@ -116,37 +116,35 @@ struct Slope {
     by_deflection: f64,
 }
 
-impl BristleInfo {
-    /// Friction of steady sliding without its viscous part, `g(q̇)`, N m or N.
-    fn level(&self, rate: f64) -> f64 {
-        self.coulomb + (self.breakaway - self.coulomb) * (-(rate / self.stribeck).powi(2)).exp()
-    }
+/// Friction of steady sliding without its viscous part, `g(q̇)`, N m or N.
+fn level(joint: &BristleInfo, rate: f64) -> f64 {
+    joint.coulomb + (joint.breakaway - joint.coulomb) * (-(rate / joint.stribeck).powi(2)).exp()
+}
 
-    /// The friction at a deflection and a rate of the joint.
-    fn evaluate(&self, first: usize, z: f64, rate: f64, force: &mut StatefulForce) -> Slope {
-        let &Self { coordinate: _, coulomb, breakaway: _, stribeck, stiffness, damping } = self;
-        let level = self.level(rate);
-        let level_by_rate = -2.0 * rate / (stribeck * stribeck) * (level - coulomb);
-        let by_deflection = -stiffness * rate.abs() / level;
-        let by_rate = 1.0 - stiffness * z / level * (rate.signum() - rate.abs() * level_by_rate / level);
-        let slope = rate + by_deflection * z;
-        *force = StatefulForce {
-            first,
-            count: 1,
-            force: -(stiffness * z + damping * slope),
-            by_speed: -damping * by_rate,
-            by_states: [-(stiffness + damping * by_deflection), 0.0, 0.0],
-            rates_by_speed: [by_rate, 0.0, 0.0],
-            speed: rate,
-            ..StatefulForce::default()
-        };
-        Slope { rate: slope, by_deflection }
-    }
+/// The friction at a deflection and a rate of the joint.
+fn evaluate(joint: &BristleInfo, first: usize, z: f64, rate: f64, force: &mut StatefulForce) -> Slope {
+    let &BristleInfo { coordinate: _, coulomb, breakaway: _, stribeck, stiffness, damping } = joint;
+    let level = level(joint, rate);
+    let level_by_rate = -2.0 * rate / (stribeck * stribeck) * (level - coulomb);
+    let by_deflection = -stiffness * rate.abs() / level;
+    let by_rate = 1.0 - stiffness * z / level * (rate.signum() - rate.abs() * level_by_rate / level);
+    let slope = rate + by_deflection * z;
+    *force = StatefulForce {
+        first,
+        count: 1,
+        force: -(stiffness * z + damping * slope),
+        by_speed: -damping * by_rate,
+        by_states: [-(stiffness + damping * by_deflection), 0.0, 0.0],
+        rates_by_speed: [by_rate, 0.0, 0.0],
+        speed: rate,
+        ..StatefulForce::default()
+    };
+    Slope { rate: slope, by_deflection }
 }
 
 /// Derivative of the rate of a bristle at rest with respect to its deflection, 1/s, in a joint that slides at `rate`.
 pub(crate) fn decay(joint: &BristleInfo, rate: f64) -> f64 {
-    joint.evaluate(0, 0.0, rate, &mut StatefulForce::default()).by_deflection
+    evaluate(joint, 0, 0.0, rate, &mut StatefulForce::default()).by_deflection
 }
 
 /// Torques and forces of the bristles on their joints, by coordinate, N m and N.
@@ -154,7 +152,7 @@ pub(crate) fn efforts(description: &Description, v: &[f64], x: &[f64]) -> Vec<(u
     let first = x.len().saturating_sub(description.bristles.len());
     let effort = |(joint, z): (&BristleInfo, &f64)| {
         let mut force = StatefulForce::default();
-        joint.evaluate(0, *z, v[joint.coordinate], &mut force);
+        evaluate(joint, 0, *z, v[joint.coordinate], &mut force);
         (joint.coordinate, force.force)
     };
     description.bristles.iter().zip(&x[first..]).map(effort).collect()
@@ -182,7 +180,7 @@ mod tests {
         };
         let at = |z: f64, v: f64| {
             let mut force = StatefulForce::default();
-            let slope = joint.evaluate(0, z, v, &mut force);
+            let slope = evaluate(&joint, 0, z, v, &mut force);
             (slope, force)
         };
         for (z, v) in [(5e-4, 0.013), (-3e-4, 0.04), (8e-4, -0.002)] {

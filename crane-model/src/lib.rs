@@ -26,7 +26,7 @@
 // Generated code refers to the runtime by its crate name, here as in a user's crate.
 extern crate self as crane_model;
 
-mod description;
+mod links;
 mod methods;
 mod model;
 mod stress;
@@ -81,15 +81,15 @@ pub mod statics;
 #[cfg(feature = "std")]
 pub mod tipping;
 
-pub use crane_quantities::{ColumnKind, Count, DisplayUnit};
 #[cfg(feature = "std")]
-pub use description::Tree;
-pub use description::{
-    AttachmentInfo, BodyInfo, Bound, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole,
-    CylinderInfo, Description, DriveInfo, EventInfo, InputInfo, JoinsInfo, LARGE_TILT, List, LoadInfo,
-    LoopEquationInfo, LoopJointInfo, NEAR_SINGULAR, ParameterError, ParameterInfo, PumpInfo, Refusal, SectionInfo,
-    Side, StageInfo, SupportInfo, TIPPED, Text, ValveInfo, fill_links,
+pub use crane_quantities::Tree;
+pub use crane_quantities::{
+    AttachmentInfo, BodyInfo, Bound, BristleInfo, ColumnKind, ConnectorInfo, CoordinateInfo, CoordinateKind,
+    CoordinateRole, Count, Cut, CylinderInfo, Description, DisplayUnit, DriveInfo, EventInfo, InputInfo, JoinsInfo,
+    LARGE_TILT, List, LoadInfo, LoopEquationInfo, LoopJointInfo, NEAR_SINGULAR, ParameterError, ParameterInfo,
+    PumpInfo, Refusal, SectionInfo, Side, StageInfo, SupportInfo, TIPPED, Text, ValveInfo,
 };
+pub use links::fill_links;
 pub use methods::Entry;
 pub use model::{
     CraneModel, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise,
@@ -100,4 +100,4 @@ pub use nalgebra;
 pub use stress::SectionModuli;
 #[cfg(feature = "std")]
 pub use stress::Stress;
-pub use wrench::{Cut, Tension, Wrench};
+pub use wrench::{Tension, Wrench};

@@ -9,7 +9,7 @@ use crane_quantities::{Count, quantities};
 use nalgebra::{Cholesky, Const, DefaultAllocator, Dim, OMatrix, SMatrix, SVector, allocator::Allocator};
 
 use crate::{
-    description::{Description, LoopJointInfo, ParameterError, StageInfo, fill_links},
+    Description, LoopJointInfo, ParameterError, StageInfo, fill_links,
     methods::{Entry, sized_argument, sized_entry, sized_method, sized_methods, sized_result},
     rt::derivatives::{self, Columns, Link, Sixteen, Workspace},
     rt::lanes::f64x8,

@@ -73,27 +73,6 @@ pub fn location(description: &Description, section: usize, x: Option<f64>) -> St
     [Some(beam), distance, what].into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
-impl Description {
-    /// Names of the links that are beams or ropes, in the order of their sections.
-    pub fn beams(&self) -> Vec<&str> {
-        let beams = self.sections_of_beams();
-        beams.into_iter().map(|beam| self.bodies[self.sections[beam.start].body].link.as_str()).collect()
-    }
-
-    /// Indices of the sections of each beam.
-    fn sections_of_beams(&self) -> Vec<Range<usize>> {
-        let link = |section: usize| &self.bodies[self.sections[section].body].link;
-        let mut beams: Vec<Range<usize>> = Vec::new();
-        for section in 0..self.sections.len() {
-            match beams.last_mut().filter(|beam| link(beam.start) == link(section)) {
-                Some(beam) => beam.end = section + 1,
-                None => beams.push(section..section + 1),
-            }
-        }
-        beams
-    }
-}
-
 /// All places of beams and ropes in a pose, beam by beam from the beginning to the end; `x` where the sections are, m, `wrenches` one per cut.
 pub fn places(description: &Description, x: &[f64], wrenches: &[Wrench]) -> Vec<Place> {
     let mut cuts = vec![None; x.len()];

@@ -1,5 +1,7 @@
 //! Flexible links: data for stresses and pictures.
 
+use crane_quantities::Side;
+
 use super::{BodyId, Inertia, Sliding, Value};
 
 /// Data of a beam for pictures and for its stresses.
@@ -50,17 +52,6 @@ pub struct Inside {
     pub distance: Value,
     /// Pseudo-inertia of the part of the element beyond it, about the origin of the element's frame.
     pub beyond: Inertia,
-}
-
-/// The side of a section from which forces and shape are those given: both may jump.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
-    /// Just before: what acts at the section acts on the part beyond.
-    Before,
-    /// Neither jumps.
-    Both,
-    /// Just after: what acts at the section acts on the part before.
-    After,
 }
 
 /// Outline of a cross-section. Pictures need it; mechanics needs only areas and moments.

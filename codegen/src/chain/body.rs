@@ -1,5 +1,7 @@
 //! Coordinates and bodies, and the steps from one to the next.
 
+use crane_quantities::CoordinateKind;
+
 use super::{BodyId, CoordinateId, Value};
 
 /// A generalized coordinate.
@@ -13,15 +15,6 @@ pub struct Coordinate {
     pub axis: Axis,
     /// The first body that it moves.
     pub body: BodyId,
-}
-
-/// Kind of motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CoordinateKind {
-    /// Along the axis, m.
-    Translation,
-    /// About the axis, rad.
-    Rotation,
 }
 
 /// Axis of a frame.

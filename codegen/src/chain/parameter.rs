@@ -1,5 +1,7 @@
 //! Live parameters, and the rules of the language for their values.
 
+use crane_quantities::{Bound, Refusal};
+
 use super::{Chain, Value};
 
 /// A live parameter.
@@ -15,28 +17,6 @@ pub struct Parameter {
     pub default: f64,
     /// The smallest value that every use of the parameter allows; `None`: any number.
     pub lower_bound: Option<Bound>,
-}
-
-/// The lower end of the range of a live parameter.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Bound {
-    /// The smallest value.
-    pub value: f64,
-    /// Whether the parameter may be equal to it.
-    pub allowed: bool,
-    /// The message for a value below it.
-    pub refusal: Refusal,
-}
-
-/// The compiler's message about live parameters that break a rule.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Refusal {
-    /// Code of the rule, such as `E031`.
-    pub code: &'static str,
-    /// What is wrong; for a [`Bound`], the refused value is appended.
-    pub title: String,
-    /// What to write instead.
-    pub help: String,
 }
 
 impl Parameter {

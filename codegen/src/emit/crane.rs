@@ -6,12 +6,13 @@ use syn::{Item, parse_quote};
 
 use super::arguments::argument_name;
 use super::arithmetic::{integer, literal};
+use super::description::expression as constant_expression;
 use super::limits::expression;
 use super::names::field_name;
 use super::number::Number;
 use super::print::plain;
 use super::shape::{Storage, struct_name};
-use crate::chain::{BodyId, Chain, Input};
+use crate::chain::{Chain, Input};
 use crate::lower::{LoweredFunction, LoweredProgram};
 use crate::program::{Argument, FunctionId, RuntimeTrait, Shape};
 
@@ -178,10 +179,10 @@ fn common_methods(chain: &Chain) -> TokenStream {
     });
     let stages = stages(chain);
     let parents = chain.has_branches().then(|| {
-        let parents = chain.bodies.iter().filter_map(|body| body.parent).map(|BodyId(parent)| integer(parent));
+        let parents = constant_expression(&chain.parents());
         quote! {
             fn parents(&self) -> &[usize] {
-                &[#(#parents),*]
+                &#parents
             }
         }
     });
@@ -201,11 +202,7 @@ fn common_methods(chain: &Chain) -> TokenStream {
 /// The methods that list the stages of telescopes and give the heights of their sections; `None` without any.
 fn stages(chain: &Chain) -> Option<TokenStream> {
     let stages = chain.stages();
-    let infos = stages.iter().map(|stage| {
-        let [first, end] = [stage.outer.first.0, stage.outer.last().0 + 1].map(integer);
-        let [inner, coordinate] = [stage.inner.0, stage.coordinate.0].map(integer);
-        quote!(StageInfo { outer: [#first, #end], inner: #inner, coordinate: #coordinate })
-    });
+    let infos = constant_expression(&chain.stage_infos());
     let parameters = parse_quote!(self.constants.params);
     let heights = stages.iter().enumerate().map(|(index, stage)| {
         let (index, height) = (integer(index), chain.height_of(stage.inner));
@@ -215,7 +212,7 @@ fn stages(chain: &Chain) -> Option<TokenStream> {
     (!stages.is_empty()).then(|| {
         quote! {
             fn stages(&self) -> &[StageInfo] {
-                &[#(#infos),*]
+                &#infos
             }
 
             fn stage_height(&self, stage: usize) -> f64 {

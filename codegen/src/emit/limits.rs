@@ -1,36 +1,26 @@
 //! The rules for the values of live parameters, checked whenever they are set.
 
-use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 use syn::{Expr, Item, parse_quote};
 
 use super::arithmetic::{call, difference, field, integer, literal, negative, product, quotient, sum, variable};
-use super::description::text;
+use super::description::expression as constant_expression;
 use super::names::field_name;
-use crate::chain::{Bound, Chain, ParameterId, Refusal, Relation, Value};
+use crate::chain::{Chain, ParameterId, Relation, Value};
 
 /// `PARAMETERS` with their ranges, and the check of all values together; nothing if all numbers are compiled in.
 pub fn limits(chain: &Chain) -> Vec<Item> {
     if chain.parameters.is_empty() {
         return vec![];
     }
-    let infos = chain.parameters.iter().map(|p| {
-        let (name, unit, about) = (text(&p.name), text(&p.unit), text(&p.about));
-        let default = literal(p.default);
-        let lower = p.lower_bound.as_ref().map_or_else(|| quote!(Bound::LOWEST), bound);
-        quote! {
-            ParameterInfo {
-                name: #name, unit: #unit, about: #about, default: #default, lower_bound: #lower, upper_bound: Bound::HIGHEST,
-            }
-        }
-    });
+    let infos = constant_expression(&chain.description().parameters.as_slice());
     let count = integer(chain.parameters.len());
     let ranges = chain.parameters.iter().enumerate().map(|(index, p)| {
         let (index, name) = (integer(index), format_ident!("{}", field_name(&p.name)));
         quote!(PARAMETERS[#index].check(self.#name)?;)
     });
     let relations = chain.relations.iter().map(|Relation { margin, refusal: broken }| {
-        let (margin, broken) = (expression(margin, chain, &variable("self")), refusal(broken));
+        let (margin, broken) = (expression(margin, chain, &variable("self")), constant_expression(broken));
         quote! {
             let margin = #margin;
             if margin.is_nan() || margin <= 0.0 {
@@ -41,7 +31,7 @@ pub fn limits(chain: &Chain) -> Vec<Item> {
     vec![
         parse_quote! {
             #[doc = " Live parameters: names, units and allowed values."]
-            pub const PARAMETERS: [ParameterInfo; #count] = [#(#infos),*];
+            pub const PARAMETERS: [ParameterInfo; #count] = #infos;
         },
         parse_quote! {
             impl Params {
@@ -57,16 +47,6 @@ pub fn limits(chain: &Chain) -> Vec<Item> {
             }
         },
     ]
-}
-
-fn bound(Bound { value, allowed, refusal: rule }: &Bound) -> TokenStream {
-    let (value, refusal_tokens) = (literal(*value), refusal(rule));
-    quote!(Bound { value: #value, allowed: #allowed, refusal: #refusal_tokens })
-}
-
-fn refusal(Refusal { code, title, help }: &Refusal) -> TokenStream {
-    let (code, title, help) = (text(code), text(title), text(help));
-    quote!(Refusal { code: #code, title: #title, help: #help })
 }
 
 /// A number of the chain over the fields of `parameters`.

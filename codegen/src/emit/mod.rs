@@ -10,7 +10,6 @@ mod header;
 mod labels;
 mod lanes;
 mod limits;
-mod loop_joints;
 mod loops;
 mod names;
 mod number;
@@ -61,7 +60,7 @@ pub fn emit(
     let labels = Labels::new(chain, lowered);
     let mut items = Vec::new();
     items.extend(description::description(chain));
-    items.extend(loop_joints::loop_joints(chain));
+    items.extend(description::loop_joints(chain));
     items.extend(parameters::parameters(chain, lowered, &labels, Number::Single));
     items.extend(limits::limits(chain));
     items.push(parse_quote!(

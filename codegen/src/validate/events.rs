@@ -73,7 +73,7 @@ impl<'a> Check<'a> {
             });
             let broken = below.or_else(|| {
                 let refusal = &chain.broken_relation(&values)?.refusal;
-                Some((refusal.title.clone(), refusal))
+                Some((refusal.title.to_string(), refusal))
             });
             let Some((title, refusal)) = broken else { continue };
             let is_it = |given: &&Spanned<spec::Event>| {

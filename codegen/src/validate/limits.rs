@@ -21,7 +21,8 @@ pub(super) enum Limit {
 
 /// The message of a rule up to the number that breaks it, or without a number.
 fn refusal(mistake: &Mistake) -> Refusal {
-    Refusal { code: mistake.code, title: mistake.title.trim_end().to_owned(), help: mistake.help.clone() }
+    let (title, help) = (mistake.title.trim_end().to_owned().into(), mistake.help.clone().into());
+    Refusal { code: mistake.code.into(), title, help }
 }
 
 /// The rule that a margin is above zero, if it is live.

@@ -68,10 +68,11 @@ fn chain(text: &str) -> Result<Chain, Vec<&'static str>> {
 }
 
 /// The code of the rule in a chain that refuses a value of its only parameter, if there is one.
-fn refused(chain: &Chain, value: f64) -> Option<&'static str> {
+fn refused(chain: &Chain, value: f64) -> Option<&str> {
     let lower = chain.parameters[0].lower_bound.as_ref();
     let below = lower.filter(|lower| value < lower.value || (value == lower.value && !lower.allowed));
-    below.map(|lower| lower.refusal.code).or_else(|| chain.broken_relation(&[value]).map(|broken| broken.refusal.code))
+    let below = below.map(|lower| &lower.refusal);
+    below.or_else(|| Some(&chain.broken_relation(&[value])?.refusal)).map(|refusal| refusal.code.as_str())
 }
 
 #[test]
@@ -103,7 +104,7 @@ fn the_strictest_of_several_places_counts() {
         damping: {arm_psi: p}\n\
         drives: []\nrun: {duration: 1, step: 1e-3}\ngravity: [p, 0, 0]\n";
     let lower = chain(spec).expect("a sound spec").parameters.remove(0).lower_bound.expect("damping is not below zero");
-    assert_eq!((lower.value, lower.allowed, lower.refusal.code), (0.0, true, "E032"));
+    assert_eq!((lower.value, lower.allowed, lower.refusal.code.as_str()), (0.0, true, "E032"));
     assert_eq!(lower.refusal.title, "the damping of `arm_psi` must not be negative, but is");
     assert_eq!(lower.refusal.help, "write 0 or a positive number, in N m s/rad");
 }

@@ -53,13 +53,11 @@ impl<'a> Phases<'a> {
     }
 }
 
-impl EventInfo {
-    /// A run that stops because it cannot happen.
-    fn stopped(&self, settings: &Settings, why: &str) -> Stopped {
-        let coordinate = format!("`{}` {why}", self.name).into();
-        let &Settings { method, step, .. } = settings;
-        Stopped { cause: Cause::Event, method, time: self.time, coordinate, value: f64::NAN, unit: "", step }
-    }
+/// A run that stops because an event cannot happen.
+fn stopped(EventInfo { name, time, .. }: &EventInfo, settings: &Settings, why: &str) -> Stopped {
+    let coordinate = format!("`{name}` {why}").into();
+    let &Settings { method, step, .. } = settings;
+    Stopped { cause: Cause::Event, method, time: *time, coordinate, value: f64::NAN, unit: "", step }
 }
 
 /// Refuses the first event of a run that has none, such as one with derivatives; `what`: what that run is.
@@ -68,7 +66,7 @@ impl EventInfo {
 /// The crane has an event within the run.
 pub fn without_events(description: &Description, settings: &Settings, what: &str) -> Result<(), Stopped> {
     let event = description.events.iter().find(|event| event.time < settings.duration);
-    event.map_or(Ok(()), |event| Err(event.stopped(settings, &format!("does not happen in {what}"))))
+    event.map_or(Ok(()), |event| Err(stopped(event, settings, &format!("does not happen in {what}"))))
 }
 
 /// The rates after an event at a state.
@@ -159,7 +157,7 @@ pub fn simulate_events(
     let phases = Phases::of(crane);
     let end = settings.duration;
     if let Some((event, error)) = phases.refused.as_ref().filter(|(event, _)| event.time < end) {
-        return Err(event.stopped(settings, &format!("cannot happen: {error}")));
+        return Err(stopped(event, settings, &format!("cannot happen: {error}")));
     }
     let intervals = divided(end, settings.output).0;
     let (mut done, mut state, mut next, mut begin) = (Done::default(), start.clone(), 0, 0.0);

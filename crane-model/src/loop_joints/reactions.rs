@@ -7,8 +7,7 @@ use super::{
     drives::{fighting_valves, prescribed_too_much},
 };
 use crate::{
-    Wrench,
-    description::{LoopEquationInfo, LoopJointInfo},
+    LoopEquationInfo, LoopJointInfo, Wrench,
     dyn_crane::{DynDynamics, DynInternalForces, DynModel},
     wrench,
 };

@@ -27,7 +27,6 @@ pub mod assemble;
 pub mod bytecode;
 mod crane;
 mod derivatives;
-mod describe;
 mod dual;
 mod expansion;
 pub mod imported;

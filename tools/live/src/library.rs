@@ -7,7 +7,6 @@ use crane_codegen::mechanics;
 use crane_codegen::program::{FunctionId, Product, Program, RuntimeTrait};
 
 use crate::assemble::TooLarge;
-use crate::describe::parents;
 use crate::routine::Routine;
 
 /// Functions that are derived together.
@@ -87,7 +86,7 @@ impl Library {
     pub fn new(chain: Chain) -> Self {
         let routines = std::array::from_fn(|_| OnceLock::new());
         let products = std::array::from_fn(|_| std::array::from_fn(|_| OnceLock::new()));
-        Self { parents: parents(&chain), chain, programs: Default::default(), routines, products }
+        Self { parents: chain.parents(), chain, programs: Default::default(), routines, products }
     }
 
     /// The chain.

@@ -17,7 +17,6 @@ use crane_model::nalgebra::Matrix4;
 use crane_model::rt::derivatives::Link;
 use crane_model::{Description, Entry, LoopJointInfo, ParameterError, StageInfo, fill_links};
 
-use crate::describe::{describe, describe_loop_joints, describe_stages, refusal};
 use crate::expansion::{mass_matrix, second_derivatives};
 use crate::inputs::{Inputs, slots_of};
 use crate::library::Library;
@@ -67,8 +66,8 @@ impl LiveCrane {
     /// The crane of a chain, with the parameters of its spec.
     #[must_use]
     pub fn new(chain: Chain) -> Self {
-        let (description, loop_joints) = (describe(&chain), describe_loop_joints(&chain));
-        let stages = describe_stages(&chain);
+        let (description, loop_joints) = (chain.description(), chain.loop_joint_infos());
+        let stages = chain.stage_infos();
         let parameters = chain.parameter_defaults();
         let inputs = Arc::new(not_set(&chain));
         let library = Arc::new(Library::new(chain));
@@ -164,7 +163,7 @@ impl LiveCrane {
             info.check(*value)?;
         }
         match self.chain().broken_relation(parameters) {
-            Some(relation) => Err(ParameterError { given: None, refusal: refusal(&relation.refusal) }),
+            Some(relation) => Err(ParameterError { given: None, refusal: relation.refusal.clone() }),
             None => Ok(()),
         }
     }

@@ -1,7 +1,7 @@
 //! The coordinates of a crane, and what they are attached to.
 
-use super::{CoordinateKind, Description};
 use crate::rt::derivatives::Link;
+use crate::{CoordinateKind, Description};
 
 /// Writes what each coordinate is attached to, for the `parents` of [`CraneModel::parents`](crate::CraneModel::parents). Without a heap.
 pub fn fill_links(description: &Description, parents: &[usize], links: &mut [Link]) {

@@ -1,8 +1,7 @@
 //! Numbers of the parts of a crane.
 
-use crane_quantities::Count;
-
 use super::{Description, LoopJointInfo};
+use crate::Count;
 
 impl Description {
     /// How many of these parts the crane has, with the joints that close its loops.
@@ -48,7 +47,7 @@ impl Description {
         }
     }
 
-    /// How many points all connectors have: of the [`attachments`](crate::CraneModel::attachments), those of loop joints come behind them.
+    /// How many points all connectors have: of the `attachments`, those of loop joints come behind them.
     pub fn points_of_connectors(&self) -> usize {
         self.connectors.iter().map(|connector| connector.points.len()).sum()
     }

@@ -129,13 +129,15 @@ impl fmt::Display for Text {
 
 impl fmt::Debug for Text {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Debug::fmt(self.as_str(), f)
+        let text = self.as_str();
+        if f.alternate() { write!(f, "Text::Static({text:?})") } else { fmt::Debug::fmt(text, f) }
     }
 }
 
 impl<T: fmt::Debug> fmt::Debug for List<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Debug::fmt(self.as_slice(), f)
+        let list = self.as_slice();
+        if f.alternate() { write!(f, "List::Static(&{list:#?})") } else { fmt::Debug::fmt(list, f) }
     }
 }
 

@@ -10,7 +10,7 @@ const SMALLEST: f64 = 1e-30;
 const LARGEST: f64 = 1e18;
 
 /// An end of the range of a live parameter. The compiler derives it from every place where the parameter is used.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Bound {
     /// The end of the range.
     pub value: f64,
@@ -47,6 +47,20 @@ impl Bound {
     pub const LOWEST: Bound = Bound { value: -LARGEST, allowed: true, refusal: OUT_OF_RANGE };
     /// The largest number of the spec language.
     pub const HIGHEST: Bound = Bound { value: LARGEST, allowed: true, refusal: OUT_OF_RANGE };
+}
+
+impl fmt::Debug for Bound {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { value, allowed, refusal } = self;
+        match self {
+            _ if *self == Self::LOWEST => f.write_str("Bound::LOWEST"),
+            _ if *self == Self::HIGHEST => f.write_str("Bound::HIGHEST"),
+            _ => {
+                let mut bound = f.debug_struct("Bound");
+                bound.field("value", value).field("allowed", allowed).field("refusal", refusal).finish()
+            }
+        }
+    }
 }
 
 /// A live parameter.

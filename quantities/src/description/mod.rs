@@ -1,10 +1,10 @@
-//! Metadata of a crane.
+//! Metadata of a crane. In the form `{:#?}` it is the Rust expression of the constant that generated code holds.
 
 mod count;
+mod cut;
 mod event;
 #[cfg(feature = "std")]
 mod fleet;
-mod links;
 mod loop_joint;
 mod parameter;
 mod poses;
@@ -13,10 +13,12 @@ mod stage;
 #[cfg(feature = "std")]
 mod tree;
 
-use crane_quantities::{ColumnKind, Strain};
+use core::fmt;
 
+use crate::{ColumnKind, Strain};
+
+pub use cut::Cut;
 pub use event::{EventInfo, JoinsInfo};
-pub use links::fill_links;
 pub use loop_joint::{LoopEquationInfo, LoopJointInfo};
 pub use parameter::{Bound, ParameterError, ParameterInfo, Refusal};
 pub use poses::{LARGE_TILT, NEAR_SINGULAR, TIPPED};
@@ -101,7 +103,7 @@ impl Description {
 
     /// The first body that a coordinate moves: the coordinate is named after it, or after its link.
     #[cfg(feature = "std")]
-    pub(crate) fn first_moved(&self, coordinate: usize) -> Option<&BodyInfo> {
+    pub fn first_moved(&self, coordinate: usize) -> Option<&BodyInfo> {
         let (stem, _) = self.coordinates[coordinate].name.rsplit_once('_')?;
         let named = |of: fn(&BodyInfo) -> &Text| self.bodies.iter().find(|body| of(body).as_str() == stem);
         named(|body| &body.name).or_else(|| named(|body| &body.link))
@@ -130,7 +132,7 @@ pub struct CoordinateInfo {
 }
 
 /// Kind of motion of a coordinate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub enum CoordinateKind {
     /// Along an axis: in m, driven by a force in N.
     Translation,
@@ -162,7 +164,7 @@ impl CoordinateKind {
 }
 
 /// Role of a coordinate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub enum CoordinateRole {
     /// Motion of the base.
     Base,
@@ -205,7 +207,7 @@ pub struct BodyInfo {
     /// Link it belongs to.
     pub link: Text,
     /// Number of coordinates that move it, Eq. (2): the first of `q`, unless the crane has branches
-    /// ([`CraneModel::parents`](crate::CraneModel::parents)).
+    /// (`CraneModel::parents`).
     pub degrees_of_freedom: usize,
 }
 
@@ -223,7 +225,7 @@ pub struct SectionInfo {
 }
 
 /// The side of a section at which forces and stresses are those given: where a force acts or the shape has a step, they jump.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Side {
     /// Just before.
     Before,
@@ -439,9 +441,26 @@ impl ConnectorInfo {
     }
 }
 
-/// A point of a body or of the world; [`attachments`](crate::CraneModel::attachments) are their places.
+/// A point of a body or of the world; `attachments` are their places.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AttachmentInfo {
     /// Index of the body; `None` for the world.
     pub body: Option<usize>,
+}
+
+/// Variants with their type, as Rust expressions.
+macro_rules! debug_as_expression {
+    ($($of:ident: $($variant:ident)*;)*) => {$(
+        impl fmt::Debug for $of {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(match self { $(Self::$variant => concat!(stringify!($of), "::", stringify!($variant)),)* })
+            }
+        }
+    )*};
+}
+
+debug_as_expression! {
+    CoordinateKind: Translation Rotation;
+    CoordinateRole: Base Driven Prescribed Passive Element ElementVector;
+    Side: Before Both After;
 }

@@ -21,7 +21,7 @@ impl Description {
     }
 
     /// Whether all unknowns of a pose are within a bound, m and rad: a prescribed motion has no bound.
-    pub(crate) fn bounded(&self, q: &[f64], bound: f64) -> bool {
+    pub fn bounded(&self, q: &[f64], bound: f64) -> bool {
         let mut numbers = self.coordinates.iter().zip(q);
         numbers.all(|(info, x)| x.abs() <= bound || info.role == CoordinateRole::Prescribed)
     }

@@ -1,8 +1,7 @@
 //! Joints that close loops, and exact couplings.
 
-use crane_quantities::ColumnKind;
-
 use super::{AttachmentInfo, List, Text};
+use crate::ColumnKind;
 
 /// A joint that closes a loop, or a coupling that holds exactly.
 #[derive(Clone, Debug, PartialEq)]
