@@ -101,7 +101,7 @@ pub const DESCRIPTION: Description = Description {
     pump: None,
     points: List::Static(&[Text::Static("end")]),
     statics: false,
-    guess: List::Static(&[1.5707963267948966, -1.5707963267948966]),
+    guess: List::Static(&[Some(1.5707963267948966), Some(-1.5707963267948966)]),
     duration: 10.0,
     step: 0.001,
     output: 0.01,

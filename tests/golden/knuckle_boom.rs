@@ -127,21 +127,18 @@ pub const DESCRIPTION: Description = Description {
         &[
             DriveInfo {
                 coordinate: 0,
-                start: -0.7853981633974483,
                 pieces: 1,
                 max_rate: None,
                 max_power: None,
             },
             DriveInfo {
                 coordinate: 1,
-                start: 1.3089969389957472,
                 pieces: 3,
                 max_rate: None,
                 max_power: None,
             },
             DriveInfo {
                 coordinate: 2,
-                start: 0.2,
                 pieces: 3,
                 max_rate: None,
                 max_power: None,
@@ -158,9 +155,7 @@ pub const DESCRIPTION: Description = Description {
     pump: None,
     points: List::Static(&[Text::Static("boom_tip"), Text::Static("load_centre")]),
     statics: true,
-    guess: List::Static(
-        &[-0.7853981633974483, 1.3089969389957472, 0.2, -0.5235987755982988],
-    ),
+    guess: List::Static(&[None, None, None, Some(-0.5235987755982988)]),
     duration: 10.0,
     step: 0.001,
     output: 0.01,

@@ -17,7 +17,7 @@ fn every_function<const N: usize>(
     crane: &mut (impl Crane<N> + TransformDerivatives<N> + MotionDerivatives<N>),
     lists: &mut Lists<N>,
 ) {
-    let (t, q, v) = (0.7, SVector::<f64, N>::from_column_slice(&crane.description().guess), SVector::repeat(0.1));
+    let (t, q, v) = (0.7, crane_model::statics::guess(crane), SVector::repeat(0.1));
     let (q, v) = (&q, &v);
     let _ = black_box(crane.set_parameter(0, black_box(crane.parameter(0))));
     let at = At { t, q, v, a: v, r: v, positions: &crane.drive_positions(t) };

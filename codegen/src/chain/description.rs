@@ -49,7 +49,6 @@ impl Chain {
         });
         let drives = self.drives.iter().map(|drive| DriveInfo {
             coordinate: drive.coordinate.0,
-            start: drive.profile.start(&defaults),
             pieces: drive.pieces().len(),
             max_rate: drive.max_rate(),
             max_power: drive.max_power(),
@@ -69,8 +68,15 @@ impl Chain {
             name: input.name.clone().into(),
             unit: input.unit.clone().into(),
             about: input.about.clone().into(),
-            default: input.unless_set.start(&defaults),
-            moves: !matches!(input.unless_set, Profile::Hold(_)),
+            default: match &input.unless_set {
+                Profile::Hold(value) => value.as_constant(),
+                _ => None,
+            },
+        });
+        let known = self.known_guess(&defaults);
+        let guess = self.written_guess.iter().zip(known).map(|(written, known)| match known {
+            Some(_) => *written,
+            None => Some(0.0),
         });
         let pump = self.pump.as_ref().map(|pump| PumpInfo {
             max_flow: pump.max_flow,
@@ -97,7 +103,7 @@ impl Chain {
             pump,
             points: self.points.iter().map(|point| point.name.clone().into()).collect(),
             statics: self.analyses.statics,
-            guess: self.guess.iter().copied().collect(),
+            guess: guess.collect(),
             duration: self.run.duration,
             step: self.run.step,
             output: self.run.output,

@@ -114,7 +114,9 @@ pub struct Chain {
     pub joints: Vec<NamedJoint>,
     /// Points of interest.
     pub points: Vec<Point>,
-    /// Start of the static solution; one number per coordinate, m or rad.
+    /// Where statics begins, or the run if there is no static solution, as far as the spec says so, rad and m.
+    pub written_guess: Vec<Option<f64>>,
+    /// The whole pose with default parameters, [`guess_at`](Self::guess_at).
     pub guess: Vec<f64>,
     /// Settings of a run.
     pub run: Run,

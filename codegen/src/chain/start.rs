@@ -40,24 +40,25 @@ impl Profile {
 }
 
 impl Chain {
-    /// Where statics begins with the given parameter values, rad and m: coordinates that begin where their drives do move with these, and those that
-    /// follow others with them.
+    /// Where statics begins with the given parameter values, rad and m: as written, where drives begin, or where the coordinates are that others
+    /// follow; otherwise 0.
     #[must_use]
     pub fn guess_at(&self, parameters: &[f64]) -> Vec<f64> {
-        let (defaults, mut guess) = (self.parameter_defaults(), self.guess.clone());
-        for drive in &self.drives {
-            let own = &mut guess[drive.coordinate.0];
-            if *own == drive.profile.start(&defaults) {
-                *own = drive.profile.start(parameters);
-            }
+        self.known_guess(parameters).into_iter().map(Option::unwrap_or_default).collect()
+    }
+
+    /// The same without what is 0 because nothing else is known.
+    pub(super) fn known_guess(&self, parameters: &[f64]) -> Vec<Option<f64>> {
+        let mut guess = self.written_guess.clone();
+        for drive in self.drives.iter().filter(|drive| drive.holds()) {
+            guess[drive.coordinate.0].get_or_insert_with(|| drive.profile.start(parameters));
         }
-        // A follower may lead another one.
+        // A coordinate that follows one that follows another is known one pass later.
         let followers: Vec<Follower> = self.followers().collect();
         for _ in &followers {
             for follower in &followers {
-                let [own, leader] = [follower.coordinate, follower.leader].map(|id| id.0);
-                if self.guess[own] == follower.place(self.guess[leader], &defaults) {
-                    guess[own] = follower.place(guess[leader], parameters);
+                if let (None, Some(leading)) = (guess[follower.coordinate.0], guess[follower.leader.0]) {
+                    guess[follower.coordinate.0] = Some(follower.place(leading, parameters));
                 }
             }
         }

@@ -286,16 +286,14 @@ impl<'a> Check<'a> {
         let frames = self.frames(crane);
         let joints = self.joints(crane);
         let points = self.points(crane, &frames);
-        let exact = rigid_couplings.iter().map(|coupling| coupling.follower.clone());
-        let followers: Vec<chain::Follower> = connectors.iter().filter_map(Force::follower).chain(exact).collect();
-        let guess = self.guess(crane, &drives, &followers);
+        let written_guess = self.guess(crane, &drives);
         let run = self.run(crane.run.as_ref());
         let events = self.events(crane, &points);
         let analyses = self.analyses(crane.analyses.as_ref());
         self.something_moves(crane);
         self.every_parameter_used(crane);
         self.every_input_used(crane);
-        let chain = Chain {
+        let mut chain = Chain {
             title,
             name: name.to_owned(),
             spec_hash: source.hash(),
@@ -321,12 +319,14 @@ impl<'a> Check<'a> {
             frames,
             joints,
             points,
-            guess,
+            written_guess,
+            guess: Vec::new(),
             run,
             events,
             analyses,
             loops: loops(crane.loops.as_ref()),
         };
+        chain.guess = chain.guess_at(&self.defaults);
         match combination {
             Some(combination) => chain.combined(&combination),
             None => chain,

@@ -3,7 +3,7 @@
 use super::Check;
 use super::drives::units;
 use super::limits::Limit;
-use crate::chain::{BodyId, CoordinateId, Drive, Follower, NamedFrame, NamedJoint, Point, Run, Transmission, Value};
+use crate::chain::{BodyId, CoordinateId, Drive, NamedFrame, NamedJoint, Point, Run, Transmission, Value};
 use crate::diagnostic::{rule, suggest};
 use crate::expand::placement;
 use crate::spec::{self, Constant, Crane, Spanned, entries};
@@ -104,12 +104,9 @@ impl<'a> Check<'a> {
         Some((body?, [x, y, z]))
     }
 
-    /// As written, where drives begin, or where the coordinates are that others follow; otherwise 0.
-    pub(super) fn guess(&mut self, crane: &'a Crane, drives: &[Drive], followers: &[Follower]) -> Vec<f64> {
+    /// The pose at which statics begins, as far as it is written.
+    pub(super) fn guess(&mut self, crane: &'a Crane, drives: &[Drive]) -> Vec<Option<f64>> {
         let mut guess = vec![None; self.coordinates.len()];
-        for drive in drives.iter().filter(|drive| drive.holds()) {
-            guess[drive.coordinate.0] = Some(drive.profile.start(&self.defaults));
-        }
         let entries = crane.guess.as_ref().and_then(|guess| guess.value.as_ref());
         for (name, position) in entries.into_iter().flat_map(|entries| &entries.0) {
             let coordinate = self.coordinate(name);
@@ -122,15 +119,7 @@ impl<'a> Check<'a> {
             }
             guess[id.0] = Some(position);
         }
-        // A coordinate that follows one that follows another is known one pass later.
-        for _ in followers {
-            for follower in followers {
-                if let (None, Some(leading)) = (guess[follower.coordinate.0], guess[follower.leader.0]) {
-                    guess[follower.coordinate.0] = Some(follower.place(leading, &self.defaults));
-                }
-            }
-        }
-        guess.into_iter().map(Option::unwrap_or_default).collect()
+        guess
     }
 
     pub(super) fn run(&mut self, given: Option<&Spanned<spec::Run>>) -> Run {

@@ -219,7 +219,8 @@ impl dyn DynCrane + '_ {
     /// Where a section is in words, in any pose: one that slides has no distance.
     pub fn section_location(&self, section: usize) -> String {
         let description = self.description();
-        let x = (!description.sections[section].slides).then(|| self.section_places_at(&description.guess)[section]);
+        let x =
+            (!description.sections[section].slides).then(|| self.section_places_at(&vec![0.0; self.size()])[section]);
         crate::sections::location(description, section, x)
     }
 

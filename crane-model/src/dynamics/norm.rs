@@ -7,6 +7,7 @@ use crate::{
     dyn_crane::{DynImplicit, DynModel},
     force_states::ForceStates,
     rt::lanes::f64x8,
+    statics::guess_dyn,
 };
 
 /// Weight of an error of a rate relative to one of its coordinate, s: 1/ω of the slow swinging of a load, about 5 rad/s.
@@ -79,7 +80,7 @@ impl Norm {
         let mut stiffness_and_damping = vec![[0.0; 2]; n];
         crane.joint_stiffness_and_damping(&mut stiffness_and_damping);
         // At the guess, drives with an effort limit are far from it.
-        let stiffness = crane.drive_stiffness(&crane.description().guess);
+        let stiffness = crane.drive_stiffness(&guess_dyn(crane));
         let effort = |(coordinate, stiffness): (usize, f64)| {
             let [_, damping] = stiffness_and_damping[coordinate];
             Effort { coordinate, stiffness, damping, scale: 0.0, peak: 0.0, error: 0.0, rounding: 0.0 }

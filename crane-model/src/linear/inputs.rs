@@ -203,13 +203,9 @@ fn of_spec<C: Linearisable>(
     outputs: &[Output],
 ) -> Result<Effect, NoModel> {
     let info = &crane.description().inputs[index];
-    let value = match crane.input(index) {
-        Some(value) => value,
-        None if info.moves => {
-            let (why, help) = ("follows a motion of the spec", "set it to a number, or leave it out");
-            return Err(NoModel::Input(info.name.to_string(), why, help));
-        }
-        None => info.default,
+    let Some(value) = crane.input(index).or(info.default) else {
+        let (why, help) = ("follows a motion of the spec", "set it to a number, or leave it out");
+        return Err(NoModel::Input(info.name.to_string(), why, help));
     };
     let mut changed = crane.boxed_clone();
     let mut slopes = |change: f64| {

@@ -11,10 +11,8 @@ use crate::{
 /// spec.
 const ROUNDING: f64 = 1e-9;
 
-/// The description's guess, which is for default parameters, adapted to the parameters of the crane.
-///
-/// A driven coordinate whose guess is the drive's position at t = 0 follows that position as parameters change; other guesses
-/// of the spec are unchanged.
+/// The description's guess, and what follows from the parameters of the crane: drives are where their motions begin, and coordinates that follow
+/// others where their couplings are without force.
 pub fn guess<const N: usize, C: CraneModel<N>>(crane: &C) -> SVector<f64, N> {
     SVector::from_vec(guess_dyn(&Instance::<N, _>(crane)))
 }
@@ -33,59 +31,59 @@ pub fn guess_dyn(crane: &(impl DynModel + ?Sized)) -> Vec<f64> {
 /// has where their drives begin, and coordinates that follow them by couplings, move with them.
 pub(super) fn guess_with(crane: &(impl DynModel + ?Sized), positions: impl Iterator<Item = f64>) -> Vec<f64> {
     let description = crane.description();
-    let mut q = description.guess.to_vec();
-    let mut has_moved = vec![false; q.len()];
-    for (drive, position) in description.drives.iter().zip(positions) {
-        let (guess, moved) = (&mut q[drive.coordinate], position - drive.start);
-        // The guess of default parameters is unchanged bit for bit.
-        if (*guess - drive.start).abs() < ROUNDING && moved.abs() > ROUNDING {
-            *guess += moved;
-            has_moved[drive.coordinate] = true;
+    let mut motions = vec![[0.0; 2]; description.drives.len()];
+    crane.drive_motions(0.0, &mut motions);
+    let mut known = description.guess.to_vec();
+    for ((drive, position), [start, _]) in description.drives.iter().zip(positions).zip(motions) {
+        let own = &mut known[drive.coordinate];
+        if own.is_none_or(|own| (own - start).abs() < ROUNDING) {
+            *own = Some(position);
         }
     }
-    if has_moved.contains(&true) {
-        follow_couplings(crane, &mut q, &mut has_moved);
+    if known.contains(&None) {
+        follow_couplings(crane, &mut known);
     }
-    q
+    known.into_iter().map(Option::unwrap_or_default).collect()
 }
 
-/// Moves coordinates that follow others: a coupling that the guess of the description leaves without force remains so.
-fn follow_couplings(crane: &(impl DynModel + ?Sized), q: &mut [f64], has_moved: &mut [bool]) {
-    let description = crane.description();
-    let couplings = relaxed_couplings(crane, &description.guess);
-    let is_driven = |coordinate: usize| description.drives.iter().any(|drive| drive.coordinate == coordinate);
+/// Places coordinates that follow others where their couplings are without force.
+fn follow_couplings(crane: &(impl DynModel + ?Sized), known: &mut [Option<f64>]) {
+    let couplings = couplings(crane);
     // A coordinate that follows one that follows another is known one pass later.
     for _ in &couplings {
-        for row in &couplings {
+        for (offset, row) in &couplings {
             let mut coupled = (0..row.len()).filter(|&i| row[i] != 0.0);
             let (Some(one), Some(other)) = (coupled.next(), coupled.next()) else { continue };
             for (follower, leader) in [(one, other), (other, one)] {
-                if has_moved[leader] && !has_moved[follower] && !is_driven(follower) {
-                    q[follower] -= row[leader] / row[follower] * (q[leader] - description.guess[leader]);
-                    has_moved[follower] = true;
+                if let (None, Some(leading)) = (known[follower], known[leader])
+                    && row[follower] == 1.0
+                {
+                    known[follower] = Some(offset - row[leader] * leading);
                 }
             }
         }
     }
 }
 
-/// The rows of the couplings that are without force at a pose, or that hold exactly and are closed there.
-fn relaxed_couplings(crane: &(impl DynModel + ?Sized), q: &[f64]) -> Vec<Vec<f64>> {
-    let (description, n) = (crane.description(), q.len());
+/// The couplings `q_j − r q_i = c` that have a stiffness or hold exactly: c, and the rows of their coefficients.
+fn couplings(crane: &(impl DynModel + ?Sized)) -> Vec<(f64, Vec<f64>)> {
+    let (description, n) = (crane.description(), crane.size());
     let (count, equations) = (description.connectors.len(), crane.count(Count::LoopEquations));
-    let rest = vec![0.0; n];
+    let zero = vec![0.0; n];
     let (mut tensions, mut jacobians) = (vec![Tension::ZERO; count], vec![0.0; count * n]);
-    crane.connector_tensions(0.0, q, &rest, &mut tensions);
-    crane.connector_jacobians(q, &mut jacobians);
-    let is_relaxed = |index: &usize| {
-        let Tension { force, stiffness, .. } = tensions[*index];
-        description.connectors[*index].points.is_empty() && force.abs() <= ROUNDING * stiffness.abs()
+    crane.connector_tensions(0.0, &zero, &zero, &mut tensions);
+    crane.connector_jacobians(&zero, &mut jacobians);
+    let has_stiffness =
+        |index: &usize| description.connectors[*index].points.is_empty() && tensions[*index].stiffness != 0.0;
+    let spring = |index: usize| {
+        let Tension { force, stiffness, .. } = tensions[index];
+        (-force / stiffness, jacobians[index * n..][..n].to_vec())
     };
-    let springs = (0..count).filter(is_relaxed).map(|index| jacobians[index * n..][..n].to_vec());
+    let springs = (0..count).filter(has_stiffness).map(spring);
     let (mut states, mut rows) = (vec![Vector3::zeros(); equations], vec![0.0; equations * n]);
-    crane.loop_states(q, &rest, &mut states);
-    crane.loop_jacobians(q, &mut rows);
+    crane.loop_states(&zero, &zero, &mut states);
+    crane.loop_jacobians(&zero, &mut rows);
     let ties = crane.loop_joints().iter().flat_map(|joint| joint.equations.iter().map(|_| joint.is_coupling()));
-    let exact = ties.enumerate().filter(|(index, ties)| *ties && states[*index].x.abs() <= ROUNDING);
-    springs.chain(exact.map(|(index, _)| rows[index * n..][..n].to_vec())).collect()
+    let exact = ties.enumerate().filter(|(_, ties)| *ties);
+    springs.chain(exact.map(|(index, _)| (-states[index].x, rows[index * n..][..n].to_vec()))).collect()
 }

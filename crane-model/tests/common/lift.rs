@@ -13,7 +13,7 @@ use super::{GRAVITY, coordinate, description};
 
 const COORDINATES: &[CoordinateInfo] = &[coordinate("lift_z", Translation, Driven)];
 static DESCRIPTION: LazyLock<Description> = LazyLock::new(|| Description {
-    drives: List::Static(&[DriveInfo { coordinate: 0, start: 0.0, pieces: 1, max_rate: None, max_power: None }]),
+    drives: List::Static(&[DriveInfo { coordinate: 0, pieces: 1, max_rate: None, max_power: None }]),
     parameters: List::Static(&[ParameterInfo {
         name: Text::Static("height"),
         unit: Text::Static("m"),
@@ -22,10 +22,10 @@ static DESCRIPTION: LazyLock<Description> = LazyLock::new(|| Description {
         lower_bound: Bound::LOWEST,
         upper_bound: Bound::HIGHEST,
     }]),
-    ..description("lift", COORDINATES, &[0.0])
+    ..description("lift", COORDINATES, &[None])
 });
 static GUESSED: LazyLock<Description> =
-    LazyLock::new(|| Description { guess: List::Static(&[0.5]), ..DESCRIPTION.clone() });
+    LazyLock::new(|| Description { guess: List::Static(&[Some(0.5)]), ..DESCRIPTION.clone() });
 
 /// Mass, spring, damper, moved support.
 #[derive(Clone, Copy)]

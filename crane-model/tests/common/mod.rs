@@ -21,7 +21,7 @@ pub const GRAVITY: f64 = 9.81;
 pub const fn description(
     name: &'static str,
     coordinates: &'static [CoordinateInfo],
-    guess: &'static [f64],
+    guess: &'static [Option<f64>],
 ) -> Description {
     Description {
         name: Text::Static(name),

@@ -1,6 +1,8 @@
 //! A double pendulum of point masses, its first joint sprung; angles from the downward vertical, both absolute.
 //! L. D. Landau, E. M. Lifshitz, Mechanics, §5, problem 1.
 
+use std::f64::consts::FRAC_PI_2;
+
 use crane_model::{
     CoordinateInfo, CoordinateKind::Rotation, CoordinateRole::Passive, CraneModel, Description, Dynamics,
     Linearisation, Linearise, ParameterError, Statics,
@@ -11,12 +13,11 @@ use super::{GRAVITY, coordinate, description, implicit::mass_matrix};
 
 const COORDINATES: &[CoordinateInfo] =
     &[coordinate("upper", Rotation, Passive), coordinate("lower", Rotation, Passive)];
-static HANGING: Description = description("double_pendulum", COORDINATES, &[0.4, -0.3]);
-static UPSIDE_DOWN: Description = description("upside_down", COORDINATES, &[0.1, 3.0]);
-static HORIZONTAL: Description =
-    description("horizontal", COORDINATES, &[std::f64::consts::FRAC_PI_2, std::f64::consts::FRAC_PI_2]);
+static HANGING: Description = description("double_pendulum", COORDINATES, &[Some(0.4), Some(-0.3)]);
+static UPSIDE_DOWN: Description = description("upside_down", COORDINATES, &[Some(0.1), Some(3.0)]);
+static HORIZONTAL: Description = description("horizontal", COORDINATES, &[Some(FRAC_PI_2), Some(FRAC_PI_2)]);
 
-static TOPPLING: Description = description("toppling", COORDINATES, &[1.8, 0.1]);
+static TOPPLING: Description = description("toppling", COORDINATES, &[Some(1.8), Some(0.1)]);
 
 /// Two point masses on massless rods.
 #[derive(Clone, Copy)]

@@ -26,7 +26,7 @@ static DESCRIPTION: LazyLock<Description> = LazyLock::new(|| Description {
         link: Text::Static("sledge"),
         degrees_of_freedom: 2,
     }]),
-    ..description("sledge", COORDINATES, &[0.0, 0.0])
+    ..description("sledge", COORDINATES, &[Some(0.0), Some(0.0)])
 });
 /// Mass, kg.
 const MASS: f64 = 20.0;

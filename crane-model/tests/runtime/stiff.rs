@@ -17,7 +17,7 @@ use nalgebra::{Matrix2, Matrix4, SMatrix, Vector2};
 
 const COORDINATES: &[CoordinateInfo] =
     &[coordinate("rod_x", Translation, Passive), coordinate("rod_psi", Rotation, Passive)];
-static DESCRIPTION: Description = description("elastic pendulum", COORDINATES, &[0.0, 0.0]);
+static DESCRIPTION: Description = description("elastic pendulum", COORDINATES, &[Some(0.0), Some(0.0)]);
 
 /// A unit mass on a rod of length 1 + x at the angle ψ from hanging:
 /// `ẍ = (1 + x) ψ̇² + g cos ψ − k x − d ẋ`, `(1 + x) ψ̈ = −2 ẋ ψ̇ − g sin ψ`.

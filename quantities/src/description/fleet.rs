@@ -47,7 +47,7 @@ impl Description {
                 });
             }),
             points: repeat(&self.points, cranes, |_: &mut Text, _| {}),
-            guess: repeat(&self.guess, cranes, |_: &mut f64, _| {}),
+            guess: repeat(&self.guess, cranes, |_: &mut Option<f64>, _| {}),
             ..self.clone()
         }
     }

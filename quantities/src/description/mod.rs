@@ -68,8 +68,9 @@ pub struct Description {
     pub points: List<Text>,
     /// Whether the spec requests statics: a run then starts from the static equilibrium, otherwise from the guess.
     pub statics: bool,
-    /// Pose at which the static solution starts, or the run if there is no static solution, with default parameters, m and rad.
-    pub guess: List<f64>,
+    /// Pose at which the static solution starts, or the run if there is no static solution, m and rad; `None` for what follows from the motions
+    /// of drives and from couplings.
+    pub guess: List<Option<f64>>,
     /// Simulated time, s.
     pub duration: f64,
     /// Step of the integrator, s.
@@ -270,8 +271,6 @@ pub struct SupportInfo {
 pub struct DriveInfo {
     /// Index of the driven coordinate in `q`.
     pub coordinate: usize,
-    /// Prescribed position at t = 0 with default parameters, m or rad.
-    pub start: f64,
     /// The number of intervals in which its motion is smooth.
     pub pieces: usize,
     /// Maximum rate, rad/s or m/s, if it is limited.
@@ -374,10 +373,8 @@ pub struct InputInfo {
     pub unit: Text,
     /// Description.
     pub about: Text,
-    /// Its value at t = 0 with default parameters, if it is not set.
-    pub default: f64,
-    /// Whether it follows a motion until it is set.
-    pub moves: bool,
+    /// Its value if it is not set; `None`: it follows a motion of the spec.
+    pub default: Option<f64>,
 }
 
 /// An element between two points, a rope over sheaves, a coupling of two coordinates, or friction in a pin that closes a loop.

@@ -3,7 +3,6 @@
 use std::sync::Mutex;
 
 use crane_live::LiveCrane;
-use crane_model::DriveInfo;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::envelope::{Axes, Axis, Condition, Envelope, Execution, Limits, Rating, Varied, only_mass};
 use crane_model::statics::Settings;
@@ -30,7 +29,8 @@ pub fn check_charts(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     let description = crane.description();
     let load = only_mass(description)?;
     let drive = (!description.drives.is_empty()).then(|| rng.usize(..description.drives.len()))?;
-    let DriveInfo { coordinate, start, .. } = description.drives[drive];
+    let (coordinate, [start, _]) =
+        (description.drives[drive].coordinate, (&crane as &dyn DynCrane).drive_motions_at(0.0)[drive]);
     let name = description.coordinates[coordinate].name.to_string();
     let position = start + MOVED * (2.0 * rng.f64() - 1.0);
     let mut held = tree.clone();

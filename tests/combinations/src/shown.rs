@@ -2,7 +2,6 @@
 
 use crane_codegen::exchange;
 use crane_live::LiveCrane;
-use crane_model::DriveInfo;
 use crane_model::dyn_crane::DynCrane;
 use crane_page::scene::Scene;
 use serde_json::Value;
@@ -51,9 +50,6 @@ fn described(cranes: [&LiveCrane; 2]) -> Vec<String> {
         let mut description = crane.description().clone();
         description.parameters = Vec::new().into();
         description.spec_hash = "".into();
-        // Statics begins at the guess, where drives are at their starts; drives that a parameter moves take it along.
-        description.guess = Vec::new().into();
-        description.drives = description.drives.iter().map(|drive| DriveInfo { start: 0.0, ..*drive }).collect();
         format!("{description:#?}")
     });
     let differing = written.lines().zip(set.lines()).filter(|(written, set)| written != set);

@@ -51,7 +51,7 @@ macro_rules! call_all {
     ($crane:ident) => {{
         use no_std_crane::$crane::{self as of, BaseMatrix, Crane, DESCRIPTION, LaneVector, Matrix, Vector};
         let mut crane = black_box(Crane::default());
-        let (t, mut q, mut v) = black_box((0.5, Vector::from_column_slice(&DESCRIPTION.guess), Vector::repeat(0.1)));
+        let (t, mut q, mut v) = black_box((0.5, Vector::repeat(0.3), Vector::repeat(0.1)));
         let length = |id: FunctionId| match id.extent() {
             Extent::List(_, count) => black_box(DESCRIPTION.count(&[], count)),
             _ => 0,

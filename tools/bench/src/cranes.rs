@@ -1,6 +1,5 @@
 //! The reference crane with several numbers of sections, compiled by the build script.
 
-use crane_model::CraneModel;
 use crane_model::dynamics::Method;
 
 use crate::kernel::Kernel;
@@ -67,7 +66,7 @@ macro_rules! entry {
             coordinates: $name::N,
             spec: SPEC,
             kernels: || kernels::$kernels::<{ $name::N }, $name::Crane>(SPEC),
-            plan: || runs::plan($name::Crane::default().description()),
+            plan: || runs::plan(&$name::Crane::default()),
             run: runs::run::<{ $name::N }, $name::Crane>,
             records: || states::records::<{ $name::N }, $name::Crane>(),
         }

@@ -31,7 +31,7 @@ where
 {
     let crane = C::default();
     let lanes = C::lanes([&crane; 8]);
-    let states = &states::near_guess::<N>(crane.description());
+    let states = &states::near_guess::<N>(&crane);
     let poses = vec![Matrix4::zeros(); crane.description().bodies.len()];
     let live = LiveCrane::from_spec(&SourceFile::new("crane.yaml", spec)).expect("a spec that was compiled");
     let three = Rows(vec![[0.0; N]; 3 * N]);
@@ -160,7 +160,7 @@ where
     C: Implicit<N> + Ensemble<N> + MotionDerivatives<N> + TransformDerivatives<N> + Default + Copy + 'static,
 {
     let crane = C::default();
-    let states = &states::near_guess::<N>(crane.description());
+    let states = &states::near_guess::<N>(&crane);
     let mut kernels = all::<N, C>(spec);
     kernels.extend(TripleSum::read(spec).map(|sum| {
         let sums = sum.workspace::<N>();

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use crane_model::dyn_crane::Instance;
 use crane_model::dynamics::{InitialState, Method, Sample, Settings, Watch, simulate_from};
-use crane_model::{CoordinateKind, CoordinateRole, Description, Implicit};
+use crane_model::{CoordinateKind, CoordinateRole, CraneModel, Implicit, statics};
 
 /// Before any drive moves, s.
 const BEGIN: f64 = -3.0;
@@ -25,13 +25,14 @@ pub struct Plan {
 
 /// What is run.
 #[must_use]
-pub fn plan(crane: &Description) -> Plan {
+pub fn plan<const N: usize>(model: &impl CraneModel<N>) -> Plan {
+    let crane = model.description();
     let is_passive = |index: usize| {
         let coordinate = &crane.coordinates[index];
         coordinate.role == CoordinateRole::Passive && coordinate.kind == CoordinateKind::Rotation
     };
     let of = |(index, guess): (usize, &f64)| if is_passive(index) { guess + ASIDE } else { *guess };
-    Plan { start: crane.guess.iter().enumerate().map(of).collect(), duration: 2.0, output: 0.05 }
+    Plan { start: statics::guess(model).iter().enumerate().map(of).collect(), duration: 2.0, output: 0.05 }
 }
 
 /// The shortest time of some runs by a method, s, and the coordinates at every result. `accuracy`: the step of a method with constant steps, s, or the
@@ -45,7 +46,7 @@ pub fn run<const N: usize, C: Implicit<N> + Default>(
     repeat: usize,
 ) -> Result<Vec<f64>, String> {
     let crane = C::default();
-    let Plan { start, duration, output } = plan(crane.description());
+    let Plan { start, duration, output } = plan(&crane);
     let settings =
         Settings { duration, output, method, step: accuracy, tolerance: accuracy, ..Settings::of(crane.description()) };
     let start = InitialState { q: start, v: vec![0.0; N], ..InitialState::default() };

@@ -2,7 +2,7 @@
 
 use crane_model::nalgebra::SVector;
 use crane_model::rt::lanes::f64x8;
-use crane_model::{CoordinateKind, CoordinateRole, CraneModel, Description};
+use crane_model::{CoordinateKind, CoordinateRole, CraneModel, Description, statics};
 use fastrand::Rng;
 
 /// Enough that neither registers nor the branch predictor remember a result, and few enough that all stay in the L1 cache.
@@ -22,13 +22,14 @@ pub struct State<const N: usize> {
 
 /// Random states about the guess of the spec, before the drives begin to move: other libraries then see springs.
 #[must_use]
-pub fn near_guess<const N: usize>(crane: &Description) -> Vec<State<N>> {
+pub fn near_guess<const N: usize>(model: &impl CraneModel<N>) -> Vec<State<N>> {
+    let (crane, guess) = (model.description(), statics::guess(model));
     let mut rng = Rng::with_seed(SEED);
     let mut symmetric = |scale: f64| scale * (2.0 * rng.f64() - 1.0);
     (0..COUNT)
         .map(|_| State {
             t: symmetric(0.25) - 0.5,
-            q: SVector::from_fn(|i, _| crane.guess[i] + symmetric(reach(crane, i))),
+            q: SVector::from_fn(|i, _| guess[i] + symmetric(reach(crane, i))),
             v: SVector::from_fn(|_, _| symmetric(0.5)),
         })
         .collect()
@@ -76,7 +77,7 @@ fn reach(crane: &Description, index: usize) -> f64 {
 #[must_use]
 pub fn records<const N: usize, C: CraneModel<N> + Default>() -> Vec<f64> {
     let crane = C::default();
-    near_guess(crane.description())
+    near_guess(&crane)
         .iter()
         .flat_map(|State { t, q, v }| {
             let forces = crane.forces(*t, q, v);

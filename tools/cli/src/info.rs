@@ -60,7 +60,7 @@ pub fn info(options: &Analysis, registry: &Registry, out: &mut dyn Write) -> Out
         let headers = ["name", "set to", "otherwise", "unit", "about"];
         let mut inputs = Grid::new("inputs", "Inputs (`--input name=value`)", &headers);
         for (index, input) in description.inputs.iter().enumerate() {
-            let otherwise = if input.moves { "a motion".into() } else { Cell::from(input.default) };
+            let otherwise = input.default.map_or("a motion".into(), Cell::from);
             let (unit, about) = (input.unit.as_str().into(), input.about.as_str().into());
             inputs.row([input.name.as_str().into(), crane.input(index).into(), otherwise, unit, about]);
         }

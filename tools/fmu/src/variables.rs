@@ -94,7 +94,7 @@ pub fn list(description: &Description, loop_joints: &[LoopJointInfo]) -> Vec<Var
         is_output: false,
     });
     let inputs = description.inputs.iter().enumerate().map(|(index, input)| {
-        let until = if input.moves { "until it is set it follows the motion of the spec" } else { "" };
+        let until = if input.default.is_none() { "until it is set it follows the motion of the spec" } else { "" };
         let about = [input.about.as_str(), until].into_iter().filter(|words| !words.is_empty()).collect::<Vec<_>>();
         Variable {
             name: input.name.to_string(),

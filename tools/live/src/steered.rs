@@ -41,12 +41,12 @@ impl SteeredMotion {
     pub fn new(crane: &LiveCrane, begin: f64, start: &InitialState, settings: &Settings) -> Result<Self, Stopped> {
         let crane = crane.clone();
         let infos = &crane.description().inputs;
-        let defaults: Vec<f64> = infos.iter().map(|info| info.default).collect();
+        let defaults: Vec<f64> = (0..infos.len()).map(|index| crane.input_start(index)).collect();
         let values = (0..infos.len()).map(|index| crane.input(index).unwrap_or(defaults[index])).collect();
         let inputs = Arc::clone(crane.inputs());
-        for (index, info) in infos.iter().enumerate().filter(|(_, info)| !info.moves) {
-            if inputs.get(index).is_some_and(is_free) {
-                inputs.set(index, slots_of(Some(info.default)));
+        for (index, info) in infos.iter().enumerate() {
+            if info.default.is_some() && inputs.get(index).is_some_and(is_free) {
+                inputs.set(index, slots_of(info.default));
             }
         }
         let motion = Motion::new(Box::new(crane) as Box<dyn DynCrane>, begin, start, settings)?;

@@ -20,7 +20,7 @@ fn crane() -> LiveCrane {
 fn a_second_call_allocates_nothing() {
     let crane = crane();
     let n = crane.size();
-    let (q, v) = (crane.description().guess.to_vec(), vec![0.1; n]);
+    let (q, v) = (crane.chain().guess.clone(), vec![0.1; n]);
     let at = At { t: 0.1, q: &q, v: &v, a: &v, r: &v, positions: &q };
     let mut of_second = |id: FunctionId, call: &mut dyn FnMut()| {
         call();
@@ -51,7 +51,7 @@ fn a_crane_leaves_nothing_behind() {
     let used = || {
         let crane = crane();
         let mut out = vec![0.0; crane.size()];
-        crane.forward_dynamics(0.1, &crane.description().guess, &out.clone(), &mut out);
+        crane.forward_dynamics(0.1, &crane.chain().guess, &out.clone(), &mut out);
         drop(crane.clone());
     };
     // The first call allocates what libraries keep for the life of the process.

@@ -106,7 +106,7 @@ fn the_lists_of_a_fleet_are_those_of_its_cranes() {
         let wave = |lane: usize, scale: f64| move |i: usize| scale * (1.3 * (i + 3 * lane) as f64 + 1.0).sin();
         let state = |lane: usize| {
             let q: Vec<f64> =
-                crane.description().guess.iter().zip((0..n).map(wave(lane, 0.03))).map(|(q, d)| q + d).collect();
+                crane.chain().guess.iter().zip((0..n).map(wave(lane, 0.03))).map(|(q, d)| q + d).collect();
             (q, (0..n).map(wave(lane, 0.4)).collect::<Vec<_>>())
         };
         let each: Vec<_> = members.iter().enumerate().map(|(lane, member)| (member, state(lane))).collect();
@@ -173,7 +173,7 @@ fn the_runs_of_a_fleet_are_those_of_its_cranes() {
         };
         // Nothing holds the one with inputs: it has no equilibrium.
         let is_free = !crane.description().inputs.is_empty();
-        let pose = is_free.then(|| crane.description().guess.to_vec());
+        let pose = is_free.then(|| crane.chain().guess.clone());
         let case = |lane: usize| Case { inputs: inputs(lane), q: pose.clone(), ..parameters(&crane, lane).into() };
         let rows: Vec<Case> = (0..CRANES).map(case).collect();
         for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince] {

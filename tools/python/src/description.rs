@@ -68,19 +68,19 @@ impl Crane {
             rows.push(row);
         }
         all.set_item("parameters", list(std::mem::take(&mut rows))?)?;
-        for info in &description.inputs {
+        for (index, info) in description.inputs.iter().enumerate() {
             let row = PyDict::new(py);
             row.set_item("name", &*info.name)?;
             row.set_item("unit", &*info.unit)?;
             row.set_item("about", &*info.about)?;
-            row.set_item("default", info.default)?;
-            row.set_item("moves", info.moves)?;
+            row.set_item("default", self.live.input_start(index))?;
+            row.set_item("moves", info.default.is_none())?;
             rows.push(row);
         }
         all.set_item("inputs", list(std::mem::take(&mut rows))?)?;
         all.set_item("frames", describe_frames(py, &self.live)?)?;
         all.set_item("joints", describe_joints(py, &self.live)?)?;
-        let places = crane.section_places_at(&description.guess);
+        let places = crane.section_places_at(&vec![0.0; crane.size()]);
         let place_of = |section: usize| (!description.sections[section].slides).then(|| places[section]);
         for cut in description.cuts() {
             let section = cut.section().map(|section| &description.sections[section]);

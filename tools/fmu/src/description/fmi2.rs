@@ -1,12 +1,13 @@
 //! The description in the form of FMI 2.0.
 
 use crane_codegen::exchange::xml::Xml;
+use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynModel;
 
 use super::Subject;
 
 /// `modelDescription.xml` of a crane with its current parameters.
-pub fn write_description(crane: &dyn DynModel) -> String {
+pub fn write_description(crane: &LiveCrane) -> String {
     let subject = Subject::new(crane);
     let name = crane.description().name.to_string();
     let mut xml = Xml::new("Units: SI, rad. Value references are places in the list of variables, from 0.");

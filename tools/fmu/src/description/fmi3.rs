@@ -1,12 +1,13 @@
 //! The description in the form of FMI 3.0.
 
 use crane_codegen::exchange::xml::Xml;
+use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynModel;
 
 use super::Subject;
 
 /// `modelDescription.xml` of a crane with its current parameters.
-pub fn write_description(crane: &dyn DynModel) -> String {
+pub fn write_description(crane: &LiveCrane) -> String {
     let subject = Subject::new(crane);
     let mut xml = Xml::new("Units: SI, rad.");
     let mut head = vec![("fmiVersion", "3.0".to_owned()), ("instantiationToken", subject.token())];

@@ -7,6 +7,7 @@ mod units;
 use std::collections::BTreeSet;
 
 use crane_codegen::exchange::xml::{Xml, number_text};
+use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynModel;
 use crane_model::dynamics::Settings;
 use crane_model::force_states;
@@ -24,12 +25,12 @@ const CATEGORIES: [(&str, &str); 2] = [
 
 /// A crane with the values of its parameters at the start, and its variables.
 struct Subject<'a> {
-    crane: &'a dyn DynModel,
+    crane: &'a LiveCrane,
     variables: Vec<Variable>,
 }
 
 impl<'a> Subject<'a> {
-    fn new(crane: &'a dyn DynModel) -> Self {
+    fn new(crane: &'a LiveCrane) -> Self {
         Self { crane, variables: variables::list(crane.description(), crane.loop_joints()) }
     }
 
@@ -115,7 +116,7 @@ impl<'a> Subject<'a> {
         }
         let start = match variable.source {
             Source::Parameter(index) => Some(self.crane.parameter(index)),
-            Source::Input(index) => Some(self.crane.description().inputs[index].default),
+            Source::Input(index) => Some(self.crane.input_start(index)),
             _ => None,
         };
         attributes.extend(start.map(|start| ("start", number_text(start))));

@@ -153,7 +153,7 @@ impl Instance {
                 Source::Rate(index) => change.motion[n + index] += along,
                 Source::Own(index) => change.motion[2 * n + index] += along,
                 Source::Input(index)
-                    if self.inputs[index].is_none() && self.crane.description().inputs[index].moves =>
+                    if self.inputs[index].is_none() && self.crane.description().inputs[index].default.is_none() =>
                 {
                     return Err(Fault::Error(format!("{name} follows the motion of the spec: set it first")));
                 }

@@ -297,7 +297,8 @@ impl Instance {
 
     /// Value of an input; until it is set, the start value of the spec.
     fn input(&self, index: usize) -> f64 {
-        self.inputs[index].unwrap_or(self.crane.description().inputs[index].default)
+        let start = || self.live.chain().inputs[index].unless_set.start(&self.parameters);
+        self.inputs[index].unwrap_or_else(start)
     }
 
     fn quantities(&mut self) -> Result<&[f64], Fault> {

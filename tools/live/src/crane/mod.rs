@@ -118,6 +118,12 @@ impl LiveCrane {
         &self.parameters
     }
 
+    /// Value of an input at t = 0 where it is not set.
+    #[must_use]
+    pub fn input_start(&self, index: usize) -> f64 {
+        self.chain().inputs[index].unless_set.start(&self.parameters)
+    }
+
     /// The numbers of the inputs.
     pub(crate) fn inputs(&self) -> &Arc<Inputs> {
         &self.inputs

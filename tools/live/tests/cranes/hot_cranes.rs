@@ -26,7 +26,7 @@ fn with_parameter(mut crane: LiveCrane, factor: f64) -> LiveCrane {
 fn accelerations(crane: &LiveCrane, rate: f64) -> Vec<f64> {
     let n = crane.size();
     let mut out = vec![f64::NAN; n];
-    crane.forward_dynamics(0.1, &crane.description().guess, &vec![rate; n], &mut out);
+    crane.forward_dynamics(0.1, &crane.chain().guess, &vec![rate; n], &mut out);
     out
 }
 
@@ -93,7 +93,7 @@ fn lanes_are_the_cranes_one_by_one() {
     let spread = |numbers: &[f64]| -> Vec<f64x8> {
         numbers.iter().flat_map(|x| std::iter::repeat_n(f64x8::splat(*x), groups)).collect()
     };
-    let (q, v) = (spread(&crane.description().guess), spread(&vec![0.1; crane.size()]));
+    let (q, v) = (spread(&crane.chain().guess), spread(&vec![0.1; crane.size()]));
     let mut out = v.clone();
     for call in 0..CALLS / 4 {
         out.fill(f64x8::splat(f64::NAN));

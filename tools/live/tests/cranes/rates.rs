@@ -78,7 +78,7 @@ fn derivatives_of_rates_are_those_of_differences_forward_and_back() {
         let beside = |step: f64| {
             let mut crane = crane.clone();
             for (index, change) in of_inputs.iter().enumerate() {
-                let value = crane.input(index).unwrap_or(crane.description().inputs[index].default);
+                let value = crane.input(index).unwrap_or(crane.input_start(index));
                 crane.set_input(index, Some(value + step * change));
             }
             let moved: Vec<f64> = motion.iter().zip(&along).map(|(x, along)| x + step * along).collect();

@@ -18,7 +18,7 @@ fn crane() -> LiveCrane {
 
 /// Poses about the guess, row after row.
 fn poses(crane: &LiveCrane) -> Vec<f64> {
-    let guess = crane.description().guess.to_vec();
+    let guess = &crane.chain().guess;
     let wave = |k: usize| 0.02 * (1.3 * k as f64).sin();
     (0..COUNT * guess.len()).map(|k| guess[k % guess.len()] + wave(k)).collect()
 }

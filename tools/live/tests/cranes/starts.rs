@@ -2,7 +2,7 @@
 
 use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::loop_joints::Given;
 use crane_model::runs::Start;
 
@@ -105,4 +105,47 @@ fn a_whole_state_off_the_loops_is_refused() {
         let failed = with(off, rate).unwrap_err().to_string();
         assert!(failed.contains("the loop is not closed: joint l0") && failed.contains(words), "{failed}");
     }
+}
+
+/// Links whose start follows from a motion, a coupling with a spring, an exact one and an input; the guess of the last is written.
+fn followers([from, ratio, offset]: [f64; 3]) -> LiveCrane {
+    let link = |name: &str| {
+        format!(
+            "- {{name: {name}, on: ground, joint: revolute, mass: 1, com: [0.5, 0, 0], inertia: {{Ixx: 1e-4, Iyy: 0.083, Izz: 0.083}}}}\n"
+        )
+    };
+    let drive = |name: &str, motion: &str| {
+        format!("- {{coordinate: {name}_psi, stiffness: 1e4, damping: 10, motion: {{{motion}}}}}\n")
+    };
+    let text = format!(
+        "format: 1\nname: followers\nparameters: {{from: {{value: {from}}}, r: {{value: {ratio}}}, c: {{value: {offset}}}}}\n\
+         inputs: {{lever: {{motion: {{hold: from}}}}}}\nlinks:\n- {{name: ground}}\n{}drives:\n{}{}{}couplings:\n\
+         - {{name: soft, coordinate: b_psi, follows: a_psi, ratio: r, offset: c, stiffness: 300}}\n\
+         - {{name: exact, coordinate: c_psi, follows: b_psi, ratio: r, offset: c, rigid: true}}\nguess: {{e_psi: 0.3}}\n",
+        ["a", "b", "c", "d", "e"].map(link).concat(),
+        drive("a", "quintic: {from: from, to: 2, duration: 1}"),
+        drive("d", "input: lever"),
+        drive("e", "hold: from"),
+    );
+    LiveCrane::from_spec(&SourceFile::new("followers.yaml", text.as_str()))
+        .unwrap_or_else(|mistakes| panic!("\n{mistakes}\n{text}"))
+}
+
+/// The start with numbers that are set is that with the same numbers written, also where the guess was the start of a motion before.
+#[test]
+fn starts_follow_parameters_as_if_they_were_written() {
+    let numbers = [0.5, -1.5, 0.25];
+    let (mut set, written) = (followers([0.3, 2.0, 0.1]), followers(numbers));
+    set.set_parameters(&numbers).unwrap();
+    let b = numbers[1] * numbers[0] + numbers[2];
+    for crane in [&set, &written] {
+        let found = (crane as &dyn DynCrane).guess();
+        // Rounding of the couplings' forces, relative to their stiffness.
+        assert_near(&found, [0.5, b, numbers[1] * b + numbers[2], 0.5, 0.3], 1e-15);
+        assert_near(&crane.chain().guess_at(&numbers), [found[0], found[1], found[2], 0.5, 0.3], 1e-15);
+        assert!(crane.input_start(0).to_bits() == numbers[0].to_bits());
+    }
+    let [of_set, of_written] = [&set, &written].map(|crane| crane.description().clone());
+    assert_eq!(of_set.guess, of_written.guess);
+    assert_eq!((&of_set.drives, &of_set.inputs), (&of_written.drives, &of_written.inputs));
 }
