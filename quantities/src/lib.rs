@@ -17,13 +17,13 @@ mod table;
 
 pub use column_kind::{ColumnKind, END, PEAKS, Size, Strain};
 pub use count::{Count, Extent, Item};
-#[cfg(feature = "std")]
-pub use description::Tree;
 pub use description::{
     AttachmentInfo, BodyInfo, Bound, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole, Cut,
     CylinderInfo, Description, DriveInfo, EventInfo, InputInfo, JoinsInfo, LARGE_TILT, List, LoadInfo,
     LoopEquationInfo, LoopJointInfo, NEAR_SINGULAR, ParameterError, ParameterInfo, PumpInfo, Refusal, SectionInfo,
     Side, StageInfo, SupportInfo, TIPPED, Text, ValveInfo,
 };
+#[cfg(feature = "std")]
+pub use description::{PUMP, PartColumn, Tree};
 pub use display_unit::DisplayUnit;
 pub use function_id::{Argument, FunctionId, PythonArguments, RuntimeTrait};

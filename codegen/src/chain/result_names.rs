@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crane_quantities::{ColumnKind, END, PEAKS, Strain as StrainKind};
+use crane_quantities::{ColumnKind, Description, END, PEAKS, PartColumn};
 
-use super::{Chain, CoordinateId, CoordinateKind, Force, Strain};
+use super::Chain;
 
 /// Columns and variables that a run has of the crane as a whole: time, and energies by the names of their parts.
 const OF_CRANE: [(&str, ColumnKind); 13] = [
@@ -41,13 +41,15 @@ impl Chain {
         for (part, kind) in OF_CRANE {
             kind.endings(false).iter().for_each(|ending| names.add(format!("{part}{ending}"), "a result of every run"));
         }
-        names.add_joints(self);
-        names.add_cylinders(self);
-        names.add_supports(self);
-        names.add_connectors(self);
-        for point in &self.points {
-            names.add_part("point", &point.name, false, &[ColumnKind::PointPosition, ColumnKind::PointVelocity]);
+        let (description, loop_joints) = (self.description(), self.loop_joint_infos());
+        // Of two parts, the later one is told: a point, if one is.
+        let columns = description.columns(&loop_joints);
+        let (points, others): (Vec<_>, Vec<_>) = columns.into_iter().partition(|column| column.what == "point");
+        for PartColumn { what, part, kind, name, .. } in others.into_iter().chain(points) {
+            names.add_column(kind, &name, &owner(what, part));
         }
+        names.add_variables(&description);
+        names.add_lines(&description);
         for parameter in &self.parameters {
             names.add_part("parameter", &parameter.name, false, &[ColumnKind::Other]);
         }
@@ -71,14 +73,15 @@ impl ResultNames {
         }
     }
 
-    /// The columns of some kinds of a part, those of their extremes, and the rates of those that are states of forces.
+    /// Columns and variables of some kinds of a part.
     fn add_part(&mut self, what: &str, part: &str, turns: bool, kinds: &[ColumnKind]) {
-        let owner = if what.is_empty() { format!("the {part}") } else { format!("{what} `{part}`") };
         for kind in kinds {
-            kind.endings(turns).iter().for_each(|ending| self.add_column(*kind, &format!("{part}{ending}"), &owner));
+            let endings = kind.endings(turns).iter();
+            endings.for_each(|ending| self.add_column(*kind, &format!("{part}{ending}"), &owner(what, part)));
         }
     }
 
+    /// A column, those of its extremes, and the rate of a state of a force.
     fn add_column(&mut self, kind: ColumnKind, name: &str, owner: &str) {
         self.add(name.to_owned(), owner);
         let peaks = PEAKS.iter().filter(|_| kind.has_peaks());
@@ -89,90 +92,39 @@ impl ResultNames {
         }
     }
 
-    /// Coordinates with their drives, stops and friction.
-    fn add_joints(&mut self, chain: &Chain) {
-        let turns = |kind| kind == CoordinateKind::Rotation;
-        for (index, coordinate) in chain.coordinates.iter().enumerate() {
-            let is_here = |id: &CoordinateId| id.0 == index;
-            let friction = chain.frictions().find(|(id, _)| is_here(id));
-            let mut kinds = vec![ColumnKind::Position, ColumnKind::Rate, ColumnKind::Acceleration];
-            let mut also = |has: bool, of: &[ColumnKind]| kinds.extend(of.iter().filter(|_| has));
-            also(chain.is_of_element(CoordinateId(index)), &[ColumnKind::ElementMoment]);
-            also(
-                chain.drives.iter().any(|drive| is_here(&drive.coordinate)),
-                &[ColumnKind::Prescribed, ColumnKind::PrescribedRate, ColumnKind::DriveEffort],
-            );
-            also(chain.stopped().iter().any(is_here), &[ColumnKind::StopEffort, ColumnKind::StopIndicator]);
-            also(friction.is_some(), &[ColumnKind::FrictionEffort]);
-            also(friction.is_some_and(|(_, friction)| friction.bristle.is_some()), &[ColumnKind::Bristle]);
-            self.add_part("coordinate", &coordinate.name, turns(coordinate.kind), &kinds);
+    /// Variables that only units for co-simulation have.
+    fn add_variables(&mut self, description: &Description) {
+        let all = 0..description.coordinates.len();
+        let of_joints = all
+            .map(|coordinate| (coordinate, ColumnKind::Acceleration))
+            .chain(description.drives.iter().map(|drive| (drive.coordinate, ColumnKind::PrescribedRate)))
+            .chain(description.stops.iter().map(|stop| (*stop, ColumnKind::StopIndicator)));
+        for (coordinate, kind) in of_joints {
+            let info = &description.coordinates[coordinate];
+            self.add_part("coordinate", &info.name, info.kind.turns(), &[kind]);
+        }
+        for support in description.supports.iter().filter(|support| support.one_sided) {
+            self.add_part("support", &support.name, false, &[ColumnKind::FootIndicator]);
+        }
+        for connector in &description.connectors {
+            self.add_part("connector", &connector.name, false, connector.indicator().as_slice());
         }
     }
 
-    /// Cylinders and their pump.
-    fn add_cylinders(&mut self, chain: &Chain) {
-        for cylinder in &chain.cylinders {
-            self.add_part("cylinder", &cylinder.name, false, &ColumnKind::OF_CYLINDER);
-            if cylinder.valve.is_some() {
-                self.add_part("cylinder", &cylinder.name, false, &[ColumnKind::Valve]);
-            }
-        }
-        if !chain.cylinders.is_empty() {
-            self.add_part("", "pump", false, &[ColumnKind::Flow, ColumnKind::Power]);
-        }
-        if chain.pump.is_some() {
-            self.add_part("", "pump", false, &[ColumnKind::PumpPressure]);
-        }
-    }
-
-    /// Supports, and the lines between them about which the crane may tip.
-    fn add_supports(&mut self, chain: &Chain) {
-        for support in &chain.supports {
-            let mut kinds = vec![ColumnKind::LateralReaction, ColumnKind::VerticalReaction];
-            if support.friction.is_some() {
-                kinds.extend([ColumnKind::Gap, ColumnKind::Slid, ColumnKind::FootIndicator]);
-            }
-            self.add_part("support", &support.name, false, &kinds);
-            for other in chain.supports.iter().filter(|other| other.name != support.name) {
-                let line = format!("{}_{}", support.name, other.name);
-                let owner = format!("the line from support `{}` to `{}`", support.name, other.name);
+    /// The lines between supports about which the crane may tip.
+    fn add_lines(&mut self, description: &Description) {
+        for from in &description.supports {
+            for to in description.supports.iter().filter(|to| to.name != from.name) {
+                let owner = format!("the line from support `{}` to `{}`", from.name, to.name);
                 for ending in ColumnKind::TippingMoment.endings(false) {
-                    self.add(format!("{line}{ending}"), &owner);
+                    self.add(format!("{}_{}{ending}", from.name, to.name), &owner);
                 }
-            }
-        }
-    }
-
-    /// Connectors, couplings, pads, and joints that close loops.
-    fn add_connectors(&mut self, chain: &Chain) {
-        for connector in chain.connectors() {
-            let turns = chain.kind_of(&connector.strain) == CoordinateKind::Rotation;
-            let (strain, effort) = strain_and_effort(connector);
-            let mut kinds = vec![ColumnKind::Strain(strain), ColumnKind::StrainRate(strain), effort];
-            kinds.extend(connector.is_rope().then_some(ColumnKind::RopeIndicator));
-            kinds.extend(connector.is_contact().then_some(ColumnKind::FootIndicator));
-            self.add_part("connector", &connector.name, turns, &kinds);
-        }
-        let of_joints = chain.loop_joints.iter().map(|joint| ("loop joint", &joint.name, joint.kind.equations()));
-        let rigid = chain.rigid_couplings.iter();
-        let of_couplings = rigid.map(|coupling| ("connector", &coupling.name, vec![coupling.equation()]));
-        for (what, part, equations) in of_joints.chain(of_couplings) {
-            for equation in equations {
-                let kind = if equation.is_moment { ColumnKind::LoopMoment } else { ColumnKind::LoopForce };
-                let name = format!("{part}{}", kind.ending_along(equation.direction));
-                self.add_column(kind, &name, &format!("{what} `{part}`"));
             }
         }
     }
 }
 
-/// What the strain and the force of a connector are called.
-fn strain_and_effort(connector: &Force) -> (StrainKind, ColumnKind) {
-    match &connector.strain {
-        Strain::Turning(_) => (StrainKind::Angle, ColumnKind::PinFriction),
-        Strain::Coupling { .. } => (StrainKind::Slip, ColumnKind::ConnectorEffort),
-        Strain::Sliding(_) => (StrainKind::Offset, ColumnKind::ConnectorEffort),
-        Strain::Depth { .. } => (StrainKind::Depth, ColumnKind::ConnectorEffort),
-        Strain::Line(_) | Strain::Coordinate(_) => (StrainKind::Length, ColumnKind::ConnectorEffort),
-    }
+/// Whose a name is, in words.
+fn owner(what: &str, part: &str) -> String {
+    if what.is_empty() { format!("the {part}") } else { format!("{what} `{part}`") }
 }

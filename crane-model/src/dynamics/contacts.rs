@@ -2,7 +2,7 @@
 
 use crane_quantities::ColumnKind;
 
-use crate::{ConnectorInfo, Description, Tension, Text, column::column_name, dyn_crane::DynModel};
+use crate::{Description, Tension, Text, column::column_name, dyn_crane::DynModel};
 
 /// The contacts of a crane: one-sided supports, end stops, ropes and other points on the ground, in this order.
 pub struct Contacts {
@@ -21,7 +21,7 @@ impl Contacts {
         Self {
             feet: (0..supports.len()).filter(|foot| supports[*foot].one_sided).collect(),
             stops: stops.to_vec(),
-            ropes: (0..connectors.len()).filter(|rope| connectors[*rope].lets_go()).collect(),
+            ropes: (0..connectors.len()).filter(|rope| connectors[*rope].indicator().is_some()).collect(),
             gaps: vec![[0.0; 2]; supports.len()],
             forces: vec![0.0; crane.size()],
             tensions: vec![Tension::ZERO; connectors.len()],
@@ -42,15 +42,11 @@ impl Contacts {
     pub fn names(description: &Description) -> Vec<String> {
         let feet = description.supports.iter().filter(|support| support.one_sided).map(|support| &support.name);
         let stops = description.stops.iter().map(|&stop| &description.coordinates[stop].name);
-        let lets_go = description.connectors.iter().filter(|connector| connector.lets_go());
         let named = |kind| move |part: &Text| column_name(kind, part, false);
         let feet = feet.map(named(ColumnKind::FootIndicator));
-        let of_connector = |connector: &ConnectorInfo| {
-            named(if connector.is_contact { ColumnKind::FootIndicator } else { ColumnKind::RopeIndicator })(
-                &connector.name,
-            )
-        };
-        feet.chain(stops.map(named(ColumnKind::StopIndicator))).chain(lets_go.map(of_connector)).collect()
+        let of_connectors =
+            description.connectors.iter().filter_map(|connector| Some(named(connector.indicator()?)(&connector.name)));
+        feet.chain(stops.map(named(ColumnKind::StopIndicator))).chain(of_connectors).collect()
     }
 
     /// Gives `take` an indicator of each contact, in order: negative while the contact is closed, positive while it is open. That of a foot is

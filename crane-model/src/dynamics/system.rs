@@ -69,7 +69,7 @@ impl<'a> System<'a> {
         let loops = Loops::new(crane);
         let Description { stops, frictions, supports, connectors, .. } = crane.description();
         let one_sided = supports.iter().any(|support| support.one_sided);
-        let ropes_or_pins = connectors.iter().any(|connector| connector.lets_go() || connector.is_pin());
+        let ropes_or_pins = connectors.iter().any(|connector| connector.indicator().is_some() || connector.is_pin());
         Self {
             crane,
             switches: one_sided || ropes_or_pins || !stops.is_empty() || !frictions.is_empty(),

@@ -1,6 +1,6 @@
 //! Hydraulic cylinders of driven joints: their columns in results, and cautions about them.
 
-use crane_quantities::{ColumnKind, DisplayUnit};
+use crane_quantities::{ColumnKind, DisplayUnit, PUMP};
 
 use super::{Extremes, Table, column_name};
 use crate::{
@@ -9,8 +9,6 @@ use crate::{
     hydraulics::{CylinderState, cylinders_at},
 };
 
-/// The part whose columns are those of the pump.
-pub(super) const PUMP: &str = "pump";
 /// Flow from which a cylinder's pressure counts in full for the pump, m³/s: 0.6 l/min, about what a mobile valve meters at least.
 const LEAST_FLOW: f64 = 1e-5;
 /// A drive stiffer than the oil of its cylinder by this factor or more is no longer a model of it.
@@ -79,25 +77,6 @@ pub(crate) fn unassembled(description: &Description, table: &Table) -> Option<(T
 /// Names of the columns of a cylinder.
 fn columns(name: &str) -> [String; 6] {
     ColumnKind::OF_CYLINDER.map(|kind| column_name(kind, name, false))
-}
-
-/// Adds the columns of all cylinders, of the pump, and of the openings of valves.
-pub(super) fn add_columns(description: &Description, table: &mut Table) {
-    for cylinder in &description.cylinders {
-        for kind in ColumnKind::OF_CYLINDER {
-            table.add_of(kind, &cylinder.name, false);
-        }
-    }
-    for _ in 0..with_cylinders(description) {
-        table.add_of(ColumnKind::Flow, PUMP, false);
-        table.add_of(ColumnKind::Power, PUMP, false);
-    }
-    if description.has_valves() {
-        table.add_of(ColumnKind::PumpPressure, PUMP, false);
-    }
-    for cylinder in description.cylinders.iter().filter(|cylinder| cylinder.valve.is_some()) {
-        table.add_of(ColumnKind::Valve, &cylinder.name, false);
-    }
 }
 
 /// Name of the column with the opening of a cylinder's valve, −1 to 1.

@@ -2,14 +2,14 @@
 
 use std::collections::HashMap;
 
-use crane_quantities::ColumnKind;
+use crane_quantities::{ColumnKind, PartColumn};
 use nalgebra::Vector3;
 
 use crate::{
     ConnectorInfo, CoordinateKind, Description, LoopJointInfo, bristles,
     dyn_crane::{DynCrane, Energies},
     dynamics::{Phases, Sample},
-    feet::{self, Slid},
+    feet::Slid,
     force_states::{self, ForceStates},
     hydraulics::{self, Oil},
     results::{Column, Table, column_name, cylinders},
@@ -190,7 +190,7 @@ fn push_quantities(
     if all {
         row.extend_from_slice(v);
     } else {
-        row.extend(crane.description().drives.iter().map(|drive| v[drive.coordinate]));
+        row.extend(driven(crane.description()).map(|coordinate| v[coordinate]));
     }
     let mut efforts = crane.drive_efforts_with(moment);
     efforts.iter_mut().zip(added).for_each(|(effort, added)| *effort += added);
@@ -251,6 +251,12 @@ fn push_quantities(
     Some(energies)
 }
 
+/// The driven coordinates, in the order of q.
+fn driven(description: &Description) -> impl Iterator<Item = usize> {
+    let is_driven = |coordinate: &usize| description.drives.iter().any(|drive| drive.coordinate == *coordinate);
+    (0..description.coordinates.len()).filter(is_driven)
+}
+
 /// Names and units of the quantities at a state.
 pub fn quantities(description: &Description, loop_joints: &[LoopJointInfo]) -> Vec<Column> {
     quantities_of(description, loop_joints, Extent::All)
@@ -259,67 +265,20 @@ pub fn quantities(description: &Description, loop_joints: &[LoopJointInfo]) -> V
 fn quantities_of(description: &Description, loop_joints: &[LoopJointInfo], extent: Extent) -> Vec<Column> {
     let all = extent == Extent::All;
     let mut table = Table::default();
-    let coordinates = &description.coordinates;
     table.add_of(ColumnKind::Time, "t", false);
-    for coordinate in coordinates {
-        table.add_of(ColumnKind::Position, &coordinate.name, coordinate.kind.turns());
-    }
-    let of_drives = description.drives.iter().map(|drive| drive.coordinate);
-    let rates: Vec<usize> = if all { (0..coordinates.len()).collect() } else { of_drives.collect() };
-    for coordinate in rates.into_iter().map(|index| &coordinates[index]) {
-        table.add_of(ColumnKind::Rate, &coordinate.name, coordinate.kind.turns());
-    }
-    for drive in &description.drives {
-        let coordinate = &coordinates[drive.coordinate];
-        table.add_of(ColumnKind::Prescribed, &coordinate.name, coordinate.kind.turns());
-        table.add_of(ColumnKind::DriveEffort, &coordinate.name, coordinate.kind.turns());
-    }
-    cylinders::add_columns(description, &mut table);
-    for point in &description.points {
-        table.add_of(ColumnKind::PointPosition, point, false);
-        if all {
-            table.add_of(ColumnKind::PointVelocity, point, false);
-        }
-    }
-    for support in &description.supports {
-        table.add_of(ColumnKind::LateralReaction, &support.name, false);
-        table.add_of(ColumnKind::VerticalReaction, &support.name, false);
-    }
-    let feet = description.supports.iter().filter(|support| support.one_sided);
-    for foot in feet.clone() {
-        table.add_of(ColumnKind::Gap, &foot.name, false);
-    }
-    for name in feet::columns(feet.map(|support| support.name.as_str())) {
-        let kind = ColumnKind::Slid;
-        table.columns.push(Column { name, unit: kind.unit(false).to_owned(), kind });
-    }
-    for coordinate in coordinates.iter().filter(|coordinate| all && coordinate.role.is_element()) {
-        table.add_of(ColumnKind::ElementMoment, &coordinate.name, coordinate.kind.turns());
-    }
-    let of_joints =
-        [(&description.stops, ColumnKind::StopEffort), (&description.frictions, ColumnKind::FrictionEffort)];
-    for (joints, kind) in of_joints {
-        for &coordinate in joints {
-            table.add_of(kind, &coordinates[coordinate].name, coordinates[coordinate].kind.turns());
-        }
-    }
-    for joint in &description.bristles {
-        let coordinate = &coordinates[joint.coordinate];
-        table.add_of(ColumnKind::Bristle, &coordinate.name, coordinate.kind.turns());
-    }
-    for connector in &description.connectors {
-        let (strain, turns) = (connector.strain(), connector.kind.turns());
-        table.add_of(ColumnKind::Strain(strain), &connector.name, turns);
-        table.add_of(ColumnKind::StrainRate(strain), &connector.name, turns);
-        table.add_of(connector.effort(), &connector.name, turns);
-    }
-    for joint in loop_joints {
-        for equation in &joint.equations {
-            let kind = equation.effort();
-            let unit = kind.unit(equation.is_moment).to_owned();
-            table.columns.push(Column { name: equation.column(&joint.name), unit, kind });
-        }
-    }
+    let is_driven =
+        |name: &str| driven(description).any(|coordinate| *description.coordinates[coordinate].name == *name);
+    let is_recorded = |column: &PartColumn<'_>| match column.kind {
+        ColumnKind::Rate => all || is_driven(column.part),
+        ColumnKind::PointVelocity | ColumnKind::ElementMoment => all,
+        _ => true,
+    };
+    let columns = description.columns(loop_joints).into_iter().filter(is_recorded);
+    table.columns.extend(columns.map(|PartColumn { name, unit, kind, .. }| Column {
+        name,
+        unit: unit.to_owned(),
+        kind,
+    }));
     if !all {
         return table.columns;
     }

@@ -1,5 +1,7 @@
 //! Metadata of a crane. In the form `{:#?}` it is the Rust expression of the constant that generated code holds.
 
+#[cfg(feature = "std")]
+mod columns;
 mod count;
 mod cut;
 mod event;
@@ -17,6 +19,8 @@ use core::fmt;
 
 use crate::{ColumnKind, Strain};
 
+#[cfg(feature = "std")]
+pub use columns::{PUMP, PartColumn};
 pub use cut::Cut;
 pub use event::{EventInfo, JoinsInfo};
 pub use loop_joint::{LoopEquationInfo, LoopJointInfo};
@@ -405,9 +409,13 @@ impl ConnectorInfo {
         self.points.len() == 1 && !self.is_contact
     }
 
-    /// Whether it acts at times only: a rope that is taut, a point that touches the ground.
-    pub fn lets_go(&self) -> bool {
-        self.is_rope || self.is_contact
+    /// The indicator of one that acts at times only: a rope that is taut, a point that touches the ground.
+    pub fn indicator(&self) -> Option<ColumnKind> {
+        match (self.is_rope, self.is_contact) {
+            (true, _) => Some(ColumnKind::RopeIndicator),
+            (_, true) => Some(ColumnKind::FootIndicator),
+            _ => None,
+        }
     }
 
     /// Whether it is the friction in a pin: nothing else turns about points.

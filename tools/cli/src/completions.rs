@@ -14,6 +14,7 @@ use clap_complete::{
     env::{CompleteEnv, Shells},
 };
 use crane_codegen::{SourceFile, build, chain::Chain, compile};
+use crane_model::{ColumnKind, results::column_name};
 
 use crate::{
     arguments::{Arguments, DEFAULT_CRANE, spec_file},
@@ -118,7 +119,7 @@ fn drives(crane: &Chain) -> Vec<Named> {
 fn with_rates(names: Vec<Named>) -> Vec<Named> {
     names
         .into_iter()
-        .flat_map(|(name, about)| [(name.clone(), about.clone()), (format!("{name}_rate"), about)])
+        .flat_map(|(name, about)| [(name.clone(), about.clone()), (column_name(ColumnKind::Rate, &name, false), about)])
         .collect()
 }
 
