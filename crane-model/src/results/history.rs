@@ -62,6 +62,19 @@ impl Instant {
     }
 }
 
+/// The stresses of all sections at some instants, with their times, s; `moduli` one per section.
+pub fn stressed_over(
+    instants: &[Instant],
+    description: &Description,
+    moduli: &[SectionModuli],
+) -> Vec<(f64, StressedSection)> {
+    let at = |instant: &Instant| {
+        let t = instant.t;
+        instant.stressed_sections(description, moduli).into_iter().map(move |section| (t, section))
+    };
+    instants.iter().flat_map(at).collect()
+}
+
 /// At results of a run, rows of a recorded table.
 pub fn instants<'a>(crane: &dyn DynCrane, rows: impl Iterator<Item = &'a Vec<f64>>) -> Vec<Instant> {
     let n = crane.size();

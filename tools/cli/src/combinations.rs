@@ -6,7 +6,7 @@ use crane_live::LiveCrane;
 use crane_model::{
     Cut, DisplayUnit, Tension,
     nalgebra::Vector3,
-    results::{CylinderState, Instant, cautions, cylinders_at},
+    results::{CylinderState, Instant, KeyFigure, cautions, cylinders_at},
     sections::StressedSection,
     tipping::governing,
 };
@@ -187,12 +187,12 @@ fn series(resting: &[Resting<'_>]) -> Vec<Series> {
                 own.filter_map(of).fold(f64::NAN, f64::max)
             })
         };
-        for (quantity, unit, values) in [
-            ("utilisation", "", greatest(&|section| section.utilisation)),
-            ("equivalent stress", "MPa", greatest(&|section| Some(section.stress.equivalent))),
+        for (figure, values) in [
+            (KeyFigure::UTILISATION, greatest(&|section| section.utilisation)),
+            (KeyFigure::EQUIVALENT_STRESS, greatest(&|section| Some(section.stress.equivalent))),
         ] {
             if values.iter().all(|value| value.is_finite()) {
-                add(beam, quantity, unit, values);
+                add(beam, figure.name, figure.shown, values);
             }
         }
     }

@@ -7,7 +7,7 @@ use crane_model::{
     dyn_crane::DynCrane,
     envelope::{Condition, Envelope, Limit, Rating, SlewAxis, Varied},
     nalgebra::Vector3,
-    results::{Column, drive_effort},
+    results::{Column, KeyFigure, drive_effort},
 };
 use crane_page::tables::number_text;
 
@@ -79,8 +79,9 @@ impl Layout {
         column("largest_load".to_owned(), &description.parameters[asked.load].unit);
         column("radius".to_owned(), "m");
         column("height".to_owned(), "m");
-        column("tipping_margin".to_owned(), "1");
-        column("utilisation".to_owned(), "1");
+        for KeyFigure { key, unit, .. } in [KeyFigure::TIPPING_MARGIN, KeyFigure::UTILISATION] {
+            column(key.to_owned(), unit);
+        }
         for drive in &description.drives {
             let coordinate = &description.coordinates[drive.coordinate];
             column(drive_effort(&coordinate.name, coordinate.kind), coordinate.kind.force_unit());

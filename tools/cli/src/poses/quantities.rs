@@ -8,7 +8,7 @@ use crane_model::{
     envelope::{Axes, Condition, SlewAxis, Varied, only_mass, range_of_loads},
     modes::{Vibration, vibrations},
     nalgebra::Vector3,
-    results::cylinders_at,
+    results::{KeyFigure, cylinders_at},
     statics,
 };
 use crane_page::tables::{Cell, Grid};
@@ -93,6 +93,7 @@ impl<'a> Subject<'a> {
     fn columns(&self) -> Vec<Column> {
         let description = self.crane.description();
         let column = |name: &str, unit| Column { name: name.to_owned(), unit };
+        let figure = |KeyFigure { name, shown, .. }: KeyFigure| column(name, shown);
         let mut columns = vec![column("radius", "m"), column("height", "m")];
         match self.wanted {
             Quantities::Statics => {
@@ -105,9 +106,9 @@ impl<'a> Subject<'a> {
                 columns.extend(description.cylinders.iter().map(|info| pressure(info.name.as_str())));
             }
             Quantities::Strength => {
-                columns.extend([column("utilisation", ""), column("equivalent stress", "MPa")]);
+                columns.extend([figure(KeyFigure::UTILISATION), figure(KeyFigure::EQUIVALENT_STRESS)]);
                 if !description.supports.is_empty() {
-                    columns.push(column("tipping margin", ""));
+                    columns.push(figure(KeyFigure::TIPPING_MARGIN));
                 }
             }
             Quantities::Modes(count) => columns.extend((1..=count).flat_map(|mode| {
@@ -186,9 +187,9 @@ impl<'a> Subject<'a> {
             (count > 0).then_some(count)
         };
         let of = |count: usize| format!("in {count} of {} poses", rows.len());
-        let stressed = over("utilisation", |value| value > 1.0);
+        let stressed = over(KeyFigure::UTILISATION.name, |value| value > 1.0);
         cautions.extend(stressed.map(|count| format!("{} the stress exceeds what is allowed", of(count))));
-        let tips = over("tipping margin", |value| value <= 0.0);
+        let tips = over(KeyFigure::TIPPING_MARGIN.name, |value| value <= 0.0);
         cautions.extend(tips.map(|count| format!("{} the crane tips over", of(count))));
         let lifts = over("smallest force of a foot", |value| value <= 0.0);
         cautions.extend(lifts.map(|count| format!("{} a foot lifts or pulls", of(count))));

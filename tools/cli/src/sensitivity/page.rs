@@ -3,7 +3,10 @@
 use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
 use crane_live::sensitivity::{Group, Settings, with_live_numbers};
-use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::{
+    dyn_crane::{DynCrane, DynModel},
+    results::KeyFigure,
+};
 use crane_page::tables::Cell;
 use serde_json::{Value, json};
 
@@ -54,8 +57,8 @@ fn moves(crane: &LiveCrane, spec: &str) -> Option<Value> {
     let found = changes(&request, &source, &live, None).ok()?;
     // A utilisation is the stress in parts of the yield stress.
     let of = |index: usize| &found.found.outputs[index];
-    let has_use = found.found.outputs.iter().any(|output| output.name == "greatest_utilisation");
-    let is_new = |index: &usize| !(has_use && of(*index).name == "greatest_equivalent_stress");
+    let has_use = found.found.outputs.iter().any(|output| output.name == KeyFigure::UTILISATION.greatest());
+    let is_new = |index: &usize| !(has_use && of(*index).name == KeyFigure::EQUIVALENT_STRESS.greatest());
     let mut shown: Vec<usize> = found.shown.iter().copied().filter(is_new).collect();
     shown.retain(|&index| GROUPS.contains(&of(index).group));
     shown.sort_by_key(|&index| GROUPS.iter().position(|group| *group == of(index).group));

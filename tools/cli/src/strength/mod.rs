@@ -9,7 +9,12 @@ use std::io::Write;
 
 use serde_json::Value;
 
-use crane_model::{dyn_crane::DynCrane, dynamics::Method, results::cautions, tipping::governing};
+use crane_model::{
+    dyn_crane::DynCrane,
+    dynamics::Method,
+    results::{KeyFigure, cautions},
+    tipping::governing,
+};
 use crane_page::history::{Instant, instants};
 use crane_page::tables::{Case, Report, VALUE, verdicts};
 
@@ -113,19 +118,19 @@ pub fn history(
 
 /// How far the crane is from tipping.
 fn verdict(report: &mut Report, crane: &dyn DynCrane, instant: &Instant, of: &str) {
-    let description = crane.description();
+    let (description, figure) = (crane.description(), KeyFigure::TIPPING_MARGIN);
     let Some(line) = governing(&instant.lines) else {
         let why = if description.supports.is_empty() {
             "not computed: the crane has no supports"
         } else {
             "not computed: the supports do not form a polygon"
         };
-        report.line(format!("tipping margin{of}"), why, "");
-        report.value(&format!("tipping_margin{}", of.replace(' ', "_")), Value::Null);
+        report.line(format!("{}{of}", figure.name), why, "");
+        report.value(&format!("{}{}", figure.key, of.replace(' ', "_")), Value::Null);
         return;
     };
     let [from, to] = line.feet.map(|foot| description.supports[foot].name.as_str());
     let margin = line.margin();
-    report.fact(format!("tipping margin{of}"), margin, "");
+    report.fact(format!("{}{of}", figure.name), margin, figure.shown);
     report.fact(format!("governing line{of}"), format!("{from} – {to}"), "");
 }

@@ -2,7 +2,11 @@
 
 use std::cmp::Ordering;
 
-use crane_model::{Description, DisplayUnit, SectionModuli, Stress, sections::StressedSection};
+use crane_model::{
+    Description, DisplayUnit, SectionModuli, Stress,
+    results::{KeyFigure, stressed_over},
+    sections::StressedSection,
+};
 use crane_page::history::Instant;
 use crane_page::tables::{Cell, Grid, Report};
 
@@ -19,25 +23,22 @@ pub fn verdict(
     instants: &[Instant],
     of_what: &str,
 ) {
-    let sections = instants.iter().flat_map(|instant| {
-        let sections = instant.stressed_sections(description, moduli);
-        sections.into_iter().map(|section| (instant.t, section))
-    });
-    let sections: Vec<(f64, StressedSection)> = sections.collect();
+    let sections = stressed_over(instants, description, moduli);
     let mut fact = |what: &str, of_what: &str, value: Cell, unit: &str| {
         let key = format!("{what}{of_what}").replace(' ', "_").replace("maximum", "greatest");
         report.fact_as(&key, format!("{what}{of_what}"), value, unit);
     };
-    for (order, use_counts) in [(StressedSection::by_use as Order, true), (StressedSection::by_stress, false)] {
+    for (order, figure, place) in [
+        (StressedSection::by_use as Order, KeyFigure::UTILISATION, "utilisation"),
+        (StressedSection::by_stress, KeyFigure::EQUIVALENT_STRESS, "stress"),
+    ] {
         let Some((t, section)) = sections.iter().max_by(|(_, a), (_, b)| order(a, b)) else { return };
-        let (name, place) = if use_counts { ("utilisation", "utilisation") } else { ("equivalent stress", "stress") };
-        let stress = Cell::Shown(section.stress.equivalent, DisplayUnit::Megapascal);
-        let (value, unit) = match section.utilisation {
-            Some(utilisation) if use_counts => (utilisation.into(), ""),
-            None if use_counts => continue,
-            _ => (stress, "MPa"),
+        let value = match (figure, section.utilisation) {
+            (KeyFigure::UTILISATION, Some(utilisation)) => utilisation.into(),
+            (KeyFigure::UTILISATION, None) => continue,
+            _ => Cell::Shown(section.stress.equivalent, DisplayUnit::Megapascal),
         };
-        fact(&format!("maximum {name}"), of_what, value, unit);
+        fact(&format!("maximum {}", figure.name), of_what, value, figure.shown);
         fact(&format!("place of the maximum {place}"), of_what, section.location(description).into(), "");
         if !of_what.is_empty() {
             fact(&format!("time of the maximum {place}"), "", (*t).into(), "s");

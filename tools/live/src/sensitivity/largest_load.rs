@@ -15,7 +15,7 @@ use std::sync::{Mutex, PoisonError};
 use crane_model::ColumnKind;
 use crane_model::dyn_crane::DynModel;
 use crane_model::envelope::{Condition, Envelope, Execution, Limit, Rating, UNITS_OF_LOADS};
-use crane_model::results::{column_name, connector_force, drive_effort, vertical_reaction};
+use crane_model::results::{KeyFigure, column_name, connector_force, drive_effort, vertical_reaction};
 
 use super::whole::{CURVED, in_unit};
 use super::{Changing, Differences, FixedNumber, Group, Output, Sensitivity};
@@ -223,11 +223,11 @@ impl LargestLoad {
         let output = |name: &str| Some(Bound { output: found.index_of(name)?, sign: 1.0 });
         match self.limit {
             Limit::Tipping { .. } => {
-                let bound = output("tipping_margin")?;
+                let bound = output(KeyFigure::TIPPING_MARGIN.key)?;
                 let is_same = found.outputs[bound.output].place == self.limit.location(crane);
                 (is_same && asked.limits.tipping.is_some()).then_some(bound)
             }
-            Limit::Utilisation { .. } => output("greatest_utilisation"),
+            Limit::Utilisation { .. } => output(&KeyFigure::UTILISATION.greatest()),
             Limit::Effort { drive } => {
                 let coordinate = &description.coordinates[description.drives[drive].coordinate];
                 let bound = output(&drive_effort(&coordinate.name, coordinate.kind))?;

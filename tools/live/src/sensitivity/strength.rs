@@ -4,6 +4,7 @@
 use crane_codegen::program::FunctionId;
 use crane_model::Wrench;
 use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::results::KeyFigure;
 use crane_model::rt::derivatives::Constant;
 use crane_model::rt::lanes::Function;
 use crane_model::sections::{StressedSection, stressed_sections};
@@ -80,7 +81,7 @@ impl Strength {
         let each = self.sections.iter().map(|section| (section, section.beam(description).to_owned() + "_", [true; 2]));
         let greatest = self.greatest.iter().flat_map(|[used, stressed]| {
             [(used, [true, false]), (stressed, [false, true])]
-                .map(|(section, what)| (section, "greatest_".to_owned(), what))
+                .map(|(section, what)| (section, KeyFigure::GREATEST.to_owned(), what))
         });
         for (section, beam, [use_counts, stress_counts]) in greatest.chain(each) {
             let moduli: [Dual8; 8] = std::array::from_fn(|number| {
@@ -88,21 +89,22 @@ impl Strength {
                 section.place.moduli.mean(of, |one, other, part| one + Dual8::constant(part) * (other - one))
             });
             let stress = equivalent(&moduli, &wrenches[section.place.cut]);
-            let named = |name: &str, unit| Output {
+            let named = |figure: KeyFigure| Output {
                 place: section.location(description),
-                ..named(format!("{beam}{name}"), unit, Group::Stresses)
+                ..named(format!("{beam}{}", figure.key), figure.unit, Group::Stresses)
             };
             if use_counts && section.utilisation.is_some() {
-                all.push((named("utilisation", "1"), stress / moduli[7]));
+                all.push((named(KeyFigure::UTILISATION), stress / moduli[7]));
             }
             if stress_counts {
-                all.push((named("equivalent_stress", "Pa"), stress));
+                all.push((named(KeyFigure::EQUIVALENT_STRESS), stress));
             }
         }
         if let Some(line) = &self.line {
             let [from, to] = line.feet.map(|foot| description.supports[foot].name.as_str());
             let margin = self.margin(source, line.feet, q, multipliers, wrenches);
-            let output = Output { place: format!("{from} – {to}"), ..named("tipping_margin", "1", Group::Tipping) };
+            let KeyFigure { key, unit, .. } = KeyFigure::TIPPING_MARGIN;
+            let output = Output { place: format!("{from} – {to}"), ..named(key, unit, Group::Tipping) };
             all.push((output, margin));
         }
         all

@@ -1,6 +1,11 @@
 //! What bending beams do: utilisation, deflection, vibration.
 
-use crane_model::{Description, modes::Vibration, sections::StressedSection};
+use crane_model::{
+    Description,
+    modes::Vibration,
+    results::{KeyFigure, stressed_over},
+    sections::StressedSection,
+};
 use nalgebra::Vector3;
 
 use super::{Figure, quantity, spoken};
@@ -13,23 +18,22 @@ use crate::{
 pub(super) fn utilisation(crane: &Shown<'_>) -> Option<Figure> {
     let live = crane.subject.crane;
     let (description, moduli) = (live.description(), live.section_moduli_at());
-    let sections = crane.history.iter().flat_map(|instant| {
-        let sections = instant.stressed_sections(description, &moduli);
-        sections.into_iter().map(|section| (instant.t, section))
-    });
-    let (time, section) = sections.max_by(|(_, a), (_, b)| StressedSection::by_use(a, b))?;
+    let sections = stressed_over(&crane.history, description, &moduli);
+    let (time, section) = sections.into_iter().max_by(|(_, a), (_, b)| StressedSection::by_use(a, b))?;
     let location = section.location(description);
     let stress = format!("{} MPa", readable(section.stress.equivalent / 1e6));
     let when = crane.when(time);
+    let figure =
+        |KeyFigure { key, name, .. }: KeyFigure, value, note| Figure::new(key, format!("largest {name}"), value, note);
     let Some(used) = section.utilisation else {
         let note = format!("{location}, {when}; no yield stress is given");
-        return Some(Figure::new("equivalent_stress", "largest equivalent stress", stress, note));
+        return Some(figure(KeyFigure::EQUIVALENT_STRESS, stress, note));
     };
     let value = format!("{} %", readable(100.0 * used));
     let beyond = (used > 1.0)
         .then(|| format!("stress of {} is {value} of the allowable one", spoken(section.beam(description))));
     let note = format!("{location}, {when}; {stress}");
-    Some(Figure::new("utilisation", "largest utilisation", value, note).judged(beyond))
+    Some(figure(KeyFigure::UTILISATION, value, note).judged(beyond))
 }
 
 /// How far the points are from those of the rigid crane.

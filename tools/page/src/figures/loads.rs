@@ -2,7 +2,9 @@
 
 use crane_model::{
     CylinderInfo,
-    results::{Extremes, beyond_stroke, drive_effort, highest_pressure, lifts, pulls, tips_over, vertical_reaction},
+    results::{
+        Extremes, KeyFigure, beyond_stroke, drive_effort, highest_pressure, lifts, pulls, tips_over, vertical_reaction,
+    },
     tipping::governing,
 };
 
@@ -114,7 +116,8 @@ pub(super) fn tipping(crane: &Shown<'_>) -> Option<Figure> {
         (None, None) => return None,
     };
     let value = if value.is_finite() { readable(value) } else { "none".to_owned() };
-    Some(Figure::new("tipping_margin", "smallest tipping margin", value, note).judged(excess))
+    let KeyFigure { key, name, .. } = KeyFigure::TIPPING_MARGIN;
+    Some(Figure::new(key, format!("smallest {name}"), value, note).judged(excess))
 }
 
 /// The highest pressure, relative to the pressure at which a relief valve opens if there is one.
