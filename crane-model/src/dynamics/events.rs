@@ -13,7 +13,7 @@
 use nalgebra::{DVector, Vector3};
 
 use super::{
-    Cause, EffortAccuracy, InitialState, Integration, Run, Sample, Settings, Statistics, Stopped, Watch,
+    Cause, EffortAccuracy, InitialState, Integration, Method, Run, Sample, Settings, Statistics, Stopped, Watch,
     settings::divided, simulation::simulate_watched,
 };
 use crate::{Description, EventInfo, JoinsInfo, ParameterError, dyn_crane::DynCrane};
@@ -69,13 +69,14 @@ pub fn without_events(description: &Description, settings: &Settings, what: &str
     event.map_or(Ok(()), |event| Err(stopped(event, settings, &format!("does not happen in {what}"))))
 }
 
-/// The rates after an event at a state.
+/// The rates after an event at a state; they go on if no mass is added.
 fn rates_after([before, after]: [&dyn DynCrane; 2], joins: Option<&JoinsInfo>, q: &[f64], v: &[f64]) -> Vec<f64> {
-    let Some(JoinsInfo { velocity, point }) = joins else { return v.to_vec() };
+    let added = after.mass() - before.mass();
+    let Some(JoinsInfo { velocity, point }) = joins.filter(|_| added > 0.0) else { return v.to_vec() };
     let rates = DVector::from_column_slice(v);
     let mut momentum = before.mass_matrix_at(q) * &rates;
     if let Some(point) = *point {
-        let joining = (after.mass() - before.mass()) * Vector3::from(*velocity);
+        let joining = added * Vector3::from(*velocity);
         let mut unit = vec![0.0; v.len()];
         for (index, momentum) in momentum.iter_mut().enumerate() {
             unit[index] = 1.0;
@@ -118,8 +119,8 @@ impl Done {
         }
     }
 
-    /// Adds the run of a phase.
-    fn add(&mut self, run: &Run) {
+    /// Adds the run of a phase; returns all so far.
+    fn add(&mut self, run: Run, method: Method) -> Run {
         let Statistics { steps, rejections, evaluations, factorisations } = &mut self.statistics;
         *steps += run.statistics.steps;
         *rejections += run.statistics.rejections;
@@ -134,6 +135,8 @@ impl Done {
                 None => self.efforts.push(*effort),
             }
         }
+        let step = if method.is_adaptive() { run.time / (self.statistics.steps.max(1)) as f64 } else { run.step };
+        Run { statistics: self.statistics, step, efforts: self.efforts.clone(), ..run }
     }
 }
 
@@ -179,20 +182,18 @@ pub fn simulate_events(
             }
             let goes_on = integration.advance(result, &mut |t| watch.step(t))?.is_continue();
             if !goes_on || watch.sample(&done.add_to(integration.sample())).is_break() {
-                done.add(&integration.run());
-                return Ok(done.finish(&integration.run()));
+                return Ok(done.add(integration.run(), settings.method));
             }
             next += 1;
         }
         let Some((event, (_, after))) = event else {
-            done.add(&integration.run());
-            return Ok(done.finish(&integration.run()));
+            return Ok(done.add(integration.run(), settings.method));
         };
         integration.end_step_at_result();
         let goes_on = integration.advance(until, &mut |t| watch.step(t))?.is_continue();
-        done.add(&integration.run());
+        let run = done.add(integration.run(), settings.method);
         if !goes_on {
-            return Ok(done.finish(&integration.run()));
+            return Ok(run);
         }
         let sample = done.add_to(integration.sample());
         let v = rates_after([present, after.as_ref()], event.joins.as_ref(), sample.q, sample.v);
@@ -200,17 +201,5 @@ pub fn simulate_events(
         done.energies = [sample.work, sample.dissipated, sample.load_work, sample.event_work];
         state = InitialState { q: sample.q.to_vec(), v, x: sample.x.to_vec() };
         (present, begin) = (after.as_ref(), until);
-    }
-}
-
-impl Done {
-    /// The run up to now; `last`: that of its last phase.
-    fn finish(self, last: &Run) -> Run {
-        let step = if last.statistics.steps > 0 && self.statistics.steps != last.statistics.steps {
-            last.time / self.statistics.steps as f64
-        } else {
-            last.step
-        };
-        Run { statistics: self.statistics, step, time: last.time, efforts: self.efforts }
     }
 }

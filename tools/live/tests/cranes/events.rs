@@ -82,6 +82,23 @@ fn a_result_at_an_event_is_after_it() {
     assert_eq!(t.len(), 61);
 }
 
+/// Events at one time happen one after the other, and what leaves does not join.
+#[test]
+fn events_at_one_time_happen_in_their_order() {
+    let events = "events: [{name: drop, at: 0.5, set: {load: 90}, joins: {}}, {name: catch, at: 0.5, set: {load: 300}}, {name: late, at: 9, set: {load: 1}}]";
+    let lift = crane(&format!("{LIFT}{events}\n"));
+    for method in Method::ALL {
+        let table = run(&lift, method, 1.0);
+        let (t, z) = (column(&table, "t"), column(&table, "hook_z"));
+        let omega = (5e4_f64 / 300.0).sqrt();
+        for (t, z) in t.iter().zip(&z) {
+            let share = if *t < 0.5 { 1.0 } else { (omega * (t - 0.5)).cos() };
+            let expected = -(GRAVITY / 5e4) * (300.0 + 290.0 * share);
+            assert!((z - expected).abs() < 1e-6, "{method:?}, {t} s: {z}, {expected}");
+        }
+    }
+}
+
 /// A trolley of 100 kg that rolls at 0.4 m/s takes up a log of 300 kg: p = Σ m v, whatever the log did before.
 #[test]
 fn momentum_joins_with_what_is_gripped() {
