@@ -4,13 +4,13 @@ use std::iter;
 
 use crane_quantities::{
     AttachmentInfo, BodyInfo, Bound, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateRole, CylinderInfo,
-    Description, DriveInfo, EventInfo, InputInfo, JoinsInfo, LoadInfo, LoopEquationInfo, LoopJointInfo, ParameterInfo,
-    PumpInfo, SectionInfo, StageInfo, SupportInfo, ValveInfo,
+    Description, DriveInfo, InputInfo, LoadInfo, LoopEquationInfo, LoopJointInfo, ParameterInfo, PumpInfo, SectionInfo,
+    StageInfo, SupportInfo, ValveInfo,
 };
 
 use super::{
-    Attachment, BodyId, Bristle, Chain, CoordinateId, Cylinder, Event, Joins, LoopEquation, LoopJoint, Profile,
-    RigidCoupling, Stage, SupportKinematics,
+    Attachment, BodyId, Bristle, Chain, CoordinateId, Cylinder, LoopEquation, LoopJoint, Profile, RigidCoupling, Stage,
+    SupportKinematics,
 };
 
 impl Chain {
@@ -107,7 +107,7 @@ impl Chain {
             duration: self.run.duration,
             step: self.run.step,
             output: self.run.output,
-            events: self.events.iter().map(event_info).collect(),
+            events: self.events.iter().cloned().collect(),
         }
     }
 
@@ -189,15 +189,6 @@ impl Chain {
                 leakage: valve.leakage,
             }),
         }
-    }
-}
-
-fn event_info(event: &Event) -> EventInfo {
-    EventInfo {
-        name: event.name.clone().into(),
-        time: event.time,
-        changes: event.changes.iter().map(|(id, value)| (id.0, *value)).collect(),
-        joins: event.joins.map(|Joins { velocity, point }| JoinsInfo { velocity, point }),
     }
 }
 

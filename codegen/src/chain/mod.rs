@@ -10,7 +10,6 @@ mod cut;
 mod cylinder;
 mod description;
 mod drive;
-mod event;
 mod force;
 mod frame;
 mod input;
@@ -32,11 +31,10 @@ mod value;
 pub use beam::{Beam, Inside, Moduli, Outline, Section};
 pub use beam_axis::{BeamAxis, Division, Stretch};
 pub use body::{Axis, Body, Coordinate, Inertia, Part, Step};
-pub use crane_quantities::{Bound, CoordinateKind, Refusal, Side};
+pub use crane_quantities::{Bound, CoordinateKind, EventInfo, JoinsInfo, Refusal, Side};
 pub use cut::Cut;
 pub use cylinder::{Cylinder, Linkage, Pin, Pump, Valve};
 pub use drive::{Drive, Rotor, Transmission};
-pub use event::{Event, Joins};
 pub use force::*;
 pub use frame::{Frame, Vector, cross};
 pub use input::{Input, InputId};
@@ -121,7 +119,7 @@ pub struct Chain {
     /// Settings of a run.
     pub run: Run,
     /// What happens during a run, in the order of time.
-    pub events: Vec<Event>,
+    pub events: Vec<EventInfo>,
     /// What the user wants to compute; the rest is left out.
     pub analyses: Analyses,
     /// When repeated work becomes a loop.

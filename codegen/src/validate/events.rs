@@ -2,13 +2,13 @@
 
 use super::Check;
 use super::limits::Limit;
-use crate::chain::{Chain, Event, Joins, ParameterId, Point};
+use crate::chain::{Chain, EventInfo, JoinsInfo, Point};
 use crate::diagnostic::{rule, suggest};
 use crate::spec::{self, Crane, Spanned, entries};
 
 impl<'a> Check<'a> {
-    pub(super) fn events(&mut self, crane: &'a Crane, points: &[Point]) -> Vec<Event> {
-        let mut events = Vec::new();
+    pub(super) fn events(&mut self, crane: &'a Crane, points: &[Point]) -> Vec<EventInfo> {
+        let mut events: Vec<EventInfo> = Vec::new();
         for event in entries(crane.events.as_ref()) {
             let name = self.name(&event.name).unwrap_or_default().to_owned();
             if !name.is_empty() {
@@ -28,17 +28,17 @@ impl<'a> Check<'a> {
                 let Some(id) = id else { continue };
                 let subject = format!("`{}` from event `{name}` on", self.parameters[id.0].name);
                 let unit = Some(self.parameters[id.0].unit.clone()).filter(|unit| !unit.is_empty());
-                changes.push((id, self.in_own_unit(value, &subject, unit.as_deref())));
+                changes.push((id.0, self.in_own_unit(value, &subject, unit.as_deref())));
             }
             let joins = event.joins.as_ref().and_then(|joins| joins.value.as_ref());
             let joins = joins.map(|joins| self.joins(&name, joins, points));
-            events.push(Event { name, time, changes, joins });
+            events.push(EventInfo { name: name.into(), time, changes: changes.into_iter().collect(), joins });
         }
         events.sort_by(|one, other| one.time.total_cmp(&other.time));
         events
     }
 
-    fn joins(&mut self, event: &str, joins: &spec::Joins, points: &[Point]) -> Joins {
+    fn joins(&mut self, event: &str, joins: &spec::Joins, points: &[Point]) -> JoinsInfo {
         let point = joins.point.as_ref().and_then(|given| Some((given, given.value.as_deref()?)));
         let index = point.and_then(|(given, wanted)| {
             let index = points.iter().position(|point| point.name == wanted);
@@ -56,17 +56,17 @@ impl<'a> Check<'a> {
         if let (Some(given), None) = (&joins.velocity, &joins.point) {
             self.report(rule::joins_without_point(given.span, event));
         }
-        Joins { velocity, point: index }
+        JoinsInfo { velocity, point: index }
     }
 
     /// What events set obeys the rules of the language, one event after the other.
     pub(super) fn events_allowed(&mut self, chain: &Chain, crane: &Crane) {
         let mut values = chain.parameter_defaults();
         for event in &chain.events {
-            for &(ParameterId(index), value) in &event.changes {
+            for &(index, value) in event.changes.iter() {
                 values[index] = value;
             }
-            let below = event.changes.iter().find_map(|&(ParameterId(index), value)| {
+            let below = event.changes.iter().find_map(|&(index, value)| {
                 let bound = chain.parameters[index].lower_bound.as_ref()?;
                 let is_below = value < bound.value || (value.to_bits() == bound.value.to_bits() && !bound.allowed);
                 is_below.then(|| (format!("{} {value}", bound.refusal.title), &bound.refusal))
@@ -81,7 +81,7 @@ impl<'a> Check<'a> {
             };
             let given = crane.events.as_ref().and_then(|events| events.value.as_ref());
             let span = given.and_then(|events| events.iter().find(is_it)?.value.as_ref().map(|event| event.set.span));
-            self.report(rule::event_breaks_rule(span.unwrap_or_default(), &event.name, &title, &refusal.help));
+            self.report(rule::event_breaks_rule(span.unwrap_or_default(), event.name.as_str(), &title, &refusal.help));
         }
     }
 }
