@@ -4,7 +4,7 @@ use fastrand::Rng;
 
 use crate::crane::{Case, with_features};
 use crate::feature::Features;
-use crate::observe::{CAUTIONS, differences, observe, observe_with};
+use crate::observe::{CAUTIONS, differences, live, live_with, observe, observe_with};
 use crate::tree::{Tree, source, text};
 use crate::{changes, charts, combined, descriptions, events, fleets, laws, meshes, run_changes, servos, shown};
 
@@ -67,10 +67,11 @@ fn apply(check: &str, tree: &Tree, seed: u64, run: bool) -> Option<Vec<String>> 
                 let missing = differences([&first, &numbers], &second.name, &second.factor);
                 let cautions =
                     numbers.iter().filter(|(name, number)| number.group == CAUTIONS && !first.contains_key(*name));
-                let shown = if second.set.is_empty() { Vec::new() } else { shown::differences(tree, &second) };
+                let set = live_with(&second.source, &second.set).ok().filter(|_| !second.set.is_empty());
+                let shown = live(&source(tree)).ok().zip(set).map(|(written, set)| shown::differences(&written, &set));
                 missing
                     .into_iter()
-                    .chain(shown)
+                    .chain(shown.into_iter().flatten())
                     .chain(cautions.map(|(name, _)| format!("{name}, of the second only")))
                     .collect()
             }

@@ -23,6 +23,6 @@ pub mod observe;
 pub mod pins;
 pub mod run_changes;
 mod servos;
-mod shown;
+pub mod shown;
 pub mod tree;
 mod wind;

@@ -6,21 +6,17 @@ use crane_model::dyn_crane::DynCrane;
 use crane_page::scene::Scene;
 use serde_json::Value;
 
-use crate::descriptions::Second;
-use crate::observe::{equilibrium, live, live_with};
-use crate::tree::{Tree, source};
+use crate::observe::equilibrium;
 
 /// How far numbers that are drawn may differ, m and rad: poses are solved twice.
 const DRAWN: f64 = 1e-6;
 
 /// What differs between a crane as written and one with its numbers set.
-pub fn differences(tree: &Tree, second: &Second) -> Vec<String> {
-    let (Ok(written), Ok(set)) = (live(&source(tree)), live_with(&second.source, &second.set)) else {
-        return Vec::new();
-    };
-    let mut lines = described([&written, &set]);
-    let Ok(q) = equilibrium(&written as &dyn DynCrane) else { return lines };
-    different("scene", [&Scene::new(&written, &q).json(), &Scene::new(&set, &q).json()], &mut lines);
+#[must_use]
+pub fn differences(written: &LiveCrane, set: &LiveCrane) -> Vec<String> {
+    let mut lines = described([written, set]);
+    let Ok(q) = equilibrium(written as &dyn DynCrane) else { return lines };
+    different("scene", [&Scene::new(written, &q).json(), &Scene::new(set, &q).json()], &mut lines);
     let exported = |crane: &LiveCrane| {
         let (chain, parameters) = (crane.chain(), crane.parameters());
         let mjcf = exchange::mjcf(chain, parameters, &[], (&chain.guess_at(parameters), "guess"))
@@ -31,8 +27,7 @@ pub fn differences(tree: &Tree, second: &Second) -> Vec<String> {
             mjcf,
         ]
     };
-    for (name, (written, set)) in ["URDF", "springs", "MJCF"].iter().zip(exported(&written).iter().zip(exported(&set)))
-    {
+    for (name, (written, set)) in ["URDF", "springs", "MJCF"].iter().zip(exported(written).iter().zip(exported(set))) {
         // The head of a file names the spec and its parameters.
         let of_crane = |text: &str| {
             text.lines().skip_while(|line| !line.contains("spec hash")).skip(1).map(str::to_owned).collect::<Vec<_>>()
