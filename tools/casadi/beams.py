@@ -179,9 +179,9 @@ NEAR = 0.1
 
 
 def acting(keys, link):
-    """Where along a link something acts, as written: other links, loads, pins of cylinders with a valve, connectors, loop joints."""
+    """Where along a link something acts, as written: other links, loads, contacts, pins of cylinders with a valve, connectors, loop joints."""
     points = [other["on"] for other in keys["links"] if isinstance(other.get("on"), dict) and isinstance(other["on"].get("at"), list)]
-    points += [load for load in keys.get("loads", []) if "at" in load]
+    points += [other for other in [*keys.get("loads", []), *keys.get("contacts", [])] if "at" in other]
     for cylinder in keys.get("cylinders", []):
         if "valve" in cylinder:
             points += [cylinder["foot"], cylinder["head"]]

@@ -1,8 +1,8 @@
 //! What acts on links at points of them, besides other links.
 
-use super::{Attachment, Connector, Crane, Cylinder, LoopJoint, Pin, Spanned, Vector, entries};
+use super::{Attachment, Connector, Contact, Crane, Cylinder, LoopJoint, Pin, Spanned, Vector, entries};
 
-/// A point of a link at which a load, a cylinder, a connector or a loop joint acts.
+/// A point of a link at which a load, a cylinder, a connector, the ground or a loop joint acts.
 #[derive(Clone, Copy, Debug)]
 pub struct Acting<'a> {
     /// The word for what acts there.
@@ -38,6 +38,9 @@ pub fn acting(crane: &Crane) -> Vec<Acting<'_>> {
         for end in [from, to].into_iter().chain(over) {
             all.extend(attached("connector", name, end));
         }
+    }
+    for Contact { name, link, at, .. } in entries(crane.contacts.as_ref()) {
+        all.push(Acting { kind: "contact", name, link, at: at.as_ref(), pushes: true });
     }
     for LoopJoint { name, from, to, .. } in entries(crane.loop_joints.as_ref()) {
         for end in [from, to] {

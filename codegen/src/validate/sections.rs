@@ -6,7 +6,7 @@
 use super::Check;
 use crate::chain::{
     Axis, Beam, BodyId, Cylinder, Force, Inside, Load, LoopJoint, Moduli, Outline, PadDirection, Section, Side,
-    Sliding, Value,
+    Sliding, Strain, Value,
 };
 use crate::expand::beam::Distribution;
 
@@ -183,6 +183,9 @@ fn pins(loads: &[Load], cylinders: &[Cylinder], connectors: &[Force], loop_joint
         if let Some(Sliding { pad, direction: PadDirection::Along(Axis::Y), .. }) = connector.strain.sliding() {
             let what = format!("pads {}", connector.name.trim_end_matches("_y"));
             pins.extend(pad.body.map(|body| pin(body, &pad.position, what)));
+        }
+        if let Strain::Depth { point, .. } = &connector.strain {
+            pins.extend(point.body.map(|body| pin(body, &point.position, format!("contact {}", connector.name))));
         }
         let points = connector.strain.line().map_or(&[][..], |line| &line.points);
         for (index, end) in points.iter().enumerate() {

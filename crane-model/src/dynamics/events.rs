@@ -7,7 +7,8 @@
 //! A⁺ v⁺ = A⁻ v⁻ + Jᵀ Δm u
 //! ```
 //!
-//! with the mass matrices before and after, the added mass Δm, and J of the point at which it is. Rigid drives keep their rates, and loops stay closed.
+//! with the mass matrices after the event and before it, but without what leaves at the same time, the added mass Δm, and J of the point at which it is.
+//! Rigid drives keep their rates, and loops stay closed. An event that would move the crane at once is refused.
 //! The energy `E⁺ − E⁻` that comes or goes with an event is [`Sample::event_work`].
 
 use nalgebra::{DVector, Vector3};
@@ -65,18 +66,45 @@ fn stopped(EventInfo { name, time, .. }: &EventInfo, settings: &Settings, why: &
 /// # Errors
 /// The crane has an event within the run.
 pub fn without_events(description: &Description, settings: &Settings, what: &str) -> Result<(), Stopped> {
-    let event = description.events.iter().find(|event| event.time < settings.duration);
+    let event = description.events.iter().find(|event| event.time <= settings.duration);
     event.map_or(Ok(()), |event| Err(stopped(event, settings, &format!("does not happen in {what}"))))
 }
 
-/// The rates after an event at a state; they go on if no mass is added.
-fn rates_after([before, after]: [&dyn DynCrane; 2], joins: Option<&JoinsInfo>, q: &[f64], v: &[f64]) -> Vec<f64> {
-    let added = after.mass() - before.mass();
-    let Some(JoinsInfo { velocity, point }) = joins.filter(|_| added > 0.0) else { return v.to_vec() };
+/// The crane before an event, without the masses that leave with it.
+fn without_leaving(before: &dyn DynCrane, event: &EventInfo) -> Box<dyn DynCrane> {
+    let mut rest = before.boxed_clone();
+    for &(index, value) in event.changes.iter() {
+        let (mass, own) = (rest.mass(), rest.parameter(index));
+        let changed = rest.set_parameter(index, value).is_ok();
+        if changed && rest.mass() >= mass {
+            // It was allowed before.
+            let _ = rest.set_parameter(index, own);
+        }
+    }
+    rest
+}
+
+/// Why what joins at an event cannot: its velocity is that of one body.
+fn refused(event: &EventInfo, after: &dyn DynCrane, before: &dyn DynCrane) -> Option<String> {
+    event.joins?.point?;
+    let sizes = after.body_sizes_at().into_iter().zip(before.body_sizes_at());
+    let growing = sizes.zip(&*after.description().bodies).filter(|(([now, _], [mass, _]), _)| now > mass);
+    let names: Vec<&str> = growing.map(|(_, body)| body.name.as_str()).collect();
+    match names[..] {
+        [_] => None,
+        [] => Some("has a velocity of what joins, and adds no mass".to_owned()),
+        [..] => Some(format!("adds masses to {}, and their velocity is that of one point", names.join(", "))),
+    }
+}
+
+/// The rates after an event at a state; they go on if nothing joins.
+fn rates_after([before, after]: [&dyn DynCrane; 2], event: &EventInfo, q: &[f64], v: &[f64]) -> Vec<f64> {
+    let Some(JoinsInfo { velocity, point }) = &event.joins else { return v.to_vec() };
+    let rest = without_leaving(before, event);
     let rates = DVector::from_column_slice(v);
-    let mut momentum = before.mass_matrix_at(q) * &rates;
+    let mut momentum = rest.mass_matrix_at(q) * &rates;
     if let Some(point) = *point {
-        let joining = added * Vector3::from(*velocity);
+        let joining = (after.mass() - rest.mass()) * Vector3::from(*velocity);
         let mut unit = vec![0.0; v.len()];
         for (index, momentum) in momentum.iter_mut().enumerate() {
             unit[index] = 1.0;
@@ -96,6 +124,25 @@ fn rates_after([before, after]: [&dyn DynCrane; 2], joins: Option<&JoinsInfo>, q
     free.iter().zip(&solved).for_each(|(index, rate)| rates[*index] = *rate);
     rates
 }
+
+/// How an event would move the crane, or what follows from rigid drives, at once: from a state to that in which a run would go on.
+fn jump(description: &Description, before: &InitialState, after: &Sample<'_>) -> Option<String> {
+    let far = |one: f64, other: f64| (one - other).abs() > NO_JUMP * (1.0 + one.abs());
+    let prescribed = description.prescribed();
+    (0..before.q.len()).find_map(|index| {
+        let name = description.coordinates[index].name.as_str();
+        let moves =
+            |what: &str, from: f64, to: f64| format!("would move {name} from {what}{from:.6} to {what}{to:.6} at once");
+        if far(before.q[index], after.q[index]) {
+            return Some(moves("", before.q[index], after.q[index]));
+        }
+        let jumps = prescribed.contains(&index) && far(before.v[index], after.v[index]);
+        jumps.then(|| moves("a rate of ", before.v[index], after.v[index]))
+    })
+}
+
+/// Positions and rates that differ by less than this, m and rad, or of their size, are the same.
+const NO_JUMP: f64 = 1e-6;
 
 /// What earlier phases of a run did.
 #[derive(Default)]
@@ -159,22 +206,26 @@ pub fn simulate_events(
     }
     let phases = Phases::of(crane);
     let end = settings.duration;
-    if let Some((event, error)) = phases.refused.as_ref().filter(|(event, _)| event.time < end) {
+    if let Some((event, error)) = phases.refused.as_ref().filter(|(event, _)| event.time <= end) {
         return Err(stopped(event, settings, &format!("cannot happen: {error}")));
     }
     let intervals = divided(end, settings.output).0;
     let (mut done, mut state, mut next, mut begin) = (Done::default(), start.clone(), 0, 0.0);
     let energy = |crane: &dyn DynCrane, sample: &Sample<'_>| crane.energies_of(sample).total();
-    let mut energy_before = None;
-    let mut events = description.events.iter().zip(&phases.later).filter(|(event, _)| event.time < end);
+    let mut happened = None;
+    let mut events = description.events.iter().zip(&phases.later).filter(|(event, _)| event.time <= end);
     let mut present = crane;
     loop {
         let event = events.next();
         let until = event.map_or(end, |(event, _)| event.time);
         let settings = Settings { duration: until - begin, ..*settings };
         let mut integration = Integration::new(present, begin, &state, &settings)?;
-        // Rigid drives and loops may have moved what the event left.
-        done.energies[3] += energy_before.map_or(0.0, |before| energy(present, &integration.sample()) - before);
+        if let Some((event, before)) = happened {
+            if let Some(what) = jump(description, &state, &integration.sample()) {
+                return Err(stopped(event, &settings, &what));
+            }
+            done.energies[3] += energy(present, &integration.sample()) - before;
+        }
         while next <= intervals {
             let result = (settings.output * next as f64).min(end);
             if result > until || (event.is_some() && result >= until) {
@@ -196,8 +247,11 @@ pub fn simulate_events(
             return Ok(run);
         }
         let sample = done.add_to(integration.sample());
-        let v = rates_after([present, after.as_ref()], event.joins.as_ref(), sample.q, sample.v);
-        energy_before = Some(energy(present, &sample));
+        if let Some(why) = refused(event, after.as_ref(), present) {
+            return Err(stopped(event, &settings, &why));
+        }
+        let v = rates_after([present, after.as_ref()], event, sample.q, sample.v);
+        happened = Some((event, energy(present, &sample)));
         done.energies = [sample.work, sample.dissipated, sample.load_work, sample.event_work];
         state = InitialState { q: sample.q.to_vec(), v, x: sample.x.to_vec() };
         (present, begin) = (after.as_ref(), until);

@@ -160,7 +160,9 @@ impl Stopped {
                  loop",
                 self.coordinate
             ),
-            Cause::Event => "change what it sets, or remove it; a run that ends before it is not concerned".to_owned(),
+            Cause::Event => {
+                "change the event; or leave it out, by `events: ~` in a spec that extends this one, or by a run that ends before it".to_owned()
+            }
             Cause::MassMatrix => format!(
                 "give the links that {} moves a `mass` above zero, in kg, and an `inertia`, in kg m², if it only rotates them, or \
                  write `joint: fixed`; a parameter may have been set to zero",

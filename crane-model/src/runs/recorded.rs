@@ -185,6 +185,10 @@ pub fn check(
     let grows = !servos.is_empty();
     let of_run = cautions::of_run(crane, &recorded.table, bend);
     let of_energy = std::mem::take(&mut recorded.cautions);
+    let late = description.events.iter().filter(|event| event.time > settings.duration);
+    recorded.cautions.extend(late.map(|event| {
+        format!("event {} at {} s does not happen: the run ends at {} s", event.name, event.time, settings.duration)
+    }));
     recorded.cautions.extend([loads, servos, of_run, of_energy].concat());
     if !settings.method.is_adaptive() {
         let limit = step_limit(crane, start).map_or(f64::INFINITY, |bound| bound.limit.step);

@@ -55,6 +55,9 @@ pub fn factors(options: &arguments::Factors, registry: &Registry, out: &mut dyn 
         )));
     }
     let rows = rows(crane, (&recorded.table, &rest.table), &rest.instants);
+    if rows.is_empty() {
+        report.line("factors", "none: no drive, support, connector or beam with known stresses carries anything", "");
+    }
     let greatest = rows.iter().filter_map(|row| Some((row, row.factor?))).max_by(|a, b| a.1.total_cmp(&b.1));
     if let Some((row, factor)) = greatest {
         report.fact("greatest factor", factor, "");
@@ -65,7 +68,7 @@ pub fn factors(options: &arguments::Factors, registry: &Registry, out: &mut dyn 
         let name = format!("φ₂ of class {} at {speed} m/s, EN 1991-3", class.name());
         report.fact_as("tabulated_factor", name, class.factor(speed), "");
     }
-    add_events(&mut report, crane, recorded.run.time);
+    add_events(&mut report, &[(VALUE, crane, recorded.run.time)]);
     report.grid(table(&rows));
     report.show_all(options.analysis.all);
     options.analysis.format.print(&report, out)

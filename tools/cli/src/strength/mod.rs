@@ -16,7 +16,7 @@ use crane_model::{
     tipping::governing,
 };
 use crane_page::history::{Instant, instants};
-use crane_page::tables::{Case, Report, VALUE, verdicts};
+use crane_page::tables::{Case, Report, VALUE, add_events, verdicts};
 
 use crate::{
     arguments::{Limits, Strength, Timing},
@@ -113,6 +113,7 @@ pub fn history(
     for caution in &recorded.cautions {
         report.caution(Some(caution.as_str()));
     }
+    add_events(report, &[(VALUE, crane, recorded.run.time)]);
     Ok(instants(crane, recorded.table.rows.iter()))
 }
 

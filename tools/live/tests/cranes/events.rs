@@ -126,6 +126,56 @@ fn momentum_joins_with_what_is_gripped() {
     }
 }
 
+/// What is dropped at the same time flies on with its momentum: 50 of 100 kg that roll at 1 m/s are exchanged for 10 kg at rest.
+#[test]
+fn what_leaves_takes_its_momentum_and_what_joins_brings_its_own() {
+    let cart = |event: &str| {
+        crane(&format!(
+            "format: 1\nname: cart\nparameters: {{log: {{value: 50, unit: kg}}, sand: {{value: 0.001, unit: kg}}}}\n\
+             links:\n- {{name: cart, joint: {{prismatic: {{axis: x}}}}, mass: 50, com: [0, 0, 0]}}\n\
+             - {{name: load, joint: fixed, mass: log, com: [0, 0, 0]}}\n- {{name: bed, joint: fixed, mass: sand, com: [0, 0, 0]}}\n\
+             points: [{{name: bed, link: bed}}]\nanalyses: [dynamics]\nevents: [{{name: swap, at: 1, {event}}}]\n"
+        ))
+    };
+    let ends = |event: &str| {
+        let crane = cart(event);
+        let settings = settings(&crane, Method::DormandPrince, 1.0);
+        let crane: &dyn DynCrane = &crane;
+        let start = Start::with(crane, 0.0, None, Some(&[1.0])).expect("a start");
+        record(crane, &start, &settings, &mut |_| ControlFlow::Continue(()))
+    };
+    for (event, rate) in [
+        ("set: {log: 0.001}, joins: {}", 1.0),
+        ("set: {log: 0.001, sand: 10.001}, joins: {}", 50.002 / 60.002),
+        ("set: {log: 0.001, sand: 10.001}, joins: {velocity: [-2, 0, 0], point: bed}", (50.002 - 20.0) / 60.002),
+    ] {
+        // An event at the end of a run happens.
+        let table = ends(event).expect("a run").table;
+        let found = *column(&table, "cart_x_rate").last().expect("rows");
+        assert!((found - rate).abs() < 1e-12, "{event}: {found}, {rate}");
+        assert!(imbalance(&table, 0.0) < 1e-9, "{event}");
+    }
+    let told =
+        ends("set: {log: 0.001}, joins: {velocity: [1, 0, 0], point: bed}").expect_err("nothing joins").to_string();
+    assert!(told.contains("event `swap` has a velocity of what joins, and adds no mass"), "{told}");
+}
+
+/// An event does not move a crane at once: neither its rigid drives nor its loops.
+#[test]
+fn an_event_moves_nothing_at_once() {
+    let crane = crane(
+        "format: 1\nname: rd\nparameters: {to: {value: 1, unit: m}}\n\
+         links: [{name: a, joint: {prismatic: {axis: x}}, mass: 10, com: [0, 0, 0]}]\n\
+         drives: [{coordinate: a_x, rigid: true, motion: {quintic: {from: 0.5, to: to, duration: 2}}}]\n\
+         events: [{name: longer, at: 1, set: {to: 2}}]\n",
+    );
+    let settings = settings(&crane, Method::Bdf, 2.0);
+    let whole: &dyn DynCrane = &crane;
+    let start = Start::of(whole).expect("a start");
+    let told = record(whole, &start, &settings, &mut |_| ControlFlow::Continue(())).expect_err("a jump").to_string();
+    assert!(told.contains("event `longer` would move a_x from 0.750000 to 1.250000 at once"), "{told}");
+}
+
 /// A pendulum of 20 kg m² catches 5 kg at 2 m that fly at 3 m/s across it: (J + m L²) ω = m L u. Its trolley is held by a rigid drive.
 #[test]
 fn a_pendulum_catches_what_flies() {

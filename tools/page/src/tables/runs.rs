@@ -81,25 +81,36 @@ fn integral(table: &Table, values: &[f64]) -> f64 {
     t.windows(2).zip(values.windows(2)).map(|(t, values)| 0.5 * (values[0] + values[1]) * (t[1] - t[0])).sum()
 }
 
-/// Adds the tables of some runs of a crane: its events, work and time, and what its drives do.
-pub fn add_runs(report: &mut Report, crane: &dyn DynCrane, runs: &[(&str, &Recorded)]) {
-    add_events(report, crane, runs.iter().map(|(_, run)| run.run.time).fold(0.0, f64::max));
-    report.grid(summary(runs));
-    report.grid(duties(crane.description(), runs));
+/// Adds the tables of some runs: what happens, work and time, and what drives do.
+pub fn add_runs(report: &mut Report, description: &Description, runs: &[(&str, &dyn DynCrane, &Recorded)]) {
+    let recorded: Vec<(&str, &Recorded)> = runs.iter().map(|(label, _, run)| (*label, *run)).collect();
+    let cranes: Vec<(&str, &dyn DynCrane, f64)> =
+        runs.iter().map(|(label, crane, run)| (*label, *crane, run.run.time)).collect();
+    add_events(report, &cranes);
+    report.grid(summary(&recorded));
+    report.grid(duties(description, &recorded));
 }
 
-/// Adds what happens up to the end of a run, s, a row per event and parameter.
-pub fn add_events(report: &mut Report, crane: &dyn DynCrane, end: f64) {
-    let mut grid = Grid::new("events", "Events of the run", &["event", "time [s]", "parameter", "from", "to", "unit"]);
-    let description = crane.description();
-    let mut values: Vec<f64> = (0..description.parameters.len()).map(|index| crane.parameter(index)).collect();
-    for event in description.events.iter().filter(|event| event.time <= end) {
-        for &(index, value) in event.changes.iter() {
-            let parameter = &description.parameters[index];
-            let before = std::mem::replace(&mut values[index], value);
-            let [from, to] = [before, value].map(|value| Cell::of_unit(value, &parameter.unit));
-            let named = [event.name.as_str().into(), event.time.into(), parameter.name.as_str().into()];
-            grid.row(named.into_iter().chain([from, to, Cell::unit_of(&parameter.unit)]).collect::<Vec<_>>());
+/// Adds what happens to some cranes up to the ends of their runs, s: a row per event and parameter.
+pub fn add_events(report: &mut Report, cranes: &[(&str, &dyn DynCrane, f64)]) {
+    // Cranes with the same events, as one with rigid and with flexible beams, need them once.
+    let alike = cranes.windows(2).all(|pair| pair[0].1.description().events == pair[1].1.description().events);
+    let headers = ["event", "crane", "time [s]", "parameter", "from", "to", "unit"];
+    let headers: Vec<&str> = headers.into_iter().filter(|header| !alike || *header != "crane").collect();
+    let mut grid = Grid::new("events", "Events of the run", &headers);
+    for (label, crane, end) in cranes.iter().take(if alike { 1 } else { cranes.len() }) {
+        let description = crane.description();
+        let mut values: Vec<f64> = (0..description.parameters.len()).map(|index| crane.parameter(index)).collect();
+        for event in description.events.iter().filter(|event| event.time <= *end) {
+            for &(index, value) in event.changes.iter() {
+                let parameter = &description.parameters[index];
+                let before = std::mem::replace(&mut values[index], value);
+                let [from, to] = [before, value].map(|value| Cell::of_unit(value, &parameter.unit));
+                let of_crane = (!alike).then(|| Cell::from(*label));
+                let rest =
+                    [event.time.into(), parameter.name.as_str().into(), from, to, Cell::unit_of(&parameter.unit)];
+                grid.row([event.name.as_str().into()].into_iter().chain(of_crane).chain(rest).collect::<Vec<_>>());
+            }
         }
     }
     report.grid(grid);
