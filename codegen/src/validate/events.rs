@@ -63,7 +63,7 @@ impl<'a> Check<'a> {
     pub(super) fn events_allowed(&mut self, chain: &Chain, crane: &Crane) {
         let mut values = chain.parameter_defaults();
         for event in &chain.events {
-            for &(index, value) in event.changes.iter() {
+            for &(index, value) in &event.changes {
                 values[index] = value;
             }
             let below = event.changes.iter().find_map(|&(index, value)| {

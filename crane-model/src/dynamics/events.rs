@@ -34,8 +34,8 @@ impl<'a> Phases<'a> {
         let (mut later, mut refused) = (Vec::<(f64, Box<dyn DynCrane>)>::new(), None);
         let mut values: Vec<f64> =
             (0..crane.description().parameters.len()).map(|index| crane.parameter(index)).collect();
-        for event in crane.description().events.iter() {
-            for &(index, value) in event.changes.iter() {
+        for event in &crane.description().events {
+            for &(index, value) in &event.changes {
                 values[index] = value;
             }
             let mut changed = crane.boxed_clone();
@@ -73,7 +73,7 @@ pub fn without_events(description: &Description, settings: &Settings, what: &str
 /// The crane before an event, without the masses that leave with it.
 fn without_leaving(before: &dyn DynCrane, event: &EventInfo) -> Box<dyn DynCrane> {
     let mut rest = before.boxed_clone();
-    for &(index, value) in event.changes.iter() {
+    for &(index, value) in &event.changes {
         let (mass, own) = (rest.mass(), rest.parameter(index));
         let changed = rest.set_parameter(index, value).is_ok();
         if changed && rest.mass() >= mass {
@@ -167,7 +167,7 @@ impl Done {
     }
 
     /// Adds the run of a phase; returns all so far.
-    fn add(&mut self, run: Run, method: Method) -> Run {
+    fn add(&mut self, run: &Run, method: Method) -> Run {
         let Statistics { steps, rejections, evaluations, factorisations } = &mut self.statistics;
         *steps += run.statistics.steps;
         *rejections += run.statistics.rejections;
@@ -183,7 +183,7 @@ impl Done {
             }
         }
         let step = if method.is_adaptive() { run.time / (self.statistics.steps.max(1)) as f64 } else { run.step };
-        Run { statistics: self.statistics, step, efforts: self.efforts.clone(), ..run }
+        Run { statistics: self.statistics, step, efforts: self.efforts.clone(), ..run.clone() }
     }
 }
 
@@ -233,16 +233,16 @@ pub fn simulate_events(
             }
             let goes_on = integration.advance(result, &mut |t| watch.step(t))?.is_continue();
             if !goes_on || watch.sample(&done.add_to(integration.sample())).is_break() {
-                return Ok(done.add(integration.run(), settings.method));
+                return Ok(done.add(&integration.run(), settings.method));
             }
             next += 1;
         }
         let Some((event, (_, after))) = event else {
-            return Ok(done.add(integration.run(), settings.method));
+            return Ok(done.add(&integration.run(), settings.method));
         };
         integration.end_step_at_result();
         let goes_on = integration.advance(until, &mut |t| watch.step(t))?.is_continue();
-        let run = done.add(integration.run(), settings.method);
+        let run = done.add(&integration.run(), settings.method);
         if !goes_on {
             return Ok(run);
         }

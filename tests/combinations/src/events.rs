@@ -39,7 +39,7 @@ pub fn check_events(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     with_event["events"] = json!([{"name": "change", "at": time, "set": {name: value}}]);
     let crane = match live(&source(&with_event)) {
         Ok(crane) => crane,
-        Err(refused) => return Some(vec![refused.to_string()]),
+        Err(refused) => return Some(vec![refused]),
     };
     let q = equilibrium(&before).ok()?;
     let v: Vec<f64> = q.iter().map(|_| 0.02 * (2.0 * rng.f64() - 1.0)).collect();

@@ -55,15 +55,7 @@ pub fn vary(seed: u64, tree: &mut Tree) {
     if halts.bool() {
         slope(tree);
     }
-    // Likewise.
-    let mut ground = Rng::with_seed(seed ^ 0x6a6a);
-    if ground.u8(0..5) == 0 {
-        // As soft as what floats: on most poses it carries some hundred newtons, and changes little else.
-        let height = if ground.u8(0..4) == 0 { -5.0 } else { 4.0 };
-        let at = [0.1, round(0.2 * ground.f64()), -0.1];
-        tree["contacts"] =
-            json!([{"name": "lies", "link": "hook", "at": at, "height": height, "stiffness": 200, "damping": 0.2}]);
-    }
+    contact(seed, tree);
     // Likewise.
     let mut gusts = Rng::with_seed(seed ^ 0xa1a1);
     for load in entries(tree, "loads") {
@@ -182,6 +174,19 @@ fn slope(tree: &mut Tree) {
     let [along, size] = [gravity[0].hypot(gravity[1]), gravity.iter().map(|g| g * g).sum::<f64>().sqrt()];
     tree["gravity"] = json!([0, 0, -size]);
     tree["slope"] = json!({"angle": along.atan2(-gravity[2]), "towards": gravity[1].atan2(gravity[0])});
+}
+
+/// Puts the hook of every fifth crane onto the ground, with random numbers of its own.
+fn contact(seed: u64, tree: &mut Tree) {
+    let mut rng = Rng::with_seed(seed ^ 0x6a6a);
+    if rng.u8(0..5) != 0 {
+        return;
+    }
+    // As soft as what floats: on most poses it carries some hundred newtons, and changes little else.
+    let height = if rng.u8(0..4) == 0 { -5.0 } else { 4.0 };
+    let at = [0.1, round(0.2 * rng.f64()), -0.1];
+    tree["contacts"] =
+        json!([{"name": "lies", "link": "hook", "at": at, "height": height, "stiffness": 200, "damping": 0.2}]);
 }
 
 /// An emergency stop while most motions move.

@@ -118,6 +118,9 @@ const ORDER: [&str; 30] = [
 ];
 
 /// The text of a spec, ready to be run: one line per entry.
+///
+/// # Panics
+/// If the spec has a key without a place in a file.
 #[must_use]
 pub fn text(tree: &Tree) -> String {
     let mut text = String::new();

@@ -8,6 +8,7 @@ use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::{Method, Settings};
 use crane_model::results::Table;
 use crane_model::runs::{Start, imbalance, record};
+use crane_model::statics;
 
 const GRAVITY: f64 = 9.81;
 
@@ -77,7 +78,7 @@ fn the_ground_carries_its_share() {
              contacts: [{{name: lies, link: end, height: step, stiffness: 1e7, damping: 0.5}}]\nguess: {{rod_theta: -0.2}}\n"
         ));
         let whole: &dyn DynCrane = &rod;
-        let equilibrium = whole.equilibrium(&Default::default());
+        let equilibrium = whole.equilibrium(&statics::Settings::default());
         assert!(equilibrium.is_stable(), "{equilibrium}");
         let tension = whole.connector_tensions_at(0.0, &equilibrium.q, &[0.0])[0].force;
         assert!((tension - share * GRAVITY).abs() < 1e-7 * share * GRAVITY, "{tension} N");

@@ -102,7 +102,7 @@ pub fn add_events(report: &mut Report, cranes: &[(&str, &dyn DynCrane, f64)]) {
         let description = crane.description();
         let mut values: Vec<f64> = (0..description.parameters.len()).map(|index| crane.parameter(index)).collect();
         for event in description.events.iter().filter(|event| event.time <= *end) {
-            for &(index, value) in event.changes.iter() {
+            for &(index, value) in &event.changes {
                 let parameter = &description.parameters[index];
                 let before = std::mem::replace(&mut values[index], value);
                 let [from, to] = [before, value].map(|value| Cell::of_unit(value, &parameter.unit));
