@@ -1,6 +1,8 @@
-//! Slack ropes.
+//! Slack ropes, and points that touch the ground unseen.
 
-use super::{Extremes, Table, connector_force};
+use crane_quantities::ColumnKind;
+
+use super::{Extremes, Table, column_name, connector_force};
 use crate::{ConnectorInfo, Description, dyn_crane::DynCrane};
 
 /// Ropes that are slack at a pose at rest.
@@ -11,9 +13,35 @@ pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
     slack.map(|(rope, _)| format!("rope {} is slack", rope.name)).collect()
 }
 
-/// Ropes that are slack at times in a run.
+/// Ropes that are slack at times in a run, and contacts between two results.
 pub(super) fn of_run(description: &Description, table: &Table) -> Vec<String> {
-    description.connectors.iter().filter_map(|connector| goes_slack(connector, table)).collect()
+    let connectors = description.connectors.iter();
+    connectors.filter_map(|connector| goes_slack(connector, table).or_else(|| bounces(connector, table))).collect()
+}
+
+/// Reports a point that touches the ground between two results, where its force is not recorded: it sinks at the first, fast enough to reach the ground,
+/// and rises at the second.
+fn bounces(connector: &ConnectorInfo, table: &Table) -> Option<String> {
+    if !connector.is_contact {
+        return None;
+    }
+    let named = |kind| table.values(&column_name(kind, &connector.name, false)).map(Iterator::collect::<Vec<_>>);
+    let [depth, rate, force] =
+        [ColumnKind::Strain(connector.strain()), ColumnKind::StrainRate(connector.strain()), connector.effort()]
+            .map(named);
+    let (depth, rate, force) = (depth?, rate?, force?);
+    let touches = |k: &usize| {
+        let [here, next] = [*k, k + 1];
+        let free = force[here] == 0.0 && force[next] == 0.0;
+        let interval = table.rows[next][0] - table.rows[here][0];
+        free && rate[here] > 0.0 && rate[next] < 0.0 && depth[here] + rate[here].max(-rate[next]) * interval > 0.0
+    };
+    let first = (0..depth.len().saturating_sub(1)).find(touches)?;
+    let [begin, end] = [first, first + 1].map(|row| table.rows[row][0]);
+    Some(format!(
+        "contact {} touches the ground between two results, from {begin:.4} to {end:.4} s, where its force is missed; write a smaller `output`",
+        connector.name
+    ))
 }
 
 /// Reports when a rope is first slack in a run, for how long in total, and its largest force.

@@ -7,7 +7,7 @@ use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::{Method, Settings};
 use crane_model::results::Table;
-use crane_model::runs::{Start, imbalance, record};
+use crane_model::runs::{Start, imbalance, record, record_checked};
 use crane_model::statics;
 
 const GRAVITY: f64 = 9.81;
@@ -86,6 +86,27 @@ fn the_ground_carries_its_share() {
         let [depth, _] = whole.connector_lengths_at(&equilibrium.q, &[0.0])[0];
         assert!((depth - tension / 1e7).abs() < 1e-12, "{depth} m");
         assert!((-2.0 * equilibrium.q[0].sin() - 0.2 + depth).abs() < 1e-12, "{:?}", equilibrium.q);
+    }
+}
+
+/// A load that falls 1 m and bounces between two results leaves no force in them: the run says so, and one with results during the contact does not.
+#[test]
+fn a_bounce_between_two_results_is_told() {
+    let falls = crane(
+        "format: 1\nname: falls\nlinks: [{name: load, joint: {prismatic: {axis: z}}, mass: 100, com: [0, 0, 0]}]\n\
+         contacts: [{name: ground, link: load, height: -1, stiffness: 1e7}]\nanalyses: [dynamics]\n",
+    );
+    for (output, told) in [(0.05, true), (1e-3, false)] {
+        let settings = Settings { duration: 0.6, output, tolerance: 1e-7, ..Settings::of(falls.description()) };
+        let whole: &dyn DynCrane = &falls;
+        let start = Start::of(whole).expect("a start");
+        let recorded =
+            record_checked(whole, &start, &settings, (false, 20.0), &mut |_| ControlFlow::Continue(())).expect("a run");
+        let most = column(&recorded.table, "ground_force").into_iter().fold(0.0, f64::max);
+        assert_eq!(most == 0.0, told, "{most} N");
+        let found =
+            recorded.cautions.iter().any(|caution| caution.starts_with("contact ground touches the ground between"));
+        assert_eq!(found, told, "{:?}", recorded.cautions);
     }
 }
 
