@@ -61,18 +61,20 @@ impl<'a> Check<'a> {
 
     /// What events set obeys the rules of the language, one event after the other.
     pub(super) fn events_allowed(&mut self, chain: &Chain, crane: &Crane) {
-        let mut values = chain.parameter_defaults();
+        if chain.events.is_empty() {
+            return;
+        }
+        let (parameters, mut values) = (chain.description().parameters, chain.parameter_defaults());
         for event in &chain.events {
             for &(index, value) in &event.changes {
                 values[index] = value;
             }
             let below = event.changes.iter().find_map(|&(index, value)| {
-                let bound = chain.parameters[index].lower_bound.as_ref()?;
-                let is_below = value < bound.value || (value.to_bits() == bound.value.to_bits() && !bound.allowed);
-                is_below.then(|| (format!("{} {value}", bound.refusal.title), &bound.refusal))
+                let refusal = parameters[index].check(value).err()?.refusal;
+                Some((format!("{} {value}", refusal.title), refusal))
             });
             let broken = below.or_else(|| {
-                let refusal = &chain.broken_relation(&values)?.refusal;
+                let refusal = chain.broken_relation(&values)?.refusal.clone();
                 Some((refusal.title.to_string(), refusal))
             });
             let Some((title, refusal)) = broken else { continue };

@@ -5,17 +5,17 @@ use std::io::Write;
 use crane_model::{
     Description, DisplayUnit, SectionModuli,
     dyn_crane::DynCrane,
-    dynamics::Method,
     results::{Column, Extremes, Instant, Table, instants},
     runs::QuasiStatic,
 };
-use crane_page::tables::{Case, Cell, Grid, Report, VALUE, add_events, verdicts};
+use crane_page::tables::{Case, Cell, Grid, Report, VALUE, verdicts};
 
 use crate::{
     arguments::{self, HoistingClass},
-    integration::{progress, record_checked, show},
+    integration::{progress, show},
     problem::{Outcome, Problem},
     selection::Registry,
+    strength,
 };
 
 /// Poses at rest along the manoeuvre, at most.
@@ -34,14 +34,9 @@ pub fn factors(options: &arguments::Factors, registry: &Registry, out: &mut dyn 
         options.analysis.format.print(&report, out)?;
         return Ok(case.stable()?);
     }
-    let start = options.timing.start(crane, false)?;
-    let settings = options.timing.settings(crane, &start, Method::RECOMMENDED)?;
-    let bar = progress(settings.duration);
-    let checks = (!options.timing.no_verify, options.analysis.crane.limits);
-    let recorded = record_checked(crane, &start, &settings, checks, &bar)?;
-    for caution in &recorded.cautions {
-        report.caution(Some(caution.as_str()));
-    }
+    let timing = (&options.timing, options.analysis.crane.limits);
+    let (start, recorded) = strength::record_manoeuvre(timing, crane, &mut report)?;
+    let bar = progress(recorded.run.time);
     let rest = QuasiStatic::along(crane, &start, &recorded.table, POSES, &mut show(&bar));
     bar.finish_and_clear();
     if rest.instants.is_empty() {
@@ -68,7 +63,6 @@ pub fn factors(options: &arguments::Factors, registry: &Registry, out: &mut dyn 
         let name = format!("φ₂ of class {} at {speed} m/s, EN 1991-3", class.name());
         report.fact_as("tabulated_factor", name, class.factor(speed), "");
     }
-    add_events(&mut report, &[(VALUE, crane, recorded.run.time)]);
     report.grid(table(&rows));
     report.show_all(options.analysis.all);
     options.analysis.format.print(&report, out)

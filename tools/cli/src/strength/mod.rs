@@ -13,6 +13,7 @@ use crane_model::{
     dyn_crane::DynCrane,
     dynamics::Method,
     results::{KeyFigure, cautions},
+    runs::{Recorded, Start},
     tipping::governing,
 };
 use crane_page::history::{Instant, instants};
@@ -100,11 +101,17 @@ fn along(timing: (&Timing, Limits), crane: &dyn DynCrane, report: &mut Report) -
 }
 
 /// Loads along the manoeuvre, one entry per result, with the cautions of the run.
-pub fn history(
+pub fn history(timing: (&Timing, Limits), crane: &dyn DynCrane, report: &mut Report) -> Outcome<Vec<Instant>> {
+    let (_, recorded) = record_manoeuvre(timing, crane, report)?;
+    Ok(instants(crane, recorded.table.rows.iter()))
+}
+
+/// Runs the manoeuvre from its start, and reports its cautions and events.
+pub fn record_manoeuvre(
     (timing, limits): (&Timing, Limits),
     crane: &dyn DynCrane,
     report: &mut Report,
-) -> Outcome<Vec<Instant>> {
+) -> Outcome<(Start, Recorded)> {
     let start = timing.start(crane, false)?;
     let settings = timing.settings(crane, &start, Method::RECOMMENDED)?;
     let bar = progress(settings.duration);
@@ -114,7 +121,7 @@ pub fn history(
         report.caution(Some(caution.as_str()));
     }
     add_events(report, &[(VALUE, crane, recorded.run.time)]);
-    Ok(instants(crane, recorded.table.rows.iter()))
+    Ok((start, recorded))
 }
 
 /// How far the crane is from tipping.
