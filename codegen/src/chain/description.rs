@@ -60,6 +60,7 @@ impl Chain {
             falls: connector.strain.line().map_or(1, |line| line.falls as usize),
             kind: self.kind_of(&connector.strain),
             is_rope: connector.is_rope(),
+            max_tension: connector.max_tension(),
             is_contact: connector.is_contact(),
             spanned: Chain::range(&self.spanned(&connector.strain)),
             pieces: connector.pieces(),

@@ -79,6 +79,8 @@ pub struct Rope {
     pub damping: Value,
     /// ℓ₀(t), m: its length without force; a winch changes it.
     pub length: Profile,
+    /// The largest tension at work, N; it has no mechanical effect.
+    pub max_tension: Option<f64>,
 }
 
 /// A pad on both sides of what it holds, with clearance: `F = k (s − h + h/1000) + d ṡ` with `h = clamp(s, −c, c)`.
@@ -198,6 +200,15 @@ impl Force {
     #[must_use]
     pub fn is_rope(&self) -> bool {
         matches!(self.law, Law::Rope(_)) && !self.is_contact()
+    }
+
+    /// The largest tension that a rope may carry at work, N.
+    #[must_use]
+    pub fn max_tension(&self) -> Option<f64> {
+        match &self.law {
+            Law::Rope(rope) => rope.max_tension,
+            _ => None,
+        }
     }
 
     /// Whether it is the contact of a point with the ground.

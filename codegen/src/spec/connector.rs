@@ -104,4 +104,6 @@ pub struct Rope {
     pub motion: Option<Spanned<Motion>>,
     /// An emergency stop of the winch. Default: none.
     pub halt: Option<Spanned<Halt>>,
+    /// The largest tension that it may carry at work, N; more causes a caution, and limits loads of charts. Default: none.
+    pub max_tension: Option<Spanned<Constant>>,
 }

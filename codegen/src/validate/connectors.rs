@@ -59,6 +59,7 @@ impl<'a> Check<'a> {
                 stiffness: RopeStiffness::Whole(stiffness),
                 damping,
                 length: Profile::Hold(Value::ZERO),
+                max_tension: None,
             });
             contacts.push(Force { group: Group::Connectors, name, strain: Strain::Depth { point, height }, law });
         }
@@ -236,7 +237,9 @@ impl<'a> Check<'a> {
     fn rope_law(&mut self, rope: &spec::Rope, span: Span, name: &str) -> Law {
         let damping = self.point_number(rope.damping.as_ref(), (name, "damping"), "s/m", Limit::NotNegative);
         let length = self.rope_length(rope, span, name);
-        Law::Rope(Rope { stiffness: self.rope_stiffness(rope, span, name, &length), damping, length })
+        let place = format!("the largest tension of rope `{name}`");
+        let max_tension = rope.max_tension.as_ref().map(|given| self.constant(given, &place, "N", Limit::Positive));
+        Law::Rope(Rope { stiffness: self.rope_stiffness(rope, span, name, &length), damping, length, max_tension })
     }
 
     /// A stiffness that stays the same, or EA of a rope whose length changes.

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Limit, Limits, PartLimit};
+use super::{Limit, Limits};
 use crate::{
     Description,
     dyn_crane::DynCrane,
@@ -33,8 +33,8 @@ pub struct Condition {
     pub stops: Vec<f64>,
     /// Forces of the connectors, N and N m.
     pub connectors: Vec<f64>,
-    /// How far each stage of a telescope is in its outer beam, m, and its first body.
-    pub overlaps: Vec<(usize, f64)>,
+    /// The first body of each stage of a telescope, its overlap with the outer beam, and how much further it may be pushed in, m; negative beyond.
+    pub overlaps: Vec<(usize, [f64; 2])>,
     /// Positions of the points of interest, m.
     pub points: Vec<Vector3<f64>>,
     /// Origin of the last body's frame, m.
@@ -88,97 +88,123 @@ impl Condition {
     }
 
     /// The limits that it is beyond; deflections are measured from here.
-    pub fn exceeded(&self, crane: &dyn DynCrane, limits: &Limits) -> Vec<Limit> {
-        let slacks = self.slacks(crane.description(), &limits.with_max_efforts(crane), &self.points);
-        slacks.into_iter().filter(|(_, slack)| *slack < 0.0).map(|(limit, _)| limit).collect()
+    pub fn exceeded(&self, crane: &dyn DynCrane, limits: &Limits) -> Vec<Margin> {
+        let margins = self.margins(crane.description(), &limits.with_max_efforts(crane), &self.points);
+        margins.into_iter().filter(|margin| margin.slack < 0.0).collect()
     }
 
-    /// The remaining margin to each limit, relative to the limit except for tipping: 0 at the limit, negative beyond.
-    pub(super) fn slacks(
+    /// What is left of each limit; deflections are measured from `reference`.
+    pub(super) fn margins(
         &self,
         description: &Description,
         limits: &Limits,
         reference: &[Vector3<f64>],
-    ) -> Vec<(Limit, f64)> {
-        let mut slacks = Vec::new();
-        if let Some(least) = limits.tipping {
+    ) -> Vec<Margin> {
+        let mut found = Margins { limits, description, all: Vec::new() };
+        for line in &self.lines {
             // Where the crane has tipped, rounding decides the sign of its margin.
-            let left = |line: &TippingLine| if line.has_tipped { -1.0 } else { line.margin() - least };
-            let slack = |line: &TippingLine| (Limit::Tipping { feet: line.feet }, left(line));
-            slacks.extend(self.lines.iter().map(slack));
+            let value = if line.has_tipped { line.margin().min(-1.0) } else { line.margin() };
+            found.add(Limit::Tipping { feet: line.feet }, value, |least| value - least);
         }
-        if let Some(greatest) = limits.utilisation {
-            let slack = |section: &StressedSection| {
-                Some((Limit::Utilisation { section: section.place.section }, 1.0 - section.utilisation? / greatest))
-            };
-            slacks.extend(self.sections.iter().filter_map(slack));
+        for section in &self.sections {
+            let limit = Limit::Utilisation { section: section.place.section };
+            section.utilisation.into_iter().for_each(|utilisation| found.at_most(limit, utilisation));
         }
-        let limited = |(_, (_, limit)): &(usize, (_, &f64))| limit.is_finite();
-        let efforts = self.efforts.iter().zip(&limits.efforts).enumerate().filter(limited);
-        slacks.extend(
-            efforts.map(|(drive, (effort, greatest))| (Limit::Effort { drive }, 1.0 - effort.abs() / greatest)),
-        );
-        for (point, ((to, from), greatest)) in self.points.iter().zip(reference).zip(&limits.deflections).enumerate() {
-            if greatest.is_finite() {
-                slacks.push((Limit::Deflection { point }, 1.0 - (to - from).norm() / greatest));
-            }
+        for (drive, effort) in self.efforts.iter().enumerate() {
+            found.at_most(Limit::Effort { drive }, effort.abs());
         }
-        self.of_cylinders(description, limits, &mut slacks);
-        self.of_contacts(description, limits, &mut slacks);
-        slacks
+        for (point, (to, from)) in self.points.iter().zip(reference).enumerate() {
+            found.at_most(Limit::Deflection { point }, (to - from).norm());
+        }
+        self.of_cylinders(&mut found);
+        self.of_contacts(&mut found);
+        self.of_ropes_and_stages(&mut found);
+        found.all
     }
 
     /// Pressures and strokes.
-    fn of_cylinders(&self, description: &Description, limits: &Limits, slacks: &mut Vec<(Limit, f64)>) {
-        let pump = description.pump.and_then(|pump| pump.pressure).filter(|_| limits.has(PartLimit::Pump));
-        for (cylinder, (info, state)) in description.cylinders.iter().zip(&self.cylinders).enumerate() {
+    fn of_cylinders(&self, found: &mut Margins<'_>) {
+        for (cylinder, (info, state)) in found.description.cylinders.iter().zip(&self.cylinders).enumerate() {
             for (rod, pressure) in [false, true].into_iter().zip(state.pressures) {
-                if let Some(greatest) = info.max_pressure.filter(|_| limits.has(PartLimit::Pressure)) {
-                    slacks.push((Limit::Pressure { cylinder, rod }, 1.0 - pressure / greatest));
-                }
-                slacks.extend(pump.map(|pump| (Limit::Pump { cylinder, rod }, 1.0 - pressure / pump)));
+                found.at_most(Limit::Pressure { cylinder, rod }, pressure);
+                found.at_most(Limit::Pump { cylinder, rod }, pressure);
             }
-            if limits.has(PartLimit::Stroke) {
-                let extension = state.extension(info) / info.stroke;
-                let left = extension.min(1.0 - extension) + ROUNDING;
+            for (extended, sign) in [(false, 1.0), (true, -1.0)] {
                 // A linkage that cannot be assembled has no length.
-                slacks.push((Limit::Stroke { cylinder }, if extension.is_nan() { f64::NEG_INFINITY } else { left }));
+                let left = |end: f64| match sign * (state.length - end) / info.stroke {
+                    left if left.is_nan() => f64::NEG_INFINITY,
+                    left => left + ROUNDING,
+                };
+                found.add(Limit::Stroke { cylinder, extended }, state.length, left);
             }
         }
     }
 
-    /// Stops that are touched, feet that carry nothing, ropes without tension, and stages without overlap.
-    fn of_contacts(&self, description: &Description, limits: &Limits, slacks: &mut Vec<(Limit, f64)>) {
-        if limits.has(PartLimit::Stops) {
-            let driven = |coordinate: usize| description.drives.iter().any(|drive| drive.coordinate == coordinate);
-            let stops = description.stops.iter().zip(&self.stops).filter(|(coordinate, _)| driven(**coordinate));
-            slacks
-                .extend(stops.map(|(&coordinate, effort)| {
-                    (Limit::Stop { coordinate }, if *effort == 0.0 { 1.0 } else { -1.0 })
-                }));
+    /// Stops that are touched, feet that slide or carry nothing.
+    fn of_contacts(&self, found: &mut Margins<'_>) {
+        let Description { drives, stops, .. } = found.description;
+        for (&coordinate, effort) in stops.iter().zip(&self.stops) {
+            if drives.iter().any(|drive| drive.coordinate == coordinate) {
+                found.add(Limit::Stop { coordinate }, *effort, |none| if *effort == none { 1.0 } else { -1.0 });
+            }
         }
-        if limits.has(PartLimit::Sliding) {
-            let longest = self.utilisations_of_friction.iter().min_by(|a, b| a.1.total_cmp(&b.1));
-            slacks.extend(longest.map(|&(foot, utilisation)| (Limit::Sliding { foot }, 1.0 - utilisation)));
-        }
-        if limits.has(PartLimit::LiftOff) {
-            let sizes = self.feet.iter().map(|[force, _]| force.abs());
-            let mean = (sizes.sum::<f64>() / self.feet.len().max(1) as f64).max(f64::MIN_POSITIVE);
+        let longest = self.utilisations_of_friction.iter().min_by(|a, b| a.1.total_cmp(&b.1));
+        longest.into_iter().for_each(|&(foot, utilisation)| found.at_most(Limit::Sliding { foot }, utilisation));
+        let sizes = self.feet.iter().map(|[force, _]| force.abs());
+        let mean = (sizes.sum::<f64>() / self.feet.len().max(1) as f64).max(f64::MIN_POSITIVE);
+        for (foot, &[force, gap]) in self.feet.iter().enumerate() {
             // A gap has another unit than a force: only its sign counts.
-            let slack = |[force, gap]: &[f64; 2]| if *gap > 0.0 { -gap } else { force / mean };
-            slacks
-                .extend(self.feet.iter().enumerate().map(|(foot, contact)| (Limit::LiftOff { foot }, slack(contact))));
+            found.add(Limit::LiftOff { foot }, force, |none| if gap > 0.0 { -gap } else { (force - none) / mean });
         }
-        if limits.has(PartLimit::SlackRopes) {
-            let ropes = description.connectors.iter().zip(&self.connectors).enumerate();
-            let ropes = ropes.filter(|(_, (info, _))| info.is_rope);
-            slacks.extend(ropes.map(|(rope, (_, force))| {
-                (Limit::Slack { rope }, if *force > 0.0 { force / UNIT_OF_TENSION } else { -1.0 })
-            }));
+    }
+
+    /// Ropes without tension or with too much, and stages that have left their outer beams.
+    fn of_ropes_and_stages(&self, found: &mut Margins<'_>) {
+        for (rope, (info, &force)) in found.description.connectors.iter().zip(&self.connectors).enumerate() {
+            if info.is_rope {
+                let left = |none: f64| if force > none { (force - none) / UNIT_OF_TENSION } else { -1.0 };
+                found.add(Limit::Slack { rope }, force, left);
+                found.at_most(Limit::Tension { rope }, force);
+            }
         }
-        if limits.has(PartLimit::Overlap) {
-            slacks.extend(self.overlaps.iter().map(|&(body, overlap)| (Limit::Overlap { body }, overlap)));
+        for &(body, [overlap, left]) in &self.overlaps {
+            found.add(Limit::Overlap { body, pushed: false }, overlap, |none| overlap - none);
+            found.add(Limit::Overlap { body, pushed: true }, left, |none| left - none);
         }
+    }
+}
+
+/// A number of a crane at rest beside its bound.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Margin {
+    /// What is limited.
+    pub limit: Limit,
+    /// The number, in SI units.
+    pub value: f64,
+    /// Its [bound](Limits::bound).
+    pub bound: f64,
+    /// What is left, relative to the bound except for tipping, ends of strokes, lift-off, slack ropes and overlaps: 0 at the bound, negative beyond.
+    pub slack: f64,
+}
+
+/// Margins that are being collected.
+struct Margins<'a> {
+    limits: &'a Limits,
+    description: &'a Description,
+    all: Vec<Margin>,
+}
+
+impl Margins<'_> {
+    /// Adds a number, if it has a bound. `slack`: what is left of the bound.
+    fn add(&mut self, limit: Limit, value: f64, slack: impl FnOnce(f64) -> f64) {
+        if let Some(bound) = self.limits.bound(limit, self.description) {
+            self.all.push(Margin { limit, value, bound, slack: slack(bound) });
+        }
+    }
+
+    /// Adds a positive number that must not exceed its bound.
+    fn at_most(&mut self, limit: Limit, value: f64) {
+        self.add(limit, value, |bound| 1.0 - value / bound);
     }
 }
 

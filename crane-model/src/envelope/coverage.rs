@@ -17,7 +17,7 @@ pub struct Coverage {
 }
 
 /// What no limit of a load at rest covers.
-const NEVER: [&str; 3] = ["motion", "buckling and fatigue", "hook, slings and the strength of ropes"];
+const NEVER: [&str; 3] = ["motion", "buckling and fatigue", "hook and slings"];
 /// Horizontal part of the weight from which the ground is a slope: above rounding.
 const SLOPE: f64 = 1e-9;
 
@@ -166,14 +166,19 @@ impl Coverage {
     }
 
     fn ropes(&mut self, description: &Description, limits: &Limits) {
-        let ropes: Vec<&str> = description
-            .connectors
-            .iter()
-            .filter(|connector| connector.is_rope)
-            .map(|connector| connector.name.as_str())
-            .collect();
-        if !ropes.is_empty() {
-            self.add(limits.has(PartLimit::SlackRopes), format!("slack of {}", ropes.join(", ")));
+        let ropes: Vec<_> = description.connectors.iter().filter(|connector| connector.is_rope).collect();
+        if ropes.is_empty() {
+            return;
+        }
+        let names: Vec<&str> = ropes.iter().map(|rope| rope.name.as_str()).collect();
+        self.add(limits.has(PartLimit::SlackRopes), format!("slack of {}", names.join(", ")));
+        for rope in ropes {
+            match rope.max_tension {
+                Some(most) => {
+                    self.add(limits.has(PartLimit::Tension), format!("a tension of {} of at most {most} N", rope.name));
+                }
+                None => self.add(false, format!("the strength of rope {}: it has no `max_tension`", rope.name)),
+            }
         }
     }
 
@@ -201,7 +206,7 @@ impl Coverage {
         if !stages.is_empty() {
             self.add(
                 limits.has(PartLimit::Overlap),
-                format!("an overlap of {} with the outer beam", stages.join(", ")),
+                format!("an overlap of {} with the outer beam that is neither lost nor too long", stages.join(", ")),
             );
         }
     }

@@ -36,13 +36,15 @@ pub enum PartLimit {
     LiftOff,
     /// Ropes without tension.
     SlackRopes,
-    /// Stages of telescopes that have left their outer beams.
+    /// The largest tension of each rope, `max_tension`.
+    Tension,
+    /// Stages of telescopes that have left their outer beams, or are pushed in too far.
     Overlap,
 }
 
 impl PartLimit {
     /// Every kind.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Pressure,
         Self::Pump,
         Self::Stroke,
@@ -51,11 +53,20 @@ impl PartLimit {
         Self::Sliding,
         Self::LiftOff,
         Self::SlackRopes,
+        Self::Tension,
         Self::Overlap,
     ];
     /// What no crane can exceed. A foot may lift and a rope may be slack in normal work.
-    pub const DEFAULT: [Self; 7] =
-        [Self::Pressure, Self::Pump, Self::Stroke, Self::Stops, Self::MaxEffort, Self::Sliding, Self::Overlap];
+    pub const DEFAULT: [Self; 8] = [
+        Self::Pressure,
+        Self::Pump,
+        Self::Stroke,
+        Self::Stops,
+        Self::MaxEffort,
+        Self::Sliding,
+        Self::Tension,
+        Self::Overlap,
+    ];
 
     /// Its name in options.
     pub fn name(self) -> &'static str {
@@ -68,6 +79,7 @@ impl PartLimit {
             PartLimit::Sliding => "sliding",
             PartLimit::LiftOff => "lift-off",
             PartLimit::SlackRopes => "slack-ropes",
+            PartLimit::Tension => "tension",
             PartLimit::Overlap => "overlap",
         }
     }
@@ -118,6 +130,39 @@ impl Limits {
         }
         limits
     }
+
+    /// The number that a limit compares with, in SI units; `None` if it is not among the limits, or has no number. Limits of efforts are those of
+    /// [`with_max_efforts`](Self::with_max_efforts).
+    ///
+    /// | limit | its number is compared with |
+    /// |---|---|
+    /// | tipping | the least margin |
+    /// | utilisation, deflection | the greatest |
+    /// | effort | the greatest, in either direction |
+    /// | pressure, pump | `max_pressure`, the pressure of the pump |
+    /// | stroke | the length of the cylinder at that end |
+    /// | sliding | 1: all of the friction |
+    /// | tension | `max_tension` |
+    /// | stops, lift-off, slack ropes, overlap | 0 |
+    pub fn bound(&self, limit: Limit, description: &Description) -> Option<f64> {
+        let number = match limit {
+            Limit::Equilibrium => None,
+            Limit::Tipping { .. } => self.tipping,
+            Limit::Utilisation { .. } => self.utilisation,
+            Limit::Effort { drive } => self.efforts.get(drive).copied(),
+            Limit::Deflection { point } => self.deflections.get(point).copied(),
+            Limit::Pressure { cylinder, .. } => description.cylinders[cylinder].max_pressure,
+            Limit::Pump { .. } => description.pump.and_then(|pump| pump.pressure),
+            Limit::Stroke { cylinder, extended } => {
+                let info = &description.cylinders[cylinder];
+                Some(if extended { info.retracted + info.stroke } else { info.retracted })
+            }
+            Limit::Sliding { .. } => Some(1.0),
+            Limit::Tension { rope } => description.connectors[rope].max_tension,
+            Limit::Stop { .. } | Limit::LiftOff { .. } | Limit::Slack { .. } | Limit::Overlap { .. } => Some(0.0),
+        };
+        number.filter(|number| number.is_finite() && limit.part().is_none_or(|part| self.has(part)))
+    }
 }
 
 /// A limit that governs.
@@ -163,6 +208,8 @@ pub enum Limit {
     Stroke {
         /// Index of the cylinder.
         cylinder: usize,
+        /// Which end of it: fully extended, or fully retracted.
+        extended: bool,
     },
     /// The end stop of a driven coordinate.
     Stop {
@@ -184,10 +231,17 @@ pub enum Limit {
         /// Index of the connector.
         rope: usize,
     },
+    /// The largest tension of a rope.
+    Tension {
+        /// Index of the connector.
+        rope: usize,
+    },
     /// A stage of a telescope that has left its outer beam.
     Overlap {
         /// Index of the first body of the stage.
         body: usize,
+        /// Whether it is pushed in too far, not drawn out.
+        pushed: bool,
     },
 }
 
@@ -200,14 +254,35 @@ impl Limit {
             Limit::Utilisation { .. } => "utilisation",
             Limit::Effort { .. } => "effort",
             Limit::Deflection { .. } => "deflection",
-            Limit::Pressure { .. } => PartLimit::Pressure.name(),
-            Limit::Pump { .. } => PartLimit::Pump.name(),
-            Limit::Stroke { .. } => PartLimit::Stroke.name(),
-            Limit::Stop { .. } => PartLimit::Stops.name(),
-            Limit::Sliding { .. } => PartLimit::Sliding.name(),
-            Limit::LiftOff { .. } => PartLimit::LiftOff.name(),
-            Limit::Slack { .. } => PartLimit::SlackRopes.name(),
-            Limit::Overlap { .. } => PartLimit::Overlap.name(),
+            Limit::Pressure { .. }
+            | Limit::Pump { .. }
+            | Limit::Stroke { .. }
+            | Limit::Stop { .. }
+            | Limit::Sliding { .. }
+            | Limit::LiftOff { .. }
+            | Limit::Slack { .. }
+            | Limit::Tension { .. }
+            | Limit::Overlap { .. } => self.part().map_or("", PartLimit::name),
+        }
+    }
+
+    /// The kind of limit of the crane's own parts that it is; `None` for others, and for efforts, which may be limited by both.
+    pub fn part(self) -> Option<PartLimit> {
+        match self {
+            Limit::Equilibrium
+            | Limit::Tipping { .. }
+            | Limit::Utilisation { .. }
+            | Limit::Effort { .. }
+            | Limit::Deflection { .. } => None,
+            Limit::Pressure { .. } => Some(PartLimit::Pressure),
+            Limit::Pump { .. } => Some(PartLimit::Pump),
+            Limit::Stroke { .. } => Some(PartLimit::Stroke),
+            Limit::Stop { .. } => Some(PartLimit::Stops),
+            Limit::Sliding { .. } => Some(PartLimit::Sliding),
+            Limit::LiftOff { .. } => Some(PartLimit::LiftOff),
+            Limit::Slack { .. } => Some(PartLimit::SlackRopes),
+            Limit::Tension { .. } => Some(PartLimit::Tension),
+            Limit::Overlap { .. } => Some(PartLimit::Overlap),
         }
     }
 
@@ -227,11 +302,11 @@ impl Limit {
             Limit::Effort { drive } => description.coordinates[description.drives[drive].coordinate].name.to_string(),
             Limit::Deflection { point } => description.points[point].to_string(),
             Limit::Pressure { cylinder, rod } | Limit::Pump { cylinder, rod } => side(cylinder, rod),
-            Limit::Stroke { cylinder } => description.cylinders[cylinder].name.to_string(),
+            Limit::Stroke { cylinder, .. } => description.cylinders[cylinder].name.to_string(),
             Limit::Stop { coordinate } => description.coordinates[coordinate].name.to_string(),
             Limit::Sliding { foot } | Limit::LiftOff { foot } => description.supports[foot].name.to_string(),
-            Limit::Slack { rope } => description.connectors[rope].name.to_string(),
-            Limit::Overlap { body } => description.bodies[body].link.to_string(),
+            Limit::Slack { rope } | Limit::Tension { rope } => description.connectors[rope].name.to_string(),
+            Limit::Overlap { body, .. } => description.bodies[body].link.to_string(),
         }
     }
 

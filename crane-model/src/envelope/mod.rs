@@ -26,7 +26,7 @@ mod search;
 mod sweep;
 
 pub use axes::{Axes, Axis, TURN, Varied};
-pub use condition::Condition;
+pub use condition::{Condition, Margin};
 pub use coverage::Coverage;
 pub use critical::{Critical, CriticalLoad, NoCriticalLoad, critical_load};
 pub use limits::{Limit, Limits, PartLimit};

@@ -102,7 +102,7 @@ impl Posed<'_> {
 
     /// A trial load and its margins.
     pub(super) fn trial(&self, load: f64, at: Condition, search: &LoadSearch<'_>) -> Trial {
-        Trial { load, slacks: at.slacks(self.crane.description(), search.limits, search.points), at }
+        Trial { load, margins: at.margins(self.crane.description(), search.limits, search.points), at }
     }
 
     /// Its rating, and the pose with the minimum load if the crane rests there. `near`: positions of the drives, and the pose there.

@@ -1,32 +1,36 @@
 //! The largest load within limits, by the secant method: moments, stresses and efforts are nearly linear in the load.
 
-use super::{Condition, Limit};
+use super::{Condition, Limit, Margin};
 
 /// A trial load with which the crane rests.
 #[derive(Clone, Debug)]
 pub(super) struct Trial {
     /// The load.
     pub load: f64,
-    /// The remaining margin to each limit.
-    pub slacks: Vec<(Limit, f64)>,
+    /// What is left of each limit.
+    pub margins: Vec<Margin>,
     /// The crane with this load.
     pub at: Condition,
 }
 
 impl Trial {
-    /// The limit with the smallest margin, and that margin.
-    fn least(&self) -> Option<(Limit, f64)> {
-        self.slacks.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1))
+    /// The smallest margin.
+    fn least(&self) -> Option<Margin> {
+        self.margins.iter().copied().min_by(|a, b| a.slack.total_cmp(&b.slack))
     }
 
     pub(super) fn is_within(&self) -> bool {
-        self.slacks.iter().all(|(_, slack)| *slack >= 0.0)
+        self.margins.iter().all(|margin| margin.slack >= 0.0)
+    }
+
+    fn point(&self) -> Point {
+        (self.load, self.margins.clone())
     }
 
     /// Why the crane does not rest with a little more load.
     fn cause_of_falling(&self) -> Limit {
-        let causes = self.slacks.iter().filter(|(limit, slack)| limit.ends_equilibrium() && *slack < NEAR);
-        causes.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(Limit::Equilibrium, |(limit, _)| *limit)
+        let causes = self.margins.iter().filter(|margin| margin.limit.ends_equilibrium() && margin.slack < NEAR);
+        causes.min_by(|a, b| a.slack.total_cmp(&b.slack)).map_or(Limit::Equilibrium, |margin| margin.limit)
     }
 }
 
@@ -65,25 +69,34 @@ pub(super) fn largest(
     trial: &mut dyn FnMut(f64, &Condition) -> Option<Trial>,
 ) -> (Option<Trial>, Option<Limit>) {
     if !first.is_within() {
-        let governing = first.least().map(|(limit, _)| limit);
+        let governing = first.least().map(|margin| margin.limit);
         return (None, governing);
     }
     let least = first.load;
+    // The last two trials, for the secant.
+    let mut last = [None, Some((first.load, first.margins.clone()))];
     let mut within = first;
-    // The previous trial within the limits, for the secant; and the smallest load beyond a limit, with its trial if the crane rests.
-    let mut before: Option<Trial> = None;
+    // The smallest load beyond a limit, with its trial if the crane rests.
     let mut beyond: Option<(f64, Option<Trial>)> = None;
     // Whether the crane did not rest with a load beyond from the pose of a load nearby either.
     let mut confirmed = false;
+    // How far the last two trials were from those before them.
+    let mut strides = [f64::INFINITY; 2];
     for turn in 0..MOST_TRIALS {
-        let secant = before.as_ref().and_then(|before| crossing(before, &within));
+        let secant = match &last {
+            [Some(before), Some(now)] => crossing(before, now),
+            _ => None,
+        };
         let high = beyond.as_ref().map_or(range.greatest, |(load, _)| *load);
         if high - within.load <= accuracy(high, range) {
             break;
         }
-        if let Some((_, limit)) = secant.filter(|(at, _)| at - within.load <= accuracy(*at, range) && *at <= high) {
-            return (Some(within), Some(limit));
+        if let Some((at, limit)) = secant {
+            if (at - within.load).abs() <= accuracy(at, range) && at <= high {
+                return (Some(within), Some(limit));
+            }
         }
+        let now = last[1].as_ref().map_or(within.load, |(load, _)| *load);
         let next = match &beyond {
             None => {
                 let step = (GROWTH * (within.load - least)).max(FIRST_STEP * range.scale);
@@ -96,15 +109,21 @@ pub(super) fn largest(
                 *high
             }
             Some((high, tried)) => {
-                let chord = tried.as_ref().and_then(|trial| crossing(&within, trial)).map(|(at, _)| at);
+                let chord =
+                    tried.as_ref().and_then(|trial| crossing(&within.point(), &trial.point())).map(|(at, _)| at);
                 let inside = |at: &f64| *at > within.load && *at < *high;
                 let found = secant.map(|(at, _)| at).filter(inside).or(chord).filter(inside);
-                let middle = 0.5 * (within.load + high);
-                // Every third trial is a bisection, so that a kink of a limit cannot stall the search.
-                if turn % 3 == 2 { middle } else { found.map_or(middle, |at| aim(at, within.load, range)) }
+                let aimed = found.map(|at| aim(at, within.load, range));
+                // Strides that do not halve in two turns lead nowhere, as at the kink of a limit: then the interval is halved.
+                aimed.filter(|at| (at - now).abs() < 0.5 * strides[0]).unwrap_or(0.5 * (within.load + high))
             }
         };
-        match trial(next, &within.at) {
+        strides = [strides[1], (next - now).abs()];
+        let found = trial(next, &within.at);
+        if let Some(found) = &found {
+            last = [last[1].take(), Some(found.point())];
+        }
+        match found {
             Some(found) if found.is_within() => {
                 if found.load >= range.greatest {
                     return (Some(found), None);
@@ -112,14 +131,14 @@ pub(super) fn largest(
                 if beyond.as_ref().is_some_and(|(load, _)| found.load >= *load) {
                     (beyond, confirmed) = (None, false);
                 }
-                before = Some(std::mem::replace(&mut within, found));
+                within = found;
             }
             other => beyond = Some((next, other)),
         }
     }
     match &beyond {
         Some((_, Some(trial))) => {
-            let governing = trial.least().map(|(limit, _)| limit);
+            let governing = trial.least().map(|margin| margin.limit);
             (Some(within), governing)
         }
         Some((_, None)) => {
@@ -140,14 +159,17 @@ fn aim(at: f64, from: f64, range: &Range) -> f64 {
     (at - 0.5 * accuracy(at, range)).max(0.5 * (at + from))
 }
 
+/// A load, and what is left of each limit with it.
+type Point = (f64, Vec<Margin>);
+
 /// The load at which the line through two trials first meets a limit, and that limit.
-fn crossing(one: &Trial, two: &Trial) -> Option<(f64, Limit)> {
-    let meets = |(limit, slack): &(Limit, f64)| {
-        let (_, before) = one.slacks.iter().find(|(other, _)| other == limit)?;
-        let at = two.load + slack * (two.load - one.load) / (before - slack);
-        (at.is_finite() && (before - slack) * (two.load - one.load) > 0.0).then_some((at, *limit))
+fn crossing((one, of_one): &Point, (two, of_two): &Point) -> Option<(f64, Limit)> {
+    let meets = |&Margin { limit, slack, .. }: &Margin| {
+        let before = of_one.iter().find(|margin| margin.limit == limit)?.slack;
+        let at = two + slack * (two - one) / (before - slack);
+        (at.is_finite() && (before - slack) * (two - one) > 0.0).then_some((at, limit))
     };
-    two.slacks.iter().filter_map(meets).min_by(|a, b| a.0.total_cmp(&b.0))
+    of_two.iter().filter_map(meets).min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 #[cfg(test)]
@@ -157,8 +179,8 @@ mod tests {
     fn trial(load: f64, slacks: &[f64]) -> Trial {
         // The load as a pose, so that a trial knows from where it starts.
         let at = Condition { q: vec![load], ..Condition::default() };
-        let slacks = slacks.iter().enumerate().map(|(drive, slack)| (Limit::Effort { drive }, *slack));
-        Trial { load, slacks: slacks.collect(), at }
+        let margin = |(drive, &slack)| Margin { limit: Limit::Effort { drive }, value: 1.0 - slack, bound: 1.0, slack };
+        Trial { load, margins: slacks.iter().enumerate().map(margin).collect(), at }
     }
 
     const ACCURACY: f64 = CHART;

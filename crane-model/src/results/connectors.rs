@@ -3,20 +3,39 @@
 use crane_quantities::ColumnKind;
 
 use super::{Extremes, Table, column_name, connector_force};
-use crate::{ConnectorInfo, Description, dyn_crane::DynCrane};
+use crate::{ConnectorInfo, Description, Tension, dyn_crane::DynCrane};
 
 /// Ropes that are slack at a pose at rest.
 pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
     let tensions = crane.connector_tensions_at(0.0, q, &vec![0.0; q.len()]);
     let connectors = crane.description().connectors.iter().zip(tensions);
-    let slack = connectors.filter(|(connector, tension)| connector.is_rope && tension.force == 0.0);
-    slack.map(|(rope, _)| format!("rope {} is slack", rope.name)).collect()
+    let what = |(connector, tension): (&ConnectorInfo, Tension)| {
+        let is_slack = connector.is_rope && tension.force == 0.0;
+        let slack = is_slack.then(|| format!("rope {} is slack", connector.name));
+        slack.or_else(|| pulls_too_hard(connector, tension.force, ""))
+    };
+    connectors.filter_map(what).collect()
 }
 
 /// Ropes that are slack at times in a run, and contacts between two results.
 pub(super) fn of_run(description: &Description, table: &Table) -> Vec<String> {
     let connectors = description.connectors.iter();
-    connectors.filter_map(|connector| goes_slack(connector, table).or_else(|| bounces(connector, table))).collect()
+    let what = |connector| [goes_slack(connector, table), bounces(connector, table), overloads(connector, table)];
+    connectors.flat_map(what).flatten().collect()
+}
+
+/// Reports a rope that is pulled by more than its largest tension in a run.
+fn overloads(connector: &ConnectorInfo, table: &Table) -> Option<String> {
+    connector.max_tension?;
+    let Extremes { maximum, time_of_maximum, .. } = Extremes::of(table, &connector_force(connector));
+    pulls_too_hard(connector, maximum, &format!(", at {time_of_maximum:.2} s"))
+}
+
+/// What to say of a rope with a tension beyond its largest; `when`: the end of the sentence.
+fn pulls_too_hard(connector: &ConnectorInfo, tension: f64, when: &str) -> Option<String> {
+    let allowed = connector.max_tension.filter(|allowed| tension > *allowed)?;
+    let name = &connector.name;
+    Some(format!("rope {name} pulls with {tension:.1} N, more than its max_tension of {allowed} N{when}"))
 }
 
 /// Reports a point that touches the ground between two results, where its force is not recorded: it sinks at the first, fast enough to reach the ground,

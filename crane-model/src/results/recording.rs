@@ -308,6 +308,11 @@ pub fn support_gap(support: &str) -> String {
     column_name(ColumnKind::Gap, support, false)
 }
 
+/// Name of the share of its friction that a one-sided support uses.
+pub fn friction_utilisation(support: &str) -> String {
+    format!("{support}_friction_utilisation")
+}
+
 /// Name of the column with the force or torque of a connector.
 pub fn connector_force(connector: &ConnectorInfo) -> String {
     column_name(connector.effort(), &connector.name, connector.kind.turns())

@@ -395,6 +395,8 @@ pub struct ConnectorInfo {
     pub kind: CoordinateKind,
     /// Whether it is a rope, which pulls and never pushes.
     pub is_rope: bool,
+    /// The largest tension that a rope may carry, N; `None`: the spec gives none.
+    pub max_tension: Option<f64>,
     /// Whether it is the contact of a point with the ground, which carries it and never holds it.
     pub is_contact: bool,
     /// A range of coordinates that contains those that change its length: the first, and the one after the last.

@@ -66,7 +66,8 @@ fn limits_are_cautions(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Resu
     let exceeded = Condition::at(crane, q.to_vec(), &positions).exceeded(crane, &limits);
     let cautions = of_pose(crane, q, BEND);
     let is_told = |part: &str| cautions.iter().any(|caution| caution.contains(part));
-    for limit in &exceeded {
+    for margin in &exceeded {
+        let limit = margin.limit;
         let location = limit.location(crane);
         let part = location.split(", ").next().unwrap_or_default();
         if !is_told(part) {

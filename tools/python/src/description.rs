@@ -143,6 +143,7 @@ fn describe_connectors<'py>(py: Python<'py>, description: &Description) -> PyRes
         let row = PyDict::new(py);
         row.set_item("name", &*info.name)?;
         row.set_item("rope", info.is_rope)?;
+        row.set_item("max_tension", info.max_tension)?;
         row.set_item("contact", info.is_contact)?;
         row.set_item("unit", info.kind.unit())?;
         Ok(row)

@@ -16,7 +16,7 @@ fn laws() -> Vec<(&'static str, chain::Law)> {
     let friction =
         |breakaway, bristle| Friction { coulomb: c(8.0), breakaway, width: c(0.05), viscous: c(3.0), bristle };
     let bristle = Bristle { coulomb: 8.0, breakaway: 12.0, stribeck: 0.1, stiffness: 1e4, damping: 30.0 };
-    let rope = |length| Rope { stiffness: RopeStiffness::Whole(c(700.0)), damping: c(0.4), length };
+    let rope = |length| Rope { stiffness: RopeStiffness::Whole(c(700.0)), damping: c(0.4), length, max_tension: None };
     let winch = Ramp { from: c(1.2), to: c(0.4), begin: c(0.0), duration: c(2.0) };
     vec![
         ("spring", chain::Law::Spring(Spring::new(c(500.0), c(20.0)))),

@@ -1,7 +1,7 @@
 //! A letter for each kind of limit, for the cells of charts.
 
 /// Kinds of limits, their letters, and what they are, in the order of a legend.
-const LETTERS: [(&str, char, &str); 14] = [
+const LETTERS: [(&str, char, &str); 15] = [
     ("tipping", 'T', "tipping"),
     ("utilisation", 'U', "utilisation of a beam"),
     ("pressure", 'P', "relief valve of a cylinder"),
@@ -12,7 +12,8 @@ const LETTERS: [(&str, char, &str); 14] = [
     ("sliding", 'F', "friction under all feet"),
     ("lift-off", 'L', "a foot lifts off"),
     ("slack-ropes", 'R', "a rope is slack"),
-    ("overlap", 'O', "a stage has left its outer beam"),
+    ("tension", 'W', "the tension of a rope"),
+    ("overlap", 'O', "a stage is out of its outer beam, or too far in it"),
     ("deflection", 'D', "deflection"),
     ("equilibrium", 'X', "no equilibrium beyond"),
     ("", 'M', "none up to the maximum load considered"),

@@ -15,7 +15,9 @@ use std::sync::{Mutex, PoisonError};
 use crane_model::ColumnKind;
 use crane_model::dyn_crane::DynModel;
 use crane_model::envelope::{Condition, Envelope, Execution, Limit, Rating, UNITS_OF_LOADS};
-use crane_model::results::{KeyFigure, column_name, connector_force, drive_effort, vertical_reaction};
+use crane_model::results::{
+    KeyFigure, column_name, connector_force, drive_effort, friction_utilisation, vertical_reaction,
+};
 
 use super::whole::{CURVED, in_unit};
 use super::{Changing, Differences, FixedNumber, Group, Output, Sensitivity};
@@ -114,13 +116,12 @@ impl LargestLoad {
         place: usize,
         fixed: &[FixedNumber],
     ) -> Option<()> {
-        let bound = self.bound(found, crane, asked);
+        let bound = self.bounded(found, crane);
         let by_load = found.derivatives.remove(place);
         found.pose.remove(place);
         found.parameters.remove(place);
-        let Bound { output, sign } = bound?;
-        let end = self.end(found, crane, asked);
-        let limit_of = |crane: &LiveCrane| self.limit_of(crane, asked, end);
+        let Bounded { output, sign } = bound?;
+        let limit_of = |crane: &LiveCrane| asked.limits.with_max_efforts(crane).bound(self.limit, crane.description());
         let limit = limit_of(crane)?;
         let slope = sign * by_load[output] * asked.factor;
         let correction = -(sign * found.values[output] - limit) / slope;
@@ -218,76 +219,36 @@ impl LargestLoad {
     }
 
     /// The output that is at its bound; `None` if there is none.
-    fn bound(&self, found: &Sensitivity, crane: &LiveCrane, asked: &Envelope) -> Option<Bound> {
+    fn bounded(&self, found: &Sensitivity, crane: &LiveCrane) -> Option<Bounded> {
         let description = crane.description();
-        let output = |name: &str| Some(Bound { output: found.index_of(name)?, sign: 1.0 });
-        match self.limit {
-            Limit::Tipping { .. } => {
-                let bound = output(KeyFigure::TIPPING_MARGIN.key)?;
-                let is_same = found.outputs[bound.output].place == self.limit.location(crane);
-                (is_same && asked.limits.tipping.is_some()).then_some(bound)
-            }
-            Limit::Utilisation { .. } => output(&KeyFigure::UTILISATION.greatest()),
+        let of_cylinder = |kind, cylinder: usize| Some(column_name(kind, &description.cylinders[cylinder].name, false));
+        let name = match self.limit {
+            Limit::Tipping { .. } => Some(KeyFigure::TIPPING_MARGIN.key.to_owned()),
+            Limit::Utilisation { .. } => Some(KeyFigure::UTILISATION.greatest()),
             Limit::Effort { drive } => {
                 let coordinate = &description.coordinates[description.drives[drive].coordinate];
-                let bound = output(&drive_effort(&coordinate.name, coordinate.kind))?;
-                Some(Bound { sign: found.values[bound.output].signum(), ..bound })
+                Some(drive_effort(&coordinate.name, coordinate.kind))
             }
             Limit::Pressure { cylinder, rod } | Limit::Pump { cylinder, rod } => {
-                let name = &description.cylinders[cylinder].name;
-                output(&column_name(
-                    if rod { ColumnKind::RodPressure } else { ColumnKind::PistonPressure },
-                    name,
-                    false,
-                ))
+                of_cylinder(if rod { ColumnKind::RodPressure } else { ColumnKind::PistonPressure }, cylinder)
             }
-            Limit::Stroke { cylinder } => {
-                output(&column_name(ColumnKind::CylinderLength, &description.cylinders[cylinder].name, false))
-            }
-            Limit::LiftOff { foot } => output(&vertical_reaction(&description.supports[foot].name)),
-            Limit::Slack { rope } => output(&connector_force(&description.connectors[rope])),
-            Limit::Equilibrium
-            | Limit::Sliding { .. }
-            | Limit::Deflection { .. }
-            | Limit::Stop { .. }
-            | Limit::Overlap { .. } => None,
-        }
-    }
-
-    /// Which end of its stroke a cylinder is at: 0 retracted, 1 extended.
-    fn end(&self, found: &Sensitivity, crane: &LiveCrane, asked: &Envelope) -> f64 {
-        let (Limit::Stroke { cylinder }, Some(bound)) = (self.limit, self.bound(found, crane, asked)) else {
-            return 0.0;
+            Limit::Stroke { cylinder, .. } => of_cylinder(ColumnKind::CylinderLength, cylinder),
+            Limit::Sliding { foot } => Some(friction_utilisation(&description.supports[foot].name)),
+            Limit::LiftOff { foot } => Some(vertical_reaction(&description.supports[foot].name)),
+            Limit::Slack { rope } | Limit::Tension { rope } => Some(connector_force(&description.connectors[rope])),
+            Limit::Equilibrium | Limit::Deflection { .. } | Limit::Stop { .. } | Limit::Overlap { .. } => None,
         };
-        let info = &crane.description().cylinders[cylinder];
-        if found.values[bound.output] - info.retracted > 0.5 * info.stroke { 1.0 } else { 0.0 }
-    }
-
-    /// The number that the output must not exceed in a crane. `end`: of a stroke.
-    fn limit_of(&self, crane: &LiveCrane, asked: &Envelope, end: f64) -> Option<f64> {
-        let description = crane.description();
-        match self.limit {
-            Limit::Tipping { .. } => asked.limits.tipping,
-            Limit::Utilisation { .. } => asked.limits.utilisation,
-            Limit::Effort { drive } => asked.limits.with_max_efforts(crane).efforts.get(drive).copied(),
-            Limit::Pressure { cylinder, .. } => description.cylinders[cylinder].max_pressure,
-            Limit::Pump { .. } => description.pump.and_then(|pump| pump.pressure),
-            Limit::Stroke { cylinder } => {
-                let info = &description.cylinders[cylinder];
-                Some(info.retracted + end * info.stroke)
-            }
-            Limit::LiftOff { .. } | Limit::Slack { .. } => Some(0.0),
-            Limit::Equilibrium
-            | Limit::Sliding { .. }
-            | Limit::Deflection { .. }
-            | Limit::Stop { .. }
-            | Limit::Overlap { .. } => None,
-        }
+        let output = found.index_of(&name?)?;
+        // Another line may have the least margin.
+        let is_line = matches!(self.limit, Limit::Tipping { .. });
+        let is_same = !is_line || found.outputs[output].place == self.limit.location(crane);
+        let sign = if matches!(self.limit, Limit::Effort { .. }) { found.values[output].signum() } else { 1.0 };
+        is_same.then_some(Bounded { output, sign })
     }
 }
 
 /// An output at its bound: `g = sign · output − limit`.
-struct Bound {
+struct Bounded {
     output: usize,
     sign: f64,
 }

@@ -2,7 +2,7 @@
 
 use crane_codegen::program::FunctionId;
 use crane_model::dyn_crane::DynModel;
-use crane_model::results::{column_name, connector_force, drive_effort, support_gap};
+use crane_model::results::{column_name, connector_force, drive_effort, friction_utilisation, support_gap};
 use crane_model::{ColumnKind, CylinderInfo, Description};
 
 use super::rest::Rest;
@@ -100,11 +100,13 @@ fn of_supports(source: &mut Source<'_>, description: &Description, q: &[Dual8]) 
         let name = format!("{}_reaction", support.name);
         all.extend(vector(&name, reaction, "N", Group::Supports));
     }
-    let gaps = source.at(FunctionId::SupportGaps, q);
-    for (support, gap) in description.supports.iter().zip(gaps.chunks_exact(2)) {
-        if support.one_sided {
-            all.push((named(support_gap(&support.name), "m", Group::Supports), gap[0]));
-        }
+    let (gaps, grips) = (source.at(FunctionId::SupportGaps, q), source.at(FunctionId::SupportGrips, q));
+    let both = gaps.chunks_exact(2).zip(grips.chunks_exact(3));
+    for (support, (gap, grip)) in description.supports.iter().zip(both).filter(|(support, _)| support.one_sided) {
+        all.push((named(support_gap(&support.name), "m", Group::Supports), gap[0]));
+        // A foot in the air holds nothing.
+        let used = if grip[0].value() > 0.0 { grip[2] / grip[1] } else { Dual8::splat(0.0) };
+        all.push((named(friction_utilisation(&support.name), "", Group::Supports), used));
     }
     all
 }

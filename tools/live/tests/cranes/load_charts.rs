@@ -1,16 +1,19 @@
 //! Load charts of cranes with cylinders, stops, ropes and limited drives: against hand calculations, and against statics at the chart's loads.
 
 use std::f64::consts::PI;
+use std::ops::ControlFlow;
 
 use crane_codegen::{SourceFile, build};
 use crane_live::LiveCrane;
 use crane_model::DriveInfo;
 use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::dynamics::Settings;
 use crane_model::envelope::{
     Axes, Axis, Coverage, Critical, Envelope, Execution, Limit, Limits, PartLimit, Rating, Varied, critical_load,
     range_of_loads,
 };
-use crane_model::results::cylinders_at;
+use crane_model::results::{cautions, cylinders_at};
+use crane_model::runs::{Start, record};
 use crane_model::statics;
 use crane_model::tipping::{governing, lines};
 
@@ -276,6 +279,40 @@ fn a_factor_divides_the_minimum_load_too() {
         assert_close(&format!("factor {factor}"), rating.load.unwrap(), 110.0 / factor, ACCURACY);
         assert_eq!(rating.governing, Some(Limit::Effort { drive: 1 }));
     }
+}
+
+/// A hook on two falls: each carries half of the load, up to the largest tension of the rope. At rest and in a run, more is told.
+#[test]
+fn a_rope_carries_its_largest_tension() {
+    let crane = crane(
+        "format: 1
+name: hoist
+parameters: {payload: {value: 800, unit: kg}}
+links:
+  - {name: post, joint: {prismatic: {axis: x}}, mass: 50, com: [0, 0, 0]}
+  - {name: hook, joint: {prismatic: {axis: z}}, mass: payload, com: [0, 0, 0]}
+drives: [{coordinate: post_x, rigid: true, motion: {hold: 0}}]
+connectors:
+  - {name: hoist, from: {at: [0, 0, 5]}, to: {link: hook, at: [0, 0, 0]}, falls: 2,
+     law: {rope: {stiffness: 1e6, length: 9, damping: 0.1, max_tension: 4 kN}}}
+",
+    );
+    let rating = &chart(&crane, 0, &[0.0], limits_of(&crane), 1.0)[0];
+    assert_close("the rope", rating.load.unwrap(), 2.0 * 4e3 / GRAVITY, ACCURACY);
+    assert_eq!(rating.governing, Some(Limit::Tension { rope: 0 }));
+    let words = "a tension of hoist of at most 4000 N";
+    assert!(Coverage::of(&crane, &limits_of(&crane)).considered.iter().any(|entry| entry == words));
+    let mut heavy = crane;
+    heavy.set_parameter(0, 900.0).unwrap();
+    let rest = (&heavy as &dyn DynCrane).equilibrium(&statics::Settings::default());
+    let said = cautions::of_pose(&heavy, &rest.q, cautions::BEND);
+    // 900 kg · 9.81 m/s² / 2.
+    assert_eq!(said, ["rope hoist pulls with 4414.5 N, more than its max_tension of 4000 N"]);
+    let start = Start::of(&heavy).unwrap();
+    let settings = Settings { duration: 0.2, output: 0.1, ..Settings::of(heavy.description()) };
+    let run = record(&heavy, &start, &settings, &mut |_| ControlFlow::Continue(())).unwrap();
+    let said = cautions::of_run(&heavy, &run.table, cautions::BEND);
+    assert!(said.iter().any(|caution| caution.contains("max_tension of 4000 N, at ")), "{said:?}");
 }
 
 /// A rope holds an arm down, and is slack where the arm sinks to its length ℓ: at `ℓ² = 3 − 2 cos θ − 2 sin θ`, with only the drive carrying

@@ -94,7 +94,7 @@ fn a_run_gives_the_time() {
 fn a_chart_ends_where_the_overlap_does() {
     let crane = crane("2", "{hold: 1}");
     let limits = Limits { of_parts: PartLimit::DEFAULT.to_vec(), ..Limits::none(crane.description()) };
-    let axes = Axes(vec![Axis { varied: Varied::Drive(1), values: vec![2.0, 3.45, 3.55] }]);
+    let axes = Axes(vec![Axis { varied: Varied::Drive(1), values: vec![-0.4, 2.0, 3.45, 3.55] }]);
     let asked = Envelope { axes, load: 2, loads: [1.0, 500.0], limits, factor: 1.0 };
     let found: Mutex<Vec<Rating>> = Mutex::new(Vec::new());
     let done = |_: usize, ratings: &[Rating]| found.lock().unwrap().extend(ratings.to_vec());
@@ -102,8 +102,24 @@ fn a_chart_ends_where_the_overlap_does() {
     asked.run(&crane, &pieces, &Execution { threads: 1, done: &done, cancelled: &|| false }).unwrap();
     let ratings = found.into_inner().unwrap();
     let is_of_stage = |limit: Limit| limit.kind() == "overlap" && limit.location(&crane) == "stage";
-    assert_eq!(ratings.iter().map(|rating| rating.load.is_some()).collect::<Vec<_>>(), [true, true, false]);
-    assert!(ratings[2].governing.is_some_and(is_of_stage), "{:?}", ratings[2].governing);
+    assert_eq!(ratings.iter().map(|rating| rating.load.is_some()).collect::<Vec<_>>(), [false, true, true, false]);
+    for end in [0, 3] {
+        assert!(ratings[end].governing.is_some_and(is_of_stage), "{:?}", ratings[end].governing);
+    }
+}
+
+/// An overlap of 3.9 m of a stage of 3.8 m is 0.1 m too long, of which a hundredth of the stage is play.
+#[test]
+fn a_stage_that_is_pushed_in_too_far_is_told() {
+    let said = at_rest(&crane("2", "{hold: -0.4}"));
+    assert!(said.contains("stage is pushed 0.062 m too far into boom with stage_x at -0.400 m: "), "{said}");
+    assert!(!at_rest(&crane("2", "{hold: -0.3}")).contains("too far"));
+    let moving = crane("2", "{quintic: {from: 0, to: -0.4, duration: 1}}");
+    let start = Start::of(&moving).expect("it stands");
+    let settings = Settings { duration: 2.0, output: 0.1, ..Settings::of(moving.description()) };
+    let run = runs::record(&moving, &start, &settings, &mut |_| ControlFlow::Continue(())).expect("it runs");
+    let said = cautions::of_run(&moving, &run.table, cautions::BEND).join("; ");
+    assert!(said.contains(" m too far into boom with stage_x at -0.40"), "{said}");
 }
 
 /// Nothing twists a crane in a plane: the moments of its pads are rounding, of which no error is reported.

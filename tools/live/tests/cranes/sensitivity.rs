@@ -394,6 +394,36 @@ fn largest_loads_change_as_those_of_charts() {
     assert_largest_load("lift-off", &crane, "load", lift_off, |limit| matches!(limit, Limit::LiftOff { .. }));
 }
 
+/// A block that a force pulls along the ground slides from μ m g on.
+#[test]
+fn the_largest_pull_changes_with_friction_and_mass() {
+    const GRAVITY: f64 = 9.81;
+    let foot = |name: &str, x: f64, y: f64| {
+        format!(
+            "  - {{name: {name}, at: [{x}, {y}, 0], one_sided: true, friction_coefficient: mu, stiffness: [1e6, 1e6, 1e6]}}\n"
+        )
+    };
+    let feet = [foot("a", 1.0, 1.0), foot("b", 1.0, -1.0), foot("c", -1.0, 1.0), foot("d", -1.0, -1.0)].concat();
+    let crane = spec(&format!(
+        "format: 1\nname: block\nparameters: {{pull: {{value: 10, unit: N}}, mu: {{value: 0.3}}, mass: {{value: 100, unit: kg}}}}\nlinks:\n\
+         - {{name: block, joint: free, mass: mass, com: [0, 0, 0.2], inertia: {{Ixx: 20, Iyy: 20, Izz: 30}}}}\nsupports:\n{feet}\
+         loads: [{{name: rope, link: block, at: [0, 0, 0], force: [1, 0, 0], scale: {{hold: pull}}}}]\n"
+    ));
+    let sliding = Limits { of_parts: vec![PartLimit::Sliding], ..Limits::none(crane.description()) };
+    let asked = Envelope { axes: Axes::default(), load: 0, loads: [0.0, 1e4], limits: sliding, factor: 1.0 };
+    let (largest, found) = largest_load(&crane, &asked, &[1, 2]);
+    assert!(matches!(largest.limit, Limit::Sliding { .. }), "{:?}", largest.limit);
+    let output = found.index_of("largest_load").unwrap();
+    let derivatives: Vec<f64> = found.derivatives.iter().map(|derivatives| derivatives[output]).collect();
+    // All by hand: μ m g, m g and μ g; the feet press a little more in front, by what the block turns, of which nothing enters the sum.
+    for (number, expected) in [found.values[output], derivatives[0], derivatives[1]]
+        .iter()
+        .zip([0.3 * 100.0, 100.0, 0.3].map(|part| part * GRAVITY))
+    {
+        assert!((number / expected - 1.0).abs() < 1e-6, "{number} for {expected}");
+    }
+}
+
 #[test]
 fn largest_loads_at_pressures_and_efforts_of_the_spec_change_as_those_of_charts() {
     // A heavy truck, so that the crane does not tip before.
