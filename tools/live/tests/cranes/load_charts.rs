@@ -222,7 +222,8 @@ fn a_stroke_ends_a_chart() {
         let [length, _] = geometry(*theta);
         let reaches = (shortest..=shortest + stroke).contains(&length);
         assert_eq!(rating.load.is_some(), reaches, "{theta}: {length} m");
-        assert!(reaches || rating.governing == Some(Limit::Stroke { cylinder: 0 }));
+        let extended = length > shortest;
+        assert!(reaches || rating.governing == Some(Limit::Stroke { cylinder: 0, extended }));
         inside += usize::from(reaches);
     }
     assert!(inside > 2 && inside < 13, "{inside}");
@@ -233,7 +234,7 @@ fn a_stroke_ends_a_chart() {
     let theta = ((FOOT * FOOT + HEAD * HEAD - shortest * shortest) / (2.0 * FOOT * HEAD)).asin();
     let expected = 2e4 * theta / (GRAVITY * REACH * theta.cos());
     assert_close("the end of the stroke", rating.load.unwrap(), expected, 1e-5);
-    assert_eq!(rating.governing, Some(Limit::Stroke { cylinder: 0 }));
+    assert_eq!(rating.governing, Some(Limit::Stroke { cylinder: 0, extended: false }));
 }
 
 /// `max_effort` of the spec: the moment of the load is at most that of the drive.
