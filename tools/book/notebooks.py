@@ -25,6 +25,7 @@ import matplotlib
 
 matplotlib.use("agg")
 import matplotlib.pyplot as plt
+from matplotlib.figure import Figure
 
 ROOT = Path(__file__).resolve().parents[2]
 NOTEBOOKS = ROOT / "examples/notebooks"
@@ -104,7 +105,7 @@ def _execute(source: str, names: dict[str, Any], place: str, page: Page) -> str:
     try:
         with contextlib.redirect_stdout(printed):
             exec(compile(ast.Module(body, []), place, "exec"), names)  # noqa: S102
-            value = eval(compile(ast.Expression(last.value), place, "eval"), names) if isinstance(last, ast.Expr) else None  # noqa: S307
+            value = eval(compile(ast.Expression(last.value), place, "eval"), names) if isinstance(last, ast.Expr) else None
             if value is not None and not source.rstrip().endswith(";"):
                 print(repr(value))
     except Exception as error:
@@ -123,7 +124,7 @@ def _execute(source: str, names: dict[str, Any], place: str, page: Page) -> str:
     return out
 
 
-def _described(figure: Any) -> str:
+def _described(figure: Figure) -> str:
     """What a figure shows: its name, or its labels."""
     if figure.get_label():
         return str(figure.get_label())

@@ -7,7 +7,7 @@ import pytest
 for package in ("matplotlib", "pyarrow", "scipy"):
     pytest.importorskip(package)
 
-import notebooks  # noqa: E402
+import notebooks
 
 
 def test_there_are_some():
