@@ -3,6 +3,8 @@
     python tools/book/notebooks.py                    # all of them
     python tools/book/notebooks.py statics robot      # some
 
+The pages are committed: the list of chapters names them, forges show them, and the site is built where the package is not installed.
+
 Solutions of exercises, which are code in cells of text, run after the cells before them. It needs the package `crane` and what the notebooks import.
 """
 
