@@ -10,6 +10,8 @@ import pytest
 ROOT = Path(__file__).resolve().parents[3]
 # The second derivation of every quantity, from the YAML alone.
 sys.path.append(str(ROOT / "tools/casadi"))
+# Notebooks as pages.
+sys.path.append(str(ROOT / "tools/book"))
 
 PENDULUM = """
 format: 1
