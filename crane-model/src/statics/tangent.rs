@@ -20,29 +20,54 @@ const SHARE: f64 = 0.3;
 
 /// `K = S⁻¹ M S⁻¹`, with `S = diag(1/√|K_ii|)`: m and rad become comparable, and relative coordinates nearly decouple.
 ///
-/// Where M is positive definite without directions that a limit leaves alone, its Cholesky factors give the Newton step, and the equilibrium is
-/// stable. Only elsewhere are its principal directions computed, `M = U Λ Uᵀ`, which takes thirty times as long.
+/// Where M has no direction that a limit leaves alone, its factors give the Newton step; where it is also positive definite, the equilibrium is stable.
+/// Only elsewhere are its principal directions computed, `M = U Λ Uᵀ`, which takes ten to thirty times as long.
 pub(super) struct Tangent {
     scale: DVector<f64>,
     scaled: DMatrix<f64>,
-    definite: Option<Definite>,
+    factors: Option<Factors>,
     principal: OnceCell<Principal>,
 }
 
-/// The factors of a definite tangent, `M = L Lᵀ`.
-struct Definite {
-    factors: Cholesky<f64, Dyn>,
-    /// A lower bound of the ratio of the smallest to the largest eigenvalue: `1 / (‖M‖ tr M⁻¹)`, with `tr M⁻¹ = ‖L⁻¹‖²`, Frobenius norms.
+/// The factors of a regular tangent.
+struct Factors {
+    kind: Kind,
+    /// A lower bound of the ratio of the smallest to the largest eigenvalue, by size: `1 / (‖M‖ ‖M⁻¹‖)` with Frobenius norms, which bound the
+    /// eigenvalues.
     least_ratio: f64,
 }
 
-impl Definite {
+enum Kind {
+    /// `M = L Lᵀ`, of a definite one.
+    Definite(Cholesky<f64, Dyn>),
+    /// M⁻¹ of another one.
+    Indefinite(DMatrix<f64>),
+}
+
+impl Factors {
     fn new(scaled: &DMatrix<f64>) -> Option<Self> {
-        let factors = scaled.clone().cholesky()?;
-        let mut inverse = DMatrix::identity(scaled.nrows(), scaled.nrows());
-        factors.l_dirty().solve_lower_triangular_mut(&mut inverse);
-        let least_ratio = (scaled.norm() * inverse.norm_squared()).recip();
-        Some(Self { factors, least_ratio })
+        let n = scaled.nrows();
+        let (kind, size) = match scaled.clone().cholesky() {
+            Some(factors) => {
+                let mut inverse = DMatrix::identity(n, n);
+                factors.l_dirty().solve_lower_triangular_mut(&mut inverse);
+                // ‖M⁻¹‖ ≤ tr M⁻¹ = ‖L⁻¹‖².
+                (Kind::Definite(factors), inverse.norm_squared())
+            }
+            None => {
+                let inverse = scaled.clone().try_inverse()?;
+                let size = inverse.norm();
+                (Kind::Indefinite(inverse), size)
+            }
+        };
+        Some(Self { kind, least_ratio: (scaled.norm() * size).recip() })
+    }
+
+    fn solve(&self, right: &DVector<f64>) -> DVector<f64> {
+        match &self.kind {
+            Kind::Definite(factors) => factors.solve(right),
+            Kind::Indefinite(inverse) => inverse * right,
+        }
     }
 }
 
@@ -101,12 +126,12 @@ impl Tangent {
             stiffness[(i, i)].abs().max(least).sqrt().recip()
         });
         let scaled = DMatrix::from_fn(n, n, |i, j| stiffness[(i, j)] * scale[i] * scale[j]);
-        Some(Self { scale, definite: Definite::new(&scaled), scaled, principal: OnceCell::new() })
+        Some(Self { scale, factors: Factors::new(&scaled), scaled, principal: OnceCell::new() })
     }
 
-    /// The factors, if the tangent is definite and has no direction within a limit.
-    fn definite(&self, limit: Limit) -> Option<&Definite> {
-        self.definite.as_ref().filter(|definite| definite.least_ratio > limit.fraction())
+    /// The factors, if no direction is within a limit.
+    fn regular(&self, limit: Limit) -> Option<&Factors> {
+        self.factors.as_ref().filter(|factors| factors.least_ratio > limit.fraction())
     }
 
     fn principal(&self) -> &Principal {
@@ -116,7 +141,7 @@ impl Tangent {
     /// Newton step `−K⁻¹ r`; directions within the limit get the smallest stiffness beyond it.
     pub(super) fn step(&self, residual: &DVector<f64>, limit: Limit) -> DVector<f64> {
         let scaled = residual.component_mul(&self.scale);
-        let step = self.definite(limit).map_or_else(
+        let step = self.regular(limit).map_or_else(
             || {
                 let Principal { values, vectors, greatest } = self.principal();
                 let least = limit.fraction() * greatest;
@@ -126,7 +151,7 @@ impl Tangent {
                 }
                 vectors * along
             },
-            |definite| definite.factors.solve(&scaled),
+            |factors| factors.solve(&scaled),
         );
         -step.component_mul(&self.scale)
     }
@@ -141,7 +166,7 @@ impl Tangent {
 
     /// Coordinates of unconstrained directions, if there are any.
     pub(super) fn free_directions(&self, names: &Description, limit: Limit) -> Option<Vec<Text>> {
-        if self.definite(limit).is_some() {
+        if self.regular(limit).is_some() {
             return None;
         }
         let Principal { values, vectors, greatest } = self.principal();
@@ -155,7 +180,8 @@ impl Tangent {
 
     /// Coordinates of the direction of the most negative stiffness, if there is one.
     fn negative_direction(&self, names: &Description) -> Option<Vec<Text>> {
-        if self.definite(Limit::Free).is_some() {
+        let is_definite = |factors: &Factors| matches!(factors.kind, Kind::Definite(_));
+        if self.regular(Limit::Free).is_some_and(is_definite) {
             return None;
         }
         let Principal { values, vectors, greatest } = self.principal();
