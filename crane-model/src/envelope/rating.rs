@@ -37,6 +37,16 @@ pub(super) struct Posed<'a> {
     pub positions: &'a [f64],
 }
 
+/// Where a crane rests with its drives at some positions: a neighbour begins its search there.
+pub(super) struct Rests {
+    /// Positions of the drives.
+    positions: Vec<f64>,
+    /// The pose with the minimum load.
+    empty: Vec<f64>,
+    /// The pose with the load of its parameters, if it rests there.
+    with_spec_load: Option<Vec<f64>>,
+}
+
 /// What to compute for a pose.
 pub(super) struct RatingRequest<'a> {
     /// What limits the load.
@@ -105,23 +115,20 @@ impl Posed<'_> {
         Trial { load, margins: at.margins(self.crane.description(), search.limits, search.points), at }
     }
 
-    /// Its rating, and the pose with the minimum load if the crane rests there. `near`: positions of the drives, and the pose there.
-    pub fn rate(
-        &mut self,
-        request: &RatingRequest<'_>,
-        near: Option<&(Vec<f64>, Vec<f64>)>,
-    ) -> (Rating, Option<Vec<f64>>) {
+    /// Its rating, and where the crane rests.
+    pub fn rate(&mut self, request: &RatingRequest<'_>, near: Option<&Rests>) -> (Rating, Option<Rests>) {
         let RatingRequest { limits, load_range: [least, greatest], factor, spec_load, guess } = *request;
         let limits = &limits.with_max_efforts(self.crane);
-        let near = near.map(|(positions, q)| (positions.as_slice(), q.as_slice()));
+        let near_empty = near.map(|near| (near.positions.as_slice(), near.empty.as_slice()));
+        let near_loaded = near.and_then(|near| Some((near.positions.as_slice(), near.with_spec_load.as_deref()?)));
         let mut with_spec_load = None;
-        let mut empty = self.find(least, near);
-        if empty.is_none() && spec_load != least {
-            // A rope may be slack without a load, and a hook stand upright.
-            with_spec_load = self.find(spec_load, near);
+        let mut empty = None;
+        // Without a load, a rope may be slack, and a hook may stand upright: the way down from the load of the spec is the safer one.
+        if spec_load != least && (near.is_none() || near_loaded.is_some()) {
+            with_spec_load = self.find(spec_load, near_loaded);
             empty = with_spec_load.clone().and_then(|loaded| self.change_load(spec_load, least, loaded));
         }
-        let Some(empty) = empty else {
+        let Some(empty) = empty.or_else(|| self.find(least, near_empty)) else {
             let governing = Some(Limit::Equilibrium);
             return (Rating { load: None, governing, loaded: None, with_spec_load, deflections: Vec::new() }, None);
         };
@@ -133,17 +140,20 @@ impl Posed<'_> {
         let first = self.trial(least / factor, empty.clone(), &search);
         let (best, governing) = self.find_largest(first, &search);
         let (load, loaded) = best.map_or((None, empty.clone()), |best| (Some(best.load), best.at));
-        let with_spec_load = with_spec_load.or_else(|| match load {
+        let with_spec_load = match load {
             _ if spec_load == least => Some(empty.clone()),
             // On the way from the minimum to the largest load the crane rests; beyond, unless its rest has ended there.
             Some(load) if spec_load > factor * load && governing == Some(Limit::Equilibrium) => None,
+            _ if with_spec_load.is_some() => with_spec_load,
             // A load may leave the pose of another one behind, as one that a side force swings about; then as statics finds it.
             Some(load) if spec_load > factor * load => {
-                self.change_load(factor * load, spec_load, loaded.clone()).or_else(|| self.find(spec_load, near))
+                self.change_load(factor * load, spec_load, loaded.clone()).or_else(|| self.find(spec_load, near_empty))
             }
-            _ => self.change_load(least, spec_load, empty.clone()).or_else(|| self.find(spec_load, near)),
-        });
+            _ => self.change_load(least, spec_load, empty.clone()).or_else(|| self.find(spec_load, near_empty)),
+        };
         let deflections = with_spec_load.as_ref().map_or_else(Vec::new, |condition| condition.deflections(&empty));
-        (Rating { load, governing, loaded: Some(loaded), with_spec_load, deflections }, Some(empty.q))
+        let of_spec = with_spec_load.as_ref().map(|condition| condition.q.clone());
+        let rests = Rests { positions: self.positions.to_vec(), empty: empty.q, with_spec_load: of_spec };
+        (Rating { load, governing, loaded: Some(loaded), with_spec_load, deflections }, Some(rests))
     }
 }

@@ -8,7 +8,7 @@ use std::{
 
 use super::{
     Axes, Limits, Rating,
-    rating::{Posed, RatingRequest},
+    rating::{Posed, RatingRequest, Rests},
 };
 use crate::{Description, ParameterError, ParameterInfo, dyn_crane::DynCrane};
 
@@ -131,8 +131,8 @@ impl Envelope {
     ) -> Result<Option<Vec<Rating>>, ParameterError> {
         let poses = self.poses_of(piece);
         let mut ratings: Vec<Rating> = Vec::with_capacity(poses.len());
-        // Positions of the drives and the pose where the crane rested last.
-        let mut near: Option<(Vec<f64>, Vec<f64>)> = None;
+        // Where the crane rested last.
+        let mut near: Option<Rests> = None;
         for pose in poses {
             if cancelled() {
                 return Ok(None);
@@ -150,9 +150,9 @@ impl Envelope {
                 spec_load: load,
                 guess: guess.unwrap_or(load),
             };
-            let (rating, rest) =
-                Posed { crane: own_crane, load: self.load, positions: &positions }.rate(&request, near.as_ref());
-            near = rest.map(|q| (positions, q)).or(near);
+            let posed = &mut Posed { crane: own_crane, load: self.load, positions: &positions };
+            let (rating, rests) = posed.rate(&request, near.as_ref());
+            near = rests.or(near);
             ratings.push(rating);
         }
         Ok(Some(ratings))
