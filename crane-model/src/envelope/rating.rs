@@ -121,14 +121,15 @@ impl Posed<'_> {
         let limits = &limits.with_max_efforts(self.crane);
         let near_empty = near.map(|near| (near.positions.as_slice(), near.empty.as_slice()));
         let near_loaded = near.and_then(|near| Some((near.positions.as_slice(), near.with_spec_load.as_deref()?)));
-        let mut with_spec_load = None;
-        let mut empty = None;
-        // Without a load, a rope may be slack, and a hook may stand upright: the way down from the load of the spec is the safer one.
-        if spec_load != least && (near.is_none() || near_loaded.is_some()) {
-            with_spec_load = self.find(spec_load, near_loaded);
-            empty = with_spec_load.clone().and_then(|loaded| self.change_load(spec_load, least, loaded));
+        // Without a load, a rope may be slack, and a hook may stand upright: beside a pose with the load of the spec, the way down from it is the safer one.
+        let mut with_spec_load = near_loaded.and_then(|near| self.find(spec_load, Some(near)));
+        let down = |posed: &mut Self, from: &Option<Condition>| posed.change_load(spec_load, least, from.clone()?);
+        let mut empty = down(self, &with_spec_load).or_else(|| self.find(least, near_empty));
+        if empty.is_none() && with_spec_load.is_none() {
+            with_spec_load = self.find(spec_load, near_empty);
+            empty = down(self, &with_spec_load);
         }
-        let Some(empty) = empty.or_else(|| self.find(least, near_empty)) else {
+        let Some(empty) = empty else {
             let governing = Some(Limit::Equilibrium);
             return (Rating { load: None, governing, loaded: None, with_spec_load, deflections: Vec::new() }, None);
         };

@@ -4,7 +4,7 @@ use super::{Equilibrium, Settings, guess::guess_with};
 use crate::dyn_crane::DynCrane;
 
 /// Newton's method alone: where it fails from a pose, the crane does not rest nearby. What is near takes three to five iterations.
-const NEWTON: Settings = Settings { tolerance: 1e-10, iterations: 12, load_steps: 0 };
+const NEWTON: Settings = Settings { tolerance: 1e-10, iterations: 8, load_steps: 0 };
 /// Longest stride of the drives between two poses at rest, m or rad.
 const STRIDE: f64 = 0.2;
 /// Shortest stride, as a fraction of the longest.
@@ -59,20 +59,16 @@ impl RestSearch<'_> {
     /// The end of a walk from the pose `q`, in which the drives are at `from`; `None` if the crane does not rest on the way, however short the
     /// strides.
     fn walk(&self, from: &[f64], q: &[f64]) -> Option<Equilibrium> {
-        let drives = &self.crane.description().drives;
         let furthest = from.iter().zip(self.positions).map(|(from, to)| (to - from).abs()).fold(0.0, f64::max);
         let longest = (STRIDE / furthest).min(1.0);
         // Where no drive moves there is nothing to shorten.
         let shortest = if furthest > 0.0 { SHORTEST * longest } else { longest };
         let at = |part: f64| from.iter().zip(self.positions).map(move |(from, to)| from + part * (to - from));
         let mut found = None;
-        let mut stride = |q: &Vec<f64>, [before, after]: [f64; 2]| {
-            let mut start = q.clone();
-            for (drive, (after, before)) in drives.iter().zip(at(after).zip(at(before))) {
-                start[drive.coordinate] += after - before;
-            }
+        // The first Newton step moves the crane with its drives, and what follows them: couplings, and a hook on a rope of fixed length.
+        let mut stride = |q: &Vec<f64>, [_, after]: [f64; 2]| {
             let positions: Vec<f64> = if after < 1.0 { at(after).collect() } else { self.positions.to_vec() };
-            let rest = RestSearch { positions: &positions, ..*self }.find_near(&start)?;
+            let rest = RestSearch { positions: &positions, ..*self }.find_near(q)?;
             Some(found.insert(rest).q.clone())
         };
         advance(q.to_vec(), [shortest, longest], &mut stride)?;
@@ -84,7 +80,7 @@ impl RestSearch<'_> {
     }
 }
 
-/// Follows states from part 0 to part 1 of a way, in steps from the longest down to the shortest: one that fails is halved, and after one that succeeds
+/// Follows states from part 0 to part 1 of a way, in steps from the longest down to the shortest: one that fails is halved, and after two that succeed
 /// the next may be twice as long. `step`: the state at the second part, from that at the first; `None` for the result if the shortest step fails.
 pub(crate) fn advance<S>(
     begin: S,
@@ -94,12 +90,18 @@ pub(crate) fn advance<S>(
     /// What rounding leaves of a way.
     const ROUNDING: f64 = 1e-9;
     let (mut part, mut length, mut state) = (0.0, longest, begin);
+    let mut succeeded = 0;
     while part < 1.0 {
         let next = if part + length > 1.0 - ROUNDING { 1.0 } else { part + length };
         match step(&state, [part, next]) {
-            Some(reached) => (part, state, length) = (next, reached, (2.0 * length).min(longest)),
+            Some(reached) => {
+                (part, state, succeeded) = (next, reached, succeeded + 1);
+                if succeeded >= 2 {
+                    (length, succeeded) = ((2.0 * length).min(longest), 0);
+                }
+            }
             None if length <= shortest => return None,
-            None => length *= 0.5,
+            None => (length, succeeded) = (0.5 * length, 0),
         }
     }
     Some(state)
