@@ -238,6 +238,18 @@ mod tests {
         assert_eq!((load, governing, trials), (None, Some(Limit::Effort { drive: 1 }), 0));
     }
 
+    /// Beyond the limit at once, by the load of a neighbour: the second trial is on the chord, the third on the secant.
+    #[test]
+    fn a_guess_beyond_takes_few_trials() {
+        let range = Range { guess: 77.0, ..RANGE };
+        let slightly_curved = |load: f64| Some(vec![1.0 - load / 70.0 - 1e-4 * (load / 70.0).powi(2)]);
+        let (load, _, trials) = find(&slightly_curved, &range);
+        let load = load.unwrap();
+        let exact = 70.0 * ((1.0 + 4e-4_f64).sqrt() - 1.0) / 2e-4;
+        assert!(load <= exact && load > exact * (1.0 - ACCURACY), "{load} for {exact}");
+        assert!(trials <= 4, "{trials}");
+    }
+
     /// Newton's method fails where a step is too long, although the crane would rest.
     #[test]
     fn a_step_that_was_too_long_is_no_limit() {

@@ -606,6 +606,7 @@ impl Writer<'_> {
             rope["motion"] = json!({"cubic": {"from": free, "to": round(free - 0.05), "duration": 1}});
         } else {
             rope["length"] = json!(free);
+            rope["max_tension"] = json!(1200);
         }
         let points: Vec<Tree> = way.into_iter().map(|(_, point)| point).collect();
         if let [from, over @ .., to] = points.as_slice() {

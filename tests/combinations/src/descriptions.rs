@@ -733,6 +733,7 @@ const WITH_MASS: &[&str] = &[
     "stiffness",
     "damping",
     "max_effort",
+    "max_tension",
     "max_power",
     "armature",
     "force",
