@@ -87,6 +87,7 @@ fn shipped_and_described_cranes_are_plausible() {
     cranes.extend(specs("../examples/own-crane"));
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
     let pages = std::fs::read_dir(docs.join("manual")).expect("the manual").map(|entry| entry.expect("a page").path());
+    let pages = pages.filter(|page| page.extension().is_some_and(|extension| extension == "md"));
     for page in pages.chain([docs.join("SPEC.md"), docs.join("../README.md")]) {
         let text = std::fs::read_to_string(&page).expect("a page");
         let blocks = text.split("```yaml\n").skip(1).filter_map(|rest| rest.split("```").next());

@@ -108,7 +108,9 @@ impl Condition {
         }
         for section in &self.sections {
             let limit = Limit::Utilisation { section: section.place.section };
-            section.utilisation.into_iter().for_each(|utilisation| found.at_most(limit, utilisation));
+            if let Some(utilisation) = section.utilisation {
+                found.at_most(limit, utilisation);
+            }
         }
         for (drive, effort) in self.efforts.iter().enumerate() {
             found.at_most(Limit::Effort { drive }, effort.abs());
@@ -149,7 +151,9 @@ impl Condition {
             }
         }
         let longest = self.utilisations_of_friction.iter().min_by(|a, b| a.1.total_cmp(&b.1));
-        longest.into_iter().for_each(|&(foot, utilisation)| found.at_most(Limit::Sliding { foot }, utilisation));
+        if let Some(&(foot, utilisation)) = longest {
+            found.at_most(Limit::Sliding { foot }, utilisation);
+        }
         let sizes = self.feet.iter().map(|[force, _]| force.abs());
         let mean = (sizes.sum::<f64>() / self.feet.len().max(1) as f64).max(f64::MIN_POSITIVE);
         for (foot, &[force, gap]) in self.feet.iter().enumerate() {

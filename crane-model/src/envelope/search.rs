@@ -91,10 +91,10 @@ pub(super) fn largest(
         if high - within.load <= accuracy(high, range) {
             break;
         }
-        if let Some((at, limit)) = secant {
-            if (at - within.load).abs() <= accuracy(at, range) && at <= high {
-                return (Some(within), Some(limit));
-            }
+        if let Some((_, limit)) =
+            secant.filter(|(at, _)| (at - within.load).abs() <= accuracy(*at, range) && *at <= high)
+        {
+            return (Some(within), Some(limit));
         }
         let now = last[1].as_ref().map_or(within.load, |(load, _)| *load);
         let next = match &beyond {

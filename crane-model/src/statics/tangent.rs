@@ -47,18 +47,15 @@ enum Kind {
 impl Factors {
     fn new(scaled: &DMatrix<f64>) -> Option<Self> {
         let n = scaled.nrows();
-        let (kind, size) = match scaled.clone().cholesky() {
-            Some(factors) => {
-                let mut inverse = DMatrix::identity(n, n);
-                factors.l_dirty().solve_lower_triangular_mut(&mut inverse);
-                // ‖M⁻¹‖ ≤ tr M⁻¹ = ‖L⁻¹‖².
-                (Kind::Definite(factors), inverse.norm_squared())
-            }
-            None => {
-                let inverse = scaled.clone().try_inverse()?;
-                let size = inverse.norm();
-                (Kind::Indefinite(inverse), size)
-            }
+        let (kind, size) = if let Some(factors) = scaled.clone().cholesky() {
+            let mut inverse = DMatrix::identity(n, n);
+            factors.l_dirty().solve_lower_triangular_mut(&mut inverse);
+            // ‖M⁻¹‖ ≤ tr M⁻¹ = ‖L⁻¹‖².
+            (Kind::Definite(factors), inverse.norm_squared())
+        } else {
+            let inverse = scaled.clone().try_inverse()?;
+            let size = inverse.norm();
+            (Kind::Indefinite(inverse), size)
         };
         Some(Self { kind, least_ratio: (scaled.norm() * size).recip() })
     }
