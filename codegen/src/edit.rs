@@ -25,7 +25,7 @@ pub enum Unbending {
 pub enum BeamEnd<'a> {
     /// At the frame of the only link that goes on from another place.
     Next,
-    /// At the frame of the link of this name, which goes on from it, or at the point of interest of this name on it.
+    /// At the frame of the link of this name, which goes on from it, or at the point of interest or the frame of this name on it.
     Named(&'a str),
     /// At a point in the frame of the link that bends, m: no other link moves with the end.
     Point([f64; 3]),
@@ -169,12 +169,17 @@ fn rotations_in_beam(given: Option<&Transform>, name: &str, psi: f64, theta: f64
     Ok(rotations)
 }
 
-/// The place of a point of interest on a link, m.
+/// The place of a point of interest on a link, or of one of its frames, m.
 fn point_on(crane: &Crane, link: &str, name: &str) -> Option<[f64; 3]> {
-    let mut points = entries(crane.points.as_ref());
-    let on_link = |point: &&Point| point.link.as_ref().is_some_and(|on| on.value.as_deref() == Some(link));
-    let point = points.find(|point| point.name.value.as_deref() == Some(name) && on_link(point))?;
-    numbers_or_zero(point.at.as_ref())
+    let is = |word: &Spanned<String>, given: &Option<Spanned<String>>| {
+        word.value.as_deref() == Some(name) && given.as_ref().is_some_and(|on| on.value.as_deref() == Some(link))
+    };
+    if let Some(point) = entries(crane.points.as_ref()).find(|point| is(&point.name, &point.link)) {
+        return numbers_or_zero(point.at.as_ref());
+    }
+    let frame = entries(crane.frames.as_ref()).find(|frame| is(&frame.name, &frame.link))?;
+    let given = frame.transform.as_ref().and_then(|transform| transform.value.as_ref());
+    numbers_or_zero(given.and_then(|given| given.translation.as_ref()))
 }
 
 /// Where the beam ends.
@@ -188,7 +193,7 @@ fn end<'a>(crane: &Crane, beyond: &[(&'a str, &'a Link)], name: &str, to: BeamEn
             (None, None) => {
                 let known = if beyond.is_empty() { "nothing".to_owned() } else { names(beyond) };
                 return Err(format!(
-                    "`{to}` is neither a link that goes on from `{name}` ({known}) nor a point of interest on it"
+                    "`{to}` is neither a link that goes on from `{name}` ({known}) nor a point of interest or a frame on it"
                 ));
             }
         },

@@ -218,15 +218,26 @@ class Crane(Closed, _native.Crane):
         sections: number of sections. material: the name of a material of the spec, or `{"E": ..., "G": ..., "density": ...}`, in Pa and kg/m³.
         section: such as `{"tube": {"diameter": 0.1, "thickness": 0.003}}`, in m; other keys of a beam (`parts`, `extra_mass`, `damping`, …) as
         in a spec.
-        to: the link at whose frame the beam ends, where several go on from `link`; the point of interest on it at which it ends; or a point in its
-        frame, m.
+        to: the link at whose frame the beam ends, where several go on from `link`; the point of interest or the frame on it at which it ends; or a
+        point in its frame, m.
+
+        Warns if the crane loses mass and its file fixes something to the link, such as a tool, which is part of the link's mass.
 
         Raises ValueError if the link cannot become a beam, and SpecError for wrong keys of the beam.
         """
         keys = {"sections": sections, "material": material, "section": section, **beam}
         text = "\n".join(f"{key}: {json.dumps(value)}" for key, value in keys.items() if value is not None)
         to, point = (to, None) if to is None or isinstance(to, str) else (None, [float(x) for x in to])
-        return type(self)(self.source, text=self._with_beam(link, to, point, text), parameters=self.parameters, inputs=self.inputs)
+        bending = type(self)(self.source, text=self._with_beam(link, to, point, text), parameters=self.parameters, inputs=self.inputs)
+        before, after = (sum(body["mass"] for body in crane.info["bodies"]) for crane in (self, bending))
+        fixed = ", ".join(frame["name"] for frame in self.info["frames"] if frame["link"] == link and frame["name"] != link)
+        if fixed and after < before:
+            warnings.warn(
+                f"the beam takes the place of the mass of `{link}` and of what is fixed to it ({fixed}), and weighs {before - after:.4g} kg less: write what it "
+                "carries as its `extra_mass`, or fix it by a joint of its own",
+                stacklevel=2,
+            )
+        return bending
 
     @property
     def parameters(self) -> dict[str, Any]:
@@ -627,7 +638,7 @@ class Crane(Closed, _native.Crane):
         eigenvalues = found["real"] + 1j * found["imaginary"]
         return Modes(q, found["omega_squared"], found["shapes"], eigenvalues, *lists)
 
-    def sensitivity(self, numbers: Sequence[str] | None = None, *, frequencies: int = 3, invalid: str = "raise") -> Sensitivity:
+    def sensitivity(self, numbers: str | Sequence[str] | None = None, *, frequencies: int = 3, invalid: str = "raise") -> Sensitivity:
         """Exact derivatives of the crane at rest: of positions, efforts, pressures, reactions, stresses, tipping margin and frequencies.
 
         numbers: live parameters by name, all of them unless given, and numbers of the spec by their places, as in
@@ -639,6 +650,7 @@ class Crane(Closed, _native.Crane):
         Feet, ropes and stops act as they do at rest, and what governs keeps governing: a derivative ends where one of these changes.
         Raises NoEquilibrium if a row has no stable one; with invalid="nan" its numbers are NaN.
         """
+        numbers = [numbers] if isinstance(numbers, str) else numbers
         names = list(numbers) if numbers is not None else [parameter["name"] for parameter in self.info["parameters"]]
         if not names:
             raise ValueError(

@@ -252,5 +252,13 @@ def test_links_that_cannot_bend_say_why():
         robot.with_beam("fore", **beam).with_beam("fore_beam", **beam)
     with pytest.raises(crane.SpecError, match="E010"):
         robot.with_beam("fore", thickness=3, **beam)
+    # A tool that the file fixes to a link is part of its mass, and a place where its beam may end.
+    tool = '<link name="tool"><inertial><mass value="2"/><origin xyz="0 0 0.1"/><inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+    joint = '<joint name="flange" type="fixed"><parent link="hand"/><child link="tool"/><origin xyz="0 0 0.3"/></joint>'
+    carrying = crane.from_urdf(TWO_LINKS.replace("</robot>", f"{tool}{joint}</robot>"))
+    # The hand has 0.5 kg, the tool 2 kg, 0.3 m of a rod of 20 mm 0.25 kg.
+    with pytest.warns(UserWarning, match=r"what is fixed to it \(tool\), and weighs 2\.24\d kg less"):
+        bending = carrying.with_beam("hand", to="tool", **beam)
+    assert np.allclose(bending.frames("tool").poses(np.zeros(bending.n)), carrying.frames("tool").poses(np.zeros(carrying.n)), atol=1e-12)
     # A hand that bends has its end at a point.
     assert robot.with_beam("hand", to=[0, 0, 0.1], **beam).n == robot.n + 6
