@@ -65,7 +65,7 @@ pub struct Body {
     /// The body that carries it.
     pub parent: Option<usize>,
     /// Where it is attached along its carrier, m.
-    along: f64,
+    pub along: f64,
     /// The coordinates of its joint.
     pub own: Range<usize>,
     /// Its frame at the reference.
@@ -342,7 +342,49 @@ fn cylinders(live: &LiveCrane, moving: (&[[f64; 6]], &[Matrix4<f64>])) -> Vec<Ba
     live.chain().cylinders.iter().map(data).collect()
 }
 
+/// The pins of a cylinder in a pose, in the world, m.
+#[derive(Clone, Copy, Debug)]
+pub struct Pins {
+    /// Where the barrel is held.
+    pub foot: Vector3<f64>,
+    /// The end of the rod.
+    pub rod: Vector3<f64>,
+    /// Where the rod, or the link beyond it, acts.
+    pub head: Vector3<f64>,
+    /// About which the rocker turns, if there is one.
+    pub pivot: Option<Vector3<f64>>,
+}
+
+impl Pins {
+    /// All of them.
+    pub fn places(self) -> impl Iterator<Item = Vector3<f64>> + Clone {
+        let linked = self.pivot.into_iter().flat_map(move |pivot| [pivot, self.head]);
+        [self.foot, self.rod].into_iter().chain(linked)
+    }
+}
+
 impl Barrel {
+    /// Its axis in the world, of length 1, if the joint turns.
+    pub fn normal(&self, frames: &[Matrix4<f64>]) -> Option<Vector3<f64>> {
+        self.axis.map(|(body, along)| (frames[body].fixed_view::<3, 3>(0, 0) * along).normalize())
+    }
+
+    /// Its pins while the bodies have these frames: the geometry of `codegen/src/mechanics/cylinders.rs`.
+    pub fn pins(&self, frames: &[Matrix4<f64>]) -> Pins {
+        let [foot, head] = [&self.foot, &self.head].map(|pin| pin.within(frames));
+        let Some(Rocker { pivot, rocker, link, left }) = &self.linkage else {
+            return Pins { foot, rod: head, head, pivot: None };
+        };
+        let pivot = pivot.within(frames);
+        let across = head - pivot;
+        let along = (across.norm_squared() + rocker.powi(2) - link.powi(2)) / (2.0 * across.norm());
+        let height = (rocker.powi(2) - along.powi(2)).max(0.0).sqrt() * if *left { 1.0 } else { -1.0 };
+        let normal = self.normal(frames).unwrap_or_default();
+        let aside = normal.cross(&across).try_normalize(0.0).unwrap_or_default();
+        let rod = pivot + across.normalize() * along + aside * height;
+        Pins { foot, rod, head, pivot: Some(pivot) }
+    }
+
     fn json(&self) -> Value {
         let linkage = self.linkage.as_ref().map(|Rocker { pivot, rocker, link, left }| {
             json!({"pivot": pivot.json(), "rocker": rocker, "link": link, "left": left})

@@ -24,6 +24,7 @@ use crane_model::{CoordinateInfo, CoordinateKind, CoordinateRole, dyn_crane::Dyn
 use nalgebra::{Matrix4, Vector3};
 
 use crate::scene::{Body, Connector, Hinge, Pad, Place, Scene, Section, is_mesh, matrix, sections};
+pub use cylinders::LENGTH as BARREL_LENGTH;
 pub use mesh::Mesh;
 
 /// Mass per volume within the outline of a link, kg/m³: about a third of steel's.
