@@ -198,16 +198,20 @@ fn wrench_at(places: &[&Place], (x, number): (f64, usize), tolerance: f64) -> Op
     Some(sum)
 }
 
-/// By how much each point of interest moves with twice the sections, m; `None` for a crane without points or sections, or without a stable pose.
-pub fn changes_of_points(case: &Case<'_>, registry: &Registry) -> Option<Vec<f64>> {
+/// By how much each point of interest moves with twice the sections, m; `None` for a crane without points or without beams that bend, or without a stable
+/// pose.
+///
+/// # Errors
+/// Why it is not computed.
+pub fn changes_of_points(case: &Case<'_>, registry: &Registry) -> Option<Result<Vec<f64>, &'static str>> {
     let places = |case: &Case<'_>| case.crane.points_at(&case.equilibrium.q);
     let own = places(case);
-    if own.is_empty() || !case.equilibrium.is_stable() {
-        return None;
-    }
-    let mesh = OtherMesh::of(case.crane, registry).ok()?;
-    let other = places(&mesh.case(case.label).ok()?);
-    Some(own.iter().zip(&other).map(|(own, other)| mesh.share.abs() * (other - own).norm()).collect())
+    let bends = case.crane.description().coordinates.iter().any(|coordinate| coordinate.role.is_element());
+    (bends && !own.is_empty() && case.equilibrium.is_stable()).then(|| {
+        let mesh = OtherMesh::of(case.crane, registry)?;
+        let other = places(&mesh.case(case.label)?);
+        Ok(own.iter().zip(&other).map(|(own, other)| mesh.share.abs() * (other - own).norm()).collect())
+    })
 }
 
 /// Says that the sections do not resolve the maximum stress.
