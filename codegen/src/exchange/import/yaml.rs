@@ -221,10 +221,14 @@ fn link_text(link: &SpecLink, on: Option<&str>) -> String {
     }
     match link.shapes.as_slice() {
         [] => {}
-        [one] => text += &format!("    shape: {}\n", shape(one)),
+        [one] => {
+            let _ = writeln!(text, "    shape: {}", shape(one));
+        }
         several => {
             text += "    shape:\n";
-            several.iter().for_each(|one| text += &format!("      - {}\n", shape(one)));
+            for one in several {
+                let _ = writeln!(text, "      - {}", shape(one));
+            }
         }
     }
     text.push('\n');

@@ -74,7 +74,8 @@ impl Plausibility<'_> {
             match shape {
                 Shape::Box(of) => self.check_position(Some(&of.size), &what),
                 Shape::Cylinder(of) | Shape::Capsule(of) => {
-                    [&of.diameter, &of.length].into_iter().for_each(|side| self.check_length(side, &what));
+                    self.check_length(&of.diameter, &what);
+                    self.check_length(&of.length, &what);
                 }
                 Shape::Mesh(_) => {}
             }
