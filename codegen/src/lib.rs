@@ -27,7 +27,6 @@ pub mod files;
 pub mod lower;
 pub mod mechanics;
 mod node;
-pub mod picture;
 pub mod program;
 mod read;
 pub mod report;

@@ -5,7 +5,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use crane_codegen::chain::{Analyses, Chain, Follower, Frame, RigidCoupling};
+use crane_codegen::chain::{Analyses, Chain, Follower, Form, Frame, RigidCoupling};
 use crane_codegen::exchange::ImportOptions;
 use crane_codegen::program::{FunctionId, Inputs};
 use crane_codegen::{SourceFile, build, compile, exchange, mechanics};
@@ -695,10 +695,55 @@ fn what_acts_on_nothing_is_told() {
          <tendon>{tendons}</tendon><equality><tendon tendon1='held'/></equality></mujoco>"
     );
     let left_out = told("a.xml", &text);
-    for remark in ["tendons that exert no force: <fixed>.", "contacts, shapes and colours: <geom>", "`pos` of <joint>"]
-    {
+    for remark in ["tendons that exert no force: <fixed>.", "such as the world: 1.", "`pos` of <joint>"] {
         assert!(left_out.contains(remark), "{remark}: {left_out}");
     }
+}
+
+/// Solids that a file shows are shapes of the spec, in the frame of its link, with that of a link that a fixed joint merges. Surfaces, solids without a size and
+/// groups that MuJoCo does not show are left out. A cylinder of two ends is at their middle. Rounding of numbers about 1.
+#[test]
+fn solids_that_are_shown_are_shapes() {
+    let inertial = "<inertial><mass value='2'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>";
+    let visual = |origin: &str, solid: &str| {
+        format!("<visual><origin {origin}/><geometry>{solid}</geometry><material name='m'/></visual>")
+    };
+    let urdf = format!(
+        "<robot name='r'><link name='base'/><link name='arm'>{inertial}{}{}{}</link><link name='tool'>{}{}</link>\
+         <joint name='j' type='revolute'><parent link='base'/><child link='arm'/><axis xyz='0 0 1'/></joint>\
+         <joint name='f' type='fixed'><parent link='arm'/><child link='tool'/><origin xyz='1 0 0' rpy='0 0 1.5707963267948966'/></joint></robot>",
+        visual("xyz='0.5 0 0'", "<box size='1 0.2 0.1'/>"),
+        visual("rpy='0 1.5707963267948966 0'", "<cylinder radius='0.1' length='0.6'/>"),
+        visual("", "<mesh filename='a.stl'/>"),
+        visual("xyz='0.2 0 0'", "<sphere radius='0.3'/>"),
+        visual("", "<cylinder radius='0' length='1'/>"),
+    );
+    let mjcf = "<mujoco><worldbody><body name='arm'><joint axis='0 0 1'/><inertial pos='0 0 0' mass='2' diaginertia='1 1 1'/>\
+         <geom type='box' size='0.5 0.1 0.05' pos='0.5 0 0'/><geom type='cylinder' size='0.1' fromto='-0.3 0 0 0.3 0 0'/>\
+         <body name='tool' pos='1 0 0' euler='0 0 90'><geom size='0.3' pos='0.2 0 0' mass='0'/><geom size='1' group='3' mass='0'/></body></body></worldbody></mujoco>";
+    let expected = [
+        (Form::Box([1.0, 0.2, 0.1]), [0.5, 0.0, 0.0], [0.0, 0.0, 1.0]),
+        (Form::Cylinder { diameter: 0.2, length: 0.6 }, [0.0; 3], [1.0, 0.0, 0.0]),
+        (Form::Capsule { diameter: 0.6, length: 0.0 }, [1.0, 0.2, 0.0], [0.0, 0.0, 1.0]),
+    ];
+    for (name, text) in [("r.urdf", urdf.as_str()), ("r.xml", mjcf)] {
+        let written = spec(name, text);
+        let crane = chain(&SourceFile::new("robot", &written));
+        let found: Vec<_> = crane.shapes.iter().map(|shape| shape.at(&crane, &[])).collect();
+        assert_eq!(found.len(), expected.len(), "{written}");
+        for ((frame, form), (solid, at, axis)) in found.iter().zip(&expected) {
+            assert_eq!(form, solid, "{written}");
+            let off = [0, 1, 2].map(|i| (frame.origin[i] - at[i]).abs() + (frame.axes[2][i] - axis[i]).abs());
+            assert!(off.iter().sum::<f64>() < 1e-15 * 8.0, "{name}: {frame:?}");
+        }
+        // And back: the same forms.
+        let again = spec("again.urdf", &exchange::urdf(&crane, &[], &[]).expect("an open chain"));
+        let again = chain(&SourceFile::new("again", again));
+        let forms = |crane: &Chain| crane.shapes.iter().map(|shape| shape.at(crane, &[]).1).collect::<Vec<_>>();
+        assert_eq!(forms(&again), forms(&crane));
+    }
+    let left_out = spec("r.urdf", &urdf);
+    assert!(left_out.contains("shapes and colours: <material> (3), <visual> (2)."), "{left_out}");
 }
 
 /// Names of the coordinates of a robot in MJCF or URDF.

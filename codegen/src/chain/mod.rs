@@ -21,6 +21,7 @@ mod parameter;
 mod profile;
 mod result_names;
 mod run;
+mod shape;
 mod stage;
 mod start;
 mod strain;
@@ -46,6 +47,7 @@ pub use parameter::{Parameter, Relation};
 pub use profile::{Derivative, Profile, Ramp, Segment, first_jump, jumps};
 pub use result_names::ResultNames;
 pub use run::{Analyses, Run};
+pub use shape::{Form, Shape};
 pub use stage::Stage;
 pub use strain::{Attachment, Line, LinePart, PadDirection, Sliding, Strain, Turning};
 pub use support::{Support, SupportKinematics};
@@ -112,6 +114,8 @@ pub struct Chain {
     pub joints: Vec<NamedJoint>,
     /// Points of interest.
     pub points: Vec<Point>,
+    /// What links look like, as far as the spec says so.
+    pub shapes: Vec<Shape>,
     /// Where statics begins, or the run if there is no static solution, as far as the spec says so, rad and m.
     pub written_guess: Vec<Option<f64>>,
     /// The whole pose with default parameters, [`guess_at`](Self::guess_at).

@@ -524,6 +524,8 @@ catalogue! {
     E196 unknown_point(name, help) "there is no point `{name}`", "not listed under `points:`", "{help}";
     /// A point that the ground may carry moves.
     E197 rigid_contact(name) "the point of contact `{name}` never moves", "no coordinate moves this link", "name a link that moves, or remove the contact";
+    /// The file of a mesh is an STL or OBJ file.
+    E198 unknown_mesh(file) "a mesh is in `{file}`", "not an STL or OBJ file", "name a file that ends in `.stl` or `.obj`; other programs convert others";
 
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.

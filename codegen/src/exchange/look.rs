@@ -1,6 +1,10 @@
 //! What an exported file shows of a crane.
 
-use crate::chain::{BodyId, Frame, Vector};
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use super::free_name;
+use crate::chain::{BodyId, Chain, Form, Frame, Vector};
 
 /// A part that is shown, in one colour. It has neither mass nor contacts.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,42 +15,42 @@ pub struct Look {
     pub frame: Frame,
     /// Its form.
     pub form: Form,
-    /// Name of its colour.
-    pub paint: &'static str,
-    /// Red, green and blue, each from 0 to 1.
-    pub colour: Vector,
+    /// Name of its colour, with red, green and blue, each from 0 to 1; `None` for any.
+    pub paint: Option<(&'static str, Vector)>,
 }
 
-/// The form of a part; lengths in m.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Form {
-    /// A box about its middle, with sides along x, y and z.
-    Box(Vector),
-    /// A cylinder about its middle, along z.
-    Cylinder {
-        /// Its radius.
-        radius: f64,
-        /// Its length.
-        length: f64,
-    },
-    /// A ball about its middle.
-    Sphere(f64),
-    /// A surface in a file of its own.
-    Mesh {
-        /// A name that no other one has.
-        name: String,
-        /// The file, as the exported file names it.
-        file: String,
-    },
+/// The shapes that the spec gives its links.
+#[must_use]
+pub fn shapes(chain: &Chain, parameters: &[f64]) -> Vec<Look> {
+    let look = |shape: &crate::chain::Shape| {
+        let (frame, form) = shape.at(chain, parameters);
+        Look { body: Some(shape.body), frame, form, paint: None }
+    };
+    chain.shapes.iter().map(look).collect()
 }
 
 /// The colours of some parts, each once.
 pub(super) fn colours(looks: &[Look]) -> Vec<(&'static str, String)> {
     let mut found: Vec<(&'static str, String)> = Vec::new();
-    for look in looks {
-        if found.iter().all(|(name, _)| *name != look.paint) {
-            let [red, green, blue] = look.colour.map(|share| format!("{share:.3}"));
-            found.push((look.paint, format!("{red} {green} {blue} 1")));
+    for (paint, colour) in looks.iter().filter_map(|look| look.paint) {
+        if found.iter().all(|(name, _)| *name != paint) {
+            let [red, green, blue] = colour.map(|share| format!("{share:.3}"));
+            found.push((paint, format!("{red} {green} {blue} 1")));
+        }
+    }
+    found
+}
+
+/// The surfaces of some parts, each once, with names after their files.
+pub(super) fn surfaces(looks: &[Look]) -> Vec<(&Form, String)> {
+    let mut names = BTreeSet::new();
+    let mut found: Vec<(&Form, String)> = Vec::new();
+    for form in looks.iter().map(|look| &look.form) {
+        if let Form::Mesh { file, .. } = form
+            && found.iter().all(|(other, _)| *other != form)
+        {
+            let stem = Path::new(file).file_stem().unwrap_or_default().to_string_lossy();
+            found.push((form, free_name(&mut names, &stem, |_, _| true)));
         }
     }
     found

@@ -2,15 +2,15 @@
 
 use std::collections::BTreeSet;
 
-use super::look::{Form, Look, colours, on as looks_on};
+use super::look::{Look, colours, on as looks_on, surfaces};
 use super::mass::Lump;
 use super::names::{self, Place};
 use super::rotation::{length as distance, quaternion};
 use super::springs::{JointSpring, linear_rows, on};
 use super::xml::{Xml, number_text, numbers};
-use super::{Inexpressible, RADIUS, approximations, bars, free_name, hinged, origin, placements};
+use super::{Inexpressible, RADIUS, approximations, free_name, hinged, origin, placements, shown};
 use crate::chain::{
-    BodyId, Chain, CoordinateId, CoordinateKind, Follower, Frame, LoopJoint, LoopJointKind, RigidCoupling, Step,
+    BodyId, Chain, CoordinateId, CoordinateKind, Follower, Form, Frame, LoopJoint, LoopJointKind, RigidCoupling, Step,
     Support, SupportKinematics, Value,
 };
 
@@ -26,7 +26,7 @@ const LEAST: f64 = 1e-14;
 /// linear support becomes three tendons, whose lengths are linear in the base's coordinates. Rigid drives, rigid couplings and joints that close
 /// loops become equality constraints, as stiff as `MuJoCo` allows: they yield by about 1e-4 of the acceleration that they prevent.
 ///
-/// `looks`: geoms without contacts, in group 2; without any, a capsule represents each body. `start`: the pose of the key frame `start`, and what it is.
+/// `looks`: geoms without contacts, in group 2; without any, the shapes of the spec, and a capsule for each body without one. `start`: the pose of the key frame `start`, and what it is.
 ///
 /// # Errors
 /// A support with exact kinematics or one that lifts off, or a line or a pad that closes a loop.
@@ -80,14 +80,21 @@ pub fn mjcf(
     }
     xml.leaf("geom", &seen);
     xml.close();
-    assets(&mut xml, looks);
+    let (looks, bars) = shown(chain, &placements(chain, parameters), (parameters, looks));
+    let surfaces = surfaces(&looks);
+    assets(&mut xml, &looks, &surfaces);
 
     xml.open("worldbody", &[]);
-    looks_on(looks, None).for_each(|look| geom(&mut xml, look));
+    looks_on(&looks, None).for_each(|look| geom(&mut xml, look, &surfaces));
     let (joints, sites) = (names::joints(chain), sites(chain, parameters));
     sites_on(&mut xml, &sites, None);
     loop_sites(&mut xml, chain, None, parameters);
-    bodies(&mut xml, chain, parameters, (looks, &sites, &joints));
+    bodies(&mut xml, chain, parameters, (&sites, &joints), |xml, id| {
+        looks_on(&looks, Some(id)).for_each(|look| geom(xml, look, &surfaces));
+        if let Some(end) = bars[id.0] {
+            xml.leaf("geom", &[("fromto", numbers(&[[0.0; 3], end].concat()))]);
+        }
+    });
     xml.close();
 
     let rods: Vec<(&LoopJoint, &Value)> = chain.loop_joints.iter().filter_map(as_rod).collect();
@@ -129,13 +136,18 @@ pub fn mjcf(
     Ok(xml.finish())
 }
 
-/// All bodies, each within the one that carries it.
-fn bodies(xml: &mut Xml, chain: &Chain, parameters: &[f64], (looks, sites, joints): (&[Look], &[Place], &[String])) {
+/// All bodies, each within the one that carries it; `show` writes what is shown of one.
+fn bodies(
+    xml: &mut Xml,
+    chain: &Chain,
+    parameters: &[f64],
+    (sites, joints): (&[Place], &[String]),
+    show: impl Fn(&mut Xml, BodyId),
+) {
     let mut taken: BTreeSet<String> = names::frames(chain, parameters).into_iter().map(|frame| frame.name).collect();
     taken.insert(names::WORLD.to_owned());
     let names = names::bodies(chain, &mut taken);
     let placements = placements(chain, parameters);
-    let bars = bars(chain, &placements, parameters);
     let rest = vec![0.0; chain.coordinates.len()];
     let mut open: Vec<BodyId> = Vec::new();
     for id in chain.depth_first() {
@@ -168,10 +180,7 @@ fn bodies(xml: &mut Xml, chain: &Chain, parameters: &[f64], (looks, sites, joint
             None if moves => inertial(xml, &Lump { mass: LEAST, com: [0.0; 3], tensor: [0.0; 6] }),
             None => {}
         }
-        looks_on(looks, Some(id)).for_each(|look| geom(xml, look));
-        if let Some(end) = bars[index].filter(|_| looks.is_empty()) {
-            xml.leaf("geom", &[("fromto", numbers(&[[0.0; 3], end].concat()))]);
-        }
+        show(xml, id);
         sites_on(xml, sites, Some(id));
         loop_sites(xml, chain, Some(id), parameters);
     }
@@ -207,31 +216,39 @@ fn sites_on(xml: &mut Xml, sites: &[Place], body: Option<BodyId>) {
 }
 
 /// Colours and meshes.
-fn assets(xml: &mut Xml, looks: &[Look]) {
-    if looks.is_empty() {
+fn assets(xml: &mut Xml, looks: &[Look], surfaces: &[(&Form, String)]) {
+    let colours = colours(looks);
+    if colours.is_empty() && surfaces.is_empty() {
         return;
     }
     xml.open("asset", &[]);
-    for (name, colour) in colours(looks) {
+    for (name, colour) in colours {
         xml.leaf("material", &[("name", name.to_owned()), ("rgba", colour)]);
     }
-    for look in looks {
-        if let Form::Mesh { name, file } = &look.form {
+    for (form, name) in surfaces {
+        if let Form::Mesh { file, scale } = form {
             // Surfaces are not solids to be weighed.
-            xml.leaf("mesh", &[("name", name.clone()), ("file", file.clone()), ("inertia", "shell".into())]);
+            let mut attributes = vec![("name", name.clone()), ("file", file.clone()), ("inertia", "shell".into())];
+            attributes.extend((*scale != 1.0).then(|| ("scale", numbers(&[*scale; 3]))));
+            xml.leaf("mesh", &attributes);
         }
     }
     xml.close();
 }
 
-fn geom(xml: &mut Xml, Look { frame, form, paint, .. }: &Look) {
+fn geom(xml: &mut Xml, Look { frame, form, paint, .. }: &Look, surfaces: &[(&Form, String)]) {
     let (kind, shape) = match form {
         Form::Box(sides) => ("box", ("size", numbers(&sides.map(|side| side / 2.0)))),
-        Form::Cylinder { radius, length } => ("cylinder", ("size", numbers(&[*radius, length / 2.0]))),
-        Form::Sphere(radius) => ("sphere", ("size", number_text(*radius))),
-        Form::Mesh { name, .. } => ("mesh", ("mesh", name.clone())),
+        Form::Cylinder { diameter, length } => ("cylinder", ("size", numbers(&[diameter / 2.0, length / 2.0]))),
+        Form::Capsule { diameter, length } if *length == 0.0 => ("sphere", ("size", number_text(diameter / 2.0))),
+        Form::Capsule { diameter, length } => ("capsule", ("size", numbers(&[diameter / 2.0, length / 2.0]))),
+        Form::Mesh { .. } => {
+            let name = surfaces.iter().find(|(other, _)| *other == form).map(|(_, name)| name.clone());
+            ("mesh", ("mesh", name.unwrap_or_default()))
+        }
     };
-    let mut attributes = vec![("type", kind.to_owned()), shape, ("material", (*paint).to_owned())];
+    let mut attributes = vec![("type", kind.to_owned()), shape];
+    attributes.extend(paint.map(|(name, _)| ("material", name.to_owned())));
     if *frame != Frame::WORLD {
         attributes.extend([("pos", numbers(&frame.origin)), ("quat", numbers(&quaternion(frame)))]);
     }

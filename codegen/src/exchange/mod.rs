@@ -17,11 +17,12 @@ pub mod xml;
 
 pub use import::{CATALOGUE, ImportOptions, Imported, Reference, ReferenceDynamics, import, with_includes};
 pub use inexpressible::Inexpressible;
-pub use look::{Form, Look};
+pub use look::{Look, shapes};
 pub use mjcf::mjcf;
 pub use springs::springs;
 pub use urdf::urdf;
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
@@ -105,15 +106,28 @@ pub fn free_name(names: &mut BTreeSet<String>, first: &str, fits: impl Fn(&BTree
     free
 }
 
-/// The end of the bar that represents a body in pictures, from the origin of its frame: the first body that it carries, or its centre of mass.
-fn bars(chain: &Chain, placements: &[Frame], parameters: &[f64]) -> Vec<Option<Vector>> {
+/// What is shown of a crane: `given` or, without any, the shapes of its spec; and for each body of which nothing is shown then the end of the bar that
+/// represents it, from the origin of its frame: the first body that it carries, or its centre of mass.
+fn shown<'l>(
+    chain: &Chain,
+    placements: &[Frame],
+    (parameters, given): (&[f64], &'l [Look]),
+) -> (Cow<'l, [Look]>, Vec<Option<Vector>>) {
+    if !given.is_empty() {
+        return (given.into(), vec![None; chain.bodies.len()]);
+    }
+    let looks = shapes(chain, parameters);
     let end = |(index, body): (usize, &Body)| {
+        if looks.iter().any(|look| look.body == Some(BodyId(index))) {
+            return None;
+        }
         let next = chain.bodies.iter().skip(index).position(|other| other.parent == Some(BodyId(index)));
         let next = next.map(|next| placements[index + next].origin);
         let com = body.inertia.as_ref().map(|inertia| mass::Lump::of(inertia, parameters).com);
         [next, com].into_iter().flatten().find(|end| rotation::length(*end) > SHORTEST_BAR)
     };
-    chain.bodies.iter().enumerate().map(end).collect()
+    let bars = chain.bodies.iter().enumerate().map(end).collect();
+    (looks.into(), bars)
 }
 
 /// Shorter bars are not drawn, m.

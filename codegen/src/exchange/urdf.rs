@@ -2,14 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use super::look::{Form, Look, colours, on};
+use super::look::{Look, colours, on};
 use super::mass::Lump;
 use super::names::Place;
 use super::rotation::{along_z, length, roll_pitch_yaw};
 use super::xml::{Xml, number_text, numbers};
-use super::{Inexpressible, RADIUS, approximations, bars, free_name, hinged, names, origin, placements};
+use super::{Inexpressible, RADIUS, approximations, free_name, hinged, names, origin, placements, shown};
 use crate::chain::{
-    BodyId, Chain, CoordinateId, CoordinateKind, Follower, Frame, LoopJoint, RigidCoupling, Step, Vector,
+    BodyId, Chain, CoordinateId, CoordinateKind, Follower, Form, Frame, LoopJoint, RigidCoupling, Step, Vector,
 };
 
 /// URDF requires limits for joints that are not `continuous`, which would have two coordinates in Pinocchio. The crane has no
@@ -48,7 +48,7 @@ fn expressible(chain: &Chain) -> Result<(), Inexpressible> {
 /// There is one joint per coordinate, with its name, or that of `joints` of the spec; a body with several coordinates has massless links
 /// between them. Names of fixed joints end in `_mount`; frames and points of interest are massless links. A body with the name of a frame elsewhere gets
 /// a number. A joint that a rigid coupling ties to another one mimics it.
-/// `looks` are its visuals; without any, a bar represents each body.
+/// `looks` are its visuals; without any, the shapes of the spec, and a bar for each body without one.
 ///
 /// # Errors
 /// A closed loop, or several rigid couplings of one joint.
@@ -72,16 +72,13 @@ pub fn urdf(chain: &Chain, parameters: &[f64], looks: &[Look]) -> Result<String,
     let joints = names::joints(chain);
     let mut mounts: BTreeSet<String> = joints.iter().cloned().collect();
     let mut mount = |name: &str| free_name(&mut mounts, &format!("{name}_mount"), |_, _| true);
-    for (name, colour) in colours(looks) {
+    let (looks, bars) = shown(chain, &placements(chain, parameters), (parameters, looks));
+    for (name, colour) in colours(&looks) {
         xml.open("material", &[("name", name.to_owned())]);
         xml.leaf("color", &[("rgba", colour)]);
         xml.close();
     }
-    link(&mut xml, &ground, None, on(looks, None), None);
-    let mut bars = bars(chain, &placements(chain, parameters), parameters);
-    if !looks.is_empty() {
-        bars.fill(None);
-    }
+    link(&mut xml, &ground, None, on(&looks, None), None);
     for (index, (body, bar)) in chain.bodies.iter().zip(bars).enumerate() {
         let name = &bodies[index];
         let mut parent = body.parent.map_or(&ground, |BodyId(parent)| &bodies[parent]).clone();
@@ -109,7 +106,7 @@ pub fn urdf(chain: &Chain, parameters: &[f64], looks: &[Look]) -> Result<String,
             joint(&mut xml, &mount(name), (&parent, name), &placement, None);
         }
         let mass = body.inertia.as_ref().map(|inertia| Lump::of(inertia, parameters));
-        link(&mut xml, name, mass.as_ref(), on(looks, Some(BodyId(index))), bar);
+        link(&mut xml, name, mass.as_ref(), on(&looks, Some(BodyId(index))), bar);
     }
     let points = names::points(chain, parameters).into_iter();
     let points = points.map(|point| Place { name: free(&format!("{}_point", point.name)), ..point });
@@ -187,17 +184,28 @@ fn link<'a>(
         xml.close();
     }
     for Look { frame, form, paint, .. } in looks {
-        visual(xml, frame, form, Some(paint));
+        visual(xml, frame, form, paint.map(|(name, _)| name));
     }
     if let Some(end) = bar {
         let middle = end.map(|component| component / 2.0);
-        let form = Form::Cylinder { radius: RADIUS, length: length(end) };
+        let form = Form::Cylinder { diameter: 2.0 * RADIUS, length: length(end) };
         visual(xml, &Frame { origin: middle, ..along_z(end) }, &form, None);
     }
     xml.close();
 }
 
 fn visual(xml: &mut Xml, frame: &Frame, form: &Form, paint: Option<&str>) {
+    // URDF has no capsules.
+    if let Form::Capsule { diameter, length } = *form
+        && length > 0.0
+    {
+        visual(xml, frame, &Form::Cylinder { diameter, length }, paint);
+        for end in [-0.5, 0.5] {
+            let origin = frame.transform_point([0.0, 0.0, end * length]);
+            visual(xml, &Frame { origin, ..*frame }, &Form::Capsule { diameter, length: 0.0 }, paint);
+        }
+        return;
+    }
     xml.open("visual", &[]);
     if *frame != Frame::WORLD {
         xml.leaf("origin", &pose(frame));
@@ -205,11 +213,15 @@ fn visual(xml: &mut Xml, frame: &Frame, form: &Form, paint: Option<&str>) {
     xml.open("geometry", &[]);
     match form {
         Form::Box(sides) => xml.leaf("box", &[("size", numbers(sides))]),
-        Form::Cylinder { radius, length } => {
-            xml.leaf("cylinder", &[("radius", number_text(*radius)), ("length", number_text(*length))]);
+        Form::Cylinder { diameter, length } => {
+            xml.leaf("cylinder", &[("radius", number_text(diameter / 2.0)), ("length", number_text(*length))]);
         }
-        Form::Sphere(radius) => xml.leaf("sphere", &[("radius", number_text(*radius))]),
-        Form::Mesh { file, .. } => xml.leaf("mesh", &[("filename", file.clone())]),
+        Form::Capsule { diameter, .. } => xml.leaf("sphere", &[("radius", number_text(diameter / 2.0))]),
+        Form::Mesh { file, scale } => {
+            let mut attributes = vec![("filename", file.clone())];
+            attributes.extend((*scale != 1.0).then(|| ("scale", numbers(&[*scale; 3]))));
+            xml.leaf("mesh", &attributes);
+        }
     }
     xml.close();
     if let Some(paint) = paint {

@@ -66,6 +66,7 @@ pub(super) fn double_pendulum() -> Chain {
         frames: Vec::new(),
         joints: Vec::new(),
         points: vec![Point { name: "tip".into(), body: BodyId(1), position: [c(LENGTH[1]), Value::ZERO, Value::ZERO] }],
+        shapes: Vec::new(),
         written_guess: vec![None; 2],
         guess: vec![0.0; 2],
         run: Run { duration: 1.0, step: 1e-3, output: 1e-2 },

@@ -13,7 +13,7 @@ const REMOVE: &str = "remove";
 /// Key that places an entry of a list behind another one.
 const AFTER: &str = "after";
 /// Keys whose value is one of several kinds, a mapping with the kind's name as its key: a value of another kind replaces it.
-const KINDS: [&str; 7] = ["joint", "law", "motion", "opening", "placement", "scale", "section"];
+const KINDS: [&str; 8] = ["joint", "law", "motion", "opening", "placement", "scale", "section", "shape"];
 /// Keys that identify the entries of lists.
 const IDENTITIES: [&str; 2] = ["name", "coordinate"];
 

@@ -1,6 +1,6 @@
 //! Links, their joints and what they carry.
 
-use super::{AxisName, Beam, Constant, Either, Inertia, Number, On, Placement, SlidesIn, Spanned, Vector};
+use super::{AxisName, Beam, Constant, Either, Inertia, Many, Number, On, Placement, Shape, SlidesIn, Spanned, Vector};
 use crate::node::FromNode;
 
 /// A link: its placement, its joint, and its mass: `mass`, `com` and `inertia`, or several `bodies`, or a `beam`, or
@@ -28,6 +28,8 @@ pub struct Link {
     pub beam: Option<Spanned<Beam>>,
     /// A rope or chain along x, of rigid links that hang from each other; other links, such as a hook, are attached to its end.
     pub rope: Option<Spanned<HangingRope>>,
+    /// What it looks like, one form or a list of them: drawn in place of what is guessed from masses and joints. No effect on its motion.
+    pub shape: Option<Spanned<Many<Shape>>>,
 }
 
 impl Link {

@@ -8,7 +8,7 @@ use crate::chain::{Axis, Body, BodyId, Chain, Coordinate, CoordinateId, Coordina
 use crate::diagnostic::{Span, rule};
 use crate::expand::placement;
 use crate::spec::{
-    Angle, AxisName, BaseCoordinate, Joint, JointAxis, Link, Number, Placement, Spanned, Transform, Turn,
+    Angle, AxisName, BaseCoordinate, Joint, JointAxis, Link, Many, Number, Placement, Spanned, Transform, Turn,
 };
 
 impl From<AxisName> for Axis {
@@ -95,6 +95,7 @@ impl<'a> Check<'a> {
         let first = self.bodies.len();
         let own = LinkBodies { first, carried: self.carried(link, name, attached) };
         self.note_stage(link, outer, &own, coordinate);
+        self.shapes_of(link, &own);
         if !name.is_empty() && self.links.insert(name, own.clone()).is_some() {
             self.report(rule::duplicate_name(link.name.span, "links", name, "an earlier link"));
         }
@@ -212,14 +213,19 @@ impl<'a> Check<'a> {
     /// Translation and rotations.
     pub(super) fn transform(&mut self, given: &Transform) -> ([Value; 3], Vec<(Axis, Value)>) {
         let translation = self.vector_or_zero(given.translation.as_ref(), "`translation`", "m", Limit::Any);
-        let list = given.rotation.as_ref().and_then(|rotation| rotation.value.as_ref());
+        (translation, self.turns(given.rotation.as_ref()))
+    }
+
+    /// Rotations, each about the axes as rotated by the previous ones.
+    pub(super) fn turns(&mut self, given: Option<&Spanned<Many<Turn>>>) -> Vec<(Axis, Value)> {
+        let list = given.and_then(|rotation| rotation.value.as_ref());
         let turns = list.into_iter().flat_map(|list| &list.0).filter_map(|turn| turn.value.as_ref());
         let turns = turns.map(|turn| match turn {
             Turn::X(angle) => (Axis::X, self.angle(angle, "`rotation`")),
             Turn::Y(angle) => (Axis::Y, self.angle(angle, "`rotation`")),
             Turn::Z(angle) => (Axis::Z, self.angle(angle, "`rotation`")),
         });
-        (translation, turns.collect())
+        turns.collect()
     }
 
     fn row(

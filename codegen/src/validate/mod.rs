@@ -29,6 +29,7 @@ mod rope;
 mod run;
 mod section;
 mod sections;
+mod shapes;
 mod slides_in;
 mod stations;
 
@@ -226,6 +227,8 @@ struct Check<'a> {
     stations: BTreeMap<&'a str, Vec<Value>>,
     /// Stages of telescopes.
     stages: Vec<Stage<'a>>,
+    /// What links look like.
+    shapes: Vec<chain::Shape>,
     /// Names of bodies and coordinates after expansion.
     expanded: Names,
     /// Kinds of names of which some could not be read.
@@ -319,6 +322,7 @@ impl<'a> Check<'a> {
             frames,
             joints,
             points,
+            shapes: std::mem::take(&mut self.shapes),
             written_guess,
             guess: Vec::new(),
             run,

@@ -7,7 +7,6 @@ mod documentation;
 mod expansion;
 mod internal_forces;
 mod parameters;
-mod picture;
 mod sections;
 mod shipped_specs;
 mod units;

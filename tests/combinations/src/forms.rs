@@ -56,6 +56,7 @@ pub fn vary(seed: u64, tree: &mut Tree) {
         slope(tree);
     }
     contact(seed, tree);
+    shapes(seed, tree);
     // Likewise.
     let mut gusts = Rng::with_seed(seed ^ 0xa1a1);
     for load in entries(tree, "loads") {
@@ -187,6 +188,25 @@ fn contact(seed: u64, tree: &mut Tree) {
     let at = [0.1, round(0.2 * rng.f64()), -0.1];
     tree["contacts"] =
         json!([{"name": "lies", "link": "hook", "at": at, "height": height, "stiffness": 200, "damping": 0.2}]);
+}
+
+/// Gives links looks, which change no number.
+fn shapes(seed: u64, tree: &mut Tree) {
+    let mut rng = Rng::with_seed(seed ^ 0x54a9);
+    for link in entries(tree, "links") {
+        let (at, rotation) = (json!([round(rng.f64()), 0, 0.1]), json!([{"y": "20 deg"}, {"x": round(rng.f64())}]));
+        let mut form = match rng.u8(0..8) {
+            0 => json!({"box": {"size": [round(0.1 + rng.f64()), 0.2, 0.3]}}),
+            1 => json!({"cylinder": {"diameter": 0.3, "length": 0.8, "axis": rng.choice(["x", "y", "z"])}}),
+            2 => json!({"capsule": {"diameter": 0.3, "length": round(rng.f64())}}),
+            3 => json!({"mesh": {"file": "part.stl", "scale": 0.001}}),
+            _ => continue,
+        };
+        for shape in form.as_object_mut().into_iter().flat_map(serde_json::Map::values_mut) {
+            (shape["at"], shape["rotation"]) = (at.clone(), rotation.clone());
+        }
+        link["shape"] = if rng.bool() { form } else { json!([form]) };
+    }
 }
 
 /// An emergency stop while most motions move.

@@ -2,7 +2,9 @@
 
 use std::io::Write;
 
-use crane_codegen::{compile, explain, picture::picture};
+use crane_codegen::{compile, explain};
+use crane_live::LiveCrane;
+use crane_page::diagram::diagram;
 
 use crate::{arguments::Explain, files, problem::Outcome, screen::working, selection::Registry};
 
@@ -10,7 +12,7 @@ use crate::{arguments::Explain, files, problem::Outcome, screen::working, select
 pub fn explain(options: &Explain, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let (chain, _) = registry.load(&options.spec, false)?;
     if let Some(file) = &options.svg {
-        files::write_text(file, &picture(&chain))?;
+        files::write_text(file, &diagram(&LiveCrane::new(chain.clone())))?;
     }
     let report = options.operations.then(|| working(&chain, || compile::report(&chain, chain.analyses)));
     Ok(out.write_all(explain::explain(&chain, report.as_ref()).as_bytes())?)

@@ -5,7 +5,12 @@ use crane_codegen::{
     spec::{Analysis, Link, Sections, Spanned},
 };
 use crane_live::LiveCrane;
-use crane_model::{Description, dyn_crane::DynCrane, modes::undamped, sections::StressedSection};
+use crane_model::{
+    Description, Wrench,
+    dyn_crane::DynCrane,
+    modes::undamped,
+    sections::{Place, StressedSection, stressed},
+};
 use crane_page::{history::Instant, tables::Case};
 
 use crate::{
@@ -20,6 +25,8 @@ const MOST_COORDINATES: usize = 60;
 const LOWEST: usize = 6;
 /// Change of a frequency that is worth a caution.
 const CAUTION: f64 = 0.01;
+/// Part of the length of a beam within which places are one.
+const ONE_PLACE: f64 = 1e-6;
 /// Change of a stress that is worth a caution.
 const CAUTION_OF_STRESS: f64 = 0.03;
 
@@ -31,13 +38,14 @@ struct OtherMesh {
 }
 
 impl OtherMesh {
-    /// With twice the sections, or half of them in a large crane, and the same parameters and inputs; `None` without sections to change.
+    /// With twice the sections, or half of them in a large crane, and the same parameters and inputs; why not, if there is none.
     ///
     /// Errors fall with the square of the number of sections, so that with r times as many, `x_{rn} − x_n = (1 − 1/r²) (x − x_n)`, and with r times
     /// fewer, `x_n − x_{n/r} = (r² − 1) (x − x_n)`. Three quarters of `x − x_n` show with twice as many.
-    fn of(crane: &dyn DynCrane, registry: &Registry) -> Option<Self> {
+    fn of(crane: &dyn DynCrane, registry: &Registry) -> Result<Self, &'static str> {
+        const NOT_MADE: &str = "the crane with other sections cannot be made";
         let description = crane.description();
-        let text = registry.spec(&description.name)?;
+        let text = registry.spec(&description.name).ok_or(NOT_MADE)?;
         // What the crane has, which is more than what is written where more acts on a beam.
         let sections = |description: &Description, link: &str| {
             let elements = description.bodies.iter().filter(|body| body.link == *link).count();
@@ -49,22 +57,25 @@ impl OtherMesh {
             divided.push(link.to_owned());
             let own = sections(description, link);
             if is_large { (0.5 * own).ceil() } else { 2.0 * own }
-        })?;
-        let mut crane_with = LiveCrane::from_spec(&SourceFile::new(description.name.to_string(), text)).ok()?;
+        });
+        let text = text.ok_or("no beam has a number of `sections`")?;
+        let source = SourceFile::new(description.name.to_string(), text);
+        let mut crane_with = LiveCrane::from_spec(&source).map_err(|_| NOT_MADE)?;
         let [own, other] = [description, (&crane_with as &dyn DynCrane).description()]
             .map(|description| divided.iter().map(|link| sections(description, link)).sum::<f64>());
         let more = other / own;
         if !more.is_finite() || (more - 1.0).abs() < f64::EPSILON {
-            return None;
+            return Err("half of the sections are as many");
         }
         let share = if is_large { -0.75 / (more.powi(-2) - 1.0) } else { 0.75 / (1.0 - more.powi(-2)) };
-        take_numbers(crane, &mut crane_with).ok()?;
-        Some(Self { crane: crane_with, share })
+        take_numbers(crane, &mut crane_with).map_err(|_| NOT_MADE)?;
+        Ok(Self { crane: crane_with, share })
     }
 
-    /// At rest; `None` without a stable pose.
-    fn case<'a>(&'a self, label: &'a str) -> Option<Case<'a>> {
-        Some(Case::new(label, &self.crane)).filter(|case| case.equilibrium.is_stable())
+    /// At rest.
+    fn case<'a>(&'a self, label: &'a str) -> Result<Case<'a>, &'static str> {
+        let case = Case::new(label, &self.crane);
+        if case.equilibrium.is_stable() { Ok(case) } else { Err("the crane with other sections has no stable pose") }
     }
 }
 
@@ -73,8 +84,8 @@ impl OtherMesh {
 /// # Errors
 /// The modes of one of the cranes cannot be computed.
 pub fn changes(case: &Case<'_>, registry: &Registry) -> Outcome<Option<Vec<f64>>> {
-    let Some(mesh) = OtherMesh::of(case.crane, registry) else { return Ok(None) };
-    let Some(other) = mesh.case(case.label) else { return Ok(None) };
+    let Ok(mesh) = OtherMesh::of(case.crane, registry) else { return Ok(None) };
+    let Ok(other) = mesh.case(case.label) else { return Ok(None) };
     let frequencies = |case: &Case<'_>| -> Outcome<Vec<Option<f64>>> {
         let modes = undamped(&case.crane.small_motions_at(&case.equilibrium.q))?;
         Ok(modes.iter().take(LOWEST).map(crane_model::modes::Mode::frequency).collect())
@@ -83,29 +94,124 @@ pub fn changes(case: &Case<'_>, registry: &Registry) -> Outcome<Option<Vec<f64>>
     Ok(Some(pairs.map_while(|(own, other)| Some(mesh.share * (other? / own? - 1.0))).collect()))
 }
 
-/// Relative change of the maximum equivalent stress of beams at rest with twice the sections; `None` for a crane without stresses or sections, or
-/// without a stable pose.
-pub fn change_of_stress(case: &Case<'_>, registry: &Registry) -> Option<f64> {
-    let greatest = |case: &Case<'_>| {
-        let rest = Instant::at_rest(case.crane, &case.equilibrium.q);
-        let sections = rest.stressed_sections(case.crane.description(), &case.crane.section_moduli_at());
-        sections.into_iter().max_by(StressedSection::by_stress).map(|section| section.stress.equivalent)
-    };
-    let own = greatest(case).filter(|stress| *stress > 0.0)?;
-    let mesh = OtherMesh::of(case.crane, registry)?;
-    Some(mesh.share * (greatest(&mesh.case(case.label)?)? / own - 1.0))
+/// Relative changes of stresses at rest with twice the sections.
+pub struct StressChanges {
+    /// Of the maximum equivalent stress, which may be elsewhere then.
+    pub stress: f64,
+    /// Of the maximum utilisation, likewise, if a beam has an allowable stress.
+    pub utilisation: Option<f64>,
+    /// Of the equivalent stress at each place, and so of its utilisation; `None` where there is none.
+    pub places: Vec<Option<f64>>,
 }
 
-/// By how much each point of interest moves with twice the sections, m; `None` for a crane without points or sections, or without a stable pose.
-pub fn changes_of_points(case: &Case<'_>, registry: &Registry) -> Option<Vec<f64>> {
-    let places = |case: &Case<'_>| case.crane.points_at(&case.equilibrium.q);
-    let own = places(case);
-    if own.is_empty() || !case.equilibrium.is_stable() {
+/// Relative changes of stresses and utilisations at rest with twice the sections; `None` for a crane without stresses.
+///
+/// # Errors
+/// Why they are not computed.
+pub fn changes_of_stress(
+    case: &Case<'_>,
+    rest: &Instant,
+    registry: &Registry,
+) -> Option<Result<StressChanges, &'static str>> {
+    let moduli = case.crane.section_moduli_at();
+    let own = rest.stressed_sections(case.crane.description(), &moduli);
+    let greatest = |sections: &[StressedSection]| {
+        let stress = sections.iter().map(|section| section.stress.equivalent).reduce(f64::max);
+        let used = sections.iter().filter_map(|section| section.utilisation).reduce(f64::max);
+        (stress, used)
+    };
+    let (Some(stress), used) = greatest(&own) else { return None };
+    if stress <= 0.0 {
         return None;
     }
-    let mesh = OtherMesh::of(case.crane, registry)?;
-    let other = places(&mesh.case(case.label)?);
-    Some(own.iter().zip(&other).map(|(own, other)| mesh.share.abs() * (other - own).norm()).collect())
+    Some(OtherMesh::of(case.crane, registry).and_then(|mesh| {
+        let other = mesh.case(case.label)?;
+        let description = other.crane.description();
+        let finer = Instant::at_rest(other.crane, &other.equilibrium.q);
+        let (stress_then, used_then) =
+            greatest(&finer.stressed_sections(description, &other.crane.section_moduli_at()));
+        let change = |then: f64, now: f64| mesh.share * (then / now - 1.0);
+        let carried = carried(case.crane.description(), &own, &finer.places(description), description);
+        let at_place = |(section, wrench): (&StressedSection, Option<Wrench>)| {
+            let then = stressed(&moduli, Place { wrench: wrench?, ..section.place })?;
+            let now = section.stress.equivalent;
+            (now > 0.0).then(|| change(then.stress.equivalent, now))
+        };
+        Ok(StressChanges {
+            stress: change(stress_then.unwrap_or(f64::NAN), stress),
+            utilisation: used.zip(used_then).filter(|(now, _)| *now > 0.0).map(|(now, then)| change(then, now)),
+            places: own.iter().zip(carried).map(at_place).collect(),
+        })
+    }))
+}
+
+/// What the beams of another mesh carry at the places of the own one.
+fn carried(
+    own: &Description,
+    sections: &[StressedSection],
+    other: &[Place],
+    others: &Description,
+) -> Vec<Option<Wrench>> {
+    let mut before: Option<(&str, f64, usize)> = None;
+    let mut slid = 0;
+    let wrench = |section: &StressedSection| {
+        let (beam, x) = (section.beam(own), section.place.x);
+        let of_beam: Vec<&Place> = other.iter().filter(|place| place.beam(others) == beam).collect();
+        let tolerance = ONE_PLACE * of_beam.last()?.x;
+        // Of several places at one distance, each has a force before it.
+        let is_next = |(last, at, _): &(&str, f64, usize)| *last == beam && (x - at).abs() <= tolerance;
+        let number = before.filter(is_next).map_or(0, |(.., number)| number + 1);
+        if before.is_none_or(|(last, ..)| last != beam) {
+            slid = 0;
+        }
+        before = Some((beam, x, number));
+        if section.info(own).slides {
+            slid += 1;
+            return of_beam.iter().filter(|place| place.info(others).slides).nth(slid - 1).map(|place| place.wrench);
+        }
+        wrench_at(&of_beam, (x, number), tolerance)
+    };
+    sections.iter().map(wrench).collect()
+}
+
+/// What a beam carries `x` m from its beginning, at the place of this number there: where it has none, on the parabola through the three places that are
+/// nearest between the same forces. Between forces, moments of uniform loads are parabolas.
+fn wrench_at(places: &[&Place], (x, number): (f64, usize), tolerance: f64) -> Option<Wrench> {
+    let here: Vec<&&Place> = places.iter().filter(|place| (place.x - x).abs() <= tolerance).collect();
+    if let Some(place) = here.get(number).or(here.last()) {
+        return Some(place.wrench);
+    }
+    let after = places.iter().position(|place| place.x > x).filter(|after| *after > 0)?;
+    let is_force = |second: &usize| places[*second].x - places[second - 1].x <= tolerance;
+    let first = (1..after).rev().find(is_force).unwrap_or(0);
+    let end = (after + 1..places.len()).find(is_force).unwrap_or(places.len());
+    let mut near = places[first..end].to_vec();
+    near.sort_by(|a, b| (a.x - x).abs().total_cmp(&(b.x - x).abs()));
+    near.truncate(3);
+    let mut sum = Wrench::ZERO;
+    for place in &near {
+        let others = near.iter().filter(|other| other.x != place.x);
+        let weight: f64 = others.map(|other| (x - other.x) / (place.x - other.x)).product();
+        sum.force += weight * place.wrench.force;
+        sum.moment += weight * place.wrench.moment;
+    }
+    Some(sum)
+}
+
+/// By how much each point of interest moves with twice the sections, m; `None` for a crane without points or without beams that bend, or without a stable
+/// pose.
+///
+/// # Errors
+/// Why it is not computed.
+pub fn changes_of_points(case: &Case<'_>, registry: &Registry) -> Option<Result<Vec<f64>, &'static str>> {
+    let places = |case: &Case<'_>| case.crane.points_at(&case.equilibrium.q);
+    let own = places(case);
+    let bends = case.crane.description().coordinates.iter().any(|coordinate| coordinate.role.is_element());
+    (bends && !own.is_empty() && case.equilibrium.is_stable()).then(|| {
+        let mesh = OtherMesh::of(case.crane, registry)?;
+        let other = places(&mesh.case(case.label)?);
+        Ok(own.iter().zip(&other).map(|(own, other)| mesh.share.abs() * (other - own).norm()).collect())
+    })
 }
 
 /// Says that the sections do not resolve the maximum stress.

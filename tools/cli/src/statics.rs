@@ -19,7 +19,7 @@ pub fn statics(options: &Analysis, registry: &Registry, out: &mut dyn Write) -> 
     let case = Case::new(VALUE, crane.as_ref());
     let mut report = equilibria(std::slice::from_ref(&case), options.crane.limits.bend);
     if let Some(changes) = refinement::changes_of_points(&case, registry) {
-        mesh(&mut report, crane.description(), &changes);
+        mesh(&mut report, crane.description(), changes);
     }
     if options.format == Format::Json {
         report.grid(history(&case.equilibrium));
@@ -29,11 +29,16 @@ pub fn statics(options: &Analysis, registry: &Registry, out: &mut dyn Write) -> 
     Ok(case.stable()?)
 }
 
-/// What the mesh leaves out of the positions of points: for people the largest number.
-fn mesh(report: &mut Report, description: &Description, changes: &[f64]) {
+/// What the mesh leaves out of the positions of points: for people the largest number; or why that is not known.
+fn mesh(report: &mut Report, description: &Description, changes: Result<Vec<f64>, &str>) {
+    const WORDS: &str = "change of positions with twice the sections";
+    let changes = match changes {
+        Ok(changes) => changes,
+        Err(why) => return report.line(WORDS, format!("not computed: {why}"), ""),
+    };
     let names = description.points.iter().map(Text::as_str);
-    let Some((name, most)) = names.clone().zip(changes).max_by(|(_, a), (_, b)| a.total_cmp(b)) else { return };
-    report.line("change of positions with twice the sections", format!("{:.2} (of {name})", 1e3 * most), "mm");
+    let Some((name, most)) = names.clone().zip(&changes).max_by(|(_, a), (_, b)| a.total_cmp(b)) else { return };
+    report.line(WORDS, format!("{:.2} (of {name})", 1e3 * most), "mm");
     let each: Map<String, Value> = names.map(str::to_owned).zip(changes.iter().map(|change| json!(change))).collect();
     report.value("changes_of_positions_with_twice_the_sections", each);
 }

@@ -292,6 +292,50 @@ connectors:
     assert!(cautions.contains("when the number of sections doubles"), "{cautions}");
 }
 
+/// A clamped beam on a prop. With n sections, whose springs are at (i + 1/2) L / n, the prop carries
+/// `R = 3/8 w L (1 − 1/(2 n²)) / (1 − 1/(4 n²))`: midpoint rules for `∫s³` and `∫s²`. What the beam carries at any place follows, also between the springs of
+/// the finer beam. The strut yields by 1e-5 of what the beam does; the change is that of a difference, hence 1e-3.
+#[test]
+fn each_place_has_its_change_with_twice_the_sections() {
+    let beam = |sections: &str| {
+        format!(
+            "
+gravity: [0, -9.81, 0]
+materials: {{steel: {{E: 2.1e11, G: 8.1e10, density: 7850, yield_stress: 355e6}}}}
+links:
+  - name: beam
+    joint: {{revolute: {{axis: x}}}}
+    beam: {{length: 4, sections: {sections}, material: steel, section: {{box: {{height: 0.5, width: 0.4, thickness: 0.02}}}}}}
+drives: [{{coordinate: beam_phi, stiffness: 1e9, motion: {{hold: 0}}}}]
+connectors:
+  - {{name: strut, from: {{at: [4, -10, 0]}}, to: {{link: beam, at: [4, 0, 0]}}, law: {{spring: {{stiffness: 1e12, length: 10}}}}}}
+"
+        )
+    };
+    let report = strength("propped", &beam("2"), &[]);
+    let second = (0.4 * 0.5f64.powi(3) - 0.36 * 0.46f64.powi(3)) / 12.0;
+    let first = (0.4 * 0.5f64.powi(2) - 0.36 * 0.46f64.powi(2)) / 8.0;
+    let equivalent = |n: f64, x: f64| {
+        let (prop, s) = (1.5 * (1.0 - 0.5 / (n * n)) / (1.0 - 0.25 / (n * n)), 4.0 - x);
+        let (moment, force) = (s * s / 2.0 - prop * s, prop - s);
+        (moment * 0.25 / second).hypot(3.0f64.sqrt() * force * first / (second * 0.04))
+    };
+    let rows = report["stresses"].as_array().expect("a table");
+    for (row, x) in rows.iter().zip([0.0, 1.0, 3.0]) {
+        assert_eq!(row["x"], x);
+        assert_close("change", &row["change"], equivalent(4.0, x) / equivalent(2.0, x) - 1.0, 1e-3);
+    }
+    assert!(rows.last().expect("the tip")["change"].is_null(), "nothing is carried beyond the strut");
+    // The maximum is at the clamped end with both.
+    for key in ["stress", "utilisation"] {
+        let change = &report[format!("change_of_the_greatest_{key}_with_twice_the_sections")];
+        assert_close(key, change, equivalent(4.0, 0.0) / equivalent(2.0, 0.0) - 1.0, 1e-3);
+    }
+    let rigid = strength("propped_rigid", &beam("rigid"), &[]);
+    assert!(rigid["change_of_the_greatest_stress_with_twice_the_sections"].is_null(), "nothing to divide");
+    assert!(rigid["stresses"][0].get("change").is_none());
+}
+
 /// About three tonnes more than the boom can carry.
 #[test]
 fn a_boom_that_yields_gets_a_caution() {

@@ -4,7 +4,7 @@
 //! and centres of mass may be elsewhere: beyond a joint, on the other side of a frame, beside an axis. A bar leads to each of them from the nearest place
 //! that is drawn, so that nothing floats.
 
-use crane_codegen::chain::{Chain, Cylinder, Value};
+use crane_codegen::chain::{Body, Chain, Cylinder, Value};
 use crane_live::LiveCrane;
 use nalgebra::{Matrix4, Vector3};
 
@@ -44,6 +44,24 @@ pub struct Bar {
 /// A straight part of a body as it is drawn.
 type Segment = [Vector3<f64>; 2];
 
+/// The centres of mass of all bodies, or of their parts.
+#[must_use]
+pub fn masses(live: &LiveCrane) -> Vec<Anchor> {
+    let parameters = live.parameters();
+    let at = |position: &[Value; 3]| Vector3::from(position.each_ref().map(|x| x.at(parameters)));
+    let of_body = |(body, written): (usize, &Body)| {
+        let mass = |mass: f64, at: Vector3<f64>| Anchor { body, at, mass: Some(mass) };
+        let whole = written.inertia.as_ref().filter(|_| written.parts.len() < 2).and_then(|inertia| {
+            let all = inertia.mass.at(parameters);
+            (all > 0.0).then(|| mass(all, at(&inertia.first) / all))
+        });
+        let parts = written.parts.iter().filter(|_| written.parts.len() > 1);
+        let parts = parts.map(|part| mass(part.mass.at(parameters), at(&part.com)));
+        whole.into_iter().chain(parts.filter(|part| part.mass > Some(0.0))).collect::<Vec<_>>()
+    };
+    live.chain().bodies.iter().enumerate().flat_map(of_body).collect()
+}
+
 /// All points of interest, pins and centres of mass, with the bodies to which they belong.
 #[must_use]
 pub fn anchors(live: &LiveCrane) -> Vec<Anchor> {
@@ -53,20 +71,9 @@ pub fn anchors(live: &LiveCrane) -> Vec<Anchor> {
     let points = chain.points.iter().map(|point| place(point.body.0, &point.position));
     let attached = chain.attachments().filter_map(|end| Some(place(end.body?.0, &end.position)));
     let pins = chain.cylinders.iter().flat_map(pins).map(|pin| place(pin.body.0, &pin.position));
-    let masses = chain.bodies.iter().enumerate().flat_map(|(body, written)| {
-        let mass = |mass: f64, at: Vector3<f64>| Anchor { body, at, mass: Some(mass) };
-        // The frame of a truck stands for its mass.
-        if chain.base[0].is_some_and(|id| chain.coordinates[id.0].body.0 == body) && !chain.supports.is_empty() {
-            return Vec::new();
-        }
-        let whole = written.inertia.as_ref().filter(|_| written.parts.len() < 2).and_then(|inertia| {
-            let all = inertia.mass.at(parameters);
-            (all > 0.0).then(|| mass(all, at(&inertia.first) / all))
-        });
-        let parts = written.parts.iter().filter(|_| written.parts.len() > 1);
-        let parts = parts.map(|part| mass(part.mass.at(parameters), at(&part.com)));
-        whole.into_iter().chain(parts.filter(|part| part.mass > Some(0.0))).collect::<Vec<_>>()
-    });
+    // The frame of a truck stands for its mass.
+    let truck = chain.base[0].filter(|_| !chain.supports.is_empty()).map(|id| chain.coordinates[id.0].body.0);
+    let masses = masses(live).into_iter().filter(|mass| Some(mass.body) != truck);
     points.chain(attached).chain(pins).chain(masses).collect()
 }
 

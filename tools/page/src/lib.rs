@@ -7,6 +7,7 @@
 //! |---|---|
 //! | `crane` | what a crane is, how it is drawn, its run and its modes |
 //! | `scene` | what moves: frames of the bodies, and a screw for each coordinate |
+//! | [`diagram`] | the scene as lines, with names of frames and coordinates |
 //! | [`shapes`] | the shapes of a crane as triangles, as glTF and as picture elements |
 //! | `figures` | key figures: tiles, and the summary to sign |
 //! | `strength` | utilisation of sections and tipping margins over a run |
@@ -16,6 +17,7 @@
 
 pub mod bars;
 mod crane;
+pub mod diagram;
 mod figures;
 pub mod history;
 mod record;

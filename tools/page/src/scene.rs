@@ -8,9 +8,10 @@
 use std::ops::Range;
 
 use crane_codegen::chain::{
-    Beam, BodyId, Coordinate, CoordinateId, CoordinateKind, Cylinder, Linkage, LoopJoint, LoopJointKind, Outline, Pin,
-    Point, Stage, Value as Number,
+    Beam, BodyId, Coordinate, CoordinateId, CoordinateKind, Cylinder, Form, Frame, Linkage, LoopJoint, LoopJointKind,
+    Outline, Pin, Point, Stage, Value as Number,
 };
+use crane_codegen::exchange::{Look, shapes};
 use crane_live::LiveCrane;
 use crane_model::{
     AttachmentInfo, BodyInfo, ConnectorInfo, CoordinateRole, Description, Tree,
@@ -47,6 +48,8 @@ pub struct Scene {
     pub pads: Vec<Pad>,
     /// Bars to what nothing else reaches.
     pub bars: Vec<Bar>,
+    /// What the spec says that links look like.
+    pub forms: Vec<Look>,
 }
 
 /// A body as it is drawn.
@@ -62,13 +65,15 @@ pub struct Body {
     /// The body that carries it.
     pub parent: Option<usize>,
     /// Where it is attached along its carrier, m.
-    along: f64,
+    pub along: f64,
     /// The coordinates of its joint.
     pub own: Range<usize>,
     /// Its frame at the reference.
     pub frame: Matrix4<f64>,
     /// Whether it is a link of a rope or chain.
     pub rope: bool,
+    /// Whether it has forms to be drawn, in place of what its mass and its joints suggest.
+    pub formed: bool,
 }
 
 /// A place of a body, in its frame, or of the world, m.
@@ -163,6 +168,7 @@ impl Scene {
         let reference: Vec<f64> = q.iter().zip(&vectors).map(|(q, vector)| if *vector { 0.0 } else { *q }).collect();
         let frames = crane.transforms_at(&reference);
         let (tree, sizes) = ((live as &dyn DynModel).tree(), crane.body_sizes_at());
+        let forms = shapes(live.chain(), live.parameters());
         let body = |(index, (info, frame)): (usize, (&BodyInfo, &Matrix4<f64>))| {
             let [mass, length] = sizes[index];
             Body {
@@ -176,14 +182,16 @@ impl Scene {
                 frame: *frame,
                 // A beam that does not deform is one body, with the name of its link.
                 rope: length > 0.0 && info.name != info.link && !deforms(description, &tree, info),
+                formed: length == 0.0 && forms.iter().any(|form| form.body == Some(BodyId(index)) && !is_mesh(form)),
             }
         };
-        let bodies = description.bodies.iter().zip(&frames).enumerate().map(body).collect();
+        let bodies: Vec<Body> = description.bodies.iter().zip(&frames).enumerate().map(body).collect();
         let names = description.supports.iter().map(|support| support.name.to_string());
         let screws = screws(live, &reference);
         Self {
             pose: q.to_vec(),
             vectors,
+            bars: bars(live, &frames).into_iter().filter(|bar| !bodies[bar.body].formed).collect(),
             bodies,
             supports: names.zip(crane.support_places_at()).collect(),
             connectors: connectors(crane).into_iter().chain(rods(live)).collect(),
@@ -191,7 +199,7 @@ impl Scene {
             points: points(live),
             cylinders: cylinders(live, (&screws, &frames)),
             pads: pads(live),
-            bars: bars(live, &frames),
+            forms,
             screws,
             reference,
         }
@@ -200,10 +208,10 @@ impl Scene {
     /// The scene for the script of a page.
     pub fn json(&self) -> Value {
         let body = |body: &Body| {
-            let Body { name, link, mass, length, parent, along, own, frame, rope } = body;
+            let Body { name, link, mass, length, parent, along, own, frame, rope, formed } = body;
             json!({
                 "name": name, "link": link, "mass": mass, "length": length, "parent": parent, "along": along,
-                "moved_by": [own.start, own.end], "frame": rows(frame), "rope": rope,
+                "moved_by": [own.start, own.end], "frame": rows(frame), "rope": rope, "formed": formed,
             })
         };
         let connector = |Connector { rope, points, falls, .. }: &Connector| json!({"rope": rope, "points": points.iter().map(Place::json).collect::<Vec<_>>(), "falls": falls});
@@ -221,8 +229,32 @@ impl Scene {
             "cylinders": self.cylinders.iter().map(Barrel::json).collect::<Vec<_>>(),
             "pads": self.pads.iter().map(pad).collect::<Vec<_>>(),
             "bars": self.bars.iter().map(bar).collect::<Vec<_>>(),
+            "forms": self.forms.iter().filter(|form| !is_mesh(form)).map(form).collect::<Vec<_>>(),
         })
     }
+}
+
+/// Whether it is a surface in a file, which is not read: exported files name it.
+pub fn is_mesh(look: &Look) -> bool {
+    matches!(look.form, Form::Mesh { .. })
+}
+
+/// A form with the sides of the box around it, from which the page has its diameter and length.
+fn form(look: &Look) -> Value {
+    let kind = match look.form {
+        Form::Box(_) => "box",
+        Form::Cylinder { .. } => "cylinder",
+        Form::Capsule { .. } => "capsule",
+        Form::Mesh { .. } => "mesh",
+    };
+    let body = look.body.map(|BodyId(body)| body);
+    json!({"body": body, "frame": rows(&matrix(&look.frame)), "kind": kind, "sides": look.form.sides()})
+}
+
+/// A frame as a matrix.
+pub fn matrix(frame: &Frame) -> Matrix4<f64> {
+    let [x, y, z] = frame.axes.map(|axis| Vector3::from(axis).push(0.0));
+    Matrix4::from_columns(&[x, y, z, Vector3::from(frame.origin).push(1.0)])
 }
 
 fn bar(bar: &Bar) -> Value {
@@ -310,7 +342,49 @@ fn cylinders(live: &LiveCrane, moving: (&[[f64; 6]], &[Matrix4<f64>])) -> Vec<Ba
     live.chain().cylinders.iter().map(data).collect()
 }
 
+/// The pins of a cylinder in a pose, in the world, m.
+#[derive(Clone, Copy, Debug)]
+pub struct Pins {
+    /// Where the barrel is held.
+    pub foot: Vector3<f64>,
+    /// The end of the rod.
+    pub rod: Vector3<f64>,
+    /// Where the rod, or the link beyond it, acts.
+    pub head: Vector3<f64>,
+    /// About which the rocker turns, if there is one.
+    pub pivot: Option<Vector3<f64>>,
+}
+
+impl Pins {
+    /// All of them.
+    pub fn places(self) -> impl Iterator<Item = Vector3<f64>> + Clone {
+        let linked = self.pivot.into_iter().flat_map(move |pivot| [pivot, self.head]);
+        [self.foot, self.rod].into_iter().chain(linked)
+    }
+}
+
 impl Barrel {
+    /// Its axis in the world, of length 1, if the joint turns.
+    pub fn normal(&self, frames: &[Matrix4<f64>]) -> Option<Vector3<f64>> {
+        self.axis.map(|(body, along)| (frames[body].fixed_view::<3, 3>(0, 0) * along).normalize())
+    }
+
+    /// Its pins while the bodies have these frames: the geometry of `codegen/src/mechanics/cylinders.rs`.
+    pub fn pins(&self, frames: &[Matrix4<f64>]) -> Pins {
+        let [foot, head] = [&self.foot, &self.head].map(|pin| pin.within(frames));
+        let Some(Rocker { pivot, rocker, link, left }) = &self.linkage else {
+            return Pins { foot, rod: head, head, pivot: None };
+        };
+        let pivot = pivot.within(frames);
+        let across = head - pivot;
+        let along = (across.norm_squared() + rocker.powi(2) - link.powi(2)) / (2.0 * across.norm());
+        let height = (rocker.powi(2) - along.powi(2)).max(0.0).sqrt() * if *left { 1.0 } else { -1.0 };
+        let normal = self.normal(frames).unwrap_or_default();
+        let aside = normal.cross(&across).try_normalize(0.0).unwrap_or_default();
+        let rod = pivot + across.normalize() * along + aside * height;
+        Pins { foot, rod, head, pivot: Some(pivot) }
+    }
+
     fn json(&self) -> Value {
         let linkage = self.linkage.as_ref().map(|Rocker { pivot, rocker, link, left }| {
             json!({"pivot": pivot.json(), "rocker": rocker, "link": link, "left": left})

@@ -127,7 +127,7 @@ class Crane:
     def info(self) -> Info:
         """Coordinates, bodies, drives, supports, points and parameters: names, units and descriptions."""
     def picture(self) -> str:
-        """A picture of the chain: its bodies and coordinates at the guess, SVG."""
+        """A diagram of the crane: its bodies and coordinates at the guess, with the present parameters, SVG."""
     def _render(
         self, q: ArrayLike, shown: ArrayLike, width: int, height: int, azimuth: float | None = None, elevation: float | None = None
     ) -> NDArray[np.uint8]:

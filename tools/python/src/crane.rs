@@ -9,7 +9,6 @@ use crane_codegen::compile::check_with;
 use crane_codegen::diagnostic::MAX_BYTES;
 use crane_codegen::edit::{BeamEnd, Unbending};
 use crane_codegen::exchange::ImportOptions;
-use crane_codegen::picture::picture;
 use crane_codegen::units::Quantity;
 use crane_codegen::{Checked, SourceFile, build, edit, exchange, files};
 use crane_live::LiveCrane;
@@ -18,6 +17,7 @@ use crane_live::rows::Evaluation;
 use crane_model::Description;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::runs::Start;
+use crane_page::diagram::diagram;
 use crane_quantities::FunctionId;
 use crane_specs::SPECS;
 use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyRuntimeError, PyTypeError, PyValueError};
@@ -266,9 +266,9 @@ impl Crane {
         bounds.collect()
     }
 
-    /// A picture of the chain: its bodies and coordinates at the guess, SVG.
+    /// A diagram of the crane: its bodies and coordinates at the guess, with the present parameters, SVG.
     fn picture(&self) -> String {
-        picture(self.live.chain())
+        diagram(&self.live)
     }
 
     /// The crane for other programs: "urdf", "springs" (what URDF cannot express, YAML) or "mjcf", with the present parameters.

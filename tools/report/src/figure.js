@@ -1,10 +1,10 @@
 // A crane in three dimensions, drawn from its chain: links from frame to frame, with a thickness estimated from
 // their mass, flexible links bent, with the outline of their section if the spec gives one, pins at revolute joints, legs at the supports,
 // hydraulic cylinders, pads between the beams of telescopes, and springs and ropes between their points.
-import { BoxGeometry, CylinderGeometry, Group, Matrix4, Mesh, MeshStandardMaterial, Quaternion, SphereGeometry, TorusGeometry, Vector3 } from "three";
+import { BoxGeometry, CapsuleGeometry, CylinderGeometry, Group, Matrix4, Mesh, MeshStandardMaterial, Quaternion, SphereGeometry, TorusGeometry, Vector3 } from "three";
 import { BeamGeometry, sizeAt } from "./beam.js";
 import { Cylinder, stretch } from "./cylinders.js";
-import { Kinematics, links } from "./kinematics.js";
+import { Kinematics, links, matrix } from "./kinematics.js";
 
 /** Mass per volume within the outline of a link, kg/m³: about a third of steel's. */
 const FILLING = 2400;
@@ -22,6 +22,9 @@ const LEVEL = 0.02;
 const HEIGHT = 0.09;
 /** Largest thickness of a leg, relative to the crane's size. */
 const LEG = 0.014;
+
+/** The corners of a box with sides of length 1. */
+const CORNERS = [0, 1, 2, 3, 4, 5, 6, 7].map((index) => [1, 2, 4].map((bit) => (index & bit ? 0.5 : -0.5)));
 
 /** Room around the axes of the links, relative to the crane's size. */
 const MARGIN = 0.03;
@@ -91,6 +94,11 @@ export class Figure {
     this.part(body, this.mesh(new BoxGeometry(length, thickness, thickness), colour), local);
   }
 
+  /** The same for what the spec does not tell: nothing of a body that has forms of its own. */
+  guess(body, a, b, thickness, colour) {
+    if (!this.kinematics.bodies[body].formed) this.box(body, a, b, thickness, colour);
+  }
+
   thickness(mass, length) {
     const [least, most] = THICKNESS.map((part) => part * this.size);
     const side = mass > 0 && length > 0 ? Math.sqrt(mass / (FILLING * length)) : this.usual ?? least;
@@ -113,6 +121,7 @@ export class Figure {
     this.hinges();
     bodies.forEach((_, p) => this.kinematics.carriedBy(p).length || this.end(p));
     this.bars();
+    this.forms();
     this.stand();
     this.connect();
     const paint = { barrel: COLOURS.barrel, rod: COLOURS.rod, linkage: COLOURS.linkage, pin: COLOURS.pin };
@@ -201,7 +210,7 @@ export class Figure {
       const isBase = p === 0 && coordinates[0]?.role === "base";
       // On a truck, from its frame up.
       const from = isBase && this.chassis ? far.clone().setZ(Math.min(this.chassis.level, far.z)) : origin;
-      this.box(p, from, far, outline, isBase ? COLOURS.base : COLOURS.link);
+      this.guess(p, from, far, outline, isBase ? COLOURS.base : COLOURS.link);
       return;
     }
     const [j] = slides;
@@ -210,14 +219,14 @@ export class Figure {
     const home = far.clone().addScaledVector(axis, -reference[j]);
     const sleeve = home.length() > NOTHING * this.size ? home : home.addScaledVector(axis, travel[0]);
     const side = this.thickness(body.mass, Math.max(sleeve.length(), far.length() / 2));
-    this.box(p, origin, sleeve, side, COLOURS.link);
+    this.guess(p, origin, sleeve, side, COLOURS.link);
     // A beam shows itself.
     if (bodies[next].flexible) return;
     // Long enough to stay in its sleeve at the far end of its travel.
     const inside = new Vector3().setFromMatrixPosition(frames[p]).applyMatrix4(frames[next].clone().invert());
     const back = axis.transformDirection(frames[p]).transformDirection(frames[next].clone().invert()).negate();
     const reach = Math.min(Math.abs(travel[1]) + 0.5 * side, inside.length() + Math.abs(travel[1] - reference[j]));
-    this.box(next, origin.clone(), back.multiplyScalar(reach), 0.78 * side, COLOURS.slide);
+    this.guess(next, origin.clone(), back.multiplyScalar(reach), 0.78 * side, COLOURS.slide);
   }
 
   /** What slides out of a flexible beam: the beam is its sleeve. */
@@ -233,7 +242,7 @@ export class Figure {
     const side = 0.7 * (this.usual ?? this.thickness(bodies[next].mass, 1));
     // From its frame back into the beam, far enough to stay in it at the far end of its travel; its part outside is drawn as a link.
     const reach = Math.max(Math.abs(most), Math.abs(least), Math.abs(reference[j])) + 0.5 * side;
-    this.box(next, new Vector3(), back.multiplyScalar(reach), side, COLOURS.slide);
+    this.guess(next, new Vector3(), back.multiplyScalar(reach), side, COLOURS.slide);
   }
 
   /** Minimum and maximum of a coordinate over the run. */
@@ -276,7 +285,7 @@ export class Figure {
   /** What the last body of a branch carries: a stem to its points, a rod through them, or a block of its mass. */
   end(p) {
     const { bodies, points } = this.kinematics;
-    if (bodies[p].flexible) return;
+    if (bodies[p].flexible || bodies[p].formed) return;
     const places = points.filter((point) => point.body === p).map((point) => point.at);
     const bars = this.crane.scene.bars.filter(({ body }) => body === p);
     // Where its mass is known to be elsewhere, a bar leads there.
@@ -332,6 +341,20 @@ export class Figure {
     const turn = new Quaternion();
     if (along.length() > NOTHING * this.size) turn.setFromUnitVectors(new Vector3(1, 0, 0), along.clone().normalize());
     this.part(body, this.mesh(new BoxGeometry(side, side, side), COLOURS.load), new Matrix4().compose(at, turn, new Vector3(1, 1, 1)));
+  }
+
+  /** What the spec says that links look like. */
+  forms() {
+    for (const { body, frame, kind, sides: [x, y, z] } of this.crane.scene.forms) {
+      const radius = x / 2;
+      const geometries = { box: () => new BoxGeometry(x, y, z), cylinder: () => new CylinderGeometry(radius, radius, z, 28), capsule: () => new CapsuleGeometry(radius, z - x, 8, 16) };
+      const local = matrix(frame);
+      // The axis of round ones is y.
+      if (kind !== "box") local.multiply(new Matrix4().makeRotationX(Math.PI / 2));
+      const isBase = body === 0 && this.crane.coordinates[0]?.role === "base";
+      if (this.ghost && isBase) continue;
+      this.part(body, this.mesh(geometries[kind](), isBase ? COLOURS.base : COLOURS.link), local);
+    }
   }
 
   stand() {
@@ -395,7 +418,7 @@ export class Figure {
     const centre = new Vector3(0, 0, level);
     centre[long] = middle(long);
     centre[wide] = middle(wide);
-    this.part(0, this.mesh(new BoxGeometry(beam.x, beam.y, beam.z), COLOURS.base), new Matrix4().setPosition(centre));
+    if (!this.kinematics.bodies[0].formed) this.part(0, this.mesh(new BoxGeometry(beam.x, beam.y, beam.z), COLOURS.base), new Matrix4().setPosition(centre));
     const side = Math.min(0.3 * depth, LEG * this.size);
     this.legs = supports.map((support) => {
       const root = centre.clone();
@@ -512,6 +535,10 @@ export function extent(crane) {
     for (const frame of frames) include(new Vector3().setFromMatrixPosition(frame));
     kinematics.points.forEach((_, index) => include(kinematics.point(index)));
     crane.scene.bars.forEach(({ body, to }) => include(new Vector3(...to).applyMatrix4(frames[body])));
+    for (const { body, frame, sides } of crane.scene.forms) {
+      const pose = frames[body].clone().multiply(matrix(frame));
+      for (const signs of CORNERS) include(new Vector3(...signs).multiply(new Vector3(...sides)).applyMatrix4(pose));
+    }
     crane.scene.supports.forEach(({ at }) => include(new Vector3(...at).applyMatrix4(frames[0])));
     const anchors = crane.scene.connectors.flatMap(({ points }) => points.filter(({ body }) => body === null));
     anchors.forEach(({ at }) => include(new Vector3(...at)));

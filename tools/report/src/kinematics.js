@@ -19,7 +19,7 @@ const combined = (screws, q, first, factor) =>
   screws[first].map((_, k) => factor * [0, 1, 2].reduce((sum, i) => sum + q[first + i] * screws[first + i][k], 0));
 
 /** Matrix of the upper three rows. */
-const matrix = (rows) => new Matrix4().set(...rows, 0, 0, 0, 1);
+export const matrix = (rows) => new Matrix4().set(...rows, 0, 0, 0, 1);
 
 /** A crane that can take any pose. */
 export class Kinematics {

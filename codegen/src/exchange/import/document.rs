@@ -268,7 +268,7 @@ impl Reader {
     }
 }
 
-fn finite_numbers(text: &str) -> Option<Vec<f64>> {
+pub(super) fn finite_numbers(text: &str) -> Option<Vec<f64>> {
     text.split_whitespace().map(|word| word.parse().ok().filter(|n: &f64| n.is_finite())).collect()
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::groups::Group;
 use super::robot::{Joint, Motion};
-use crate::chain::{Axis, CRATES, Frame, LONGEST_NAME, Vector};
+use crate::chain::{Axis, CRATES, Form, Frame, LONGEST_NAME, Vector};
 use crate::exchange::free_name;
 use crate::exchange::mass::{Lump, clean};
 use crate::exchange::rotation::along_z;
@@ -23,6 +23,8 @@ pub(super) struct SpecLink<'r> {
     pub(super) placement: Frame,
     pub(super) motion: SpecMotion,
     pub(super) bodies: Vec<(String, Lump)>,
+    /// What it looks like.
+    pub(super) shapes: Vec<(Frame, Form)>,
     /// Frames without mass at the ends of the group: name, name of the robot's link, and place.
     pub(super) points: Vec<(String, &'r str, Vector)>,
     /// Whether its frame is turned from that of the robot's link, onto the axis of its joint.
@@ -134,6 +136,7 @@ pub(super) fn links<'r>(
             placement,
             motion,
             bodies: Vec::new(),
+            shapes: Vec::new(),
             points: Vec::new(),
             turned: rotated != Frame::WORLD,
             held: group.held.clone(),
@@ -143,6 +146,7 @@ pub(super) fn links<'r>(
         let ends = group.links.len() > 1 && link.joint.is_some();
         for (index, (member, frame)) in group.links.iter().enumerate() {
             let pose = rotated.local(frame);
+            link.shapes.extend(member.shapes.iter().map(|(at, form)| (pose.outer(at), form.clone())));
             link.frames.extend(member.frame.map(|own| (member.name.as_str(), pose.outer(&own))));
             match &member.lump {
                 Some(lump) => link.bodies.push((bodies.unique(&member.name), lump.seen_through(&pose))),

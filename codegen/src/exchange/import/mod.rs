@@ -98,6 +98,11 @@ pub fn import(source: &SourceFile, options: &ImportOptions) -> Result<Imported, 
         let lost: Vec<String> = lost.into_iter().map(|name| format!("`{name}`")).collect();
         left_out.push(format!("Frames between axes of the free base are left out: {}.", lost.join(", ")));
     }
+    let shown: usize = links.iter().map(|link| link.shapes.len()).sum();
+    let lost = robot.links.iter().map(|link| link.shapes.len()).sum::<usize>() - shown;
+    if lost > 0 {
+        left_out.push(format!("Left out, shapes of what the spec does not have, such as the world: {lost}."));
+    }
     let lost = robot.couplings.iter().filter(|coupling| yaml::coupled(coupling, &links).is_none());
     let told = lost.map(|coupling| format!("The spring `{}` is left out: one of its joints is held.", coupling.name));
     left_out.extend(told);

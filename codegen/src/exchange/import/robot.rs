@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::chain::{Frame, Vector};
+use crate::chain::{Form, Frame, Vector};
 use crate::diagnostic::Span;
 use crate::exchange::mass::Lump;
 use crate::exchange::rotation::about;
@@ -28,8 +28,15 @@ pub(super) struct Link {
     pub(super) name: String,
     pub(super) span: Span,
     pub(super) lump: Option<Lump>,
+    /// What it looks like, in the link's frame.
+    pub(super) shapes: Vec<(Frame, Form)>,
     /// Pose in it of the frame to which the file gives its name; `None` if the file has none.
     pub(super) frame: Option<Frame>,
+}
+
+/// Whether a form has a size that can be seen: its sides are from 1 µm to 1000 km.
+pub(super) fn is_visible(form: &Form) -> bool {
+    form.sides().iter().all(|side| (1e-6..=1e6).contains(side))
 }
 
 /// A joint between two links.

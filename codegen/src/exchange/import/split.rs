@@ -94,7 +94,13 @@ pub(super) fn split_joints(robot: &mut Robot, fixed: &[String]) -> Vec<Mistake> 
                 joint.child.clone()
             } else {
                 let name = free_name(&mut names, &format!("{}_{}", joint.child.name, index + 1), |_, _| true);
-                robot.links.push(Link { name: name.clone(), span: joint.span, lump: None, frame: None });
+                robot.links.push(Link {
+                    name: name.clone(),
+                    span: joint.span,
+                    lump: None,
+                    shapes: Vec::new(),
+                    frame: None,
+                });
                 Named { name, span: joint.span }
             };
             robot.joints.push(Joint { parent: std::mem::replace(&mut carrier, child.clone()), child, ..single });

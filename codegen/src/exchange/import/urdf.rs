@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::document::{Element, Reader};
+use super::document::{Element, Reader, finite_numbers};
 use super::mistakes::rule;
-use super::robot::{Follows, Joint, Link, Motion, Named, Robot, SingleAxis};
-use crate::chain::{Axis, Frame, Value, Vector};
+use super::robot::{Follows, Joint, Link, Motion, Named, Robot, SingleAxis, is_visible};
+use crate::chain::{Axis, Form, Frame, Value, Vector};
 use crate::diagnostic::Mistake;
 use crate::exchange::mass::Lump;
 use crate::exchange::rotation::length;
@@ -58,11 +58,37 @@ pub(super) fn read_robot(root: Element) -> Result<Robot, Vec<Mistake>> {
 impl Reader {
     fn link(&mut self, node: Element) -> Option<Link> {
         let name = self.required(node, "name", "a link")?;
-        node.elements()
-            .filter(|inner| inner.is("visual") || inner.is("collision"))
-            .for_each(|shape| shape.leave_out(SHAPES));
+        node.elements().filter(|inner| inner.is("collision")).for_each(|shape| shape.leave_out(SHAPES));
+        let visuals = node.elements().filter(|inner| inner.is("visual"));
+        let shapes = visuals.filter_map(|visual| self.shape(visual, &name.name)).collect();
         let lump = node.child("inertial").and_then(|inertial| self.lump(inertial, &name.name));
-        Some(Link { name: name.name, span: name.span, lump, frame: Some(Frame::WORLD) })
+        Some(Link { name: name.name, span: name.span, lump, shapes, frame: Some(Frame::WORLD) })
+    }
+
+    /// The solid that a `<visual>` shows, and its pose in the frame of the link. Others, and those without a size, are left out.
+    fn shape(&mut self, node: Element, link: &str) -> Option<(Frame, Form)> {
+        let geometry = node.elements().find(|inner| inner.is("geometry"));
+        let solid = geometry.and_then(|geometry| geometry.elements().next());
+        let form = solid.and_then(|solid| {
+            let number = |key: &str| solid.text(key)?.trim().parse().ok();
+            let diameter = || Some(2.0 * number("radius")?);
+            let form = match solid.local_name() {
+                "box" => Form::Box(finite_numbers(solid.text("size")?)?.try_into().ok()?),
+                "cylinder" => Form::Cylinder { diameter: diameter()?, length: number("length")? },
+                "capsule" => Form::Capsule { diameter: diameter()?, length: number("length")? },
+                "sphere" => Form::Capsule { diameter: diameter()?, length: 0.0 },
+                _ => return None,
+            };
+            is_visible(&form).then_some(form)
+        });
+        let (Some(form), Some(geometry), Some(solid)) = (form, geometry, solid) else {
+            node.leave_out(SHAPES);
+            return None;
+        };
+        let _ = (node.read(), geometry.read(), solid.read());
+        let frame = self.placement(node, &format!("a shape of link `{link}`"));
+        node.elements().for_each(|inner| inner.leave_out(SHAPES));
+        Some((frame, form))
     }
 
     fn lump(&mut self, node: Element, link: &str) -> Option<Lump> {

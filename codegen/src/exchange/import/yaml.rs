@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::links::{FileFrame, Names, SpecLink, SpecMotion, identifier};
 use super::robot::{Coupling, Follows, Joint, Motion, Robot, Spring};
-use crate::chain::{Axis, Frame, Vector};
+use crate::chain::{Axis, Form, Frame, Vector};
 use crate::diagnostic::{SourceFile, is_one_line, printable, quoted};
 use crate::exchange::mass::{Lump, clean, without_rounding};
 use crate::exchange::rotation::roll_pitch_yaw;
@@ -219,16 +219,46 @@ fn link_text(link: &SpecLink, on: Option<&str>) -> String {
             }
         }
     }
+    match link.shapes.as_slice() {
+        [] => {}
+        [one] => {
+            let _ = writeln!(text, "    shape: {}", shape(one));
+        }
+        several => {
+            text += "    shape:\n";
+            for one in several {
+                let _ = writeln!(text, "      - {}", shape(one));
+            }
+        }
+    }
     text.push('\n');
     text
 }
 
+/// A form with its pose.
+fn shape((frame, form): &(Frame, Form)) -> String {
+    let round = |diameter: f64, length: f64| format!("diameter: {}, length: {}", decimal(diameter), decimal(length));
+    let (kind, keys) = match form {
+        Form::Box(sides) => ("box", format!("size: {}", list(*sides))),
+        Form::Cylinder { diameter, length } => ("cylinder", round(*diameter, *length)),
+        Form::Capsule { diameter, length } => ("capsule", round(*diameter, *length)),
+        Form::Mesh { file, .. } => ("mesh", format!("file: {}", quoted(file))),
+    };
+    let pose = pose("at", frame).map_or_else(String::new, |pose| format!(", {pose}"));
+    format!("{{{kind}: {{{keys}{pose}}}}}")
+}
+
 /// Translation and rotation, unless they are zero.
 fn placement(frame: &Frame) -> Option<String> {
+    pose("translation", frame)
+}
+
+/// The same with another word for the translation.
+fn pose(origin: &str, frame: &Frame) -> Option<String> {
     let mut parts = Vec::new();
     let at = clean(frame.origin);
     if at != [0.0; 3] {
-        parts.push(format!("translation: {}", list(at)));
+        parts.push(format!("{origin}: {}", list(at)));
     }
     let [roll, pitch, yaw] = roll_pitch_yaw(frame).map(|angle| without_rounding(angle, 1.0));
     let turns = [("z", yaw), ("y", pitch), ("x", roll)].into_iter().filter(|(_, angle)| *angle != 0.0);

@@ -3,7 +3,7 @@
 use super::beams::in_metres;
 use super::{Plausibility, rounded};
 use crate::diagnostic::{Span, rule};
-use crate::spec::{Either, Link, LoopJointKind, Number, On, Place, Placement, Spanned, Vector, entries};
+use crate::spec::{Either, Link, LoopJointKind, Number, On, Place, Placement, Shape, Spanned, Vector, entries};
 
 /// Upper limit of lengths and distances in a crane, m.
 const LONGEST: f64 = 200.0;
@@ -67,6 +67,18 @@ impl Plausibility<'_> {
         for body in entries(link.bodies.as_ref()) {
             let body_name = body.name.value.as_deref().unwrap_or_default();
             self.check_position(Some(&body.com), &format!("the centre of mass of body `{body_name}`"));
+        }
+        let shapes = link.shape.as_ref().and_then(|shape| shape.value.as_ref());
+        for shape in shapes.into_iter().flat_map(|shapes| &shapes.0).filter_map(|shape| shape.value.as_ref()) {
+            let what = format!("the shape of link `{name}`");
+            match shape {
+                Shape::Box(of) => self.check_position(Some(&of.size), &what),
+                Shape::Cylinder(of) | Shape::Capsule(of) => {
+                    self.check_length(&of.diameter, &what);
+                    self.check_length(&of.length, &what);
+                }
+                Shape::Mesh(_) => {}
+            }
         }
         // The crane as a whole may be anywhere in the world.
         let placement = link.placement.as_ref().filter(|_| !first).and_then(|placement| placement.value.as_ref());

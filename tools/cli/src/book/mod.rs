@@ -7,9 +7,10 @@ mod html;
 use std::{fs, io::Write, path::Path};
 
 use clap::Parser;
-use crane_codegen::{SourceFile, chain::Chain, exchange::xml::escaped, picture::picture};
-
+use crane_codegen::{SourceFile, chain::Chain, exchange::xml::escaped};
+use crane_live::LiveCrane;
 use crane_model::results::cautions::BEND;
+use crane_page::diagram::diagram;
 
 use crate::{
     arguments::{Arguments, Book},
@@ -50,7 +51,7 @@ pub fn book(options: &Book, registry: &Registry, dispatch: Dispatch, out: &mut d
     let crane = options.crane.open(registry)?;
     let live = registry.live(crane.as_ref())?;
     let chain = live.chain();
-    let binder = Binder { options, registry, chain, dispatch };
+    let binder = Binder { options, registry, live: &live, chain, dispatch };
     let mut sections = vec![binder.crane()?, binder.spec()];
     for asked in binder.asked() {
         screen::remark(&format!("{}: {}", sections.len() + 1, asked.title));
@@ -77,6 +78,7 @@ struct Asked {
 struct Binder<'a> {
     options: &'a Book,
     registry: &'a Registry,
+    live: &'a LiveCrane,
     chain: &'a Chain,
     dispatch: Dispatch,
 }
@@ -171,7 +173,7 @@ impl Binder<'_> {
     /// What the crane consists of.
     fn crane(&self) -> Outcome<Section> {
         let drawn = html::figure(
-            &picture(self.chain),
+            &diagram(self.live),
             "The crane as its spec describes it, in the undeformed pose of its guess",
         );
         let mut tables = Vec::new();

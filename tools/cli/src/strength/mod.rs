@@ -52,11 +52,8 @@ pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) ->
     verdict(&mut report, crane.as_ref(), &rest, "");
     let moduli = crane.section_moduli_at();
     stresses::verdict(&mut report, crane.description(), &moduli, std::slice::from_ref(&rest), "");
-    if let Some(change) = refinement::change_of_stress(&case, registry) {
-        report.line("change of the maximum stress with twice the sections", 100.0 * change, "%");
-        report.value("change_of_the_greatest_stress_with_twice_the_sections", change);
-        report.caution(refinement::caution_of_stress(change).as_deref());
-    }
+    let changes =
+        refinement::changes_of_stress(&case, &rest, registry).map(|changes| stresses::mesh(&mut report, changes));
     let timing = (&options.timing, options.analysis.crane.limits);
     let history = if options.run { Some(along(timing, crane.as_ref(), &mut report)?) } else { None };
     for caution in cautions::of_pose(crane.as_ref(), &q, options.analysis.crane.limits.bend) {
@@ -72,7 +69,7 @@ pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) ->
     if options.buckling {
         loads::factor(&mut report, &registry.live(crane)?);
     }
-    report.grid(stresses::table(crane.description(), &moduli, &rest));
+    report.grid(stresses::table(crane.description(), &moduli, &rest, changes.flatten().as_deref()));
     report.grid(tables::tipping(crane.description(), &rest.lines));
     if let Some(history) = &history {
         let table = history::table(crane.description(), &moduli, history);

@@ -85,6 +85,22 @@ fn estimates_of_the_mesh_are_with_the_inputs() {
     assert!(written > 1e-6 && (set / written - 1.0).abs() < 1e-9, "{set} for {written}");
 }
 
+/// A beam that is given element by element has no sections to double.
+#[test]
+fn what_the_mesh_leaves_out_is_told_or_why_not() {
+    let out = folder("elements");
+    fs::create_dir_all(&out).expect("a folder");
+    let file = out.join("elements.yaml");
+    let element = "{length: 0.5, mass: 5, com: [0.2, 0, 0], inertia: {gyration: [0.1, 0.1, 0.1]}}";
+    let beam = format!(
+        "format: 1\nname: jib\nlinks: [{{name: jib, beam: {{length: 1, elements: [{element}, {element}], \
+         springs: [{{stiffness: {{psi: 1e5, theta: 1e5, phi: 1e5}}}}]}}}}]\npoints: [{{name: tip, link: jib, at: [1, 0, 0]}}]\n"
+    );
+    fs::write(&file, beam).expect("a file");
+    let told = text(&crane(&["statics", file.to_str().expect("a path")]).stdout);
+    assert!(told.contains("twice the sections  not computed: no beam has a number of `sections`"), "{told}");
+}
+
 /// A clamped beam has no rigid form to compare it with: the column is missing, and the others are there.
 #[test]
 fn a_crane_that_only_bends_has_poses_too() {

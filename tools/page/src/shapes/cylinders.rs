@@ -1,9 +1,9 @@
-//! Hydraulic cylinders between their pins, with rocker and link: the geometry of `codegen/src/mechanics/cylinders.rs`.
+//! Hydraulic cylinders between their pins, with rocker and link.
 
 use nalgebra::Matrix4;
 
 use super::{BARREL, LINKAGE, Mesh, PIN, Paint, ROD};
-use crate::scene::Barrel;
+use crate::scene::{Barrel, Pins};
 
 /// Smallest radius of a barrel, relative to the crane's size.
 const LEAST: f64 = 0.0028;
@@ -11,37 +11,28 @@ const LEAST: f64 = 0.0028;
 const OUTER: f64 = 0.62;
 const SIDE: f64 = 0.8;
 /// Length of the barrel relative to the distance of the pins of the retracted cylinder.
-const LENGTH: f64 = 0.9;
+pub const LENGTH: f64 = 0.9;
 /// Length and radius of a pin, relative to the radius of the barrel.
 const LONG: f64 = 3.0;
 const RADIUS: f64 = 0.6;
 
 /// The parts of a cylinder in the world while the bodies have these frames.
 pub fn parts(cylinder: &Barrel, size: f64, frames: &[Matrix4<f64>]) -> Vec<(Paint, Mesh)> {
-    let [foot, head] = [&cylinder.foot, &cylinder.head].map(|pin| pin.within(frames));
-    let normal = cylinder.axis.map(|(body, along)| (frames[body].fixed_view::<3, 3>(0, 0) * along).normalize());
-    let rocker = cylinder.linkage.as_ref().map(|linkage| {
-        let pivot = linkage.pivot.within(frames);
-        let across = head - pivot;
-        let along = (across.norm_squared() + linkage.rocker.powi(2) - linkage.link.powi(2)) / (2.0 * across.norm());
-        let height = (linkage.rocker.powi(2) - along.powi(2)).max(0.0).sqrt() * if linkage.left { 1.0 } else { -1.0 };
-        let aside = normal.unwrap_or_default().cross(&across).try_normalize(0.0).unwrap_or_default();
-        (pivot, pivot + across.normalize() * along + aside * height)
-    });
-    let rod = rocker.map_or(head, |(_, rod)| rod);
+    let pins = cylinder.pins(frames);
+    let Pins { foot, rod, head, pivot } = pins;
     let barrel = (OUTER * cylinder.bore).max(LEAST * size);
     let end = foot + (rod - foot).normalize() * (LENGTH * cylinder.retracted);
     let round = |paint, from, to, radius: f64| (paint, Mesh::rod(from, to, [radius; 2], 20));
     let mut parts =
         vec![round(ROD, foot, rod, (0.5 * cylinder.rod).max(0.45 * barrel)), round(BARREL, foot, end, barrel)];
     let side = SIDE / OUTER * barrel;
-    for ends in rocker.into_iter().flat_map(|(pivot, rod)| [[pivot, rod], [rod, head]]) {
+    for ends in pivot.into_iter().flat_map(|pivot| [[pivot, rod], [rod, head]]) {
         parts.push((LINKAGE, Mesh::bar(ends[0], ends[1], [side, 0.6 * side])));
     }
-    let half = normal.map(|normal| normal * (LONG * barrel / 2.0));
-    let pins = [foot, rod].into_iter().chain(rocker.into_iter().flat_map(|(pivot, _)| [pivot, head]));
+    let half = cylinder.normal(frames).map(|normal| normal * (LONG * barrel / 2.0));
     parts.extend(
-        half.into_iter().flat_map(|half| pins.clone().map(move |at| round(PIN, at - half, at + half, RADIUS * barrel))),
+        half.into_iter()
+            .flat_map(|half| pins.places().map(move |at| round(PIN, at - half, at + half, RADIUS * barrel))),
     );
     parts
 }

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use crane_codegen::chain::{BodyId, Frame};
-use crane_codegen::exchange::{Form, Look};
+use crane_codegen::chain::{BodyId, Form, Frame};
+use crane_codegen::exchange::Look;
 use nalgebra::Vector3;
 
 use super::{Figure, Mesh, Owner, Shape};
+use crate::scene::{Body, is_mesh};
 
 /// Files of triangles, STL, by their paths from the exported file.
 pub type Surfaces = BTreeMap<String, Vec<u8>>;
@@ -16,9 +17,16 @@ pub type Surfaces = BTreeMap<String, Vec<u8>>;
 /// Cylinders, springs and ropes lead from body to body, which no link does: they are left out.
 pub fn looks(figure: &Figure, folder: &str) -> (Vec<Look>, Surfaces) {
     let mut files = Surfaces::new();
-    let mut looks: Vec<Look> = Vec::new();
+    // What is guessed of a link whose spec names surfaces is in place of these, which are not read.
+    let named: Vec<&Look> = figure.scene.forms.iter().filter(|form| is_mesh(form)).collect();
+    let replaced = |body: usize| {
+        let Body { length, formed, .. } = figure.scene.bodies[body];
+        length == 0.0 && !formed && named.iter().any(|form| form.body == Some(BodyId(body)))
+    };
+    let mut looks: Vec<Look> = named.iter().map(|form| (*form).clone()).collect();
     for Shape { owner, paint, mesh } in &figure.shapes {
         let (body, of) = match owner {
+            Owner::Body(body) if replaced(*body) => continue,
             Owner::Body(body) => (Some(BodyId(*body)), figure.scene.bodies[*body].name.as_str()),
             Owner::Ground => (None, "ground"),
             Owner::Part(_) => continue,
@@ -28,10 +36,10 @@ pub fn looks(figure: &Figure, folder: &str) -> (Vec<Look>, Surfaces) {
             let name = format!("{of}.{}", files.len() + 1);
             let file = format!("{folder}/{name}.stl");
             files.insert(file.clone(), stl(mesh));
-            (Frame::WORLD, Form::Mesh { name, file })
+            (Frame::WORLD, Form::Mesh { file, scale: 1.0 })
         });
         let colour = paint.colour.map(|channel| f64::from(channel) / 255.0);
-        looks.push(Look { body, frame, form, paint: paint.name, colour });
+        looks.push(Look { body, frame, form, paint: Some((paint.name, colour)) });
     }
     (looks, files)
 }

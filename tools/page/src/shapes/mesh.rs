@@ -4,8 +4,9 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
-use crane_codegen::chain::Frame;
-use crane_codegen::exchange::Form;
+use crane_codegen::chain::{Form, Frame};
+
+use crate::scene::matrix;
 
 /// Triangles between corners, counter-clockwise as seen from outside.
 #[derive(Clone, Debug, Default)]
@@ -51,24 +52,52 @@ impl Mesh {
             };
             (0..sides).map(corner).collect()
         };
-        let round = || Form::Cylinder { radius: first, length: (to - from).norm() };
+        let round = || Form::Cylinder { diameter: 2.0 * first, length: (to - from).norm() };
         let solid = (first.to_bits() == last.to_bits()).then(|| (about_middle(&turn, [from, to], 2), round()));
         Self { solid, ..Self::between(&[(from, first), (to, last)].map(ring)) }
     }
 
     /// A ball.
     pub fn ball(middle: Vector3<f64>, radius: f64) -> Self {
+        let form = Form::Capsule { diameter: 2.0 * radius, length: 0.0 };
+        let solid = (Frame { origin: middle.into(), ..Frame::WORLD }, form);
+        Self { solid: Some(solid), ..Self::round([middle; 2], &Matrix3::identity(), radius) }
+    }
+
+    /// The surface at a distance from a line, along x as turned; a ball if both of its ends are one place.
+    fn round([from, to]: [Vector3<f64>; 2], turn: &Matrix3<f64>, radius: f64) -> Self {
         let (rings, sides) = (8, 16);
-        let ring = |ring: u32| {
+        let ring = |(end, ring): (Vector3<f64>, u32)| {
             let (out, along) = (PI * f64::from(ring) / f64::from(rings)).sin_cos();
             let corner = |side: u32| {
                 let (sin, cos) = (TAU * f64::from(side) / f64::from(sides)).sin_cos();
-                middle + radius * Vector3::new(-along, out * cos, out * sin)
+                end + radius * (turn * Vector3::new(-along, out * cos, out * sin))
             };
             (0..sides).map(corner).collect()
         };
-        let solid = (Frame { origin: middle.into(), ..Frame::WORLD }, Form::Sphere(radius));
-        Self { solid: Some(solid), ..Self::between(&(0..=rings).map(ring).collect::<Vec<_>>()) }
+        let half = rings / 2;
+        let second = if from == to { half + 1 } else { half };
+        let places = (0..=half).map(|ring| (from, ring)).chain((second..=rings).map(|ring| (to, ring)));
+        Self::between(&places.map(ring).collect::<Vec<_>>())
+    }
+
+    /// A solid in a frame; of a surface in a file, which is not read, there are no triangles.
+    pub fn solid(frame: &Frame, form: &Form) -> Self {
+        let along_z = |length: f64| [-0.5, 0.5].map(|end| Vector3::z() * (end * length));
+        let mut mesh = match *form {
+            Form::Box(sides) => Self::block(Vector3::zeros(), sides),
+            Form::Cylinder { diameter, length } => {
+                let [from, to] = along_z(length);
+                Self::rod(from, to, [diameter / 2.0; 2], 28)
+            }
+            Form::Capsule { diameter, length } => {
+                Self::round(along_z(length), &turned(Vector3::x(), Vector3::z()), diameter / 2.0)
+            }
+            Form::Mesh { .. } => Self::default(),
+        };
+        let pose = matrix(frame);
+        mesh.corners.iter_mut().for_each(|corner| *corner = (pose * corner.push(1.0)).xyz());
+        Self { solid: Some((*frame, form.clone())), ..mesh }
     }
 
     /// A hook about the origin, open towards `down`.

@@ -17,11 +17,14 @@ pub mod picture;
 
 use std::collections::HashMap;
 
+use crane_codegen::chain::BodyId;
+use crane_codegen::exchange::Look;
 use crane_live::LiveCrane;
 use crane_model::{CoordinateInfo, CoordinateKind, CoordinateRole, dyn_crane::DynCrane};
 use nalgebra::{Matrix4, Vector3};
 
-use crate::scene::{Body, Connector, Hinge, Pad, Place, Scene, Section, sections};
+use crate::scene::{Body, Connector, Hinge, Pad, Place, Scene, Section, is_mesh, matrix, sections};
+pub use cylinders::LENGTH as BARREL_LENGTH;
 pub use mesh::Mesh;
 
 /// Mass per volume within the outline of a link, kg/m³: about a third of steel's.
@@ -163,17 +166,30 @@ fn size(scene: &Scene, coordinates: &[CoordinateInfo]) -> f64 {
         .flat_map(|(index, body)| [0.0, body.length].map(|x| of_body(index, Vector3::x() * x)));
     let points = scene.points.iter().map(|(_, point)| point.within(&frames));
     let bars = scene.bars.iter().map(|bar| of_body(bar.body, bar.to));
+    let forms = scene.forms.iter().flat_map(corners).map(|corner| corner.within(&frames));
     let supports = scene.supports.iter().map(|(_, at)| of_body(0, *at));
     let anchors =
         scene.connectors.iter().flat_map(|one| &one.points).filter(|point| point.body.is_none()).map(|point| point.at);
     let origin = (!has_base(coordinates)).then(Vector3::zeros);
-    let places = ends.chain(points).chain(bars).chain(supports).chain(anchors).chain(origin);
+    let places = ends.chain(points).chain(bars).chain(forms).chain(supports).chain(anchors).chain(origin);
     let [low, high] = places
         .fold([Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)], |[low, high], place| {
             [low.inf(&place), high.sup(&place)]
         });
     let diagonal = (high - low).norm();
     ((high - low).add_scalar(2.0 * MARGIN * diagonal)).norm().max(1e-3)
+}
+
+/// The corners of the box around a form; none of a surface in a file.
+fn corners(form: &Look) -> Vec<Place> {
+    let (body, sides, pose) =
+        (form.body.map(|BodyId(body)| body), Vector3::from(form.form.sides()), matrix(&form.frame));
+    let count = if is_mesh(form) { 0 } else { 8 };
+    let corner = |index: u8| {
+        let signs = [1, 2, 4].map(|bit| if index & bit == 0 { -0.5 } else { 0.5 });
+        Place { body, at: (pose * sides.component_mul(&Vector3::from(signs)).push(1.0)).xyz() }
+    };
+    (0..count).map(corner).collect()
 }
 
 /// Whether the base moves.
@@ -237,6 +253,7 @@ impl<'a> Builder<'a> {
             }
         }
         self.bars();
+        self.forms();
         match chassis {
             Some(chassis) => self.feet(&chassis),
             None if has_base(self.coordinates) => {}
@@ -262,6 +279,13 @@ impl<'a> Builder<'a> {
     fn bar(&mut self, body: usize, [from, to]: [Vector3<f64>; 2], side: f64, paint: Paint) {
         if !self.is_nothing(to - from) {
             self.part(body, paint, Mesh::bar(from, to, [side; 2]));
+        }
+    }
+
+    /// The same for what the spec does not tell: nothing of a body that has forms of its own.
+    fn guess(&mut self, body: usize, ends: [Vector3<f64>; 2], side: f64, paint: Paint) {
+        if !self.scene.bodies[body].formed {
+            self.bar(body, ends, side, paint);
         }
     }
 
@@ -384,21 +408,21 @@ impl<'a> Builder<'a> {
             let from = chassis
                 .filter(|_| is_base)
                 .map_or_else(Vector3::zeros, |chassis| Vector3::new(far.x, far.y, chassis.level.min(far.z)));
-            return self.bar(index, [from, far], outline, if is_base { BASE } else { LINK });
+            return self.guess(index, [from, far], outline, if is_base { BASE } else { LINK });
         };
         let (along, [least, most]) = (self.sliding(slide), self.travels[slide]);
         let axis = self.local(index, along);
         let home = far - axis * self.scene.reference[slide];
         let sleeve = if self.is_nothing(home) { home + axis * least } else { home };
         let side = self.thickness(body.mass, sleeve.norm().max(far.norm() / 2.0));
-        self.bar(index, [Vector3::zeros(), sleeve], side, LINK);
+        self.guess(index, [Vector3::zeros(), sleeve], side, LINK);
         // A beam shows itself.
         if self.scene.bodies[next].length == 0.0 {
             // Long enough to stay in its sleeve at the far end of its travel.
             let inside = self.begin(index, next).norm();
             let reach = (most.abs() + 0.5 * side).min(inside + (most - self.scene.reference[slide]).abs());
             let back = -self.local(next, along) * reach;
-            self.bar(next, [Vector3::zeros(), back], 0.78 * side, SLIDE);
+            self.guess(next, [Vector3::zeros(), back], 0.78 * side, SLIDE);
         }
     }
 
@@ -410,7 +434,7 @@ impl<'a> Builder<'a> {
             // Far enough back to stay in the beam at the far end of its travel; its part outside is drawn as a link.
             let reach = self.travels[slide].map(f64::abs).into_iter().fold(0.0, f64::max) + 0.5 * side;
             let back = -self.local(next, self.sliding(slide)) * reach;
-            self.bar(next, [Vector3::zeros(), back], side, SLIDE);
+            self.guess(next, [Vector3::zeros(), back], side, SLIDE);
         }
     }
 
@@ -466,7 +490,7 @@ impl<'a> Builder<'a> {
             .collect();
         let mut bars = self.scene.bars.iter().filter(|bar| bar.body == index).peekable();
         // Where its mass is known to be elsewhere, a bar leads there.
-        if body.length > 0.0 || places.is_empty() && bars.peek().is_some() {
+        if body.length > 0.0 || body.formed || places.is_empty() && bars.peek().is_some() {
             return;
         }
         let mass = if bars.any(|bar| bar.block > 0.0) { 0.0 } else { body.mass };
@@ -509,6 +533,16 @@ impl<'a> Builder<'a> {
                 let half = along * (side / 2.0);
                 self.part(bar.body, LOAD, Mesh::bar(bar.to - half, bar.to + half, [side; 2]));
             }
+        }
+    }
+
+    /// What the spec says that links look like.
+    fn forms(&mut self) {
+        let scene = self.scene;
+        for form in scene.forms.iter().filter(|form| !is_mesh(form)) {
+            let Some(BodyId(body)) = form.body else { continue };
+            let paint = if body == 0 && has_base(self.coordinates) { BASE } else { LINK };
+            self.part(body, paint, Mesh::solid(&form.frame, &form.form));
         }
     }
 
@@ -555,7 +589,9 @@ impl<'a> Builder<'a> {
         sizes[long] = spread[long] + 0.6 * depth.min(2.0 * height);
         sizes[wide] = 0.38 * spread[wide];
         let centre = Vector3::new(middle[0], middle[1], level);
-        self.part(0, BASE, Mesh::block(centre, sizes));
+        if !self.scene.bodies[0].formed {
+            self.part(0, BASE, Mesh::block(centre, sizes));
+        }
         let side = (0.3 * depth).min(LEG * self.size);
         for foot in supports {
             let (mut root, knee) = (centre, Vector3::new(foot.x, foot.y, level));

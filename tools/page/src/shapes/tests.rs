@@ -126,7 +126,7 @@ fn shapes_are_closed() {
 /// Corners of the triangles lie on the solid that URDF and MJCF get, and reach its ends; to the rounding of places some 10 m away.
 #[test]
 fn solids_are_those_of_the_triangles() {
-    use crane_codegen::exchange::Form;
+    use crane_codegen::chain::Form;
     for (name, live) in cranes() {
         let figure = figure(&live);
         let (looks, files) = looks::looks(&figure, "meshes");
@@ -146,12 +146,17 @@ fn solids_are_those_of_the_triangles() {
                     let beside = |at: &Vector3<f64>| (2.0 * at.abs() - Vector3::from(*sides)).amax();
                     within.iter().map(beside).fold(0.0, f64::max)
                 }
-                Form::Cylinder { radius, length } => {
-                    let beside =
-                        |at: &Vector3<f64>| (at.xy().norm() - radius).abs().max((at.z.abs() - length / 2.0).abs());
+                Form::Cylinder { diameter, length } => {
+                    let beside = |at: &Vector3<f64>| {
+                        (at.xy().norm() - diameter / 2.0).abs().max((at.z.abs() - length / 2.0).abs())
+                    };
                     within.iter().map(beside).fold(0.0, f64::max)
                 }
-                Form::Sphere(radius) => within.iter().map(|at| (at.norm() - radius).abs()).fold(0.0, f64::max),
+                Form::Capsule { diameter, length } => {
+                    let line = |at: &Vector3<f64>| Vector3::z() * at.z.clamp(-length / 2.0, length / 2.0);
+                    let beside = |at: &Vector3<f64>| ((at - line(at)).norm() - diameter / 2.0).abs();
+                    within.iter().map(beside).fold(0.0, f64::max)
+                }
                 Form::Mesh { .. } => panic!("{name}: triangles are not a solid"),
             };
             assert!(off < 1e-13 * 10.0, "{name}: {form:?} is {off} m from its triangles");
@@ -171,6 +176,68 @@ fn solids_are_those_of_the_triangles() {
             let begins = |mesh: &Mesh| (mesh.corners[mesh.triangles[0][0]] - Vector3::from(first)).norm() < 1e-6;
             assert!(shape.map(|shape| &shape.mesh).any(begins), "{name}: {file} begins at {first:?}");
         }
+    }
+}
+
+/// A link that is an arm of 2 m, in these words.
+fn arm(shape: &str) -> LiveCrane {
+    let text = format!(
+        "format: 1\nname: arm\nparameters: {{across: {{value: 0.2}}}}\nlinks:\n- {{name: arm, joint: {{revolute: {{axis: y}}}}, mass: 20, com: [1, 0, 0.4]{shape}}}\n\
+         points: [{{name: tip, link: arm, at: [2, 0, across]}}]\n"
+    );
+    let source = crane_codegen::SourceFile::new("arm.yaml", &text);
+    LiveCrane::from_spec(&source).unwrap_or_else(|told| panic!("{told}"))
+}
+
+/// A capsule along y, turned about z by 30°: its ends are `(0.5 + 0.1)` m from its middle along `(−sin 30°, cos 30°, 0)`. It follows a parameter, and is
+/// all that is drawn besides the pin: no stem to the point, no bar to the centre of mass. A capsule is between its two half balls what URDF gets as a cylinder.
+#[test]
+fn a_form_takes_the_place_of_what_is_guessed() {
+    let capsule = ", shape: {capsule: {diameter: across, length: 1, axis: y, at: [1, 0, 0], rotation: {z: 30 deg}}}";
+    let live = arm(capsule);
+    let figure = figure(&live);
+    let own = |figure: &Figure| figure.shapes.iter().filter(|shape| shape.owner == Owner::Body(0)).count();
+    assert_eq!(own(&figure), 2);
+    assert!(own(&self::figure(&arm(""))) > 3);
+    let shape = figure.shapes.iter().find(|shape| shape.paint == LINK).expect("a capsule");
+    let along = Vector3::new(-0.5, 0.75_f64.sqrt(), 0.0);
+    let reach = |along: Vector3<f64>| {
+        let ways = shape.mesh.corners.iter().map(move |corner| (corner - Vector3::x()).dot(&along));
+        ways.fold(0.0, f64::max)
+    };
+    // Rounding of numbers about 1; across, 16 corners of a circle contain z.
+    for (along, expected) in [(along, 0.6), (-along, 0.6), (Vector3::z(), 0.1)] {
+        assert!((reach(along) - expected).abs() < 1e-15, "{along}: {}", reach(along));
+    }
+    let forms = figure.scene.json()["forms"].clone();
+    assert_eq!((&forms[0]["kind"], &forms[0]["body"]), (&"capsule".into(), &0.into()), "{forms}");
+    assert_eq!(forms[0]["sides"], serde_json::json!([0.2, 0.2, 1.2]));
+    let urdf = crane_codegen::exchange::urdf(live.chain(), live.parameters(), &[]).expect("an open chain");
+    assert_eq!(
+        ["<cylinder radius=\"0.1\" length=\"1\"/>", "<sphere radius=\"0.1\"/>"].map(|one| urdf.matches(one).count()),
+        [1, 2],
+        "{urdf}"
+    );
+}
+
+/// A surface in a file is not read: pages show the guess, other programs the file, once, though it is on the link twice.
+#[test]
+fn a_mesh_is_named_in_exports() {
+    let mesh = "{mesh: {file: parts/arm.stl, scale: 0.001}}";
+    let live = arm(&format!(", shape: [{mesh}, {mesh}, {}]", mesh.replace("0.001", "0.002")));
+    let (figure, guessed) = (figure(&live), figure(&arm("")));
+    assert_eq!(figure.shapes.len(), guessed.shapes.len());
+    let (looks, files) = looks::looks(&figure, "meshes");
+    assert!(files.is_empty() && looks.iter().filter(|look| look.body.is_some()).count() == 3);
+    let (parameters, start) = (live.parameters(), [0.0]);
+    let mjcf =
+        crane_codegen::exchange::mjcf(live.chain(), parameters, &looks, (&start, "rest")).expect("an open chain");
+    for (text, count) in [
+        ("<mesh name=\"arm\" file=\"parts/arm.stl\" inertia=\"shell\" scale=\"0.001 0.001 0.001\"/>", 1),
+        ("<mesh name=\"arm_2\" file=\"parts/arm.stl\"", 1),
+        ("<geom type=\"mesh\" mesh=\"arm\"/>", 2),
+    ] {
+        assert_eq!(mjcf.matches(text).count(), count, "{text}: {mjcf}");
     }
 }
 

@@ -3,7 +3,7 @@
 //! Of several joints of a body, all but the last one get a link without mass. The link of a joint has its origin at the joint's anchor, and
 //! its joint is at zero where `MuJoCo`'s is, so that a joint moves the body from its `ref`: `T = P T(p) M(−ref) M(q) T(−p)`.
 
-use super::geoms::SHAPES;
+use super::geoms::{SHAPES, leave_out};
 use super::pose::unit;
 use super::{File, InertiaFromGeoms};
 use crate::chain::{Frame, Vector};
@@ -41,7 +41,13 @@ impl<'a, 'i> File<'a, 'i> {
     pub(super) fn world(&mut self, world: Element<'a, 'i>) {
         if self.robot.links.is_empty() {
             let frame = Some(Frame::WORLD);
-            self.robot.links.push(Link { name: WORLD.to_owned(), span: world.tag(), lump: None, frame });
+            self.robot.links.push(Link {
+                name: WORLD.to_owned(),
+                span: world.tag(),
+                lump: None,
+                shapes: Vec::new(),
+                frame,
+            });
         }
         let mut open = Vec::new();
         let inside = self.elements(world, world.text("childclass"));
@@ -79,7 +85,7 @@ impl<'a, 'i> File<'a, 'i> {
             let (read, at) = self.joint(joint, (&name, index), ends, &here);
             self.robot.joints.push(read);
             if !last {
-                self.robot.links.push(Link { name: link.clone(), span, lump: None, frame: None });
+                self.robot.links.push(Link { name: link.clone(), span, lump: None, shapes: Vec::new(), frame: None });
             }
             carrier = link;
             within = Frame { origin: at.map(|x| -x), ..Frame::WORLD };
@@ -92,9 +98,11 @@ impl<'a, 'i> File<'a, 'i> {
             self.robot.joints.push(Joint { placement, ..fixed });
         }
         let stands = stands && joints.is_empty();
+        let looks = self.looks(&inside, &name).into_iter();
+        let shapes: Vec<_> = looks.map(|(frame, form)| (within.outer(&frame), form)).collect();
         let lump = self.lump(&inside, &name, stands);
         let lump = self.masses.of_body(lump).filter(|lump| !lump.is_nothing()).map(|lump| lump.seen_through(&within));
-        self.robot.links.push(Link { name: name.clone(), span, lump, frame: named.map(|_| within) });
+        self.robot.links.push(Link { name: name.clone(), span, lump, shapes, frame: named.map(|_| within) });
         self.contents(inside, &within, (&name, stands), open);
     }
 
@@ -151,7 +159,13 @@ impl<'a, 'i> File<'a, 'i> {
         let ends = [link, &free_name].map(|end| Named { name: end.to_owned(), span });
         let joint = Joint::new(&format!("{free_name} is a site"), span, Motion::Fixed, ends);
         self.robot.joints.push(Joint { placement, ..joint });
-        self.robot.links.push(Link { name: free_name, span, lump: None, frame: Some(Frame::WORLD) });
+        self.robot.links.push(Link {
+            name: free_name,
+            span,
+            lump: None,
+            shapes: Vec::new(),
+            frame: Some(Frame::WORLD),
+        });
         site.node.leave_out_rest(SHAPES);
     }
 
@@ -249,7 +263,7 @@ impl<'a, 'i> File<'a, 'i> {
         };
         match (inertial, from_geoms) {
             (Some(&Placed { node, ref frame, .. }), InertiaFromGeoms::Auto | InertiaFromGeoms::Never) => {
-                geoms().for_each(|geom| geom.node.leave_out(SHAPES));
+                geoms().for_each(|geom| leave_out(geom.node));
                 let placement = frame.outer(&self.pose(node.read(), None, &owner));
                 let [mass] = self.reader.numbers(node, "mass", &owner)?;
                 if mass < 0.0 {
@@ -263,7 +277,7 @@ impl<'a, 'i> File<'a, 'i> {
                 Some(Lump { mass, com: [0.0; 3], tensor }.seen_through(&placement))
             }
             (_, InertiaFromGeoms::Never) => {
-                geoms().for_each(|geom| geom.node.leave_out(SHAPES));
+                geoms().for_each(|geom| leave_out(geom.node));
                 None
             }
             (replaced, _) => {

@@ -1,14 +1,22 @@
-//! Pictures of the shipped cranes: nothing is missing or out of view. The gallery of the manual.
+//! Diagrams of the shipped cranes: nothing is missing or out of view. The gallery of the manual.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 use crane_codegen::chain::{Chain, CoordinateId};
-use crane_codegen::{build, compile, picture};
+use crane_codegen::{SourceFile, build, compile};
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::DynModel;
+use crane_model::nalgebra::Vector3;
+use crane_page::{diagram::diagram, scene::Scene};
 
 fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn picture(chain: &Chain) -> String {
+    diagram(&LiveCrane::new(chain.clone()))
 }
 
 /// The shipped cranes, by name.
@@ -35,10 +43,15 @@ fn values(svg: &str, attribute: &str) -> Vec<f64> {
     svg.split(&pattern).skip(1).filter_map(|rest| rest.split('\'').next()?.parse().ok()).collect()
 }
 
+/// Numbers between blanks and commas.
+fn numbers(text: Option<&str>) -> Vec<f64> {
+    text.unwrap_or_default().split([' ', ',']).filter_map(|number| number.parse().ok()).collect()
+}
+
 #[test]
 fn every_name_is_shown_and_every_place_in_view() {
     for chain in shipped() {
-        let svg = picture::picture(&chain);
+        let svg = picture(&chain);
         let joints = chain.coordinates.iter().enumerate();
         let joints = joints.filter(|(index, _)| !chain.is_of_element(CoordinateId(*index)));
         let names = joints.map(|(_, coordinate)| &coordinate.name);
@@ -50,6 +63,9 @@ fn every_name_is_shown_and_every_place_in_view() {
         assert_eq!(svg.matches("stroke-width='7'").count(), elements, "{}", chain.name);
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{}", chain.name);
         let [width, height] = ["width", "height"].map(|side| values(&svg, side)[0]);
+        let outlines: Vec<f64> =
+            svg.split("points='").skip(1).flat_map(|rest| numbers(rest.split('\'').next())).collect();
+        assert!(outlines.iter().all(|value| (0.0..=width).contains(value)), "{}", chain.name);
         for (attributes, most) in [(["x1", "x2", "cx"], width), (["y1", "y2", "cy"], height)] {
             for value in attributes.iter().flat_map(|attribute| values(&svg, attribute)) {
                 assert!((0.0..=most).contains(&value), "{}: {value}", chain.name);
@@ -64,7 +80,7 @@ fn pads_of_a_telescope_are_drawn() {
     let source = build::open(&root().join("specs/examples/telescopic_loader.yaml"))
         .unwrap_or_else(|failure| panic!("{failure}"));
     let chain = compile::load(&source).unwrap_or_else(|mistakes| panic!("{mistakes}"));
-    let svg = picture::picture(&chain);
+    let svg = picture(&chain);
     assert_eq!(svg.matches("stroke-width='4'").count(), 2 * 2 * 2);
     // Two stages and the hook slide; column, boom and both swings turn.
     let marks = [svg.matches("<rect x='").count(), svg.matches("r='6'").count()];
@@ -74,7 +90,7 @@ fn pads_of_a_telescope_are_drawn() {
 #[test]
 fn a_horizontal_beam_is_drawn_as_long_as_it_is() {
     let cantilever = shipped().into_iter().find(|chain| chain.name == "cantilever").expect("a cantilever");
-    let svg = picture::picture(&cantilever);
+    let svg = picture(&cantilever);
     let beams: Vec<&str> = svg.lines().filter(|line| line.contains("stroke-width='7'")).collect();
     let length = |line: &&str| values(line, "x2")[0] - values(line, "x1")[0];
     // 8 sections: elements of 1/8 of the beam, half of that at both ends; positions are rounded to 0.1.
@@ -99,7 +115,7 @@ fn the_gallery_shows_every_shipped_crane() {
         let image = images.join(format!("{name}.svg"));
         if update {
             fs::create_dir_all(&images).expect("a folder");
-            fs::write(&image, picture::picture(&chain)).expect("a picture");
+            fs::write(&image, picture(&chain)).expect("a picture");
         }
         assert!(image.exists(), "there is no {}: run this test with UPDATE_GOLDEN=1", image.display());
         let title = &chain.title;
@@ -124,4 +140,65 @@ fn the_gallery_shows_every_shipped_crane() {
     }
     let written = fs::read_to_string(&path).unwrap_or_default();
     assert_eq!(written, page, "{} is not current: run this test with UPDATE_GOLDEN=1", path.display());
+}
+
+/// Bars, forms, springs, pins of loops and masses of a diagram are those of the scene, which pages draw, too.
+#[test]
+fn a_diagram_shows_what_pages_show() {
+    let text = "format: 1\nname: arm\nlinks:\n\
+        - {name: arm, joint: {revolute: {axis: y}}, mass: 20, com: [1, 0, 0.4]}\n\
+        - {name: head, placement: {transform: {translation: [2, 0, 0]}}, joint: {revolute: {axis: y}}, mass: 5, com: [0.3, 0, 0],\n   \
+           shape: [{box: {size: [0.4, 0.2, 0.3], at: [0.2, 0, 0]}}, {capsule: {diameter: 0.1, length: 0, at: [0.4, 0, 0]}}]}\n\
+        - {name: tie, on: arm, joint: {revolute: {axis: y}}, mass: 1, com: [0.2, 0, 0]}\n\
+        connectors: [{name: coil, from: {at: [0, 0, 1]}, to: {link: head, at: [0.3, 0, 0.2]}, law: {spring: {stiffness: 10, length: 1}}}]\n\
+        loop_joints: [{name: ring, from: {link: tie, at: [0.4, 0, 0]}, to: {link: head, at: [0.3, 0, 0]}, joint: ball}]\n";
+    let chain = compile::load(&SourceFile::new("arm.yaml", text)).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    let scene = Scene::new(&LiveCrane::new(chain.clone()), &chain.guess);
+    let svg = picture(&chain);
+    let count = |text: &str| svg.matches(text).count();
+    let links = scene.bodies.len();
+    let thick = scene.bars.iter().filter(|bar| bar.main).count();
+    assert!(scene.bars.len() > thick, "{}", scene.bars.len());
+    assert_eq!(count("stroke-width='3'"), links + thick + 1, "links, thick bars, and the halo of labels");
+    assert_eq!(count("stroke-width='1.6' stroke-linecap"), scene.bars.len() - thick);
+    assert_eq!([count("<polygon"), count("stroke-width='2.4'"), count("r='4.5'")], [2, 1, scene.hinges.len()]);
+    assert_eq!(count("fill-opacity='0.35'"), 3);
+    // The outline of the box is a hexagon in this projection.
+    let outline = numbers(svg.split("points='").nth(1).and_then(|rest| rest.split('\'').next()));
+    assert_eq!(outline.len(), 12, "{outline:?}");
+}
+
+/// A rocker and a link keep their lengths, and the cylinder has the length with which its forces are computed; to a few roundings of lengths of 1 m.
+#[test]
+fn a_cylinder_is_drawn_as_long_as_it_is() {
+    let boom = |side: &str| {
+        let text = format!(
+            "format: 1\nname: boom\nlinks:\n  - {{name: mast, mass: 100, com: [0, 0, 1], inertia: {{Ixx: 9, Iyy: 9, Izz: 1}}}}\n  \
+             - {{name: boom, placement: {{transform: {{translation: [0, 0, 2], rotation: {{x: 90 deg}}}}}}, joint: revolute, mass: 50, \
+             com: [1, 0, 0], inertia: {{Ixx: 1, Iyy: 9, Izz: 9}}}}\n\
+             drives:\n  - {{coordinate: boom_psi, stiffness: 1e7, motion: {{hold: 0.3}}}}\n\
+             cylinders:\n  - name: lift\n    coordinate: boom_psi\n    foot: {{link: mast, at: [0.3, 0, 0.6]}}\n    \
+             head: {{link: boom, at: [0.5, -0.1, 0]}}\n    \
+             linkage: {{pivot: [0.1, 0, 1.7], rocker: 0.4, link: 0.45, side: {side}}}\n    \
+             bore: 0.1\n    rod: 0.06\n    retracted: 0.9\n    stroke: 0.8\n"
+        );
+        LiveCrane::from_spec(&SourceFile::new("boom.yaml", text)).unwrap_or_else(|mistakes| panic!("{mistakes}"))
+    };
+    let lengths = ["left", "right"].map(|side| {
+        let live = boom(side);
+        let scene = Scene::new(&live, &[0.3]);
+        let frames: Vec<_> = scene.bodies.iter().map(|body| body.frame).collect();
+        let pins = scene.cylinders[0].pins(&frames);
+        let mut states = [Vector3::zeros()];
+        (&live as &dyn DynModel).cylinder_states(&[0.3], &[0.0], &mut states);
+        let computed = states[0].x;
+        let drawn = (pins.rod - pins.foot).norm();
+        assert!((drawn - computed).abs() < 1e-14, "{side}: drawn {drawn}, computed {computed}");
+        let pivot = pins.pivot.expect("a pivot");
+        assert!(
+            ((pivot - pins.rod).norm() - 0.4).abs() < 1e-14 && ((pins.head - pins.rod).norm() - 0.45).abs() < 1e-14
+        );
+        drawn
+    });
+    assert!((lengths[0] - lengths[1]).abs() > 0.1, "the sides differ: {lengths:?}");
 }
