@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use crate::diagnostic::{Diagnostics, SourceFile, quoted};
 use crate::read::read;
 use crate::spec::{
-    Crane, Either, Link, Number, On, Place, Placement, Point, Spanned, Transform, Turn, Vector, acting, entries,
+    Crane, Either, Link, Number, On, Place, Placement, Spanned, Transform, Turn, Vector, acting, entries,
 };
 
 /// A point may be beyond the end of the beam by this fraction of its length, because both are rounded numbers.
