@@ -22,7 +22,7 @@ use crate::tree::{Tree, source};
 pub type Law = fn(&LiveCrane, &[f64], &mut Rng) -> Option<Result<(), String>>;
 
 /// All of them, with their names.
-pub const ALL: [(&str, Law); 15] = [
+pub const ALL: [(&str, Law); 16] = [
     ("limits of charts are cautions at rest", limits_are_cautions),
     ("results have names of their own", results_are_named),
     ("accelerations solve A a = e + f", accelerations_solve),
@@ -32,6 +32,7 @@ pub const ALL: [(&str, Law); 15] = [
     ("springs of beams carry what is beyond them", springs_carry),
     ("every body is in balance", bodies_balance),
     ("places along beams are those of diagrams, and pads make them jump", places_agree),
+    ("nothing that is drawn floats", drawn_in_one_piece),
     ("energy balance of a run", energy_balance),
     ("ground carries weight and loads", ground_carries),
     ("a crane at rest stays at rest", rest_stays),
@@ -351,6 +352,12 @@ fn places_agree(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Result
         }
     }
     Some(if broken.is_empty() { Ok(()) } else { Err(broken.join("; ")) })
+}
+
+/// What pages, pictures and exports show of a crane at rest hangs together.
+fn drawn_in_one_piece(crane: &LiveCrane, pose: &[f64], _: &mut Rng) -> Option<Result<(), String>> {
+    let floating = crane_page::shapes::Figure::new(crane, pose, pose).floating();
+    Some(if floating.is_empty() { Ok(()) } else { Err(format!("pieces at {floating:?} float")) })
 }
 
 /// The bodies that are not in balance, by how much of the largest force.

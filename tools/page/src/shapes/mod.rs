@@ -8,6 +8,7 @@
 //! | [`looks`] | the shapes as URDF and MJCF have them |
 //! | [`picture`] | the shapes as picture elements |
 
+mod apart;
 mod beam;
 mod cylinders;
 pub mod gltf;

@@ -256,41 +256,13 @@ fn no_two_nodes_share_a_name() {
     assert_eq!(names, ["bob", "bob_2", "bob_3", "bob_4", "ground", "ground_2"]);
 }
 
-/// From shape to shape, whatever is drawn hangs together with the rest: a corner, the middle of a triangle or of all corners of one lies in the
-/// other, which is convex but for hooks and bent beams; to a thousandth of the crane's size.
 #[test]
 fn nothing_that_is_drawn_floats() {
     for (name, live) in cranes() {
-        let figure = figure(&live);
-        let near = 1e-3 * figure.all_corners().iter().map(nalgebra::Matrix::norm).fold(1.0, f64::max);
-        let solid = |shape: &Shape| {
-            let corners = figure.corners(shape);
-            let triangles: Vec<[Vector3<f64>; 3]> =
-                shape.mesh.triangles.iter().map(|triangle| triangle.map(|corner| corners[corner])).collect();
-            let middles = triangles.iter().map(|[a, b, c]| (a + b + c) / 3.0);
-            let middle = corners.iter().sum::<Vector3<f64>>() / corners.len() as f64;
-            let places: Vec<Vector3<f64>> = corners.iter().copied().chain(middles).chain([middle]).collect();
-            let planes =
-                triangles.iter().filter_map(|[a, b, c]| Some((*a, (b - a).cross(&(c - a)).try_normalize(0.0)?)));
-            (places, planes.collect::<Vec<_>>())
-        };
-        let holds = |(_, planes): &Solid, (places, _): &Solid| {
-            places.iter().any(|place| planes.iter().all(|(on, normal)| (place - on).dot(normal) < near))
-        };
-        let mut left: Vec<Solid> = figure.shapes.iter().map(solid).collect();
-        let mut reached: Vec<Solid> = left.pop().into_iter().collect();
-        while let Some(next) =
-            left.iter().position(|one| reached.iter().any(|other| holds(one, other) || holds(other, one)))
-        {
-            reached.push(left.swap_remove(next));
-        }
-        let floats: Vec<&Vector3<f64>> = left.iter().map(|(places, _)| &places[0]).collect();
-        assert!(left.is_empty(), "{name}: {floats:?}");
+        let floating = figure(&live).floating();
+        assert!(floating.is_empty(), "{name}: {floating:?}");
     }
 }
-
-/// Places on a surface, and its planes: a place of each and its normal.
-type Solid = (Vec<Vector3<f64>>, Vec<(Vector3<f64>, Vector3<f64>)>);
 
 /// Stages that do not bend are beams; they were drawn as ropes once.
 #[test]
