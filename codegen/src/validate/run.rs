@@ -83,7 +83,12 @@ impl<'a> Check<'a> {
         let on_link = |frame: &spec::NamedFrame| frame.link.is_some() && frame.name.value.as_deref() == Some(name);
         if !entries(crane.frames.as_ref()).any(on_link) {
             let known = frames.iter().filter(|frame| frame.body.is_some()).map(|frame| frame.name.as_str());
-            self.report(rule::unknown_frame(given.span, name, suggest(name, known)));
+            let help = if self.links.contains_key(name) {
+                format!("`{name}` is a link: write `link: {name}`")
+            } else {
+                suggest(name, known)
+            };
+            self.report(rule::unknown_frame(given.span, name, help));
         }
         None
     }

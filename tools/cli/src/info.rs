@@ -3,6 +3,7 @@
 use std::io::Write;
 
 use crane_codegen::chain::Chain;
+use crane_model::Description;
 use crane_model::runs::{EQUILIBRIUM, GUESS};
 use crane_page::tables::{Cell, Grid, Report};
 
@@ -113,7 +114,22 @@ pub fn info(options: &Analysis, registry: &Registry, out: &mut dyn Write) -> Out
     }
     report.grid(points);
     report.grid(combinations(registry.live(crane.as_ref())?.chain()));
+    report.grid(events(description));
     options.format.print(&report, out)
+}
+
+/// What events of a run set.
+fn events(description: &Description) -> Grid {
+    let headings = ["event", "at [s]", "parameter", "value", "unit"];
+    let mut grid = Grid::new("events", "Events of runs: values of parameters from then on", &headings);
+    for event in &description.events {
+        for &(parameter, value) in &event.changes {
+            let info = &description.parameters[parameter];
+            let [name, of, unit] = [&event.name, &info.name, &info.unit].map(|text| text.as_str().into());
+            grid.row([name, event.time.into(), of, value.into(), unit]);
+        }
+    }
+    grid
 }
 
 /// The partial factors of combinations of weights and loads.

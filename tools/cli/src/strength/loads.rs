@@ -47,7 +47,7 @@ pub fn factor(report: &mut Report, crane: &LiveCrane) {
     let by_stiffness = match linearised {
         Some(factor) => Cell::from(factor),
         None if (&crane as &dyn DynCrane).loop_joints().is_empty() => beyond.as_str().into(),
-        None => "not computed for closed loops".into(),
+        None => "not computed for closed loops and rigid couplings".into(),
     };
     report.line(format!("{name}, by the stiffness at rest"), by_stiffness, "");
     let followed_to = followed.as_ref().map_or_else(|| beyond.as_str().into(), |followed| Cell::from(followed.factor));
