@@ -143,6 +143,7 @@ class Crane:
     def _equilibria(
         self,
         t: ArrayLike | None = None,
+        hold: list[tuple[str, ArrayLike | str]] | None = None,
         guess: ArrayLike | None = None,
         tolerance: float | None = None,
         iterations: int | None = None,

@@ -554,6 +554,7 @@ class Crane(Closed, _native.Crane):
         self,
         *,
         t: ArrayLike | None = None,
+        hold: Mapping[str, ArrayLike | str] | None = None,
         guess: ArrayLike | None = None,
         tolerance: float | None = None,
         iterations: int | None = None,
@@ -562,12 +563,16 @@ class Crane(Closed, _native.Crane):
     ) -> Equilibrium:
         """Static equilibrium by Newton's method, and by continuation if that fails.
 
-        t: times at which the drives' motions stop, s; guess: (..., n), where to begin. The axes of both are leading axes of the result.
+        t: times at which the drives' motions stop, s; guess: (..., n), where to begin. The axes of all are leading axes of the result.
+        hold: positions of drives, m and rad or as text with a unit, by the name of a coordinate or of its link if that has only one drive, as
+        `{"boom": "20 deg", "jib": np.radians([0, 10])}`; what is not named is where its motion begins. The poses are those of `envelope` and of
+        `crane statics --hold`.
         tolerance: residual relative to the balancing forces; iterations: Newton steps; load_steps: steps of the continuation.
 
         Raises NoEquilibrium if a row has no stable one; with invalid="nan" it warns, and `status` says why.
         """
-        found = self._equilibria(t, guess, tolerance, iterations, load_steps, invalid)
+        held = None if hold is None else list(hold.items())
+        found = self._equilibria(t, held, guess, tolerance, iterations, load_steps, invalid)
         shape = tuple(found.pop("shape"))
         words = {key: _shaped(found.pop(key), shape) for key in ("status", "message", "steps")}
         return Equilibrium(**found, **words)

@@ -113,22 +113,8 @@ impl Asked {
             if axes.iter().any(|axis| axis.varied == varied) {
                 return Err(PyValueError::new_err(format!("ranges: `{name}` is given twice")));
             }
-            if values.is_empty() || values.iter().any(|value| !value.is_finite()) {
-                return Err(PyValueError::new_err(format!("ranges['{name}']: write one or more finite numbers")));
-            }
-            let far = values.iter().find(|value| matches!(varied, Varied::Drive(_)) && value.abs() > FURTHEST);
-            if let Some(far) = far {
-                return Err(PyValueError::new_err(format!(
-                    "ranges['{name}']: {far:e} is beyond ±{FURTHEST}, in m or rad, where no crane reaches"
-                )));
-            }
             let axis = Axis { varied, values: values.clone() };
-            if let Some(angle) = axis.implausible_angle(description) {
-                let degrees = angle.to_degrees();
-                return Err(PyValueError::new_err(format!(
-                    "ranges['{name}'] goes to {angle} rad, {degrees:.0}°: angles are in rad, as in np.radians({angle})"
-                )));
-            }
+            check_axis(&axis, &format!("ranges['{name}']"), description)?;
             axes.push(axis);
         }
         let axes = Axes(axes);
@@ -244,7 +230,25 @@ fn axes_shape(envelope: &Envelope) -> Vec<usize> {
     envelope.axes.0.iter().map(|axis| axis.values.len()).collect()
 }
 
-fn drives(description: &Description) -> Vec<&str> {
+/// Whether the values of an axis, or positions at which a drive is held, are finite and plausible; `given`: what they were given as.
+pub fn check_axis(axis: &Axis, given: &str, description: &Description) -> PyResult<()> {
+    let wrong = |told: String| Err(PyValueError::new_err(format!("{given}{told}")));
+    if axis.values.is_empty() || axis.values.iter().any(|value| !value.is_finite()) {
+        return wrong(": write one or more finite numbers".to_owned());
+    }
+    let far = axis.values.iter().find(|value| matches!(axis.varied, Varied::Drive(_)) && value.abs() > FURTHEST);
+    if let Some(far) = far {
+        return wrong(format!(": {far:e} is beyond ±{FURTHEST}, in m or rad, where no crane reaches"));
+    }
+    if let Some(angle) = axis.implausible_angle(description) {
+        let degrees = angle.to_degrees();
+        return wrong(format!(" goes to {angle} rad, {degrees:.0}°: angles are in rad, as in np.radians({angle})"));
+    }
+    Ok(())
+}
+
+/// Names of the coordinates that have a drive.
+pub fn drives(description: &Description) -> Vec<&str> {
     description.drives.iter().map(|drive| &*description.coordinates[drive.coordinate].name).collect()
 }
 

@@ -2,13 +2,15 @@
 
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynModel};
-use crane_model::statics::{Diagnosis, Equilibrium, Settings};
+use crane_model::envelope::{Axis, Varied};
+use crane_model::statics::{Diagnosis, Equilibrium, RestSearch, Settings};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{Argument, Joined, array};
 use crate::crane::Crane;
+use crate::envelope::{check_axis, drives};
 use crate::mistakes::{BadRow, Invalid, NoEquilibrium, describe, warn_of_rows};
 use crate::parallel::map_rows;
 
@@ -26,18 +28,28 @@ pub struct Found {
 }
 
 impl Found {
-    /// Solves statics of a crane, with the drives at a time and starting from a pose, if these are given.
-    fn new(crane: &LiveCrane, at: Option<f64>, from: Option<&[f64]>, settings: &Settings) -> Self {
+    /// Solves statics of a crane, with the drives at a time or some of them held at positions, and starting from a pose, if these are given.
+    fn new(
+        crane: &LiveCrane,
+        (at, held): (Option<f64>, &[(usize, f64)]),
+        from: Option<&[f64]>,
+        settings: &Settings,
+    ) -> Self {
         let crane: &dyn DynCrane = crane;
+        let t = at.unwrap_or(0.0);
+        let mut positions: Vec<f64> = crane.drive_motions_at(t).iter().map(|[position, _]| *position).collect();
+        for &(drive, position) in held {
+            positions[drive] = position;
+        }
         let equilibrium = match (at, from) {
+            (_, Some(from)) if !held.is_empty() => crane.equilibrium_holding(&positions, from, settings),
+            (_, None) if !held.is_empty() => RestSearch { crane, positions: &positions }.find(None),
             (None, None) => crane.equilibrium(settings),
             (at, Some(from)) => crane.equilibrium_at(at.unwrap_or(0.0), from, settings),
             (Some(t), None) => crane.equilibrium_at(t, &crane.guess(), settings),
         };
         let diagnosis = (!equilibrium.is_stable()).then(|| Diagnosis::of(crane, &equilibrium));
         let q = &equilibrium.q;
-        let t = at.unwrap_or(0.0);
-        let positions: Vec<f64> = crane.drive_motions_at(t).iter().map(|[position, _]| *position).collect();
         let efforts = crane.drive_efforts_holding(t, &positions, q);
         let flat = |vectors: Vec<crane_model::nalgebra::Vector3<f64>>| vectors.iter().flatten().copied().collect();
         let reactions = flat(crane.support_reactions_at(q, &vec![0.0; q.len()]));
@@ -51,15 +63,42 @@ impl Found {
     }
 }
 
+impl Crane {
+    /// Drives that are held, with their positions, by the name of a coordinate or of a link with one drive.
+    fn held(&self, given: &[(String, Bound<'_, PyAny>)]) -> PyResult<Vec<(usize, Argument)>> {
+        let description = self.live.description();
+        let mut held: Vec<(usize, Argument)> = Vec::new();
+        for (name, positions) in given {
+            let Some(Varied::Drive(drive)) = Varied::named(name, description) else {
+                return Err(PyValueError::new_err(format!(
+                    "{} has no drive `{name}`; drives: {}",
+                    description.name,
+                    drives(description).join(", ")
+                )));
+            };
+            if held.iter().any(|(other, _)| *other == drive) {
+                return Err(PyValueError::new_err(format!("hold: `{name}` is given twice")));
+            }
+            let unit = description.coordinates[description.drives[drive].coordinate].kind.unit();
+            let given = format!("hold['{name}']");
+            let argument = Argument::scalars_in(unit, &given, positions)?;
+            check_axis(&Axis { varied: Varied::Drive(drive), values: argument.numbers.clone() }, &given, description)?;
+            held.push((drive, argument));
+        }
+        Ok(held)
+    }
+}
+
 #[pymethods]
 impl Crane {
-    /// Equilibria over parameters, times and guesses.
-    #[pyo3(name = "_equilibria", signature = (t=None, guess=None, tolerance=None, iterations=None, load_steps=None, invalid="raise"))]
+    /// Equilibria over parameters, times, guesses and positions of drives.
+    #[pyo3(name = "_equilibria", signature = (t=None, hold=None, guess=None, tolerance=None, iterations=None, load_steps=None, invalid="raise"))]
     #[expect(clippy::too_many_arguments, reason = "named arguments in Python")]
     fn equilibria<'py>(
         &self,
         py: Python<'py>,
         t: Option<&Bound<'py, PyAny>>,
+        hold: Option<Vec<(String, Bound<'py, PyAny>)>>,
         guess: Option<&Bound<'py, PyAny>>,
         tolerance: Option<f64>,
         iterations: Option<usize>,
@@ -87,13 +126,21 @@ impl Crane {
         let times = t.map_or_else(|| Ok(none()), |t| Argument::scalars("t", t))?;
         let guesses = guess.map_or_else(|| Ok(none()), |guess| Argument::coordinates("guess", guess, description))?;
         let nothing = none();
-        let joined = Joined::new(&[
+        let held = self.held(hold.as_deref().unwrap_or_default())?;
+        if !held.is_empty() && t.is_some() {
+            let told = "drives are held at t = 0: give `t` or `hold`";
+            return Err(PyValueError::new_err(told));
+        }
+        let mut arguments = vec![
             ("t", &times),
             ("guess", &guesses),
             ("v", &nothing),
             ("a", &nothing),
             ("the parameters", &self.parameters),
-        ])?;
+        ];
+        let first_held = arguments.len();
+        arguments.extend(held.iter().map(|(_, positions)| ("hold", positions)));
+        let joined = Joined::new(&arguments)?;
         let wrong = self.bad_rows(&joined, ["t", "guess", "v", "a"], invalid)?;
         let refused = |row: usize| wrong.iter().find(|bad| bad.row == row);
         let n = self.live.size();
@@ -103,7 +150,10 @@ impl Crane {
             }
             let at = joined.row(0, 1, row).first().copied();
             let from = Some(joined.row(1, n, row)).filter(|row| !row.is_empty());
-            Some(Found::new(&self.of_joined_row(&joined, row), at, from, &settings))
+            let held = held.iter().enumerate();
+            let held: Vec<_> =
+                held.map(|(index, (drive, _))| (*drive, joined.row(first_held + index, 1, row)[0])).collect();
+            Some(Found::new(&self.of_joined_row(&joined, row), (at, &held), from, &settings))
         })?;
         let message = |(row, found): (usize, &Option<Found>)| match found {
             Some(Found { equilibrium, diagnosis, .. }) => {

@@ -39,6 +39,29 @@ def test_statics_along_the_manoeuvre(flexible):
     assert abs(rest.q[-1, psi] - flexible.drive_motions(5.0)[0, 0]) < 1e-3
 
 
+def test_statics_with_drives_that_are_held(knuckle):
+    """As if the spec held them: `motion: {hold: …}`, to the tolerance of statics."""
+    extensions = np.array([0.2, 0.6])
+    rest = knuckle.statics(hold={"main_boom": "-30 deg", "extension_x": extensions})
+    assert rest.q.shape == (2, knuckle.n) and rest.stable.all()
+    for row, extension in enumerate(extensions):
+        changes = f"drives: [{{coordinate: main_boom_theta, motion: {{hold: -30 deg}}}}, {{coordinate: extension_x, motion: {{hold: {extension}}}}}]"
+        written = crane.load("held.yaml", text=knuckle._changed(changes)).statics()
+        np.testing.assert_allclose(rest.q[row], written.q, atol=1e-9)
+        # N m and N; forces balance to 1e-10 of some 1e5.
+        np.testing.assert_allclose(rest.drive_efforts[row], written.drive_efforts, atol=1e-3)
+    for hold, told in (
+        ({"boom": 1}, "has no drive `boom`; drives: main_boom_theta, knuckle_theta, extension_x"),
+        ({"main_boom": 30}, "angles are in rad"),
+        ({"extension": "3 deg"}, r"hold\['extension'\]"),
+        ({"extension": 0.1, "extension_x": 0.1}, "given twice"),
+    ):
+        with pytest.raises(ValueError, match=told):
+            knuckle.statics(hold=hold)
+    with pytest.raises(ValueError, match="give `t` or `hold`"):
+        knuckle.statics(t=1, hold={"extension": 0.1})
+
+
 def test_no_equilibrium_is_raised_or_reported(pendulum):
     with pytest.raises(crane.NoEquilibrium, match="change `guess:`"):
         pendulum.statics(guess=[np.pi])
