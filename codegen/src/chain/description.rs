@@ -46,6 +46,8 @@ impl Chain {
             name: support.name.clone().into(),
             linear: support.kinematics == SupportKinematics::Linear,
             one_sided: support.friction.is_some(),
+            plate_area: support.plate.map(|(area, _)| area),
+            max_pressure: support.plate.and_then(|(_, pressure)| pressure),
         });
         let drives = self.drives.iter().map(|drive| DriveInfo {
             coordinate: drive.coordinate.0,

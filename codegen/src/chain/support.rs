@@ -20,6 +20,8 @@ pub struct Support {
     pub friction: Option<Value>,
     /// How its elongation depends on the base's coordinates.
     pub kinematics: SupportKinematics,
+    /// The area of the plate under it, m², and the largest pressure that the ground bears, Pa; they have no mechanical effect.
+    pub plate: Option<(f64, Option<f64>)>,
 }
 
 /// How the elongation of a support depends on the base's coordinates.

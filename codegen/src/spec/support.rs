@@ -1,6 +1,6 @@
 //! Supports of the base, names of frames and joints, and points of interest.
 
-use super::{FixedAngle, Number, Spanned, Transform, Vector};
+use super::{Constant, FixedAngle, Number, Spanned, Transform, Vector};
 use crate::node::FromNode;
 
 /// A support of a free base: three springs and dampers along the axes of the world.
@@ -25,6 +25,17 @@ pub struct Support {
     pub friction_coefficient: Option<Spanned<Number>>,
     /// Whether a one-sided support never slides while it presses: it then has a coefficient of friction of 1000. Default `false`.
     pub sticks: Option<Spanned<bool>>,
+    /// The plate under it, which spreads its force over the ground. Default: none.
+    pub plate: Option<Spanned<Plate>>,
+}
+
+/// The plate under a support.
+#[derive(Clone, Debug, FromNode)]
+pub struct Plate {
+    /// Its area, m².
+    pub area: Spanned<Constant>,
+    /// The largest pressure that the ground bears, Pa; more causes a caution, and limits loads of charts. Default: none.
+    pub max_pressure: Option<Spanned<Constant>>,
 }
 
 /// How the elongation of a support depends on the base's coordinates.

@@ -61,10 +61,20 @@ impl<'a> Check<'a> {
                 free_play: self.vector_or_zero(support.free_play.as_ref(), &subject("free play"), "m", Limit::Any),
                 friction,
                 kinematics,
+                plate: self.plate(support, &name),
                 name,
             });
         }
         sound
+    }
+
+    /// The area of the plate under a support, and the pressure that the ground bears.
+    fn plate(&mut self, support: &spec::Support, name: &str) -> Option<(f64, Option<f64>)> {
+        let plate = support.plate.as_ref()?.value.as_ref()?;
+        let subject = |what: &str| format!("the {what} of support `{name}`");
+        let area = self.constant(&plate.area, &subject("plate area"), "m²", Limit::Positive);
+        let most = plate.max_pressure.as_ref();
+        Some((area, most.map(|most| self.constant(most, &subject("largest pressure"), "Pa", Limit::Positive))))
     }
 
     /// The coefficient of friction of a one-sided support.

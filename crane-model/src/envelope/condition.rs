@@ -159,6 +159,7 @@ impl Condition {
         for (foot, &[force, gap]) in self.feet.iter().enumerate() {
             // A gap has another unit than a force: only its sign counts.
             found.add(Limit::LiftOff { foot }, force, |none| if gap > 0.0 { -gap } else { (force - none) / mean });
+            found.at_most(Limit::Ground { foot }, force.max(0.0));
         }
     }
 

@@ -73,6 +73,15 @@ impl Coverage {
             "the first support that pulls"
         };
         self.add(limits.has(PartLimit::LiftOff), what.to_owned());
+        for support in description.supports.iter() {
+            if let Some(most) = support.max_pressure {
+                let [name, most] = [support.name.to_string(), DisplayUnit::Bar.shown(most).to_string()];
+                self.add(limits.has(PartLimit::Ground), format!("{most} bar on the ground under {name}"));
+            }
+        }
+        if description.supports.iter().all(|support| support.max_pressure.is_none()) {
+            self.add(false, "the strength of the ground: no support has a `plate` with a `max_pressure`".to_owned());
+        }
         if description.has_feet() {
             self.add(limits.has(PartLimit::Sliding), "the friction under the feet".to_owned());
         }

@@ -34,6 +34,8 @@ pub enum PartLimit {
     Sliding,
     /// Supports that carry nothing.
     LiftOff,
+    /// The largest pressure that the ground bears under each support, `max_pressure` of its plate.
+    Ground,
     /// Ropes without tension.
     SlackRopes,
     /// The largest tension of each rope, `max_tension`.
@@ -44,7 +46,7 @@ pub enum PartLimit {
 
 impl PartLimit {
     /// Every kind.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Pressure,
         Self::Pump,
         Self::Stroke,
@@ -52,18 +54,20 @@ impl PartLimit {
         Self::MaxEffort,
         Self::Sliding,
         Self::LiftOff,
+        Self::Ground,
         Self::SlackRopes,
         Self::Tension,
         Self::Overlap,
     ];
     /// What no crane can exceed. A foot may lift and a rope may be slack in normal work.
-    pub const DEFAULT: [Self; 8] = [
+    pub const DEFAULT: [Self; 9] = [
         Self::Pressure,
         Self::Pump,
         Self::Stroke,
         Self::Stops,
         Self::MaxEffort,
         Self::Sliding,
+        Self::Ground,
         Self::Tension,
         Self::Overlap,
     ];
@@ -78,6 +82,7 @@ impl PartLimit {
             PartLimit::MaxEffort => "max-effort",
             PartLimit::Sliding => "sliding",
             PartLimit::LiftOff => "lift-off",
+            PartLimit::Ground => "ground",
             PartLimit::SlackRopes => "slack-ropes",
             PartLimit::Tension => "tension",
             PartLimit::Overlap => "overlap",
@@ -143,6 +148,7 @@ impl Limits {
     /// | stroke | the length of the cylinder at that end |
     /// | sliding | 1: all of the friction |
     /// | tension | `max_tension` |
+    /// | ground | the vertical force with which the plate has its `max_pressure` |
     /// | stops, lift-off, slack ropes, overlap | 0 |
     pub fn bound(&self, limit: Limit, description: &Description) -> Option<f64> {
         let number = match limit {
@@ -158,6 +164,7 @@ impl Limits {
                 Some(if extended { info.retracted + info.stroke } else { info.retracted })
             }
             Limit::Sliding { .. } => Some(1.0),
+            Limit::Ground { foot } => description.supports[foot].max_force(),
             Limit::Tension { rope } => description.connectors[rope].max_tension,
             Limit::Stop { .. } | Limit::LiftOff { .. } | Limit::Slack { .. } | Limit::Overlap { .. } => Some(0.0),
         };
@@ -226,6 +233,11 @@ pub enum Limit {
         /// Index of the support.
         foot: usize,
     },
+    /// The pressure on the ground under a support.
+    Ground {
+        /// Index of the support.
+        foot: usize,
+    },
     /// A rope without tension.
     Slack {
         /// Index of the connector.
@@ -260,6 +272,7 @@ impl Limit {
             | Limit::Stop { .. }
             | Limit::Sliding { .. }
             | Limit::LiftOff { .. }
+            | Limit::Ground { .. }
             | Limit::Slack { .. }
             | Limit::Tension { .. }
             | Limit::Overlap { .. } => self.part().map_or("", PartLimit::name),
@@ -280,6 +293,7 @@ impl Limit {
             Limit::Stop { .. } => Some(PartLimit::Stops),
             Limit::Sliding { .. } => Some(PartLimit::Sliding),
             Limit::LiftOff { .. } => Some(PartLimit::LiftOff),
+            Limit::Ground { .. } => Some(PartLimit::Ground),
             Limit::Slack { .. } => Some(PartLimit::SlackRopes),
             Limit::Tension { .. } => Some(PartLimit::Tension),
             Limit::Overlap { .. } => Some(PartLimit::Overlap),
@@ -304,7 +318,9 @@ impl Limit {
             Limit::Pressure { cylinder, rod } | Limit::Pump { cylinder, rod } => side(cylinder, rod),
             Limit::Stroke { cylinder, .. } => description.cylinders[cylinder].name.to_string(),
             Limit::Stop { coordinate } => description.coordinates[coordinate].name.to_string(),
-            Limit::Sliding { foot } | Limit::LiftOff { foot } => description.supports[foot].name.to_string(),
+            Limit::Sliding { foot } | Limit::LiftOff { foot } | Limit::Ground { foot } => {
+                description.supports[foot].name.to_string()
+            }
             Limit::Slack { rope } | Limit::Tension { rope } => description.connectors[rope].name.to_string(),
             Limit::Overlap { body, .. } => description.bodies[body].link.to_string(),
         }

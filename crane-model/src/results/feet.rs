@@ -1,6 +1,6 @@
 //! Cautions about feet: they pull, which the model is not valid for, they lift off, or the crane tips over.
 
-use crane_quantities::ColumnKind;
+use crane_quantities::{ColumnKind, DisplayUnit};
 use nalgebra::Vector3;
 
 use super::{Extremes, Table, column_name, support_gap};
@@ -21,12 +21,32 @@ pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> impl Iterator<Item = S
     let lifted = gaps.filter(|(support, gap)| support.one_sided && *gap > 0.0);
     let lifted: Vec<_> = lifted.map(|(support, gap)| format!("{} by {} mm", support.name, millimetres(gap))).collect();
     let lifted = (!lifted.is_empty()).then(|| format!("feet off the ground: {}", lifted.join(", ")));
-    pulled(&pulls).into_iter().chain(lifted)
+    let pressing = description.supports.iter().zip(&reactions);
+    let pressing: Vec<_> = pressing.filter_map(|(support, force)| presses_too_hard(support, force.z, "")).collect();
+    pulled(&pulls).into_iter().chain(lifted).chain(pressing)
+}
+
+/// What to say of a support that presses harder than the ground bears; `when`: the end of the sentence.
+fn presses_too_hard(support: &SupportInfo, force: f64, when: &str) -> Option<String> {
+    let [pressure, most] = [support.pressure(force)?, support.max_pressure?];
+    let [shown, bears] = [pressure, most].map(|pressure| DisplayUnit::Bar.shown(pressure));
+    let name = &support.name;
+    (pressure > most)
+        .then(|| format!("{name} presses on the ground with {shown:.2} bar, which bears {bears} bar{when}"))
+}
+
+/// Supports that press harder than the ground bears in a run.
+fn pressing(description: &Description, table: &Table) -> impl Iterator<Item = String> {
+    description.supports.iter().filter_map(|support| {
+        let Extremes { maximum, time_of_maximum, .. } = Extremes::of(table, &vertical_reaction(&support.name));
+        presses_too_hard(support, maximum, &format!(", at {time_of_maximum:.2} s"))
+    })
 }
 
 /// Feet over a run: whether the crane tips over, and as for a pose.
 pub(super) fn of_run(description: &Description, table: &Table) -> impl Iterator<Item = String> {
-    tipping(description, table).into_iter().chain(of_reactions(description, table)).chain(sliding(description, table))
+    let forces = of_reactions(description, table).into_iter().chain(pressing(description, table));
+    tipping(description, table).into_iter().chain(forces).chain(sliding(description, table))
 }
 
 /// A foot that slides less than this in a run is not worth a caution, m.

@@ -268,6 +268,22 @@ pub struct SupportInfo {
     pub linear: bool,
     /// Whether it only presses, and lifts off instead of pulling.
     pub one_sided: bool,
+    /// The area of the plate under it, m²; `None`: the spec gives none.
+    pub plate_area: Option<f64>,
+    /// The largest pressure that the ground bears under it, Pa; `None`: the spec gives none.
+    pub max_pressure: Option<f64>,
+}
+
+impl SupportInfo {
+    /// The pressure of its plate on the ground, Pa, with the vertical force of the support on the crane, N.
+    pub fn pressure(&self, force: f64) -> Option<f64> {
+        self.plate_area.map(|area| force.max(0.0) / area)
+    }
+
+    /// The vertical force with which it presses as hard as the ground bears, N.
+    pub fn max_force(&self) -> Option<f64> {
+        self.plate_area.zip(self.max_pressure).map(|(area, pressure)| area * pressure)
+    }
 }
 
 /// A drive.

@@ -150,6 +150,9 @@ impl Writer<'_> {
             if self.has(F::ExactSupports) {
                 foot["kinematics"] = json!("exact");
             }
+            if name == "front_left" {
+                foot["plate"] = json!({"area": 0.1, "max_pressure": 2e5});
+            }
             if self.has(F::OneSidedFeet) {
                 foot["one_sided"] = json!(true);
                 foot[key] = value;

@@ -597,7 +597,7 @@ class Crane(Closed, _native.Crane):
         """The largest load within limits, at rest, for all combinations of positions of drives, m and rad, and live parameters.
 
         The limits that the spec gives are always considered: pressures of relief valves and pump, strokes, end stops of driven joints,
-        `max_effort`, `max_tension` and the friction under feet, except those named in `without`: "pressure", "pump", "stroke", "stops", "max-effort", "sliding", "tension", "overlap". `considered` and
+        `max_effort`, `max_tension` and the friction under feet, except those named in `without`: "pressure", "pump", "stroke", "stops", "max-effort", "sliding", "ground", "tension", "overlap". `considered` and
         `not_considered` of the result list all limits.
 
         ranges: values by the name of a coordinate, of its link if that has only one drive, or of a live parameter; each is an axis of the

@@ -204,7 +204,7 @@ class Envelope:
     axes: values of each axis, by name; all arrays have these axes first.
     load: (...), the largest load, in `unit`, up to which every smaller one is within all limits; NaN where not even the minimum load is.
     parameter, unit: the live parameter that is the load, and its unit.
-    governing: (...), the limit that governs: "tipping", "utilisation", "pressure", "pump", "stroke", "stops", "effort", "sliding", "lift-off", "slack-ropes", "tension", "overlap",
+    governing: (...), the limit that governs: "tipping", "utilisation", "pressure", "pump", "stroke", "stops", "effort", "sliding", "lift-off", "slack-ropes", "ground", "tension", "overlap",
     "deflection", "equilibrium", or "" up to the maximum load considered. governing_of: (...), the tipping line, section, cylinder, drive,
     support, rope or point.
     considered, not_considered: limits that were, and those that were not or that lack a number, in words.

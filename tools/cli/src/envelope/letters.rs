@@ -1,7 +1,7 @@
 //! A letter for each kind of limit, for the cells of charts.
 
 /// Kinds of limits, their letters, and what they are, in the order of a legend.
-const LETTERS: [(&str, char, &str); 15] = [
+const LETTERS: [(&str, char, &str); 16] = [
     ("tipping", 'T', "tipping"),
     ("utilisation", 'U', "utilisation of a beam"),
     ("pressure", 'P', "relief valve of a cylinder"),
@@ -11,6 +11,7 @@ const LETTERS: [(&str, char, &str); 15] = [
     ("effort", 'E', "effort of a drive"),
     ("sliding", 'F', "friction under all feet"),
     ("lift-off", 'L', "a foot lifts off"),
+    ("ground", 'G', "pressure on the ground"),
     ("slack-ropes", 'R', "a rope is slack"),
     ("tension", 'W', "the tension of a rope"),
     ("overlap", 'O', "a stage is out of its outer beam, or too far in it"),

@@ -234,7 +234,9 @@ impl LargestLoad {
             }
             Limit::Stroke { cylinder, .. } => of_cylinder(ColumnKind::CylinderLength, cylinder),
             Limit::Sliding { foot } => Some(friction_utilisation(&description.supports[foot].name)),
-            Limit::LiftOff { foot } => Some(vertical_reaction(&description.supports[foot].name)),
+            Limit::LiftOff { foot } | Limit::Ground { foot } => {
+                Some(vertical_reaction(&description.supports[foot].name))
+            }
             Limit::Slack { rope } | Limit::Tension { rope } => Some(connector_force(&description.connectors[rope])),
             Limit::Equilibrium | Limit::Deflection { .. } | Limit::Stop { .. } | Limit::Overlap { .. } => None,
         };

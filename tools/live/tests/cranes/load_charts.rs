@@ -316,6 +316,43 @@ connectors:
     assert!(said.iter().any(|caution| caution.contains("max_tension of 4000 N, at ")), "{said:?}");
 }
 
+/// A block on four plates: each carries a quarter of it, up to what the ground bears. At rest and in a run, more is told.
+#[test]
+fn the_ground_bears_a_pressure() {
+    let foot = |name: &str, x: f64, y: f64| {
+        format!(
+            "  - {{name: {name}, at: [{x}, {y}, 0], one_sided: true, stiffness: [1e6, 1e6, 1e6], damping: [1e4, 1e4, 1e4], \
+             plate: {{area: 400 cm^2, max_pressure: 2 bar}}}}\n"
+        )
+    };
+    let feet = [foot("a", 1.0, 1.0), foot("b", 1.0, -1.0), foot("c", -1.0, 1.0), foot("d", -1.0, -1.0)].concat();
+    let crane = crane(&format!(
+        "format: 1\nname: block\nparameters: {{payload: {{value: 1000, unit: kg}}}}\nlinks:\n\
+         - {{name: block, joint: free, mass: payload, com: [0, 0, 0.2], inertia: {{Ixx: 20, Iyy: 20, Izz: 30}}}}\n\
+         - {{name: post, joint: {{prismatic: {{axis: x}}}}, mass: 1e-3, com: [0, 0, 0]}}\n\
+         supports:\n{feet}drives: [{{coordinate: post_x, rigid: true, motion: {{hold: 0}}}}]\n"
+    ));
+    let rating = &chart(&crane, 0, &[0.0], limits_of(&crane), 1.0)[0];
+    // 2e5 Pa · 0.04 m² on each of four.
+    assert_close("the ground", rating.load.unwrap(), 4.0 * 8e3 / GRAVITY, ACCURACY);
+    assert!(matches!(rating.governing, Some(Limit::Ground { .. })), "{:?}", rating.governing);
+    let mut heavy = crane;
+    heavy.set_parameter(0, 4000.0).unwrap();
+    let rest = (&heavy as &dyn DynCrane).equilibrium(&statics::Settings::default());
+    let said = cautions::of_pose(&heavy, &rest.q, cautions::BEND);
+    // 4000 kg · 9.81 m/s² / 4 / 0.04 m².
+    assert_eq!(said.len(), 4, "{said:?}");
+    assert_eq!(said[0], "a presses on the ground with 2.45 bar, which bears 2 bar");
+    let start = Start::of(&heavy).unwrap();
+    let settings = Settings { duration: 0.2, output: 0.1, ..Settings::of(heavy.description()) };
+    let run = record(&heavy, &start, &settings, &mut |_| ControlFlow::Continue(())).unwrap();
+    let said = cautions::of_run(&heavy, &run.table, cautions::BEND);
+    assert!(
+        said.iter().any(|caution| caution.starts_with("a presses on the ground with 2.45 bar, which bears 2 bar, at ")),
+        "{said:?}"
+    );
+}
+
 /// A rope holds an arm down, and is slack where the arm sinks to its length ℓ: at `ℓ² = 3 − 2 cos θ − 2 sin θ`, with only the drive carrying
 /// the load, `k θ = m g R cos θ`. The rope is named, although a spring is listed before it.
 #[test]

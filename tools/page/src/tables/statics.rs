@@ -103,6 +103,9 @@ pub fn equilibria(cases: &[Case<'_>], bend: f64) -> Report {
         report.grid(grid);
     }
     report.grid(reactions(cases));
+    if let Some(grid) = ground(cases) {
+        report.grid(grid);
+    }
     if let Some(grid) = friction(cases) {
         report.grid(grid);
     }
@@ -235,6 +238,27 @@ fn reactions(cases: &[Case<'_>]) -> Grid {
         }
     }
     grid
+}
+
+/// The pressure of plates on the ground.
+fn ground(cases: &[Case<'_>]) -> Option<Grid> {
+    let supports = cases.first()?.crane.description().supports.as_slice();
+    supports.iter().find_map(|support| support.plate_area)?;
+    let mut grid = Grid::with_headings(
+        "ground",
+        "Pressure on the ground under the plates of supports",
+        headings("support", cases),
+    );
+    let reactions: Vec<_> =
+        cases.iter().map(|case| case.crane.support_reactions_at(&case.equilibrium.q, &case.rest())).collect();
+    for (index, support) in supports.iter().enumerate().filter(|(_, support)| support.plate_area.is_some()) {
+        let pressure = |of: &Vec<Vector3<f64>>| support.pressure(of.get(index)?.z);
+        let cells =
+            reactions.iter().map(|of| pressure(of).map_or(Cell::Empty, |pressure| Cell::of_unit(pressure, "Pa")));
+        let name: Cell = support.name.as_str().into();
+        grid.row([name].into_iter().chain(cells).chain([Cell::unit_of("Pa")]).collect::<Vec<Cell>>());
+    }
+    Some(grid)
 }
 
 /// How much of its friction each foot on the ground uses.
