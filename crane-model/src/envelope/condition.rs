@@ -62,7 +62,12 @@ impl Condition {
             utilisations_of_friction: crane.friction_utilisations_at(&q),
             stops: crane.stop_efforts_at(&q, &rest),
             connectors: crane.connector_tensions_at(0.0, &q, &rest).into_iter().map(|tension| tension.force).collect(),
-            overlaps: crane.stages().iter().map(|stage| stage.inner).zip(overlaps::at(crane, &q)).collect(),
+            overlaps: crane
+                .stages()
+                .iter()
+                .zip(overlaps::at(crane, &q))
+                .map(|(stage, overlap)| (stage.inner, [overlap.overlap, overlap.left()]))
+                .collect(),
             points: crane.points_at(&q),
             end: crane
                 .transforms_at(&q)

@@ -4,6 +4,7 @@ use crane_quantities::ColumnKind;
 
 use super::{Table, column_name, drive_effort};
 use crate::{
+    DriveInfo,
     dyn_crane::DynCrane,
     statics::{REACHED, Reached, reached},
 };
@@ -12,7 +13,30 @@ use crate::{
 pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> impl Iterator<Item = String> {
     let motions = crane.drive_motions_at(0.0);
     let description = crane.description();
-    reached(crane, q).into_iter().map(move |Reached { drive, effort, limit }| {
+    let at_limit = reached(crane, q);
+    let limited: Vec<usize> = at_limit.iter().map(|reached| reached.drive).collect();
+    let positions: Vec<f64> = motions.iter().map(|[position, _]| *position).collect();
+    // A drive that only has an effort holds nothing.
+    let holds = |index: usize| {
+        let mut moved = positions.clone();
+        moved[index] += FAR;
+        let [here, there] = [&positions, &moved].map(|positions| crane.drive_efforts_holding(0.0, positions, q)[index]);
+        here != there
+    };
+    let is_far = |(index, drive): &(usize, &DriveInfo)| {
+        !limited.contains(index) && (positions[*index] - q[drive.coordinate]).abs() > FAR && holds(*index)
+    };
+    let far = description.drives.iter().enumerate().filter(is_far).map(|(index, drive)| {
+        let coordinate = &description.coordinates[drive.coordinate];
+        let away = (positions[index] - q[drive.coordinate]).abs();
+        format!(
+            "{} rests {away:.3} {} from where its drive holds it: the drive is soft, or a linkage has passed its dead centre",
+            coordinate.name,
+            coordinate.kind.unit()
+        )
+    });
+    let far: Vec<String> = far.collect();
+    let at_limit = at_limit.into_iter().map(move |Reached { drive, effort, limit }| {
         let index = description.drives[drive].coordinate;
         let coordinate = &description.coordinates[index];
         let [position, _] = motions[drive];
@@ -24,8 +48,12 @@ pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> impl Iterator<Item = S
             (position - q[index]).abs(),
             coordinate.kind.unit()
         )
-    })
+    });
+    at_limit.chain(far)
 }
+
+/// Distance between a joint at rest and where its drive holds it that nobody means, rad or m.
+const FAR: f64 = 0.5;
 
 /// Fraction of its maximum rate from which the effort of a drive is reported to fade: it has fallen by a tenth.
 const FADED: f64 = 0.92;

@@ -9,22 +9,47 @@ use crate::nalgebra::{Matrix4, Vector3};
 /// Part of the shorter beam by which a stage may be pushed in too far: its drive gives way.
 const PLAY: f64 = 0.01;
 
-/// How far each stage is in its outer beam at a pose, in the order of the stages, m: its overlap, negative if it is out of the beam, and how
-/// much further it may be pushed in, until the overlap is longer than one of the beams.
-pub(crate) fn at(crane: &dyn DynCrane, q: &[f64]) -> Vec<[f64; 2]> {
+/// Cosine of the angle between a stage and its outer beam from which it stands crosswise: pads and bending allow some hundredths of a radian.
+const CROSSWISE: f64 = 0.9;
+
+/// How a stage is in its outer beam.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Overlap {
+    /// Its overlap, m; negative if it is out of the beam, −∞ if it stands crosswise.
+    pub overlap: f64,
+    /// How much further it may be pushed in, until the overlap is longer than one of the beams, m.
+    left: f64,
+    /// By how much it may be pushed in further than that, m.
+    play: f64,
+}
+
+impl Overlap {
+    /// How much further it may be pushed in, with play, m.
+    pub fn left(&self) -> f64 {
+        self.left + self.play
+    }
+}
+
+/// Each stage at a pose, in their order.
+pub(crate) fn at(crane: &dyn DynCrane, q: &[f64]) -> Vec<Overlap> {
     let stages = crane.stages();
     if stages.is_empty() {
         return Vec::new();
     }
     let (frames, sizes) = (crane.transforms_at(q), crane.body_sizes_at());
     let bodies = &crane.description().bodies;
-    let both = |stage: &StageInfo| {
+    let of_stage = |stage: &StageInfo| {
         let own = bodies.iter().zip(&sizes).filter(|(body, _)| body.link == bodies[stage.inner].link);
         let inner: f64 = own.map(|(_, [_, length])| length).sum();
         let [outer, overlap] = overlap(stage, &sizes, &frames);
-        [overlap, (1.0 + PLAY) * outer.min(inner) - overlap]
+        // Pads hold a stage along its beam, or not at all.
+        let [own, along] =
+            [stage.inner, stage.outer[0]].map(|body| -> Vector3<f64> { frames[body].fixed_view::<3, 1>(0, 0).into() });
+        let is_crosswise = own.dot(&along) < CROSSWISE;
+        let [shorter, drawn] = [outer.min(inner), if is_crosswise { f64::NEG_INFINITY } else { overlap }];
+        Overlap { overlap: drawn, left: shorter - overlap, play: PLAY * shorter }
     };
-    stages.iter().map(both).collect()
+    stages.iter().map(of_stage).collect()
 }
 
 /// The length of the outer beam, and that less the distance along it at which the inner one begins.
@@ -39,7 +64,7 @@ fn overlap(stage: &StageInfo, sizes: &[[f64; 2]], frames: &[Matrix4<f64>]) -> [f
 /// Stages with an overlap that holds them poorly or not at all, at a pose.
 pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
     let overlaps = at(crane, q).into_iter().enumerate();
-    overlaps.flat_map(|(stage, both)| cautions(crane, stage, both.map(|left| (left, q.to_vec())), ["", ""])).collect()
+    overlaps.flat_map(|(stage, overlap)| cautions(crane, stage, [(overlap, q); 2], ["", ""])).collect()
 }
 
 /// The same over a run, with the shortest and the longest overlap of each.
@@ -49,44 +74,53 @@ pub(super) fn of_run(crane: &dyn DynCrane, table: &Table) -> Vec<String> {
         return Vec::new();
     }
     let phases = Phases::of(crane);
-    let mut least = vec![[(); 2].map(|()| (f64::INFINITY, Vec::new(), 0.0)); crane.stages().len()];
+    let mut worst: Vec<[Option<(Overlap, &[f64], f64)>; 2]> = vec![[None; 2]; crane.stages().len()];
     for (sample, q) in table.poses(description).enumerate() {
-        for (least, now) in least.iter_mut().zip(at(phases.at(table.rows[sample][0]), q)) {
-            for (least, now) in least.iter_mut().zip(now).filter(|(least, now)| *now < least.0) {
-                *least = (now, q.to_vec(), table.time_of(sample));
+        for (worst, now) in worst.iter_mut().zip(at(phases.at(table.rows[sample][0]), q)) {
+            let left: [fn(&Overlap) -> f64; 2] = [|overlap| overlap.overlap, Overlap::left];
+            for (worst, left) in worst.iter_mut().zip(left) {
+                if worst.as_ref().is_none_or(|(before, ..)| left(&now) < left(before)) {
+                    *worst = Some((now, q, table.time_of(sample)));
+                }
             }
         }
     }
-    let found = least.into_iter().enumerate().filter(|(_, [(overlap, ..), _])| overlap.is_finite());
+    let found = worst.into_iter().enumerate().filter_map(|(stage, [out, pushed])| Some((stage, [out?, pushed?])));
     found
         .flat_map(|(stage, both)| {
-            let times = both.each_ref().map(|(_, _, time)| format!(", at {time:.2} s"));
-            cautions(crane, stage, both.map(|(left, q, _)| (left, q)), times.each_ref().map(String::as_str))
+            let times = both.map(|(_, _, time)| format!(", at {time:.2} s"));
+            cautions(crane, stage, both.map(|(overlap, q, _)| (overlap, q)), times.each_ref().map(String::as_str))
         })
         .collect()
 }
 
-/// What to say of the stage of an index: of its overlap, and of how much further it may be pushed in, each with the pose and the time.
+/// What to say of the stage of an index where it is drawn out furthest and where it is pushed in furthest, each with the pose and the time.
 fn cautions(
     crane: &dyn DynCrane,
     stage: usize,
-    [(overlap, q), (left, at_pushed)]: [(f64, Vec<f64>); 2],
+    [(drawn, q), (pushed, at_pushed)]: [(Overlap, &[f64]); 2],
     [when, when_pushed]: [&str; 2],
 ) -> Vec<String> {
+    let overlap = drawn.overlap;
     let (description, height) = (crane.description(), crane.stage_height(stage));
     let stage = &crane.stages()[stage];
     let [inner, outer] = [stage.inner, stage.outer[0]].map(|body| &description.bodies[body].link);
     let name = &description.coordinates[stage.coordinate].name;
     let [x, x_pushed] = [q, at_pushed].map(|q| q[stage.coordinate]);
-    let pushed = (left < 0.0).then(|| {
+    let too_far = (pushed.left() < 0.0).then(|| {
         format!(
             "{inner} is pushed {:.3} m too far into {outer} with {name} at {x_pushed:.3} m{when_pushed}: its overlap is longer than one of the beams",
-            -left
+            -pushed.left
         )
     });
-    let in_front = if overlap <= 0.0 {
+    let in_front = if overlap == f64::NEG_INFINITY {
         Some(format!(
-            "{inner} is out of {outer}: its overlap is {overlap:.3} m with {name} at {x:.3} m{when}; nothing holds it there, and results mean nothing"
+            "{inner} stands crosswise in {outer} with {name} at {x:.3} m{when}: pads do not hold it so, and results mean nothing"
+        ))
+    } else if overlap <= 0.0 {
+        Some(format!(
+            "{inner} is out of {outer}: its overlap is {:.3} m with {name} at {x:.3} m{when}; nothing holds it there, and results mean nothing",
+            (1e3 * overlap).round() / 1e3 + 0.0
         ))
     } else {
         (overlap < height).then(|| {
@@ -96,5 +130,5 @@ fn cautions(
             )
         })
     };
-    in_front.into_iter().chain(pushed).collect()
+    in_front.into_iter().chain(too_far).collect()
 }

@@ -1,7 +1,7 @@
 //! The pose at rest with the drives at given positions, for load charts, critical loads and sensitivities: where statics finds it.
 
 use super::{Equilibrium, Settings, guess::guess_with};
-use crate::dyn_crane::DynCrane;
+use crate::{DriveInfo, dyn_crane::DynCrane};
 
 /// Newton's method alone: where it fails from a pose, the crane does not rest nearby. What is near takes three to five iterations.
 const NEWTON: Settings = Settings { tolerance: 1e-10, iterations: 8, load_steps: 0 };
@@ -65,10 +65,19 @@ impl RestSearch<'_> {
         let shortest = if furthest > 0.0 { SHORTEST * longest } else { longest };
         let at = |part: f64| from.iter().zip(self.positions).map(move |(from, to)| from + part * (to - from));
         let mut found = None;
-        // The first Newton step moves the crane with its drives, and what follows them: couplings, and a hook on a rope of fixed length.
-        let mut stride = |q: &Vec<f64>, [_, after]: [f64; 2]| {
+        let drives = &self.crane.description().drives;
+        let mut stride = |q: &Vec<f64>, [before, after]: [f64; 2]| {
+            let mut start = q.clone();
+            for (drive, (after, before)) in drives.iter().zip(at(after).zip(at(before))) {
+                start[drive.coordinate] += after - before;
+            }
             let positions: Vec<f64> = if after < 1.0 { at(after).collect() } else { self.positions.to_vec() };
-            let rest = RestSearch { positions: &positions, ..*self }.find_near(q)?;
+            let rest = RestSearch { positions: &positions, ..*self }.find_near(&start)?;
+            // A linkage has a second branch beyond its dead centre, on which its cylinder holds the joint elsewhere.
+            let leaves = |drive: &DriveInfo| (rest.q[drive.coordinate] - start[drive.coordinate]).abs() > STRIDE;
+            if drives.iter().any(leaves) {
+                return None;
+            }
             Some(found.insert(rest).q.clone())
         };
         advance(q.to_vec(), [shortest, longest], &mut stride)?;

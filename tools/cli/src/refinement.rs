@@ -174,28 +174,11 @@ fn carried(
     sections.iter().map(wrench).collect()
 }
 
-/// What a beam carries `x` m from its beginning, at the place of this number there: where it has none, on the parabola through the three places that are
-/// nearest between the same forces. Between forces, moments of uniform loads are parabolas.
+/// What a beam carries `x` m from its beginning, at the place of this number there; `None` if it has none there, as in the middle of a section: what is
+/// carried is given along the axes of an element, which turn from one to the next.
 fn wrench_at(places: &[&Place], (x, number): (f64, usize), tolerance: f64) -> Option<Wrench> {
     let here: Vec<&&Place> = places.iter().filter(|place| (place.x - x).abs() <= tolerance).collect();
-    if let Some(place) = here.get(number).or(here.last()) {
-        return Some(place.wrench);
-    }
-    let after = places.iter().position(|place| place.x > x).filter(|after| *after > 0)?;
-    let is_force = |second: &usize| places[*second].x - places[second - 1].x <= tolerance;
-    let first = (1..after).rev().find(is_force).unwrap_or(0);
-    let end = (after + 1..places.len()).find(is_force).unwrap_or(places.len());
-    let mut near = places[first..end].to_vec();
-    near.sort_by(|a, b| (a.x - x).abs().total_cmp(&(b.x - x).abs()));
-    near.truncate(3);
-    let mut sum = Wrench::ZERO;
-    for place in &near {
-        let others = near.iter().filter(|other| other.x != place.x);
-        let weight: f64 = others.map(|other| (x - other.x) / (place.x - other.x)).product();
-        sum.force += weight * place.wrench.force;
-        sum.moment += weight * place.wrench.moment;
-    }
-    Some(sum)
+    here.get(number).or(here.last()).map(|place| place.wrench)
 }
 
 /// By how much each point of interest moves with twice the sections, m; `None` for a crane without points or without beams that bend, or without a stable

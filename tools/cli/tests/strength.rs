@@ -321,9 +321,11 @@ connectors:
         (moment * 0.25 / second).hypot(3.0f64.sqrt() * force * first / (second * 0.04))
     };
     let rows = report["stresses"].as_array().expect("a table");
-    for (row, x) in rows.iter().zip([0.0, 1.0, 3.0]) {
-        assert_eq!(row["x"], x);
-        assert_close("change", &row["change"], equivalent(4.0, x) / equivalent(2.0, x) - 1.0, 1e-3);
+    assert_eq!(rows[0]["x"], 0.0);
+    assert_close("change", &rows[0]["change"], equivalent(4.0, 0.0) / equivalent(2.0, 0.0) - 1.0, 1e-3);
+    // The middles of sections are no places of the other mesh.
+    for (row, x) in rows[1..].iter().zip([1.0, 3.0]) {
+        assert!(row["x"] == x && row["change"].is_null(), "{row}");
     }
     assert!(rows.last().expect("the tip")["change"].is_null(), "nothing is carried beyond the strut");
     // The maximum is at the clamped end with both.

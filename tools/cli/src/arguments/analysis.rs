@@ -177,6 +177,14 @@ pub enum Considered {
     Stops,
     /// Maximum efforts of drives in the spec
     MaxEffort,
+    /// Friction under all feet
+    Sliding,
+    /// Pressure on the ground
+    Ground,
+    /// Tension of ropes
+    Tension,
+    /// Overlap of telescope stages
+    Overlap,
 }
 
 impl Considered {

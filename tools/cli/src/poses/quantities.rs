@@ -1,11 +1,13 @@
 //! Quantities of a crane at rest in one pose: a row of the table.
 
+use std::collections::BTreeSet;
+
 use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
 use crane_model::{
     CoordinateKind, Description,
     dyn_crane::{DynCrane, DynModel},
-    envelope::{Axes, Condition, SlewAxis, Varied, only_mass, range_of_loads},
+    envelope::{Axes, Condition, Limits, SlewAxis, Varied, only_mass, range_of_loads},
     modes::{Vibration, vibrations},
     nalgebra::Vector3,
     results::{KeyFigure, cylinders_at},
@@ -57,6 +59,8 @@ pub struct Row {
     values: Vec<Option<f64>>,
     status: String,
     stable: bool,
+    /// Limits of the crane's parts that it is beyond: their kinds and locations.
+    exceeded: BTreeSet<(&'static str, String)>,
 }
 
 impl Row {
@@ -126,9 +130,19 @@ impl<'a> Subject<'a> {
         let (stable, status) = (equilibrium.is_stable(), equilibrium.status.name().to_owned());
         let settings: Vec<f64> = settings.iter().map(|(_, value)| *value).collect();
         if !stable {
-            return Ok(Row { settings, values: vec![None; self.columns().len()], status, stable });
+            return Ok(Row {
+                settings,
+                values: vec![None; self.columns().len()],
+                status,
+                stable,
+                exceeded: BTreeSet::new(),
+            });
         }
         let q = equilibrium.q;
+        let positions: Vec<f64> = crane.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
+        let limits = Limits { tipping: None, utilisation: None, ..Limits::usual(crane.description()) };
+        let beyond = Condition::at(crane, q.clone(), &positions).exceeded(crane, &limits);
+        let exceeded = beyond.iter().map(|margin| (margin.limit.kind(), margin.limit.location(crane))).collect();
         let position = self.position_of_point(crane, &q);
         let mut values = vec![Some(self.slew.radius(&position)), Some(position.z)];
         match self.wanted {
@@ -136,7 +150,7 @@ impl<'a> Subject<'a> {
             Quantities::Strength => values.extend(of_strength(crane, q)),
             Quantities::Modes(count) => values.extend(of_modes(crane, &q, count)?),
         }
-        Ok(Row { settings, values, status, stable })
+        Ok(Row { settings, values, status, stable, exceeded })
     }
 
     /// Where the point is that is shown.
@@ -193,6 +207,12 @@ impl<'a> Subject<'a> {
         cautions.extend(tips.map(|count| format!("{} the crane tips over", of(count))));
         let lifts = over("smallest force of a foot", |value| value <= 0.0);
         cautions.extend(lifts.map(|count| format!("{} a foot lifts or pulls", of(count))));
+        let kinds: BTreeSet<_> = rows.iter().flat_map(|row| &row.exceeded).collect();
+        cautions.extend(kinds.into_iter().map(|exceeded| {
+            let count = rows.iter().filter(|row| row.exceeded.contains(exceeded)).count();
+            let (kind, location) = exceeded;
+            format!("{} the limit of {location} is exceeded: {kind}", of(count))
+        }));
         cautions
     }
 
