@@ -134,6 +134,7 @@ fn the_gallery_shows_every_shipped_crane() {
              {mass:.0} kg\n\n![{title}: frames, joints and beams, with a table of coordinates](../images/cranes/{name}.svg)\n"
         );
     }
+    page += "\nNext: [The spec language](../SPEC.md) of these cranes, or back to [First crane in ten minutes](first-crane.md).\n";
     let path = root().join("docs/manual/gallery.md");
     if update {
         fs::write(&path, &page).expect("a page");

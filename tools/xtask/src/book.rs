@@ -1,4 +1,4 @@
-//! The manual as a book: docs/SUMMARY.md lists every page, and every link leads to an existing page and heading.
+//! The manual as a book: docs/SUMMARY.md lists every page, every link leads to an existing page and heading, and every chapter ends with the next one.
 //!
 //! [`check_manual`] reads the Markdown, including pages outside of the book, in a second. [`build_site`] builds the site with mdBook and follows the
 //! links of its pages.
@@ -10,10 +10,13 @@ use crate::{instrument, report, step, workspace};
 
 const FOLDER: &str = "docs";
 const SUMMARY: &str = "docs/SUMMARY.md";
+/// Chapters, which end with a line that leads on. Notebooks, which a program writes, do not.
+const CHAPTERS: &str = "docs/manual/";
+const NOTEBOOKS: &str = "docs/manual/notebooks/";
 /// Pages outside of the book.
 const OUTSIDE: [&str; 3] = ["ARCHITECTURE.md", "CONTRIBUTING.md", "README.md"];
 
-/// Every page that is not listed exactly once, and every link that leads nowhere.
+/// Every page that is not listed exactly once, every link that leads nowhere, and every chapter that ends without the next one.
 pub fn check_manual() -> Result<(), String> {
     let mut pages = BTreeMap::new();
     let inside = workspace::find_files(FOLDER, "md")?;
@@ -22,6 +25,7 @@ pub fn check_manual() -> Result<(), String> {
         pages.insert(path, text);
     }
     let mut wrong = unlisted_pages(&pages);
+    wrong.extend(dead_ends(&pages));
     for (path, text) in &pages {
         for (line, link) in links_of(text) {
             if let Some(problem) = problem_of_link(path, link, &pages) {
@@ -61,6 +65,16 @@ fn unlisted_pages(pages: &BTreeMap<String, String>) -> Vec<String> {
         .map(|page| (page, count(page)))
         .filter(|(_, count)| *count != 1)
         .map(|(page, count)| format!("{SUMMARY}: lists {page} {count} times instead of once"))
+        .collect()
+}
+
+/// Chapters whose last line does not lead on.
+fn dead_ends(pages: &BTreeMap<String, String>) -> Vec<String> {
+    let chapters = pages.iter().filter(|(page, _)| page.starts_with(CHAPTERS) && !page.starts_with(NOTEBOOKS));
+    let leads_on = |line: &str| line.starts_with("Next: [") && line.contains("](") && line.ends_with('.');
+    chapters
+        .filter(|(_, text)| !text.lines().next_back().is_some_and(leads_on))
+        .map(|(page, text)| format!("{page}:{}: end with a line `Next: [page](file.md), why.`", text.lines().count()))
         .collect()
 }
 
@@ -150,6 +164,20 @@ mod tests {
         let expected = ["a-page", "t3i-loops-why"].map(str::to_owned);
         assert_eq!(anchors_of(page), BTreeSet::from(expected));
         assert_eq!(resolve_link("docs/manual/a.md", "../SPEC.md"), "docs/SPEC.md");
+    }
+
+    #[test]
+    fn chapters_that_do_not_lead_on_are_named() {
+        let pages = [
+            ("docs/manual/a.md", "# A\n\nNext: [B](b.md), more of it.\n"),
+            ("docs/manual/b.md", "# B\n\nNext: [A](a.md), and\nmore.\n"),
+            ("docs/manual/c.md", "# C\n"),
+            ("docs/manual/notebooks/d.md", "# D\n"),
+            ("docs/e.md", "# E\n"),
+        ];
+        let pages: BTreeMap<String, String> = pages.map(|(path, text)| (path.to_owned(), text.to_owned())).into();
+        let found = dead_ends(&pages);
+        assert!(found.len() == 2 && found[0].starts_with("docs/manual/b.md:4"), "{found:?}");
     }
 
     #[test]
