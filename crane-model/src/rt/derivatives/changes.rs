@@ -1,6 +1,6 @@
 //! What changes of coordinates and of their rates do to accelerations.
 //!
-//! While coordinates hold, a change of `q_j` accelerates everything beyond by Ω̈_j and requires a wrench there; one of `q̇_j` by 2 Ω̇_j. What is beyond
+//! While coordinates hold, a change of `q_j` accelerates everything beyond by `Ω̈_j` and requires a wrench there; one of `q̇_j` by `2 Ω̇_j`. What is beyond
 //! gives way: by its articulated instead of its composite inertia, and to the rates `2 ω̇_j` or `2 ω_j`, to which each coordinate k beyond has one answer for
 //! all j, the solution of an inward sweep for `z_k`. So a column of `−A⁻¹ ∂r` needs no column of ∂r: a wrench enters the inward sweep at j,
 //! and the acceleration enters the outward sweep there.

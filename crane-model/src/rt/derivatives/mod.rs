@@ -200,6 +200,7 @@ impl<T: Copy + Constant> Matrix<'_, T> {
 
 /// Copies as many numbers as both have, eight at a time.
 #[inline(always)]
+#[expect(clippy::manual_memcpy, reason = "short: a call would take longer than the loop")]
 fn copy<T: Copy>(from: &[T], to: &mut [T]) {
     let count = from.len().min(to.len());
     let (Some(from), Some(to)) = (from.get(..count), to.get_mut(..count)) else { return };

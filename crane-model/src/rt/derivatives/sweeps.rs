@@ -284,6 +284,7 @@ fn clear<C: Columns>(state: &mut Lanes<C>, units: usize) {
 }
 
 #[inline(always)]
+#[expect(clippy::manual_memcpy, reason = "short: a call would take longer than the loop")]
 fn copy<C: Columns>(from: &Lanes<C>, to: &mut Lanes<C>, units: usize) {
     for (from, to) in from.iter().zip(to) {
         for k in 0..unit::<C>() * units.min(LANES / unit::<C>()) {
