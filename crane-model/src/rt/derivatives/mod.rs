@@ -213,7 +213,7 @@ fn copy<T: Copy>(from: &[T], to: &mut [T]) {
     }
 }
 
-/// Makes units of lanes of some rows zero, but for columns of the unit matrix from a lane on.
+/// Makes units of lanes of some rows zero, except for columns of the unit matrix from a lane on.
 #[inline(always)]
 fn set_ones<C: Columns>(own: &Range<usize>, Piece { columns, units }: &Piece, first: usize, swept: &mut [Row<C>]) {
     for i in own.start..own.end {
