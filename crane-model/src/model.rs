@@ -11,7 +11,7 @@ use nalgebra::{Cholesky, Const, DefaultAllocator, Dim, OMatrix, SMatrix, SVector
 use crate::{
     Description, LoopJointInfo, ParameterError, StageInfo, fill_links,
     methods::{Entry, sized_argument, sized_entry, sized_method, sized_methods, sized_result},
-    rt::derivatives::{self, Columns, Link, Sixteen, Workspace},
+    rt::derivatives::{self, Changes, Columns, Joint, Link, Sixteen, States, Workspace},
     rt::lanes::f64x8,
 };
 
@@ -281,15 +281,19 @@ fn with_workspace<const N: usize>(
     let mut links = [Link::default(); N];
     fill_links(crane.description(), crane.parents(), &mut links);
     let zero = <Sixteen as Columns>::splat(0.0);
-    let (mut joints, mut rows, mut by_q, mut by_v) = ([([0.0; 16], false); N], [[0.0; 16]; N], [zero; N], [zero; N]);
-    let work = |states: &mut [_], paths: &mut [_]| {
+    let (mut joints, mut changes) = ([Joint::zero(); N], [Changes::zero(); N]);
+    let (mut rows, mut by_q, mut by_v, mut swept) = ([[0.0; 16]; N], [zero; N], [zero; N], [[0.0; _]; N]);
+    let mut now = [[0.0; _]; _];
+    let work = |reached: &mut [_], paths: &mut [_]| {
         let columns = [by_q.as_mut_slice(), by_v.as_mut_slice()];
-        compute(&links, Workspace { joints: &mut joints, rows: &mut rows, columns, states, paths });
+        let (joints, rows, changes, swept) = (&mut joints, &mut rows, &mut changes, &mut swept);
+        let states = States { now: &mut now, reached };
+        compute(&links, Workspace { joints, rows, columns, changes, swept, states, paths });
     };
     if crane.parents().is_empty() {
         work(&mut [], &mut []);
     } else {
-        work(&mut [[[zero; 3]; 2]; N], [[0.0; N]; N].as_flattened_mut());
+        work(&mut [[[0.0; _]; _]; N], [[0.0; N]; N].as_flattened_mut());
     }
 }
 

@@ -111,6 +111,11 @@ pub fn columns<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Columns<'g> {
             }
         }
     }
+    for (to, offset) in offsets {
+        if let Some(first) = to {
+            columns.offsets[first] = offset;
+        }
+    }
     columns
 }
 

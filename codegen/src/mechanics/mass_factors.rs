@@ -6,7 +6,7 @@
 //!   `κ_j`, `λ_j` are its moments and forces for a unit rate of `q̇_j`, divided by `D_j`.
 //!
 //! Output
-//! : n, λ, κ, the offset to the point of j from that of the coordinate before it, and 1/D, with which `A⁻¹ = Lᵀ D⁻¹ L`. Inward from the tips,
+//! : n, λ, κ, the offset to the point of j from that of the coordinate before it, or from the world's origin, and 1/D, with which `A⁻¹ = Lᵀ D⁻¹ L`. Inward from the tips,
 //!   with wrench (m, f) of everything beyond, `g_j = r_j − n_j · m` (of a translation `n_j · f`), then `m ← m + κ_j g_j`, `f ← f + λ_j g_j`: this is
 //!   `g = L r`. Outward, `x_j = g_j/D_j − κ_j · α − λ_j · a`, then `α ← α + n_j x_j` (of a translation a): `x = Lᵀ D⁻¹ g`.
 //!

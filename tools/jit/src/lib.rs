@@ -11,7 +11,9 @@
 //! | roll | `repeats`, `roll` | what repeats with operands that correspond is a loop |
 //! | registers | `allocate`, `places` | operations on registers and places in a frame |
 //! | encode | `encode` | machine code |
-//! | map | `memory` | executable memory, and calls of it; all unsafe code of this crate |
+//! | map | `memory` | executable memory, and calls of it |
+//!
+//! `vectors` calls code that the compiler has translated for several sets of instructions. Both contain all unsafe code of this crate.
 //!
 //! ```
 //! use crane_jit::{Code, Line, Rounding, Step, Width};
@@ -44,7 +46,9 @@ mod operations;
 mod places;
 mod repeats;
 mod roll;
+mod vectors;
 
 pub use code::Code;
 pub use line::{Line, Rounding, Step, Value, Width, value};
 pub use places::Pause;
+pub use vectors::{Work, with_vectors};

@@ -1,4 +1,4 @@
-//! Code in memory, and calls of it: the only unsafe code of this crate.
+//! Code in memory, and calls of it.
 //!
 //! Why a call is sound: `Code::of` asks for code only on processors that have its instructions. `encode` translates
 //! [`Instruction`]s one by one, gives back the registers that a call must keep, and returns; the only memory that the code reads or

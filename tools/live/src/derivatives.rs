@@ -1,20 +1,92 @@
 //! Derivatives of the dynamics from their factors.
 
-use crane_model::rt::derivatives::{Columns, Constant, Link, Workspace, has_branches};
+#![expect(clippy::inline_always, reason = "inlined where wider vectors are known, loops use them")]
 
-/// Calls `compute` with a workspace for these coordinates.
-pub fn with_workspace<C: Columns>(links: &[Link], compute: impl FnOnce(&[Link], Workspace<'_, C>)) {
-    let (n, nought) = (links.len(), C::Number::constant(0.0));
-    let zero = C::splat(nought);
-    let of_branches = if has_branches(links) { n } else { 0 };
-    let workspace = Workspace {
-        joints: &mut vec![([nought; 16], false); n],
-        rows: &mut vec![[nought; 16]; n],
-        columns: [&mut vec![zero; n], &mut vec![zero; n]],
-        states: &mut vec![[[zero; 3]; 2]; of_branches],
-        paths: &mut vec![nought; n * of_branches],
-    };
-    compute(links, workspace);
+use crane_jit::{Work, with_vectors};
+use crane_model::rt::derivatives::{
+    self, Changes, Columns, Constant, Joint, Lanes, Link, Row, States, Workspace, has_branches,
+};
+
+/// Storage for derivatives of the dynamics of a crane.
+pub struct Storage<C: Columns> {
+    links: Vec<Link>,
+    joints: Vec<Joint<C>>,
+    rows: Vec<[C::Number; 16]>,
+    columns: [Vec<C::Block>; 2],
+    changes: Vec<Changes<C>>,
+    swept: Vec<Row<C>>,
+    now: Box<Lanes<C>>,
+    reached: Vec<Lanes<C>>,
+    paths: Vec<C::Number>,
+}
+
+impl<C: Columns> Storage<C> {
+    /// For these coordinates.
+    pub fn new(links: Vec<Link>) -> Self {
+        let (n, zero) = (links.len(), C::Number::constant(0.0));
+        let of_branches = if has_branches(&links) { n } else { 0 };
+        Self {
+            links,
+            joints: vec![Joint::zero(); n],
+            rows: vec![[zero; _]; n],
+            columns: [0, 1].map(|_| vec![C::splat(zero); n]),
+            changes: vec![Changes::zero(); n],
+            swept: vec![[zero; _]; n],
+            now: Box::new([[zero; _]; _]),
+            reached: vec![[[zero; _]; _]; of_branches],
+            paths: vec![zero; n * of_branches],
+        }
+    }
+
+    fn workspace(&mut self) -> (&[Link], Workspace<'_, C>) {
+        let Self { links, joints, rows, columns: [by_q, by_v], changes, swept, now, reached, paths } = self;
+        let states = States { now, reached };
+        (links, Workspace { joints, rows, columns: [by_q, by_v], changes, swept, states, paths })
+    }
+
+    /// [`derivatives::residual_derivatives`]
+    pub fn residual_derivatives(&mut self, factors: &[C::Number], derivatives: &mut [C::Number]) {
+        let (links, workspace) = self.workspace();
+        derivatives::residual_derivatives(links, factors, workspace, derivatives);
+    }
+
+    /// [`derivatives::inverse_mass_matrix`]
+    pub fn inverse_mass_matrix(&mut self, factors: &[C::Number], inverse: &mut [C::Number]) {
+        with_vectors(InverseMassMatrix { storage: self, factors, inverse });
+    }
+
+    /// [`derivatives::forward_dynamics_derivatives`]
+    pub fn forward_dynamics_derivatives(&mut self, factors: [&[C::Number]; 2], derivatives: &mut [C::Number]) {
+        with_vectors(ForwardDynamicsDerivatives { storage: self, factors, derivatives });
+    }
+}
+
+struct InverseMassMatrix<'a, C: Columns> {
+    storage: &'a mut Storage<C>,
+    factors: &'a [C::Number],
+    inverse: &'a mut [C::Number],
+}
+
+impl<C: Columns> Work for InverseMassMatrix<'_, C> {
+    #[inline(always)]
+    fn run(self) {
+        let (links, workspace) = self.storage.workspace();
+        derivatives::inverse_mass_matrix(links, self.factors, workspace, self.inverse);
+    }
+}
+
+struct ForwardDynamicsDerivatives<'a, C: Columns> {
+    storage: &'a mut Storage<C>,
+    factors: [&'a [C::Number]; 2],
+    derivatives: &'a mut [C::Number],
+}
+
+impl<C: Columns> Work for ForwardDynamicsDerivatives<'_, C> {
+    #[inline(always)]
+    fn run(self) {
+        let (links, workspace) = self.storage.workspace();
+        derivatives::forward_dynamics_derivatives(links, self.factors, workspace, self.derivatives);
+    }
 }
 
 #[cfg(test)]

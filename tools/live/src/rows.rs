@@ -8,10 +8,10 @@ use std::sync::Arc;
 
 use crane_codegen::program::{Argument, Count, Extent, FunctionId, Shape};
 use crane_model::dyn_crane::DynModel;
-use crane_model::rt::derivatives::{self, Link};
+use crane_model::rt::derivatives::{Link, Sixteen};
 
 use crate::LiveCrane;
-use crate::derivatives::with_workspace;
+use crate::derivatives::Storage;
 use crate::expansion::mass_matrix;
 use crate::library::Library;
 use crate::machine::{Arguments, Batch, Machine, Number};
@@ -33,8 +33,7 @@ pub struct Rows<'a> {
 }
 
 /// Workspace to compute a function of many rows, as many at a time as `T` has lanes. Matrices are written row by row.
-#[derive(Debug)]
-pub struct Evaluation<T> {
+pub struct Evaluation<T: Number> {
     library: Arc<Library>,
     function: FunctionId,
     width: usize,
@@ -46,8 +45,11 @@ pub struct Evaluation<T> {
     lanes: Lanes<T>,
     /// The coordinates of the drives.
     driven: Vec<usize>,
-    /// What the coordinates are attached to.
-    links: Vec<Link>,
+    /// For derivatives of the dynamics: of these numbers, and of each state.
+    storage: Storage<T::Columns>,
+    of_states: OfStates,
+    /// The factors of A⁻¹ and of the derivatives of the residual.
+    factors: [Vec<T>; 2],
     /// The crane's inputs.
     inputs: Vec<T>,
     /// The results of the states.
@@ -94,6 +96,9 @@ impl<T: Number> Evaluation<T> {
             id => [Some(id), None, None, None],
         };
         let width = crane.shape(function).iter().product();
+        let multiplies =
+            matches!(function, F::DynamicResidualDerivatives | F::InverseMassMatrix | F::ForwardDynamicsDerivatives);
+        let links = if multiplies { crane.links() } else { vec![] };
         Self {
             library: crane.library(),
             function,
@@ -101,7 +106,9 @@ impl<T: Number> Evaluation<T> {
             sizes: [crane.size(), crane.parameters().len()],
             calls: ids.map(|id| Call::new(crane, id?)),
             lanes: Lanes::new(),
-            links: crane.links(),
+            storage: Storage::new(links.clone()),
+            of_states: OfStates::new(links),
+            factors: [vec![], vec![]],
             driven: crane.description().drives.iter().map(|drive| drive.coordinate).collect(),
             inputs: crane.inputs().numbers().map(T::splat).collect(),
             results: vec![T::splat(0.0); width],
@@ -139,35 +146,47 @@ impl<T: Number> Evaluation<T> {
         &self.results
     }
 
-    /// Computes the results of the states taken.
-    fn evaluate(&mut self) {
-        let Self { calls, lanes, driven, links, inputs, results, library, absent, .. } = self;
+    /// Computes the factors of A⁻¹ and of its products, with ∂f in their place among the results, if the function is of these.
+    fn take_factors(&mut self) -> bool {
+        let Self { calls, lanes, inputs, results, library, factors: [of_mass, of_residual], .. } = self;
         let n = lanes.q.len();
         match (self.function, calls) {
-            (FunctionId::DynamicResidualDerivatives, [Some(slopes), Some(residual), ..]) => {
-                slopes.run(library, lanes, inputs, results);
-                let factors = residual.factors(library, lanes, inputs);
-                with_workspace::<T::Columns>(links, |links, workspace| {
-                    derivatives::residual_derivatives(links, &factors, workspace, results);
-                });
-            }
-            (FunctionId::InverseMassMatrix, [Some(mass), ..]) => {
-                let factors = mass.factors(library, lanes, inputs);
-                with_workspace::<T::Columns>(links, |links, workspace| {
-                    derivatives::inverse_mass_matrix(links, &factors, workspace, results);
-                });
-            }
+            (FunctionId::InverseMassMatrix, [Some(mass), ..]) => mass.write_factors(library, lanes, inputs, of_mass),
             (
                 FunctionId::ForwardDynamicsDerivatives,
                 [Some(accelerations), Some(slopes), Some(residual), Some(mass)],
             ) => {
-                lanes.a = accelerations.factors(library, lanes, inputs);
+                let mut a = std::mem::take(&mut lanes.a);
+                accelerations.write_factors(library, lanes, inputs, &mut a);
+                lanes.a = a;
                 slopes.run(library, lanes, inputs, &mut results[..2 * n * n]);
-                let [of_residual, of_mass] = [residual, mass].map(|call| call.factors(library, lanes, inputs));
-                with_workspace::<T::Columns>(links, |links, workspace| {
-                    let factors = [&*of_residual, &*of_mass];
-                    derivatives::forward_dynamics_derivatives(links, factors, workspace, results);
-                });
+                residual.write_factors(library, lanes, inputs, of_residual);
+                mass.write_factors(library, lanes, inputs, of_mass);
+            }
+            _ => return false,
+        }
+        true
+    }
+
+    /// Computes the results of the states taken.
+    fn evaluate(&mut self) {
+        if self.take_factors() {
+            let [of_mass, of_residual] = &self.factors;
+            if self.function == FunctionId::InverseMassMatrix {
+                self.storage.inverse_mass_matrix(of_mass, &mut self.results);
+            } else {
+                self.storage.forward_dynamics_derivatives([of_residual, of_mass], &mut self.results);
+            }
+            return;
+        }
+        let Self { calls, lanes, driven, storage, inputs, results, library, absent, factors: [_, of_residual], .. } =
+            self;
+        let n = lanes.q.len();
+        match (self.function, calls) {
+            (FunctionId::DynamicResidualDerivatives, [Some(slopes), Some(residual), ..]) => {
+                slopes.run(library, lanes, inputs, results);
+                residual.write_factors(library, lanes, inputs, of_residual);
+                storage.residual_derivatives(of_residual, results);
             }
             (
                 FunctionId::DynamicResidualDerivatives
@@ -190,6 +209,12 @@ impl<T: Number> Evaluation<T> {
     }
 }
 
+impl<T: Number> std::fmt::Debug for Evaluation<T> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Evaluation").field("function", &self.function).finish_non_exhaustive()
+    }
+}
+
 impl<T: Batch> Evaluation<T> {
     /// Computes some rows into `out`, row after row.
     pub fn run(&mut self, rows: &Rows<'_>, range: Range<usize>, out: &mut [f64]) {
@@ -203,14 +228,68 @@ impl<T: Batch> Evaluation<T> {
                     call.set_parameters(&self.library, &self.lanes.parameters);
                 }
             }
-            self.evaluate();
-            for (lane, row) in several.chunks_mut(self.width.max(1)).enumerate().take(count) {
-                for (out, result) in row.iter_mut().zip(&self.results) {
-                    *out = result.lane(lane);
-                }
+            if self.lanes.q.len() >= MANY && self.take_factors() {
+                self.of_states.multiply(&self.factors, &self.results, self.width, several);
+            } else {
+                self.evaluate();
+                spread(&self.results, self.width, several);
             }
             first += count;
         }
+    }
+}
+
+/// From as many coordinates on, matrices of one state after the other take less time than those of eight states.
+const MANY: usize = 16;
+
+/// Storage for several states, one after the other: matrices of one fit into the processor's caches.
+struct OfStates {
+    storage: Storage<Sixteen>,
+    factors: [Vec<f64>; 2],
+}
+
+impl OfStates {
+    fn new(links: Vec<Link>) -> Self {
+        Self { storage: Storage::new(links), factors: [vec![], vec![]] }
+    }
+
+    /// A⁻¹, or its products and itself, of some states, `width` numbers each.
+    fn multiply<T: Batch>(&mut self, factors: &[Vec<T>; 2], forces: &[T], width: usize, out: &mut [f64]) {
+        for (own, factors) in self.factors.iter_mut().zip(factors) {
+            own.resize(T::LANES * factors.len(), 0.0);
+            spread(factors, factors.len(), own);
+        }
+        let [of_mass, of_residual] = &self.factors;
+        let [mass, residual] = [0, 1].map(|which| factors[which].len());
+        if residual > 0 {
+            spread(&forces[..2 * width / 3], width, out);
+        }
+        for (lane, out) in out.chunks_mut(width.max(1)).enumerate() {
+            let of_mass = &of_mass[lane * mass..(lane + 1) * mass];
+            if residual == 0 {
+                self.storage.inverse_mass_matrix(of_mass, out);
+            } else {
+                let of_residual = &of_residual[lane * residual..(lane + 1) * residual];
+                self.storage.forward_dynamics_derivatives([of_residual, of_mass], out);
+            }
+        }
+    }
+}
+
+/// Writes the numbers of each state one after the other, those of states `width` apart.
+fn spread<T: Batch>(numbers: &[T], width: usize, out: &mut [f64]) {
+    let (eights, rest) = numbers.as_chunks::<8>();
+    for (first, eight) in (0..).step_by(8).zip(eights) {
+        for (lane, row) in out.chunks_mut(width.max(1)).enumerate() {
+            if let Some(own) = row[first..].first_chunk_mut::<8>() {
+                for k in 0..8 {
+                    own[k] = eight[k].lane(lane);
+                }
+            }
+        }
+    }
+    for (place, number) in (8 * eights.len()..).zip(rest) {
+        out.chunks_mut(width.max(1)).enumerate().for_each(|(lane, row)| row[place] = number.lane(lane));
     }
 }
 
@@ -253,11 +332,10 @@ impl<T: Number> Call<T> {
         }
     }
 
-    /// All numbers of a result in the function's order.
-    fn factors(&mut self, library: &Library, lanes: &Lanes<T>, inputs: &[T]) -> Vec<T> {
-        let mut factors = vec![T::splat(0.0); self.factors.len()];
-        self.run(library, lanes, inputs, &mut factors);
-        factors
+    /// Writes all numbers of a result in the function's order.
+    fn write_factors(&mut self, library: &Library, lanes: &Lanes<T>, inputs: &[T], factors: &mut Vec<T>) {
+        factors.resize(self.factors.len(), T::splat(0.0));
+        self.run(library, lanes, inputs, factors);
     }
 
     fn run(&mut self, library: &Library, lanes: &Lanes<T>, inputs: &[T], out: &mut [T]) {

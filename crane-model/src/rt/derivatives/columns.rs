@@ -7,9 +7,14 @@ use crate::rt::fused::{Fused, fma};
 use crate::rt::lanes::f64x8;
 
 /// Columns of a matrix that are computed together.
-pub trait Columns {
+pub trait Columns: Copy {
     /// An entry of the matrix.
-    type Number: Copy + Fused + Constant + Neg<Output = Self::Number>;
+    type Number: Copy
+        + Fused
+        + Constant
+        + Neg<Output = Self::Number>
+        + Add<Output = Self::Number>
+        + Mul<Output = Self::Number>;
     /// Entries of neighbouring columns.
     type Block: Copy + Fused + Neg<Output = Self::Block> + Add<Output = Self::Block> + Mul<Output = Self::Block>;
     /// How many columns.
@@ -18,8 +23,6 @@ pub trait Columns {
     fn splat(number: Self::Number) -> Self::Block;
     /// The first numbers of a list; zero where it ends.
     fn load(row: &[Self::Number]) -> Self::Block;
-    /// 1 in one column, 0 in the others.
-    fn unit(column: usize) -> Self::Block;
     /// Writes as many numbers as the row has.
     fn store(block: Self::Block, row: &mut [Self::Number]);
     /// Columns of `before` up to `first`, and of `from` from there on.
@@ -84,14 +87,6 @@ impl Columns for Sixteen {
         let mut numbers = [[0.0; 8]; 2];
         numbers.as_flattened_mut().iter_mut().zip(row).for_each(|(number, entry)| *number = *entry);
         Eights([f64x8::new(numbers[0]), f64x8::new(numbers[1])])
-    }
-
-    #[inline]
-    #[expect(clippy::cast_precision_loss, reason = "indices of columns are small")]
-    fn unit(column: usize) -> Eights {
-        let column = f64x8::splat(column as f64);
-        let one = |lanes: f64x8| lanes.simd_eq(column) & f64x8::ONE;
-        Eights([one(LANES), one(LANES + f64x8::splat(8.0))])
     }
 
     #[inline]
@@ -168,12 +163,10 @@ impl<T: Copy + Fused + Constant + Neg<Output = T> + Add<Output = T> + Mul<Output
 
     #[inline]
     fn load(row: &[T]) -> T {
-        row.first().copied().unwrap_or(T::constant(0.0))
-    }
-
-    #[inline]
-    fn unit(column: usize) -> T {
-        T::constant(if column == 0 { 1.0 } else { 0.0 })
+        match row {
+            [first, ..] => *first,
+            [] => T::constant(0.0),
+        }
     }
 
     #[inline]

@@ -2,10 +2,10 @@
 
 #![expect(clippy::inline_always, reason = "results of more numbers than registers would go through memory")]
 
-use super::columns::Columns;
+use super::changes::Changes;
+use super::columns::{Columns, Constant};
 use super::vectors::{Six, Three, both, commutator_add, cross_add, dot, dot_add, nothing, one, plus, scaled_add, zero};
-use super::{Link, Own, has_branches, three};
-use crate::rt::fused::fma;
+use super::{Link, Own, three};
 
 /// First rows of the vectors of [`residual_factors`](crate::MotionDerivatives::residual_factors).
 mod rows {
@@ -33,7 +33,7 @@ mod rows {
 }
 
 /// Places of the numbers of a row.
-mod own {
+pub(super) mod own {
     pub const OMEGA: usize = 0;
     pub const UPSILON: usize = 3;
     pub const LINEAR_MOMENTUM: usize = 6;
@@ -88,7 +88,7 @@ struct Vectors<C: Columns> {
 pub(super) struct Slopes<'a, C: Columns> {
     links: &'a [Link],
     factors: &'a [C::Number],
-    rows: &'a [Own<C>],
+    pub(super) rows: &'a [Own<C>],
     paths: &'a [C::Number],
 }
 
@@ -97,11 +97,8 @@ impl<'a, C: Columns> Slopes<'a, C> {
         links: &'a [Link],
         factors: &'a [C::Number],
         rows: &'a mut [Own<C>],
-        paths: &'a mut [C::Number],
+        paths: &'a [C::Number],
     ) -> Self {
-        if has_branches(links) {
-            mark_paths::<C>(links, paths);
-        }
         let mut slopes = Slopes { links, factors, rows: &[], paths };
         for first in (0..links.len()).step_by(C::WIDTH) {
             let (beyond, [omega, upsilon]) = (slopes.beyond(first), slopes.generators(first));
@@ -114,14 +111,12 @@ impl<'a, C: Columns> Slopes<'a, C> {
             );
             let half = cross_add::<C>(both::<C>(beyond.momentum), upsilon, turned);
             let mut scratch = [zero::<C>(); 16];
-            for (vector, place) in [omega, upsilon, p, l, half].into_iter().zip((0..).step_by(3)) {
-                for (k, block) in vector.into_iter().enumerate() {
-                    C::store(block, &mut scratch);
-                    for (own, number) in rows.iter_mut().skip(first).take(C::WIDTH).zip(&scratch) {
-                        if let Some(entry) = own.get_mut(place + k) {
-                            *entry = *number;
-                        }
-                    }
+            let vectors = [omega, upsilon, p, l, half];
+            for place in 0..15 {
+                C::store(vectors[place / 3][place % 3], &mut scratch);
+                for column in 0..C::WIDTH {
+                    let Some(own) = rows.get_mut(first + column) else { break };
+                    own[place] = scratch[column];
                 }
             }
         }
@@ -219,20 +214,37 @@ impl<'a, C: Columns> Slopes<'a, C> {
             *of_q = -products_q + C::load(force_q.get(i * n + first..).unwrap_or_default());
             *of_v = -products_v + C::load(force_v.get(i * n + first..).unwrap_or_default());
         }
-        self.add_diagonals(first, by_q);
     }
 
-    /// What a rotation vector, whose axes depend on its coordinates, adds to ∂r/∂q.
-    fn add_diagonals(&self, first: usize, by_q: &mut [C::Block]) {
+    /// Subtracts from ∂f/∂q what a rotation vector, whose axes depend on its coordinates, adds to ∂r/∂q.
+    #[inline]
+    pub(super) fn subtract_diagonals(&self, of_q: &mut [C::Number]) {
         let n = self.links.len();
         let diagonals = self.factors.get(rows::DIAGONALS * n..).unwrap_or_default();
-        for (diagonal, row) in diagonals.chunks_exact(n.max(1)).enumerate() {
-            // The rows in which this diagonal crosses the columns.
-            let begin = (first + 2).saturating_sub(diagonal);
-            for (i, (added, column)) in row.iter().zip(&mut *by_q).enumerate().skip(begin).take(C::WIDTH) {
-                let lane = (i + diagonal).checked_sub(first + 2).filter(|lane| *lane < C::WIDTH);
-                if let Some(lane) = lane {
-                    *column = fma(C::splat(-*added), C::unit(lane), *column);
+        for (diagonal, entries) in diagonals.chunks_exact(n.max(1)).enumerate() {
+            for (i, added) in entries.iter().enumerate().filter(|(_, added)| !added.is_zero()) {
+                let place = (i * n + i + diagonal).checked_sub(2);
+                if let Some(entry) = place.and_then(|place| of_q.get_mut(place)) {
+                    *entry = *entry + -*added;
+                }
+            }
+        }
+    }
+
+    /// What changes of some coordinates and of their rates do, about the world's origin, while everything beyond is rigid.
+    #[inline(always)]
+    pub(super) fn changes(&self, first: usize, changes: &mut [Changes<C>]) {
+        let Vectors { turning, with_rate, second, twice_first, twice_omega } = self.vectors(first);
+        let mut scratch = [zero::<C>(); 16];
+        let of_q = [turning[1], turning[0], second[0], second[1], twice_first[0]];
+        let of_v = [with_rate[1], with_rate[0], twice_first[0], twice_first[1], twice_omega];
+        for place in 0..15 {
+            for (is_rate, vectors) in [(false, &of_q), (true, &of_v)] {
+                C::store(vectors[place / 3][place % 3], &mut scratch);
+                for column in 0..C::WIDTH {
+                    let Some(change) = changes.get_mut(first + column) else { break };
+                    let of = if is_rate { &mut change.of_v } else { &mut change.of_q };
+                    of[place] = scratch[column];
                 }
             }
         }
@@ -240,7 +252,7 @@ impl<'a, C: Columns> Slopes<'a, C> {
 }
 
 /// Marks pairs of coordinates one of which is on the path of the other.
-fn mark_paths<C: Columns>(links: &[Link], paths: &mut [C::Number]) {
+pub(super) fn mark_paths<C: Columns>(links: &[Link], paths: &mut [C::Number]) {
     let n = links.len();
     paths.fill(zero::<C>());
     for j in 0..n {

@@ -66,11 +66,6 @@ pub(super) fn nothing<C: Columns>() -> Six<C> {
 }
 
 #[inline]
-pub(super) fn sum<C: Columns>(a: Six<C>, b: Six<C>) -> Six<C> {
-    [plus::<C>(a[0], b[0]), plus::<C>(a[1], b[1])]
-}
-
-#[inline]
 pub(super) fn plus<C: Columns>(a: Three<C>, b: Three<C>) -> Three<C> {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }

@@ -5,13 +5,13 @@ use crane_model::dyn_crane::{
     DynDerivatives, DynDynamics, DynInternalForces, DynLinearise, DynMotionDerivatives, DynStatics,
 };
 use crane_model::nalgebra::Matrix4;
-use crane_model::rt::derivatives::{self, Sixteen};
+use crane_model::rt::derivatives::Sixteen;
 use crane_model::{entry_type, slice_argument};
 use crane_quantities::{Count, quantities};
 
 use super::methods::{method, methods};
 use super::{LiveCrane, at, copy};
-use crate::derivatives::with_workspace;
+use crate::derivatives::Storage;
 use crate::machine::Arguments;
 
 impl DynStatics for LiveCrane {
@@ -48,17 +48,13 @@ impl DynMotionDerivatives for LiveCrane {
         let mut factors = vec![0.0; Count::RESIDUAL_FACTORS * q.len()];
         self.residual_factors(q, v, a, &mut factors);
         self.force_derivatives(t, q, v, out);
-        with_workspace::<Sixteen>(&self.links(), |links, workspace| {
-            derivatives::residual_derivatives(links, &factors, workspace, out);
-        });
+        Storage::<Sixteen>::new(self.links()).residual_derivatives(&factors, out);
     }
 
     fn inverse_mass_matrix(&self, q: &[f64], out: &mut [f64]) {
         let mut factors = vec![0.0; Count::MASS_FACTORS * q.len()];
         self.mass_factors(q, &mut factors);
-        with_workspace::<Sixteen>(&self.links(), |links, workspace| {
-            derivatives::inverse_mass_matrix(links, &factors, workspace, out);
-        });
+        Storage::<Sixteen>::new(self.links()).inverse_mass_matrix(&factors, out);
     }
 
     fn forward_dynamics_derivatives(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]) {
@@ -70,9 +66,7 @@ impl DynMotionDerivatives for LiveCrane {
         self.residual_factors(q, v, &a, &mut of_residual);
         self.mass_factors(q, &mut of_mass);
         self.force_derivatives(t, q, v, &mut out[..2 * n * n]);
-        with_workspace::<Sixteen>(&self.links(), |links, workspace| {
-            derivatives::forward_dynamics_derivatives(links, [&of_residual, &of_mass], workspace, out);
-        });
+        Storage::<Sixteen>::new(self.links()).forward_dynamics_derivatives([&of_residual, &of_mass], out);
     }
 
     quantities! { methods of MotionDerivatives }
