@@ -66,7 +66,7 @@ impl Condition {
                 .stages()
                 .iter()
                 .zip(overlaps::at(crane, &q))
-                .map(|(stage, overlap)| (stage.inner, [overlap.overlap, overlap.left()]))
+                .map(|(stage, overlap)| (stage.inner, [overlap.inside, overlap.left()]))
                 .collect(),
             points: crane.points_at(&q),
             end: crane

@@ -73,7 +73,7 @@ impl Coverage {
             "the first support that pulls"
         };
         self.add(limits.has(PartLimit::LiftOff), what.to_owned());
-        for support in description.supports.iter() {
+        for support in &description.supports {
             if let Some(most) = support.max_pressure {
                 let [name, most] = [support.name.to_string(), DisplayUnit::Bar.shown(most).to_string()];
                 self.add(limits.has(PartLimit::Ground), format!("{most} bar on the ground under {name}"));

@@ -15,8 +15,8 @@ const CROSSWISE: f64 = 0.9;
 /// How a stage is in its outer beam.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Overlap {
-    /// Its overlap, m; negative if it is out of the beam, −∞ if it stands crosswise.
-    pub overlap: f64,
+    /// How far it is in the beam, m; negative if it is out of it, −∞ if it stands crosswise.
+    pub inside: f64,
     /// How much further it may be pushed in, until the overlap is longer than one of the beams, m.
     left: f64,
     /// By how much it may be pushed in further than that, m.
@@ -46,8 +46,8 @@ pub(crate) fn at(crane: &dyn DynCrane, q: &[f64]) -> Vec<Overlap> {
         let [own, along] =
             [stage.inner, stage.outer[0]].map(|body| -> Vector3<f64> { frames[body].fixed_view::<3, 1>(0, 0).into() });
         let is_crosswise = own.dot(&along) < CROSSWISE;
-        let [shorter, drawn] = [outer.min(inner), if is_crosswise { f64::NEG_INFINITY } else { overlap }];
-        Overlap { overlap: drawn, left: shorter - overlap, play: PLAY * shorter }
+        let [shorter, inside] = [outer.min(inner), if is_crosswise { f64::NEG_INFINITY } else { overlap }];
+        Overlap { inside, left: shorter - overlap, play: PLAY * shorter }
     };
     stages.iter().map(of_stage).collect()
 }
@@ -74,10 +74,10 @@ pub(super) fn of_run(crane: &dyn DynCrane, table: &Table) -> Vec<String> {
         return Vec::new();
     }
     let phases = Phases::of(crane);
-    let mut worst: Vec<[Option<(Overlap, &[f64], f64)>; 2]> = vec![[None; 2]; crane.stages().len()];
+    let mut worst: Vec<[Option<At<'_>>; 2]> = vec![[None; 2]; crane.stages().len()];
     for (sample, q) in table.poses(description).enumerate() {
         for (worst, now) in worst.iter_mut().zip(at(phases.at(table.rows[sample][0]), q)) {
-            let left: [fn(&Overlap) -> f64; 2] = [|overlap| overlap.overlap, Overlap::left];
+            let left: [fn(&Overlap) -> f64; 2] = [|overlap| overlap.inside, Overlap::left];
             for (worst, left) in worst.iter_mut().zip(left) {
                 if worst.as_ref().is_none_or(|(before, ..)| left(&now) < left(before)) {
                     *worst = Some((now, q, table.time_of(sample)));
@@ -94,6 +94,9 @@ pub(super) fn of_run(crane: &dyn DynCrane, table: &Table) -> Vec<String> {
         .collect()
 }
 
+/// A stage in a pose of a run, and when, s.
+type At<'a> = (Overlap, &'a [f64], f64);
+
 /// What to say of the stage of an index where it is drawn out furthest and where it is pushed in furthest, each with the pose and the time.
 fn cautions(
     crane: &dyn DynCrane,
@@ -101,7 +104,7 @@ fn cautions(
     [(drawn, q), (pushed, at_pushed)]: [(Overlap, &[f64]); 2],
     [when, when_pushed]: [&str; 2],
 ) -> Vec<String> {
-    let overlap = drawn.overlap;
+    let overlap = drawn.inside;
     let (description, height) = (crane.description(), crane.stage_height(stage));
     let stage = &crane.stages()[stage];
     let [inner, outer] = [stage.inner, stage.outer[0]].map(|body| &description.bodies[body].link);
