@@ -57,6 +57,16 @@ pub fn with_beam(source: &SourceFile, link: &str, to: BeamEnd<'_>, keys: &str) -
     Ok(source.changed(&changes))
 }
 
+/// Names of the bodies of a link besides its own: of an imported robot, what its file fixes to the link.
+#[must_use]
+pub fn fixed_bodies(source: &SourceFile, link: &str) -> Vec<String> {
+    let Ok(document) = read(source) else { return Vec::new() };
+    let found = entries(Some(&document.crane.links)).find(|own| name_of(own) == Some(link));
+    let bodies = found.and_then(|link| link.bodies.as_ref());
+    let names = entries(bodies).filter_map(|body| body.name.value.clone());
+    names.filter(|name| name != link).collect()
+}
+
 fn changes(crane: &Crane, name: &str, to: BeamEnd<'_>, keys: &str) -> Result<String, String> {
     let links: Vec<(&str, &Link)> =
         entries(Some(&crane.links)).filter_map(|link| Some((name_of(link)?, link))).collect();

@@ -103,6 +103,8 @@ class Crane:
     @property
     def combinations(self) -> list[str]:
         """Names of the combinations of weights and loads of its spec."""
+    def _fixed_bodies(self, link: str) -> list[str]:
+        """Names of the bodies of a link besides its own: of a robot, what its file fixes to the link."""
     def _with_beam(self, link: str, to: str | None, point: list[float] | None, keys: str) -> str:
         """Its spec with a beam in the place of a rigid link, from the link's frame to another one's, or to a point in it; `keys` are those of the beam."""
     @property

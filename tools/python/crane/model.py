@@ -230,7 +230,7 @@ class Crane(Closed, _native.Crane):
         to, point = (to, None) if to is None or isinstance(to, str) else (None, [float(x) for x in to])
         bending = type(self)(self.source, text=self._with_beam(link, to, point, text), parameters=self.parameters, inputs=self.inputs)
         before, after = (sum(body["mass"] for body in crane.info["bodies"]) for crane in (self, bending))
-        fixed = ", ".join(frame["name"] for frame in self.info["frames"] if frame["link"] == link and frame["name"] != link)
+        fixed = ", ".join(self._fixed_bodies(link))
         if fixed and after < before:
             warnings.warn(
                 f"the beam takes the place of the mass of `{link}` and of what is fixed to it ({fixed}), and weighs {before - after:.4g} kg less: write what it "

@@ -217,6 +217,12 @@ impl Crane {
         }
     }
 
+    /// Names of the bodies of a link besides its own.
+    #[pyo3(name = "_fixed_bodies")]
+    fn fixed_bodies(&self, link: &str) -> Vec<String> {
+        edit::fixed_bodies(&self.source, link)
+    }
+
     /// Names of the combinations of weights and loads of its spec.
     #[getter]
     fn combinations(&self) -> Vec<&str> {
