@@ -79,7 +79,9 @@ impl Posed<'_> {
     /// The crane at rest with a value of the load's parameter, wherever it is found. `near`: positions of the drives, and the pose there.
     pub(super) fn find(&mut self, value: f64, near: Option<(&[f64], &[f64])>) -> Option<Condition> {
         self.crane.set_parameter(self.load, value).ok()?;
-        self.condition(RestSearch { crane: self.crane, positions: self.positions }.find(near))
+        let search = RestSearch { crane: self.crane, positions: self.positions };
+        let found = self.condition(search.find(near));
+        found.or_else(|| near.and_then(|_| self.condition(search.find(None))))
     }
 
     /// The crane at rest with a value of the load's parameter, near a pose.
@@ -89,7 +91,10 @@ impl Posed<'_> {
     }
 
     fn condition(&self, found: Equilibrium) -> Option<Condition> {
-        found.is_stable().then(|| Condition::at(self.crane, found.q, self.positions))
+        let condition = found.is_stable().then(|| Condition::at(self.crane, found.q, self.positions))?;
+        // Nothing holds a stage that stands crosswise in its beam.
+        let is_held = condition.overlaps.iter().all(|(_, [inside, _])| *inside > f64::NEG_INFINITY);
+        is_held.then_some(condition)
     }
 
     /// The crane at rest with the load `to`, from its pose with the load `from`, in steps between which it rests.
