@@ -10,7 +10,7 @@ use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::Settings;
 use crane_model::envelope::{
     Axes, Axis, Coverage, Critical, Envelope, Execution, Limit, Limits, PartLimit, Rating, Varied, critical_load,
-    range_of_loads,
+    only_mass, range_of_loads,
 };
 use crane_model::results::{cautions, cylinders_at};
 use crane_model::runs::{Start, record};
@@ -407,6 +407,51 @@ drives:
         };
         // The feet yield by micrometres.
         assert_close("moments", found.load, expected, 1e-5);
+    }
+}
+
+/// Neighbours make a chart faster and decide nothing: forwards, backwards and alone, poses have one load, or none. A cylinder whose linkage has a second branch, a pose
+/// beyond a stroke, and a stage that a short rope turns crosswise once spoilt the poses after them.
+#[test]
+fn the_order_of_poses_changes_no_load() {
+    let held =
+        |coordinate: &str, value: &str| format!("drives: [{{coordinate: {coordinate}, motion: {{hold: {value}}}}}]\n");
+    for (crane, changes, varied, values) in [
+        ("eight_link_hydraulic", held("boom_psi", "4 deg"), "outer_boom", [92f64.to_radians(), 118f64.to_radians()]),
+        (
+            "examples/loader_crane",
+            held("inner_psi", "38.571429 deg"),
+            "outer",
+            [(-120f64).to_radians(), (-60f64).to_radians()],
+        ),
+        ("examples/telescopic_loader", held("boom_psi", "60 deg"), "first_stage", [2.7, 2.0]),
+    ] {
+        let path = format!("{}/../../specs/{crane}.yaml", env!("CARGO_MANIFEST_DIR"));
+        let live = LiveCrane::from_spec(&build::open(path.as_ref()).unwrap().changed(&changes)).unwrap();
+        let description = live.description();
+        let load = only_mass(description).unwrap();
+        let loads = |values: &[f64]| -> Vec<Option<f64>> {
+            let varied = Varied::named(varied, description).unwrap();
+            let axes = Axes(vec![Axis { varied, values: values.to_vec() }]);
+            let limits = Limits::usual(description);
+            let asked = Envelope { axes, load, loads: range_of_loads(&live, load, None), limits, factor: 1.0 };
+            let found = std::sync::Mutex::new(Vec::new());
+            let done = |_: usize, ratings: &[Rating]| found.lock().unwrap().extend(ratings.to_vec());
+            asked.run(&live, &[0], &Execution { threads: 1, done: &done, cancelled: &|| false }).unwrap();
+            found.into_inner().unwrap().into_iter().map(|rating| rating.load).collect()
+        };
+        let [first, last] = values;
+        let alone = [loads(&[first])[0], loads(&[last])[0]];
+        let backwards: Vec<_> = loads(&[last, first]).into_iter().rev().collect();
+        assert!(alone[1].is_some(), "{crane}");
+        for others in [loads(&values), backwards] {
+            for (alone, other) in alone.iter().zip(&others) {
+                // Loads are exact to 1e-6 from below.
+                let same =
+                    alone.zip(*other).map_or(alone.is_none() && other.is_none(), |(a, b)| (a / b - 1.0).abs() < 2e-6);
+                assert!(same, "{crane}: {alone:?} alone, {other:?} beside another");
+            }
+        }
     }
 }
 
