@@ -184,6 +184,9 @@ impl Asked {
     }
 }
 
+/// A margin of a loop.
+type Least = fn(&Margins) -> Option<f64>;
+
 fn facts(report: &mut Report, asked: &Asked, description: &Description, rows: &[Row]) {
     let [on, measured] = [asked.acting.column(description), asked.output.column.clone()];
     let found = || rows.iter().filter_map(|row| row.found.as_ref().ok());
@@ -217,6 +220,21 @@ fn facts(report: &mut Report, asked: &Asked, description: &Description, rows: &[
     let short = found().filter(|margins| asked.falls_short(margins)).count();
     report.fact_as("least_phase_margin", "phase margin that they should have", Cell::shown(asked.least, "°"), "°");
     report.fact_as("short_loops", "unstable or below it", short, "");
+    // A loop may have all of its phase margin and hardly any of the others.
+    let all: [(&str, &str, Least); 3] = [
+        ("least phase margin", "°; 45° or more is usual", |margins| {
+            margins.phase.map(|(phase, _)| phase.abs().to_degrees())
+        }),
+        ("least gain margin", "; 2 or more is usual", |margins| margins.gain.map(|(gain, _)| gain)),
+        ("least distance from −1", "; 0.5 or more is usual", |margins| {
+            margins.distance.map(|(distance, _)| distance)
+        }),
+    ];
+    for (name, usual, of) in all {
+        if let Some(least) = found().filter_map(of).min_by(f64::total_cmp) {
+            report.line(name, format!("{least:.3}{usual}"), "");
+        }
+    }
     if computed < count {
         report.caution(Some(format!("{} of {count} poses have no margins: see the column status", count - computed)));
     }
