@@ -323,7 +323,7 @@ connectors:
     let rows = report["stresses"].as_array().expect("a table");
     assert_eq!(rows[0]["x"], 0.0);
     assert_close("change", &rows[0]["change"], equivalent(4.0, 0.0) / equivalent(2.0, 0.0) - 1.0, 1e-3);
-    // The middles of sections are no places of the other mesh.
+    // In the middle of a section, the other mesh has no place.
     for (row, x) in rows[1..].iter().zip([1.0, 3.0]) {
         assert!(row["x"] == x && row["change"].is_null(), "{row}");
     }
