@@ -88,6 +88,8 @@ def run(path: Path) -> Page:
     page.text += f"{title}\n\nThis page is the notebook `{where}` with what its cells print and draw.\n{LINK.sub(_moved, begin)}\n"
     names: dict[str, Any] = {"__name__": "__main__"}
     style = {**STYLE, "svg.hashsalt": path.stem}
+    # What others drew is none of its figures.
+    plt.close("all")
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder), matplotlib.rc_context(style):
         for number, cell in enumerate(cells, 1):
             source, place = "".join(cell["source"]), f"{path.name}, cell {number}"
