@@ -192,7 +192,7 @@ fn contact(seed: u64, tree: &mut Tree) {
 
 /// Gives links of every other crane looks, which change no number.
 fn shapes(seed: u64, tree: &mut Tree) {
-    if seed % 2 == 0 {
+    if seed.is_multiple_of(2) {
         return;
     }
     let mut rng = Rng::with_seed(seed ^ 0x54a9);
