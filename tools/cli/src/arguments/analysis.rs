@@ -408,3 +408,32 @@ pub struct Eval {
     #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: Option<PathBuf>,
 }
+
+#[cfg(test)]
+mod tests {
+    use crane_model::envelope::PartLimit;
+
+    use super::{Considered, ValueEnum};
+
+    /// What charts consider unless it is left out, and what options ask for, are all limits of the parts of a crane.
+    #[test]
+    fn every_limit_has_an_option() {
+        let without: Vec<String> = Considered::value_variants().iter().map(|considered| considered.name()).collect();
+        for name in PartLimit::DEFAULT.map(PartLimit::name).into_iter().chain(["tipping", "utilisation"]) {
+            assert!(without.iter().any(|known| known == name), "`--without {name}` is refused");
+        }
+        assert_eq!(without.len(), PartLimit::DEFAULT.len() + 2, "{without:?}");
+        let asked_for = [PartLimit::LiftOff, PartLimit::SlackRopes];
+        let is_somewhere = |kind: &PartLimit| PartLimit::DEFAULT.contains(kind) != asked_for.contains(kind);
+        assert!(PartLimit::ALL.iter().all(is_somewhere));
+    }
+
+    /// A limit that governs a largest load is one of those of its JSON; one of efforts is called `effort` there.
+    #[test]
+    fn every_limit_is_in_the_schema() {
+        let schema = include_str!("../../schemas/sensitivity.json");
+        for kind in PartLimit::ALL.into_iter().filter(|kind| *kind != PartLimit::MaxEffort) {
+            assert!(schema.contains(&format!("\"{}\"", kind.name())), "{}", kind.name());
+        }
+    }
+}
