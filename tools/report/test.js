@@ -365,8 +365,8 @@ const said = await open(browser, { viewport: { width: 1440, height: 900 }, color
     const { data, viewer } = globalThis.report;
     // Height and width of the first ring of a box, from its corners.
     const size = ({ array }) => [[1, 3], [0, 1]].map(([a, b]) => Math.hypot(...[0, 1, 2].map((i) => array[3 * a + i] - array[3 * b + i])));
-    const boxed = viewer.figure.beams.filter(({ name }) => data.crane.outlines[name] && !data.crane.outlines[name].round);
-    const drawn = boxed.map(({ name, geometry }) => ({ drawn: size(geometry.getAttribute("position")), spec: data.crane.outlines[name].along[0].slice(1) }));
+    const boxed = data.crane.scene.beams.map((beam, index) => ({ ...beam, ...viewer.figure.beams[index] })).filter(({ round }) => !round);
+    const drawn = boxed.map(({ along, geometry }) => ({ drawn: size(geometry.getAttribute("position")), spec: along[0].slice(1) }));
     return { every: data.crane.run.every, outlines: drawn };
   });
   assert.equal(await page.locator("#thinned").isVisible(), every > 1, "a thinned run says so");

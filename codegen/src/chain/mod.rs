@@ -47,7 +47,7 @@ pub use parameter::{Parameter, Relation};
 pub use profile::{Derivative, Profile, Ramp, Segment, first_jump, jumps};
 pub use result_names::ResultNames;
 pub use run::{Analyses, Run};
-pub use shape::{Form, Shape};
+pub use shape::{Form, Shape, Surface};
 pub use stage::Stage;
 pub use strain::{Attachment, Line, LinePart, PadDirection, Sliding, Strain, Turning};
 pub use support::{Support, SupportKinematics};

@@ -1,5 +1,7 @@
 //! What links look like.
 
+use std::sync::Arc;
+
 use super::{BodyId, Chain, Frame, Step, Value, Vector};
 
 /// A form of a body in pictures, without any effect on its motion.
@@ -38,7 +40,18 @@ pub enum Form<T = f64> {
         file: String,
         /// Factor of its coordinates.
         scale: f64,
+        /// What is in the file, if somebody has read it: exported files only name it.
+        surface: Option<Arc<Surface>>,
     },
+}
+
+/// Triangles of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surface {
+    /// Corners, in the unit of the file.
+    pub corners: Vec<Vector>,
+    /// Indices of the corners of each triangle, counter-clockwise as seen from outside.
+    pub triangles: Vec<[usize; 3]>,
 }
 
 impl Shape {
@@ -56,14 +69,16 @@ impl Shape {
                 Form::Cylinder { diameter: number(diameter), length: number(length) }
             }
             Form::Capsule { diameter, length } => Form::Capsule { diameter: number(diameter), length: number(length) },
-            Form::Mesh { file, scale } => Form::Mesh { file: file.clone(), scale: *scale },
+            Form::Mesh { file, scale, surface } => {
+                Form::Mesh { file: file.clone(), scale: *scale, surface: surface.clone() }
+            }
         };
         (frame, form)
     }
 }
 
 impl Form {
-    /// Sides of the box around it along x, y and z, m; of a mesh, which is not read, nothing.
+    /// Sides of the box around it along x, y and z, m; of a mesh nothing: see its surface.
     #[must_use]
     pub fn sides(&self) -> Vector {
         match *self {

@@ -226,7 +226,7 @@ fn assets(xml: &mut Xml, looks: &[Look], surfaces: &[(&Form, String)]) {
         xml.leaf("material", &[("name", name.to_owned()), ("rgba", colour)]);
     }
     for (form, name) in surfaces {
-        if let Form::Mesh { file, scale } = form {
+        if let Form::Mesh { file, scale, .. } = form {
             // Surfaces are not solids to be weighed.
             let mut attributes = vec![("name", name.clone()), ("file", file.clone()), ("inertia", "shell".into())];
             attributes.extend((*scale != 1.0).then(|| ("scale", numbers(&[*scale; 3]))));

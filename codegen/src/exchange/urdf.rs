@@ -217,7 +217,7 @@ fn visual(xml: &mut Xml, frame: &Frame, form: &Form, paint: Option<&str>) {
             xml.leaf("cylinder", &[("radius", number_text(diameter / 2.0)), ("length", number_text(*length))]);
         }
         Form::Capsule { diameter, .. } => xml.leaf("sphere", &[("radius", number_text(diameter / 2.0))]),
-        Form::Mesh { file, scale } => {
+        Form::Mesh { file, scale, .. } => {
             let mut attributes = vec![("filename", file.clone())];
             attributes.extend((*scale != 1.0).then(|| ("scale", numbers(&[*scale; 3]))));
             xml.leaf("mesh", &attributes);

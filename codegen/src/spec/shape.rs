@@ -42,10 +42,10 @@ pub struct RoundShape {
     pub rotation: Option<Spanned<Many<Turn>>>,
 }
 
-/// A surface of triangles, which exported files name.
+/// A surface of triangles, which is drawn if its file is there, and which exported files name.
 #[derive(Clone, Debug, FromNode)]
 pub struct MeshShape {
-    /// The STL or OBJ file, as exported files are to name it.
+    /// The STL or OBJ file, from the folder of the spec, as exported files are to name it.
     pub file: Spanned<String>,
     /// Factor of its coordinates, such as 0.001 for a file in mm. Default 1.
     pub scale: Option<Spanned<Constant>>,

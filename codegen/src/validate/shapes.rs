@@ -38,7 +38,7 @@ impl Check<'_> {
                     }
                     let scale = shape.scale.as_ref();
                     let scale = scale.map_or(1.0, |scale| self.constant(scale, "`scale`", "", Limit::Positive));
-                    (Form::Mesh { file, scale }, &shape.at, &shape.rotation)
+                    (Form::Mesh { file, scale, surface: None }, &shape.at, &shape.rotation)
                 }
             };
             let [x, y, z] = self.vector_or_zero(at.as_ref(), "`at`", "m", Limit::Any);

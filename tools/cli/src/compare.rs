@@ -44,12 +44,13 @@ pub fn load(options: &mut ComparePair, registry: &mut Registry) -> Outcome<()> {
     };
     if let Some(file) = spec_file(name) {
         let (chain, text) = spec_file::load(file, *strict)?;
+        let path = file.display().to_string();
         if chain.name == *first {
             // Two versions of a crane share one name.
             *name = format!("{first}_other");
             registry.add(name, renamed(name, &text));
         } else {
-            *name = registry.add_read(chain, text);
+            *name = registry.add_read(chain, text, Some(&path));
         }
     }
     if options.rigid {

@@ -124,18 +124,18 @@ impl Registry {
     /// The file cannot be read, or the spec has mistakes; or warnings, if `strict`.
     pub(super) fn add_file(&mut self, file: &Path, strict: bool) -> Outcome<String> {
         let (chain, spec) = spec_file::load(file, strict)?;
-        let name = self.add_read(chain, spec);
-        if let Some(entry) = self.entries.last_mut() {
-            entry.file = file.display().to_string();
-        }
-        Ok(name)
+        Ok(self.add_read(chain, spec, Some(&file.display().to_string())))
     }
 
-    /// As [`Self::add`], for a spec that has been read; returns the crane's name.
-    pub fn add_read(&mut self, chain: Chain, spec: String) -> String {
+    /// As [`Self::add`], for a spec that has been read, from a `file` beside which its surfaces are; returns the crane's name.
+    pub fn add_read(&mut self, mut chain: Chain, spec: String, file: Option<&str>) -> String {
         let name = chain.name.clone();
+        let mut entry = Entry::new(&name, Cow::Owned(spec));
+        if let Some(file) = file {
+            file.clone_into(&mut entry.file);
+            spec_file::read_surfaces(&mut chain, Path::new(file));
+        }
         screen::begin(&chain);
-        let entry = Entry::new(&name, Cow::Owned(spec));
         self.replace(Entry { live: LiveCrane::new(chain).into(), ..entry });
         name
     }
@@ -183,11 +183,7 @@ impl Registry {
     /// Adds a crane whose spec is that of another one's file, changed; returns its name.
     fn add_variant(&mut self, of: &str, chain: Chain, text: String) -> String {
         let file = self.entries.iter().find(|entry| entry.name == of).map(|entry| entry.file.clone());
-        let name = self.add_read(chain, text);
-        if let (Some(file), Some(entry)) = (file, self.entries.last_mut()) {
-            entry.file = file;
-        }
-        name
+        self.add_read(chain, text, file.as_deref())
     }
 
     /// What to write for a crane in place of the word CRANE: its file, or the name of a shipped one.

@@ -3,6 +3,7 @@
 use std::{io, path::Path};
 
 use crane_codegen::{Checked, SourceFile, build, chain::Chain, compile};
+use crane_page::shapes::surfaces;
 
 use crate::{
     arguments::STANDARD_INPUT,
@@ -35,6 +36,16 @@ pub fn parse(source: SourceFile, strict: bool) -> Outcome<(Chain, String)> {
         }
     }
     Ok((chain, source.text))
+}
+
+/// Reads the surfaces that a spec names, beside its file; says which could not be read.
+pub fn read_surfaces(chain: &mut Chain, spec: &Path) {
+    let folder = spec.parent().unwrap_or(Path::new(""));
+    let unread = surfaces::read_surfaces(chain, |file| files::read_file(&folder.join(file)));
+    if !unread.is_empty() {
+        let told: Vec<String> = unread.iter().map(|(file, why)| format!("`{file}`: {why}")).collect();
+        screen::remark(&format!("not drawn, but named in exported files: {}", told.join("; ")));
+    }
 }
 
 /// Shows warnings about a crane that appear only with these values of its parameters; returns them as a problem if there are any.

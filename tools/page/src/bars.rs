@@ -4,14 +4,14 @@
 //! and centres of mass may be elsewhere: beyond a joint, on the other side of a frame, beside an axis. A bar leads to each of them from the nearest place
 //! that is drawn, so that nothing floats.
 
-use crane_codegen::chain::{Body, Chain, Cylinder, Value};
+use crane_codegen::chain::{Body, BodyId, Chain, CoordinateKind, Cylinder, Value};
 use crane_live::LiveCrane;
 use nalgebra::{Matrix4, Vector3};
 
 /// Distance within which something is on what is drawn, relative to the crane's size: less than links are thick.
 const NEAR: f64 = 0.015;
 /// The same relative to the larger side of a beam's section.
-const IN_BEAM: f64 = 0.75;
+const IN_BEAM: f64 = 0.5;
 /// Part of a segment, from its end, within which a named mass is a block at the end rather than the segment itself.
 const AT_END: f64 = 0.15;
 
@@ -89,7 +89,8 @@ pub fn bars(live: &LiveCrane, frames: &[Matrix4<f64>]) -> Vec<Bar> {
     let near = NEAR * size(frames, &anchors);
     let mut bars = Vec::new();
     for (body, written) in chain.bodies.iter().enumerate() {
-        let mut own: Vec<&Anchor> = anchors.iter().filter(|anchor| anchor.body == body).collect();
+        let carried = carried_beside(live, body, frames);
+        let mut own: Vec<&Anchor> = anchors.iter().chain(&carried).filter(|anchor| anchor.body == body).collect();
         let mut segments = drawn(live, body, frames, &own);
         let beam = beam_size(live, body);
         let near = if beam > 0.0 { beam } else { near };
@@ -115,6 +116,21 @@ pub fn bars(live: &LiveCrane, frames: &[Matrix4<f64>]) -> Vec<Bar> {
         }
     }
     bars
+}
+
+/// Where bodies begin that a beam carries, unless they slide in it.
+fn carried_beside(live: &LiveCrane, body: usize, frames: &[Matrix4<f64>]) -> Vec<Anchor> {
+    let chain = live.chain();
+    let (own, inverse) = (&chain.bodies[body], frames[body].try_inverse().unwrap_or_else(Matrix4::identity));
+    let is_beam = own.length.at(live.parameters()) > 0.0;
+    let carried = chain.bodies.iter().zip(frames).enumerate().filter(|(next, (other, _))| {
+        let mut slides = chain.coordinates.iter().filter(|coordinate| coordinate.body == BodyId(*next));
+        is_beam
+            && other.parent == Some(BodyId(body))
+            && other.link != own.link
+            && slides.all(|coordinate| coordinate.kind == CoordinateKind::Rotation)
+    });
+    carried.map(|(_, (_, frame))| Anchor { body, at: (inverse * frame.column(3)).xyz(), mass: None }).collect()
 }
 
 /// The place on a segment that is nearest to a point, and where it is along the segment, from 0 to 1.

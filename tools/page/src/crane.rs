@@ -2,9 +2,8 @@
 
 use std::borrow::Cow;
 
-use crane_live::LiveCrane;
 use crane_model::{
-    CoordinateRole, Description,
+    CoordinateInfo, CoordinateRole, Description,
     dyn_crane::DynCrane,
     modes::{NoModes, Vibration, vibrations},
     results::{Column, Recording, Table},
@@ -16,7 +15,7 @@ use crate::{
     Program, Subject,
     history::{Instant, instants},
     record::{entries, record},
-    scene::{Scene, Section, sections},
+    shapes::Figure,
     strength::{self, extremes, packed},
 };
 
@@ -62,6 +61,16 @@ impl<'a> Shown<'a> {
         if self.moves() { format!("at {time:.2} s") } else { "at rest".to_owned() }
     }
 
+    /// Least and greatest value of each coordinate in its table.
+    fn travels(&self) -> Vec<[f64; 2]> {
+        let travel = |(coordinate, rest): (&CoordinateInfo, &f64)| {
+            let column = self.table.columns.iter().position(|column| column.name == coordinate.name.as_str());
+            let values = column.into_iter().flat_map(|column| self.table.rows.iter().map(move |row| row[column]));
+            extremes(values.chain([*rest]))
+        };
+        self.subject.crane.description().coordinates.iter().zip(&self.pose).map(travel).collect()
+    }
+
     /// All its data.
     pub fn data(&self, program: Program) -> Value {
         let &Subject { label, crane, live, run, .. } = self.subject;
@@ -88,8 +97,7 @@ impl<'a> Shown<'a> {
             "label": label,
             "coordinates": coordinates,
             "drives": description.drives.iter().map(|drive| drive.coordinate).collect::<Vec<_>>(),
-            "scene": Scene::new(live, &self.pose).json(),
-            "outlines": outlines(live),
+            "scene": Figure::moving(live, &self.pose, self.travels()).json(),
             "modes": modes_data(&self.modes, description),
             "run": columns(&self.table, every),
             "record": run.map(|(settings, recorded)| record(crane, settings, recorded, program)),
@@ -110,14 +118,6 @@ fn rest(crane: &dyn DynCrane, q: &[f64]) -> Table {
     let mut recording = Recording::new(crane);
     recording.push_rest(0.0, q);
     recording.into_table()
-}
-
-/// Sections of the beams whose spec gives a shape, by the names of their links: height and width, m, of a stepped or tapered beam along it.
-fn outlines(live: &LiveCrane) -> Value {
-    let written = |(name, Section { size, along, round }): (&str, Section)| {
-        (name.to_owned(), json!({"size": size, "along": along, "round": round}))
-    };
-    sections(live).map(written).collect()
 }
 
 /// Modes of a stable equilibrium, each with the damping of the damped mode that moves in the same way.

@@ -12,7 +12,7 @@ use crane_model::{CoordinateInfo, CoordinateKind, CoordinateRole, dyn_crane::Dyn
 use nalgebra::{Matrix4, Vector3};
 
 use crate::bars::masses;
-use crate::scene::{Body, Connector, Pins, Place, Scene, is_mesh};
+use crate::scene::{Body, Connector, Pins, Place, Scene, is_drawn};
 use crate::shapes::{BARREL_LENGTH, Mesh};
 
 const BLUE: &str = "#0072b2";
@@ -267,7 +267,7 @@ fn origin(frame: &Matrix4<f64>) -> Point {
 
 /// The corners of a form in the world; none of a surface in a file.
 fn form_mesh(form: &crane_codegen::exchange::Look, frames: &[Matrix4<f64>]) -> Vec<Point> {
-    let Some(BodyId(body)) = form.body.filter(|_| !is_mesh(form)) else { return Vec::new() };
+    let Some(BodyId(body)) = form.body.filter(|_| is_drawn(form)) else { return Vec::new() };
     let corners = Mesh::solid(&form.frame, &form.form).corners;
     corners.into_iter().map(|at| Place { body: Some(body), at }.within(frames)).collect()
 }

@@ -18,18 +18,17 @@ use crane_model::{
     dyn_crane::{DynCrane, DynModel},
 };
 use nalgebra::{Matrix4, Vector3};
-use serde_json::{Value, json};
 
 use crate::bars::{Bar, bars};
 
 /// What is drawn of a crane, at one pose.
 pub struct Scene {
     /// The pose.
-    pose: Vec<f64>,
+    pub pose: Vec<f64>,
     /// The pose with rotation vectors at zero.
     pub reference: Vec<f64>,
     /// Whether a coordinate is a component of a rotation vector.
-    vectors: Vec<bool>,
+    pub vectors: Vec<bool>,
     /// Bodies, each after the one that carries it.
     pub bodies: Vec<Body>,
     /// A screw for each coordinate, in the world frame at the reference.
@@ -40,6 +39,8 @@ pub struct Scene {
     pub connectors: Vec<Connector>,
     /// Pins and balls that close loops.
     pub hinges: Vec<Hinge>,
+    /// Points that the ground carries while they touch it.
+    pub contacts: Vec<Place>,
     /// Names of the points of interest, and where they are.
     pub points: Vec<(String, Place)>,
     /// Hydraulic cylinders.
@@ -89,10 +90,6 @@ impl Place {
     /// Where it is in the world while the bodies have these frames, m.
     pub fn within(&self, frames: &[Matrix4<f64>]) -> Vector3<f64> {
         self.body.map_or(self.at, |body| (frames[body] * self.at.push(1.0)).xyz())
-    }
-
-    fn json(&self) -> Value {
-        json!({"body": self.body, "at": <[f64; 3]>::from(self.at)})
     }
 }
 
@@ -182,7 +179,7 @@ impl Scene {
                 frame: *frame,
                 // A beam that does not deform is one body, with the name of its link.
                 rope: length > 0.0 && info.name != info.link && !deforms(description, &tree, info),
-                formed: length == 0.0 && forms.iter().any(|form| form.body == Some(BodyId(index)) && !is_mesh(form)),
+                formed: length == 0.0 && forms.iter().any(|form| form.body == Some(BodyId(index)) && is_drawn(form)),
             }
         };
         let bodies: Vec<Body> = description.bodies.iter().zip(&frames).enumerate().map(body).collect();
@@ -196,6 +193,7 @@ impl Scene {
             supports: names.zip(crane.support_places_at()).collect(),
             connectors: connectors(crane).into_iter().chain(rods(live)).collect(),
             hinges: live.chain().loop_joints.iter().filter_map(|joint| hinge(live, joint)).collect(),
+            contacts: contacts(live),
             points: points(live),
             cylinders: cylinders(live, (&screws, &frames)),
             pads: pads(live),
@@ -204,62 +202,17 @@ impl Scene {
             reference,
         }
     }
-
-    /// The scene for the script of a page.
-    pub fn json(&self) -> Value {
-        let body = |body: &Body| {
-            let Body { name, link, mass, length, parent, along, own, frame, rope, formed } = body;
-            json!({
-                "name": name, "link": link, "mass": mass, "length": length, "parent": parent, "along": along,
-                "moved_by": [own.start, own.end], "frame": rows(frame), "rope": rope, "formed": formed,
-            })
-        };
-        let connector = |Connector { rope, points, falls, .. }: &Connector| json!({"rope": rope, "points": points.iter().map(Place::json).collect::<Vec<_>>(), "falls": falls});
-        let point = |(name, Place { body, at }): &(String, Place)| json!({"name": name, "body": body, "at": <[f64; 3]>::from(*at)});
-        let support = |(name, at): &(String, Vector3<f64>)| json!({"name": name, "at": <[f64; 3]>::from(*at)});
-        let hinge = |Hinge { place: Place { body, at }, axis }: &Hinge| json!({"body": body, "at": <[f64; 3]>::from(*at), "axis": axis.map(<[f64; 3]>::from)});
-        let pad = |Pad { body, x, beams }: &Pad| json!({"body": body, "x": x, "beams": beams});
-        json!({
-            "pose": self.pose, "reference": self.reference, "vectors": self.vectors, "screws": self.screws,
-            "bodies": self.bodies.iter().map(body).collect::<Vec<_>>(),
-            "supports": self.supports.iter().map(support).collect::<Vec<_>>(),
-            "connectors": self.connectors.iter().map(connector).collect::<Vec<_>>(),
-            "hinges": self.hinges.iter().map(hinge).collect::<Vec<_>>(),
-            "points": self.points.iter().map(point).collect::<Vec<_>>(),
-            "cylinders": self.cylinders.iter().map(Barrel::json).collect::<Vec<_>>(),
-            "pads": self.pads.iter().map(pad).collect::<Vec<_>>(),
-            "bars": self.bars.iter().map(bar).collect::<Vec<_>>(),
-            "forms": self.forms.iter().filter(|form| !is_mesh(form)).map(form).collect::<Vec<_>>(),
-        })
-    }
 }
 
-/// Whether it is a surface in a file, which is not read: exported files name it.
-pub fn is_mesh(look: &Look) -> bool {
-    matches!(look.form, Form::Mesh { .. })
-}
-
-/// A form with the sides of the box around it, from which the page has its diameter and length.
-fn form(look: &Look) -> Value {
-    let kind = match look.form {
-        Form::Box(_) => "box",
-        Form::Cylinder { .. } => "cylinder",
-        Form::Capsule { .. } => "capsule",
-        Form::Mesh { .. } => "mesh",
-    };
-    let body = look.body.map(|BodyId(body)| body);
-    json!({"body": body, "frame": rows(&matrix(&look.frame)), "kind": kind, "sides": look.form.sides()})
+/// Whether its triangles are known: not those of a surface in a file that nobody has read, which exported files name.
+pub fn is_drawn(look: &Look) -> bool {
+    !matches!(look.form, Form::Mesh { surface: None, .. })
 }
 
 /// A frame as a matrix.
 pub fn matrix(frame: &Frame) -> Matrix4<f64> {
     let [x, y, z] = frame.axes.map(|axis| Vector3::from(axis).push(0.0));
     Matrix4::from_columns(&[x, y, z, Vector3::from(frame.origin).push(1.0)])
-}
-
-fn bar(bar: &Bar) -> Value {
-    let [from, to] = [bar.from, bar.to].map(<[f64; 3]>::from);
-    json!({"body": bar.body, "from": from, "to": to, "block": bar.block, "main": bar.main})
 }
 
 /// Springs and ropes between at least two points.
@@ -384,17 +337,6 @@ impl Barrel {
         let rod = pivot + across.normalize() * along + aside * height;
         Pins { foot, rod, head, pivot: Some(pivot) }
     }
-
-    fn json(&self) -> Value {
-        let linkage = self.linkage.as_ref().map(|Rocker { pivot, rocker, link, left }| {
-            json!({"pivot": pivot.json(), "rocker": rocker, "link": link, "left": left})
-        });
-        let axis = self.axis.map(|(body, along)| json!({"body": body, "along": <[f64; 3]>::from(along)}));
-        json!({
-            "name": self.name, "foot": self.foot.json(), "head": self.head.json(), "linkage": linkage,
-            "bore": self.bore, "rod": self.rod, "retracted": self.retracted, "axis": axis,
-        })
-    }
 }
 
 /// The axis about which a coordinate turns, in the frame of the first body that it moves; none if it slides.
@@ -412,11 +354,6 @@ fn axis(
 fn place(live: &LiveCrane, body: impl Into<Option<BodyId>>, position: &[Number; 3]) -> Place {
     let at = Vector3::from(position.each_ref().map(|x| x.at(live.parameters())));
     Place { body: body.into().map(|BodyId(body)| body), at }
-}
-
-/// The upper three rows.
-fn rows(frame: &Matrix4<f64>) -> Vec<f64> {
-    frame.transpose().iter().copied().take(12).collect()
 }
 
 /// Screws of all coordinates in the world frame at pose `q`, direction ω, then velocity at the origin.
@@ -439,7 +376,15 @@ fn points(live: &LiveCrane) -> Vec<(String, Place)> {
     live.chain().points.iter().map(point).collect()
 }
 
+/// Points that touch the ground at times.
+fn contacts(live: &LiveCrane) -> Vec<Place> {
+    let contacts = live.chain().connectors().iter().filter(|connector| connector.is_contact());
+    let ends = contacts.flat_map(|contact| contact.strain.points());
+    ends.map(|end| place(live, end.body, &end.position)).filter(|place| place.body.is_some()).collect()
+}
+
 /// The outline of a beam whose spec gives a shape.
+#[derive(Clone, Debug)]
 pub struct Section {
     /// Largest height and width, m.
     pub size: [f64; 2],

@@ -88,10 +88,8 @@ fn masses_are_those_of_the_live_parameters() {
     let mut live = live("knuckle_boom");
     for payload in [800.0, 650.0] {
         live.set_parameters(&[payload]).expect("a mass");
-        let scene = scene::Scene::new(&live, &(&live as &dyn DynCrane).guess()).json();
-        let bodies = scene["bodies"].as_array().expect("bodies");
-        let hook: f64 =
-            bodies.iter().filter(|body| body["link"] == "hook").filter_map(|body| body["mass"].as_f64()).sum();
+        let scene = scene::Scene::new(&live, &(&live as &dyn DynCrane).guess());
+        let hook: f64 = scene.bodies.iter().filter(|body| body.link == "hook").map(|body| body.mass).sum();
         assert_eq!(hook, 25.0 + payload);
     }
 }
@@ -128,19 +126,14 @@ fn nothing_of_a_body_floats() {
     for (name, live) in shipped.chain(examples) {
         let crane: &dyn DynCrane = &live;
         let q = crane.guess();
-        let scene = crate::scene::Scene::new(&live, &q).json();
+        let scene = crate::scene::Scene::new(&live, &q);
         let frames = crane.transforms_at(&q);
         let reach = 0.05 * frames.iter().map(|frame| frame.column(3).xyz().norm()).fold(1.0, f64::max);
-        let vector = |value: &Value| -> Vector3<f64> {
-            serde_json::from_value::<[f64; 3]>(value.clone()).expect("a place").into()
-        };
-        let bars = scene["bars"].as_array().expect("bars");
-        bars_of_cranes += bars.len();
+        bars_of_cranes += scene.bars.len();
         for anchor in crate::bars::anchors(&live) {
             let length = crane.body_sizes_at()[anchor.body][1];
             let mut ends = vec![[Vector3::zeros(), Vector3::x() * length]];
-            let of_body = bars.iter().filter(|bar| bar["body"] == anchor.body);
-            ends.extend(of_body.map(|bar| [vector(&bar["from"]), vector(&bar["to"])]));
+            ends.extend(scene.bars.iter().filter(|bar| bar.body == anchor.body).map(|bar| [bar.from, bar.to]));
             let inverse = frames[anchor.body].try_inverse().expect("a frame");
             let next = live
                 .chain()
@@ -149,13 +142,8 @@ fn nothing_of_a_body_floats() {
                 .zip(&frames)
                 .filter(|(body, _)| body.parent.is_some_and(|p| p.0 == anchor.body));
             ends.extend(next.map(|(_, frame)| [Vector3::zeros(), (inverse * frame.column(3)).xyz()]));
-            let points: Vec<Vector3<f64>> = scene["points"]
-                .as_array()
-                .expect("points")
-                .iter()
-                .filter(|point| point["body"] == anchor.body)
-                .map(|point| vector(&point["at"]))
-                .collect();
+            let points = scene.points.iter().filter(|(_, point)| point.body == Some(anchor.body));
+            let points: Vec<Vector3<f64>> = points.map(|(_, point)| point.at).collect();
             ends.extend(points.iter().map(|point| [Vector3::zeros(), *point]));
             ends.extend(points.iter().flat_map(|a| points.iter().map(move |b| [*a, *b])));
             let distance = |[from, to]: &[Vector3<f64>; 2]| {
@@ -177,12 +165,8 @@ fn nothing_of_a_body_floats() {
 fn what_lies_beyond_a_joint_is_drawn() {
     let live = example(EXAMPLES[1].0, EXAMPLES[1].1);
     let crane: &dyn DynCrane = &live;
-    let scene = crate::scene::Scene::new(&live, &crane.guess()).json();
-    let jib = live.chain().bodies.iter().position(|body| body.link == "jib").expect("a jib");
-    let to_head = scene["bars"]
-        .as_array()
-        .expect("bars")
-        .iter()
-        .any(|bar| bar["body"] == jib && bar["to"][0].as_f64() > Some(4.0));
-    assert!(to_head, "{}", scene["bars"]);
+    let scene = crate::scene::Scene::new(&live, &crane.guess());
+    let jib = live.chain().bodies.iter().position(|body| body.link == "jib");
+    let to_head = scene.bars.iter().any(|bar| Some(bar.body) == jib && bar.to.x > 4.0);
+    assert!(to_head, "{:?}", scene.bars);
 }

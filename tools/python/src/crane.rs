@@ -1,7 +1,7 @@
 //! A spec with parameters and inputs.
 
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use crane_codegen::chain::{Frame, Profile, Transmission};
@@ -18,6 +18,7 @@ use crane_model::Description;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::runs::Start;
 use crane_page::diagram::diagram;
+use crane_page::shapes::surfaces::read_surfaces;
 use crane_quantities::FunctionId;
 use crane_specs::SPECS;
 use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyRuntimeError, PyTypeError, PyValueError};
@@ -25,7 +26,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{Argument, Joined};
-use crate::mistakes::{self, BadRow, Invalid, ParameterError, spec_error, warn_of_rows, warn_of_spec};
+use crate::mistakes::{self, BadRow, Invalid, ParameterError, spec_error, warn, warn_of_rows, warn_of_spec};
 
 /// A crane with its parameters: native part of `crane.Crane`.
 #[pyclass(frozen, subclass, module = "crane._native")]
@@ -149,8 +150,16 @@ impl Crane {
         let set: Vec<(String, f64)> = parameters.into_iter().flatten().filter_map(number).collect();
         let set: Vec<(&str, f64)> = set.iter().map(|(name, value)| (name.as_str(), *value)).collect();
         let checked = py.detach(|| check_with(&source, &set));
-        let Checked { chain, warnings, .. } = checked.map_err(|found| spec_error(py, &found))?;
+        let Checked { mut chain, warnings, .. } = checked.map_err(|found| spec_error(py, &found))?;
         warn_of_spec(py, &warnings)?;
+        if text.is_none() {
+            let folder = Path::new(named).parent().unwrap_or(Path::new(""));
+            let unread = read_surfaces(&mut chain, |file| files::read_file(&folder.join(file), MAX_BYTES));
+            if !unread.is_empty() {
+                let told: Vec<String> = unread.iter().map(|(file, why)| format!("`{file}`: {why}")).collect();
+                warn(py, &py.get_type::<mistakes::SpecWarning>(), format!("not drawn: {}", told.join("; ")))?;
+            }
+        }
         let count = chain.coordinates.len();
         if count > LiveCrane::MOST_COORDINATES {
             let most = LiveCrane::MOST_COORDINATES;

@@ -1,16 +1,6 @@
 // Hydraulic cylinders between their pins, with rocker and link: the geometry of `codegen/src/mechanics/cylinders.rs`.
 import { BoxGeometry, CylinderGeometry, Vector3 } from "three";
 
-/** Smallest radius of a barrel as drawn, relative to the crane's size. */
-const LEAST = 0.0028;
-/** Outer radius of a barrel, and sides of rocker and link, relative to the bore. */
-const BARREL = 0.62;
-const BAR = 0.8;
-/** Length of the barrel relative to the distance of the pins of the retracted cylinder. */
-const LENGTH = 0.9;
-/** Length of a pin and its radius, relative to the radius of the barrel. */
-const PIN = { length: 3, radius: 0.6 };
-
 /** Pins of a cylinder in a pose, in the world: foot, end of the rod, head, and the rocker's pivot if there is one. */
 export function pins({ foot, head, linkage, axis }, frames) {
   const place = ({ body, at }) => new Vector3(...at).applyMatrix4(frames[body]);
@@ -30,26 +20,24 @@ export function pins({ foot, head, linkage, axis }, frames) {
 
 /** The meshes of a cylinder, which follow its pins. */
 export class Cylinder {
-  /** `mesh(geometry, colour)` makes a mesh; `colours` of the barrel, the rod, rocker and link, and pins. */
-  constructor(data, size, mesh, colours) {
-    this.data = data;
-    const barrel = Math.max(BARREL * data.bore, LEAST * size);
-    const side = (BAR / BARREL) * barrel;
+  /** `mesh(geometry, paint)` makes a mesh. */
+  constructor(data, mesh) {
+    const { barrel, long, rod, bar: [wide, thin], pin: [radius, length] } = data.sizes;
+    Object.assign(this, { data, long, length });
     const round = (radius) => new CylinderGeometry(radius, radius, 1, 20);
-    const bar = () => mesh(new BoxGeometry(side, 1, 0.6 * side), colours.linkage);
-    this.barrel = mesh(round(barrel), colours.barrel);
-    this.rod = mesh(round(Math.max(0.5 * data.rod, 0.45 * barrel)), colours.rod);
+    const bar = () => mesh(new BoxGeometry(wide, 1, thin), "linkage");
+    this.barrel = mesh(round(barrel), "barrel");
+    this.rod = mesh(round(rod), "rod");
     this.bars = data.linkage ? [bar(), bar()] : [];
     const count = data.linkage ? 4 : 2;
-    this.pins = data.axis ? Array.from({ length: count }, () => mesh(round(PIN.radius * barrel), colours.pin)) : [];
-    this.long = PIN.length * barrel;
+    this.pins = data.axis ? Array.from({ length: count }, () => mesh(round(radius), "pin")) : [];
   }
 
   follow(frames) {
     const { foot, rod, head, pivot, normal } = pins(this.data, frames);
     const way = rod.clone().sub(foot).normalize();
     stretch(this.rod, foot, rod);
-    stretch(this.barrel, foot, foot.clone().addScaledVector(way, LENGTH * this.data.retracted));
+    stretch(this.barrel, foot, foot.clone().addScaledVector(way, this.long));
     const [rocker, link] = this.bars;
     if (rocker) {
       stretch(rocker, pivot, rod);
@@ -57,7 +45,7 @@ export class Cylinder {
     }
     const places = pivot ? [foot, rod, pivot, head] : [foot, rod];
     this.pins.forEach((mesh, index) => {
-      const half = normal.clone().multiplyScalar(this.long / 2);
+      const half = normal.clone().multiplyScalar(this.length / 2);
       stretch(mesh, places[index].clone().sub(half), places[index].clone().add(half));
     });
   }

@@ -17,10 +17,12 @@ export function decoded(data) {
  */
 export const known = (value) => value != null && Number.isFinite(value);
 
+/** Numbers of 32 bits from base 64. */
+export const unpacked = (data) => new Float32Array(Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0)).buffer);
+
 /** A recorded run: columns by name, each `{name, unit, part, kind, values, least, most}`: what it shows of which part; the extremes are those of the whole run, also where rows are left out. */
 function run({ columns, rows, every, data }) {
-  const bytes = Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0));
-  const numbers = new Float32Array(bytes.buffer);
+  const numbers = unpacked(data);
   const list = columns.map((column, i) => ({ ...column, values: numbers.subarray(i * rows, (i + 1) * rows) }));
   const byName = new Map(list.map((column) => [column.name, column]));
   return { list, rows, every, t: list[0].values, column: (name) => byName.get(name) };

@@ -78,33 +78,9 @@ export class Kinematics {
     return this.frames;
   }
 
-  /** The indices of the bodies that a body carries, in the order of the spec. */
-  carriedBy(p) {
-    return this.bodies.flatMap((body, index) => (body.parent === p ? [index] : []));
-  }
-
-  /** The coordinates of a body's joint that slide. */
-  slides(p) {
-    const [first, end] = this.bodies[p].moved_by;
-    const own = this.coordinates.slice(first, end);
-    return own.flatMap(({ unit, role }, k) => (unit === "m" && role !== "base" ? [first + k] : []));
-  }
-
   /** Position of a point of interest at the latest pose. */
   point(index, out = new Vector3()) {
     const { body, at } = this.points[index];
     return out.copy(at).applyMatrix4(this.frames[body]);
   }
-}
-
-/** Flexible links, each with the indices of its bodies. */
-export function links(kinematics) {
-  const found = [];
-  kinematics.bodies.forEach((body, p) => {
-    if (!body.flexible || body.rope) return;
-    const last = found.at(-1);
-    if (last && last.name === body.link) last.bodies.push(p);
-    else found.push({ name: body.link, bodies: [p] });
-  });
-  return found;
 }

@@ -1,7 +1,7 @@
 // Which plots there are, and what they show.
 import { Matrix4, Vector3 } from "three";
 import { range, scaled, spoken } from "./data.js";
-import { Kinematics, links } from "./kinematics.js";
+import { Kinematics } from "./kinematics.js";
 import { Plot } from "./plot.js";
 import { carried, envelope, margins, ordered, used } from "./strength.js";
 
@@ -131,7 +131,7 @@ function deflection(overTime, crane, rigid) {
     }
   }
   const kinematics = new Kinematics(crane);
-  const found = links(kinematics);
+  const found = crane.scene.beams;
   if (!found.length) return;
   const q = crane.coordinates.map(({ name }) => crane.run.column(name).values);
   const tips = found.map(() => ["y", "z"].map(() => new Float32Array(crane.run.rows)));

@@ -1,6 +1,6 @@
 // The view in three dimensions: cranes, ground, traces, forces, camera.
 import {
-  ACESFilmicToneMapping, ArrowHelper, Box3, Color, DirectionalLight, Fog, GridHelper, Group, HemisphereLight, Mesh, MeshBasicMaterial,
+  ACESFilmicToneMapping, ArrowHelper, Color, DirectionalLight, Fog, GridHelper, Group, HemisphereLight, Mesh, MeshBasicMaterial,
   MeshLambertMaterial, PCFShadowMap, PerspectiveCamera, Raycaster, RingGeometry, Scene, SphereGeometry, Vector2, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
@@ -131,7 +131,8 @@ export class Viewer {
     this.rigid = rigid;
     this.mode = null;
     this.player.loops = false;
-    this.extent = extent(crane);
+    this.figure = new Figure(crane);
+    this.extent = extent(this.figure);
     const { size } = this.extent;
     Object.assign(this.camera, { near: 0.01 * size, far: 60 * size }).updateProjectionMatrix();
     // What is shown no longer keeps its programs on the graphics card until those of the new cranes are there.
@@ -139,15 +140,9 @@ export class Viewer {
     this.scene.remove(this.content);
     this.content = new Group();
     this.scene.add(this.content);
-    this.figure = new Figure(crane, size);
-    // What it stands on is to be seen, too.
-    if (this.figure.plate) {
-      const { min, max } = new Box3().setFromObject(this.figure.plate);
-      for (const x of [min.x, max.x]) for (const y of [min.y, max.y]) this.extent.places.push(new Vector3(x, y, min.z));
-    }
     this.content.add(this.figure.group);
     this.figure.mark(this.marked ?? null);
-    this.ghost = rigid ? new Figure(rigid, size, { ghost: true }) : null;
+    this.ghost = rigid ? new Figure(rigid, { ghost: true }) : null;
     if (this.ghost) this.content.add(this.ghost.group);
     this.used = used(crane);
     /** Value at the end of the colour scale. */

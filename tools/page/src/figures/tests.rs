@@ -298,10 +298,10 @@ fn what_is_drawn_has_the_measures_of_the_spec() {
     let equilibrium = crane.equilibrium(&statics::Settings::default());
     let data = data_of(&Subject { label: "value", crane, live: &live, equilibrium: &equilibrium, run: None });
     let shown = &data["cranes"][0];
-    let along = shown["outlines"]["boom"]["along"].as_array().expect("an outline");
+    assert_eq!(shown["scene"]["beams"][0]["name"], "boom");
+    let along = shown["scene"]["beams"][0]["along"].as_array().expect("an outline");
     let [first, last] = [along.first(), along.last()].map(|sides| sides.expect("an end").clone());
     assert_eq!((first, last), (json!([0.0, 0.3, 0.15]), json!([4.0, 0.2, 0.1])));
-    assert_eq!(shown["outlines"]["boom"]["size"], json!([0.3, 0.15]));
     let linkage = &shown["scene"]["cylinders"][0]["linkage"];
     assert_eq!((&linkage["rocker"], &linkage["link"], &linkage["left"]), (&json!(0.5), &json!(0.6), &json!(false)));
     assert_eq!(linkage["pivot"]["at"], json!([0.1, 0.0, 1.6]));
@@ -312,22 +312,17 @@ fn what_is_drawn_has_the_measures_of_the_spec() {
 fn pads_are_where_they_are() {
     let live = live("loader", include_str!("../../../../specs/examples/telescopic_loader.yaml"));
     let crane: &dyn crane_model::dyn_crane::DynCrane = &live;
-    let equilibrium = crane.equilibrium(&statics::Settings::default());
-    let data = data_of(&Subject { label: "value", crane, live: &live, equilibrium: &equilibrium, run: None });
-    let pads = data["cranes"][0]["scene"]["pads"].as_array().expect("pads").clone();
+    let pads = crate::scene::Scene::new(&live, &crane.guess()).pads;
     let names = &crane.description().coordinates;
     for out in [0.2, 1.6] {
         let places = names.iter().map(|own| if own.name.ends_with("stage_x") { out } else { 0.0 });
         let frames = crane.transforms_at(&places.collect::<Vec<f64>>());
-        let at = |pad: &Value| {
-            let body = usize::try_from(pad["body"].as_u64().expect("a body")).expect("small");
-            frames[body].transform_point(&nalgebra::Point3::new(pad["x"].as_f64().expect("a place"), 0.0, 0.0))
-        };
+        let at = |pad: &crate::scene::Pad| frames[pad.body].transform_point(&nalgebra::Point3::new(pad.x, 0.0, 0.0));
         for (stage, (beams, inside)) in
             [(["boom", "first_stage"], 3.1), (["first_stage", "second_stage"], 2.9)].iter().enumerate()
         {
             let [front, rear] = [&pads[2 * stage], &pads[2 * stage + 1]];
-            assert_eq!((&front["beams"], &rear["beams"]), (&json!(beams), &json!(beams)));
+            assert_eq!([&front.beams, &rear.beams].map(|names| names.each_ref().map(String::as_str)), [*beams; 2]);
             assert!(((at(front) - at(rear)).norm() - (inside - out)).abs() < 1e-12);
         }
     }

@@ -16,35 +16,49 @@ pub const LENGTH: f64 = 0.9;
 const LONG: f64 = 3.0;
 const RADIUS: f64 = 0.6;
 
+/// Sizes of the parts of a cylinder, m.
+pub struct Sizes {
+    /// Radius of the barrel.
+    pub barrel: f64,
+    /// Its length from the foot.
+    pub long: f64,
+    /// Radius of the rod.
+    pub rod: f64,
+    /// Sides of rocker and link, across.
+    pub bar: [f64; 2],
+    /// Radius and length of a pin.
+    pub pin: [f64; 2],
+}
+
+impl Barrel {
+    /// The sizes of its parts, in a crane of this size.
+    pub fn sizes(&self, size: f64) -> Sizes {
+        let barrel = (OUTER * self.bore).max(LEAST * size);
+        let side = SIDE / OUTER * barrel;
+        Sizes {
+            barrel,
+            long: LENGTH * self.retracted,
+            rod: (0.5 * self.rod).max(0.45 * barrel),
+            bar: [side, 0.6 * side],
+            pin: [RADIUS * barrel, LONG * barrel],
+        }
+    }
+}
+
 /// The parts of a cylinder in the world while the bodies have these frames.
 pub fn parts(cylinder: &Barrel, size: f64, frames: &[Matrix4<f64>]) -> Vec<(Paint, Mesh)> {
     let pins = cylinder.pins(frames);
     let Pins { foot, rod, head, pivot } = pins;
-    let barrel = (OUTER * cylinder.bore).max(LEAST * size);
-    let end = foot + (rod - foot).normalize() * (LENGTH * cylinder.retracted);
+    let Sizes { barrel, long, rod: thin, bar, pin: [radius, length] } = cylinder.sizes(size);
+    let end = foot + (rod - foot).normalize() * long;
     let round = |paint, from, to, radius: f64| (paint, Mesh::rod(from, to, [radius; 2], 20));
-    let mut parts =
-        vec![round(ROD, foot, rod, (0.5 * cylinder.rod).max(0.45 * barrel)), round(BARREL, foot, end, barrel)];
-    let side = SIDE / OUTER * barrel;
+    let mut parts = vec![round(ROD, foot, rod, thin), round(BARREL, foot, end, barrel)];
     for ends in pivot.into_iter().flat_map(|pivot| [[pivot, rod], [rod, head]]) {
-        parts.push((LINKAGE, Mesh::bar(ends[0], ends[1], [side, 0.6 * side])));
+        parts.push((LINKAGE, Mesh::bar(ends[0], ends[1], bar)));
     }
-    let half = cylinder.normal(frames).map(|normal| normal * (LONG * barrel / 2.0));
+    let half = cylinder.normal(frames).map(|normal| normal * (length / 2.0));
     parts.extend(
-        half.into_iter()
-            .flat_map(|half| pins.places().map(move |at| round(PIN, at - half, at + half, RADIUS * barrel))),
+        half.into_iter().flat_map(|half| pins.places().map(move |at| round(PIN, at - half, at + half, radius))),
     );
     parts
-}
-
-/// The proportions as the page's script has them.
-#[cfg(test)]
-pub fn written() -> [String; 5] {
-    [
-        format!("const LEAST = {LEAST};"),
-        format!("const BARREL = {OUTER};"),
-        format!("const BAR = {SIDE};"),
-        format!("const LENGTH = {LENGTH};"),
-        format!("const PIN = {{ length: {LONG}, radius: {RADIUS} }};"),
-    ]
 }

@@ -7,7 +7,7 @@ use crane_codegen::exchange::Look;
 use nalgebra::Vector3;
 
 use super::{Figure, Mesh, Owner, Shape};
-use crate::scene::{Body, is_mesh};
+use crate::scene::{Body, is_drawn};
 
 /// Files of triangles, STL, by their paths from the exported file.
 pub type Surfaces = BTreeMap<String, Vec<u8>>;
@@ -17,14 +17,14 @@ pub type Surfaces = BTreeMap<String, Vec<u8>>;
 /// Cylinders, springs and ropes lead from body to body, which no link does: they are left out.
 pub fn looks(figure: &Figure, folder: &str) -> (Vec<Look>, Surfaces) {
     let mut files = Surfaces::new();
-    // What is guessed of a link whose spec names surfaces is in place of these, which are not read.
-    let named: Vec<&Look> = figure.scene.forms.iter().filter(|form| is_mesh(form)).collect();
+    // What is guessed of a link whose spec names surfaces is in place of these, if nobody has read them.
+    let named: Vec<&Look> = figure.scene.forms.iter().filter(|form| !is_drawn(form)).collect();
     let replaced = |body: usize| {
         let Body { length, formed, .. } = figure.scene.bodies[body];
         length == 0.0 && !formed && named.iter().any(|form| form.body == Some(BodyId(body)))
     };
     let mut looks: Vec<Look> = named.iter().map(|form| (*form).clone()).collect();
-    for Shape { owner, paint, mesh } in &figure.shapes {
+    for Shape { owner, paint, mesh, .. } in &figure.shapes {
         let (body, of) = match owner {
             Owner::Body(body) if replaced(*body) => continue,
             Owner::Body(body) => (Some(BodyId(*body)), figure.scene.bodies[*body].name.as_str()),
@@ -36,7 +36,7 @@ pub fn looks(figure: &Figure, folder: &str) -> (Vec<Look>, Surfaces) {
             let name = format!("{of}.{}", files.len() + 1);
             let file = format!("{folder}/{name}.stl");
             files.insert(file.clone(), stl(mesh));
-            (Frame::WORLD, Form::Mesh { file, scale: 1.0 })
+            (Frame::WORLD, Form::Mesh { file, scale: 1.0, surface: None })
         });
         let colour = paint.colour.map(|channel| f64::from(channel) / 255.0);
         looks.push(Look { body, frame, form, paint: Some((paint.name, colour)) });
@@ -45,7 +45,7 @@ pub fn looks(figure: &Figure, folder: &str) -> (Vec<Look>, Surfaces) {
 }
 
 /// Triangles as binary STL, m: a head of 80 bytes, their number, and for each its normal, its corners and two bytes.
-fn stl(mesh: &Mesh) -> Vec<u8> {
+pub(super) fn stl(mesh: &Mesh) -> Vec<u8> {
     let mut bytes = vec![b' '; 80];
     bytes.extend(u32::try_from(mesh.triangles.len()).unwrap_or(u32::MAX).to_le_bytes());
     for triangle in &mesh.triangles {

@@ -81,7 +81,7 @@ impl Mesh {
         Self::between(&places.map(ring).collect::<Vec<_>>())
     }
 
-    /// A solid in a frame; of a surface in a file, which is not read, there are no triangles.
+    /// A form in a frame; of a surface in a file that nobody has read, there are no triangles.
     pub fn solid(frame: &Frame, form: &Form) -> Self {
         let along_z = |length: f64| [-0.5, 0.5].map(|end| Vector3::z() * (end * length));
         let mut mesh = match *form {
@@ -93,7 +93,11 @@ impl Mesh {
             Form::Capsule { diameter, length } => {
                 Self::round(along_z(length), &turned(Vector3::x(), Vector3::z()), diameter / 2.0)
             }
-            Form::Mesh { .. } => Self::default(),
+            Form::Mesh { ref surface, scale, .. } => surface.as_ref().map_or_else(Self::default, |surface| Self {
+                corners: surface.corners.iter().map(|corner| scale * Vector3::from(*corner)).collect(),
+                triangles: surface.triangles.clone(),
+                solid: None,
+            }),
         };
         let pose = matrix(frame);
         mesh.corners.iter_mut().for_each(|corner| *corner = (pose * corner.push(1.0)).xyz());

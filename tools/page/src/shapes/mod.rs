@@ -1,20 +1,24 @@
-//! The shapes of a crane: triangles for pictures and for other programs, as the page's script draws them (`tools/report/src/figure.js`).
+//! The shapes of a crane, for pages, pictures and other programs.
 //!
 //! | module | content |
 //! |---|---|
 //! | `mesh` | triangles of boxes, rods, balls and hooks |
 //! | `beam`, `cylinders` | beams that bend, hydraulic cylinders |
+//! | `data` | the shapes for the script of a page, which moves them |
 //! | [`gltf`] | the shapes for other programs |
 //! | [`looks`] | the shapes as URDF and MJCF have them |
 //! | [`picture`] | the shapes as picture elements |
+//! | [`surfaces`] | triangles in files that a spec names |
 
 mod apart;
 mod beam;
 mod cylinders;
+mod data;
 pub mod gltf;
 pub mod looks;
 mod mesh;
 pub mod picture;
+pub mod surfaces;
 
 use std::collections::HashMap;
 
@@ -24,7 +28,7 @@ use crane_live::LiveCrane;
 use crane_model::{CoordinateInfo, CoordinateKind, CoordinateRole, dyn_crane::DynCrane};
 use nalgebra::{Matrix4, Vector3};
 
-use crate::scene::{Body, Connector, Hinge, Pad, Place, Scene, Section, is_mesh, matrix, sections};
+use crate::scene::{Body, Connector, Hinge, Pad, Place, Scene, Section, is_drawn, sections};
 pub use cylinders::LENGTH as BARREL_LENGTH;
 pub use mesh::Mesh;
 
@@ -34,11 +38,13 @@ const FILLING: f64 = 2400.0;
 const THICKNESS: [f64; 2] = [0.012, 0.06];
 /// A length below this counts as zero.
 const NOTHING: f64 = 1e-3;
-/// Radii of springs, ropes and sheaves, and size of a hook.
+/// Radii of springs, ropes, and sheaves and points of contact, and size of a hook.
 const SPRING: f64 = 0.004;
 const ROPE: f64 = 0.0015;
 const HOOK: f64 = 0.008;
 const SHEAVE: f64 = 0.006;
+/// Distance of the falls of a rope, relative to its radius.
+const APART: f64 = 4.0;
 /// Feet less far below the base's frame than this are on its level.
 const LEVEL: f64 = 0.02;
 /// Largest height of the frame of a truck above its feet if its spec does not tell.
@@ -97,6 +103,32 @@ pub struct Shape {
     pub paint: Paint,
     /// Its surface, m.
     pub mesh: Mesh,
+    /// What else is known of it.
+    pub detail: Detail,
+}
+
+/// What else is known of a shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Detail {
+    /// Nothing.
+    None,
+    /// It is a piece of a beam, which pages bend themselves.
+    Beam,
+    /// It is of the leg at a support, by its index: pages give it the colour of its load.
+    Leg(usize),
+}
+
+/// A beam, which pages draw themselves.
+#[derive(Debug)]
+pub struct DrawnBeam {
+    /// Its link.
+    pub name: String,
+    /// Its bodies, in their order.
+    pub bodies: Vec<usize>,
+    /// Its outline, written or guessed.
+    pub section: Section,
+    /// Its colour.
+    pub paint: Paint,
 }
 
 /// A crane in a pose, as shapes.
@@ -107,6 +139,10 @@ pub struct Figure {
     pub frames: Vec<Matrix4<f64>>,
     /// The shapes.
     pub shapes: Vec<Shape>,
+    /// The beams among them.
+    pub beams: Vec<DrawnBeam>,
+    /// The size of the crane, m, in which thicknesses are measured.
+    pub size: f64,
     /// Height of the ground on which it stands, m.
     pub ground: f64,
 }
@@ -114,27 +150,39 @@ pub struct Figure {
 impl Figure {
     /// The shapes of a crane in pose `q`, as thick as in pose `start`: of one crane, shapes of other poses differ only by what slides, bends or turns.
     pub fn new(live: &LiveCrane, start: &[f64], q: &[f64]) -> Self {
-        let (scene, frames) = (Scene::new(live, start), (live as &dyn DynCrane).transforms_at(q));
+        let scene = Scene::new(live, start);
+        let travels = scene.reference.iter().zip(q).map(|(a, b)| [a.min(*b), a.max(*b)]).collect();
+        Self::of_scene(live, scene, q, travels)
+    }
+
+    /// The shapes of a crane in pose `start` that stay in their sleeves while each coordinate is within its least and greatest value.
+    pub fn moving(live: &LiveCrane, start: &[f64], travels: Vec<[f64; 2]>) -> Self {
+        Self::of_scene(live, Scene::new(live, start), start, travels)
+    }
+
+    fn of_scene(live: &LiveCrane, scene: Scene, q: &[f64], travels: Vec<[f64; 2]>) -> Self {
+        let frames = (live as &dyn DynCrane).transforms_at(q);
         let coordinates = &(live as &dyn DynCrane).description().coordinates;
         let mut builder = Builder {
             size: size(&scene, coordinates),
             reference: scene.bodies.iter().map(|body| body.frame).collect(),
-            travels: scene.reference.iter().zip(q).map(|(a, b)| [a.min(*b), a.max(*b)]).collect(),
+            travels,
             scene: &scene,
             coordinates,
             frames: &frames,
             usual: None,
             shapes: Vec::new(),
+            beams: Vec::new(),
         };
         builder.build(&sections(live).collect());
-        let (shapes, size) = (builder.shapes, builder.size);
+        let Builder { shapes, beams, size, .. } = builder;
         let feet =
             scene.supports.iter().map(|(_, at)| Place { body: Some(0), at: *at }.within(&frames).z - 0.008 * size);
         let lowest = || {
             shapes.iter().flat_map(|shape| placed(shape, &frames)).map(|corner| corner.z).fold(f64::INFINITY, f64::min)
         };
         let ground = feet.min_by(f64::total_cmp).unwrap_or_else(lowest);
-        Self { scene, frames, shapes, ground }
+        Self { scene, frames, shapes, beams, size, ground }
     }
 
     /// The corners of a shape in the world, m.
@@ -181,21 +229,22 @@ fn size(scene: &Scene, coordinates: &[CoordinateInfo]) -> f64 {
     ((high - low).add_scalar(2.0 * MARGIN * diagonal)).norm().max(1e-3)
 }
 
-/// The corners of the box around a form; none of a surface in a file.
-fn corners(form: &Look) -> Vec<Place> {
-    let (body, sides, pose) =
-        (form.body.map(|BodyId(body)| body), Vector3::from(form.form.sides()), matrix(&form.frame));
-    let count = if is_mesh(form) { 0 } else { 8 };
-    let corner = |index: u8| {
-        let signs = [1, 2, 4].map(|bit| if index & bit == 0 { -0.5 } else { 0.5 });
-        Place { body, at: (pose * sides.component_mul(&Vector3::from(signs)).push(1.0)).xyz() }
-    };
-    (0..count).map(corner).collect()
+/// The corners of a form.
+fn corners(form: &Look) -> impl Iterator<Item = Place> {
+    let body = form.body.map(|BodyId(body)| body);
+    Mesh::solid(&form.frame, &form.form).corners.into_iter().map(move |at| Place { body, at })
 }
 
 /// Whether the base moves.
 fn has_base(coordinates: &[CoordinateInfo]) -> bool {
     coordinates.first().is_some_and(|first| first.role == CoordinateRole::Base)
+}
+
+impl Connector {
+    /// The radius of its rods, m, and their colour.
+    fn look(&self, size: f64) -> (f64, Paint) {
+        if self.rope { (ROPE * size, PIN) } else { (SPRING * size, SLIDE) }
+    }
 }
 
 /// What is known while the shapes are made.
@@ -212,6 +261,7 @@ struct Builder<'a> {
     /// Thickness of links whose mass tells none.
     usual: Option<f64>,
     shapes: Vec<Shape>,
+    beams: Vec<DrawnBeam>,
 }
 
 /// The frame of a truck above its feet.
@@ -248,6 +298,10 @@ impl<'a> Builder<'a> {
         }
         self.pins();
         self.hinges();
+        for Place { body, at } in &scene.contacts {
+            let body = body.unwrap_or_default();
+            self.part(body, PAD, Mesh::ball(*at, SHEAVE * self.size));
+        }
         for index in 0..scene.bodies.len() {
             if scene.bodies.iter().all(|body| body.parent != Some(index)) {
                 self.end(index);
@@ -264,16 +318,22 @@ impl<'a> Builder<'a> {
         for cylinder in &scene.cylinders {
             let parts = cylinders::parts(cylinder, self.size, self.frames);
             let owner = || Owner::Part(cylinder.name.clone());
-            self.shapes.extend(parts.into_iter().map(|(paint, mesh)| Shape { owner: owner(), paint, mesh }));
+            let shape = |(paint, mesh)| Shape { owner: owner(), paint, mesh, detail: Detail::None };
+            self.shapes.extend(parts.into_iter().map(shape));
         }
     }
 
     fn part(&mut self, body: usize, paint: Paint, mesh: Mesh) {
-        self.shapes.push(Shape { owner: Owner::Body(body), paint, mesh });
+        self.fixed(Owner::Body(body), paint, mesh);
     }
 
     fn fixed(&mut self, owner: Owner, paint: Paint, mesh: Mesh) {
-        self.shapes.push(Shape { owner, paint, mesh });
+        self.shapes.push(Shape { owner, paint, mesh, detail: Detail::None });
+    }
+
+    /// The same with what else is known of it.
+    fn detail(&mut self, body: usize, paint: Paint, mesh: Mesh, detail: Detail) {
+        self.shapes.push(Shape { owner: Owner::Body(body), paint, mesh, detail });
     }
 
     /// A square box between places of a body, unless it has no length.
@@ -355,7 +415,7 @@ impl<'a> Builder<'a> {
             for (number, (&index, mut mesh)) in elements.iter().zip(beam::pieces(&placed, section)).enumerate() {
                 let inverse = self.frames[index].try_inverse().unwrap_or_else(Matrix4::identity);
                 mesh.corners.iter_mut().for_each(|corner| *corner = (inverse * corner.push(1.0)).xyz());
-                self.part(index, paint, mesh);
+                self.detail(index, paint, mesh, Detail::Beam);
                 // Rings between the elements show where it bends.
                 if number > 0 {
                     let [height, width] = beam::size_at(&section.along, begin);
@@ -372,6 +432,8 @@ impl<'a> Builder<'a> {
             }
             drawn.insert(name, (section.size, depth));
             self.usual.get_or_insert(section.size[0].max(section.size[1]));
+            let (name, bodies, section) = (name.to_owned(), elements.to_vec(), section.clone());
+            self.beams.push(DrawnBeam { name, bodies, section, paint });
         }
         drawn
     }
@@ -540,7 +602,7 @@ impl<'a> Builder<'a> {
     /// What the spec says that links look like.
     fn forms(&mut self) {
         let scene = self.scene;
-        for form in scene.forms.iter().filter(|form| !is_mesh(form)) {
+        for form in scene.forms.iter().filter(|form| is_drawn(form)) {
             let Some(BodyId(body)) = form.body else { continue };
             let paint = if body == 0 && has_base(self.coordinates) { BASE } else { LINK };
             self.part(body, paint, Mesh::solid(&form.frame, &form.form));
@@ -594,27 +656,27 @@ impl<'a> Builder<'a> {
             self.part(0, BASE, Mesh::block(centre, sizes));
         }
         let side = (0.3 * depth).min(LEG * self.size);
-        for foot in supports {
+        for (index, foot) in supports.into_iter().enumerate() {
             let (mut root, knee) = (centre, Vector3::new(foot.x, foot.y, level));
             root[long] = foot[long];
             self.bar(0, [root, knee], 1.2 * side, BASE);
             let half = Vector3::z() * (0.175 * side);
-            self.part(0, SLIDE, Mesh::rod(foot, knee, [0.55 * side; 2], 20));
-            self.part(0, SLIDE, Mesh::rod(foot - half, foot + half, [1.6 * side, 1.3 * side], 28));
+            self.detail(0, SLIDE, Mesh::rod(foot, knee, [0.55 * side; 2], 20), Detail::Leg(index));
+            let plate = Mesh::rod(foot - half, foot + half, [1.6 * side, 1.3 * side], 28);
+            self.detail(0, SLIDE, plate, Detail::Leg(index));
         }
     }
 
     /// A rod for each part of a connector, one for each fall of a rope, and a sheave at each point between.
     fn connector(&mut self, connector: &Connector) {
-        let radius = if connector.rope { ROPE } else { SPRING } * self.size;
-        let paint = if connector.rope { PIN } else { SLIDE };
+        let (radius, paint) = connector.look(self.size);
         let places: Vec<Vector3<f64>> = connector.points.iter().map(|point| point.within(self.frames)).collect();
         for (part, ends) in places.windows(2).enumerate() {
             let (from, way) = (ends[0], ends[1] - ends[0]);
             let falls = if part + 2 == places.len() { connector.falls } else { 1 };
             // Falls hang side by side.
             let aside = way.cross(&if way.y.abs() > 0.9 * way.norm() { Vector3::x() } else { Vector3::y() });
-            let aside = aside.try_normalize(0.0).unwrap_or_default() * (4.0 * radius);
+            let aside = aside.try_normalize(0.0).unwrap_or_default() * (APART * radius);
             for fall in 0..falls {
                 let from = from + aside * (fall as f64 - (falls - 1) as f64 / 2.0);
                 self.fixed(Owner::Part(connector.name.clone()), paint, Mesh::rod(from, from + way, [radius; 2], 16));
