@@ -3,7 +3,7 @@
 use crane_codegen::exchange;
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
-use crane_page::scene::Scene;
+use crane_page::shapes::Figure;
 use serde_json::Value;
 
 use crate::observe::equilibrium;
@@ -16,7 +16,8 @@ const DRAWN: f64 = 1e-6;
 pub fn differences(written: &LiveCrane, set: &LiveCrane) -> Vec<String> {
     let mut lines = described([written, set]);
     let Ok(q) = equilibrium(written as &dyn DynCrane) else { return lines };
-    different("scene", [&Scene::new(written, &q).json(), &Scene::new(set, &q).json()], &mut lines);
+    let [one, other] = [written, set].map(|crane| drawn(crane, &q));
+    different("scene", [&one, &other], &mut lines);
     let exported = |crane: &LiveCrane| {
         let (chain, parameters) = (crane.chain(), crane.parameters());
         let mjcf = exchange::mjcf(chain, parameters, &[], (&chain.guess_at(parameters), "guess"))
@@ -36,6 +37,17 @@ pub fn differences(written: &LiveCrane, set: &LiveCrane) -> Vec<String> {
         lines.extend(differing.map(|(written, set)| format!("{name}: {written} against {set}")));
     }
     lines
+}
+
+/// What a page draws of a crane, and the corners of all shapes; those of surfaces are packed in the former, to 7 digits.
+fn drawn(crane: &LiveCrane, q: &[f64]) -> Value {
+    let figure = Figure::new(crane, q, q);
+    let mut drawn = figure.json();
+    for part in drawn["parts"].as_array_mut().into_iter().flatten() {
+        part["corners"] = Value::Null;
+    }
+    drawn["corners"] = figure.all_corners().iter().map(|corner| Vec::from_iter(corner.iter().copied())).collect();
+    drawn
 }
 
 /// What the descriptions say that does not depend on live parameters, and differs nevertheless.
