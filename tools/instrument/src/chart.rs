@@ -10,7 +10,7 @@ use crane_model::{
 };
 use serde_json::{Value, json};
 
-use crate::{engine::Outcome, request::Range};
+use crate::{posed::Outcome, request::Range};
 
 /// Maximum number of poses: these take a minute.
 const MOST_POSES: usize = 2000;

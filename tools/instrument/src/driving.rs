@@ -17,8 +17,8 @@ use crane_page::Texts;
 use serde_json::{Value, json};
 
 use crate::{
-    engine::{Outcome, check_positions, starts, still, with_numbers, with_parameters},
     levers::{Kind, Numbers, full_speed, kind, with_levers},
+    posed::{Outcome, check_positions, starts, still, with_numbers, with_parameters},
 };
 
 /// Time from rest to full speed, s.

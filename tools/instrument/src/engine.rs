@@ -14,11 +14,11 @@ use crane_model::{
     dyn_crane::{DynCrane, DynDynamics, DynModel},
     dynamics::{Method, Settings},
     results::cautions::BEND,
-    runs::{Recorded, Start, record_checked},
+    runs::{Start, record_checked},
     statics::{self, Equilibrium},
 };
 use crane_page::{
-    Program, Subject, Texts, data, data_without_modes, modes,
+    Texts, data, modes,
     tables::{Case, VALUE, diagnostics, equilibria, of_page},
 };
 use serde_json::{Value, json};
@@ -27,14 +27,9 @@ use crate::{
     chart::{self, Wanted},
     driving::Driving,
     levers::{self, Numbers},
+    posed::{Outcome, PROGRAM, check_positions, starts, still, subject, with_numbers, with_parameters},
     request::Request,
 };
-
-/// What computed the results.
-const PROGRAM: Program = Program { name: "crane", version: env!("CARGO_PKG_VERSION") };
-
-/// What went wrong, in words for the reader of the page.
-pub type Outcome<T> = Result<T, String>;
 
 /// The crane of the page.
 #[derive(Default)]
@@ -186,36 +181,6 @@ impl Opened {
     }
 }
 
-/// A crane with other parameters; if none are given, with its own.
-pub fn with_parameters(live: &LiveCrane, parameters: &[f64]) -> Outcome<LiveCrane> {
-    let mut crane = live.clone();
-    if !parameters.is_empty() {
-        let own = with_numbers(live, parameters, std::iter::empty())?;
-        crane.set_parameters(&own).map_err(|refused| refused.to_string())?;
-    }
-    Ok(crane)
-}
-
-/// Where the motions of the drives begin, m and rad.
-pub fn starts(crane: &LiveCrane) -> Vec<f64> {
-    (crane as &dyn DynCrane).drive_motions_at(0.0).iter().map(|[position, _]| *position).collect()
-}
-
-/// Parameters of a crane with levers: its own, or other values of them, then the numbers of its drives.
-pub fn with_numbers(live: &LiveCrane, parameters: &[f64], numbers: impl Iterator<Item = Numbers>) -> Outcome<Vec<f64>> {
-    let own = if parameters.is_empty() { live.parameters() } else { parameters };
-    if own.len() != live.parameters().len() {
-        return Err(format!("{} values for {} parameters", own.len(), live.parameters().len()));
-    }
-    Ok(own.iter().copied().chain(numbers.flat_map(Numbers::array)).collect())
-}
-
-/// Whether there is one position for each drive.
-pub fn check_positions(live: &LiveCrane, positions: &[f64]) -> Outcome<()> {
-    let drives = live.chain().drives.len();
-    if positions.len() == drives { Ok(()) } else { Err(format!("{} positions for {drives} drives", positions.len())) }
-}
-
 /// The crane at rest: what the page draws, and the same tables as those of `crane statics`; without modes.
 fn rest(crane: &LiveCrane, as_written: bool) -> (Value, Equilibrium) {
     let case = Case::new(VALUE, crane as &dyn DynCrane);
@@ -255,19 +220,6 @@ fn run(crane: &LiveCrane, duration: Option<f64>) -> Outcome<Value> {
     let texts = Texts { tables: Some(tables), ..Texts::default() };
     let subject = subject(crane, &case.equilibrium, Some((&settings, &recorded)));
     data(&[subject], texts, PROGRAM).map_err(|error| error.to_string())
-}
-
-/// Data of the page of one crane at rest, without its modes.
-pub fn still(crane: &LiveCrane, equilibrium: &Equilibrium, texts: Texts<'_>) -> Value {
-    data_without_modes(&subject(crane, equilibrium, None), texts, PROGRAM)
-}
-
-fn subject<'a>(
-    crane: &'a LiveCrane,
-    equilibrium: &'a Equilibrium,
-    run: Option<(&'a Settings, &'a Recorded)>,
-) -> Subject<'a> {
-    Subject { label: VALUE, crane, live: crane, equilibrium, run }
 }
 
 /// Calls the acceleration many times; the page measures how long this takes.

@@ -10,6 +10,7 @@
 //! | `engine` | the crane of the page, and what is asked about it |
 //! | `chart` | load charts |
 //! | `levers` | a crane whose drives are at given positions, or follow levers |
+//! | `posed` | a crane with the numbers of the page |
 //! | `driving` | a motion in real time |
 
 pub mod abi;
@@ -17,6 +18,7 @@ mod chart;
 mod driving;
 mod engine;
 mod levers;
+mod posed;
 mod request;
 
 pub use engine::Engine;

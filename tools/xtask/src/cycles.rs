@@ -4,30 +4,25 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::workspace;
 
-/// Crates whose rooms, files and folders below the root, must not import each other in a circle; their files neither, except for a file
-/// and its helper.
-const CRATES: [&str; 10] = [
-    "codegen/src",
-    "crane-model/src",
-    "tools/cli/src",
-    "tools/fmu/src",
-    "tools/jit/src",
-    "tools/lab/src",
-    "tools/live/src",
-    "tools/page/src",
-    "tools/python/src",
-    "tools/xtask/src",
-];
+/// The modules of the Python package.
+const PYTHON: &str = "tools/python/crane";
 /// Maximum size of a permitted cycle of files: a file and its helper.
 const HELPED: usize = 2;
 
 /// A file, or a room, and those that it names.
-type Imports = BTreeMap<String, BTreeSet<String>>;
+pub type Imports = BTreeMap<String, BTreeSet<String>>;
 
-/// Every circle of rooms, and every cycle of files, as a line that names them.
+/// Every circle of rooms, files and folders below the root of a crate, and every cycle of files except for a file and its helper, as a line that names them;
+/// and every cycle of Python modules.
 pub fn find_cycles() -> Result<Vec<String>, String> {
-    let mut found = Vec::new();
-    for root in CRATES {
+    let python = cyclic_groups(&python_imports()?);
+    let mut found: Vec<String> =
+        python.iter().map(|modules| format!("{} import each other in a cycle", modules.join(", "))).collect();
+    for root in workspace::members()?.iter().map(|member| format!("{member}/src")) {
+        let root = root.as_str();
+        if !workspace::root().join(root).is_dir() {
+            continue;
+        }
         let imports = imports_of(root)?;
         let rooms = cyclic_groups(&by_room(&imports, root)).into_iter().filter(|rooms| rooms.len() > 1);
         found.extend(rooms.map(|rooms| format!("{} of {root} import each other in a circle", rooms.join(", "))));
@@ -53,6 +48,32 @@ fn imports_of(root: &str) -> Result<Imports, String> {
         imports.insert(file.clone(), named);
     }
     Ok(imports)
+}
+
+/// What every Python module imports while it is loaded: not for types alone, nor within a function.
+fn python_imports() -> Result<Imports, String> {
+    let files = workspace::find_files(PYTHON, "py")?;
+    let mut imports = Imports::new();
+    for file in files.iter().filter(|file| !file.ends_with("/__init__.py")) {
+        let named = modules_loaded(&workspace::read_file(file)?).into_iter().map(|name| format!("{PYTHON}/{name}.py"));
+        imports.insert(file.clone(), named.filter(|other| files.contains(other)).collect());
+    }
+    Ok(imports)
+}
+
+/// Modules of its own package that a Python module imports without indentation.
+fn modules_loaded(text: &str) -> BTreeSet<String> {
+    let from = text.lines().filter_map(|line| line.strip_prefix("from ."));
+    let named = from.flat_map(|line| {
+        let (module, names) = line.split_once(" import ").unwrap_or((line, ""));
+        if module.trim().is_empty() { names.trim_matches(['(', ')']).split(',').collect() } else { vec![module] }
+    });
+    named.map(|name| name.split_whitespace().next().unwrap_or_default().to_owned()).collect()
+}
+
+/// What the rooms of a crate import of each other.
+pub fn rooms_imported(root: &str) -> Result<Imports, String> {
+    Ok(by_room(&imports_of(root)?, root))
 }
 
 /// The same between rooms.
@@ -232,6 +253,12 @@ mod tests {
             ["SourceFile", "compile", "emit::self", "emit::labels::Labels", "own"]
         );
         assert_eq!(words("lower::lower(p)"), ["lower::lower"]);
+    }
+
+    #[test]
+    fn python_modules_are_found() {
+        let text = "from __future__ import annotations\nfrom .results import Row, names\nfrom . import loops, model as own\nif TYPE_CHECKING:\n    from .run import Run\n";
+        assert_eq!(modules_loaded(text), ["loops", "model", "results"].map(str::to_owned).into());
     }
 
     #[test]

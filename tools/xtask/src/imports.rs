@@ -5,10 +5,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::{cycles, modules, workspace};
 
 const PAGE: &str = "ARCHITECTURE.md";
+/// What a reader takes in at one sitting.
+const MOST_LINES: usize = 220;
 const COMPILER: &str = "codegen/src";
-/// Headings of both tables.
+/// Headings of the tables of modules and crates.
 const MODULES: &str = "Modules of the compiler";
 const CRATES: &str = "Crates of the project";
+/// Heading of the runtime's part, with the table of its floors.
+const RUNTIME: &str = "The runtime";
+const FLOORS: &str = "crane-model/src";
 /// A cell that permits every module.
 const ALL: &str = "all";
 
@@ -62,7 +67,10 @@ const ONLY_IN: [(&[&str], &[&str], &str); 5] = [
 pub fn check_imports() -> Result<(), String> {
     let page = workspace::read_file(PAGE)?;
     let mut breaches = check_modules(&page)?;
+    let lines = page.lines().count();
+    breaches.extend((lines > MOST_LINES).then(|| format!("{PAGE}: {lines} lines, more than {MOST_LINES}")));
     breaches.extend(check_crates(&page)?);
+    breaches.extend(check_floors(&page)?);
     for (folder, extension, words, reason) in MAY_NOT_NAME {
         for file in &workspace::find_files(folder, extension)? {
             for (number, line) in code_lines(&workspace::read_file(file)?) {
@@ -118,9 +126,8 @@ fn check_modules(page: &str) -> Result<Vec<String>, String> {
 /// Crates that depend on a crate, or name a module of the compiler, that the second table does not permit.
 fn check_crates(page: &str) -> Result<Vec<String>, String> {
     let rows = read_table(page, CRATES);
-    let manifest = workspace::read_file("Cargo.toml")?;
-    let members = manifest.split("members = [").nth(1).and_then(|rest| rest.split(']').next()).unwrap_or_default();
-    let members: BTreeSet<&str> = members.split('"').skip(1).step_by(2).collect();
+    let members = workspace::members()?;
+    let members: BTreeSet<&str> = members.iter().map(String::as_str).collect();
     let mut breaches = unlisted_rows(CRATES, &members, &rows);
     let reexports = read_reexports()?;
     for (row, member) in rows.iter().flat_map(|row| row[0].iter().map(move |member| (row, member))) {
@@ -139,6 +146,20 @@ fn check_crates(page: &str) -> Result<Vec<String>, String> {
             let wrong = named.iter().filter(|name| !row[2].contains(*name));
             breaches.extend(wrong.map(|name| format!("{file}: may not import `{name}` of the compiler")));
         }
+    }
+    Ok(breaches)
+}
+
+/// Rooms of the runtime that use what is on a floor above.
+fn check_floors(page: &str) -> Result<Vec<String>, String> {
+    let rows = read_table(page, RUNTIME);
+    let imports = cycles::rooms_imported(FLOORS)?;
+    let present: BTreeSet<&str> = imports.keys().map(String::as_str).collect();
+    let floor = |room: &str| rows.iter().position(|row| row[0].contains(room));
+    let mut breaches = unlisted_rows(RUNTIME, &present, &rows);
+    for (room, named) in &imports {
+        let above = named.iter().filter(|other| floor(other) > floor(room));
+        breaches.extend(above.map(|other| format!("{FLOORS}: `{room}` uses `{other}` of a floor above")));
     }
     Ok(breaches)
 }

@@ -24,6 +24,13 @@ pub fn read_file(path: &str) -> Result<String, String> {
     fs::read_to_string(root().join(path)).map_err(|error| format!("{path}: {error}"))
 }
 
+/// Folders of the crates of the workspace.
+pub fn members() -> Result<Vec<String>, String> {
+    let manifest = read_file("Cargo.toml")?;
+    let members = manifest.split("members = [").nth(1).and_then(|rest| rest.split(']').next()).unwrap_or_default();
+    Ok(members.split('"').skip(1).step_by(2).map(str::to_owned).collect())
+}
+
 /// Files with an extension under a folder, by their paths from the root, sorted.
 pub fn find_files(folder: &str, extension: &str) -> Result<Vec<String>, String> {
     let mut found = Vec::new();
