@@ -294,6 +294,6 @@ fn numbers_or_zero(given: Option<&Spanned<Vector>>) -> Option<[f64; 3]> {
 
 fn numbers(vector: &Vector) -> Option<[f64; 3]> {
     let [x, y, z] =
-        vector.each_ref().map(|Spanned { value, .. }| value.as_ref().and_then(|Number(number)| number.number()));
+        vector.each_ref().map(|Spanned { value, .. }| value.as_ref().and_then(|Number(number, _)| number.number()));
     Some([x?, y?, z?])
 }

@@ -8,34 +8,45 @@ macro_rules! point_laws {
         $expand! {
             /// A spring and a damper, which pull and push.
             Spring as PointSpring: "a mapping of `stiffness`, `damping` and `length`" {
-                /// Stiffness, N/m.
-                stiffness: Spanned<Number>, NotNegative "N/m";
-                /// Damping, N s/m. Default 0.
-                damping: Option<Spanned<Number>>, NotNegative "N s/m";
-                /// Length at which the spring exerts no force, m.
-                length: Spanned<Number>, Positive "m";
+                /// Stiffness.
+                #[key(unit = "N/m", limit = NotNegative)]
+                stiffness: Spanned<Number>;
+                /// Damping. Default 0.
+                #[key(unit = "N s/m", limit = NotNegative)]
+                damping: Option<Spanned<Number>>;
+                /// Length at which the spring exerts no force.
+                #[key(unit = "m", limit = Positive)]
+                length: Spanned<Number>;
             }
             /// A gas spring, which pushes.
             GasSpring as GasSpring: "a mapping of `force`, `length`, `stiffness` and `damping`" {
-                /// The force with which it pushes at `length`, N.
-                force: Spanned<Number>, NotNegative "N";
-                /// Length of the extended spring, m.
-                length: Spanned<Number>, Positive "m";
-                /// Increase of the force per metre of compression, N/m. Default 0.
-                stiffness: Option<Spanned<Number>>, NotNegative "N/m";
-                /// Damping, N s/m. Default 0.
-                damping: Option<Spanned<Number>>, NotNegative "N s/m";
+                /// The force with which it pushes at `length`.
+                #[key(unit = "N", limit = NotNegative)]
+                force: Spanned<Number>;
+                /// Length of the extended spring.
+                #[key(unit = "m", limit = Positive)]
+                length: Spanned<Number>;
+                /// Increase of the force per metre of compression. Default 0.
+                #[key(unit = "N/m", limit = NotNegative)]
+                stiffness: Option<Spanned<Number>>;
+                /// Damping. Default 0.
+                #[key(unit = "N s/m", limit = NotNegative)]
+                damping: Option<Spanned<Number>>;
             }
             /// A progressive spring, which becomes stiffer the further it is stretched or compressed, and a damper.
             ProgressiveSpring as ProgressiveSpring: "a mapping of `stiffness`, `progression`, `length` and `damping`" {
-                /// Stiffness at `length`, N/m.
-                stiffness: Spanned<Number>, NotNegative "N/m";
-                /// Force per cubed metre of stretch, in addition to that of `stiffness`, N/m³.
-                progression: Spanned<Number>, NotNegative "N/m³";
-                /// Length at which the spring exerts no force, m.
-                length: Spanned<Number>, Positive "m";
-                /// Damping, N s/m. Default 0.
-                damping: Option<Spanned<Number>>, NotNegative "N s/m";
+                /// Stiffness at `length`.
+                #[key(unit = "N/m", limit = NotNegative)]
+                stiffness: Spanned<Number>;
+                /// Force per cubed metre of stretch, in addition to that of `stiffness`.
+                #[key(unit = "N/m³", limit = NotNegative)]
+                progression: Spanned<Number>;
+                /// Length at which the spring exerts no force.
+                #[key(unit = "m", limit = Positive)]
+                length: Spanned<Number>;
+                /// Damping. Default 0.
+                #[key(unit = "N s/m", limit = NotNegative)]
+                damping: Option<Spanned<Number>>;
             }
         }
     };

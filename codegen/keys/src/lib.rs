@@ -2,14 +2,64 @@
 //!
 //! From the fields and variants of a type follow how it is read, in code that is not generic, and its description: keys, documentation,
 //! which of them are required. A struct is a mapping of its fields. An enum is one of its variants: the word of a variant without content,
-//! or a mapping with the word of the variant as its key. Words of variants are in `snake_case`; `#[key("E")]` names a field otherwise.
+//! or a mapping with the word of the variant as its key. Words of variants are in `snake_case`.
+//!
+//! `#[key(unit = "N/m", limit = Positive)]` says what the numbers of a field measure, of a type those of all its fields, and
+//! `#[key("E", …)]` names a field otherwise.
 
 use proc_macro2::TokenStream;
 use quote::quote;
 use syn::{
-    Attribute, Data, DeriveInput, Error, Expr, ExprLit, Fields, FieldsNamed, Ident, Lit, LitStr, Meta, Result,
+    Attribute, Data, DeriveInput, Error, Expr, ExprLit, Fields, FieldsNamed, Ident, Lit, LitStr, Meta, Result, Token,
     parse_macro_input,
 };
+
+/// What `#[key(…)]` says.
+#[derive(Clone, Default)]
+struct Row {
+    name: Option<String>,
+    unit: Option<LitStr>,
+    limit: Option<Expr>,
+}
+
+impl Row {
+    /// The row among attributes; its unit and limit are those of the whole type where it has none.
+    fn among(attributes: &[Attribute], whole: &Row) -> Result<Self> {
+        let mut row = Row::default();
+        for attribute in attributes.iter().filter(|attribute| attribute.path().is_ident("key")) {
+            attribute.parse_args_with(|input: syn::parse::ParseStream| {
+                while !input.is_empty() {
+                    if input.peek(LitStr) {
+                        row.name = Some(input.parse::<LitStr>()?.value());
+                    } else {
+                        let word: Ident = input.parse()?;
+                        input.parse::<Token![=]>()?;
+                        match word.to_string().as_str() {
+                            "unit" => row.unit = Some(input.parse()?),
+                            "limit" => row.limit = Some(input.parse()?),
+                            _ => return Err(Error::new_spanned(word, "a row has `unit` and `limit`")),
+                        }
+                    }
+                    if !input.is_empty() {
+                        input.parse::<Token![,]>()?;
+                    }
+                }
+                Ok(())
+            })?;
+        }
+        Ok(if row.unit.is_none() { Row { name: row.name, ..whole.clone() } } else { row })
+    }
+
+    /// What its numbers measure; without a unit, this.
+    fn measure(&self, otherwise: &str) -> TokenStream {
+        let Some(unit) = &self.unit else {
+            let otherwise = Ident::new(otherwise, proc_macro2::Span::call_site());
+            return quote! { crate::node::Measure::#otherwise };
+        };
+        let limit = self.limit.as_ref().map_or(quote! { Any }, |limit| quote! { #limit });
+        quote! { crate::node::Measure { unit: #unit, limit: crate::node::Limit::#limit } }
+    }
+}
 
 /// Implements `FromNode`.
 #[proc_macro_derive(FromNode, attributes(key))]
@@ -19,12 +69,13 @@ pub fn derive_from_node(input: proc_macro::TokenStream) -> proc_macro::TokenStre
 }
 
 fn implement(input: &DeriveInput) -> Result<TokenStream> {
+    let whole = Row::among(&input.attrs, &Row::default())?;
     let (form, read) = match &input.data {
         Data::Struct(data) => match &data.fields {
-            Fields::Named(fields) => mapping(fields)?,
+            Fields::Named(fields) => mapping(fields, &whole)?,
             other => return Err(Error::new_spanned(other, "a mapping has named fields")),
         },
-        Data::Enum(data) => choice(&data.variants)?,
+        Data::Enum(data) => choice(&data.variants, &whole)?,
         Data::Union(data) => return Err(Error::new_spanned(data.union_token, "a value is a mapping or a choice")),
     };
     let (name, about) = (&input.ident, documentation(&input.attrs));
@@ -41,8 +92,8 @@ fn implement(input: &DeriveInput) -> Result<TokenStream> {
 }
 
 /// Form and reading of a mapping.
-fn mapping(fields: &FieldsNamed) -> Result<(TokenStream, TokenStream)> {
-    let keys = keys(fields)?;
+fn mapping(fields: &FieldsNamed, whole: &Row) -> Result<(TokenStream, TokenStream)> {
+    let keys = keys(fields, whole)?;
     let values = values(fields);
     let form = quote! { crate::node::Form::Mapping { keys: &[#keys] } };
     let read = quote! {
@@ -54,15 +105,14 @@ fn mapping(fields: &FieldsNamed) -> Result<(TokenStream, TokenStream)> {
 }
 
 /// The keys of a mapping.
-fn keys(fields: &FieldsNamed) -> Result<TokenStream> {
+fn keys(fields: &FieldsNamed, whole: &Row) -> Result<TokenStream> {
     let mut keys = TokenStream::new();
     for field in &fields.named {
-        let mut name = field.ident.as_ref().map(Ident::to_string).unwrap_or_default();
-        for attribute in field.attrs.iter().filter(|attribute| attribute.path().is_ident("key")) {
-            name = attribute.parse_args::<LitStr>()?.value();
-        }
+        let row = Row::among(&field.attrs, whole)?;
+        let measure = row.measure("NONE");
+        let name = row.name.or(field.ident.as_ref().map(Ident::to_string)).unwrap_or_default();
         let (about, value) = (documentation(&field.attrs), &field.ty);
-        keys.extend(quote! { crate::node::Key::of::<#value>(#name, #about), });
+        keys.extend(quote! { crate::node::Key::of::<#value>(#name, #about, #measure), });
     }
     Ok(keys)
 }
@@ -78,11 +128,15 @@ fn values(fields: &FieldsNamed) -> TokenStream {
 }
 
 /// Form and reading of a choice.
-fn choice(variants: &syn::punctuated::Punctuated<syn::Variant, syn::Token![,]>) -> Result<(TokenStream, TokenStream)> {
+fn choice(
+    variants: &syn::punctuated::Punctuated<syn::Variant, syn::Token![,]>,
+    whole: &Row,
+) -> Result<(TokenStream, TokenStream)> {
     let (mut forms, mut names, mut arms) = (TokenStream::new(), TokenStream::new(), TokenStream::new());
     for (index, variant) in variants.iter().enumerate() {
         let name = &variant.ident;
         let (word, about) = (snake_case(&name.to_string()), documentation(&variant.attrs));
+        let measure = Row::among(&variant.attrs, whole)?.measure("INHERITED");
         let (content, arm) = match &variant.fields {
             Fields::Unit => {
                 let content = quote! { content: crate::node::Form::Word, is_bare: false };
@@ -94,11 +148,11 @@ fn choice(variants: &syn::punctuated::Punctuated<syn::Variant, syn::Token![,]>) 
                     content: <#value as crate::node::FromNode>::FORM,
                     is_bare: <#value as crate::node::FromNode>::IS_OPTIONAL
                 };
-                (content, quote! { Ok(Self::#name(choice.content()?)) })
+                (content, quote! { Ok(Self::#name(choice.content(#measure)?)) })
             }
             Fields::Unnamed(fields) => return Err(Error::new_spanned(fields, "a variant has one content")),
             Fields::Named(fields) => {
-                let (keys, values) = (keys(fields)?, values(fields));
+                let (keys, values) = (keys(fields, whole)?, values(fields));
                 let arm = quote! {
                     const KEYS: &[crate::node::Key] = &[#keys];
                     let fields = choice.fields(KEYS)?;
@@ -107,7 +161,7 @@ fn choice(variants: &syn::punctuated::Punctuated<syn::Variant, syn::Token![,]>) 
                 (quote! { content: crate::node::Form::Mapping { keys: &[#keys] }, is_bare: false }, arm)
             }
         };
-        forms.extend(quote! { crate::node::Variant { word: #word, about: #about, #content }, });
+        forms.extend(quote! { crate::node::Variant { word: #word, about: #about, measure: #measure, #content }, });
         names.extend(quote! { #word, });
         let pattern = if index + 1 == variants.len() {
             quote! { _ }

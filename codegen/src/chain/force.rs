@@ -32,7 +32,7 @@ pub enum Group {
 
 macro_rules! laws {
     ($($(#[$doc:meta])* $law:ident as $written:ident: $expecting:literal {
-        $($(#[$key_doc:meta])* $key:ident: $number:ty, $limit:ident $unit:literal;)*
+        $($(#[doc = $about:literal])* #[key(unit = $unit:literal, limit = $limit:ident)] $key:ident: $number:ty;)*
     })*) => {
         /// How a force depends on its strain s.
         #[derive(Clone, Debug, PartialEq)]
@@ -51,7 +51,7 @@ macro_rules! laws {
         $($(#[$doc])*
         #[derive(Clone, Debug, PartialEq)]
         pub struct $law {
-            $($(#[$key_doc])* pub $key: Value,)*
+            $($(#[doc = $about])* #[doc = concat!(" In ", $unit, ".")] pub $key: Value,)*
         })*
 
         impl Law {

@@ -3,7 +3,7 @@
 use super::fields::Fields;
 use super::reader::{Reader, Subject, Unread, shown};
 use super::tree::{Content, Node};
-use super::{FromNode, Key};
+use super::{FromNode, Key, Measure};
 use crate::diagnostic::{Span, list, nearest, rule, suggest};
 
 /// A chosen variant, and its content.
@@ -25,8 +25,9 @@ impl<'a> Choice<'a> {
     }
 
     /// Reads the variant's content.
-    pub fn content<T: FromNode>(&self) -> Result<T, Unread> {
+    pub fn content<T: FromNode>(&self, measure: Measure) -> Result<T, Unread> {
         let reader = self.reader();
+        let reader = Reader { measure: measure.within(reader.measure), ..reader };
         T::from_node(reader).map_err(|unread| place(reader, unread))
     }
 

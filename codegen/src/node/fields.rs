@@ -23,8 +23,9 @@ impl<'a> Fields<'a> {
             Some((span, node)) => (span, Some(node)),
             None => (self.owner.span, None),
         };
-        let (subject, owner) = (Subject::Key(self.keys[index].name), self.owner.subject);
-        Reader { node, span, subject, owner, ..self.owner }
+        let Key { name, measure, .. } = self.keys[index];
+        let (subject, owner) = (Subject::Key(name), self.owner.subject);
+        Reader { node, span, subject, owner, measure: measure.within(self.owner.measure), ..self.owner }
     }
 }
 

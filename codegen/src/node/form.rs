@@ -1,6 +1,6 @@
 //! The form of a value as data: what JSON Schema describes.
 
-use super::FromNode;
+use super::{FromNode, Measure};
 
 /// What may be written for a value.
 #[derive(Clone, Copy, Debug)]
@@ -48,12 +48,13 @@ pub(crate) struct Key {
     pub about: &'static str,
     pub is_required: bool,
     pub form: Form,
+    pub measure: Measure,
 }
 
 impl Key {
     /// The key of a value of a type.
-    pub const fn of<T: FromNode>(name: &'static str, about: &'static str) -> Self {
-        Key { name, about, is_required: !T::IS_OPTIONAL, form: T::FORM }
+    pub const fn of<T: FromNode>(name: &'static str, about: &'static str, measure: Measure) -> Self {
+        Key { name, about, is_required: !T::IS_OPTIONAL, form: T::FORM, measure }
     }
 }
 
@@ -63,6 +64,7 @@ pub(crate) struct Variant {
     pub word: &'static str,
     pub about: &'static str,
     pub content: Form,
+    pub measure: Measure,
     /// Whether the word may stand alone although the variant has content.
     pub is_bare: bool,
 }

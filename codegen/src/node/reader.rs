@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::fmt::{self, Display};
 
+use super::measure::Measure;
 use super::slips;
 use super::tree::{Content, Node};
 use crate::diagnostic::{Mistake, Span, rule};
@@ -59,6 +60,8 @@ pub(crate) struct Reader<'a> {
     pub subject: Subject<'a>,
     /// The description of its owner.
     pub owner: Subject<'a>,
+    /// What its numbers measure.
+    pub measure: Measure,
     /// The mistakes so far.
     pub mistakes: &'a RefCell<Vec<Mistake>>,
 }
@@ -66,7 +69,8 @@ pub(crate) struct Reader<'a> {
 impl<'a> Reader<'a> {
     /// A reader of the whole file.
     pub fn root(node: &'a Node, mistakes: &'a RefCell<Vec<Mistake>>) -> Self {
-        Reader { node: Some(node), span: node.span, subject: Subject::Whole, owner: Subject::Whole, mistakes }
+        let (span, subject) = (node.span, Subject::Whole);
+        Reader { node: Some(node), span, subject, owner: subject, measure: Measure::NONE, mistakes }
     }
 
     /// Notes a mistake; the value is then [`Unread::Reported`].
@@ -96,8 +100,9 @@ impl<'a> Reader<'a> {
 
     /// Readers of the items of a list.
     pub fn items(self, items: &'a [Node]) -> impl Iterator<Item = Reader<'a>> {
-        items.iter().map(move |item| Reader {
+        items.iter().enumerate().map(move |(index, item)| Reader {
             node: Some(item),
+            measure: self.measure.of_item(index),
             span: shown_item(item),
             subject: Subject::Entry(self.subject.key(), name_of(item)),
             ..self

@@ -7,7 +7,8 @@ use super::{Angle, Either, Inertia, Number, SlidesIn, Spanned, Vector};
 /// A beam along x of its link: `sections`, `material` and `section`, or `elements` and `springs` one by one.
 #[derive(Clone, Debug, FromNode)]
 pub struct Beam {
-    /// Length, m.
+    /// Length.
+    #[key(unit = "m", limit = Positive)]
     pub length: Spanned<Number>,
     /// Number of sections, an integer from 1 to 1000 (n springs between n + 1 rigid elements), or `rigid`. A section ends wherever something acts on
     /// the beam; between these places they are equal, and at least one.
@@ -20,9 +21,11 @@ pub struct Beam {
     pub parts: Option<Spanned<Vec<Spanned<BeamPart>>>>,
     /// Curvature at rest. Default straight.
     pub bend: Option<Spanned<Bend>>,
-    /// Additional distributed mass, kg/m, with the section's radii of gyration. Default 0.
+    /// Additional distributed mass, with the section's radii of gyration. Default 0.
+    #[key(unit = "kg/m", limit = NotNegative)]
     pub extra_mass: Option<Spanned<Number>>,
     /// Factor by which stresses must stay below the material's `yield_stress`. Default 1.5.
+    #[key(unit = "1", limit = Positive)]
     pub safety_factor: Option<Spanned<Number>>,
     /// Damping of the springs. Default none.
     pub damping: Option<Spanned<BeamDamping>>,
@@ -65,7 +68,8 @@ impl FromNode for Sections {
 /// A part of a beam with its own section.
 #[derive(Clone, Debug, FromNode)]
 pub struct BeamPart {
-    /// Length, m.
+    /// Length.
+    #[key(unit = "m", limit = Positive)]
     pub length: Spanned<Number>,
     /// Cross-section; for a tapered part, that at its beginning.
     pub section: Spanned<Section>,
@@ -75,10 +79,11 @@ pub struct BeamPart {
 
 /// Angles between the beginning and the tip of a curved beam at rest, an arc.
 #[derive(Clone, Debug, FromNode)]
+#[key(unit = "rad")]
 pub struct Bend {
-    /// About z: curved in the x–y plane, rad.
+    /// About z: curved in the x–y plane.
     pub psi: Option<Spanned<Angle>>,
-    /// About y: curved in the x–z plane, rad.
+    /// About y: curved in the x–z plane.
     pub theta: Option<Spanned<Angle>>,
 }
 
@@ -94,72 +99,76 @@ pub enum SectionJoint {
 /// An isotropic elastic material.
 #[derive(Clone, Debug, FromNode)]
 pub struct Material {
-    /// Young's modulus, Pa.
-    #[key("E")]
+    /// Young's modulus.
+    #[key("E", unit = "Pa", limit = Positive)]
     pub youngs_modulus: Spanned<Number>,
-    /// Shear modulus, Pa.
-    #[key("G")]
+    /// Shear modulus.
+    #[key("G", unit = "Pa", limit = Positive)]
     pub shear_modulus: Spanned<Number>,
-    /// Density, kg/m³.
+    /// Density.
+    #[key(unit = "kg/m³", limit = Positive)]
     pub density: Spanned<Number>,
-    /// Yield stress, Pa. Default none: no utilisation is computed.
+    /// Yield stress. Default none: no utilisation is computed.
+    #[key(unit = "Pa", limit = Positive)]
     pub yield_stress: Option<Spanned<Number>>,
 }
 
 /// Cross-section of a beam: height along y, width along z.
 #[derive(Clone, Debug, FromNode)]
+#[key(unit = "m", limit = Positive)]
 pub enum Section {
     /// Hollow rectangle with walls of one thickness.
     Box {
-        /// Outer height along y, m.
+        /// Outer height along y.
         height: Spanned<Number>,
-        /// Outer width along z, m.
+        /// Outer width along z.
         width: Spanned<Number>,
-        /// Thickness of the walls, m.
+        /// Thickness of the walls.
         thickness: Spanned<Number>,
     },
     /// Hollow rectangle of plates, whose flanges and webs differ in thickness.
     WeldedBox {
-        /// Outer height along y, m.
+        /// Outer height along y.
         height: Spanned<Number>,
-        /// Outer width along z, m.
+        /// Outer width along z.
         width: Spanned<Number>,
-        /// Thickness of the plates above and below, m.
+        /// Thickness of the plates above and below.
         flange: Spanned<Number>,
-        /// Thickness of the plates at the sides, m.
+        /// Thickness of the plates at the sides.
         web: Spanned<Number>,
     },
     /// Hollow circle.
     Tube {
-        /// Outer diameter, m.
+        /// Outer diameter.
         diameter: Spanned<Number>,
-        /// Thickness of the wall, m.
+        /// Thickness of the wall.
         thickness: Spanned<Number>,
     },
     /// Solid rectangle.
     Solid {
-        /// Height along y, m.
+        /// Height along y.
         height: Spanned<Number>,
-        /// Width along z, m.
+        /// Width along z.
         width: Spanned<Number>,
     },
     /// Solid circle.
     Circle {
-        /// Diameter, m.
+        /// Diameter.
         diameter: Spanned<Number>,
     },
     /// Any section, given by its properties.
     Numbers {
-        /// Area, m².
+        /// Area.
+        #[key(unit = "m²", limit = Positive)]
         area: Spanned<Number>,
-        /// Second moment of area ∫ z² dA, for bending in the x–z plane, m⁴.
-        #[key("Jy")]
+        /// Second moment of area ∫ z² dA, for bending in the x–z plane.
+        #[key("Jy", unit = "m⁴", limit = Positive)]
         jy: Spanned<Number>,
-        /// Second moment of area ∫ y² dA, for bending in the x–y plane, m⁴.
-        #[key("Jz")]
+        /// Second moment of area ∫ y² dA, for bending in the x–y plane.
+        #[key("Jz", unit = "m⁴", limit = Positive)]
         jz: Spanned<Number>,
-        /// Torsion constant, m⁴.
-        #[key("Jo")]
+        /// Torsion constant.
+        #[key("Jo", unit = "m⁴", limit = Positive)]
         jo: Spanned<Number>,
         /// Moduli for stresses. Default none: no stresses are computed.
         moduli: Option<Box<Spanned<Moduli>>>,
@@ -169,34 +178,37 @@ pub enum Section {
 /// Moduli of a section that is given by its properties.
 #[derive(Clone, Debug, FromNode)]
 pub struct Moduli {
-    /// Section modulus for bending about y, m³.
-    #[key("Wy")]
+    /// Section modulus for bending about y.
+    #[key("Wy", unit = "m³", limit = Positive)]
     pub wy: Spanned<Number>,
-    /// Section modulus for bending about z, m³.
-    #[key("Wz")]
+    /// Section modulus for bending about z.
+    #[key("Wz", unit = "m³", limit = Positive)]
     pub wz: Spanned<Number>,
-    /// Section modulus for torsion, m³.
-    #[key("Wt")]
+    /// Section modulus for torsion.
+    #[key("Wt", unit = "m³", limit = Positive)]
     pub wt: Spanned<Number>,
-    /// Shear area along y, m²: the force divided by the maximum shear stress.
-    #[key("Ay")]
+    /// Shear area along y: the force divided by the maximum shear stress.
+    #[key("Ay", unit = "m²", limit = Positive)]
     pub ay: Spanned<Number>,
-    /// Shear area along z, m².
-    #[key("Az")]
+    /// Shear area along z.
+    #[key("Az", unit = "m²", limit = Positive)]
     pub az: Spanned<Number>,
 }
 
 /// Damping of the springs of a beam, exactly one of these.
 #[derive(Clone, Debug, FromNode)]
 pub enum BeamDamping {
-    /// Kelvin–Voigt: damping = beta × stiffness, s; one number, or one per direction.
+    /// Kelvin–Voigt: damping = beta × stiffness; one number, or one per direction.
+    #[key(unit = "s", limit = NotNegative)]
     Beta(Spanned<Either<Number, Directions>>),
-    /// Damping of each spring, N m s/rad.
+    /// Damping of each spring.
+    #[key(unit = "N m s/rad", limit = NotNegative)]
     Coefficients(Directions),
 }
 
 /// One number per direction of a spring.
 #[derive(Clone, Debug, FromNode)]
+#[key(unit = "…")]
 pub struct Directions {
     /// Bending in the x–y plane, about z.
     pub psi: Spanned<Number>,
@@ -209,11 +221,14 @@ pub struct Directions {
 /// A rigid element of a beam.
 #[derive(Clone, Debug, FromNode)]
 pub struct Element {
-    /// Length along x, m.
+    /// Length along x.
+    #[key(unit = "m", limit = Positive)]
     pub length: Spanned<Number>,
-    /// Mass, kg.
+    /// Mass.
+    #[key(unit = "kg", limit = Mass)]
     pub mass: Spanned<Number>,
-    /// Centre of mass in the element's frame, whose origin is at its start, m.
+    /// Centre of mass in the element's frame, whose origin is at its start.
+    #[key(unit = "m")]
     pub com: Spanned<Vector>,
     /// Inertia.
     pub inertia: Spanned<Inertia>,
@@ -222,8 +237,10 @@ pub struct Element {
 /// A spring between two rigid elements.
 #[derive(Clone, Debug, FromNode)]
 pub struct Spring {
-    /// Stiffness, N m/rad.
+    /// Stiffness.
+    #[key(unit = "N m/rad", limit = NotNegative)]
     pub stiffness: Spanned<Directions>,
-    /// Damping, N m s/rad. Default none.
+    /// Damping. Default none.
+    #[key(unit = "N m s/rad", limit = NotNegative)]
     pub damping: Option<Spanned<Directions>>,
 }

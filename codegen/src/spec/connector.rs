@@ -14,7 +14,8 @@ pub struct Connector {
     pub to: Spanned<Attachment>,
     /// The sheaves over which a rope runs from one to the other, in order: points of links or of the world.
     pub over: Option<Spanned<Vec<Spanned<Attachment>>>>,
-    /// The number of parallel parts of a rope between its last sheave, or `from`, and `to`, as in a block and tackle: 1 to 100. Default 1.
+    /// The number of parallel parts of a rope between its last sheave, or `from`, and `to`, as in a block and tackle. Default 1.
+    #[key(unit = "1", limit = Whole(100))]
     pub falls: Option<Spanned<Constant>>,
     /// The law of its force; exactly one.
     pub law: Spanned<ConnectorLaw>,
@@ -25,7 +26,8 @@ pub struct Connector {
 pub struct Attachment {
     /// The link. Default: the world.
     pub link: Option<Spanned<String>>,
-    /// Position in the frame of the link (for a beam: undeformed) or of the world, m.
+    /// Position in the frame of the link (for a beam: undeformed) or of the world.
+    #[key(unit = "m")]
     pub at: Spanned<Vector>,
 }
 
@@ -38,13 +40,17 @@ pub struct Coupling {
     pub coordinate: Spanned<String>,
     /// The coordinate that leads.
     pub follows: Spanned<String>,
-    /// Motion of `coordinate` per unit of `follows`: m/m, rad/rad, m/rad or rad/m.
+    /// Motion of `coordinate` per unit of `follows`.
+    #[key(unit = "1, m/rad or rad/m")]
     pub ratio: Spanned<Number>,
-    /// Position of `coordinate` when `follows` is at 0, m or rad. Default 0.
+    /// Position of `coordinate` when `follows` is at 0. Default 0.
+    #[key(unit = "rad or m")]
     pub offset: Option<Spanned<Angle>>,
-    /// Stiffness, N/m or N m/rad, of the coordinate that follows; required unless the coupling is rigid.
+    /// Stiffness of the coordinate that follows; required unless the coupling is rigid.
+    #[key(unit = "N m/rad or N/m", limit = NotNegative)]
     pub stiffness: Option<Spanned<Number>>,
-    /// Damping, N s/m or N m s/rad. Default 0.
+    /// Damping. Default 0.
+    #[key(unit = "N m s/rad or N s/m", limit = NotNegative)]
     pub damping: Option<Spanned<Number>>,
     /// Whether the coordinate follows exactly. Default false.
     pub rigid: Option<Spanned<bool>>,
@@ -57,19 +63,23 @@ pub struct Contact {
     pub name: Spanned<String>,
     /// The link.
     pub link: Spanned<String>,
-    /// The point, in the frame of the link (for a beam: undeformed), m. Default `[0, 0, 0]`.
+    /// The point, in the frame of the link (for a beam: undeformed). Default `[0, 0, 0]`.
+    #[key(unit = "m")]
     pub at: Option<Spanned<Vector>>,
-    /// Height of the ground there, along z of the world, m. Default 0.
+    /// Height of the ground there, along z of the world. Default 0.
+    #[key(unit = "m")]
     pub height: Option<Spanned<Number>>,
-    /// Stiffness of ground and point, N/m.
+    /// Stiffness of ground and point.
+    #[key(unit = "N/m", limit = Positive)]
     pub stiffness: Spanned<Number>,
-    /// Relative increase of the force with the rate at which the point sinks in, as a fraction, s/m. Default 0.
+    /// Relative increase of the force with the rate at which the point sinks in, as a fraction. Default 0.
+    #[key(unit = "s/m", limit = NotNegative)]
     pub damping: Option<Spanned<Number>>,
 }
 
 macro_rules! laws {
     ($($(#[$doc:meta])* $law:ident as $written:ident: $expecting:literal {
-        $($(#[$key_doc:meta])* $key:ident: $number:ty, $limit:ident $unit:literal;)*
+        $($(#[doc = $about:literal])* #[key(unit = $unit:literal, limit = $limit:ident)] $key:ident: $number:ty;)*
     })*) => {
         /// How the force of a connector depends on its length.
         #[derive(Clone, Debug, FromNode)]
@@ -82,7 +92,7 @@ macro_rules! laws {
         $($(#[$doc])*
         #[derive(Clone, Debug, FromNode)]
         pub struct $written {
-            $($(#[$key_doc])* pub $key: $number,)*
+            $($(#[doc = $about])* #[key(unit = $unit, limit = $limit)] pub $key: $number,)*
         })*
     };
 }
@@ -92,18 +102,24 @@ point_laws!(laws);
 /// A rope between two points, perhaps over sheaves.
 #[derive(Clone, Debug, FromNode)]
 pub struct Rope {
-    /// Stiffness EA/ℓ₀, N/m.
+    /// Stiffness EA/ℓ₀.
+    #[key(unit = "N/m", limit = Positive)]
     pub stiffness: Option<Spanned<Number>>,
-    /// Stiffness EA of its section, N, instead of `stiffness`, which is then EA/ℓ₀ and changes with a winch.
+    /// Stiffness EA of its section, instead of `stiffness`, which is then EA/ℓ₀ and changes with a winch.
+    #[key(unit = "N", limit = Positive)]
     pub axial_stiffness: Option<Spanned<Number>>,
-    /// Relative increase of the force with the rate of stretch, as a fraction, s/m. Default 0.
+    /// Relative increase of the force with the rate of stretch, as a fraction. Default 0.
+    #[key(unit = "s/m", limit = NotNegative)]
     pub damping: Option<Spanned<Number>>,
-    /// Unstretched length, m.
+    /// Unstretched length.
+    #[key(unit = "m", limit = Positive)]
     pub length: Option<Spanned<Number>>,
-    /// Unstretched length over time, m, instead of `length`: a winch.
+    /// Unstretched length over time, instead of `length`: a winch.
+    #[key(unit = "m")]
     pub motion: Option<Spanned<Motion>>,
     /// An emergency stop of the winch. Default: none.
     pub halt: Option<Spanned<Halt>>,
-    /// The largest tension that it may carry at work, N; more causes a caution, and limits loads of charts. Default: none.
+    /// The largest tension that it may carry at work; more causes a caution, and limits loads of charts. Default: none.
+    #[key(unit = "N", limit = Positive)]
     pub max_tension: Option<Spanned<Constant>>,
 }

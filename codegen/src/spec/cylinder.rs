@@ -16,21 +16,29 @@ pub struct Cylinder {
     pub head: Spanned<Pin>,
     /// Rocker and link between its rod and `head`. Default: none.
     pub linkage: Option<Spanned<Linkage>>,
-    /// Diameter of the piston, m.
+    /// Diameter of the piston.
+    #[key(unit = "m", limit = Positive)]
     pub bore: Spanned<Constant>,
-    /// Diameter of the rod, m.
+    /// Diameter of the rod.
+    #[key(unit = "m", limit = Positive)]
     pub rod: Spanned<Constant>,
-    /// Distance between its pins when it is retracted, m.
+    /// Distance between its pins when it is retracted.
+    #[key(unit = "m", limit = Positive)]
     pub retracted: Spanned<Constant>,
-    /// Stroke, m.
+    /// Stroke.
+    #[key(unit = "m", limit = Positive)]
     pub stroke: Spanned<Constant>,
-    /// Maximum pressure, at which its relief valves open, Pa. Default: none.
+    /// Maximum pressure, at which its relief valves open. Default: none.
+    #[key(unit = "Pa", limit = Positive)]
     pub max_pressure: Option<Spanned<Constant>>,
-    /// Pressure on the side that does not carry the load, Pa. Default 0.
+    /// Pressure on the side that does not carry the load. Default 0.
+    #[key(unit = "Pa", limit = NotNegative)]
     pub back_pressure: Option<Spanned<Constant>>,
-    /// Bulk modulus of the oil with its hoses, Pa, for the stiffness of the trapped oil. Default: none.
+    /// Bulk modulus of the oil with its hoses, for the stiffness of the trapped oil. Default: none.
+    #[key(unit = "Pa", limit = Positive)]
     pub bulk_modulus: Option<Spanned<Constant>>,
-    /// Oil in hoses and valves on the piston's side and on the rod's, m³. Default `[0, 0]`.
+    /// Oil in hoses and valves on the piston's side and on the rod's. Default `[0, 0]`.
+    #[key(unit = "m³", limit = NotNegative)]
     pub hose_volumes: Option<Spanned<HoseVolumes>>,
     /// The valve that moves it: the cylinder's pressures and the valve's opening become states of the motion. Default: none, and
     /// the drive moves the joint.
@@ -40,23 +48,31 @@ pub struct Cylinder {
 /// A proportional directional valve, and what commands it: a servo that makes the cylinder follow the drive's motion, or an opening over time.
 #[derive(Clone, Debug, FromNode)]
 pub struct Valve {
-    /// Flow through one metering edge of the fully open valve at `pressure_drop`, m³/s; 60 l/min are 1e-3.
+    /// Flow through one metering edge of the fully open valve at `pressure_drop`; 60 l/min are 1e-3.
+    #[key(unit = "m³/s", limit = Positive)]
     pub flow: Spanned<Constant>,
-    /// Pressure drop over that edge, Pa.
+    /// Pressure drop over that edge.
+    #[key(unit = "Pa", limit = Positive)]
     pub pressure_drop: Spanned<Constant>,
     /// Overlap as a fraction of the spool's travel from its centre: within it no oil flows. Default 0.
+    #[key(unit = "1", limit = NotNegative)]
     pub overlap: Option<Spanned<Constant>>,
-    /// Time constant of the spool, s.
+    /// Time constant of the spool.
+    #[key(unit = "s", limit = Positive)]
     pub lag: Spanned<Constant>,
-    /// Opening that the servo commands per error of the cylinder's length, 1/m; an opening of 1 is fully open.
+    /// Opening that the servo commands per error of the cylinder's length; an opening of 1 is fully open.
+    #[key(unit = "1/m", limit = NotNegative)]
     pub gain: Option<Spanned<Constant>>,
     /// The spool's command over time instead of a servo, from −1 (fully open, retracts) to 1 (fully open, extends): a motion, a table
     /// or an input. The drive's motion must then `hold` the position of the crane before the run.
+    #[key(unit = "1")]
     pub opening: Option<Spanned<Motion>>,
     /// Fraction of the opening required for the speed of the motion at the measured pressures that the servo adds as a
     /// feed-forward. Default 1.
+    #[key(unit = "1", limit = NotNegative)]
     pub feed_forward: Option<Spanned<Constant>>,
-    /// Leakage past the piston, m³/(s Pa). Default 0.
+    /// Leakage past the piston. Default 0.
+    #[key(unit = "m³/(s Pa)", limit = NotNegative)]
     pub leakage: Option<Spanned<Constant>>,
 }
 
@@ -68,7 +84,8 @@ pub type HoseVolumes = [Spanned<Constant>; 2];
 pub struct Pin {
     /// The link that carries it.
     pub link: Spanned<String>,
-    /// Its position in the frame of the link (for a beam: undeformed), m.
+    /// Its position in the frame of the link (for a beam: undeformed).
+    #[key(unit = "m")]
     pub at: Spanned<Vector>,
 }
 
@@ -76,11 +93,14 @@ pub struct Pin {
 /// the rod is pinned to the joint between the two.
 #[derive(Clone, Debug, FromNode)]
 pub struct Linkage {
-    /// The rocker's pivot in the frame of the link that carries the cylinder's foot, m; on a beam, on the element at its own place.
+    /// The rocker's pivot in the frame of the link that carries the cylinder's foot; on a beam, on the element at its own place.
+    #[key(unit = "m")]
     pub pivot: Spanned<Vector>,
-    /// Length of the rocker, m.
+    /// Length of the rocker.
+    #[key(unit = "m", limit = Positive)]
     pub rocker: Spanned<Number>,
-    /// Length of the link, m.
+    /// Length of the link.
+    #[key(unit = "m", limit = Positive)]
     pub link: Spanned<Number>,
     /// The side of the line from `pivot` to `head` on which the rod's pin is, with the joint's axis towards the viewer.
     pub side: Spanned<Side>,
@@ -98,11 +118,14 @@ pub enum Side {
 /// The pump that supplies the cylinders.
 #[derive(Clone, Debug, FromNode)]
 pub struct Pump {
-    /// Maximum flow to all cylinders together, m³/s; 60 l/min are 1e-3.
+    /// Maximum flow to all cylinders together; 60 l/min are 1e-3.
+    #[key(unit = "m³/s", limit = Positive)]
     pub max_flow: Spanned<Constant>,
-    /// Pressure at which it delivers nothing; at 5 % less it delivers its maximum flow, and in between in proportion, Pa. Cylinders with a valve need
+    /// Pressure at which it delivers nothing; at 5 % less it delivers its maximum flow, and in between in proportion. Cylinders with a valve need
     /// it. Default: none.
+    #[key(unit = "Pa", limit = Positive)]
     pub pressure: Option<Spanned<Constant>>,
-    /// Oil between the pump and the valves, m³. Default 0.005.
+    /// Oil between the pump and the valves. Default 0.005.
+    #[key(unit = "m³", limit = Positive)]
     pub volume: Option<Spanned<Constant>>,
 }

@@ -8,23 +8,31 @@ use crate::node::FromNode;
 pub struct Drive {
     /// The coordinate it drives, such as `boom_psi`.
     pub coordinate: Spanned<String>,
-    /// Stiffness, N m/rad or N/m; required unless the drive is rigid or has an `effort`.
+    /// Stiffness; required unless the drive is rigid or has an `effort`.
+    #[key(unit = "N m/rad or N/m", limit = NotNegative)]
     pub stiffness: Option<Spanned<Number>>,
-    /// Damping, N m s/rad or N s/m. Default 0.
+    /// Damping. Default 0.
+    #[key(unit = "N m s/rad or N s/m", limit = NotNegative)]
     pub damping: Option<Spanned<Number>>,
     /// Whether the coordinate follows the motion exactly. Default false.
     pub rigid: Option<Spanned<bool>>,
-    /// Torque or force besides that of spring and damper, N m or N: a motion whose positions are efforts, a table, or an input. Default: none.
+    /// Torque or force besides that of spring and damper: a motion whose positions are efforts, a table, or an input. Default: none.
+    #[key(unit = "N m or N")]
     pub effort: Option<Spanned<Motion>>,
-    /// Maximum torque or force of the drive, N m or N: that of spring, damper and `effort` together. Default: none.
+    /// Maximum torque or force of the drive: that of spring, damper and `effort` together. Default: none.
+    #[key(unit = "N m or N", limit = Positive)]
     pub max_effort: Option<Spanned<Number>>,
-    /// Maximum rate at which it drives, rad/s or m/s: its effort falls to zero over the last tenth. Needs `max_effort`. Default: none.
+    /// Maximum rate at which it drives: its effort falls to zero over the last tenth. Needs `max_effort`. Default: none.
+    #[key(unit = "rad/s or m/s", limit = Positive)]
     pub max_rate: Option<Spanned<Constant>>,
-    /// Maximum power with which it drives, W. Needs `max_effort`. Default: none.
+    /// Maximum power with which it drives. Needs `max_effort`. Default: none.
+    #[key(unit = "W", limit = Positive)]
     pub max_power: Option<Spanned<Constant>>,
-    /// Inertia of the drive's rotor, reflected to the joint by the square of the gear ratio, kg m² or kg. Default 0.
+    /// Inertia of the drive's rotor, reflected to the joint by the square of the gear ratio. Default 0.
+    #[key(unit = "kg m² or kg", limit = NotNegative)]
     pub armature: Option<Spanned<Number>>,
     /// Motion of the spring's far end, or of the joint of a rigid drive; required unless the drive has neither.
+    #[key(unit = "rad or m")]
     pub motion: Option<Spanned<Motion>>,
     /// An emergency stop of the motion. Default: none.
     pub halt: Option<Spanned<Halt>>,
@@ -35,16 +43,19 @@ pub struct Drive {
 /// An emergency stop: the motion slows down along its way and ends.
 #[derive(Clone, Debug, FromNode)]
 pub struct Halt {
-    /// Time from which it slows down, s.
+    /// Time from which it slows down.
+    #[key(unit = "s", limit = NotNegative)]
     pub at: Spanned<Number>,
-    /// Time in which it comes to rest, s.
+    /// Time in which it comes to rest.
+    #[key(unit = "s", limit = Positive)]
     pub within: Spanned<Number>,
 }
 
 /// Motion of a drive; before it begins and, unless it is a speed, after it ends, the drive holds its position.
 #[derive(Clone, Debug, FromNode)]
 pub enum Motion {
-    /// Held at one position, rad or m.
+    /// Held at one position.
+    #[key(unit = "…")]
     Hold(Spanned<Angle>),
     /// `10τ³ − 15τ⁴ + 6τ⁵`: at rest without acceleration at both ends.
     Quintic(Ramp),
@@ -65,50 +76,65 @@ pub enum Motion {
 /// Start, end and time of a motion.
 #[derive(Clone, Debug, FromNode)]
 pub struct Ramp {
-    /// Position before, rad or m.
+    /// Position before.
+    #[key(unit = "…")]
     pub from: Spanned<Angle>,
-    /// Position after, rad or m.
+    /// Position after.
+    #[key(unit = "…")]
     pub to: Spanned<Angle>,
-    /// Time at which it begins, s. Default 0.
+    /// Time at which it begins. Default 0.
+    #[key(unit = "s")]
     pub begin: Option<Spanned<Number>>,
-    /// Duration, s.
+    /// Duration.
+    #[key(unit = "s", limit = Positive)]
     pub duration: Spanned<Number>,
 }
 
 /// A trapezoidal velocity.
 #[derive(Clone, Debug, FromNode)]
 pub struct Trapezoid {
-    /// Position before, rad or m.
+    /// Position before.
+    #[key(unit = "…")]
     pub from: Spanned<Angle>,
-    /// Position after, rad or m.
+    /// Position after.
+    #[key(unit = "…")]
     pub to: Spanned<Angle>,
-    /// Time at which it begins, s. Default 0.
+    /// Time at which it begins. Default 0.
+    #[key(unit = "s")]
     pub begin: Option<Spanned<Number>>,
-    /// Duration, s.
+    /// Duration.
+    #[key(unit = "s", limit = Positive)]
     pub duration: Spanned<Number>,
     /// Fraction of the duration spent accelerating, and equally decelerating, above 0 and at most 0.5. Default 0.25.
+    #[key(unit = "1")]
     pub blend: Option<Spanned<Constant>>,
 }
 
 /// A constant speed.
 #[derive(Clone, Debug, FromNode)]
 pub struct Speed {
-    /// Speed, rad/s or m/s.
+    /// Speed.
+    #[key(unit = "…/s")]
     pub rate: Spanned<Angle>,
-    /// Position before, rad or m. Default 0.
+    /// Position before. Default 0.
+    #[key(unit = "…")]
     pub from: Option<Spanned<Angle>>,
-    /// Time at which it begins, s. Default 0.
+    /// Time at which it begins. Default 0.
+    #[key(unit = "s")]
     pub begin: Option<Spanned<Number>>,
-    /// Time to reach the speed smoothly, s. Default: the speed jumps.
+    /// Time to reach the speed smoothly. Default: the speed jumps.
+    #[key(unit = "s", limit = Positive)]
     pub ramp: Option<Spanned<Number>>,
 }
 
 /// Positions at given times, written here or in a CSV file.
 #[derive(Clone, Debug, FromNode)]
 pub struct Table {
-    /// Times, strictly increasing, s.
+    /// Times, strictly increasing.
+    #[key(unit = "s")]
     pub times: Option<Spanned<Vec<Spanned<Constant>>>>,
-    /// Values: positions in rad or m, openings, or factors of a load.
+    /// Values: positions, efforts, openings, or factors of a load.
+    #[key(unit = "…")]
     pub values: Option<Spanned<Vec<Spanned<FixedAngle>>>>,
     /// A CSV file instead of `times` and `values`, relative to this one. Its first column has the times, s.
     pub file: Option<Spanned<String>>,

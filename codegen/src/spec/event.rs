@@ -8,9 +8,11 @@ use crate::node::FromNode;
 pub struct Event {
     /// Name, a `snake_case` identifier.
     pub name: Spanned<String>,
-    /// When, s.
+    /// When.
+    #[key(unit = "s", limit = Positive)]
     pub at: Spanned<Constant>,
     /// The values of parameters from then on, by name.
+    #[key(unit = "its own")]
     pub set: Spanned<Entries<FixedAngle>>,
     /// How masses that are added moved before. Default: with the crane.
     pub joins: Option<Spanned<Joins>>,
@@ -19,7 +21,8 @@ pub struct Event {
 /// How masses that join the crane moved before: with them, their momentum joins it, and rates jump.
 #[derive(Clone, Debug, FromNode)]
 pub struct Joins {
-    /// Their velocity along the axes of the world, m/s. Default: `[0, 0, 0]`, at rest.
+    /// Their velocity along the axes of the world. Default: `[0, 0, 0]`, at rest.
+    #[key(unit = "m/s")]
     pub velocity: Option<Spanned<[Spanned<Constant>; 3]>>,
     /// The point of interest at which their centre of mass is; required with a `velocity`.
     pub point: Option<Spanned<String>>,

@@ -7,8 +7,10 @@ use crate::node::FromNode;
 #[derive(Clone, Debug, FromNode)]
 pub struct Input {
     /// Value while it is not set, in SI units. Default 0.
+    #[key(unit = "its own")]
     pub value: Option<Spanned<FixedAngle>>,
     /// The motion that it follows while it is not set, instead of a value.
+    #[key(unit = "its own")]
     pub motion: Option<Spanned<Motion>>,
     /// Unit shown in tables, such as `N`. Default: none.
     pub unit: Option<Spanned<String>>,

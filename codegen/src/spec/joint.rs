@@ -6,29 +6,38 @@ use crate::node::FromNode;
 /// End stops of a joint, which push when it is beyond its range and never pull.
 #[derive(Clone, Debug, FromNode)]
 pub struct Stops {
-    /// Minimum position, rad or m. Default: no stop.
+    /// Minimum position. Default: no stop.
+    #[key(unit = "rad or m")]
     pub min: Option<Spanned<Angle>>,
-    /// Maximum position, rad or m. Default: no stop.
+    /// Maximum position. Default: no stop.
+    #[key(unit = "rad or m")]
     pub max: Option<Spanned<Angle>>,
-    /// Stiffness of both stops, N m/rad or N/m.
+    /// Stiffness of both stops.
+    #[key(unit = "N m/rad or N/m", limit = Positive)]
     pub stiffness: Spanned<Number>,
-    /// Damping of both stops per rate: the force is `stiffness δ (1 + damping δ̇)` with the penetration δ; s/rad or s/m.
+    /// Damping of both stops per rate: the force is `stiffness δ (1 + damping δ̇)` with the penetration δ.
     /// Default 0.
+    #[key(unit = "s/rad or s/m", limit = NotNegative)]
     pub damping: Option<Spanned<Number>>,
 }
 
 /// Friction of a joint: Coulomb friction, with a Stribeck decline from a larger breakaway friction.
 #[derive(Clone, Debug, FromNode)]
 pub struct Friction {
-    /// Coulomb friction, N m or N.
+    /// Coulomb friction.
+    #[key(unit = "N m or N", limit = NotNegative)]
     pub coulomb: Spanned<Number>,
-    /// Breakaway friction, N m or N, at least `coulomb`. Default: equal to `coulomb`.
+    /// Breakaway friction, at least `coulomb`. Default: equal to `coulomb`.
+    #[key(unit = "N m or N", limit = NotNegative)]
     pub breakaway: Option<Spanned<Number>>,
-    /// Rate at which `breakaway` has declined towards `coulomb` by a factor of e, rad/s or m/s. Default 0.01.
+    /// Rate at which `breakaway` has declined towards `coulomb` by a factor of e. Default 0.01.
+    #[key(unit = "rad/s or m/s", limit = Positive)]
     pub stribeck: Option<Spanned<Number>>,
-    /// Rate at which friction reaches three quarters of its full value, rad/s or m/s; below it, the joint creeps. Default 0.001.
+    /// Rate at which friction reaches three quarters of its full value; below it, the joint creeps. Default 0.001.
+    #[key(unit = "rad/s or m/s", limit = Positive)]
     pub width: Option<Spanned<Number>>,
-    /// Viscous friction, N m s/rad or N s/m. Default 0.
+    /// Viscous friction. Default 0.
+    #[key(unit = "N m s/rad or N s/m", limit = NotNegative)]
     pub viscous: Option<Spanned<Number>>,
     /// Bristles that bend before the joint slides, so that it sticks without creeping (the model of Canudas de Wit and others), instead of `width`. Default: none.
     pub bristle: Option<Spanned<Bristle>>,
@@ -37,8 +46,10 @@ pub struct Friction {
 /// The bristles of a joint that sticks; their deflection is a state of the motion.
 #[derive(Clone, Debug, FromNode)]
 pub struct Bristle {
-    /// Stiffness σ₀, N m/rad or N/m.
+    /// Stiffness σ₀.
+    #[key(unit = "N m/rad or N/m", limit = Positive)]
     pub stiffness: Spanned<Constant>,
-    /// Damping σ₁, N m s/rad or N s/m.
+    /// Damping σ₁.
+    #[key(unit = "N m s/rad or N s/m", limit = NotNegative)]
     pub damping: Spanned<Constant>,
 }

@@ -16,9 +16,11 @@ pub struct Link {
     pub placement: Option<Spanned<Placement>>,
     /// Its joint. Default `fixed`.
     pub joint: Option<Spanned<Joint>>,
-    /// Mass, kg.
+    /// Mass.
+    #[key(unit = "kg", limit = Mass)]
     pub mass: Option<Spanned<Number>>,
-    /// Centre of mass in the link's frame, m. Required with `mass`.
+    /// Centre of mass in the link's frame. Required with `mass`.
+    #[key(unit = "m")]
     pub com: Option<Spanned<Vector>>,
     /// Inertia. Default none: a point mass.
     pub inertia: Option<Spanned<Inertia>>,
@@ -55,13 +57,17 @@ impl Link {
 /// A rope or chain that does not stretch: slender rigid links end to end, each with a universal joint at its beginning.
 #[derive(Clone, Debug, FromNode)]
 pub struct HangingRope {
-    /// Length, m.
+    /// Length.
+    #[key(unit = "m", limit = Positive)]
     pub length: Spanned<Number>,
-    /// Number of links of equal length, an integer from 1 to 1000.
+    /// Number of links of equal length.
+    #[key(unit = "1", limit = Whole(1000))]
     pub links: Spanned<Constant>,
-    /// Mass per length, kg/m.
+    /// Mass per length.
+    #[key(unit = "kg/m", limit = Positive)]
     pub mass_per_length: Spanned<Number>,
-    /// Damping of both rotations of every joint, N m s/rad. Default 0.
+    /// Damping of both rotations of every joint. Default 0.
+    #[key(unit = "N m s/rad", limit = NotNegative)]
     pub damping: Option<Spanned<Number>>,
 }
 
@@ -70,9 +76,11 @@ pub struct HangingRope {
 pub struct Body {
     /// Name, a `snake_case` identifier, unique in its link.
     pub name: Spanned<String>,
-    /// Mass, kg.
+    /// Mass.
+    #[key(unit = "kg", limit = Mass)]
     pub mass: Spanned<Number>,
-    /// Centre of mass in the link's frame, m.
+    /// Centre of mass in the link's frame.
+    #[key(unit = "m")]
     pub com: Spanned<Vector>,
     /// Inertia. Default none: a point mass.
     pub inertia: Option<Spanned<Inertia>>,

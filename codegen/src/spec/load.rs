@@ -10,32 +10,41 @@ pub struct Load {
     pub name: Spanned<String>,
     /// The link it acts on.
     pub link: Spanned<String>,
-    /// Its point of application in the frame of the link (for a beam: undeformed), m. Default `[0, 0, 0]`.
+    /// Its point of application in the frame of the link (for a beam: undeformed). Default `[0, 0, 0]`.
+    #[key(unit = "m")]
     pub at: Option<Spanned<Vector>>,
-    /// Force along x, y, z, N. Default `[0, 0, 0]`.
+    /// Force along x, y, z. Default `[0, 0, 0]`.
+    #[key(unit = "N")]
     pub force: Option<Spanned<Vector>>,
     /// Wind, whose force is in place of `force`.
     pub wind: Option<Spanned<Wind>>,
-    /// Moment about x, y, z, N m. Default `[0, 0, 0]`.
+    /// Moment about x, y, z. Default `[0, 0, 0]`.
+    #[key(unit = "N m")]
     pub moment: Option<Spanned<Vector>>,
     /// Whether x, y, z are the axes of the world or those of the link, with which the load turns. Default `world`.
     pub axes: Option<Spanned<Axes>>,
     /// Factor of force and moment over time, given like a motion of a drive. Default 1.
+    #[key(unit = "1")]
     pub scale: Option<Spanned<Motion>>,
 }
 
 /// The force of wind on an area: `pressure · shape_factor · area`, or `ρ/2 · speed² · shape_factor · area` with ρ = 1.25 kg/m³.
 #[derive(Clone, Debug, FromNode)]
 pub struct Wind {
-    /// Pressure where the wind is stopped, Pa. Either this or `speed`.
+    /// Pressure where the wind is stopped. Either this or `speed`.
+    #[key(unit = "Pa", limit = NotNegative)]
     pub pressure: Option<Spanned<Number>>,
-    /// Speed, m/s. Either this or `pressure`.
+    /// Speed. Either this or `pressure`.
+    #[key(unit = "m/s", limit = NotNegative)]
     pub speed: Option<Spanned<Number>>,
-    /// Area that faces the wind, m².
+    /// Area that faces the wind.
+    #[key(unit = "m²", limit = NotNegative)]
     pub area: Spanned<Number>,
     /// Shape factor, the drag coefficient of the area.
+    #[key(unit = "1", limit = NotNegative)]
     pub shape_factor: Spanned<Number>,
     /// Direction in which it blows, along x, y, z, of any length.
+    #[key(unit = "1")]
     pub direction: Spanned<Direction>,
 }
 

@@ -16,7 +16,8 @@ pub struct LoopJoint {
     pub joint: Spanned<LoopJointKind>,
     /// Friction of a `pin` about its axis. Default: none.
     pub friction: Option<Spanned<Friction>>,
-    /// Viscous damping of a `pin` about its axis, N m s/rad. Default 0.
+    /// Viscous damping of a `pin` about its axis. Default 0.
+    #[key(unit = "N m s/rad", limit = NotNegative)]
     pub damping: Option<Spanned<Number>>,
 }
 
@@ -40,15 +41,18 @@ pub type Direction = [Spanned<Constant>; 3];
 #[derive(Clone, Debug, FromNode)]
 pub struct PinAxis {
     /// Its direction in the frame of the link `from`, or of the world.
+    #[key(unit = "1")]
     pub axis: Spanned<Direction>,
     /// Its direction in the frame of the link `to`. Default: the same numbers.
+    #[key(unit = "1")]
     pub to_axis: Option<Spanned<Direction>>,
 }
 
 /// A massless rod of constant length.
 #[derive(Clone, Debug, FromNode)]
 pub struct LoopRod {
-    /// Length, m.
+    /// Length.
+    #[key(unit = "m", limit = Positive)]
     pub length: Spanned<Number>,
 }
 
@@ -56,5 +60,6 @@ pub struct LoopRod {
 #[derive(Clone, Debug, FromNode)]
 pub struct SlideAxis {
     /// Its direction in the frame of the link `from`, or of the world.
+    #[key(unit = "1")]
     pub axis: Spanned<Direction>,
 }

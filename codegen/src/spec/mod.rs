@@ -1,7 +1,7 @@
 //! The spec language as written: one type per mapping, whose doc comments are its documentation and its JSON Schema;
 //! `FromNode` is derived for each.
 //!
-//! The type of a key defines its allowed values; [`Spanned`] holds its location. An optional key is an `Option`.
+//! The type of a key defines its allowed values, and `#[key(unit = …, limit = …)]` what its number measures; [`Spanned`] holds its location. An optional key is an `Option`.
 
 mod acting;
 mod beam;
@@ -42,6 +42,7 @@ pub use load::{Axes, Load, Wind};
 pub use loop_joint::{Direction, LoopJoint, LoopJointKind, LoopRod, PinAxis, SlideAxis};
 pub use on::{On, Place};
 pub use placement::{AxisName, ClassicDh, ModifiedDh, Placement, Transform, Turn};
+pub(crate) use scalar::Written;
 pub use scalar::{Angle, Constant, FixedAngle, Number, Scalar, Vector};
 pub use schema::json_schema;
 pub use shape::{BoxShape, MeshShape, RoundShape, Shape};
@@ -79,10 +80,11 @@ pub(crate) struct Lookalike {
 
 /// An inclined ground.
 #[derive(Clone, Debug, FromNode)]
+#[key(unit = "rad")]
 pub struct Slope {
-    /// Inclination, rad.
+    /// Inclination.
     pub angle: Spanned<Angle>,
-    /// The direction in which it falls, about z from x, rad. Default 0.
+    /// The direction in which it falls, about z from x. Default 0.
     pub towards: Option<Spanned<Angle>>,
 }
 
@@ -96,12 +98,14 @@ pub struct Crane {
     /// last, or behind the one that `after` names.
     pub extends: Option<Spanned<String>>,
     /// Version of the spec language: 1.
+    #[key(unit = "1")]
     pub format: Spanned<Constant>,
     /// Name of the crane, a `snake_case` identifier; names the generated module.
     pub name: Spanned<String>,
     /// Title for human readers, one line. Default: the name.
     pub title: Option<Spanned<String>>,
-    /// Acceleration of gravity in the world frame, m/s². Default `[0, 0, -9.81]`.
+    /// Acceleration of gravity in the world frame. Default `[0, 0, -9.81]`.
+    #[key(unit = "m/s²")]
     pub gravity: Option<Spanned<Vector>>,
     /// The ground is a slope: `gravity`, which is then along z, is turned. Default: none.
     pub slope: Option<Spanned<Slope>>,
@@ -121,9 +125,11 @@ pub struct Crane {
     pub supports: Option<Spanned<Vec<Spanned<Support>>>>,
     /// Drives of joints.
     pub drives: Option<Spanned<Vec<Spanned<Drive>>>>,
-    /// Viscous damping of passive joints by coordinate, N m s/rad or N s/m.
+    /// Viscous damping of passive joints by coordinate.
+    #[key(unit = "N m s/rad or N s/m", limit = NotNegative)]
     pub damping: Option<Spanned<Entries<Number>>>,
-    /// Rotor inertia of joints without a drive by coordinate, reflected by the square of the gear ratio, kg m² or kg.
+    /// Rotor inertia of joints without a drive by coordinate, reflected by the square of the gear ratio.
+    #[key(unit = "kg m² or kg", limit = NotNegative)]
     pub armature: Option<Spanned<Entries<Number>>>,
     /// End stops of joints by coordinate.
     pub stops: Option<Spanned<Entries<Stops>>>,
@@ -153,8 +159,9 @@ pub struct Crane {
     pub joints: Option<Spanned<Vec<Spanned<NamedJoint>>>>,
     /// Points of interest, whose motion is reported.
     pub points: Option<Spanned<Vec<Spanned<Point>>>>,
-    /// Starting point of the static solution, by coordinate, rad or m. Default: a driven coordinate at its drive's position at
+    /// Starting point of the static solution, by coordinate. Default: a driven coordinate at its drive's position at
     /// t = 0, one that follows another where its coupling puts it, all others at 0.
+    #[key(unit = "rad or m")]
     pub guess: Option<Spanned<Entries<FixedAngle>>>,
     /// Settings of a run.
     pub run: Option<Spanned<Run>>,
@@ -212,6 +219,7 @@ pub enum Loops {
 #[derive(Clone, Debug, FromNode)]
 pub struct Parameter {
     /// Default value, in SI units.
+    #[key(unit = "its own")]
     pub value: Spanned<FixedAngle>,
     /// Unit shown in tables, such as `kg`. Default: the SI unit of the value, if it has a unit.
     pub unit: Option<Spanned<String>>,
@@ -221,11 +229,12 @@ pub struct Parameter {
 
 /// Settings of a run.
 #[derive(Clone, Debug, Default, FromNode)]
+#[key(unit = "s", limit = Positive)]
 pub struct Run {
-    /// Simulated time, s. Default 10.
+    /// Simulated time. Default 10.
     pub duration: Option<Spanned<Constant>>,
-    /// Step size of the integrator, s. Default 1e-4.
+    /// Step size of the integrator. Default 1e-4.
     pub step: Option<Spanned<Constant>>,
-    /// Interval of the recorded results, s. Default 0.01.
+    /// Interval of the recorded results. Default 0.01.
     pub output: Option<Spanned<Constant>>,
 }

@@ -1,6 +1,6 @@
 //! What a link is attached to.
 
-use crate::node::{Content, Definition, Form, FromNode, Reader, Unread};
+use crate::node::{Content, Form, FromNode, Reader, Unread};
 
 use super::{Spanned, Vector};
 
@@ -9,8 +9,9 @@ use super::{Spanned, Vector};
 pub struct On {
     /// The link, an earlier one.
     pub link: Spanned<String>,
-    /// The place: `tip` of a beam or a rope, its `start`, or `[x, y, z]` in the frame of the link (for a beam: undeformed), m. Default
+    /// The place: `tip` of a beam or a rope, its `start`, or `[x, y, z]` in the frame of the link (for a beam: undeformed). Default
     /// `tip`, which for a rigid link is its frame.
+    #[key(unit = "m")]
     pub at: Option<Spanned<Place>>,
 }
 
@@ -29,13 +30,7 @@ pub enum Place {
 const WORDS: &[&str] = &["tip", "start"];
 
 impl FromNode for Place {
-    const FORM: Form = Form::Defined {
-        definition: &Definition {
-            name: "Place",
-            about: "`tip` or `start` of a beam or a rope, or `[x, y, z]` in the frame of the link, m.",
-            form: Form::AnyOf { forms: &[Form::Words { words: WORDS }, Vector::FORM] },
-        },
-    };
+    const FORM: Form = Form::AnyOf { forms: &[Form::Words { words: WORDS }, Vector::FORM] };
     fn from_node(reader: Reader) -> Result<Self, Unread> {
         match reader.content()? {
             Content::Text(word) if word == "tip" => Ok(Place::Tip),

@@ -18,33 +18,42 @@ pub enum Placement {
 /// Modified D-H parameters.
 #[derive(Clone, Debug, FromNode)]
 pub struct ModifiedDh {
-    /// Link length, along x of the previous frame, m. Default 0.
+    /// Link length, along x of the previous frame. Default 0.
+    #[key(unit = "m")]
     pub a: Option<Spanned<Number>>,
-    /// Link twist, about x of the previous frame, rad. Default 0.
+    /// Link twist, about x of the previous frame. Default 0.
+    #[key(unit = "rad")]
     pub alpha: Option<Spanned<Angle>>,
-    /// Offset along z, m; the zero position of a prismatic joint. Default 0.
+    /// Offset along z; the zero position of a prismatic joint. Default 0.
+    #[key(unit = "m")]
     pub d: Option<Spanned<Number>>,
-    /// Angle about z, rad; the zero position of a revolute joint. Default 0.
+    /// Angle about z; the zero position of a revolute joint. Default 0.
+    #[key(unit = "rad")]
     pub theta: Option<Spanned<Angle>>,
 }
 
 /// Classic D-H parameters.
 #[derive(Clone, Debug, FromNode)]
 pub struct ClassicDh {
-    /// Link length, along x of this frame, m. Default 0.
+    /// Link length, along x of this frame. Default 0.
+    #[key(unit = "m")]
     pub a: Option<Spanned<Number>>,
-    /// Link twist, about x of this frame, rad. Default 0.
+    /// Link twist, about x of this frame. Default 0.
+    #[key(unit = "rad")]
     pub alpha: Option<Spanned<Angle>>,
-    /// Offset along z of the previous frame, m; the zero position of a prismatic joint. Default 0.
+    /// Offset along z of the previous frame; the zero position of a prismatic joint. Default 0.
+    #[key(unit = "m")]
     pub d: Option<Spanned<Number>>,
-    /// Angle about z of the previous frame, rad; the zero position of a revolute joint. Default 0.
+    /// Angle about z of the previous frame; the zero position of a revolute joint. Default 0.
+    #[key(unit = "rad")]
     pub theta: Option<Spanned<Angle>>,
 }
 
 /// A constant transformation.
 #[derive(Clone, Debug, FromNode)]
 pub struct Transform {
-    /// Translation in the previous frame, m. Default `[0, 0, 0]`.
+    /// Translation in the previous frame. Default `[0, 0, 0]`.
+    #[key(unit = "m")]
     pub translation: Option<Spanned<Vector>>,
     /// Rotation `{x: angle}`, `{y: angle}` or `{z: angle}`, or a list of these, each about the axes as rotated by the
     /// previous ones. Default none.
@@ -53,12 +62,13 @@ pub struct Transform {
 
 /// A rotation about one axis.
 #[derive(Clone, Debug, FromNode)]
+#[key(unit = "rad")]
 pub enum Turn {
-    /// About x, rad.
+    /// About x.
     X(Spanned<Angle>),
-    /// About y, rad.
+    /// About y.
     Y(Spanned<Angle>),
-    /// About z, rad.
+    /// About z.
     Z(Spanned<Angle>),
 }
 

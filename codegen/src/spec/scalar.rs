@@ -2,7 +2,7 @@
 
 use super::Spanned;
 use crate::diagnostic::rule;
-use crate::node::{Content, Definition, Form, FromNode, Reader, Unread};
+use crate::node::{Content, Definition, Form, FromNode, Measure, Reader, Unread};
 use crate::units::{Quantity, UnknownUnit};
 
 /// Three numbers along x, y, z.
@@ -29,6 +29,12 @@ impl Scalar {
             Scalar::Name(_) => None,
         }
     }
+}
+
+/// A number as written, and what it measures.
+pub(crate) trait Written {
+    fn scalar(&self) -> &Scalar;
+    fn measure(&self) -> Measure;
 }
 
 /// Reads a [`Scalar`], a name only where it is permitted; `expected` is what is permitted, in messages.
@@ -59,7 +65,16 @@ macro_rules! scalar {
      [$($form:expr),*], $expected:literal) => {
         $(#[doc = $about])+
         #[derive(Clone, Debug, PartialEq)]
-        pub struct $name(pub Scalar);
+        pub struct $name(pub Scalar, pub(crate) Measure);
+
+        impl Written for $name {
+            fn scalar(&self) -> &Scalar {
+                &self.0
+            }
+            fn measure(&self) -> Measure {
+                self.1
+            }
+        }
 
         impl FromNode for $name {
             const FORM: Form = Form::Defined {
@@ -71,7 +86,7 @@ macro_rules! scalar {
             };
             fn from_node(reader: Reader) -> Result<Self, Unread> {
                 // Whether its unit is the right one is a question of validation.
-                read_scalar(reader, $parameter, $expected).map($name)
+                read_scalar(reader, $parameter, $expected).map(|scalar| $name(scalar, reader.measure))
             }
         }
     };

@@ -3,14 +3,14 @@
 use serde_json::{Map, Value, json};
 
 use super::Crane;
-use crate::node::{Form, FromNode, Key, Variant};
+use crate::node::{Form, FromNode, Key, Limit, Measure, Variant};
 
 /// JSON Schema of the spec language, for editors that complete and check a spec.
 #[must_use]
 pub fn json_schema() -> String {
     let Form::Defined { definition } = Crane::FORM else { return String::new() };
     let mut definitions = Map::new();
-    let mut schema = describe_form(definition.form, &mut definitions);
+    let mut schema = describe_form(definition.form, Measure::NONE, &mut definitions);
     // A spec that extends another contains only the differences.
     let whole = schema["required"].take();
     schema["anyOf"] = json!([{ "required": whole }, { "required": ["extends"] }]);
@@ -25,7 +25,7 @@ pub fn json_schema() -> String {
 }
 
 /// The schema of a form; forms with a name are added to the definitions.
-fn describe_form(form: Form, definitions: &mut Map<String, Value>) -> Value {
+fn describe_form(form: Form, measure: Measure, definitions: &mut Map<String, Value>) -> Value {
     match form {
         Form::Text | Form::Word => json!({ "type": "string" }),
         Form::Flag => json!({ "type": "boolean" }),
@@ -34,7 +34,7 @@ fn describe_form(form: Form, definitions: &mut Map<String, Value>) -> Value {
         Form::Pattern { pattern } => json!({ "type": "string", "pattern": pattern }),
         Form::Words { words } => json!({ "enum": words }),
         Form::List { item, count } => {
-            let mut list = json!({ "type": "array", "items": describe_form(*item, definitions) });
+            let mut list = json!({ "type": "array", "items": describe_form(*item, measure, definitions) });
             if let Some(count) = count {
                 list["minItems"] = json!(count);
                 list["maxItems"] = json!(count);
@@ -42,10 +42,10 @@ fn describe_form(form: Form, definitions: &mut Map<String, Value>) -> Value {
             list
         }
         Form::Entries { value } => {
-            json!({ "type": "object", "additionalProperties": describe_form(*value, definitions) })
+            json!({ "type": "object", "additionalProperties": describe_form(*value, measure, definitions) })
         }
         Form::AnyOf { forms } => {
-            let forms: Vec<Value> = forms.iter().map(|form| describe_form(*form, definitions)).collect();
+            let forms: Vec<Value> = forms.iter().map(|form| describe_form(*form, measure, definitions)).collect();
             json!({ "anyOf": forms })
         }
         Form::Mapping { keys } => describe_mapping(keys, definitions),
@@ -62,17 +62,25 @@ fn describe_form(form: Form, definitions: &mut Map<String, Value>) -> Value {
         Form::Defined { definition } => {
             if !definitions.contains_key(definition.name) {
                 definitions.insert(definition.name.to_owned(), Value::Null);
-                let schema = with_description(describe_form(definition.form, definitions), definition.about);
+                let schema =
+                    with_description(describe_form(definition.form, Measure::NONE, definitions), definition.about);
                 definitions.insert(definition.name.to_owned(), schema);
             }
-            json!({ "$ref": format!("#/$defs/{}", definition.name) })
+            let mut schema = json!({ "$ref": format!("#/$defs/{}", definition.name) });
+            if matches!(definition.form, Form::AnyOf { forms: [Form::Number, ..] }) {
+                add_measure(&mut schema, measure);
+            }
+            schema
         }
     }
 }
 
 fn describe_mapping(keys: &[Key], definitions: &mut Map<String, Value>) -> Value {
     let required: Vec<&str> = keys.iter().filter(|key| key.is_required).map(|key| key.name).collect();
-    let property = |key: &Key| (key.name.to_owned(), with_description(describe_form(key.form, definitions), key.about));
+    let property = |key: &Key| {
+        let about = format!("{} {}", key.about, key.measure.describe());
+        (key.name.to_owned(), with_description(describe_form(key.form, key.measure, definitions), about.trim_end()))
+    };
     let properties: Map<String, Value> = keys.iter().map(property).collect();
     let mut schema = json!({ "type": "object", "properties": properties, "additionalProperties": false });
     if !required.is_empty() {
@@ -87,12 +95,24 @@ fn describe_variant(variant: &Variant, definitions: &mut Map<String, Value>) -> 
         Form::Word => json!({ "type": "string", "const": variant.word }),
         content => json!({
             "type": "object",
-            "properties": { variant.word: describe_form(content, definitions) },
+            "properties": { variant.word: describe_form(content, variant.measure, definitions) },
             "required": [variant.word],
             "additionalProperties": false,
         }),
     };
-    with_description(schema, variant.about)
+    let about = format!("{} {}", variant.about, variant.measure.describe());
+    with_description(schema, about.trim_end())
+}
+
+/// The unit and the limit of a number; a name of a parameter and a number with a unit have their own checks.
+fn add_measure(schema: &mut Value, measure: Measure) {
+    schema["x-unit"] = json!(measure.unit);
+    match measure.limit {
+        Limit::Any => {}
+        Limit::Positive => schema["exclusiveMinimum"] = json!(0),
+        Limit::NotNegative | Limit::Mass | Limit::MassOfMoments => schema["minimum"] = json!(0),
+        Limit::Whole(most) => (schema["minimum"], schema["maximum"]) = (json!(1), json!(most)),
+    }
 }
 
 fn with_description(mut schema: Value, about: &str) -> Value {

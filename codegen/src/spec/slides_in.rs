@@ -8,7 +8,8 @@ use crate::node::FromNode;
 pub struct SlidesIn {
     /// The link of the outer beam, an earlier one.
     pub beam: Spanned<String>,
-    /// How far the inner beam is in the outer one where the coordinate of its joint is 0, m. It becomes shorter as the coordinate grows.
+    /// How far the inner beam is in the outer one where the coordinate of its joint is 0. It becomes shorter as the coordinate grows.
+    #[key(unit = "m", limit = Positive)]
     pub overlap: Spanned<Number>,
     /// The pads.
     pub pads: Spanned<Pads>,
@@ -26,11 +27,14 @@ pub struct Pads {
 /// Pads on all sides of a beam: springs and dampers along y and z of the beam that carries them, and against twist about its x; or exact.
 #[derive(Clone, Debug, FromNode)]
 pub struct Pad {
-    /// Stiffness along y and z, N/m, and against twist, N m/rad. Default `[0, 0, 0]`.
+    /// Stiffness along y and z, and against twist. Default `[0, 0, 0]`.
+    #[key(unit = "N/m, N/m, N m/rad", limit = NotNegative)]
     pub stiffness: Option<Spanned<Vector>>,
-    /// Damping along y and z, N s/m, and against twist, N m s/rad. Default `[0, 0, 0]`.
+    /// Damping along y and z, and against twist. Default `[0, 0, 0]`.
+    #[key(unit = "N s/m, N s/m, N m s/rad", limit = NotNegative)]
     pub damping: Option<Spanned<Vector>>,
-    /// Clearance on each side along y and z, m, and of the twist, rad. Default none: `[0, 0, 0]`.
+    /// Clearance on each side along y and z, and of the twist. Default none: `[0, 0, 0]`.
+    #[key(unit = "m, m, rad", limit = NotNegative)]
     pub clearance: Option<Spanned<Vector>>,
     /// Directions in which the pad does not give way: equations of a loop in place of springs. Default none.
     pub exact: Option<Spanned<Vec<Spanned<ExactDirection>>>>,

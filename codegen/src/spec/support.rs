@@ -8,13 +8,17 @@ use crate::node::FromNode;
 pub struct Support {
     /// Name, a `snake_case` identifier.
     pub name: Spanned<String>,
-    /// Its attachment point in the base's frame, m.
+    /// Its attachment point in the base's frame.
+    #[key(unit = "m")]
     pub at: Spanned<Vector>,
-    /// Stiffness along x, y, z, N/m.
+    /// Stiffness along x, y, z.
+    #[key(unit = "N/m", limit = NotNegative)]
     pub stiffness: Spanned<Vector>,
-    /// Damping along x, y, z, N s/m. Default `[0, 0, 0]`.
+    /// Damping along x, y, z. Default `[0, 0, 0]`.
+    #[key(unit = "N s/m", limit = NotNegative)]
     pub damping: Option<Spanned<Vector>>,
-    /// Elongation at which the springs are unstressed, along x, y, z, m. Default `[0, 0, 0]`.
+    /// Elongation at which the springs are unstressed, along x, y, z. Default `[0, 0, 0]`.
+    #[key(unit = "m")]
     pub free_play: Option<Spanned<Vector>>,
     /// How the elongation depends on the base's coordinates. Default `linear`.
     pub kinematics: Option<Spanned<Kinematics>>,
@@ -22,6 +26,7 @@ pub struct Support {
     pub one_sided: Option<Spanned<bool>>,
     /// Coefficient of friction between a one-sided support and the ground: sideways it holds at most this times the force with which it
     /// presses, and slides beyond. Default 0.6.
+    #[key(unit = "1", limit = Positive)]
     pub friction_coefficient: Option<Spanned<Number>>,
     /// Whether a one-sided support never slides while it presses: it then has a coefficient of friction of 1000. Default `false`.
     pub sticks: Option<Spanned<bool>>,
@@ -32,9 +37,11 @@ pub struct Support {
 /// The plate under a support.
 #[derive(Clone, Debug, FromNode)]
 pub struct Plate {
-    /// Its area, m².
+    /// Its area.
+    #[key(unit = "m²", limit = Positive)]
     pub area: Spanned<Constant>,
-    /// The largest pressure that the ground bears, Pa; more causes a caution, and limits loads of charts. Default: none.
+    /// The largest pressure that the ground bears; more causes a caution, and limits loads of charts. Default: none.
+    #[key(unit = "Pa", limit = Positive)]
     pub max_pressure: Option<Spanned<Constant>>,
 }
 
@@ -56,7 +63,8 @@ pub struct Point {
     pub link: Option<Spanned<String>>,
     /// The one of `frames` in which `at` is given.
     pub frame: Option<Spanned<String>>,
-    /// Its position in the frame of the link (for a beam: undeformed), or in `frame`, m. Default `[0, 0, 0]`.
+    /// Its position in the frame of the link (for a beam: undeformed), or in `frame`. Default `[0, 0, 0]`.
+    #[key(unit = "m")]
     pub at: Option<Spanned<Vector>>,
 }
 
@@ -78,6 +86,7 @@ pub struct NamedJoint {
     pub name: Spanned<String>,
     /// Its coordinate. Default: none, since it does not move.
     pub coordinate: Option<Spanned<String>>,
-    /// Its position where the coordinate is zero or, without one, always, rad or m. Default 0.
+    /// Its position where the coordinate is zero or, without one, always. Default 0.
+    #[key(unit = "rad or m")]
     pub at: Option<Spanned<FixedAngle>>,
 }

@@ -1,7 +1,6 @@
 //! Supports of the base.
 
 use super::Check;
-use super::limits::Limit;
 use crate::chain::{Step, Support, SupportKinematics, Value};
 use crate::diagnostic::rule;
 use crate::spec::{self, Crane, Kinematics};
@@ -47,18 +46,13 @@ impl<'a> Check<'a> {
                 self.report(rule::linear_placed(span, &name, how));
             }
             let subject = |what: &str| format!("the {what} of support `{name}`");
-            let stiffness = self.vector(&support.stiffness, &subject("stiffness"), "N/m", Limit::NotNegative);
+            let stiffness = self.vector(&support.stiffness, &subject("stiffness"));
             let friction = self.ground_friction(support, &name, &stiffness[2]);
             sound.push(Support {
-                position: self.vector(&support.at, &subject("position"), "m", Limit::Any),
+                position: self.vector(&support.at, &subject("position")),
                 stiffness,
-                damping: self.vector_or_zero(
-                    support.damping.as_ref(),
-                    &subject("damping"),
-                    "N s/m",
-                    Limit::NotNegative,
-                ),
-                free_play: self.vector_or_zero(support.free_play.as_ref(), &subject("free play"), "m", Limit::Any),
+                damping: self.vector_or_zero(support.damping.as_ref(), &subject("damping")),
+                free_play: self.vector_or_zero(support.free_play.as_ref(), &subject("free play")),
                 friction,
                 kinematics,
                 plate: self.plate(support, &name),
@@ -72,9 +66,9 @@ impl<'a> Check<'a> {
     fn plate(&mut self, support: &spec::Support, name: &str) -> Option<(f64, Option<f64>)> {
         let plate = support.plate.as_ref()?.value.as_ref()?;
         let subject = |what: &str| format!("the {what} of support `{name}`");
-        let area = self.constant(&plate.area, &subject("plate area"), "m²", Limit::Positive);
+        let area = self.constant(&plate.area, &subject("plate area"));
         let most = plate.max_pressure.as_ref();
-        Some((area, most.map(|most| self.constant(most, &subject("largest pressure"), "Pa", Limit::Positive))))
+        Some((area, most.map(|most| self.constant(most, &subject("largest pressure")))))
     }
 
     /// The coefficient of friction of a one-sided support.
@@ -83,7 +77,7 @@ impl<'a> Check<'a> {
         let subject = format!("the friction coefficient of support `{name}`");
         let is_stuck = sticks.as_ref().is_some_and(|sticks| sticks.value == Some(true));
         let unless_given = if is_stuck { STICKS } else { FRICTION };
-        let coefficient = self.number_or(friction_coefficient.as_ref(), unless_given, &subject, "", Limit::Positive);
+        let coefficient = self.number_or(friction_coefficient.as_ref(), unless_given, &subject);
         let one_sided = support.one_sided.as_ref().filter(|given| given.value != Some(false));
         let spans = [friction_coefficient.as_ref().map(|given| given.span), sticks.as_ref().map(|given| given.span)];
         let Some(given) = one_sided else {

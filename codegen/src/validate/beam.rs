@@ -1,7 +1,6 @@
 //! Beams: division into sections, and conversion of elements into bodies.
 
 use super::elements::WRITTEN;
-use super::limits::Limit;
 use super::on::Attached;
 use super::section::Elastic;
 use super::{Carried, Check, Owner};
@@ -24,7 +23,7 @@ impl<'a> Check<'a> {
     /// Appends the elements of a beam.
     pub(super) fn beam(&mut self, given: &'a Spanned<Beam>, link: &str, span: Span, attached: Attached) -> Carried {
         let elements = given.value.as_ref().and_then(|inside| {
-            let length = self.number(&inside.length, "`length`", "m", Limit::Positive);
+            let length = self.number(&inside.length, "`length`");
             match &inside.elements {
                 Some(elements) => {
                     self.push_beam(link, Vec::new(), None, None);
@@ -131,9 +130,9 @@ impl<'a> Check<'a> {
         let material = beam.material.as_ref().and_then(|material| self.material(material));
         let section = beam.section.as_ref().and_then(|section| self.shape(section)).map(|shape| shape.section());
         let parts = beam.parts.as_ref().and_then(|parts| self.parts(parts, &beam.length, length));
-        let extra = self.number_or(beam.extra_mass.as_ref(), 0.0, "`extra_mass`", "kg/m", Limit::NotNegative);
+        let extra = self.number_or(beam.extra_mass.as_ref(), 0.0, "`extra_mass`");
         let damping = self.beam_damping(beam.damping.as_ref());
-        let safety = self.number_or(beam.safety_factor.as_ref(), SAFETY_FACTOR, "`safety_factor`", "", Limit::Positive);
+        let safety = self.number_or(beam.safety_factor.as_ref(), SAFETY_FACTOR, "`safety_factor`");
         let bend = self.bend(beam.bend.as_ref(), sections);
         let (Elastic { youngs, shear, density, yield_stress }, sections) = (material?, sections?);
         let stations = self.stations.get(link).cloned().unwrap_or_default();
@@ -222,7 +221,7 @@ impl<'a> Check<'a> {
 
     /// A part of a beam.
     fn part(&mut self, part: &'a BeamPart) -> Option<Part> {
-        let length = self.number(&part.length, "`length`", "m", Limit::Positive);
+        let length = self.number(&part.length, "`length`");
         if length.as_constant().is_none() {
             self.report(rule::live_part(part.length.span, "the length of a part"));
         }
@@ -251,7 +250,7 @@ impl<'a> Check<'a> {
         }
         let angles = [(&bend.theta, "`theta`"), (&bend.psi, "`psi`")];
         Curvature(Some(
-            angles.map(|(angle, subject)| angle.as_ref().map_or(Value::ZERO, |angle| self.angle(angle, subject))),
+            angles.map(|(angle, subject)| angle.as_ref().map_or(Value::ZERO, |angle| self.number(angle, subject))),
         ))
     }
 
@@ -275,15 +274,13 @@ impl<'a> Check<'a> {
         let none = || [Value::ZERO; 3];
         match given.and_then(|given| given.value.as_ref()) {
             None => Damping::Coefficients(none()),
-            Some(BeamDamping::Coefficients(each)) => {
-                Damping::Coefficients(self.directions(each, "the damping", "N m s/rad", Limit::NotNegative))
-            }
+            Some(BeamDamping::Coefficients(each)) => Damping::Coefficients(self.directions(each, "the damping")),
             Some(BeamDamping::Beta(beta)) => Damping::Beta(match &beta.value {
                 None => none(),
-                Some(Either::Full(each)) => self.directions(each, "`beta`", "s", Limit::NotNegative),
+                Some(Either::Full(each)) => self.directions(each, "`beta`"),
                 Some(Either::Short(number)) => {
                     let beta = Spanned { value: Some(number.clone()), span: beta.span };
-                    let beta = self.number(&beta, "`beta`", "s", Limit::NotNegative);
+                    let beta = self.number(&beta, "`beta`");
                     [beta.clone(), beta.clone(), beta]
                 }
             }),
@@ -291,8 +288,8 @@ impl<'a> Check<'a> {
     }
 
     /// One number per direction.
-    pub(super) fn directions(&mut self, each: &Directions, subject: &str, unit: &str, limit: Limit) -> [Value; 3] {
-        [&each.psi, &each.theta, &each.phi].map(|number| self.number(number, subject, unit, limit))
+    pub(super) fn directions(&mut self, each: &Directions, subject: &str) -> [Value; 3] {
+        [&each.psi, &each.theta, &each.phi].map(|number| self.number(number, subject))
     }
 }
 

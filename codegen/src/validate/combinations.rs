@@ -1,7 +1,6 @@
 //! Combinations of weights and loads.
 
 use super::Check;
-use super::limits::Limit;
 use crate::chain::{Combination, Load, ParameterId};
 use crate::diagnostic::{rule, suggest};
 use crate::spec::{Constant, Crane, Entries, Spanned};
@@ -20,10 +19,10 @@ impl<'a> Check<'a> {
             }
             let subject = |what: &str| format!("the factor of {what} in combination `{name}`");
             let weight = combination.weight.as_ref();
-            let weight = weight.map_or(1.0, |given| self.constant(given, &subject("the weight"), "", Limit::Positive));
+            let weight = weight.map_or(1.0, |given| self.constant(given, &subject("the weight")));
             let mut masses = Vec::new();
             for (mass, factor) in entries(combination.masses.as_ref()) {
-                let factor = self.constant(factor, &subject("a mass"), "", Limit::Positive);
+                let factor = self.constant(factor, &subject("a mass"));
                 let Some(wanted) = self.name(mass) else { continue };
                 match self.parameters.iter().position(|parameter| parameter.name == wanted) {
                     Some(index) if self.parameters[index].unit == MASS => masses.push((ParameterId(index), factor)),
@@ -39,7 +38,7 @@ impl<'a> Check<'a> {
             }
             let mut of_loads = Vec::new();
             for (load, factor) in entries(combination.loads.as_ref()) {
-                let factor = self.constant(factor, &subject("a load"), "", Limit::Any);
+                let factor = self.constant(factor, &subject("a load"));
                 let Some(wanted) = self.name(load) else { continue };
                 if let Some(index) = loads.iter().position(|load| load.name == wanted) {
                     of_loads.push((index, factor));

@@ -1,17 +1,13 @@
 //! Connectors: elements between two points, and couplings of coordinates.
 
 use super::Check;
-use super::drives::units;
-use super::limits::Limit;
+use super::numbers::Whose;
 use crate::chain::{
     self, Attachment, Chain, CoordinateKind, Cylinder, Follower, Force, Group, Law, Line, LinePart, Profile,
     RigidCoupling, Rope, RopeStiffness, Spring, Strain, Value,
 };
 use crate::diagnostic::{Span, rule};
 use crate::spec::{self, Crane, Number, Spanned, entries};
-
-/// Maximum number of falls of a rope.
-const MOST_FALLS: f64 = 100.0;
 
 impl<'a> Check<'a> {
     pub(super) fn connectors(&mut self, crane: &'a Crane, cylinders: &[Cylinder]) -> Vec<Force> {
@@ -46,10 +42,10 @@ impl<'a> Check<'a> {
                 self.register_connector(&name, contact.name.span, cylinders);
             }
             let place = |what: &str| format!("the {what} of contact `{name}`");
-            let at = self.vector_or_zero(contact.at.as_ref(), &place("point"), "m", Limit::Any);
-            let height = self.number_or(contact.height.as_ref(), 0.0, &place("height"), "m", Limit::Any);
-            let stiffness = self.number(&contact.stiffness, &place("stiffness"), "N/m", Limit::Positive);
-            let damping = self.number_or(contact.damping.as_ref(), 0.0, &place("damping"), "s/m", Limit::NotNegative);
+            let at = self.vector_or_zero(contact.at.as_ref(), &place("point"));
+            let height = self.number_or(contact.height.as_ref(), 0.0, &place("height"));
+            let stiffness = self.number(&contact.stiffness, &place("stiffness"));
+            let damping = self.number_or(contact.damping.as_ref(), 0.0, &place("damping"));
             let Some((body, position)) = self.attach(&contact.link, at) else { continue };
             if self.coordinates_of(Some(body)).is_empty() {
                 self.report(rule::rigid_contact(contact.link.span, &name));
@@ -74,7 +70,9 @@ impl<'a> Check<'a> {
         let sheaves = sheaves(connector);
         let over: Vec<_> =
             sheaves.iter().map(|sheave| self.attachment(sheave, &format!("a sheave of rope `{name}`"))).collect();
-        let falls = connector.falls.as_ref().map_or(Some(1), |given| self.falls(given, name));
+        let falls = connector.falls.as_ref().map_or(Some(1), |given| {
+            self.count(given, &format!("the falls of rope `{name}`"), |count| rule::falls(given.span, name, count))
+        });
         let points: Option<Vec<Attachment>> = [from].into_iter().chain(over).chain([to]).collect();
         Some(Line { points: points?, falls: falls? })
     }
@@ -90,20 +88,6 @@ impl<'a> Check<'a> {
         if let Some((key, span)) = key.filter(|_| !is_rope) {
             self.report(rule::sheaves_without_rope(span, name, key));
         }
-    }
-
-    /// A number of falls; `None` if it is not whole.
-    fn falls(&mut self, given: &Spanned<spec::Constant>, name: &str) -> Option<u32> {
-        let count = self.constant(given, &format!("the falls of rope `{name}`"), "", Limit::Any);
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // an integer from 1 to 100
-        if (1.0..=MOST_FALLS).contains(&count) && count.fract() == 0.0 {
-            return Some(count as u32);
-        }
-        // A number that could not be read has been reported.
-        if !count.is_nan() {
-            self.report(rule::falls(given.span, name, count));
-        }
-        None
     }
 
     /// Registers the name of a connector or a coupling: like cylinders, they have result columns for length and force.
@@ -135,9 +119,9 @@ impl<'a> Check<'a> {
                 [true, false] => "rad/m",
                 _ => "",
             };
-            let ratio = self.number(&coupling.ratio, &place("ratio"), unit, Limit::Any);
+            let ratio = self.number_of(&coupling.ratio, Whose::Own(Some(unit)), &place("ratio"));
             let offset = coupling.offset.as_ref();
-            let offset = offset.map_or(Value::ZERO, |offset| self.position(offset, units(kind).position, "`offset`"));
+            let offset = offset.map_or(Value::ZERO, |offset| self.number_of(offset, Whose::Joint(kind), "`offset`"));
             let spring = self.spring_of(coupling, &name, kind);
             let (Some(coordinate), Some(leader)) = (coordinate, leader) else { continue };
             if let Some([stiffness, damping]) = spring {
@@ -154,18 +138,14 @@ impl<'a> Check<'a> {
 
     /// Stiffness and damping of a coupling; `None` if it is rigid.
     fn spring_of(&mut self, coupling: &spec::Coupling, name: &str, kind: Option<CoordinateKind>) -> Option<[Value; 2]> {
-        let units = units(kind);
-        let keys = [
-            ("stiffness", coupling.stiffness.as_ref(), units.stiffness),
-            ("damping", coupling.damping.as_ref(), units.damping),
-        ];
-        let numbers = keys.map(|(key, given, unit)| {
+        let keys = [("stiffness", coupling.stiffness.as_ref()), ("damping", coupling.damping.as_ref())];
+        let numbers = keys.map(|(key, given)| {
             let place = format!("the {key} of coupling `{name}`");
-            given.map(|given| self.number(given, &place, unit, Limit::NotNegative))
+            given.map(|given| self.number_of(given, Whose::Joint(kind), &place))
         });
         let subject = format!("coupling `{name}`");
         if coupling.rigid.as_ref().is_some_and(|rigid| rigid.value == Some(true)) {
-            for (key, given, _) in keys {
+            for (key, given) in keys {
                 if let Some(given) = given {
                     let follows = "force follows from the motion";
                     self.report(rule::rigid_spring(given.span, subject.clone(), key, follows));
@@ -228,31 +208,29 @@ impl<'a> Check<'a> {
     /// A point of an element; `what` names it in messages.
     pub(super) fn attachment(&mut self, given: &Spanned<spec::Attachment>, what: &str) -> Option<Attachment> {
         let end = given.value.as_ref()?;
-        let at = self.vector(&end.at, what, "m", Limit::Any);
+        let at = self.vector(&end.at, what);
         let Some(link) = &end.link else { return Some(Attachment { body: None, position: at }) };
         let (body, position) = self.attach(link, at)?;
         Some(Attachment { body: Some(body), position })
     }
 
     fn rope_law(&mut self, rope: &spec::Rope, span: Span, name: &str) -> Law {
-        let damping = self.point_number(rope.damping.as_ref(), (name, "damping"), "s/m", Limit::NotNegative);
+        let damping = self.point_number(rope.damping.as_ref(), (name, "damping"));
         let length = self.rope_length(rope, span, name);
         let place = format!("the largest tension of rope `{name}`");
-        let max_tension = rope.max_tension.as_ref().map(|given| self.constant(given, &place, "N", Limit::Positive));
+        let max_tension = rope.max_tension.as_ref().map(|given| self.constant(given, &place));
         Law::Rope(Rope { stiffness: self.rope_stiffness(rope, span, name, &length), damping, length, max_tension })
     }
 
     /// A stiffness that stays the same, or EA of a rope whose length changes.
     fn rope_stiffness(&mut self, rope: &spec::Rope, span: Span, name: &str, length: &Profile) -> RopeStiffness {
         match (&rope.stiffness, &rope.axial_stiffness) {
-            (Some(stiffness), None) => {
-                RopeStiffness::Whole(self.point_number(Some(stiffness), (name, "stiffness"), "N/m", Limit::Positive))
-            }
+            (Some(stiffness), None) => RopeStiffness::Whole(self.point_number(Some(stiffness), (name, "stiffness"))),
             (None, Some(axial)) => {
                 if rope.motion.is_some() {
                     self.keep_rope(length, span, name);
                 }
-                let axial = self.point_number(Some(axial), (name, "axial stiffness"), "N", Limit::Positive);
+                let axial = self.point_number(Some(axial), (name, "axial stiffness"));
                 match length {
                     Profile::Hold(length) => RopeStiffness::Whole(axial / length.clone()),
                     _ => RopeStiffness::Axial(axial),
@@ -277,15 +255,8 @@ impl<'a> Check<'a> {
     }
 
     /// A number of a law; 0 if it is left out.
-    fn point_number(
-        &mut self,
-        given: Option<&Spanned<Number>>,
-        (name, key): (&str, &str),
-        unit: &'static str,
-        limit: Limit,
-    ) -> Value {
-        let place = format!("the {key} of connector `{name}`");
-        given.map_or(Value::ZERO, |given| self.number(given, &place, unit, limit))
+    fn point_number(&mut self, given: Option<&Spanned<Number>>, (name, key): (&str, &str)) -> Value {
+        self.number_or(given, 0.0, &format!("the {key} of connector `{name}`"))
     }
 
     fn rope_length(&mut self, rope: &spec::Rope, span: Span, name: &str) -> Profile {
@@ -293,10 +264,10 @@ impl<'a> Check<'a> {
         match (&rope.length, &rope.motion) {
             (Some(length), None) => {
                 let place = format!("the length of connector `{name}`");
-                Profile::Hold(self.number(length, &place, "m", Limit::Positive))
+                Profile::Hold(self.number(length, &place))
             }
             (None, Some(motion)) => {
-                let profile = motion.value.as_ref().and_then(|value| self.motion(value, Some("m"), motion.span));
+                let profile = motion.value.as_ref().and_then(|value| self.motion(value, Whose::Key, motion.span));
                 let profile = profile.map(|profile| self.halted(profile, rope.halt.as_ref(), name));
                 profile.unwrap_or(wrong)
             }
@@ -332,13 +303,13 @@ impl Given for Option<Spanned<Number>> {
 
 macro_rules! check_laws {
     ($($(#[$doc:meta])* $law:ident as $written:ident: $expecting:literal {
-        $($(#[$key_doc:meta])* $key:ident: $number:ty, $limit:ident $unit:literal;)*
+        $($(#[doc = $about:literal])* #[key(unit = $unit:literal, limit = $limit:ident)] $key:ident: $number:ty;)*
     })*) => {
         impl Check<'_> {
             fn connector_law(&mut self, law: &spec::ConnectorLaw, span: Span, name: &str) -> Law {
                 match law {
                     $(spec::ConnectorLaw::$law(law) => Law::$law(chain::$law {
-                        $($key: self.point_number(law.$key.given(), (name, stringify!($key)), $unit, Limit::$limit),)*
+                        $($key: self.point_number(law.$key.given(), (name, stringify!($key))),)*
                     }),)*
                     spec::ConnectorLaw::Rope(rope) => self.rope_law(rope, span, name),
                 }

@@ -1,7 +1,7 @@
 //! Hydraulic cylinders.
 
 use super::Check;
-use super::limits::Limit;
+use super::numbers::Whose;
 use crate::chain::{
     BodyId, CoordinateId, CoordinateKind, Cylinder, Drive, Linkage, Pin, Profile, Pump, Transmission, Valve,
 };
@@ -34,13 +34,11 @@ impl<'a> Check<'a> {
             self.report(rule::pump_alone(given.span));
         }
         let pump = given.value.as_ref()?;
-        let max_flow = self.constant(&pump.max_flow, "the maximum flow of the pump", "m³/s", Limit::Positive);
+        let max_flow = self.constant(&pump.max_flow, "the maximum flow of the pump");
         let pressure = pump.pressure.as_ref();
-        let pressure = pressure.map(|given| self.constant(given, "the pressure of the pump", "Pa", Limit::Positive));
-        let volume = pump
-            .volume
-            .as_ref()
-            .map_or(VOLUME, |given| self.constant(given, "the volume between pump and valves", "m³", Limit::Positive));
+        let pressure = pressure.map(|given| self.constant(given, "the pressure of the pump"));
+        let volume =
+            pump.volume.as_ref().map_or(VOLUME, |given| self.constant(given, "the volume between pump and valves"));
         Some(Pump { max_flow, pressure, volume })
     }
 
@@ -107,25 +105,25 @@ impl<'a> Check<'a> {
                 self.report(rule::valve_commanded_twice(other.span, name, key));
             }
         }
-        self.motion(given.value.as_ref()?, Some(""), given.span)
+        self.motion(given.value.as_ref()?, Whose::Key, given.span)
     }
 
     fn valve(&mut self, given: &spec::Valve, name: &str) -> Valve {
         let subject = |what: &str| format!("the {what} of the valve of cylinder `{name}`");
-        let flow = self.constant(&given.flow, &subject("flow"), "m³/s", Limit::Positive);
-        let drop = self.constant(&given.pressure_drop, &subject("pressure drop"), "Pa", Limit::Positive);
-        let mut optional = |given: Option<&Spanned<Constant>>, what: &str, unit, limit, default| {
-            given.map_or(default, |given| self.constant(given, &subject(what), unit, limit))
+        let flow = self.constant(&given.flow, &subject("flow"));
+        let drop = self.constant(&given.pressure_drop, &subject("pressure drop"));
+        let mut optional = |given: Option<&Spanned<Constant>>, what: &str, default| {
+            given.map_or(default, |given| self.constant(given, &subject(what)))
         };
-        let overlap = optional(given.overlap.as_ref(), "overlap", "", Limit::NotNegative, 0.0);
+        let overlap = optional(given.overlap.as_ref(), "overlap", 0.0);
         let valve = Valve {
             flow,
             pressure_drop: drop,
             overlap,
-            lag: optional(Some(&given.lag), "lag", "s", Limit::Positive, 0.0),
-            gain: optional(given.gain.as_ref(), "gain", "1/m", Limit::NotNegative, 0.0),
-            feed_forward: optional(given.feed_forward.as_ref(), "feed-forward", "", Limit::NotNegative, 1.0),
-            leakage: optional(given.leakage.as_ref(), "leakage", "m³/(s Pa)", Limit::NotNegative, 0.0),
+            lag: optional(Some(&given.lag), "lag", 0.0),
+            gain: optional(given.gain.as_ref(), "gain", 0.0),
+            feed_forward: optional(given.feed_forward.as_ref(), "feed-forward", 1.0),
+            leakage: optional(given.leakage.as_ref(), "leakage", 0.0),
         };
         if let Some(given) = given.overlap.as_ref().filter(|_| overlap >= 1.0) {
             self.report(rule::covered_valve(given.span, name, overlap));
@@ -139,23 +137,20 @@ impl<'a> Check<'a> {
             self.register_name("cylinders", &name, "an earlier cylinder".into(), given.name.span);
         }
         let subject = |what: &str| format!("the {what} of cylinder `{name}`");
-        let bore = self.constant(&given.bore, &subject("bore"), "m", Limit::Positive);
-        let rod = self.constant(&given.rod, &subject("rod"), "m", Limit::Positive);
+        let bore = self.constant(&given.bore, &subject("bore"));
+        let rod = self.constant(&given.rod, &subject("rod"));
         if rod >= bore {
             self.report(rule::thick_rod(given.rod.span, &name, rod, bore));
         }
-        let retracted = self.constant(&given.retracted, &subject("retracted length"), "m", Limit::Positive);
-        let stroke = self.constant(&given.stroke, &subject("stroke"), "m", Limit::Positive);
-        let mut pressure = |given: Option<&Spanned<Constant>>, what: &str, limit| {
-            given.map(|given| self.constant(given, &subject(what), "Pa", limit))
-        };
-        let max_pressure = pressure(given.max_pressure.as_ref(), "maximum pressure", Limit::Positive);
-        let back_pressure = pressure(given.back_pressure.as_ref(), "back pressure", Limit::NotNegative).unwrap_or(0.0);
-        let bulk_modulus = pressure(given.bulk_modulus.as_ref(), "bulk modulus", Limit::Positive);
+        let retracted = self.constant(&given.retracted, &subject("retracted length"));
+        let stroke = self.constant(&given.stroke, &subject("stroke"));
+        let mut pressure =
+            |given: Option<&Spanned<Constant>>, what: &str| given.map(|given| self.constant(given, &subject(what)));
+        let max_pressure = pressure(given.max_pressure.as_ref(), "maximum pressure");
+        let back_pressure = pressure(given.back_pressure.as_ref(), "back pressure").unwrap_or(0.0);
+        let bulk_modulus = pressure(given.bulk_modulus.as_ref(), "bulk modulus");
         let hose_volumes = match given.hose_volumes.as_ref().map(|volumes| &volumes.value) {
-            Some(Some(volumes)) => volumes
-                .each_ref()
-                .map(|volume| self.constant(volume, &subject("hose volume"), "m³", Limit::NotNegative)),
+            Some(Some(volumes)) => volumes.each_ref().map(|volume| self.constant(volume, &subject("hose volume"))),
             Some(None) => [f64::NAN; 2],
             None => [0.0; 2],
         };
@@ -198,7 +193,7 @@ impl<'a> Check<'a> {
 
     fn pin(&mut self, given: Option<&spec::Pin>, subject: &str) -> Option<Pin> {
         let given = given?;
-        let at = self.vector(&given.at, subject, "m", Limit::Any);
+        let at = self.vector(&given.at, subject);
         let (body, position) = self.attach(&given.link, at)?;
         Some(Pin { body, position })
     }
@@ -206,12 +201,12 @@ impl<'a> Check<'a> {
     /// A linkage, whose pivot is on the link of the foot.
     fn linkage(&mut self, given: &spec::Linkage, link: &Spanned<String>, name: &str) -> Option<Linkage> {
         let subject = |what: &str| format!("the {what} of the linkage of cylinder `{name}`");
-        let at = self.vector(&given.pivot, &subject("pivot"), "m", Limit::Any);
+        let at = self.vector(&given.pivot, &subject("pivot"));
         let (body, position) = self.attach(link, at)?;
         Some(Linkage {
             pivot: Pin { body, position },
-            rocker: self.number(&given.rocker, &subject("rocker"), "m", Limit::Positive),
-            link: self.number(&given.link, &subject("link"), "m", Limit::Positive),
+            rocker: self.number(&given.rocker, &subject("rocker")),
+            link: self.number(&given.link, &subject("link")),
             left: given.side.value == Some(Side::Left),
         })
     }

@@ -1,6 +1,6 @@
 //! Drives and their motions, and the damping of passive joints.
 
-use super::limits::Limit;
+use super::numbers::Whose;
 use super::plausibility::rounded;
 use super::{Check, Owner};
 use crate::chain::{
@@ -9,30 +9,6 @@ use crate::chain::{
 use crate::diagnostic::{Span, rule};
 use crate::expand::curve;
 use crate::spec::{self, Angle, Crane, Curve, Halt, Motion, Number, Scalar, Spanned, Table};
-
-/// Units for a coordinate.
-pub(super) struct Units {
-    pub(super) stiffness: &'static str,
-    pub(super) damping: &'static str,
-    armature: &'static str,
-    pub(super) position: Option<&'static str>,
-    effort: &'static str,
-}
-
-pub(super) fn units(kind: Option<CoordinateKind>) -> Units {
-    match kind {
-        Some(CoordinateKind::Translation) => {
-            Units { stiffness: "N/m", damping: "N s/m", armature: "kg", position: Some("m"), effort: "N" }
-        }
-        _ => Units {
-            stiffness: "N m/rad",
-            damping: "N m s/rad",
-            armature: "kg m²",
-            position: kind.map(|_| "rad"),
-            effort: "N m",
-        },
-    }
-}
 
 impl<'a> Check<'a> {
     /// The drives and their rotors.
@@ -55,13 +31,13 @@ impl<'a> Check<'a> {
             let kind = coordinate.map(|CoordinateId(index)| self.coordinates[index].kind);
             let name = drive.coordinate.value.as_deref().unwrap_or_default();
             let transmission = self.transmission(drive, given.span, name, kind);
-            let armature = drive.armature.as_ref();
             let subject = format!("the armature of drive `{name}`");
-            let armature = self.number_or(armature, 0.0, &subject, units(kind).armature, Limit::NotNegative);
+            let armature = drive.armature.as_ref();
+            let armature = armature.map_or(Value::ZERO, |given| self.number_of(given, Whose::Joint(kind), &subject));
             let motion_span = drive.motion.as_ref().map_or(given.span, |motion| motion.span);
             let profile = match &drive.motion {
                 Some(motion) => {
-                    motion.value.as_ref().and_then(|motion| self.motion(motion, units(kind).position, motion_span))
+                    motion.value.as_ref().and_then(|motion| self.motion(motion, Whose::Joint(kind), motion_span))
                 }
                 None => Some(Profile::Hold(Value::ZERO)),
             };
@@ -123,12 +99,10 @@ impl<'a> Check<'a> {
         name: &str,
         kind: Option<CoordinateKind>,
     ) -> Transmission {
-        let units = units(kind);
-        let mut number = |given: &Spanned<Number>, what, unit| {
-            self.number(given, &format!("the {what} of drive `{name}`"), unit, Limit::NotNegative)
-        };
-        let stiffness = drive.stiffness.as_ref().map(|given| number(given, "stiffness", units.stiffness));
-        let damping = drive.damping.as_ref().map(|given| number(given, "damping", units.damping));
+        let of = Whose::Joint(kind);
+        let subject = |what| format!("the {what} of drive `{name}`");
+        let [stiffness, damping] = [(&drive.stiffness, "stiffness"), (&drive.damping, "damping")]
+            .map(|(given, what)| given.as_ref().map(|given| self.number_of(given, of, &subject(what))));
         if drive.rigid.as_ref().is_some_and(|rigid| rigid.value == Some(true)) {
             for (key, span) in [
                 ("stiffness", drive.stiffness.as_ref().map(|given| given.span)),
@@ -155,13 +129,11 @@ impl<'a> Check<'a> {
                 "`rigid: true` if the coordinate follows the motion exactly, or `effort:`, its torque or force",
             ));
         }
-        let max_effort = drive.max_effort.as_ref().map(|given| {
-            let subject = format!("the maximum effort of drive `{name}`");
-            self.number(given, &subject, units.effort, Limit::Positive)
-        });
+        let max_effort = drive.max_effort.as_ref();
+        let max_effort = max_effort.map(|given| self.number_of(given, of, &subject("maximum effort")));
         let effort = drive.effort.as_ref().map(|given| {
             let motion = given.value.as_ref();
-            let profile = motion.and_then(|motion| self.motion(motion, Some(units.effort), given.span));
+            let profile = motion.and_then(|motion| self.motion(motion, of, given.span));
             profile.unwrap_or(Profile::Hold(f64::NAN.into()))
         });
         let stiffness = stiffness.unwrap_or(if effort.is_some() { Value::ZERO } else { f64::NAN.into() });
@@ -173,15 +145,13 @@ impl<'a> Check<'a> {
             }
             self.keep_positive(stiffness.clone(), &broken);
         }
-        let rate = if kind == Some(CoordinateKind::Translation) { "m/s" } else { "rad/s" };
-        let [max_rate, max_power] =
-            [(&drive.max_rate, "rate", rate), (&drive.max_power, "power", "W")].map(|(given, what, unit)| {
-                let given = given.as_ref()?;
-                if max_effort.is_none() {
-                    self.report(rule::limit_without_effort(given.span, name, format!("max_{what}")));
-                }
-                Some(self.constant(given, &format!("the maximum {what} of drive `{name}`"), unit, Limit::Positive))
-            });
+        let [max_rate, max_power] = [(&drive.max_rate, "rate"), (&drive.max_power, "power")].map(|(given, what)| {
+            let given = given.as_ref()?;
+            if max_effort.is_none() {
+                self.report(rule::limit_without_effort(given.span, name, format!("max_{what}")));
+            }
+            self.number_of(given, of, &format!("the maximum {what} of drive `{name}`")).as_constant()
+        });
         Transmission::Flexible {
             stiffness,
             damping: damping.unwrap_or(Value::ZERO),
@@ -199,7 +169,7 @@ impl<'a> Check<'a> {
             let coordinate = self.joint_coordinate(name);
             let kind = coordinate.map(|CoordinateId(index)| self.coordinates[index].kind);
             let subject = format!("the damping of `{}`", name.value.as_deref().unwrap_or_default());
-            let damping = self.number(damping, &subject, units(kind).damping, Limit::NotNegative);
+            let damping = self.number_of(damping, Whose::Joint(kind), &subject);
             let Some(id) = coordinate else { continue };
             let owner = match &self.owners[id.0] {
                 Owner::Beam(link) => Some(format!("the springs of beam `{link}`")),
@@ -231,7 +201,7 @@ impl<'a> Check<'a> {
             let coordinate = self.joint_coordinate(name);
             let kind = coordinate.map(|CoordinateId(index)| self.coordinates[index].kind);
             let subject = format!("the armature of `{}`", name.value.as_deref().unwrap_or_default());
-            let armature = self.number(armature, &subject, units(kind).armature, Limit::NotNegative);
+            let armature = self.number_of(armature, Whose::Joint(kind), &subject);
             let Some(id) = coordinate else { continue };
             let name_of = &self.coordinates[id.0].name;
             if let Some(owner) = self.not_a_joint(id) {
@@ -255,17 +225,17 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// A motion of something with a unit; of anything if that is unknown.
-    pub(super) fn motion(&mut self, motion: &Motion, unit: Option<&str>, span: Span) -> Option<Profile> {
+    /// A motion, whose unit may depend on what it moves.
+    pub(super) fn motion(&mut self, motion: &Motion, of: Whose<'_>, span: Span) -> Option<Profile> {
         Some(match motion {
-            Motion::Hold(position) => Profile::Hold(self.position(position, unit, "`hold`")),
-            Motion::Quintic(r) => Profile::Quintic(self.ramp(unit, &r.from, &r.to, r.begin.as_ref(), &r.duration)),
-            Motion::Cubic(r) => Profile::Cubic(self.ramp(unit, &r.from, &r.to, r.begin.as_ref(), &r.duration)),
-            Motion::Cycloid(r) => Profile::Cycloid(self.ramp(unit, &r.from, &r.to, r.begin.as_ref(), &r.duration)),
+            Motion::Hold(position) => Profile::Hold(self.number_of(position, of, "`hold`")),
+            Motion::Quintic(r) => Profile::Quintic(self.ramp(of, &r.from, &r.to, r.begin.as_ref(), &r.duration)),
+            Motion::Cubic(r) => Profile::Cubic(self.ramp(of, &r.from, &r.to, r.begin.as_ref(), &r.duration)),
+            Motion::Cycloid(r) => Profile::Cycloid(self.ramp(of, &r.from, &r.to, r.begin.as_ref(), &r.duration)),
             Motion::Trapezoid(r) => {
-                let ramp = self.ramp(unit, &r.from, &r.to, r.begin.as_ref(), &r.duration);
+                let ramp = self.ramp(of, &r.from, &r.to, r.begin.as_ref(), &r.duration);
                 let blend = r.blend.as_ref().map_or(0.25, |blend| {
-                    let share = self.constant(blend, "`blend`", "", Limit::Any);
+                    let share = self.constant(blend, "`blend`");
                     if share <= 0.0 || share > 0.5 {
                         self.report(rule::blend(blend.span, share));
                     }
@@ -277,13 +247,13 @@ impl<'a> Check<'a> {
                 let from = speed.from.as_ref();
                 let (begin, ramp) = (speed.begin.as_ref(), speed.ramp.as_ref());
                 Profile::Speed {
-                    from: from.map_or(Value::ZERO, |from| self.position(from, unit, "`from`")),
-                    rate: self.rate(&speed.rate, unit),
-                    begin: begin.map_or(Value::ZERO, |begin| self.number(begin, "`begin`", "s", Limit::Any)),
-                    ramp: ramp.map(|ramp| self.number(ramp, "the ramp of a motion", "s", Limit::Positive)),
+                    from: from.map_or(Value::ZERO, |from| self.number_of(from, of, "`from`")),
+                    rate: self.rate(&speed.rate, of),
+                    begin: begin.map_or(Value::ZERO, |begin| self.number(begin, "`begin`")),
+                    ramp: ramp.map(|ramp| self.number(ramp, "the ramp of a motion")),
                 }
             }
-            Motion::Table(table) => self.table(table, unit, span)?,
+            Motion::Table(table) => self.table(table, of, span)?,
             Motion::Input(name) => self.input(name)?,
         })
     }
@@ -291,8 +261,8 @@ impl<'a> Check<'a> {
     /// The motion of a part with its emergency stop.
     pub(super) fn halted(&mut self, motion: Profile, halt: Option<&Spanned<Halt>>, name: &str) -> Profile {
         let Some((given, halt)) = halt.and_then(|given| Some((given, given.value.as_ref()?))) else { return motion };
-        let at = self.number(&halt.at, "`at` of `halt`", "s", Limit::NotNegative);
-        let within = self.number(&halt.within, "`within` of `halt`", "s", Limit::Positive);
+        let at = self.number(&halt.at, "`at` of `halt`");
+        let within = self.number(&halt.within, "`within` of `halt`");
         match motion {
             // A drive that is held for an analysis keeps its halt.
             Profile::Hold(_) => motion,
@@ -304,14 +274,15 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// The rate of a motion of something with a unit; `90 deg` is 90° per second.
-    fn rate(&mut self, given: &Spanned<Angle>, unit: Option<&str>) -> Value {
-        let rate = unit.map(|unit| if unit.is_empty() { "1/s".to_owned() } else { format!("{unit}/s") });
-        if unit == Some("rad") && given.value.as_ref().is_some_and(|Angle(scalar)| self.is_angle(scalar)) {
+    /// The rate of a motion; `90 deg` is 90° per second.
+    fn rate(&mut self, given: &Spanned<Angle>, of: Whose<'_>) -> Value {
+        let unit = given.value.as_ref().and_then(|Angle(_, measure)| of.unit(*measure));
+        if unit == Some("rad") && given.value.as_ref().is_some_and(|Angle(scalar, _)| self.is_angle(scalar)) {
             self.units.push((given.span, "rad/s".to_owned()));
-            return self.position(given, unit, "`rate`");
+            return self.number_of(given, of, "`rate`");
         }
-        self.position(given, rate.as_deref(), "`rate`")
+        let rate = unit.map(|unit| if unit.is_empty() { "1/s".to_owned() } else { format!("{unit}/s") });
+        self.number_of(given, Whose::Own(rate.as_deref()), "`rate`")
     }
 
     /// Whether a number is written as an angle, or is a parameter that is one.
@@ -327,21 +298,21 @@ impl<'a> Check<'a> {
 
     fn ramp(
         &mut self,
-        unit: Option<&str>,
+        of: Whose<'_>,
         from: &Spanned<Angle>,
         to: &Spanned<Angle>,
         begin: Option<&Spanned<Number>>,
         duration: &Spanned<Number>,
     ) -> chain::Ramp {
         chain::Ramp {
-            from: self.position(from, unit, "`from`"),
-            to: self.position(to, unit, "`to`"),
-            begin: begin.map_or(Value::ZERO, |begin| self.number(begin, "`begin`", "s", Limit::Any)),
-            duration: self.number(duration, "the duration of a motion", "s", Limit::Positive),
+            from: self.number_of(from, of, "`from`"),
+            to: self.number_of(to, of, "`to`"),
+            begin: begin.map_or(Value::ZERO, |begin| self.number(begin, "`begin`")),
+            duration: self.number(duration, "the duration of a motion"),
         }
     }
 
-    fn table(&mut self, table: &Table, unit: Option<&str>, span: Span) -> Option<Profile> {
+    fn table(&mut self, table: &Table, of: Whose<'_>, span: Span) -> Option<Profile> {
         let (Some(given), Some(values)) = (&table.times, &table.values) else {
             // A file that cannot be read is reported where it is read.
             if table.file.is_none() {
@@ -352,9 +323,9 @@ impl<'a> Check<'a> {
         if let Some(column) = table.column.as_ref().filter(|_| table.file.is_none()) {
             self.report(rule::column_without_file(column.span));
         }
-        let (given, values) = (given.value.as_ref()?, values.value.as_ref()?);
-        let values: Vec<f64> = values.iter().map(|value| self.fixed(value, "`values`", unit)).collect();
-        let times: Vec<f64> = given.iter().map(|time| self.constant(time, "`times`", "s", Limit::Any)).collect();
+        let (given, written) = (given.value.as_ref()?, values.value.as_ref()?);
+        let values: Vec<f64> = written.iter().map(|value| self.fixed(value, of, "`values`")).collect();
+        let times: Vec<f64> = given.iter().map(|time| self.constant(time, "`times`")).collect();
         let mut ordered = true;
         for (pair, later) in times.windows(2).zip(given.iter().skip(1)) {
             if pair[0] >= pair[1] {
@@ -369,15 +340,16 @@ impl<'a> Check<'a> {
         if !ordered {
             return None;
         }
-        let written = table.shape.as_ref().and_then(|shape| shape.value);
-        let shape = written.unwrap_or(if table.file.is_some() { Curve::Spline } else { Curve::Monotone });
+        let shape = table.shape.as_ref().and_then(|shape| shape.value);
+        let shape = shape.unwrap_or(if table.file.is_some() { Curve::Spline } else { Curve::Monotone });
         let segments = match shape {
             Curve::Monotone => curve::monotone(&times, &values),
             Curve::Spline => curve::spline(&times, &values),
             Curve::Linear => curve::linear(&times, &values),
         };
         if let Some(Overshoot { between: [from, to], reached }) = overshoot(&values, &segments) {
-            let reached = format!("{} {}", rounded(reached), unit.unwrap_or_default());
+            let unit = written.first().and_then(|value| of.unit(value.value.as_ref()?.1)).unwrap_or_default();
+            let reached = format!("{} {unit}", rounded(reached));
             self.warnings.push(rule::overshoot(span, from, to, reached.trim_end()));
         }
         Some(Profile::Table { from: values[0], segments })

@@ -1,7 +1,6 @@
 //! Beams given element by element.
 
 use super::Check;
-use super::limits::Limit;
 use crate::chain::{Division, Value};
 use crate::diagnostic::rule;
 use crate::expand::beam::{DividedBeam, Joint, RigidElement};
@@ -62,7 +61,7 @@ impl<'a> Check<'a> {
 
     /// A rigid element as given.
     fn element(&mut self, element: &Element) -> Option<RigidElement> {
-        let length = self.number(&element.length, "`length`", "m", Limit::Positive);
+        let length = self.number(&element.length, "`length`");
         let lump = self.inertia(&element.mass, Some(&element.com), Some(&element.inertia), "the element")?;
         lump.judgement.into_iter().for_each(|judgement| self.accept(judgement));
         Some(RigidElement { length, inertia: lump.inertia })
@@ -70,14 +69,13 @@ impl<'a> Check<'a> {
 
     /// A spring as given.
     fn spring(&mut self, spring: &Spring) -> Joint {
-        let mut each =
-            |given: Option<&Spanned<Directions>>, subject, unit| match given.map(|given| given.value.as_ref()) {
-                Some(Some(each)) => self.directions(each, subject, unit, Limit::NotNegative),
-                _ => [Value::ZERO; 3],
-            };
+        let mut each = |given: Option<&Spanned<Directions>>, subject| match given.map(|given| given.value.as_ref()) {
+            Some(Some(each)) => self.directions(each, subject),
+            _ => [Value::ZERO; 3],
+        };
         Joint {
-            stiffness: each(Some(&spring.stiffness), "the stiffness", "N m/rad"),
-            damping: each(spring.damping.as_ref(), "the damping", "N m s/rad"),
+            stiffness: each(Some(&spring.stiffness), "the stiffness"),
+            damping: each(spring.damping.as_ref(), "the damping"),
             half_bend: Vec::new(),
         }
     }

@@ -1,7 +1,6 @@
 //! Events of a run.
 
 use super::Check;
-use super::limits::Limit;
 use crate::chain::{Chain, EventInfo, JoinsInfo, Point};
 use crate::diagnostic::{rule, suggest};
 use crate::spec::{self, Crane, Spanned, entries};
@@ -14,7 +13,7 @@ impl<'a> Check<'a> {
             if !name.is_empty() {
                 self.register_name("events", &name, "an earlier event".into(), event.name.span);
             }
-            let time = self.constant(&event.at, &format!("the time of event `{name}`"), "s", Limit::Positive);
+            let time = self.constant(&event.at, &format!("the time of event `{name}`"));
             let set = event.set.value.as_ref().map_or(&[][..], |entries| &entries.0);
             if set.is_empty() && event.set.value.is_some() {
                 self.report(rule::nothing_set(event.set.span, &name));
@@ -50,9 +49,8 @@ impl<'a> Check<'a> {
         });
         let subject = format!("the velocity of what joins at event `{event}`");
         let velocity = joins.velocity.as_ref().and_then(|given| given.value.as_ref());
-        let velocity = velocity.map_or([0.0; 3], |velocity| {
-            velocity.each_ref().map(|number| self.constant(number, &subject, "m/s", Limit::Any))
-        });
+        let velocity =
+            velocity.map_or([0.0; 3], |velocity| velocity.each_ref().map(|number| self.constant(number, &subject)));
         if let (Some(given), None) = (&joins.velocity, &joins.point) {
             self.report(rule::joins_without_point(given.span, event));
         }

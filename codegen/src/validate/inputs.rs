@@ -1,6 +1,7 @@
 //! Inputs, and references to them.
 
 use super::Check;
+use super::numbers::Whose;
 use crate::chain::{Input, InputId, Profile};
 use crate::diagnostic::{Span, rule, suggest};
 use crate::spec::{self, Crane, Motion, Spanned};
@@ -37,7 +38,7 @@ impl<'a> Check<'a> {
                 self.report(rule::input_of_input(given.span, name));
                 return Profile::Hold(f64::NAN.into());
             }
-            let profile = motion.and_then(|motion| self.motion(motion, unit, given.span));
+            let profile = motion.and_then(|motion| self.motion(motion, Whose::Own(unit), given.span));
             return profile.unwrap_or(Profile::Hold(f64::NAN.into()));
         }
         let value = input.value.as_ref().map_or(0.0, |value| self.in_own_unit(value, &format!("input `{name}`"), unit));

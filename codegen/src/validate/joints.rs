@@ -1,13 +1,12 @@
 //! End stops and friction of joints.
 
 use super::Check;
-use super::drives::units;
-use super::limits::Limit;
+use super::numbers::Whose;
 use crate::chain::{
     Bristle, CoordinateId, CoordinateKind, Drive, End, Force, Friction, Group, Law, Stop, Transmission, Value,
 };
 use crate::diagnostic::rule;
-use crate::spec::{self, Crane, Spanned};
+use crate::spec::{self, Crane, Number, Spanned};
 
 /// Default rate at which friction reaches three quarters of its full value, rad/s or m/s: a hundredth of the rates of crane
 /// drives.
@@ -64,15 +63,15 @@ impl<'a> Check<'a> {
         name: &str,
         coordinate: Option<CoordinateId>,
     ) -> Vec<Stop> {
-        let kind = self.kind_of(coordinate);
+        let of = Whose::Joint(self.kind_of(coordinate));
         let subject = |what: &str| format!("the {what} of the stops of `{name}`");
-        let stiffness = self.number(&written.stiffness, &subject("stiffness"), units(kind).stiffness, Limit::Positive);
-        let unit = if kind == Some(CoordinateKind::Translation) { "s/m" } else { "s/rad" };
-        let damping = self.number_or(written.damping.as_ref(), 0.0, &subject("damping"), unit, Limit::NotNegative);
+        let stiffness = self.number_of(&written.stiffness, of, &subject("stiffness"));
+        let damping = written.damping.as_ref();
+        let damping = damping.map_or(Value::ZERO, |given| self.number_of(given, of, &subject("damping")));
         let mut stops = Vec::new();
         for (end, at, key) in [(End::Lower, &written.min, "`min`"), (End::Upper, &written.max, "`max`")] {
             if let Some(at) = at {
-                let at = self.position(at, units(kind).position, key);
+                let at = self.number_of(at, of, key);
                 stops.push(Stop { at, end, stiffness: stiffness.clone(), damping: damping.clone() });
             }
         }
@@ -92,15 +91,15 @@ impl<'a> Check<'a> {
     }
 
     pub(super) fn friction(&mut self, written: &spec::Friction, name: &str, kind: Option<CoordinateKind>) -> Friction {
-        let (force, rate) = match kind {
-            Some(CoordinateKind::Translation) => ("N", "m/s"),
-            _ => ("N m", "rad/s"),
+        let of = Whose::Joint(kind);
+        let or = |check: &mut Self, given: &Option<Spanned<Number>>, default: f64, subject: &str| {
+            given.as_ref().map_or(default.into(), |given| check.number_of(given, of, subject))
         };
         let subject = |what: &str| format!("the {what} friction of `{name}`");
-        let coulomb = self.number(&written.coulomb, &subject("Coulomb"), force, Limit::NotNegative);
-        let stribeck = self.number_or(written.stribeck.as_ref(), STRIBECK, "`stribeck`", rate, Limit::Positive);
+        let coulomb = self.number_of(&written.coulomb, of, &subject("Coulomb"));
+        let stribeck = or(self, &written.stribeck, STRIBECK, "`stribeck`");
         let breakaway = written.breakaway.as_ref().map(|given| {
-            let breakaway = self.number(given, &subject("breakaway"), force, Limit::NotNegative);
+            let breakaway = self.number_of(given, of, &subject("breakaway"));
             let (less, more) = (self.now(&coulomb), self.now(&breakaway));
             let broken = rule::breakaway(given.span, name, less, more);
             if more < less {
@@ -117,19 +116,13 @@ impl<'a> Check<'a> {
         let bristle = written
             .bristle
             .as_ref()
-            .and_then(|given| self.bristle(given, written, name, (&coulomb, breakaway.as_ref()), &stribeck));
+            .and_then(|given| self.bristle(given, written, (name, of), (&coulomb, breakaway.as_ref()), &stribeck));
         Friction {
             bristle,
             coulomb,
             breakaway,
-            width: self.number_or(written.width.as_ref(), WIDTH, "`width`", rate, Limit::Positive),
-            viscous: self.number_or(
-                written.viscous.as_ref(),
-                0.0,
-                &subject("viscous"),
-                units(kind).damping,
-                Limit::NotNegative,
-            ),
+            width: or(self, &written.width, WIDTH, "`width`"),
+            viscous: or(self, &written.viscous, 0.0, &subject("viscous")),
         }
     }
 
@@ -138,17 +131,16 @@ impl<'a> Check<'a> {
         &mut self,
         given: &Spanned<spec::Bristle>,
         friction: &spec::Friction,
-        name: &str,
+        (name, of): (&str, Whose<'_>),
         (coulomb, breakaway): (&Value, Option<&(Value, Value)>),
         stribeck: &Value,
     ) -> Option<Bristle> {
         if let Some(width) = &friction.width {
             self.report(rule::width_of_bristles(width.span, name));
         }
-        let of = given.value.as_ref()?;
-        let subject = |what: &str| format!("the {what} of the bristles of `{name}`");
-        let stiffness = self.constant(&of.stiffness, &subject("stiffness"), "", Limit::Positive);
-        let damping = self.constant(&of.damping, &subject("damping"), "", Limit::NotNegative);
+        let written = given.value.as_ref()?;
+        let [stiffness, damping] = [(&written.stiffness, "stiffness"), (&written.damping, "damping")]
+            .map(|(number, what)| self.fixed(number, of, &format!("the {what} of the bristles of `{name}`")));
         let breakaway = breakaway.map_or(coulomb, |(breakaway, _)| breakaway);
         let [Some(coulomb), Some(breakaway), Some(stribeck)] = [coulomb, breakaway, stribeck].map(Value::as_constant)
         else {

@@ -3,21 +3,7 @@
 use super::Check;
 use crate::chain::{Bound, Chain, ParameterId, Refusal, Relation, Value};
 use crate::diagnostic::{Mistake, Span, rule};
-
-/// The allowed range of a number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Limit {
-    /// Any finite number.
-    Any,
-    /// Not negative.
-    NotNegative,
-    /// Above zero.
-    Positive,
-    /// Above zero; a live mass may be zero if the mass matrix stays regular without it.
-    Mass,
-    /// Not negative; a live one as [`Limit::Mass`].
-    MassOfMoments,
-}
+use crate::node::Limit;
 
 /// The message of a rule up to the number that breaks it, or without a number.
 fn refusal(mistake: &Mistake) -> Refusal {
@@ -63,7 +49,7 @@ impl Check<'_> {
         let above = Bound { value: 0.0, allowed: false, refusal: refusal(&not_positive(String::new())) };
         let not_below = Bound { value: 0.0, allowed: true, refusal: refusal(&negative(String::new())) };
         match limit {
-            Limit::Any => {}
+            Limit::Any | Limit::Whole(_) => {}
             Limit::Positive => self.parameters[id.0].raise(above),
             Limit::NotNegative => self.parameters[id.0].raise(not_below),
             Limit::Mass | Limit::MassOfMoments => {

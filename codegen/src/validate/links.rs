@@ -1,6 +1,5 @@
 //! Links, their placements and joints.
 
-use super::limits::Limit;
 use super::on::Attached;
 use super::slides_in::Outer;
 use super::{Check, LinkBodies, Owner};
@@ -212,7 +211,7 @@ impl<'a> Check<'a> {
 
     /// Translation and rotations.
     pub(super) fn transform(&mut self, given: &Transform) -> ([Value; 3], Vec<(Axis, Value)>) {
-        let translation = self.vector_or_zero(given.translation.as_ref(), "`translation`", "m", Limit::Any);
+        let translation = self.vector_or_zero(given.translation.as_ref(), "`translation`");
         (translation, self.turns(given.rotation.as_ref()))
     }
 
@@ -221,9 +220,9 @@ impl<'a> Check<'a> {
         let list = given.and_then(|rotation| rotation.value.as_ref());
         let turns = list.into_iter().flat_map(|list| &list.0).filter_map(|turn| turn.value.as_ref());
         let turns = turns.map(|turn| match turn {
-            Turn::X(angle) => (Axis::X, self.angle(angle, "`rotation`")),
-            Turn::Y(angle) => (Axis::Y, self.angle(angle, "`rotation`")),
-            Turn::Z(angle) => (Axis::Z, self.angle(angle, "`rotation`")),
+            Turn::X(angle) => (Axis::X, self.number(angle, "`rotation`")),
+            Turn::Y(angle) => (Axis::Y, self.number(angle, "`rotation`")),
+            Turn::Z(angle) => (Axis::Z, self.number(angle, "`rotation`")),
         });
         turns.collect()
     }
@@ -235,10 +234,10 @@ impl<'a> Check<'a> {
         d: Option<&Spanned<Number>>,
         theta: Option<&Spanned<Angle>>,
     ) -> (Value, Value, Value, Value) {
-        let a = self.number_or(a, 0.0, "`a`", "m", Limit::Any);
-        let alpha = alpha.map_or(Value::ZERO, |alpha| self.angle(alpha, "`alpha`"));
-        let d = self.number_or(d, 0.0, "`d`", "m", Limit::Any);
-        let theta = theta.map_or(Value::ZERO, |theta| self.angle(theta, "`theta`"));
+        let a = self.number_or(a, 0.0, "`a`");
+        let alpha = alpha.map_or(Value::ZERO, |alpha| self.number(alpha, "`alpha`"));
+        let d = self.number_or(d, 0.0, "`d`");
+        let theta = theta.map_or(Value::ZERO, |theta| self.number(theta, "`theta`"));
         (a, alpha, d, theta)
     }
 }

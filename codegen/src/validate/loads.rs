@@ -1,7 +1,7 @@
 //! Applied loads.
 
 use super::Check;
-use super::limits::Limit;
+use super::numbers::Whose;
 use crate::chain::{Load, LoadAxes, Value, normalised};
 use crate::diagnostic::rule;
 use crate::spec::{Axes, Crane, Spanned, Wind};
@@ -19,15 +19,15 @@ impl<'a> Check<'a> {
                 self.register_name("loads", &name, "an earlier load".into(), load.name.span);
             }
             let subject = |what: &str| format!("the {what} of load `{name}`");
-            let at = self.vector_or_zero(load.at.as_ref(), &subject("position"), "m", Limit::Any);
+            let at = self.vector_or_zero(load.at.as_ref(), &subject("position"));
             let force = match load.wind.as_ref() {
                 Some(wind) => self.wind(wind, &name),
-                None => self.vector_or_zero(load.force.as_ref(), &subject("force"), "N", Limit::Any),
+                None => self.vector_or_zero(load.force.as_ref(), &subject("force")),
             };
             if let Some(force) = load.force.as_ref().filter(|_| load.wind.is_some()) {
                 self.report(rule::wind_and_force(force.span, &name));
             }
-            let moment = self.vector_or_zero(load.moment.as_ref(), &subject("moment"), "N m", Limit::Any);
+            let moment = self.vector_or_zero(load.moment.as_ref(), &subject("moment"));
             if load.force.is_none() && load.moment.is_none() && load.wind.is_none() {
                 self.report(rule::no_load(load.name.span, &name));
             }
@@ -35,7 +35,8 @@ impl<'a> Check<'a> {
                 Some(Axes::Link) => LoadAxes::Link,
                 Some(Axes::World) | None => LoadAxes::World,
             };
-            let scale = load.scale.as_ref().and_then(|scale| self.motion(scale.value.as_ref()?, Some(""), scale.span));
+            let scale =
+                load.scale.as_ref().and_then(|scale| self.motion(scale.value.as_ref()?, Whose::Key, scale.span));
             if let Some((body, position)) = self.attach(&load.link, at) {
                 loads.push(Load { name, body, position, force, moment, axes, scale });
             }
@@ -49,9 +50,9 @@ impl<'a> Check<'a> {
         };
         let subject = |what: &str| format!("the {what} of the wind of load `{load}`");
         let pressure = match (pressure, speed) {
-            (Some(pressure), None) => self.number(pressure, &subject("pressure"), "Pa", Limit::NotNegative),
+            (Some(pressure), None) => self.number(pressure, &subject("pressure")),
             (None, Some(speed)) => {
-                let speed = self.number(speed, &subject("speed"), "m/s", Limit::NotNegative);
+                let speed = self.number(speed, &subject("speed"));
                 0.5 * DENSITY_OF_AIR * (speed.clone() * speed)
             }
             _ => {
@@ -59,8 +60,8 @@ impl<'a> Check<'a> {
                 Value::ZERO
             }
         };
-        let area = self.number(area, &subject("area"), "m²", Limit::NotNegative);
-        let shape_factor = self.number(shape_factor, &subject("shape factor"), "", Limit::NotNegative);
+        let area = self.number(area, &subject("area"));
+        let shape_factor = self.number(shape_factor, &subject("shape factor"));
         let force = pressure * area * shape_factor;
         let direction = self.direction(direction, &format!("the wind of load `{load}`"));
         direction.map_or([Value::ZERO; 3], |direction| normalised(direction).map(|share| share * force.clone()))

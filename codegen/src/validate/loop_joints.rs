@@ -1,9 +1,7 @@
 //! Joints that close loops.
 
 use super::Check;
-use super::drives::units;
 use super::joints::WIDTH;
-use super::limits::Limit;
 use crate::chain::{
     Across, Chain, CoordinateKind, Cylinder, Force, Frame, Friction, Group, Law, LoopJoint, LoopJointKind, Strain,
     Turning, Value, Vector, cross, normalised,
@@ -59,7 +57,7 @@ impl<'a> Check<'a> {
             friction = self.friction(keys, name, TURNS);
         }
         let what = format!("the damping of loop joint `{name}`");
-        let damping = self.number_or(written.damping.as_ref(), 0.0, &what, units(TURNS).damping, Limit::NotNegative);
+        let damping = self.number_or(written.damping.as_ref(), 0.0, &what);
         friction.viscous = friction.viscous + damping;
         let LoopJointKind::Pin { across, to_axis } = kind else {
             self.report(rule::friction_of_no_pin(span, name, key, kind.name()));
@@ -96,7 +94,7 @@ impl<'a> Check<'a> {
             }
             spec::LoopJointKind::Rod(rod) => {
                 let place = format!("the length of loop joint `{name}`");
-                Some(LoopJointKind::Rod { length: self.number(&rod.length, &place, "m", Limit::Positive) })
+                Some(LoopJointKind::Rod { length: self.number(&rod.length, &place) })
             }
             spec::LoopJointKind::Slide(slide) => {
                 let axis = self.direction(&slide.axis, &format!("the axis of loop joint `{name}`"));

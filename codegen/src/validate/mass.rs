@@ -1,12 +1,12 @@
 //! Masses and inertias of links.
 
 use super::inertias::Lump;
-use super::limits::Limit;
 use super::on::Attached;
 use super::{Carried, Check};
 use crate::chain::{self, BodyId, Part, Value};
 use crate::diagnostic::{Span, rule};
 use crate::expand::inertia::{self, Tensor};
+use crate::node::Limit;
 use crate::spec::{About, Body, Inertia, Link, Number, Spanned, Vector};
 
 impl<'a> Check<'a> {
@@ -98,8 +98,8 @@ impl<'a> Check<'a> {
         // Moments alone are a mass of zero with an inertia; radii of gyration are in proportion to the mass.
         let moments = inertia.and_then(|given| given.value.as_ref()).is_some_and(|given| given.gyration.is_none());
         let limit = if moments { Limit::MassOfMoments } else { Limit::Mass };
-        let m = self.number(mass, &format!("the mass of {subject}"), "kg", limit);
-        let com = self.vector_or_zero(com, &format!("the centre of mass of {subject}"), "m", Limit::Any);
+        let m = self.number_within(mass, limit, &format!("the mass of {subject}"));
+        let com = self.vector_or_zero(com, &format!("the centre of mass of {subject}"));
         let subject = format!("the inertia of {subject}");
         let Some(given) = inertia else {
             return Some(Lump { inertia: inertia::point(m, &com), com, judgement: None });
@@ -139,13 +139,13 @@ impl<'a> Check<'a> {
                 self.report(rule::two_inertias(span, subject));
                 return None;
             }
-            let radii = self.vector(radii, "`gyration`", "m", Limit::NotNegative);
+            let radii = self.vector(radii, "`gyration`");
             return Some((inertia::gyration(mass, &radii), About::Com));
         }
         let mut tensor = [Value::ZERO; 6];
         for (k, (key, element)) in keys.into_iter().zip(elements).enumerate() {
             match element {
-                Some(element) => tensor[k] = self.number(element, &format!("`{key}`"), "kg m²", Limit::Any),
+                Some(element) => tensor[k] = self.number(element, &format!("`{key}`")),
                 None if k < 3 => {
                     self.report(rule::missing_key(span, key, subject));
                     tensor[k] = f64::NAN.into();

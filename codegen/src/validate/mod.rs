@@ -44,7 +44,6 @@ use crate::expand::beam::Distribution;
 use crate::spec::{self, Analysis, Crane, CraneSpec, Lookalike, Slope, Spanned, entries};
 use crate::units::Quantity;
 use inertias::Judgement;
-use limits::Limit;
 use names::Names;
 use section::Elastic;
 use slides_in::Stage;
@@ -256,7 +255,7 @@ impl<'a> Check<'a> {
         self.take_inputs(crane);
         self.take_materials(crane);
         let gravity = match &crane.gravity {
-            Some(gravity) => self.vector(gravity, "`gravity`", "m/s²", Limit::Any),
+            Some(gravity) => self.vector(gravity, "`gravity`"),
             None => [0.0, 0.0, -9.81].map(Value::from),
         };
         let gravity = self.on_slope(gravity, crane.slope.as_ref());
@@ -338,7 +337,7 @@ impl<'a> Check<'a> {
     }
 
     fn format(&mut self, crane: &Crane) {
-        let version = self.constant(&crane.format, "`format`", "", Limit::Any);
+        let version = self.constant(&crane.format, "`format`");
         if !version.is_nan() && version.to_bits() != 1f64.to_bits() {
             self.report(rule::wrong_format(crane.format.span, version));
         }
@@ -347,10 +346,9 @@ impl<'a> Check<'a> {
     /// Gravity on an inclined ground, in the axes of the ground: `g (sin α cos φ, sin α sin φ, −cos α)`.
     fn on_slope(&mut self, gravity: [Value; 3], slope: Option<&Spanned<Slope>>) -> [Value; 3] {
         let Some((given, slope)) = slope.and_then(|given| Some((given, given.value.as_ref()?))) else { return gravity };
-        let angle = self.position(&slope.angle, Some("rad"), "`angle` of `slope`");
+        let angle = self.number(&slope.angle, "`angle` of `slope`");
         let towards = slope.towards.as_ref();
-        let towards =
-            towards.map_or(Value::ZERO, |towards| self.position(towards, Some("rad"), "`towards` of `slope`"));
+        let towards = towards.map_or(Value::ZERO, |towards| self.number(towards, "`towards` of `slope`"));
         let [x, y, z] = gravity;
         if !x.is_zero() || !y.is_zero() {
             self.report(rule::slope_twice(given.span));

@@ -1,16 +1,42 @@
 //! Numbers: finite, in range, resolved to constants or live parameters.
 
 use super::Check;
-use super::limits::Limit;
-use crate::chain::{Parameter, ParameterId, Value};
-use crate::diagnostic::{Span, rule, suggest};
-use crate::spec::{Angle, Constant, Crane, Direction, FixedAngle, Number, Scalar, Spanned, Vector};
+use crate::chain::{CoordinateKind, Parameter, ParameterId, Value};
+use crate::diagnostic::{Mistake, Span, rule, suggest};
+use crate::node::{Limit, Measure};
+use crate::spec::{Constant, Crane, Direction, FixedAngle, Number, Scalar, Spanned, Vector, Written};
 use crate::units::{Quantity, Unit};
 
 /// Magnitudes outside this range, except zero, come from a slip in an exponent. Within it, no product or quotient in the
 /// expansion leaves the range of a double.
 const SMALLEST: f64 = 1e-30;
 const LARGEST: f64 = 1e18;
+
+/// Whose a number is, where its unit depends on that.
+#[derive(Clone, Copy)]
+pub(super) enum Whose<'u> {
+    /// Of a key with one unit.
+    Key,
+    /// Of a joint; in any unit if that is unknown.
+    Joint(Option<CoordinateKind>),
+    /// In this unit; in any if that is unknown.
+    Own(Option<&'u str>),
+}
+
+impl<'u> Whose<'u> {
+    /// The unit of the number; `None` if it is not known.
+    pub(super) fn unit(self, measure: Measure) -> Option<&'u str> {
+        let turning_or_sliding = measure.unit.split_once(" or ").unwrap_or((measure.unit, measure.unit));
+        match self {
+            Whose::Own(unit) => unit,
+            Whose::Key => Some(if measure.unit == "1" { "" } else { measure.unit }),
+            Whose::Joint(kind) => kind.map(|kind| match kind {
+                CoordinateKind::Rotation => turning_or_sliding.0,
+                CoordinateKind::Translation => turning_or_sliding.1,
+            }),
+        }
+    }
+}
 
 impl<'a> Check<'a> {
     pub(super) fn take_parameters(&mut self, crane: &'a Crane) {
@@ -34,14 +60,14 @@ impl<'a> Check<'a> {
                 None => (f64::NAN, None, None),
             };
             let written = match parameter.value.as_ref().and_then(|parameter| parameter.value.value.as_ref()) {
-                Some(FixedAngle(Scalar::Quantity(quantity))) => Some((**quantity).clone()),
+                Some(FixedAngle(Scalar::Quantity(quantity), _)) => Some((**quantity).clone()),
                 // Words of its own give no dimension.
                 _ => unit.as_deref().and_then(|unit| Quantity::labelled(default, unit)),
             };
             let is_quantity = parameter
                 .value
                 .as_ref()
-                .is_some_and(|parameter| matches!(parameter.value.value, Some(FixedAngle(Scalar::Quantity(_)))));
+                .is_some_and(|parameter| matches!(parameter.value.value, Some(FixedAngle(Scalar::Quantity(_), _))));
             self.labelled.push(!is_quantity);
             let of_value = written.as_ref().map(|quantity| quantity.dimension.si_unit());
             self.written.push(written);
@@ -75,35 +101,75 @@ impl<'a> Check<'a> {
         value.at(&self.defaults)
     }
 
-    /// A number, checked against its limit; NaN if the mistake has been reported.
-    pub(super) fn number(&mut self, given: &Spanned<Number>, subject: &str, unit: &str, limit: Limit) -> Value {
-        let value = self.resolve(given.value.as_ref().map(|number| &number.0), given.span, subject, Some(unit));
-        self.within(value, given.span, (subject, unit, limit))
+    /// A number in the unit and within the limit of its key; NaN if the mistake has been reported.
+    pub(super) fn number(&mut self, given: &Spanned<impl Written>, subject: &str) -> Value {
+        self.number_of(given, Whose::Key, subject)
+    }
+
+    /// The same, of something on which its unit depends.
+    pub(super) fn number_of(&mut self, given: &Spanned<impl Written>, of: Whose<'_>, subject: &str) -> Value {
+        let Some(number) = &given.value else { return f64::NAN.into() };
+        let measure = number.measure();
+        self.measured(number.scalar(), given.span, (subject, of.unit(measure), measure.limit))
+    }
+
+    /// The same, within a limit that is stricter than that of its key.
+    pub(super) fn number_within(&mut self, given: &Spanned<Number>, limit: Limit, subject: &str) -> Value {
+        let Some(Number(number, measure)) = &given.value else { return f64::NAN.into() };
+        self.measured(number, given.span, (subject, Whose::Key.unit(*measure), limit))
+    }
+
+    fn measured(&mut self, number: &Scalar, span: Span, (subject, unit, limit): (&str, Option<&str>, Limit)) -> Value {
+        let value = self.resolve(number, span, subject, unit);
+        self.within(value, span, (subject, unit.unwrap_or_default(), limit))
     }
 
     /// An optional number.
-    pub(super) fn number_or(
+    pub(super) fn number_or(&mut self, given: Option<&Spanned<Number>>, default: f64, subject: &str) -> Value {
+        given.map_or(Value::Constant(default), |given| self.number(given, subject))
+    }
+
+    /// A number that cannot be a parameter.
+    pub(super) fn constant(&mut self, given: &Spanned<impl Written>, subject: &str) -> f64 {
+        self.fixed(given, Whose::Key, subject)
+    }
+
+    /// The same, of something on which its unit depends.
+    pub(super) fn fixed(&mut self, given: &Spanned<impl Written>, of: Whose<'_>, subject: &str) -> f64 {
+        self.number_of(given, of, subject).as_constant().unwrap_or(f64::NAN)
+    }
+
+    /// A whole number within the limit of its key; `None` after a mistake, of which this is the one about other numbers.
+    pub(super) fn count(
         &mut self,
-        given: Option<&Spanned<Number>>,
-        default: f64,
+        given: &Spanned<Constant>,
         subject: &str,
-        unit: &str,
-        limit: Limit,
-    ) -> Value {
-        given.map_or(Value::Constant(default), |given| self.number(given, subject, unit, limit))
+        broken: impl FnOnce(f64) -> Mistake,
+    ) -> Option<u32> {
+        let number = self.constant(given, subject);
+        let Measure { limit: Limit::Whole(most), .. } = given.value.as_ref()?.measure() else { return None };
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // an integer from 1 to `most`
+        if (1.0..=f64::from(most)).contains(&number) && number.fract() == 0.0 {
+            return Some(number as u32);
+        }
+        // A number that could not be read has been reported.
+        if !number.is_nan() {
+            self.report(broken(number));
+        }
+        None
     }
 
     /// Three numbers along x, y, z.
-    pub(super) fn vector(&mut self, given: &Spanned<Vector>, subject: &str, unit: &str, limit: Limit) -> [Value; 3] {
+    pub(super) fn vector(&mut self, given: &Spanned<Vector>, subject: &str) -> [Value; 3] {
         match &given.value {
-            Some(vector) => vector.each_ref().map(|number| self.number(number, subject, unit, limit)),
+            Some(vector) => vector.each_ref().map(|number| self.number(number, subject)),
             None => [f64::NAN; 3].map(Value::from),
         }
     }
 
     /// A direction, its largest number ±1; `None` if it has none.
     pub(super) fn direction(&mut self, given: &Spanned<Direction>, subject: &str) -> Option<crate::chain::Vector> {
-        let direction = given.value.as_ref()?.each_ref().map(|number| self.constant(number, subject, "", Limit::Any));
+        let direction = given.value.as_ref()?.each_ref().map(|number| self.constant(number, subject));
         if direction.iter().any(|x| x.is_nan()) {
             return None;
         }
@@ -115,48 +181,9 @@ impl<'a> Check<'a> {
         (size > 0.0).then(|| direction.map(|x| x / size))
     }
 
-    /// Three optional numbers, zero by default, of two directions and a turn.
-    pub(super) fn two_and_turn(
-        &mut self,
-        given: Option<&Spanned<Vector>>,
-        subject: &str,
-        [along, turn]: [&str; 2],
-        limit: Limit,
-    ) -> [Value; 3] {
-        match given.map(|given| &given.value) {
-            Some(Some([y, z, twist])) => {
-                [(y, along), (z, along), (twist, turn)].map(|(number, unit)| self.number(number, subject, unit, limit))
-            }
-            Some(None) => [f64::NAN; 3].map(Value::from),
-            None => [Value::ZERO; 3],
-        }
-    }
-
     /// Three optional numbers, zero by default.
-    pub(super) fn vector_or_zero(
-        &mut self,
-        given: Option<&Spanned<Vector>>,
-        subject: &str,
-        unit: &str,
-        limit: Limit,
-    ) -> [Value; 3] {
-        given.map_or([Value::ZERO; 3], |given| self.vector(given, subject, unit, limit))
-    }
-
-    /// An angle, rad.
-    pub(super) fn angle(&mut self, given: &Spanned<Angle>, subject: &str) -> Value {
-        self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, subject, Some("rad"))
-    }
-
-    /// A position, a force or whatever else a motion moves, in this unit; in any if that is unknown.
-    pub(super) fn position(&mut self, given: &Spanned<Angle>, unit: Option<&str>, subject: &str) -> Value {
-        self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, subject, unit)
-    }
-
-    /// The same, where it cannot be a parameter.
-    pub(super) fn fixed(&mut self, given: &Spanned<FixedAngle>, subject: &str, unit: Option<&str>) -> f64 {
-        let value = self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, subject, unit);
-        value.as_constant().unwrap_or(f64::NAN)
+    pub(super) fn vector_or_zero(&mut self, given: Option<&Spanned<Vector>>, subject: &str) -> [Value; 3] {
+        given.map_or([Value::ZERO; 3], |given| self.vector(given, subject))
     }
 
     /// The value of a parameter or an input, which has the unit that the spec gives it, if any: words of its own admit numbers alone.
@@ -164,7 +191,7 @@ impl<'a> Check<'a> {
         let known = unit.and_then(|unit| Some((unit, Unit::parse(unit).ok()?)));
         let in_si = match (&given.value, &known) {
             (_, Some((_, known))) if known.is_si() => None,
-            (Some(FixedAngle(Scalar::Quantity(quantity))), _) => Some(quantity.dimension.si_unit()),
+            (Some(FixedAngle(Scalar::Quantity(quantity), _)), _) => Some(quantity.dimension.si_unit()),
             (Some(_), Some((_, known))) => Some(known.dimension.si_unit()),
             _ => None,
         };
@@ -172,24 +199,17 @@ impl<'a> Check<'a> {
             self.report(rule::not_si(given.span, subject, unit, si));
             return f64::NAN;
         }
-        self.fixed(given, subject, known.map(|(unit, _)| unit))
-    }
-
-    /// A number that cannot be a parameter.
-    pub(super) fn constant(&mut self, given: &Spanned<Constant>, subject: &str, unit: &str, limit: Limit) -> f64 {
-        let value = self.resolve(given.value.as_ref().map(|constant| &constant.0), given.span, subject, Some(unit));
-        self.within(value, given.span, (subject, unit, limit)).as_constant().unwrap_or(f64::NAN)
+        self.fixed(given, Whose::Own(known.map(|(unit, _)| unit)), subject)
     }
 
     /// Constant or parameter; NaN if the mistake has been reported.
-    fn resolve(&mut self, scalar: Option<&Scalar>, span: Span, subject: &str, unit: Option<&str>) -> Value {
+    fn resolve(&mut self, scalar: &Scalar, span: Span, subject: &str, unit: Option<&str>) -> Value {
         if let Some(unit) = unit {
             self.units.push((span, unit.to_owned()));
         }
         let reported = Value::Constant(f64::NAN);
         let number = match scalar {
-            None => return reported,
-            Some(Scalar::Name(name)) => {
+            Scalar::Name(name) => {
                 let Some(id) = self.parameter(name, span) else { return reported };
                 // A factor of a load with unit numbers may be a force: only the unit of a plain number says so.
                 let is_factor = self.labelled[id.0] && matches!(unit, Some("" | "1"));
@@ -200,8 +220,8 @@ impl<'a> Check<'a> {
                     reported
                 };
             }
-            Some(Scalar::Number(number)) => *number,
-            Some(Scalar::Quantity(quantity)) => {
+            Scalar::Number(number) => *number,
+            Scalar::Quantity(quantity) => {
                 if !self.has_dimension(Some(quantity), span, subject, unit) {
                     return reported;
                 }

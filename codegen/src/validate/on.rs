@@ -1,6 +1,5 @@
 //! What links are attached to.
 
-use super::limits::Limit;
 use super::{Check, LinkBodies};
 use crate::chain::{BodyId, CoordinateId, Step, Value};
 use crate::diagnostic::{Span, rule, suggest};
@@ -123,7 +122,7 @@ impl<'a> Check<'a> {
 
     /// At a point of a link; on a beam or a rope it is between its beginning and its end.
     fn at_point(&mut self, name: &str, place: &LinkBodies, (at, span): (&[Spanned<Number>; 3], Span)) -> Attached {
-        let [x, y, z] = at.each_ref().map(|given| self.number(given, "`at`", "m", Limit::Any));
+        let [x, y, z] = at.each_ref().map(|given| self.number(given, "`at`"));
         if place.tip.is_zero() {
             return Attached::at(place.first(), x.clone(), [x, y, z]);
         }

@@ -1,14 +1,11 @@
 //! Ropes and chains: rigid links that hang from each other.
 
-use super::limits::Limit;
 use super::on::Attached;
 use super::{Carried, Check, Owner};
 use crate::chain::{self, Axis, CoordinateKind, Inertia, Step, Value};
 use crate::diagnostic::{Span, rule};
 use crate::spec::{HangingRope, Spanned};
 
-/// Maximum number of links of a rope.
-const MOST_LINKS: f64 = 1000.0;
 /// Rotations of a universal joint, in order. There is none about the rope itself: links have no torsion.
 const ROTATIONS: [Axis; 2] = [Axis::Z, Axis::Y];
 
@@ -21,15 +18,18 @@ impl<'a> Check<'a> {
         span: Span,
         mut attached: Attached,
     ) -> Carried {
-        let links = given.value.as_ref().and_then(|rope| Some((rope, self.links_of_rope(rope)?)));
+        let links = given.value.as_ref().and_then(|rope| {
+            let broken = |count| rule::rope_links(rope.links.span, count);
+            Some((rope, self.count(&rope.links, "`links`", broken)?))
+        });
         let Some((rope, count)) = links else {
             // The rope's coordinates are not known.
             self.unknown.links = true;
             return Carried::default();
         };
-        let length = self.number(&rope.length, "`length`", "m", Limit::Positive);
-        let line_density = self.number(&rope.mass_per_length, "`mass_per_length`", "kg/m", Limit::Positive);
-        let damping = self.number_or(rope.damping.as_ref(), 0.0, "`damping`", "N m s/rad", Limit::NotNegative);
+        let length = self.number(&rope.length, "`length`");
+        let line_density = self.number(&rope.mass_per_length, "`mass_per_length`");
+        let damping = self.number_or(rope.damping.as_ref(), 0.0, "`damping`");
         let length = length / Value::Constant(f64::from(count));
         self.push_beam(link, Vec::new(), None, None);
         let inertia = slender(&length, &line_density);
@@ -64,19 +64,6 @@ impl<'a> Check<'a> {
             tip = length.clone();
         }
         Carried { starts, tip, ..Carried::default() }
-    }
-
-    fn links_of_rope(&mut self, rope: &HangingRope) -> Option<u32> {
-        let count = self.constant(&rope.links, "`links`", "", Limit::Any);
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // an integer from 1 to 1000
-        if (1.0..=MOST_LINKS).contains(&count) && count.fract() == 0.0 {
-            return Some(count as u32);
-        }
-        // A number that could not be read has been reported.
-        if !count.is_nan() {
-            self.report(rule::rope_links(rope.links.span, count));
-        }
-        None
     }
 }
 

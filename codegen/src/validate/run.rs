@@ -1,8 +1,7 @@
 //! Frames, names of joints and points of interest, the guess of the static solution, and the settings of a run.
 
 use super::Check;
-use super::drives::units;
-use super::limits::Limit;
+use super::numbers::Whose;
 use crate::chain::{BodyId, CoordinateId, Drive, NamedFrame, NamedJoint, Point, Run, Transmission, Value};
 use crate::diagnostic::{rule, suggest};
 use crate::expand::placement;
@@ -36,7 +35,7 @@ impl<'a> Check<'a> {
             let coordinate = joint.coordinate.as_ref().and_then(|given| self.coordinate(given));
             let kind = coordinate.map(|CoordinateId(index)| self.coordinates[index].kind);
             let subject = format!("`at` of joint `{name}`");
-            let at = joint.at.as_ref().map_or(0.0, |at| self.fixed(at, &subject, units(kind).position));
+            let at = joint.at.as_ref().map_or(0.0, |at| self.fixed(at, Whose::Joint(kind), &subject));
             joints.push(NamedJoint { name, coordinate, at });
         }
         joints
@@ -50,7 +49,7 @@ impl<'a> Check<'a> {
                 self.register_name("points", &name, "an earlier point".into(), point.name.span);
             }
             let subject = format!("the position of point `{name}`");
-            let at = self.vector_or_zero(point.at.as_ref(), &subject, "m", Limit::Any);
+            let at = self.vector_or_zero(point.at.as_ref(), &subject);
             let place = match (&point.link, &point.frame) {
                 (Some(link), None) => self.attach(link, at),
                 (None, Some(frame)) => self.in_frame(crane, frame, frames, at),
@@ -117,7 +116,7 @@ impl<'a> Check<'a> {
             let coordinate = self.coordinate(name);
             let kind = coordinate.map(|CoordinateId(index)| self.coordinates[index].kind);
             let subject = format!("the guess of `{}`", name.value.as_deref().unwrap_or_default());
-            let position = self.fixed(position, &subject, units(kind).position);
+            let position = self.fixed(position, Whose::Joint(kind), &subject);
             let Some(id) = coordinate else { continue };
             if drives.iter().any(|drive| drive.coordinate == id && drive.transmission == Transmission::Rigid) {
                 self.report(rule::prescribed_guess(name.span, &self.coordinates[id.0].name));
@@ -129,9 +128,8 @@ impl<'a> Check<'a> {
 
     pub(super) fn run(&mut self, given: Option<&Spanned<spec::Run>>) -> Run {
         let run = given.and_then(|given| given.value.clone()).unwrap_or_default();
-        let mut seconds = |given: Option<&Spanned<Constant>>, default, key| {
-            given.map_or(default, |given| self.constant(given, key, "s", Limit::Positive))
-        };
+        let mut seconds =
+            |given: Option<&Spanned<Constant>>, default, key| given.map_or(default, |given| self.constant(given, key));
         let duration = seconds(run.duration.as_ref(), 10.0, "`duration`");
         let step = seconds(run.step.as_ref(), 1e-4, "`step`");
         let output = seconds(run.output.as_ref(), 0.01, "`output`");

@@ -1,11 +1,10 @@
 //! Materials and cross-sections of beams.
 
 use super::Check;
-use super::limits::Limit;
 use crate::chain::{Moduli, Value};
 use crate::diagnostic::{Span, rule, suggest};
 use crate::expand::section::{CrossSection, Shape};
-use crate::spec::{Either, Material, Number, Section, Spanned};
+use crate::spec::{Either, Material, Section, Spanned};
 
 /// An isotropic elastic material.
 #[derive(Clone, Debug)]
@@ -38,44 +37,40 @@ impl<'a> Check<'a> {
     /// The numbers of a material.
     pub(super) fn elastic(&mut self, material: &Material) -> Elastic {
         Elastic {
-            youngs: self.number(&material.youngs_modulus, "Young's modulus `E`", "Pa", Limit::Positive),
-            shear: self.number(&material.shear_modulus, "the shear modulus `G`", "Pa", Limit::Positive),
-            density: self.number(&material.density, "`density`", "kg/m³", Limit::Positive),
-            yield_stress: material
-                .yield_stress
-                .as_ref()
-                .map(|given| self.number(given, "`yield_stress`", "Pa", Limit::Positive)),
+            youngs: self.number(&material.youngs_modulus, "Young's modulus `E`"),
+            shear: self.number(&material.shear_modulus, "the shear modulus `G`"),
+            density: self.number(&material.density, "`density`"),
+            yield_stress: material.yield_stress.as_ref().map(|given| self.number(given, "`yield_stress`")),
         }
     }
 
     /// A cross-section by its shape or its numbers.
     pub(super) fn shape(&mut self, given: &Spanned<Section>) -> Option<Shape> {
-        let mut positive = |number: &Spanned<Number>, key, unit| self.number(number, key, unit, Limit::Positive);
         Some(match given.value.as_ref()? {
             Section::Box { height, width, thickness } => {
-                let size = [positive(height, "`height`", "m"), positive(width, "`width`", "m")];
-                let wall = positive(thickness, "`thickness`", "m");
+                let size = [self.number(height, "`height`"), self.number(width, "`width`")];
+                let wall = self.number(thickness, "`thickness`");
                 self.wall(thickness.span, &wall, size.iter());
                 let [height, width] = size;
                 Shape::Box([height, width, wall])
             }
             Section::WeldedBox { height, width, flange, web } => {
-                let size = [positive(height, "`height`", "m"), positive(width, "`width`", "m")];
-                let plates = [positive(flange, "`flange`", "m"), positive(web, "`web`", "m")];
+                let size = [self.number(height, "`height`"), self.number(width, "`width`")];
+                let plates = [self.number(flange, "`flange`"), self.number(web, "`web`")];
                 self.wall(flange.span, &plates[0], [&size[0]].into_iter());
                 self.wall(web.span, &plates[1], [&size[1]].into_iter());
                 let ([height, width], [flange, web]) = (size, plates);
                 Shape::WeldedBox([height, width, flange, web])
             }
             Section::Tube { diameter, thickness } => {
-                let size = positive(diameter, "`diameter`", "m");
-                let wall = positive(thickness, "`thickness`", "m");
+                let size = self.number(diameter, "`diameter`");
+                let wall = self.number(thickness, "`thickness`");
                 self.wall(thickness.span, &wall, [&size].into_iter());
                 Shape::Tube([size, wall])
             }
             Section::Solid { height, width } => {
                 let sides = [(height, "`height`"), (width, "`width`")].map(|(side, key)| {
-                    let value = self.number(side, key, "m", Limit::Positive);
+                    let value = self.number(side, key);
                     if value.as_constant().is_none() {
                         self.report(rule::live_side(side.span, key));
                     }
@@ -83,21 +78,21 @@ impl<'a> Check<'a> {
                 });
                 Shape::Solid(sides)
             }
-            Section::Circle { diameter } => Shape::Circle(positive(diameter, "`diameter`", "m")),
+            Section::Circle { diameter } => Shape::Circle(self.number(diameter, "`diameter`")),
             Section::Numbers { area, jy, jz, jo, moduli } => {
-                let area = positive(area, "`area`", "m²");
+                let area = self.number(area, "`area`");
                 let moduli = moduli.as_ref().and_then(|given| given.value.as_ref()).map(|given| Moduli {
                     area: area.clone(),
-                    bending: [positive(&given.wy, "`Wy`", "m³"), positive(&given.wz, "`Wz`", "m³")],
-                    torsion: positive(&given.wt, "`Wt`", "m³"),
-                    shear: [positive(&given.ay, "`Ay`", "m²"), positive(&given.az, "`Az`", "m²")],
+                    bending: [self.number(&given.wy, "`Wy`"), self.number(&given.wz, "`Wz`")],
+                    torsion: self.number(&given.wt, "`Wt`"),
+                    shear: [self.number(&given.ay, "`Ay`"), self.number(&given.az, "`Az`")],
                     has_corners: true,
                 });
                 Shape::Numbers(Box::new(CrossSection {
                     area,
-                    jy: positive(jy, "`Jy`", "m⁴"),
-                    jz: positive(jz, "`Jz`", "m⁴"),
-                    jo: positive(jo, "`Jo`", "m⁴"),
+                    jy: self.number(jy, "`Jy`"),
+                    jz: self.number(jz, "`Jz`"),
+                    jo: self.number(jo, "`Jo`"),
                     moduli,
                     outline: None,
                 }))

@@ -2,11 +2,11 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::limits::Limit;
 use super::{Check, LinkBodies};
 use crate::chain::{Axis, Form, Shape, Value};
 use crate::diagnostic::rule;
 use crate::expand::placement;
+use crate::node::Limit;
 use crate::spec::{self, AxisName, Link, RoundShape};
 
 /// Ends of the names of files that readers of URDF and MJCF know alike.
@@ -19,7 +19,7 @@ impl Check<'_> {
         for shape in given.into_iter().flat_map(|shapes| &shapes.0).filter_map(|shape| shape.value.as_ref()) {
             let (form, at, rotation) = match shape {
                 spec::Shape::Box(shape) => {
-                    let sides = self.vector(&shape.size, "`size`", "m", Limit::Positive);
+                    let sides = self.vector(&shape.size, "`size`");
                     (Form::Box(sides), &shape.at, &shape.rotation)
                 }
                 spec::Shape::Cylinder(shape) => {
@@ -37,11 +37,11 @@ impl Check<'_> {
                         self.report(rule::unknown_mesh(shape.file.span, &file));
                     }
                     let scale = shape.scale.as_ref();
-                    let scale = scale.map_or(1.0, |scale| self.constant(scale, "`scale`", "", Limit::Positive));
+                    let scale = scale.map_or(1.0, |scale| self.constant(scale, "`scale`"));
                     (Form::Mesh { file, scale, surface: None }, &shape.at, &shape.rotation)
                 }
             };
-            let [x, y, z] = self.vector_or_zero(at.as_ref(), "`at`", "m", Limit::Any);
+            let [x, y, z] = self.vector_or_zero(at.as_ref(), "`at`");
             let mut turns = self.turns(rotation.as_ref());
             if let spec::Shape::Cylinder(round) | spec::Shape::Capsule(round) = shape {
                 turns.extend(onto(round.axis.as_ref().and_then(|axis| axis.value)));
@@ -56,8 +56,7 @@ impl Check<'_> {
 
     /// Diameter and length.
     fn round(&mut self, given: &RoundShape, length: Limit) -> [Value; 2] {
-        let diameter = self.number(&given.diameter, "`diameter`", "m", Limit::Positive);
-        [diameter, self.number(&given.length, "`length`", "m", length)]
+        [self.number(&given.diameter, "`diameter`"), self.number_within(&given.length, length, "`length`")]
     }
 }
 

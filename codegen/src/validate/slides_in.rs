@@ -1,6 +1,5 @@
 //! Telescopes: beams that slide in beams on two pads.
 
-use super::limits::Limit;
 use super::on::Attached;
 use super::{Check, LinkBodies, Owner};
 use crate::chain::{
@@ -8,6 +7,7 @@ use crate::chain::{
     LoopJointKind, PadDirection, Sliding, Spring, Step, Strain, Value,
 };
 use crate::diagnostic::{Span, rule};
+use crate::node::Limit;
 use crate::spec::{AxisName, Beam, ExactDirection, Joint, Link, Pad, Spanned, Vector};
 
 /// An overlap may exceed a beam by this fraction of its length, because both are decimal numbers.
@@ -90,7 +90,7 @@ impl<'a> Check<'a> {
         self.joint_of_slider(link, name);
         let outer_name = given.beam.value.as_deref()?;
         let place = self.earlier_link(links, index, (outer_name, given.beam.span)).cloned();
-        let overlap = self.number(&given.overlap, &format!("the overlap of `{name}`"), "m", Limit::Positive);
+        let overlap = self.number(&given.overlap, &format!("the overlap of `{name}`"));
         let named =
             |link: &&Spanned<Link>| link.value.as_ref().and_then(|link| link.name.value.as_deref()) == Some(outer_name);
         let outer = links[..index].iter().find(named).and_then(|link| link.value.as_ref());
@@ -181,7 +181,6 @@ impl<'a> Check<'a> {
 
     /// How a pad holds; without any stiffness against twist it does not hold it.
     fn pad(&mut self, given: &'a Spanned<Pad>, what: &str) -> [Hold; 3] {
-        const RATE: [&str; 2] = ["N s/m", "N m s/rad"];
         let Some(pad) = &given.value else {
             // A mistake that has been reported; it may hold against twist.
             return [Hold::No, Hold::No, Hold::Exactly];
@@ -189,12 +188,12 @@ impl<'a> Check<'a> {
         let exact = pad.exact.as_ref().map_or(&[][..], |list| list.value.as_deref().unwrap_or_default());
         let exact = DIRECTIONS.map(|(_, own, _)| exact.iter().any(|item| item.value == Some(own)));
         let subject = format!("the stiffness of {what}");
-        let limits = [(Limit::Positive, "N/m"), (Limit::Positive, "N/m"), (Limit::NotNegative, "N m/rad")];
+        let limits = [Limit::Positive, Limit::Positive, Limit::NotNegative];
         let stiffness: Vec<Value> = match pad.stiffness.as_ref().map(|stiffness| &stiffness.value) {
             Some(Some(numbers)) => {
                 let each = numbers.iter().zip(limits).zip(exact);
-                let each = each.map(|((number, (limit, unit)), exact)| {
-                    self.number(number, &subject, unit, if exact { Limit::NotNegative } else { limit })
+                let each = each.map(|((number, limit), exact)| {
+                    self.number_within(number, if exact { Limit::NotNegative } else { limit }, &subject)
                 });
                 each.collect()
             }
@@ -213,10 +212,8 @@ impl<'a> Check<'a> {
                 self.report(rule::loose_pad(given.span, what, loose.join(" and ")));
             }
         }
-        let damping =
-            self.two_and_turn(pad.damping.as_ref(), &format!("the damping of {what}"), RATE, Limit::NotNegative);
-        let clearance = format!("the clearance of {what}");
-        let clearance = self.two_and_turn(pad.clearance.as_ref(), &clearance, ["m", "rad"], Limit::NotNegative);
+        let damping = self.vector_or_zero(pad.damping.as_ref(), &format!("the damping of {what}"));
+        let clearance = self.vector_or_zero(pad.clearance.as_ref(), &format!("the clearance of {what}"));
         let stiffness: [Value; 3] = std::array::from_fn(|i| stiffness[i].clone());
         self.keep_exact("stiffness", pad.stiffness.as_ref(), (&stiffness, exact), what);
         self.keep_exact("damping", pad.damping.as_ref(), (&damping, exact), what);

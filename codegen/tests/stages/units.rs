@@ -15,8 +15,8 @@ const NUMBERS: [&str; 4] = ["Number", "Angle", "Constant", "FixedAngle"];
 /// Keys that no spec of the project has, and those of which it has no number without other mistakes. Whether the rest of the crane stands does not matter.
 const OTHERS: &str = include_str!("units.yaml");
 
-/// The numbers of a spec: their places as JSON pointers, the keys of the schema, and what the schema says about these.
-type Found = Vec<(String, String, String)>;
+/// The numbers of a spec: their places as JSON pointers, the keys of the schema, and what this says about them.
+type Found = Vec<(String, String, Value)>;
 
 struct Walk<'a> {
     schema: &'a Value,
@@ -24,30 +24,29 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    fn at(&mut self, schema: &Value, value: &Value, place: &str, key: &str, said: &str) {
-        let said = schema["description"].as_str().unwrap_or(said);
+    fn at(&mut self, schema: &Value, value: &Value, place: &str, key: &str) {
         if let Some(name) = schema["$ref"].as_str().and_then(|path| path.rsplit('/').next()) {
             if !NUMBERS.contains(&name) {
                 let definition = self.schema["$defs"][name].clone();
-                self.at(&definition, value, place, name, said);
+                self.at(&definition, value, place, name);
             } else if value.is_number() || value.is_string() {
-                self.found.push((place.to_owned(), key.to_owned(), said.to_owned()));
+                self.found.push((place.to_owned(), key.to_owned(), schema.clone()));
             }
         }
         for form in ["anyOf", "oneOf"].iter().flat_map(|forms| schema[forms].as_array().into_iter().flatten()) {
-            self.at(form, value, place, key, said);
+            self.at(form, value, place, key);
         }
         match value {
             Value::Array(items) => {
                 for (index, item) in items.iter().enumerate() {
-                    self.at(&schema["items"], item, &format!("{place}/{index}"), &format!("{key}.*"), said);
+                    self.at(&schema["items"], item, &format!("{place}/{index}"), &format!("{key}.*"));
                 }
             }
             Value::Object(entries) => {
                 for (name, inner) in entries {
                     let below = [(&schema["properties"][name], name.as_str()), (&schema["additionalProperties"], "*")];
                     for (form, word) in below.into_iter().filter(|(form, _)| form.is_object()) {
-                        self.at(form, inner, &format!("{place}/{name}"), &format!("{key}.{word}"), said);
+                        self.at(form, inner, &format!("{place}/{name}"), &format!("{key}.{word}"));
                     }
                 }
             }
@@ -56,19 +55,22 @@ impl Walk<'_> {
     }
 }
 
-/// All numeric keys of the schema.
-fn keys(schema: &Value, key: &str, found: &mut Vec<String>) {
+/// All numeric keys of the schema, each with a unit and a text.
+fn keys(schema: &Value, key: &str, about: bool, found: &mut Vec<String>) {
+    let about = about || schema["description"].is_string();
     let name = schema["$ref"].as_str().and_then(|path| path.rsplit('/').next());
     if name.is_some_and(|name| NUMBERS.contains(&name)) {
+        assert!(about && schema["x-unit"].as_str().is_some_and(|unit| !unit.is_empty()), "{key}: {schema}");
         found.push(key.to_owned());
     }
     let forms = ["anyOf", "oneOf"].iter().flat_map(|forms| schema[forms].as_array().into_iter().flatten());
-    forms.for_each(|form| keys(form, key, found));
+    forms.for_each(|form| keys(form, key, about, found));
     for inner in ["items", "additionalProperties"].iter().filter_map(|inner| schema.get(inner)) {
-        keys(inner, &format!("{key}.*"), found);
+        keys(inner, &format!("{key}.*"), about, found);
     }
     for (name, inner) in schema["properties"].as_object().into_iter().flatten() {
-        keys(inner, &format!("{key}.{name}"), found);
+        // The word of a choice is described where it is.
+        keys(inner, &format!("{key}.{name}"), about && schema["required"] == json!([name]), found);
     }
 }
 
@@ -88,15 +90,6 @@ fn specs() -> Vec<Value> {
     read.filter(|spec: &Value| spec.get("extends").is_none()).collect()
 }
 
-/// Whether a description names a unit, not only letters of another one.
-fn says(description: &str, unit: &str) -> bool {
-    let is_part = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || "/²³⁴".contains(c));
-    description.match_indices(unit).any(|(at, _)| {
-        let after = &description[at + unit.len()..];
-        !is_part(description[..at].chars().next_back()) && !is_part(after.chars().next())
-    })
-}
-
 /// Messages about a spec with another number at a place, and the texts at which they point.
 fn told(spec: &Value, place: &str, number: &Value) -> Vec<(String, String)> {
     let mut spec = spec.clone();
@@ -104,73 +97,75 @@ fn told(spec: &Value, place: &str, number: &Value) -> Vec<(String, String)> {
     let text = spec.to_string();
     let source = build::read_with("spec.yaml", text.as_bytes(), &|_| None).expect("a text");
     let Err(mistakes) = check(&source) else { return Vec::new() };
-    let of_units = mistakes.mistakes().iter().filter(|mistake| ["E034", "E035", "E036"].contains(&mistake.code));
-    of_units.map(|mistake| (mistake.title.clone(), text[mistake.span.start..mistake.span.end].to_owned())).collect()
+    let of_numbers = ["E031", "E032", "E034", "E035", "E036"];
+    let of_numbers = mistakes.mistakes().iter().filter(|mistake| of_numbers.contains(&mistake.code));
+    of_numbers.map(|mistake| (mistake.title.clone(), text[mistake.span.start..mistake.span.end].to_owned())).collect()
 }
 
-/// A wrong dimension at every numeric key of the schema gets a message at its place, with both units; a number with the unit of the message is right; and the
-/// schema describes the key in this unit. The expected units are those of the descriptions, which people write.
+/// A wrong dimension at every numeric key of the schema gets a message at its place, with both units; a number with the unit of the message is right; the
+/// schema has this unit; and what is below its limit is refused.
 #[test]
 fn a_wrong_dimension_is_told_at_every_numeric_key() {
-    /// Keys whose unit depends on what they belong to, or is their own: their descriptions need not name it.
-    const VARIES: [&str; 14] = [
-        "Event.set.*",
-        "Input.value",
-        "Parameter.value",
-        "Motion.hold",
-        "Ramp.from",
-        "Ramp.to",
-        "Trapezoid.from",
-        "Trapezoid.to",
-        "Speed.from",
-        "Speed.rate",
-        "Table.values.*",
-        "Directions.phi",
-        "Directions.psi",
-        "Directions.theta",
-    ];
     let schema: Value = serde_json::from_str(&json_schema()).expect("JSON");
     let mut covered: BTreeMap<String, String> = BTreeMap::new();
     let mut wrong = Vec::new();
     for spec in specs() {
         let mut walk = Walk { schema: &schema, found: Vec::new() };
-        walk.at(&schema, &spec, "", "Crane", "");
-        for (place, key, said) in walk.found {
+        walk.at(&schema, &spec, "", "Crane");
+        for (place, key, row) in walk.found {
             if covered.contains_key(&key) {
                 continue;
             }
-            let told_of = told(&spec, &place, &json!(WRONG));
+            let title = |number: &Value| {
+                let shown = number.as_str().map_or(number.to_string(), str::to_owned);
+                let told_of = told(&spec, &place, number).into_iter();
+                told_of.filter(|(_, text)| text.trim_matches('"') == shown).map(|(title, _)| title).next()
+            };
             // Where another mistake hides it, another spec must have the key.
-            let Some((title, _)) = told_of.iter().find(|(_, text)| text.trim_matches('"') == WRONG) else { continue };
-            let unit = match title.split_once(" is in ").and_then(|(_, rest)| rest.split_once(", and `7 bar s` is ")) {
+            let Some(told_of) = title(&json!(WRONG)) else { continue };
+            let unit = match told_of.split_once(" is in ").and_then(|(_, rest)| rest.split_once(", and `7 bar s` is "))
+            {
                 Some((unit, _)) => unit,
                 None => "",
             };
-            if unit.is_empty() && !title.contains(" has no unit, and `7 bar s` is another quantity (m^-1 kg s^-1)") {
-                wrong.push(format!("{place}: {title}"));
+            if unit.is_empty() && !told_of.contains(" has no unit, and `7 bar s` is another quantity (m^-1 kg s^-1)") {
+                wrong.push(format!("{place}: {told_of}"));
             }
-            if !unit.is_empty() && !says(&said, unit) && !VARIES.contains(&key.as_str()) {
-                wrong.push(format!("{key} in {unit}: {said}"));
+            let of_row = row["x-unit"].as_str().unwrap_or_default();
+            let known = of_row
+                .split(" or ")
+                .flat_map(|unit| unit.split(", "))
+                .any(|one| one == unit || one == "1" && unit.is_empty());
+            if !known && !of_row.starts_with('…') && of_row != "its own" {
+                wrong.push(format!("{key} in {unit}: {row}"));
             }
-            for right in [format!("1 {unit}"), "100 %".to_owned()].iter().skip(usize::from(unit.is_empty())).take(1) {
-                let told_of = told(&spec, &place, &json!(right));
-                if told_of.iter().any(|(_, text)| text.trim_matches('"') == right) {
-                    wrong.push(format!("{place}: {right} is refused: {told_of:?}"));
-                }
+            let right = if unit.is_empty() { "100 %".to_owned() } else { format!("1 {unit}") };
+            wrong.extend(title(&json!(right)).map(|title| format!("{place}: {right} is refused: {title}")));
+            let has_limit = [&row["minimum"], &row["exclusiveMinimum"]].into_iter().any(Value::is_number);
+            if has_limit && row["maximum"].is_null() && title(&json!(-1.0)).is_none() {
+                wrong.push(format!("{place}: −1 is allowed"));
+            }
+            if row["exclusiveMinimum"].is_number() && title(&json!(0.0)).is_none() {
+                wrong.push(format!("{place}: 0 is allowed"));
             }
             covered.insert(key, unit.to_owned());
         }
     }
     let mut all = Vec::new();
-    keys(&schema, "Crane", &mut all);
+    keys(&schema, "Crane", false, &mut all);
     for (name, definition) in schema["$defs"].as_object().expect("definitions") {
-        keys(definition, name, &mut all);
+        keys(definition, name, false, &mut all);
     }
     assert!(all.len() > 150, "{}", all.len());
     let missing: Vec<&String> = all.iter().filter(|key| !covered.contains_key(*key)).collect();
     assert!(missing.is_empty() && wrong.is_empty(), "not tried: {missing:?}\n{}", wrong.join("\n"));
-    // Some by hand, which no description decides.
+    // Some by hand, of every way in which a unit is found.
     for (key, unit) in [
+        ("Bristle.stiffness", "N/m"),
+        ("Pad.stiffness.*", "N/m"),
+        ("Directions.phi", "N m s/rad"),
+        ("Turn.x", "rad"),
+        ("Run.step", "s"),
         ("Beam.length", "m"),
         ("Material.E", "Pa"),
         ("Valve.flow", "m³/s"),
@@ -192,7 +187,7 @@ fn units_do_not_change_numbers() {
     let spec: Value = serde_yaml::from_str(plain).expect("YAML");
     let schema: Value = serde_json::from_str(&json_schema()).expect("JSON");
     let mut walk = Walk { schema: &schema, found: Vec::new() };
-    walk.at(&schema, &spec, "", "Crane", "");
+    walk.at(&schema, &spec, "", "Crane");
     let source = SourceFile::new("cantilever.yaml", spec.to_string());
     let mut changed = spec.clone();
     let mut count = 0;

@@ -32,7 +32,7 @@ const LEFT_OUT: [(&str, &str, &str); 23] = [
     ("LoopJointKind", "slide", "cranes with slides have laws of their own"),
     ("SlideAxis", "axis", "cranes with slides have laws of their own"),
     ("PinAxis", "to_axis", "written by the second description of a turned boom"),
-    ("Place", "*", "descriptions move places, which are points"),
+    ("On.at", "*", "descriptions move places, which are points"),
     ("Table", "file", "a table from a file is read into `times` and `values`; tests of data files compare both"),
     ("Table", "column", "as above"),
     ("Valve", "opening", "cylinders without a servo drift from the pose of the checks"),

@@ -94,7 +94,7 @@ pub trait Law {
 
 macro_rules! dispatch {
     ($($(#[$doc:meta])* $law:ident as $written:ident: $expecting:literal {
-        $($(#[$key_doc:meta])* $key:ident: $number:ty, $limit:ident $unit:literal;)*
+        $($(#[doc = $about:literal])* #[key(unit = $unit:literal, limit = $limit:ident)] $key:ident: $number:ty;)*
     })*) => {
         /// The law of a force of the chain.
         pub fn law(law: &chain::Law) -> &dyn Law {
