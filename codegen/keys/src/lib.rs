@@ -4,14 +4,14 @@
 //! which of them are required. A struct is a mapping of its fields. An enum is one of its variants: the word of a variant without content,
 //! or a mapping with the word of the variant as its key. Words of variants are in `snake_case`.
 //!
-//! `#[key(unit = "N/m", limit = Positive)]` says what the numbers of a field measure, of a type those of all its fields, and
+//! `#[key(unit = "N/m", limit = Positive, usual = 1e3..1e13)]` says what the numbers of a field measure, of a type those of all its fields, and
 //! `#[key("E", …)]` names a field otherwise.
 
 use proc_macro2::TokenStream;
 use quote::quote;
 use syn::{
-    Attribute, Data, DeriveInput, Error, Expr, ExprLit, Fields, FieldsNamed, Ident, Lit, LitStr, Meta, Result, Token,
-    parse_macro_input,
+    Attribute, Data, DeriveInput, Error, Expr, ExprLit, ExprRange, Fields, FieldsNamed, Ident, Lit, LitStr, Meta,
+    Result, Token, parse_macro_input,
 };
 
 /// What `#[key(…)]` says.
@@ -20,6 +20,7 @@ struct Row {
     name: Option<String>,
     unit: Option<LitStr>,
     limit: Option<Expr>,
+    usual: Option<ExprRange>,
 }
 
 impl Row {
@@ -37,7 +38,8 @@ impl Row {
                         match word.to_string().as_str() {
                             "unit" => row.unit = Some(input.parse()?),
                             "limit" => row.limit = Some(input.parse()?),
-                            _ => return Err(Error::new_spanned(word, "a row has `unit` and `limit`")),
+                            "usual" => row.usual = Some(input.parse()?),
+                            _ => return Err(Error::new_spanned(word, "a row has `unit`, `limit` and `usual`")),
                         }
                     }
                     if !input.is_empty() {
@@ -57,7 +59,19 @@ impl Row {
             return quote! { crate::node::Measure::#otherwise };
         };
         let limit = self.limit.as_ref().map_or(quote! { Any }, |limit| quote! { #limit });
-        quote! { crate::node::Measure { unit: #unit, limit: crate::node::Limit::#limit } }
+        let usual = match &self.usual {
+            Some(ExprRange { start: Some(from), end: Some(to), .. }) => quote! { [#from, #to] },
+            _ => quote! { crate::node::Measure::ALL },
+        };
+        let measure = |unit: &str, items: TokenStream| {
+            quote! {
+                crate::node::Measure { unit: #unit, limit: crate::node::Limit::#limit, usual: #usual, items: &[#items] }
+            }
+        };
+        let unit = unit.value();
+        let items = unit.split(", ").filter(|_| unit.contains(", ") && !unit.contains(" or "));
+        let items = items.map(|unit| measure(unit, quote! {}));
+        measure(&unit, quote! { #(#items),* })
     }
 }
 
@@ -112,7 +126,7 @@ fn keys(fields: &FieldsNamed, whole: &Row) -> Result<TokenStream> {
         let measure = row.measure("NONE");
         let name = row.name.or(field.ident.as_ref().map(Ident::to_string)).unwrap_or_default();
         let (about, value) = (documentation(&field.attrs), &field.ty);
-        keys.extend(quote! { crate::node::Key::of::<#value>(#name, #about, #measure), });
+        keys.extend(quote! { crate::node::Key::of::<#value>(#name, #about, &#measure), });
     }
     Ok(keys)
 }
@@ -148,7 +162,7 @@ fn choice(
                     content: <#value as crate::node::FromNode>::FORM,
                     is_bare: <#value as crate::node::FromNode>::IS_OPTIONAL
                 };
-                (content, quote! { Ok(Self::#name(choice.content(#measure)?)) })
+                (content, quote! { Ok(Self::#name(choice.content(&#measure)?)) })
             }
             Fields::Unnamed(fields) => return Err(Error::new_spanned(fields, "a variant has one content")),
             Fields::Named(fields) => {
@@ -161,7 +175,7 @@ fn choice(
                 (quote! { content: crate::node::Form::Mapping { keys: &[#keys] }, is_bare: false }, arm)
             }
         };
-        forms.extend(quote! { crate::node::Variant { word: #word, about: #about, measure: #measure, #content }, });
+        forms.extend(quote! { crate::node::Variant { word: #word, about: #about, measure: &#measure, #content }, });
         names.extend(quote! { #word, });
         let pattern = if index + 1 == variants.len() {
             quote! { _ }

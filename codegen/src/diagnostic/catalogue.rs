@@ -555,14 +555,11 @@ catalogue! {
     /// Principal moments satisfy the triangle inequality; measured ones may exceed it by up to 25 % (beyond: E051).
     W011 slight_triangle(subject, largest, others) "{subject} slightly violates the triangle inequality", "{largest} kg m² exceeds {others} kg m², the sum of the other two principal moments",
         "no principal moment about the centre of mass exceeds the sum of the other two; rounded or identified data may violate this slightly";
-    /// The coefficient of friction of a support is from 0.1 to 1.2.
-    W020 odd_friction(support, coefficient) "the friction coefficient of support `{support}` is {coefficient}", "usual: 0.1 to 1.2",
-        "write a fraction: steel or wood on dry, firm ground has about 0.6, wet or loose ground about 0.3; a support that never slides has `sticks: true` instead";
     /// The free length of a connector is consistent with the distance between its points at the guess.
     W021 connector_length(connector, length, distance) "connector `{connector}` has a free length of {length} m", "its points are {distance} m apart at the guess",
         "check the unit, the points and the `guess`: its force is the stiffness times the difference between distance and length; a rope only pulls";
-    /// Diameters, lengths, pressures, flows, volumes and times of hydraulics have usual magnitudes in SI units.
-    W022 hydraulics(what, given, unit, usual, help) "{what} is {given} {unit}", "usual: {usual}", "{help}";
+    /// Pressures, flows, sizes of cylinders, stiffnesses and other numbers have usual magnitudes in SI units.
+    W022 unusual(what, given, usual, help) "{what} is {given}", "usual: {usual}", "{help}";
     /// The relief valves of a cylinder open above the pressure of the pump.
     W023 relief_below_pump(pressure, cylinder, relief) "the pump supplies {pressure} Pa, more than the relief pressure of cylinder `{cylinder}`",
         "its relief valve opens at {relief} Pa, its `max_pressure`", "check both; a relief valve usually opens above the pressure of the pump";
@@ -599,14 +596,9 @@ catalogue! {
     /// Supports are apart.
     W035 same_foot(support, other) "support `{support}` is in the same place as `{other}`", "two supports in one place act as one",
         "give each its own position, `at: [x, y, z]` in m: usually the signs of y differ";
-    /// Springs are at most 1e13 N/m or N m/rad stiff.
-    W036 too_stiff(what, given, unit, help) "{what} is {given} {unit}", "no crane is that stiff; rounding errors then hide small forces", "{help}";
     /// The base of a crane on feet that lift is not far lighter than what it carries.
     W037 light_base(link, mass, carried) "the base `{link}` has a mass of {mass} kg", "it carries {carried} kg, on feet that can lift",
         "write masses in kg: 8.6 t = 8600 kg, without a comma or a point for thousands";
-    /// The free play of a support is at most 0.2 m.
-    W038 long_free_play(support, play) "the free play of support `{support}` is {play} m", "the crane moves this far before the support acts",
-        "write it in m: 2 mm = 2e-3 m";
     /// A coupling of two joints of one kind has a ratio of at most 20.
     W039 high_ratio(coupling, ratio, coordinate, leader) "coupling `{coupling}` has a ratio of {ratio}", "`{coordinate}` moves {ratio} times as far as `{leader}`",
         "`ratio` is the travel of `coordinate` over that of `follows`: two stages on a chain have 1";
@@ -660,13 +652,34 @@ catalogue! {
     /// The overlap of a stage is not longer than its beams.
     W055 pushed_through(stage, outer, overlap, coordinate, position, longest) "`{stage}` is {overlap} m in `{outer}` with `{coordinate}` at {position} m", "the shorter of the two beams is {longest} m long",
         "the coordinate grows as the stage comes out: check its sign, and that of the `ratio` of a coupling";
-    /// The axial stiffness of a rope is at least 1e5 N.
-    W056 soft_rope(connector, stiffness) "the axial stiffness of rope `{connector}` is {stiffness} N", "it would stretch by metres",
-        "write EA in N: 12 MN = 12e6; a steel rope of 10 mm has some 5e6 N";
-    /// Gravity is at most 30 m/s².
-    W057 odd_gravity(size) "gravity is {size} m/s²", "on Earth it is 9.81 m/s²",
-        "write it in m/s²";
-    /// The stiffness of a support is 0 or at least 1 kN/m.
-    W058 soft_support(support, stiffness) "the stiffness of support `{support}` is {stiffness} N/m", "the crane would sink by metres",
-        "write it in N/m: 5 kN/mm = 5e6";
+    /// Feet are at similar distances from the axis of their base.
+    W059 far_foot(support, distance, others) "support `{support}` is {distance} m away from the axis of its base", "all others are within {others} m",
+        "check the decimal point of `at`, in m";
+    /// The smallest side of a shape is not larger than the crane.
+    W060 large_shape(link, side, size) "every side of the shape of link `{link}` is at least {side} m long", "all joints and feet of the crane are within {size} m",
+        "write sizes in m, or with their unit, such as `150 mm`";
+    /// A rod is at least a tenth as thick as its piston, and a piston at most as wide as its cylinder is long.
+    W061 odd_cylinder(cylinder, bore, rod, retracted) "cylinder `{cylinder}` has a bore of {bore} m and a rod of {rod} m", "retracted, it is {retracted} m long",
+        "check the decimal points of `bore` and `rod`; rods are usually half as thick as their piston";
+    /// The springs of feet, pads and couplings give way within 2 s.
+    W062 slow_damper(what, time) "{what} gives way in {time} s", "its damping over its stiffness: it would sink like honey",
+        "check the exponents of both; usual are 0.001 to 0.1 s";
+    /// The third stiffness of a pad is that against twist.
+    W063 stiff_twist(what, twist, along) "{what} has a stiffness of {twist} N m/rad against twist", "along y and z it has at most {along} N/m",
+        "check the order: along y, along z, against twist; pads 0.2 m apart have a hundredth of the number of y and z";
+    /// Gravity presses supports on the ground, within 40° of z.
+    W064 gravity_aside(angle) "gravity is {angle}° off the vertical of the supports", "z of the world points up, and supports press along it",
+        "write `gravity: [0, 0, -9.81]`, and slopes as an angle such as `5 deg`";
+    /// Motions and events are within the run.
+    W065 late(what, time, end) "{what} {time}", "the run ends at {end} s",
+        "write times in s, or with their unit, such as `4000 ms`; or give `run:` a longer `duration`";
+    /// The additional mass of a beam is at most 20 times that of its section.
+    W066 heavy_extra(extra, section) "`extra_mass` is {extra} kg/m", "the section itself has {section} kg/m",
+        "write it in kg/m: the mass of hoses and plates over the length of the beam";
+    /// The wall of a hollow section is at least a 300th as thick as its sides.
+    W067 thin_wall(subject, key, thickness, side) "the `{key}` of {subject} is {thickness} m", "a side of the section is {side} m: it would buckle like foil",
+        "write it in m: 6 mm = 0.006";
+    /// A sliding joint moves by at most five times the size of the crane.
+    W068 far_slide(coordinate, position, size) "`{coordinate}` reaches {position} m", "all joints and feet of the crane are within {size} m without it",
+        "write positions in m, or with their unit, such as `120 cm`";
 }

@@ -25,7 +25,7 @@ impl<'a> Choice<'a> {
     }
 
     /// Reads the variant's content.
-    pub fn content<T: FromNode>(&self, measure: Measure) -> Result<T, Unread> {
+    pub fn content<T: FromNode>(&self, measure: &'static Measure) -> Result<T, Unread> {
         let reader = self.reader();
         let reader = Reader { measure: measure.within(reader.measure), ..reader };
         T::from_node(reader).map_err(|unread| place(reader, unread))

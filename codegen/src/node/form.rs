@@ -48,12 +48,12 @@ pub(crate) struct Key {
     pub about: &'static str,
     pub is_required: bool,
     pub form: Form,
-    pub measure: Measure,
+    pub measure: &'static Measure,
 }
 
 impl Key {
     /// The key of a value of a type.
-    pub const fn of<T: FromNode>(name: &'static str, about: &'static str, measure: Measure) -> Self {
+    pub const fn of<T: FromNode>(name: &'static str, about: &'static str, measure: &'static Measure) -> Self {
         Key { name, about, is_required: !T::IS_OPTIONAL, form: T::FORM, measure }
     }
 }
@@ -64,7 +64,7 @@ pub(crate) struct Variant {
     pub word: &'static str,
     pub about: &'static str,
     pub content: Form,
-    pub measure: Measure,
+    pub measure: &'static Measure,
     /// Whether the word may stand alone although the variant has content.
     pub is_bare: bool,
 }

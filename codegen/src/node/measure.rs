@@ -1,12 +1,16 @@
 //! What a number measures: its unit and its limit, which stand at its key and nowhere else.
 
 /// The unit and the limit of a number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Measure {
     /// The unit: `N/m`; `1` without one; `N m/rad or N/m` of a joint that turns or slides; `m, m, rad` of the items of a list; `…` that of
     /// the key to which the mapping belongs, `…/s` that per second; or `its own`, which the spec names.
     pub unit: &'static str,
     pub limit: Limit,
+    /// The range of its magnitude, unless it is zero, beyond which its unit or its exponent is probably wrong.
+    pub usual: [f64; 2],
+    /// Those of the items of a list whose units differ.
+    pub items: &'static [Measure],
 }
 
 /// The allowed range of a number.
@@ -27,26 +31,25 @@ pub(crate) enum Limit {
 }
 
 impl Measure {
+    /// Every magnitude is usual.
+    pub const ALL: [f64; 2] = [0.0, f64::INFINITY];
     /// Of a key that is no number.
-    pub const NONE: Self = Measure { unit: "", limit: Limit::Any };
+    pub const NONE: Self = Measure { unit: "", limit: Limit::Any, usual: Self::ALL, items: &[] };
     /// That of the key to which the mapping belongs.
-    pub const INHERITED: Self = Measure { unit: "…", limit: Limit::Any };
+    pub const INHERITED: Self = Measure { unit: "…", ..Self::NONE };
 
     /// Where it is that of the owner, this.
-    pub fn within(self, owner: Self) -> Self {
+    pub fn within(&'static self, owner: &'static Self) -> &'static Self {
         if self.unit.starts_with('…') { owner } else { self }
     }
 
     /// That of an item of a list.
-    pub fn of_item(self, index: usize) -> Self {
-        if !self.unit.contains(", ") || self.unit.contains(" or ") {
-            return self;
-        }
-        Measure { unit: self.unit.split(", ").nth(index).unwrap_or(self.unit), ..self }
+    pub fn of_item(&'static self, index: usize) -> &'static Self {
+        self.items.get(index).unwrap_or(self)
     }
 
     /// In words, for descriptions of keys.
-    pub fn describe(self) -> String {
+    pub fn describe(&self) -> String {
         let unit = match self.unit {
             "" | "…" | "…/s" => return String::new(),
             "1" => "Without unit",

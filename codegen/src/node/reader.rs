@@ -61,7 +61,7 @@ pub(crate) struct Reader<'a> {
     /// The description of its owner.
     pub owner: Subject<'a>,
     /// What its numbers measure.
-    pub measure: Measure,
+    pub measure: &'static Measure,
     /// The mistakes so far.
     pub mistakes: &'a RefCell<Vec<Mistake>>,
 }
@@ -70,7 +70,7 @@ impl<'a> Reader<'a> {
     /// A reader of the whole file.
     pub fn root(node: &'a Node, mistakes: &'a RefCell<Vec<Mistake>>) -> Self {
         let (span, subject) = (node.span, Subject::Whole);
-        Reader { node: Some(node), span, subject, owner: subject, measure: Measure::NONE, mistakes }
+        Reader { node: Some(node), span, subject, owner: subject, measure: &Measure::NONE, mistakes }
     }
 
     /// Notes a mistake; the value is then [`Unread::Reported`].

@@ -25,7 +25,7 @@ pub struct Beam {
     #[key(unit = "kg/m", limit = NotNegative)]
     pub extra_mass: Option<Spanned<Number>>,
     /// Factor by which stresses must stay below the material's `yield_stress`. Default 1.5.
-    #[key(unit = "1", limit = Positive)]
+    #[key(unit = "1", limit = Positive, usual = 0.0..20.0)]
     pub safety_factor: Option<Spanned<Number>>,
     /// Damping of the springs. Default none.
     pub damping: Option<Spanned<BeamDamping>>,

@@ -47,7 +47,7 @@ pub struct Coupling {
     #[key(unit = "rad or m")]
     pub offset: Option<Spanned<Angle>>,
     /// Stiffness of the coordinate that follows; required unless the coupling is rigid.
-    #[key(unit = "N m/rad or N/m", limit = NotNegative)]
+    #[key(unit = "N m/rad or N/m", limit = NotNegative, usual = 0.0..1e13)]
     pub stiffness: Option<Spanned<Number>>,
     /// Damping. Default 0.
     #[key(unit = "N m s/rad or N s/m", limit = NotNegative)]
@@ -64,16 +64,16 @@ pub struct Contact {
     /// The link.
     pub link: Spanned<String>,
     /// The point, in the frame of the link (for a beam: undeformed). Default `[0, 0, 0]`.
-    #[key(unit = "m")]
+    #[key(unit = "m", usual = 0.0..200.0)]
     pub at: Option<Spanned<Vector>>,
     /// Height of the ground there, along z of the world. Default 0.
-    #[key(unit = "m")]
+    #[key(unit = "m", usual = 0.0..200.0)]
     pub height: Option<Spanned<Number>>,
     /// Stiffness of ground and point.
     #[key(unit = "N/m", limit = Positive)]
     pub stiffness: Spanned<Number>,
     /// Relative increase of the force with the rate at which the point sinks in, as a fraction. Default 0.
-    #[key(unit = "s/m", limit = NotNegative)]
+    #[key(unit = "s/m", limit = NotNegative, usual = 0.0..30.0)]
     pub damping: Option<Spanned<Number>>,
 }
 
@@ -106,10 +106,10 @@ pub struct Rope {
     #[key(unit = "N/m", limit = Positive)]
     pub stiffness: Option<Spanned<Number>>,
     /// Stiffness EA of its section, instead of `stiffness`, which is then EA/ℓ₀ and changes with a winch.
-    #[key(unit = "N", limit = Positive)]
+    #[key(unit = "N", limit = Positive, usual = 1e5..1e13)]
     pub axial_stiffness: Option<Spanned<Number>>,
     /// Relative increase of the force with the rate of stretch, as a fraction. Default 0.
-    #[key(unit = "s/m", limit = NotNegative)]
+    #[key(unit = "s/m", limit = NotNegative, usual = 0.0..30.0)]
     pub damping: Option<Spanned<Number>>,
     /// Unstretched length.
     #[key(unit = "m", limit = Positive)]

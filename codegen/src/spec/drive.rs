@@ -9,7 +9,7 @@ pub struct Drive {
     /// The coordinate it drives, such as `boom_psi`.
     pub coordinate: Spanned<String>,
     /// Stiffness; required unless the drive is rigid or has an `effort`.
-    #[key(unit = "N m/rad or N/m", limit = NotNegative)]
+    #[key(unit = "N m/rad or N/m", limit = NotNegative, usual = 0.0..1e13)]
     pub stiffness: Option<Spanned<Number>>,
     /// Damping. Default 0.
     #[key(unit = "N m s/rad or N s/m", limit = NotNegative)]

@@ -22,7 +22,7 @@ pub struct Event {
 #[derive(Clone, Debug, FromNode)]
 pub struct Joins {
     /// Their velocity along the axes of the world. Default: `[0, 0, 0]`, at rest.
-    #[key(unit = "m/s")]
+    #[key(unit = "m/s", usual = 0.0..50.0)]
     pub velocity: Option<Spanned<[Spanned<Constant>; 3]>>,
     /// The point of interest at which their centre of mass is; required with a `velocity`.
     pub point: Option<Spanned<String>>,

@@ -31,10 +31,10 @@ pub struct Friction {
     #[key(unit = "N m or N", limit = NotNegative)]
     pub breakaway: Option<Spanned<Number>>,
     /// Rate at which `breakaway` has declined towards `coulomb` by a factor of e. Default 0.01.
-    #[key(unit = "rad/s or m/s", limit = Positive)]
+    #[key(unit = "rad/s or m/s", limit = Positive, usual = 0.0..5.0)]
     pub stribeck: Option<Spanned<Number>>,
     /// Rate at which friction reaches three quarters of its full value; below it, the joint creeps. Default 0.001.
-    #[key(unit = "rad/s or m/s", limit = Positive)]
+    #[key(unit = "rad/s or m/s", limit = Positive, usual = 0.0..1.0)]
     pub width: Option<Spanned<Number>>,
     /// Viscous friction. Default 0.
     #[key(unit = "N m s/rad or N s/m", limit = NotNegative)]

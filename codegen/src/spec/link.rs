@@ -64,7 +64,7 @@ pub struct HangingRope {
     #[key(unit = "1", limit = Whole(1000))]
     pub links: Spanned<Constant>,
     /// Mass per length.
-    #[key(unit = "kg/m", limit = Positive)]
+    #[key(unit = "kg/m", limit = Positive, usual = 1e-3..500.0)]
     pub mass_per_length: Spanned<Number>,
     /// Damping of both rotations of every joint. Default 0.
     #[key(unit = "N m s/rad", limit = NotNegative)]

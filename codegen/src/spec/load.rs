@@ -32,16 +32,16 @@ pub struct Load {
 #[derive(Clone, Debug, FromNode)]
 pub struct Wind {
     /// Pressure where the wind is stopped. Either this or `speed`.
-    #[key(unit = "Pa", limit = NotNegative)]
+    #[key(unit = "Pa", limit = NotNegative, usual = 1.0..1e4)]
     pub pressure: Option<Spanned<Number>>,
     /// Speed. Either this or `pressure`.
-    #[key(unit = "m/s", limit = NotNegative)]
+    #[key(unit = "m/s", limit = NotNegative, usual = 0.1..100.0)]
     pub speed: Option<Spanned<Number>>,
     /// Area that faces the wind.
-    #[key(unit = "m²", limit = NotNegative)]
+    #[key(unit = "m²", limit = NotNegative, usual = 1e-4..1e4)]
     pub area: Spanned<Number>,
     /// Shape factor, the drag coefficient of the area.
-    #[key(unit = "1", limit = NotNegative)]
+    #[key(unit = "1", limit = NotNegative, usual = 0.01..10.0)]
     pub shape_factor: Spanned<Number>,
     /// Direction in which it blows, along x, y, z, of any length.
     #[key(unit = "1")]

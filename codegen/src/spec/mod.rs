@@ -105,7 +105,7 @@ pub struct Crane {
     /// Title for human readers, one line. Default: the name.
     pub title: Option<Spanned<String>>,
     /// Acceleration of gravity in the world frame. Default `[0, 0, -9.81]`.
-    #[key(unit = "m/s²")]
+    #[key(unit = "m/s²", usual = 0.0..30.0)]
     pub gravity: Option<Spanned<Vector>>,
     /// The ground is a slope: `gravity`, which is then along z, is turned. Default: none.
     pub slope: Option<Spanned<Slope>>,

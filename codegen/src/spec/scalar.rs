@@ -34,7 +34,7 @@ impl Scalar {
 /// A number as written, and what it measures.
 pub(crate) trait Written {
     fn scalar(&self) -> &Scalar;
-    fn measure(&self) -> Measure;
+    fn measure(&self) -> &'static Measure;
 }
 
 /// Reads a [`Scalar`], a name only where it is permitted; `expected` is what is permitted, in messages.
@@ -65,13 +65,13 @@ macro_rules! scalar {
      [$($form:expr),*], $expected:literal) => {
         $(#[doc = $about])+
         #[derive(Clone, Debug, PartialEq)]
-        pub struct $name(pub Scalar, pub(crate) Measure);
+        pub struct $name(pub Scalar, pub(crate) &'static Measure);
 
         impl Written for $name {
             fn scalar(&self) -> &Scalar {
                 &self.0
             }
-            fn measure(&self) -> Measure {
+            fn measure(&self) -> &'static Measure {
                 self.1
             }
         }

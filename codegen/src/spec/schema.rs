@@ -10,7 +10,7 @@ use crate::node::{Form, FromNode, Key, Limit, Measure, Variant};
 pub fn json_schema() -> String {
     let Form::Defined { definition } = Crane::FORM else { return String::new() };
     let mut definitions = Map::new();
-    let mut schema = describe_form(definition.form, Measure::NONE, &mut definitions);
+    let mut schema = describe_form(definition.form, &Measure::NONE, &mut definitions);
     // A spec that extends another contains only the differences.
     let whole = schema["required"].take();
     schema["anyOf"] = json!([{ "required": whole }, { "required": ["extends"] }]);
@@ -25,7 +25,7 @@ pub fn json_schema() -> String {
 }
 
 /// The schema of a form; forms with a name are added to the definitions.
-fn describe_form(form: Form, measure: Measure, definitions: &mut Map<String, Value>) -> Value {
+fn describe_form(form: Form, measure: &Measure, definitions: &mut Map<String, Value>) -> Value {
     match form {
         Form::Text | Form::Word => json!({ "type": "string" }),
         Form::Flag => json!({ "type": "boolean" }),
@@ -63,7 +63,7 @@ fn describe_form(form: Form, measure: Measure, definitions: &mut Map<String, Val
             if !definitions.contains_key(definition.name) {
                 definitions.insert(definition.name.to_owned(), Value::Null);
                 let schema =
-                    with_description(describe_form(definition.form, Measure::NONE, definitions), definition.about);
+                    with_description(describe_form(definition.form, &Measure::NONE, definitions), definition.about);
                 definitions.insert(definition.name.to_owned(), schema);
             }
             let mut schema = json!({ "$ref": format!("#/$defs/{}", definition.name) });
@@ -105,8 +105,11 @@ fn describe_variant(variant: &Variant, definitions: &mut Map<String, Value>) -> 
 }
 
 /// The unit and the limit of a number; a name of a parameter and a number with a unit have their own checks.
-fn add_measure(schema: &mut Value, measure: Measure) {
+fn add_measure(schema: &mut Value, measure: &Measure) {
     schema["x-unit"] = json!(measure.unit);
+    if measure.usual != Measure::ALL {
+        schema["x-usual"] = json!(measure.usual);
+    }
     match measure.limit {
         Limit::Any => {}
         Limit::Positive => schema["exclusiveMinimum"] = json!(0),

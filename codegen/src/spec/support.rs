@@ -12,13 +12,13 @@ pub struct Support {
     #[key(unit = "m")]
     pub at: Spanned<Vector>,
     /// Stiffness along x, y, z.
-    #[key(unit = "N/m", limit = NotNegative)]
+    #[key(unit = "N/m", limit = NotNegative, usual = 1e3..1e13)]
     pub stiffness: Spanned<Vector>,
     /// Damping along x, y, z. Default `[0, 0, 0]`.
     #[key(unit = "N s/m", limit = NotNegative)]
     pub damping: Option<Spanned<Vector>>,
     /// Elongation at which the springs are unstressed, along x, y, z. Default `[0, 0, 0]`.
-    #[key(unit = "m")]
+    #[key(unit = "m", usual = 0.0..0.2)]
     pub free_play: Option<Spanned<Vector>>,
     /// How the elongation depends on the base's coordinates. Default `linear`.
     pub kinematics: Option<Spanned<Kinematics>>,
@@ -26,7 +26,7 @@ pub struct Support {
     pub one_sided: Option<Spanned<bool>>,
     /// Coefficient of friction between a one-sided support and the ground: sideways it holds at most this times the force with which it
     /// presses, and slides beyond. Default 0.6.
-    #[key(unit = "1", limit = Positive)]
+    #[key(unit = "1", limit = Positive, usual = 0.1..1.2)]
     pub friction_coefficient: Option<Spanned<Number>>,
     /// Whether a one-sided support never slides while it presses: it then has a coefficient of friction of 1000. Default `false`.
     pub sticks: Option<Spanned<bool>>,
@@ -38,10 +38,10 @@ pub struct Support {
 #[derive(Clone, Debug, FromNode)]
 pub struct Plate {
     /// Its area.
-    #[key(unit = "m²", limit = Positive)]
+    #[key(unit = "m²", limit = Positive, usual = 1e-4..100.0)]
     pub area: Spanned<Constant>,
     /// The largest pressure that the ground bears; more causes a caution, and limits loads of charts. Default: none.
-    #[key(unit = "Pa", limit = Positive)]
+    #[key(unit = "Pa", limit = Positive, usual = 1e3..1e7)]
     pub max_pressure: Option<Spanned<Constant>>,
 }
 

@@ -2,6 +2,7 @@
 
 use super::elements::WRITTEN;
 use super::on::Attached;
+use super::plausibility::rounded;
 use super::section::Elastic;
 use super::{Carried, Check, Owner};
 use crate::chain::{self, Axis, Chain, CoordinateKind, Division, Force, Group, Law, Outline, Spring, Step, Value};
@@ -13,6 +14,8 @@ use crate::spec::{Beam, BeamDamping, BeamPart, Bend, Directions, Either, Number,
 const MOST_SECTIONS: f64 = 1000.0;
 /// Default factor between the yield stress and the allowable stress.
 const SAFETY_FACTOR: f64 = 1.5;
+/// Greatest usual ratio of the additional mass of a beam to that of its section.
+const HEAVY: f64 = 20.0;
 /// Advice for a beam with too many sections.
 const FEWER_SECTIONS: &str =
     "divide beams into fewer sections: the error falls with the square of their number, and 4 to 20 are common";
@@ -142,7 +145,12 @@ impl<'a> Check<'a> {
         let lengths = beam::element_lengths(length, &division);
         let divided = match (section, parts) {
             (Some(section), None) => {
-                let line_density = density * section.area.clone() + extra;
+                let own = density * section.area.clone();
+                if let Some(given) = beam.extra_mass.as_ref().filter(|_| self.now(&extra) > HEAVY * self.now(&own)) {
+                    let [extra, own] = [&extra, &own].map(|mass| rounded(self.now(mass)));
+                    self.warnings.push(rule::heavy_extra(given.span, extra, own));
+                }
+                let line_density = own + extra;
                 let element = |length| beam::prismatic(length, &line_density, &section);
                 Divided {
                     outlines: section.outline.iter().map(|outline| (Value::ZERO, outline.clone())).collect(),

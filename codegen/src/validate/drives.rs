@@ -276,7 +276,7 @@ impl<'a> Check<'a> {
 
     /// The rate of a motion; `90 deg` is 90° per second.
     fn rate(&mut self, given: &Spanned<Angle>, of: Whose<'_>) -> Value {
-        let unit = given.value.as_ref().and_then(|Angle(_, measure)| of.unit(*measure));
+        let unit = given.value.as_ref().and_then(|Angle(_, measure)| of.unit(measure));
         if unit == Some("rad") && given.value.as_ref().is_some_and(|Angle(scalar, _)| self.is_angle(scalar)) {
             self.units.push((given.span, "rad/s".to_owned()));
             return self.number_of(given, of, "`rate`");

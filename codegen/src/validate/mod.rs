@@ -100,7 +100,7 @@ pub fn check_with(spec: &CraneSpec, source: &SourceFile, set: &[(&str, f64)]) ->
         set.iter().rev().find(|(name, _)| *name == parameter.name).map_or(parameter.default, |(_, value)| *value)
     };
     let values = chain.parameters.iter().map(value).collect();
-    warnings.extend(plausibility::warnings(&spec.crane, &chain, values));
+    warnings.extend(plausibility::warnings(&spec.crane, &chain, values, &check.judged));
     Ok(Checked { chain, warnings: Diagnostics::new(source, warnings), units: check.units })
 }
 
@@ -191,6 +191,8 @@ struct Check<'a> {
     labelled: Vec<bool>,
     /// The units of the numbers so far, by their locations.
     units: Vec<(Span, String)>,
+    /// Numbers with a usual range.
+    judged: Vec<plausibility::Judged>,
     /// Whether some number refers to each parameter.
     used: Vec<bool>,
     /// Live masses, and the bound of those that cannot be zero.

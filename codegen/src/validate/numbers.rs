@@ -1,6 +1,7 @@
 //! Numbers: finite, in range, resolved to constants or live parameters.
 
 use super::Check;
+use super::plausibility::Judged;
 use crate::chain::{CoordinateKind, Parameter, ParameterId, Value};
 use crate::diagnostic::{Mistake, Span, rule, suggest};
 use crate::node::{Limit, Measure};
@@ -25,7 +26,7 @@ pub(super) enum Whose<'u> {
 
 impl<'u> Whose<'u> {
     /// The unit of the number; `None` if it is not known.
-    pub(super) fn unit(self, measure: Measure) -> Option<&'u str> {
+    pub(super) fn unit(self, measure: &'static Measure) -> Option<&'u str> {
         let turning_or_sliding = measure.unit.split_once(" or ").unwrap_or((measure.unit, measure.unit));
         match self {
             Whose::Own(unit) => unit,
@@ -110,18 +111,28 @@ impl<'a> Check<'a> {
     pub(super) fn number_of(&mut self, given: &Spanned<impl Written>, of: Whose<'_>, subject: &str) -> Value {
         let Some(number) = &given.value else { return f64::NAN.into() };
         let measure = number.measure();
-        self.measured(number.scalar(), given.span, (subject, of.unit(measure), measure.limit))
+        self.measured(number.scalar(), given.span, (subject, of.unit(measure), *measure))
     }
 
     /// The same, within a limit that is stricter than that of its key.
     pub(super) fn number_within(&mut self, given: &Spanned<Number>, limit: Limit, subject: &str) -> Value {
         let Some(Number(number, measure)) = &given.value else { return f64::NAN.into() };
-        self.measured(number, given.span, (subject, Whose::Key.unit(*measure), limit))
+        self.measured(number, given.span, (subject, Whose::Key.unit(measure), Measure { limit, ..**measure }))
     }
 
-    fn measured(&mut self, number: &Scalar, span: Span, (subject, unit, limit): (&str, Option<&str>, Limit)) -> Value {
+    fn measured(
+        &mut self,
+        number: &Scalar,
+        span: Span,
+        (subject, unit, Measure { limit, usual, .. }): (&str, Option<&str>, Measure),
+    ) -> Value {
         let value = self.resolve(number, span, subject, unit);
-        self.within(value, span, (subject, unit.unwrap_or_default(), limit))
+        let unit = unit.unwrap_or_default();
+        if usual != Measure::ALL {
+            let (subject, unit) = (subject.to_owned(), unit.to_owned());
+            self.judged.push(Judged { span, subject, unit, value: value.clone(), usual });
+        }
+        self.within(value, span, (subject, unit, limit))
     }
 
     /// An optional number.
@@ -147,7 +158,7 @@ impl<'a> Check<'a> {
         broken: impl FnOnce(f64) -> Mistake,
     ) -> Option<u32> {
         let number = self.constant(given, subject);
-        let Measure { limit: Limit::Whole(most), .. } = given.value.as_ref()?.measure() else { return None };
+        let Limit::Whole(most) = given.value.as_ref()?.measure().limit else { return None };
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // an integer from 1 to `most`
         if (1.0..=f64::from(most)).contains(&number) && number.fract() == 0.0 {
             return Some(number as u32);

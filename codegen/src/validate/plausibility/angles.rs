@@ -23,6 +23,18 @@ impl<'a> Plausibility<'a> {
                 self.motion(motion, name);
             }
         }
+        for (name, stops) in crane.stops.iter().filter_map(|stops| stops.value.as_ref()).flat_map(|stops| &stops.0) {
+            let (name, stops) = (name.value.as_deref().unwrap_or_default(), stops.value.as_ref());
+            for (scalar, at) in stops.into_iter().flat_map(|stops| [&stops.min, &stops.max]).flatten().map(written) {
+                self.position(scalar, at, name, &format!("a stop of `{name}`"));
+            }
+        }
+        for coupling in entries(crane.couplings.as_ref()) {
+            let name = coupling.coordinate.value.as_deref().unwrap_or_default();
+            for (scalar, at) in coupling.offset.iter().map(written) {
+                self.position(scalar, at, name, &format!("the offset of `{name}`"));
+            }
+        }
         let guess = crane.guess.as_ref().and_then(|guess| guess.value.as_ref());
         for (name, position) in guess.into_iter().flat_map(|guess| &guess.0) {
             let name = name.value.as_deref().unwrap_or_default();

@@ -36,6 +36,8 @@ fn in_pascal(given: f64) -> String {
     }
 }
 
+/// A side of a hollow section is at most this many times as long as its wall is thick.
+const THINNEST: f64 = 300.0;
 /// Largest usual thickness of a wall, relative to the smaller side of the section.
 const THICKEST: f64 = 0.25;
 
@@ -136,6 +138,9 @@ impl Plausibility<'_> {
             let (thickness, at) = self.number(given);
             if thickness > THICKEST * least {
                 return self.warn(rule::thick_wall(at, subject, key, thickness, least));
+            }
+            if THINNEST * thickness < least {
+                return self.warn(rule::thin_wall(at, subject, key, thickness, least));
             }
         }
         for (key, given) in sides {

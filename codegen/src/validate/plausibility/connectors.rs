@@ -2,15 +2,12 @@
 
 use super::{Plausibility, rounded};
 use crate::diagnostic::rule;
-use crate::spec::{ConnectorLaw, Spanned, entries};
+use crate::spec::{Spanned, entries};
 
 /// Usual lengths without force, as fractions of the distance between the points at the guess.
 const USUAL: [f64; 2] = [0.1, 10.0];
 /// Maximum ratio of the length of a rope at the guess to its length without force: steel breaks long before.
 const STRETCHED: f64 = 1.2;
-
-/// Least usual EA of a rope, N.
-const SOFTEST_ROPE: f64 = 1e5;
 
 /// Maximum ratio of a coupling between joints of one kind.
 const RATIO: f64 = 20.0;
@@ -27,18 +24,6 @@ impl Plausibility<'_> {
             if follower.kind == other.kind && ratio.abs() > RATIO {
                 let name = given.name.value.as_deref().unwrap_or_default();
                 self.warn(rule::high_ratio(given.ratio.span, name, rounded(ratio), &follower.name, &other.name));
-            }
-        }
-    }
-
-    /// Ropes whose axial stiffness is in another unit.
-    pub(super) fn ropes(&mut self) {
-        for given in entries(self.crane.connectors.as_ref()) {
-            let Some(ConnectorLaw::Rope(rope)) = &given.law.value else { continue };
-            let Some((stiffness, at)) = rope.axial_stiffness.as_ref().map(|given| self.number(given)) else { continue };
-            if stiffness < SOFTEST_ROPE {
-                let name = given.name.value.as_deref().unwrap_or_default();
-                self.warn(rule::soft_rope(at, name, rounded(stiffness)));
             }
         }
     }

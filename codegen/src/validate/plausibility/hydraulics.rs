@@ -1,112 +1,27 @@
-//! Cylinders, valves, oil and the pump: pressures in bar, flows in l/min, diameters in mm, and cylinders that are beyond their stroke.
+//! Cylinders, valves and the pump: openings, relief valves, and cylinders that are beyond their stroke.
 
 use std::ops::RangeInclusive;
 
-use super::{Plausibility, angles::positions, beams::in_metres, rounded};
+use super::{Plausibility, angles::positions, rounded};
 use crate::chain::{Chain, CoordinateKind, Cylinder as ChainCylinder, Linkage, Pin};
 use crate::diagnostic::{Span, rule};
-use crate::spec::{Constant, Cylinder, Motion, Pump, Spanned, Valve, entries};
-
-/// A hydraulic quantity: its unit, its usual range, and how to write a number that was given in another unit.
-struct Usual {
-    unit: &'static str,
-    range: RangeInclusive<f64>,
-    range_text: &'static str,
-    help: fn(f64) -> String,
-}
-
-/// Diameters of pistons and rods.
-const DIAMETER: Usual = Usual { unit: "m", range: 2e-3..=2.0, range_text: "0.002 to 2 m", help: in_metres };
-/// Lengths between pins, and strokes.
-const LENGTH: Usual = Usual { unit: "m", range: 1e-3..=50.0, range_text: "0.001 to 50 m", help: in_metres };
-/// Pressures of pumps and relief valves, and pressure drops.
-const PRESSURE: Usual = Usual { unit: "Pa", range: 1e4..=5e8, range_text: "1e4 to 5e8 Pa", help: in_pascal };
-/// Back pressures, of tank lines.
-const BACK_PRESSURE: Usual = Usual { unit: "Pa", range: 1e3..=1e7, range_text: "0 to 1e7 Pa", help: in_pascal };
-/// Nominal flows of valves and pumps.
-const FLOW: Usual = Usual {
-    unit: "m³/s",
-    range: 1e-8..=0.1,
-    range_text: "1e-8 to 0.1 m³/s",
-    help: |flow| format!("write it in m³/s: {flow} l/min = {:e} m³/s", rounded(flow / 6e4)),
-};
-/// Bulk moduli, from oil with air to the purest.
-const BULK_MODULUS: Usual = Usual { unit: "Pa", range: 5e7..=5e9, range_text: "5e7 to 5e9 Pa", help: in_pascal };
-/// Volumes of hoses, and of the oil between pump and valves.
-const VOLUME: Usual = Usual {
-    unit: "m³",
-    range: 0.0..=0.1,
-    range_text: "at most 0.1 m³",
-    help: |volume| format!("write it in m³: {volume} l = {:e} m³", rounded(1e-3 * volume)),
-};
-/// Time constants of spools.
-const LAG: Usual = Usual {
-    unit: "s",
-    range: 1e-5..=2.0,
-    range_text: "1e-5 to 2 s",
-    help: |lag| format!("write it in s: {lag} ms = {:e} s", rounded(1e-3 * lag)),
-};
-
-fn in_pascal(pressure: f64) -> String {
-    /// No pressure in bar or megapascal is as large.
-    const LARGEST: f64 = 1e5;
-    if pressure > LARGEST {
-        return format!("it is {:e} bar: write a smaller pressure, in Pa", rounded(1e-5 * pressure));
-    }
-    let (bar, mega) = (rounded(1e5 * pressure), rounded(1e6 * pressure));
-    format!("write it in Pa: {pressure} bar = {bar:e} Pa, {pressure} MPa = {mega:e} Pa")
-}
+use crate::spec::{Motion, Pump, entries};
 
 impl Plausibility<'_> {
     pub(super) fn hydraulics(&mut self) {
+        // The consequences of unusual numbers would be reported as well.
         let before = self.warnings.len();
-        let pump = self.crane.pump.as_ref().and_then(|pump| pump.value.as_ref());
         for cylinder in entries(self.crane.cylinders.as_ref()) {
-            self.cylinder(cylinder);
+            let valve = cylinder.valve.as_ref().and_then(|valve| valve.value.as_ref());
+            if let Some(opening) = valve.and_then(|valve| valve.opening.as_ref()?.value.as_ref()) {
+                self.opening(opening, cylinder.name.value.as_deref().unwrap_or_default());
+            }
         }
-        if let Some(pump) = pump {
-            let pressure = pump.pressure.as_ref().map(|given| ("the pressure of the pump", given, &PRESSURE));
-            let volume = pump.volume.as_ref().map(|given| ("the volume between pump and valves", given, &VOLUME));
-            let flow = ("the maximum flow of the pump", &pump.max_flow, &FLOW);
-            self.usual([Some(flow), pressure, volume]);
-        }
-        // The consequences of such numbers would be reported as well.
-        if self.warnings.len() == before {
-            if let Some(pump) = pump {
+        if before == 0 && self.warnings.is_empty() {
+            if let Some(pump) = self.crane.pump.as_ref().and_then(|pump| pump.value.as_ref()) {
                 self.reliefs(pump);
             }
             self.strokes();
-        }
-    }
-
-    fn cylinder(&mut self, cylinder: &Cylinder) {
-        let name = cylinder.name.value.as_deref().unwrap_or_default();
-        let of = |what: &str| format!("the {what} of cylinder `{name}`");
-        let [bore, rod] = [of("bore"), of("rod")];
-        let [retracted, stroke] = [of("retracted length"), of("stroke")];
-        let [most, modulus, hoses] = [of("maximum pressure"), of("bulk modulus"), of("hose volume")];
-        self.usual([Some((&bore, &cylinder.bore, &DIAMETER)), Some((&rod, &cylinder.rod, &DIAMETER))]);
-        self.usual([Some((&retracted, &cylinder.retracted, &LENGTH)), Some((&stroke, &cylinder.stroke, &LENGTH))]);
-        let back = of("back pressure");
-        self.usual([cylinder.back_pressure.as_ref().map(|given| (back.as_str(), given, &BACK_PRESSURE))]);
-        self.usual([cylinder.max_pressure.as_ref().map(|given| (most.as_str(), given, &PRESSURE))]);
-        self.usual([cylinder.bulk_modulus.as_ref().map(|given| (modulus.as_str(), given, &BULK_MODULUS))]);
-        let volumes = cylinder.hose_volumes.as_ref().and_then(|volumes| volumes.value.as_ref());
-        for volume in volumes.into_iter().flatten() {
-            self.usual([Some((&hoses, volume, &VOLUME))]);
-        }
-        if let Some(valve) = cylinder.valve.as_ref().and_then(|valve| valve.value.as_ref()) {
-            self.valve(valve, name);
-        }
-    }
-
-    fn valve(&mut self, valve: &Valve, cylinder: &str) {
-        let of = |what: &str| format!("the {what} of the valve of cylinder `{cylinder}`");
-        let [flow, drop, lag] = [of("flow"), of("pressure drop"), of("lag")];
-        let numbers = [(&flow, &valve.flow, &FLOW), (&drop, &valve.pressure_drop, &PRESSURE), (&lag, &valve.lag, &LAG)];
-        self.usual(numbers.map(|(what, given, usual)| Some((what.as_str(), given, usual))));
-        if let Some(opening) = valve.opening.as_ref().and_then(|opening| opening.value.as_ref()) {
-            self.opening(opening, cylinder);
         }
     }
 
@@ -131,23 +46,6 @@ impl Plausibility<'_> {
         let beyond = numbers.into_iter().find(|(number, _)| number.abs() > 1.0);
         if let Some((number, at)) = beyond {
             self.warn(rule::opening_beyond(at, cylinder, number));
-        }
-    }
-
-    /// Warns of numbers outside the usual range.
-    fn usual<const N: usize>(&mut self, numbers: [Option<(&str, &Spanned<Constant>, &Usual)>; N]) {
-        for (what, given, usual) in numbers.into_iter().flatten() {
-            let Some(number) = given.value.as_ref().map(|number| self.scalar(&number.0)) else { continue };
-            if number != 0.0 && !usual.range.contains(&number) {
-                self.warn(rule::hydraulics(
-                    given.span,
-                    what,
-                    number,
-                    usual.unit,
-                    usual.range_text,
-                    (usual.help)(number),
-                ));
-            }
         }
     }
 

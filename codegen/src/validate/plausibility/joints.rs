@@ -9,8 +9,6 @@ use crate::spec::{Joint, Link, entries};
 const VERTICAL: f64 = 0.9994;
 /// Displacement of a joint under the weight that its drive holds, rad or m, from which the drive is too soft.
 const SAG: f64 = 0.5;
-/// Stiffness of a spring beyond which it is a slip, N/m or N m/rad.
-const STIFFEST: f64 = 1e13;
 
 fn named(link: &Link) -> &str {
     link.name.value.as_deref().unwrap_or_default()
@@ -126,42 +124,5 @@ impl Plausibility<'_> {
             };
         }
         effort
-    }
-
-    /// Springs that are stiffer than anything.
-    pub(super) fn stiff_springs(&mut self) {
-        let crane = self.crane;
-        let units = |name: &str| {
-            let coordinate = self.chain.coordinates.iter().find(|coordinate| coordinate.name == name);
-            let slides = coordinate.is_some_and(|coordinate| coordinate.kind == CoordinateKind::Translation);
-            if slides { "N/m" } else { "N m/rad" }
-        };
-        let mut found = Vec::new();
-        for support in entries(crane.supports.as_ref()) {
-            let name = support.name.value.as_deref().unwrap_or_default();
-            let numbers = support.stiffness.value.iter().flatten().map(|given| self.number(given));
-            let help = "check the exponent: ground and feet have 1e6 to 1e9 N/m";
-            found.extend(numbers.map(|number| (number, format!("the stiffness of support `{name}`"), "N/m", help)));
-        }
-        for drive in entries(crane.drives.as_ref()) {
-            let name = drive.coordinate.value.as_deref().unwrap_or_default();
-            let number = drive.stiffness.as_ref().map(|given| self.number(given));
-            let help = "check the exponent, or write `rigid: true`";
-            found.extend(
-                number.map(|number| (number, format!("the stiffness of the drive of `{name}`"), units(name), help)),
-            );
-        }
-        for coupling in entries(crane.couplings.as_ref()) {
-            let name = coupling.name.value.as_deref().unwrap_or_default();
-            let unit = units(coupling.coordinate.value.as_deref().unwrap_or_default());
-            let number = coupling.stiffness.as_ref().map(|given| self.number(given));
-            let help = "check the exponent, or write `rigid: true`";
-            found.extend(number.map(|number| (number, format!("the stiffness of coupling `{name}`"), unit, help)));
-        }
-        for ((number, span), what, unit, help) in found {
-            if number > STIFFEST {
-                self.warn(rule::too_stiff(span, what, format!("{number:e}"), unit, help));
-            }
-        }
     }
 }

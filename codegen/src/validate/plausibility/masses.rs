@@ -48,9 +48,14 @@ impl Plausibility<'_> {
     }
 
     /// Diagonal of the box around all frames and supports at the guess, m.
-    fn size(&self) -> f64 {
+    pub(super) fn size(&self) -> f64 {
+        self.size_at(&self.chain.guess)
+    }
+
+    /// The same in another pose.
+    pub(super) fn size_at(&self, q: &[f64]) -> f64 {
         let chain = self.chain;
-        let frames = chain.frames(&chain.guess, &self.values);
+        let frames = chain.frames(q, &self.values);
         let feet = chain.supports.iter().filter_map(|support| {
             Some(frames.first()?.transform_point(support.position.each_ref().map(|x| x.at(&self.values))))
         });

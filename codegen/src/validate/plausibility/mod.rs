@@ -14,15 +14,20 @@ mod joints;
 mod lengths;
 mod loops;
 mod masses;
+mod proportions;
 mod telescopes;
+mod usual;
+
+pub(super) use usual::Judged;
 
 use crate::chain::Chain;
 use crate::diagnostic::{Mistake, Span};
 use crate::spec::{Crane, Number, Parameter, Scalar, Spanned};
 
 /// Warnings about a crane without mistakes, with these values of its parameters.
-pub(super) fn warnings(crane: &Crane, chain: &Chain, values: Vec<f64>) -> Vec<Mistake> {
+pub(super) fn warnings(crane: &Crane, chain: &Chain, values: Vec<f64>, judged: &[Judged]) -> Vec<Mistake> {
     let mut plausibility = Plausibility { crane, chain, values, warnings: Vec::new() };
+    plausibility.usual(judged);
     plausibility.beams();
     plausibility.lengths();
     plausibility.hydraulics();
@@ -33,10 +38,15 @@ pub(super) fn warnings(crane: &Crane, chain: &Chain, values: Vec<f64>) -> Vec<Mi
     plausibility.overlaps();
     plausibility.pads();
     plausibility.efforts();
-    plausibility.stiff_springs();
-    plausibility.soft_feet();
-    plausibility.gravity();
-    plausibility.ropes();
+    if plausibility.warnings.is_empty() {
+        plausibility.far_feet();
+        plausibility.far_slides();
+        plausibility.large_shapes();
+        plausibility.slender_cylinders();
+        plausibility.slow_dampers();
+        plausibility.aside();
+        plausibility.late();
+    }
     // Consequences of such numbers, such as frequencies and masses, would be reported as well.
     if plausibility.warnings.is_empty() {
         plausibility.loops();
@@ -49,7 +59,6 @@ pub(super) fn warnings(crane: &Crane, chain: &Chain, values: Vec<f64>) -> Vec<Mi
             plausibility.spread();
             plausibility.soft_drives();
         }
-        plausibility.feet();
         plausibility.connectors();
     }
     plausibility.angles();
