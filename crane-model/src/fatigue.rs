@@ -5,7 +5,7 @@
 //!
 //! With the detail category `Δσ_c`, the range that a part endures `2·10⁶` times, and the slope m of its curve of strength, cycles of the range `Δσ` end the
 //! part after `N = 2·10⁶ (Δσ_c/Δσ)^m`. Damages add up, `D = Σ n/N` \[Palmgren 1924; Miner 1945]; at 1 the life is over. There is no limit
-//! below which cycles do no harm.
+//! below which cycles do no harm. Those of several manoeuvres add up in the same way, at the same point of the contour.
 //!
 //! The stresses are nominal ones, of the section; what a notch or a weld makes of them is the category.
 
@@ -14,6 +14,9 @@ use crate::{Description, SectionModuli, Wrench};
 
 /// Cycles for which the range of a detail category is given.
 pub const CYCLES_OF_A_CATEGORY: f64 = 2e6;
+
+/// Categories below this, Pa, are most likely meant in megapascals.
+pub const LEAST_LIKELY_CATEGORY: f64 = 1e5;
 
 /// Points on the rim of a round section at which stresses are counted: the largest range is off by at most 0.1 %.
 const POINTS_ON_A_RIM: usize = 72;
@@ -118,14 +121,14 @@ impl Detail {
 }
 
 /// `s_m = Σ (Δσ/Δσ_max)^m n / 2·10⁶` of cycles that repeat, `Δσ_max` the largest range: how much a history uses of what the part endures at its
-/// largest range \[EN 13001-1, 4.4.4]. Zero without cycles.
-pub fn history_parameter(cycles: &[Cycle], slope: f64, repetitions: f64) -> f64 {
-    let largest = cycles.iter().map(|cycle| cycle.range).fold(0.0, f64::max);
+/// largest range \[EN 13001-1, 4.4.4]. Zero without cycles. Each cycle stands behind the number of its repetitions.
+pub fn history_parameter<'c>(cycles: impl Iterator<Item = (f64, &'c Cycle)> + Clone, slope: f64) -> f64 {
+    let largest = cycles.clone().map(|(_, cycle)| cycle.range).fold(0.0, f64::max);
     if largest == 0.0 {
         return 0.0;
     }
-    let sum: f64 = cycles.iter().map(|cycle| cycle.count * (cycle.range / largest).powf(slope)).sum();
-    repetitions * sum / CYCLES_OF_A_CATEGORY
+    let sum: f64 = cycles.map(|(times, cycle)| times * cycle.count * (cycle.range / largest).powf(slope)).sum();
+    sum / CYCLES_OF_A_CATEGORY
 }
 
 /// The range, Pa, of which one cycle does the damage of all of them: `(Σ n Δσ^m)^(1/m)`.
@@ -155,58 +158,99 @@ pub fn contour(moduli: &SectionModuli, Wrench { force, moment }: &Wrench) -> Vec
     (0..POINTS_ON_A_RIM).map(|point| axial + about_y * angle(point).sin() - about_z * angle(point).cos()).collect()
 }
 
-/// What a history does to a place of a beam.
+/// A manoeuvre that repeats.
+#[derive(Clone, Debug)]
+pub struct Manoeuvre<'a> {
+    /// Moduli of the sections of beams.
+    pub moduli: &'a [SectionModuli],
+    /// `x` and `wrenches` at each instant, as [`places`] takes them.
+    pub states: Vec<(&'a [f64], &'a [Wrench])>,
+    /// How often it is repeated.
+    pub repetitions: f64,
+}
+
+/// What one of several manoeuvres does to a place of a beam.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// How often the manoeuvre is repeated.
+    pub repetitions: f64,
+    /// Stresses at the point of the contour that suffers most, Pa.
+    pub history: Vec<f64>,
+    /// Their cycles, of one repetition.
+    pub cycles: Vec<Cycle>,
+    /// Damage by all repetitions.
+    pub damage: f64,
+}
+
+/// What manoeuvres that repeat do to a place of a beam.
 #[derive(Clone, Debug)]
 pub struct Fatigue {
     /// The place, as it is first.
     pub place: Place,
-    /// Stresses at the point of its contour that suffers most, Pa.
-    pub history: Vec<f64>,
-    /// Their cycles, of one repetition.
-    pub cycles: Vec<Cycle>,
-    /// Damage by one repetition.
+    /// By manoeuvre.
+    pub parts: Vec<Part>,
+    /// Damage by all repetitions of all manoeuvres.
     pub damage: f64,
 }
 
 impl Fatigue {
-    /// Repetitions until the damage is 1; `None` where there is none.
+    /// How often all repetitions of all manoeuvres may be gone through until the damage is 1; `None` where there is none.
     pub fn life(&self) -> Option<f64> {
         (self.damage > 0.0).then(|| self.damage.recip())
     }
 
-    /// The cycle of the largest range.
-    pub fn largest(&self) -> Option<&Cycle> {
-        self.cycles.iter().max_by(|a, b| a.range.total_cmp(&b.range))
+    /// All cycles, behind the index of their manoeuvre.
+    pub fn cycles(&self) -> impl Iterator<Item = (usize, &Cycle)> + Clone {
+        self.parts.iter().enumerate().flat_map(|(index, part)| part.cycles.iter().map(move |cycle| (index, cycle)))
+    }
+
+    /// The cycle of the largest range, behind the index of its manoeuvre.
+    pub fn largest(&self) -> Option<(usize, &Cycle)> {
+        self.cycles().max_by(|a, b| a.1.range.total_cmp(&b.1.range))
+    }
+
+    /// `s_m` of all of them, as [`history_parameter`].
+    pub fn history_parameter(&self, slope: f64) -> f64 {
+        history_parameter(self.cycles().map(|(index, cycle)| (self.parts[index].repetitions, cycle)), slope)
     }
 }
 
-/// What a history that repeats does to every place of a crane's beams whose moduli are known; `x` and `wrenches` at each instant, as
-/// [`places`] takes them, and the detail of each beam by the name of its link.
-pub fn of_history<'a>(
+/// What manoeuvres that repeat do to every place of a crane's beams whose moduli are known, each on its own: changes from one to another are no cycles.
+/// The crane has the same places in all. `detail`: of each beam by the name of its link.
+pub fn of_manoeuvres(
     description: &Description,
-    moduli: &[SectionModuli],
-    instants: impl Iterator<Item = (&'a [f64], &'a [Wrench])>,
+    manoeuvres: &[Manoeuvre<'_>],
     detail: impl Fn(&str) -> Detail,
 ) -> Vec<Fatigue> {
     // By section, since the order of places along a beam changes where it slides.
-    let in_order = |(x, wrenches): (&[f64], &[Wrench])| {
+    let in_order = |(x, wrenches): &(&[f64], &[Wrench])| {
         let mut places = places(description, x, wrenches);
         places.sort_by_key(|place| place.section);
         places
     };
-    let instants: Vec<Vec<Place>> = instants.map(in_order).collect();
+    let instants: Vec<Vec<Vec<Place>>> =
+        manoeuvres.iter().map(|manoeuvre| manoeuvre.states.iter().map(in_order).collect()).collect();
     let of_place = |(index, place): (usize, &Place)| {
-        let at = |now: &Vec<Place>| contour(&now[index].section_moduli(moduli), &now[index].wrench);
-        let contours: Vec<Vec<f64>> = instants.iter().map(at).collect();
+        let of_manoeuvre = |(manoeuvre, instants): (&Manoeuvre<'_>, &Vec<Vec<Place>>)| {
+            let at = |now: &Vec<Place>| contour(&now[index].section_moduli(manoeuvre.moduli), &now[index].wrench);
+            instants.iter().map(at).collect::<Vec<Vec<f64>>>()
+        };
+        let contours: Vec<Vec<Vec<f64>>> = manoeuvres.iter().zip(&instants).map(of_manoeuvre).collect();
         let detail = detail(place.beam(description));
         let of_point = |point: usize| {
-            let history: Vec<f64> = contours.iter().map(|contour| contour[point]).collect();
-            let cycles = count_repeating_cycles(&history);
-            Fatigue { place: *place, damage: detail.damage(&cycles), history, cycles }
+            let of_manoeuvre = |(manoeuvre, contours): (&Manoeuvre<'_>, &Vec<Vec<f64>>)| {
+                let history: Vec<f64> = contours.iter().map(|contour| contour[point]).collect();
+                let (repetitions, cycles) = (manoeuvre.repetitions, count_repeating_cycles(&history));
+                Part { repetitions, damage: repetitions * detail.damage(&cycles), history, cycles }
+            };
+            let parts: Vec<Part> = manoeuvres.iter().zip(&contours).map(of_manoeuvre).collect();
+            Fatigue { place: *place, damage: parts.iter().map(|part| part.damage).sum(), parts }
         };
-        (0..contours[0].len()).map(of_point).max_by(|a, b| a.damage.total_cmp(&b.damage))
+        let points = contours.iter().flatten().map(Vec::len).min().unwrap_or(0);
+        (0..points).map(of_point).max_by(|a, b| a.damage.total_cmp(&b.damage))
     };
-    let mut found: Vec<Fatigue> = instants.first().into_iter().flatten().enumerate().filter_map(of_place).collect();
+    let first = instants.first().and_then(|instants| instants.first());
+    let mut found: Vec<Fatigue> = first.into_iter().flatten().enumerate().filter_map(of_place).collect();
     // Beam by beam, from the beginning to the end.
     let beams = description.beams();
     let beam = |fatigue: &Fatigue| beams.iter().position(|name| *name == fatigue.place.beam(description));
@@ -256,7 +300,7 @@ mod tests {
         let cycles = count_repeating_cycles(&history);
         assert_eq!(counted(&cycles), [(2.0, 4.0)]);
         // s = n/2·10⁶ exactly.
-        assert_eq!(history_parameter(&cycles, 3.0, 1e5), 4e5 / 2e6);
+        assert_eq!(history_parameter(cycles.iter().map(|cycle| (1e5, cycle)), 3.0), 4e5 / 2e6);
         assert_eq!(class(0.2), Some(5));
     }
 
@@ -286,6 +330,6 @@ mod tests {
         assert_eq!(count_cycles(&[1.0; 5]), []);
         assert_eq!(count_repeating_cycles(&[1.0; 5]), []);
         assert_eq!(count_repeating_cycles(&[]), []);
-        assert_eq!(history_parameter(&[], 3.0, 1e5), 0.0);
+        assert_eq!(history_parameter(std::iter::empty(), 3.0), 0.0);
     }
 }

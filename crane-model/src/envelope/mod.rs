@@ -9,7 +9,7 @@
 //!
 //! [`critical_load`] uses the same search for the load that lifts the first foot and the load that tips the crane, at one pose.
 //!
-//! [`load_factor`] uses it for all weights and loads at once: buckling.
+//! [`load_factor`] uses it for all weights and loads at once: buckling. [`second_order`] makes them small.
 //!
 //! Poses are rated in pieces: a piece is a row of neighbouring poses, each starting from the equilibrium of the previous one. Its result
 //! depends neither on what else is rated nor on the number of threads.
@@ -23,6 +23,7 @@ mod load_factor;
 mod radius;
 mod rating;
 mod search;
+mod second_order;
 mod sweep;
 
 pub use axes::{Axes, Axis, TURN, Varied};
@@ -33,4 +34,5 @@ pub use limits::{Limit, Limits, PartLimit};
 pub use load_factor::{Followed, LoadFactor, load_factor};
 pub use radius::{SlewAxis, only_point};
 pub use rating::Rating;
+pub use second_order::{SecondOrder, second_order};
 pub use sweep::{Envelope, Execution, PIECE, UNITS_OF_LOADS, is_load, only_mass, range_of_loads};

@@ -98,7 +98,7 @@ impl Posed<'_> {
     }
 
     /// The crane at rest with the load `to`, from its pose with the load `from`, in steps between which it rests.
-    fn change_load(&mut self, from: f64, to: f64, begin: Condition) -> Option<Condition> {
+    pub(super) fn change_load(&mut self, from: f64, to: f64, begin: Condition) -> Option<Condition> {
         let mut step = |at: &Condition, [_, part]: [f64; 2]| {
             let value = if part < 1.0 { from + part * (to - from) } else { to };
             self.find_near(value, &at.q)

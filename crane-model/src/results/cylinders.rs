@@ -75,7 +75,7 @@ pub(crate) fn unassembled(description: &Description, table: &Table) -> Option<(T
 }
 
 /// Names of the columns of a cylinder.
-fn columns(name: &str) -> [String; 6] {
+pub(super) fn columns(name: &str) -> [String; 6] {
     ColumnKind::OF_CYLINDER.map(|kind| column_name(kind, name, false))
 }
 

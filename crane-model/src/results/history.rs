@@ -51,6 +51,11 @@ impl Instant {
         }
     }
 
+    /// Where sections are, and what cuts carry, as [`fatigue`](crate::fatigue) takes them.
+    pub fn state(&self) -> (&[f64], &[Wrench]) {
+        (&self.x, &self.wrenches)
+    }
+
     /// All places of beams and what they carry.
     pub fn places(&self, description: &Description) -> Vec<Place> {
         sections::places(description, &self.x, &self.wrenches)

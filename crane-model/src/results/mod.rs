@@ -3,6 +3,7 @@
 pub mod cautions;
 mod connectors;
 mod cylinders;
+mod duties;
 mod extremes;
 mod feet;
 mod headlines;
@@ -21,6 +22,7 @@ pub mod verification;
 
 pub(crate) use cylinders::unassembled;
 pub use cylinders::{HighestPressure, beyond_stroke, highest_pressure};
+pub use duties::{CylinderDuty, DriveDuty, Duties, PumpDuty};
 pub use extremes::Extremes;
 pub use feet::{Lift, Pull, TipsOver, lifts, pulls, tips_over, vertical_reaction};
 pub use headlines::{Kind, headlines};

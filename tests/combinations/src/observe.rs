@@ -8,8 +8,8 @@ use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::Settings;
 use crane_model::envelope::{Axes, Envelope, Execution, Limits, PartLimit, Rating, only_mass};
-use crane_model::fatigue::{self, Detail};
-use crane_model::results::{Table, cautions, instants};
+use crane_model::fatigue::{self, Detail, Manoeuvre};
+use crane_model::results::{DriveDuty, Duties, Instant, Table, cautions, instants};
 use crane_model::runs::{Start, record};
 use crane_model::sections::stressed_sections;
 use crane_model::tipping::lines;
@@ -150,6 +150,10 @@ pub fn observe_live(crane: &LiveCrane, run: bool) -> Result<Numbers, String> {
         for (beam, range) in ranges(crane, &table) {
             add(RUN.0, format!("{beam} stress by cycles of stress"), "Pa", range);
         }
+        for DriveDuty { name, kind, rms, work, .. } in Duties::of(description, &table).drives {
+            add(RUN.0, format!("{name} mean effort"), kind.force_unit(), rms);
+            add(RUN.0, format!("{name} work given"), "J", work);
+        }
     }
     let ends = [(REST.0, table.rows.first()), (RUN.0, table.rows.last().filter(|_| run))];
     for (group, row) in ends {
@@ -182,12 +186,14 @@ fn stresses(crane: &dyn DynCrane, q: &[f64], wrenches: &[Wrench]) -> Vec<(String
 /// The range of which one cycle does the damage of a run, where it is greatest on each beam, Pa.
 fn ranges(crane: &dyn DynCrane, table: &Table) -> BTreeMap<String, f64> {
     let history = instants(crane, table.rows.iter());
-    let states = history.iter().map(|instant| (instant.x.as_slice(), instant.wrenches.as_slice()));
+    let states = history.iter().map(Instant::state).collect();
+    let moduli = crane.section_moduli_at();
+    let manoeuvre = Manoeuvre { moduli: &moduli, states, repetitions: 1.0 };
     let detail = Detail { category: 71e6, slope: SLOPE };
     let mut greatest = BTreeMap::new();
-    for of in fatigue::of_history(crane.description(), &crane.section_moduli_at(), states, |_| detail) {
+    for of in fatigue::of_manoeuvres(crane.description(), &[manoeuvre], |_| detail) {
         let range = greatest.entry(of.place.beam(crane.description()).to_owned()).or_insert(0.0);
-        *range = f64::max(*range, fatigue::equivalent_range(&of.cycles, SLOPE));
+        *range = f64::max(*range, fatigue::equivalent_range(&of.parts[0].cycles, SLOPE));
     }
     greatest
 }

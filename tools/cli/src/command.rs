@@ -6,8 +6,8 @@ use clap::CommandFactory;
 
 use crate::{
     arguments::{Action, Arguments},
-    book, check, combinations, compare, compiled, completions, ensemble, envelope, eval, example, exchange, explain,
-    factors, fatigue, generate, help, info, linearise, margins, modes, new, page, picture, poses,
+    book, check, combinations, compare, compiled, completions, drives, ensemble, envelope, eval, example, exchange,
+    explain, factors, fatigue, generate, help, info, linearise, margins, modes, new, page, picture, poses,
     problem::Outcome,
     run, screen,
     selection::Registry,
@@ -90,6 +90,7 @@ pub fn dispatch(arguments: &Arguments, registry: &Registry, out: &mut dyn Write)
         Some(Action::Stability(options)) => stability::stability(options, registry, out),
         Some(Action::Strength(options)) => strength::strength(options, registry, out),
         Some(Action::Fatigue(options)) => fatigue::fatigue(options, registry, out),
+        Some(Action::Drives(options)) => drives::drives(options, registry, out),
         Some(Action::Factors(options)) => factors::factors(options, registry, out),
         Some(Action::Sensitivity(options)) => sensitivity::sensitivity(options, registry, out),
         Some(Action::Envelope(options)) => envelope::envelope(options, registry, out),

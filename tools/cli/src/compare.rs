@@ -153,7 +153,7 @@ fn side_by_side(
     let labelled = [(first, one_run), (second, other_run)];
     caution_of_runs(&mut report, labelled.into_iter());
     report.grid(extremes(&labelled));
-    add_runs(&mut report, description, &[(first, one.as_ref(), one_run), (second, other.as_ref(), other_run)]);
+    add_runs(&mut report, &[(first, one.as_ref(), one_run), (second, other.as_ref(), other_run)]);
     report.grid(file_list(folder, &written));
     if format == Format::Table {
         let (duration, method, step) = (settings[1].duration, settings[1].method, other_run.run.step);

@@ -1,24 +1,25 @@
-//! `crane fatigue`: cycles of stress of beams by a manoeuvre that repeats, their damage, and the life that it leaves.
+//! `crane fatigue`: cycles of stress of beams by manoeuvres that repeat, their damage, and the life that it leaves.
 
-use std::io::Write;
+use std::{io::Write, path::Path};
 
 use crane_model::{
     Description, DisplayUnit, SectionModuli,
-    fatigue::{self, Cycle, Detail, Fatigue},
-    results::{Instant, Table},
+    dyn_crane::DynCrane,
+    dynamics::Method,
+    fatigue::{self, Cycle, Detail, Fatigue, LEAST_LIKELY_CATEGORY, Manoeuvre, Part},
+    results::{Instant, Table, instants},
 };
-use crane_page::tables::{Case, Cell, Grid, Report, VALUE, verdicts};
+use crane_page::tables::{Case, Cell, Grid, Report, VALUE, add_events, caution_of_runs, verdicts};
 
 use crate::{
-    arguments, files,
+    arguments::{self, Choice, spec_file},
+    files,
+    integration::{progress, record_checked},
     problem::{Outcome, Problem},
     quantity,
     selection::Registry,
     strength::{self, words},
 };
-
-/// Categories below this, Pa, are most likely meant in megapascals.
-const LEAST_LIKELY_CATEGORY: f64 = 1e5;
 
 /// The start of the run may differ from its end by this part of the largest range before it is said: with a slope of 3 it does a thousandth of the damage.
 const CLOSED: f64 = 0.1;
@@ -28,40 +29,161 @@ const FINE: f64 = 0.05;
 
 /// Prints the damage of every beam.
 pub fn fatigue(options: &arguments::Fatigue, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
-    let crane = options.analysis.crane.open(registry)?;
-    let crane = crane.as_ref();
-    let categories = Categories::read(options, crane.description())?;
-    let case = Case::new(VALUE, crane);
+    let asked = Asked::read(options, registry)?;
+    let cases = asked.cases();
     let mut report = Report::default();
-    verdicts(&mut report, std::slice::from_ref(&case));
-    if !case.equilibrium.is_stable() {
+    verdicts(&mut report, &cases);
+    if let Some(unstable) = cases.into_iter().find(|case| !case.equilibrium.is_stable()) {
         options.analysis.format.print(&report, out)?;
-        return Ok(case.stable()?);
+        return Ok(unstable.stable()?);
     }
-    let timing = (&options.timing, options.analysis.crane.limits);
-    let history = strength::history(timing, crane, &mut report)?;
-    let moduli = crane.section_moduli_at();
-    let found = categories.of(crane.description(), &moduli, history.iter());
-    if found.is_empty() {
+    add(&mut report, options, &asked)?;
+    report.show_all(options.analysis.all);
+    options.analysis.format.print(&report, out)
+}
+
+/// The same as a report without the verdicts of statics.
+pub fn report(options: &arguments::Fatigue, registry: &Registry) -> Outcome<Report> {
+    let asked = Asked::read(options, registry)?;
+    for case in asked.cases() {
+        case.stable()?;
+    }
+    let mut report = Report::default();
+    add(&mut report, options, &asked)?;
+    Ok(report)
+}
+
+/// A manoeuvre that was asked for.
+struct Repeated {
+    /// Its spec as written.
+    word: String,
+    crane: Box<dyn DynCrane>,
+    repetitions: f64,
+}
+
+/// All manoeuvres; at least one.
+struct Asked(Vec<Repeated>);
+
+impl Asked {
+    fn read(options: &arguments::Fatigue, registry: &Registry) -> Outcome<Self> {
+        let choice = &options.analysis.crane;
+        let first = Repeated {
+            word: registry.word_for(&choice.name),
+            crane: choice.open(registry)?,
+            repetitions: options.cycles,
+        };
+        let mut all = vec![first];
+        for given in &options.also {
+            let other = Repeated::read(given, choice, registry)?;
+            if all.iter().any(|known| known.word == other.word) {
+                return Err(Problem::usage(
+                    format!("{} is given twice", other.word),
+                    "add its repetitions, or write two specs",
+                ));
+            }
+            let [one, description] = [&all[0], &other].map(|repeated| repeated.crane.description());
+            if one.sections != description.sections || one.beams() != description.beams() {
+                return Err(Problem::usage(
+                    format!("{} has other places along its beams than {}", other.word, all[0].word),
+                    format!("write it as `extends: {}` with other motions, loads and parameters alone", all[0].word),
+                ));
+            }
+            all.push(other);
+        }
+        Ok(Self(all))
+    }
+
+    /// What their columns are called; the only one needs no name.
+    fn label<'a>(&self, repeated: &'a Repeated) -> &'a str {
+        if self.0.len() == 1 { VALUE } else { &repeated.word }
+    }
+
+    fn cases(&self) -> Vec<Case<'_>> {
+        self.0.iter().map(|repeated| Case::new(self.label(repeated), repeated.crane.as_ref())).collect()
+    }
+}
+
+impl Repeated {
+    /// `SPEC=NUMBER`, with the options that hold for all.
+    fn read(given: &str, choice: &Choice, registry: &Registry) -> Outcome<Self> {
+        let (word, text) = given.rsplit_once('=').ok_or_else(|| {
+            Problem::usage(
+                format!("`--also {given}` has no number of repetitions"),
+                format!("write `--also {given}=1000`"),
+            )
+        })?;
+        let repetitions = quantity::number("1", text, &format!("the number of repetitions of {word}"))?;
+        if repetitions <= 0.0 {
+            return Err(Problem::usage(
+                format!("the number of repetitions of {word}, {text}, is not above 0"),
+                "leave it out",
+            ));
+        }
+        let mut choice = choice.clone();
+        word.clone_into(&mut choice.name);
+        let Some(file) = spec_file(word).map(Path::to_owned) else {
+            return Ok(Self { word: word.to_owned(), crane: choice.open(registry)?, repetitions });
+        };
+        // Of its own: several specs may have one name.
+        let mut own = Registry::default();
+        choice.name = own.add_file(&file, choice.strict)?;
+        if let Some(combination) = &choice.combination {
+            own.combine(&choice.name, combination)?;
+        }
+        Ok(Self { word: word.to_owned(), crane: choice.open(&own)?, repetitions })
+    }
+}
+
+/// Runs all manoeuvres, and adds what they do.
+fn add(report: &mut Report, options: &arguments::Fatigue, asked: &Asked) -> Outcome<()> {
+    let description = asked.0[0].crane.description();
+    let categories = Categories::read(options, description)?;
+    let mut runs = Vec::new();
+    for Repeated { crane, .. } in &asked.0 {
+        let start = options.timing.start(crane.as_ref(), false)?;
+        let settings = options.timing.settings(crane.as_ref(), &start, Method::RECOMMENDED)?;
+        let bar = progress(settings.duration);
+        let checks = (!options.timing.no_verify, options.analysis.crane.limits);
+        runs.push(record_checked(crane.as_ref(), &start, &settings, checks, &bar)?);
+        bar.finish_and_clear();
+    }
+    caution_of_runs(report, asked.0.iter().map(|repeated| asked.label(repeated)).zip(&runs));
+    let labelled = asked.0.iter().zip(&runs);
+    let cranes: Vec<_> =
+        labelled.map(|(repeated, run)| (asked.label(repeated), repeated.crane.as_ref(), run.run.time)).collect();
+    add_events(report, &cranes);
+    let histories: Vec<Vec<Instant>> = asked
+        .0
+        .iter()
+        .zip(&runs)
+        .map(|(repeated, run)| instants(repeated.crane.as_ref(), run.table.rows.iter()))
+        .collect();
+    let moduli: Vec<Vec<SectionModuli>> = asked.0.iter().map(|repeated| repeated.crane.section_moduli_at()).collect();
+    let subject =
+        Subject { description, asked, histories: &histories, moduli: &moduli, options, categories: &categories };
+    let found = subject.of_every(1);
+    let Some(worst) = greatest(&found) else {
         return Err(Problem::failed(
             "no beam has a section whose stresses are known",
             "give the beam a `section` such as `box`, with its sizes, in place of its second moments",
         ));
+    };
+    subject.verdict(report, worst);
+    accuracy(report, worst, greatest(&subject.of_every(2)));
+    subject.closing(report, worst);
+    subject.changes(report, worst);
+    let manoeuvres = subject.manoeuvres(worst);
+    if asked.0.len() > 1 {
+        report.grid(manoeuvres)
+    } else {
+        report.data(manoeuvres)
     }
-    let subject = Subject { description: crane.description(), history: &history, options, categories: &categories };
-    if let Some(worst) = greatest(&found) {
-        subject.verdict(&mut report, worst);
-        let every_second = categories.of(crane.description(), &moduli, history.iter().step_by(2));
-        accuracy(&mut report, worst, greatest(&every_second));
-        closing(&mut report, worst);
-        report.grid(subject.places(&found));
-        report.grid(subject.cycles(worst));
-    }
+    report.grid(subject.places(&found));
+    report.grid(subject.cycles(worst));
     if let Some(file) = &options.results {
         files::write_csv(file, &subject.stresses(&found))?;
     }
-    report.show_all(options.analysis.all);
-    options.analysis.format.print(&report, out)
+    Ok(())
 }
 
 /// The place that suffers most.
@@ -130,72 +252,124 @@ impl Categories {
         let own = self.own.iter().find(|(name, _)| name == beam);
         Detail { category: own.map_or(self.others, |(_, category)| *category), slope: self.slope }
     }
-
-    fn of<'a>(
-        &self,
-        description: &Description,
-        moduli: &[SectionModuli],
-        instants: impl Iterator<Item = &'a Instant>,
-    ) -> Vec<Fatigue> {
-        let states = instants.map(|instant| (instant.x.as_slice(), instant.wrenches.as_slice()));
-        fatigue::of_history(description, moduli, states, |beam| self.detail(beam))
-    }
 }
 
 /// What is reported about.
 struct Subject<'a> {
     description: &'a Description,
-    history: &'a [Instant],
+    asked: &'a Asked,
+    /// By manoeuvre.
+    histories: &'a [Vec<Instant>],
+    /// By manoeuvre.
+    moduli: &'a [Vec<SectionModuli>],
     options: &'a arguments::Fatigue,
     categories: &'a Categories,
 }
 
 impl Subject<'_> {
-    fn parameter(&self, of: &Fatigue) -> f64 {
-        fatigue::history_parameter(&of.cycles, self.categories.slope, self.options.cycles)
+    /// What every n-th of the results says.
+    fn of_every(&self, n: usize) -> Vec<Fatigue> {
+        let all = self.asked.0.iter().zip(self.histories).zip(self.moduli);
+        let manoeuvres: Vec<Manoeuvre<'_>> = all
+            .map(|((repeated, history), moduli)| Manoeuvre {
+                moduli,
+                states: history.iter().step_by(n).map(Instant::state).collect(),
+                repetitions: repeated.repetitions,
+            })
+            .collect();
+        fatigue::of_manoeuvres(self.description, &manoeuvres, |beam| self.categories.detail(beam))
+    }
+
+    /// How often the first manoeuvre may be repeated, with the others in proportion.
+    fn life(&self, of: &Fatigue) -> Option<f64> {
+        of.life().map(|life| self.options.cycles * life)
     }
 
     fn verdict(&self, report: &mut Report, worst: &Fatigue) {
-        let damage = worst.damage * self.options.cycles;
-        report.fact("greatest damage", damage, "");
-        report.fact_as("place_of_the_greatest_damage", "place of it", worst.place.location(self.description), "");
-        report.fact_as("life", "life, in repetitions of the manoeuvre", worst.life(), "");
-        if let Some(largest) = worst.largest() {
+        let several = self.asked.0.len() > 1;
+        let place = worst.place.location(self.description);
+        report.fact("greatest damage", worst.damage, "");
+        report.fact_as("place_of_the_greatest_damage", "place of it", place.as_str(), "");
+        let of = if several {
+            "life, in repetitions of the first manoeuvre, the others in proportion"
+        } else {
+            "life, in repetitions of the manoeuvre"
+        };
+        report.fact_as("life", of, self.life(worst), "");
+        if let Some((manoeuvre, largest)) = worst.largest() {
+            let history = &worst.parts[manoeuvre].history;
             let mut ends = largest.ends;
-            ends.sort_by(|a, b| worst.history[*a].total_cmp(&worst.history[*b]));
-            let [low, high] = ends.map(|index| self.history[index].t);
+            ends.sort_by(|a, b| history[*a].total_cmp(&history[*b]));
+            let [low, high] = ends.map(|index| self.histories[manoeuvre][index].t);
             report.fact_as(
                 "greatest_range",
                 "its largest range of stress",
                 Cell::Shown(largest.range, DisplayUnit::Megapascal),
                 "MPa",
             );
+            if several {
+                report.line("manoeuvre of this range", self.asked.0[manoeuvre].word.as_str(), "");
+            }
             report.fact_as("time_of_the_valley", "time of the valley of this range", low, "s");
             report.fact_as("time_of_the_peak", "time of its peak", high, "s");
         }
-        let parameter = self.parameter(worst);
+        let parameter = worst.history_parameter(self.categories.slope);
         let name = format!("stress history parameter s, m = {}", self.categories.slope);
         report.fact_as("history_parameter", name, parameter, "");
         report.fact_as("class", "class of it", class(parameter), "");
-        if let Some(life) = worst.life().filter(|_| damage >= 1.0) {
-            let place = worst.place.location(self.description);
+        if let Some(life) = self.life(worst).filter(|_| worst.damage >= 1.0) {
             report.caution(Some(format!(
-                "the life of {place} ends after {:.3e} of {:.3e} repetitions",
-                life, self.options.cycles
+                "the life of {place} ends after {life:.3e} of {:.3e} repetitions",
+                self.options.cycles
             )));
         }
     }
 
     /// The times of both ends of a cycle, s.
-    fn times(&self, cycle: &Cycle) -> [f64; 2] {
-        cycle.ends.map(|index| self.history[index].t)
+    fn times(&self, manoeuvre: usize, cycle: &Cycle) -> [f64; 2] {
+        cycle.ends.map(|index| self.histories[manoeuvre][index].t)
+    }
+
+    /// What each manoeuvre does where the damage is greatest.
+    fn manoeuvres(&self, worst: &Fatigue) -> Grid {
+        let title = "Manoeuvres: what each does where the damage is greatest";
+        let headers = [
+            "manoeuvre",
+            "repetitions",
+            "largest range [MPa]",
+            "least stress [MPa]",
+            "greatest stress [MPa]",
+            "damage",
+            "part of the damage [%]",
+        ];
+        let mut grid = Grid::new("manoeuvres", title, &headers);
+        for (repeated, part) in self.asked.0.iter().zip(&worst.parts) {
+            let range = part.cycles.iter().map(|cycle| cycle.range).fold(0.0, f64::max);
+            let [least, greatest] = ends(&part.history);
+            let share = if worst.damage > 0.0 { part.damage / worst.damage } else { 0.0 };
+            grid.row([
+                repeated.word.as_str().into(),
+                part.repetitions.into(),
+                Cell::Shown(range, DisplayUnit::Megapascal),
+                Cell::Shown(least, DisplayUnit::Megapascal),
+                Cell::Shown(greatest, DisplayUnit::Megapascal),
+                part.damage.into(),
+                Cell::Shown(share, DisplayUnit::Percent),
+            ]);
+        }
+        grid
     }
 
     /// One row per place.
     fn places(&self, found: &[Fatigue]) -> Grid {
+        let (repetitions, manoeuvres) = (self.options.cycles, self.asked.0.len());
+        let by = if manoeuvres > 1 {
+            format!("all repetitions of {manoeuvres} manoeuvres")
+        } else {
+            format!("{repetitions} repetitions")
+        };
         let title = format!(
-            "Fatigue of beams by {} repetitions: normal stress at the point of each place's contour that suffers most, cycles counted by rainflow",
-            self.options.cycles
+            "Fatigue of beams by {by}: normal stress at the point of each place's contour that suffers most, cycles counted by rainflow"
         );
         let headers = [
             "beam",
@@ -211,47 +385,89 @@ impl Subject<'_> {
         ];
         let mut grid = Grid::new("fatigue", title, &headers);
         for of in found {
-            let parameter = self.parameter(of);
+            let parameter = of.history_parameter(self.categories.slope);
             let Detail { category, .. } = self.categories.detail(of.place.beam(self.description));
-            let range = of.largest().map_or(0.0, |cycle| cycle.range);
+            let range = of.largest().map_or(0.0, |(_, cycle)| cycle.range);
             let numbers = [
                 Cell::Shown(category, DisplayUnit::Megapascal),
                 Cell::Shown(range, DisplayUnit::Megapascal),
-                Cell::Count(of.cycles.len()),
+                Cell::Count(of.cycles().count()),
                 parameter.into(),
                 class(parameter).into(),
-                (of.damage * self.options.cycles).into(),
-                of.life().into(),
+                of.damage.into(),
+                self.life(of).into(),
             ];
             grid.row(words(&of.place, self.description).into_iter().chain(numbers).collect::<Vec<_>>());
         }
         grid
     }
 
-    /// The cycles where the damage is greatest.
+    /// The cycles where the damage is greatest, those that do most of it first.
     fn cycles(&self, worst: &Fatigue) -> Grid {
+        let several = self.asked.0.len() > 1;
         let title = "Cycles of one repetition where the damage is greatest, and their parts of it";
-        let headers = ["range [MPa]", "mean [MPa]", "count", "from [s]", "to [s]", "part of the damage [%]"];
+        let headers =
+            ["manoeuvre", "range [MPa]", "mean [MPa]", "count", "from [s]", "to [s]", "part of the damage [%]"];
+        let headers: Vec<&str> = headers.into_iter().filter(|header| several || *header != "manoeuvre").collect();
         let mut grid = Grid::new("cycles", title, &headers);
         let detail = self.categories.detail(worst.place.beam(self.description));
-        let mut cycles = worst.cycles.clone();
-        cycles.sort_by(|a, b| b.range.total_cmp(&a.range));
-        for cycle in cycles {
-            let [from, to] = self.times(&cycle);
-            let part = detail.damage(&[cycle]) / worst.damage;
-            grid.row([
+        let damage = |(manoeuvre, cycle): &(usize, &Cycle)| {
+            worst.parts[*manoeuvre].repetitions * detail.damage(&[**cycle]) / worst.damage
+        };
+        let mut cycles: Vec<(usize, &Cycle)> = worst.cycles().collect();
+        cycles.sort_by(|a, b| damage(b).total_cmp(&damage(a)));
+        for found in cycles {
+            let (manoeuvre, cycle) = found;
+            let [from, to] = self.times(manoeuvre, cycle);
+            let word = several.then(|| Cell::from(self.asked.0[manoeuvre].word.as_str()));
+            let numbers = [
                 Cell::Shown(cycle.range, DisplayUnit::Megapascal),
                 Cell::Shown(cycle.mean, DisplayUnit::Megapascal),
                 cycle.count.into(),
                 from.into(),
                 to.into(),
-                Cell::Shown(part, DisplayUnit::Percent),
-            ]);
+                Cell::Shown(damage(&found), DisplayUnit::Percent),
+            ];
+            grid.row(word.into_iter().chain(numbers).collect::<Vec<_>>());
         }
         grid
     }
 
-    /// The histories in columns.
+    /// Whether each manoeuvre ends as it begins.
+    fn closing(&self, report: &mut Report, worst: &Fatigue) {
+        for (repeated, part) in self.asked.0.iter().zip(&worst.parts) {
+            let (Some(first), Some(last)) = (part.history.first(), part.history.last()) else { continue };
+            let jump = (last - first).abs();
+            let largest = part.cycles.iter().map(|cycle| cycle.range).fold(0.0, f64::max);
+            if jump > CLOSED * largest {
+                let of = if self.asked.0.len() > 1 { &repeated.word } else { "the manoeuvre" };
+                report.caution(Some(format!(
+                    "{of} does not end as it begins: where the damage is greatest, the stress differs by {:.1} MPa; this change is counted as part of \
+                     each repetition",
+                    jump / 1e6
+                )));
+            }
+        }
+    }
+
+    /// Whether the stress changes more from one manoeuvre to another than within them.
+    fn changes(&self, report: &mut Report, worst: &Fatigue) {
+        let all = worst.parts.iter().map(|part: &Part| ends(&part.history));
+        let [least, greatest] = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], [low, high]| {
+            [least.min(low), greatest.max(high)]
+        });
+        let within = worst.largest().map_or(0.0, |(_, cycle)| cycle.range);
+        if greatest - least > (1.0 + CLOSED) * within {
+            report.caution(Some(format!(
+                "from one manoeuvre to another the stress changes by up to {:.1} MPa where the damage is greatest, and within each by {:.1} MPa: such changes \
+                 are not counted; write a manoeuvre that contains them, as by `events` that take the load and leave it",
+                (greatest - least) / 1e6,
+                within / 1e6
+            )));
+        }
+    }
+
+    /// The histories in columns, of the only manoeuvre.
     fn stresses(&self, found: &[Fatigue]) -> Table {
         let mut table = Table::default();
         table.add("t", "s");
@@ -259,11 +475,19 @@ impl Subject<'_> {
             table.add(strength::column(self.description, of.place.cut, "normal_stress"), "Pa");
         }
         let row = |(index, instant): (usize, &Instant)| {
-            [instant.t].into_iter().chain(found.iter().map(|of| of.history[index])).collect()
+            let stresses = found.iter().filter_map(|of| of.parts.first()?.history.get(index));
+            [instant.t].into_iter().chain(stresses.copied()).collect()
         };
-        table.rows = self.history.iter().enumerate().map(row).collect();
+        table.rows = self.histories[0].iter().enumerate().map(row).collect();
         table
     }
+}
+
+/// The least and the greatest of a history.
+fn ends(history: &[f64]) -> [f64; 2] {
+    history
+        .iter()
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], value| [least.min(*value), greatest.max(*value)])
 }
 
 /// How much the interval of results matters.
@@ -280,22 +504,6 @@ fn accuracy(report: &mut Report, worst: &Fatigue, coarse: Option<&Fatigue>) {
         report.caution(Some(format!(
             "with half of the results the damage changes by {:.0} %: peaks lie between results; take a shorter `--interval`",
             100.0 * change
-        )));
-    }
-}
-
-/// Whether the manoeuvre ends as it begins.
-fn closing(report: &mut Report, worst: &Fatigue) {
-    let (Some(first), Some(last), Some(largest)) = (worst.history.first(), worst.history.last(), worst.largest())
-    else {
-        return;
-    };
-    let jump = (last - first).abs();
-    if jump > CLOSED * largest.range {
-        report.caution(Some(format!(
-            "the manoeuvre does not end as it begins: where the damage is greatest, the stress differs by {:.1} MPa; this change is counted as part of \
-             each repetition",
-            jump / 1e6
         )));
     }
 }

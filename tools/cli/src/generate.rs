@@ -74,6 +74,7 @@ impl Output {
             Output::Ensemble => include_str!("../schemas/ensemble.json"),
             Output::Strength => include_str!("../schemas/strength.json"),
             Output::Fatigue => include_str!("../schemas/fatigue.json"),
+            Output::Drives => include_str!("../schemas/drives.json"),
             Output::Factors => include_str!("../schemas/factors.json"),
             Output::Sensitivity => include_str!("../schemas/sensitivity.json"),
             Output::Envelope => include_str!("../schemas/envelope.json"),

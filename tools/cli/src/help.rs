@@ -16,6 +16,7 @@ const GROUPS: [(&str, &[&str]); 4] = [
             "strength",
             "fatigue",
             "factors",
+            "drives",
             "sensitivity",
             "envelope",
             "simulate",

@@ -48,7 +48,7 @@ pub fn run_crane(options: &Run, registry: &Registry, out: &mut dyn Write) -> Out
     let labelled: Vec<_> = labels.zip(&runs).collect();
     report.grid_first(extremes(&labelled));
     let of_runs = cases.iter().zip(&runs).map(|(case, run)| (case.label, case.crane, run));
-    add_runs(&mut report, description, &of_runs.collect::<Vec<_>>());
+    add_runs(&mut report, &of_runs.collect::<Vec<_>>());
     report.grid(file_list(folder, &written));
     report.show_all(options.analysis.all);
     options.analysis.format.print(&report, out)

@@ -66,7 +66,7 @@ pub fn simulate(options: &Run, registry: &Registry, out: &mut dyn Write) -> Outc
         report.caution(Some(caution.as_str()));
     }
     report.grid(extremes(&[(name, &recorded)]));
-    add_runs(&mut report, crane.description(), &[(VALUE, crane, &recorded)]);
+    add_runs(&mut report, &[(VALUE, crane, &recorded)]);
     report.grid(file_list(&options.folder.out, &written));
     options.analysis.format.print(&report, out)
 }

@@ -129,6 +129,29 @@ fn a_given_chart_is_compared() {
         assert!(row["limit"].as_str().unwrap().starts_with("tipping"), "{row}");
     }
     assert_eq!(beside[2]["limit"], "no pose");
+    // The same by the position of the arm: at one of the range, and between two, of which the farther one bears less.
+    let rows: String = [3.0, 5.02].map(|x| format!("{},{}\n", 1000.0 * x, exact(x) / 0.9 / 1000.0)).concat();
+    fs::write(&file, format!("arm_x [mm],load [t]\n{rows}9000,1\n")).expect("a file");
+    let output = run_command(&folder, &[&ranges[..], &given].concat());
+    let output: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let beside = &output["beside_the_given_chart"];
+    for (row, [at, bears]) in [[3.0, 3.0], [5.02, 5.05]].into_iter().enumerate() {
+        let difference = 0.9 * exact(bears) / exact(at) - 1.0;
+        assert!((beside[row]["difference"].as_f64().unwrap() - difference).abs() < 1e-4, "{}", beside[row]);
+        assert!((beside[row]["arm_x"].as_f64().unwrap() - at).abs() < 1e-12);
+    }
+    assert_eq!(beside[2]["limit"], "no pose");
+    for (content, wanted) in [
+        ("arm,load\n3,1\n", "has no drive and no live parameter `arm`"),
+        ("payload,load\n3,1\n", "which no range varies"),
+        ("arm_x,radius,load\n3,3,1\n", "a radius and the column `arm_x`"),
+        ("load\n1\n", "has no column `radius`"),
+    ] {
+        fs::write(&file, content).expect("a file");
+        let output = run_command(&folder, &[&ranges[..], &given].concat());
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && message.contains(wanted), "{content}: {message}");
+    }
     fs::write(&file, "radius;load\n3;1\n").expect("a file");
     let output = run_command(&folder, &[&ranges[..], &given].concat());
     assert!(

@@ -496,6 +496,66 @@ run: {duration: 8, output: 0.02}
     }
 }
 
+/// Damages of several manoeuvres add up: half of the range, four times as often, does half of the damage.
+#[test]
+fn damages_of_several_manoeuvres_add_up() {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("several_manoeuvres");
+    fs::create_dir_all(&folder).expect("a folder");
+    let file = |name: &str| folder.join(name).to_str().expect("a path").to_owned();
+    let beam = "format: 1
+name: beam
+gravity: [0, 0, 0]
+links:
+  - name: beam
+    beam: {length: 2, sections: 2, material: {E: 2.1e11, G: 8.1e10, density: 7850}, section: {box: {height: 0.1, width: 0.1, thickness: 0.005}}, damping: {beta: 1e-3}}
+loads: [{name: pull, link: beam, at: [2, 0, 0], force: [0, 0, -3000], scale: {table: {times: [0, 4, 8], values: [0, 1, 0]}}}]
+run: {duration: 8, output: 0.02}
+";
+    fs::write(file("beam.yaml"), beam).expect("a file");
+    let other = |name: &str, rest: &str| {
+        fs::write(file(name), format!("extends: beam.yaml\n{rest}\n")).expect("a file");
+        format!("{}=4e5", file(name))
+    };
+    let half = other("half.yaml", "loads: [{name: pull, force: [0, 0, -1500]}]");
+    let high = other("high.yaml", "loads: [{name: pull, scale: {table: {times: [0, 4, 8], values: [1, 1.2, 1]}}}]");
+    let longer = other("longer.yaml", "links: [{name: beam, beam: {sections: 3}}]");
+    let run = |also: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));
+        command.args(["fatigue", &file("beam.yaml"), "--cycles", "1e5", "--category", "80MPa", "--format", "json"]);
+        command.args(also.iter().flat_map(|also| ["--also", also]));
+        command.output().expect("it starts")
+    };
+    let report = |also: &[&str]| {
+        let output = run(also);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice::<Value>(&output.stdout).expect("JSON")
+    };
+    let found = report(&[&half]);
+    let modulus = (0.1_f64.powi(4) - 0.09_f64.powi(4)) / 12.0 / 0.05;
+    let endured = 2e6 * (80e6 / (3000.0 * 2.0 / modulus)).powi(3);
+    // The load changes as slowly as the beam follows.
+    assert_close("damage", &found["greatest_damage"], 1.5 * 1e5 / endured, 3e-3);
+    assert_close("life", &found["life"], endured / 1.5, 3e-3);
+    assert_close("s", &found["history_parameter"], (1e5 + 4e5 / 8.0) / 2e6, 1e-3);
+    assert_close("part", &found["manoeuvres"][1]["part_of_the_damage"], 1.0 / 3.0, 1e-3);
+    assert_close("first", &found["cycles"][0]["part_of_the_damage"], 2.0 / 3.0, 1e-3);
+    assert_eq!(found["cautions"], serde_json::json!([]));
+    // From nothing to 1.2 of the force, of which the second one has the last sixth alone.
+    let cautions = report(&[&high])["cautions"].to_string();
+    assert!(cautions.contains("from one manoeuvre to another"), "{cautions}");
+    for (also, wanted) in [
+        (longer.as_str(), "other places along its beams"),
+        ("half.yaml", "write `--also half.yaml=1000`"),
+        (&half.replace("4e5", "0"), "is not above 0"),
+        (&half.replace("half", "beam"), "is given twice"),
+    ] {
+        let output = run(&[also]);
+        assert_eq!(output.status.code(), Some(2), "{also}");
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(text.contains(wanted), "{also}: {text}");
+    }
+}
+
 /// A load that comes at once onto a spring without damping lets it swing by as much as it deflects: (M + 2m)/(M + m) of the force at rest.
 #[test]
 fn a_load_that_comes_at_once_counts_twice() {
@@ -511,13 +571,26 @@ events: [{name: load, at: 0.5, set: {load: 590}}]
     let run = |arguments: &[&str]| {
         Command::new(env!("CARGO_BIN_EXE_crane")).arg("factors").arg(&file).args(arguments).output().expect("it starts")
     };
-    let output =
-        run(&["--hoisting-class", "hc2", "--hoisting-speed", "0.5", "--tolerance", "1e-8", "--format", "json"]);
+    let output = run(&[
+        "--hoisting-class",
+        "hc2",
+        "--hoisting-speed",
+        "0.5",
+        "--tabulated",
+        "--tolerance",
+        "1e-8",
+        "--format",
+        "json",
+    ]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let report: Value = serde_json::from_slice(&output.stdout).expect("JSON");
     // Results are 0.01 s apart, a period is 0.68 s: a peak between two of them is missed by up to (ω h/2)²/2 = 1.1e-3 of the swing.
     assert_close("factor", &report["greatest_factor"], (90.0 + 1000.0) / 590.0, 1e-3);
     assert_close("tabulated", &report["tabulated_factor"], 1.1 + 0.34 * 0.5, 1e-12);
+    let tabulated = report["tabulated"].as_array().expect("a table");
+    // What is of no single source has no name of a standard.
+    let named = |row: &&Value| row["source"].as_str().is_some_and(|source| source.starts_with("EN "));
+    assert_eq!(tabulated.iter().filter(named).map(|row| row["edition"].clone()).collect::<Vec<_>>(), ["2006"; 4]);
     let force = &report["factors"][0];
     assert_eq!(force["quantity"], "hook_z_drive_force");
     assert_close("at rest before", &force["minimum_at_rest"], 90.0 * 9.81, 1e-6);

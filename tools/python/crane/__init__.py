@@ -25,18 +25,23 @@ from ._native import (
     shipped,
     threads,
 )
+from .damage import Cycle, Fatigue, fatigue
 from .fit_result import Band, Fit
 from .fitting import fit
 from .frames import Frames
 from .joints import JointStates
 from .model import Crane, from_mjcf, from_urdf, load
 from .results import (
+    CylinderDuty,
+    DriveDuty,
+    Duties,
     Energies,
     Ensemble,
     Envelope,
     Equilibrium,
     Linearisation,
     Modes,
+    PumpDuty,
     Run,
     Sensitivity,
     Stability,
@@ -53,10 +58,15 @@ __all__ = [
     "__version__",
     "Band",
     "Crane",
+    "Cycle",
+    "CylinderDuty",
+    "DriveDuty",
+    "Duties",
     "Energies",
     "Ensemble",
     "Envelope",
     "Equilibrium",
+    "Fatigue",
     "Fit",
     "Frames",
     "InvalidRowWarning",
@@ -66,6 +76,7 @@ __all__ = [
     "Modes",
     "NoEquilibrium",
     "ParameterError",
+    "PumpDuty",
     "Run",
     "Sensitivity",
     "Simulation",
@@ -79,6 +90,7 @@ __all__ = [
     "VectorSimulation",
     "VectorState",
     "experiments",
+    "fatigue",
     "fit",
     "from_mjcf",
     "from_urdf",

@@ -51,6 +51,16 @@ def loop_margins(
 ) -> Array:
     """(rows, 11): margins of a loop around plants, row by row: `Crane.margins` names them."""
 
+def duties_of(
+    crane: "Crane", table: Array
+) -> tuple[list[tuple[str, str, str, list[float]]], list[tuple[str, list[float]]], list[float] | None]:
+    """What drives, cylinders and the pump of a run must be able to do: `Run.duties` names it."""
+
+def fatigue_of(
+    manoeuvres: list[tuple["Crane", Array, float]], categories: list[tuple[str | None, Any]], slope: float, safety_factor: float
+) -> list[tuple[str, float, str, float, float, list[tuple[float, list[float], list[list[float]]]]]]:
+    """What runs that repeat do to every place of beams: `crane.fatigue` names it."""
+
 class Motions:
     """Motions of cranes of one spec; each continues with the history of its method."""
 

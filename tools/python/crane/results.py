@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _native
 from .notebook import embed
 
 if TYPE_CHECKING:
@@ -33,6 +34,51 @@ class Energies(NamedTuple):
         """Kinetic and potential energy together, J."""
         springs = self.supports + self.elements + self.drives + self.stops + self.connectors
         return self.kinetic + self.gravity + springs
+
+
+class DriveDuty(NamedTuple):
+    """What a drive or a winch must be able to do: largest effort, its root mean square, fastest rate, largest power and work that it gives, and that it
+    takes in as a brake; at its joint or its rope, in the units given, W and J."""
+
+    unit: str
+    unit_of_rates: str
+    effort: float
+    rms_effort: float
+    rate: float
+    power: float
+    braking_power: float
+    work: float
+    braking_work: float
+
+
+class CylinderDuty(NamedTuple):
+    """What a cylinder must be able to do: largest forces, N, highest pressure, Pa, fastest speed, m/s, largest flow, m³/s, and its lengths between the
+    pins, m."""
+
+    push: float
+    pull: float
+    pressure: float
+    speed: float
+    flow: float
+    shortest: float
+    longest: float
+
+
+class PumpDuty(NamedTuple):
+    """What the pump must be able to do: largest flow, m³/s, highest pressure at which it delivers, Pa, largest power, W, and energy, J."""
+
+    flow: float
+    pressure: float
+    power: float
+    energy: float
+
+
+class Duties(NamedTuple):
+    """What drives and winches, cylinders, by their names, and the pump of a run must be able to do."""
+
+    drives: dict[str, DriveDuty]
+    cylinders: dict[str, CylinderDuty]
+    pump: PumpDuty | None
 
 
 class Linearisation(NamedTuple):
@@ -358,6 +404,15 @@ class Run(Mapping[str, Array]):
             raise ValueError(f'of={of!r}: write "values", "maximum", "minimum", "peak", "final" or "integral"')
         index = int(np.argmax(extremes[of]))
         return float(np.copysign(1.0, values[index]) * slopes[index] if of == "peak" else slopes[index])
+
+    def duties(self) -> Duties:
+        """What drives, cylinders and the pump must be able to do over the run, as `crane drives` prints it; integrals by the trapezoidal rule."""
+        drives, cylinders, pump = _native.duties_of(self.crane, self.table)
+        return Duties(
+            {name: DriveDuty(unit, unit_of_rates, *numbers) for name, unit, unit_of_rates, numbers in drives},
+            {name: CylinderDuty(*numbers) for name, numbers in cylinders},
+            None if pump is None else PumpDuty(*pump),
+        )
 
     def page(self) -> str:
         """The run in 3-D, in plots and in tables: an HTML page that needs no network, to be written to a file."""

@@ -11,6 +11,7 @@
 //! | `linear` | linear models, and margins of loops around them |
 //! | `sensitivity` | derivatives at rest by the numbers of a crane |
 //! | `motion` | runs: of one crane, of many |
+//! | `recorded` | what runs say afterwards: what drives must be able to do, fatigue |
 //! | `stepping` | motions that are advanced from outside, one or many |
 //! | `page` | the crane in 3-D, as HTML |
 //! | `arrays` | arguments as rows, and results as arrays |
@@ -31,6 +32,7 @@ mod motion;
 mod page;
 mod parallel;
 mod products;
+mod recorded;
 mod sensitivity;
 mod stepping;
 mod strength;
@@ -57,6 +59,8 @@ mod _native {
     use crate::mistakes::{InvalidRowWarning, NoEquilibrium, ParameterError, SpecError, SpecWarning};
     #[pymodule_export]
     use crate::parallel::{set_threads, threads};
+    #[pymodule_export]
+    use crate::recorded::{duties_of, fatigue_of};
     #[pymodule_export]
     use crate::stepping::Motions;
 }

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::{Run, Settings, Statistics};
-use crane_model::results::{Recording, Verification, cautions};
+use crane_model::results::{Verification, cautions};
 use crane_model::runs::Recorded;
 use crane_page::shapes::{
     Figure,
@@ -18,6 +18,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::Argument;
 use crate::crane::Crane;
+use crate::recorded::table_of;
 
 /// This package, in records of runs.
 const PROGRAM: Program = Program { name: "crane for Python", version: env!("CARGO_PKG_VERSION") };
@@ -53,16 +54,7 @@ pub struct Given<'py> {
 impl Given<'_> {
     /// The run, and the settings with which it was computed.
     fn recorded(&self, crane: &dyn DynCrane) -> PyResult<(Settings, Recorded)> {
-        let mut table = Recording::new(crane).into_table();
-        let rows = self.table.as_array();
-        let name = &crane.description().name;
-        if rows.ncols() != table.columns.len() || rows.nrows() == 0 {
-            let (given, expected) = (rows.shape(), table.columns.len());
-            return Err(PyValueError::new_err(format!(
-                "the table of a run of {name} has {expected} columns, not {given:?}"
-            )));
-        }
-        table.rows = rows.outer_iter().map(|row| row.to_vec()).collect();
+        let table = table_of(crane, &self.table)?;
         let times: Vec<f64> = table.rows.iter().map(|row| row[0]).collect();
         let duration = times[times.len() - 1];
         let expected = Settings::of(crane.description());

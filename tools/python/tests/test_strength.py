@@ -226,3 +226,66 @@ def test_oil_and_a_load_that_changes():
     # Half of the load at half of its time; some roundings of the weight.
     np.testing.assert_allclose(forces[:, 1], [0.0, 150.0, 300.0], atol=1e-9)
     np.testing.assert_allclose(forces[:, 5] - forces[0, 5], forces[:, 1] * np.cos(arm.statics().q[-1]), rtol=1e-9, atol=1e-9)
+
+
+# A crane without weight whose tip is pulled slowly and let go: `F L/W` at the clamp.
+PULLED = """
+format: 1
+name: pulled
+gravity: [0, 0, 0]
+parameters: {force: {value: 3000, unit: N}}
+links:
+  - name: beam
+    beam: {length: 2, sections: 2, material: {E: 2.1e11, G: 8.1e10, density: 7850}, section: {box: {height: 0.1, width: 0.1, thickness: 0.005}}, damping: {beta: 1e-3}}
+loads: [{name: pull, link: beam, at: [2, 0, 0], force: [0, 0, force], scale: {table: {times: [0, 4, 8], values: [0, 1, 0]}}}]
+run: {duration: 8, output: 0.02}
+"""
+
+
+def test_damages_of_runs_add_up():
+    """The load changes as slowly as the beam follows: half of the range, four times as often, does half of the damage."""
+    c = crane.load("pulled.yaml", text=PULLED)
+    whole, half = c.simulate(verify=False), c.replace(force=1500).simulate(verify=False)
+    found = crane.fatigue([(whole, 1e5), (half, 4e5)], "80 MPa", safety_factor=1.0)
+    size = 3000 * 2 / ((0.1**4 - 0.09**4) / 12 / 0.05)
+    endured = 2e6 * (80e6 / size) ** 3
+    assert found.beams[found.worst] == "beam" and found.x[found.worst] == 0
+    assert found.damage[found.worst] == pytest.approx(1.5e5 / endured, rel=3e-3)
+    assert found.parts[found.worst] == pytest.approx([1e5 / endured, 0.5e5 / endured], rel=3e-3)
+    assert found.history_parameter[found.worst] == pytest.approx((1e5 + 4e5 / 8) / 2e6, rel=1e-3)
+    first, second = found.cycles()[:2]
+    assert (first.manoeuvre, second.manoeuvre) == (0, 1) and first.part == pytest.approx(2 / 3, rel=1e-3)
+    # The peak comes with the load, but for a vibration.
+    assert min(abs(first.start - 4), abs(first.end - 4)) < 0.1
+    assert found.histories[1].shape == (len(half.t), len(found.places))
+    assert found.largest_range[found.worst] == np.ptp(found.histories[0][:, found.worst])
+    alone = crane.fatigue(whole, {"beam": 80e6}, safety_factor=2.0)
+    assert alone.life[alone.worst] == pytest.approx(endured / 8, rel=3e-3)
+
+
+@pytest.mark.parametrize(
+    ("manoeuvres", "category", "words"),
+    [
+        ([], 71e6, "there are no manoeuvres"),
+        ("one", 71, "write \"71 MPa\""),
+        ("one", {"boom": 71e6}, "beams are beam"),
+        ("one", {}, "no category for beam"),
+        ("one", "71 kN", "is a force"),
+        ("never", 71e6, "repetitions=0"),
+    ],
+)
+def test_fatigue_that_cannot_be_computed(manoeuvres, category, words):
+    run = crane.load("pulled.yaml", text=PULLED).simulate(duration=0.1, verify=False)
+    given = {"one": [(run, 1)], "never": [(run, 0)]}.get(manoeuvres, manoeuvres) if isinstance(manoeuvres, str) else manoeuvres
+    with pytest.raises(ValueError, match=words):
+        crane.fatigue(given, category)
+
+
+def test_what_a_hoist_must_be_able_to_do():
+    """100 kg rise by 1.5 m within 4 s at 0.5 m/s, a quarter of the time spent accelerating; results are 1 ms apart, and the force jumps between them."""
+    text = "format: 1\nname: hoist\nlinks: [{name: load, joint: {prismatic: {axis: z}}, mass: 100, com: [0, 0, 0]}]\n"
+    text += "drives: [{coordinate: load_z, rigid: true, motion: {trapezoid: {from: 0, to: 1.5, duration: 4}}}]\nrun: {duration: 5, output: 0.001}\n"
+    duties = crane.load("hoist.yaml", text=text).simulate(verify=False).duties()
+    duty = duties.drives["load_z"]
+    assert (duty.unit, duty.unit_of_rates, duty.braking_work, duties.cylinders, duties.pump) == ("N", "m/s", 0, {}, None)
+    assert [duty.effort, duty.rate, duty.power, duty.work] == pytest.approx([1031, 0.5, 515.5, 1471.5], rel=1e-3)

@@ -38,7 +38,7 @@ pub struct Strength {
     pub results: Option<PathBuf>,
 }
 
-/// Fatigue of beams by a manoeuvre that repeats.
+/// Fatigue of beams by manoeuvres that repeat.
 #[derive(Debug, Args)]
 pub struct Fatigue {
     #[command(flatten)]
@@ -48,6 +48,10 @@ pub struct Fatigue {
     /// How often the manoeuvre is repeated
     #[arg(long, value_name = "NUMBER", value_parser = above_zero)]
     pub cycles: f64,
+    /// Another manoeuvre of the same crane and how often it is repeated, as in `empty.yaml=20000`: a spec that `extends` that of the crane; may
+    /// be given several times
+    #[arg(long, value_name = "SPEC=NUMBER")]
+    pub also: Vec<String>,
     /// Detail category: range of nominal stress that a part endures 2e6 times, as in `71MPa` for all beams and `outer=80MPa` for one; may be
     /// given several times
     #[arg(long = "category", value_name = "[BEAM=]STRESS", required = true)]
@@ -59,8 +63,21 @@ pub struct Fatigue {
     #[arg(long, value_name = "NUMBER", default_value_t = 1.0, value_parser = above_zero)]
     pub safety_factor: f64,
     /// CSV file for the stresses at the point of each place that suffers most
-    #[arg(short = 'o', long = "file", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    #[arg(short = 'o', long = "file", value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "also")]
     pub results: Option<PathBuf>,
+}
+
+/// What drives must be able to do, and parts that can.
+#[derive(Debug, Args)]
+pub struct Drives {
+    #[command(flatten)]
+    pub analysis: Analysis,
+    #[command(flatten)]
+    pub timing: Timing,
+    /// List of parts to choose from: a CSV file with a column `part`, and with `torque` for motors, `force` for linear drives and winches, `bore`
+    /// for cylinders or `flow` for pumps, as in `part,torque [N m],speed [rpm]`; may be given several times
+    #[arg(long = "parts", value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
+    pub parts: Vec<PathBuf>,
 }
 
 /// Dynamic factors of a manoeuvre.
@@ -76,6 +93,9 @@ pub struct Factors {
     /// Steady speed of hoisting of that class, m/s
     #[arg(long, value_name = "NUMBER", value_parser = above_zero, requires = "hoisting_class")]
     pub hoisting_speed: Option<f64>,
+    /// Print the table of tabulated factors to compare with, and where they come from
+    #[arg(long)]
+    pub tabulated: bool,
 }
 
 /// A hoisting class.
@@ -144,7 +164,8 @@ pub struct Envelope {
     /// Radii of the load chart, m, as in `4,6,8.5` [default: round ones]
     #[arg(long = "radius", value_name = "RADIUS", value_delimiter = ',', value_parser = above_zero)]
     pub radii: Vec<f64>,
-    /// Chart to compare with, such as that of a manual: a CSV file with the columns `radius` and `load`, as in `radius [m],load [t]`
+    /// Chart to compare with, such as that of a manual: a CSV file with the columns `radius` and `load`, as in `radius [m],load [t]`, or with drives
+    /// and parameters of the ranges in place of the radius, as in `boom_psi [deg],load [t]`
     #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
     pub given: Option<PathBuf>,
     /// Give the load that all `combinations` of the spec allow, and name the one that governs

@@ -55,7 +55,7 @@ pub struct Check {
 }
 
 /// A crane with its live parameters.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Choice {
     /// Shipped crane, YAML file, or `-` for the standard input; `crane list` shows the shipped cranes
     #[arg(default_value = DEFAULT_CRANE, value_name = "CRANE")]
@@ -104,7 +104,7 @@ pub fn spec_file(name: &str) -> Option<&Path> {
 }
 
 /// Values of live parameters.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Parameters {
     /// Set a live parameter, in the unit that `crane info` shows, angles also as `30deg`; may be given several times
     #[arg(long = "set", value_name = "NAME=VALUE")]

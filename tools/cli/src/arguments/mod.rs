@@ -14,8 +14,8 @@ use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 use crate::screen::Manner;
 
 pub use analysis::{
-    Controller, Envelope, Eval, EvalFormat, Factors, Fatigue, HoistingClass, Linearise, LoadLimits, Margins, Modes,
-    Quantity, Stability, Strength,
+    Controller, Drives, Envelope, Eval, EvalFormat, Factors, Fatigue, HoistingClass, Linearise, LoadLimits, Margins,
+    Modes, Quantity, Stability, Strength,
 };
 pub use crane::{
     Analysis, Check, Choice, DEFAULT_CRANE, Example, Explain, Format, Generate, Limits, List, New, Parameters,
@@ -45,6 +45,7 @@ Examples:
   crane book my.yaml --chart \"--range boom_psi=0:60deg:13\" -o book.html
                                        the crane, its spec and its results as one document to print
   crane strength --run                 tipping margin, stresses and joint loads, at rest and during the manoeuvre
+  crane drives --parts motors.csv       what drives must be able to do, and which motors of a list can
   crane sensitivity --with load_mass,links.boom.beam.section.box.height
                                        what moves deflection, stresses, tipping and frequencies, and by how much
   crane envelope --range column_psi=0:360deg:25 --range boom_psi=0:70deg:15
@@ -102,8 +103,10 @@ pub enum Action {
     Statics(Statics),
     /// Compute tipping margin, stresses, loads on joints and ground, and the tipping load
     Strength(Strength),
-    /// Compute cycles of stress, damage and life of beams by a manoeuvre that repeats
+    /// Compute cycles of stress, damage and life of beams by manoeuvres that repeat
     Fatigue(Fatigue),
+    /// Compute what drives, cylinders and the pump must be able to do, and choose parts of lists that can
+    Drives(Drives),
     /// Compute dynamic factors: what a manoeuvre makes of forces and stresses at rest along it
     Factors(Factors),
     /// Compute what moves deflections, forces, stresses, tipping and frequencies, and by how much
@@ -178,6 +181,7 @@ impl Action {
             Action::Margins(options) => Some(&mut options.analysis.crane),
             Action::Strength(options) => Some(&mut options.analysis.crane),
             Action::Fatigue(options) => Some(&mut options.analysis.crane),
+            Action::Drives(options) => Some(&mut options.analysis.crane),
             Action::Factors(options) => Some(&mut options.analysis.crane),
             Action::Sensitivity(options) => Some(&mut options.analysis.crane),
             Action::Envelope(options) => Some(&mut options.analysis.crane),
@@ -248,6 +252,8 @@ pub enum Output {
     Strength,
     /// Damage and life of beams.
     Fatigue,
+    /// What drives must be able to do.
+    Drives,
     /// Dynamic factors.
     Factors,
     /// What moves the quantities of a crane at rest.

@@ -168,6 +168,9 @@ pub struct Page {
     /// Show what moves what at rest, too: live parameters and sizes of beams, as `crane sensitivity` computes it
     #[arg(long)]
     pub sensitivity: bool,
+    /// Show fatigue, too: options of `crane fatigue`, as in `--fatigue "--cycles 2e5 --category 71MPa"`
+    #[arg(long, value_name = "OPTIONS", allow_hyphen_values = true)]
+    pub fatigue: Option<String>,
     /// Offer to open the crane in the page as an instrument: its address, or where it lies seen from the folder of the report
     #[arg(long, value_name = "ADDRESS", value_hint = ValueHint::Url, value_parser = page_address)]
     pub instrument: Option<String>,
@@ -184,7 +187,7 @@ pub struct Book {
     /// Add the manoeuvre: its figures, and the extremes of all loads during it
     #[arg(long)]
     pub run: bool,
-    /// Add fatigue by the manoeuvre: options of `crane fatigue`, as in `--fatigue "--cycles 2e5 --category 71MPa"`
+    /// Add fatigue: options of `crane fatigue`, as in `--fatigue "--cycles 2e5 --category 71MPa"`
     #[arg(long, value_name = "OPTIONS", allow_hyphen_values = true)]
     pub fatigue: Option<String>,
     /// File to write

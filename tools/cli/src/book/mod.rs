@@ -243,16 +243,10 @@ impl Binder<'_> {
     fn print(&self, command: &str, out: &mut dyn Write) -> Outcome<()> {
         let mut words = vec!["crane".to_owned()];
         words.extend(self.shown(command)?);
-        let begin = words[..2].join(" ");
         // The crane has been read, with its combination or with rigid beams; here the words are only checked.
         words[2].clone_from(&self.options.crane.name);
         words.extend(["--format".to_owned(), "html".to_owned()]);
-        let arguments = Arguments::try_parse_from(&words).map_err(|error| {
-            let text = error.to_string();
-            let lines = text.lines().take_while(|line| !line.is_empty()).map(str::trim);
-            let title = lines.collect::<Vec<_>>().join(" ").trim_start_matches("error: ").to_owned();
-            Problem::usage(title, format!("these are options of `{begin}`: see `{begin} --help`"))
-        })?;
+        let arguments = parsed(&words)?;
         (self.dispatch)(&arguments, self.registry, out)
     }
 
@@ -271,16 +265,27 @@ impl Binder<'_> {
     }
 }
 
-/// Options that belong to the book as a whole.
+/// A command, its crane and options that were given as words of an option.
+pub fn parsed(words: &[String]) -> Outcome<Arguments> {
+    Arguments::try_parse_from(words).map_err(|error| {
+        let text = error.to_string();
+        let lines = text.lines().take_while(|line| !line.is_empty()).map(str::trim);
+        let title = lines.collect::<Vec<_>>().join(" ").trim_start_matches("error: ").to_owned();
+        let begin = words[..words.len().min(2)].join(" ");
+        Problem::usage(title, format!("these are options of `{begin}`: see `{begin} --help`"))
+    })
+}
+
+/// Options that belong to the document as a whole.
 const OWN: [&str; 8] = ["--combination", "--compile", "--format", "--help", "--out", "--rigid", "-h", "-o"];
 
 /// Refuses what is not for a section among its options.
-fn check_options(options: &str) -> Outcome<()> {
+pub fn check_options(options: &str) -> Outcome<()> {
     let words = words_of(options)?;
     match words.iter().find(|word| OWN.contains(&word.split('=').next().unwrap_or_default())) {
         Some(own) => {
             let title = format!("`{own}` is not for a single section");
-            Err(Problem::usage(title, "leave it out, or give it to `crane book` itself if it has this option"))
+            Err(Problem::usage(title, "leave it out, or give it to the command itself if it has this option"))
         }
         None => Ok(()),
     }
@@ -298,7 +303,7 @@ fn numbers_of(options: &Book) -> Vec<String> {
 }
 
 /// Words of a command, separated by blanks outside of quotation marks.
-fn words_of(command: &str) -> Outcome<Vec<String>> {
+pub fn words_of(command: &str) -> Outcome<Vec<String>> {
     let (mut words, mut word, mut quote): (Vec<String>, Option<String>, Option<char>) = (Vec::new(), None, None);
     for letter in command.chars() {
         match (quote, letter) {

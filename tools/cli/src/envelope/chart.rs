@@ -5,7 +5,7 @@ use crane_page::tables::{Cell, Grid, Heading};
 use crate::figures::wrapped;
 
 use super::{
-    given::Given,
+    given,
     letters::{legend, letter},
     rows::Row,
     surface::{Knot, Sheet, Surface, short},
@@ -21,7 +21,7 @@ const ROWS: f64 = 12.5;
 pub const SCREEN: usize = 100;
 
 /// Of a radius that is asked for.
-const UNREACHED: &str = "no pose";
+pub const UNREACHED: &str = "no pose";
 const KEY: &str = "load_chart";
 const TITLE: &str =
     "Load chart: the largest load within the limits in the best and in the worst pose that reaches a radius";
@@ -43,6 +43,15 @@ pub fn empty() -> [Grid; 2] {
     [Grid::new(KEY, TITLE, &[]), Grid::new(PLACES, "", &[])]
 }
 
+/// The limit that governs a pose, in words.
+pub fn limit_words(row: &Row) -> String {
+    match row.governing.each_ref().map(String::as_str) {
+        ["", _] => "none up to the maximum load".to_owned(),
+        [kind, ""] => kind.to_owned(),
+        [kind, of] => format!("{kind}: {of}"),
+    }
+}
+
 impl Chart<'_> {
     /// Kind of the limit that governs at a knot, and what it is a limit of.
     fn limit(&self, knot: &Knot) -> [&str; 2] {
@@ -51,11 +60,7 @@ impl Chart<'_> {
 
     /// The limit in words.
     fn limit_words(&self, knot: &Knot) -> String {
-        match self.limit(knot) {
-            ["", _] => "none up to the maximum load".to_owned(),
-            [kind, ""] => kind.to_owned(),
-            [kind, of] => format!("{kind}: {of}"),
-        }
+        self.rows.get(knot.pose).map_or_else(String::new, limit_words)
     }
 
     /// The radii that are asked for, or round ones up to the largest.
@@ -135,8 +140,8 @@ impl Chart<'_> {
         self.surface.sheets.iter().map(table).collect()
     }
 
-    /// A given chart beside the largest loads of this one.
-    pub fn beside(&self, given: &Given) -> Grid {
+    /// Given loads at radii beside the largest loads of this chart.
+    pub fn beside(&self, radii: &[f64], loads: &[f64]) -> Grid {
         let unit = &self.surface.unit;
         let several = self.surface.sheets.len() > 1;
         let headings = [
@@ -150,9 +155,9 @@ impl Chart<'_> {
         let headings: Vec<&str> = headings.iter().map(String::as_str).skip(usize::from(!several)).collect();
         let title =
             "The given chart, the largest load in the best pose of each radius, and its difference from the given one";
-        let mut grid = Grid::new("beside_the_given_chart", title, &headings);
+        let mut grid = Grid::new(given::KEY, title, &headings);
         for sheet in &self.surface.sheets {
-            for &[radius, load] in &given.0 {
+            for (&radius, &load) in radii.iter().zip(loads) {
                 let best = best_and_worst(sheet, radius).map(|[best, _]| best);
                 let computed = best.map_or(Cell::Empty, |best| rounded_down(best.load).into());
                 let difference = best.map_or(Cell::Empty, |best| Cell::Change(best.load / load - 1.0));

@@ -39,7 +39,7 @@ use crate::{
 };
 
 use chart::Chart;
-use given::Given;
+use given::{Given, Places};
 pub use identity::facts as facts_of_chart;
 pub use map::{Map, svg as map_svg};
 pub use ranges::{point, read_ranges, shown, varied};
@@ -61,7 +61,8 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
     };
     let description = crane.description();
     let unit_of_load = &description.parameters[asked.load].unit;
-    let given = options.given.as_deref().map(|file| Given::read(file, unit_of_load)).transpose()?;
+    let given = options.given.as_deref();
+    let given = given.map(|file| Given::read(file, unit_of_load, description, &asked.axes)).transpose()?;
     files::folder(&options.folder.out)?;
     let name = format!("{}_envelope", description.name);
     let (rows, journals) = rows_of(options, registry, crane.as_ref(), (&asked, &layout))?;
@@ -88,9 +89,12 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
         chart.by_radius().into_iter().chain(chart.plates()).for_each(|grid| report.shown(grid));
     }
     if let Some(given) = &given {
-        match &chart {
-            Some(chart) => report.grid(chart.beside(given)),
-            None => report.caution(Some("no chart beside the given one: no range moves the load in or out")),
+        match (&given.places, &chart) {
+            (Places::Positions(positions), _) => report.grid(given.beside(positions, &asked, &layout, &rows)),
+            (Places::Radii(radii), Some(chart)) => report.grid(chart.beside(radii, &given.loads)),
+            (Places::Radii(_), None) => {
+                report.caution(Some("no chart beside the given one: no range moves the load in or out"))
+            }
         }
     }
     report.data(by_radius);

@@ -107,7 +107,7 @@ fn in_degrees(values: &str) -> String {
 }
 
 /// Unit of a drive's position or of a live parameter.
-fn unit_of(varied: Varied, description: &Description) -> &str {
+pub fn unit_of(varied: Varied, description: &Description) -> &str {
     match varied {
         Varied::Drive(drive) => description.coordinates[description.drives[drive].coordinate].kind.unit(),
         Varied::Parameter(parameter) => &description.parameters[parameter].unit,

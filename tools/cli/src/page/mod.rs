@@ -21,8 +21,8 @@ use crane_page::{
 use serde_json::Value;
 
 use crate::{
-    arguments::{Limits, Page},
-    compiled, files,
+    arguments::{Action, Limits, Page},
+    book, compiled, fatigue, files,
     integration::{prepare, runs},
     problem::Outcome,
     refinement, screen,
@@ -37,7 +37,9 @@ pub fn report(options: &Page, registry: &Registry, out: &mut dyn Write) -> Outco
     let cases = cases(crane.as_ref(), twin.as_deref());
     let chart = options.envelope.as_deref().map(|table| chart::read_chart(table, crane.as_ref())).transpose()?;
     let moves = if options.sensitivity { moves(crane.as_ref(), registry)? } else { Value::Null };
-    let extras = Extras { chart: chart.unwrap_or_default(), moves, instrument: options.instrument.as_deref() };
+    let fatigue = options.fatigue.as_ref().map(|given| fatigue_of(options, given, registry)).transpose()?;
+    let instrument = options.instrument.as_deref();
+    let extras = Extras { chart: chart.unwrap_or_default(), moves, instrument, fatigue };
     let prepared = prepare(&cases, &options.timing, Method::RECOMMENDED)?;
     let (settings, runs) = runs(&cases, &options.timing, options.crane.limits, prepared)?;
     write_with(&options.file, registry, (&cases, options.crane.limits), &settings, &runs, extras)?;
@@ -53,6 +55,21 @@ struct Extras<'a> {
     moves: Value,
     /// Address of the page as an instrument.
     instrument: Option<&'a str>,
+    /// Facts and tables of fatigue.
+    fatigue: Option<Report>,
+}
+
+/// Fatigue of the crane of a page, with options of `crane fatigue`.
+fn fatigue_of(options: &Page, given: &str, registry: &Registry) -> Outcome<Report> {
+    book::check_options(given)?;
+    let words = ["crane", "fatigue", &options.crane.name].map(str::to_owned).into_iter().chain(book::words_of(given)?);
+    match book::parsed(&words.collect::<Vec<_>>())?.action {
+        Some(Action::Fatigue(mut asked)) => {
+            asked.analysis.crane = options.crane.clone();
+            fatigue::report(&asked, registry)
+        }
+        _ => Ok(Report::default()),
+    }
 }
 
 /// What moves what at rest.
@@ -103,10 +120,12 @@ fn write_with(
             run: Some(run),
         })
         .collect();
-    let Extras { chart: LoadCharts { figures, facts }, moves, instrument } = extras;
+    let Extras { chart: LoadCharts { figures, facts }, moves, instrument, fatigue } = extras;
+    let mut tables = all_tables(registry, cases, limits, runs)?;
+    tables.append(fatigue.unwrap_or_default());
     let texts = Texts {
         moves,
-        tables: Some(all_tables(registry, cases, limits, runs)?),
+        tables: Some(tables),
         chart: figures,
         load_chart: facts,
         command: Some(compiled::typed()),

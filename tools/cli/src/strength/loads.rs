@@ -3,9 +3,12 @@
 use crane_live::LiveCrane;
 use crane_model::{
     dyn_crane::DynCrane,
-    envelope::{Critical, CriticalLoad, Followed, LoadFactor, critical_load, is_load, load_factor, only_mass},
+    envelope::{
+        Critical, CriticalLoad, Followed, LoadFactor, SecondOrder, critical_load, is_load, load_factor, only_mass,
+        second_order,
+    },
 };
-use crane_page::tables::{Cell, Report};
+use crane_page::tables::{Cell, Grid, Report};
 
 use serde_json::{Map, Value, json};
 
@@ -57,6 +60,39 @@ pub fn factor(report: &mut Report, crane: &LiveCrane) {
     }
     let followed = followed.map(|Followed { factor, status }| json!({"factor": factor, "status": status.name()}));
     report.value("critical_factor", json!({"linearised": linearised, "followed": followed}));
+}
+
+/// Adds deflections and bending moments by the first order beside those at rest.
+pub fn orders(report: &mut Report, crane: &LiveCrane) {
+    let title =
+        "First and second order: how far weight and loads move points, and the largest bending moment of each beam";
+    let headers = ["quantity", "place", "first order", "second order", "factor", "unit"];
+    let mut grid = Grid::new("second_order", title, &headers);
+    let (mut crane, parameter) = crane.with_load_factor();
+    let found = second_order(&mut crane, parameter);
+    if found.is_none() {
+        report.line("first order", "not computed: without weight and loads the crane does not rest nearby", "");
+    }
+    let SecondOrder { points, beams } = found.unwrap_or_default();
+    let description = (&crane as &dyn DynCrane).description();
+    let mut row = |quantity: String, place: Option<String>, [first, second]: [f64; 2], unit: &str| {
+        let factor = (first > 0.0).then(|| second / first);
+        grid.row([
+            quantity.into(),
+            place.map_or(Cell::Empty, Cell::from),
+            first.into(),
+            second.into(),
+            factor.into(),
+            unit.into(),
+        ]);
+    };
+    for (name, displacements) in description.points.iter().zip(&points) {
+        row(format!("displacement of {name}"), None, displacements.map(|moved| moved.norm()), "m");
+    }
+    for (place, moments) in &beams {
+        row(format!("bending of {}", place.beam(description)), Some(place.location(description)), *moments, "N m");
+    }
+    report.grid(grid);
 }
 
 /// Adds the loads at which the first foot carries nothing, and at which the crane tips, or why there is none.

@@ -67,7 +67,9 @@ pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) ->
     }
     let crane = crane.as_ref();
     if options.buckling {
-        loads::factor(&mut report, &registry.live(crane)?);
+        let live = registry.live(crane)?;
+        loads::factor(&mut report, &live);
+        loads::orders(&mut report, &live);
     }
     report.grid(stresses::table(crane.description(), &moduli, &rest, changes.flatten().as_deref()));
     report.grid(tables::tipping(crane.description(), &rest.lines));
@@ -98,7 +100,7 @@ fn along(timing: (&Timing, Limits), crane: &dyn DynCrane, report: &mut Report) -
 }
 
 /// Loads along the manoeuvre, one entry per result, with the cautions of the run.
-pub fn history(timing: (&Timing, Limits), crane: &dyn DynCrane, report: &mut Report) -> Outcome<Vec<Instant>> {
+fn history(timing: (&Timing, Limits), crane: &dyn DynCrane, report: &mut Report) -> Outcome<Vec<Instant>> {
     let (_, recorded) = record_manoeuvre(timing, crane, report)?;
     Ok(instants(crane, recorded.table.rows.iter()))
 }

@@ -2,6 +2,7 @@
 
 mod cautions;
 mod documents;
+mod drives;
 mod ensemble;
 mod margins;
 mod messages;

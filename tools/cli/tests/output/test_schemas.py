@@ -104,6 +104,8 @@ def test_strength(output, crane_name, options):
 def test_strength_with_buckling(output):
     found = output("strength", "strength", "eight_link_flexible", "--buckling")
     assert found["critical_factor"]["followed"] is None or found["critical_factor"]["followed"]["factor"] > 1
+    orders = {row["quantity"]: row for row in found["second_order"]}
+    assert orders["bending of boom"]["place"].startswith("boom") and orders["bending of boom"]["factor"] > 0
 
 
 COMBINED = """
@@ -133,8 +135,16 @@ def test_fatigue(output):
     assert found["life"] > 0 and {row["beam"] for row in found["fatigue"]} and found["units"]["fatigue"]["largest_range"] == "Pa"
 
 
+def test_drives(output, tmp_path):
+    parts = tmp_path / "parts.csv"
+    parts.write_text("part,bore [mm],rod [mm],pressure [bar]\nA,80,50,250\n")
+    found = output("drives", "drives", "eight_link_hydraulic", "--duration", "0.5", "--parts", parts)
+    assert {row["for"] for row in found["parts"]} == {row["cylinder"] for row in found["cylinder_duties"]}
+    assert found["units"]["parts"]["pressure"] == "Pa" and len(found["duties"]) >= len(found["cylinder_duties"])
+
+
 def test_factors(output):
-    found = output("factors", "factors", "eight_link_flexible", "--duration", "1", "--interval", "0.02")
+    found = output("factors", "factors", "eight_link_flexible", "--duration", "1", "--interval", "0.02", "--tabulated")
     assert any(row["quantity"] == "stress of boom" for row in found["factors"]) or found["greatest_factor"] > 0
 
 

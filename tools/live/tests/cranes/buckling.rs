@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 
 use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
-use crane_model::envelope::{Followed, LoadFactor, load_factor};
+use crane_model::dyn_crane::DynCrane;
+use crane_model::envelope::{Followed, LoadFactor, SecondOrder, load_factor, second_order};
 
 fn factors(text: String) -> LoadFactor {
     let crane = LiveCrane::from_spec(&SourceFile::new("buckling.yaml", text)).expect("a crane");
@@ -73,4 +74,35 @@ fn a_narrow_cantilever_buckles_sideways() {
     let [eight, sixteen] = [8, 16].map(error);
     assert!(eight.abs() < 0.01, "{eight} {sixteen}");
     assert!(sixteen.abs() < 0.3 * eight.abs() + 1e-4, "{eight} {sixteen}");
+}
+
+/// A column with a force across its top: with `u = L √(P/EJ)`, the deflection is `3 (tan u − u)/u³` times that of the first order, `H L³/3EJ`, and the moment at its
+/// foot `tan u/u` times `H L`. Near Euler's load both become `1/(1 − P/P_cr)`. \[S. Timoshenko, J. M. Gere, Theory of Elastic Stability, 1961, section 1.3]
+#[test]
+fn the_second_order_of_a_column_is_that_of_timoshenko() {
+    let (stiffness, length, across) = (bending_stiffness(), 6.0, 20.0);
+    let euler = PI.powi(2) * stiffness / (4.0 * length * length);
+    for part in [0.1, 0.5] {
+        let text = post(16, [across, 0.0, -part * euler]) + "points: [{name: top, link: post, at: [6, 0, 0]}]\n";
+        let crane = LiveCrane::from_spec(&SourceFile::new("column.yaml", text)).expect("a crane");
+        let (mut crane, parameter) = crane.with_load_factor();
+        let SecondOrder { points, beams } = second_order(&mut crane, parameter).expect("a crane at rest");
+        let description = (&crane as &dyn DynCrane).description();
+        let (place, moments) = beams[0];
+        assert!(place.x == 0.0 && place.beam(description) == "post", "{place:?}");
+        let u = length * (part * euler / stiffness).sqrt();
+        let of_deflection = 3.0 * (u.tan() - u) / u.powi(3);
+        // The top also sinks, by squares of its angle; 16 sections buckle at 0.25 % of Euler's load away.
+        let deflection = across * length.powi(3) / (3.0 * stiffness);
+        let [first, second] = points[0].map(|moved| moved.x);
+        for (found, exact, tolerance) in [
+            (first, deflection, 2e-3),
+            (second / first, of_deflection, 5e-3),
+            (moments[0], across * length, 1e-3),
+            (moments[1] / moments[0], u.tan() / u, 5e-3),
+        ] {
+            assert!((found / exact - 1.0).abs() < tolerance, "{part}: {found}, not {exact}");
+        }
+        assert!((of_deflection * (1.0 - part) - 1.0).abs() < 0.02, "the rule of thumb");
+    }
 }

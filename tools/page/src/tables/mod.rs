@@ -26,5 +26,5 @@ pub use modes::{damped_mode, damped_modes, names, stable_steps, undamped_modes};
 pub use page::of_page;
 pub use report::{FORMAT, Report};
 pub(crate) use runs::pace;
-pub use runs::{add_events, add_runs, caution_of_runs, extremes};
+pub use runs::{add_duties, add_events, add_runs, caution_of_runs, extremes};
 pub use statics::{Case, FLEXIBLE, RIGID, deflection, equilibria, verdicts};

@@ -36,7 +36,7 @@ pub fn of_page(cases: &[Case<'_>], runs: &[&Recorded], bend: f64, changes: Optio
     if !labelled.is_empty() {
         report.grid(extremes(&labelled));
         let of_runs = cases.iter().zip(runs).map(|(case, run)| (case.label, case.crane, *run));
-        add_runs(&mut report, description, &of_runs.collect::<Vec<_>>());
+        add_runs(&mut report, &of_runs.collect::<Vec<_>>());
     }
     if case.equilibrium.is_stable() {
         let modes = undamped_modes(case, changes).map_err(|error| Reason::Modes(error).of(&description.name))?;

@@ -73,6 +73,16 @@ impl Report {
         self.excerpt(grid, usize::MAX);
     }
 
+    /// Adds what another one has.
+    pub fn append(&mut self, other: Report) {
+        let Report { facts, values, cautions, grids, data, all: _ } = other;
+        self.facts.extend(facts);
+        self.values.extend(values);
+        self.grids.extend(grids);
+        self.data.extend(data);
+        cautions.into_iter().for_each(|words| self.caution(Some(words)));
+    }
+
     /// Adds a table before all others.
     pub fn grid_first(&mut self, grid: Grid) {
         self.grids.insert(0, (grid, usize::MAX));

@@ -1,9 +1,9 @@
 //! Runs: minimum and maximum values, when they occur, and how far off they may be; work, energy balance and time.
 
 use crane_model::{
-    ColumnKind, Description,
+    DisplayUnit,
     dyn_crane::DynCrane,
-    results::{Extremes, Table, column_name, drive_effort, headlines},
+    results::{CylinderDuty, DriveDuty, Duties, Extremes, PumpDuty, headlines},
     runs::Recorded,
 };
 
@@ -40,55 +40,57 @@ pub fn extremes(runs: &[(&str, &Recorded)]) -> Grid {
 }
 
 /// Work, energy balance and time of runs, one column each.
-fn summary(runs: &[(&str, &Recorded)]) -> Grid {
+fn summary(runs: &[(&str, &Recorded)], duties: &[Duties]) -> Grid {
     let values = runs.iter().map(|(label, _)| Heading::of(label, VALUE));
     let headings = [Heading::from("quantity")].into_iter().chain(values).chain(["unit".into()]).collect();
     let mut grid = Grid::with_headings("summary", "Run", headings);
-    let mut row = |name: String, unit: &str, value: &dyn Fn(&Recorded) -> Option<f64>| {
-        let values: Vec<Option<f64>> = runs.iter().map(|(_, run)| value(run)).collect();
+    let mut row = |name: &str, unit: &str, values: &mut dyn Iterator<Item = Option<f64>>| {
+        let values: Vec<Option<f64>> = values.collect();
         if values.iter().all(Option::is_none) {
             return;
         }
-        let values = values.into_iter().map(Cell::from);
-        grid.row([name.into()].into_iter().chain(values).chain([unit.into()]).collect::<Vec<_>>());
+        let values = values.into_iter().map(|value| value.map_or(Cell::Empty, |value| Cell::of_unit(value, unit)));
+        grid.row([name.into()].into_iter().chain(values).chain([Cell::unit_of(unit)]).collect::<Vec<_>>());
     };
     let greatest = |run: &Recorded, column: &str| run.table.values(column).map(|v| v.map(f64::abs).fold(0.0, f64::max));
     let last = |run: &Recorded, column: &str| run.table.values(column).and_then(Iterator::last);
-    row("work of the drives".to_owned(), "J", &|run| last(run, "drive_work"));
-    row("energy that came with events".to_owned(), "J", &|run| last(run, "event_work"));
-    row("dissipated".to_owned(), "J", &|run| last(run, "dissipated_energy"));
-    row("energy balance, largest error".to_owned(), "J", &|run| greatest(run, "energy_balance"));
-    row("energy of the pump".to_owned(), "J", &|run| Some(integral(&run.table, &column(&run.table, PUMP)?)));
-    row("power of the pump, maximum".to_owned(), "W", &|run| greatest(run, PUMP));
+    let recorded = || runs.iter().map(|(_, run)| *run);
+    row("work of the drives", "J", &mut recorded().map(|run| last(run, "drive_work")));
+    row("energy that came with events", "J", &mut recorded().map(|run| last(run, "event_work")));
+    row("dissipated", "J", &mut recorded().map(|run| last(run, "dissipated_energy")));
+    row("energy balance, largest error", "J", &mut recorded().map(|run| greatest(run, "energy_balance")));
+    let of_pump: [(&str, &str, fn(PumpDuty) -> f64); 4] = [
+        ("energy of the pump", "J", |pump| pump.energy),
+        ("power of the pump, maximum", "W", |pump| pump.power),
+        ("flow of the pump, maximum", "m³/s", |pump| pump.flow),
+        ("pressure of the pump, maximum", "Pa", |pump| pump.pressure),
+    ];
+    for (name, unit, of) in of_pump {
+        row(name, unit, &mut duties.iter().map(|duties| duties.pump.map(of)));
+    }
     if runs.iter().any(|(_, run)| run.wall.is_some()) {
-        row("wall time".to_owned(), "s", &|run| Some(pace(run)?.0));
-        row("real-time factor".to_owned(), "", &|run| Some(pace(run)?.1));
+        row("wall time", "s", &mut recorded().map(|run| Some(pace(run)?.0)));
+        row("real-time factor", "", &mut recorded().map(|run| Some(pace(run)?.1)));
     }
     grid
 }
 
-/// The column with the power of the pump.
-const PUMP: &str = "pump_power";
-
-/// The values of a column; `None` if there is none of that name.
-fn column(table: &Table, name: &str) -> Option<Vec<f64>> {
-    table.values(name).map(Iterator::collect)
-}
-
-/// The integral of numbers over the times of a table, by the trapezoidal rule.
-fn integral(table: &Table, values: &[f64]) -> f64 {
-    let Some(t) = column(table, "t") else { return 0.0 };
-    t.windows(2).zip(values.windows(2)).map(|(t, values)| 0.5 * (values[0] + values[1]) * (t[1] - t[0])).sum()
-}
-
 /// Adds the tables of some runs: what happens, work and time, and what drives do.
-pub fn add_runs(report: &mut Report, description: &Description, runs: &[(&str, &dyn DynCrane, &Recorded)]) {
-    let recorded: Vec<(&str, &Recorded)> = runs.iter().map(|(label, _, run)| (*label, *run)).collect();
+pub fn add_runs(report: &mut Report, runs: &[(&str, &dyn DynCrane, &Recorded)]) {
     let cranes: Vec<(&str, &dyn DynCrane, f64)> =
         runs.iter().map(|(label, crane, run)| (*label, *crane, run.run.time)).collect();
     add_events(report, &cranes);
-    report.grid(summary(&recorded));
-    report.grid(duties(description, &recorded));
+    add_duties(report, runs);
+}
+
+/// Adds work and time of some runs, and what drives and cylinders do.
+pub fn add_duties(report: &mut Report, runs: &[(&str, &dyn DynCrane, &Recorded)]) {
+    let recorded: Vec<(&str, &Recorded)> = runs.iter().map(|(label, _, run)| (*label, *run)).collect();
+    let duties: Vec<Duties> = runs.iter().map(|(_, crane, run)| Duties::of(crane.description(), &run.table)).collect();
+    let labelled: Vec<(&str, &Duties)> = runs.iter().map(|(label, ..)| *label).zip(&duties).collect();
+    report.grid(summary(&recorded, &duties));
+    report.grid(of_drives(&labelled));
+    report.grid(of_cylinders(&labelled));
 }
 
 /// Adds what happens to some cranes up to the ends of their runs, s: a row per event and parameter.
@@ -116,9 +118,25 @@ pub fn add_events(report: &mut Report, cranes: &[(&str, &dyn DynCrane, f64)]) {
     report.grid(grid);
 }
 
-/// What each drive must be able to do in some runs, a row per drive and run: to choose motors, gears and cylinders by. Powers are those of the drive on its
-/// joint, at the results.
-fn duties(description: &Description, runs: &[(&str, &Recorded)]) -> Grid {
+/// Headings of a table with a row per part and run: the second one only where there are several runs.
+fn headings<const N: usize>(names: [&str; N], runs: usize) -> Vec<&str> {
+    names.into_iter().filter(|name| runs > 1 || *name != "crane").collect()
+}
+
+/// Names of parts of all runs, each once.
+fn names<'a>(runs: &[(&str, &'a Duties)], of: fn(&'a Duties) -> Vec<&'a str>) -> Vec<&'a str> {
+    let mut names = Vec::new();
+    for name in runs.iter().flat_map(|(_, duties)| of(duties)) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+/// What each drive must be able to do in some runs, a row per drive and run: to choose motors and gears by. Powers are those of the drive on its
+/// joint, and of a winch on its rope, at the results.
+fn of_drives(runs: &[(&str, &Duties)]) -> Grid {
     let headers = [
         "drive",
         "crane",
@@ -132,38 +150,60 @@ fn duties(description: &Description, runs: &[(&str, &Recorded)]) -> Grid {
         "work [J]",
         "braking work [J]",
     ];
-    let alone = runs.len() < 2;
-    let headers: Vec<&str> = headers.into_iter().filter(|header| !alone || *header != "crane").collect();
     let title = "Drives over the run: largest effort, its root mean square, fastest rate, largest power and work that it gives, and that it takes in as a brake";
-    let mut grid = Grid::new("duties", title, &headers);
-    for drive in &description.drives {
-        let coordinate = &description.coordinates[drive.coordinate];
-        for (label, run) in runs {
-            let table = &run.table;
-            let effort = column(table, &drive_effort(&coordinate.name, coordinate.kind));
-            let rate = column(table, &column_name(ColumnKind::Rate, &coordinate.name, coordinate.kind.turns()));
-            let (Some(effort), Some(rate), Some(t)) = (effort, rate, column(table, "t")) else { continue };
-            let duration = t.last().copied().unwrap_or_default() - t.first().copied().unwrap_or_default();
-            let power =
-                |sign: f64| effort.iter().zip(&rate).map(|(f, v)| (sign * f * v).max(0.0)).collect::<Vec<f64>>();
-            let [gives, brakes] = [1.0, -1.0].map(power);
-            let most = |values: &[f64]| values.iter().map(|value| value.abs()).fold(0.0, f64::max);
-            let squares: Vec<f64> = effort.iter().map(|effort| effort * effort).collect();
-            let rms = if duration > 0.0 { (integral(table, &squares) / duration).sqrt() } else { most(&effort) };
-            let kind = coordinate.kind;
-            let crane = (!alone).then(|| Cell::from(*label));
+    let mut grid = Grid::new("duties", title, &headings(headers, runs.len()));
+    for drive in names(runs, |duties| duties.drives.iter().map(|duty| duty.name.as_str()).collect()) {
+        for (label, duties) in runs {
+            let Some(duty) = duties.drives.iter().find(|duty| duty.name == drive) else { continue };
+            let DriveDuty { kind, effort, rms, rate, power, braking_power, work, braking_work, .. } = duty;
+            let crane = (runs.len() > 1).then(|| Cell::from(*label));
             let numbers = [
-                most(&effort).into(),
-                rms.into(),
+                (*effort).into(),
+                (*rms).into(),
                 kind.force_unit().into(),
-                most(&rate).into(),
+                (*rate).into(),
                 format!("{}/s", kind.unit()).into(),
-                most(&gives).into(),
-                most(&brakes).into(),
-                integral(table, &gives).into(),
-                integral(table, &brakes).into(),
+                (*power).into(),
+                (*braking_power).into(),
+                (*work).into(),
+                (*braking_work).into(),
             ];
-            grid.row([coordinate.name.as_str().into()].into_iter().chain(crane).chain(numbers).collect::<Vec<_>>());
+            grid.row([drive.into()].into_iter().chain(crane).chain(numbers).collect::<Vec<_>>());
+        }
+    }
+    grid
+}
+
+/// What each cylinder must be able to do in some runs, a row per cylinder and run.
+fn of_cylinders(runs: &[(&str, &Duties)]) -> Grid {
+    let headers = [
+        "cylinder",
+        "crane",
+        "push [N]",
+        "pull [N]",
+        "pressure [bar]",
+        "speed [m/s]",
+        "flow [l/min]",
+        "shortest [m]",
+        "longest [m]",
+    ];
+    let title = "Cylinders over the run: largest forces, highest pressure, fastest speed, largest flow, lengths between the pins";
+    let mut grid = Grid::new("cylinder_duties", title, &headings(headers, runs.len()));
+    for cylinder in names(runs, |duties| duties.cylinders.iter().map(|duty| duty.name.as_str()).collect()) {
+        for (label, duties) in runs {
+            let Some(duty) = duties.cylinders.iter().find(|duty| duty.name == cylinder) else { continue };
+            let CylinderDuty { push, pull, pressure, speed, flow, lengths: [shortest, longest], .. } = *duty;
+            let crane = (runs.len() > 1).then(|| Cell::from(*label));
+            let numbers = [
+                push.into(),
+                pull.into(),
+                Cell::Shown(pressure, DisplayUnit::Bar),
+                speed.into(),
+                Cell::Shown(flow, DisplayUnit::LitrePerMinute),
+                shortest.into(),
+                longest.into(),
+            ];
+            grid.row([cylinder.into()].into_iter().chain(crane).chain(numbers).collect::<Vec<_>>());
         }
     }
     grid

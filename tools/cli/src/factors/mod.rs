@@ -1,5 +1,7 @@
 //! `crane factors`: dynamic factors, what a manoeuvre makes of what the crane carries at rest along it.
 
+mod tabulated;
+
 use std::io::Write;
 
 use crane_model::{
@@ -11,7 +13,7 @@ use crane_model::{
 use crane_page::tables::{Case, Cell, Grid, Report, VALUE, verdicts};
 
 use crate::{
-    arguments::{self, HoistingClass},
+    arguments,
     integration::{progress, show},
     problem::{Outcome, Problem},
     selection::Registry,
@@ -60,10 +62,13 @@ pub fn factors(options: &arguments::Factors, registry: &Registry, out: &mut dyn 
     }
     if let Some(class) = options.hoisting_class {
         let speed = options.hoisting_speed.unwrap_or_default();
-        let name = format!("φ₂ of class {} at {speed} m/s, EN 1991-3", class.name());
-        report.fact_as("tabulated_factor", name, class.factor(speed), "");
+        let (class, factor) = tabulated::of_class(class, speed);
+        report.fact_as("tabulated_factor", format!("φ₂ of class {class} at {speed} m/s, EN 1991-3"), factor, "");
     }
     report.grid(table(&rows));
+    if options.tabulated {
+        report.grid(tabulated::table());
+    }
     report.show_all(options.analysis.all);
     options.analysis.format.print(&report, out)
 }
@@ -164,27 +169,4 @@ fn table(rows: &[Row]) -> Grid {
         ]);
     }
     grid
-}
-
-impl HoistingClass {
-    /// As the standard writes it.
-    fn name(self) -> &'static str {
-        match self {
-            Self::Hc1 => "HC1",
-            Self::Hc2 => "HC2",
-            Self::Hc3 => "HC3",
-            Self::Hc4 => "HC4",
-        }
-    }
-
-    /// `φ₂ = φ₂min + β₂ v` for a speed of hoisting, m/s; EN 1991-3:2006, tables 2.4 and 2.5.
-    fn factor(self, speed: f64) -> f64 {
-        let [least, slope] = match self {
-            Self::Hc1 => [1.05, 0.17],
-            Self::Hc2 => [1.10, 0.34],
-            Self::Hc3 => [1.15, 0.51],
-            Self::Hc4 => [1.20, 0.68],
-        };
-        least + slope * speed
-    }
 }
