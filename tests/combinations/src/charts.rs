@@ -1,15 +1,13 @@
-//! Load charts: a pose of a chart is the pose at rest of the spec whose drives hold its positions.
-
-use std::sync::Mutex;
+//! Load charts: a pose of a chart is the pose at rest of the spec whose drives hold its positions, and what governs its load is a limit.
 
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynModel};
-use crane_model::envelope::{Axes, Axis, Condition, Envelope, Execution, Limits, Rating, Varied, only_mass};
-use crane_model::statics::Settings;
+use crane_model::envelope::{Axes, Axis, Condition, Envelope, Limit, Limits, Rating, Varied, only_mass};
+use crane_model::statics::{RestSearch, Settings};
 use fastrand::Rng;
 use serde_json::{Value, json};
 
-use crate::observe::live;
+use crate::observe::{live, rate};
 use crate::tree::{Tree, source, without_unused_offset};
 
 /// The name of the check.
@@ -48,9 +46,9 @@ pub fn check_charts(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     let least = crane_model::envelope::range_of_loads(&crane, load, None)[0];
     let axes = Axes(vec![Axis { varied: Varied::Drive(drive), values: vec![start, position] }]);
     let asked = Envelope { axes, load, loads: [least, GREATEST], limits, factor: 1.0 };
-    let rating = rate(&crane, &asked)?;
+    let rating = rate(&crane, asked)?;
 
-    let mut wrong = Vec::new();
+    let mut wrong: Vec<String> = limits_nothing(&crane, load).into_iter().collect();
     let at = |rated: f64| format!("{name} at {position}, {rated} kg");
     let mut stands = |value: f64| -> Option<Condition> {
         held.set_parameter(held_load, value).ok()?;
@@ -84,14 +82,33 @@ pub fn check_charts(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     Some(wrong)
 }
 
-/// The rating of the second pose.
-fn rate(crane: &LiveCrane, asked: &Envelope) -> Option<Rating> {
-    let found = Mutex::new(Vec::new());
-    let done = |_: usize, ratings: &[Rating]| {
-        if let Ok(mut found) = found.lock() {
-            found.extend(ratings.to_vec());
-        }
+/// How much more than the largest load is beyond what limits it: a hundred times the accuracy of the search.
+const BEYOND: f64 = 1e-4;
+
+/// What a chart names as the limit at the pose of the spec, and is none: with a little more load the crane is beyond it, or rests no more, and with the
+/// largest load it is within all limits.
+fn limits_nothing(crane: &LiveCrane, load: usize) -> Option<String> {
+    let limits = Limits::usual(crane.description());
+    let loads = crane_model::envelope::range_of_loads(crane, load, None);
+    let asked =
+        Envelope { axes: Axes::default(), load, loads: [loads[0], GREATEST], limits: limits.clone(), factor: 1.0 };
+    let Rating { load: Some(rated), governing, loaded: Some(loaded), .. } = rate(crane, asked)? else { return None };
+    let mut crane = crane.clone();
+    let mut beyond = |value: f64| {
+        crane.set_parameter(load, value).ok()?;
+        let whole: &dyn DynCrane = &crane;
+        let positions: Vec<f64> = whole.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
+        let found = RestSearch { crane: whole, positions: &positions }.find_near(&loaded.q)?;
+        let limits = Condition::at(whole, found.q, &positions).exceeded(whole, &limits);
+        Some(limits.into_iter().map(|margin| margin.limit).collect::<Vec<Limit>>())
     };
-    asked.run(crane, &[0], &Execution { threads: 1, done: &done, cancelled: &|| false }).ok()?;
-    found.into_inner().ok()?.pop()
+    if let Some(limit) = beyond(rated * (1.0 - BEYOND)).and_then(|limits| limits.first().copied()) {
+        return Some(format!("{rated} kg is the largest load, and with less the crane is beyond {limit:?}"));
+    }
+    let more = beyond(rated * (1.0 + BEYOND))?;
+    match governing {
+        None => None,
+        Some(limit) if more.iter().any(|other| other.kind() == limit.kind()) => None,
+        Some(limit) => Some(format!("{limit:?} limits nothing: with more than {rated} kg, {more:?}")),
+    }
 }

@@ -1,10 +1,13 @@
 //! All checks of one crane.
 
+use crane_live::LiveCrane;
 use fastrand::Rng;
 
 use crate::crane::{Case, with_features};
 use crate::feature::Features;
-use crate::observe::{CAUTIONS, differences, live, live_with, observe, observe_with};
+use crate::observe::{
+    CAUTIONS, Extent, TIPPING_MARGIN, differences, equilibrium, live, live_with, observe, observe_with,
+};
 use crate::tree::{Tree, source, text};
 use crate::{changes, charts, combined, descriptions, events, fleets, laws, meshes, run_changes, servos, shown};
 
@@ -52,22 +55,29 @@ pub fn names() -> Vec<&'static str> {
 }
 
 /// What a check says of a spec: `None` where it does not apply, else what is wrong.
-fn apply(check: &str, tree: &Tree, seed: u64, run: bool) -> Option<Vec<String>> {
+fn apply(check: &str, tree: &Tree, seed: u64, extent: Extent) -> Option<Vec<String>> {
     if let Some((_, description)) = descriptions::ALL.iter().find(|(name, _)| *name == check) {
         let second = description(tree, &mut Rng::with_seed(seed))?;
-        let moves = run && second.moves;
-        let mut first = observe(&source(second.first.as_ref().unwrap_or(tree)), moves).ok()?;
-        return Some(match observe_with(&second.source, &second.set, moves) {
+        let extent = Extent { run: extent.run && second.moves, ..extent };
+        let mut first = observe(&source(second.first.as_ref().unwrap_or(tree)), extent).ok()?;
+        return Some(match observe_with(&second.source, &second.set, extent) {
             Ok(mut numbers) => {
-                if !second.cautions {
-                    for numbers in [&mut first, &mut numbers] {
-                        numbers.retain(|_, number| number.group != CAUTIONS);
+                for numbers in [&mut first, &mut numbers] {
+                    if second.signs {
+                        numbers.values_mut().for_each(|number| number.value = number.value.abs());
                     }
+                    numbers.retain(|name, number| {
+                        !second.without.contains(&number.group) && (second.links || !name.ends_with(TIPPING_MARGIN))
+                    });
                 }
                 let missing = differences([&first, &numbers], &second.name, &second.factor);
                 let cautions =
                     numbers.iter().filter(|(name, number)| number.group == CAUTIONS && !first.contains_key(*name));
-                let set = live_with(&second.source, &second.set).ok().filter(|_| !second.set.is_empty());
+                // Exported files are of parameters, and say nothing of inputs.
+                let sets = |crane: &LiveCrane| {
+                    crane.chain().parameters.iter().any(|own| second.set.iter().any(|(name, _)| own.name == *name))
+                };
+                let set = live_with(&second.source, &second.set).ok().filter(sets);
                 let shown = live(&source(tree)).ok().zip(set).map(|(written, set)| shown::differences(&written, &set));
                 missing
                     .into_iter()
@@ -112,7 +122,7 @@ fn apply(check: &str, tree: &Tree, seed: u64, run: bool) -> Option<Vec<String>> 
 /// Checks a crane, with `most` checks chosen at random; failures are shrunk.
 #[must_use]
 pub fn check_case(case: &Case, only: Option<&str>, most: usize, shrink: bool) -> Outcome {
-    if let Err(refused) = observe(&source(&case.tree), false) {
+    if let Err(refused) = live(&source(&case.tree)).and_then(|crane| equilibrium(&crane)) {
         return Outcome { refused: Some(refused), ..Outcome::default() };
     }
     let mut chosen: Vec<&'static str> =
@@ -124,23 +134,23 @@ pub fn check_case(case: &Case, only: Option<&str>, most: usize, shrink: bool) ->
         if outcome.checks == most {
             break;
         }
-        // Runs take most of the time: a third of the cranes runs.
-        let run = case.seed.is_multiple_of(3);
-        let Some(what) = apply(name, &case.tree, case.seed, run) else { continue };
+        // Runs and searches take most of the time: a third of the cranes runs, and another one is loaded until it falls.
+        let extent = Extent { run: case.seed.is_multiple_of(3), searches: case.seed % 3 == 1 };
+        let Some(what) = apply(name, &case.tree, case.seed, extent) else { continue };
         outcome.checks += 1;
         if !what.is_empty() {
             let failure = Failure { check: name, what, spec: text(&case.tree), features: case.features.clone() };
-            outcome.failures.push(if shrink { shrunk(case, failure, run) } else { failure });
+            outcome.failures.push(if shrink { shrunk(case, failure, extent) } else { failure });
         }
     }
     outcome
 }
 
 /// Leaves out features, then entries, as long as the check fails.
-fn shrunk(case: &Case, mut failure: Failure, run: bool) -> Failure {
+fn shrunk(case: &Case, mut failure: Failure, extent: Extent) -> Failure {
     let mut tree = case.tree.clone();
     let fails = |tree: &Tree, failure: &mut Failure| {
-        let what = apply(failure.check, tree, case.seed, run).filter(|what| !what.is_empty());
+        let what = apply(failure.check, tree, case.seed, extent).filter(|what| !what.is_empty());
         what.map(|what| (failure.what, failure.spec) = (what, text(tree))).is_some()
     };
     for feature in case.features.iter().rev() {

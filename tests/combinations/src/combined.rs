@@ -6,7 +6,7 @@ use crane_model::envelope::only_mass;
 use fastrand::Rng;
 use serde_json::{Value, json};
 
-use crate::observe::{LOADS, differences, live, observe_live, rated_load};
+use crate::observe::{BETWEEN, Extent, differences, live, observe_live, rated};
 use crate::tree::{Tree, gravity, set_gravity, source};
 
 /// The name of the check.
@@ -51,8 +51,8 @@ pub fn check_combined(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     combined["combination"] = json!("lifting");
     let combined = live(&source(&combined)).ok()?;
     let written = live(&source(&written)).ok()?;
-    let second = observe_live(&written, false).ok()?;
-    let mut wrong = match observe_live(&combined, false) {
+    let second = observe_live(&written, Extent::default()).ok()?;
+    let mut wrong = match observe_live(&combined, Extent::default()) {
         Ok(first) => differences([&first, &second], &|name| Some(name.to_owned()), &|_| 1.0),
         Err(refused) => vec![refused],
     };
@@ -64,9 +64,9 @@ pub fn check_combined(tree: &Tree, seed: u64) -> Option<Vec<String>> {
 fn loads_of_charts(combined: &LiveCrane, written: &LiveCrane) -> Option<String> {
     let load = only_mass(combined.description())?;
     let factor = written.parameters()[load] / combined.parameters()[load];
-    let [first, second] = [factor * rated_load(combined)?, rated_load(written)?];
+    let [first, second] = [factor * rated(combined)?.load?, rated(written)?.load?];
     // Where both searches end at the same bound, they are apart by the factor.
-    let is_bound = |load: f64| load >= LOADS[1] || load <= factor.max(1.0) * LOADS[0];
+    let is_bound = |load: f64| load >= BETWEEN[1] || load <= factor.max(1.0) * BETWEEN[0];
     let off = (first - second).abs() > CHART * first;
     (off && ![first, second, first / factor].into_iter().any(is_bound))
         .then(|| format!("chart: {first:.9e} kg times its factor against {second:.9e}"))

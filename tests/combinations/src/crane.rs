@@ -419,8 +419,8 @@ impl Writer<'_> {
             "inertia": {"gyration": [0.1, 0.12, 0.14]}}));
     }
 
-    /// A lever on the column that follows the boom: through a massless rod, or through a bar of its own that a ball joint, or a pin with friction,
-    /// holds to the boom.
+    /// A lever on the column that follows the boom: through a massless rod, through a bar of its own that a ball joint, or a pin with friction,
+    /// holds to the boom, or by its tip, which slides along the boom.
     fn lever(&mut self) {
         if !self.has(F::Loop) {
             return;
@@ -454,6 +454,15 @@ impl Writer<'_> {
                 joint["damping"] = json!(3);
             }
             self.push("loop_joints", joint);
+        } else if off > 0.0 {
+            // Where the tip is, along the boom and off its axis.
+            let [along, up] = [tip[0] - SHOULDER[0], tip[1] - SHOULDER[1]];
+            let at = [0.3, round(up * lift.cos() - along * lift.sin()), round(-aside)];
+            self.push(
+                "loop_joints",
+                json!({"name": "groove", "from": {"link": "boom", "at": at}, "to": {"link": "lever", "at": [0.6, 0, 0]},
+                "joint": {"slide": {"axis": [1, 0, 0]}}}),
+            );
         } else {
             let length = round(between.hypot(off));
             self.push(

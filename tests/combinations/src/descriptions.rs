@@ -5,10 +5,10 @@ use fastrand::Rng;
 use serde_json::{Value, json};
 
 use crate::crane::BOOM;
-use crate::observe::live;
+use crate::observe::{CAUTIONS, LINEAR, MARGINS, MODES, STEPS, live};
 use crate::pins;
 use crate::tree::{Tree, entry, entry_mut, for_each_key, for_each_place, gravity, numbers, push, set_gravity, source};
-use crate::wind;
+use crate::{whole, wind};
 
 /// The name in a second description of a number of the first.
 pub type Rename = Box<dyn Fn(&str) -> Option<String>>;
@@ -25,9 +25,13 @@ pub struct Second {
     pub factor: Box<dyn Fn(&str) -> f64>,
     /// Whether it also moves as the first does.
     pub moves: bool,
-    /// Whether cautions about it are, word for word, those about the first.
-    pub cautions: bool,
-    /// Live parameters that are set before anything is computed.
+    /// Groups of numbers that differ: cautions, unless they are those about the first, word for word.
+    pub without: &'static [&'static str],
+    /// Whether its bodies belong to the same links, which the moments that tip it depend on.
+    pub links: bool,
+    /// Whether numbers of the two may differ in their signs.
+    pub signs: bool,
+    /// Live parameters and inputs that are set before anything is computed.
     pub set: Vec<(String, f64)>,
 }
 
@@ -41,9 +45,23 @@ impl Second {
             name: Box::new(|name| Some(name.to_owned())),
             factor: Box::new(|_| 1.0),
             moves: true,
-            cautions: false,
+            without: &[CAUTIONS],
+            links: true,
+            signs: false,
             set: Vec::new(),
         }
+    }
+
+    /// With other words, but the same cautions.
+    #[must_use]
+    pub fn with_cautions(self) -> Self {
+        Second { without: &[], ..self }
+    }
+
+    /// With other links.
+    #[must_use]
+    pub fn with_other_links(self) -> Self {
+        Second { links: false, ..self }
     }
 
     /// With names of its own.
@@ -57,18 +75,21 @@ impl Second {
 pub type Description = fn(&Tree, &mut Rng) -> Option<Second>;
 
 /// All of them, with their names.
-pub const ALL: [(&str, Description); 26] = [
+pub const ALL: [(&str, Description); 29] = [
     ("slope written as gravity", slope_as_gravity),
     ("beam split by a fixed joint", split_boom),
     ("beam given element by element", boom_one_by_one),
     ("rigid beam as a body", rigid_boom_as_body),
     ("other names", other_names),
-    ("the whole turned", turned),
+    ("the whole turned", whole::turned),
+    ("the whole turned about the vertical", whole::turned_about_the_vertical),
+    ("mirrored", whole::mirrored),
     ("planes of a beam exchanged", planes_exchanged),
     ("as an overlay", overlay),
     ("parameters written in", parameters_written_in),
     ("numbers as parameters", numbers_as_parameters),
     ("numbers set, not written", numbers_set),
+    ("inputs set, not written", inputs_set),
     ("angles in degrees", degrees),
     ("lists in another order", other_order),
     ("weight as a force", weight_as_force),
@@ -116,6 +137,10 @@ fn borders(tree: &Tree, link: &str) -> Option<Vec<f64>> {
 
 /// The boom in two beams with the same sections, joined by a fixed joint between two of them; none if the halves are divided elsewhere.
 fn split_boom(tree: &Tree, rng: &mut Rng) -> Option<Second> {
+    // The line of a slide is that of one element.
+    if tree["loop_joints"].as_array().into_iter().flatten().any(|joint| joint["joint"]["slide"].is_object()) {
+        return None;
+    }
     let mut second = tree.clone();
     let links = second["links"].as_array_mut()?;
     let at = links.iter().position(|link| link["name"] == "boom")?;
@@ -168,7 +193,11 @@ fn split_boom(tree: &Tree, rng: &mut Rng) -> Option<Second> {
     if ends_of_halves.len() != ends.len() || !ends.iter().zip(&ends_of_halves).all(same) {
         return None;
     }
-    Some(Second::of(&second).named(if tapered { without_stresses_and_boom_elements } else { without_boom_elements }))
+    Some(Second::of(&second).with_other_links().named(if tapered {
+        without_stresses_and_boom_elements
+    } else {
+        without_boom_elements
+    }))
 }
 
 /// Parts of a beam before and behind a place.
@@ -310,58 +339,12 @@ fn other_names(tree: &Tree, _: &mut Rng) -> Option<Second> {
     Some(Second::of(&second).named(move |name| Some(renamed(name))))
 }
 
-/// A rotation about a skew axis, by angles about z, then y.
-const TURN: [f64; 2] = [0.7, 0.4];
-
-/// A vector turned by `Rz Ry`.
-fn turn(vector: &[f64]) -> [f64; 3] {
-    let [(sz, cz), (sy, cy)] = TURN.map(f64::sin_cos);
-    let (x, z) = (cy * vector[0] + sy * vector[2], -sy * vector[0] + cy * vector[2]);
-    [cz * x - sz * vector[1], sz * x + cz * vector[1], z]
-}
-
 /// A slope of the ground as the gravity that it means.
 fn slope_as_gravity(tree: &Tree, _: &mut Rng) -> Option<Second> {
     tree.get("slope")?;
     let mut second = tree.clone();
     set_gravity(&mut second, &gravity(tree));
-    Some(Second::of(&second))
-}
-
-/// A crane on a fixed base, turned together with gravity and everything in the world.
-fn turned(tree: &Tree, _: &mut Rng) -> Option<Second> {
-    let mut second = tree.clone();
-    let base = entry_mut(&mut second, "links", "name", "truck")?;
-    // The ground does not turn.
-    if base["joint"] != "fixed" || !tree["contacts"].is_null() {
-        return None;
-    }
-    base["placement"] = json!({"transform": {"rotation": [{"z": TURN[0]}, {"y": TURN[1]}]}});
-    set_gravity(&mut second, &turn(&gravity(tree)));
-    for load in second.get_mut("loads").and_then(Value::as_array_mut).into_iter().flatten() {
-        for key in ["force", "moment"] {
-            if load["axes"] != "link" && load[key].is_array() {
-                load[key] = json!(turn(&numbers(&load[key])));
-            }
-        }
-        if load["axes"] != "link" && load["wind"].is_object() {
-            load["wind"]["direction"] = json!(turn(&numbers(&load["wind"]["direction"])));
-        }
-    }
-    for connector in second.get_mut("connectors").and_then(Value::as_array_mut).into_iter().flatten() {
-        let turned = |point: &mut Tree| {
-            if point["link"].is_null() {
-                point["at"] = json!(turn(&numbers(&point["at"])));
-            }
-        };
-        for end in ["from", "to"] {
-            turned(&mut connector[end]);
-        }
-        connector.get_mut("over").and_then(Value::as_array_mut).into_iter().flatten().for_each(turned);
-    }
-    let points = ["tip_", "middle_", "load_"];
-    let named = move |name: &str| (!points.iter().any(|point| name.starts_with(point))).then(|| name.to_owned());
-    Some(Second { cautions: true, ..Second::of(&second).named(named) })
+    Some(Second::of(&second).with_cautions())
 }
 
 /// Positions in a frame that is turned by 90° about x.
@@ -416,6 +399,9 @@ fn planes_exchanged(tree: &Tree, _: &mut Rng) -> Option<Second> {
         if joint["joint"]["pin"].is_object() && joint["to"]["link"] == "boom" {
             joint["joint"]["pin"]["to_axis"] = json!(quarter(&numbers(&joint["joint"]["pin"]["axis"])));
         }
+        if joint["joint"]["slide"].is_object() && joint["from"]["link"] == "boom" {
+            joint["joint"]["slide"]["axis"] = json!(quarter(&numbers(&joint["joint"]["slide"]["axis"])));
+        }
     }
     for_each_key(&mut second, &mut |key, value| {
         if key == "coordinate" && value == "boom_psi" {
@@ -450,7 +436,12 @@ fn overlay(tree: &Tree, _: &mut Rng) -> Option<Second> {
     }
     base["name"] = json!("base");
     let text = changes.to_string();
-    Some(Second { source: source(&base).changed(&text), ..Second::of(tree) })
+    Some(Second { source: source(&base).changed(&text), ..Second::of(tree) }.with_cautions())
+}
+
+/// Whether a number is a value of the live parameter that is the load, or what happens there.
+fn of_load(name: &str) -> bool {
+    ["load of ", "load that ", "governed by "].iter().any(|what| name.starts_with(what))
 }
 
 fn parameters_written_in(tree: &Tree, _: &mut Rng) -> Option<Second> {
@@ -462,12 +453,13 @@ fn parameters_written_in(tree: &Tree, _: &mut Rng) -> Option<Second> {
             *value = parameter["value"].clone();
         }
     });
-    Some(Second::of(&second))
+    let without_load = |name: &str| (!of_load(name)).then(|| name.to_owned());
+    Some(Second::of(&second).with_cautions().named(without_load))
 }
 
 /// Masses, stiffnesses and an angle become live parameters.
 pub(crate) fn numbers_as_parameters(tree: &Tree, _: &mut Rng) -> Option<Second> {
-    Some(Second::of(&with_parameters(tree)?.0))
+    Some(Second::of(&with_parameters(tree)?.0).with_cautions())
 }
 
 /// They become live parameters with other values, and are set to those of the first.
@@ -480,7 +472,25 @@ fn numbers_set(tree: &Tree, rng: &mut Rng) -> Option<Second> {
         set.push((name, written));
         *value = json!(written * (1.0 + 0.03 * rng.f64()));
     }
-    Some(Second { set, ..Second::of(&second) })
+    Some(Second { set, ..Second::of(&second).with_cautions() })
+}
+
+/// Inputs have other values, or follow a motion, and are set to the values of the first.
+fn inputs_set(tree: &Tree, rng: &mut Rng) -> Option<Second> {
+    let mut second = tree.clone();
+    let mut set = Vec::new();
+    for (name, input) in second.get_mut("inputs").and_then(Value::as_object_mut)? {
+        let Some(value) = input["value"].as_f64() else { continue };
+        set.push((name.clone(), value));
+        input.as_object_mut()?.retain(|key, _| key != "value");
+        let other = value * (1.0 + 0.1 * rng.f64());
+        if rng.bool() {
+            input["value"] = json!(other);
+        } else {
+            input["motion"] = json!({"cubic": {"from": other, "to": value, "begin": 0.1, "duration": 0.2}});
+        }
+    }
+    (!set.is_empty()).then(|| Second { set, ..Second::of(&second).with_cautions() })
 }
 
 /// A crane some of whose numbers are live parameters, and their names.
@@ -539,7 +549,7 @@ fn degrees(tree: &Tree, _: &mut Rng) -> Option<Second> {
             });
         }
     }
-    Some(Second::of(&second))
+    Some(Second::of(&second).with_cautions())
 }
 
 fn other_order(tree: &Tree, rng: &mut Rng) -> Option<Second> {
@@ -570,10 +580,11 @@ fn weight_as_force(tree: &Tree, _: &mut Rng) -> Option<Second> {
     let force: Vec<f64> = gravity.iter().map(|g| half * g).collect();
     push(&mut second, "loads", json!({"name": "weight", "link": "hook", "at": at, "force": force}));
     let same = |name: &str| {
-        let inertia = name.ends_with("energy") || name.starts_with("omega");
-        (!inertia).then(|| name.to_owned())
+        let of_inertia = name.ends_with("energy") || of_load(name);
+        (!of_inertia).then(|| name.to_owned())
     };
-    Some(Second { moves: false, ..Second::of(&second).named(same) })
+    let without = &[CAUTIONS, MODES, STEPS, LINEAR, MARGINS];
+    Some(Second { moves: false, without, ..Second::of(&second).named(same) })
 }
 
 /// Forces of loads as wind, and wind as forces.
@@ -645,7 +656,7 @@ fn rope_link_by_link(tree: &Tree, _: &mut Rng) -> Option<Second> {
         }
     }
     // Bodies of the rope are bodies of links with other names.
-    Some(Second::of(&second).named(|name| {
+    Some(Second::of(&second).with_other_links().named(|name| {
         let is_body = name.starts_with("rope_") && name.contains(' ');
         if is_body {
             None
@@ -669,7 +680,7 @@ fn held_by_loop(tree: &Tree, _: &mut Rng) -> Option<Second> {
     let joint = json!({"name": "holder", "from": {"link": "anchor", "at": [0, 0, 0]}, "to": {"link": "slide_z", "at": [0, 0, 0]},
         "joint": "ball"});
     push(&mut second, "loop_joints", joint);
-    Some(Second::of(&second))
+    Some(Second::of(&second).with_other_links())
 }
 
 /// What followed leads: `q_i = q_j/r − c/r`. The coupling's force is then that on what leads.
@@ -712,7 +723,7 @@ fn massless_frames(tree: &Tree, _: &mut Rng) -> Option<Second> {
         links.push(link);
     }
     second["links"] = Value::Array(links);
-    Some(Second::of(&second))
+    Some(Second::of(&second).with_other_links())
 }
 
 /// Keys whose numbers are proportional to the unit of mass.
@@ -769,7 +780,7 @@ fn mass_unit(tree: &Tree, _: &mut Rng) -> Option<Second> {
     if let Some(push) = second.pointer_mut("/inputs/push/value") {
         double(push);
     }
-    let factor = |unit: &str| if ["N", "N m", "J", "W", "Pa"].contains(&unit) { HEAVIER } else { 1.0 };
+    let factor = |unit: &str| if ["N", "N m", "J", "W", "Pa", "kg"].contains(&unit) { HEAVIER } else { 1.0 };
     Some(Second { factor: Box::new(factor), ..Second::of(&second) })
 }
 
@@ -791,7 +802,7 @@ fn heavier(tree: &mut Tree, within: &str) {
                     continue;
                 }
                 // Where damping is a time over a length or a time, not a force over a rate.
-                let per_length = matches!(within, "rope_law" | "stops");
+                let per_length = matches!(within, "rope_law" | "stops" | "contacts");
                 if WITH_MASS.contains(&key.as_str())
                     && !(key == "damping" && per_length)
                     && !matches!(within, "guess" | "parameters")
@@ -826,5 +837,5 @@ fn loops(tree: &Tree, _: &mut Rng) -> Option<Second> {
     let mut second = tree.clone();
     second["loops"] = json!("always");
     entry(tree, "links", "name", "boom")?;
-    Some(Second::of(&second))
+    Some(Second::of(&second).with_cautions())
 }

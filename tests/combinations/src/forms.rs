@@ -4,7 +4,7 @@ use fastrand::Rng;
 use serde_json::{Value, json};
 
 use crate::crane::round;
-use crate::tree::{Tree, entry_mut, gravity};
+use crate::tree::{Tree, entry, entry_mut, gravity, push};
 use crate::wind;
 
 /// Writes some parts of a crane in other forms, chosen by its seed. Its other random numbers do not depend on this.
@@ -57,6 +57,9 @@ pub fn vary(seed: u64, tree: &mut Tree) {
     }
     contact(seed, tree);
     shapes(seed, tree);
+    named(seed, tree);
+    commanded(seed, tree);
+    base(seed, tree);
     // Likewise.
     let mut gusts = Rng::with_seed(seed ^ 0xa1a1);
     for load in entries(tree, "loads") {
@@ -209,6 +212,65 @@ fn shapes(seed: u64, tree: &mut Tree) {
             (shape["at"], shape["rotation"]) = (at.clone(), rotation.clone());
         }
         link["shape"] = if rng.bool() { form } else { json!([form]) };
+    }
+}
+
+/// Frames and joints with names of their own, a point in one of them, and a lamp at the end of the second arm.
+fn named(seed: u64, tree: &mut Tree) {
+    let mut rng = Rng::with_seed(seed ^ 0x3c3c);
+    if rng.bool() {
+        let turned = json!({"translation": [0.2, round(0.3 * rng.f64()), 0], "rotation": {"y": round(rng.f64())}});
+        tree["frames"] = json!([{"name": "flange", "link": "hook", "transform": turned}, {"name": "yard"}]);
+        push(tree, "points", json!({"name": "rim", "frame": "flange", "at": [0.1, round(0.2 * rng.f64()), 0]}));
+        tree["joints"] = json!([{"name": "slewing", "coordinate": "column_psi"}, {"name": "weld", "at": 0.1}]);
+    }
+    let lamps = tree["links"].as_array_mut().and_then(|links| {
+        let platform = links.iter().position(|link| link["name"] == "platform")?;
+        Some((links, platform))
+    });
+    if let Some((links, platform)) = lamps {
+        let at = rng.choice(["tip", "start"]);
+        links.insert(
+            platform + 1,
+            json!({"name": "beacon", "on": {"link": "jib", "at": at}, "mass": 12, "com": [0.02, 0.1, 0]}),
+        );
+    }
+}
+
+/// An input that follows a motion, and a valve that is opened instead of a servo.
+fn commanded(seed: u64, tree: &mut Tree) {
+    let mut rng = Rng::with_seed(seed ^ 0x1d1d);
+    let opened = rng.u8(0..3) == 0;
+    let gust = tree.pointer_mut("/inputs/gust").filter(|_| rng.bool());
+    if let Some(gust) = gust {
+        *gust = json!({"motion": {"cubic": {"from": 0.7, "to": round(rng.f64()), "begin": 0.05, "duration": 0.3}}});
+    }
+    let holds = |tree: &Tree| {
+        entry(tree, "drives", "coordinate", "stage_one_x").is_some_and(|drive| drive["motion"]["hold"].is_number())
+    };
+    if opened
+        && holds(tree)
+        && let Some(extend) = entry_mut(tree, "cylinders", "name", "extend")
+    {
+        if let Some(valve) = extend.get_mut("valve").and_then(Value::as_object_mut) {
+            valve.retain(|key, _| !matches!(key.as_str(), "gain" | "feed_forward"));
+            valve.insert(
+                "opening".to_owned(),
+                json!({"cubic": {"from": 0, "to": round(0.3 * rng.f64()), "begin": 0.05, "duration": 0.2}}),
+            );
+        }
+    }
+}
+
+/// A base that moves in some of the six ways.
+fn base(seed: u64, tree: &mut Tree) {
+    let mut rng = Rng::with_seed(seed ^ 0xba5e);
+    let truck = entry_mut(tree, "links", "name", "truck").filter(|truck| truck["joint"] == "free" && rng.u8(0..4) == 0);
+    if let Some(truck) = truck {
+        let ways = ["x", "y", "z", "psi", "theta", "phi"];
+        let kept: Vec<&str> =
+            ways.into_iter().filter(|way| ["z", "theta", "phi"].contains(way) || rng.bool()).collect();
+        truck["joint"] = json!({"free": kept});
     }
 }
 

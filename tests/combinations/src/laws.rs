@@ -1,6 +1,6 @@
 //! Laws of mechanics that hold for any crane.
 
-use crane_codegen::chain::{Group, Law as ForceLaw, Profile, Transmission};
+use crane_codegen::chain::{Group, Law as ForceLaw, LoadAxes, Profile, Transmission};
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynDynamics, DynModel, DynStatics};
 use crane_model::dynamics::{Contacts, Method, Settings};
@@ -9,7 +9,7 @@ use crane_model::nalgebra::{DMatrix, DVector};
 use crane_model::results::cautions::{BEND, of_pose};
 use crane_model::results::{Instant, Peaks, quantities};
 use crane_model::runs::{Start, record};
-use crane_model::{Cut, modes};
+use crane_model::{Cut, modes, statics};
 use fastrand::Rng;
 use std::collections::HashSet;
 use std::ops::ControlFlow;
@@ -22,7 +22,8 @@ use crate::tree::{Tree, source};
 pub type Law = fn(&LiveCrane, &[f64], &mut Rng) -> Option<Result<(), String>>;
 
 /// All of them, with their names.
-pub const ALL: [(&str, Law); 16] = [
+pub const ALL: [(&str, Law); 17] = [
+    ("what is stable has converged and does not grow", stable_is_stable),
     ("limits of charts are cautions at rest", limits_are_cautions),
     ("results have names of their own", results_are_named),
     ("accelerations solve A a = e + f", accelerations_solve),
@@ -56,6 +57,38 @@ fn results_are_named(crane: &LiveCrane, _: &[f64], _: &mut Rng) -> Option<Result
         }
     }
     Some(Ok(()))
+}
+
+/// A stable equilibrium has a small residual, no damped mode that grows, and a least eigenvalue of its stiffness above zero. Forces that turn with their
+/// links may feed a motion, and oil has its own verdict.
+fn stable_is_stable(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Result<(), String>> {
+    let whole: &dyn DynCrane = crane;
+    let settings = statics::Settings::default();
+    let found = whole.equilibrium(&settings);
+    if let Err(error) = close("residual that is told", found.residual(), 0.0, 1.0, settings.tolerance) {
+        return Some(Err(error));
+    }
+    // What is left over, beside what drives and springs would exert far from it; loops transmit forces besides.
+    let positions = crane.drive_positions_at(0.0);
+    let residual = |q: &[f64]| {
+        let mut out = vec![0.0; q.len()];
+        crane.static_residual(0.0, q, &positions, &mut out);
+        out
+    };
+    let size = residual(&vec![0.0; q.len()]).iter().fold(1.0, |size: f64, f| size.max(f.abs()));
+    let prescribed = crane.description().prescribed();
+    let left = residual(q).into_iter().zip(&crane.description().coordinates).enumerate();
+    for (_, (left, own)) in left.filter(|(j, _)| !prescribed.contains(j) && !crane.chain().has_loops()) {
+        if let Err(error) = close(&format!("what is left over along {}", own.name), left, 0.0, size, 1e-7) {
+            return Some(Err(error));
+        }
+    }
+    if crane.chain().loads.iter().any(|load| load.axes == LoadAxes::Link) || crane.description().has_valves() {
+        return Some(Ok(()));
+    }
+    let damped = modes::damped(&whole.small_motions_at(q)).ok()?;
+    let grows = damped.iter().find(|mode| modes::grows(mode.eigenvalue) || mode.damping_ratio() < 0.0);
+    Some(grows.map_or(Ok(()), |mode| Err(format!("a stable pose, about which a motion grows: {}", mode.eigenvalue))))
 }
 
 /// A limit of charts that the crane is beyond is a caution at rest that names the part, and without one nothing is overstressed, tips or is out of

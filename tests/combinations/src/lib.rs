@@ -25,4 +25,5 @@ pub mod run_changes;
 mod servos;
 pub mod shown;
 pub mod tree;
+mod whole;
 mod wind;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use crate::observe::{CHART, Number, Numbers, live, observe, rated_load};
+use crate::observe::{Extent, LOADS, Number, Numbers, live, observe, rated};
 use crate::tree::{Tree, for_each_place, source};
 
 /// The name of the check.
@@ -16,7 +16,7 @@ const SECTIONS: [u32; 3] = [4, 8, 16];
 const RATIO: f64 = 0.45;
 /// Differences below this share of the largest number of a unit are not looked at: Newton's tolerance for poses. For pressures, modes, stresses and
 /// the loads that these limit, the terms of order 2 and 4 may cancel between the coarser two.
-const SMALL: [(&str, f64); 4] = [("rest", 1e-8), ("modes", 1e-4), ("cuts", 3e-4), (CHART, 3e-4)];
+const SMALL: [(&str, f64); 4] = [("rest", 1e-8), ("modes", 1e-4), ("cuts", 3e-4), (LOADS, 3e-4)];
 const SMALL_PRESSURE: f64 = 1e-6;
 
 /// What does not converge with order 2; `None` for a crane without divided beams, or with beams that cannot be divided again.
@@ -42,9 +42,9 @@ pub fn check_meshes(tree: &Tree) -> Option<Vec<String>> {
                 beam.insert("sections".into(), json!(sections));
             }
         }
-        let mut numbers = observe(&source(&tree), false).ok()?;
-        if let Some(value) = live(&source(&tree)).ok().and_then(|crane| rated_load(&crane)) {
-            numbers.insert(format!("{CHART} load"), Number { group: CHART, unit: "kg".to_owned(), value });
+        let mut numbers = observe(&source(&tree), Extent::default()).ok()?;
+        if let Some(value) = live(&source(&tree)).ok().and_then(|crane| rated(&crane)?.load) {
+            numbers.insert(format!("{LOADS} load of a chart"), Number { group: LOADS, unit: "kg".to_owned(), value });
         }
         Some(numbers)
     };
@@ -52,8 +52,11 @@ pub fn check_meshes(tree: &Tree) -> Option<Vec<String>> {
     let of = |name: &String, number: &Number| Some((coarse.get(name)?.value, middle.get(name)?.value, number.value));
     // Forces that joints transmit are listed by bodies, of which a finer beam has others; higher modes are not yet resolved.
     let counts = |name: &String, number: &Number| {
-        let high = number.group == "modes" && !LOWEST.iter().any(|mode| name.ends_with(mode));
-        (number.group != "cuts" || name.contains("stress")) && !of_element(name) && !high
+        let high =
+            ["modes", "steps", "cautions"].contains(&number.group) && !LOWEST.iter().any(|mode| name.ends_with(mode));
+        (number.group != "cuts" || (name.contains("stress") && !name.contains("at place")))
+            && !of_element(name)
+            && !high
     };
     // The error of a place within a section depends on where between two springs it is, so it need not fall at each refinement: it is
     // compared with the largest change of any number of its unit.

@@ -130,5 +130,5 @@ pub fn as_loads(tree: &Tree, _: &mut Rng) -> Option<Second> {
             || name.starts_with("omega");
         (!of_cylinder && !of_drive).then(|| name.to_owned())
     };
-    Some(Second { first: Some(first), moves: false, ..Second::of(&second).named(same) })
+    Some(Second { first: Some(first), moves: false, ..Second::of(&second).with_other_links().named(same) })
 }

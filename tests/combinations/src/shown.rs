@@ -50,12 +50,13 @@ fn drawn(crane: &LiveCrane, q: &[f64]) -> Value {
     drawn
 }
 
-/// What the descriptions say that does not depend on live parameters, and differs nevertheless.
+/// What the descriptions say that does not depend on live parameters and inputs, and differs nevertheless.
 fn described(cranes: [&LiveCrane; 2]) -> Vec<String> {
     let [written, set] = cranes.map(|crane| {
         let crane: &dyn DynCrane = crane;
         let mut description = crane.description().clone();
         description.parameters = Vec::new().into();
+        description.inputs = Vec::new().into();
         description.spec_hash = "".into();
         format!("{description:#?}")
     });

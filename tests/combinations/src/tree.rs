@@ -42,9 +42,9 @@ pub fn numbers(tree: &Tree) -> Vec<f64> {
     tree.as_array().into_iter().flatten().filter_map(Value::as_f64).collect()
 }
 
-/// Calls a function for every place of a link, `{link, at}` or a support's `at`: with the name of its link, if it has one.
+/// Calls a function for every point of a link, `{link, at}`.
 pub fn for_each_place(tree: &mut Tree, act: &mut impl FnMut(&mut Tree)) {
-    if tree.get("link").is_some() && tree.get("at").is_some() {
+    if tree.get("link").is_some() && tree.get("at").is_some_and(Value::is_array) {
         act(tree);
     }
     match tree {
@@ -84,7 +84,7 @@ pub fn set_gravity(tree: &mut Tree, gravity: &[f64]) {
 }
 
 /// Keys in the order in which a person writes them.
-const ORDER: [&str; 30] = [
+const ORDER: [&str; 32] = [
     "format",
     "name",
     "title",
@@ -110,6 +110,8 @@ const ORDER: [&str; 30] = [
     "connectors",
     "contacts",
     "loop_joints",
+    "frames",
+    "joints",
     "points",
     "guess",
     "run",

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crane_codegen::build;
-use crane_combinations::observe::{differences, live, observe_live};
+use crane_combinations::observe::{Extent, differences, live, observe_live};
 use crane_combinations::shown;
 use crane_model::dyn_crane::DynCrane;
 
@@ -34,7 +34,7 @@ fn what_is_set_is_what_is_written() {
             let written = live(&written).unwrap_or_else(|mistakes| panic!("{text}{mistakes}"));
             let of = |what: String| format!("{name}, {} = {value}: {what}", parameter.name);
             wrong.extend(shown::differences(&written, &set).into_iter().map(of));
-            match (observe_live(&written, false), observe_live(&set, false)) {
+            match (observe_live(&written, Extent::default()), observe_live(&set, Extent::default())) {
                 (Ok(one), Ok(other)) => {
                     let found = differences([&one, &other], &|name| Some(name.to_owned()), &|_| 1.0);
                     wrong.extend(found.into_iter().map(of));
