@@ -1,5 +1,7 @@
 //! All checks of one crane.
 
+use std::time::Instant;
+
 use crane_live::LiveCrane;
 use fastrand::Rng;
 
@@ -27,8 +29,8 @@ pub struct Failure {
 /// What was found out about a crane.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
-    /// Checks that applied.
-    pub checks: usize,
+    /// Names of the checks that applied, and how long each took, s.
+    pub checks: Vec<(&'static str, f64)>,
     /// Checks that failed.
     pub failures: Vec<Failure>,
     /// Why the crane could not be checked: it does not stand, for example.
@@ -131,13 +133,14 @@ pub fn check_case(case: &Case, only: Option<&str>, most: usize, shrink: bool) ->
     rng.shuffle(&mut chosen);
     let mut outcome = Outcome::default();
     for name in chosen {
-        if outcome.checks == most {
+        if outcome.checks.len() == most {
             break;
         }
         // Runs and searches take most of the time: a third of the cranes runs, and another one is loaded until it falls.
         let extent = Extent { run: case.seed.is_multiple_of(3), searches: case.seed % 3 == 1 };
+        let begin = Instant::now();
         let Some(what) = apply(name, &case.tree, case.seed, extent) else { continue };
-        outcome.checks += 1;
+        outcome.checks.push((name, begin.elapsed().as_secs_f64()));
         if !what.is_empty() {
             let failure = Failure { check: name, what, spec: text(&case.tree), features: case.features.clone() };
             outcome.failures.push(if shrink { shrunk(case, failure, extent) } else { failure });

@@ -7,7 +7,7 @@ use serde_json::json;
 
 use crate::feature::{Feature as F, Features, excluded, with_needs};
 use crate::forms::vary;
-use crate::tree::{Tree, push};
+use crate::tree::{Tree, entry, push};
 
 /// A random crane.
 #[derive(Clone, Debug)]
@@ -585,6 +585,13 @@ impl Writer<'_> {
             let (sin, cos) = slew.sin_cos();
             [radius * cos - left * sin, radius * sin + left * cos, height].map(round)
         };
+        // Where a curved boom is, x m along it, and by which angle it has turned upwards: to the second order.
+        let boom =
+            entry(&self.tree, "links", "name", "boom").map(|boom| boom["beam"]["bend"].clone()).unwrap_or_default();
+        let curved = |x: f64| {
+            let [psi, theta] = ["psi", "theta"].map(|axis| boom[axis].as_f64().unwrap_or(0.0) * x / BOOM);
+            ([x * (1.0 - psi * psi / 6.0), 0.5 * x * psi, -0.5 * x * theta], psi)
+        };
         let mut way = Vec::new();
         let [left, height] = [self.between(-0.3, 0.3), self.between(0.4, 0.9)];
         if self.rng.borrow_mut().bool() {
@@ -594,19 +601,23 @@ impl Writer<'_> {
             way.push((place, json!({"at": in_world(place)})));
         }
         let on_boom = [self.between(1.0, BOOM), self.between(0.15, 0.3), self.between(-0.1, 0.1)];
-        way.push((along(on_boom, SHOULDER, lift), json!({"link": "boom", "at": on_boom})));
+        let ([x, up, aside], turned) = curved(on_boom[0]);
+        let place = [x - on_boom[1] * turned, up + on_boom[1], aside + on_boom[2]];
+        way.push((along(place, SHOULDER, lift), json!({"link": "boom", "at": on_boom})));
         if self.rng.borrow_mut().bool() {
             let place = [self.between(1.5, 2.5), left, self.between(6.0, 7.0)];
             way.push((place, json!({"at": in_world(place)})));
         }
         let on_arm = [self.between(0.8, ARM), self.between(0.1, 0.2), self.between(-0.1, 0.1)];
-        let [radius, _, height] = along([BOOM, 0.0, 0.0], SHOULDER, lift);
+        let (tip, turned) = curved(BOOM);
+        let [radius, aside_of_tip, height] = along(tip, SHOULDER, lift);
         let [x, up, aside] = on_arm;
         let (link, at) = match self.stage {
             Some(begin) if x > begin => ("stage_one", [round(x - begin), up, aside]),
             _ => ("arm", on_arm),
         };
-        way.push((along(on_arm, [radius, height], lift + bend), json!({"link": link, "at": at})));
+        let [radius, left, height] = along(on_arm, [radius, height], lift + turned + bend);
+        way.push(([radius, left + aside_of_tip, height], json!({"link": link, "at": at})));
         let falls = self.rng.borrow_mut().u8(1..4);
         let distance =
             |pair: &[([f64; 3], Tree)]| (0..3).map(|k| (pair[1].0[k] - pair[0].0[k]).powi(2)).sum::<f64>().sqrt();

@@ -32,7 +32,7 @@ struct Options {
     /// Print the spec of the first seed, and check nothing.
     #[arg(long)]
     print: bool,
-    /// Print the table of pairs of features.
+    /// Print which pairs of features met, and how often each check applied.
     #[arg(long)]
     coverage: bool,
     /// Threads.
@@ -77,6 +77,9 @@ fn main() -> ExitCode {
     summarise(&options, &found)
 }
 
+/// Cranes that may be refused, in hundredths.
+const MOST_REFUSED: usize = 10;
+
 fn summarise(options: &Options, found: &[(Case, Outcome)]) -> ExitCode {
     let mut refused: BTreeMap<String, Vec<u64>> = BTreeMap::new();
     for (case, outcome) in found {
@@ -105,7 +108,17 @@ fn summarise(options: &Options, found: &[(Case, Outcome)]) -> ExitCode {
             }
         }
     }
-    let checks: usize = found.iter().map(|(_, outcome)| outcome.checks).sum();
+    let mut applied: BTreeMap<&str, (usize, f64)> = BTreeMap::new();
+    for (name, seconds) in found.iter().flat_map(|(_, outcome)| &outcome.checks) {
+        let (times, sum) = applied.entry(name).or_default();
+        (*times, *sum) = (*times + 1, *sum + seconds);
+    }
+    if options.coverage {
+        for (name, (times, seconds)) in &applied {
+            println!("{times:5} times, {seconds:7.1} s: {name}");
+        }
+    }
+    let checks: usize = applied.values().map(|(times, _)| times).sum();
     let failures: usize = found.iter().map(|(_, outcome)| outcome.failures.len()).sum();
     println!(
         "{} cranes, {checks} checks, {failures} failures, {} refused; {} of {} pairs of features met",
@@ -114,5 +127,7 @@ fn summarise(options: &Options, found: &[(Case, Outcome)]) -> ExitCode {
         pairs.len() - missing.len(),
         pairs.len()
     );
-    if failures == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    // Some random cranes do not stand; where many do not, something is wrong.
+    let refused: usize = refused.values().map(Vec::len).sum();
+    if failures == 0 && refused <= MOST_REFUSED * found.len() / 100 + 1 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }

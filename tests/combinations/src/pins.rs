@@ -8,8 +8,11 @@ use serde_json::{Value, json};
 
 use crate::crane::BOOM;
 use crate::descriptions::Second;
-use crate::observe::{equilibrium, live};
+use crate::observe::{CAUTIONS, LINEAR, LOADS, MARGINS, MODES, STEPS, equilibrium, live};
 use crate::tree::{Tree, entry_mut, push, source, without_unused_offset};
+
+/// What depends on how forces change with the pose.
+const OF_FORCES: &[&str] = &[CAUTIONS, MODES, STEPS, LINEAR, MARGINS, LOADS];
 
 /// Step of differences of a length by the places of its pins, m: the error of a central difference is 1e-10 of it.
 const STEP: f64 = 1e-5;
@@ -124,11 +127,13 @@ pub fn as_loads(tree: &Tree, _: &mut Rng) -> Option<Second> {
         with_oil.iter().filter_map(|own| Some(format!("{}_", own["name"].as_str()?))).collect();
     let same = move |name: &str| {
         let of_cylinder = cylinders.iter().any(|cylinder| name.starts_with(cylinder)) || name.starts_with("pump");
-        let of_drive = name.contains("drive")
-            || name.ends_with("prescribed")
-            || name.ends_with("energy")
-            || name.starts_with("omega");
+        let of_drive = name.contains("drive") || name.ends_with("prescribed") || name.ends_with("energy");
         (!of_cylinder && !of_drive).then(|| name.to_owned())
     };
-    Some(Second { first: Some(first), moves: false, ..Second::of(&second).with_other_links().named(same) })
+    Some(Second {
+        first: Some(first),
+        moves: false,
+        without: OF_FORCES,
+        ..Second::of(&second).with_other_links().named(same)
+    })
 }
