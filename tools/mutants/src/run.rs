@@ -16,7 +16,7 @@ use crate::site::{SWITCH, Site};
 /// Packages whose tests run, beside random cranes.
 const PACKAGES: [&str; 4] = ["crane-codegen", "crane-model", "crane-live", "crane-page"];
 /// Random cranes: few, since they run for every change.
-const CRANES: [&str; 8] = ["--from", "100", "--count", "16", "--checks", "5", "--threads", "1"];
+const CRANES: [&str; 9] = ["--from", "100", "--count", "16", "--checks", "5", "--threads", "1", "--no-shrink"];
 /// Tests that are too long to run for every change: more random cranes, and runs of many cranes at once.
 const LONG: [&str; 2] = ["seeds", "fleets"];
 /// A test that takes this many times as long as without a change hangs.
@@ -56,7 +56,7 @@ pub fn build(site: &Site, changes: &mut Vec<Change>) -> Result<Vec<Test>, String
 fn compile(tree: &Path, changes: &[Change]) -> Result<(Vec<(String, PathBuf)>, BTreeSet<usize>), String> {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.current_dir(tree).args(["test", "--release", "--no-run", "--message-format=json"]);
-    command.args(["--config", "profile.release.lto=false"]).env("CARGO_TARGET_DIR", tree.with_file_name("build"));
+    command.args(["--config", "profile.release.lto=\"off\""]).env("CARGO_TARGET_DIR", tree.with_file_name("build"));
     command.args(["--package", "crane-combinations"]);
     for package in PACKAGES {
         command.args(["--package", package]);
