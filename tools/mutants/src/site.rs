@@ -38,9 +38,8 @@ impl Site {
                 bytes = switched(String::from_utf8_lossy(&bytes).into_owned(), changes).into_bytes();
             }
             // Crates without changes are those that a copied `target` has built.
-            let is_root = |folder: &&str| file.strip_prefix(**folder) == Some("/lib.rs");
-            let is_changed = |folder: &&str| changes.iter().any(|change| change.file.starts_with(**folder));
-            if CRATES.iter().find(is_root).is_some_and(|folder| is_changed(&folder)) {
+            let changed = CRATES.iter().filter(|folder| changes.iter().any(|change| change.file.starts_with(folder)));
+            if changed.into_iter().any(|folder| file.strip_prefix(folder) == Some("/lib.rs")) {
                 bytes.extend(switches().bytes());
             }
             let to = self.tree.join(file);
