@@ -7,7 +7,7 @@ use serde_json::json;
 
 use crate::feature::{Feature as F, Features, excluded, with_needs};
 use crate::forms::vary;
-use crate::tree::{Tree, entry, push};
+use crate::tree::{Tree, entry, push, round};
 
 /// A random crane.
 #[derive(Clone, Debug)]
@@ -701,12 +701,6 @@ impl Writer<'_> {
 /// A valve with a servo, as each cylinder has it.
 fn valve() -> Tree {
     json!({"flow": 6e-4, "pressure_drop": 1e6, "lag": 0.03, "gain": 2, "overlap": 0.03, "leakage": 1e-13})
-}
-
-/// Four significant digits: as a person would write it.
-#[must_use]
-pub fn round(x: f64) -> f64 {
-    format!("{x:.3e}").parse().unwrap_or(x)
 }
 
 /// A motion from one position by some way: a smooth one, or a curve through points in one of its shapes. Rates of rigid drives must not jump, and all

@@ -3,8 +3,7 @@
 use fastrand::Rng;
 use serde_json::{Value, json};
 
-use crate::crane::round;
-use crate::tree::{Tree, entry, entry_mut, gravity, push};
+use crate::tree::{Tree, entry, entry_mut, gravity, push, round};
 use crate::wind;
 
 /// Writes some parts of a crane in other forms, chosen by its seed. Its other random numbers do not depend on this.

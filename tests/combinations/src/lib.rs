@@ -22,6 +22,7 @@ pub mod meshes;
 pub mod observe;
 pub mod pins;
 pub mod run_changes;
+pub mod second;
 mod servos;
 pub mod shown;
 pub mod tree;

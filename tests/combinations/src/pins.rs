@@ -7,8 +7,8 @@ use fastrand::Rng;
 use serde_json::{Value, json};
 
 use crate::crane::BOOM;
-use crate::descriptions::Second;
 use crate::observe::{CAUTIONS, LINEAR, LOADS, MARGINS, MODES, STEPS, equilibrium, live};
+use crate::second::Second;
 use crate::tree::{Tree, entry_mut, push, source, without_unused_offset};
 
 /// What depends on how forces change with the pose.

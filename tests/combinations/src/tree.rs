@@ -155,3 +155,9 @@ pub fn text(tree: &Tree) -> String {
 pub fn source(tree: &Tree) -> SourceFile {
     SourceFile::new("random.yaml", text(tree))
 }
+
+/// Four significant digits: as a person would write it.
+#[must_use]
+pub fn round(x: f64) -> f64 {
+    format!("{x:.3e}").parse().unwrap_or(x)
+}

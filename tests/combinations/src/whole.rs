@@ -3,7 +3,7 @@
 use fastrand::Rng;
 use serde_json::{Value, json};
 
-use crate::descriptions::Second;
+use crate::second::Second;
 use crate::tree::{Tree, entry_mut, gravity, numbers, set_gravity};
 
 /// A rotation about a skew axis, by angles about z, then y.

@@ -1,12 +1,7 @@
 //! A crane with the numbers of the page, and how it is shown at rest.
 
 use crane_live::LiveCrane;
-use crane_model::{
-    dyn_crane::DynCrane,
-    dynamics::Settings,
-    runs::Recorded,
-    statics::Equilibrium,
-};
+use crane_model::{dyn_crane::DynCrane, dynamics::Settings, runs::Recorded, statics::Equilibrium};
 use crane_page::{Program, Subject, Texts, data_without_modes, tables::VALUE};
 use serde_json::Value;
 

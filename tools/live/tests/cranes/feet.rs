@@ -293,8 +293,10 @@ fn a_foot_in_the_air_and_a_spring_beyond_reason_are_named() {
         assert!(!found.is_stable(), "{to}: {found}");
         Diagnosis::of(crane, &found)
     };
-    let found =
-        diagnosis("at: [0, 2.4, 0], stiffness: [3 kN/mm, 3 kN/mm, 8 kN/mm]", "at: [0, 2.4, 3], stiffness: [3e6, 3e6, 1e18]");
+    let found = diagnosis(
+        "at: [0, 2.4, 0], stiffness: [3 kN/mm, 3 kN/mm, 8 kN/mm]",
+        "at: [0, 2.4, 3], stiffness: [3e6, 3e6, 1e18]",
+    );
     assert_eq!(found, Diagnosis::RaisedFoot { foot: "front_left".into(), height: 3.0 });
     let found = diagnosis("stiffness: [3 kN/mm, 3 kN/mm, 8 kN/mm]", "stiffness: [3e6, 3e6, 1e18]");
     let Diagnosis::TooStiff { stiffness, .. } = &found else { panic!("{found:?}") };
