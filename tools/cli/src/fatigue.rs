@@ -171,12 +171,12 @@ fn add(report: &mut Report, options: &arguments::Fatigue, asked: &Asked) -> Outc
     subject.verdict(report, worst);
     accuracy(report, worst, greatest(&subject.of_every(2)));
     subject.closing(report, worst);
-    subject.changes(report, worst);
+    changes(report, worst);
     let manoeuvres = subject.manoeuvres(worst);
     if asked.0.len() > 1 {
-        report.grid(manoeuvres)
+        report.grid(manoeuvres);
     } else {
-        report.data(manoeuvres)
+        report.data(manoeuvres);
     }
     report.grid(subject.places(&found));
     report.grid(subject.cycles(worst));
@@ -450,23 +450,6 @@ impl Subject<'_> {
         }
     }
 
-    /// Whether the stress changes more from one manoeuvre to another than within them.
-    fn changes(&self, report: &mut Report, worst: &Fatigue) {
-        let all = worst.parts.iter().map(|part: &Part| ends(&part.history));
-        let [least, greatest] = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], [low, high]| {
-            [least.min(low), greatest.max(high)]
-        });
-        let within = worst.largest().map_or(0.0, |(_, cycle)| cycle.range);
-        if greatest - least > (1.0 + CLOSED) * within {
-            report.caution(Some(format!(
-                "from one manoeuvre to another the stress changes by up to {:.1} MPa where the damage is greatest, and within each by {:.1} MPa: such changes \
-                 are not counted; write a manoeuvre that contains them, as by `events` that take the load and leave it",
-                (greatest - least) / 1e6,
-                within / 1e6
-            )));
-        }
-    }
-
     /// The histories in columns, of the only manoeuvre.
     fn stresses(&self, found: &[Fatigue]) -> Table {
         let mut table = Table::default();
@@ -488,6 +471,23 @@ fn ends(history: &[f64]) -> [f64; 2] {
     history
         .iter()
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], value| [least.min(*value), greatest.max(*value)])
+}
+
+/// Whether the stress changes more from one manoeuvre to another than within them.
+fn changes(report: &mut Report, worst: &Fatigue) {
+    let all = worst.parts.iter().map(|part: &Part| ends(&part.history));
+    let [least, greatest] = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], [low, high]| {
+        [least.min(low), greatest.max(high)]
+    });
+    let within = worst.largest().map_or(0.0, |(_, cycle)| cycle.range);
+    if greatest - least > (1.0 + CLOSED) * within {
+        report.caution(Some(format!(
+            "from one manoeuvre to another the stress changes by up to {:.1} MPa where the damage is greatest, and within each by {:.1} MPa: such changes \
+             are not counted; write a manoeuvre that contains them, as by `events` that take the load and leave it",
+            (greatest - least) / 1e6,
+            within / 1e6
+        )));
+    }
 }
 
 /// How much the interval of results matters.

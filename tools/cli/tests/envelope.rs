@@ -142,7 +142,7 @@ fn a_given_chart_is_compared() {
     }
     assert_eq!(beside[2]["limit"], "no pose");
     for (content, wanted) in [
-        ("arm,load\n3,1\n", "has no drive and no live parameter `arm`"),
+        ("jib,load\n3,1\n", "has no drive and no live parameter `jib`"),
         ("payload,load\n3,1\n", "which no range varies"),
         ("arm_x,radius,load\n3,3,1\n", "a radius and the column `arm_x`"),
         ("load\n1\n", "has no column `radius`"),

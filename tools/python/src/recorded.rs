@@ -31,13 +31,12 @@ pub fn table_of(crane: &dyn DynCrane, rows: &PyReadonlyArray2<'_, f64>) -> PyRes
 type OfDrive = (String, String, String, [f64; 7]);
 /// A cylinder: its name, and what it must be able to do.
 type OfCylinder = (String, [f64; 7]);
+/// Drives, cylinders, and the pump.
+type OfAll = (Vec<OfDrive>, Vec<OfCylinder>, Option<[f64; 4]>);
 
 /// What drives, cylinders and the pump of a run must be able to do.
 #[pyfunction]
-pub fn duties_of(
-    crane: PyRef<'_, Crane>,
-    table: PyReadonlyArray2<'_, f64>,
-) -> PyResult<(Vec<OfDrive>, Vec<OfCylinder>, Option<[f64; 4]>)> {
+pub fn duties_of(crane: PyRef<'_, Crane>, table: PyReadonlyArray2<'_, f64>) -> PyResult<OfAll> {
     let crane: &dyn DynCrane = &crane.live;
     let Duties { drives, cylinders, pump } = Duties::of(crane.description(), &table_of(crane, &table)?);
     let drives = drives.into_iter().map(|duty| {

@@ -93,7 +93,7 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
             (Places::Positions(positions), _) => report.grid(given.beside(positions, &asked, &layout, &rows)),
             (Places::Radii(radii), Some(chart)) => report.grid(chart.beside(radii, &given.loads)),
             (Places::Radii(_), None) => {
-                report.caution(Some("no chart beside the given one: no range moves the load in or out"))
+                report.caution(Some("no chart beside the given one: no range moves the load in or out"));
             }
         }
     }

@@ -80,7 +80,9 @@ impl Report {
         self.values.extend(values);
         self.grids.extend(grids);
         self.data.extend(data);
-        cautions.into_iter().for_each(|words| self.caution(Some(words)));
+        for words in cautions {
+            self.caution(Some(words));
+        }
     }
 
     /// Adds a table before all others.

@@ -59,15 +59,13 @@ fn summary(runs: &[(&str, &Recorded)], duties: &[Duties]) -> Grid {
     row("energy that came with events", "J", &mut recorded().map(|run| last(run, "event_work")));
     row("dissipated", "J", &mut recorded().map(|run| last(run, "dissipated_energy")));
     row("energy balance, largest error", "J", &mut recorded().map(|run| greatest(run, "energy_balance")));
-    let of_pump: [(&str, &str, fn(PumpDuty) -> f64); 4] = [
-        ("energy of the pump", "J", |pump| pump.energy),
-        ("power of the pump, maximum", "W", |pump| pump.power),
-        ("flow of the pump, maximum", "m³/s", |pump| pump.flow),
-        ("pressure of the pump, maximum", "Pa", |pump| pump.pressure),
-    ];
-    for (name, unit, of) in of_pump {
+    let mut of_pump = |name: &str, unit: &str, of: fn(PumpDuty) -> f64| {
         row(name, unit, &mut duties.iter().map(|duties| duties.pump.map(of)));
-    }
+    };
+    of_pump("energy of the pump", "J", |pump| pump.energy);
+    of_pump("power of the pump, maximum", "W", |pump| pump.power);
+    of_pump("flow of the pump, maximum", "m³/s", |pump| pump.flow);
+    of_pump("pressure of the pump, maximum", "Pa", |pump| pump.pressure);
     if runs.iter().any(|(_, run)| run.wall.is_some()) {
         row("wall time", "s", &mut recorded().map(|run| Some(pace(run)?.0)));
         row("real-time factor", "", &mut recorded().map(|run| Some(pace(run)?.1)));
