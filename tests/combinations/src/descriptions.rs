@@ -620,7 +620,9 @@ fn held_by_loop(tree: &Tree, _: &mut Rng) -> Option<Second> {
     let joint = json!({"name": "holder", "from": {"link": "anchor", "at": [0, 0, 0]}, "to": {"link": "slide_z", "at": [0, 0, 0]},
         "joint": "ball"});
     push(&mut second, "loop_joints", joint);
-    Some(Second::of(&second).with_other_links())
+    // The factor by the stiffness alone is none of closed loops.
+    let named = |name: &str| (name != "factor by the stiffness").then(|| name.to_owned());
+    Some(Second::of(&second).with_other_links().named(named))
 }
 
 /// What followed leads: `q_i = q_j/r − c/r`. The coupling's force is then that on what leads.

@@ -96,7 +96,7 @@ pub fn vary(seed: u64, tree: &mut Tree) {
         coupling.insert("rigid".to_owned(), json!(true));
     }
     for cylinder in entries(tree, "cylinders") {
-        if cylinder["valve"].is_object() && rng.bool() {
+        if cylinder["valve"]["gain"].is_number() && rng.bool() {
             cylinder["valve"]["feed_forward"] = json!(0.9);
         }
     }
@@ -252,7 +252,7 @@ fn commanded(seed: u64, tree: &mut Tree) {
         && let Some(extend) = entry_mut(tree, "cylinders", "name", "extend")
     {
         if let Some(valve) = extend.get_mut("valve").and_then(Value::as_object_mut) {
-            valve.retain(|key, _| !matches!(key.as_str(), "gain" | "feed_forward"));
+            valve.remove("gain");
             valve.insert(
                 "opening".to_owned(),
                 json!({"cubic": {"from": 0, "to": round(0.3 * rng.f64()), "begin": 0.05, "duration": 0.2}}),

@@ -5,11 +5,13 @@ use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynDynamics, DynModel, DynStatics};
 use crane_model::dynamics::{Contacts, Method, Settings};
 use crane_model::envelope::{Condition, Limits};
+use crane_model::linear::{About, Forces, Input, Output, linear_model, outputs};
 use crane_model::nalgebra::{DMatrix, DVector};
 use crane_model::results::cautions::{BEND, of_pose};
 use crane_model::results::{Instant, Peaks, quantities};
 use crane_model::runs::{Start, record};
-use crane_model::{Cut, modes, statics};
+use crane_model::statics::{self, RestSearch};
+use crane_model::{Cut, modes};
 use fastrand::Rng;
 use std::collections::HashSet;
 use std::ops::ControlFlow;
@@ -22,7 +24,7 @@ use crate::tree::{Tree, source};
 pub type Law = fn(&LiveCrane, &[f64], &mut Rng) -> Option<Result<(), String>>;
 
 /// All of them, with their names.
-pub const ALL: [(&str, Law); 17] = [
+pub const ALL: [(&str, Law); 18] = [
     ("what is stable has converged and does not grow", stable_is_stable),
     ("limits of charts are cautions at rest", limits_are_cautions),
     ("results have names of their own", results_are_named),
@@ -37,6 +39,7 @@ pub const ALL: [(&str, Law); 17] = [
     ("energy balance of a run", energy_balance),
     ("ground carries weight and loads", ground_carries),
     ("a crane at rest stays at rest", rest_stays),
+    ("linear models at rest are changes of statics", statics_follow_drives),
     ("a damped run ends at rest", damped_run_ends),
     ("drives at rest as at the start of a run", efforts_at_rest),
     ("eight cranes as one", lanes),
@@ -468,6 +471,43 @@ fn rest_stays(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Result<(), St
         }
     }
     Some(Ok(()))
+}
+
+/// Steps of a drive's position, m and rad, by which statics is differenced.
+const MOVED: [f64; 2] = [1e-5, 1e-6];
+
+/// The response of a linear model at rest, `D − C A⁻¹ B`, to the position of a drive is how the pose at rest changes with it.
+fn statics_follow_drives(crane: &LiveCrane, q: &[f64], rng: &mut Rng) -> Option<Result<(), String>> {
+    let whole: &dyn DynCrane = crane;
+    // Oil and bristles hold a pose by other forces than statics does, and what slides is held by none.
+    if has_states(crane) || whole.friction_utilisations_at(q).iter().any(|(_, used)| *used >= 1.0) {
+        return None;
+    }
+    let inputs: Vec<Input> =
+        Input::all(crane.description()).into_iter().filter(|input| matches!(input, Input::Motion(_))).collect();
+    let input = *inputs.get(rng.usize(0..inputs.len().max(1)))?;
+    let Input::Motion(drive) = input else { return None };
+    let coordinates: Vec<Output> = outputs(whole).into_iter().take(q.len()).collect();
+    let about = About { t: 0.0, q, v: &vec![0.0; q.len()], x: Forces::Holding, steady: true };
+    let model = linear_model(crane, &about, &[input], &coordinates).ok()?;
+    let response = &model.d - &model.c * model.a.clone().lu().solve(&model.b)?;
+    let size = response.amax();
+    let positions: Vec<f64> = whole.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
+    let rest = |by: f64| {
+        let mut moved = positions.clone();
+        moved[drive] += by;
+        RestSearch { crane: whole, positions: &moved }.find_near(q).map(|found| found.q)
+    };
+    let differ = |step: f64| {
+        let Some((less, more)) = rest(-step).zip(rest(step)) else { return Ok(()) };
+        for (j, own) in crane.description().coordinates.iter().enumerate() {
+            let change = (more[j] - less[j]) / (2.0 * step);
+            close(&format!("{} by {}", own.name, model.inputs[0].name), response[(j, 0)], change, size, 1e-5)?;
+        }
+        Ok(())
+    };
+    // A rope or a foot may let go within the longer step.
+    Some(by_differences(MOVED, differ))
 }
 
 /// The longest run to rest, s.

@@ -11,14 +11,14 @@ use crane_model::envelope::{
     Axes, Condition, Critical, Envelope, Execution, Limits, LoadFactor, Rating, critical_load, load_factor, only_mass,
 };
 use crane_model::fatigue::{self, Detail, Manoeuvre};
-use crane_model::linear::{About, Forces, Input, linear_model, outputs};
+use crane_model::linear::{About, Forces, Input, Output, linear_model, outputs};
 use crane_model::margins::{Acting, Loop, Margins, margins, plant};
 use crane_model::modes::{self, DampedMode};
 use crane_model::nalgebra::{Complex, DMatrix};
 use crane_model::results::{DriveDuty, Duties, Instant, Table, cautions, instants};
 use crane_model::runs::{QuasiStatic, Start, limiting_modes, record};
 use crane_model::stability::limit;
-use crane_model::{Cut, DriveInfo, statics};
+use crane_model::{ColumnKind, Cut, DriveInfo, statics};
 
 /// A number with its unit, and how far it may be off, relative to the largest number of this unit in the same group.
 #[derive(Clone, Debug)]
@@ -298,8 +298,14 @@ impl Found {
     fn linear(&mut self, crane: &LiveCrane, q: &[f64]) {
         let (description, rest) = (crane.description(), vec![0.0; q.len()]);
         let about = About { t: 0.0, q, v: &rest, x: Forces::SlightlyOpen, steady: true };
-        let (inputs, outputs) = (Input::all(description), outputs(crane));
-        let Ok(model) = linear_model(crane, &about, &inputs, &outputs) else { return };
+        let inputs = Input::all(description);
+        // What closes loops follows from accelerations, at once with inputs.
+        let follows = |output: &Output| matches!(output.column.kind, ColumnKind::LoopForce | ColumnKind::LoopMoment);
+        let outputs: Vec<Output> = outputs(crane).into_iter().filter(|output| !follows(output)).collect();
+        let model = match linear_model(crane, &about, &inputs, &outputs) {
+            Ok(model) => model,
+            Err(none) => return self.add(LINEAR, none.to_string(), "", 1.0),
+        };
         let size = model.a.nrows();
         let states = DMatrix::from_diagonal_element(size, size, OFF_AXIS) - model.a.map(Complex::from);
         if let Some(moved) = states.lu().solve(&model.b.map(Complex::from)) {

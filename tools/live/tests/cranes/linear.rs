@@ -469,6 +469,29 @@ fn drives_act_with_their_springs() {
     assert!((model.c[(0, 0)] + 2e5).abs() < 1.0 && (model.c[(0, 2)] + 4e3).abs() < 1e-2);
 }
 
+/// D of a joint that rests on either stop has the drive's damping, the viscous part of its friction, and `a` times the force of the stop; its dry
+/// friction, of which a joint that swings feels little, is left out.
+#[test]
+fn a_joint_with_friction_keeps_the_damping_of_its_stop() {
+    for (end, sign) in [("max", 1.0), ("min", -1.0)] {
+        let crane = crane(&format!(
+            "format: 1\nname: arm\nlinks: [{{name: arm, joint: revolute, mass: 100, com: [1, 0, 0]}}]\n\
+             drives: [{{coordinate: arm_psi, damping: 3000, stiffness: 3e6, motion: {{hold: {}}}}}]\n\
+             stops: {{arm_psi: {{{end}: 0, damping: 0.3, stiffness: 1e6}}}}\n\
+             friction: {{arm_psi: {{coulomb: 300, breakaway: 400, viscous: 50, width: 0.005}}}}\n",
+            sign * 4e-3
+        ));
+        let q = at_rest(&crane);
+        // Two springs in a row: 3e6 (4 mrad − q) = 1e6 q.
+        assert!((q[0] - sign * 3e-3).abs() < 1e-12, "{q:?}");
+        let model = linear_model(&crane, &about(&q, &[0.0], Forces::Holding), &[], &[]).unwrap();
+        let damping = model.small_motions().damping[(0, 0)];
+        // To rounding of the slope of dry friction, 8e4.
+        let expected = 3000.0 + 50.0 + 0.3 * 1e6 * 3e-3;
+        assert!((damping - expected).abs() < 1e-8, "{end}: {damping} for {expected}");
+    }
+}
+
 #[test]
 fn what_cannot_be_linearised_is_named() {
     let rigid = crane(
