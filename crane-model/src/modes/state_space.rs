@@ -131,20 +131,19 @@ impl StateSpace {
 /// Takes the dry friction of joints that rest out of D. The slope of its smoothed law at rest, `F_b/v₀`, only holds for rates far below v₀: a joint
 /// that swings meets a force that hardly depends on its rate.
 fn leave_out_dry_friction(crane: &dyn DynCrane, moment: &StateAt<'_>, motions: &mut SmallMotions) {
-    /// Rates at which the law is a line through zero, and at which only its viscous part changes, m/s or rad/s.
-    const SLOW: f64 = 1e-12;
+    /// A rate at which only viscous friction is left, m/s or rad/s.
     const FAST: f64 = 1e6;
-    for (index, &joint) in
-        crane.description().frictions.iter().enumerate().filter(|(_, joint)| moment.v[**joint] == 0.0)
-    {
+    let damping = |joint: usize, rate: f64| {
+        let (mut v, mut all) = (moment.v.to_vec(), vec![[0.0; 2]; moment.v.len()]);
+        v[joint] = rate;
+        crane.nonlinear_stiffness_and_damping(moment.t, moment.q, &v, &mut all);
+        all[joint][1]
+    };
+    for &joint in crane.description().frictions.iter().filter(|&&joint| moment.v[joint] == 0.0) {
         let Some(place) = motions.unknowns.iter().position(|&unknown| unknown == joint) else { continue };
-        let resistance = |rate: f64| {
-            let mut v = moment.v.to_vec();
-            v[joint] = rate;
-            -crane.friction_efforts_at(&v)[index]
-        };
-        let viscous = (resistance(2.0 * FAST) - resistance(FAST)) / FAST;
-        motions.damping[(place, place)] -= resistance(SLOW) / SLOW - viscous;
+        // A stop that the joint leaves this fast damps it no more: it does in the other direction.
+        let fast = damping(joint, FAST).max(damping(joint, -FAST));
+        motions.damping[(place, place)] -= damping(joint, 0.0) - fast;
     }
 }
 

@@ -46,7 +46,7 @@ pub fn check_charts(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     let least = crane_model::envelope::range_of_loads(&crane, load, None)[0];
     let axes = Axes(vec![Axis { varied: Varied::Drive(drive), values: vec![start, position] }]);
     let asked = Envelope { axes, load, loads: [least, GREATEST], limits, factor: 1.0 };
-    let rating = rate(&crane, asked)?;
+    let rating = rate(&crane, &asked)?;
 
     let mut wrong: Vec<String> = limits_nothing(&crane, load).into_iter().collect();
     let at = |rated: f64| format!("{name} at {position}, {rated} kg");
@@ -92,7 +92,7 @@ fn limits_nothing(crane: &LiveCrane, load: usize) -> Option<String> {
     let loads = crane_model::envelope::range_of_loads(crane, load, None);
     let asked =
         Envelope { axes: Axes::default(), load, loads: [loads[0], GREATEST], limits: limits.clone(), factor: 1.0 };
-    let Rating { load: Some(rated), governing, loaded: Some(loaded), .. } = rate(crane, asked)? else { return None };
+    let Rating { load: Some(rated), governing, loaded: Some(loaded), .. } = rate(crane, &asked)? else { return None };
     let mut crane = crane.clone();
     let mut beyond = |value: f64| {
         crane.set_parameter(load, value).ok()?;

@@ -66,7 +66,9 @@ fn apply(check: &str, tree: &Tree, seed: u64, extent: Extent) -> Option<Vec<Stri
             Ok(mut numbers) => {
                 for numbers in [&mut first, &mut numbers] {
                     if second.signs {
-                        numbers.values_mut().for_each(|number| number.value = number.value.abs());
+                        for number in numbers.values_mut() {
+                            number.value = number.value.abs();
+                        }
                     }
                     numbers.retain(|name, number| {
                         !second.without.contains(&number.group) && (second.links || !name.ends_with(TIPPING_MARGIN))

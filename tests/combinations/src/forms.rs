@@ -66,28 +66,7 @@ pub fn vary(seed: u64, tree: &mut Tree) {
             wind::exchange(load, &mut gusts);
         }
     }
-    for connector in entries(tree, "connectors") {
-        if let Some(mut spring) = connector["law"]["spring"].as_object().cloned().filter(|_| rng.bool()) {
-            spring.insert("progression".to_owned(), json!(1e4));
-            connector["law"] = json!({"progressive_spring": spring});
-        }
-    }
-    for friction in values(tree, "friction") {
-        if friction["bristle"].is_null() && rng.bool() {
-            friction["width"] = json!(0.005);
-        }
-        if friction["breakaway"].is_number() && rng.bool() {
-            friction["stribeck"] = json!(0.03);
-        }
-    }
-    for foot in entries(tree, "supports").filter(|foot| foot["one_sided"] != true) {
-        if foot["kinematics"].is_null() && rng.bool() {
-            foot["kinematics"] = json!("linear");
-        }
-        if rng.u8(0..4) == 0 {
-            foot["free_play"] = json!([0.001, 0, round(-0.01 * rng.f64())]);
-        }
-    }
+    laws(&mut rng, tree);
     let mut ties = Rng::with_seed(seed ^ 0xc0c0);
     for coupling in entries(tree, "couplings").filter_map(Value::as_object_mut).filter(|_| ties.bool()) {
         for key in ["stiffness", "damping"] {
@@ -111,6 +90,32 @@ pub fn vary(seed: u64, tree: &mut Tree) {
     for info in ["inputs", "parameters"] {
         for entry in values(tree, info) {
             entry["about"] = json!("chosen at random");
+        }
+    }
+}
+
+/// Springs, friction and feet in other forms.
+fn laws(rng: &mut Rng, tree: &mut Tree) {
+    for connector in entries(tree, "connectors") {
+        if let Some(mut spring) = connector["law"]["spring"].as_object().cloned().filter(|_| rng.bool()) {
+            spring.insert("progression".to_owned(), json!(1e4));
+            connector["law"] = json!({"progressive_spring": spring});
+        }
+    }
+    for friction in values(tree, "friction") {
+        if friction["bristle"].is_null() && rng.bool() {
+            friction["width"] = json!(0.005);
+        }
+        if friction["breakaway"].is_number() && rng.bool() {
+            friction["stribeck"] = json!(0.03);
+        }
+    }
+    for foot in entries(tree, "supports").filter(|foot| foot["one_sided"] != true) {
+        if foot["kinematics"].is_null() && rng.bool() {
+            foot["kinematics"] = json!("linear");
+        }
+        if rng.u8(0..4) == 0 {
+            foot["free_play"] = json!([0.001, 0, round(-0.01 * rng.f64())]);
         }
     }
 }
@@ -250,14 +255,11 @@ fn commanded(seed: u64, tree: &mut Tree) {
     if opened
         && holds(tree)
         && let Some(extend) = entry_mut(tree, "cylinders", "name", "extend")
+        && let Some(valve) = extend.get_mut("valve").and_then(Value::as_object_mut)
     {
-        if let Some(valve) = extend.get_mut("valve").and_then(Value::as_object_mut) {
-            valve.remove("gain");
-            valve.insert(
-                "opening".to_owned(),
-                json!({"cubic": {"from": 0, "to": round(0.3 * rng.f64()), "begin": 0.05, "duration": 0.2}}),
-            );
-        }
+        valve.remove("gain");
+        let opening = json!({"cubic": {"from": 0, "to": round(0.3 * rng.f64()), "begin": 0.05, "duration": 0.2}});
+        valve.insert("opening".to_owned(), opening);
     }
 }
 

@@ -299,12 +299,18 @@ impl Found {
         let (description, rest) = (crane.description(), vec![0.0; q.len()]);
         let about = About { t: 0.0, q, v: &rest, x: Forces::SlightlyOpen, steady: true };
         let inputs = Input::all(description);
-        // What closes loops follows from accelerations, at once with inputs.
-        let follows = |output: &Output| matches!(output.column.kind, ColumnKind::LoopForce | ColumnKind::LoopMoment);
+        // What closes loops and holds rigid drives follows from accelerations, at once with inputs.
+        let rigid = |output: &Output| {
+            let names = description.prescribed().into_iter().map(|j| &description.coordinates[j].name);
+            output.column.kind == ColumnKind::DriveEffort
+                && names.into_iter().any(|name| output.column.name.starts_with(&format!("{name}_drive")))
+        };
+        let follows = |output: &Output| {
+            matches!(output.column.kind, ColumnKind::LoopForce | ColumnKind::LoopMoment) || rigid(output)
+        };
         let outputs: Vec<Output> = outputs(crane).into_iter().filter(|output| !follows(output)).collect();
-        let model = match linear_model(crane, &about, &inputs, &outputs) {
-            Ok(model) => model,
-            Err(none) => return self.add(LINEAR, none.to_string(), "", 1.0),
+        let Ok(model) = linear_model(crane, &about, &inputs, &outputs) else {
+            return self.add(LINEAR, "no model", "", 1.0);
         };
         let size = model.a.nrows();
         let states = DMatrix::from_diagonal_element(size, size, OFF_AXIS) - model.a.map(Complex::from);
@@ -473,11 +479,11 @@ pub fn rated(crane: &LiveCrane) -> Option<Rating> {
     let load = only_mass(crane.description())?;
     let usual = Limits::usual(crane.description());
     let limits = Limits { tipping: Some(0.05), ..usual };
-    rate(crane, Envelope { axes: Axes::default(), load, loads: BETWEEN, limits, factor: 1.0 })
+    rate(crane, &Envelope { axes: Axes::default(), load, loads: BETWEEN, limits, factor: 1.0 })
 }
 
 /// The last pose of a chart.
-pub fn rate(crane: &LiveCrane, asked: Envelope) -> Option<Rating> {
+pub fn rate(crane: &LiveCrane, asked: &Envelope) -> Option<Rating> {
     let found = std::sync::Mutex::new(Vec::new());
     let done = |_: usize, ratings: &[Rating]| {
         if let Ok(mut found) = found.lock() {

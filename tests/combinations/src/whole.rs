@@ -142,8 +142,7 @@ fn mirror(tree: &mut Tree, within: &str) {
         match (within, key.as_str()) {
             // Looks change no number.
             (_, "shape") => {}
-            (_, "moment") => negate_axes(value, [0, 2]),
-            ("pin", "axis" | "to_axis") => negate_axes(value, [0, 2]),
+            (_, "moment") | ("pin", "axis" | "to_axis") => negate_axes(value, [0, 2]),
             (_, "at" | "com" | "translation" | "force" | "direction" | "gravity" | "free_play" | "pivot")
             | ("slide", "axis")
                 if value.is_array() =>
@@ -178,7 +177,7 @@ fn negate(value: &mut Tree) {
     match value {
         Value::Number(number) => *value = json!(-number.as_f64().unwrap_or(0.0)),
         Value::String(angle) => {
-            *value = json!(angle.strip_prefix('-').map_or_else(|| format!("-{angle}"), str::to_owned))
+            *value = json!(angle.strip_prefix('-').map_or_else(|| format!("-{angle}"), str::to_owned));
         }
         _ => {}
     }
