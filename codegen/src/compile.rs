@@ -41,7 +41,7 @@ pub fn compile(source: &SourceFile, analyses: Option<Analyses>) -> Result<Compil
 /// # Errors
 /// All mistakes of the spec at once.
 pub fn load(source: &SourceFile) -> Result<Chain, Diagnostics> {
-    check(source).map(|checked| checked.chain)
+    validate::validate(&read(source)?, source)
 }
 
 /// Converts a spec to a valid chain, with warnings about implausible numbers.
@@ -49,15 +49,7 @@ pub fn load(source: &SourceFile) -> Result<Chain, Diagnostics> {
 /// # Errors
 /// All mistakes of the spec at once.
 pub fn check(source: &SourceFile) -> Result<Checked, Diagnostics> {
-    check_with(source, &[])
-}
-
-/// Like [`check`], with warnings for parameter values other than those of the spec, given by name and value.
-///
-/// # Errors
-/// All mistakes of the spec at once.
-pub fn check_with(source: &SourceFile, set: &[(&str, f64)]) -> Result<Checked, Diagnostics> {
-    validate::check_with(&read(source)?, source, set)
+    validate::check(read(source)?, source)
 }
 
 /// The unit of the number at a place of a valid spec, such as `links.boom.beam.section.box.height`, in SI: that which messages about it name. Empty for

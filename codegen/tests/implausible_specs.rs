@@ -10,7 +10,7 @@ use crane_codegen::{Diagnostics, SourceFile, build, check, read};
 /// Warnings about a spec without mistakes.
 fn warnings(name: &str, text: &str) -> Diagnostics {
     let source = SourceFile::new(name, text);
-    let checked = read(&source).and_then(|spec| check(&spec, &source)).unwrap_or_else(|found| panic!("{found}"));
+    let checked = read(&source).and_then(|spec| check(spec, &source)).unwrap_or_else(|found| panic!("{found}"));
     checked.warnings
 }
 
@@ -115,8 +115,8 @@ fn values_of_parameters_are_looked_at() {
     let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../specs/knuckle_boom.yaml"));
     let source = SourceFile::new("knuckle_boom.yaml", text.expect("a spec"));
     let with = |value| {
-        let checked = crane_codegen::compile::check_with(&source, &[("payload", value)]);
-        codes(&checked.unwrap_or_else(|found| panic!("{found}")).warnings)
+        let checked = crane_codegen::compile::check(&source).unwrap_or_else(|found| panic!("{found}"));
+        codes(&checked.warnings_with(&source, &[("payload", value)]))
     };
     assert_eq!(with(800.0), [""; 0]);
     assert_eq!(with(0.3), ["W010"]);
@@ -131,8 +131,8 @@ fn angles_that_are_set_are_in_radians() {
         drives: [{coordinate: arm_theta, stiffness: 1e5, motion: {hold: tilt}}]\n";
     let source = SourceFile::new("arm.yaml", text);
     let with = |set: &[(&str, f64)]| {
-        let checked = crane_codegen::compile::check_with(&source, set);
-        codes(&checked.unwrap_or_else(|found| panic!("{found}")).warnings)
+        let checked = crane_codegen::compile::check(&source).unwrap_or_else(|found| panic!("{found}"));
+        codes(&checked.warnings_with(&source, set))
     };
     assert_eq!(with(&[]), [""; 0]);
     assert_eq!(with(&[("load", 11.0)]), [""; 0]);

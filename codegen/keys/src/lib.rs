@@ -59,9 +59,10 @@ impl Row {
             return quote! { crate::node::Measure::#otherwise };
         };
         let limit = self.limit.as_ref().map_or(quote! { Any }, |limit| quote! { #limit });
-        let usual = match &self.usual {
-            Some(ExprRange { start: Some(from), end: Some(to), .. }) => quote! { [#from, #to] },
-            _ => quote! { crate::node::Measure::ALL },
+        let usual = if let Some(ExprRange { start: Some(from), end: Some(to), .. }) = &self.usual {
+            quote! { [#from, #to] }
+        } else {
+            quote! { crate::node::Measure::ALL }
         };
         let measure = |unit: &str, items: TokenStream| {
             quote! {

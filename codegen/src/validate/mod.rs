@@ -51,12 +51,44 @@ use slides_in::Stage;
 /// A crane without mistakes.
 #[derive(Clone, Debug)]
 pub struct Checked {
+    /// The crane as written.
+    pub spec: CraneSpec,
     /// The chain of its bodies.
     pub chain: Chain,
     /// Warnings about numbers that suggest a wrong unit or a slip; the crane is compiled nevertheless.
     pub warnings: Diagnostics,
     /// The units of its numbers, by their locations.
     pub units: Vec<(Span, String)>,
+    found: Found,
+}
+
+/// What checking notes besides the chain.
+#[derive(Clone, Debug)]
+struct Found {
+    warnings: Vec<Mistake>,
+    units: Vec<(Span, String)>,
+    judged: Vec<plausibility::Judged>,
+}
+
+impl Found {
+    /// Warnings about a crane with values of parameters other than those of the spec, by name.
+    fn warnings(&self, spec: &CraneSpec, chain: &Chain, source: &SourceFile, set: &[(&str, f64)]) -> Diagnostics {
+        let value = |parameter: &Parameter| {
+            set.iter().rev().find(|(name, _)| *name == parameter.name).map_or(parameter.default, |(_, value)| *value)
+        };
+        let values = chain.parameters.iter().map(value).collect();
+        let mut warnings = self.warnings.clone();
+        warnings.extend(plausibility::warnings(&spec.crane, chain, values, &self.judged));
+        Diagnostics::new(source, warnings)
+    }
+}
+
+impl Checked {
+    /// Warnings for parameter values other than those of the spec, given by name and value; `source` is what was checked.
+    #[must_use]
+    pub fn warnings_with(&self, source: &SourceFile, set: &[(&str, f64)]) -> Diagnostics {
+        self.found.warnings(&self.spec, &self.chain, source, set)
+    }
 }
 
 /// Checks a spec and expands it into the chain of its bodies.
@@ -64,22 +96,20 @@ pub struct Checked {
 /// # Errors
 /// If the spec breaks any rule of the language; all mistakes are returned together, including those of reading.
 pub fn validate(spec: &CraneSpec, source: &SourceFile) -> Result<Chain, Diagnostics> {
-    check(spec, source).map(|checked| checked.chain)
+    expand(spec, source).map(|(chain, _)| chain)
 }
 
 /// Checks a spec, expands it into the chain of its bodies, and looks for implausible numbers.
 ///
 /// # Errors
 /// If the spec breaks any rule of the language; all mistakes are returned together, including those of reading.
-pub fn check(spec: &CraneSpec, source: &SourceFile) -> Result<Checked, Diagnostics> {
-    check_with(spec, source, &[])
+pub fn check(spec: CraneSpec, source: &SourceFile) -> Result<Checked, Diagnostics> {
+    let (chain, mut found) = expand(&spec, source)?;
+    let (warnings, units) = (found.warnings(&spec, &chain, source, &[]), std::mem::take(&mut found.units));
+    Ok(Checked { spec, chain, warnings, units, found })
 }
 
-/// Like [`check`], but the warnings are for the parameter values in `set` (names and values) instead of those of the spec.
-///
-/// # Errors
-/// If the spec breaks any rule of the language; all mistakes are returned together, including those of reading.
-pub fn check_with(spec: &CraneSpec, source: &SourceFile, set: &[(&str, f64)]) -> Result<Checked, Diagnostics> {
+fn expand(spec: &CraneSpec, source: &SourceFile) -> Result<(Chain, Found), Diagnostics> {
     let mut check = Check { mistakes: spec.mistakes.clone(), ..Check::default() };
     let mut chain = check.crane(&spec.crane, source);
     if check.mistakes.is_empty() {
@@ -95,13 +125,7 @@ pub fn check_with(spec: &CraneSpec, source: &SourceFile, set: &[(&str, f64)]) ->
     if !check.mistakes.is_empty() {
         return Err(Diagnostics::new(source, misspelt(check.mistakes, &spec.lookalikes)));
     }
-    let mut warnings = check.warnings;
-    let value = |parameter: &Parameter| {
-        set.iter().rev().find(|(name, _)| *name == parameter.name).map_or(parameter.default, |(_, value)| *value)
-    };
-    let values = chain.parameters.iter().map(value).collect();
-    warnings.extend(plausibility::warnings(&spec.crane, &chain, values, &check.judged));
-    Ok(Checked { chain, warnings: Diagnostics::new(source, warnings), units: check.units })
+    Ok((chain, Found { warnings: check.warnings, units: check.units, judged: check.judged }))
 }
 
 /// If a new entry lacks keys and its name is almost that of an entry of the extended spec, replaces its mistakes by one: the misspelt name.

@@ -43,14 +43,15 @@ pub fn load(options: &mut ComparePair, registry: &mut Registry) -> Outcome<()> {
         return Ok(());
     };
     if let Some(file) = spec_file(name) {
-        let (chain, text) = spec_file::load(file, *strict)?;
+        let source = spec_file::open(file, spec_file::SPEC)?;
+        let checked = spec_file::check(&source, *strict)?;
         let path = file.display().to_string();
-        if chain.name == *first {
+        if checked.chain.name == *first {
             // Two versions of a crane share one name.
             *name = format!("{first}_other");
-            registry.add(name, renamed(name, &text));
+            registry.add(name, renamed(name, &source.text));
         } else {
-            *name = registry.add_read(chain, text, Some(&path));
+            *name = registry.add_checked(checked, source.text, Some(&path));
         }
     }
     if options.rigid {

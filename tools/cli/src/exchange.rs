@@ -62,7 +62,8 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
     }
     let (mut chain, mut spec) = registry.load(&options.crane.name, options.crane.strict)?;
     if let Some(combination) = &options.crane.combination {
-        (chain, spec) = with_combination(&chain, &spec, combination)?;
+        let (checked, text) = with_combination(&chain, &spec, combination)?;
+        (chain, spec) = (checked.chain, text);
     }
     keep_loops(options, &chain)?;
     let mut parameters = chain.parameter_defaults();

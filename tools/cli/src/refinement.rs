@@ -2,7 +2,7 @@
 
 use crane_codegen::{
     SourceFile, read,
-    spec::{Analysis, Link, Sections, Spanned},
+    spec::{Analysis, Crane, Link, Sections, Spanned},
 };
 use crane_live::LiveCrane;
 use crane_model::{
@@ -53,7 +53,8 @@ impl OtherMesh {
         };
         let is_large = description.coordinates.len() > MOST_COORDINATES;
         let mut divided = Vec::new();
-        let text = with(&description.name, text, |link, _| {
+        let own = &registry.checked(&description.name).map_err(|_| NOT_MADE)?.spec.crane;
+        let text = with(&description.name, text, own, |link, _| {
             divided.push(link.to_owned());
             let own = sections(description, link);
             if is_large { (0.5 * own).ceil() } else { 2.0 * own }
@@ -224,15 +225,15 @@ pub fn name(crane: &str, sections: usize) -> String {
 
 /// Spec of that crane.
 pub fn spec(crane: &str, text: &str, sections: usize) -> Option<String> {
-    with(&name(crane, sections), text, |_, _| sections as f64)
+    let own = read(&SourceFile::new(crane, text)).ok()?.crane;
+    with(&name(crane, sections), text, &own, |_, _| sections as f64)
 }
 
 /// The spec of a crane, extended under another name with other numbers of sections; `None` for a crane without sections.
 ///
 /// The ensemble functions are left out, as a run of one crane does not need them: they take rustc as long as all the rest.
-fn with(name: &str, text: &str, mut sections: impl FnMut(&str, f64) -> f64) -> Option<String> {
+fn with(name: &str, text: &str, spec: &Crane, mut sections: impl FnMut(&str, f64) -> f64) -> Option<String> {
     let base = SourceFile::new(name, text);
-    let spec = read(&base).ok()?.crane;
     let count = |given: &Spanned<Link>| {
         let link = given.value.as_ref()?;
         match link.beam.as_ref()?.value.as_ref()?.sections.as_ref()?.value? {

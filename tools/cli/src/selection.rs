@@ -2,7 +2,7 @@
 
 use std::{borrow::Cow, path::Path, sync::OnceLock};
 
-use crane_codegen::{SourceFile, chain::Chain, compile, edit};
+use crane_codegen::{Checked, SourceFile, chain::Chain, compile, edit};
 use crane_live::LiveCrane;
 use crane_model::{Description, InputInfo, ParameterError, ParameterInfo, Refusal, dyn_crane::DynCrane};
 
@@ -42,13 +42,16 @@ struct Entry {
     spec: Cow<'static, str>,
     /// The crane as machine code; otherwise a live crane is made from the spec.
     compiled: Option<Box<dyn DynCrane>>,
+    /// What checking the spec found, once it is asked for.
+    checked: OnceLock<Checked>,
     /// The live crane, once it is asked for: its clones share what is derived.
     live: OnceLock<LiveCrane>,
 }
 
 impl Entry {
     fn new(name: &str, spec: Cow<'static, str>) -> Self {
-        Self { name: name.to_owned(), file: format!("{name}.yaml"), spec, compiled: None, live: OnceLock::new() }
+        let (checked, live) = (OnceLock::new(), OnceLock::new());
+        Self { name: name.to_owned(), file: format!("{name}.yaml"), spec, compiled: None, checked, live }
     }
 
     fn open(&self) -> Outcome<Box<dyn DynCrane>> {
@@ -62,13 +65,21 @@ impl Entry {
         SourceFile::new(&self.file, self.spec.clone())
     }
 
+    fn checked(&self) -> Outcome<&Checked> {
+        if let Some(checked) = self.checked.get() {
+            return Ok(checked);
+        }
+        let checked = compile::check(&self.source()).map_err(Problem::mistakes)?;
+        Ok(self.checked.get_or_init(|| checked))
+    }
+
     fn live(&self) -> Outcome<&LiveCrane> {
         if let Some(live) = self.live.get() {
             return Ok(live);
         }
-        let crane = LiveCrane::from_spec(&self.source()).map_err(Problem::mistakes)?;
-        screen::begin(crane.chain());
-        Ok(self.live.get_or_init(|| crane))
+        let chain = &self.checked()?.chain;
+        screen::begin(chain);
+        Ok(self.live.get_or_init(|| LiveCrane::new(chain.clone())))
     }
 }
 
@@ -123,21 +134,26 @@ impl Registry {
     /// # Errors
     /// The file cannot be read, or the spec has mistakes; or warnings, if `strict`.
     pub(super) fn add_file(&mut self, file: &Path, strict: bool) -> Outcome<String> {
-        let (chain, spec) = spec_file::load(file, strict)?;
-        Ok(self.add_read(chain, spec, Some(&file.display().to_string())))
+        let source = spec_file::open(file, spec_file::SPEC)?;
+        let checked = spec_file::check(&source, strict)?;
+        Ok(self.add_checked(checked, source.text, Some(&file.display().to_string())))
     }
 
-    /// As [`Self::add`], for a spec that has been read, from a `file` beside which its surfaces are; returns the crane's name.
-    pub fn add_read(&mut self, mut chain: Chain, spec: String, file: Option<&str>) -> String {
-        let name = chain.name.clone();
+    /// As [`Self::add`], for a spec that has been checked, from a `file` beside which its surfaces are; returns the crane's name.
+    pub(super) fn add_checked(&mut self, mut checked: Checked, spec: String, file: Option<&str>) -> String {
+        let name = checked.chain.name.clone();
         let mut entry = Entry::new(&name, Cow::Owned(spec));
         if let Some(file) = file {
             file.clone_into(&mut entry.file);
-            spec_file::read_surfaces(&mut chain, Path::new(file));
+            spec_file::read_surfaces(&mut checked.chain, Path::new(file));
         }
-        screen::begin(&chain);
-        self.replace(Entry { live: LiveCrane::new(chain).into(), ..entry });
+        self.replace(Entry { checked: checked.into(), ..entry });
         name
+    }
+
+    /// What checking the spec of a crane found.
+    pub(super) fn checked(&self, name: &str) -> Outcome<&Checked> {
+        self.entry(name)?.checked()
     }
 
     fn replace(&mut self, entry: Entry) {
@@ -153,7 +169,8 @@ impl Registry {
     /// Adds the crane with rigid beams and no other difference; returns its name.
     pub(super) fn add_rigid(&mut self, name: &str, otherwise: &str) -> Outcome<String> {
         self.crane(name)?;
-        let found = self.spec(name).map_or(Ok(None), |text| variants::rigid(name, text)).map_err(|link| {
+        let entry = self.entry(name)?;
+        let found = variants::rigid(name, &entry.spec, &entry.checked()?.spec.crane).map_err(|link| {
             Problem::usage(
                 format!("the beam of {link} is curved or given element by element: it has no rigid form"),
                 "give it `sections`, `material` and `section` without `bend`, or write the rigid crane yourself",
@@ -161,7 +178,7 @@ impl Registry {
         })?;
         let (rigid, text) = found
             .ok_or_else(|| Problem::usage(format!("{name} has no beams that bend: it is rigid already"), otherwise))?;
-        let chain = compile::load(&SourceFile::new(format!("{rigid}.yaml"), text.as_str())).map_err(|mistakes| {
+        let checked = compile::check(&SourceFile::new(format!("{rigid}.yaml"), text.as_str())).map_err(|mistakes| {
             /// The code of `rule::nothing_moves`.
             const NOTHING_MOVES: &str = "E048";
             if mistakes.mistakes().iter().any(|mistake| mistake.code == NOTHING_MOVES) {
@@ -170,20 +187,20 @@ impl Registry {
                 Problem::failed(format!("{name} has no form with rigid beams: {}", mistakes.headline()), otherwise)
             }
         })?;
-        Ok(self.add_variant(name, chain, text))
+        Ok(self.add_variant(name, checked, text))
     }
 
     /// Computes a crane with one of the combinations of its spec from now on.
     pub(super) fn combine(&mut self, name: &str, combination: &str) -> Outcome<()> {
-        let (chain, text) = self.combined(name, combination)?;
-        self.add_variant(name, chain, text);
+        let (checked, text) = self.combined(name, combination)?;
+        self.add_variant(name, checked, text);
         Ok(())
     }
 
     /// Adds a crane whose spec is that of another one's file, changed; returns its name.
-    fn add_variant(&mut self, of: &str, chain: Chain, text: String) -> String {
+    pub(super) fn add_variant(&mut self, of: &str, checked: Checked, text: String) -> String {
         let file = self.entries.iter().find(|entry| entry.name == of).map(|entry| entry.file.clone());
-        self.add_read(chain, text, file.as_deref())
+        self.add_checked(checked, text, file.as_deref())
     }
 
     /// What to write for a crane in place of the word CRANE: its file, or the name of a shipped one.
@@ -197,15 +214,15 @@ impl Registry {
 
     /// A live crane with the parameters and inputs of another one, and with a combination of the spec of both.
     pub(super) fn live_combined(&self, crane: &dyn DynCrane, combination: &str) -> Outcome<LiveCrane> {
-        let (chain, _) = self.combined(crane.description().name.as_str(), combination)?;
-        with_numbers_of(crane, LiveCrane::new(chain))
+        let (checked, _) = self.combined(crane.description().name.as_str(), combination)?;
+        with_numbers_of(crane, LiveCrane::new(checked.chain))
     }
 
     /// A crane as its spec has it, with one of its combinations.
-    fn combined(&self, name: &str, combination: &str) -> Outcome<(Chain, String)> {
+    fn combined(&self, name: &str, combination: &str) -> Outcome<(Checked, String)> {
         self.crane(name)?;
         let entry = self.entry(name)?;
-        with_combination(entry.live()?.chain(), &entry.spec, combination)
+        with_combination(&entry.checked()?.chain, &entry.spec, combination)
     }
 
     /// Names of the combinations of a crane's spec: at least one.
@@ -214,7 +231,7 @@ impl Registry {
     /// There is no such crane, or it has none.
     pub(super) fn combinations(&self, name: &str) -> Outcome<Vec<String>> {
         self.crane(name)?;
-        names_of_combinations(self.entry(name)?.live()?.chain())
+        names_of_combinations(&self.checked(name)?.chain)
     }
 
     /// Names of all cranes.
@@ -288,7 +305,7 @@ fn names_of_combinations(chain: &Chain) -> Outcome<Vec<String>> {
 ///
 /// # Errors
 /// It has no such combination, or the spec with it has mistakes.
-pub fn with_combination(chain: &Chain, spec: &str, combination: &str) -> Outcome<(Chain, String)> {
+pub fn with_combination(chain: &Chain, spec: &str, combination: &str) -> Outcome<(Checked, String)> {
     let known = names_of_combinations(chain)?;
     if !known.iter().any(|known| known == combination) {
         let known: Vec<&str> = known.iter().map(String::as_str).collect();
@@ -296,8 +313,8 @@ pub fn with_combination(chain: &Chain, spec: &str, combination: &str) -> Outcome
         return Err(Problem::usage(title, meant(combination, &known, "combinations")));
     }
     let source = edit::combined(&SourceFile::new(&chain.name, spec), combination);
-    let chain = compile::load(&source).map_err(Problem::mistakes)?;
-    Ok((chain, source.text))
+    let checked = compile::check(&source).map_err(Problem::mistakes)?;
+    Ok((checked, source.text))
 }
 
 /// A live crane with the parameters and inputs of another one of the same parameters and inputs.
@@ -390,7 +407,7 @@ impl Parameters {
             settings.iter().map(|&(index, value)| (description.parameters[index].name.to_string(), value)).collect();
         set_parameters(crane.as_mut(), &settings)?;
         if let Some(entry) = registry.entries.iter().find(|entry| entry.name == name) {
-            let warned = spec_file::warn_of(&entry.source(), &values);
+            let warned = spec_file::warn_of(entry.checked()?, &entry.source(), &values);
             if let (true, Some(problem)) = (strict, warned) {
                 return Err(problem);
             }

@@ -28,14 +28,22 @@ pub fn load(spec: &Path, strict: bool) -> Outcome<(Chain, String)> {
 /// # Errors
 /// Those mistakes.
 pub fn parse(source: SourceFile, strict: bool) -> Outcome<(Chain, String)> {
-    let Checked { chain, warnings, .. } = compile::check(&source).map_err(Problem::mistakes)?;
-    if !warnings.is_empty() {
-        screen::warn(&warnings);
+    Ok((check(&source, strict)?.chain, source.text))
+}
+
+/// A valid crane, or every mistake; warnings are printed, and are mistakes if `strict`.
+///
+/// # Errors
+/// Those mistakes.
+pub fn check(source: &SourceFile, strict: bool) -> Outcome<Checked> {
+    let checked = compile::check(source).map_err(Problem::mistakes)?;
+    if !checked.warnings.is_empty() {
+        screen::warn(&checked.warnings);
         if strict {
             return Err(Problem::AlreadyReported { exit_code: FAILED });
         }
     }
-    Ok((chain, source.text))
+    Ok(checked)
 }
 
 /// Reads the surfaces that a spec names, beside its file; says which could not be read.
@@ -49,10 +57,9 @@ pub fn read_surfaces(chain: &mut Chain, spec: &Path) {
 }
 
 /// Shows warnings about a crane that appear only with these values of its parameters; returns them as a problem if there are any.
-pub fn warn_of(source: &SourceFile, set: &[(String, f64)]) -> Option<Problem> {
+pub fn warn_of(checked: &Checked, source: &SourceFile, set: &[(String, f64)]) -> Option<Problem> {
     let set: Vec<(&str, f64)> = set.iter().map(|(name, value)| (name.as_str(), *value)).collect();
-    let known = compile::check(source).ok()?.warnings;
-    let added = compile::check_with(source, &set).ok()?.warnings.without(&known);
+    let added = checked.warnings_with(source, &set).without(&checked.warnings);
     (!added.is_empty()).then(|| {
         screen::warn(&added);
         Problem::AlreadyReported { exit_code: FAILED }

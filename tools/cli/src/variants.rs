@@ -1,7 +1,7 @@
 //! Specs of cranes that differ little from others, written as extensions of them.
 
 use crane_codegen::{
-    SourceFile, read,
+    SourceFile,
     spec::{Beam, Crane, Sections},
 };
 
@@ -17,23 +17,21 @@ pub fn renamed(name: &str, text: &str) -> String {
 ///
 /// # Errors
 /// A beam is curved or given element by element: the name of its link.
-pub fn rigid(crane: &str, text: &str) -> Result<Option<(String, String)>, String> {
-    let Ok(spec) = read(&SourceFile::new(crane, text)) else { return Ok(None) };
-    let spec = spec.crane;
-    if let Some((link, _)) = beams(&spec).find(|(_, beam)| beam.elements.is_some() || beam.bend.is_some()) {
+pub fn rigid(crane: &str, text: &str, spec: &Crane) -> Result<Option<(String, String)>, String> {
+    if let Some((link, _)) = beams(spec).find(|(_, beam)| beam.elements.is_some() || beam.bend.is_some()) {
         return Err(link.to_owned());
     }
     let bends = |(_, beam): &(&str, &Beam)| {
         matches!(beam.sections.as_ref().and_then(|given| given.value), Some(Sections::Count(_)))
     };
-    let flexible: Vec<&str> = beams(&spec).filter(bends).map(|(link, _)| link).collect();
+    let flexible: Vec<&str> = beams(spec).filter(bends).map(|(link, _)| link).collect();
     if flexible.is_empty() {
         return Ok(None);
     }
     let links: Vec<String> =
         flexible.iter().map(|link| format!("  - {{name: {link}, beam: {{sections: rigid}}}}\n")).collect();
     let guesses: Vec<String> =
-        guesses_of_elements(&spec, &flexible).map(|coordinate| format!("{coordinate}: ~")).collect();
+        guesses_of_elements(spec, &flexible).map(|coordinate| format!("{coordinate}: ~")).collect();
     let guess = if guesses.is_empty() { String::new() } else { format!("guess: {{{}}}\n", guesses.join(", ")) };
     let name = format!("{crane}{RIGID}");
     let changes = format!("name: {name}\nlinks:\n{}{guess}", links.concat());
@@ -61,9 +59,13 @@ fn guesses_of_elements<'a>(spec: &'a Crane, links: &'a [&str]) -> impl Iterator<
 
 #[cfg(test)]
 mod tests {
-    use crane_codegen::compile;
+    use crane_codegen::{compile, read};
 
     use super::*;
+
+    fn rigid(crane: &str, text: &str) -> Result<Option<(String, String)>, String> {
+        super::rigid(crane, text, &read(&SourceFile::new(crane, text)).unwrap().crane)
+    }
 
     const BOOM: &str = "format: 1
 name: boom

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use crane_codegen::chain::{Frame, Profile, Transmission};
-use crane_codegen::compile::check_with;
+use crane_codegen::compile::check;
 use crane_codegen::diagnostic::MAX_BYTES;
 use crane_codegen::edit::{BeamEnd, Unbending};
 use crane_codegen::exchange::ImportOptions;
@@ -149,9 +149,9 @@ impl Crane {
         };
         let set: Vec<(String, f64)> = parameters.into_iter().flatten().filter_map(number).collect();
         let set: Vec<(&str, f64)> = set.iter().map(|(name, value)| (name.as_str(), *value)).collect();
-        let checked = py.detach(|| check_with(&source, &set));
-        let Checked { mut chain, warnings, .. } = checked.map_err(|found| spec_error(py, &found))?;
-        warn_of_spec(py, &warnings)?;
+        let checked = py.detach(|| check(&source)).map_err(|found| spec_error(py, &found))?;
+        warn_of_spec(py, &checked.warnings_with(&source, &set))?;
+        let Checked { mut chain, .. } = checked;
         if text.is_none() {
             let folder = Path::new(named).parent().unwrap_or(Path::new(""));
             let unread = read_surfaces(&mut chain, |file| files::read_file(&folder.join(file), MAX_BYTES));

@@ -72,9 +72,6 @@ impl Plausibility<'_> {
         /// Longest time in which a spring with its damper gives way, s.
         const SLOW: f64 = 2.0;
         let crane = self.crane;
-        fn three(given: Option<&Spanned<Vector>>) -> impl Iterator<Item = &Spanned<Number>> {
-            given.and_then(|given| given.value.as_ref()).into_iter().flatten()
-        }
         let mut found: Vec<(String, &Spanned<Number>, &Spanned<Number>)> = Vec::new();
         for support in entries(crane.supports.as_ref()) {
             let what = format!("support `{}`", support.name.value.as_deref().unwrap_or_default());
@@ -95,7 +92,7 @@ impl Plausibility<'_> {
                 if let Some(Some([y, z, twist])) = pad.stiffness.as_ref().map(|given| &given.value) {
                     let [y, z, (twist, at)] = [y, z, twist].map(|given| self.number(given));
                     let [least, most] = [y.0.min(z.0), y.0.max(z.0)];
-                    if least > 0.0 && (twist > most || twist == most && least < 0.5 * most) {
+                    if least > 0.0 && twist >= most && (twist > most || least < 0.5 * most) {
                         self.warn(rule::stiff_twist(at, &what, rounded(twist), rounded(most)));
                     }
                 }
@@ -182,3 +179,8 @@ impl Plausibility<'_> {
 
 /// A motion takes at most this many times as long as the run.
 const SHORTEST: f64 = 100.0;
+
+/// The numbers of a vector that is given.
+fn three(given: Option<&Spanned<Vector>>) -> impl Iterator<Item = &Spanned<Number>> {
+    given.and_then(|given| given.value.as_ref()).into_iter().flatten()
+}

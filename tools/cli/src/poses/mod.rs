@@ -4,7 +4,7 @@ mod quantities;
 
 use std::{io::Write, num::NonZeroUsize, path::Path};
 
-use crane_codegen::{Diagnostics, SourceFile, compile, read};
+use crane_codegen::{Diagnostics, SourceFile, compile, spec::Crane};
 use crane_model::{
     CoordinateKind, Description,
     dyn_crane::DynCrane,
@@ -35,8 +35,8 @@ pub fn hold(held: &Held, ranges: &[String], name: &str, registry: &mut Registry)
     let description = crane.description();
     let mut changes = Changes::default();
     let mut is_held = vec![false; description.drives.len()];
-    let text = registry.spec(name).ok_or_else(|| Problem::failed(format!("{name} has no spec"), ""))?;
-    let offset = offset_drives(&SourceFile::new(name, text));
+    let offset = offset_drives(&registry.checked(name)?.spec.crane);
+    let text = registry.spec(name).unwrap_or_default();
     let name_of = |drive: usize| format!("`{}`", description.coordinates[description.drives[drive].coordinate].name);
     for text in held {
         let (drive, _) = text.split_once('=').ok_or_else(|| {
@@ -69,16 +69,23 @@ pub fn hold(held: &Held, ranges: &[String], name: &str, registry: &mut Registry)
             changes.drives.push(held_at(description, drive, &parameter, &offset));
         }
     }
-    let posed = |changes: &Changes| SourceFile::new(name, text).changed(&changes.text(name));
     // Inputs and parameters of motions that no longer take place would be reported as unused; an input may be all that uses a parameter.
-    for _ in 0..2 {
-        let [parameters, inputs] = unused(&posed(&changes));
+    let mut tries = 0..3;
+    let (checked, posed) = loop {
+        let posed = SourceFile::new(name, text).changed(&changes.text(name));
+        let found = match compile::check(&posed) {
+            Ok(checked) => break (checked, posed),
+            Err(found) => found,
+        };
+        let [parameters, inputs] = unused(&found, &posed);
+        if tries.next().is_none() || parameters.is_empty() && inputs.is_empty() {
+            return Err(Problem::mistakes(found));
+        }
         let removed = |names: Vec<String>| names.into_iter().map(|name| format!("  {name}: ~\n"));
         changes.parameters.extend(removed(parameters));
         changes.inputs.extend(removed(inputs));
-    }
-    let text = posed(&changes).text;
-    registry.add(name, text);
+    };
+    registry.add_variant(name, checked, posed.text);
     Ok(())
 }
 
@@ -110,12 +117,11 @@ pub fn held_number(text: &str, kind: CoordinateKind, is_rate: bool) -> Outcome<f
 }
 
 /// Parameters and inputs to which nothing refers.
-fn unused(source: &SourceFile) -> [Vec<String>; 2] {
+fn unused(found: &Diagnostics, source: &SourceFile) -> [Vec<String>; 2] {
     /// The codes of `rule::unused_parameter` and `rule::unused_input`.
     const UNUSED: [&str; 2] = ["E027", "E114"];
-    let found = compile::load(source).err();
     UNUSED.map(|code| {
-        let mistakes = found.iter().flat_map(Diagnostics::mistakes).filter(|mistake| mistake.code == code);
+        let mistakes = found.mistakes().iter().filter(|mistake| mistake.code == code);
         mistakes
             .filter_map(|mistake| source.text.get(mistake.span.start..mistake.span.end).map(str::to_owned))
             .collect()
@@ -144,9 +150,8 @@ impl Changes {
 }
 
 /// Coordinates whose drives have an offset.
-fn offset_drives(source: &SourceFile) -> Vec<String> {
-    let spec = read(source).ok();
-    let drives = spec.iter().filter_map(|spec| spec.crane.drives.as_ref()?.value.as_ref()).flatten();
+fn offset_drives(spec: &Crane) -> Vec<String> {
+    let drives = spec.drives.iter().filter_map(|drives| drives.value.as_ref()).flatten();
     let offset = drives.filter_map(|drive| drive.value.as_ref().filter(|drive| drive.offset.is_some()));
     offset.filter_map(|drive| drive.coordinate.value.clone()).collect()
 }

@@ -80,7 +80,11 @@ impl<'a> Subject<'a> {
         registry: &Registry,
     ) -> Self {
         let description = crane.description();
-        let rigid = match registry.spec(&description.name).map(|text| variants::rigid(&description.name, text)) {
+        let rigid = match registry
+            .spec(&description.name)
+            .zip(registry.checked(&description.name).ok())
+            .map(|(text, checked)| variants::rigid(&description.name, text, &checked.spec.crane))
+        {
             Some(Ok(Some((name, text)))) if matches!(wanted, Quantities::Statics) => {
                 // A crane that moves by its beams alone has no rigid form.
                 let twin = LiveCrane::from_spec(&SourceFile::new(name, text)).ok();

@@ -9,7 +9,7 @@ pub use page::moves_of_page;
 
 use std::{io::Write, path::Path};
 
-use crane_codegen::SourceFile;
+use crane_codegen::{SourceFile, read};
 use crane_live::LiveCrane;
 use crane_live::sensitivity::{
     self, Differences, FixedNumber, Group, LargestLoad, NoLargestLoad, Output, Refused, cautions, label,
@@ -386,7 +386,8 @@ fn rigid(
     places: &[String],
     source: &SourceFile,
 ) -> Option<sensitivity::Sensitivity> {
-    let (twin, text) = variants::rigid(&crane.description().name, &source.text).ok()??;
+    let spec = read(source).ok()?.crane;
+    let (twin, text) = variants::rigid(&crane.description().name, &source.text, &spec).ok()??;
     let source = SourceFile::new(twin, text);
     let mut rigid = LiveCrane::from_spec(&source).ok()?;
     take_numbers(crane, &mut rigid).ok()?;
