@@ -5,17 +5,22 @@ const EIGHT: usize = 8;
 
 /// `a · b` of each crane, of as many cranes as there are results.
 pub(crate) fn dot(a: &[f64], b: &[f64], out: &mut [f64]) {
+    out.fill(0.0);
+    add_dot(a, b, out);
+}
+
+/// Adds `a · b` of each crane.
+pub(crate) fn add_dot(a: &[f64], b: &[f64], out: &mut [f64]) {
     match out.len() {
-        1 => out[0] = a.iter().zip(b).map(|(a, b)| a * b).sum(),
-        EIGHT => dot_of(EIGHT, a, b, out),
-        cranes => dot_of(cranes, a, b, out),
+        1 => out[0] += a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>(),
+        EIGHT => add_dot_of(EIGHT, a, b, out),
+        cranes => add_dot_of(cranes, a, b, out),
     }
 }
 
 #[inline]
-fn dot_of(cranes: usize, a: &[f64], b: &[f64], out: &mut [f64]) {
+fn add_dot_of(cranes: usize, a: &[f64], b: &[f64], out: &mut [f64]) {
     let out = &mut out[..cranes];
-    out.fill(0.0);
     for (a, b) in a.chunks_exact(cranes).zip(b.chunks_exact(cranes)) {
         for (out, (a, b)) in out.iter_mut().zip(a.iter().zip(b)) {
             *out += a * b;

@@ -13,7 +13,8 @@ pub(crate) fn geometric_stiffness(crane: &(impl DynModel + ?Sized), q: &[f64], m
     let mut matrix = DMatrix::zeros(n, n);
     let (mut states, mut v) = (vec![Vector3::zeros(); multipliers.len()], vec![0.0; n]);
     let spans = crane.loop_joints().iter().filter(|joint| !joint.is_coupling()).map(|joint| joint.spanned);
-    let spanned: Vec<usize> = (0..n).filter(|j| spans.clone().any(|[first, end]| (first..end).contains(j))).collect();
+    let is_spanned = |both: &[usize]| spans.clone().any(|[first, end]| both.iter().all(|j| (first..end).contains(j)));
+    let spanned: Vec<usize> = (0..n).filter(|j| is_spanned(&[*j])).collect();
     let mut along = |coordinates: &[usize]| {
         for &j in coordinates {
             v[j] = 1.0;
@@ -28,7 +29,7 @@ pub(crate) fn geometric_stiffness(crane: &(impl DynModel + ?Sized), q: &[f64], m
         matrix[(j, j)] = along(&[j]);
     }
     for (place, &j) in spanned.iter().enumerate() {
-        for &i in &spanned[..place] {
+        for &i in spanned[..place].iter().filter(|i| is_spanned(&[**i, j])) {
             let both = along(&[i, j]);
             let entry = 0.5 * (both - matrix[(i, i)] - matrix[(j, j)]);
             (matrix[(i, j)], matrix[(j, i)]) = (entry, entry);
@@ -55,9 +56,10 @@ pub(crate) fn closed_motions(
     });
     // Gauss–Jordan elimination: every row determines one coordinate.
     let mut determined: Vec<usize> = Vec::new();
+    let mut is_determined = vec![false; n];
     for row in 0..rows {
         let places = (row..rows).flat_map(|i| (0..n).map(move |j| (i, j)));
-        let places = places.filter(|(_, j)| !determined.contains(j));
+        let places = places.filter(|(_, j)| !is_determined[*j]);
         let size = |(i, j): (usize, usize)| matrix[(i, j)].abs() * preferred(j);
         let Some((i, j)) = places.max_by(|&a, &b| size(a).total_cmp(&size(b))) else { break };
         matrix.swap_rows(row, i);
@@ -65,14 +67,18 @@ pub(crate) fn closed_motions(
         matrix.row_mut(row).iter_mut().for_each(|entry| *entry /= pivot);
         for other in (0..rows).filter(|&other| other != row) {
             let factor = matrix[(other, j)];
+            if factor == 0.0 {
+                continue;
+            }
             for column in 0..n {
                 let entry = matrix[(row, column)];
                 matrix[(other, column)] -= factor * entry;
             }
         }
         determined.push(j);
+        is_determined[j] = true;
     }
-    let free: Vec<usize> = (0..n).filter(|j| !determined.contains(j) && !prescribed.contains(j)).collect();
+    let free: Vec<usize> = (0..n).filter(|j| !is_determined[*j] && !prescribed.contains(j)).collect();
     let basis = DMatrix::from_fn(n, free.len(), |j, column| match determined.iter().position(|&own| own == j) {
         Some(row) => -matrix[(row, free[column])],
         None => f64::from(u8::from(free[column] == j)),

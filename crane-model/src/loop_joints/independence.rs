@@ -5,6 +5,8 @@
 //! the space of those before. A row is not divided by its own length: near a dead centre along an axis, it vanishes instead of
 //! becoming parallel to others. Neither units nor masses matter, nor how the crane lies in the world.
 
+use std::ops::Range;
+
 use crate::memory::{visit_flag, visit_indices};
 
 /// A row whose pivot is below this is zero or depends on others: a sine of 1e-5.
@@ -18,6 +20,8 @@ const APPEARED: f64 = 1e-8;
 pub(super) struct Independence {
     /// Whether each equation transmits a moment, joint by joint.
     groups: Vec<Vec<bool>>,
+    /// The coordinates for which each row has entries.
+    spans: Vec<Range<usize>>,
     /// Chosen equations, in the order of their pivots.
     kept: Vec<usize>,
     is_kept: Vec<bool>,
@@ -28,13 +32,16 @@ pub(super) struct Independence {
     gram: Vec<f64>,
     units: Vec<f64>,
     remaining: Vec<bool>,
+    /// The coordinates of a row's entries, or the rows with a part of the one that is eliminated.
+    touched: Vec<usize>,
 }
 
 impl Independence {
-    pub fn new(groups: Vec<Vec<bool>>) -> Self {
-        let count = groups.iter().map(Vec::len).sum();
+    pub fn new(groups: Vec<Vec<bool>>, spans: Vec<Range<usize>>) -> Self {
+        let count = spans.len();
         Self {
             groups,
+            spans,
             kept: Vec::with_capacity(count),
             is_kept: vec![false; count],
             least: f64::NAN,
@@ -42,12 +49,13 @@ impl Independence {
             gram: vec![0.0; count * count],
             units: vec![0.0; count],
             remaining: vec![false; count],
+            touched: Vec::with_capacity(count),
         }
     }
 
     /// For a choice from the beginning.
     pub fn begin_again(&self) -> Self {
-        Self::new(self.groups.clone())
+        Self::new(self.groups.clone(), self.spans.clone())
     }
 
     /// Visits what the next choice depends on.
@@ -124,39 +132,49 @@ impl Independence {
     /// Removes a row, and its part from those that remain.
     fn eliminate(&mut self, row: usize) {
         let (size, pivot) = (self.len(), self.pivot(row));
-        self.remaining[row] = false;
-        for i in (0..size).filter(|&i| self.remaining[i]) {
-            let factor = self.gram[i * size + row] / pivot;
-            for j in 0..size {
-                self.gram[i * size + j] -= factor * self.gram[row * size + j];
+        let Self { remaining, touched, gram, .. } = self;
+        remaining[row] = false;
+        touched.clear();
+        let is_touched = |j: &usize| gram[row * size + j] != 0.0 || gram[j * size + row] != 0.0;
+        touched.extend((0..size).filter(|j| remaining[*j] && is_touched(j)));
+        for &i in &*touched {
+            let factor = gram[i * size + row] / pivot;
+            for &j in &*touched {
+                gram[i * size + j] -= factor * gram[row * size + j];
             }
         }
     }
 
     /// The products of all rows over their units; rows that are zero do not remain.
     fn measure(&mut self, jacobian: &[f64], n: usize, prescribed: &[usize]) {
-        let product = |i: usize, j: usize| -> f64 {
-            let (one, other) = (&jacobian[i * n..][..n], &jacobian[j * n..][..n]);
-            let whole: f64 = one.iter().zip(other).map(|(a, b)| a * b).sum();
-            whole - prescribed.iter().map(|&k| one[k] * other[k]).sum::<f64>()
-        };
-        let mut first = 0;
-        for group in &self.groups {
-            let own = first..first + group.len();
-            let lengths = own.clone().zip(group).filter(|(_, is_moment)| !**is_moment);
-            let greatest = lengths.map(|(row, _)| product(row, row).max(0.0).sqrt()).fold(0.0, f64::max);
-            for (row, is_moment) in own.zip(group) {
-                self.units[row] = if *is_moment { 1.0 } else { greatest };
-            }
-            first += group.len();
-        }
         let size = self.len();
-        for i in 0..size {
-            self.remaining[i] = self.units[i] > 0.0;
+        let Self { groups, spans, gram, units, remaining, touched, .. } = self;
+        for (i, span) in spans.iter().enumerate() {
+            let one = &jacobian[i * n..][..n];
+            touched.clear();
+            touched.extend(span.clone().filter(|k| one[*k] != 0.0));
             for j in 0..=i {
-                let both = self.remaining[i] && self.remaining[j];
-                let entry = if both { product(i, j) / (self.units[i] * self.units[j]) } else { 0.0 };
-                (self.gram[i * size + j], self.gram[j * size + i]) = (entry, entry);
+                let other = &jacobian[j * n..][..n];
+                let whole: f64 = touched.iter().map(|&k| one[k] * other[k]).sum();
+                gram[i * size + j] = whole - prescribed.iter().map(|&k| one[k] * other[k]).sum::<f64>();
+            }
+        }
+        let mut first = 0;
+        for group in groups {
+            let own = first..first + group.len();
+            let lengths = own.clone().zip(&*group).filter(|(_, is_moment)| !**is_moment);
+            let greatest = lengths.map(|(row, _)| gram[row * size + row].max(0.0).sqrt()).fold(0.0, f64::max);
+            for (row, is_moment) in own.clone().zip(group) {
+                units[row] = if *is_moment { 1.0 } else { greatest };
+            }
+            first = own.end;
+        }
+        for i in 0..size {
+            remaining[i] = units[i] > 0.0;
+            for j in 0..=i {
+                let both = remaining[i] && remaining[j];
+                let entry = if both { gram[i * size + j] / (units[i] * units[j]) } else { 0.0 };
+                (gram[i * size + j], gram[j * size + i]) = (entry, entry);
             }
         }
     }
@@ -169,7 +187,7 @@ mod tests {
     /// Three rows in two dimensions, one zero row, and one that depends only on a prescribed coordinate.
     #[test]
     fn dependent_rows_are_left_out_and_good_choices_remain() {
-        let mut independence = Independence::new(vec![vec![false; 4], vec![true]]);
+        let mut independence = Independence::new(vec![vec![false; 4], vec![true]], vec![0..3; 5]);
         let rows = |angle: f64| -> Vec<f64> {
             let (sin, cos) = angle.sin_cos();
             [[1.0, 0.0, 0.0], [cos, sin, 0.0], [2.0 * cos, -sin, 0.0], [0.0, 1e-17, 0.0], [0.0, 0.0, 1.0]].concat()

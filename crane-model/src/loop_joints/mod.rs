@@ -7,7 +7,9 @@
 //! A q̈ = f − Jᵀ λ,   J q̈ + γ = 0:      S = J A⁻¹ Jᵀ,    λ = S⁻¹ (J A⁻¹ f + γ),    q̈ = A⁻¹ f − A⁻¹ Jᵀ λ
 //! ```
 //!
-//! so r equations take r + 1 recursions of the open chain, which share its articulated inertias, and one dense system of size r. Positions and rates that a method has
+//! so r equations take r + 1 recursions of the open chain, which share its articulated inertias, and one system of size r. A force of an equation
+//! moves only what stands on the same moving ground: in the order of the coordinates that they span, S has entries only near its diagonal
+//! ([`profile`]), and loops that stand next to each other take as many operations each, however many there are. Positions and rates that a method has
 //! integrated are moved back onto the loop after every step: the smallest change in the metric of A,
 //!
 //! ```text
@@ -23,6 +25,7 @@ mod dead_centre;
 mod drives;
 mod independence;
 mod of_crane;
+mod profile;
 mod quantities;
 mod reactions;
 mod required;
@@ -37,6 +40,8 @@ pub(crate) use required::{at_rest, generalized, required};
 pub use starts::Given;
 pub(crate) use starts::{close_start, close_state};
 
+use std::ops::Range;
+
 use nalgebra::Vector3;
 
 use crate::{
@@ -44,7 +49,9 @@ use crate::{
     dyn_crane::{DynDynamics, DynModel},
     interleaved,
 };
+use independence::Independence;
 use of_crane::OfCrane;
+use profile::Profile;
 
 /// Gap beyond which a loop that should be closed is open, m or rad: a thousandth of a millimetre.
 pub(crate) const OPEN: f64 = 1e-6;
@@ -91,6 +98,13 @@ pub(crate) struct Loops {
     states: Vec<Vector3<f64>>,
     /// J, row by row, each of all cranes.
     jacobian: Vec<f64>,
+    /// Where a row of J may have entries.
+    spans: Vec<Range<usize>>,
+    /// Where it has some, as last evaluated: runs of coordinates, and those of each row.
+    runs: Vec<Range<usize>>,
+    runs_of: Vec<Range<usize>>,
+    /// All rows in the order of the coordinates that they span.
+    order: Vec<usize>,
     /// What is separate for each crane.
     each: Vec<OfCrane>,
     /// The rows of equations that are independent in any crane.
@@ -101,7 +115,8 @@ pub(crate) struct Loops {
     opened: Vec<f64>,
     /// Accelerations of the open chain and what closes its loops, as [`loop_dynamics`](crate::Dynamics::loop_dynamics) orders them.
     dynamics: Vec<f64>,
-    /// `J M⁻¹ Jᵀ` of `rows`, the lower triangle row by row.
+    /// `J M⁻¹ Jᵀ` of `rows`.
+    coupled: Profile,
     products: Vec<f64>,
     /// Numbers of the equations.
     shares: Vec<f64>,
@@ -125,7 +140,16 @@ impl Loops {
             joint.equations.iter().step_by(cranes).map(is_moment).collect::<Vec<_>>()
         };
         let groups: Vec<Vec<bool>> = crane.loop_joints().iter().map(moments).collect();
-        let count = groups.iter().map(Vec::len).sum();
+        let span = |(joint, group): (&LoopJointInfo, &Vec<bool>)| {
+            let [first, end] = joint.spanned;
+            std::iter::repeat_n(first..end, group.len())
+        };
+        let spans: Vec<Range<usize>> = crane.loop_joints().iter().zip(&groups).flat_map(span).collect();
+        let count = spans.len();
+        let mut order: Vec<usize> = (0..count).collect();
+        order.sort_by_key(|row| spans[*row].start);
+        let of_one: Vec<_> = spans.iter().map(|span| span.start / cranes..span.end / cranes).collect();
+        let of_crane = |crane| OfCrane::new(crane, Independence::new(groups.clone(), of_one.clone()));
         let zeros = |len: usize| vec![0.0; len];
         let of_cranes = if count == 0 { 0 } else { n };
         Self {
@@ -134,12 +158,17 @@ impl Loops {
             prescribed: crane.description().prescribed(),
             states: vec![Vector3::zeros(); count * cranes],
             jacobian: zeros(count * of_cranes),
-            each: (0..cranes).map(|crane| OfCrane::new(crane, groups.clone())).collect(),
+            spans,
+            runs: Vec::with_capacity(4 * count),
+            runs_of: vec![0..0; count],
+            order,
+            each: (0..cranes).map(of_crane).collect(),
             rows: Vec::with_capacity(count),
             columns: zeros(count * of_cranes),
             opened: vec![f64::NAN; of_cranes],
             dynamics: zeros(Count::loop_rows(count, n / cranes) * of_cranes),
-            products: zeros(count * count * cranes),
+            coupled: Profile::new(count),
+            products: zeros(count * (count + 1) / 2 * cranes),
             shares: zeros(count * cranes),
             multipliers: zeros(count * cranes),
             own: zeros(count * of_cranes / cranes),
@@ -195,6 +224,25 @@ impl Loops {
     pub fn evaluate(&mut self, crane: &(impl DynModel + ?Sized), q: &[f64], v: &[f64]) {
         crane.loop_states(q, v, &mut self.states);
         crane.loop_jacobians(q, &mut self.jacobian);
+        self.find_runs();
+    }
+
+    /// Notes which coordinates move the points of each equation.
+    fn find_runs(&mut self) {
+        let Self { n, cranes, jacobian, spans, runs, runs_of, .. } = self;
+        runs.clear();
+        for ((row, span), own) in spans.iter().enumerate().zip(runs_of) {
+            let first = runs.len();
+            for at in span.clone().step_by(*cranes) {
+                if jacobian[row * *n + at..][..*cranes].iter().any(|entry| *entry != 0.0) {
+                    match runs[first..].last_mut() {
+                        Some(run) if run.end == at => run.end += *cranes,
+                        _ => runs.push(at..at + *cranes),
+                    }
+                }
+            }
+            *own = first..runs.len();
+        }
     }
 
     /// Chooses independent equations at the state evaluated; those chosen before remain if they are still good.
@@ -207,10 +255,19 @@ impl Loops {
         self.order_rows();
     }
 
-    /// Lists the rows of equations that are independent in any crane: those of the first crane first.
+    /// Lists the rows of equations that are independent in any crane, and their places for each.
     fn order_rows(&mut self) {
-        self.rows.clear();
-        self.each.iter_mut().for_each(|own| own.order(&mut self.rows));
+        let Self { each, order, rows, .. } = self;
+        rows.clear();
+        each.iter_mut().for_each(|own| own.places.clear());
+        for &row in &*order {
+            let place = rows.len();
+            for own in each.iter_mut().filter(|own| own.independence.is_kept(row)) {
+                own.places.push(place);
+                rows.truncate(place);
+                rows.push(row);
+            }
+        }
     }
 
     /// Number of equations that are independent while some coordinates rest.
@@ -231,20 +288,27 @@ impl Loops {
         self.factorise_schur();
     }
 
-    /// S of the independent equations, from J and M⁻¹ Jᵀ.
+    /// S of the independent equations, from J and M⁻¹ Jᵀ. What does not move with another joint has exact zeros there.
     fn factorise_schur(&mut self) {
-        let Self { n, cranes, jacobian, rows, columns, products, each, .. } = self;
+        let Self { n, cranes, jacobian, runs, runs_of, rows, columns, coupled, products, each, .. } = self;
         let (n, cranes) = (*n, *cranes);
+        coupled.clear();
         for (i, &row) in rows.iter().enumerate() {
+            let (own, mut first) = (&jacobian[row * n..][..n], None);
             for (j, &column) in rows[..=i].iter().enumerate() {
-                let product = &mut products[(i * rows.len() + j) * cranes..][..cranes];
-                interleaved::dot(&jacobian[row * n..][..n], &columns[column * n..][..n], product);
+                let place = coupled.len() + j - first.unwrap_or(j);
+                let product = &mut products[place * cranes..][..cranes];
+                product.fill(0.0);
+                for run in &runs[runs_of[row].clone()] {
+                    interleaved::add_dot(&own[run.clone()], &columns[column * n..][run.clone()], product);
+                }
+                if first.is_none() && (j == i || product.iter().any(|product| *product != 0.0)) {
+                    first = Some(j);
+                }
             }
+            coupled.add(first.unwrap_or(i));
         }
-        for own in each {
-            let crane = own.crane;
-            own.factorise(|i, j| products[(i * rows.len() + j) * cranes + crane]);
-        }
+        each.iter_mut().for_each(|own| own.factorise(coupled, products, cranes));
     }
 
     /// Turns the solution of the open chain, `x = M⁻¹ r`, into that with the loops closed, for which `J x + γ = 0`; γ is J̇ q̇ of the
@@ -274,9 +338,13 @@ impl Loops {
 
     /// `J x` of the independent equations as shares.
     fn take_along(&mut self, x: &[f64]) {
-        let Self { n, cranes, jacobian, rows, shares, .. } = self;
+        let Self { n, cranes, jacobian, runs, runs_of, rows, shares, .. } = self;
         for &row in &*rows {
-            interleaved::dot(&jacobian[row * *n..][..*n], x, &mut shares[row * *cranes..][..*cranes]);
+            let shares = &mut shares[row * *cranes..][..*cranes];
+            shares.fill(0.0);
+            for run in &runs[runs_of[row].clone()] {
+                interleaved::add_dot(&jacobian[row * *n..][run.clone()], &x[run.clone()], shares);
+            }
         }
     }
 
@@ -331,6 +399,7 @@ impl Loops {
         for (state, curvature) in states.iter_mut().zip(curvatures) {
             *state = Vector3::new(f64::NAN, f64::NAN, *curvature);
         }
+        self.find_runs();
     }
 
     /// Accelerations with the loops closed, in place of those of the open chain, where they were last [opened](Self::open). λ is then known.
@@ -403,6 +472,7 @@ impl Loops {
             return Err(open);
         }
         crane.loop_jacobians(q, &mut self.jacobian);
+        self.find_runs();
         // The matrix of another pose leaves a share of the rates as small as the difference of the poses.
         for _ in 0..3 {
             self.take_along(v);

@@ -7,7 +7,7 @@ use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::{InitialState, Method, Sample, Settings};
-use crane_model::nalgebra::Vector3;
+use crane_model::nalgebra::{DMatrix, DVector, Vector3};
 use crane_model::{Count, loop_joints, modes, statics};
 
 const GRAVITY: f64 = 9.81;
@@ -663,5 +663,99 @@ fn one_pass_closes_loops_as_separate_solutions_do() {
     // The same sums in another order.
     for (index, (one, other)) in found.iter().zip(&expected).enumerate() {
         assert!((one - other).abs() <= 1e-11 * other.abs().max(1e-6), "{index}: {one} {other}");
+    }
+}
+
+/// Couplers of a row of parallel four-bars.
+const COUPLERS: usize = 12;
+
+/// Slender cranks of 1 m and 1 kg, 1 m apart, and couplers like them. The joints that close the loops are not listed in order.
+fn row_of_four_bars(ground: &str) -> LiveCrane {
+    let link = |name: String, on: String, at: usize| {
+        format!(
+            "- {{name: {name}, on: {{link: {on}, at: [{at}, 0, 0]}}, joint: revolute, mass: 1, com: [0.5, 0, 0], \
+             inertia: {{about: com, Ixx: 1e-4, Iyy: {inertia}, Izz: {inertia}}}}}\n",
+            inertia = 1.0 / 12.0
+        )
+    };
+    let cranks = (0..=COUPLERS).map(|i| link(format!("crank_{i}"), "ground".to_owned(), i));
+    let couplers = (0..COUPLERS).map(|i| link(format!("coupler_{i}"), format!("crank_{i}"), 1));
+    let joint = |i: usize| {
+        let next = i + 1;
+        format!(
+            "- {{name: pin_{i}, from: {{link: coupler_{i}, at: [1, 0, 0]}}, to: {{link: crank_{next}, at: [1, 0, 0]}}, \
+             joint: {{pin: {{axis: [0, 0, 1], to_axis: [0, 0, 1]}}}}}}\n"
+        )
+    };
+    let guess = (0..=COUPLERS).map(|i| format!("crank_{i}_psi: -80 deg"));
+    let guess = guess.chain((0..COUPLERS).map(|i| format!("coupler_{i}_psi: 80 deg")));
+    crane(&format!(
+        "format: 1\nname: row\nanalyses: [statics, dynamics, modes]\ngravity: [0, -{GRAVITY}, 0]\nlinks:\n\
+         - {{name: ground{ground}}}\n{}loop_joints:\n{}guess: {{{}}}\n",
+        cranks.chain(couplers).collect::<String>(),
+        (0..COUPLERS).map(|i| joint(5 * i % COUPLERS)).collect::<String>(),
+        guess.collect::<Vec<_>>().join(", "),
+    ))
+}
+
+/// With m cranks and n couplers, which do not turn, `(m/3 + n) θ̈ = −g (m/2 + n) cos θ` at any rate; about rest, `ω² = g (m/2 + n)/(m/3 + n)`.
+#[test]
+fn loops_next_to_each_other_swing_as_one_pendulum() {
+    let row = row_of_four_bars("");
+    let row: &dyn DynCrane = &row;
+    let (m, n) = (COUPLERS as f64 + 1.0, COUPLERS as f64);
+    let pull = GRAVITY * (m / 2.0 + n) / (m / 3.0 + n);
+    let of_cranks = |number: f64| -> Vec<f64> {
+        (0..row.size()).map(|j| if j <= COUPLERS { number } else { -number }).collect()
+    };
+    for (theta, rate) in [(0.4, 0.0), (-1.1, 2.5)] {
+        let found = row.accelerations_at(0.0, &of_cranks(theta), &of_cranks(rate));
+        for (j, expected) in of_cranks(-pull * f64::cos(theta)).into_iter().enumerate() {
+            // Sums of a few forces from each of the loops, of which the joints pass on those of their neighbours.
+            assert!((found[j] - expected).abs() < 1e-11, "{j}: {} {expected}", found[j]);
+        }
+    }
+    let rest = row.equilibrium(&statics::Settings::default());
+    assert!(rest.is_stable() && rest.q.iter().all(|angle| (angle.abs() - PI / 2.0).abs() < 1e-9), "{rest}");
+    let modes = modes::undamped(&row.small_motions_at(&rest.q)).expect("modes");
+    assert_eq!(modes.len(), 1);
+    // An eigenvalue of one coordinate.
+    assert!((modes[0].omega_squared / pull - 1.0).abs() < 1e-9, "{}", modes[0].omega_squared);
+}
+
+/// All equations of motion and of the loops as one dense system, where loops are on ground that rests and where it moves all of them.
+#[test]
+fn loops_next_to_each_other_move_as_one_system_of_all_equations() {
+    for ground in ["", ", joint: {prismatic: {axis: x}}, mass: 3, inertia: {Ixx: 1, Iyy: 1, Izz: 1}"] {
+        let row = row_of_four_bars(ground);
+        let row: &dyn DynCrane = &row;
+        let n = row.size();
+        let numbers = |scale: f64| (0..n).map(|j| scale * (1.7 * j as f64).sin()).collect::<Vec<f64>>();
+        let (q, v) = (numbers(0.5), numbers(1.0));
+        let independent = loop_joints::independent(row, &q);
+        assert_eq!(independent.len(), 2 * COUPLERS);
+        let mut jacobian = vec![0.0; row.count(Count::LoopEquations) * n];
+        let mut states = vec![Vector3::zeros(); row.count(Count::LoopEquations)];
+        row.loop_jacobians(&q, &mut jacobian);
+        row.loop_states(&q, &v, &mut states);
+        let size = n + independent.len();
+        let (mass, mut whole) = (row.mass_matrix_at(&q), DMatrix::zeros(size, size));
+        whole.view_mut((0, 0), (n, n)).copy_from(&mass);
+        let mut right = DVector::zeros(size);
+        let mut forces = vec![0.0; n];
+        row.forces(0.0, &q, &v, &mut forces);
+        right.rows_mut(0, n).copy_from(&(row.bias_at(&q, &v) + DVector::from_vec(forces)));
+        for (place, &equation) in independent.iter().enumerate() {
+            for j in 0..n {
+                let entry = jacobian[equation * n + j];
+                (whole[(n + place, j)], whole[(j, n + place)]) = (entry, entry);
+            }
+            right[n + place] = -states[equation].z;
+        }
+        let expected = whole.lu().solve(&right).expect("a regular matrix");
+        let found = row.accelerations_at(0.0, &q, &v);
+        // The condition of the whole matrix, some 1e3, times rounding.
+        let error = (found - expected.rows(0, n)).amax() / expected.rows(0, n).amax();
+        assert!(error < 1e-12, "{ground} {error}");
     }
 }
