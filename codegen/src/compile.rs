@@ -95,8 +95,9 @@ pub fn generate_c(
     // Straight-line code needs no tables of numbers and no loops over columns.
     let chain = Chain { loops: Loops::Never, ..chain.clone() };
     let mut program = derive(&chain, analyses);
-    let is_straight =
-        |function: &&Function| !matches!(function.shape, Shape::Columns { .. } | Shape::TransformFactors { .. });
+    let of_factors =
+        |shape: &Shape| matches!(shape, Shape::Columns { .. } | Shape::Tangent { .. } | Shape::TransformFactors { .. });
+    let is_straight = |function: &&Function| !of_factors(&function.shape);
     let known: Vec<FunctionId> = program.functions.iter().filter(is_straight).map(|function| function.id).collect();
     let closes_loops = chain.has_loops();
     let with_products: Vec<FunctionId> = known.iter().copied().filter(|id| has_products(*id, closes_loops)).collect();

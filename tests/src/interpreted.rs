@@ -157,7 +157,7 @@ impl Interpreted {
 /// Slots of a result as full arrays: symmetric matrices with both halves, transformations with their last row.
 fn expand<S: Scalar>(shape: &Shape, slots: Vec<S>) -> Vec<S> {
     match shape {
-        Shape::Symmetric(n) | Shape::Columns { n, bias: false, .. } => symmetric(*n, &slots),
+        Shape::Symmetric(n) | Shape::Tangent { n, .. } | Shape::Columns { n, bias: false, .. } => symmetric(*n, &slots),
         Shape::Base => symmetric(6, &slots),
         Shape::Transforms { corner, .. } => homogeneous(&slots, *corner),
         Shape::TransformFactors { .. } => homogeneous(&slots, 0),

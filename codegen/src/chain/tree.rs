@@ -29,7 +29,7 @@ impl Chain {
     }
 
     /// The coordinates of the joint of a body.
-    fn own_coordinates(&self, body: usize) -> impl Iterator<Item = CoordinateId> {
+    pub fn own_coordinates(&self, body: usize) -> impl Iterator<Item = CoordinateId> {
         self.bodies.get(body).into_iter().flat_map(|body| &body.path).flat_map(Step::coordinates).copied()
     }
 

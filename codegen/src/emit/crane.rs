@@ -285,7 +285,7 @@ fn method(code: &LoweredFunction) -> TokenStream {
                 }
             }
         }
-        Shape::Symmetric(_) | Shape::Columns { bias: false, .. } => {
+        Shape::Symmetric(_) | Shape::Tangent { .. } | Shape::Columns { bias: false, .. } => {
             quote! {
                 fn #name(&self, #(#names: #types,)* out: &mut SMatrix<f64, N, N>) {
                     #name(#(#arguments,)* out);

@@ -49,6 +49,7 @@ impl<'a> Labels<'a> {
                 None => ["Axes", "Linear momenta", "Angular momenta", "Offsets to the next point"][slot / (3 * n)]
                     .to_owned(),
             }),
+            Shape::Tangent { .. } => Some("Factors of the tangent stiffness".to_owned()),
             Shape::Symmetric(n) => Some(format!("Row of {}", coordinate(row_of_triangle(*n, slot).0))),
             // Of the coordinates that rigid drives prescribe.
             Shape::Pairs(_) if function.id.extent() == Extent::Other => {

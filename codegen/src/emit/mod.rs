@@ -104,6 +104,7 @@ fn imports(items: &[syn::Item]) -> String {
                 "TransformFactors",
                 "exp",
                 "fill",
+                "fill_tangent",
                 "fma",
                 "mirror",
                 "select",

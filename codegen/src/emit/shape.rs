@@ -35,7 +35,9 @@ impl<'f> Storage<'f> {
     pub fn handover(&self) -> Handover {
         match self.shape {
             Shape::Transforms { corner: 0, .. } | Shape::Rows { .. } | Shape::Symmetric(_) => Handover::OutArgument,
-            Shape::TransformFactors { .. } | Shape::Columns { bias: false, .. } => Handover::FromFactors,
+            Shape::TransformFactors { .. } | Shape::Tangent { .. } | Shape::Columns { bias: false, .. } => {
+                Handover::FromFactors
+            }
             Shape::MassAndBias(_) | Shape::Columns { bias: true, .. } => Handover::Both,
             _ => Handover::Return,
         }
@@ -47,7 +49,9 @@ impl<'f> Storage<'f> {
         match self.shape {
             Shape::Scalar => quote!(f64),
             Shape::Vector(_) | Shape::MassAndBias(_) | Shape::Columns { bias: true, .. } => quote!(SVector<#number, N>),
-            Shape::Symmetric(_) | Shape::Columns { bias: false, .. } => quote!(SMatrix<f64, N, N>),
+            Shape::Symmetric(_) | Shape::Tangent { .. } | Shape::Columns { bias: false, .. } => {
+                quote!(SMatrix<f64, N, N>)
+            }
             Shape::Base => quote!(SMatrix<f64, 6, 6>),
             Shape::Factors(_) => quote!(Factors),
             Shape::Vectors(n) => array(&quote!(Vector3<f64>), *n),
@@ -67,7 +71,7 @@ impl<'f> Storage<'f> {
     /// Name of the variable that collects the result.
     pub fn storage_name(&self) -> &'static str {
         match self.shape {
-            Shape::TransformFactors { .. } => "factors",
+            Shape::TransformFactors { .. } | Shape::Tangent { .. } => "factors",
             Shape::Columns { .. } => "columns",
             _ => "out",
         }
@@ -79,6 +83,7 @@ impl<'f> Storage<'f> {
         match self.shape {
             Shape::Vector(_) => quote!([#number; N]),
             Shape::Symmetric(_) => quote!([[f64; N]; N]),
+            Shape::Tangent { .. } => array(&quote!(f64), self.shape.len()),
             Shape::Base => quote!([[f64; 6]; 6]),
             Shape::Columns { n, .. } => {
                 let eights = integer(n.div_ceil(8));
@@ -105,7 +110,7 @@ impl<'f> Storage<'f> {
             Shape::Base => quote!([[0.0; 6]; 6]),
             Shape::Columns { .. } => quote!(MassColumns::zeros()),
             Shape::MassAndBias(_) => quote!(MassAndBias::zeros()),
-            Shape::Factors(n) => array(&quote!(0.0), *n),
+            Shape::Factors(_) | Shape::Tangent { .. } => array(&quote!(0.0), self.shape.len()),
             Shape::Vectors(n) => array(&quote!(Vector3::zeros()), *n),
             Shape::Pairs(n) => array(&quote!([0.0; 2]), *n),
             Shape::Structs(of, n) => {
@@ -153,6 +158,12 @@ impl<'f> Storage<'f> {
                     columns.fill(&[#(#points),*], &mut mass.data.0);
                     SVector::from(columns.bias)
                 }
+            }
+            Shape::Tangent { segments, entries, .. } => {
+                let segments = segments.iter().map(|numbers| numbers.map(integer)).map(|of| quote!([#(#of),*]));
+                let entries = entries.iter().map(|numbers| numbers.map(integer)).map(|of| quote!([#(#of),*]));
+                let (segments, entries) = (quote!(&[#(#segments),*]), quote!(&[#(#entries),*]));
+                quote!(fill_tangent(#segments, #entries, (&factors, 0.0), out.data.0.as_flattened_mut());)
             }
             Shape::MassAndBias(_) => quote! {
                 mass.data.0 = out.mass;
@@ -215,7 +226,7 @@ impl<'f> Storage<'f> {
     /// The group of slots that a slot belongs to, for a comment before it.
     pub fn group(&self, slot: usize) -> usize {
         match self.shape {
-            Shape::Scalar | Shape::Factors(_) => 0,
+            Shape::Scalar | Shape::Factors(_) | Shape::Tangent { .. } => 0,
             Shape::Vector(_) => slot,
             Shape::Base => row_of_triangle(6, slot).0,
             Shape::MassAndBias(n) if slot >= n * (n + 1) / 2 => slot,
@@ -284,7 +295,7 @@ fn array(item: &TokenStream, n: usize) -> TokenStream {
 fn slot_of(shape: &Shape, slot: usize, out: Expr) -> Expr {
     match shape {
         Shape::Scalar => out,
-        Shape::Vector(_) | Shape::Factors(_) => element(out, slot),
+        Shape::Vector(_) | Shape::Factors(_) | Shape::Tangent { .. } => element(out, slot),
         Shape::Base => slot_of(&Shape::Symmetric(6), slot, out),
         Shape::MassAndBias(n) => {
             if let Some(row) = slot.checked_sub(n * (n + 1) / 2) {

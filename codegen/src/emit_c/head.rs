@@ -267,6 +267,6 @@ fn result(chain: &Chain, Function { id, product, shape, .. }: &Function) -> Stri
             let fields = fields.iter().map(|(name, shape)| format!("{name} ({} numbers)", numbers(shape)));
             format!("out: {}, one after the other", fields.collect::<Vec<_>>().join(", "))
         }
-        Shape::Columns { .. } | Shape::TransformFactors { .. } => "out: factors".to_owned(),
+        Shape::Columns { .. } | Shape::Tangent { .. } | Shape::TransformFactors { .. } => "out: factors".to_owned(),
     }
 }

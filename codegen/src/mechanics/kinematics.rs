@@ -126,9 +126,26 @@ pub struct Kinematics<'g> {
 
 impl<'g> Kinematics<'g> {
     pub fn new(model: &Model<'g>) -> Self {
+        Self::of(model, |_| true)
+    }
+
+    /// Those of the bodies for which `counts` holds, of which each one's parent is another; others rest at the origin.
+    pub fn of(model: &Model<'g>, counts: impl Fn(usize) -> bool) -> Self {
         let world = Pose { rotation: Rotation::identity(model.graph), origin: Vec3::zero(model.graph) };
         let (mut poses, mut generators, mut curvatures): (Vec<Pose<'g>>, _, _) = (Vec::new(), Vec::new(), Vec::new());
         for (index, body) in model.chain.bodies.iter().enumerate() {
+            if !counts(index) {
+                let Pose { origin: zero, .. } = world;
+                generators.extend(model.chain.own_coordinates(index).map(|CoordinateId(j)| Generator {
+                    kind: model.chain.coordinates[j].kind,
+                    omega: zero,
+                    upsilon: zero,
+                    point: zero,
+                    body: index,
+                }));
+                poses.push(world);
+                continue;
+            }
             let mut pose = body.parent.map_or(world, |BodyId(parent)| poses[parent]);
             for step in &body.path {
                 match step {

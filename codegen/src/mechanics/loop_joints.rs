@@ -22,6 +22,8 @@
 //! λ are the forces and moments that the second body exerts on the first, along the directions of the equations: the generalized forces
 //! are `f = −Jᵀ λ`.
 
+use std::collections::BTreeSet;
+
 use super::beam_axis::AxisPoint;
 use super::kinematics::{Curvature, Generator, Kinematics, Pose};
 use super::model::Model;
@@ -108,7 +110,10 @@ impl<'g> Closed<'g> {
         for j in (0..model.size()).filter(|j| !closed_by.contains(&CoordinateId(*j))) {
             (model.q[j], model.v[j]) = (model.zero(), model.zero());
         }
-        let kinematics = Kinematics::new(&model);
+        let ends = joint.ends.iter().filter_map(|end| end.body);
+        let ends = ends.chain(joint.kind.slides().map(|sliding| sliding.beam.last()));
+        let counted: BTreeSet<BodyId> = ends.flat_map(|end| model.chain.path(end)).collect();
+        let kinematics = Kinematics::of(&model, |body| counted.contains(&BodyId(body)));
         let bodies = Bodies { model: &model, kinematics: &kinematics, joint };
         let [(frame, one), (of_second, other)] = joint.ends.each_ref().map(|end| placed(&model, &kinematics, end));
         if let Some(sliding) = joint.kind.slides() {
@@ -301,36 +306,41 @@ impl<'g> Bodies<'_, 'g> {
     }
 }
 
-/// Every joint at the present state, with its equations.
-fn all<'g>(model: &Model<'g>) -> impl Iterator<Item = (Closed<'g>, Vec<Equation>)> {
-    model.chain.loop_joints.iter().map(|joint| (Closed::new(model, joint), equations(&joint.kind)))
+/// All equations at the present state, those of couplings last.
+pub struct LoopEquations<'g> {
+    /// φ, φ̇ and J̇ q̇ of every equation.
+    pub states: Vec<Expr<'g>>,
+    /// J, row by row.
+    pub rows: Vec<Expr<'g>>,
 }
 
-/// φ, φ̇ and J̇ q̇ of every equation, those of couplings last.
-pub fn states<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
-    let of_joint = |(closed, equations): (Closed<'g>, Vec<Equation>)| -> Vec<Expr<'g>> {
-        equations.into_iter().flat_map(|equation| closed.state(model, equation)).collect()
-    };
-    let of_coupling = |RigidCoupling { follower, .. }: &RigidCoupling| {
-        let Follower { coordinate: CoordinateId(j), leader: CoordinateId(i), ratio, offset } = follower;
-        let slip = |of: &[Expr<'g>]| of[*j] - model.number(ratio) * of[*i];
-        [slip(&model.q) - model.number(offset), slip(&model.v), model.zero()]
-    };
-    all(model).flat_map(of_joint).chain(model.chain.rigid_couplings.iter().flat_map(of_coupling)).collect()
-}
-
-/// J, row by row.
-pub fn jacobians<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
-    let of_joint = |(closed, equations): (Closed<'g>, Vec<Equation>)| -> Vec<Expr<'g>> {
-        equations.into_iter().flat_map(|equation| closed.row(model, equation)).collect()
-    };
-    let of_coupling = |RigidCoupling { follower, .. }: &RigidCoupling| {
-        let mut row = model.zeros();
-        row[follower.coordinate.0] = model.graph.constant(1.0);
-        row[follower.leader.0] = -model.number(&follower.ratio);
-        row
-    };
-    all(model).flat_map(of_joint).chain(model.chain.rigid_couplings.iter().flat_map(of_coupling)).collect()
+impl<'g> LoopEquations<'g> {
+    pub fn new(model: &Model<'g>) -> Self {
+        let couplings = &model.chain.rigid_couplings;
+        let (mut states, mut joints) = (Vec::new(), Vec::new());
+        for joint in &model.chain.loop_joints {
+            let (closed, equations) = (Closed::new(model, joint), equations(&joint.kind));
+            states.extend(equations.iter().flat_map(|equation| closed.state(model, *equation)));
+            joints.push((closed, equations));
+        }
+        let of_coupling = |RigidCoupling { follower, .. }: &RigidCoupling| {
+            let Follower { coordinate: CoordinateId(j), leader: CoordinateId(i), ratio, offset } = follower;
+            let slip = |of: &[Expr<'g>]| of[*j] - model.number(ratio) * of[*i];
+            [slip(&model.q) - model.number(offset), slip(&model.v), model.zero()]
+        };
+        states.extend(couplings.iter().flat_map(of_coupling));
+        let of_joint = |(closed, equations): &(Closed<'g>, Vec<Equation>)| -> Vec<Expr<'g>> {
+            equations.iter().flat_map(|equation| closed.row(model, *equation)).collect()
+        };
+        let of_coupling = |RigidCoupling { follower, .. }: &RigidCoupling| {
+            let mut row = model.zeros();
+            row[follower.coordinate.0] = model.graph.constant(1.0);
+            row[follower.leader.0] = -model.number(&follower.ratio);
+            row
+        };
+        let rows = joints.iter().flat_map(of_joint).chain(couplings.iter().flat_map(of_coupling)).collect();
+        Self { states, rows }
+    }
 }
 
 /// Force and moment about the world's origin on both bodies, in the world, for a unit λ of each equation of a joint.

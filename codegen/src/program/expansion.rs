@@ -17,6 +17,7 @@ impl Shape {
                 expanded.extend_from_slice(bias);
                 expanded
             }
+            Shape::Tangent { n, segments, entries } => tangent(*n, segments, entries, &slots),
             _ => slots,
         }
     }
@@ -48,6 +49,14 @@ impl Shape {
                 OperationCount {
                     additions: 2 * entries + 6 * moved,
                     multiplications: 3 * entries + 6 * moved,
+                    ..OperationCount::default()
+                }
+            }
+            Shape::Tangent { segments, entries, .. } => {
+                let pairs: usize = segments.iter().map(|[_, first, end]| end - first).sum();
+                OperationCount {
+                    additions: 5 * pairs + entries.len(),
+                    multiplications: 6 * pairs,
                     ..OperationCount::default()
                 }
             }
@@ -113,6 +122,25 @@ fn mass_matrix<S: Scalar>(points: &[ConcurrentAxes], slots: &[S]) -> Vec<S> {
         rows.push((i..n).map(entry).collect::<Vec<S>>());
     }
     rows.into_iter().rev().flatten().collect()
+}
+
+/// Upper triangle of a tangent stiffness, row by row: `ω_i · M + υ_i · F` in segments, and entries.
+fn tangent<S: Scalar>(n: usize, segments: &[[usize; 3]], entries: &[[usize; 2]], slots: &[S]) -> Vec<S> {
+    let mut upper = vec![S::from_f64(0.0); n * (n + 1) / 2];
+    let place = |i: usize, j: usize| i * n + j - i * (i + 1) / 2;
+    let (axes, rest) = slots.split_at(6 * n);
+    let (wrenches, numbers) = rest.split_at(6 * segments.len());
+    for ([j, first, end], wrench) in segments.iter().zip(wrenches.chunks_exact(6)) {
+        for i in *first..*end {
+            let product = |k: usize| axes[3 * (k / 3 * n + i) + k % 3].clone() * wrench[k].clone();
+            upper[place(i, *j)] = (1..6).fold(product(0), |sum, k| sum + product(k));
+        }
+    }
+    for ([i, j], number) in entries.iter().zip(numbers) {
+        let place = place(*i, *j);
+        upper[place] = upper[place].clone() + number.clone();
+    }
+    upper
 }
 
 /// `ω × column` of the four columns of a 3×4 matrix stored row by row.

@@ -87,6 +87,17 @@ pub enum Shape {
         /// Whether the bias is included.
         bias: bool,
     },
+    /// A tangent stiffness by its factors: angular and linear velocities `ω_i` and `υ_i` at unit rates of all coordinates, three slots each, a moment M
+    /// and a force F of each segment, and entries. The result is the upper triangle, row by row: `ω_i · M + υ_i · F` in a segment's column and rows, and
+    /// the entries in addition.
+    Tangent {
+        /// The number of coordinates.
+        n: usize,
+        /// The column of each segment, its first row, and the one after its last.
+        segments: Vec<[usize; 3]>,
+        /// Row and column of each entry, the row not below the column's.
+        entries: Vec<[usize; 2]>,
+    },
     /// The upper triangle of a symmetric matrix, row by row, and a vector.
     MassAndBias(usize),
     /// A symmetric 6×6 matrix over the base's coordinates, slots as in [`Shape::Symmetric`].
@@ -107,6 +118,7 @@ impl Shape {
             Shape::Base => 21,
             Shape::MassAndBias(n) => n * (n + 1) / 2 + n,
             Shape::Columns { n, bias, .. } => 12 * n + if *bias { *n } else { 0 },
+            Shape::Tangent { n, segments, entries } => 6 * n + 6 * segments.len() + entries.len(),
             Shape::Symmetric(n) => n * (n + 1) / 2,
             Shape::Vectors(n) => 3 * n,
             Shape::Pairs(n) => 2 * n,

@@ -64,6 +64,12 @@ pub trait DynModel: Send + Sync {
     /// Sets the coordinates that rigid drives prescribe, and their rates, at time t.
     fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]);
 
+    /// Writes `Σ λ_i ∂²φ_i/∂q²` of loop joints that transmit λ, n × n; returns whether the crane has a way to compute it that takes less time
+    /// than [`loop_states`](Self::loop_states) for all pairs of coordinates.
+    fn loop_stiffness(&self, _q: &[f64], _multipliers: &[f64], _out: &mut [f64]) -> bool {
+        false
+    }
+
     /// How many of these parts it has.
     fn count(&self, count: Count) -> usize {
         self.description().count(self.loop_joints(), count)

@@ -7,10 +7,14 @@ use crate::dyn_crane::DynModel;
 
 /// `Σ λ_i ∂²φ_i/∂q²`, n × n: the geometric stiffness of loop joints that transmit λ.
 ///
-/// `J̇ q̇` is the quadratic form of the second derivatives, so that its values for pairs of coordinates give them exactly.
+/// `J̇ q̇` is the quadratic form of the second derivatives, so that its values for pairs of coordinates give them exactly. Cranes with
+/// derivatives of J need no pairs.
 pub(crate) fn geometric_stiffness(crane: &(impl DynModel + ?Sized), q: &[f64], multipliers: &[f64]) -> DMatrix<f64> {
     let n = q.len();
     let mut matrix = DMatrix::zeros(n, n);
+    if crane.loop_stiffness(q, multipliers, matrix.as_mut_slice()) {
+        return matrix;
+    }
     let (mut states, mut v) = (vec![Vector3::zeros(); multipliers.len()], vec![0.0; n]);
     let spans = crane.loop_joints().iter().filter(|joint| !joint.is_coupling()).map(|joint| joint.spanned);
     let is_spanned = |both: &[usize]| spans.clone().any(|[first, end]| both.iter().all(|j| (first..end).contains(j)));

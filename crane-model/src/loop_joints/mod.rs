@@ -259,12 +259,16 @@ impl Loops {
     fn order_rows(&mut self) {
         let Self { each, order, rows, .. } = self;
         rows.clear();
-        each.iter_mut().for_each(|own| own.places.clear());
+        for own in each.iter_mut() {
+            own.places.clear();
+        }
         for &row in &*order {
-            let place = rows.len();
+            let (place, mut is_kept) = (rows.len(), false);
             for own in each.iter_mut().filter(|own| own.independence.is_kept(row)) {
                 own.places.push(place);
-                rows.truncate(place);
+                is_kept = true;
+            }
+            if is_kept {
                 rows.push(row);
             }
         }
@@ -308,7 +312,9 @@ impl Loops {
             }
             coupled.add(first.unwrap_or(i));
         }
-        each.iter_mut().for_each(|own| own.factorise(coupled, products, cranes));
+        for own in each {
+            own.factorise(coupled, products, cranes);
+        }
     }
 
     /// Turns the solution of the open chain, `x = M⁻¹ r`, into that with the loops closed, for which `J x + γ = 0`; γ is J̇ q̇ of the

@@ -6,11 +6,13 @@ pub mod lanes;
 mod mass_matrix;
 mod sin_cos;
 mod stumpff;
+mod tangent;
 
 pub use lanes::{exp, fma, select, sqrt};
 pub use mass_matrix::{ConcurrentAxes, MassAndBias, MassColumns};
 pub use sin_cos::{sin_cos, sin_cos_lanes};
 pub use stumpff::{next_stumpff, stumpff, stumpff_lanes};
+pub use tangent::fill_tangent;
 
 /// Numbers of sines and cosines, for code that is made at run time.
 pub mod sines {

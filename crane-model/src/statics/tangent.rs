@@ -18,6 +18,11 @@ const SOFT: f64 = 1e-7;
 /// A coordinate belongs to a direction if its component is at least this fraction of the largest one.
 const SHARE: f64 = 0.3;
 
+/// Tangents of more coordinates are factorised by halves: their columns no longer fit into the caches.
+const LARGE: usize = 500;
+/// Size of blocks that are not halved any more.
+const BLOCK: usize = 64;
+
 /// `K = S⁻¹ M S⁻¹`, with `S = diag(1/√|K_ii|)`: m and rad become comparable, and relative coordinates nearly decouple.
 ///
 /// Where M has no direction that a limit leaves alone, its factors give the Newton step; where it is also positive definite, the equilibrium is stable.
@@ -40,6 +45,8 @@ struct Factors {
 enum Kind {
     /// `M = L Lᵀ`, of a definite one.
     Definite(Cholesky<f64, Dyn>),
+    /// L⁻¹ of a large definite one.
+    Large(DMatrix<f64>),
     /// M⁻¹ of another one.
     Indefinite(DMatrix<f64>),
 }
@@ -47,7 +54,11 @@ enum Kind {
 impl Factors {
     fn new(scaled: &DMatrix<f64>) -> Option<Self> {
         let n = scaled.nrows();
-        let (kind, size) = if let Some(factors) = scaled.clone().cholesky() {
+        let inverse = if n > LARGE { inverse_of_factor(scaled.clone()) } else { None };
+        let (kind, size) = if let Some(inverse) = inverse {
+            let size = inverse.norm_squared();
+            (Kind::Large(inverse), size)
+        } else if let Some(factors) = scaled.clone().cholesky() {
             let mut inverse = DMatrix::identity(n, n);
             factors.l_dirty().solve_lower_triangular_mut(&mut inverse);
             // ‖M⁻¹‖ ≤ tr M⁻¹ = ‖L⁻¹‖².
@@ -63,9 +74,33 @@ impl Factors {
     fn solve(&self, right: &DVector<f64>) -> DVector<f64> {
         match &self.kind {
             Kind::Definite(factors) => factors.solve(right),
+            Kind::Large(inverse) => inverse.tr_mul(&(inverse * right)),
             Kind::Indefinite(inverse) => inverse * right,
         }
     }
+}
+
+/// L⁻¹ of `M = L Lᵀ` by halves, in products of matrices; `None` unless M is positive definite. With the halves of M, `[A Bᵀ; B C]`,
+///
+/// ```text
+/// L = [L₁ 0; X L₂]      X = B L₁⁻ᵀ,  L₂ L₂ᵀ = C − X Xᵀ        L⁻¹ = [L₁⁻¹ 0; −L₂⁻¹ X L₁⁻¹  L₂⁻¹]
+/// ```
+fn inverse_of_factor(matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let n = matrix.nrows();
+    let mut inverse = DMatrix::identity(n, n);
+    if n <= BLOCK {
+        matrix.cholesky()?.l_dirty().solve_lower_triangular_mut(&mut inverse);
+        return Some(inverse);
+    }
+    let half = n / 2;
+    let rest = n - half;
+    let first = inverse_of_factor(matrix.view((0, 0), (half, half)).into_owned())?;
+    let across = matrix.view((half, 0), (rest, half)) * first.transpose();
+    let second = inverse_of_factor(matrix.view((half, half), (rest, rest)) - &across * across.transpose())?;
+    inverse.view_mut((half, 0), (rest, half)).copy_from(&-(&second * across * &first));
+    inverse.view_mut((0, 0), (half, half)).copy_from(&first);
+    inverse.view_mut((half, half), (rest, rest)).copy_from(&second);
+    Some(inverse)
 }
 
 /// The principal directions of a tangent.
@@ -177,7 +212,7 @@ impl Tangent {
 
     /// Coordinates of the direction of the most negative stiffness, if there is one.
     fn negative_direction(&self, names: &Description) -> Option<Vec<Text>> {
-        let is_definite = |factors: &Factors| matches!(factors.kind, Kind::Definite(_));
+        let is_definite = |factors: &Factors| matches!(factors.kind, Kind::Definite(_) | Kind::Large(_));
         if self.regular(Limit::Free).is_some_and(is_definite) {
             return None;
         }
@@ -194,4 +229,23 @@ fn names_of(vectors: &DMatrix<f64>, k: usize, names: &Description) -> Vec<Text> 
     let mut share: Vec<usize> = (0..direction.len()).filter(|&i| direction[i].abs() >= least).collect();
     share.sort_by(|&i, &j| direction[j].abs().total_cmp(&direction[i].abs()));
     share.into_iter().map(|i| names.coordinates[i].name.clone()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against the factors of nalgebra, with halves of different sizes; and a matrix that is not definite far down.
+    #[test]
+    fn factors_by_halves_are_those_of_the_whole() {
+        const SIZE: usize = 3 * BLOCK + 7;
+        let mut matrix = DMatrix::from_fn(SIZE, SIZE, |i, j| ((3 * i.min(j) + 5 * i.max(j)) as f64).sin());
+        matrix.fill_diagonal(SIZE as f64);
+        let inverse = inverse_of_factor(matrix.clone()).expect("a definite matrix");
+        let whole = matrix.clone().cholesky().expect("a definite matrix").l();
+        // Rounding of sums of numbers below 1; the diagonal dominates.
+        assert!((inverse * whole - DMatrix::identity(SIZE, SIZE)).amax() < 1e-14);
+        matrix[(SIZE - 1, SIZE - 1)] = -1.0;
+        assert!(inverse_of_factor(matrix).is_none());
+    }
 }

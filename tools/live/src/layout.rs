@@ -49,6 +49,7 @@ fn append(shape: &Shape, first: usize, entries: &mut Vec<Entry>) {
         | Shape::Structs(..)
         | Shape::TransformFactors { .. }
         | Shape::Columns { .. }
+        | Shape::Tangent { .. }
         | Shape::Factors(_) => entries.extend(slots(shape.len())),
     }
 }

@@ -8,6 +8,28 @@ use crate::dual::{DIRECTIONS, Dual8};
 use crate::machine::Number;
 use crate::rows::Evaluation;
 
+/// Numbers, of which some from the `first` one on have slopes, each in a direction of its own.
+fn numbers(values: &[f64], first: Option<usize>) -> Vec<Dual8> {
+    let along = |i: usize| first.and_then(|first| i.checked_sub(first)).filter(|direction| *direction < DIRECTIONS);
+    values.iter().enumerate().map(|(i, value)| Dual8::along(*value, along(i))).collect()
+}
+
+/// `∂(Jᵀ λ)/∂q`, column by column.
+pub fn loop_stiffness(crane: &LiveCrane, q: &[f64], multipliers: &[f64], out: &mut [f64]) {
+    let n = crane.size();
+    let (mut jacobians, rest) =
+        (Evaluation::<Dual8>::new(crane, FunctionId::LoopJacobians), vec![Dual8::splat(0.0); n]);
+    out.fill(0.0);
+    for first in (0..n).step_by(DIRECTIONS) {
+        let rows = jacobians.at(Dual8::splat(0.0), &numbers(q, Some(first)), &rest, &rest);
+        for (multiplier, row) in multipliers.iter().zip(rows.chunks_exact(n)) {
+            for (direction, column) in out.chunks_exact_mut(n).skip(first).take(DIRECTIONS).enumerate() {
+                column.iter_mut().zip(row).for_each(|(sum, entry)| *sum += multiplier * entry.slope(direction));
+            }
+        }
+    }
+}
+
 impl DynLineariseMotion for LiveCrane {
     fn linearise_motion(
         &self,
@@ -22,11 +44,6 @@ impl DynLineariseMotion for LiveCrane {
         // A a − e, and f.
         let quantities = [FunctionId::InverseDynamics, FunctionId::Forces];
         let mut forces = quantities.map(|quantity| Evaluation::<Dual8>::new(self, quantity));
-        let numbers = |values: &[f64], first: Option<usize>| -> Vec<Dual8> {
-            let along =
-                |i: usize| first.and_then(|first| i.checked_sub(first)).filter(|direction| *direction < DIRECTIONS);
-            values.iter().enumerate().map(|(i, value)| Dual8::along(*value, along(i))).collect()
-        };
         let (t, a) = (Dual8::splat(t), numbers(a, None));
         for first in (0..n).step_by(DIRECTIONS) {
             for (of_rates, columns) in [(false, &mut *stiffness), (true, &mut *damping)] {

@@ -12,6 +12,8 @@ use crane_model::rt::derivatives::{Link, Sixteen};
 
 use crate::LiveCrane;
 use crate::derivatives::Storage;
+use crane_model::rt::fill_tangent;
+
 use crate::expansion::mass_matrix;
 use crate::library::Library;
 use crate::machine::{Arguments, Batch, Machine, Number};
@@ -347,6 +349,10 @@ impl<T: Number> Call<T> {
             (Shape::Columns { points, .. }, _) => {
                 routine.run(&mut self.machine, &arguments, &mut self.factors);
                 mass_matrix(points, &mut self.factors, out);
+            }
+            (Shape::Tangent { segments, entries, .. }, _) => {
+                routine.run(&mut self.machine, &arguments, &mut self.factors);
+                fill_tangent(segments, entries, (&self.factors, T::splat(0.0)), out);
             }
             (_, Some(places)) => {
                 routine.run(&mut self.machine, &arguments, &mut self.factors);

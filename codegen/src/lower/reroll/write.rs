@@ -167,7 +167,10 @@ impl Rerolling<'_> {
     /// outside.
     pub(super) fn return_rows_from_loops(&mut self, function: &Function) {
         let mut rows: FxHashMap<(usize, ExprId), Vec<(usize, usize)>> = FxHashMap::default();
-        if matches!(function.shape, Shape::Vector(_) | Shape::Factors(_) | Shape::Columns { .. } | Shape::Rows { .. }) {
+        if matches!(
+            function.shape,
+            Shape::Vector(_) | Shape::Factors(_) | Shape::Columns { .. } | Shape::Tangent { .. } | Shape::Rows { .. }
+        ) {
             for (slot, value) in function.outputs.iter().enumerate() {
                 if let Some(&(of, template, iteration)) = self.places.get(value) {
                     rows.entry((of, template)).or_default().push((iteration, slot));

@@ -1,6 +1,7 @@
 //! Joints that close loops, and exact couplings.
 
 use super::Derivation;
+use crate::mechanics::loop_joints::LoopEquations;
 use crate::mechanics::{loop_joints, newton_euler};
 use crate::program::{Function, FunctionId};
 use crate::symbolic::{Expr, SweepTrace};
@@ -10,12 +11,12 @@ impl<'g> Derivation<'g> {
     pub(super) fn loop_dynamics(&self, accelerations: &[Expr<'g>], trace: &SweepTrace) -> Option<Function> {
         let model = &self.model;
         let (n, zero) = (model.size(), model.zero());
-        let mut curvatures: Vec<_> = loop_joints::states(model).into_iter().skip(2).step_by(3).collect();
+        let LoopEquations { states, rows } = self.loop_equations();
+        let mut curvatures: Vec<_> = states.iter().copied().skip(2).step_by(3).collect();
         if curvatures.is_empty() {
             return None;
         }
         curvatures.resize(curvatures.len().next_multiple_of(n), zero);
-        let rows = loop_joints::jacobians(model);
         let responses = rows.chunks(n).flat_map(|row| self.response(row));
         let outputs = accelerations.iter().copied().chain(curvatures).chain(rows.iter().copied()).chain(responses);
         Some(self.function(FunctionId::LoopDynamics, outputs.collect()).by(trace.clone()))
@@ -23,14 +24,19 @@ impl<'g> Derivation<'g> {
 
     /// The equations of loop joints and exact couplings, and their derivatives.
     pub(super) fn loop_joints(&self) -> Vec<Function> {
-        let model = &self.model;
-        if !model.chain.has_loops() {
+        if !self.model.chain.has_loops() {
             return Vec::new();
         }
+        let LoopEquations { states, rows } = self.loop_equations();
         vec![
-            self.function(FunctionId::LoopStates, loop_joints::states(model)),
-            self.function(FunctionId::LoopJacobians, loop_joints::jacobians(model)),
+            self.function(FunctionId::LoopStates, states.clone()),
+            self.function(FunctionId::LoopJacobians, rows.clone()),
         ]
+    }
+
+    /// Derived once for all functions.
+    fn loop_equations(&self) -> &LoopEquations<'g> {
+        self.loops.get_or_init(|| LoopEquations::new(&self.model))
     }
 
     /// What loop joints contribute to the internal forces, for a unit force or moment of each equation. Couplings act along joints, whose

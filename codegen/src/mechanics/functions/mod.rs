@@ -8,6 +8,8 @@ mod loop_joints;
 mod motion_derivatives;
 mod statics;
 
+use std::cell::OnceCell;
+
 use crate::chain::{Analyses, Beam, Body, BodyId, Chain, Group, Section};
 use crate::program::{Argument, Count, Extent, Function, FunctionId, Item, Program, Shape, Struct, Symbol};
 use crate::symbolic::{Expr, Graph, Stages, SweepTrace, SymbolId};
@@ -19,6 +21,7 @@ use super::forces::{Forces, Kind};
 use super::forward::{self, ForwardInputs, Motion};
 use super::inertia::Inertias;
 use super::kinematics::Kinematics;
+use super::loop_joints::LoopEquations;
 use super::model::Model;
 use super::motion_derivatives::with_rotors;
 use super::twist::{Twist, twists};
@@ -39,6 +42,7 @@ struct Derivation<'g> {
     kinematics: Kinematics<'g>,
     inertias: Inertias<'g>,
     twists: Vec<Twist<'g>>,
+    loops: OnceCell<LoopEquations<'g>>,
     /// Whether some coordinate is prescribed.
     rigid: bool,
 }
@@ -60,7 +64,7 @@ impl<'g> Derivation<'g> {
         let inertias = Inertias::new(&model, &kinematics);
         let twists = twists(&model, &kinematics);
         let rigid = chain.rigid_drives().next().is_some();
-        Derivation { model, factors, kinematics, inertias, twists, rigid }
+        Derivation { model, factors, kinematics, inertias, twists, loops: OnceCell::new(), rigid }
     }
 
     fn functions(&self, analyses: Analyses, symbols: &mut Vec<Symbol>) -> Vec<Function> {

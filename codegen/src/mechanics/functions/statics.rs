@@ -21,10 +21,7 @@ impl<'g> Derivation<'g> {
             // A rigid drive balances the sum of all other forces.
             (residual[j], holding[j]) = (model.zero(), gradient[j]);
         }
-        let mut functions = vec![
-            self.function(FunctionId::StaticResidual, residual),
-            self.function(FunctionId::TangentStiffness, self.unknowns(self.tangent_stiffness(&rest), 1.0).into_upper()),
-        ];
+        let mut functions = vec![self.function(FunctionId::StaticResidual, residual), self.tangent_stiffness(&rest)];
         if !model.chain.drives.is_empty() {
             functions.push(self.function(FunctionId::DriveForcesAtRest, holding));
         }
@@ -46,20 +43,31 @@ impl<'g> Derivation<'g> {
     }
 
     /// The stiffness including the springs that represent oil at rest.
-    fn tangent_stiffness(&self, rest: &Rest<'g>) -> SymmetricMatrix<'g> {
-        let mut matrix = self.stiffness(rest);
-        if self.model.chain.has_valves() {
-            cylinders::holding_stiffness(&self.model, &rest.positions, &mut matrix);
+    fn tangent_stiffness(&self, rest: &Rest<'g>) -> Function {
+        let (model, id) = (&self.model, FunctionId::TangentStiffness);
+        let hold = |matrix: &mut SymmetricMatrix<'g>| {
+            if model.chain.has_valves() {
+                cylinders::holding_stiffness(model, &rest.positions, matrix);
+            }
+        };
+        let mut tangent = self.stiffness(rest);
+        if model.chain.loops.fill_tangent(model.size()) {
+            hold(&mut tangent.matrix);
+            let prescribed: Vec<usize> = model.chain.rigid_drives().map(|drive| drive.coordinate.0).collect();
+            let (shape, factors) = tangent.into_factors(model, &prescribed);
+            return shaped(id, shape, factors);
         }
-        matrix
+        let mut matrix = tangent.into_matrix(model);
+        hold(&mut matrix);
+        self.function(id, self.unknowns(matrix, 1.0).into_upper())
     }
 
     /// The stiffness without that of hydraulic drives, which follows from their oil volumes.
-    fn stiffness(&self, rest: &Rest<'g>) -> SymmetricMatrix<'g> {
+    fn stiffness(&self, rest: &Rest<'g>) -> Tangent<'_, 'g> {
         let mut tangent = Tangent::new(&self.model, &self.kinematics);
         self.forces().add_stiffness(rest, &mut tangent);
         gravity::add_stiffness(&self.model, &self.kinematics, &self.inertias, &mut tangent);
-        tangent.into_matrix(&self.model)
+        tangent
     }
 
     pub(super) fn linearise(&self) -> Function {
@@ -67,7 +75,7 @@ impl<'g> Derivation<'g> {
         let damping = self.forces().damping(&rest);
         let columns = columns(model, &self.factors);
         let mut outputs = self.unknowns(columns.mass_matrix(model), 1.0).into_upper();
-        outputs.extend(self.unknowns(self.stiffness(&rest), 1.0).into_upper());
+        outputs.extend(self.unknowns(self.stiffness(&rest).into_matrix(model), 1.0).into_upper());
         outputs.extend(self.unknowns(damping, 0.0).into_upper());
         let matrix = || Shape::Symmetric(model.size());
         let shape =

@@ -17,6 +17,8 @@ use crane_model::nalgebra::Matrix4;
 use crane_model::rt::derivatives::Link;
 use crane_model::{Description, Entry, LoopJointInfo, ParameterError, StageInfo, fill_links};
 
+use crane_model::rt::fill_tangent;
+
 use crate::expansion::{mass_matrix, second_derivatives};
 use crate::inputs::{Inputs, slots_of};
 use crate::library::Library;
@@ -194,6 +196,7 @@ impl LiveCrane {
     fn numbers(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [f64]) {
         let called = self.call(id, arguments, |routine, results| match routine.shape() {
             Shape::Columns { points, .. } => mass_matrix(points, results, out),
+            Shape::Tangent { segments, entries, .. } => fill_tangent(segments, entries, (results, 0.0), out),
             _ => copy(results, out),
         });
         if called.is_none() {

@@ -10,6 +10,7 @@ use crane_quantities::quantities;
 use super::LiveCrane;
 use super::methods::{method, methods};
 use crate::inputs::is_free;
+use crate::linearise::loop_stiffness;
 use crate::machine::Arguments;
 
 impl DynModel for LiveCrane {
@@ -40,6 +41,11 @@ impl DynModel for LiveCrane {
     fn stage_height(&self, stage: usize) -> f64 {
         let height = self.stages.get(stage).and_then(|stage| self.chain().height_of(BodyId(stage.inner)));
         height.map_or(0.0, |height| height.at(&self.parameters))
+    }
+
+    fn loop_stiffness(&self, q: &[f64], multipliers: &[f64], out: &mut [f64]) -> bool {
+        loop_stiffness(self, q, multipliers, out);
+        true
     }
 
     fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]) {

@@ -247,3 +247,51 @@ fn the_tangent_of_loads_is_a_difference() {
         }
     }
 }
+
+/// A tangent whose entries a loop over pairs fills, and one whose entries are written out: with lines to the world, over a sheave, and between two
+/// branches, loads along axes of both kinds, a rigid drive, and sections of both kinds.
+#[test]
+fn the_tangent_filled_in_a_loop_is_the_one_written_out() {
+    let spec = |loops: &str| {
+        let inertia = "inertia: {gyration: [0.1, 0.2, 0.2]}";
+        let beam = |joint: &str| {
+            format!(
+                "beam: {{length: 3, sections: 3, section_joint: {joint}, material: {{E: 2.1e9, G: 8.1e8, density: 7850}}, \
+                 section: {{circle: {{diameter: 0.1}}}}}}"
+            )
+        };
+        format!(
+            "format: 1\nname: arms\nloops: {loops}\nlinks:\n\
+             - {{name: truck, joint: free, mass: 900, com: [0, 0, 0.3], inertia: {{gyration: [0.5, 0.6, 0.7]}}}}\n\
+             - {{name: boom, joint: revolute, {}}}\n\
+             - {{name: jib, joint: revolute, mass: 9, com: [0.2, -0.3, 0.1], {inertia}}}\n\
+             - {{name: arm, on: {{link: truck, at: [0.2, 0.1, 1], rotation: {{y: 70 deg}}}}, joint: revolute, {}}}\n\
+             - {{name: tool, joint: prismatic, mass: 30, com: [0.2, 0, 0], {inertia}}}\n\
+             connectors:\n\
+             - {{name: guy, from: {{at: [0, 0, 9]}}, to: {{link: boom, at: [3, 0, 0.1]}}, law: {{spring: {{stiffness: 2e3, length: 5}}}}}}\n\
+             - {{name: hoist, from: {{link: truck, at: [0, 0.3, 1]}}, over: [{{link: boom, at: [1.3, 0.2, 0]}}], falls: 2, \
+             to: {{link: jib, at: [0.5, 0.1, 0]}}, law: {{rope: {{stiffness: 3e3, length: 4}}}}}}\n\
+             - {{name: strut, from: {{link: jib, at: [0.4, 0, 0]}}, to: {{link: tool, at: [0.3, 0, 0.2]}}, law: {{spring: {{stiffness: 1e3, length: 1}}}}}}\n\
+             drives: [{{coordinate: arm_psi, rigid: true, motion: {{hold: 0.3}}}}, {{coordinate: boom_psi, stiffness: 4e3, damping: 10, motion: {{hold: 0}}}}]\n\
+             loads: [{{name: one, link: jib, at: [0.3, 0.5, -0.2], force: [300, -200, 500], moment: [40, 70, -90], axes: link}}, \
+             {{name: two, link: boom, at: [2, 0, 0], force: [30, 100, 50]}}]\n",
+            beam("symmetric"),
+            beam("paper"),
+        )
+    };
+    let [filled, written] = ["always", "never"].map(|loops| {
+        let crane = crane(&spec(loops));
+        let crane: &dyn DynCrane = &crane;
+        let n = crane.size();
+        let q: Vec<f64> = (0..n).map(|j| 0.3 * (1.0 + j as f64).sin()).collect();
+        let mut tangent = vec![f64::NAN; n * n];
+        crane.tangent_stiffness(0.0, &q, &vec![0.1; n], &mut tangent);
+        tangent
+    });
+    let largest = written.iter().fold(0.0, |largest: f64, entry| largest.max(entry.abs()));
+    for (one, other) in filled.iter().zip(&written) {
+        // Rounding of sums in another order.
+        assert!((one - other).abs() < 1e-14 * largest, "{one} {other} of {largest}");
+    }
+    assert!(largest > 1e3 && written.iter().filter(|entry| **entry == 0.0).count() < written.len() / 2);
+}

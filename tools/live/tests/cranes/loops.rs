@@ -705,9 +705,8 @@ fn loops_next_to_each_other_swing_as_one_pendulum() {
     let row: &dyn DynCrane = &row;
     let (m, n) = (COUPLERS as f64 + 1.0, COUPLERS as f64);
     let pull = GRAVITY * (m / 2.0 + n) / (m / 3.0 + n);
-    let of_cranks = |number: f64| -> Vec<f64> {
-        (0..row.size()).map(|j| if j <= COUPLERS { number } else { -number }).collect()
-    };
+    let of_cranks =
+        |number: f64| -> Vec<f64> { (0..row.size()).map(|j| if j <= COUPLERS { number } else { -number }).collect() };
     for (theta, rate) in [(0.4, 0.0), (-1.1, 2.5)] {
         let found = row.accelerations_at(0.0, &of_cranks(theta), &of_cranks(rate));
         for (j, expected) in of_cranks(-pull * f64::cos(theta)).into_iter().enumerate() {
