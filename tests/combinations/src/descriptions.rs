@@ -1,6 +1,5 @@
 //! Two descriptions of one crane: a second spec that must do the same.
 
-use crane_codegen::SourceFile;
 use fastrand::Rng;
 use serde_json::{Value, json};
 
