@@ -215,7 +215,7 @@ impl Fatigue {
     }
 }
 
-/// What manoeuvres that repeat do to every place of a crane's beams whose moduli are known, each on its own: changes from one to another are no cycles.
+/// What manoeuvres that repeat do to every place of a crane's beams whose moduli are known, each on its own: changes from one to another do not count.
 /// The crane has the same places in all. `detail`: of each beam by the name of its link.
 pub fn of_manoeuvres(
     description: &Description,

@@ -33,7 +33,7 @@ pub(crate) enum Limit {
 impl Measure {
     /// Every magnitude is usual.
     pub const ALL: [f64; 2] = [0.0, f64::INFINITY];
-    /// Of a key that is no number.
+    /// Of a key without a number.
     pub const NONE: Self = Measure { unit: "", limit: Limit::Any, usual: Self::ALL, items: &[] };
     /// That of the key to which the mapping belongs.
     pub const INHERITED: Self = Measure { unit: "…", ..Self::NONE };

@@ -23,7 +23,7 @@ impl Sheet {
     /// Reads a file; `help` says what to write.
     ///
     /// # Errors
-    /// The file cannot be read, is no table, has no rows, or has a column twice.
+    /// The file cannot be read as a table, has no rows, or has a column twice.
     pub fn read(path: &Path, help: &str) -> Outcome<Self> {
         let unreadable = |error: csv::Error| {
             let title = match error.kind() {

@@ -69,7 +69,7 @@ def fatigue(
     """Cycles of stress of beams by runs that repeat, counted by rainflow, and the damage that they do, as `crane fatigue` computes it.
 
     manoeuvres: runs of one crane with how often each is repeated, as in `[(loaded, 20_000), (empty, 20_000)]`; a run alone counts once. They may have other
-    motions, loads and parameters. Each repeats on its own: changes from one to another are no cycles. category: range of nominal stress that a
+    motions, loads and parameters. Each repeats on its own: changes from one to another do not count. category: range of nominal stress that a
     detail endures 2e6 times, in Pa or as "71 MPa"; one for all beams, or by their names. slope: m of the curve of strength. safety_factor: divides
     all categories.
     """

@@ -32,7 +32,7 @@ pub enum Kind {
 impl Kind {
     const ALL: [Self; 4] = [Kind::Motor, Kind::Linear, Kind::Cylinder, Kind::Pump];
 
-    /// Its columns and their units; the first one tells what the list is of.
+    /// Its columns and their units; the first one names what the list is of.
     const fn columns(self) -> &'static [(&'static str, &'static str)] {
         match self {
             Kind::Motor => &[
@@ -162,7 +162,7 @@ impl List {
     /// Reads a CSV file: a column `part` with names, and those of the kind, of which the first is in every row.
     ///
     /// # Errors
-    /// It is no such file.
+    /// The file cannot be read as such a list.
     pub fn read(path: &Path) -> Outcome<Self> {
         let help = "write a CSV table such as `part,torque [N m],speed [rpm]` for motors; with `force` it lists linear drives, with `bore` cylinders, with \
                     `flow` pumps";

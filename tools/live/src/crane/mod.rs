@@ -2,8 +2,10 @@
 
 mod analyses;
 mod fleet;
+mod linearise;
 mod methods;
 mod model;
+pub mod rows;
 mod systems;
 
 use std::fmt;
@@ -15,9 +17,8 @@ use crane_codegen::{Diagnostics, SourceFile, compile};
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::nalgebra::Matrix4;
 use crane_model::rt::derivatives::Link;
-use crane_model::{Description, Entry, LoopJointInfo, ParameterError, StageInfo, fill_links};
-
 use crane_model::rt::fill_tangent;
+use crane_model::{Description, Entry, LoopJointInfo, ParameterError, StageInfo, fill_links};
 
 use crate::expansion::{mass_matrix, second_derivatives};
 use crate::inputs::{Inputs, slots_of};

@@ -8,9 +8,9 @@ use crane_model::{Description, LoopJointInfo, StageInfo, entry_type, slice_argum
 use crane_quantities::quantities;
 
 use super::LiveCrane;
+use super::linearise::loop_stiffness;
 use super::methods::{method, methods};
 use crate::inputs::is_free;
-use crate::linearise::loop_stiffness;
 use crate::machine::Arguments;
 
 impl DynModel for LiveCrane {

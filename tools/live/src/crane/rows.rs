@@ -9,11 +9,10 @@ use std::sync::Arc;
 use crane_codegen::program::{Argument, Count, Extent, FunctionId, Shape};
 use crane_model::dyn_crane::DynModel;
 use crane_model::rt::derivatives::{Link, Sixteen};
+use crane_model::rt::fill_tangent;
 
 use crate::LiveCrane;
 use crate::derivatives::Storage;
-use crane_model::rt::fill_tangent;
-
 use crate::expansion::mass_matrix;
 use crate::library::Library;
 use crate::machine::{Arguments, Batch, Machine, Number};
