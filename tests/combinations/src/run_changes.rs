@@ -20,12 +20,12 @@ pub const NAME: &str = "changes of runs with live numbers";
 /// Numbers that are changed, chosen at random.
 const CHANGED: usize = 1;
 /// Length of the run, its interval of results, and initial rates, s, m/s and rad/s.
-const RUN: [f64; 3] = [0.03, 0.01, 0.05];
+const RUN: [f64; 3] = [0.02, 0.01, 0.05];
 /// Tolerances of the run with derivatives, of which the first usually does: errors of derivatives grow where feet let go and valves open. Runs
 /// that are differenced have the last.
 const TOLERANCES: [f64; 2] = [1e-10, 1e-12];
 /// Cranes whose runs have more steps are not worth the time: most have some hundred.
-const MOST_STEPS: usize = 4_000;
+const MOST_STEPS: usize = 2_000;
 /// Steps relative to the number: with the longer ones differences have an error of their square, with the shorter one that of the steps of the
 /// runs. A foot may let go, or a valve open, within the longer ones; with stiff pads and oil the path of a run bends within 1e-6 rad of its start.
 const STEPS: [f64; 6] = [3e-3, 3e-4, 3e-5, 3e-6, 3e-7, 1e-7];

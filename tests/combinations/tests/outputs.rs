@@ -1,6 +1,6 @@
 //! Every number that commands print is compared by random cranes, or the reason why not stands here.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
@@ -235,7 +235,7 @@ fn what_is_said_to_be_compared_is() {
     let observed: BTreeSet<String> = SEEDS
         .into_iter()
         .filter_map(|seed| observe(&source(&crane(seed).tree), extent).ok())
-        .flat_map(|numbers| numbers.into_keys())
+        .flat_map(BTreeMap::into_keys)
         .collect();
     let checks = names();
     for (pattern, taken) in OUTPUTS {
