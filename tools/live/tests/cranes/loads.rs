@@ -265,7 +265,7 @@ fn the_tangent_filled_in_a_loop_is_the_one_written_out() {
              - {{name: truck, joint: free, mass: 900, com: [0, 0, 0.3], inertia: {{gyration: [0.5, 0.6, 0.7]}}}}\n\
              - {{name: boom, joint: revolute, {}}}\n\
              - {{name: jib, joint: revolute, mass: 9, com: [0.2, -0.3, 0.1], {inertia}}}\n\
-             - {{name: arm, on: {{link: truck, at: [0.2, 0.1, 1], rotation: {{y: 70 deg}}}}, joint: revolute, {}}}\n\
+             - {{name: arm, on: {{link: truck, at: [0.2, 0.1, 1]}}, placement: {{transform: {{rotation: {{y: 70 deg}}}}}}, joint: revolute, {}}}\n\
              - {{name: tool, joint: prismatic, mass: 30, com: [0.2, 0, 0], {inertia}}}\n\
              connectors:\n\
              - {{name: guy, from: {{at: [0, 0, 9]}}, to: {{link: boom, at: [3, 0, 0.1]}}, law: {{spring: {{stiffness: 2e3, length: 5}}}}}}\n\

@@ -725,7 +725,7 @@ fn loops_next_to_each_other_swing_as_one_pendulum() {
 /// All equations of motion and of the loops as one dense system, where loops are on ground that rests and where it moves all of them.
 #[test]
 fn loops_next_to_each_other_move_as_one_system_of_all_equations() {
-    for ground in ["", ", joint: {prismatic: {axis: x}}, mass: 3, inertia: {Ixx: 1, Iyy: 1, Izz: 1}"] {
+    for ground in ["", ", joint: {prismatic: {axis: x}}, mass: 3, com: [0, 0, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}"] {
         let row = row_of_four_bars(ground);
         let row: &dyn DynCrane = &row;
         let n = row.size();
