@@ -171,11 +171,12 @@ fn test_steps(is_thorough: bool) -> Vec<Step> {
     let mut jobs: Vec<(&[&str], Vec<Step>)> = vec![
         (ALL, vec![build_step().light(), Step::check("Python environment", oracles::prepare_python).light()]),
         (&["system", "pages", "thorough"], vec![packages]),
-        (&["unit"], unit_steps()),
         (&["system", "pages"], vec![Step::program("the default run", "crane", &[])]),
-        (&["system"], system_steps()),
+        // Beside each other: each has times when it leaves a core idle.
+        (&["unit"], unit_steps().into_iter().map(Step::light).collect()),
+        (&["system"], system_steps().into_iter().map(Step::light).collect()),
+        (&["oracles"], oracle_steps().into_iter().map(Step::light).collect()),
         (&["pages"], page_steps()),
-        (&["oracles"], oracle_steps()),
     ];
     if is_thorough {
         jobs.push((&["thorough"], thorough_steps()));
@@ -257,11 +258,11 @@ fn test_modules() -> Result<(), String> {
 
 fn system_steps() -> Vec<Step> {
     vec![
-        Step::program("the example of your own crane", "own-crane", &[]).light(),
-        Step::check("a new crane", new_crane::check_new_crane).light(),
-        Step::check("commands of the manual", manual::check_manual).light(),
-        Step::check("commands of the README and of CONTRIBUTING", || commands::check_commands(USAGE)).light(),
-        Step::check("commands that pages name", || named::check_named(USAGE)).light(),
+        Step::program("the example of your own crane", "own-crane", &[]),
+        Step::check("a new crane", new_crane::check_new_crane),
+        Step::check("commands of the manual", manual::check_manual),
+        Step::check("commands of the README and of CONTRIBUTING", || commands::check_commands(USAGE)),
+        Step::check("commands that pages name", || named::check_named(USAGE)),
         // A static library with its own panic handler: no crate that it depends on may link std or need a heap.
         Step::cargo(
             "a crane without std and heap",
@@ -270,12 +271,11 @@ fn system_steps() -> Vec<Step> {
                 &["--crate-type", "staticlib", "--", "-C", "panic=abort"],
             ]
             .concat(),
-        )
-        .light(),
+        ),
         Step::check("the Python package", package::check_package),
-        Step::check("random cranes by every way to compute them", outside::check_ways).light(),
-        Step::check("functional mock-up units", outside::check_units).light(),
-        Step::check("what the command prints as JSON", outside::check_output).light(),
+        Step::check("random cranes by every way to compute them", outside::check_ways),
+        Step::check("functional mock-up units", outside::check_units),
+        Step::check("what the command prints as JSON", outside::check_output),
     ]
 }
 
@@ -309,13 +309,13 @@ fn thorough_steps() -> Vec<Step> {
 
 fn oracle_steps() -> Vec<Step> {
     vec![
-        Step::check("CasADi's own checks notice errors", oracles::check_oracles).light(),
-        Step::check("generated code against CasADi", oracles::check_generated_code).light(),
-        Step::check("runs against SciPy's Radau", oracles::check_motion).light(),
-        Step::check("Pinocchio and MuJoCo agree and notice errors", oracles::check_peers).light(),
-        Step::check("generated code against Pinocchio and MuJoCo", oracles::compare_with_peers).light(),
-        Step::check("URDF and MJCF there and back", oracles::check_exchange).light(),
-        Step::check("cylinders against Exudyn", oracles::check_hydraulics).light(),
+        Step::check("CasADi's own checks notice errors", oracles::check_oracles),
+        Step::check("generated code against CasADi", oracles::check_generated_code),
+        Step::check("runs against SciPy's Radau", oracles::check_motion),
+        Step::check("Pinocchio and MuJoCo agree and notice errors", oracles::check_peers),
+        Step::check("generated code against Pinocchio and MuJoCo", oracles::compare_with_peers),
+        Step::check("URDF and MJCF there and back", oracles::check_exchange),
+        Step::check("cylinders against Exudyn", oracles::check_hydraulics),
     ]
 }
 
