@@ -46,7 +46,7 @@ fn drawn(crane: &LiveCrane, q: &[f64]) -> Value {
     for part in drawn["parts"].as_array_mut().into_iter().flatten() {
         part["corners"] = Value::Null;
     }
-    drawn["corners"] = figure.all_corners().iter().map(|corner| Vec::from_iter(corner.iter().copied())).collect();
+    drawn["corners"] = figure.all_corners().iter().map(|corner| corner.iter().copied().collect::<Vec<_>>()).collect();
     drawn
 }
 
