@@ -98,20 +98,21 @@ impl<'a, 'g> Tangent<'a, 'g> {
         let axes = generators.iter().map(|generator| generator.omega);
         let mut vectors: Vec<Vec3<'g>> = axes.chain(generators.iter().map(|generator| generator.upsilon)).collect();
         let mut segments: Vec<[usize; 3]> = Vec::new();
+        // That of the last segment.
         let mut last: Option<Wrench<'g>> = None;
         meetings(model, kinematics, columns, |j, rows, wrench| {
-            let is_last = last.is_some_and(|last| is_same(last, wrench));
             for &i in rows.iter().rev().filter(|i| ![**i, j].iter().any(|one| prescribed.contains(one))) {
+                let is_last = last.is_some_and(|last| is_same(last, wrench));
                 match segments.last_mut() {
                     Some([column, first, _]) if is_last && *column == j && *first == i + 1 => *first = i,
                     _ => {
                         segments.push([j, i, i + 1]);
                         let [force, moment] = wrench;
                         vectors.extend([moment, force]);
+                        last = Some(wrench);
                     }
                 }
             }
-            last = Some(wrench);
         });
         let mut numbers: Vec<Expr<'g>> = vectors.into_iter().flat_map(|vector| vector.0).collect();
         let one = model.graph.constant(1.0);

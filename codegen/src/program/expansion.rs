@@ -133,7 +133,8 @@ fn tangent<S: Scalar>(n: usize, segments: &[[usize; 3]], entries: &[[usize; 2]],
     for ([j, first, end], wrench) in segments.iter().zip(wrenches.chunks_exact(6)) {
         for i in *first..*end {
             let product = |k: usize| axes[3 * (k / 3 * n + i) + k % 3].clone() * wrench[k].clone();
-            upper[place(i, *j)] = (1..6).fold(product(0), |sum, k| sum + product(k));
+            // From the last one on, as the loop does.
+            upper[place(i, *j)] = (0..5).rev().fold(product(5), |sum, k| product(k) + sum);
         }
     }
     for ([i, j], number) in entries.iter().zip(numbers) {
