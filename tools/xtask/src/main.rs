@@ -172,6 +172,8 @@ fn test_steps(is_thorough: bool) -> Vec<Step> {
         (ALL, vec![build_step().light(), Step::check("Python environment", oracles::prepare_python).light()]),
         (&["system", "pages", "thorough"], vec![packages]),
         (&["system", "pages"], vec![Step::program("the default run", "crane", &[])]),
+        // Random cranes are computed with it, too.
+        (&["system"], vec![Step::check("the Python package", package::check_package)]),
         // Beside each other: each has times when it leaves a core idle.
         (&["unit"], unit_steps().into_iter().map(Step::light).collect()),
         (&["system"], system_steps().into_iter().map(Step::light).collect()),
@@ -272,7 +274,6 @@ fn system_steps() -> Vec<Step> {
             ]
             .concat(),
         ),
-        Step::check("the Python package", package::check_package),
         Step::check("random cranes by every way to compute them", outside::check_ways),
         Step::check("functional mock-up units", outside::check_units),
         Step::check("what the command prints as JSON", outside::check_output),
