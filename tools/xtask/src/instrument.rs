@@ -11,8 +11,13 @@ pub const PAGE: &str = "out/instrument.html";
 /// The engine is small before it is fast, except where `Cargo.toml` says otherwise. Build scripts and macros have settings of their own and are shared
 /// with all other builds; link-time optimisation would not be.
 const SMALL: (&str, &str) = ("CARGO_PROFILE_RELEASE_OPT_LEVEL", "s");
-/// The runtime, too: what takes time is the interpreter.
-const SMALL_MODEL: &str = "profile.release.package.crane-model.opt-level=\"s\"";
+/// The runtime, too: what takes time is the interpreter. What is only read and drawn is smaller still.
+const SMALLER: [&str; 4] = [
+    "--config",
+    "profile.release.package.crane-model.opt-level=\"s\"",
+    "--config",
+    "profile.release.package.crane-page.opt-level=\"z\"",
+];
 /// No names and lines; room on the stack, as programs have it; and the most memory that a spec may take.
 const FINISH: [&str; 6] =
     ["-C", "strip=symbols", "-C", "link-arg=-zstack-size=8388608", "-C", "link-arg=--max-memory=1073741824"];
@@ -37,10 +42,9 @@ fn build_engine() -> Result<PathBuf, String> {
             "--lib",
             "--crate-type",
             "cdylib",
-            "--config",
-            SMALL_MODEL,
-            "--",
         ])
+        .args(SMALLER)
+        .arg("--")
         .args(FINISH)
         .env(SMALL.0, SMALL.1)
         .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", "-C target-feature=+simd128")
