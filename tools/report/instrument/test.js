@@ -226,7 +226,7 @@ async function start(page) {
   await rests(() => globalThis.instrument.crane.drives.length === 3 && globalThis.instrument.crane.points.length === 2);
   // What a key that is missing would be.
   await edit(page, "    mass: 300\n", "");
-  await eventually(page, async () => assert.match(await page.textContent("#problems"), /has `com` but no mass.*mass: Mass, kg/s));
+  await eventually(page, async () => assert.match(await page.textContent("#problems"), /has `com` but no mass.*mass: Mass\. In kg, above 0\./s));
   await example(page, "loader tipping");
   assert.equal(await insert("supports"), "support");
   await rests(() => globalThis.instrument.stage.crane.scene.supports.length === 5);
