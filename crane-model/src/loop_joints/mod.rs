@@ -9,7 +9,7 @@
 //!
 //! so r equations take r + 1 recursions of the open chain, which share its articulated inertias, and one system of size r. A force of an equation
 //! moves only what stands on the same moving ground: in the order of the coordinates that they span, S has entries only near its diagonal
-//! ([`profile`]), and loops that stand next to each other take as many operations each, however many there are. Positions and rates that a method has
+//! (`profile`), and loops that stand next to each other take as many operations each, however many there are. Positions and rates that a method has
 //! integrated are moved back onto the loop after every step: the smallest change in the metric of A,
 //!
 //! ```text
