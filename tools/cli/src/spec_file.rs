@@ -48,11 +48,12 @@ pub fn check(source: &SourceFile, strict: bool) -> Outcome<Checked> {
 
 /// Reads the surfaces that a spec names, beside its file; says which could not be read.
 pub fn read_surfaces(chain: &mut Chain, spec: &Path) {
-    let folder = spec.parent().unwrap_or(Path::new(""));
-    let unread = surfaces::read_surfaces(chain, |file| files::read_file(&folder.join(file)));
-    if !unread.is_empty() {
-        let told: Vec<String> = unread.iter().map(|(file, why)| format!("`{file}`: {why}")).collect();
-        screen::remark(&format!("not drawn, but named in exported files: {}", told.join("; ")));
+    let unread = surfaces::read_surfaces(chain, spec, |file, most| {
+        files::remember(file);
+        crane_codegen::files::read_file(file, most)
+    });
+    if let Some(told) = unread {
+        screen::remark(&told);
     }
 }
 

@@ -152,13 +152,10 @@ impl Crane {
         let checked = py.detach(|| check(&source)).map_err(|found| spec_error(py, &found))?;
         warn_of_spec(py, &checked.warnings_with(&source, &set))?;
         let Checked { mut chain, .. } = checked;
-        if text.is_none() {
-            let folder = Path::new(named).parent().unwrap_or(Path::new(""));
-            let unread = read_surfaces(&mut chain, |file| files::read_file(&folder.join(file), MAX_BYTES));
-            if !unread.is_empty() {
-                let told: Vec<String> = unread.iter().map(|(file, why)| format!("`{file}`: {why}")).collect();
-                warn(py, &py.get_type::<mistakes::SpecWarning>(), format!("not drawn: {}", told.join("; ")))?;
-            }
+        if text.is_none()
+            && let Some(told) = read_surfaces(&mut chain, Path::new(named), files::read_file)
+        {
+            warn(py, &py.get_type::<mistakes::SpecWarning>(), told)?;
         }
         let count = chain.coordinates.len();
         if count > LiveCrane::MOST_COORDINATES {

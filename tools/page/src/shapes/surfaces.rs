@@ -7,20 +7,29 @@ use mesh_loader::Loader;
 
 /// Most triangles of a file: a page with more becomes slow.
 const MOST_TRIANGLES: usize = 300_000;
+/// Most bytes of a file: as many triangles as text.
+const MOST_BYTES: usize = 128 << 20;
 
-/// Reads the surfaces that a crane names with `read`, the bytes of a file by its name, so that they are drawn. Returns the files that could not be read, with
-/// the reasons: what their links look like is guessed.
-pub fn read_surfaces(chain: &mut Chain, mut read: impl FnMut(&str) -> io::Result<Vec<u8>>) -> BTreeMap<String, String> {
+/// Reads the surfaces that the crane of a spec names, from the folder of the spec, so that they are drawn. `read` gives the bytes of a file that has at most as
+/// many. Returns in words which could not be read, and why: what their links look like is guessed.
+pub fn read_surfaces(
+    chain: &mut Chain,
+    spec: &Path,
+    mut read: impl FnMut(&Path, usize) -> io::Result<Vec<u8>>,
+) -> Option<String> {
+    let folder = spec.parent().unwrap_or(Path::new(""));
     let mut known: BTreeMap<String, Result<Arc<Surface>, String>> = BTreeMap::new();
     for shape in &mut chain.shapes {
         let Form::Mesh { file, surface, .. } = &mut shape.form else { continue };
         let found = known.entry(file.clone()).or_insert_with(|| {
-            let bytes = read(file).map_err(|error| error.to_string())?;
+            let bytes = read(&folder.join(&*file), MOST_BYTES).map_err(|error| error.to_string())?;
             parse(file, &bytes).map(Arc::new)
         });
         *surface = found.clone().ok();
     }
-    known.into_iter().filter_map(|(file, found)| Some((file, found.err()?))).collect()
+    let told: Vec<String> =
+        known.into_iter().filter_map(|(file, found)| Some(format!("`{file}`: {}", found.err()?))).collect();
+    (!told.is_empty()).then(|| format!("not drawn, but named in exported files: {}", told.join("; ")))
 }
 
 /// The triangles of a file of this name.

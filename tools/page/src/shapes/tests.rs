@@ -446,11 +446,11 @@ fn surfaces_of_files_are_drawn() {
         let shape =
             format!(", shape: {{mesh: {{file: {file}, scale: 0.001, at: [0.5, 0, 0], rotation: {{z: 90 deg}}}}}}");
         let mut chain = arm(&shape).chain().clone();
-        let unread = read_surfaces(&mut chain, |named| {
-            assert_eq!(named, file);
+        let unread = read_surfaces(&mut chain, "cranes/arm.yaml".as_ref(), |named, _| {
+            assert_eq!(named, std::path::Path::new("cranes").join(file));
             Ok(bytes.clone())
         });
-        assert!(unread.is_empty(), "{unread:?}");
+        assert_eq!(unread, None);
         let figure = figure(&LiveCrane::new(chain));
         assert_eq!(figure.shapes.iter().filter(|shape| shape.owner == Owner::Body(0)).count(), 2, "{file}: and a pin");
         let drawn = figure.shapes.iter().find(|shape| shape.paint == LINK).expect("a surface");
@@ -473,9 +473,10 @@ fn surfaces_of_files_are_drawn() {
         (b"v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".to_vec(), ""),
     ] {
         let mut chain = arm(", shape: {mesh: {file: a.obj}}").chain().clone();
-        let unread = read_surfaces(&mut chain, |_| Ok(bytes.clone()));
-        assert!(unread["a.obj"].contains(told), "{unread:?}");
+        let unread = read_surfaces(&mut chain, "arm.yaml".as_ref(), |_, _| Ok(bytes.clone())).expect("words");
+        assert!(unread.contains("`a.obj`") && unread.contains(told), "{unread}");
     }
     let mut chain = arm(", shape: {mesh: {file: gone.stl}}").chain().clone();
-    assert!(!read_surfaces(&mut chain, |_| Err(std::io::ErrorKind::NotFound.into())).is_empty());
+    let unread = read_surfaces(&mut chain, "arm.yaml".as_ref(), |_, _| Err(std::io::ErrorKind::NotFound.into()));
+    assert!(unread.is_some_and(|told| told.contains("`gone.stl`")));
 }
