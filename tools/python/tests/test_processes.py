@@ -103,25 +103,26 @@ print(c.mass_matrix(c.guess).shape, flush=True)
     "call",
     [
         "c.simulate(duration=1e4, output=1e3)",
-        "c.replace(load_mass=np.linspace(0, 500, 2000)).simulate_ensemble()",
+        "c.replace(load_mass=np.linspace(0, 500, 20000)).simulate_ensemble()",
         "c.simulation().step(1e5)",
         "[c._small_motions(np.repeat(c.guess[None], 20000, axis=0)) for _ in range(1000)]",
-        "c.replace(load_mass=np.linspace(0, 500, 20000)).statics()",
+        "c.replace(load_mass=np.linspace(0, 500, 600_000)).statics()",
         "c.modes(np.repeat(c.guess[None], 200000, axis=0))",
         "c.stability(np.repeat(c.guess[None], 200000, axis=0))",
-        "c.envelope({'column': np.tile([-3.0, 3.0], 1000)})",
+        "c.envelope({'column': np.tile([-3.0, 3.0], 20000)})",
     ],
 )
 def test_ctrl_c_ends_a_long_call(call):
     program = subprocess.Popen([sys.executable, "-c", INTERRUPTED.format(call=call)], stdout=subprocess.PIPE, text=True)
     assert program.stdout.readline() == "ready\n"
-    time.sleep(0.5)
+    # Every call takes at least three times as long as what is allowed below, also on a machine twice as fast.
+    time.sleep(0.2)
     begin = time.monotonic()
     os.kill(program.pid, signal.SIGINT)
     out, _ = program.communicate(timeout=60)
     # The interpreter continues, and soon.
     assert out == "interrupted\n(25, 25)\n"
-    assert time.monotonic() - begin < 15
+    assert time.monotonic() - begin < 3
 
 
 def test_threads_are_set():
