@@ -46,6 +46,8 @@ impl Switches {
     pub const REPEATS: usize = 3;
     /// Number of bisections, which locate a change to a millionth of the step.
     const BISECTIONS: usize = 20;
+    /// How far beyond a change a step ends for derivatives, relative to its length: as far as a change is located.
+    const BEYOND: f64 = 1e-6;
     /// A change closer than this to either end of a step, relative to its length, does not matter to a motion.
     const END_MARGINS: [f64; 2] = [1e-3; 2];
     /// To derivatives it matters on which branch the first stage of a step is.
@@ -70,9 +72,9 @@ impl Switches {
         }
     }
 
-    /// A step is completed, which may have ended at a change.
+    /// A step is completed, which was to end at a change: it did if a law is on another branch now.
     pub fn proceed(&mut self, at_change: bool) {
-        self.after_change = at_change;
+        self.after_change = at_change && (!self.is_exact || self.branches[0] != self.branches[1]);
     }
 
     /// Visits what further steps depend on.
@@ -135,7 +137,9 @@ impl Switches {
         self.of_limit = self.branches[0][..contacts] == self.branches[1][..contacts];
         let margins = if self.is_exact && !self.after_change { Self::EXACT_MARGINS } else { Self::END_MARGINS };
         let near = margins.map(|margin| margin * (end - begin));
-        (after > begin + near[0] && after < end - near[1]).then_some(after)
+        // The motion of the shorter step differs a little. Derivatives need its end on the other branch.
+        let beyond = if self.is_exact { Self::BEYOND * (end - begin) } else { 0.0 };
+        (after > begin + near[0] && after < end - near[1]).then_some(after + beyond)
     }
 
     /// Whether the change that was found last is that of a drive which reaches or leaves its limit: what follows is another motion, over

@@ -182,3 +182,46 @@ loads: [{name: wind, link: load, at: [0, -0.5, 0], force: [1, 0, 0], scale: {inp
 friction:
   load_psi: {coulomb: 20, breakaway: 25, stribeck: 0.02, viscous: 3, bristle: {stiffness: 2e4, damping: 90}}
 ";
+
+/// A block that slides sideways as it lands on feet that stick.
+const LANDING: &str = "
+format: 1
+name: landing
+analyses: [dynamics]
+links: [{name: block, joint: free, mass: 1000, com: [0.1, 0.05, 0.4], inertia: {Ixx: 300, Iyy: 500, Izz: 600}}]
+supports:
+  - {name: front, at: [1, 0, 0], kinematics: exact, one_sided: true, sticks: true, stiffness: [2e6, 2e6, 4e6], damping: [2e4, 2e4, 4e4]}
+  - {name: left, at: [-1, 0.8, 0], kinematics: exact, one_sided: true, sticks: true, stiffness: [2e6, 2e6, 4e6], damping: [2e4, 2e4, 4e4]}
+  - {name: right, at: [-1, -0.8, 0], kinematics: exact, one_sided: true, sticks: true, stiffness: [2e6, 2e6, 4e6], damping: [2e4, 2e4, 4e4]}
+";
+
+/// A foot that sticks holds within microseconds of its landing. Derivatives know this only if the step that ends there ends on the ground.
+#[test]
+fn feet_that_land_hold_at_once() {
+    let crane = spec(LANDING);
+    let own = Settings::of(crane.description());
+    let settings =
+        Settings { duration: 0.01, output: 0.01, tolerance: 1e-12, audit: false, method: Method::Rosenbrock, ..own };
+    let proceed = &mut |_: f64| ControlFlow::Continue(());
+    // A change by 1e-4 m/s shifts the landing by microseconds, and changes rates by a hundred times the error of the runs and more.
+    let step = 1e-4;
+    for landing in 0..12 {
+        let height = 1e-3 + 5e-5 * f64::from(landing);
+        let start = |more: f64| Start {
+            q: vec![0.0, 0.0, height, 0.0, 0.0, 0.0],
+            v: vec![0.05, 0.02, -0.2 + more, 0.0, 0.01, 0.0],
+            x: Vec::new(),
+            what: String::new(),
+            rests: false,
+        };
+        let of_rate = [Along::Rate(2)];
+        let (_, found) = super::run_with_gradients(&crane, &start(0.0), &settings, &of_rate, proceed).unwrap();
+        let ends = [-step, step].map(|more| runs::record(&crane, &start(more), &settings, proceed).unwrap());
+        let [less, more] = ends.each_ref().map(|run| &run.table.rows[1]);
+        for column in 7..13 {
+            let expected = (more[column] - less[column]) / (2.0 * step);
+            let off = (found[0][1][column] - expected).abs();
+            assert!(off < 2e-5, "landing {landing}: {} against {expected} in column {column}", found[0][1][column]);
+        }
+    }
+}
