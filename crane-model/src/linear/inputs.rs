@@ -189,10 +189,20 @@ fn follows_from_accelerations(crane: &dyn DynCrane, output: &Output) -> bool {
     of_drive || of_loop
 }
 
-/// Change of an input by which its effect is found first, relative to its value or to 1.
-const PROBE: f64 = 1e-6;
-/// An input is changed until accelerations change by this part of their size: rounding and curvature then stay below 1e-9 of an entry.
-const PART: f64 = 1e-5;
+/// Changes of an input by which its effect is found, relative to its value or to 1, from the shortest on: rounding hides the effect of a short
+/// one, and laws bend or change their branch over a long one.
+const PROBES: [f64; 8] = [1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
+
+/// The step, and what it finds, that differs least from the next shorter one, in proportion to each number: there, neither rounding nor curvature
+/// counts.
+fn agreeing(found: &[(f64, DVector<f64>)]) -> &(f64, DVector<f64>) {
+    let off = |more: usize| -> f64 {
+        let numbers = found[more - 1].1.iter().zip(found[more].1.iter()).filter(|(less, more)| **less != **more);
+        numbers.map(|(less, more)| (more - less).abs() / (less.abs() + more.abs())).sum()
+    };
+    let best = (1..found.len()).min_by(|one, other| off(*one).total_cmp(&off(*other)));
+    &found[best.unwrap_or(0)]
+}
 
 /// What an input of the spec does, by central differences.
 fn of_spec<C: Linearisable>(
@@ -214,16 +224,14 @@ fn of_spec<C: Linearisable>(
         let free = space.unknowns().iter().map(|&j| motion.accelerations[j]);
         DVector::from_iterator(space.matrix.nrows() - space.unknowns().len(), free.chain(motion.rates))
     };
-    let mut step = PROBE * value.abs().max(1.0);
-    let here = slopes(0.0);
-    let effect = (slopes(step) - &here).amax();
-    if effect > 0.0 {
-        step *= PART * here.amax().max(1.0) / effect;
-    }
-    let by = (slopes(step) - slopes(-step)) / (2.0 * step);
+    let found = PROBES.map(|part| {
+        let step = part * value.abs().max(1.0);
+        (step, (slopes(step) - slopes(-step)) / (2.0 * step))
+    });
+    let (step, ref by) = *agreeing(&found);
     let n = space.unknowns().len();
     let mut states = DVector::zeros(space.matrix.nrows());
-    states.rows_mut(n, by.len()).copy_from(&by);
+    states.rows_mut(n, by.len()).copy_from(by);
     if outputs.is_empty() {
         return Ok(Effect { states, outputs: Vec::new() });
     }

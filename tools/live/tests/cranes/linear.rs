@@ -197,6 +197,32 @@ fn a_commanded_valve_opens_slightly() {
     assert!((0.1..10.0).contains(&response.norm()), "{response}");
 }
 
+/// Inputs of a spec do what the motion and the effort of the same drive do, from small changes of a stiff crane: its forces change by megapascals
+/// with a radian, by nothing with a newton metre. Some coordinates hardly move, and with a step that fits one input the other was wrong by 1e-5.
+#[test]
+fn inputs_of_the_spec_are_those_of_the_drive() {
+    let path = format!("{}/../../specs/eight_link_flexible.yaml", env!("CARGO_MANIFEST_DIR"));
+    let source = build::open(path.as_ref()).unwrap().changed(
+        "name: changed\ninputs: {trim: {value: 0.01, unit: rad}, push: {value: 3000, unit: N m}}\n\
+         drives: [{coordinate: outer_boom_psi, offset: trim, effort: {input: push}}]\n",
+    );
+    let crane = LiveCrane::from_spec(&source).unwrap_or_else(|mistakes| panic!("\n{mistakes}"));
+    let drives = &crane.description().drives;
+    let name = |drive: usize| &*crane.description().coordinates[drives[drive].coordinate].name;
+    let drive = (0..drives.len()).find(|drive| name(*drive) == "outer_boom_psi").unwrap();
+    let (q, rest) = (at_rest(&crane), vec![0.0; crane.size()]);
+    let inputs = [Input::Spec(0), Input::Motion(drive), Input::Spec(1), Input::Effort(drive)];
+    let model = linear_model(&crane, &about(&q, &rest, Forces::Holding), &inputs, &[]).unwrap();
+    let gains = model.a.lu().solve(&model.b).unwrap();
+    for (own, other) in [(0, 1), (2, 3)] {
+        for (state, row) in gains.row_iter().take(crane.size()).enumerate() {
+            let allowed = 1e-6 * row[other].abs() + 1e-9 * gains.column(other).amax();
+            let off = (row[own] - row[other]).abs();
+            assert!(off < allowed, "state {state}: {} against {}", row[own], row[other]);
+        }
+    }
+}
+
 /// Where a servo brings the arm is where its motion prescribes it, up to what the leakage of the load takes; a rate alone moves it little.
 #[test]
 fn a_servo_follows_its_motion() {
