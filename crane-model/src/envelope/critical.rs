@@ -3,7 +3,7 @@
 use super::{
     Limit, Limits, PartLimit, range_of_loads,
     rating::{LoadSearch, Posed},
-    search::{Range, Trial},
+    search::{FAST, Range, Trial},
     sweep::mass_with,
 };
 use crate::{
@@ -101,7 +101,7 @@ pub fn critical_load(
         Critical::Tipping => Limits { tipping: Some(0.0), ..Limits::none(&description) },
     };
     let positions: Vec<f64> = crane.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
-    let range = Range { greatest, guess: 0.0, scale: mass.max(f64::MIN_POSITIVE), accuracy: ACCURACY };
+    let range = Range { greatest, guess: 0.0, scale: mass.max(f64::MIN_POSITIVE), accuracy: ACCURACY, growth: FAST };
     let search = LoadSearch { limits: &limits, factor: 1.0, range, points: &[] };
     let mut posed = Posed { crane, load: parameter, positions: &positions };
     let multiples = SEARCHED.map(|power| mass * 2.0_f64.powi(power));

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 use super::{
     Limits,
     rating::{LoadSearch, Posed},
-    search::Range,
+    search::{ALONG, Range},
 };
 use crate::{
     dyn_crane::DynCrane,
@@ -18,6 +18,8 @@ const ACCURACY: f64 = 1e-6;
 const MOST: f64 = 1000.0;
 /// Part of a factor by which another one is a little larger.
 const A_LITTLE: f64 = 1e-5;
+/// How often a path goes on beyond where it seemed to end.
+const PASSES: usize = 100;
 
 /// Critical factors of weight and loads.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,8 +36,8 @@ pub struct LoadFactor {
 pub struct Followed {
     /// The factor.
     pub factor: f64,
-    /// How statics ends with a little more, from the last pose.
-    pub status: Status,
+    /// How statics ends with a little more, from the last pose; `None` if the crane rests with a stage out of its beam, which nothing holds.
+    pub beyond: Option<Status>,
 }
 
 impl LoadFactor {
@@ -48,7 +50,7 @@ impl LoadFactor {
 pub fn load_factor(crane: &mut dyn DynCrane, parameter: usize) -> Option<LoadFactor> {
     let limits = Limits::none(crane.description());
     let positions: Vec<f64> = crane.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
-    let range = Range { greatest: MOST, guess: 0.0, scale: 1.0, accuracy: ACCURACY };
+    let range = Range { greatest: MOST, guess: 0.0, scale: 1.0, accuracy: ACCURACY, growth: ALONG };
     let search = LoadSearch { limits: &limits, factor: 1.0, range, points: &[] };
     let mut posed = Posed { crane, load: parameter, positions: &positions };
     let begin = posed.find(1.0, None)?;
@@ -59,14 +61,24 @@ pub fn load_factor(crane: &mut dyn DynCrane, parameter: usize) -> Option<LoadFac
     } else {
         None
     };
-    let first = posed.trial(1.0, begin, &search);
-    let (best, governing) = posed.find_largest(first, &search);
-    let followed = governing.and(best).map(|best| {
+    let mut first = posed.trial(1.0, begin, &search);
+    let mut followed = None;
+    for _ in 0..PASSES {
+        let (best, governing) = posed.find_largest(first, &search);
+        let Some(best) = governing.and(best) else {
+            followed = None;
+            break;
+        };
         let more = best.load * (1.0 + A_LITTLE);
         let set = posed.crane.set_parameter(parameter, more).is_ok();
         let near = RestSearch { crane: posed.crane, positions: &positions }.find_near(&best.at.q).filter(|_| set);
-        Followed { factor: best.load, status: near.map_or(Status::NotConverged, |found| found.status) }
-    });
+        let status = near.as_ref().map_or(Status::NotConverged, |found| found.status.clone());
+        let beyond = (status != Status::Converged).then_some(status);
+        followed = Some(Followed { factor: best.load, beyond });
+        // Newton's method may miss a pose that is there: if the crane rests with a little more, its path goes on.
+        let Some(next) = near.and_then(|near| posed.condition(near)) else { break };
+        first = posed.trial(more, next, &search);
+    }
     Some(LoadFactor { linearised: linearised.filter(|factor| *factor <= MOST), followed })
 }
 

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::{
     Condition, Limit, Limits,
-    search::{CHART, Range, Trial, largest},
+    search::{CHART, FAST, Range, Trial, largest},
     sweep::mass_with,
 };
 use crate::{
@@ -90,7 +90,8 @@ impl Posed<'_> {
         self.condition(RestSearch { crane: self.crane, positions: self.positions }.find_near(q)?)
     }
 
-    fn condition(&self, found: Equilibrium) -> Option<Condition> {
+    /// The crane at rest as statics found it, if it stands there.
+    pub(super) fn condition(&self, found: Equilibrium) -> Option<Condition> {
         let condition = found.is_stable().then(|| Condition::at(self.crane, found.q, self.positions))?;
         // Nothing holds a stage that stands crosswise in its beam.
         let is_held = condition.overlaps.iter().all(|(_, [inside, _])| *inside > f64::NEG_INFINITY);
@@ -141,7 +142,7 @@ impl Posed<'_> {
         // A search does not depend on the load that was tried last.
         let mass = mass_with(self.crane, self.load, least);
         let greatest = greatest.min(self.crane.description().parameters[self.load].upper_bound.value / factor);
-        let range = Range { greatest, guess, scale: mass.max(f64::MIN_POSITIVE), accuracy: CHART };
+        let range = Range { greatest, guess, scale: mass.max(f64::MIN_POSITIVE), accuracy: CHART, growth: FAST };
         let search = LoadSearch { limits, factor, range, points: &empty.points };
         let first = self.trial(least / factor, empty.clone(), &search);
         let (best, governing) = self.find_largest(first, &search);

@@ -44,6 +44,8 @@ pub(super) struct Range {
     pub scale: f64,
     /// Relative accuracy of the largest load.
     pub accuracy: f64,
+    /// Maximum ratio of a step up to the distance between the minimum load and the last one within the limits.
+    pub growth: f64,
 }
 
 /// Relative accuracy of the loads of charts, which round to three digits.
@@ -59,8 +61,10 @@ const NEARBY: f64 = 0.02;
 const NEAR: f64 = 0.1;
 /// First step up if there is no guess, as a fraction of the scale.
 const FIRST_STEP: f64 = 0.1;
-/// Maximum ratio of a step up to the distance between the minimum load and the last one within the limits.
-const GROWTH: f64 = 4.0;
+/// How fast steps grow where only the largest load counts.
+pub(super) const FAST: f64 = 4.0;
+/// The same where a path of poses is followed: a long step ends on another path, where there is one.
+pub(super) const ALONG: f64 = 0.25;
 
 /// The trial with the largest load from `first` on, `None` if that one is beyond a limit, and the limit that governs, `None` if none is reached.
 pub(super) fn largest(
@@ -99,7 +103,7 @@ pub(super) fn largest(
         let now = last[1].as_ref().map_or(within.load, |(load, _)| *load);
         let next = match &beyond {
             None => {
-                let step = (GROWTH * (within.load - least)).max(FIRST_STEP * range.scale);
+                let step = (range.growth * (within.load - least)).max(FIRST_STEP * range.scale);
                 let next = secant.map_or(within.load + step, |(at, _)| aim(at, within.load, range));
                 let next = if turn == 0 && range.guess > within.load { range.guess } else { next };
                 next.clamp(within.load, within.load + step.max(range.guess - within.load)).min(range.greatest)
@@ -184,7 +188,7 @@ mod tests {
     }
 
     const ACCURACY: f64 = CHART;
-    const RANGE: Range = Range { greatest: 1e6, guess: 0.0, scale: 1000.0, accuracy: ACCURACY };
+    const RANGE: Range = Range { greatest: 1e6, guess: 0.0, scale: 1000.0, accuracy: ACCURACY, growth: FAST };
 
     /// Finds the largest load from zero on, for slacks that are functions of the load, and counts trials.
     fn find(slacks: &dyn Fn(f64) -> Option<Vec<f64>>, range: &Range) -> (Option<f64>, Option<Limit>, usize) {

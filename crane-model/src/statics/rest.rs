@@ -4,7 +4,7 @@ use super::{Equilibrium, Settings, guess::guess_with};
 use crate::{DriveInfo, dyn_crane::DynCrane};
 
 /// Newton's method alone: where it fails from a pose, the crane does not rest nearby. What is near takes three to five iterations.
-const NEWTON: Settings = Settings { tolerance: 1e-10, iterations: 8, load_steps: 0 };
+const NEWTON: Settings = Settings { tolerance: 1e-10, iterations: 25, load_steps: 0 };
 /// Longest stride of the drives between two poses at rest, m or rad.
 const STRIDE: f64 = 0.2;
 /// Shortest stride, as a fraction of the longest.

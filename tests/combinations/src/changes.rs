@@ -89,8 +89,11 @@ fn differences(
         (Group::Connectors | Group::Loops, "N m") => "N",
         _ => unit,
     };
+    // Of a pad, some directions may be exact, and others springs.
+    let joined = |group: Group| if group == Group::Loops { Group::Connectors } else { group };
     let largest = |group: Group, unit: &'static str| {
-        let is_alike = |output: &Output| output.group == group && kind(group, output.unit) == kind(group, unit);
+        let is_alike =
+            |output: &Output| joined(output.group) == joined(group) && kind(group, output.unit) == kind(group, unit);
         let alike = found.outputs.iter().enumerate().filter(|(_, output)| is_alike(output));
         alike.fold(0.0, |size: f64, (index, _)| {
             size.max(found.derivatives[place][index].abs()).max(found.values[index].abs() / per)

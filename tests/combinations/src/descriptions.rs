@@ -4,7 +4,7 @@ use fastrand::Rng;
 use serde_json::{Value, json};
 
 use crate::crane::BOOM;
-use crate::observe::{CAUTIONS, LINEAR, MARGINS, MODES, STEPS, live};
+use crate::observe::{CAUTIONS, LINEAR, LOADS, MARGINS, MODES, STEPS, live};
 use crate::pins;
 use crate::second::Second;
 use crate::tree::{Tree, entry, entry_mut, for_each_key, for_each_place, gravity, numbers, push, set_gravity, source};
@@ -220,8 +220,9 @@ fn boom_one_by_one(tree: &Tree, _: &mut Rng) -> Option<Second> {
     if beam["section_joint"].is_string() {
         link["beam"]["section_joint"] = beam["section_joint"].clone();
     }
-    // Elements that are given one by one have no sections.
-    Some(Second::of(&second).named(|name| (!name.contains("stress")).then(|| name.to_owned())))
+    // Elements that are given one by one have no sections, so no stress limits loads.
+    let without = &[CAUTIONS, LOADS];
+    Some(Second { without, ..Second::of(&second).named(|name| (!name.contains("stress")).then(|| name.to_owned())) })
 }
 
 /// A beam without springs, and the body that it is.
@@ -347,7 +348,9 @@ fn planes_exchanged(tree: &Tree, _: &mut Rng) -> Option<Second> {
             *value = json!("boom_theta");
         }
     });
-    Some(Second::of(&second).named(|name| without_boom_elements(&name.replace("boom_psi", "boom_theta"))))
+    // What a groove of the boom exerts is in the axes of the boom.
+    let same = |name: &str| (!name.starts_with("groove_force")).then(|| name.replace("boom_psi", "boom_theta"));
+    Some(Second::of(&second).named(move |name| without_boom_elements(&same(name)?)))
 }
 
 /// A spec that extends one with other numbers.

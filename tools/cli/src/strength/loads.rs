@@ -7,6 +7,7 @@ use crane_model::{
         Critical, CriticalLoad, Followed, LoadFactor, SecondOrder, critical_load, is_load, load_factor, only_mass,
         second_order,
     },
+    statics::Status,
 };
 use crane_page::tables::{Cell, Grid, Report};
 
@@ -55,10 +56,13 @@ pub fn factor(report: &mut Report, crane: &LiveCrane) {
     report.line(format!("{name}, by the stiffness at rest"), by_stiffness, "");
     let followed_to = followed.as_ref().map_or_else(|| beyond.as_str().into(), |followed| Cell::from(followed.factor));
     report.line(format!("{name}, its pose followed"), followed_to, "");
-    if let Some(Followed { status, .. }) = &followed {
-        report.line("beyond it", status.to_string(), "");
+    let without_hold = "a stage is out of its beam";
+    if let Some(Followed { beyond, .. }) = &followed {
+        report.line("beyond it", beyond.as_ref().map_or_else(|| without_hold.to_owned(), Status::to_string), "");
     }
-    let followed = followed.map(|Followed { factor, status }| json!({"factor": factor, "status": status.name()}));
+    let followed = followed.map(|Followed { factor, beyond }| {
+        json!({"factor": factor, "status": beyond.as_ref().map_or(without_hold, Status::name)})
+    });
     report.value("critical_factor", json!({"linearised": linearised, "followed": followed}));
 }
 
