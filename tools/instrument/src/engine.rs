@@ -7,6 +7,7 @@ use crane_codegen::{
     chain::{End, Force, Group, Law},
     compile,
     diagnostic::Diagnostics,
+    units::number_in,
 };
 use crane_live::LiveCrane;
 use crane_model::{
@@ -59,6 +60,9 @@ impl Engine {
     fn reply(&mut self, request: Request) -> Outcome<Value> {
         match request {
             Request::Open { name, text } => Ok(self.open(&name, &text)),
+            Request::Number { text, unit, of } => number_in(&unit, &text, &of)
+                .map(|value| json!({"value": value}))
+                .map_err(|wrong| format!("{}; {}", wrong.problem, wrong.help)),
             Request::Rest { parameters, positions } => {
                 let crane = self.crane()?.at(&parameters, &positions)?;
                 let (page, equilibrium) = rest(&crane, positions.is_empty());

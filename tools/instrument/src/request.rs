@@ -13,6 +13,15 @@ pub enum Request {
         /// Its text.
         text: String,
     },
+    /// Reads a number that was typed, with its unit.
+    Number {
+        /// What was typed.
+        text: String,
+        /// The unit of what it is for, SI.
+        unit: String,
+        /// Name of what it is for.
+        of: String,
+    },
     /// The crane at rest.
     Rest {
         /// Live parameters in the order of the crane; empty: those of its spec.

@@ -49,6 +49,23 @@ fn a_request_that_does_not_exist_is_answered() {
     assert!(engine.answer(&[0xff]).starts_with("{\"error\":"));
 }
 
+/// Fields take numbers with units, by the reader of the command; they need no crane.
+#[test]
+fn what_is_typed_may_have_a_unit() {
+    let mut engine = Engine::default();
+    let mut read =
+        |text: &str, unit: &str| ask(&mut engine, &json!({"ask": "number", "text": text, "unit": unit, "of": "it"}));
+    assert_eq!(read("1.5 t", "kg"), json!({"value": 1500.0}));
+    assert_eq!(read("320 bar", "Pa"), json!({"value": 32e6}));
+    let wrong = read("320 bar", "kg");
+    assert!(
+        wrong["error"]
+            .as_str()
+            .is_some_and(|words| words.starts_with("it is in kg, and `320 bar` is a pressure (Pa); ")),
+        "{wrong}"
+    );
+}
+
 /// Statics do not wait for modes: these are of the crane as it rested last.
 #[test]
 fn modes_follow_statics() {

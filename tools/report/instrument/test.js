@@ -263,7 +263,7 @@ async function parts(page, phone) {
   if (phone) await page.getByRole("tab", { name: "At rest" }).click();
   // The mark stays while the crane changes; what is known of the part follows.
   await page.locator("#part select").selectOption({ label: "hook" });
-  const payload = page.locator("#sliders input[type=number]").first();
+  const payload = page.locator("#sliders input.number").first();
   await payload.fill("650");
   await eventually(page, async () => assert.match((await seen())[1], /^675 kg/));
   // Beside the crane there is none.
@@ -304,8 +304,8 @@ async function shown(browser) {
   });
   const [link, before] = await new Promise((done, fail) => {
     open(browser, wide, async (page) => {
-      await page.locator("#sliders input[type=number]").first().fill("650");
-      await page.locator("#sliders input[type=number]").nth(1).fill("-30");
+      await page.locator("#sliders input.number").first().fill("650");
+      await page.locator("#sliders input.number").nth(1).fill("-30");
       await page.getByRole("tab", { name: "Load chart" }).click();
       await page.locator("#asked input[aria-label='how many']").first().fill("7");
       await at(page, () => (document.querySelector("#duration").value = "2.5"));
@@ -383,7 +383,7 @@ async function sliders(page) {
   for (let press = 0; press < 5; press += 1) await page.keyboard.press("ArrowRight");
   await eventually(page, async () => assert.notDeepEqual(await torque(), before));
   const moved = await torque();
-  const angle = page.locator("#sliders fieldset:last-of-type input[type=number]").first();
+  const angle = page.locator("#sliders fieldset:last-of-type input.number").first();
   await angle.fill("33");
   await eventually(page, async () => {
     assert.notDeepEqual(await torque(), moved);
@@ -392,6 +392,42 @@ async function sliders(page) {
   });
   await page.getByRole("button", { name: "As in the spec" }).click();
   await eventually(page, async () => assert.deepEqual(await torque(), before));
+  await units(page);
+}
+
+/** Fields take numbers with units, which the engine reads or refuses; what goes into the spec has the unit that stands there. */
+async function units(page) {
+  const numbers = () => at(page, () => [globalThis.instrument.rest.parameters[0], globalThis.instrument.rest.positions[0]]);
+  const [payload, angle] = ["first", "last"].map((which) => page.locator(`#sliders fieldset:${which}-of-type input.number`).first());
+  await payload.fill("1.2 t");
+  await eventually(page, async () => assert.equal((await numbers())[0], 1200));
+  assert.equal(await page.locator("#sliders input[type=range]").first().inputValue(), "1200");
+  await angle.fill("-0.5 rad");
+  await eventually(page, async () => assert.equal((await numbers())[1], -0.5));
+  await payload.fill("320 bar");
+  await eventually(page, async () => assert.match(await state(page), /^payload is in kg, and `320 bar` is a pressure \(Pa\); /));
+  assert.deepEqual([await payload.getAttribute("aria-invalid"), (await numbers())[0]], ["true", 1200]);
+  await payload.fill("1.2 t");
+  await eventually(page, async () => assert.match(await state(page), /^At rest/));
+  await edit(page, "value: 800", "value: 0.8 t");
+  await eventually(page, async () => assert.match(await state(page), /^At rest/));
+  await page.getByRole("button", { name: "Into the spec" }).click();
+  await eventually(page, async () => assert.match(await at(page, () => globalThis.instrument.editor.text), /payload: \{value: 1\.2 t, unit: kg/));
+  // Ranges of load charts, and the duration of a run.
+  await page.getByRole("tab", { name: "Load chart" }).click();
+  const from = page.locator("#asked input[aria-label=from]").first();
+  const before = await from.inputValue();
+  await from.fill("1 m");
+  await page.getByRole("button", { name: "Compute" }).click();
+  await eventually(page, async () => assert.match(await page.textContent("#chart_state"), /^main_boom_theta is in rad, and `1 m` is a length/));
+  await from.fill(before);
+  await page.getByRole("tab", { name: "Run" }).click();
+  await page.fill("#duration", "500 ms");
+  await page.click("#start");
+  await page.waitForSelector("#run .panel");
+  assert(Math.abs((await at(page, () => globalThis.instrument.stage.crane.run.t.at(-1))) - 0.5) < 1e-6);
+  await page.getByRole("tab", { name: "At rest" }).click();
+  await example(page, "knuckle boom");
 }
 
 /** Modes move the crane; runs and load charts have plots with labels. */

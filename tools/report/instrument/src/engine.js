@@ -11,6 +11,16 @@ export async function compile(text) {
   return WebAssembly.compileStreaming(new Response(stream, { headers: { "content-type": "application/wasm" } }));
 }
 
+/**
+ * Reads what was typed into a field, in SI units: a number alone is in the unit beside the field, of which `factor` make one SI unit; any other text,
+ * such as `1.5 t`, the engine reads, or refuses in its words.
+ */
+export async function typed(ask, text, { name, unit, factor = 1 }) {
+  const number = Number(text);
+  if (text.trim() && Number.isFinite(number)) return number / factor;
+  return (await ask({ ask: "number", text, unit, of: name })).value;
+}
+
 export class Engine {
   constructor(module) {
     this.module = module;

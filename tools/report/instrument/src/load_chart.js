@@ -3,6 +3,7 @@ import { DEGREES, measured, readable, spoken, always } from "../../src/data.js";
 import { element } from "../../src/element.js";
 import { Plot } from "../../src/plot.js";
 import { grid } from "../../src/tables.js";
+import { typed } from "./engine.js";
 
 /** Longest chart of a page, s of computing. */
 const PATIENCE = 300;
@@ -59,13 +60,9 @@ export class LoadChart {
     const select = element("select", {}, ...drives.map(({ name }, index) => new Option(spoken(name), index)));
     if (axis === 1) select.prepend(new Option("none", ""));
     select.value = drives[chosen] ? chosen : "";
-    const number = (label, attributes) => {
-      const field = element("input", { type: "number", step: "any", ...attributes });
-      field.setAttribute("aria-label", label);
-      return field;
-    };
+    const number = (ariaLabel, attributes) => element("input", { className: "number", autocomplete: "off", ariaLabel, ...attributes });
     const [from, to] = [number("from"), number("to")];
-    const count = number("how many", { value: COUNTS[axis], min: 1, max: MOST[axis], step: 1 });
+    const count = number("how many", { type: "number", value: COUNTS[axis], min: 1, max: MOST[axis], step: 1 });
     const unit = element("span", { className: "soft" });
     const fit = () => {
       const drive = drives[select.value];
@@ -87,12 +84,13 @@ export class LoadChart {
       unit.textContent = drives[select.value]?.unit === "rad" ? "°" : "m";
     }
     const host = element("fieldset", { className: "axis" }, element("legend", { textContent: axis === 0 ? "along the axis" : "curve by curve" }), select, from, " … ", to, unit, count, element("span", { className: "soft", textContent: "values" }));
-    const range = () => {
+    const range = async () => {
       const drive = drives[select.value];
       if (!drive) return null;
       const factor = drive.unit === "rad" ? DEGREES : 1;
+      const [first, last] = await Promise.all([from, to].map(({ value }) => typed(this.ask, value, { ...drive, factor })));
       const counted = Math.min(Math.max(Math.round(Number(count.value)) || 1, 1), MOST[axis]);
-      return { drive: Number(select.value), from: Number(from.value) / factor, to: Number(to.value) / factor, count: counted };
+      return { drive: Number(select.value), from: first, to: last, count: counted };
     };
     return { host, range, fields };
   }
@@ -105,14 +103,14 @@ export class LoadChart {
 
   async start() {
     this.clear();
-    const [along, by] = this.axes.map(({ range }) => range());
-    if (!along || along.drive === by?.drive) {
-      this.state.textContent = "Choose two different drives, or none for the curves.";
-      return;
-    }
-    this.state.textContent = "computing …";
-    const ranges = by ? [by, along] : [along];
     try {
+      const [along, by] = await Promise.all(this.axes.map(({ range }) => range()));
+      if (!along || along.drive === by?.drive) {
+        this.state.textContent = "Choose two different drives, or none for the curves.";
+        return;
+      }
+      this.state.textContent = "computing …";
+      const ranges = by ? [by, along] : [along];
       const chart = await this.ask({ ask: "chart", ...this.given(), load: this.load.value, ranges }, PATIENCE);
       const free = chart.poses.filter(({ load, limit }) => load !== null && limit === null).length;
       const words = free ? `; ${free} without a limit up to the largest load that was tried: this crane has no rating there` : "";

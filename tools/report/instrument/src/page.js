@@ -8,7 +8,7 @@ import { element } from "../../src/element.js";
 import { faults } from "../../src/faults.js";
 import { Drive } from "./drive.js";
 import { Editor } from "./editor.js";
-import { Engine, compile } from "./engine.js";
+import { Engine, compile, typed } from "./engine.js";
 import { Gallery } from "./gallery.js";
 import { MOST, fragment, shown as shownOf, text as textOf } from "./link.js";
 import { LoadChart } from "./load_chart.js";
@@ -54,7 +54,7 @@ let tab = "rest";
 
 const ask = (request, seconds = PATIENCE) => engine.ask(request, seconds);
 const editor = new Editor($("#editor"), schema, { changed: edited, names });
-const rest = new Rest($("#rest"), { changed: moved, write });
+const rest = new Rest($("#rest"), { ask, changed: moved, write, refuse: (words) => note(words, "bad") });
 faults((words) => note(words, "bad"));
 const modes = new Modes($("#modes"), { choose: (mode) => stage.vibrate(mode), swell: (factor) => stage.viewer?.set({ factor }) });
 const run = new Run($("#run"), stage, { ask, end: (words) => engine.end(words), given: () => rest.given, note });
@@ -171,7 +171,7 @@ async function goBack({ state }) {
 /** Shows what is wanted of a crane that was read: its tab, and where it is seen from. */
 function present({ tab: chosen, seenFrom, duration, part }) {
   if (document.getElementById(`tab_${chosen}`)) choose(chosen === "spec" && !isNarrow() ? "rest" : chosen);
-  if (Number(duration) > 0) $("#duration").value = duration;
+  if (typeof duration === "string") $("#duration").value = duration;
   if (stage.viewer) stage.viewer.seenFrom = seenFrom;
   parts.choose(String(part));
 }
@@ -182,9 +182,11 @@ function isNarrow() {
 }
 
 /** Writes the numbers of the sliders into the spec. */
-function write() {
-  const { changes, left } = rewritten(editor.text, rest.state);
-  editor.change(changes);
+async function write() {
+  const { text } = editor;
+  const unitOf = (name) => [...crane.parameters, ...crane.drives].find((one) => one.name === name).unit;
+  const { changes, left } = await rewritten(text, rest.state, (name, unit) => typed(ask, `1 ${unit}`, { name, unit: unitOf(name) }));
+  if (editor.text === text) editor.change(changes);
   if (left.length) note(`Not one number of this spec: ${left.map(spoken).join(", ")}`, "warned");
 }
 

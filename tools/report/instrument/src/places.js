@@ -1,5 +1,4 @@
 // Where parts and numbers of a crane are in the text of its spec.
-import { DEGREES } from "../../src/data.js";
 import { context } from "./schema.js";
 
 const plain = (text) => text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&");
@@ -18,32 +17,33 @@ export function entry(text, list, name, key = "name") {
   return first?.from ?? null;
 }
 
-/** A number as it is written: with the unit of what it replaces. */
-function written(value, before) {
-  const turns = /\bdeg\b/.test(before);
-  const number = Number((turns ? value * DEGREES : value).toPrecision(6));
-  return before.replace(/^[^\s"']+|(?<=["'])[^\s"']+/, String(number));
+/** A number as it is written, with the unit of what it replaces; `factor(unit)` is such a unit in SI units. */
+async function written(value, before, factor) {
+  const [, quote, unit] = /^(["']?)[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?\s*(.*)\1$/i.exec(before);
+  const number = Number((unit ? value / (await factor(unit)) : value).toPrecision(6));
+  return `${quote}${number}${unit && ` ${unit}`}${quote}`;
 }
 
 /**
  * Changes of a text, `{from, to, insert}`, by which live parameters and positions of drives, by name, become those of the spec; and the names of those
- * that have no number of their own in it.
+ * that have no number of their own in it. `factor(name, unit)` is a unit in that of the number with this name.
  */
-export function rewritten(text, { parameters = {}, positions = {} }) {
+export async function rewritten(text, { parameters = {}, positions = {} }, factor) {
   const [changes, left] = [[], []];
-  const change = (name, value, found) => {
+  const change = async (name, value, found) => {
     if (!found) return left.push(name);
     const before = text.slice(found.from, found.to);
     const [, key, old] = /^(\w+:\s*)([^]*)$/.exec(before);
-    return changes.push({ from: found.from + key.length, to: found.to, insert: written(value, old) });
+    return changes.push({ from: found.from + key.length, to: found.to, insert: await written(value, old, (unit) => factor(name, unit)) });
   };
-  const number = "[-+]?[\\d.][\\w.+-]*(?: deg)?|([\"'])[-+\\d.e]+ deg\\2";
-  for (const [name, value] of Object.entries(parameters)) change(name, value, [...places(text, "value", number, `parameters/${name}`)][0]);
+  // A number alone or with its unit, quoted or not.
+  const number = "[-+]?\\.?\\d[^\\s,}\\]#\"']*(?: +[^\\s,}\\]#\"']+)*|([\"'])[-+]?\\.?\\d[^\"']*\\2";
+  for (const [name, value] of Object.entries(parameters)) await change(name, value, [...places(text, "value", number, `parameters/${name}`)][0]);
   for (const [name, value] of Object.entries(positions)) {
     const begin = entry(text, "drives", name, "coordinate");
     const after = begin === null ? null : [...places(text, "coordinate", "\\S+", "drives/[]")].find(({ from }) => from > begin)?.from ?? text.length;
     const held = begin === null ? null : [...places(text, "hold", number, "drives/[]/motion")].find(({ from }) => from > begin && from < after);
-    change(name, value, held);
+    await change(name, value, held);
   }
   return { changes, left };
 }

@@ -3,12 +3,13 @@ import { DEGREES, spoken } from "../../src/data.js";
 import { element } from "../../src/element.js";
 import { results } from "../../src/tables.js";
 import { tile, tiles } from "../../src/tiles.js";
+import { typed } from "./engine.js";
 
 /** Travel of a slider to either side of where a drive begins, if it has no stops: degrees, m. */
 const TRAVEL = { rad: 60, m: 1 };
 
-/** A slider and a field for the same number. `change(value)` gets it in SI units. */
-function slider({ name, about, unit, least, most }, value, change) {
+/** A slider and a field for the same number. `change(value)` gets it in SI units, `refuse(words)` why what was typed is none. */
+function slider({ name, about, unit, least, most }, value, { ask, change, refuse }) {
   const turns = unit === "rad";
   const factor = turns ? DEGREES : 1;
   const shown = (number) => Number((number * factor).toPrecision(6));
@@ -16,26 +17,40 @@ function slider({ name, about, unit, least, most }, value, change) {
   const label = `${spoken(name)}${unit || turns ? `, ${turns ? "°" : unit}` : ""}`;
   const step = 10 ** Math.floor(Math.log10((high - low) / 200));
   const bar = element("input", { type: "range", min: low, max: high, step, value: shown(value) });
-  const field = element("input", { type: "number", step: "any", value: shown(value) });
+  const field = element("input", { className: "number", autocomplete: "off", value: shown(value) });
   bar.setAttribute("aria-label", label);
   field.setAttribute("aria-label", `${label}, exact`);
-  const take = (from, to) => {
-    const number = Number(from.value);
-    if (from.value === "" || !Number.isFinite(number)) return;
-    to.value = from.value;
-    change(number / factor);
+  const take = (number) => {
+    field.ariaInvalid = false;
+    change(number);
   };
-  bar.addEventListener("input", () => take(bar, field));
-  field.addEventListener("input", () => take(field, bar));
+  bar.addEventListener("input", () => {
+    field.value = bar.value;
+    take(Number(bar.value) / factor);
+  });
+  field.addEventListener("input", async () => {
+    const text = field.value;
+    const isCurrent = () => text.trim() && field.value === text;
+    try {
+      const number = await typed(ask, text, { name, unit, factor });
+      if (!isCurrent()) return;
+      bar.value = shown(number);
+      take(number);
+    } catch ({ message }) {
+      if (!isCurrent()) return;
+      field.ariaInvalid = true;
+      refuse(message);
+    }
+  });
   return element("div", { className: "slider", title: about }, element("span", { textContent: spoken(name) }), bar, field, element("span", { className: "soft", textContent: turns ? "°" : unit }));
 }
 
 export class Rest {
-  /** `changed()` is called when a slider moves, `write()` when its numbers are to be those of the spec. */
-  constructor(host, { changed, write }) {
+  /** `changed()` is called when a slider moves, `write()` when its numbers are to be those of the spec, `refuse(words)` when a text is no number. */
+  constructor(host, { ask, changed, write, refuse }) {
     this.sliders = host.querySelector(".sliders");
     this.results = host.querySelector(".results");
-    Object.assign(this, { changed, write });
+    Object.assign(this, { ask, changed, write, refuse });
   }
 
   /** Sliders of another crane; `given`: where they stand, if not at the numbers of the spec (see `state`). */
@@ -50,13 +65,13 @@ export class Rest {
       const around = Math.abs(one.value) || 1;
       const least = Math.max(one.least, one.value < 0 ? -2 * around : 0);
       const slide = { ...one, least: one.value === 0 && one.least < 0 ? -1 : least, most: Math.min(one.most, one.value <= 0 && one.value !== 0 ? 0 : 2 * around) };
-      return slider(slide, this.parameters[index], (value) => this.take(this.parameters, index, value));
+      return this.slider(slide, this.parameters, index);
     });
     const drives = crane.drives.map((one, index) => {
       const way = TRAVEL[one.unit] / (one.unit === "rad" ? DEGREES : 1);
       const [low, high] = one.stops;
       const slide = { ...one, about: "position of the drive", least: low ?? one.start - way, most: high ?? one.start + way };
-      return slider(slide, this.positions[index], (value) => this.take(this.positions, index, value, true));
+      return this.slider(slide, this.positions, index, true);
     });
     const group = (title, rows) => (rows.length ? [element("fieldset", {}, element("legend", { textContent: title }), ...rows)] : []);
     const reset = element("button", { type: "button", textContent: "As in the spec", title: "All sliders back to the numbers of the spec" });
@@ -70,10 +85,13 @@ export class Rest {
     this.sliders.replaceChildren(...group("Live parameters", parameters), ...group("Positions of the drives", drives), ...buttons);
   }
 
-  take(numbers, index, value, moves = false) {
-    numbers[index] = value;
-    if (moves) this.moved = true;
-    this.changed();
+  slider(slide, numbers, index, moves = false) {
+    const change = (value) => {
+      numbers[index] = value;
+      if (moves) this.moved = true;
+      this.changed();
+    };
+    return slider(slide, numbers[index], { ...this, change });
   }
 
   /** The numbers of the sliders that are not those of the spec, by name. */

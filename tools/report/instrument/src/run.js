@@ -4,6 +4,7 @@ import { save, table } from "../../src/download.js";
 import { follow, panels } from "../../src/panels.js";
 import { results } from "../../src/tables.js";
 import { tiles } from "../../src/tiles.js";
+import { typed } from "./engine.js";
 
 /** Longest run of a page, s of computing. */
 const PATIENCE = 600;
@@ -51,12 +52,12 @@ export class Run {
   }
 
   async start() {
-    const duration = Number($("#duration").value);
     this.clear();
     $("#start").disabled = true;
     $("#cancel").hidden = false;
     $("#run_state").textContent = "computing …";
     try {
+      const duration = await typed(this.ask, $("#duration").value, { name: "the duration", unit: "s" });
       const { parameters } = this.given();
       const data = await this.ask({ ask: "run", parameters, duration }, PATIENCE);
       this.show(data);
