@@ -10,7 +10,7 @@ use crate::emit_c::{CCode, Precision, emit_c, variables};
 use crate::lower::{LoweredProgram, lower};
 use crate::mechanics::{derive, derive_verbatim, left_out};
 use crate::program::{Function, FunctionId, Product, RuntimeTrait, Shape, has_products};
-use crate::read::read;
+use crate::read::{Change, changed, read};
 use crate::report::Report;
 use crate::validate::{self, Checked};
 
@@ -50,6 +50,19 @@ pub fn load(source: &SourceFile) -> Result<Chain, Diagnostics> {
 /// All mistakes of the spec at once.
 pub fn check(source: &SourceFile) -> Result<Checked, Diagnostics> {
     validate::check(read(source)?, source)
+}
+
+/// A valid crane with changes, and the text of its spec, in which they extend `text`. Nothing is parsed; messages are about the file of the crane.
+///
+/// # Errors
+/// All mistakes of the changed crane at once.
+pub fn check_changed(checked: &Checked, text: &str, change: &Change) -> Result<(Checked, String), Diagnostics> {
+    let source = SourceFile::new(&checked.spec.source.name, text).changed(&change.text());
+    let spec = changed(&checked.spec, change)?;
+    let file = spec.source.clone();
+    let mut checked = validate::check(spec, &file)?;
+    checked.chain.spec_hash = source.hash();
+    Ok((checked, source.text))
 }
 
 /// The unit of the number at a place of a valid spec, such as `links.boom.beam.section.box.height`, in SI: that which messages about it name. Empty for

@@ -1,4 +1,4 @@
-//! Edits of specs: a rigid link of a robot replaced by a beam that bends, a combination of weights and loads.
+//! Edits of specs: a rigid link of a robot replaced by a beam that bends.
 
 use std::fmt::Write as _;
 
@@ -37,12 +37,6 @@ struct End<'a> {
     next: Option<(&'a str, &'a Link)>,
     /// In the frame of the link, m.
     at: [f64; 3],
-}
-
-/// The spec of a crane that is computed with one of its combinations.
-#[must_use]
-pub fn combined(source: &SourceFile, combination: &str) -> SourceFile {
-    source.changed(&format!("combination: {combination}\n"))
 }
 
 /// The spec of a crane in which a beam takes the place of the mass and the inertia of a rigid link: from its frame to `to`. The

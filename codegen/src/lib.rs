@@ -37,6 +37,6 @@ mod validate;
 
 pub use diagnostic::{Diagnostics, Located, SourceFile, WrongPlace};
 pub use emit::GeneratedCode;
-pub use read::read;
+pub use read::{Change, read};
 pub use spec::{CraneSpec, json_schema};
 pub use validate::{Checked, check, validate};

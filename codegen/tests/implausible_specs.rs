@@ -116,7 +116,7 @@ fn values_of_parameters_are_looked_at() {
     let source = SourceFile::new("knuckle_boom.yaml", text.expect("a spec"));
     let with = |value| {
         let checked = crane_codegen::compile::check(&source).unwrap_or_else(|found| panic!("{found}"));
-        codes(&checked.warnings_with(&source, &[("payload", value)]))
+        codes(&checked.warnings_with(&[("payload", value)]))
     };
     assert_eq!(with(800.0), [""; 0]);
     assert_eq!(with(0.3), ["W010"]);
@@ -132,7 +132,7 @@ fn angles_that_are_set_are_in_radians() {
     let source = SourceFile::new("arm.yaml", text);
     let with = |set: &[(&str, f64)]| {
         let checked = crane_codegen::compile::check(&source).unwrap_or_else(|found| panic!("{found}"));
-        codes(&checked.warnings_with(&source, set))
+        codes(&checked.warnings_with(set))
     };
     assert_eq!(with(&[]), [""; 0]);
     assert_eq!(with(&[("load", 11.0)]), [""; 0]);

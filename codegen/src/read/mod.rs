@@ -2,15 +2,17 @@
 //!
 //! The text becomes a tree of [nodes](crate::node); specs that extend each other are merged, and tables from files are put in their place.
 
+mod change;
 mod data;
 mod overlay;
 mod place;
 
-use std::cell::RefCell;
-
 use crate::diagnostic::{Diagnostics, MAX_BYTES, Mistake, SourceFile, Span, rule};
-use crate::node::{FromNode, Node, Reader, parse, slips};
-use crate::spec::{Crane, CraneSpec};
+use crate::node::{Node, parse, slips};
+use crate::spec::CraneSpec;
+pub use change::Change;
+pub(crate) use change::changed;
+use change::typed;
 use overlay::Noticed;
 
 /// Reads a spec as far as possible. Mistakes of keys and forms do not stop it: they are stored with the spec, and
@@ -26,11 +28,7 @@ pub fn read(source: &SourceFile) -> Result<CraneSpec, Diagnostics> {
     }
     let mut noticed = Noticed::default();
     let root = parts(source, &mut noticed).map_err(|mistake| refuse(vec![mistake]))?;
-    let mistakes = RefCell::new(noticed.mistakes);
-    match Crane::from_node(Reader::root(&root, &mistakes)) {
-        Ok(crane) => Ok(CraneSpec { crane, mistakes: mistakes.into_inner(), lookalikes: noticed.lookalikes }),
-        Err(_) => Err(refuse(mistakes.into_inner())),
-    }
+    typed(root, noticed, source)
 }
 
 /// The tree of a source file, with its parts merged, each over the previous ones.

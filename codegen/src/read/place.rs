@@ -148,12 +148,21 @@ fn replaced(node: &Node, keys: &[&str], place: &str, word: &str, value: &mut Str
     }
 }
 
+/// Whether a text is a word that needs no quotes.
+fn is_plain(text: &str) -> bool {
+    let others = ["true", "false", "null", "yes", "no", "on", "off", "y", "n", "nan", "inf"];
+    text.starts_with(|c: char| c.is_ascii_alphabetic())
+        && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+        && !others.contains(&text.to_lowercase().as_str())
+}
+
 /// A node as YAML on one line.
-fn written(node: &Node) -> String {
+pub(super) fn written(node: &Node) -> String {
     match &node.content {
         Content::Null => "~".to_owned(),
         Content::Boolean(boolean) => boolean.to_string(),
         Content::Number(number) => format!("{number:?}"),
+        Content::Text(text) if is_plain(text) => text.clone(),
         Content::Text(text) => format!("'{}'", text.replace('\'', "''")),
         Content::Sequence(items) => format!("[{}]", items.iter().map(written).collect::<Vec<_>>().join(", ")),
         Content::Mapping(entries) => {

@@ -50,8 +50,8 @@ pub use slides_in::{ExactDirection, Pad, Pads, SlidesIn};
 pub use spanned::{Either, Entries, Many, Spanned, entries};
 pub use support::{Kinematics, NamedFrame, NamedJoint, Point, Support};
 
-use crate::diagnostic::{Mistake, Span};
-use crate::node::FromNode;
+use crate::diagnostic::{Mistake, SourceFile, Span};
+use crate::node::{FromNode, Node};
 
 /// A crane as written, with the mistakes found while reading it; [`validate`](crate::validate()) reports them together with
 /// its own.
@@ -63,6 +63,18 @@ pub struct CraneSpec {
     pub(crate) mistakes: Vec<Mistake>,
     /// Entries that were perhaps meant to change others.
     pub(crate) lookalikes: Vec<Lookalike>,
+    /// The file, to which its locations belong.
+    pub(crate) source: SourceFile,
+    /// Its tree, for changes.
+    pub(crate) tree: Node,
+}
+
+impl CraneSpec {
+    /// The file, to which locations in messages belong.
+    #[must_use]
+    pub fn source(&self) -> &SourceFile {
+        &self.source
+    }
 }
 
 /// A new entry of a list whose name resembles that of an entry of the extended spec.

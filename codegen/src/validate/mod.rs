@@ -84,10 +84,10 @@ impl Found {
 }
 
 impl Checked {
-    /// Warnings for parameter values other than those of the spec, given by name and value; `source` is what was checked.
+    /// Warnings for parameter values other than those of the spec, given by name and value.
     #[must_use]
-    pub fn warnings_with(&self, source: &SourceFile, set: &[(&str, f64)]) -> Diagnostics {
-        self.found.warnings(&self.spec, &self.chain, source, set)
+    pub fn warnings_with(&self, set: &[(&str, f64)]) -> Diagnostics {
+        self.found.warnings(&self.spec, &self.chain, &self.spec.source, set)
     }
 }
 

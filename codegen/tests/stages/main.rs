@@ -2,6 +2,7 @@
 
 mod any_bytes;
 mod beam_parts;
+mod changes;
 mod cost;
 mod documentation;
 mod expansion;

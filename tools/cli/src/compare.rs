@@ -3,6 +3,7 @@
 
 use std::{io::Write, mem, time::Instant};
 
+use crane_codegen::{Change, compile};
 use crane_model::{Description, dyn_crane::DynCrane, dynamics::Method, results::Table};
 use crane_page::tables::{Case, FLEXIBLE, RIGID, add_runs, caution_of_runs, deflection, equilibria, extremes};
 
@@ -17,7 +18,6 @@ use crate::{
     selection::{Registry, set_inputs},
     simulate::{Trace, file_list, points, spoken, write_figure, write_figures, write_run},
     spec_file,
-    variants::renamed,
 };
 
 /// The rigid and the flexible crane.
@@ -49,7 +49,9 @@ pub fn load(options: &mut ComparePair, registry: &mut Registry) -> Outcome<()> {
         if checked.chain.name == *first {
             // Two versions of a crane share one name.
             *name = format!("{first}_other");
-            registry.add(name, renamed(name, &source.text));
+            let change = Change::keys([("name", name.as_str().into())]);
+            let (checked, text) = compile::check_changed(&checked, &source.text, &change).map_err(Problem::mistakes)?;
+            registry.add_checked(checked, text, Some(&path));
         } else {
             *name = registry.add_checked(checked, source.text, Some(&path));
         }

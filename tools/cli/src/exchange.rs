@@ -60,11 +60,12 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
     if is_scene {
         return picture::scene(options, registry, out);
     }
-    let (mut chain, mut spec) = registry.load(&options.crane.name, options.crane.strict)?;
+    let source = registry.source(&options.crane.name)?;
+    let (mut checked, mut spec) = (spec_file::check(&source, options.crane.strict)?, source.text);
     if let Some(combination) = &options.crane.combination {
-        let (checked, text) = with_combination(&chain, &spec, combination)?;
-        (chain, spec) = (checked.chain, text);
+        (checked, spec) = with_combination(&checked, &spec, combination)?;
     }
+    let chain = checked.chain;
     keep_loops(options, &chain)?;
     let mut parameters = chain.parameter_defaults();
     let known: Vec<(&str, &str)> = chain.parameters.iter().map(|p| (p.name.as_str(), p.unit.as_str())).collect();

@@ -1,7 +1,7 @@
 //! The same crane with other numbers of sections, and how much its frequencies, stresses and deflections change with twice as many.
 
 use crane_codegen::{
-    SourceFile, read,
+    Change, SourceFile, read,
     spec::{Analysis, Crane, Link, Sections, Spanned},
 };
 use crane_live::LiveCrane;
@@ -45,7 +45,6 @@ impl OtherMesh {
     fn of(crane: &dyn DynCrane, registry: &Registry) -> Result<Self, &'static str> {
         const NOT_MADE: &str = "the crane with other sections cannot be made";
         let description = crane.description();
-        let text = registry.spec(&description.name).ok_or(NOT_MADE)?;
         // What the crane has, which is more than what is written where more acts on a beam.
         let sections = |description: &Description, link: &str| {
             let elements = description.bodies.iter().filter(|body| body.link == *link).count();
@@ -54,14 +53,14 @@ impl OtherMesh {
         let is_large = description.coordinates.len() > MOST_COORDINATES;
         let mut divided = Vec::new();
         let own = &registry.checked(&description.name).map_err(|_| NOT_MADE)?.spec.crane;
-        let text = with(&description.name, text, own, |link, _| {
+        let change = with(&description.name, own, |link, _| {
             divided.push(link.to_owned());
             let own = sections(description, link);
             if is_large { (0.5 * own).ceil() } else { 2.0 * own }
         });
-        let text = text.ok_or("no beam has a number of `sections`")?;
-        let source = SourceFile::new(description.name.to_string(), text);
-        let mut crane_with = LiveCrane::from_spec(&source).map_err(|_| NOT_MADE)?;
+        let change = change.ok_or("no beam has a number of `sections`")?;
+        let (checked, _) = registry.changed(&description.name, &change).ok().and_then(Result::ok).ok_or(NOT_MADE)?;
+        let mut crane_with = LiveCrane::new(checked.chain);
         let [own, other] = [description, (&crane_with as &dyn DynCrane).description()]
             .map(|description| divided.iter().map(|link| sections(description, link)).sum::<f64>());
         let more = other / own;
@@ -225,15 +224,15 @@ pub fn name(crane: &str, sections: usize) -> String {
 
 /// Spec of that crane.
 pub fn spec(crane: &str, text: &str, sections: usize) -> Option<String> {
-    let own = read(&SourceFile::new(crane, text)).ok()?.crane;
-    with(&name(crane, sections), text, &own, |_, _| sections as f64)
+    let source = SourceFile::new(crane, text);
+    let change = with(&name(crane, sections), &read(&source).ok()?.crane, |_, _| sections as f64)?;
+    Some(source.changed(&change.text()).text)
 }
 
-/// The spec of a crane, extended under another name with other numbers of sections; `None` for a crane without sections.
+/// A crane under another name with other numbers of sections; `None` for a crane without sections.
 ///
 /// The ensemble functions are left out, as a run of one crane does not need them: they take rustc as long as all the rest.
-fn with(name: &str, text: &str, spec: &Crane, mut sections: impl FnMut(&str, f64) -> f64) -> Option<String> {
-    let base = SourceFile::new(name, text);
+fn with(name: &str, spec: &Crane, mut sections: impl FnMut(&str, f64) -> f64) -> Option<Change> {
     let count = |given: &Spanned<Link>| {
         let link = given.value.as_ref()?;
         match link.beam.as_ref()?.value.as_ref()?.sections.as_ref()?.value? {
@@ -244,15 +243,20 @@ fn with(name: &str, text: &str, spec: &Crane, mut sections: impl FnMut(&str, f64
             Sections::Rigid => None,
         }
     };
-    let links: Vec<String> = (spec.links.value.iter().flatten().filter_map(count))
-        .map(|(link, sections)| format!("  - {{name: {link}, beam: {{sections: {sections}}}}}\n"))
+    let links: Vec<Change> = (spec.links.value.iter().flatten().filter_map(count))
+        .map(|(link, sections)| {
+            let beam = Change::keys([("sections", sections.into())]);
+            Change::keys([("name", link.as_str().into()), ("beam", beam)])
+        })
         .collect();
     if links.is_empty() {
         return None;
     }
     let asked = spec.analyses.as_ref().and_then(|given| given.value.as_deref()).unwrap_or_default();
     let kept = asked.iter().filter_map(|analysis| analysis.value).filter(|analysis| *analysis != Analysis::Ensemble);
-    let kept: Vec<&str> = kept.map(Analysis::name).collect();
-    let analyses = if asked.is_empty() { String::new() } else { format!("analyses: [{}]\n", kept.join(", ")) };
-    Some(base.changed(&format!("name: {name}\n{analyses}links:\n{}", links.concat())).text)
+    let mut changes = vec![("name", name.into()), ("links", Change::list(links))];
+    if !asked.is_empty() {
+        changes.push(("analyses", Change::list(kept.map(|analysis| analysis.name().into()))));
+    }
+    Some(Change::keys(changes))
 }

@@ -2,7 +2,7 @@
 
 use std::{borrow::Cow, path::Path, sync::OnceLock};
 
-use crane_codegen::{Checked, SourceFile, chain::Chain, compile, edit};
+use crane_codegen::{Change, Checked, Diagnostics, SourceFile, chain::Chain, compile};
 use crane_live::LiveCrane;
 use crane_model::{Description, InputInfo, ParameterError, ParameterInfo, Refusal, dyn_crane::DynCrane};
 
@@ -169,16 +169,15 @@ impl Registry {
     /// Adds the crane with rigid beams and no other difference; returns its name.
     pub(super) fn add_rigid(&mut self, name: &str, otherwise: &str) -> Outcome<String> {
         self.crane(name)?;
-        let entry = self.entry(name)?;
-        let found = variants::rigid(name, &entry.spec, &entry.checked()?.spec.crane).map_err(|link| {
+        let found = variants::rigid(name, &self.checked(name)?.spec.crane).map_err(|link| {
             Problem::usage(
                 format!("the beam of {link} is curved or given element by element: it has no rigid form"),
                 "give it `sections`, `material` and `section` without `bend`, or write the rigid crane yourself",
             )
         })?;
-        let (rigid, text) = found
+        let change = found
             .ok_or_else(|| Problem::usage(format!("{name} has no beams that bend: it is rigid already"), otherwise))?;
-        let checked = compile::check(&SourceFile::new(format!("{rigid}.yaml"), text.as_str())).map_err(|mistakes| {
+        let (checked, text) = self.changed(name, &change)?.map_err(|mistakes| {
             /// The code of `rule::nothing_moves`.
             const NOTHING_MOVES: &str = "E048";
             if mistakes.mistakes().iter().any(|mistake| mistake.code == NOTHING_MOVES) {
@@ -188,6 +187,12 @@ impl Registry {
             }
         })?;
         Ok(self.add_variant(name, checked, text))
+    }
+
+    /// A crane with changes of its spec, and its text; or the mistakes that they make.
+    pub(super) fn changed(&self, name: &str, change: &Change) -> Outcome<Result<(Checked, String), Diagnostics>> {
+        let entry = self.entry(name)?;
+        Ok(compile::check_changed(entry.checked()?, &entry.spec, change))
     }
 
     /// Computes a crane with one of the combinations of its spec from now on.
@@ -222,7 +227,7 @@ impl Registry {
     fn combined(&self, name: &str, combination: &str) -> Outcome<(Checked, String)> {
         self.crane(name)?;
         let entry = self.entry(name)?;
-        with_combination(&entry.checked()?.chain, &entry.spec, combination)
+        with_combination(entry.checked()?, &entry.spec, combination)
     }
 
     /// Names of the combinations of a crane's spec: at least one.
@@ -305,16 +310,16 @@ fn names_of_combinations(chain: &Chain) -> Outcome<Vec<String>> {
 ///
 /// # Errors
 /// It has no such combination, or the spec with it has mistakes.
-pub fn with_combination(chain: &Chain, spec: &str, combination: &str) -> Outcome<(Checked, String)> {
+pub fn with_combination(checked: &Checked, spec: &str, combination: &str) -> Outcome<(Checked, String)> {
+    let chain = &checked.chain;
     let known = names_of_combinations(chain)?;
     if !known.iter().any(|known| known == combination) {
         let known: Vec<&str> = known.iter().map(String::as_str).collect();
         let title = format!("{} has no combination `{combination}`", chain.name);
         return Err(Problem::usage(title, meant(combination, &known, "combinations")));
     }
-    let source = edit::combined(&SourceFile::new(&chain.name, spec), combination);
-    let checked = compile::check(&source).map_err(Problem::mistakes)?;
-    Ok((checked, source.text))
+    let change = Change::keys([("combination", combination.into())]);
+    compile::check_changed(checked, spec, &change).map_err(Problem::mistakes)
 }
 
 /// A live crane with the parameters and inputs of another one of the same parameters and inputs.
@@ -407,7 +412,7 @@ impl Parameters {
             settings.iter().map(|&(index, value)| (description.parameters[index].name.to_string(), value)).collect();
         set_parameters(crane.as_mut(), &settings)?;
         if let Some(entry) = registry.entries.iter().find(|entry| entry.name == name) {
-            let warned = spec_file::warn_of(entry.checked()?, &entry.source(), &values);
+            let warned = spec_file::warn_of(entry.checked()?, &values);
             if let (true, Some(problem)) = (strict, warned) {
                 return Err(problem);
             }

@@ -58,9 +58,9 @@ pub fn read_surfaces(chain: &mut Chain, spec: &Path) {
 }
 
 /// Shows warnings about a crane that appear only with these values of its parameters; returns them as a problem if there are any.
-pub fn warn_of(checked: &Checked, source: &SourceFile, set: &[(String, f64)]) -> Option<Problem> {
+pub fn warn_of(checked: &Checked, set: &[(String, f64)]) -> Option<Problem> {
     let set: Vec<(&str, f64)> = set.iter().map(|(name, value)| (name.as_str(), *value)).collect();
-    let added = checked.warnings_with(source, &set).without(&checked.warnings);
+    let added = checked.warnings_with(&set).without(&checked.warnings);
     (!added.is_empty()).then(|| {
         screen::warn(&added);
         Problem::AlreadyReported { exit_code: FAILED }

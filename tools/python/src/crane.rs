@@ -150,7 +150,7 @@ impl Crane {
         let set: Vec<(String, f64)> = parameters.into_iter().flatten().filter_map(number).collect();
         let set: Vec<(&str, f64)> = set.iter().map(|(name, value)| (name.as_str(), *value)).collect();
         let checked = py.detach(|| check(&source)).map_err(|found| spec_error(py, &found))?;
-        warn_of_spec(py, &checked.warnings_with(&source, &set))?;
+        warn_of_spec(py, &checked.warnings_with(&set))?;
         let Checked { mut chain, .. } = checked;
         if text.is_none()
             && let Some(told) = read_surfaces(&mut chain, Path::new(named), files::read_file)

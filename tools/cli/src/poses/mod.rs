@@ -4,7 +4,7 @@ mod quantities;
 
 use std::{io::Write, num::NonZeroUsize, path::Path};
 
-use crane_codegen::{Diagnostics, SourceFile, compile, spec::Crane};
+use crane_codegen::{Change, Diagnostics, SourceFile, spec::Crane};
 use crane_model::{
     CoordinateKind, Description,
     dyn_crane::DynCrane,
@@ -36,7 +36,6 @@ pub fn hold(held: &Held, ranges: &[String], name: &str, registry: &mut Registry)
     let mut changes = Changes::default();
     let mut is_held = vec![false; description.drives.len()];
     let offset = offset_drives(&registry.checked(name)?.spec.crane);
-    let text = registry.spec(name).unwrap_or_default();
     let name_of = |drive: usize| format!("`{}`", description.coordinates[description.drives[drive].coordinate].name);
     for text in held {
         let (drive, _) = text.split_once('=').ok_or_else(|| {
@@ -54,7 +53,7 @@ pub fn hold(held: &Held, ranges: &[String], name: &str, registry: &mut Registry)
             let title = format!("{} is held twice", name_of(drive));
             return Err(Problem::usage(title, "leave one of the two out"));
         }
-        changes.drives.push(held_at(description, drive, &format!("{value:?}"), &offset));
+        changes.drives.push(held_at(description, drive, value.into(), &offset));
     }
     for axis in &read_ranges(ranges, description)?.0 {
         if let Varied::Drive(drive) = axis.varied {
@@ -64,28 +63,27 @@ pub fn hold(held: &Held, ranges: &[String], name: &str, registry: &mut Registry)
             }
             let info = &description.coordinates[description.drives[drive].coordinate];
             let parameter = parameter_of(description, drive);
-            let entry = format!("  {parameter}: {{value: {:?}, unit: {}}}\n", axis.values[0], info.kind.unit());
-            changes.parameters.push(entry);
-            changes.drives.push(held_at(description, drive, &parameter, &offset));
+            changes.drives.push(held_at(description, drive, parameter.as_str().into(), &offset));
+            let entry = Change::keys([("value", axis.values[0].into()), ("unit", info.kind.unit().into())]);
+            changes.parameters.push((parameter, entry));
         }
     }
     // Inputs and parameters of motions that no longer take place would be reported as unused; an input may be all that uses a parameter.
     let mut tries = 0..3;
-    let (checked, posed) = loop {
-        let posed = SourceFile::new(name, text).changed(&changes.text(name));
-        let found = match compile::check(&posed) {
-            Ok(checked) => break (checked, posed),
+    let (checked, text) = loop {
+        let found = match registry.changed(name, &changes.all(name))? {
+            Ok(changed) => break changed,
             Err(found) => found,
         };
-        let [parameters, inputs] = unused(&found, &posed);
+        let [parameters, inputs] = unused(&found, registry.checked(name)?.spec.source());
         if tries.next().is_none() || parameters.is_empty() && inputs.is_empty() {
             return Err(Problem::mistakes(found));
         }
-        let removed = |names: Vec<String>| names.into_iter().map(|name| format!("  {name}: ~\n"));
+        let removed = |names: Vec<String>| names.into_iter().map(|name| (name, Change::removed()));
         changes.parameters.extend(removed(parameters));
         changes.inputs.extend(removed(inputs));
     };
-    registry.add_variant(name, checked, posed.text);
+    registry.add_variant(name, checked, text);
     Ok(())
 }
 
@@ -131,21 +129,18 @@ fn unused(found: &Diagnostics, source: &SourceFile) -> [Vec<String>; 2] {
 /// What is laid over a spec.
 #[derive(Default)]
 struct Changes {
-    parameters: Vec<String>,
-    inputs: Vec<String>,
-    drives: Vec<String>,
+    parameters: Vec<(String, Change)>,
+    inputs: Vec<(String, Change)>,
+    drives: Vec<Change>,
 }
 
 impl Changes {
-    fn text(&self, name: &str) -> String {
-        let under = |key: &str, lines: &[String]| match lines {
-            [] => String::new(),
-            lines => format!("{key}:\n{}", lines.concat()),
-        };
-        let [parameters, inputs, drives] =
-            [("parameters", &self.parameters), ("inputs", &self.inputs), ("drives", &self.drives)]
-                .map(|(key, lines)| under(key, lines));
-        format!("name: {name}\n{parameters}{inputs}{drives}")
+    fn all(&self, name: &str) -> Change {
+        let named = [("parameters", &self.parameters), ("inputs", &self.inputs)];
+        let named = named.into_iter().filter(|(_, entries)| !entries.is_empty());
+        let named = named.map(|(key, entries)| (key, Change::keys(entries.iter().cloned())));
+        let drives = (!self.drives.is_empty()).then(|| ("drives", Change::list(self.drives.iter().cloned())));
+        Change::keys([("name", name.into())].into_iter().chain(named).chain(drives))
     }
 }
 
@@ -157,10 +152,13 @@ fn offset_drives(spec: &Crane) -> Vec<String> {
 }
 
 /// A drive that holds a position instead of moving, and that no input offsets.
-fn held_at(description: &Description, drive: usize, position: &str, offset: &[String]) -> String {
+fn held_at(description: &Description, drive: usize, position: Change, offset: &[String]) -> Change {
     let coordinate = &description.coordinates[description.drives[drive].coordinate].name;
-    let without = if offset.iter().any(|own| *own == coordinate.as_str()) { ", offset: ~" } else { "" };
-    format!("  - {{coordinate: {coordinate}, motion: {{hold: {position}}}{without}}}\n")
+    let mut keys = vec![("coordinate", coordinate.as_str().into()), ("motion", Change::keys([("hold", position)]))];
+    if offset.iter().any(|own| *own == coordinate.as_str()) {
+        keys.push(("offset", Change::removed()));
+    }
+    Change::keys(keys)
 }
 
 /// Name of the live parameter at whose value a drive holds.

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
 use crane_model::{
     CoordinateKind, Description,
@@ -80,18 +79,12 @@ impl<'a> Subject<'a> {
         registry: &Registry,
     ) -> Self {
         let description = crane.description();
-        let rigid = match registry
-            .spec(&description.name)
-            .zip(registry.checked(&description.name).ok())
-            .map(|(text, checked)| variants::rigid(&description.name, text, &checked.spec.crane))
-        {
-            Some(Ok(Some((name, text)))) if matches!(wanted, Quantities::Statics) => {
-                // A crane that moves by its beams alone has no rigid form.
-                let twin = LiveCrane::from_spec(&SourceFile::new(name, text)).ok();
-                twin.filter(|twin| twin.description().parameters.len() == description.parameters.len())
-            }
-            _ => None,
-        };
+        let checked = registry.checked(&description.name).ok().filter(|_| matches!(wanted, Quantities::Statics));
+        let change = checked.and_then(|checked| variants::rigid(&description.name, &checked.spec.crane).ok()?);
+        // A crane that moves by its beams alone has no rigid form.
+        let twin = change.and_then(|change| registry.changed(&description.name, &change).ok()?.ok());
+        let twin = twin.map(|(checked, _)| LiveCrane::new(checked.chain));
+        let rigid = twin.filter(|twin| twin.description().parameters.len() == description.parameters.len());
         let varies = |index| axes.0.iter().any(|axis| axis.varied == Varied::Parameter(index));
         let load = only_mass(description).filter(|load| !varies(*load) && matches!(wanted, Quantities::Statics));
         let load = load.map(|load| (load, range_of_loads(crane, load, None)[0]));

@@ -9,7 +9,7 @@ pub use page::moves_of_page;
 
 use std::{io::Write, path::Path};
 
-use crane_codegen::{SourceFile, read};
+use crane_codegen::{SourceFile, compile};
 use crane_live::LiveCrane;
 use crane_live::sensitivity::{
     self, Differences, FixedNumber, Group, LargestLoad, NoLargestLoad, Output, Refused, cautions, label,
@@ -386,10 +386,11 @@ fn rigid(
     places: &[String],
     source: &SourceFile,
 ) -> Option<sensitivity::Sensitivity> {
-    let spec = read(source).ok()?.crane;
-    let (twin, text) = variants::rigid(&crane.description().name, &source.text, &spec).ok()??;
-    let source = SourceFile::new(twin, text);
-    let mut rigid = LiveCrane::from_spec(&source).ok()?;
+    let checked = compile::check(source).ok()?;
+    let change = variants::rigid(&crane.description().name, &checked.spec.crane).ok()??;
+    let (checked, text) = compile::check_changed(&checked, &source.text, &change).ok()?;
+    let source = SourceFile::new(&source.name, text);
+    let mut rigid = LiveCrane::new(checked.chain);
     take_numbers(crane, &mut rigid).ok()?;
     if rigid.parameters().len() != crane.parameters().len() {
         return None;
