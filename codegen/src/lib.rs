@@ -27,6 +27,7 @@ pub mod files;
 pub mod lower;
 pub mod mechanics;
 mod node;
+pub mod presets;
 pub mod program;
 mod read;
 pub mod report;

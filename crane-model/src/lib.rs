@@ -84,10 +84,11 @@ pub mod tipping;
 #[cfg(feature = "std")]
 pub use crane_quantities::Tree;
 pub use crane_quantities::{
-    AttachmentInfo, BodyInfo, Bound, BristleInfo, ColumnKind, ConnectorInfo, CoordinateInfo, CoordinateKind,
-    CoordinateRole, Count, Cut, CylinderInfo, Description, DisplayUnit, DriveInfo, EventInfo, InputInfo, JoinsInfo,
-    LARGE_TILT, List, LoadInfo, LoopEquationInfo, LoopJointInfo, NEAR_SINGULAR, ParameterError, ParameterInfo,
-    PumpInfo, Refusal, SectionInfo, Side, StageInfo, SupportInfo, TIPPED, Text, ValveInfo,
+    AttachmentInfo, BodyInfo, Bound, BristleInfo, ColumnKind, ConditionInfo, ConnectorInfo, CoordinateInfo,
+    CoordinateKind, CoordinateRole, Count, Cut, CylinderInfo, Description, DisplayUnit, DriveInfo, EventInfo,
+    InputInfo, JoinsInfo, LARGE_TILT, List, LoadInfo, LoopEquationInfo, LoopJointInfo, Moment, NEAR_SINGULAR,
+    ParameterError, ParameterInfo, PumpInfo, Refusal, SectionInfo, Side, StageInfo, SupportInfo, TIPPED, Text,
+    ValveInfo,
 };
 pub use links::fill_links;
 pub use methods::Entry;

@@ -75,6 +75,8 @@ pub enum ColumnKind {
     Dissipated,
     /// Error of the balance of energy; its part is `energy`.
     Balance,
+    /// When an event on a condition happened; 0 before.
+    EventTime,
     /// Rate of a state of a force: of a pressure, a spool, bristles.
     StateRate,
     /// Sign of a foot's contact.
@@ -188,6 +190,7 @@ impl ColumnKind {
             ColumnKind::Energy | ColumnKind::Dissipated => &["_energy"],
             ColumnKind::Work => &["_work"],
             ColumnKind::Balance => &["_balance"],
+            ColumnKind::EventTime => &["_time"],
             ColumnKind::FootIndicator => &["_contact_indicator"],
             ColumnKind::StopIndicator => &["_stop_indicator"],
             ColumnKind::RopeIndicator => &["_tension_indicator"],
@@ -207,7 +210,7 @@ impl ColumnKind {
     #[must_use]
     pub const fn unit(self, turns: bool) -> &'static str {
         match self {
-            ColumnKind::Time => "s",
+            ColumnKind::Time | ColumnKind::EventTime => "s",
             ColumnKind::Position | ColumnKind::Prescribed | ColumnKind::Bristle | ColumnKind::Strain(_) if turns => {
                 "rad"
             }
@@ -299,6 +302,7 @@ impl ColumnKind {
             ColumnKind::Work => "work",
             ColumnKind::Dissipated => "dissipated",
             ColumnKind::Balance => "balance",
+            ColumnKind::EventTime => "event_time",
             ColumnKind::StateRate => "state_rate",
             ColumnKind::FootIndicator => "foot_indicator",
             ColumnKind::StopIndicator => "stop_indicator",

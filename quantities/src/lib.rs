@@ -18,10 +18,10 @@ mod table;
 pub use column_kind::{ColumnKind, END, PEAKS, Size, Strain};
 pub use count::{Count, Extent, Item};
 pub use description::{
-    AttachmentInfo, BodyInfo, Bound, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole, Cut,
-    CylinderInfo, Description, DriveInfo, EventInfo, InputInfo, JoinsInfo, LARGE_TILT, List, LoadInfo,
-    LoopEquationInfo, LoopJointInfo, NEAR_SINGULAR, ParameterError, ParameterInfo, PumpInfo, Refusal, SectionInfo,
-    Side, StageInfo, SupportInfo, TIPPED, Text, ValveInfo,
+    AttachmentInfo, BodyInfo, Bound, BristleInfo, ConditionInfo, ConnectorInfo, CoordinateInfo, CoordinateKind,
+    CoordinateRole, Cut, CylinderInfo, Description, DriveInfo, EventInfo, InputInfo, JoinsInfo, LARGE_TILT, List,
+    LoadInfo, LoopEquationInfo, LoopJointInfo, Moment, NEAR_SINGULAR, ParameterError, ParameterInfo, PumpInfo, Refusal,
+    SectionInfo, Side, StageInfo, SupportInfo, TIPPED, Text, ValveInfo,
 };
 #[cfg(feature = "std")]
 pub use description::{PUMP, PartColumn, Tree};

@@ -32,7 +32,7 @@ mod value;
 pub use beam::{Beam, Inside, Moduli, Outline, Section};
 pub use beam_axis::{BeamAxis, Division, Stretch};
 pub use body::{Axis, Body, Coordinate, Inertia, Part, Step};
-pub use crane_quantities::{Bound, CoordinateKind, EventInfo, JoinsInfo, Refusal, Side};
+pub use crane_quantities::{Bound, ConditionInfo, CoordinateKind, EventInfo, JoinsInfo, Moment, Refusal, Side};
 pub use cut::Cut;
 pub use cylinder::{Cylinder, Linkage, Pin, Pump, Valve};
 pub use drive::{Drive, Rotor, Transmission};

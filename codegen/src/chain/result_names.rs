@@ -50,6 +50,9 @@ impl Chain {
         }
         names.add_variables(&description);
         names.add_lines(&description);
+        for (event, _) in description.conditions() {
+            names.add_part("event", &self.events[event].name, false, &[ColumnKind::EventTime]);
+        }
         for parameter in &self.parameters {
             names.add_part("parameter", &parameter.name, false, &[ColumnKind::Other]);
         }

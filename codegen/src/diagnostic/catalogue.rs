@@ -526,6 +526,19 @@ catalogue! {
     E197 rigid_contact(name) "the point of contact `{name}` never moves", "no coordinate moves this link", "name a link that moves, or remove the contact";
     /// The file of a mesh is an STL or OBJ file.
     E198 unknown_mesh(file) "a mesh is in `{file}`", "not an STL or OBJ file", "name a file that ends in `.stl` or `.obj`; other programs convert others";
+    /// An event has either a time or a condition.
+    E199 at_or_when(event) "event `{event}` needs either a time or a condition", "one of the two says when it happens",
+        "write `at: 2 s`, or `when: {{result: hook_z, above: 1.5 m}}`";
+    /// The result of a condition is one of the crane's at an instant.
+    E200 unknown_result(name, help) "there is no result `{name}`", "conditions name columns of the crane's parts, such as `boom_psi` or `hoist_force`", "{help}";
+    /// A condition has either a value above or one below.
+    E201 above_or_below(event) "the condition of event `{event}` needs either `above` or `below`", "it happens when the result passes one value",
+        "write `above: 1.5 m` or `below: 1.5 m`";
+    /// What a combination names has a factor.
+    E202 no_factor(combination, what, help) "combination `{combination}` names {what}, and has no factor for it", "nothing says by how much it counts", "{help}";
+    /// A combination with hoisting says what is hoisted.
+    E203 nothing_hoisted(combination) "combination `{combination}` hoists nothing", "its factor multiplies the weight of what is `hoisted`",
+        "write `hoisted: [payload]`, with live parameters in kg";
 
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.

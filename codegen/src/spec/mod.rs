@@ -29,11 +29,11 @@ pub use acting::{Acting, acting};
 pub use beam::{
     Beam, BeamDamping, BeamPart, Bend, Directions, Element, Material, Moduli, Section, SectionJoint, Sections, Spring,
 };
-pub use combination::Combination;
+pub use combination::{Combination, Hoisting, HoistingClass, Preset};
 pub use connector::*;
 pub use cylinder::{Cylinder, HoseVolumes, Linkage, Pin, Pump, Side, Valve};
 pub use drive::{Curve, Drive, Halt, Motion, Ramp, Speed, Table, Trapezoid};
-pub use event::{Event, Joins};
+pub use event::{Condition, Event, Joins};
 pub use inertia::{About, Inertia};
 pub use input::Input;
 pub use joint::{Bristle, Friction, Stops};

@@ -120,6 +120,7 @@ fn expand(spec: &CraneSpec, source: &SourceFile) -> Result<(Chain, Found), Diagn
         check.loops_move(&mut chain, &spec.crane);
         check.couplings_move(&chain, &spec.crane);
         check.keep_masses(&mut chain);
+        check.conditions(&mut chain, &spec.crane);
         check.events_allowed(&chain, &spec.crane);
     }
     if !check.mistakes.is_empty() {

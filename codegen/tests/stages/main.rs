@@ -8,6 +8,7 @@ mod documentation;
 mod expansion;
 mod internal_forces;
 mod parameters;
+mod presets;
 mod sections;
 mod shipped_specs;
 mod units;

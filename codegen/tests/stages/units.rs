@@ -15,6 +15,11 @@ const NUMBERS: [&str; 4] = ["Number", "Angle", "Constant", "FixedAngle"];
 /// Keys that no spec of the project has, and those of which it has no number without other mistakes. Whether the rest of the crane stands does not matter.
 const OTHERS: &str = include_str!("units.yaml");
 
+/// Conditions on results, which are known of whole cranes alone.
+const CONDITIONS: &str = "{format: 1, name: conditions, parameters: {log: {value: 10, unit: kg}},
+  links: [{name: boom, joint: {prismatic: {axis: z}}, mass: log, com: [0, 0, 0]}],
+  events: [{name: up, when: {result: boom_z, above: 1}, set: {log: 30}}, {name: down, when: {result: boom_z, below: 1}, set: {log: 40}}]}";
+
 /// The numbers of a spec: their places as JSON pointers, the keys of the schema, and what this says about them.
 type Found = Vec<(String, String, Value)>;
 
@@ -78,7 +83,7 @@ fn keys(schema: &Value, key: &str, about: bool, found: &mut Vec<String>) {
 fn specs() -> Vec<Value> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let folders = ["../specs", "../specs/examples", "tests/implausible"];
-    let mut texts = vec![OTHERS.to_owned()];
+    let mut texts = vec![OTHERS.to_owned(), CONDITIONS.to_owned()];
     for entry in folders.iter().flat_map(|name| std::fs::read_dir(folder.join(name)).expect("a folder")) {
         let path = entry.expect("an entry").path();
         if path.extension().is_some_and(|extension| extension == "yaml") {

@@ -307,6 +307,7 @@ impl<'a> Batch<'a> {
                         dissipated: 0.0,
                         load_work: 0.0,
                         event_work: 0.0,
+                        event_times: &[],
                     },
                 );
             }

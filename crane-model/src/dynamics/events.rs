@@ -10,64 +10,174 @@
 //! with the mass matrices after the event and before it, but without what leaves at the same time, the added mass Δm, and J of the point at which it is.
 //! Rigid drives keep their rates, and loops stay closed. An event that would move the crane at once is refused.
 //! The energy `E⁺ − E⁻` that comes or goes with an event is [`Sample::event_work`].
+//!
+//! An event [on a condition](crate::ConditionInfo) happens once, as soon as a result passes a value: what held at the start must have ceased before. The
+//! run asks at the ends of steps and at its results, and finds the time in between by bisection; [`Sample::event_times`] has it.
+
+use std::collections::VecDeque;
 
 use nalgebra::{DVector, Vector3};
 
 use super::{
     Cause, EffortAccuracy, InitialState, Integration, Method, Run, Sample, Settings, Statistics, Stopped, Watch,
-    settings::divided, simulation::simulate_watched,
+    integration::{Advanced, Happens},
+    settings::divided,
+    simulation::simulate_watched,
 };
-use crate::{Description, EventInfo, JoinsInfo, ParameterError, dyn_crane::DynCrane};
+use crate::{
+    ConditionInfo, Description, EventInfo, JoinsInfo, Moment, ParameterError,
+    dyn_crane::DynCrane,
+    results::{quantities, quantities_at},
+};
 
-/// A crane from the beginning of a run on, and with the parameters after each of its events.
+/// A crane over a run: from its beginning on, and with the parameters after each of its events.
 pub struct Phases<'a> {
     first: &'a dyn DynCrane,
-    /// Each with the time from which it holds, s.
-    later: Vec<(f64, Box<dyn DynCrane>)>,
-    /// The first event whose parameters break a rule, and the rule: it and all later ones are not among the phases.
-    refused: Option<(EventInfo, ParameterError)>,
+    /// With the events after which they are, in the order in which these happened.
+    later: Vec<(Vec<usize>, Box<dyn DynCrane>)>,
 }
 
 impl<'a> Phases<'a> {
     /// The phases of a crane with its present parameters.
     pub fn of(crane: &'a dyn DynCrane) -> Self {
-        let (mut later, mut refused) = (Vec::<(f64, Box<dyn DynCrane>)>::new(), None);
-        let mut values: Vec<f64> =
-            (0..crane.description().parameters.len()).map(|index| crane.parameter(index)).collect();
-        for event in &crane.description().events {
-            for &(index, value) in &event.changes {
-                values[index] = value;
-            }
-            let mut changed = crane.boxed_clone();
-            if let Err(error) = changed.set_parameters(&values) {
-                refused = Some((event.clone(), error));
-                break;
-            }
-            later.push((event.time, changed));
-        }
-        Self { first: crane, later, refused }
+        Self { first: crane, later: Vec::new() }
     }
 
-    /// The crane at a time, s; at that of an event, after it.
-    pub fn at(&self, t: f64) -> &dyn DynCrane {
-        self.later.iter().rfind(|(begin, _)| *begin <= t).map_or(self.first, |(_, crane)| crane.as_ref())
+    /// The crane at a time, s, at that of an event after it; `times`: [`Sample::event_times`].
+    pub fn at(&mut self, t: f64, times: &[f64]) -> &dyn DynCrane {
+        let happened = happened(self.first.description(), t, times);
+        if happened.is_empty() {
+            return self.first;
+        }
+        let known = self.later.iter().position(|(events, _)| *events == happened);
+        let known = known.or_else(|| {
+            let after = after(self.first, &happened).ok()?;
+            self.later.push((happened, after));
+            Some(self.later.len() - 1)
+        });
+        // A run in which events broke rules has no results after them.
+        known.map_or(self.first, |index| self.later[index].1.as_ref())
+    }
+
+    /// The crane at a result of a run: a row of a recorded table.
+    pub fn at_row(&mut self, row: &[f64]) -> &dyn DynCrane {
+        let (t, times) = (row.first().copied().unwrap_or_default(), event_times(self.first.description(), row));
+        self.at(t, times)
     }
 }
 
-/// A run that stops because an event cannot happen.
-fn stopped(EventInfo { name, time, .. }: &EventInfo, settings: &Settings, why: &str) -> Stopped {
-    let coordinate = format!("`{name}` {why}").into();
+/// The times of events on conditions, the last numbers of a row of a recorded table.
+pub fn event_times<'r>(description: &Description, row: &'r [f64]) -> &'r [f64] {
+    &row[row.len().saturating_sub(description.conditions().count())..]
+}
+
+/// The events up to a time, s, by their indices, in the order in which they happened.
+fn happened(description: &Description, t: f64, times: &[f64]) -> Vec<usize> {
+    let conditions = description.conditions().zip(times).filter(|(_, time)| **time > 0.0);
+    let mut all: Vec<(f64, usize)> = conditions.map(|((event, _), time)| (*time, event)).collect();
+    all.extend(timed(description).filter(|(time, _)| *time <= t));
+    all.sort_by(|(one, first), (other, second)| one.total_cmp(other).then(first.cmp(second)));
+    all.into_iter().map(|(_, event)| event).collect()
+}
+
+/// The events at times, s, with their indices, in their order.
+fn timed(description: &Description) -> impl Iterator<Item = (f64, usize)> {
+    description.events.iter().enumerate().filter_map(|(index, event)| match event.moment {
+        Moment::At(time) => Some((time, index)),
+        Moment::When(_) => None,
+    })
+}
+
+/// A crane after some events.
+fn after(crane: &dyn DynCrane, events: &[usize]) -> Result<Box<dyn DynCrane>, ParameterError> {
+    let description = crane.description();
+    let mut values: Vec<f64> = (0..description.parameters.len()).map(|index| crane.parameter(index)).collect();
+    for &(index, value) in events.iter().flat_map(|event| description.events[*event].changes.iter()) {
+        values[index] = value;
+    }
+    let mut changed = crane.boxed_clone();
+    changed.set_parameters(&values)?;
+    Ok(changed)
+}
+
+/// The conditions of events that have not happened.
+struct Conditions<'d> {
+    /// Event, column of results, and condition of each.
+    all: Vec<(usize, usize, &'d ConditionInfo)>,
+    /// Whether each holds, at the last time at which no event was due.
+    held: Vec<bool>,
+    /// Whether each holds, at the last time at which one was.
+    holds: Vec<bool>,
+    /// When the events happened, s; 0 for those that have not.
+    times: Vec<f64>,
+}
+
+impl<'d> Conditions<'d> {
+    /// Those of a crane at the start of a run.
+    fn of(crane: &'d dyn DynCrane, start: &Sample<'_>) -> Self {
+        let description = crane.description();
+        let none = description.conditions().next().is_none();
+        let columns = if none { Vec::new() } else { quantities(description, crane.loop_joints()) };
+        let all = description.conditions().filter_map(|(event, condition)| {
+            let column = columns.iter().position(|column| column.name == condition.result.as_str())?;
+            Some((event, column, condition))
+        });
+        let all: Vec<_> = all.collect();
+        let mut conditions = Self { held: Vec::new(), holds: Vec::new(), times: vec![0.0; all.len()], all };
+        conditions.held = conditions.at(crane, start.t, [start.q, start.v, start.x]);
+        conditions
+    }
+
+    /// Whether each holds at a state.
+    fn at(&self, crane: &dyn DynCrane, t: f64, state: [&[f64]; 3]) -> Vec<bool> {
+        if self.all.is_empty() {
+            return Vec::new();
+        }
+        let [q, v, x] = state;
+        let row = quantities_at(crane, t, (q, v), x);
+        self.all.iter().map(|(_, column, condition)| condition.is_met(row[*column])).collect()
+    }
+
+    /// Notes a later state; returns whether an event is due there.
+    fn note(&mut self, crane: &dyn DynCrane, t: f64, state: [&[f64]; 3]) -> bool {
+        let now = self.at(crane, t, state);
+        let is_due = self.due(&now).next().is_some();
+        *(if is_due { &mut self.holds } else { &mut self.held }) = now;
+        is_due
+    }
+
+    /// Those whose events are due: they hold now and did not before.
+    fn due<'s>(&'s self, now: &'s [bool]) -> impl Iterator<Item = usize> + 's {
+        (0..self.all.len()).filter(|index| self.times[*index] == 0.0 && now[*index] && !self.held[*index])
+    }
+
+    /// Takes those whose events are due.
+    fn take(&mut self) -> Vec<usize> {
+        let due = self.due(&self.holds).collect();
+        self.held.clone_from(&self.holds);
+        due
+    }
+}
+
+/// A run that stops at a time, s, because an event cannot happen.
+fn stopped(event: &EventInfo, time: f64, settings: &Settings, why: &str) -> Stopped {
+    let coordinate = format!("`{}` {why}", event.name.as_str()).into();
     let &Settings { method, step, .. } = settings;
-    Stopped { cause: Cause::Event, method, time: *time, coordinate, value: f64::NAN, unit: "", step }
+    Stopped { cause: Cause::Event, method, time, coordinate, value: f64::NAN, unit: "", step }
 }
 
 /// Refuses the first event of a run that has none, such as one with derivatives; `what`: what that run is.
 ///
 /// # Errors
-/// The crane has an event within the run.
+/// The crane has an event within the run, or one on a condition.
 pub fn without_events(description: &Description, settings: &Settings, what: &str) -> Result<(), Stopped> {
-    let event = description.events.iter().find(|event| event.time <= settings.duration);
-    event.map_or(Ok(()), |event| Err(stopped(event, settings, &format!("does not happen in {what}"))))
+    let mut all = description.events.iter().map(|event| match event.moment {
+        Moment::At(time) => (event, time),
+        Moment::When(_) => (event, 0.0),
+    });
+    let within = all.find(|(_, time)| *time <= settings.duration);
+    let why = format!("does not happen in {what}");
+    within.map_or(Ok(()), |(event, time)| Err(stopped(event, time, settings, &why)))
 }
 
 /// The crane before an event, without the masses that leave with it.
@@ -155,13 +265,14 @@ struct Done {
 
 impl Done {
     /// A sample of the present phase, since the beginning of the run.
-    fn add_to<'s>(&self, sample: Sample<'s>) -> Sample<'s> {
+    fn add_to<'s>(&self, sample: Sample<'s>, event_times: &'s [f64]) -> Sample<'s> {
         let [work, dissipated, load_work, event_work] = self.energies;
         Sample {
             work: work + sample.work,
             dissipated: dissipated + sample.dissipated,
             load_work: load_work + sample.load_work,
             event_work: event_work + sample.event_work,
+            event_times,
             ..sample
         }
     }
@@ -204,56 +315,90 @@ pub fn simulate_events(
     if description.events.is_empty() {
         return simulate_watched(crane, start, settings, watch);
     }
-    let phases = Phases::of(crane);
     let end = settings.duration;
-    if let Some((event, error)) = phases.refused.as_ref().filter(|(event, _)| event.time <= end) {
-        return Err(stopped(event, settings, &format!("cannot happen: {error}")));
-    }
     let intervals = divided(end, settings.output).0;
     let (mut done, mut state, mut next, mut begin) = (Done::default(), start.clone(), 0, 0.0);
     let energy = |crane: &dyn DynCrane, sample: &Sample<'_>| crane.energies_of(sample).total();
-    let mut happened = None;
-    let mut events = description.events.iter().zip(&phases.later).filter(|(event, _)| event.time <= end);
-    let mut present = crane;
+    let mut at_times = timed(description).filter(|(time, _)| *time <= end).peekable();
+    let (mut conditions, mut due) = (None, VecDeque::new());
+    // The events so far, the crane after them, and the last one with its time and the energy before it.
+    let (mut order, mut changed, mut last) = (Vec::new(), None::<Box<dyn DynCrane>>, None);
     loop {
-        let event = events.next();
-        let until = event.map_or(end, |(event, _)| event.time);
+        let present = changed.as_deref().unwrap_or(crane);
+        let planned = at_times.peek().copied();
+        let until = planned.map_or(end, |(time, _)| time);
         let settings = Settings { duration: until - begin, ..*settings };
         let mut integration = Integration::new(present, begin, &state, &settings)?;
-        if let Some((event, before)) = happened {
-            if let Some(what) = jump(description, &state, &integration.sample()) {
-                return Err(stopped(event, &settings, &what));
+        let sample = integration.sample();
+        if let Some((event, _, before)) = last {
+            if let Some(what) = jump(description, &state, &sample) {
+                return Err(stopped(&description.events[event], begin, &settings, &what));
             }
-            done.energies[3] += energy(present, &integration.sample()) - before;
+            done.energies[3] += energy(present, &sample) - before;
         }
-        while next <= intervals {
+        let conditions = conditions.get_or_insert_with(|| Conditions::of(crane, &sample));
+        // What an event changes at once makes others due.
+        if conditions.note(present, begin, [sample.q, sample.v, sample.x]) {
+            due.extend(conditions.take());
+        }
+        while due.is_empty() {
             let result = (settings.output * next as f64).min(end);
-            if result > until || (event.is_some() && result >= until) {
+            let is_result = next <= intervals && result <= until && (planned.is_none() || result < until);
+            if !is_result {
+                if planned.is_none() {
+                    return Ok(done.add(&integration.run(), settings.method));
+                }
+                integration.end_step_at_result();
+            }
+            let is_awaited = conditions.times.contains(&0.0);
+            let happens = &mut |t: f64, motion: &[f64]| {
+                let (q, rest) = motion.split_at(start.q.len());
+                let (v, x) = rest.split_at(start.q.len());
+                conditions.note(present, t, [q, v, x])
+            };
+            let asked = is_awaited.then_some(happens as Happens<'_>);
+            let advanced =
+                integration.advance_until(if is_result { result } else { until }, &mut |t| watch.step(t), asked)?;
+            let time = integration.sample().t;
+            match advanced {
+                Advanced::Stopped => return Ok(done.add(&integration.run(), settings.method)),
+                // An event at the same time comes first; then the condition is looked at again.
+                Advanced::Happened if planned.is_none_or(|(planned, _)| time < planned) => {
+                    due.extend(conditions.take())
+                }
+                Advanced::Happened | Advanced::Reached => {}
+            }
+            if !due.is_empty() || !is_result {
                 break;
             }
-            let goes_on = integration.advance(result, &mut |t| watch.step(t))?.is_continue();
-            if !goes_on || watch.sample(&done.add_to(integration.sample())).is_break() {
+            if watch.sample(&done.add_to(integration.sample(), &conditions.times)).is_break() {
                 return Ok(done.add(&integration.run(), settings.method));
             }
             next += 1;
         }
-        let Some((event, (_, after))) = event else {
-            return Ok(done.add(&integration.run(), settings.method));
-        };
-        integration.end_step_at_result();
-        let goes_on = integration.advance(until, &mut |t| watch.step(t))?.is_continue();
-        let run = done.add(&integration.run(), settings.method);
-        if !goes_on {
-            return Ok(run);
+        let sample = integration.sample();
+        let event = due.pop_front().map(|condition| {
+            // Later than the events before it: rows tell their order by it.
+            let after = last.map_or(0.0, |(_, time, _): (usize, f64, f64)| time.next_up());
+            conditions.times[condition] = sample.t.max(after);
+            (conditions.times[condition], conditions.all[condition].0)
+        });
+        let Some((time, event)) = event.or_else(|| at_times.next()) else { continue };
+        order.push(event);
+        let info = &description.events[event];
+        let refuse = |why: &str| stopped(info, sample.t, &settings, why);
+        let after = after(crane, &order).map_err(|error| refuse(&format!("cannot happen: {error}")))?;
+        if let Some(why) = refused(info, after.as_ref(), present) {
+            return Err(refuse(&why));
         }
-        let sample = done.add_to(integration.sample());
-        if let Some(why) = refused(event, after.as_ref(), present) {
-            return Err(stopped(event, &settings, &why));
-        }
-        let v = rates_after([present, after.as_ref()], event, sample.q, sample.v);
-        happened = Some((event, energy(present, &sample)));
-        done.energies = [sample.work, sample.dissipated, sample.load_work, sample.event_work];
-        state = InitialState { q: sample.q.to_vec(), v, x: sample.x.to_vec() };
-        (present, begin) = (after.as_ref(), until);
+        let sample = done.add_to(sample, &conditions.times);
+        let v = rates_after([present, after.as_ref()], info, sample.q, sample.v);
+        last = Some((event, time, energy(present, &sample)));
+        let energies = [sample.work, sample.dissipated, sample.load_work, sample.event_work];
+        (state, begin) = (InitialState { q: sample.q.to_vec(), v, x: sample.x.to_vec() }, sample.t);
+        done.add(&integration.run(), settings.method);
+        done.energies = energies;
+        drop(integration);
+        changed = Some(after);
     }
 }

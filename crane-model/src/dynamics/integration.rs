@@ -11,6 +11,7 @@ use super::{
     rosenbrock::Rosenbrock,
     stopped::{StepContext, check_inertia},
     stops::Stops,
+    switches::first_change,
 };
 use crate::memory::{Visit, visit_count, visit_flag, visit_numbers};
 use crate::{
@@ -22,6 +23,23 @@ use crate::{
 /// Steps and rejections after which an adaptive method's pace is measured: a fraction of a second of computing, and many times as many steps
 /// as an impact takes.
 const PACE: usize = 20_000;
+
+/// Most bisections for the time at which something happens: they end before, where no number is in between.
+const BISECTIONS: usize = 100;
+
+/// Whether something has happened, of a time, s, and the motion there.
+pub(super) type Happens<'h> = &'h mut dyn FnMut(f64, &[f64]) -> bool;
+
+/// How far a run has been advanced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Advanced {
+    /// To the result.
+    Reached,
+    /// To the time at which something happened.
+    Happened,
+    /// It was stopped on the way.
+    Stopped,
+}
 
 /// A run that is advanced from result to result. It keeps its step size and its history from one result to the next.
 pub struct Integration<'a, S: Stepper + ?Sized = dyn Steered + 'a> {
@@ -41,6 +59,9 @@ pub struct Integration<'a, S: Stepper + ?Sized = dyn Steered + 'a> {
     /// Time and motion of the last result.
     time: f64,
     motion: Vec<f64>,
+    /// The last time for which it is known whether something happened, s, and room for a motion.
+    asked: f64,
+    room: Vec<f64>,
     /// The loops of the crane, onto which interpolated results are moved.
     loops: Loops,
     /// Work and dissipation up to there, in an audited run.
@@ -114,6 +135,8 @@ impl<'a, S: Stepper + ?Sized> Integration<'a, S> {
             paced: (0, begin),
             is_steered: false,
             time: begin,
+            asked: begin,
+            room: motion.clone(),
             motion,
             loops,
             energy,
@@ -129,8 +152,29 @@ impl<'a, S: Stepper + ?Sized> Integration<'a, S> {
         result: f64,
         step: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<ControlFlow<()>, Stopped> {
+        Ok(match self.advance_until(result, step, None)? {
+            Advanced::Stopped => ControlFlow::Break(()),
+            Advanced::Reached | Advanced::Happened => ControlFlow::Continue(()),
+        })
+    }
+
+    /// The same, or only to the time at which something happens, which `happens` tells of times and motions, in their order. It is asked at the ends
+    /// of steps and at the result, and the time is found to rounding.
+    pub(super) fn advance_until(
+        &mut self,
+        result: f64,
+        step: &mut dyn FnMut(f64) -> ControlFlow<()>,
+        mut happens: Option<Happens<'_>>,
+    ) -> Result<Advanced, Stopped> {
         let (n, description) = (self.crane.size(), self.crane.description());
-        while self.reached < result {
+        loop {
+            let known = self.reached.min(result);
+            if let Some(at) = happens.as_mut().and_then(|happens| self.first(known, happens)) {
+                return self.arrive(at).map(|()| Advanced::Happened);
+            }
+            if self.reached >= result {
+                return self.arrive(result).map(|()| Advanced::Reached);
+            }
             let before = self.reached;
             self.integrate_powers(before);
             let stop = self.stops.after(before).min(if self.is_steered { result } else { f64::INFINITY });
@@ -146,19 +190,37 @@ impl<'a, S: Stepper + ?Sized> Integration<'a, S> {
                 return Err(context.furthest(Cause::Steps));
             }
             if step(self.reached).is_break() {
-                return Ok(ControlFlow::Break(()));
+                return Ok(Advanced::Stopped);
             }
         }
-        self.integrate_powers(result);
-        self.stepper.interpolate(result, &mut self.motion);
+    }
+
+    /// The first time at which something happens, between the last one that was asked for and one that steps have reached, s.
+    fn first(&mut self, until: f64, happens: &mut Happens<'_>) -> Option<f64> {
+        if until <= self.asked {
+            return None;
+        }
+        let Self { stepper, asked, room, .. } = self;
+        let mut has_happened = |t: f64| {
+            stepper.interpolate(t, room);
+            happens(t, room)
+        };
+        let begin = std::mem::replace(asked, until);
+        has_happened(until).then(|| first_change([begin, until], BISECTIONS, &mut has_happened))
+    }
+
+    /// Makes a time that steps have reached, s, that of the last result.
+    fn arrive(&mut self, time: f64) -> Result<(), Stopped> {
+        let (n, description) = (self.crane.size(), self.crane.description());
+        self.integrate_powers(time);
+        self.stepper.interpolate(time, &mut self.motion);
         let (q, rest) = self.motion.split_at_mut(n);
         if let Err(open) = self.loops.project(self.crane, q, &mut rest[..n]) {
-            let context =
-                StepContext { method: self.settings.method, t: result, h: self.settings.step, q, description };
+            let context = StepContext { method: self.settings.method, t: time, h: self.settings.step, q, description };
             return Err(context.opened(self.crane, open));
         }
-        (self.time, self.is_steered) = (result, false);
-        Ok(ControlFlow::Continue(()))
+        (self.time, self.is_steered) = (time, false);
+        Ok(())
     }
 
     /// Whether an adaptive method would need more than the maximum number of steps if it went on like this. A wrong unit makes forces that
@@ -189,7 +251,7 @@ impl<'a, S: Stepper + ?Sized> Integration<'a, S> {
         let (q, rest) = self.motion.split_at(self.crane.size());
         let (v, x) = rest.split_at(q.len());
         let [work, dissipated, load_work] = self.energy.as_ref().map_or([0.0; INTEGRALS], |energy| energy.values);
-        Sample { t: self.time, q, v, x, work, dissipated, load_work, event_work: 0.0 }
+        Sample { t: self.time, q, v, x, work, dissipated, load_work, event_work: 0.0, event_times: &[] }
     }
 
     /// The next step that reaches a result ends there.

@@ -22,6 +22,8 @@ pub struct Sample<'a> {
     pub load_work: f64,
     /// Energy that came with events since t = 0, J; negative for what left.
     pub event_work: f64,
+    /// When the events [on conditions](crate::Description::conditions) happened, s, in their order; 0 for those that have not.
+    pub event_times: &'a [f64],
 }
 
 /// Summary of a run.

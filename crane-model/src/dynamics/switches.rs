@@ -122,15 +122,7 @@ impl Switches {
             }
             return None;
         }
-        let (mut before, mut after) = (begin, end);
-        for _ in 0..Self::BISECTIONS {
-            let middle = 0.5 * (before + after);
-            if branches(middle, 1) {
-                after = middle;
-            } else {
-                before = middle;
-            }
-        }
+        let after = first_change([begin, end], Self::BISECTIONS, &mut |t| branches(t, 1));
         // The last list is that of some time in between.
         branches(after, 1);
         let contacts = self.contacts.len();
@@ -161,6 +153,26 @@ impl Switches {
             self.states.branches(crane, &StateAt { t, q, v, x }, branches);
         }
     }
+}
+
+/// By bisection, a time in an interval, s, from which on something has changed: it has not at the beginning, and has at the end.
+pub(super) fn first_change(
+    [mut before, mut after]: [f64; 2],
+    bisections: usize,
+    has_changed: &mut dyn FnMut(f64) -> bool,
+) -> f64 {
+    for _ in 0..bisections {
+        let middle = 0.5 * (before + after);
+        if middle <= before || middle >= after {
+            break;
+        }
+        if has_changed(middle) {
+            after = middle;
+        } else {
+            before = middle;
+        }
+    }
+    after
 }
 
 /// The limits of the drives' efforts.

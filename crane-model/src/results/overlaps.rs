@@ -73,10 +73,10 @@ pub(super) fn of_run(crane: &dyn DynCrane, table: &Table) -> Vec<String> {
     if crane.stages().is_empty() {
         return Vec::new();
     }
-    let phases = Phases::of(crane);
+    let mut phases = Phases::of(crane);
     let mut worst: Vec<[Option<At<'_>>; 2]> = vec![[None; 2]; crane.stages().len()];
     for (sample, q) in table.poses(description).enumerate() {
-        for (worst, now) in worst.iter_mut().zip(at(phases.at(table.rows[sample][0]), q)) {
+        for (worst, now) in worst.iter_mut().zip(at(phases.at_row(&table.rows[sample]), q)) {
             let left: [fn(&Overlap) -> f64; 2] = [|overlap| overlap.inside, Overlap::left];
             for (worst, left) in worst.iter_mut().zip(left) {
                 if worst.as_ref().is_none_or(|(before, ..)| left(&now) < left(before)) {

@@ -2,14 +2,17 @@
 
 use crane_quantities::{ColumnKind, END, PEAKS};
 
-use super::{Column, Extremes, Table, recording::quantities};
+use super::{
+    Column, Extremes, Table,
+    recording::{of_events, quantities},
+};
 use crate::{Description, column::columns_of, dyn_crane::DynCrane};
 
 /// Signed extremes with their times, and final values, over the samples of a run.
 ///
 /// Columns, each with `_min`, `_min_time`, `_max`, `_max_time`: those of a run that [have peaks](ColumnKind::has_peaks), in the order of a run:
 /// efforts of drives, all of cylinders and pump, points, supports, stops, what connectors and joints that close loops transmit. Finally
-/// `_end` of every coordinate of every point.
+/// `_end` of every coordinate of every point, and the times of events on conditions.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Peaks {
     extremes: Vec<Extremes>,
@@ -27,6 +30,7 @@ impl Peaks {
             }
         }
         places(crane.description()).for_each(|point| table.add(point + END, "m"));
+        table.columns.extend(of_events(crane.description()));
         table.columns
     }
 
@@ -34,9 +38,10 @@ impl Peaks {
     pub(crate) fn of(description: &Description, table: &Table) -> Self {
         let tracked = table.columns.iter().filter(|column| column.kind.has_peaks());
         let last = |name: &str| table.values(name).and_then(Iterator::last).unwrap_or(f64::NAN);
+        let events = of_events(description).into_iter().map(|column| column.name);
         Self {
             extremes: Extremes::of_all(table, tracked.map(|column| column.name.as_str())),
-            last: places(description).map(|point| last(&point)).collect(),
+            last: places(description).chain(events).map(|column| last(&column)).collect(),
         }
     }
 

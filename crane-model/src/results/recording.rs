@@ -1,6 +1,6 @@
 //! Recording of a run in columns.
 
-use std::collections::HashMap;
+use std::{collections::HashMap, iter};
 
 use crane_quantities::{ColumnKind, PartColumn};
 use nalgebra::Vector3;
@@ -26,7 +26,7 @@ use crate::{
 /// `_friction_force`; for joints that stick `<coordinate>_bristle`; for a connector `<connector>_length`, `<connector>_length_rate` and
 /// `<connector>_force`; for a coupling `<coupling>_slip`, `<coupling>_slip_rate` and `<coupling>_force` or `_torque`; for a pad `<pad>_offset` and so on; for a loop joint with
 /// friction `<joint>_angle`, `<joint>_angle_rate` and `<joint>_friction_torque`; for a joint that closes a loop `<joint>_force` or `<joint>_force_x` and
-/// `<joint>_moment_x`, as many as it has equations; energies.
+/// `<joint>_moment_x`, as many as it has equations; energies; for an event on a condition `<event>_time`.
 /// `energy_balance` is `E(t) − E(0) − drive_work − load_work − event_work + dissipated_energy`, the error of the run if it is audited.
 pub struct Recording<'a> {
     crane: &'a dyn DynCrane,
@@ -48,7 +48,12 @@ pub(crate) enum Extent {
 impl<'a> Recording<'a> {
     /// A recording without samples.
     pub fn new(crane: &'a dyn DynCrane) -> Self {
-        let columns = [quantities(crane.description(), crane.loop_joints()), audited(crane.description())].concat();
+        let columns = [
+            quantities(crane.description(), crane.loop_joints()),
+            audited(crane.description()),
+            of_events(crane.description()),
+        ]
+        .concat();
         Self {
             crane,
             phases: Phases::of(crane),
@@ -60,7 +65,8 @@ impl<'a> Recording<'a> {
 
     /// A recording without samples, of only what peaks and cautions need.
     pub(crate) fn of_peaks(crane: &'a dyn DynCrane) -> Self {
-        let columns = quantities_of(crane.description(), crane.loop_joints(), Extent::Peaks);
+        let mut columns = quantities_of(crane.description(), crane.loop_joints(), Extent::Peaks);
+        columns.extend(of_events(crane.description()));
         Self {
             crane,
             phases: Phases::of(crane),
@@ -72,9 +78,10 @@ impl<'a> Recording<'a> {
 
     /// Adds a sample.
     pub fn push(&mut self, sample: &Sample<'_>) {
-        let &Sample { t, q, v, x, work, dissipated, load_work, event_work } = sample;
+        let &Sample { t, q, v, x, work, dissipated, load_work, event_work, event_times } = sample;
         let mut row = Vec::with_capacity(self.table.columns.len());
-        let energies = push_quantities(self.phases.at(t), self.extent, &StateAt { t, q, v, x }, &[], &mut row);
+        let energies =
+            push_quantities(self.phases.at(t, event_times), self.extent, &StateAt { t, q, v, x }, &[], &mut row);
         if let Some(energy) = energies.as_ref().map(Energies::total) {
             if self.table.rows.is_empty() {
                 self.energy_at_start = energy;
@@ -88,14 +95,27 @@ impl<'a> Recording<'a> {
             }
             row.push(energy - self.energy_at_start - work - load_work - event_work + dissipated);
         }
+        let conditions =
+            self.crane.description().conditions().zip(event_times.iter().copied().chain(iter::repeat(0.0)));
+        row.extend(conditions.map(|(_, time)| time));
         self.table.rows.push(row);
     }
 
-    /// Adds a pose at rest at a time, s.
-    pub fn push_rest(&mut self, t: f64, q: &[f64]) {
-        let crane = self.phases.at(t);
+    /// Adds a pose at rest at a time, s, with the times of events on conditions.
+    pub fn push_rest(&mut self, t: f64, q: &[f64], event_times: &[f64]) {
+        let crane = self.phases.at(t, event_times);
         let (v, x) = (vec![0.0; q.len()], ForceStates::new(crane.description()).holding(crane, t, q));
-        self.push(&Sample { t, q, v: &v, x: &x, work: 0.0, dissipated: 0.0, load_work: 0.0, event_work: 0.0 });
+        self.push(&Sample {
+            t,
+            q,
+            v: &v,
+            x: &x,
+            work: 0.0,
+            dissipated: 0.0,
+            load_work: 0.0,
+            event_work: 0.0,
+            event_times,
+        });
     }
 
     /// The samples so far.
@@ -300,6 +320,15 @@ fn audited(description: &Description) -> Vec<Column> {
         table.add_of(ColumnKind::Work, "event", false);
     }
     table.add_of(ColumnKind::Balance, "energy", false);
+    table.columns
+}
+
+/// Names and units of the times of events on conditions, which only a run has, too.
+pub(super) fn of_events(description: &Description) -> Vec<Column> {
+    let mut table = Table::default();
+    for (event, _) in description.conditions() {
+        table.add_of(ColumnKind::EventTime, &description.events[event].name, false);
+    }
     table.columns
 }
 

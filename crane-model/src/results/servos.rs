@@ -22,9 +22,9 @@ pub(super) fn of_run(crane: &dyn DynCrane, table: &Table) -> Vec<String> {
     };
     let n = crane.size();
     let mut found: Vec<UnstableServo> = Vec::new();
-    let phases = Phases::of(crane);
+    let mut phases = Phases::of(crane);
     for row in [first, last] {
-        let crane = phases.at(row[0]);
+        let crane = phases.at_row(row);
         let equilibrium = crane.equilibrium_at(row[0], &row[1..=n], &Settings::default());
         if !equilibrium.is_stable() {
             continue;

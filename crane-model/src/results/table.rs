@@ -3,8 +3,9 @@
 use crane_quantities::ColumnKind;
 
 use crate::{
-    Description,
+    Description, EventInfo, Moment,
     column::{Column, columns_of},
+    dynamics::event_times,
 };
 
 /// Numbers in rows, one column per quantity.
@@ -49,6 +50,17 @@ impl Table {
     pub(super) fn poses(&self, description: &Description) -> impl Iterator<Item = &[f64]> {
         let n = description.coordinates.len();
         self.rows.iter().filter_map(move |row| row.get(1..=n))
+    }
+
+    /// When the events of a crane happened in a run, s; `None` for those that did not.
+    pub fn times_of_events(&self, description: &Description) -> Vec<Option<f64>> {
+        let Some(last) = self.rows.last() else { return vec![None; description.events.len()] };
+        let mut times = event_times(description, last).iter();
+        let time = |event: &EventInfo| match event.moment {
+            Moment::At(time) => (time <= last[0]).then_some(time),
+            Moment::When(_) => times.next().copied().filter(|time| *time > 0.0),
+        };
+        description.events.iter().map(time).collect()
     }
 
     /// The values of a column by its name.

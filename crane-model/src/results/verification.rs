@@ -4,7 +4,7 @@
 //! the coarser one. The additional results of the finer run show what a quantity does between two results, above all its peaks: how far these
 //! lie beyond the results is not an error of the steps, and is counted apart.
 
-use crane_quantities::DisplayUnit;
+use crane_quantities::{ColumnKind, DisplayUnit};
 
 use super::{Extremes, Table, headlines};
 use crate::dynamics;
@@ -51,9 +51,17 @@ impl Verification {
     /// Compares two runs; the finer one has samples at the same times, and possibly equally spaced ones in between.
     pub fn new(run: &Table, finer: &Table, coordinates: usize) -> Self {
         let every = (finer.rows.len().max(1) - 1) / (run.rows.len().max(2) - 1);
+        let of_events: Vec<usize> =
+            (0..run.columns.len()).filter(|column| run.columns[*column].kind == ColumnKind::EventTime).collect();
+        // Between the times at which an event happens in both, they are different cranes.
+        let same_events = |(a, b): &(&Vec<f64>, &Vec<f64>)| of_events.iter().all(|&at| (a[at] > 0.0) == (b[at] > 0.0));
         let together: Vec<(&Vec<f64>, &Vec<f64>)> =
-            run.rows.iter().zip(finer.rows.iter().step_by(every.max(1))).collect();
+            run.rows.iter().zip(finer.rows.iter().step_by(every.max(1))).filter(same_events).collect();
         let of_column = |column: usize| {
+            if of_events.contains(&column) {
+                let [one, other] = [run, finer].map(|table| table.rows.last().map_or(0.0, |row| row[column]));
+                return ((one - other).abs(), 0.0);
+            }
             let error = together.iter().map(|(a, b)| (a[column] - b[column]).abs()).fold(0.0, f64::max);
             let [least, greatest] = range(together.iter().map(|(_, row)| row[column]));
             let [finer_least, finer_greatest] = range(finer.rows.iter().map(|row| row[column]));

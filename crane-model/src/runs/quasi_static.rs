@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use super::Start;
 use crate::{
     dyn_crane::DynCrane,
-    dynamics::Phases,
+    dynamics::{Phases, event_times},
     results::{Instant, Recording, Table},
     statics::Settings,
 };
@@ -29,17 +29,17 @@ impl QuasiStatic {
         most: usize,
         proceed: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Self {
-        let (phases, mut recording, mut q) = (Phases::of(crane), Recording::new(crane), start.q.clone());
+        let (mut phases, mut recording, mut q) = (Phases::of(crane), Recording::new(crane), start.q.clone());
         let (mut instants, mut restless) = (Vec::new(), Vec::new());
         let every = run.rows.len().div_ceil(most).max(1);
         let last = run.rows.len().saturating_sub(1);
         for (_, row) in run.rows.iter().enumerate().filter(|(index, _)| index % every == 0 || *index == last) {
-            let t = row[0];
-            let present = phases.at(t);
+            let (t, times) = (row[0], event_times(crane.description(), row));
+            let present = phases.at(t, times);
             let equilibrium = present.equilibrium_at(t, &q, &Settings::default());
             if equilibrium.is_stable() {
                 q = equilibrium.q;
-                recording.push_rest(t, &q);
+                recording.push_rest(t, &q, times);
                 instants.push(Instant::at_rest_with(present, t, &q));
             } else {
                 restless.push(t);

@@ -7,9 +7,10 @@ use std::{
 
 use super::{Bound, Failed, Reason, Start, step_limit};
 use crate::{
+    Description, EventInfo, Moment,
     dyn_crane::DynCrane,
     dynamics::{self, Run, Sample, Stopped, Watch},
-    results::{self, Column, Recording, Table, Verification, cautions, verification},
+    results::{self, Column, Extremes, Recording, Table, Verification, cautions, verification},
     stability::cause,
 };
 
@@ -171,6 +172,32 @@ pub fn record_checked(
     Ok(check(recorded, crane, start, settings, (verify, bend), proceed))
 }
 
+/// Events that do not happen in a run of a duration, s, and why.
+fn left_out(description: &Description, table: &Table, end: f64) -> Vec<String> {
+    let times = table.times_of_events(description);
+    let without = description.events.iter().zip(times).filter(|(_, time)| time.is_none());
+    let sentence = |(event, _): (&EventInfo, _)| match &event.moment {
+        Moment::At(time) => format!("event {} at {time} s does not happen: the run ends at {end} s", event.name),
+        Moment::When(condition) => {
+            let Extremes { minimum, maximum, .. } = Extremes::of(table, &condition.result);
+            let first = table.values(&condition.result).and_then(|mut values| values.next()).unwrap_or(f64::NAN);
+            let (name, unit) = (&event.name, &condition.unit);
+            if condition.is_met(first) {
+                let side = if condition.above { "above" } else { "below" };
+                format!(
+                    "event {name} does not happen: it waits until {condition}, and starts {side} it, at {first:.6} {unit}: that has to cease first"
+                )
+            } else {
+                let reached = if condition.above { maximum } else { minimum };
+                format!(
+                    "event {name} does not happen: it waits until {condition}, and the run only reaches {reached:.6} {unit}"
+                )
+            }
+        }
+    };
+    without.map(sentence).collect()
+}
+
 /// Adds all cautions to a run, and the estimate of its error if `verify`, as [`record_checked`].
 pub fn check(
     mut recorded: Recorded,
@@ -185,10 +212,7 @@ pub fn check(
     let grows = !servos.is_empty();
     let of_run = cautions::of_run(crane, &recorded.table, bend);
     let of_energy = std::mem::take(&mut recorded.cautions);
-    let late = description.events.iter().filter(|event| event.time > settings.duration);
-    recorded.cautions.extend(late.map(|event| {
-        format!("event {} at {} s does not happen: the run ends at {} s", event.name, event.time, settings.duration)
-    }));
+    recorded.cautions.extend(left_out(description, &recorded.table, settings.duration));
     recorded.cautions.extend([loads, servos, of_run, of_energy].concat());
     if !settings.method.is_adaptive() {
         let limit = step_limit(crane, start).map_or(f64::INFINITY, |bound| bound.limit.step);

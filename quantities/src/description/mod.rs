@@ -22,7 +22,7 @@ use crate::{ColumnKind, Strain};
 #[cfg(feature = "std")]
 pub use columns::{PUMP, PartColumn};
 pub use cut::Cut;
-pub use event::{EventInfo, JoinsInfo};
+pub use event::{ConditionInfo, EventInfo, JoinsInfo, Moment};
 pub use loop_joint::{LoopEquationInfo, LoopJointInfo};
 pub use parameter::{Bound, ParameterError, ParameterInfo, Refusal};
 pub use poses::{LARGE_TILT, NEAR_SINGULAR, TIPPED};
@@ -81,11 +81,19 @@ pub struct Description {
     pub step: f64,
     /// Interval of recorded results, s.
     pub output: f64,
-    /// What happens during a run, in the order of time.
+    /// What happens during a run: at times, in their order, then on conditions.
     pub events: List<EventInfo>,
 }
 
 impl Description {
+    /// The events on conditions, with their indices.
+    pub fn conditions(&self) -> impl Iterator<Item = (usize, &ConditionInfo)> {
+        self.events.iter().enumerate().filter_map(|(index, event)| match &event.moment {
+            Moment::When(condition) => Some((index, condition)),
+            Moment::At(_) => None,
+        })
+    }
+
     /// Whether oil moves a joint, through a cylinder with a valve.
     pub fn has_valves(&self) -> bool {
         self.cylinders.iter().any(|cylinder| cylinder.valve.is_some())

@@ -1,11 +1,11 @@
-//! A run with an event, and the same run in two parts, of two cranes.
+//! A run with an event, and the same run in two parts, of two cranes; an event on a condition, and the same event at the time at which it happened.
 
 use std::ops::ControlFlow;
 
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::{Cause, InitialState, Sample, Settings, Watch, simulate_from, simulate_watched};
-use crane_model::results::quantities_at;
+use crane_model::results::{Table, quantities_at};
 use crane_model::runs::{Failed, Reason, Start, imbalance, record};
 use fastrand::Rng;
 use serde_json::json;
@@ -59,12 +59,23 @@ pub fn check_events(tree: &Tree, seed: u64) -> Option<Vec<String>> {
         Err(failed) if is_jump(&failed) => return None,
         Err(failed) => return Some(vec![failed.to_string()]),
     };
+    let mut wrong = differences(&table, &rows);
+    let off = imbalance(&table, 1.0);
+    if off > IMBALANCE {
+        wrong.push(format!("the balance of energy is off by {off:e}, with an event that sets {name}"));
+    }
+    wrong.extend(on_condition(with_event, &table, (&start, &settings), &mut rng).unwrap_or_default());
+    Some(wrong)
+}
+
+/// What differs between two runs of a crane, one of them given by its rows.
+fn differences(table: &Table, rows: &[Vec<f64>]) -> Vec<String> {
     let mut wrong = Vec::new();
     for (place, column) in table.columns.iter().take(rows[0].len()).enumerate() {
         let alike = |other: usize| table.columns[other].unit == column.unit && table.columns[other].kind == column.kind;
         let of_kind = (0..rows[0].len()).filter(|other| alike(*other));
         let size = of_kind.flat_map(|other| rows.iter().map(move |row| row[other].abs())).fold(1e-6, f64::max);
-        for (one, other) in table.rows.iter().zip(&rows) {
+        for (one, other) in table.rows.iter().zip(rows) {
             let off = (one[place] - other[place]).abs();
             if off.is_nan() || off > TOLERANCE[1] * size {
                 let (t, unit) = (one[0], &column.unit);
@@ -73,11 +84,38 @@ pub fn check_events(tree: &Tree, seed: u64) -> Option<Vec<String>> {
             }
         }
     }
-    let off = imbalance(&table, 1.0);
-    if off > IMBALANCE {
-        wrong.push(format!("the balance of energy is off by {off:e}, with an event that sets {name}"));
-    }
-    Some(wrong)
+    wrong
+}
+
+/// What differs between an event on a condition and the same at the time that its run tells; `before`: a run of the crane with its event at a time,
+/// from which the condition is taken. `None` where it never happens.
+fn on_condition(
+    mut crane: Tree,
+    before: &Table,
+    (start, settings): (&Start, &Settings),
+    rng: &mut Rng,
+) -> Option<Vec<String>> {
+    let run = |crane: &LiveCrane| record(crane, start, settings, &mut |_| ControlFlow::Continue(())).ok();
+    let at_time = live(&source(&crane)).ok()?;
+    let results = at_time.description().columns(at_time.loop_joints()).len();
+    let column = 1 + rng.usize(0..results);
+    let [from, to] = [1, 2].map(|row| before.rows[row][column]);
+    let (side, value) = (if to > from { "above" } else { "below" }, 0.5 * (from + to));
+    let event = crane["events"][0].as_object_mut()?;
+    event.remove("at");
+    event.insert("when".to_owned(), json!({"result": before.columns[column].name, side: value}));
+    let on_condition = match live(&source(&crane)) {
+        Ok(crane) => crane,
+        Err(refused) => return Some(vec![refused]),
+    };
+    let found = run(&on_condition)?.table;
+    let time = found.times_of_events(on_condition.description())[0]?;
+    let event = crane["events"][0].as_object_mut()?;
+    event.remove("when");
+    event.insert("at".to_owned(), json!(time));
+    let expected = run(&live(&source(&crane)).ok()?)?.table;
+    let told = |wrong| format!("once {} is {side} {value}, at {time} s: {wrong}", before.columns[column].name);
+    Some(differences(&found, &expected.rows).into_iter().map(told).collect())
 }
 
 /// Whether an event would move the crane at once.

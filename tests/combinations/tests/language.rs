@@ -12,14 +12,18 @@ type Form = (String, String);
 const SEEDS: std::ops::Range<u64> = 700..940;
 
 /// Forms that no random crane has, and why: a type and one of its keys or words, or `*` for all of them.
-const LEFT_OUT: [(&str, &str, &str); 12] = [
+const LEFT_OUT: [(&str, &str, &str); 16] = [
     ("Analysis", "*", "every check derives what it needs"),
     ("crane", "analyses", "every check derives what it needs"),
     ("Combination", "*", "the check of combinations adds them"),
+    ("Preset", "*", "the check of combinations adds one, and a test of the compiler all"),
+    ("Hoisting", "*", "the check of combinations adds it"),
+    ("HoistingClass", "*", "the check of combinations adds one, and a test of the compiler all"),
     ("crane", "combinations", "the check of combinations adds them"),
     ("crane", "combination", "the check of combinations adds it"),
     ("crane", "events", "the check of events adds them"),
     ("Event", "*", "the check of events adds them"),
+    ("Condition", "*", "the check of events adds them"),
     ("Joins", "*", "momentum that joins has closed forms of its own"),
     ("crane", "extends", "each crane is one text; changes of cranes extend it"),
     ("PinAxis", "to_axis", "written by the second description of a turned boom"),

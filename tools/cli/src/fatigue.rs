@@ -150,7 +150,7 @@ fn add(report: &mut Report, options: &arguments::Fatigue, asked: &Asked) -> Outc
     caution_of_runs(report, asked.0.iter().map(|repeated| asked.label(repeated)).zip(&runs));
     let labelled = asked.0.iter().zip(&runs);
     let cranes: Vec<_> =
-        labelled.map(|(repeated, run)| (asked.label(repeated), repeated.crane.as_ref(), run.run.time)).collect();
+        labelled.map(|(repeated, run)| (asked.label(repeated), repeated.crane.as_ref(), &run.table)).collect();
     add_events(report, &cranes);
     let histories: Vec<Vec<Instant>> = asked
         .0

@@ -3,8 +3,8 @@
 use std::io::Write;
 
 use crane_codegen::chain::Chain;
-use crane_model::Description;
 use crane_model::runs::{EQUILIBRIUM, GUESS};
+use crane_model::{Description, Moment};
 use crane_page::tables::{Cell, Grid, Report};
 
 use crate::{
@@ -120,13 +120,17 @@ pub fn info(options: &Analysis, registry: &Registry, out: &mut dyn Write) -> Out
 
 /// What events of a run set.
 fn events(description: &Description) -> Grid {
-    let headings = ["event", "at [s]", "parameter", "value", "unit"];
+    let headings = ["event", "at [s]", "when", "parameter", "value", "unit"];
     let mut grid = Grid::new("events", "Events of runs: values of parameters from then on", &headings);
     for event in &description.events {
+        let [at, when] = match &event.moment {
+            Moment::At(time) => [(*time).into(), Cell::Empty],
+            Moment::When(condition) => [Cell::Empty, condition.to_string().into()],
+        };
         for &(parameter, value) in &event.changes {
             let info = &description.parameters[parameter];
             let [name, of, unit] = [&event.name, &info.name, &info.unit].map(|text| text.as_str().into());
-            grid.row([name, event.time.into(), of, value.into(), unit]);
+            grid.row([name, at.clone(), when.clone(), of, value.into(), unit]);
         }
     }
     grid

@@ -588,6 +588,7 @@ events: [{name: load, at: 0.5, set: {load: 590}}]
     assert_close("factor", &report["greatest_factor"], (90.0 + 1000.0) / 590.0, 1e-3);
     assert_close("tabulated", &report["tabulated_factor"], 1.1 + 0.34 * 0.5, 1e-12);
     let tabulated = report["tabulated"].as_array().expect("a table");
+    assert_eq!(tabulated.len(), 18);
     // What is of no single source has no name of a standard.
     let named = |row: &&Value| row["source"].as_str().is_some_and(|source| source.starts_with("EN "));
     assert_eq!(tabulated.iter().filter(named).map(|row| row["edition"].clone()).collect::<Vec<_>>(), ["2006"; 4]);

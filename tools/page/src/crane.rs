@@ -116,7 +116,7 @@ pub fn shown_pose(crane: &dyn DynCrane, equilibrium: &Equilibrium) -> Vec<f64> {
 /// The single result of a crane at rest, with its drives at their start positions.
 fn rest(crane: &dyn DynCrane, q: &[f64]) -> Table {
     let mut recording = Recording::new(crane);
-    recording.push_rest(0.0, q);
+    recording.push_rest(0.0, q, &[]);
     recording.into_table()
 }
 

@@ -31,6 +31,8 @@ pub fn record(crane: &dyn DynCrane, settings: &Settings, recorded: &Recorded, pr
             (parameter.name.to_string(), json!({"value": crane.parameter(index), "unit": parameter.unit.as_str()}))
         })
         .collect();
+    let events = description.events.iter().zip(recorded.table.times_of_events(description));
+    let events: Map<String, Value> = events.map(|(event, time)| (event.name.to_string(), json!(time))).collect();
     let mut record = json!({
         "crane": description.name.as_str(),
         "title": description.title.as_str(),
@@ -48,6 +50,7 @@ pub fn record(crane: &dyn DynCrane, settings: &Settings, recorded: &Recorded, pr
         "duration_s": settings.duration,
         "output_s": settings.output,
         "parameters": parameters,
+        "times_of_events_s": events,
         "cautions": recorded.cautions,
         "differences_from_a_finer_run": by_name(recorded, |found| &found.errors),
         "missed_between_results": by_name(recorded, |found| &found.missed),

@@ -164,7 +164,7 @@ impl Plausibility<'_> {
         for event in entries(crane.events.as_ref()) {
             let at = |given: &Spanned<Constant>| Some((self.scalar(&given.value.as_ref()?.0), given.span));
             let name = event.name.value.as_deref().unwrap_or_default();
-            self.after_the_run(at(&event.at), 1.0, &format!("event `{name}` happens"));
+            self.after_the_run(event.at.as_ref().and_then(at), 1.0, &format!("event `{name}` happens"));
         }
     }
 

@@ -119,7 +119,7 @@ pub fn record_manoeuvre(
     for caution in &recorded.cautions {
         report.caution(Some(caution.as_str()));
     }
-    add_events(report, &[(VALUE, crane, recorded.run.time)]);
+    add_events(report, &[(VALUE, crane, &recorded.table)]);
     Ok((start, recorded))
 }
 

@@ -7,7 +7,7 @@ use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::{Method, Settings};
 use crane_model::results::{Table, instants};
-use crane_model::runs::{Start, imbalance, record};
+use crane_model::runs::{Start, imbalance, record, record_checked};
 
 const GRAVITY: f64 = 9.81;
 
@@ -196,6 +196,109 @@ fn a_pendulum_catches_what_flies() {
     assert_eq!(trolley, 0.5);
 }
 
+/// Times of the events of a run that is checked, and what it warns of.
+fn times(crane: &LiveCrane, method: Method, duration: f64) -> (Vec<Option<f64>>, Vec<String>) {
+    let settings = settings(crane, method, duration);
+    let crane: &dyn DynCrane = crane;
+    let start = Start::of(crane).expect("a start");
+    let found =
+        record_checked(crane, &start, &settings, (true, 5.0), &mut |_| ControlFlow::Continue(())).expect("a run");
+    (found.table.times_of_events(crane.description()), found.cautions)
+}
+
+/// Lowered at 0.4 m/s on its spring, the load comes off as its hook passes −0.5 m: with z = −m g/k − v t + (v/ω) sin ωt before, whose root is
+/// found here, and the spring goes on from there with what is left.
+#[test]
+fn a_load_comes_off_at_a_height() {
+    let lift = LIFT.replace("{hold: 0}", "{speed: {rate: -0.4}}");
+    let lift = crane(&format!(
+        "{lift}events: [{{name: drop, when: {{result: hook_z, below: -500 mm}}, set: {{load: 90 kg}}}}]\n"
+    ));
+    let (k, v) = (5e4_f64, 0.4);
+    let omega = (k / 590.0).sqrt();
+    let before = |t: f64| -590.0 * GRAVITY / k - v * t + v / omega * (omega * t).sin();
+    let rate = |t: f64| -v + v * (omega * t).cos();
+    let (mut early, mut late) = (0.5, 1.5);
+    for _ in 0..60 {
+        let middle = 0.5 * (early + late);
+        if before(middle) < -0.5 { late = middle } else { early = middle }
+    }
+    let own = (k / 90.0).sqrt();
+    // Relative to where the spring would carry what is left, which sinks at v.
+    let offset = before(late) + 90.0 * GRAVITY / k + v * late;
+    let after = |t: f64| {
+        let (sin, cos) = (own * (t - late)).sin_cos();
+        -90.0 * GRAVITY / k - v * t + offset * cos + (rate(late) + v) / own * sin
+    };
+    for method in Method::ALL {
+        let table = run(&lift, method, 1.5);
+        let time = *column(&table, "drop_time").last().expect("rows");
+        // The error of the run over the speed there.
+        assert!((time - late).abs() < 1e-7, "{method:?}: {time}, {late}");
+        for ((t, z), noted) in column(&table, "t").iter().zip(column(&table, "hook_z")).zip(column(&table, "drop_time"))
+        {
+            let expected = if *t < late { before(*t) } else { after(*t) };
+            assert!((z - expected).abs() < 2e-6, "{method:?}, {t} s: {z}, {expected}");
+            assert_eq!(noted, if *t < late { 0.0 } else { time }, "{method:?}, {t} s");
+        }
+        // What leaves takes its energies of height and of motion.
+        let left = column(&table, "event_work");
+        let expected = 500.0 * (GRAVITY * 0.5 - 0.5 * rate(late).powi(2));
+        assert!((left.last().expect("rows") - expected).abs() < 1e-4 * expected, "{method:?}: {left:?}, {expected}");
+        assert!(imbalance(&table, 0.0) < 1e-5, "{method:?}: {}", imbalance(&table, 0.0));
+        // Internal forces know which crane it is.
+        for (instant, force) in instants(&lift, table.rows.iter()).iter().zip(column(&table, "hook_z_drive_force")) {
+            let transmitted = instant.wrenches[0].force[2];
+            assert!((transmitted + force).abs() < 1e-6 * k, "{method:?}, {} s: {transmitted}, {force}", instant.t);
+        }
+    }
+}
+
+/// A rigid drive goes 1 m up and down again within 4 s, over 0.5 m at 1 s and below it at 3 s.
+fn elevator(events: &str) -> LiveCrane {
+    crane(&format!(
+        "format: 1\nname: elevator\nparameters: {{load: {{value: 1000, unit: kg}}, hook: {{value: 5, unit: kg}}}}\n\
+         links:\n- {{name: car, joint: {{prismatic: {{axis: z}}}}, mass: load, com: [0, 0, 0]}}\n\
+         - {{name: hook, joint: fixed, mass: hook, com: [0, 0, 0]}}\n\
+         drives: [{{coordinate: car_z, rigid: true, motion: {{table: {{times: [0, 1, 2, 3, 4], values: [0, 0.5, 1, 0.5, 0]}}}}}}]\n\
+         points: [{{name: floor, link: car}}]\nevents: [{events}]\n"
+    ))
+}
+
+/// What holds at the start has to cease first; what never comes is told; what an event changes at once makes another one due.
+#[test]
+fn conditions_hold_anew() {
+    let down = "{name: down, when: {result: floor_z, below: 0.5}, set: {load: 50}}";
+    let up = "{name: up, when: {result: car_z, above: 0.5}, set: {load: 900}}";
+    let lighter = "{name: lighter, when: {result: car_z_drive_force, below: 700 N}, set: {hook: 1}}";
+    for method in Method::ALL {
+        let near = |time: Option<f64>, expected: f64| time.is_some_and(|time| (time - expected).abs() < 1e-9);
+        let (found, cautions) = times(&elevator(down), method, 4.0);
+        assert!(near(found[0], 3.0) && cautions.is_empty(), "{method:?}: {found:?}, {cautions:?}");
+        // Those on conditions are listed last; the force falls from kilonewtons to 540 N with `down`, and its own event follows at once.
+        let later = "{name: later, at: 3.5, set: {load: 60}}";
+        let (found, _) = times(&elevator(&[up, lighter, down, later].join(", ")), method, 4.0);
+        let [planned, up, lighter, down] = found[..] else { panic!("{found:?}") };
+        assert_eq!(planned, Some(3.5));
+        assert!(near(up, 1.0) && near(down, 3.0) && lighter == down.map(f64::next_up), "{method:?}: {found:?}");
+    }
+    let (found, cautions) = times(&elevator(down), Method::DormandPrince, 0.3);
+    assert_eq!(found, [None]);
+    assert_eq!(
+        cautions,
+        [
+            "event down does not happen: it waits until floor_z falls below 0.5 m, and starts below it, at 0.000000 m: that has to cease first"
+        ]
+    );
+    let never = "{name: never, when: {result: floor_z, above: 4 m}, set: {load: 50}}";
+    let (found, cautions) = times(&elevator(never), Method::DormandPrince, 4.0);
+    assert_eq!(found, [None]);
+    assert_eq!(
+        cautions,
+        ["event never does not happen: it waits until floor_z rises above 4 m, and the run only reaches 1.000000 m"]
+    );
+}
+
 /// An event that breaks a rule says which; runs with derivatives and motions step by step say that they have none.
 #[test]
 fn events_that_cannot_happen_are_refused() {
@@ -212,6 +315,15 @@ fn events_that_cannot_happen_are_refused() {
         ("{name: drop, at: 1, set: {load: 90}}, {name: drop, at: 2, set: {load: 80}}", "an earlier event"),
         ("{name: grip, at: 1, set: {load: 900}, joins: {velocity: [1, 0, 0]}}", "E195"),
         ("{name: grip, at: 1, set: {load: 900}, joins: {point: hoistd}}", "E196"),
+        ("{name: drop, set: {load: 90}}", "E199"),
+        ("{name: drop, at: 1, when: {result: hook_z, above: 1}, set: {load: 90}}", "E199"),
+        ("{name: drop, when: {result: hook_x, above: 1}, set: {load: 90}}", "did you mean `hook_z`"),
+        ("{name: drop, when: {result: drive_work, above: 1}, set: {load: 90}}", "E200"),
+        ("{name: drop, when: {result: hook_z}, set: {load: 90}}", "E201"),
+        ("{name: drop, when: {result: hook_z, above: 1, below: 2}, set: {load: 90}}", "E201"),
+        ("{name: drop, when: {result: hook_z, above: 1 kN}, set: {load: 90}}", "E034"),
+        ("{name: drop, when: {result: hook_z, above: load}, set: {load: 90}}", "`above`"),
+        ("{name: drop, when: {result: hook_z, above: 1}, set: {load: 0}}", "E194"),
     ] {
         let told = mistakes(events);
         assert!(told.contains(code), "{events}:\n{told}");
@@ -219,6 +331,15 @@ fn events_that_cannot_happen_are_refused() {
     let lift = crane(&format!("{LIFT}events: [{{name: drop, at: 0.5, set: {{load: 90}}}}]\n"));
     let of_steps = settings(&lift, Method::DormandPrince, f64::INFINITY);
     let start = Start::of(&lift as &dyn DynCrane).expect("a start").state();
+    let on_condition =
+        crane(&format!("{LIFT}events: [{{name: drop, when: {{result: hook_z, above: 9}}, set: {{load: 90}}}}]\n"));
+    let Err(stopped) = crane_live::Motion::new(Box::new(on_condition), 0.0, &start, &of_steps) else {
+        panic!("it goes on")
+    };
+    assert_eq!(
+        stopped.to_string(),
+        "event `drop` does not happen in motions that go on step by step, at t = 0.000000 s"
+    );
     let Err(stopped) = crane_live::Motion::new(Box::new(lift), 0.0, &start, &of_steps) else { panic!("it goes on") };
     assert_eq!(
         stopped.to_string(),

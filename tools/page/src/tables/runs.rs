@@ -1,9 +1,9 @@
 //! Runs: minimum and maximum values, when they occur, and how far off they may be; work, energy balance and time.
 
 use crane_model::{
-    DisplayUnit,
+    DisplayUnit, EventInfo,
     dyn_crane::DynCrane,
-    results::{CylinderDuty, DriveDuty, Duties, Extremes, PumpDuty, headlines},
+    results::{CylinderDuty, DriveDuty, Duties, Extremes, PumpDuty, Table, headlines},
     runs::Recorded,
 };
 
@@ -75,8 +75,8 @@ fn summary(runs: &[(&str, &Recorded)], duties: &[Duties]) -> Grid {
 
 /// Adds the tables of some runs: what happens, work and time, and what drives do.
 pub fn add_runs(report: &mut Report, runs: &[(&str, &dyn DynCrane, &Recorded)]) {
-    let cranes: Vec<(&str, &dyn DynCrane, f64)> =
-        runs.iter().map(|(label, crane, run)| (*label, *crane, run.run.time)).collect();
+    let cranes: Vec<(&str, &dyn DynCrane, &Table)> =
+        runs.iter().map(|(label, crane, run)| (*label, *crane, &run.table)).collect();
     add_events(report, &cranes);
     add_duties(report, runs);
 }
@@ -91,24 +91,31 @@ pub fn add_duties(report: &mut Report, runs: &[(&str, &dyn DynCrane, &Recorded)]
     report.grid(of_cylinders(&labelled));
 }
 
-/// Adds what happens to some cranes up to the ends of their runs, s: a row per event and parameter.
-pub fn add_events(report: &mut Report, cranes: &[(&str, &dyn DynCrane, f64)]) {
+/// Adds what happens to some cranes in their runs: a row per event and parameter, in the order of time.
+pub fn add_events(report: &mut Report, cranes: &[(&str, &dyn DynCrane, &Table)]) {
     // Cranes with the same events, as one with rigid and with flexible beams, need them once.
-    let alike = cranes.windows(2).all(|pair| pair[0].1.description().events == pair[1].1.description().events);
+    let of_crane = |(_, crane, table): &(&str, &dyn DynCrane, &Table)| {
+        let (events, times) = (&crane.description().events, table.times_of_events(crane.description()));
+        let happened = events.iter().cloned().zip(times).filter_map(|(event, time)| Some((time?, event)));
+        let mut all: Vec<(f64, EventInfo)> = happened.collect();
+        all.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+        all
+    };
+    let all: Vec<Vec<(f64, EventInfo)>> = cranes.iter().map(of_crane).collect();
+    let alike = all.windows(2).all(|pair| pair[0] == pair[1]);
     let headers = ["event", "crane", "time [s]", "parameter", "from", "to", "unit"];
     let headers: Vec<&str> = headers.into_iter().filter(|header| !alike || *header != "crane").collect();
     let mut grid = Grid::new("events", "Events of the run", &headers);
-    for (label, crane, end) in cranes.iter().take(if alike { 1 } else { cranes.len() }) {
+    for ((label, crane, _), events) in cranes.iter().zip(&all).take(if alike { 1 } else { cranes.len() }) {
         let description = crane.description();
         let mut values: Vec<f64> = (0..description.parameters.len()).map(|index| crane.parameter(index)).collect();
-        for event in description.events.iter().filter(|event| event.time <= *end) {
+        for (time, event) in events {
             for &(index, value) in &event.changes {
                 let parameter = &description.parameters[index];
                 let before = std::mem::replace(&mut values[index], value);
                 let [from, to] = [before, value].map(|value| Cell::of_unit(value, &parameter.unit));
                 let of_crane = (!alike).then(|| Cell::from(*label));
-                let rest =
-                    [event.time.into(), parameter.name.as_str().into(), from, to, Cell::unit_of(&parameter.unit)];
+                let rest = [(*time).into(), parameter.name.as_str().into(), from, to, Cell::unit_of(&parameter.unit)];
                 grid.row([event.name.as_str().into()].into_iter().chain(of_crane).chain(rest).collect::<Vec<_>>());
             }
         }
