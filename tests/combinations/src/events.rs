@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 
 use crane_live::LiveCrane;
+use crane_model::ColumnKind;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::{Cause, InitialState, Sample, Settings, Watch, simulate_from, simulate_watched};
 use crane_model::results::{Table, quantities_at};
@@ -64,14 +65,19 @@ pub fn check_events(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     if off > IMBALANCE {
         wrong.push(format!("the balance of energy is off by {off:e}, with an event that sets {name}"));
     }
-    wrong.extend(on_condition(with_event, &table, (&start, &settings), &mut rng).unwrap_or_default());
+    // Two more runs of some cranes.
+    if seed.is_multiple_of(2) {
+        wrong.extend(on_condition(with_event, &table, (&start, &settings), &mut rng).unwrap_or_default());
+    }
     Some(wrong)
 }
 
 /// What differs between two runs of a crane, one of them given by its rows.
 fn differences(table: &Table, rows: &[Vec<f64>]) -> Vec<String> {
     let mut wrong = Vec::new();
-    for (place, column) in table.columns.iter().take(rows[0].len()).enumerate() {
+    // The error of the balance of energy has no size of its own.
+    let compared = table.columns.iter().take(rows[0].len()).enumerate();
+    for (place, column) in compared.filter(|(_, column)| column.kind != ColumnKind::Balance) {
         let alike = |other: usize| table.columns[other].unit == column.unit && table.columns[other].kind == column.kind;
         let of_kind = (0..rows[0].len()).filter(|other| alike(*other));
         let size = of_kind.flat_map(|other| rows.iter().map(move |row| row[other].abs())).fold(1e-6, f64::max);

@@ -8,7 +8,8 @@ use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::{Method, Settings};
 use crane_model::envelope::{
-    Axes, Condition, Critical, Envelope, Execution, Limits, LoadFactor, Rating, critical_load, load_factor, only_mass,
+    Axes, Condition, Critical, Envelope, Execution, Limits, LoadFactor, Rating, SecondOrder, critical_load,
+    load_factor, only_mass, second_order,
 };
 use crane_model::fatigue::{self, Detail, Manoeuvre};
 use crane_model::linear::{About, Forces, Input, Output, linear_model, outputs};
@@ -388,6 +389,14 @@ impl Found {
             }
         }
         let (mut crane, factor) = crane.with_load_factor();
+        if let Some(SecondOrder { points, beams }) = second_order(&mut crane.clone(), factor) {
+            for (order, what) in ["first", "second"].iter().enumerate() {
+                let moved: f64 = points.iter().map(|orders| orders[order].norm()).sum();
+                let bent = beams.iter().map(|(_, moments)| moments[order]).fold(0.0, f64::max);
+                self.add(LOADS, format!("displacements by the {what} order"), "m", moved);
+                self.add(LOADS, format!("bending by the {what} order"), "N m", bent);
+            }
+        }
         let Some(LoadFactor { linearised, followed }) = load_factor(&mut crane, factor) else { return };
         if let Some(factor) = linearised {
             self.add(LOADS, "factor by the stiffness", "1", factor);

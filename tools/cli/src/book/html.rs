@@ -25,6 +25,9 @@ pub fn figure(svg: &str, caption: &str) -> String {
 const CAUTION: &str = "<p class=\"caution\">caution: ";
 const END: &str = "</p>\n";
 
+/// The command whose section has pages of its own, printed across: charts are wide.
+const ACROSS: &str = "envelope";
+
 /// The whole document.
 pub fn page(cover: &Cover, sections: &[Section]) -> String {
     let shown: Vec<(&Section, &str)> = sections
@@ -96,8 +99,9 @@ fn section_of(number: usize, section: &Section, html: &str) -> String {
         Content::Failed(why, _) => format!("{CAUTION}{}{END}", escaped(why)),
         _ => String::new(),
     };
+    let class = if section.command.iter().any(|word| word == ACROSS) { " class=\"across\"" } else { "" };
     format!(
-        "<section id=\"s{number}\">\n<h2>{number} {title}</h2>\n<p>{about}</p>\n{command}{failed}{html}</section>\n"
+        "<section id=\"s{number}\"{class}>\n<h2>{number} {title}</h2>\n<p>{about}</p>\n{command}{failed}{html}</section>\n"
     )
 }
 
@@ -187,5 +191,12 @@ figure.drawn figcaption::before { content: 'Figure ' counter(figures) '. '; font
 .caution, .cautions { color: #8a3b00; }
 .more { font-size: 8.5pt; color: #4a5568; }
 @page { size: A4; margin: 18mm 16mm 20mm; @bottom-right { content: counter(page) ' of ' counter(pages); } }
-@media print { body { margin: 0; max-width: none; } }
+@page across { size: A4 landscape; margin: 16mm 18mm; }
+@media print {
+  body { margin: 0; max-width: none; }
+  section.across { page: across; columns: 2; column-gap: 10mm; line-height: 1.25; }
+  section.across > h2, section.across > p, section.across > figure.drawn:first-of-type, section.across > figure:has(table.wide) { column-span: all; }
+  section.across > figure.drawn:first-of-type svg { max-height: 120mm; width: 100%; }
+  section.across > :is(table, figure.table) :is(th, td) { padding-top: 0.3mm; padding-bottom: 0.3mm; }
+}
 ";
