@@ -13,6 +13,7 @@ use crate::{
     loop_joints::Loops,
     modes,
     modes::SmallMotions,
+    results::QUANTITIES,
     stateful_force::StateAt,
     statics,
     statics::Equilibrium,
@@ -113,7 +114,7 @@ impl dyn DynCrane + '_ {
         settings: &dynamics::Settings,
         observe: &mut dyn FnMut(&Sample<'_>) -> ControlFlow<()>,
     ) -> Result<Run, Stopped> {
-        dynamics::simulate_events(self, start, settings, &mut dynamics::Samples(observe))
+        dynamics::simulate_events(self, start, settings, &mut dynamics::Samples(observe), &QUANTITIES)
     }
 
     /// Runs of cranes that differ in their parameters, several at a time: [`dynamics::ensemble::simulate`].

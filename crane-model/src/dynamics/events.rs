@@ -24,11 +24,19 @@ use super::{
     settings::divided,
     simulation::simulate_watched,
 };
-use crate::{
-    ConditionInfo, Description, EventInfo, JoinsInfo, Moment, ParameterError,
-    dyn_crane::DynCrane,
-    results::{quantities, quantities_at},
-};
+use crate::{ConditionInfo, Description, EventInfo, JoinsInfo, Moment, ParameterError, dyn_crane::DynCrane};
+
+/// Gives the results of a crane at a time, s, at a pose with rates, and with the states of forces.
+pub type ResultsAt = fn(&dyn DynCrane, f64, (&[f64], &[f64]), &[f64]) -> Vec<f64>;
+
+/// The results at a state, to which conditions refer.
+#[derive(Clone, Copy, Debug)]
+pub struct Quantities {
+    /// Their names.
+    pub names: fn(&dyn DynCrane) -> Vec<String>,
+    /// Their values.
+    pub at: ResultsAt,
+}
 
 /// A crane over a run: from its beginning on, and with the parameters after each of its events.
 pub struct Phases<'a> {
@@ -102,6 +110,7 @@ fn after(crane: &dyn DynCrane, events: &[usize]) -> Result<Box<dyn DynCrane>, Pa
 
 /// The conditions of events that have not happened.
 struct Conditions<'d> {
+    quantities: Quantities,
     /// Event, column of results, and condition of each.
     all: Vec<(usize, usize, &'d ConditionInfo)>,
     /// Whether each holds, at the last time at which no event was due.
@@ -114,16 +123,16 @@ struct Conditions<'d> {
 
 impl<'d> Conditions<'d> {
     /// Those of a crane at the start of a run.
-    fn of(crane: &'d dyn DynCrane, start: &Sample<'_>) -> Self {
+    fn of(crane: &'d dyn DynCrane, quantities: Quantities, start: &Sample<'_>) -> Self {
         let description = crane.description();
         let none = description.conditions().next().is_none();
-        let columns = if none { Vec::new() } else { quantities(description, crane.loop_joints()) };
+        let names = if none { Vec::new() } else { (quantities.names)(crane) };
         let all = description.conditions().filter_map(|(event, condition)| {
-            let column = columns.iter().position(|column| column.name == condition.result.as_str())?;
+            let column = names.iter().position(|name| name == condition.result.as_str())?;
             Some((event, column, condition))
         });
         let all: Vec<_> = all.collect();
-        let mut conditions = Self { held: Vec::new(), holds: Vec::new(), times: vec![0.0; all.len()], all };
+        let mut conditions = Self { quantities, held: Vec::new(), holds: Vec::new(), times: vec![0.0; all.len()], all };
         conditions.held = conditions.at(crane, start.t, [start.q, start.v, start.x]);
         conditions
     }
@@ -134,7 +143,7 @@ impl<'d> Conditions<'d> {
             return Vec::new();
         }
         let [q, v, x] = state;
-        let row = quantities_at(crane, t, (q, v), x);
+        let row = (self.quantities.at)(crane, t, (q, v), x);
         self.all.iter().map(|(_, column, condition)| condition.is_met(row[*column])).collect()
     }
 
@@ -298,7 +307,7 @@ impl Done {
     }
 }
 
-/// Like [`simulate_watched`], with the events of the crane. A result at the time of an event is that after it.
+/// Like [`simulate_watched`], with the events of the crane; `quantities`: the results to which conditions refer. A result at the time of an event is that after it.
 ///
 /// # Errors
 /// As [`simulate`](super::simulate); the parameters that an event sets break a rule of the spec language.
@@ -310,6 +319,7 @@ pub fn simulate_events(
     start: &InitialState,
     settings: &Settings,
     watch: &mut dyn Watch,
+    quantities: &Quantities,
 ) -> Result<Run, Stopped> {
     let description = crane.description();
     if description.events.is_empty() {
@@ -336,7 +346,7 @@ pub fn simulate_events(
             }
             done.energies[3] += energy(present, &sample) - before;
         }
-        let conditions = conditions.get_or_insert_with(|| Conditions::of(crane, &sample));
+        let conditions = conditions.get_or_insert_with(|| Conditions::of(crane, *quantities, &sample));
         // What an event changes at once makes others due.
         if conditions.note(present, begin, [sample.q, sample.v, sample.x]) {
             due.extend(conditions.take());
@@ -364,7 +374,7 @@ pub fn simulate_events(
                 Advanced::Stopped => return Ok(done.add(&integration.run(), settings.method)),
                 // An event at the same time comes first; then the condition is looked at again.
                 Advanced::Happened if planned.is_none_or(|(planned, _)| time < planned) => {
-                    due.extend(conditions.take())
+                    due.extend(conditions.take());
                 }
                 Advanced::Happened | Advanced::Reached => {}
             }

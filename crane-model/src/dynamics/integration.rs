@@ -158,7 +158,7 @@ impl<'a, S: Stepper + ?Sized> Integration<'a, S> {
         })
     }
 
-    /// The same, or only to the time at which something happens, which `happens` tells of times and motions, in their order. It is asked at the ends
+    /// The same, or only to the time at which something happens, which `happens` says of times and motions, in their order. It is asked at the ends
     /// of steps and at the result, and the time is found to rounding.
     pub(super) fn advance_until(
         &mut self,

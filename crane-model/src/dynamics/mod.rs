@@ -68,7 +68,7 @@ pub use constant::Rk4;
 #[cfg(feature = "std")]
 pub use contacts::Contacts;
 #[cfg(feature = "std")]
-pub use events::{Phases, event_times, simulate_events, without_events};
+pub use events::{Phases, Quantities, ResultsAt, event_times, simulate_events, without_events};
 #[cfg(feature = "std")]
 pub use integration::Integration;
 #[cfg(feature = "std")]

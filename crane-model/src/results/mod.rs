@@ -31,7 +31,8 @@ pub use key_figures::KeyFigure;
 pub use peaks::Peaks;
 pub(crate) use recording::{FleetRecording, quantities_with};
 pub use recording::{
-    Recording, connector_force, drive_effort, friction_utilisation, quantities, quantities_at, stop_effort, support_gap,
+    QUANTITIES, Recording, connector_force, drive_effort, friction_utilisation, quantities, quantities_at, stop_effort,
+    support_gap,
 };
 pub use table::Table;
 pub use verification::Verification;

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use crate::{
     ConnectorInfo, CoordinateKind, Description, LoopJointInfo, bristles,
     dyn_crane::{DynCrane, Energies},
-    dynamics::{Phases, Sample},
+    dynamics::{Phases, Quantities, Sample},
     feet::Slid,
     force_states::{self, ForceStates},
     hydraulics::{self, Oil},
@@ -187,6 +187,15 @@ pub fn quantities_at(crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: 
     push_quantities(crane, Extent::All, &StateAt { t, q, v, x }, &[], &mut row);
     row
 }
+
+/// The quantities at a state, for conditions of events.
+pub const QUANTITIES: Quantities = Quantities {
+    names: |crane| {
+        let columns = quantities(crane.description(), crane.loop_joints());
+        columns.into_iter().map(|column| column.name).collect()
+    },
+    at: quantities_at,
+};
 
 /// The same with efforts in addition to those of the drives: what follows from accelerations does not contain them.
 pub(crate) fn quantities_with(crane: &dyn DynCrane, moment: &StateAt<'_>, added: &[f64]) -> Vec<f64> {

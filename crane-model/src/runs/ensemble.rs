@@ -317,7 +317,7 @@ fn alone(crane: &dyn DynCrane, row: &Case, settings: &Settings, off: &dyn Fn() -
 /// Runs a crane from its start.
 fn alone_from(crane: &dyn DynCrane, start: &Start, settings: &Settings, off: &dyn Fn() -> bool) -> Outcome {
     let mut gathering = Gathering::new(crane, off);
-    let run = dynamics::simulate_events(crane, &start.state(), settings, &mut gathering);
+    let run = dynamics::simulate_events(crane, &start.state(), settings, &mut gathering, &results::QUANTITIES);
     gathering.finish(run)
 }
 

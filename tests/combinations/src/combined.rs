@@ -23,7 +23,7 @@ pub fn check_combined(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     let mut factor = |least: f64, most: f64| least + (most - least) * rng.f64();
     let (mut combined, mut written) = (tree.clone(), tree.clone());
     let (preset, tabulated) = PRESET;
-    let tabulated = (seed % 3 == 0).then_some(tabulated);
+    let tabulated = seed.is_multiple_of(3).then_some(tabulated);
     let weight = tabulated.map_or_else(|| factor(0.8, 1.2), |[weight, ..]| weight);
     set_gravity(&mut written, &gravity(tree).iter().map(|g| weight * g).collect::<Vec<_>>());
     let (mut loads, mut masses) = (json!({}), json!({}));
