@@ -39,6 +39,15 @@ macro_rules! catalogue {
         pub const CATALOGUE: &[$crate::diagnostic::Rule] =
             &[$($crate::diagnostic::Rule { code: stringify!($code), about: concat!($($about),+) }),+];
 
+        /// The code of every rule, by its name.
+        #[allow(non_upper_case_globals, dead_code, reason = "the names are those of the rules' functions; few are compared")]
+        pub mod code {
+            $(
+                $(#[doc = $about])+
+                pub const $name: &str = stringify!($code);
+            )+
+        }
+
         /// One function per rule, which reports how the rule was broken.
         pub(crate) mod rule {
             use std::fmt::Display;

@@ -6,8 +6,8 @@ mod draw;
 mod nearest;
 mod source;
 
-pub use catalogue::CATALOGUE;
 pub(crate) use catalogue::rule;
+pub use catalogue::{CATALOGUE, code};
 pub use definition::Rule;
 pub(crate) use definition::{catalogue, is_one_line, printable, quoted};
 pub(crate) use nearest::{list, suggest};

@@ -39,7 +39,7 @@ use crate::chain::{
     self, Analyses, Body, BodyId, Bound, Chain, Coordinate, CoordinateId, Division, Force, Input, Loops, Parameter,
     ParameterId, Relation, Value,
 };
-use crate::diagnostic::{Diagnostics, Mistake, SourceFile, Span, rule};
+use crate::diagnostic::{Diagnostics, Mistake, SourceFile, Span, code, rule};
 use crate::expand::beam::Distribution;
 use crate::spec::{self, Analysis, Crane, CraneSpec, Lookalike, Slope, Spanned, entries};
 use crate::units::Quantity;
@@ -131,11 +131,9 @@ fn expand(spec: &CraneSpec, source: &SourceFile) -> Result<(Chain, Found), Diagn
 
 /// If a new entry lacks keys and its name is almost that of an entry of the extended spec, replaces its mistakes by one: the misspelt name.
 fn misspelt(mut mistakes: Vec<Mistake>, lookalikes: &[Lookalike]) -> Vec<Mistake> {
-    /// The code of `rule::missing_key`.
-    const MISSING_KEY: &str = "E012";
     for Lookalike { name, at, span, known } in lookalikes {
         let within = |mistake: &Mistake| (span.start..span.end).contains(&mistake.span.start);
-        if mistakes.iter().any(|mistake| within(mistake) && mistake.code == MISSING_KEY) {
+        if mistakes.iter().any(|mistake| within(mistake) && mistake.code == code::missing_key) {
             mistakes.retain(|mistake| !within(mistake));
             mistakes.push(rule::misspelt_entry(*at, name, known));
         }

@@ -2,7 +2,7 @@
 
 use std::{borrow::Cow, path::Path, sync::OnceLock};
 
-use crane_codegen::{Change, Checked, Diagnostics, SourceFile, chain::Chain, compile};
+use crane_codegen::{Change, Checked, Diagnostics, SourceFile, chain::Chain, compile, diagnostic::code};
 use crane_live::LiveCrane;
 use crane_model::{Description, InputInfo, ParameterError, ParameterInfo, Refusal, dyn_crane::DynCrane};
 
@@ -178,9 +178,7 @@ impl Registry {
         let change = found
             .ok_or_else(|| Problem::usage(format!("{name} has no beams that bend: it is rigid already"), otherwise))?;
         let (checked, text) = self.changed(name, &change)?.map_err(|mistakes| {
-            /// The code of `rule::nothing_moves`.
-            const NOTHING_MOVES: &str = "E048";
-            if mistakes.mistakes().iter().any(|mistake| mistake.code == NOTHING_MOVES) {
+            if mistakes.mistakes().iter().any(|mistake| mistake.code == code::nothing_moves) {
                 Problem::usage(format!("with rigid beams, nothing in {name} can move: only its beams do"), otherwise)
             } else {
                 Problem::failed(format!("{name} has no form with rigid beams: {}", mistakes.headline()), otherwise)

@@ -4,7 +4,7 @@ mod quantities;
 
 use std::{io::Write, num::NonZeroUsize, path::Path};
 
-use crane_codegen::{Change, Diagnostics, SourceFile, spec::Crane};
+use crane_codegen::{Change, Diagnostics, SourceFile, diagnostic::code, spec::Crane};
 use crane_model::{
     CoordinateKind, Description,
     dyn_crane::DynCrane,
@@ -116,9 +116,7 @@ pub fn held_number(text: &str, kind: CoordinateKind, is_rate: bool) -> Outcome<f
 
 /// Parameters and inputs to which nothing refers.
 fn unused(found: &Diagnostics, source: &SourceFile) -> [Vec<String>; 2] {
-    /// The codes of `rule::unused_parameter` and `rule::unused_input`.
-    const UNUSED: [&str; 2] = ["E027", "E114"];
-    UNUSED.map(|code| {
+    [code::unused_parameter, code::unused_input].map(|code| {
         let mistakes = found.mistakes().iter().filter(|mistake| mistake.code == code);
         mistakes
             .filter_map(|mistake| source.text.get(mistake.span.start..mistake.span.end).map(str::to_owned))
