@@ -77,6 +77,9 @@ pub enum HoistingClass {
 }
 
 impl HoistingClass {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Hc1, Self::Hc2, Self::Hc3, Self::Hc4];
+
     /// Its name in the [table](crate::presets::TABLE).
     #[must_use]
     pub const fn name(self) -> &'static str {

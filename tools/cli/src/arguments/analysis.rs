@@ -2,7 +2,11 @@
 
 use std::{num::NonZeroUsize, path::PathBuf, sync::LazyLock};
 
-use clap::{Args, ValueEnum, ValueHint, builder::PossibleValue};
+use clap::{
+    Args, ValueEnum, ValueHint,
+    builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
+};
+use crane_codegen::spec::HoistingClass;
 use crane_live::FunctionId;
 
 use super::{
@@ -88,7 +92,7 @@ pub struct Factors {
     #[command(flatten)]
     pub timing: Timing,
     /// Hoisting class of EN 1991-3, whose factor φ₂ is printed beside those that are computed
-    #[arg(long, value_enum, value_name = "CLASS", requires = "hoisting_speed")]
+    #[arg(long, value_parser = hoisting_class(), ignore_case = true, value_name = "CLASS", requires = "hoisting_speed")]
     pub hoisting_class: Option<HoistingClass>,
     /// Steady speed of hoisting of that class, m/s
     #[arg(long, value_name = "NUMBER", value_parser = above_zero, requires = "hoisting_class")]
@@ -98,17 +102,11 @@ pub struct Factors {
     pub tabulated: bool,
 }
 
-/// A hoisting class.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum HoistingClass {
-    /// Gentle.
-    Hc1,
-    /// Moderate.
-    Hc2,
-    /// Hard.
-    Hc3,
-    /// Violent.
-    Hc4,
+/// Reads the name of a hoisting class.
+fn hoisting_class() -> impl TypedValueParser<Value = HoistingClass> {
+    let find = |name: String| HoistingClass::ALL.into_iter().find(|class| class.name().eq_ignore_ascii_case(&name));
+    PossibleValuesParser::new(HoistingClass::ALL.map(HoistingClass::name))
+        .try_map(move |name| find(name).ok_or("not a hoisting class"))
 }
 
 /// The load and its limits.

@@ -14,8 +14,8 @@ use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 use crate::screen::Manner;
 
 pub use analysis::{
-    Controller, Drives, Envelope, Eval, EvalFormat, Factors, Fatigue, HoistingClass, Linearise, LoadLimits, Margins,
-    Modes, Quantity, Stability, Strength,
+    Controller, Drives, Envelope, Eval, EvalFormat, Factors, Fatigue, Linearise, LoadLimits, Margins, Modes, Quantity,
+    Stability, Strength,
 };
 pub use crane::{
     Analysis, Check, Choice, DEFAULT_CRANE, Example, Explain, Format, Generate, Limits, List, New, Parameters,

@@ -4,6 +4,7 @@ mod tabulated;
 
 use std::io::Write;
 
+use crane_codegen::presets::hoisting_factor;
 use crane_model::{
     Description, DisplayUnit, SectionModuli,
     dyn_crane::DynCrane,
@@ -62,7 +63,7 @@ pub fn factors(options: &arguments::Factors, registry: &Registry, out: &mut dyn 
     }
     if let Some(class) = options.hoisting_class {
         let speed = options.hoisting_speed.unwrap_or_default();
-        let (class, factor) = tabulated::of_class(class, speed);
+        let (class, factor) = (class.name(), hoisting_factor(class.name(), speed));
         report.fact_as("tabulated_factor", format!("φ₂ of class {class} at {speed} m/s, EN 1991-3"), factor, "");
     }
     report.grid(table(&rows));

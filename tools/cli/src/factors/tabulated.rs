@@ -1,20 +1,7 @@
 //! Tabulated factors, to compare with what is computed.
 
-use crane_codegen::presets::{Factor, TABLE, hoisting_factor};
+use crane_codegen::presets::{Factor, TABLE};
 use crane_page::tables::{Cell, Grid};
-
-use crate::arguments::HoistingClass;
-
-/// The factor of a class of hoisting at a speed, m/s, and the name of the class.
-pub fn of_class(class: HoistingClass, speed: f64) -> (&'static str, f64) {
-    let name = match class {
-        HoistingClass::Hc1 => "HC1",
-        HoistingClass::Hc2 => "HC2",
-        HoistingClass::Hc3 => "HC3",
-        HoistingClass::Hc4 => "HC4",
-    };
-    (name, hoisting_factor(name, speed))
-}
 
 /// The whole table.
 pub fn table() -> Grid {
