@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import casadi as ca
 
 from beams import DIRECTIONS, Beam, read_beam
-from crane_spec import CraneSpec
+from crane_spec import CraneSpec, constant
 from cuts import Cut
 from cylinders import Cylinder, pin_of_rocker, turning_axis
 from inertias import read_pseudo_inertia
@@ -600,7 +600,7 @@ def read_friction(spec, written, coordinate):
         spec.number(written.get(key, default)) for key, default in (("stribeck", 1e-2), ("width", 1e-3), ("viscous", 0))
     )
     bristle = written.get("bristle")
-    bristle = bristle and (float(bristle["stiffness"]), float(bristle["damping"]))
+    bristle = bristle and (constant(bristle["stiffness"]), constant(bristle["damping"]))
     return Friction(coordinate, coulomb, breakaway, stribeck, width, viscous, bristle)
 
 

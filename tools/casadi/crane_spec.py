@@ -34,7 +34,7 @@ class CraneSpec:
         """A number in SI units, or the symbol of the parameter that replaces it."""
         if isinstance(written, str) and written in self.parameters:
             return self.parameters[written]
-        return parse_quantity(written) if isinstance(written, str) else float(written)
+        return constant(written)
 
     def angle(self, written):
         """An angle in rad: a number, a multiple of pi or of a degree, or a parameter."""
@@ -64,6 +64,11 @@ UNITS = {
 }
 QUANTITY = re.compile(r"(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(?P<unit>.*)")
 FACTOR = re.compile(r"(?P<symbol>[A-Za-z]+|%|°|1)\^?(?P<power>[234²³⁴]?)")
+
+
+def constant(written):
+    """A number of a spec in SI units that is no parameter."""
+    return parse_quantity(written) if isinstance(written, str) else float(written)
 
 
 def parse_quantity(written):

@@ -3,6 +3,7 @@
 import math
 
 import casadi as ca
+from crane_spec import constant
 
 # Pressure difference below which the flow through an edge is laminar, Pa.
 LAMINAR = 1e5
@@ -28,7 +29,7 @@ class Oil:
         if not moved:
             self.x, self.rates = ca.SX(0, 1), ca.SX(0, 1)
             return
-        supply = float(spec["pump"]["pressure"])
+        supply = constant(spec["pump"]["pressure"])
         pump = ca.SX.sym("pump")
         taken = 0
         targets = wanted_motions(crane, moved, rate)
@@ -43,11 +44,11 @@ class Oil:
             rates += own.rates(target, opening_of(crane, cylinder))
             taken += ca.if_else(spool > 0, own.inflows[0], own.inflows[1])
             self.forces += ca.jacobian(cylinder.length, crane.q).T * own.force
-        volume = float(spec["pump"].get("volume", 5e-3))
-        bulk_modulus = float(moved[0][0]["bulk_modulus"])
+        volume = constant(spec["pump"].get("volume", 5e-3))
+        bulk_modulus = constant(moved[0][0]["bulk_modulus"])
         share = ca.fmax(0, ca.fmin(1, (supply - pump) / (BAND * supply)))
         self.x = ca.vertcat(*symbols, pump)
-        self.rates = ca.vertcat(*rates, bulk_modulus / volume * (float(spec["pump"]["max_flow"]) * share - taken))
+        self.rates = ca.vertcat(*rates, bulk_modulus / volume * (constant(spec["pump"]["max_flow"]) * share - taken))
         self.names.append("pump_pressure")
         self.scales.append(supply)
 
@@ -58,12 +59,12 @@ class Chambers:
     def __init__(self, written, length, speed, pressures, spool, pump):
         self.written, self.valve, self.spool, self.pump, self.pressures = written, written["valve"], spool, pump, pressures
         self.lengths = ca.vertcat(length, speed)
-        bore, rod = float(written["bore"]), float(written["rod"])
+        bore, rod = constant(written["bore"]), constant(written["rod"])
         self.areas = math.pi / 4 * bore**2, math.pi / 4 * (bore**2 - rod**2)
-        self.tank = float(written.get("back_pressure", 0))
-        self.limit = float(written["max_pressure"])
-        overlap = float(self.valve.get("overlap", 0))
-        self.gain = float(self.valve["flow"]) / root(float(self.valve["pressure_drop"]))
+        self.tank = constant(written.get("back_pressure", 0))
+        self.limit = constant(written["max_pressure"])
+        overlap = constant(self.valve.get("overlap", 0))
+        self.gain = constant(self.valve["flow"]) / root(constant(self.valve["pressure_drop"]))
         opening = ca.fmax(0, (ca.fabs(spool) - overlap) / (1 - overlap)) * self.gain
         into = [opening * root(ca.fmax(0, pump - p)) for p in pressures]
         out = [opening * root(p - self.tank) for p in pressures]
@@ -74,7 +75,7 @@ class Chambers:
 
     def stop(self):
         """The force of the ends of the stroke, positive against extension."""
-        extension, stroke = self.lengths[0] - float(self.written["retracted"]), float(self.written["stroke"])
+        extension, stroke = self.lengths[0] - constant(self.written["retracted"]), constant(self.written["stroke"])
         stiffness = self.areas[0] * self.limit / STOP
         ahead, behind = ca.fmax(0, extension - stroke), ca.fmax(0, -extension)
         damped = [ca.fmax(0, 1 + STOP_DAMPING * side * self.lengths[1]) for side in (1, -1)]
@@ -83,33 +84,33 @@ class Chambers:
     def rates(self, target, opening):
         """Rates of both pressures and of the spool; `target` is length and speed at the drive's motion, `opening` the command of a
         valve without a servo."""
-        stroke = float(self.written["stroke"])
-        extension = ca.fmax(0, ca.fmin(stroke, self.lengths[0] - float(self.written["retracted"])))
-        leakage = float(self.valve.get("leakage", 0)) * (self.pressures[0] - self.pressures[1])
+        stroke = constant(self.written["stroke"])
+        extension = ca.fmax(0, ca.fmin(stroke, self.lengths[0] - constant(self.written["retracted"])))
+        leakage = constant(self.valve.get("leakage", 0)) * (self.pressures[0] - self.pressures[1])
         rates = []
         for side, way, sign in ((0, extension, 1), (1, stroke - extension, -1)):
             pressure, area = self.pressures[side], self.areas[side]
-            volume = float(self.written["hose_volumes"][side]) + area * way
+            volume = constant(self.written["hose_volumes"][side]) + area * way
             balance = self.flows[side] - sign * (area * self.lengths[1] + leakage) + self.guard(pressure)
-            rates.append(float(self.written["bulk_modulus"]) / volume * balance)
+            rates.append(constant(self.written["bulk_modulus"]) / volume * balance)
         wanted = opening if "opening" in self.valve else self.command(target)
         command = ca.fmax(-1, ca.fmin(1, wanted))
-        return [*rates, (command - self.spool) / float(self.valve["lag"])]
+        return [*rates, (command - self.spool) / constant(self.valve["lag"])]
 
     def guard(self, pressure):
         """Flow into a chamber through relief and suction valves."""
-        flow = float(self.valve["flow"])
+        flow = constant(self.valve["flow"])
         relief = ca.fmax(0, pressure - self.limit) * flow / (BAND * self.limit)
         return ca.fmax(0, self.tank - pressure) * flow / SUCTION - relief
 
     def command(self, target):
         """The opening that the servo commands."""
-        drop = float(self.valve["pressure_drop"])
+        drop = constant(self.valve["pressure_drop"])
         ahead = target[1] > 0
         area, pressure = (ca.if_else(ahead, *pair) for pair in (self.areas, self.pressures))
         available = root(ca.fmax(self.pump - pressure, 0.1 * drop))
-        share = float(self.valve.get("feed_forward", 1))
-        return float(self.valve["gain"]) * (target[0] - self.lengths[0]) + share * area * target[1] / (self.gain * available)
+        share = constant(self.valve.get("feed_forward", 1))
+        return constant(self.valve["gain"]) * (target[0] - self.lengths[0]) + share * area * target[1] / (self.gain * available)
 
 
 def opening_of(crane, cylinder):

@@ -4,6 +4,7 @@ import math
 
 import casadi as ca
 import numpy as np
+from crane_spec import constant
 from scipy.interpolate import PchipInterpolator
 
 
@@ -118,7 +119,7 @@ def read_profile(spec, motion, is_rotation, time):
     if kind == "hold":
         return ca.SX(spec.position(written, is_rotation)), (0.0, 0.0)
     if kind == "table":
-        times = [float(t) for t in written["times"]]
+        times = [constant(t) for t in written["times"]]
         values = [spec.position(value, is_rotation) for value in written["values"]]
         shape = {"monotone": monotone, "spline": spline, "linear": linear}[written.get("shape", "monotone")]
         return shape(time, times, values), (times[0], times[-1])
@@ -137,7 +138,7 @@ def read_profile(spec, motion, is_rotation, time):
         "quintic": quintic,
         "cubic": cubic,
         "cycloid": cycloid,
-        "trapezoid": lambda tau: trapezoid(tau, float(written.get("blend", 0.25))),
+        "trapezoid": lambda tau: trapezoid(tau, constant(written.get("blend", 0.25))),
     }
     share = shapes[kind](tau)
     return start + (end - start) * share, (spec.default(begin), spec.default(begin + duration))
