@@ -193,12 +193,14 @@ fn follows_from_accelerations(crane: &dyn DynCrane, output: &Output) -> bool {
 /// one, and laws bend or change their branch over a long one.
 const PROBES: [f64; 8] = [1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
 
-/// The step, and what it finds, that differs least from the next shorter one, in proportion to each number: there, neither rounding nor curvature
-/// counts.
+/// The step, and what it finds, that differs least from the next shorter one, in proportion to the largest that any finds of each number: there,
+/// neither rounding nor curvature counts.
 fn agreeing(found: &[(f64, DVector<f64>)]) -> &(f64, DVector<f64>) {
+    let largest = |row: usize| found.iter().fold(f64::MIN_POSITIVE, |size, (_, by)| size.max(by[row].abs()));
+    let sizes: Vec<f64> = (0..found[0].1.len()).map(largest).collect();
     let off = |more: usize| -> f64 {
-        let numbers = found[more - 1].1.iter().zip(found[more].1.iter()).filter(|(less, more)| **less != **more);
-        numbers.map(|(less, more)| (more - less).abs() / (less.abs() + more.abs())).sum()
+        let numbers = found[more - 1].1.iter().zip(found[more].1.iter()).zip(&sizes);
+        numbers.map(|((less, more), size)| (more - less).abs() / size).sum()
     };
     let best = (1..found.len()).min_by(|one, other| off(*one).total_cmp(&off(*other)));
     &found[best.unwrap_or(0)]

@@ -435,6 +435,30 @@ fn inputs_set(tree: &Tree, rng: &mut Rng) -> Option<Second> {
     (!set.is_empty()).then(|| Second { set, ..Second::of(&second).with_cautions() })
 }
 
+/// Lists whose numbers of these names become live, wherever they stand.
+const MOVING: [&str; 5] = ["drives", "loads", "connectors", "stops", "friction"];
+const LIVE: [&str; 19] = [
+    "from",
+    "to",
+    "begin",
+    "duration",
+    "min",
+    "max",
+    "stiffness",
+    "damping",
+    "coulomb",
+    "breakaway",
+    "viscous",
+    "length",
+    "force",
+    "progression",
+    "offset",
+    "shape_factor",
+    "area",
+    "max_effort",
+    "ratio",
+];
+
 /// A crane some of whose numbers are live parameters, and their names.
 pub(crate) fn with_parameters(tree: &Tree) -> Option<(Tree, Vec<String>)> {
     let mut second = tree.clone();
@@ -464,6 +488,23 @@ pub(crate) fn with_parameters(tree: &Tree) -> Option<(Tree, Vec<String>)> {
     }
     for (k, connector) in second.get_mut("connectors").and_then(Value::as_array_mut).into_iter().flatten().enumerate() {
         live(&format!("end_{k}"), &mut connector["to"]["at"][1]);
+    }
+    for list in MOVING {
+        let mut count = 0;
+        let entries: Vec<&mut Value> = match second.get_mut(list) {
+            Some(Value::Array(entries)) => entries.iter_mut().collect(),
+            Some(Value::Object(entries)) => entries.values_mut().collect(),
+            _ => Vec::new(),
+        };
+        // Friction with bristles has numbers.
+        for entry in entries.into_iter().filter(|entry| entry.get("bristle").is_none()) {
+            for_each_key(entry, &mut |key, value| {
+                if LIVE.contains(&key) {
+                    live(&format!("{list}_{key}_{count}"), value);
+                    count += 1;
+                }
+            });
+        }
     }
     let names = made.keys().cloned().collect();
     for (name, entry) in made {

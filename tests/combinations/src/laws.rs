@@ -1,11 +1,12 @@
 //! Laws of mechanics that hold for any crane.
 
 use crane_codegen::chain::{Group, Law as ForceLaw, LoadAxes, Profile, Transmission};
-use crane_live::LiveCrane;
+use crane_live::{Hold, LiveCrane, SteeredMotion};
 use crane_model::dyn_crane::{DynCrane, DynDynamics, DynModel, DynStatics};
-use crane_model::dynamics::{Contacts, Method, Settings};
+use crane_model::dynamics::{Contacts, InitialState, Integration, Method, Sample, Settings};
 use crane_model::envelope::{Condition, Limits};
 use crane_model::linear::{About, Forces, Input, Output, linear_model, outputs};
+use crane_model::loop_joints::Given;
 use crane_model::nalgebra::{DMatrix, DVector};
 use crane_model::results::cautions::{BEND, of_pose};
 use crane_model::results::{Instant, Peaks, quantities};
@@ -24,7 +25,7 @@ use crate::tree::{Tree, source};
 pub type Law = fn(&LiveCrane, &[f64], &mut Rng) -> Option<Result<(), String>>;
 
 /// All of them, with their names.
-pub const ALL: [(&str, Law); 18] = [
+pub const ALL: [(&str, Law); 19] = [
     ("what is stable has converged and does not grow", stable_is_stable),
     ("limits of charts are cautions at rest", limits_are_cautions),
     ("results have names of their own", results_are_named),
@@ -43,6 +44,7 @@ pub const ALL: [(&str, Law); 18] = [
     ("a damped run ends at rest", damped_run_ends),
     ("drives at rest as at the start of a run", efforts_at_rest),
     ("eight cranes as one", lanes),
+    ("an input set on the way", inputs_set_on_the_way),
 ];
 
 /// Columns of a run, their extremes and indicators of contacts have different names, all of them known to the check of a spec.
@@ -469,6 +471,49 @@ fn rest_stays(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Result<(), St
         let (from, to) = (q[j], end[1 + j]);
         if (to - from).abs() > 1e-5 {
             return Some(Err(format!("{} drifts from {from:.9} to {to:.9} in 2 s", coordinate.name)));
+        }
+    }
+    Some(Ok(()))
+}
+
+/// A motion that goes on after an input is set, and again after it is left to the spec, ends as three motions one after the other, each from where the last
+/// one ended.
+fn inputs_set_on_the_way(crane: &LiveCrane, q: &[f64], rng: &mut Rng) -> Option<Result<(), String>> {
+    /// Length of each part, s, tolerance of the runs, and largest difference relative to the largest number of a kind.
+    const PART: [f64; 3] = [0.05, 1e-9, 1e-4];
+    let numbers: Vec<f64> = crane.description().inputs.iter().map(|info| info.default).collect::<Option<_>>()?;
+    let input = rng.usize(0..numbers.len().max(1));
+    let value = numbers.get(input)? * (0.5 + rng.f64());
+    let own = Settings::of(crane.description());
+    let settings = Settings { tolerance: PART[1], audit: false, most_steps: 20_000, ..own };
+    let proceed = &mut |_: f64| ControlFlow::Continue(());
+    let mut start = Start { v: vec![0.0; q.len()], q: q.to_vec(), x: Vec::new(), what: String::new(), rests: false };
+    start.close(crane, 0.0, &Given::default()).ok()?;
+    let begin = start.state();
+    let mut steered = SteeredMotion::new(crane, 0.0, &begin, &settings).ok()?;
+    let state = |sample: &Sample<'_>| InitialState { q: sample.q.to_vec(), v: sample.v.to_vec(), x: sample.x.to_vec() };
+    let mut end = begin;
+    for (part, set) in [None, Some(value), None].into_iter().enumerate() {
+        let changes = (part > 0).then_some((input, set));
+        // What would move a rigid drive at once is refused.
+        if steered.advance(PART[0], changes, Hold::Constant, proceed).ok()?.is_break() {
+            return None;
+        }
+        let mut alone = crane.clone();
+        alone.set_input(input, set.or(Some(numbers[input])));
+        let mut motion = Integration::new(&alone, PART[0] * part as f64, &end, &settings).ok()?;
+        if motion.advance(PART[0] * (part + 1) as f64, proceed).ok()?.is_break() {
+            return None;
+        }
+        end = state(&motion.sample());
+    }
+    let found = state(&steered.sample());
+    for (what, own, other) in [("q", &found.q, &end.q), ("v", &found.v, &end.v), ("x", &found.x, &end.x)] {
+        let size = other.iter().fold(1e-3, |size: f64, number| size.max(number.abs()));
+        for (index, (own, other)) in own.iter().zip(other).enumerate() {
+            if let Err(error) = close(&format!("{what}[{index}] after an input is set"), *own, *other, size, PART[2]) {
+                return Some(Err(error));
+            }
         }
     }
     Some(Ok(()))
