@@ -417,9 +417,12 @@ async function units(page) {
   await page.getByRole("tab", { name: "Load chart" }).click();
   const from = page.locator("#asked input[aria-label=from]").first();
   const before = await from.inputValue();
-  await from.fill("1 m");
-  await page.getByRole("button", { name: "Compute" }).click();
-  await eventually(page, async () => assert.match(await page.textContent("#chart_state"), /^main_boom_theta is in rad, and `1 m` is a length/));
+  // The changed spec may still be read, which makes the fields anew.
+  await eventually(page, async () => {
+    await from.fill("1 m");
+    await page.getByRole("button", { name: "Compute" }).click();
+    assert.match(await page.textContent("#chart_state"), /^main_boom_theta is in rad, and `1 m` is a length/);
+  });
   await from.fill(before);
   await page.getByRole("tab", { name: "Run" }).click();
   await page.fill("#duration", "500 ms");
