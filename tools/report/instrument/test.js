@@ -72,13 +72,19 @@ const example = async (page, name, crane = name.replaceAll(" ", "_")) => {
   await eventually(page, async () => assert.match(await state(page), /^At rest/));
 };
 
-/** Replaces text in the editor, as an edit would. */
-const edit = (page, from, to) => page.evaluate(([from, to]) => {
-  const { view } = globalThis.instrument.editor;
-  const found = view.state.doc.toString().indexOf(from);
-  if (found < 0) throw new Error(`no ${from} in the spec`);
-  view.dispatch({ changes: { from: found, to: found + from.length, insert: to } });
-}, [from, to]);
+/** Waits until the page has read what is in the editor: what it says of it replaces other words, and fields are made anew. */
+const settled = (page) => eventually(page, async () => assert(!(await at(page, () => globalThis.instrument.reading))));
+
+/** Replaces text in the editor, as an edit would, and waits until the page has read it. */
+const edit = async (page, from, to) => {
+  await page.evaluate(([from, to]) => {
+    const { view } = globalThis.instrument.editor;
+    const found = view.state.doc.toString().indexOf(from);
+    if (found < 0) throw new Error(`no ${from} in the spec`);
+    view.dispatch({ changes: { from: found, to: found + from.length, insert: to } });
+  }, [from, to]);
+  await settled(page);
+};
 
 /** Edits: statics follow at once; mistakes are shown where they are, with their remedies. */
 async function edits(page) {
@@ -413,16 +419,14 @@ async function units(page) {
   await eventually(page, async () => assert.match(await state(page), /^At rest/));
   await page.getByRole("button", { name: "Into the spec" }).click();
   await eventually(page, async () => assert.match(await at(page, () => globalThis.instrument.editor.text), /payload: \{value: 1\.2 t, unit: kg/));
+  await settled(page);
   // Ranges of load charts, and the duration of a run.
   await page.getByRole("tab", { name: "Load chart" }).click();
   const from = page.locator("#asked input[aria-label=from]").first();
   const before = await from.inputValue();
-  // The changed spec may still be read, which makes the fields anew.
-  await eventually(page, async () => {
-    await from.fill("1 m");
-    await page.getByRole("button", { name: "Compute" }).click();
-    assert.match(await page.textContent("#chart_state"), /^main_boom_theta is in rad, and `1 m` is a length/);
-  });
+  await from.fill("1 m");
+  await page.getByRole("button", { name: "Compute" }).click();
+  await eventually(page, async () => assert.match(await page.textContent("#chart_state"), /^main_boom_theta is in rad, and `1 m` is a length/));
   await from.fill(before);
   await page.getByRole("tab", { name: "Run" }).click();
   await page.fill("#duration", "500 ms");

@@ -73,7 +73,7 @@ const visits = { now: 0, last: 0 };
 const drive = new Drive(stage, { ask, given: () => rest.given, note, before: () => stage.player.play(false) });
 
 controls();
-globalThis.instrument = { stage, editor, run, drive, chart, rest, parts, context, get engine() { return engine; }, get crane() { return crane; }, get atRest() { return atRest; } };
+globalThis.instrument = { stage, editor, run, drive, chart, rest, parts, context, get engine() { return engine; }, get crane() { return crane; }, get atRest() { return atRest; }, get reading() { return Boolean(edited.waiting || read.busy); } };
 begin();
 
 async function begin() {
@@ -132,6 +132,7 @@ async function load({ name: given, text, kept: saved = text, shown: wanted = nul
   editor.text = text;
   kept = saved;
   clearTimeout(edited.waiting);
+  edited.waiting = null;
   load.wanted = wanted;
   return read();
 }
@@ -193,7 +194,10 @@ async function write() {
 /** The spec was changed: it is read when the keys rest. */
 function edited() {
   clearTimeout(edited.waiting);
-  edited.waiting = setTimeout(read, PAUSE);
+  edited.waiting = setTimeout(() => {
+    edited.waiting = null;
+    read();
+  }, PAUSE);
 }
 
 /** Reads the spec, and shows its mistakes or the crane at rest. Reads again if it was changed meanwhile. */
