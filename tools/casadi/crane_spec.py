@@ -67,7 +67,7 @@ FACTOR = re.compile(r"(?P<symbol>[A-Za-z]+|%|°|1)\^?(?P<power>[234²³⁴]?)")
 
 
 def constant(written):
-    """A number of a spec in SI units that is no parameter."""
+    """A number of a spec, not a parameter, in SI units."""
     return parse_quantity(written) if isinstance(written, str) else float(written)
 
 
