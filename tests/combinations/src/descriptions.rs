@@ -245,8 +245,9 @@ fn rigid_boom_as_body(tree: &Tree, _: &mut Rng) -> Option<Second> {
     }
     arm["placement"] = json!({"transform": {"translation": [BOOM, 0, 0]}});
     let second = Second { first: Some(first), ..Second::of(&second) };
-    // The body of a rigid beam is called after its element.
-    Some(second.named(|name| (!name.contains("stress")).then(|| name.replace("boom_0", "boom"))))
+    // The body of a rigid beam is called after its element. It has no sections, so no bending moments.
+    let of_sections = |name: &str| name.contains("stress") || name.starts_with("bending by");
+    Some(second.named(move |name| (!of_sections(name)).then(|| name.replace("boom_0", "boom"))))
 }
 
 /// Every link has another name.
