@@ -58,21 +58,13 @@ impl<'a> Check<'a> {
     /// What is named has a factor, and a dynamic factor something to multiply.
     fn factors_are_there(&mut self, given: &spec::Combination, name: &str) {
         let spec::Combination { preset, hoisted, hoisting, wind, .. } = given;
-        if let (Some(hoisted), None, None) = (hoisted, preset, hoisting) {
-            self.report(rule::no_factor(
-                hoisted.span,
-                name,
-                "what is hoisted",
-                "write `preset: regular`, or factors under `masses:`",
-            ));
-        }
-        if let (Some(wind), None) = (wind, preset) {
-            self.report(rule::no_factor(
-                wind.span,
-                name,
-                "wind",
-                "write `preset: with_wind`, or factors under `loads:`",
-            ));
+        let of_hoisted =
+            (hoisted, hoisting.is_some(), "what is hoisted", "write `preset: regular`, or factors under `masses:`");
+        let of_wind = (wind, false, "wind", "write `preset: with_wind`, or factors under `loads:`");
+        for (named, has_another, what, help) in [of_hoisted, of_wind] {
+            if let Some(named) = named.as_ref().filter(|_| preset.is_none() && !has_another) {
+                self.report(rule::no_factor(named.span, name, what, help));
+            }
         }
         if let (Some(hoisting), None) = (hoisting, hoisted) {
             self.report(rule::nothing_hoisted(hoisting.span, name));

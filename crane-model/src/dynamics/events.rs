@@ -123,7 +123,7 @@ struct Conditions<'d> {
 
 impl<'d> Conditions<'d> {
     /// Those of a crane at the start of a run.
-    fn of(crane: &'d dyn DynCrane, quantities: Quantities, start: &Sample<'_>) -> Self {
+    fn new(crane: &'d dyn DynCrane, quantities: Quantities, start: &Sample<'_>) -> Self {
         let description = crane.description();
         let none = description.conditions().next().is_none();
         let names = if none { Vec::new() } else { (quantities.names)(crane) };
@@ -133,12 +133,12 @@ impl<'d> Conditions<'d> {
         });
         let all: Vec<_> = all.collect();
         let mut conditions = Self { quantities, held: Vec::new(), holds: Vec::new(), times: vec![0.0; all.len()], all };
-        conditions.held = conditions.at(crane, start.t, [start.q, start.v, start.x]);
+        conditions.held = conditions.evaluate(crane, start.t, [start.q, start.v, start.x]);
         conditions
     }
 
     /// Whether each holds at a state.
-    fn at(&self, crane: &dyn DynCrane, t: f64, state: [&[f64]; 3]) -> Vec<bool> {
+    fn evaluate(&self, crane: &dyn DynCrane, t: f64, state: [&[f64]; 3]) -> Vec<bool> {
         if self.all.is_empty() {
             return Vec::new();
         }
@@ -149,7 +149,7 @@ impl<'d> Conditions<'d> {
 
     /// Notes a later state; returns whether an event is due there.
     fn note(&mut self, crane: &dyn DynCrane, t: f64, state: [&[f64]; 3]) -> bool {
-        let now = self.at(crane, t, state);
+        let now = self.evaluate(crane, t, state);
         let is_due = self.due(&now).next().is_some();
         *(if is_due { &mut self.holds } else { &mut self.held }) = now;
         is_due
@@ -346,7 +346,7 @@ pub fn simulate_events(
             }
             done.energies[3] += energy(present, &sample) - before;
         }
-        let conditions = conditions.get_or_insert_with(|| Conditions::of(crane, *quantities, &sample));
+        let conditions = conditions.get_or_insert_with(|| Conditions::new(crane, *quantities, &sample));
         // What an event changes at once makes others due.
         if conditions.note(present, begin, [sample.q, sample.v, sample.x]) {
             due.extend(conditions.take());
