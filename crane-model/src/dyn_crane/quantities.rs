@@ -128,6 +128,11 @@ impl dyn DynCrane + '_ {
         out
     }
 
+    /// Prescribed positions, one per drive. [`drive_positions_at`](super::DynModel::drive_positions_at) has them by coordinate, as functions take them.
+    pub fn drive_targets_at(&self, t: f64) -> Vec<f64> {
+        self.drive_motions_at(t).into_iter().map(|[position, _]| position).collect()
+    }
+
     /// Moments that the springs and dampers between rigid elements transmit, `k q + d q̇`, one per coordinate of an element in
     /// the order of `q`: positive if they resist a positive deformation. N m.
     pub fn element_moments_at(&self, q: &[f64], v: &[f64]) -> Vec<f64> {

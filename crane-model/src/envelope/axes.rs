@@ -104,7 +104,7 @@ impl Axes {
 
     /// Positions of a crane's drives for a combination: drives that are not varied are at the beginning of their motions.
     pub(super) fn positions(&self, crane: &dyn DynCrane, pose: usize) -> Vec<f64> {
-        let mut positions: Vec<f64> = crane.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
+        let mut positions = crane.drive_targets_at(0.0);
         for (axis, value) in self.0.iter().zip(self.values(pose)) {
             if let Varied::Drive(index) = axis.varied {
                 positions[index] = value;

@@ -100,7 +100,7 @@ pub fn critical_load(
         Critical::FirstFoot => Limits { of_parts: vec![PartLimit::LiftOff], ..Limits::none(&description) },
         Critical::Tipping => Limits { tipping: Some(0.0), ..Limits::none(&description) },
     };
-    let positions: Vec<f64> = crane.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
+    let positions = crane.drive_targets_at(0.0);
     let range = Range { greatest, guess: 0.0, scale: mass.max(f64::MIN_POSITIVE), accuracy: ACCURACY, growth: FAST };
     let search = LoadSearch { limits: &limits, factor: 1.0, range, points: &[] };
     let mut posed = Posed { crane, load: parameter, positions: &positions };

@@ -49,14 +49,15 @@ impl LoadFactor {
 /// another value. `None` if the crane does not rest with factor 1.
 pub fn load_factor(crane: &mut dyn DynCrane, parameter: usize) -> Option<LoadFactor> {
     let limits = Limits::none(crane.description());
-    let positions: Vec<f64> = crane.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
+    let positions = crane.drive_targets_at(0.0);
     let range = Range { greatest: MOST, guess: 0.0, scale: 1.0, accuracy: ACCURACY, growth: ALONG };
     let search = LoadSearch { limits: &limits, factor: 1.0, range, points: &[] };
     let mut posed = Posed { crane, load: parameter, positions: &positions };
     let begin = posed.find(1.0, None)?;
+    let of_coordinates = posed.crane.description().by_coordinate(&positions);
     let linearised = if posed.crane.loop_joints().is_empty() {
         let stiffness =
-            |crane: &mut dyn DynCrane, factor: f64| stiffness(crane, (parameter, factor), (&begin.q, &positions));
+            |crane: &mut dyn DynCrane, factor: f64| stiffness(crane, (parameter, factor), (&begin.q, &of_coordinates));
         stiffness(posed.crane, 1.0).zip(stiffness(posed.crane, 2.0)).and_then(|(one, two)| singular(one, two))
     } else {
         None

@@ -33,7 +33,7 @@ struct Loaded {
 /// The crane with its drives at the beginning of their motions. `parameter` is the factor of its weight and loads, which is left at another value. `None` if the crane
 /// does not rest with all of them, or with small parts of them nearby.
 pub fn second_order(crane: &mut dyn DynCrane, parameter: usize) -> Option<SecondOrder> {
-    let positions: Vec<f64> = crane.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
+    let positions = crane.drive_targets_at(0.0);
     let mut posed = Posed { crane, load: parameter, positions: &positions };
     let whole = posed.find(1.0, None)?;
     let loaded = |posed: &Posed<'_>, q: &[f64]| {

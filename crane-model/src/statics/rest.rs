@@ -48,7 +48,7 @@ impl RestSearch<'_> {
 
     /// The end of a walk from the beginning of the drives' motions.
     fn walk_from_begin(&self) -> Option<Equilibrium> {
-        let begin: Vec<f64> = self.crane.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
+        let begin = self.crane.drive_targets_at(0.0);
         if begin == self.positions {
             return None;
         }

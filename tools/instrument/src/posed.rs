@@ -25,7 +25,7 @@ pub fn with_parameters(live: &LiveCrane, parameters: &[f64]) -> Outcome<LiveCran
 
 /// Where the motions of the drives begin, m and rad.
 pub fn starts(crane: &LiveCrane) -> Vec<f64> {
-    (crane as &dyn DynCrane).drive_motions_at(0.0).iter().map(|[position, _]| *position).collect()
+    (crane as &dyn DynCrane).drive_targets_at(0.0)
 }
 
 /// Parameters of a crane with levers: its own, or other values of them, then the numbers of its drives.

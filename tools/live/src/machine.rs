@@ -8,7 +8,7 @@ use crane_model::rt::lanes::{Function, Fused, f64x8};
 use crane_model::rt::{exp, fma, select, sin_cos, sin_cos_lanes, sqrt, stumpff, stumpff_lanes};
 use wide::bytemuck::cast_slice_mut;
 
-use crate::bytecode::{Code, Fixed, Instructions, Kind, Operands};
+use crate::bytecode::{Code, Fixed, Inputs, Instructions, Kind, Operands};
 
 /// One number, eight of different states, or one with its derivatives.
 pub trait Number:
@@ -221,12 +221,23 @@ impl<T: Number> Arguments<'_, T> {
         }
     }
 
+    /// The numbers of an input; `None` if the argument is not given, which means zeros.
+    fn given(&self, inputs: &Inputs) -> Option<&[T]> {
+        let (numbers, last) = (self.of(inputs.argument), inputs.first + inputs.count);
+        assert!(
+            numbers.is_empty() || numbers.len() >= last,
+            "{:?} has {} numbers, not {last}",
+            inputs.argument,
+            numbers.len()
+        );
+        numbers.get(inputs.first..last)
+    }
+
     /// Gives those that a function reads after its fixed numbers, each with its register.
     pub(crate) fn each(&self, code: &Code, mut take: impl FnMut(usize, T)) {
         let mut register = code.fixed.len();
         for inputs in &code.inputs {
-            let given = self.of(inputs.argument).get(inputs.first..inputs.first + inputs.count);
-            match given {
+            match self.given(inputs) {
                 Some(given) => given.iter().enumerate().for_each(|(place, number)| take(register + place, *number)),
                 None => (0..inputs.count).for_each(|place| take(register + place, T::splat(0.0))),
             }
@@ -239,13 +250,12 @@ impl<T: Number> Arguments<'_, T> {
         let has_factors = version > 0 && version == self.version;
         let mut registers = registers.get_mut(code.fixed.len()..).unwrap_or_default();
         for inputs in &code.inputs {
-            let given = self.of(inputs.argument);
             let (own, rest) = registers.split_at_mut(inputs.count.min(registers.len()));
             registers = rest;
             if has_factors && inputs.argument == Argument::Factors {
                 continue;
             }
-            match given.get(inputs.first..inputs.first + inputs.count) {
+            match self.given(inputs) {
                 Some(given) => own.copy_from_slice(given),
                 None => own.fill(T::splat(0.0)),
             }

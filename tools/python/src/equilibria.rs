@@ -37,7 +37,7 @@ impl Found {
     ) -> Self {
         let crane: &dyn DynCrane = crane;
         let t = at.unwrap_or(0.0);
-        let mut positions: Vec<f64> = crane.drive_motions_at(t).iter().map(|[position, _]| *position).collect();
+        let mut positions = crane.drive_targets_at(t);
         for &(drive, position) in held {
             positions[drive] = position;
         }

@@ -136,7 +136,7 @@ impl<'a> Subject<'a> {
             });
         }
         let q = equilibrium.q;
-        let positions: Vec<f64> = crane.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
+        let positions = crane.drive_targets_at(0.0);
         let limits = Limits { tipping: None, utilisation: None, ..Limits::usual(crane.description()) };
         let beyond = Condition::at(crane, q.clone(), &positions).exceeded(crane, &limits);
         let exceeded = beyond.iter().map(|margin| (margin.limit.kind(), margin.limit.location(crane))).collect();
@@ -234,7 +234,7 @@ impl<'a> Subject<'a> {
 
 /// Utilisation, equivalent stress and tipping margin.
 fn of_strength(crane: &dyn DynCrane, q: Vec<f64>) -> Vec<Option<f64>> {
-    let positions: Vec<f64> = crane.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
+    let positions = crane.drive_targets_at(0.0);
     let condition = Condition::at(crane, q, &positions);
     let stress = condition.sections.iter().map(|section| section.stress.equivalent).max_by(f64::total_cmp);
     let mut values = vec![condition.utilisation(), stress];

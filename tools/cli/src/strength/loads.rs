@@ -66,6 +66,9 @@ pub fn factor(report: &mut Report, crane: &LiveCrane) {
     report.value("critical_factor", json!({"linearised": linearised, "followed": followed}));
 }
 
+/// Part of the largest displacement or bending moment up to which another one is nothing, and has no factor.
+const NOTHING: f64 = 1e-6;
+
 /// Adds deflections and bending moments by the first order beside those at rest.
 pub fn orders(report: &mut Report, crane: &LiveCrane) {
     let title =
@@ -79,23 +82,21 @@ pub fn orders(report: &mut Report, crane: &LiveCrane) {
     }
     let SecondOrder { points, beams } = found.unwrap_or_default();
     let description = (&crane as &dyn DynCrane).description();
-    let mut row = |quantity: String, place: Option<String>, [first, second]: [f64; 2], unit: &str| {
-        let factor = (first > 0.0).then(|| second / first);
-        grid.row([
-            quantity.into(),
-            place.map_or(Cell::Empty, Cell::from),
-            first.into(),
-            second.into(),
-            factor.into(),
-            unit.into(),
-        ]);
+    let mut rows = |rows: Vec<(String, Option<String>, [f64; 2])>, unit: &str| {
+        let greatest = rows.iter().map(|(.., [_, second])| *second).fold(0.0, f64::max);
+        for (quantity, place, [first, second]) in rows {
+            let factor = (first > NOTHING * greatest).then(|| second / first);
+            let place = place.map_or(Cell::Empty, Cell::from);
+            grid.row([quantity.into(), place, first.into(), second.into(), factor.into(), unit.into()]);
+        }
     };
-    for (name, displacements) in description.points.iter().zip(&points) {
-        row(format!("displacement of {name}"), None, displacements.map(|moved| moved.norm()), "m");
-    }
-    for (place, moments) in &beams {
-        row(format!("bending of {}", place.beam(description)), Some(place.location(description)), *moments, "N m");
-    }
+    let names = description.points.iter().map(|name| format!("displacement of {name}"));
+    let displacements = points.iter().map(|moved| moved.map(|moved| moved.norm()));
+    rows(names.zip(displacements).map(|(name, moved)| (name, None, moved)).collect(), "m");
+    let bending = beams.iter().map(|(place, moments)| {
+        (format!("bending of {}", place.beam(description)), Some(place.location(description)), *moments)
+    });
+    rows(bending.collect(), "N m");
     report.grid(grid);
 }
 

@@ -76,6 +76,31 @@ fn a_narrow_cantilever_buckles_sideways() {
     assert!(sixteen.abs() < 0.3 * eight.abs() + 1e-4, "{eight} {sixteen}");
 }
 
+/// A beam that a cylinder holds buckles with the same factor whatever stands beside it, also where its drive is no longer the first coordinate.
+#[test]
+fn the_order_of_coordinates_does_not_move_a_factor() {
+    let beam = |name: &str, rest: &str| {
+        format!(
+            "  - name: {name}\n    on: base\n{rest}    beam: {{length: 4, sections: 2, material: {{E: 2.1e11, G: 8.1e10, density: 7850}}, section: {{tube: \
+             {{diameter: 0.1, thickness: 0.004}}}}}}\n"
+        )
+    };
+    let crane = |others: &[String]| {
+        let boom = beam("boom", "    joint: revolute\n");
+        format!(
+            "format: 1\nname: held\nanalyses: [statics, dynamics]\ngravity: [0, -9.81, 0]\nlinks:\n  - {{name: base, joint: fixed}}\n{}{boom}\
+             drives: [{{coordinate: boom_psi, motion: {{hold: 0.6}}, stiffness: 2e6, damping: 1e4}}]\ncylinders:\n  - {{name: lift, coordinate: boom_psi, bore: 0.1, \
+             rod: 0.05, retracted: 0.8, stroke: 0.7, foot: {{link: base, at: [0.2, -0.6, 0]}}, head: {{link: boom, at: [1.3, 0, 0]}}, bulk_modulus: 1.2e9, max_pressure: 28e6, \
+             hose_volumes: [1e-3, 1e-3], valve: {{flow: 6e-4, pressure_drop: 1e6, lag: 0.03, gain: 2}}}}\npump: {{pressure: 2e7, max_flow: 1e-3}}\nloads:\n  - {{name: push, link: boom, at: [4, 0, \
+             0], axes: link, force: [-3e4, 0, 0]}}\n",
+            others.concat()
+        )
+    };
+    let alone = factors(crane(&[])).linearised.expect("it buckles");
+    let beside = factors(crane(&[beam("mast", "    joint: fixed\n")])).linearised.expect("it buckles");
+    assert!((beside / alone - 1.0).abs() < 1e-9, "{alone} alone, {beside} beside a mast");
+}
+
 /// A column with a force across its top: with `u = L √(P/EJ)`, the deflection is `3 (tan u − u)/u³` times that of the first order, `H L³/3EJ`, and the moment at its
 /// foot `tan u/u` times `H L`. Near Euler's load both become `1/(1 − P/P_cr)`. \[S. Timoshenko, J. M. Gere, Theory of Elastic Stability, 1961, section 1.3]
 #[test]

@@ -180,7 +180,7 @@ fn the_shipped_loader_stands_wherever_smaller_loads_lead() {
     let crane: &mut dyn DynCrane = &mut crane;
     let mut found = 0;
     for slew in 0..12 {
-        let mut positions: Vec<f64> = crane.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
+        let mut positions = crane.drive_targets_at(0.0);
         positions[0] = f64::from(slew) * PI / 6.0;
         let mut led: Option<Vec<f64>> = None;
         for hundreds in 1..60 {
