@@ -14,8 +14,8 @@ use crate::{
 
 /// Relative accuracy of a factor.
 const ACCURACY: f64 = 1e-6;
-/// The largest factor considered.
-const MOST: f64 = 1000.0;
+/// The largest factor considered: EN 1993-1-1, 5.2.1 lets effects of the second order be left out from 10 on, 15 for plastic analysis.
+const MOST: f64 = 100.0;
 /// Part of a factor by which another one is a little larger.
 const A_LITTLE: f64 = 1e-5;
 /// How often a path goes on beyond where it seemed to end.
@@ -27,7 +27,7 @@ pub struct LoadFactor {
     /// By the stiffness at rest with factor 1: the smallest λ > 1 with which `K + (λ − 1) ∂K/∂λ` is singular, all at this pose. `None` if no factor is
     /// large enough, and for closed loops.
     pub linearised: Option<f64>,
-    /// The largest factor up to which the crane rests, its pose followed from factor 1 on; `None` if it is above 1000.
+    /// The largest factor up to which the crane rests, its pose followed from factor 1 on; `None` if it is above 100.
     pub followed: Option<Followed>,
 }
 

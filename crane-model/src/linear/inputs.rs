@@ -193,17 +193,21 @@ fn follows_from_accelerations(crane: &dyn DynCrane, output: &Output) -> bool {
 /// one, and laws bend or change their branch over a long one.
 const PROBES: [f64; 8] = [1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
 
-/// The step, and what it finds, that differs least from the next shorter one, in proportion to the largest that any finds of each number: there,
-/// neither rounding nor curvature counts.
-fn agreeing(found: &[(f64, DVector<f64>)]) -> &(f64, DVector<f64>) {
-    let largest = |row: usize| found.iter().fold(f64::MIN_POSITIVE, |size, (_, by)| size.max(by[row].abs()));
-    let sizes: Vec<f64> = (0..found[0].1.len()).map(largest).collect();
+/// Slopes by central differences, of the steps that differ least from the next shorter ones, in proportion to the largest slope that any finds of each number:
+/// there, neither rounding nor curvature counts. `at`: the numbers with a change.
+fn slopes(value: f64, mut at: impl FnMut(f64) -> DVector<f64>) -> DVector<f64> {
+    let mut found = PROBES.map(|part| {
+        let step = part * value.abs().max(1.0);
+        (at(step) - at(-step)) / (2.0 * step)
+    });
+    let largest = |row: usize| found.iter().fold(f64::MIN_POSITIVE, |size, by| size.max(by[row].abs()));
+    let sizes: Vec<f64> = (0..found[0].len()).map(largest).collect();
     let off = |more: usize| -> f64 {
-        let numbers = found[more - 1].1.iter().zip(found[more].1.iter()).zip(&sizes);
+        let numbers = found[more - 1].iter().zip(found[more].iter()).zip(&sizes);
         numbers.map(|((less, more), size)| (more - less).abs() / size).sum()
     };
     let best = (1..found.len()).min_by(|one, other| off(*one).total_cmp(&off(*other)));
-    &found[best.unwrap_or(0)]
+    std::mem::take(&mut found[best.unwrap_or(0)])
 }
 
 /// What an input of the spec does, by central differences.
@@ -220,27 +224,36 @@ fn of_spec<C: Linearisable>(
         return Err(NoModel::Input(info.name.to_string(), why, help));
     };
     let mut changed = crane.boxed_clone();
-    let mut slopes = |change: f64| {
+    let by = slopes(value, |change| {
         changed.set_input(index, Some(value + change));
         let motion = motion_at(changed.as_ref(), moment);
         let free = space.unknowns().iter().map(|&j| motion.accelerations[j]);
         DVector::from_iterator(space.matrix.nrows() - space.unknowns().len(), free.chain(motion.rates))
-    };
-    let found = PROBES.map(|part| {
-        let step = part * value.abs().max(1.0);
-        (step, (slopes(step) - slopes(-step)) / (2.0 * step))
     });
-    let (step, ref by) = *agreeing(&found);
     let n = space.unknowns().len();
     let mut states = DVector::zeros(space.matrix.nrows());
-    states.rows_mut(n, by.len()).copy_from(by);
+    states.rows_mut(n, by.len()).copy_from(&by);
     if outputs.is_empty() {
         return Ok(Effect { states, outputs: Vec::new() });
     }
-    let [before, after] = [-step, step].map(|change| {
+    // They bend elsewhere than accelerations: the pressures of a cylinder where it begins to push.
+    let of_outputs = slopes(value, |change| {
         changed.set_input(index, Some(value + change));
-        quantities_at(changed.as_ref(), moment.t, (moment.q, moment.v), moment.x)
+        let all = quantities_at(changed.as_ref(), moment.t, (moment.q, moment.v), moment.x);
+        DVector::from_iterator(outputs.len(), outputs.iter().map(|output| all[output.index]))
     });
-    let difference = |output: &Output| (after[output.index] - before[output.index]) / (2.0 * step);
-    Ok(Effect { states, outputs: outputs.iter().map(difference).collect() })
+    Ok(Effect { states, outputs: of_outputs.iter().copied().collect() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A number in which short steps drown in rounding, beside one that bends 1e-5 beyond.
+    #[test]
+    fn slopes_are_of_a_step_between_rounding_and_bends() {
+        let found = slopes(0.0, |c| DVector::from_vec(vec![1e6 + 3.0 * c, 1e8 * (c - 1e-5).max(0.0)]));
+        // 1e6 has 16 digits: 1e-10/2e-6.
+        assert!((found[0] - 3.0).abs() < 1e-4 && found[1] == 0.0, "{found}");
+    }
 }
