@@ -480,3 +480,48 @@ fn surfaces_of_files_are_drawn() {
     let unread = read_surfaces(&mut chain, "arm.yaml".as_ref(), |_, _| Err(std::io::ErrorKind::NotFound.into()));
     assert!(unread.is_some_and(|told| told.contains("`gone.stl`")));
 }
+
+/// Of each colour of each crane: shapes, their corners, the mean of these in the world, m, and their standard deviations.
+fn overview() -> String {
+    let mut text = String::new();
+    for (name, live) in cranes() {
+        let figure = figure(&live);
+        let mut paints: Vec<&str> = figure.shapes.iter().map(|shape| shape.paint.name).collect();
+        paints.sort_unstable();
+        paints.dedup();
+        for paint in paints {
+            let shapes: Vec<&Shape> = figure.shapes.iter().filter(|shape| shape.paint.name == paint).collect();
+            let corners: Vec<Vector3<f64>> = shapes.iter().flat_map(|shape| figure.corners(shape)).collect();
+            let count = corners.len() as f64;
+            let mean = corners.iter().sum::<Vector3<f64>>() / count;
+            let spread = (corners.iter().map(|corner| (corner - mean).map(|x| x * x)).sum::<Vector3<f64>>() / count)
+                .map(f64::sqrt);
+            text += &format!("{name} {paint} {} {}", shapes.len(), corners.len());
+            for number in mean.iter().chain(&spread) {
+                text += &format!(" {number:.5}");
+            }
+            text.push('\n');
+        }
+    }
+    text
+}
+
+/// A picture changes on purpose alone: `UPDATE_GOLDEN=1` writes what is drawn.
+#[test]
+fn what_is_drawn_stays() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/src/shapes/drawn.txt");
+    let found = overview();
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        std::fs::write(path, &found).expect("a file");
+    }
+    let known = std::fs::read_to_string(path).expect("a file");
+    assert_eq!(found.lines().count(), known.lines().count());
+    for (found, known) in found.lines().zip(known.lines()) {
+        // Half a digit of rounding, and as much of statics.
+        let near = |(one, other): (&str, &str)| match [one, other].map(str::parse::<f64>) {
+            [Ok(one), Ok(other)] => (one - other).abs() < 2e-5,
+            _ => one == other,
+        };
+        assert!(found.split(' ').zip(known.split(' ')).all(near), "{found}\nnot\n{known}");
+    }
+}
