@@ -5,6 +5,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use crane_codegen::SourceFile;
 use crane_codegen::build;
 use crane_codegen::chain::Analyses;
 use crane_codegen::compile;
@@ -42,6 +43,20 @@ fn generated_code_of_two_small_cranes() {
     }
     assert_eq!(compiled::double_pendulum::N, 2);
     assert_eq!(compiled::knuckle_boom::DESCRIPTION.name, "knuckle_boom");
+}
+
+/// Length and hash of the generated Rust of shipped cranes and examples, with all functions: what is equal here is equal to the byte.
+#[test]
+fn generated_code_of_all_cranes() {
+    let examples = ["loader_crane", "parallel_harvester"];
+    let examples = examples.map(|name| workspace::root().join(format!("specs/examples/{name}.yaml")));
+    let mut text = String::new();
+    for path in workspace::specs().into_iter().chain(examples) {
+        let chain = workspace::chain_in(&workspace::source(&path));
+        let code = compile::generate(&chain, Analyses::ALL, "spec.yaml").text;
+        let _ = writeln!(text, "{} {} {}", chain.name, code.len(), SourceFile::new("spec.rs", code.as_str()).hash());
+    }
+    assert_golden(&workspace::root().join("tests/golden/generated.txt"), &text);
 }
 
 /// The table of docs/OPERATIONS.md, as `crane operations` prints it.
