@@ -108,3 +108,12 @@ fn the_strictest_of_several_places_counts() {
     assert_eq!(lower.refusal.title, "the damping of `arm_psi` must not be negative, but is");
     assert_eq!(lower.refusal.help, "write 0 or a positive number, in N m s/rad");
 }
+
+/// What a rule compares may be equal: one result and one step of a run.
+#[test]
+fn equal_numbers_are_allowed() {
+    let text = "format: 1\nname: equal\nlinks: [{name: arm, joint: prismatic, mass: 5, com: [0, 0, 0]}]\nrun: {duration: 2, output: 2, step: 2}\n";
+    if let Err(mistakes) = crane_codegen::compile::check(&SourceFile::new("equal.yaml", text)) {
+        panic!("{mistakes}");
+    }
+}

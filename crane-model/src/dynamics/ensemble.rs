@@ -311,7 +311,7 @@ impl<'a> Batch<'a> {
                     },
                 );
             }
-            if interval == intervals || results.iter().all(Result::is_err) {
+            if results.iter().all(Result::is_err) {
                 break;
             }
             let result = (settings.output * (interval + 1) as f64).min(settings.duration);

@@ -235,6 +235,27 @@ mod tests {
         assert!((missed - (expected(nearest + 9.0) - expected(nearest))).abs() < 1e-14, "{missed}");
     }
 
+    /// What the steps miss is told in percent of the range of a position, and so is what lies between results; the largest of the two decides.
+    #[test]
+    fn errors_are_told_in_percent_of_the_range() {
+        let positions = |count: i32, value: &dyn Fn(f64) -> f64| {
+            let mut table = Table::default();
+            table.add("t", "s");
+            table.add("tip_z", "m");
+            table.columns[1].kind = ColumnKind::PointPosition;
+            let times = (0..=count).map(|i| f64::from(i) * 10.0 / f64::from(count));
+            table.rows = times.map(|t| vec![t, value(t)]).collect();
+            table
+        };
+        let run = positions(100, &|t| 0.1 * t);
+        let off = Verification::new(&run, &positions(400, &|t| 0.1 * t + 0.05), 1).cautions(&run);
+        assert!(off[0].starts_with("tip_z may be off by 5.00e-2 m, 5.0 % of its range: a finer run"), "{off:?}");
+        // A peak of 0.3 m between two results.
+        let peak = |t: f64| 0.1 * t + if (5.01..5.09).contains(&t) { 0.8 } else { 0.0 };
+        let missed = Verification::new(&run, &positions(400, &peak), 1).cautions(&run);
+        assert!(missed[0].contains("% of its range: it has peaks between two results"), "{missed:?}");
+    }
+
     /// A quantity that is sampled at its zeros has its peaks in between, upwards or downwards.
     #[test]
     fn peaks_between_results_are_noticed() {
