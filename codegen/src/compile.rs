@@ -10,7 +10,7 @@ use crate::emit_c::{CCode, Precision, emit_c, variables};
 use crate::lower::{LoweredProgram, lower};
 use crate::mechanics::{derive, derive_verbatim, left_out};
 use crate::program::{Function, FunctionId, Product, RuntimeTrait, Shape, has_products};
-use crate::read::{Change, changed, read};
+use crate::read::read;
 use crate::report::Report;
 use crate::validate::{self, Checked};
 
@@ -41,7 +41,7 @@ pub fn compile(source: &SourceFile, analyses: Option<Analyses>) -> Result<Compil
 /// # Errors
 /// All mistakes of the spec at once.
 pub fn load(source: &SourceFile) -> Result<Chain, Diagnostics> {
-    validate::validate(&read(source)?, source)
+    validate::validate(&read(source)?)
 }
 
 /// Converts a spec to a valid chain, with warnings about implausible numbers.
@@ -49,29 +49,7 @@ pub fn load(source: &SourceFile) -> Result<Chain, Diagnostics> {
 /// # Errors
 /// All mistakes of the spec at once.
 pub fn check(source: &SourceFile) -> Result<Checked, Diagnostics> {
-    validate::check(read(source)?, source)
-}
-
-/// A valid crane with changes, and the text of its spec, in which they extend `text`. Nothing is parsed; messages are about the file of the crane.
-///
-/// # Errors
-/// All mistakes of the changed crane at once.
-pub fn check_changed(checked: &Checked, text: &str, change: &Change) -> Result<(Checked, String), Diagnostics> {
-    let source = SourceFile::new(&checked.spec.source.name, text).changed(&change.text());
-    let spec = changed(&checked.spec, change)?;
-    let file = spec.source.clone();
-    let mut checked = validate::check(spec, &file)?;
-    checked.chain.spec_hash = source.hash();
-    Ok((checked, source.text))
-}
-
-/// The unit of the number at a place of a valid spec, such as `links.boom.beam.section.box.height`, in SI: that which messages about it name. Empty for
-/// a number without one.
-#[must_use]
-pub fn unit_at(source: &SourceFile, place: &str) -> String {
-    let units = check(source).map(|checked| checked.units).unwrap_or_default();
-    let at = source.span_at(place);
-    units.into_iter().find(|(span, _)| Some(*span) == at).map_or(String::new(), |(_, unit)| unit)
+    validate::check(read(source)?)
 }
 
 /// Compiles a chain to Rust. `spec_file` is the name of the YAML file, for the header.

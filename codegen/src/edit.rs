@@ -1,9 +1,7 @@
 //! Edits of specs: a rigid link of a robot replaced by a beam that bends.
 
-use std::fmt::Write as _;
-
-use crate::diagnostic::{Diagnostics, SourceFile, quoted};
-use crate::read::read;
+use crate::diagnostic::{Diagnostics, SourceFile};
+use crate::read::{Change, read};
 use crate::spec::{
     Crane, Either, Link, Number, On, Place, Placement, Spanned, Transform, Turn, Vector, acting, entries,
 };
@@ -41,14 +39,19 @@ struct End<'a> {
 
 /// The spec of a crane in which a beam takes the place of the mass and the inertia of a rigid link: from its frame to `to`. The
 /// joint of the link stays; the beam is a link of its own, `<link>_beam`, whose x leads there. `keys` are those of
-/// [`Beam`](crate::spec::Beam) besides `length`, a mapping in YAML.
+/// [`Beam`](crate::spec::Beam) besides `length`.
 ///
 /// # Errors
 /// The spec has mistakes, or the link cannot become a beam.
-pub fn with_beam(source: &SourceFile, link: &str, to: BeamEnd<'_>, keys: &str) -> Result<SourceFile, Unbending> {
+pub fn with_beam(
+    source: &SourceFile,
+    link: &str,
+    to: BeamEnd<'_>,
+    keys: impl IntoIterator<Item = (String, Change)>,
+) -> Result<SourceFile, Unbending> {
     let crane = read(source).map_err(Unbending::Mistakes)?.crane;
-    let changes = changes(&crane, link, to, keys).map_err(Unbending::Refused)?;
-    Ok(source.changed(&changes))
+    let change = change(&crane, link, to, keys.into_iter().collect()).map_err(Unbending::Refused)?;
+    Ok(source.changed(&change.text()))
 }
 
 /// Names of the bodies of a link besides its own: of an imported robot, what its file fixes to the link.
@@ -61,7 +64,7 @@ pub fn fixed_bodies(source: &SourceFile, link: &str) -> Vec<String> {
     names.filter(|name| name != link).collect()
 }
 
-fn changes(crane: &Crane, name: &str, to: BeamEnd<'_>, keys: &str) -> Result<String, String> {
+fn change(crane: &Crane, name: &str, to: BeamEnd<'_>, keys: Vec<(String, Change)>) -> Result<Change, String> {
     let links: Vec<(&str, &Link)> =
         entries(Some(&crane.links)).filter_map(|link| Some((name_of(link)?, link))).collect();
     let Some(index) = links.iter().position(|(other, _)| *other == name) else {
@@ -87,7 +90,7 @@ fn changes(crane: &Crane, name: &str, to: BeamEnd<'_>, keys: &str) -> Result<Str
     }
     // x of the beam is Rz(ψ) Ry(θ) x.
     let (psi, theta) = (y.atan2(x), (-z).atan2(x.hypot(y)));
-    let beam = format!("{name}_beam");
+    let beam = &*format!("{name}_beam");
     if links.iter().any(|(other, _)| *other == beam) {
         return Err(format!("there is a link `{beam}` already"));
     }
@@ -97,65 +100,66 @@ fn changes(crane: &Crane, name: &str, to: BeamEnd<'_>, keys: &str) -> Result<Str
         ("inertia", link.inertia.is_some()),
         ("bodies", link.bodies.is_some()),
     ];
-    let mut gone = String::new();
-    for (key, _) in replaced.iter().filter(|(_, given)| *given) {
-        let _ = write!(gone, ", {key}: ~");
-    }
-    let mut text = format!("links:\n  - {{name: {name}{gone}}}\n");
-    let placed = |rotations: &str| format!("placement: {{transform: {{rotation: [{rotations}]}}}}");
-    let _ = writeln!(
-        text,
-        "  - name: {beam}\n    after: {name}\n    on: {name}\n    {}\n    beam:\n      length: {length:?}\n      {}",
-        placed(&format!("{{z: {psi:?}}}, {{y: {theta:?}}}")),
-        keys.trim_end().replace('\n', "\n      ")
-    );
+    let gone = replaced.into_iter().filter(|(_, given)| *given).map(|(key, _)| (key, Change::removed()));
+    let mut changed = vec![Change::keys([("name", name.into())].into_iter().chain(gone))];
+    let placed = |transform| ("placement", Change::keys([("transform", Change::keys::<&str>(transform))]));
+    let turned = Change::list([turn("z", psi), turn("y", theta)]);
+    let along = ("length".to_owned(), length.into());
+    changed.push(Change::keys([
+        ("name", beam.into()),
+        ("after", name.into()),
+        ("on", name.into()),
+        placed(vec![("rotation", turned)]),
+        ("beam", Change::keys([along].into_iter().chain(keys))),
+    ]));
     for (other, of) in &beyond {
         // What does not go on from the end of the beam stays on the frame of the link, which does not bend.
         let Some((_, next)) = end.next.filter(|(next, _)| next == other) else {
             if of.on.is_none() {
-                let _ = writeln!(text, "  - {{name: {other}, on: {name}}}");
+                changed.push(Change::keys([("name", (*other).into()), ("on", name.into())]));
             }
             continue;
         };
         let given = transform(next);
-        let translation = given.and_then(|given| given.translation.as_ref()).map_or("", |_| "translation: ~, ");
-        let rotations = rotations_in_beam(given, other, psi, theta)?;
-        let _ = writeln!(
-            text,
-            "  - {{name: {other}, on: {beam}, placement: {{transform: {{{translation}rotation: [{rotations}]}}}}}}"
-        );
+        let moved = given.and_then(|given| given.translation.as_ref()).map(|_| ("translation", Change::removed()));
+        let rotation = ("rotation", rotations_in_beam(given, other, psi, theta)?);
+        changed.push(Change::keys([
+            ("name", (*other).into()),
+            ("on", beam.into()),
+            placed(moved.into_iter().chain([rotation]).collect()),
+        ]));
     }
     let on_link =
         |link: &Option<Spanned<String>>| link.as_ref().is_some_and(|link| link.value.as_deref() == Some(name));
     let on_beam = |x: &f64| (0.0..=length * (1.0 + WRITTEN)).contains(x);
-    let mut points = String::new();
+    let (mut points, mut frames) = (Vec::new(), Vec::new());
     for point in entries(crane.points.as_ref()).filter(|point| on_link(&point.link)) {
         let Some(at) = numbers_or_zero(point.at.as_ref()) else { continue };
-        let [x, y, z] = in_beam(at, psi, theta);
-        if let Some(point) = point.name.value.as_deref().filter(|_| on_beam(&x)) {
-            let _ = writeln!(points, "  - {{name: {point}, link: {beam}, at: [{x:?}, {y:?}, {z:?}]}}");
+        let at = in_beam(at, psi, theta);
+        if let Some(point) = point.name.value.as_deref().filter(|_| on_beam(&at[0])) {
+            points.push(Change::keys([("name", point.into()), ("link", beam.into()), ("at", vector(at))]));
         }
     }
-    if !points.is_empty() {
-        let _ = write!(text, "points:\n{points}");
-    }
-    let mut frames = String::new();
     for frame in entries(crane.frames.as_ref()).filter(|frame| on_link(&frame.link)) {
         let given = frame.transform.as_ref().and_then(|transform| transform.value.as_ref());
         let Some(at) = numbers_or_zero(given.and_then(|given| given.translation.as_ref())) else { continue };
-        let [x, y, z] = in_beam(at, psi, theta);
-        let Some(frame) = frame.name.value.as_deref().filter(|_| on_beam(&x)) else { continue };
-        let turned = rotations_in_beam(given, frame, psi, theta)?;
-        let _ = writeln!(
-            frames,
-            "  - {{name: {}, link: {beam}, transform: {{translation: [{x:?}, {y:?}, {z:?}], rotation: [{turned}]}}}}",
-            quoted(frame)
-        );
+        let at = in_beam(at, psi, theta);
+        let Some(frame) = frame.name.value.as_deref().filter(|_| on_beam(&at[0])) else { continue };
+        let turned = ("rotation", rotations_in_beam(given, frame, psi, theta)?);
+        let transform = Change::keys([("translation", vector(at)), turned]);
+        frames.push(Change::keys([("name", frame.into()), ("link", beam.into()), ("transform", transform)]));
     }
-    if !frames.is_empty() {
-        let _ = write!(text, "frames:\n{frames}");
-    }
-    Ok(text)
+    let lists = [("links", changed), ("points", points), ("frames", frames)].into_iter();
+    Ok(Change::keys(lists.filter(|(_, list)| !list.is_empty()).map(|(key, list)| (key, Change::list(list)))))
+}
+
+/// A rotation about an axis, rad.
+fn turn(axis: &str, angle: f64) -> Change {
+    Change::keys([(axis, angle.into())])
+}
+
+fn vector(components: [f64; 3]) -> Change {
+    Change::list(components.map(Change::from))
 }
 
 /// The components of a vector along the axes of the beam.
@@ -165,12 +169,9 @@ fn in_beam([x, y, z]: [f64; 3], psi: f64, theta: f64) -> [f64; 3] {
 }
 
 /// The rotations of a transformation of the link, from the axes of the beam.
-fn rotations_in_beam(given: Option<&Transform>, name: &str, psi: f64, theta: f64) -> Result<String, String> {
-    let mut rotations = format!("{{y: {:?}}}, {{z: {:?}}}", -theta, -psi);
-    for (axis, angle) in turns(given, name)? {
-        let _ = write!(rotations, ", {{{axis}: {angle:?}}}");
-    }
-    Ok(rotations)
+fn rotations_in_beam(given: Option<&Transform>, name: &str, psi: f64, theta: f64) -> Result<Change, String> {
+    let own = turns(given, name)?.into_iter();
+    Ok(Change::list([("y", -theta), ("z", -psi)].into_iter().chain(own).map(|(axis, angle)| turn(axis, angle))))
 }
 
 /// The place of a point of interest on a link, or of one of its frames, m.

@@ -40,4 +40,4 @@ pub use diagnostic::{Diagnostics, Located, SourceFile, WrongPlace};
 pub use emit::GeneratedCode;
 pub use read::{Change, read};
 pub use spec::{CraneSpec, json_schema};
-pub use validate::{Checked, check, validate};
+pub use validate::{Checked, check, outline, validate};

@@ -11,7 +11,7 @@ use crane_codegen::{Diagnostics, SourceFile, read, validate};
 /// The mistakes in the bytes of a spec.
 fn mistakes(name: &str, bytes: &[u8]) -> Diagnostics {
     SourceFile::from_bytes(name, bytes)
-        .and_then(|source| read(&source).and_then(|spec| validate(&spec, &source)))
+        .and_then(|source| read(&source).and_then(|spec| validate(&spec)))
         .expect_err(&format!("{name} is sound"))
 }
 

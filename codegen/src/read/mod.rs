@@ -9,11 +9,9 @@ mod place;
 
 use crate::diagnostic::{Diagnostics, MAX_BYTES, Mistake, SourceFile, Span, rule};
 use crate::node::{Node, parse, slips};
-use crate::spec::CraneSpec;
+use crate::spec::{CraneSpec, Noticed};
 pub use change::Change;
-pub(crate) use change::changed;
 use change::typed;
-use overlay::Noticed;
 
 /// Reads a spec as far as possible. Mistakes of keys and forms do not stop it: they are stored with the spec, and
 /// [`validate`](crate::validate()) reports them together with its own.
@@ -28,7 +26,7 @@ pub fn read(source: &SourceFile) -> Result<CraneSpec, Diagnostics> {
     }
     let mut noticed = Noticed::default();
     let root = parts(source, &mut noticed).map_err(|mistake| refuse(vec![mistake]))?;
-    typed(root, noticed, source)
+    typed(root, noticed, source, source.clone())
 }
 
 /// The tree of a source file, with its parts merged, each over the previous ones.

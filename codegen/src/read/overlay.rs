@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use crate::diagnostic::{Mistake, Span, nearest, rule, suggest};
+use crate::diagnostic::{Span, nearest, rule, suggest};
 use crate::node::{Content, Node};
-use crate::spec::Lookalike;
+use crate::spec::{Lookalike, Noticed};
 
 /// Key of the spec to start from.
 const EXTENDS: &str = "extends";
@@ -92,13 +92,6 @@ impl Node {
         };
         last.map_or(self.span.end, |last| last.max(self.span.end))
     }
-}
-
-/// What is noticed while specs are laid over each other.
-#[derive(Default)]
-pub(super) struct Noticed {
-    pub mistakes: Vec<Mistake>,
-    pub lookalikes: Vec<Lookalike>,
 }
 
 /// `over` merged over `base`.

@@ -1,22 +1,21 @@
 //! Numbers of a spec by their places, `links.boom.beam.section.box.height`: keys, names of entries of lists, and indices from 0.
 
-use std::fmt::Write as _;
-
-use super::overlay::Noticed;
-use super::parts;
-use crate::diagnostic::{SourceFile, Span, WrongPlace, suggest};
+use super::Change;
+use crate::diagnostic::{Span, WrongPlace, suggest};
 use crate::node::{Content, Node};
+use crate::spec::CraneSpec;
 use crate::units::Quantity;
 
-impl SourceFile {
-    /// The same crane with a number at a place replaced by a live parameter of the same value, whose description is the place.
+impl CraneSpec {
+    /// The change by which a live parameter of the same value, whose description is the place, replaces the number at a place.
     ///
     /// # Errors
     /// There is no number at this place.
-    pub fn with_live_number(&self, place: &str, parameter: &str, unit: &str) -> Result<Self, WrongPlace> {
-        let (changed, value) = self.replaced_at(place, parameter)?;
-        let entry = format!("{parameter}: {{value: {value}, unit: {unit:?}, about: {place:?}}}");
-        Ok(self.changed(&format!("parameters: {{{entry}}}\n{}\n", &changed[1..changed.len() - 1])))
+    pub fn live_number(&self, place: &str, parameter: &str, unit: &str) -> Result<Change, WrongPlace> {
+        let (change, value) = self.replaced_at(place, &parameter.into())?;
+        let entry = Change::keys([("value", value), ("unit", unit.into()), ("about", place.into())]);
+        let parameters = ("parameters", Change::keys([(parameter, entry)]));
+        Ok(Change::keys([parameters].into_iter().chain(change)))
     }
 
     /// The number at a place, in SI units.
@@ -24,24 +23,25 @@ impl SourceFile {
     /// # Errors
     /// There is no number at this place.
     pub fn number_at(&self, place: &str) -> Result<f64, WrongPlace> {
-        let (_, value) = self.replaced_at(place, "0")?;
-        value.parse().ok().or_else(|| quantity(&value)).ok_or_else(|| not_a_number(place))
+        match self.replaced_at(place, &0.0.into())?.1.0.content {
+            Content::Number(number) => Ok(number),
+            Content::Text(text) => quantity(&text).ok_or_else(|| not_a_number(place)),
+            _ => Err(not_a_number(place)),
+        }
     }
 
-    /// The same crane with another number at a place.
+    /// The change by which another number stands at a place.
     ///
     /// # Errors
     /// There is no number at this place.
-    pub fn with_number(&self, place: &str, value: f64) -> Result<Self, WrongPlace> {
-        let (changed, _) = self.replaced_at(place, &format!("{value:?}"))?;
-        Ok(self.changed(&format!("{}\n", &changed[1..changed.len() - 1])))
+    pub fn other_number(&self, place: &str, value: f64) -> Result<Change, WrongPlace> {
+        Ok(Change::keys(self.replaced_at(place, &value.into())?.0))
     }
 
     /// The location of the value at a place; `None` if there is none.
     #[must_use]
     pub(crate) fn span_at(&self, place: &str) -> Option<Span> {
-        let root = parts(self, &mut Noticed::default()).ok()?;
-        let mut node = &root;
+        let mut node = &self.tree;
         for key in place.split('.') {
             node = match &node.content {
                 Content::Sequence(items) => {
@@ -54,59 +54,57 @@ impl SourceFile {
         Some(node.span)
     }
 
-    /// The changes to lay over the spec so that a word stands in place of a number, and that number.
-    fn replaced_at(&self, place: &str, word: &str) -> Result<(String, String), WrongPlace> {
-        let root = parts(self, &mut Noticed::default()).map_err(|_| WrongPlace {
-            title: format!("{} cannot be read", self.name),
-            help: "check it with `crane check`".to_owned(),
-        })?;
-        let keys: Vec<&str> = place.split('.').collect();
-        if keys[0] == "parameters" {
-            let name = keys.get(1).copied().unwrap_or_default();
+    /// The key with the change to lay over it so that a word stands in place of a number, and that number.
+    fn replaced_at<'a>(
+        &self,
+        place: &'a str,
+        word: &Change,
+    ) -> Result<(Option<(&'a str, Change)>, Change), WrongPlace> {
+        let (key, rest) = place.split_once('.').unwrap_or((place, ""));
+        if key == "parameters" {
+            let name = rest.split('.').next().unwrap_or_default();
             return Err(WrongPlace {
                 title: format!("`{place}` is a live parameter"),
                 help: format!("write its name, `{name}`"),
             });
         }
-        let mut value = String::new();
-        let changed = overlay(&root, &keys, place, word, &mut value)?;
-        Ok((changed, value))
+        let keys: Vec<&str> = place.split('.').collect();
+        let mut value = Change::removed();
+        let change = overlay(&self.tree, &keys, place, word, &mut value)?;
+        let Content::Mapping(entries) = change.0.content else { return Err(not_a_number(place)) };
+        Ok((entries.into_iter().next().map(|(_, inner)| (key, Change(inner))), value))
     }
 }
 
-/// The changes to lay over a node so that a word, such as the name of a parameter, replaces the number at the place; `value` becomes the number.
-fn overlay(node: &Node, keys: &[&str], place: &str, word: &str, value: &mut String) -> Result<String, WrongPlace> {
+/// The change to lay over a node so that a word, such as the name of a parameter, replaces the number at the place; `value` becomes the number.
+fn overlay(node: &Node, keys: &[&str], place: &str, word: &Change, value: &mut Change) -> Result<Change, WrongPlace> {
     let Some((key, rest)) = keys.split_first() else {
         *value = number(node, place)?;
-        return Ok(word.to_owned());
+        return Ok(word.clone());
     };
     match &node.content {
         Content::Mapping(entries) => {
             let known: Vec<String> = entries.iter().map(|(key, _)| key.key_text()).collect();
             let inner = node.entry(key).ok_or_else(|| missing(place, key, &known))?;
-            Ok(format!("{{{key}: {}}}", overlay(inner, rest, place, word, value)?))
+            Ok(Change::keys([(key, overlay(inner, rest, place, word, value)?)]))
         }
         Content::Sequence(items) => {
             let names: Vec<Option<String>> = items.iter().map(Node::identity).collect();
             if let Some(index) = names.iter().position(|name| name.as_deref() == Some(*key)) {
-                let inner = overlay(&items[index], rest, place, word, value)?;
-                let identity = items[index].identity_key();
+                let mut inner = overlay(&items[index], rest, place, word, value)?;
                 // The number itself is not an entry of a list with names.
-                return match inner.strip_prefix('{') {
-                    Some(inner) => Ok(format!("[{{{identity}: {key}, {inner}]")),
-                    None => Err(not_a_number(place)),
-                };
+                let Content::Mapping(entries) = &mut inner.0.content else { return Err(not_a_number(place)) };
+                entries.insert(0, (Change::from(items[index].identity_key()).0, Change::from(*key).0));
+                return Ok(Change::list([inner]));
             }
             let chosen: Option<usize> = key.parse().ok().filter(|index| *index < items.len());
             let Some(chosen) = chosen else {
                 let known: Vec<String> = names.into_iter().flatten().collect();
                 return Err(missing(place, key, &known));
             };
-            let mut all = Vec::new();
-            for (index, item) in items.iter().enumerate() {
-                all.push(if index == chosen { replaced(item, rest, place, word, value)? } else { written(item) });
-            }
-            Ok(format!("[{}]", all.join(", ")))
+            let mut all: Vec<Change> = items.iter().cloned().map(Change).collect();
+            all[chosen] = replaced(&items[chosen], rest, place, word, value)?;
+            Ok(Change::list(all))
         }
         Content::Text(text) if quantity(text).is_none() => Err(not_there(place, keys, text)),
         _ => Err(not_a_number(place)),
@@ -131,21 +129,15 @@ fn quantity(text: &str) -> Option<f64> {
 }
 
 /// A whole node with the number at the place replaced, where a list without names cannot be laid over.
-fn replaced(node: &Node, keys: &[&str], place: &str, word: &str, value: &mut String) -> Result<String, WrongPlace> {
-    match (&node.content, keys) {
-        (Content::Mapping(entries), [key, rest @ ..]) => {
-            let known: Vec<String> = entries.iter().map(|(key, _)| key.key_text()).collect();
-            node.entry(key).ok_or_else(|| missing(place, key, &known))?;
-            let mut all = Vec::new();
-            for (own, inner) in entries {
-                let own = own.key_text();
-                let text = if own == *key { replaced(inner, rest, place, word, value)? } else { written(inner) };
-                all.push(format!("{own}: {text}"));
-            }
-            Ok(format!("{{{}}}", all.join(", ")))
-        }
-        _ => overlay(node, keys, place, word, value),
-    }
+fn replaced(node: &Node, keys: &[&str], place: &str, word: &Change, value: &mut Change) -> Result<Change, WrongPlace> {
+    let (Content::Mapping(entries), [key, rest @ ..]) = (&node.content, keys) else {
+        return overlay(node, keys, place, word, value);
+    };
+    let known: Vec<String> = entries.iter().map(|(key, _)| key.key_text()).collect();
+    let chosen = known.iter().position(|known| known == key).ok_or_else(|| missing(place, key, &known))?;
+    let mut all = entries.clone();
+    all[chosen].1 = replaced(&entries[chosen].1, rest, place, word, value)?.0;
+    Ok(Content::Mapping(all).into())
 }
 
 /// Whether a text is a word that needs no quotes.
@@ -166,21 +158,22 @@ pub(super) fn written(node: &Node) -> String {
         Content::Text(text) => format!("'{}'", text.replace('\'', "''")),
         Content::Sequence(items) => format!("[{}]", items.iter().map(written).collect::<Vec<_>>().join(", ")),
         Content::Mapping(entries) => {
-            let mut text = String::new();
-            for (index, (key, value)) in entries.iter().enumerate() {
-                let comma = if index > 0 { ", " } else { "" };
-                let _ = write!(text, "{comma}{}: {}", key.key_text(), written(value));
-            }
-            format!("{{{text}}}")
+            let entry = |(key, value): &(Node, Node)| format!("{}: {}", key_written(key), written(value));
+            format!("{{{}}}", entries.iter().map(entry).collect::<Vec<_>>().join(", "))
         }
     }
 }
 
+/// A key as YAML.
+pub(super) fn key_written(key: &Node) -> String {
+    if matches!(key.content, Content::Text(_)) { written(key) } else { key.key_text() }
+}
+
 /// A number, or a text such as `30 deg`, which parameters may have too.
-fn number(node: &Node, place: &str) -> Result<String, WrongPlace> {
+fn number(node: &Node, place: &str) -> Result<Change, WrongPlace> {
     match &node.content {
-        Content::Number(_) => Ok(written(node)),
-        Content::Text(text) if quantity(text).is_some() => Ok(text.clone()),
+        Content::Number(_) => Ok(Change(node.clone())),
+        Content::Text(text) if quantity(text).is_some() => Ok(Change(node.clone())),
         Content::Text(text) if text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') => Err(WrongPlace {
             title: format!("`{place}` is `{text}`, not a number"),
             help: "if this is a live parameter, write its name; if it is an entry of `materials`, give the place of its number there"

@@ -61,10 +61,12 @@ pub struct CraneSpec {
     pub crane: Crane,
     /// Mistakes in keys and shapes.
     pub(crate) mistakes: Vec<Mistake>,
-    /// Entries that were perhaps meant to change others.
-    pub(crate) lookalikes: Vec<Lookalike>,
+    /// What was noticed before there were types: some of these mistakes, and entries that were perhaps meant to change others.
+    pub(crate) noticed: Noticed,
     /// The file, to which its locations belong.
     pub(crate) source: SourceFile,
+    /// The file as which it is saved, with its changes.
+    pub(crate) saved: SourceFile,
     /// Its tree, for changes.
     pub(crate) tree: Node,
 }
@@ -75,6 +77,25 @@ impl CraneSpec {
     pub fn source(&self) -> &SourceFile {
         &self.source
     }
+
+    /// Whether reading it found no mistakes.
+    #[must_use]
+    pub fn is_sound(&self) -> bool {
+        self.mistakes.is_empty()
+    }
+
+    /// The file as which it is saved: with the [changes](Self::changed) that were laid over it, each as a part that extends the others.
+    #[must_use]
+    pub fn saved(&self) -> &SourceFile {
+        &self.saved
+    }
+}
+
+/// What is noticed while specs are laid over each other.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Noticed {
+    pub mistakes: Vec<Mistake>,
+    pub lookalikes: Vec<Lookalike>,
 }
 
 /// A new entry of a list whose name resembles that of an entry of the extended spec.

@@ -72,14 +72,14 @@ struct Found {
 
 impl Found {
     /// Warnings about a crane with values of parameters other than those of the spec, by name.
-    fn warnings(&self, spec: &CraneSpec, chain: &Chain, source: &SourceFile, set: &[(&str, f64)]) -> Diagnostics {
+    fn warnings(&self, spec: &CraneSpec, chain: &Chain, set: &[(&str, f64)]) -> Diagnostics {
         let value = |parameter: &Parameter| {
             set.iter().rev().find(|(name, _)| *name == parameter.name).map_or(parameter.default, |(_, value)| *value)
         };
         let values = chain.parameters.iter().map(value).collect();
         let mut warnings = self.warnings.clone();
         warnings.extend(plausibility::warnings(&spec.crane, chain, values, &self.judged));
-        Diagnostics::new(source, warnings)
+        Diagnostics::new(&spec.source, warnings)
     }
 }
 
@@ -87,7 +87,15 @@ impl Checked {
     /// Warnings for parameter values other than those of the spec, given by name and value.
     #[must_use]
     pub fn warnings_with(&self, set: &[(&str, f64)]) -> Diagnostics {
-        self.found.warnings(&self.spec, &self.chain, &self.spec.source, set)
+        self.found.warnings(&self.spec, &self.chain, set)
+    }
+
+    /// The unit of the number at a place, such as `links.boom.beam.section.box.height`, in SI: that which messages about it name. Empty
+    /// for a number without one.
+    #[must_use]
+    pub fn unit_at(&self, place: &str) -> &str {
+        let at = self.spec.span_at(place);
+        self.units.iter().find(|(span, _)| Some(*span) == at).map_or("", |(_, unit)| unit)
     }
 }
 
@@ -95,23 +103,32 @@ impl Checked {
 ///
 /// # Errors
 /// If the spec breaks any rule of the language; all mistakes are returned together, including those of reading.
-pub fn validate(spec: &CraneSpec, source: &SourceFile) -> Result<Chain, Diagnostics> {
-    expand(spec, source).map(|(chain, _)| chain)
+pub fn validate(spec: &CraneSpec) -> Result<Chain, Diagnostics> {
+    expand(spec).map(|(chain, _)| chain)
+}
+
+/// The chain of a spec before the checks that need a whole crane: what its parts are called.
+///
+/// # Errors
+/// The mistakes so far.
+pub fn outline(spec: &CraneSpec) -> Result<Chain, Diagnostics> {
+    let (check, chain) = Check::begin(spec);
+    check.end(spec)?;
+    Ok(chain)
 }
 
 /// Checks a spec, expands it into the chain of its bodies, and looks for implausible numbers.
 ///
 /// # Errors
 /// If the spec breaks any rule of the language; all mistakes are returned together, including those of reading.
-pub fn check(spec: CraneSpec, source: &SourceFile) -> Result<Checked, Diagnostics> {
-    let (chain, mut found) = expand(&spec, source)?;
-    let (warnings, units) = (found.warnings(&spec, &chain, source, &[]), std::mem::take(&mut found.units));
+pub fn check(spec: CraneSpec) -> Result<Checked, Diagnostics> {
+    let (chain, mut found) = expand(&spec)?;
+    let (warnings, units) = (found.warnings(&spec, &chain, &[]), std::mem::take(&mut found.units));
     Ok(Checked { spec, chain, warnings, units, found })
 }
 
-fn expand(spec: &CraneSpec, source: &SourceFile) -> Result<(Chain, Found), Diagnostics> {
-    let mut check = Check { mistakes: spec.mistakes.clone(), ..Check::default() };
-    let mut chain = check.crane(&spec.crane, source);
+fn expand(spec: &CraneSpec) -> Result<(Chain, Found), Diagnostics> {
+    let (mut check, mut chain) = Check::begin(spec);
     if check.mistakes.is_empty() {
         // The mass matrix exists only if there are no other mistakes.
         check.shared_columns(&chain, &spec.crane);
@@ -123,10 +140,7 @@ fn expand(spec: &CraneSpec, source: &SourceFile) -> Result<(Chain, Found), Diagn
         check.conditions(&mut chain, &spec.crane);
         check.events_allowed(&chain, &spec.crane);
     }
-    if !check.mistakes.is_empty() {
-        return Err(Diagnostics::new(source, misspelt(check.mistakes, &spec.lookalikes)));
-    }
-    Ok((chain, Found { warnings: check.warnings, units: check.units, judged: check.judged }))
+    Ok((chain, check.end(spec)?))
 }
 
 /// If a new entry lacks keys and its name is almost that of an entry of the extended spec, replaces its mistakes by one: the misspelt name.
@@ -268,6 +282,20 @@ struct Unknown {
 }
 
 impl<'a> Check<'a> {
+    /// All that needs no whole crane.
+    fn begin(spec: &'a CraneSpec) -> (Self, Chain) {
+        let mut check = Check { mistakes: spec.mistakes.clone(), ..Check::default() };
+        let chain = check.crane(&spec.crane, &spec.saved);
+        (check, chain)
+    }
+
+    fn end(self, spec: &CraneSpec) -> Result<Found, Diagnostics> {
+        if !self.mistakes.is_empty() {
+            return Err(Diagnostics::new(&spec.source, misspelt(self.mistakes, &spec.noticed.lookalikes)));
+        }
+        Ok(Found { warnings: self.warnings, units: self.units, judged: self.judged })
+    }
+
     fn report(&mut self, mistake: Mistake) {
         self.mistakes.push(mistake);
     }

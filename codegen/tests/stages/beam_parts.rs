@@ -14,7 +14,7 @@ fn beam(keys: &str) -> Chain {
          material: {{E: {E:e}, G: {G:e}, density: {DENSITY}, yield_stress: 3e8}}, {keys}}}\n"
     );
     let source = SourceFile::new("test.yaml", text);
-    read(&source).and_then(|spec| validate(&spec, &source)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
+    read(&source).and_then(|spec| validate(&spec)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
 }
 
 /// Mass, first and second moment along x about the beginning of the beam, kg, kg m, kg m².

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crane_codegen::spec::entries;
-use crane_codegen::{Change, Checked, Diagnostics, SourceFile, build, compile};
+use crane_codegen::{Change, Checked, Diagnostics, SourceFile, build, check, compile};
 
 /// All that a chain is, or the codes of all mistakes. `Debug` writes the shortest decimal that is a double, so the same text is the same bits.
 fn all(found: &Result<Checked, Diagnostics>) -> String {
@@ -47,10 +47,10 @@ fn a_changed_crane_is_that_of_the_saved_file() {
             ] {
                 let saved = source.changed(&change.text());
                 let read = compile::check(&saved);
-                let found = compile::check_changed(&checked, &source.text, &change);
-                let found = found.map(|(changed, text)| {
-                    assert_eq!(text, saved.text);
-                    changed
+                let changed = checked.spec.changed(&change);
+                let found = changed.and_then(|changed| {
+                    assert_eq!(*changed.saved(), saved);
+                    check(changed)
                 });
                 assert_eq!(all(&found), all(&read), "{}: {}", file.display(), change.text());
                 sound += usize::from(found.is_ok());
@@ -69,7 +69,7 @@ fn mistakes_of_changes_are_in_the_file() {
     let checked = compile::check(&source).expect("a crane");
     let lines = |keys: Change| {
         let change = Change::keys([("links", Change::list([keys]))]);
-        let found = compile::check_changed(&checked, text, &change).expect_err("a mistake");
+        let found = checked.spec.changed(&change).and_then(check).expect_err("a mistake");
         found.lines().collect::<Vec<_>>()
     };
     let found = lines(Change::keys([("name", "rod".into()), ("mass", (-3.0).into())]));

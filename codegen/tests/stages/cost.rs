@@ -7,7 +7,7 @@ use crane_codegen::{SourceFile, build, compile, read, validate};
 
 /// Operations of the forward dynamics of a spec.
 fn forward_dynamics(source: &SourceFile) -> usize {
-    let chain = read(source).and_then(|spec| validate(&spec, source)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"));
+    let chain = read(source).and_then(|spec| validate(&spec)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"));
     let analyses = Analyses { dynamics: true, ..chain.analyses };
     let report = compile::report(&chain, analyses);
     let cost = report.costs.iter().find(|cost| cost.function == "forward_dynamics").expect("forward dynamics");

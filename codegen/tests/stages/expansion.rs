@@ -8,7 +8,7 @@ use crane_codegen::{SourceFile, compile, read, validate};
 /// The chain of a spec with the given links and further keys.
 fn chain(rest: &str) -> Chain {
     let source = SourceFile::new("test.yaml", format!("format: 1\nname: test\n{rest}"));
-    read(&source).and_then(|spec| validate(&spec, &source)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
+    read(&source).and_then(|spec| validate(&spec)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
 }
 
 /// A beam of four sections with a link on its tip; `beam` are its further keys.

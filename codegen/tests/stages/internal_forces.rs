@@ -25,7 +25,7 @@ type Wrench = [[f64; 3]; 2];
 /// A crane with the given keys.
 fn crane(rest: &str) -> Chain {
     let source = SourceFile::new("test.yaml", format!("format: 1\nname: test\n{rest}"));
-    read(&source).and_then(|spec| validate(&spec, &source)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
+    read(&source).and_then(|spec| validate(&spec)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
 }
 
 /// A beam that is attached by `joint` at its beginning, with a point mass of [`LOAD`] at its tip.

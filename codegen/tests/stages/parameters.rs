@@ -63,7 +63,7 @@ const USES: [(&str, &str); 16] = [
 fn chain(text: &str) -> Result<Chain, Vec<&'static str>> {
     let source = SourceFile::new("test.yaml", text);
     read(&source)
-        .and_then(|spec| validate(&spec, &source))
+        .and_then(|spec| validate(&spec))
         .map_err(|found| found.mistakes().iter().map(|mistake| mistake.code).collect())
 }
 

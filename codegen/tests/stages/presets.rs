@@ -13,7 +13,7 @@ fn factors(combination: &str) -> [f64; 3] {
              combinations: [{{name: some, {combination}}}]\n"
         ),
     );
-    let chain = read(&source).and_then(|spec| validate(&spec, &source));
+    let chain = read(&source).and_then(|spec| validate(&spec));
     let chain = chain.unwrap_or_else(|mistakes| panic!("{combination}:\n{mistakes}"));
     let some = &chain.combinations[0];
     [

@@ -15,7 +15,7 @@ fn crane(rest: &str) -> Chain {
         "test.yaml",
         format!("format: 1\nname: test\nmaterials: {{steel: {{E: 2.1e11, G: 8.1e10, density: 7850}}}}\n{rest}"),
     );
-    read(&source).and_then(|spec| validate(&spec, &source)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
+    read(&source).and_then(|spec| validate(&spec)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
 }
 
 fn evaluate(chain: &Chain, id: FunctionId, [q, v, a]: [&[f64]; 3]) -> Vec<f64> {

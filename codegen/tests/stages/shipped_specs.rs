@@ -14,7 +14,7 @@ fn folder() -> PathBuf {
 /// A shipped spec as a chain; its mistakes fail the test.
 fn chain(name: &str) -> Chain {
     let source = build::open(&folder().join(format!("{name}.yaml"))).unwrap_or_else(|failure| panic!("{failure}"));
-    read(&source).and_then(|spec| validate(&spec, &source)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
+    read(&source).and_then(|spec| validate(&spec)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
 }
 
 /// Names of all shipped specs.
@@ -204,8 +204,7 @@ fn what_follows_begins_where_its_coupling_puts_it() {
         coupled("d", "a", "ratio: 1"),
     );
     let source = SourceFile::new("chain.yaml", text);
-    let chain =
-        read(&source).and_then(|spec| validate(&spec, &source)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"));
+    let chain = read(&source).and_then(|spec| validate(&spec)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"));
     let expected = [0.4, 0.1 - 0.5 * 0.4, 0.3 + 2.0 * (0.1 - 0.5 * 0.4), 7.0];
     assert!(
         chain.guess.iter().zip(expected).all(|(guess, expected)| (guess - expected).abs() < 1e-15),

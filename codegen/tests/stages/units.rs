@@ -1,17 +1,17 @@
 //! Numbers with units: every numeric key of the schema has a dimension, which messages and the schema tell alike.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use crane_codegen::chain::Chain;
-use crane_codegen::compile::{check, unit_at};
+use crane_codegen::compile::check;
 use crane_codegen::{SourceFile, build, json_schema};
 use serde_json::{Value, json};
 
 /// A quantity that no key has.
 const WRONG: &str = "7 bar s";
 /// Forms of the schema that are numbers.
-const NUMBERS: [&str; 4] = ["Number", "Angle", "Constant", "FixedAngle"];
+pub const NUMBERS: [&str; 4] = ["Number", "Angle", "Constant", "FixedAngle"];
 /// Keys that no spec of the project has, and those of which it has no number without other mistakes. Whether the rest of the crane stands does not matter.
 const OTHERS: &str = include_str!("units.yaml");
 
@@ -19,6 +19,35 @@ const OTHERS: &str = include_str!("units.yaml");
 const CONDITIONS: &str = "{format: 1, name: conditions, parameters: {log: {value: 10, unit: kg}},
   links: [{name: boom, joint: {prismatic: {axis: z}}, mass: log, com: [0, 0, 0]}],
   events: [{name: up, when: {result: boom_z, above: 1}, set: {log: 30}}, {name: down, when: {result: boom_z, below: 1}, set: {log: 40}}]}";
+
+/// Every motion of everything that follows one: positions, efforts, lengths, factors and inputs.
+fn motions() -> String {
+    let motions = [
+        "hold: 1",
+        "quintic: {from: 0, to: 1, duration: 1}",
+        "trapezoid: {from: 0, to: 1, duration: 1}",
+        "speed: {rate: 1, from: 0}",
+        "table: {times: [0, 1], values: [0, 1]}",
+    ];
+    let list = |row: &dyn Fn(usize, &str) -> String| {
+        motions.iter().enumerate().map(|(index, motion)| row(index, motion)).collect::<Vec<_>>().join(", ")
+    };
+    let links = list(&|i, _| format!("{{name: l{i}, joint: revolute, mass: 9, com: [1, 0, 0]}}"));
+    let drives = list(&|i, motion| {
+        format!("{{coordinate: l{i}_psi, stiffness: 1e5, motion: {{{motion}}}, effort: {{{motion}}}}}")
+    });
+    let loads = list(&|i, motion| format!("{{name: f{i}, link: l{i}, force: [1, 0, 0], scale: {{{motion}}}}}"));
+    let inputs = list(&|i, motion| format!("i{i}: {{unit: kg, motion: {{{motion}}}}}"));
+    let places = "from: {at: [9, 9, 9]}, to: {link: l0, at: [1, 0, 0]}";
+    let ropes = list(&|i, motion| {
+        format!("{{name: r{i}, {places}, law: {{rope: {{axial_stiffness: 1e6, motion: {{{motion}}}}}}}}}")
+    });
+    let beam = "{length: 1, sections: 2, material: m, section: {circle: {diameter: 1}}, damping: {beta: {psi: 1, theta: 1, phi: 1}}}";
+    format!(
+        "{{format: 1, name: motions, materials: {{m: {{E: 2e11, G: 8e10, density: 7850}}}}, links: [{links}, {{name: b, joint: revolute, beam: {beam}}}], \
+         drives: [{drives}], loads: [{loads}], inputs: {{{inputs}}}, connectors: [{ropes}]}}"
+    )
+}
 
 /// The numbers of a spec: their places as JSON pointers, the keys of the schema, and what this says about them.
 type Found = Vec<(String, String, Value)>;
@@ -28,30 +57,42 @@ struct Walk<'a> {
     found: Found,
 }
 
+/// The unit of a row: `…` is that of the reference to the mapping to which its key belongs, `…/s` that per second.
+fn unit_of(row: &Value, owner: &str) -> String {
+    match row["x-unit"].as_str().unwrap_or_default() {
+        "…/s" => owner.split(" or ").map(|unit| format!("{unit}/s")).collect::<Vec<_>>().join(" or "),
+        unit => unit.replace('…', owner),
+    }
+}
+
 impl Walk<'_> {
-    fn at(&mut self, schema: &Value, value: &Value, place: &str, key: &str) {
+    fn at(&mut self, schema: &Value, value: &Value, place: &str, (key, owner): (&str, &str)) {
         if let Some(name) = schema["$ref"].as_str().and_then(|path| path.rsplit('/').next()) {
+            let unit = unit_of(schema, owner);
             if !NUMBERS.contains(&name) {
                 let definition = self.schema["$defs"][name].clone();
-                self.at(&definition, value, place, name);
+                self.at(&definition, value, place, (name, &unit));
             } else if value.is_number() || value.is_string() {
-                self.found.push((place.to_owned(), key.to_owned(), schema.clone()));
+                // A shared type has another unit at every place where it is used.
+                let key = if schema["x-unit"] == unit { key.to_owned() } else { format!("{key} in {unit}") };
+                self.found.push((place.to_owned(), key, schema.clone()));
+                self.found.last_mut().expect("a row").2["x-unit"] = json!(unit);
             }
         }
         for form in ["anyOf", "oneOf"].iter().flat_map(|forms| schema[forms].as_array().into_iter().flatten()) {
-            self.at(form, value, place, key);
+            self.at(form, value, place, (key, owner));
         }
         match value {
             Value::Array(items) => {
                 for (index, item) in items.iter().enumerate() {
-                    self.at(&schema["items"], item, &format!("{place}/{index}"), &format!("{key}.*"));
+                    self.at(&schema["items"], item, &format!("{place}/{index}"), (&format!("{key}.*"), owner));
                 }
             }
             Value::Object(entries) => {
                 for (name, inner) in entries {
                     let below = [(&schema["properties"][name], name.as_str()), (&schema["additionalProperties"], "*")];
                     for (form, word) in below.into_iter().filter(|(form, _)| form.is_object()) {
-                        self.at(form, inner, &format!("{place}/{name}"), &format!("{key}.{word}"));
+                        self.at(form, inner, &format!("{place}/{name}"), (&format!("{key}.{word}"), owner));
                     }
                 }
             }
@@ -60,22 +101,29 @@ impl Walk<'_> {
     }
 }
 
-/// All numeric keys of the schema, each with a unit and a text.
-fn keys(schema: &Value, key: &str, about: bool, found: &mut Vec<String>) {
+/// All numeric keys of a definition, each with a unit and a text; `owners`: the units that references to it give to those with the unit of their owner.
+fn keys(whole: &Value, schema: &Value, (key, about): (&str, bool), owners: &[&str], found: &mut BTreeSet<String>) {
     let about = about || schema["description"].is_string();
-    let name = schema["$ref"].as_str().and_then(|path| path.rsplit('/').next());
-    if name.is_some_and(|name| NUMBERS.contains(&name)) {
-        assert!(about && schema["x-unit"].as_str().is_some_and(|unit| !unit.is_empty()), "{key}: {schema}");
-        found.push(key.to_owned());
+    if let Some(name) = schema["$ref"].as_str().and_then(|path| path.rsplit('/').next()) {
+        let units: BTreeSet<String> = owners.iter().map(|owner| unit_of(schema, owner)).collect();
+        if NUMBERS.contains(&name) {
+            assert!(about && units.iter().all(|unit| !unit.is_empty()) && !units.is_empty(), "{key}: {schema}");
+            let is_shared = schema["x-unit"].as_str().is_some_and(|unit| unit.starts_with('…'));
+            let of = |unit: &String| if is_shared { format!("{key} in {unit}") } else { key.to_owned() };
+            found.extend(units.iter().map(of));
+        } else {
+            let owners: Vec<&str> = units.iter().map(String::as_str).collect();
+            keys(whole, &whole["$defs"][name], (name, false), &owners, found);
+        }
     }
     let forms = ["anyOf", "oneOf"].iter().flat_map(|forms| schema[forms].as_array().into_iter().flatten());
-    forms.for_each(|form| keys(form, key, about, found));
+    forms.for_each(|form| keys(whole, form, (key, about), owners, found));
     for inner in ["items", "additionalProperties"].iter().filter_map(|inner| schema.get(inner)) {
-        keys(inner, &format!("{key}.*"), about, found);
+        keys(whole, inner, (&format!("{key}.*"), about), owners, found);
     }
     for (name, inner) in schema["properties"].as_object().into_iter().flatten() {
         // The word of a choice is described where it is.
-        keys(inner, &format!("{key}.{name}"), about && schema["required"] == json!([name]), found);
+        keys(whole, inner, (&format!("{key}.{name}"), about && schema["required"] == json!([name])), owners, found);
     }
 }
 
@@ -83,7 +131,7 @@ fn keys(schema: &Value, key: &str, about: bool, found: &mut Vec<String>) {
 fn specs() -> Vec<Value> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let folders = ["../specs", "../specs/examples", "tests/implausible"];
-    let mut texts = vec![OTHERS.to_owned(), CONDITIONS.to_owned()];
+    let mut texts = vec![OTHERS.to_owned(), CONDITIONS.to_owned(), motions()];
     for entry in folders.iter().flat_map(|name| std::fs::read_dir(folder.join(name)).expect("a folder")) {
         let path = entry.expect("an entry").path();
         if path.extension().is_some_and(|extension| extension == "yaml") {
@@ -116,7 +164,7 @@ fn a_wrong_dimension_is_told_at_every_numeric_key() {
     let mut wrong = Vec::new();
     for spec in specs() {
         let mut walk = Walk { schema: &schema, found: Vec::new() };
-        walk.at(&schema, &spec, "", "Crane");
+        walk.at(&schema, &spec, "", ("Crane", ""));
         for (place, key, row) in walk.found {
             if covered.contains_key(&key) {
                 continue;
@@ -141,7 +189,7 @@ fn a_wrong_dimension_is_told_at_every_numeric_key() {
                 .split(" or ")
                 .flat_map(|unit| unit.split(", "))
                 .any(|one| one == unit || one == "1" && unit.is_empty());
-            if !known && !of_row.starts_with('…') && of_row != "its own" {
+            if !known && !of_row.starts_with("its own") {
                 wrong.push(format!("{key} in {unit}: {row}"));
             }
             let right = if unit.is_empty() { "100 %".to_owned() } else { format!("1 {unit}") };
@@ -156,11 +204,8 @@ fn a_wrong_dimension_is_told_at_every_numeric_key() {
             covered.insert(key, unit.to_owned());
         }
     }
-    let mut all = Vec::new();
-    keys(&schema, "Crane", false, &mut all);
-    for (name, definition) in schema["$defs"].as_object().expect("definitions") {
-        keys(definition, name, false, &mut all);
-    }
+    let mut all = BTreeSet::new();
+    keys(&schema, &schema, ("Crane", false), &[""], &mut all);
     assert!(all.len() > 150, "{}", all.len());
     let missing: Vec<&String> = all.iter().filter(|key| !covered.contains_key(*key)).collect();
     assert!(missing.is_empty() && wrong.is_empty(), "not tried: {missing:?}\n{}", wrong.join("\n"));
@@ -168,7 +213,10 @@ fn a_wrong_dimension_is_told_at_every_numeric_key() {
     for (key, unit) in [
         ("Bristle.stiffness", "N/m"),
         ("Pad.stiffness.*", "N/m"),
-        ("Directions.phi", "N m s/rad"),
+        ("Directions.phi in s", "s"),
+        ("Directions.phi in N m/rad", "N m/rad"),
+        ("Directions.phi in N m s/rad", "N m s/rad"),
+        ("Speed.rate in rad/s or m/s", "rad/s"),
         ("Turn.x", "rad"),
         ("Run.step", "s"),
         ("Beam.length", "m"),
@@ -192,14 +240,14 @@ fn units_do_not_change_numbers() {
     let spec: Value = serde_yaml::from_str(plain).expect("YAML");
     let schema: Value = serde_json::from_str(&json_schema()).expect("JSON");
     let mut walk = Walk { schema: &schema, found: Vec::new() };
-    walk.at(&schema, &spec, "", "Crane");
-    let source = SourceFile::new("cantilever.yaml", spec.to_string());
+    walk.at(&schema, &spec, "", ("Crane", ""));
+    let checked = check(&SourceFile::new("cantilever.yaml", spec.to_string())).expect("a crane");
     let mut changed = spec.clone();
     let mut count = 0;
     for (place, ..) in walk.found {
-        let unit = unit_at(&source, &place[1..].replace('/', "."));
+        let unit = checked.unit_at(&place[1..].replace('/', "."));
         let Some(number) = spec.pointer(&place).and_then(Value::as_f64) else { continue };
-        let [from, to, power] = match unit.as_str() {
+        let [from, to, power] = match unit {
             "m" => ["m", "mm", "3"],
             "Pa" => ["Pa", "GPa", "-9"],
             "kg/m³" => ["kg/m³", "t/m³", "-3"],

@@ -5,13 +5,14 @@ use std::io::Write;
 use clap::CommandFactory;
 
 use crate::{
-    arguments::{Action, Arguments},
+    arguments::{Action, Arguments, Choice, spec_file},
     book, check, combinations, compare, compiled, completions, drives, ensemble, envelope, eval, example, exchange,
     explain, factors, fatigue, generate, help, info, linearise, margins, modes, new, page, picture, poses,
     problem::Outcome,
     run, screen,
     selection::Registry,
     sensitivity, simulate, stability, statics, strength,
+    variants::Edit,
 };
 
 /// Does what the arguments ask for, with the cranes of a registry.
@@ -23,24 +24,20 @@ pub fn execute(mut arguments: Arguments, mut registry: Registry, out: &mut dyn W
         if choice.compile {
             return compiled::execute(choice, &registry);
         }
-        if let Some(file) = choice.file() {
-            choice.name = registry.add_file(file, choice.strict)?;
-        }
-        if choice.rigid {
-            choice.name = registry.add_rigid(&choice.name, "leave `--rigid` out")?;
-        }
-        let name = choice.name.clone();
-        if let Some(combination) = &choice.combination {
-            registry.combine(&name, combination)?;
-        }
-        if let Some(poses) = arguments.action.as_ref().and_then(Action::poses) {
-            poses::hold(&poses.held, &poses.ranges, &name, &mut registry)?;
-        }
-        if let Some(Action::Margins(options)) = &arguments.action {
-            poses::hold(&options.held, &options.ranges, &name, &mut registry)?;
-        }
-        if let Some(held) = arguments.action.as_ref().and_then(Action::held) {
-            poses::hold(held, &[], &name, &mut registry)?;
+        let Choice { name, rigid, combination, strict, .. } = &choice.clone();
+        let (held, ranges) = arguments.action.as_ref().map_or((&[][..], &[][..]), Action::held);
+        let edits = [
+            rigid.then_some(Edit::Rigid("leave `--rigid` out")),
+            combination.as_deref().map(Edit::Combination),
+            (!held.is_empty() || !ranges.is_empty()).then_some(Edit::Hold(held, ranges)),
+        ];
+        let edits: Vec<Edit<'_>> = edits.into_iter().flatten().collect();
+        let name = match spec_file(name) {
+            Some(file) => registry.add_file(file, &edits, *strict)?,
+            None => registry.edit(name, &edits)?,
+        };
+        if let Some(choice) = arguments.action.as_mut().and_then(Action::choice) {
+            choice.name = name;
         }
         if let Some(Action::Sensitivity(options)) = &mut arguments.action {
             sensitivity::make_live(options, &mut registry)?;

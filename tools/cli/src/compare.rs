@@ -3,7 +3,7 @@
 
 use std::{io::Write, mem, time::Instant};
 
-use crane_codegen::{Change, compile};
+use crane_codegen::read;
 use crane_model::{Description, dyn_crane::DynCrane, dynamics::Method, results::Table};
 use crane_page::tables::{Case, FLEXIBLE, RIGID, add_runs, caution_of_runs, deflection, equilibria, extremes};
 
@@ -18,6 +18,7 @@ use crate::{
     selection::{Registry, set_inputs},
     simulate::{Trace, file_list, points, spoken, write_figure, write_figures, write_run},
     spec_file,
+    variants::{Edit, edited},
 };
 
 /// The rigid and the flexible crane.
@@ -33,32 +34,26 @@ pub fn compare(options: &Compare, registry: &Registry, out: &mut dyn Write) -> O
 pub fn load(options: &mut ComparePair, registry: &mut Registry) -> Outcome<()> {
     let ComparePair { first, second, strict, .. } = options;
     if let Some(file) = spec_file(first) {
-        *first = registry.add_file(file, *strict)?;
+        *first = registry.add_file(file, &[], *strict)?;
     }
     let Some(name) = second else {
         // The first becomes the rigid crane, as in the comparison of the eight-link cranes.
         let otherwise = format!("give a second crane to compare it with: `crane compare {first} other.yaml`");
-        let rigid = registry.add_rigid(first, &otherwise)?;
+        let rigid = registry.edit(first, &[Edit::Rigid(&otherwise)])?;
         *second = Some(mem::replace(first, rigid));
         return Ok(());
     };
     if let Some(file) = spec_file(name) {
-        let source = spec_file::open(file, spec_file::SPEC)?;
-        let checked = spec_file::check(&source, *strict)?;
-        let path = file.display().to_string();
-        if checked.chain.name == *first {
-            // Two versions of a crane share one name.
-            *name = format!("{first}_other");
-            let change = Change::keys([("name", name.as_str().into())]);
-            let (checked, text) = compile::check_changed(&checked, &source.text, &change).map_err(Problem::mistakes)?;
-            registry.add_checked(checked, text, Some(&path));
-        } else {
-            *name = registry.add_checked(checked, source.text, Some(&path));
-        }
+        let spec = read(&spec_file::open(file, spec_file::SPEC)?).map_err(Problem::mistakes)?;
+        // Two versions of a crane may share one name.
+        let other = format!("{first}_other");
+        let edit = (spec.crane.name.value.as_ref() == Some(first)).then_some(Edit::Name(&other));
+        let checked = edited(&spec, edit.as_slice())?;
+        *name = registry.add_checked(spec_file::warned(checked, *strict)?, &file.display().to_string());
     }
     if options.rigid {
         for name in [&mut options.first].into_iter().chain(&mut options.second) {
-            *name = registry.add_rigid(name, "leave `--rigid` out")?;
+            *name = registry.edit(name, &[Edit::Rigid("leave `--rigid` out")])?;
         }
     }
     Ok(())

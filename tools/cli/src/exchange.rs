@@ -7,6 +7,7 @@ use std::{
 
 use clap::ValueEnum;
 use crane_codegen::{
+    Checked,
     chain::{Bound, Chain, Refusal},
     compile,
     compile::NoFunction,
@@ -15,6 +16,7 @@ use crane_codegen::{
     exchange,
     exchange::{ImportOptions, Imported, Look},
     program::Product,
+    read,
 };
 
 use crane_live::{LiveCrane, imported::check_import};
@@ -29,8 +31,9 @@ use crate::{
     files, fmu, picture,
     problem::{Outcome, Problem},
     screen,
-    selection::{Registry, with_combination},
+    selection::Registry,
     spec_file,
+    variants::{Edit, edited},
 };
 
 /// Writes a crane as URDF, with its springs beside it, as MJCF, in C, or as a functional mock-up unit.
@@ -61,11 +64,10 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
         return picture::scene(options, registry, out);
     }
     let source = registry.source(&options.crane.name)?;
-    let (mut checked, mut spec) = (spec_file::check(&source, options.crane.strict)?, source.text);
-    if let Some(combination) = &options.crane.combination {
-        (checked, spec) = with_combination(&checked, &spec, combination)?;
-    }
-    let chain = checked.chain;
+    let edit = options.crane.combination.as_deref().map(Edit::Combination);
+    let checked = edited(&read(&source).map_err(Problem::mistakes)?, edit.as_slice())?;
+    let Checked { chain, spec, .. } = spec_file::warned(checked, options.crane.strict)?;
+    let spec = spec.saved().text.clone();
     keep_loops(options, &chain)?;
     let mut parameters = chain.parameter_defaults();
     let known: Vec<(&str, &str)> = chain.parameters.iter().map(|p| (p.name.as_str(), p.unit.as_str())).collect();

@@ -19,6 +19,7 @@ use crate::{
     quantity,
     selection::Registry,
     strength::{self, words},
+    variants::Edit,
 };
 
 /// The start of the run may differ from its end by this part of the largest range before it is said: with a slope of 3 it does a thousandth of the damage.
@@ -126,10 +127,8 @@ impl Repeated {
         };
         // Of its own: several specs may have one name.
         let mut own = Registry::default();
-        choice.name = own.add_file(&file, choice.strict)?;
-        if let Some(combination) = &choice.combination {
-            own.combine(&choice.name, combination)?;
-        }
+        let edit = choice.combination.as_deref().map(Edit::Combination);
+        choice.name = own.add_file(&file, edit.as_slice(), choice.strict)?;
         Ok(Self { word: word.to_owned(), crane: choice.open(&own)?, repetitions })
     }
 }

@@ -59,7 +59,7 @@ impl OtherMesh {
             if is_large { (0.5 * own).ceil() } else { 2.0 * own }
         });
         let change = change.ok_or("no beam has a number of `sections`")?;
-        let (checked, _) = registry.changed(&description.name, &change).ok().and_then(Result::ok).ok_or(NOT_MADE)?;
+        let checked = registry.changed(&description.name, &change).ok().and_then(Result::ok).ok_or(NOT_MADE)?;
         let mut crane_with = LiveCrane::new(checked.chain);
         let [own, other] = [description, (&crane_with as &dyn DynCrane).description()]
             .map(|description| divided.iter().map(|link| sections(description, link)).sum::<f64>());
@@ -225,8 +225,9 @@ pub fn name(crane: &str, sections: usize) -> String {
 /// Spec of that crane.
 pub fn spec(crane: &str, text: &str, sections: usize) -> Option<String> {
     let source = SourceFile::new(crane, text);
-    let change = with(&name(crane, sections), &read(&source).ok()?.crane, |_, _| sections as f64)?;
-    Some(source.changed(&change.text()).text)
+    let spec = read(&source).ok()?;
+    let change = with(&name(crane, sections), &spec.crane, |_, _| sections as f64)?;
+    Some(spec.changed(&change).ok()?.saved().text.clone())
 }
 
 /// A crane under another name with other numbers of sections; `None` for a crane without sections.

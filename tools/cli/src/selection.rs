@@ -2,7 +2,7 @@
 
 use std::{borrow::Cow, path::Path, sync::OnceLock};
 
-use crane_codegen::{Change, Checked, Diagnostics, SourceFile, chain::Chain, compile, diagnostic::code};
+use crane_codegen::{Change, Checked, Diagnostics, SourceFile, chain::Chain, check, compile, read};
 use crane_live::LiveCrane;
 use crane_model::{Description, InputInfo, ParameterError, ParameterInfo, Refusal, dyn_crane::DynCrane};
 
@@ -10,7 +10,8 @@ use crate::{
     arguments::{Choice, Parameters, STANDARD_INPUT},
     problem::{Outcome, Problem, nearest},
     quantity::number,
-    screen, spec_file, variants,
+    screen, spec_file,
+    variants::{self, Edit, edited},
 };
 
 /// Names and specs (YAML) of shipped cranes.
@@ -129,25 +130,39 @@ impl Registry {
         spec_file::parse(self.source(given)?, strict)
     }
 
-    /// Adds the crane of a YAML file in place of one of the same name; returns its name.
+    /// Adds the crane of a YAML file, with edits of its spec, in place of one of the same name; returns its name.
     ///
     /// # Errors
     /// The file cannot be read, or the spec has mistakes; or warnings, if `strict`.
-    pub(super) fn add_file(&mut self, file: &Path, strict: bool) -> Outcome<String> {
-        let source = spec_file::open(file, spec_file::SPEC)?;
-        let checked = spec_file::check(&source, strict)?;
-        Ok(self.add_checked(checked, source.text, Some(&file.display().to_string())))
+    pub(super) fn add_file(&mut self, file: &Path, edits: &[Edit<'_>], strict: bool) -> Outcome<String> {
+        let spec = read(&spec_file::open(file, spec_file::SPEC)?).map_err(Problem::mistakes)?;
+        let checked = spec_file::warned(edited(&spec, edits)?, strict)?;
+        Ok(self.add_checked(checked, &file.display().to_string()))
+    }
+
+    /// Adds a crane with edits of its spec, unless there are none, in place of one of the same name; returns its name.
+    ///
+    /// # Errors
+    /// There is no such crane, or its spec has mistakes with them.
+    pub(super) fn edit(&mut self, name: &str, edits: &[Edit<'_>]) -> Outcome<String> {
+        if edits.is_empty() {
+            return Ok(name.to_owned());
+        }
+        let entry = self.known(name)?;
+        let checked = match entry.checked.get() {
+            Some(checked) => edited(&checked.spec, edits)?,
+            None => edited(&read(&entry.source()).map_err(Problem::mistakes)?, edits)?,
+        };
+        let file = entry.file.clone();
+        Ok(self.add_checked(checked, &file))
     }
 
     /// As [`Self::add`], for a spec that has been checked, from a `file` beside which its surfaces are; returns the crane's name.
-    pub(super) fn add_checked(&mut self, mut checked: Checked, spec: String, file: Option<&str>) -> String {
+    pub(super) fn add_checked(&mut self, mut checked: Checked, file: &str) -> String {
         let name = checked.chain.name.clone();
-        let mut entry = Entry::new(&name, Cow::Owned(spec));
-        if let Some(file) = file {
-            file.clone_into(&mut entry.file);
-            spec_file::read_surfaces(&mut checked.chain, Path::new(file));
-        }
-        self.replace(Entry { checked: checked.into(), ..entry });
+        let entry = Entry::new(&name, Cow::Owned(checked.spec.saved().text.clone()));
+        spec_file::read_surfaces(&mut checked.chain, Path::new(file));
+        self.replace(Entry { checked: checked.into(), file: file.to_owned(), ..entry });
         name
     }
 
@@ -166,44 +181,15 @@ impl Registry {
         self.shipped
     }
 
-    /// Adds the crane with rigid beams and no other difference; returns its name.
-    pub(super) fn add_rigid(&mut self, name: &str, otherwise: &str) -> Outcome<String> {
-        self.crane(name)?;
-        let found = variants::rigid(name, &self.checked(name)?.spec.crane).map_err(|link| {
-            Problem::usage(
-                format!("the beam of {link} is curved or given element by element: it has no rigid form"),
-                "give it `sections`, `material` and `section` without `bend`, or write the rigid crane yourself",
-            )
-        })?;
-        let change = found
-            .ok_or_else(|| Problem::usage(format!("{name} has no beams that bend: it is rigid already"), otherwise))?;
-        let (checked, text) = self.changed(name, &change)?.map_err(|mistakes| {
-            if mistakes.mistakes().iter().any(|mistake| mistake.code == code::nothing_moves) {
-                Problem::usage(format!("with rigid beams, nothing in {name} can move: only its beams do"), otherwise)
-            } else {
-                Problem::failed(format!("{name} has no form with rigid beams: {}", mistakes.headline()), otherwise)
-            }
-        })?;
-        Ok(self.add_variant(name, checked, text))
+    /// A crane with a change of its spec; or the mistakes that it makes.
+    pub(super) fn changed(&self, name: &str, change: &Change) -> Outcome<Result<Checked, Diagnostics>> {
+        Ok(self.checked(name)?.spec.changed(change).and_then(check))
     }
 
-    /// A crane with changes of its spec, and its text; or the mistakes that they make.
-    pub(super) fn changed(&self, name: &str, change: &Change) -> Outcome<Result<(Checked, String), Diagnostics>> {
-        let entry = self.entry(name)?;
-        Ok(compile::check_changed(entry.checked()?, &entry.spec, change))
-    }
-
-    /// Computes a crane with one of the combinations of its spec from now on.
-    pub(super) fn combine(&mut self, name: &str, combination: &str) -> Outcome<()> {
-        let (checked, text) = self.combined(name, combination)?;
-        self.add_variant(name, checked, text);
-        Ok(())
-    }
-
-    /// Adds a crane whose spec is that of another one's file, changed; returns its name.
-    pub(super) fn add_variant(&mut self, of: &str, checked: Checked, text: String) -> String {
-        let file = self.entries.iter().find(|entry| entry.name == of).map(|entry| entry.file.clone());
-        self.add_checked(checked, text, file.as_deref())
+    /// Puts a crane in place of the one whose spec it has, changed.
+    pub(super) fn add_variant(&mut self, of: &str, checked: Checked) -> Outcome<String> {
+        let file = self.entry(of)?.file.clone();
+        Ok(self.add_checked(checked, &file))
     }
 
     /// What to write for a crane in place of the word CRANE: its file, or the name of a shipped one.
@@ -217,15 +203,8 @@ impl Registry {
 
     /// A live crane with the parameters and inputs of another one, and with a combination of the spec of both.
     pub(super) fn live_combined(&self, crane: &dyn DynCrane, combination: &str) -> Outcome<LiveCrane> {
-        let (checked, _) = self.combined(crane.description().name.as_str(), combination)?;
-        with_numbers_of(crane, LiveCrane::new(checked.chain))
-    }
-
-    /// A crane as its spec has it, with one of its combinations.
-    fn combined(&self, name: &str, combination: &str) -> Outcome<(Checked, String)> {
-        self.crane(name)?;
-        let entry = self.entry(name)?;
-        with_combination(entry.checked()?, &entry.spec, combination)
+        let spec = &self.checked(&crane.description().name)?.spec;
+        with_numbers_of(crane, LiveCrane::new(edited(spec, &[Edit::Combination(combination)])?.chain))
     }
 
     /// Names of the combinations of a crane's spec: at least one.
@@ -233,8 +212,8 @@ impl Registry {
     /// # Errors
     /// There is no such crane, or it has none.
     pub(super) fn combinations(&self, name: &str) -> Outcome<Vec<String>> {
-        self.crane(name)?;
-        names_of_combinations(&self.checked(name)?.chain)
+        let names = variants::names_of_combinations(&self.known(name)?.checked()?.spec.crane)?;
+        Ok(names.into_iter().map(str::to_owned).collect())
     }
 
     /// Names of all cranes.
@@ -277,8 +256,13 @@ impl Registry {
     /// # Errors
     /// There is no such crane, or its parameters cannot have these values.
     pub fn crane(&self, name: &str) -> Outcome<Box<dyn DynCrane>> {
+        self.known(name)?.open()
+    }
+
+    /// A crane by its name, which a user has written.
+    fn known(&self, name: &str) -> Outcome<&Entry> {
         if let Some(entry) = self.entries.iter().find(|entry| entry.name == name) {
-            return entry.open();
+            return Ok(entry);
         }
         let file = format!("{name}.yaml");
         let help = if Path::new(&file).exists() {
@@ -290,34 +274,6 @@ impl Registry {
         };
         Err(Problem::usage(format!("there is no crane `{name}`"), help))
     }
-}
-
-/// Names of the combinations of a crane: at least one.
-fn names_of_combinations(chain: &Chain) -> Outcome<Vec<String>> {
-    let names: Vec<String> = chain.combinations.iter().map(|one| one.name.clone()).collect();
-    if names.is_empty() {
-        return Err(Problem::usage(
-            format!("{} has no combinations", chain.name),
-            "add them to its spec, such as `combinations: [{name: lifting, weight: 1.2}]`",
-        ));
-    }
-    Ok(names)
-}
-
-/// A crane with one of its combinations, and its spec.
-///
-/// # Errors
-/// It has no such combination, or the spec with it has mistakes.
-pub fn with_combination(checked: &Checked, spec: &str, combination: &str) -> Outcome<(Checked, String)> {
-    let chain = &checked.chain;
-    let known = names_of_combinations(chain)?;
-    if !known.iter().any(|known| known == combination) {
-        let known: Vec<&str> = known.iter().map(String::as_str).collect();
-        let title = format!("{} has no combination `{combination}`", chain.name);
-        return Err(Problem::usage(title, meant(combination, &known, "combinations")));
-    }
-    let change = Change::keys([("combination", combination.into())]);
-    compile::check_changed(checked, spec, &change).map_err(Problem::mistakes)
 }
 
 /// A live crane with the parameters and inputs of another one of the same parameters and inputs.
@@ -494,7 +450,8 @@ fn index_of_known(name: &str, crane: &str, known: &[(&str, &str)]) -> Result<usi
     })
 }
 
-fn meant(word: &str, known: &[&str], what: &str) -> String {
+/// What to write in place of a word: the nearest of those that are known, and all of them.
+pub fn meant(word: &str, known: &[&str], what: &str) -> String {
     hint(nearest(word, known.iter().copied()), &known.join(", "), what)
 }
 

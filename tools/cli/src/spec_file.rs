@@ -36,7 +36,14 @@ pub fn parse(source: SourceFile, strict: bool) -> Outcome<(Chain, String)> {
 /// # Errors
 /// Those mistakes.
 pub fn check(source: &SourceFile, strict: bool) -> Outcome<Checked> {
-    let checked = compile::check(source).map_err(Problem::mistakes)?;
+    warned(compile::check(source).map_err(Problem::mistakes)?, strict)
+}
+
+/// A valid crane whose warnings are printed, and are mistakes if `strict`.
+///
+/// # Errors
+/// Those.
+pub fn warned(checked: Checked, strict: bool) -> Outcome<Checked> {
     if !checked.warnings.is_empty() {
         screen::warn(&checked.warnings);
         if strict {

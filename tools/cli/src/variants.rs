@@ -1,9 +1,139 @@
 //! Cranes that differ little from others: changes of their specs.
 
 use crane_codegen::{
-    Change,
-    spec::{Beam, Crane, Sections},
+    Change, Checked, CraneSpec, Diagnostics, check,
+    diagnostic::code,
+    outline,
+    spec::{Beam, Crane, Sections, entries},
 };
+
+use crate::{
+    poses,
+    problem::{Outcome, Problem},
+    selection::meant,
+};
+
+/// What an option changes in a crane.
+pub enum Edit<'a> {
+    /// Beams become rigid; what to do otherwise.
+    Rigid(&'a str),
+    /// One of its combinations is in force.
+    Combination(&'a str),
+    /// Drives hold their positions, those of the ranges at the values of live parameters.
+    Hold(&'a [String], &'a [String]),
+    /// It has another name.
+    Name(&'a str),
+}
+
+/// A crane with edits of its spec, which is checked once. What only the replaced parts referred to, parameters and inputs, is removed.
+///
+/// # Errors
+/// Mistakes of the spec itself; otherwise of the first edit that makes some, in its words.
+pub fn edited(spec: &CraneSpec, edits: &[Edit<'_>]) -> Outcome<Checked> {
+    edited_by(spec, edits, &mut check)
+}
+
+/// What checks a spec.
+type Check<'a> = &'a mut dyn FnMut(CraneSpec) -> Result<Checked, Diagnostics>;
+
+fn edited_by(spec: &CraneSpec, edits: &[Edit<'_>], check: Check<'_>) -> Outcome<Checked> {
+    if !edits.is_empty() && spec.is_sound() {
+        let all = edits.iter().try_fold(spec.clone(), |spec, edit| edit.applied(&spec));
+        if let Some(checked) = all.ok().and_then(|all| check_used(all, spec, check).ok()) {
+            return Ok(checked);
+        }
+    }
+    // What is wrong, step by step.
+    let mut checked = check(spec.clone()).map_err(Problem::mistakes)?;
+    for edit in edits {
+        let found = check_used(edit.applied(&checked.spec)?, &checked.spec, check);
+        checked = found.map_err(|found| edit.refused(&checked.chain.name, found))?;
+    }
+    Ok(checked)
+}
+
+/// Checks a changed spec, and removes parameters and inputs that are used in the one `before` it alone.
+fn check_used(mut spec: CraneSpec, before: &CraneSpec, check: Check<'_>) -> Result<Checked, Diagnostics> {
+    // An input may be all that uses a parameter.
+    for _ in 0..2 {
+        let found = match check(spec.clone()) {
+            Ok(checked) => return Ok(checked),
+            Err(found) => found,
+        };
+        let unused = [("parameters", code::unused_parameter), ("inputs", code::unused_input)].map(|(key, code)| {
+            let own = found.mistakes().iter().filter(|mistake| mistake.code == code);
+            let names = own.filter_map(|mistake| before.source().text.get(mistake.span.start..mistake.span.end));
+            let names = names.filter(|name| before.mentions(name)).map(|name| (name, Change::removed()));
+            (key, names.collect::<Vec<_>>())
+        });
+        let removed: Vec<_> = unused.into_iter().filter(|(_, names)| !names.is_empty()).collect();
+        if removed.is_empty() {
+            return Err(found);
+        }
+        spec = spec.changed(&Change::keys(removed.into_iter().map(|(key, names)| (key, Change::keys(names)))))?;
+    }
+    check(spec)
+}
+
+impl Edit<'_> {
+    /// The spec with the edit, not checked.
+    fn applied(&self, spec: &CraneSpec) -> Outcome<CraneSpec> {
+        let name = spec.crane.name.value.as_deref().unwrap_or_default();
+        let change = match self {
+            Self::Rigid(otherwise) => rigid(name, &spec.crane)
+                .map_err(|link| {
+                    Problem::usage(
+                        format!("the beam of {link} is curved or given element by element: it has no rigid form"),
+                        "give it `sections`, `material` and `section` without `bend`, or write the rigid crane yourself",
+                    )
+                })?
+                .ok_or_else(|| Problem::usage(format!("{name} has no beams that bend: it is rigid already"), *otherwise))?,
+            Self::Combination(combination) => {
+                let known = names_of_combinations(&spec.crane)?;
+                if !known.contains(combination) {
+                    let title = format!("{name} has no combination `{combination}`");
+                    return Err(Problem::usage(title, meant(combination, &known, "combinations")));
+                }
+                Change::keys([("combination", (*combination).into())])
+            }
+            Self::Hold(held, ranges) => {
+                let description = outline(spec).map_err(Problem::mistakes)?.description();
+                poses::hold(held, ranges, &description, &spec.crane)?
+            }
+            Self::Name(name) => Change::keys([("name", (*name).into())]),
+        };
+        spec.changed(&change).map_err(Problem::mistakes)
+    }
+
+    /// What mistakes of the edit mean.
+    fn refused(&self, name: &str, found: Diagnostics) -> Problem {
+        match self {
+            Self::Rigid(otherwise) if found.mistakes().iter().any(|mistake| mistake.code == code::nothing_moves) => {
+                Problem::usage(format!("with rigid beams, nothing in {name} can move: only its beams do"), *otherwise)
+            }
+            Self::Rigid(otherwise) => {
+                Problem::failed(format!("{name} has no form with rigid beams: {}", found.headline()), *otherwise)
+            }
+            _ => Problem::mistakes(found),
+        }
+    }
+}
+
+/// Names of the combinations of a crane: at least one.
+///
+/// # Errors
+/// It has none.
+pub fn names_of_combinations(spec: &Crane) -> Outcome<Vec<&str>> {
+    let names: Vec<&str> =
+        entries(spec.combinations.as_ref()).filter_map(|combination| combination.name.value.as_deref()).collect();
+    if names.is_empty() {
+        return Err(Problem::usage(
+            format!("{} has no combinations", spec.name.value.as_deref().unwrap_or_default()),
+            "add them to its spec, such as `combinations: [{name: lifting, weight: 1.2}]`",
+        ));
+    }
+    Ok(names)
+}
 
 /// Suffix of a crane's name in the name of the same crane with rigid beams.
 const RIGID: &str = "_rigid";
@@ -54,17 +184,50 @@ fn guesses_of_elements<'a>(spec: &'a Crane, links: &'a [&str]) -> impl Iterator<
 
 #[cfg(test)]
 mod tests {
-    use crane_codegen::{SourceFile, compile};
+    use crane_codegen::{Checked, SourceFile, check, compile, read};
+
+    use super::{Edit, edited_by};
+    use crate::problem::Problem;
 
     fn rigid(crane: &str, text: &str) -> Result<Option<String>, String> {
         let checked = compile::check(&SourceFile::new(crane, text)).unwrap_or_else(|mistakes| panic!("{mistakes}"));
         let Some(change) = super::rigid(crane, &checked.spec.crane)? else { return Ok(None) };
-        let (changed, text) = compile::check_changed(&checked, text, &change).unwrap_or_else(|found| panic!("{found}"));
+        let changed = checked.spec.changed(&change).and_then(check).unwrap_or_else(|found| panic!("{found}"));
+        let text = changed.spec.saved().text.clone();
         // What is saved is the same crane.
         let saved =
             compile::load(&SourceFile::new("saved.yaml", text.as_str())).unwrap_or_else(|found| panic!("{found}"));
         assert_eq!(format!("{:?}", changed.chain), format!("{saved:?}"));
         Ok(Some(text))
+    }
+
+    /// One check where nothing is wrong, two where an edit leaves a parameter unused, and the mistakes of the file as without edits.
+    #[test]
+    fn a_spec_with_edits_is_checked_once() {
+        let held = ["boom=0.3".to_owned()];
+        let edits = [Edit::Rigid(""), Edit::Combination("lift"), Edit::Hold(&held, &[])];
+        let checks = |more: &str| {
+            let text = BOOM.replace("{hold: 0}", if more.contains("angle") { "{hold: angle}" } else { "{hold: 0}" });
+            let text = format!("{text}combinations: [{{name: lift, weight: 1.5}}]\n{more}");
+            let spec = read(&SourceFile::new("boom.yaml", text)).expect("YAML");
+            let mut count = 0;
+            let found = edited_by(&spec, &edits, &mut |spec| {
+                count += 1;
+                check(spec)
+            });
+            (count, found)
+        };
+        for (more, checked) in [("", 1), ("parameters: {angle: {value: 0.1, unit: rad}}\n", 2)] {
+            let (count, found) = checks(more);
+            let Ok(Checked { chain, spec, .. }) = found else { panic!("a crane") };
+            assert_eq!((count, &*chain.name, chain.parameters.len()), (checked, "boom_rigid", 0));
+            assert!(spec.crane.combination.is_some() && spec.saved().text.contains("motion: {hold: 0.3}"));
+        }
+        for (more, told) in [("parameters: {spare: {value: 1}}\n", "E027"), ("run: {duration: -1}\n", "E031")] {
+            let (count, found) = checks(more);
+            assert!(matches!(found, Err(Problem::Mistakes(found)) if found.mistakes()[0].code == told), "{more}");
+            assert_eq!(count, 1);
+        }
     }
 
     const BOOM: &str = "format: 1

@@ -108,14 +108,14 @@ class Crane:
     @property
     def spec(self) -> str:
         """Its spec, YAML."""
-    def _changed(self, changes: str) -> str:
-        """Its spec with changes, YAML that extends it without naming it: a spec that `load(text=...)` takes."""
+    def _changed(self, changes: dict[str, Any]) -> str:
+        """Its spec with changes, keys with what is laid over their values, None to remove them: a spec that `load(text=...)` takes."""
     @property
     def combinations(self) -> list[str]:
         """Names of the combinations of weights and loads of its spec."""
     def _fixed_bodies(self, link: str) -> list[str]:
         """Names of the bodies of a link besides its own: of a robot, what its file fixes to the link."""
-    def _with_beam(self, link: str, to: str | None, point: list[float] | None, keys: str) -> str:
+    def _with_beam(self, link: str, to: str | None, point: list[float] | None, keys: dict[str, Any]) -> str:
         """Its spec with a beam in the place of a rigid link, from the link's frame to another one's, or to a point in it; `keys` are those of the beam."""
     @property
     def spec_hash(self) -> str:

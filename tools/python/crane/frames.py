@@ -1,10 +1,9 @@
 """Frames on links, chosen at the call: poses, Jacobians, velocities, accelerations."""
 
-import json
 import warnings
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -53,8 +52,7 @@ class Frames:
             for corner, offset in enumerate(_OFFSETS):
                 points.append({"name": f"frame_{index}_{corner}", on: link, "at": [float(x) for x in at + offset]})
         removed = [{"name": point, "remove": True} for point in crane.info["points"]]
-        changes = f"points: {json.dumps(removed + points)}\n"
-        self._crane = _with(crane, changes)
+        self._crane = _with(crane, {"points": removed + points})
 
     def __repr__(self) -> str:
         return f"Frames({', '.join(self.names)})"
@@ -134,7 +132,7 @@ class Frames:
         with warnings.catch_warnings():
             # Masses that are light for a crane.
             warnings.simplefilter("ignore")
-            crane = _with(self._crane, f"links: {json.dumps(masses)}\n")
+            crane = _with(self._crane, {"links": masses})
         axes = crane.transforms(crane.guess)[..., -1, :3, :3]
         moved = np.diagonal(crane.mass_matrix(crane.guess), axis1=-2, axis2=-1)
         sliding = crane.bias(crane.guess, np.zeros(crane.n)) / moved
@@ -142,7 +140,7 @@ class Frames:
         return gravity
 
 
-def _with(crane: "Crane", changes: str) -> "Crane":
+def _with(crane: "Crane", changes: dict[str, Any]) -> "Crane":
     """The crane with a change of its spec."""
     return type(crane)(crane.source, text=crane._changed(changes), parameters=crane.parameters, invalid="raise", inputs=crane.inputs)
 

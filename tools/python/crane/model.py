@@ -3,7 +3,6 @@
 import difflib
 import html
 import itertools
-import json
 import math
 import os
 import warnings
@@ -194,7 +193,7 @@ class Crane(Closed, _native.Crane):
         if combination not in self.combinations:
             known = ", ".join(self.combinations) or "none"
             raise ValueError(f"{self.name} has no combination {combination!r}; its combinations: {known}")
-        changed = self._changed(f"combination: {combination}\n")
+        changed = self._changed({"combination": combination})
         return type(self)(self.source, text=changed, parameters=self.parameters, inputs=self.inputs)
 
     def with_beam(
@@ -226,9 +225,9 @@ class Crane(Closed, _native.Crane):
         Raises ValueError if the link cannot become a beam, and SpecError for wrong keys of the beam.
         """
         keys = {"sections": sections, "material": material, "section": section, **beam}
-        text = "\n".join(f"{key}: {json.dumps(value)}" for key, value in keys.items() if value is not None)
+        keys = {key: value for key, value in keys.items() if value is not None}
         to, point = (to, None) if to is None or isinstance(to, str) else (None, [float(x) for x in to])
-        bending = type(self)(self.source, text=self._with_beam(link, to, point, text), parameters=self.parameters, inputs=self.inputs)
+        bending = type(self)(self.source, text=self._with_beam(link, to, point, keys), parameters=self.parameters, inputs=self.inputs)
         before, after = (sum(body["mass"] for body in crane.info["bodies"]) for crane in (self, bending))
         fixed = ", ".join(self._fixed_bodies(link))
         if fixed and after < before:

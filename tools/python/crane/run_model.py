@@ -160,7 +160,7 @@ def following(crane: "Crane", inputs: Mapping[str, Any], t: Array, named: str) -
     from .model import _load_again
 
     known = [of["name"] for of in crane.info["inputs"]]
-    lines = []
+    changed: dict[str, Any] = {}
     for name, given in inputs.items():
         if name not in known:
             raise ValueError(f"{named}: there is no input {name!r}: " + (f"write one of {', '.join(known)}" if known else "the spec has none"))
@@ -170,8 +170,7 @@ def following(crane: "Crane", inputs: Mapping[str, Any], t: Array, named: str) -
             raise ValueError(f"{named}: the input {name!r} has shape {values.shape}, and its times {times.shape}: give one value for each time")
         if len(times) > ROWS:
             raise ValueError(f"{named}: the input {name!r} has {len(times)} values, and a table at most {ROWS}: give fewer, as (times, values)")
-        table = ", ".join(f"{key}: [{', '.join(f'{number:.17g}' for number in numbers)}]" for key, numbers in (("times", times), ("values", values)))
-        lines.append(f"  {name}: {{value: ~, motion: {{table: {{{table}, shape: spline}}}}}}\n")
-    text = crane._changed("inputs:\n" + "".join(lines))
+        changed[name] = {"value": None, "motion": {"table": {"times": times.tolist(), "values": values.tolist(), "shape": "spline"}}}
+    text = crane._changed({"inputs": changed})
     kept = {name: value for name, value in crane.inputs.items() if name not in inputs}
     return _load_again(crane.source, text, crane.parameters, kept)

@@ -10,7 +10,7 @@ use crane_codegen::diagnostic::MAX_BYTES;
 use crane_codegen::edit::{BeamEnd, Unbending};
 use crane_codegen::exchange::ImportOptions;
 use crane_codegen::units::Quantity;
-use crane_codegen::{Checked, SourceFile, build, edit, exchange, files};
+use crane_codegen::{Change, Checked, SourceFile, build, edit, exchange, files};
 use crane_live::LiveCrane;
 use crane_live::imported::check_import;
 use crane_live::rows::Evaluation;
@@ -23,7 +23,7 @@ use crane_quantities::FunctionId;
 use crane_specs::SPECS;
 use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBool, PyDict};
 
 use crate::arrays::{Argument, Joined};
 use crate::mistakes::{self, BadRow, Invalid, ParameterError, spec_error, warn, warn_of_rows, warn_of_spec};
@@ -118,6 +118,29 @@ fn not_read(py: Python<'_>, failure: build::Failure) -> PyErr {
     }
 }
 
+/// A change of a spec: mappings, lists, texts and numbers; `None` removes a key.
+fn change(value: &Bound<'_, PyAny>) -> PyResult<Change> {
+    if value.is_none() {
+        Ok(Change::removed())
+    } else if let Ok(flag) = value.cast::<PyBool>() {
+        Ok(flag.is_true().into())
+    } else if let Ok(text) = value.extract::<String>() {
+        Ok(text.as_str().into())
+    } else if let Ok(number) = value.extract::<f64>() {
+        Ok(number.into())
+    } else if let Ok(keys) = value.cast::<PyDict>() {
+        Ok(Change::keys(entries(keys)?))
+    } else {
+        let items = value.try_iter()?.map(|item| change(&item?));
+        Ok(Change::list(items.collect::<PyResult<Vec<_>>>()?))
+    }
+}
+
+/// Keys with what is laid over their values.
+fn entries(keys: &Bound<'_, PyDict>) -> PyResult<Vec<(String, Change)>> {
+    keys.iter().map(|(key, value)| Ok((key.extract()?, change(&value)?))).collect()
+}
+
 #[pymethods]
 impl Crane {
     #[new]
@@ -195,10 +218,10 @@ impl Crane {
         &self.source.text
     }
 
-    /// Its spec with changes: a spec that extends it, in one text.
+    /// Its spec with changes, keys with what is laid over their values: a spec that extends it, in one text.
     #[pyo3(name = "_changed")]
-    fn changed(&self, changes: &str) -> String {
-        self.source.changed(changes).text
+    fn changed(&self, changes: &Bound<'_, PyAny>) -> PyResult<String> {
+        Ok(self.source.changed(&change(changes)?.text()).text)
     }
 
     /// Its spec with a beam in the place of a rigid link, from the link's frame to another one's, or to a point in it; `keys` are those of the beam.
@@ -209,14 +232,14 @@ impl Crane {
         link: &str,
         to: Option<&str>,
         point: Option<[f64; 3]>,
-        keys: &str,
+        keys: &Bound<'_, PyDict>,
     ) -> PyResult<String> {
         let end = match (to, point) {
             (Some(to), _) => BeamEnd::Named(to),
             (None, Some(point)) => BeamEnd::Point(point),
             (None, None) => BeamEnd::Next,
         };
-        match edit::with_beam(&self.source, link, end, keys) {
+        match edit::with_beam(&self.source, link, end, entries(keys)?) {
             Ok(changed) => Ok(changed.text),
             Err(Unbending::Mistakes(found)) => Err(spec_error(py, &found)),
             Err(Unbending::Refused(why)) => Err(PyValueError::new_err(why)),

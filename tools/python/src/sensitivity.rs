@@ -1,6 +1,6 @@
 //! Derivatives of a crane at rest by its numbers, row by row.
 
-use crane_codegen::SourceFile;
+use crane_codegen::{Checked, compile};
 use crane_live::LiveCrane;
 use crane_live::sensitivity::{
     Differences, FixedNumber, Output, Refused, Sensitivity, Settings, sensitivity, with_live_numbers,
@@ -28,12 +28,12 @@ impl Crane {
         invalid: &str,
     ) -> PyResult<Bound<'py, PyDict>> {
         let invalid = Invalid::named(invalid)?;
-        let (with_numbers, source, names) = self.with_live_numbers(py, &numbers)?;
+        let (with_numbers, checked, names) = self.with_live_numbers(py, &numbers)?;
         let description = with_numbers.description();
         let (mut parameters, mut fixed) = (Vec::new(), Vec::new());
         for name in &names {
             if name.contains('.') {
-                fixed.push(FixedNumber::new(&source, name).map_err(|refused| refusal(py, refused))?);
+                fixed.push(FixedNumber::new(&checked, name).map_err(|refused| refusal(py, refused))?);
             } else {
                 parameters.push(parameter_index(description, name)?);
             }
@@ -138,12 +138,13 @@ fn by_all(
 }
 
 impl Crane {
-    /// The crane with the numbers at places of the spec as live parameters, its spec, and the names of all.
-    fn with_live_numbers(&self, py: Python<'_>, numbers: &[String]) -> PyResult<(LiveCrane, SourceFile, Vec<String>)> {
+    /// The crane with the numbers at places of the spec as live parameters, what checking it found, and the names of all.
+    fn with_live_numbers(&self, py: Python<'_>, numbers: &[String]) -> PyResult<(LiveCrane, Checked, Vec<String>)> {
         let mut names = numbers.to_vec();
-        let changed = with_live_numbers(&self.source, &mut names).map_err(|refused| refusal(py, refused))?;
-        let Some(changed) = changed else { return Ok((self.live.clone(), self.source.clone(), names)) };
-        let live = LiveCrane::from_spec(&changed).map_err(|mistakes| spec_error(py, &mistakes))?;
+        let checked = compile::check(&self.source).map_err(|mistakes| spec_error(py, &mistakes))?;
+        let changed = with_live_numbers(&checked, &mut names).map_err(|refused| refusal(py, refused))?;
+        let Some(changed) = changed else { return Ok((self.live.clone(), checked, names)) };
+        let live = LiveCrane::new(changed.chain.clone());
         let inputs = (0..self.live.description().inputs.len()).map(|index| self.live.input(index));
         Ok((live.with_inputs(&inputs.collect::<Vec<_>>()), changed, names))
     }

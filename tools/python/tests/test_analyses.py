@@ -45,8 +45,8 @@ def test_statics_with_drives_that_are_held(knuckle):
     rest = knuckle.statics(hold={"main_boom": "-30 deg", "extension_x": extensions})
     assert rest.q.shape == (2, knuckle.n) and rest.stable.all()
     for row, extension in enumerate(extensions):
-        changes = f"drives: [{{coordinate: main_boom_theta, motion: {{hold: -30 deg}}}}, {{coordinate: extension_x, motion: {{hold: {extension}}}}}]"
-        written = crane.load("held.yaml", text=knuckle._changed(changes)).statics()
+        drives = [{"coordinate": name, "motion": {"hold": value}} for name, value in (("main_boom_theta", "-30 deg"), ("extension_x", extension))]
+        written = crane.load("held.yaml", text=knuckle._changed({"drives": drives})).statics()
         np.testing.assert_allclose(rest.q[row], written.q, atol=1e-9)
         # N m and N; forces balance to 1e-10 of some 1e5.
         np.testing.assert_allclose(rest.drive_efforts[row], written.drive_efforts, atol=1e-3)

@@ -172,7 +172,7 @@ def test_links_of_a_robot_are_where_its_file_has_them():
     # A place in the axes of the file, and the same as a point of interest.
     place = frames.poses(q)[:, names.index("upper")] @ [0.4, 0.0, 0.1, 1.0]
     np.testing.assert_allclose(robot.frames({"centre": ("upper", [0.4, 0.0, 0.1])}).poses(q)[:, 0, :3, 3], place[:, :3], atol=1e-13)
-    points = crane.load("robot.yaml", text=robot._changed("points: [{name: centre, frame: upper, at: [0.4, 0, 0.1]}, {name: tip, frame: tool0}]"))
+    points = crane.load("robot.yaml", text=robot._changed({"points": [{"name": "centre", "frame": "upper", "at": [0.4, 0, 0.1]}, {"name": "tip", "frame": "tool0"}]}))
     found = points.points(q)[:, [points.info["points"].index(name) for name in ("centre", "tip")]]
     np.testing.assert_allclose(found, np.stack([place[:, :3], wanted[:, names.index("tool0"), :3, 3]], axis=1), atol=1e-13)
 

@@ -23,7 +23,7 @@ pub use crane::{
 };
 pub use exchange::{CNumber, Export, Fmi, Import, Language, Picture};
 pub use number::seconds;
-pub use poses::{Held, Poses, Sensitivity, Statics};
+pub use poses::{Poses, Sensitivity, Statics};
 pub use run::{Book, Compare, ComparePair, Ensemble, Page, Run, Simulate, Step, Timing};
 
 const EXAMPLES: &str = "\
@@ -218,13 +218,14 @@ impl Action {
         }
     }
 
-    /// The drives that hold a position, where nothing is varied.
-    pub fn held(&self) -> Option<&Held> {
+    /// The drives that hold a position, and ranges over which others do.
+    pub fn held(&self) -> (&[String], &[String]) {
         match self {
-            Action::Sensitivity(options) => Some(&options.held),
-            Action::Picture(options) => Some(&options.held),
-            Action::Export(options) if options.is_scene() => Some(&options.held),
-            _ => None,
+            Action::Margins(options) => (&options.held.held, &options.ranges),
+            Action::Sensitivity(options) => (&options.held.held, &[]),
+            Action::Picture(options) => (&options.held.held, &[]),
+            Action::Export(options) if options.is_scene() => (&options.held.held, &[]),
+            _ => self.poses().map_or((&[], &[]), |poses| (&poses.held.held, &poses.ranges)),
         }
     }
 }

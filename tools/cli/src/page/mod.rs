@@ -74,8 +74,7 @@ fn fatigue_of(options: &Page, given: &str, registry: &Registry) -> Outcome<Repor
 
 /// What moves what at rest.
 fn moves(crane: &dyn DynCrane, registry: &Registry) -> Outcome<Value> {
-    let spec = registry.spec(&crane.description().name).unwrap_or_default();
-    Ok(moves_of_page(&registry.live(crane)?, spec))
+    Ok(moves_of_page(&registry.live(crane)?, registry.checked(&crane.description().name)?))
 }
 
 /// A crane and its rigid twin in equilibrium, the twin first.

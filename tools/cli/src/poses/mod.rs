@@ -4,7 +4,7 @@ mod quantities;
 
 use std::{io::Write, num::NonZeroUsize, path::Path};
 
-use crane_codegen::{Change, Diagnostics, SourceFile, diagnostic::code, spec::Crane};
+use crane_codegen::{Change, spec::Crane};
 use crane_model::{
     CoordinateKind, Description,
     dyn_crane::DynCrane,
@@ -13,7 +13,7 @@ use crane_model::{
 use crane_page::tables::Report;
 
 use crate::{
-    arguments::{Action, Analysis, Held, Poses},
+    arguments::{Action, Analysis, Poses},
     envelope::{self, read_ranges},
     files,
     integration::batches,
@@ -24,18 +24,15 @@ use crate::{
 };
 use quantities::{Quantities, Row, figure, table};
 
-/// Puts the crane whose drives hold their positions in place of the crane. Positions that `--range` varies become live parameters, so
-/// that the crane is derived once.
-pub fn hold(held: &Held, ranges: &[String], name: &str, registry: &mut Registry) -> Outcome<()> {
-    let held = &held.held;
-    if held.is_empty() && ranges.is_empty() {
-        return Ok(());
-    }
-    let crane = registry.crane(name)?;
-    let description = crane.description();
-    let mut changes = Changes::default();
+/// What makes the drives of a crane hold their positions. Positions that `--range` varies become live parameters, so that the crane is
+/// derived once.
+///
+/// # Errors
+/// There is no such drive, or a position is wrong.
+pub fn hold(held: &[String], ranges: &[String], description: &Description, spec: &Crane) -> Outcome<Change> {
+    let (mut parameters, mut drives) = (Vec::new(), Vec::new());
     let mut is_held = vec![false; description.drives.len()];
-    let offset = offset_drives(&registry.checked(name)?.spec.crane);
+    let offset = offset_drives(spec);
     let name_of = |drive: usize| format!("`{}`", description.coordinates[description.drives[drive].coordinate].name);
     for text in held {
         let (drive, _) = text.split_once('=').ok_or_else(|| {
@@ -53,7 +50,7 @@ pub fn hold(held: &Held, ranges: &[String], name: &str, registry: &mut Registry)
             let title = format!("{} is held twice", name_of(drive));
             return Err(Problem::usage(title, "leave one of the two out"));
         }
-        changes.drives.push(held_at(description, drive, value.into(), &offset));
+        drives.push(held_at(description, drive, value.into(), &offset));
     }
     for axis in &read_ranges(ranges, description)?.0 {
         if let Varied::Drive(drive) = axis.varied {
@@ -63,28 +60,16 @@ pub fn hold(held: &Held, ranges: &[String], name: &str, registry: &mut Registry)
             }
             let info = &description.coordinates[description.drives[drive].coordinate];
             let parameter = parameter_of(description, drive);
-            changes.drives.push(held_at(description, drive, parameter.as_str().into(), &offset));
+            drives.push(held_at(description, drive, parameter.as_str().into(), &offset));
             let entry = Change::keys([("value", axis.values[0].into()), ("unit", info.kind.unit().into())]);
-            changes.parameters.push((parameter, entry));
+            parameters.push((parameter, entry));
         }
     }
-    // Inputs and parameters of motions that no longer take place would be reported as unused; an input may be all that uses a parameter.
-    let mut tries = 0..3;
-    let (checked, text) = loop {
-        let found = match registry.changed(name, &changes.all(name))? {
-            Ok(changed) => break changed,
-            Err(found) => found,
-        };
-        let [parameters, inputs] = unused(&found, registry.checked(name)?.spec.source());
-        if tries.next().is_none() || parameters.is_empty() && inputs.is_empty() {
-            return Err(Problem::mistakes(found));
-        }
-        let removed = |names: Vec<String>| names.into_iter().map(|name| (name, Change::removed()));
-        changes.parameters.extend(removed(parameters));
-        changes.inputs.extend(removed(inputs));
-    };
-    registry.add_variant(name, checked, text);
-    Ok(())
+    let lists = [
+        (!parameters.is_empty()).then(|| ("parameters", Change::keys(parameters))),
+        (!drives.is_empty()).then(|| ("drives", Change::list(drives))),
+    ];
+    Ok(Change::keys(lists.into_iter().flatten()))
 }
 
 /// The number of `--hold NAME=VALUE`, of a coordinate or its rate.
@@ -112,34 +97,6 @@ pub fn held_number(text: &str, kind: CoordinateKind, is_rate: bool) -> Outcome<f
         ));
     }
     Ok(number)
-}
-
-/// Parameters and inputs to which nothing refers.
-fn unused(found: &Diagnostics, source: &SourceFile) -> [Vec<String>; 2] {
-    [code::unused_parameter, code::unused_input].map(|code| {
-        let mistakes = found.mistakes().iter().filter(|mistake| mistake.code == code);
-        mistakes
-            .filter_map(|mistake| source.text.get(mistake.span.start..mistake.span.end).map(str::to_owned))
-            .collect()
-    })
-}
-
-/// What is laid over a spec.
-#[derive(Default)]
-struct Changes {
-    parameters: Vec<(String, Change)>,
-    inputs: Vec<(String, Change)>,
-    drives: Vec<Change>,
-}
-
-impl Changes {
-    fn all(&self, name: &str) -> Change {
-        let named = [("parameters", &self.parameters), ("inputs", &self.inputs)];
-        let named = named.into_iter().filter(|(_, entries)| !entries.is_empty());
-        let named = named.map(|(key, entries)| (key, Change::keys(entries.iter().cloned())));
-        let drives = (!self.drives.is_empty()).then(|| ("drives", Change::list(self.drives.iter().cloned())));
-        Change::keys([("name", name.into())].into_iter().chain(named).chain(drives))
-    }
 }
 
 /// Coordinates whose drives have an offset.

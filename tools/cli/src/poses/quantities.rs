@@ -83,7 +83,7 @@ impl<'a> Subject<'a> {
         let change = checked.and_then(|checked| variants::rigid(&description.name, &checked.spec.crane).ok()?);
         // A crane that moves by its beams alone has no rigid form.
         let twin = change.and_then(|change| registry.changed(&description.name, &change).ok()?.ok());
-        let twin = twin.map(|(checked, _)| LiveCrane::new(checked.chain));
+        let twin = twin.map(|checked| LiveCrane::new(checked.chain));
         let rigid = twin.filter(|twin| twin.description().parameters.len() == description.parameters.len());
         let varies = |index| axes.0.iter().any(|axis| axis.varied == Varied::Parameter(index));
         let load = only_mass(description).filter(|load| !varies(*load) && matches!(wanted, Quantities::Statics));

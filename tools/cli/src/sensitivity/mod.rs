@@ -9,7 +9,7 @@ pub use page::moves_of_page;
 
 use std::{io::Write, path::Path};
 
-use crane_codegen::{SourceFile, compile};
+use crane_codegen::{Checked, check};
 use crane_live::LiveCrane;
 use crane_live::sensitivity::{
     self, Differences, FixedNumber, Group, LargestLoad, NoLargestLoad, Output, Refused, cautions, label,
@@ -38,8 +38,7 @@ use crate::{
 /// There is no number at a place, or it determines the structure of the crane.
 pub fn make_live(options: &mut Sensitivity, registry: &mut Registry) -> Outcome<()> {
     let name = options.analysis.crane.name.clone();
-    let Some(text) = registry.spec(&name) else { return Ok(()) };
-    let source = SourceFile::new(format!("{name}.yaml"), text);
+    let Ok(checked) = registry.checked(&name) else { return Ok(()) };
     // A place that is given twice counts once.
     let mut numbers: Vec<String> = Vec::new();
     for number in options.numbers.drain(..) {
@@ -48,9 +47,8 @@ pub fn make_live(options: &mut Sensitivity, registry: &mut Registry) -> Outcome<
         }
     }
     options.numbers = numbers;
-    let changed = with_live_numbers(&source, &mut options.numbers)?;
-    if let Some(changed) = changed {
-        registry.add(&name, changed.text);
+    if let Some(changed) = with_live_numbers(checked, &mut options.numbers)? {
+        registry.add_variant(&name, changed)?;
     }
     Ok(())
 }
@@ -185,9 +183,7 @@ pub fn sensitivity(options: &Sensitivity, registry: &Registry, out: &mut dyn Wri
         return run::sensitivity(options, &request, &crane, out);
     }
     let loaded = if options.largest_load { Some(loaded(options, &crane)?) } else { None };
-    let text = registry.spec(&description.name).unwrap_or_default();
-    let source = SourceFile::new(format!("{}.yaml", description.name), text);
-    let changes = changes(&request, &source, &crane, loaded.as_ref())?;
+    let changes = changes(&request, registry.checked(&description.name)?, &crane, loaded.as_ref())?;
     let steps: Vec<f64> = changes.numbers.iter().map(|number| number.step).collect();
     let cautions = match &loaded {
         Some((largest, asked)) => largest.cautions(&changes.found, &crane, asked, &changes.fixed, &steps),
@@ -285,7 +281,7 @@ fn facts_of_load(
 }
 
 /// The changes that are asked for.
-fn changes(request: &Request<'_>, source: &SourceFile, crane: &LiveCrane, loaded: Option<&Loaded>) -> Outcome<Changes> {
+fn changes(request: &Request<'_>, checked: &Checked, crane: &LiveCrane, loaded: Option<&Loaded>) -> Outcome<Changes> {
     let settings = &request.settings;
     let own = crane;
     let description = crane.description();
@@ -301,7 +297,7 @@ fn changes(request: &Request<'_>, source: &SourceFile, crane: &LiveCrane, loaded
     };
     let mut numbers: Vec<Number> = parameters.iter().map(|&index| Number::live(&crane, index)).collect();
     let fixed: Vec<FixedNumber> =
-        places.iter().map(|place| FixedNumber::new(source, place)).collect::<Result<_, _>>()?;
+        places.iter().map(|place| FixedNumber::new(checked, place)).collect::<Result<_, _>>()?;
     for number in &fixed {
         let Differences { derivatives, errors, .. } = number.differentiate(&crane, &found, settings)?;
         found.derivatives.push(derivatives);
@@ -323,7 +319,7 @@ fn changes(request: &Request<'_>, source: &SourceFile, crane: &LiveCrane, loaded
             number.errors = Some(vec![0.0; found.outputs.len() - 1].into_iter().chain([error]).collect());
         }
     }
-    if let Some(rigid) = rigid(&crane, &parameters, &places, source) {
+    if let Some(rigid) = rigid(&crane, &parameters, &places, checked) {
         found.add_deflections(&rigid);
     }
     let shown = shown(request.outputs, &found.outputs, request.all)?;
@@ -384,13 +380,11 @@ fn rigid(
     crane: &LiveCrane,
     parameters: &[usize],
     places: &[String],
-    source: &SourceFile,
+    checked: &Checked,
 ) -> Option<sensitivity::Sensitivity> {
-    let checked = compile::check(source).ok()?;
     let change = variants::rigid(&crane.description().name, &checked.spec.crane).ok()??;
-    let (checked, text) = compile::check_changed(&checked, &source.text, &change).ok()?;
-    let source = SourceFile::new(&source.name, text);
-    let mut rigid = LiveCrane::new(checked.chain);
+    let checked = checked.spec.changed(&change).and_then(check).ok()?;
+    let mut rigid = LiveCrane::new(checked.chain.clone());
     take_numbers(crane, &mut rigid).ok()?;
     if rigid.parameters().len() != crane.parameters().len() {
         return None;
@@ -398,7 +392,7 @@ fn rigid(
     let settings = sensitivity::Settings { frequencies: 0 };
     let mut found = derivatives(&rigid, parameters, &settings).ok()?;
     for place in places {
-        let differences = FixedNumber::new(&source, place).ok()?.differentiate(&rigid, &found, &settings).ok()?;
+        let differences = FixedNumber::new(&checked, place).ok()?.differentiate(&rigid, &found, &settings).ok()?;
         found.derivatives.push(differences.derivatives);
     }
     Some(found)

@@ -1,6 +1,6 @@
 //! What moves what on a page: the numbers of `crane sensitivity` with live parameters and the sizes of beams.
 
-use crane_codegen::SourceFile;
+use crane_codegen::{Checked, CraneSpec};
 use crane_live::LiveCrane;
 use crane_live::sensitivity::{Group, Settings, with_live_numbers};
 use crane_model::{
@@ -37,24 +37,22 @@ const OF_BEAM: [&str; 9] = [
 ];
 
 /// What moves the most important quantities of a crane at rest; null if it does not stand or nothing moves them.
-pub fn moves_of_page(crane: &LiveCrane, spec: &str) -> Value {
-    moves(crane, spec).unwrap_or_default()
+pub fn moves_of_page(crane: &LiveCrane, checked: &Checked) -> Value {
+    moves(crane, checked).unwrap_or_default()
 }
 
-fn moves(crane: &LiveCrane, spec: &str) -> Option<Value> {
+fn moves(crane: &LiveCrane, checked: &Checked) -> Option<Value> {
     let description = crane.description();
-    let source = SourceFile::new(format!("{}.yaml", description.name), spec);
     let own = description.parameters.iter().map(|info| info.name.to_string());
-    let written: Vec<String> = own.chain(sizes(&source, crane)).collect();
+    let written: Vec<String> = own.chain(sizes(&checked.spec, crane)).collect();
     let mut names = written.clone();
-    let changed = with_live_numbers(&source, &mut names).ok()?;
+    let changed = with_live_numbers(checked, &mut names).ok()?;
     let live = match &changed {
-        Some(changed) => with_values_of(crane, LiveCrane::from_spec(changed).ok()?)?,
+        Some(changed) => with_values_of(crane, LiveCrane::new(changed.chain.clone()))?,
         None => crane.clone(),
     };
-    let source = changed.unwrap_or(source);
     let request = Request { numbers: &names, outputs: &[], change: CHANGE, all: false, settings: Settings::default() };
-    let found = changes(&request, &source, &live, None).ok()?;
+    let found = changes(&request, changed.as_ref().unwrap_or(checked), &live, None).ok()?;
     // A utilisation is the stress in parts of the yield stress.
     let of = |index: usize| &found.found.outputs[index];
     let has_use = found.found.outputs.iter().any(|output| output.name == KeyFigure::UTILISATION.greatest());
@@ -81,10 +79,10 @@ fn with_values_of(crane: &LiveCrane, mut live: LiveCrane) -> Option<LiveCrane> {
 }
 
 /// Places of sizes of beams, of every beam in turn the most important first.
-fn sizes(source: &SourceFile, crane: &LiveCrane) -> Vec<String> {
+fn sizes(spec: &CraneSpec, crane: &LiveCrane) -> Vec<String> {
     let mut links: Vec<&str> = crane.description().bodies.iter().map(|body| body.link.as_str()).collect();
     links.dedup();
-    let is_there = |place: &String| source.number_at(place).is_ok();
+    let is_there = |place: &String| spec.number_at(place).is_ok();
     let places = OF_BEAM.iter().flat_map(|size| links.iter().map(move |link| format!("links.{link}.beam.{size}")));
     places.filter(is_there).take(SIZES).collect()
 }

@@ -3,7 +3,7 @@
 use std::fs;
 
 use crane_codegen::SourceFile;
-use crane_codegen::compile::unit_at;
+use crane_codegen::compile::check;
 use serde_json::Value;
 
 use super::{crane, folder, json, text};
@@ -193,7 +193,7 @@ fn numbers_of_the_spec_have_their_units() {
         ("loader_tipping", "supports.left.at.1", "m"),
         ("loader_tipping", "links.nowhere.mass", ""),
     ] {
-        assert_eq!(unit_at(&spec(name), place), unit, "{name}: {place}");
+        assert_eq!(check(&spec(name)).unwrap().unit_at(place), unit, "{name}: {place}");
     }
 }
 

@@ -1,7 +1,6 @@
 //! Derivatives by numbers that cannot be live parameters: differences of whole cranes.
 
-use crane_codegen::compile::unit_at;
-use crane_codegen::{SourceFile, WrongPlace};
+use crane_codegen::{Checked, CraneSpec, check};
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::runs::Failed;
 
@@ -25,7 +24,7 @@ pub struct FixedNumber {
     /// Its unit; empty for a number without one.
     pub unit: String,
     /// The spec with the number itself.
-    source: SourceFile,
+    spec: CraneSpec,
     /// Half the distance of the outer cranes.
     step: f64,
     /// With the number less a step, less half of it, plus half of it, plus a step.
@@ -48,16 +47,13 @@ impl FixedNumber {
     ///
     /// # Errors
     /// There is no number at this place, or the spec does not allow a number slightly smaller or larger: integers have no derivatives.
-    pub fn new(source: &SourceFile, place: &str) -> Result<Self, Refused> {
-        let value = source.number_at(place).map_err(Refused::Place)?;
+    pub fn new(checked: &Checked, place: &str) -> Result<Self, Refused> {
+        let value = checked.spec.number_at(place).map_err(Refused::Place)?;
         let step = if value == 0.0 { STEP_FROM_ZERO } else { STEP * value.abs() };
-        let with = |share: f64| {
-            let changed = changed(source, place, value, share * step).map_err(Refused::Place)?;
-            LiveCrane::from_spec(&changed).map_err(|mistakes| Refused::Mistakes { place: place.to_owned(), mistakes })
-        };
+        let with = |share: f64| changed(&checked.spec, place, value, share * step);
         let around = [with(-1.0)?, with(-0.5)?, with(0.5)?, with(1.0)?];
-        let unit = unit_at(source, place);
-        Ok(Self { place: place.to_owned(), value, unit, source: source.clone(), step, around })
+        let unit = checked.unit_at(place).to_owned();
+        Ok(Self { place: place.to_owned(), value, unit, spec: checked.spec.clone(), step, around })
     }
 
     /// Central differences of the outputs of a crane with this number, with its parameters and inputs.
@@ -139,13 +135,13 @@ impl Changing<'_> {
                 let set = other.set_parameter(index, crane.parameters()[index] + by);
                 set.map(|()| other).map_err(|refused| refused.to_string())
             }
-            Self::Fixed(FixedNumber { source, place, value, .. }) => {
-                let changed = changed(source, place, *value, by).map_err(|wrong| wrong.title)?;
-                let other = LiveCrane::from_spec(&changed);
-                other.map(|other| like(crane, &other)).map_err(|mistakes| {
-                    mistakes.mistakes().first().map(|mistake| mistake.title.clone()).unwrap_or_default()
-                })
-            }
+            Self::Fixed(FixedNumber { spec, place, value, .. }) => match changed(spec, place, *value, by) {
+                Ok(other) => Ok(like(crane, &other)),
+                Err(Refused::Mistakes { mistakes, .. }) => {
+                    Err(mistakes.mistakes().first().map(|mistake| mistake.title.clone()).unwrap_or_default())
+                }
+                Err(refused) => Err(refused.words()[0].clone()),
+            },
         }
     }
 
@@ -166,16 +162,20 @@ impl Changing<'_> {
     }
 }
 
-/// The spec with another number at a place; a part of a beam that becomes longer makes the beam longer.
-fn changed(source: &SourceFile, place: &str, value: f64, by: f64) -> Result<SourceFile, WrongPlace> {
-    let changed = source.with_number(place, value + by)?;
-    match place.split_once(".parts.") {
-        Some((beam, part)) if part.split('.').nth(1) == Some("length") => {
-            let length = format!("{beam}.length");
-            changed.with_number(&length, source.number_at(&length)? + by)
-        }
-        _ => Ok(changed),
+/// The crane with another number at a place; a part of a beam that becomes longer makes the beam longer.
+fn changed(spec: &CraneSpec, place: &str, value: f64, by: f64) -> Result<LiveCrane, Refused> {
+    let mistakes = |mistakes| Refused::Mistakes { place: place.to_owned(), mistakes };
+    let with = |spec: &CraneSpec, place: &str, value| {
+        spec.changed(&spec.other_number(place, value).map_err(Refused::Place)?).map_err(mistakes)
+    };
+    let mut changed = with(spec, place, value + by)?;
+    if let Some((beam, part)) = place.split_once(".parts.")
+        && part.split('.').nth(1) == Some("length")
+    {
+        let length = format!("{beam}.length");
+        changed = with(&changed, &length, spec.number_at(&length).map_err(Refused::Place)? + by)?;
     }
+    check(changed).map(|checked| LiveCrane::new(checked.chain)).map_err(mistakes)
 }
 
 impl Differences {

@@ -1,11 +1,9 @@
 //! Numbers of a spec as live parameters, by their places.
 
-use crane_codegen::compile::{check, unit_at};
-use crane_codegen::{Diagnostics, SourceFile, WrongPlace};
+use crane_codegen::{Checked, CraneSpec, Diagnostics, WrongPlace, check};
 use crane_model::ParameterInfo;
 
 use super::differences::FixedNumber;
-use crate::LiveCrane;
 
 /// Begins the name of a live parameter that stands for a place of the spec.
 const PLACE: &str = "number_at_place_";
@@ -54,45 +52,41 @@ impl Refused {
 /// Keys of a spec that do not belong to the crane at rest.
 const NOT_AT_REST: [&str; 6] = ["format", "run", "guess", "name", "title", "analyses"];
 
-/// The spec in which the numbers at places, such as `links.boom.beam.section.box.height`, are live parameters, whose names replace them in
+/// The crane in which the numbers at places, such as `links.boom.beam.section.box.height`, are live parameters, whose names replace them in
 /// the list; other entries of the list are names of parameters. Places whose numbers cannot be live parameters stay in the list: see
 /// [`FixedNumber`](super::FixedNumber). `None` if nothing has changed.
 ///
 /// # Errors
 /// There is no number at a place, or it cannot change.
-pub fn with_live_numbers(source: &SourceFile, numbers: &mut [String]) -> Result<Option<SourceFile>, Refused> {
-    if !numbers.iter().any(|number| number.contains('.')) {
-        return Ok(None);
-    }
-    let mistakes = |place: &str, mistakes| Refused::Mistakes { place: place.to_owned(), mistakes };
-    check(source).map_err(|wrong| mistakes(numbers.first().map_or("", |name| name), wrong))?;
-    let live = |before: &SourceFile, index: usize, number: &str| {
-        let unit = &unit_at(source, number);
-        before.with_live_number(number, &format!("{PLACE}{index}"), unit).map_err(Refused::Place)
-    };
+pub fn with_live_numbers(checked: &Checked, numbers: &mut [String]) -> Result<Option<Checked>, Refused> {
     let places: Vec<usize> = (0..numbers.len()).filter(|&index| numbers[index].contains('.')).collect();
+    let live = |before: &CraneSpec, index: usize, place: &str| {
+        let change = before.live_number(place, &format!("{PLACE}{index}"), checked.unit_at(place));
+        let mistakes = |mistakes| Refused::Mistakes { place: place.to_owned(), mistakes };
+        before.changed(&change.map_err(Refused::Place)?).map_err(mistakes)
+    };
     if let Some(place) = places.iter().map(|&index| &numbers[index]).find(|place| is_not_at_rest(place)) {
         return Err(Refused::NotAtRest { place: place.clone() });
     }
     // Most often all can.
-    let mut all = source.clone();
-    for &index in &places {
-        all = live(&all, index, &numbers[index])?;
+    let all = places.iter().try_fold(checked.spec.clone(), |before, &index| live(&before, index, &numbers[index]))?;
+    if places.is_empty() {
+        return Ok(None);
     }
-    if LiveCrane::from_spec(&all).is_ok() {
+    if let Ok(all) = check(all) {
         for &index in &places {
             numbers[index] = format!("{PLACE}{index}");
         }
         return Ok(Some(all));
     }
-    let mut changed = None;
+    let mut changed: Option<Checked> = None;
     for index in places {
-        let after = live(changed.as_ref().unwrap_or(source), index, &numbers[index])?;
-        if LiveCrane::from_spec(&after).is_ok() {
+        let before = changed.as_ref().map_or(&checked.spec, |changed| &changed.spec);
+        if let Ok(after) = check(live(before, index, &numbers[index])?) {
             changed = Some(after);
             numbers[index] = format!("{PLACE}{index}");
         } else {
-            FixedNumber::new(source, &numbers[index])?;
+            FixedNumber::new(checked, &numbers[index])?;
         }
     }
     Ok(changed)

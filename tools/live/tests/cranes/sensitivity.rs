@@ -1,6 +1,6 @@
 //! Derivatives of a crane at rest by its live parameters, against differences of statics and closed forms.
 
-use crane_codegen::{SourceFile, build};
+use crane_codegen::{Checked, SourceFile, build, compile};
 use crane_live::LiveCrane;
 use crane_live::sensitivity::{
     FixedNumber, Group, LargestLoad, Refused, Sensitivity, Settings, sensitivity, sensitivity_near, with_live_numbers,
@@ -11,6 +11,10 @@ use crane_model::modes::undamped;
 use crane_model::results::cylinders_at;
 use crane_model::sections::{StressedSection, stressed_sections};
 use crane_model::tipping::{TippingLine, governing, lines};
+
+fn checked(source: &SourceFile) -> Checked {
+    compile::check(source).unwrap_or_else(|mistakes| panic!("\n{mistakes}\n{}", source.text))
+}
 
 fn live(source: &SourceFile) -> LiveCrane {
     LiveCrane::from_spec(source).unwrap_or_else(|mistakes| panic!("\n{mistakes}\n{}", source.text))
@@ -245,13 +249,13 @@ fn differences_of_fixed_numbers_are_the_derivatives() {
     let source = build::open(path.as_ref()).unwrap();
     let place = "links.boom.beam.section.box.height";
     let mut names = vec![place.to_owned()];
-    let changed = with_live_numbers(&source, &mut names).unwrap().unwrap();
-    let with_number = live(&changed);
+    let changed = with_live_numbers(&checked(&source), &mut names).unwrap().unwrap();
+    let with_number = LiveCrane::new(changed.chain);
     let parameter = with_number.description().parameters.iter().position(|info| info.name == *names[0]).unwrap();
     let settings = Settings::default();
     let exact = sensitivity(&with_number, &[parameter], &settings).unwrap();
     let crane = live(&source);
-    let number = FixedNumber::new(&source, place).unwrap();
+    let number = FixedNumber::new(&checked(&source), place).unwrap();
     assert_eq!((number.value, number.unit.as_str()), (0.26, "m"));
     let found = sensitivity(&crane, &[], &settings).unwrap();
     let differences = number.differentiate(&crane, &found, &settings).unwrap();
@@ -278,12 +282,12 @@ fn a_part_of_a_beam_becomes_longer_with_the_beam() {
     let (settings, place) = (Settings::default(), "links.boom.beam.parts.1.length");
     let with_parts = source.changed(&parts);
     let mut names = [place.to_owned()];
-    assert!(with_live_numbers(&with_parts, &mut names).unwrap().is_none() && names[0] == place);
-    let number = FixedNumber::new(&with_parts, place).unwrap();
+    assert!(with_live_numbers(&checked(&with_parts), &mut names).unwrap().is_none() && names[0] == place);
+    let number = FixedNumber::new(&checked(&with_parts), place).unwrap();
     let found = sensitivity(&live(&with_parts), &[], &settings).unwrap();
     let own = number.differentiate(&live(&with_parts), &found, &settings).unwrap();
     let mut names = ["links.boom.beam.length".to_owned()];
-    let whole = live(&with_live_numbers(&source, &mut names).unwrap().unwrap());
+    let whole = LiveCrane::new(with_live_numbers(&checked(&source), &mut names).unwrap().unwrap().chain);
     let parameter = whole.description().parameters.iter().position(|info| info.name == *names[0]).unwrap();
     let whole = sensitivity(&whole, &[parameter], &settings).unwrap();
     for name in ["log_centre_x", "log_centre_z", "boom_psi_drive_torque", "frequency_3", "tipping_margin"] {
@@ -299,7 +303,7 @@ fn a_part_of_a_beam_becomes_longer_with_the_beam() {
 fn numbers_without_derivatives_are_refused() {
     let path = format!("{}/../../specs/two_arms.yaml", env!("CARGO_MANIFEST_DIR"));
     let source = build::open(path.as_ref()).unwrap();
-    let refused = |place: &str| with_live_numbers(&source, &mut [place.to_owned()]).unwrap_err();
+    let refused = |place: &str| with_live_numbers(&checked(&source), &mut [place.to_owned()]).unwrap_err();
     let sections = refused("links.boom.beam.sections");
     let [title, help] = sections.words();
     assert!(matches!(sections, Refused::Mistakes { .. }) && help.contains("integer"), "{title}, {help}");
@@ -308,7 +312,7 @@ fn numbers_without_derivatives_are_refused() {
     let solid = "name: changed\nlinks: [{name: boom, beam: {section: {solid: {height: 0.2, width: 0.1}}}}]\n";
     let source = source.changed(solid);
     let mut names = ["links.boom.beam.section.solid.height".to_owned()];
-    assert!(with_live_numbers(&source, &mut names).unwrap().is_none());
+    assert!(with_live_numbers(&checked(&source), &mut names).unwrap().is_none());
     assert_eq!(names[0], "links.boom.beam.section.solid.height");
 }
 
@@ -487,7 +491,7 @@ guess: {load_psi: -20 deg}
             let output = found.index_of("largest_load").unwrap();
             (found.values[output], found.derivatives.first().map(|derivatives| derivatives[output]))
         };
-        let number = FixedNumber::new(&source, place).unwrap();
+        let number = FixedNumber::new(&checked(&source), place).unwrap();
         let (load, derivative) = largest(&source, &[number]);
         let derivative = derivative.unwrap();
         for share in [1e-3, 2e-3] {
