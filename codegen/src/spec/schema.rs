@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::Crane;
-use crate::node::{Form, FromNode, Key, Limit, Measure, Variant};
+use crate::node::{Definition, Form, FromNode, Key, Limit, Measure, Variant};
 
 /// JSON Schema of the spec language, for editors that complete and check a spec.
 #[must_use]
@@ -67,11 +67,31 @@ fn describe_form(form: Form, measure: &Measure, definitions: &mut Map<String, Va
                 definitions.insert(definition.name.to_owned(), schema);
             }
             let mut schema = json!({ "$ref": format!("#/$defs/{}", definition.name) });
-            if matches!(definition.form, Form::AnyOf { forms: [Form::Number, ..] }) {
+            if is_number(definition.form) {
                 add_measure(&mut schema, measure);
+            } else if has_unit_of_owner(definition.form, &Measure::INHERITED) {
+                schema["x-unit"] = json!(measure.unit);
             }
             schema
         }
+    }
+}
+
+fn is_number(form: Form) -> bool {
+    matches!(form, Form::AnyOf { forms: [Form::Number, ..] })
+}
+
+/// Whether some number of a form has the unit of the key at which it stands: references to it say which.
+fn has_unit_of_owner(form: Form, measure: &Measure) -> bool {
+    match form {
+        Form::List { item: inner, .. } | Form::Entries { value: inner } => has_unit_of_owner(*inner, measure),
+        Form::AnyOf { forms } => forms.iter().any(|form| has_unit_of_owner(*form, measure)),
+        Form::Mapping { keys } => keys.iter().any(|key| has_unit_of_owner(key.form, key.measure)),
+        Form::Choice { variants } => variants.iter().any(|one| has_unit_of_owner(one.content, one.measure)),
+        Form::Defined { definition: Definition { form, .. } } => {
+            measure.unit.starts_with('…') && (is_number(*form) || has_unit_of_owner(*form, measure))
+        }
+        _ => false,
     }
 }
 

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use crate::units::NUMBERS;
 use crane_codegen::diagnostic::CATALOGUE;
 use crane_codegen::{SourceFile, json_schema, read, validate};
 use serde_json::Value;
@@ -95,7 +96,10 @@ fn words_of_unit(text: &str) -> impl Iterator<Item = String> {
 
 /// The number of a property, or those of its list or mapping.
 fn number_of(property: &Value) -> Option<&Value> {
-    [property, &property["items"], &property["additionalProperties"]].into_iter().find(|one| one["x-unit"].is_string())
+    let is_number = |one: &&Value| {
+        one["$ref"].as_str().is_some_and(|path| NUMBERS.iter().any(|name| path.ends_with(&format!("/{name}"))))
+    };
+    [property, &property["items"], &property["additionalProperties"]].into_iter().find(is_number)
 }
 
 /// A row of a table: the keys in its first cell, the other cells by their headings.
@@ -211,8 +215,7 @@ fn the_example_is_a_crane() {
     let (_, rest) = page.split_once("```yaml\n").expect("an example");
     let (example, _) = rest.split_once("```").expect("its end");
     let source = SourceFile::new("docs/SPEC.md", example);
-    let chain =
-        read(&source).and_then(|spec| validate(&spec, &source)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"));
+    let chain = read(&source).and_then(|spec| validate(&spec)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"));
     // Six of the base, two of joints, three of each of three sections, two of the chain.
     assert_eq!(chain.coordinates.len(), 6 + 2 + 3 * 4 + 2);
 }
@@ -224,7 +227,7 @@ fn what_the_schema_requires_the_reader_requires() {
     let empty = "links: [{}]\nparameters: {a: {}}\nmaterials: {m: {}}\nsupports: [{}]\ndrives: [{}]\npoints: [{}]\n\
                  stops: {a_x: {}}\nfriction: {a_x: {}}\n";
     let source = SourceFile::new("empty.yaml", empty);
-    let found = read(&source).and_then(|spec| validate(&spec, &source)).expect_err("nothing in it").to_string();
+    let found = read(&source).and_then(|spec| validate(&spec)).expect_err("nothing in it").to_string();
     // The first alternative is a complete spec; one that extends another requires fewer keys.
     let top = &schema["anyOf"][0]["required"];
     let definitions = ["Link", "Parameter", "Material", "Support", "Drive", "Point", "Stops", "Friction"]
@@ -244,7 +247,7 @@ fn specs_of_the_manual_are_cranes() {
     for (path, text) in pages().iter().filter(|(path, _)| path.parent().is_some_and(|p| p.ends_with("manual"))) {
         for block in text.split("```yaml\n").skip(1).filter_map(|rest| rest.split("```").next()) {
             let source = SourceFile::new(path.display().to_string(), block);
-            read(&source).and_then(|spec| validate(&spec, &source)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"));
+            read(&source).and_then(|spec| validate(&spec)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"));
             specs += 1;
         }
     }
