@@ -137,7 +137,7 @@ fn values(fields: &FieldsNamed) -> TokenStream {
     let named = fields.named.iter().enumerate();
     let values = named.map(|(index, field)| {
         let name = &field.ident;
-        quote! { #name: crate::node::FromNode::from_node(fields.reader(#index))?, }
+        quote! { #name: crate::node::Value::read(fields.reader(#index)), }
     });
     values.collect()
 }

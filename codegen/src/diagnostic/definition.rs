@@ -52,17 +52,12 @@ macro_rules! catalogue {
         pub(crate) mod rule {
             use std::fmt::Display;
 
-            use $crate::diagnostic::{Mistake, Span, printable};
+            use $crate::diagnostic::{Mistake, Span};
             $(
                 $(#[doc = $about])+
                 pub(crate) fn $name(span: Span, $($word: impl Display),*) -> Mistake {
-                    Mistake {
-                        code: stringify!($code),
-                        span,
-                        title: printable(&format!($title)),
-                        label: printable(&format!($label)),
-                        help: printable(&format!($help)),
-                    }
+                    let texts = [format_args!($title), format_args!($label), format_args!($help)];
+                    Mistake::new(stringify!($code), span, texts)
                 }
             )+
         }

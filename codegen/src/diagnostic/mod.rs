@@ -32,6 +32,12 @@ pub struct Mistake {
 }
 
 impl Mistake {
+    /// Against the rule of a code, with title, label and help.
+    pub(crate) fn new(code: &'static str, span: Span, texts: [fmt::Arguments<'_>; 3]) -> Self {
+        let [title, label, help] = texts.map(|text| printable(&text.to_string()));
+        Mistake { code, span, title, label, help }
+    }
+
     /// Whether the crane is compiled nevertheless.
     #[must_use]
     pub fn is_warning(&self) -> bool {

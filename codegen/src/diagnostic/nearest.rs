@@ -2,13 +2,16 @@
 
 /// Help that names the most similar of the valid words, or all of them if none is similar.
 pub(crate) fn suggest<'a>(word: &str, offered: impl IntoIterator<Item = &'a str>) -> String {
+    suggest_among(word, &offered.into_iter().collect::<Vec<_>>())
+}
+
+fn suggest_among(word: &str, offered: &[&str]) -> String {
     /// More words than this are not listed.
     const MOST: usize = 16;
-    let offered: Vec<&str> = offered.into_iter().collect();
     match nearest(word, offered.iter().copied()) {
         Some(known) => format!("did you mean `{known}`?"),
         None if offered.is_empty() => "none is defined".into(),
-        None if offered.len() <= MOST => format!("write one of {}", list(&offered)),
+        None if offered.len() <= MOST => format!("write one of {}", list(offered)),
         None => format!("write one of {}, ...", list(&offered[..MOST])),
     }
 }

@@ -50,7 +50,7 @@ pub(super) fn surfaces(looks: &[Look]) -> Vec<(&Form, String)> {
             && found.iter().all(|(other, _)| *other != form)
         {
             let stem = Path::new(file).file_stem().unwrap_or_default().to_string_lossy();
-            found.push((form, free_name(&mut names, &stem, |_, _| true)));
+            found.push((form, free_name(&mut names, &stem, &|_, _| true)));
         }
     }
     found

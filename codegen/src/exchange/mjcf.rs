@@ -200,7 +200,7 @@ fn sites(chain: &Chain, parameters: &[f64]) -> Vec<Place> {
     sites.extend(points);
     let mut taken: BTreeSet<String> = chain.loop_joints.iter().flat_map(sites_of).flatten().collect();
     for site in &mut sites {
-        site.name = free_name(&mut taken, &site.name, |_, _| true);
+        site.name = free_name(&mut taken, &site.name, &|_, _| true);
     }
     sites
 }

@@ -98,7 +98,7 @@ fn placements(chain: &Chain, parameters: &[f64]) -> Vec<Frame> {
 
 /// A name that is not in use yet and that fits, which is in use from here on: `first`, or with a number behind it.
 #[must_use]
-pub fn free_name(names: &mut BTreeSet<String>, first: &str, fits: impl Fn(&BTreeSet<String>, &str) -> bool) -> String {
+pub fn free_name(names: &mut BTreeSet<String>, first: &str, fits: &dyn Fn(&BTreeSet<String>, &str) -> bool) -> String {
     let numbered = (2..).map(|number| format!("{first}_{number}"));
     let mut candidates = std::iter::once(first.to_owned()).chain(numbered);
     let free = candidates.find(|name| !names.contains(name) && fits(names, name)).unwrap_or_else(|| first.to_owned());

@@ -42,7 +42,7 @@ pub(super) fn points(chain: &Chain, parameters: &[f64]) -> Vec<Place> {
 
 /// Names of the bodies: one that a frame elsewhere has gets a number.
 pub(super) fn bodies(chain: &Chain, taken: &mut BTreeSet<String>) -> Vec<String> {
-    chain.bodies.iter().map(|body| free_name(taken, &body.name, |_, _| true)).collect()
+    chain.bodies.iter().map(|body| free_name(taken, &body.name, &|_, _| true)).collect()
 }
 
 /// Names of the joints, by coordinate: those that the spec gives joints, else those of the coordinates.
@@ -52,5 +52,5 @@ pub(super) fn joints(chain: &Chain) -> Vec<String> {
         own.map_or(&chain.coordinates[index].name, |joint| &joint.name)
     };
     let mut taken = BTreeSet::new();
-    (0..chain.coordinates.len()).map(|index| free_name(&mut taken, named(index), |_, _| true)).collect()
+    (0..chain.coordinates.len()).map(|index| free_name(&mut taken, named(index), &|_, _| true)).collect()
 }

@@ -66,12 +66,12 @@ pub fn urdf(chain: &Chain, parameters: &[f64], looks: &[Look]) -> Result<String,
     let frames = names::frames(chain, parameters);
     let mut taken: BTreeSet<String> = frames.iter().map(|frame| frame.name.clone()).collect();
     let bodies = names::bodies(chain, &mut taken);
-    let mut free = |name: &str| free_name(&mut taken, name, |_, _| true);
+    let mut free = |name: &str| free_name(&mut taken, name, &|_, _| true);
     // A crane may have a link with the name of the world.
     let ground = free(names::WORLD);
     let joints = names::joints(chain);
     let mut mounts: BTreeSet<String> = joints.iter().cloned().collect();
-    let mut mount = |name: &str| free_name(&mut mounts, &format!("{name}_mount"), |_, _| true);
+    let mut mount = |name: &str| free_name(&mut mounts, &format!("{name}_mount"), &|_, _| true);
     let (looks, bars) = shown(chain, &placements(chain, parameters), (parameters, looks));
     for (name, colour) in colours(&looks) {
         xml.open("material", &[("name", name.to_owned())]);

@@ -67,12 +67,12 @@ impl<'a> Reader<'a> {
     }
 
     /// Readers of the user's names in a mapping and of their values. The second of two equal names is reported and skipped.
-    pub fn entries(self) -> Result<impl Iterator<Item = (Reader<'a>, Reader<'a>)>, Unread> {
+    pub fn entries(self) -> Result<Vec<(Reader<'a>, Reader<'a>)>, Unread> {
         let Content::Mapping(entries) = self.content()? else {
             return Err(Unread::Expected("a mapping of names to values".into()));
         };
         let mut seen = BTreeSet::new();
-        Ok(entries.iter().filter_map(move |(key, value)| {
+        let read = |(key, value): &'a (Node, Node)| {
             let name = key.key_text();
             if !seen.insert(name.clone()) {
                 self.report(rule::duplicate_key(key.span, name));
@@ -87,6 +87,7 @@ impl<'a> Reader<'a> {
                 Reader { node: Some(key), span: key.span, ..self },
                 Reader { node: Some(value), span, subject, owner: self.subject, ..self },
             ))
-        }))
+        };
+        Ok(entries.iter().filter_map(read).collect())
     }
 }

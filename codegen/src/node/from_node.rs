@@ -13,11 +13,15 @@ pub(crate) trait FromNode: Sized {
     fn from_node(reader: Reader) -> Result<Self, Unread>;
 }
 
-/// The items of a list.
-pub(crate) fn read_items<T: FromNode>(reader: Reader) -> Result<Vec<T>, Unread> {
-    match reader.content()? {
-        Content::Sequence(items) => reader.items(items).map(T::from_node).collect(),
-        _ => Err(Unread::Expected("a list".into())),
+/// The value of a key or an item: reading it reports what is wrong, and goes on.
+pub(crate) trait Value: FromNode {
+    /// Reads it.
+    fn read(reader: Reader) -> Self;
+}
+
+impl<T: Value> Value for Option<T> {
+    fn read(reader: Reader) -> Self {
+        reader.node.is_some().then(|| T::read(reader))
     }
 }
 
@@ -36,18 +40,24 @@ impl<T: FromNode> FromNode for Box<T> {
     }
 }
 
-impl<T: FromNode> FromNode for Vec<T> {
-    const FORM: Form = Form::List { item: &T::FORM, count: None };
-    fn from_node(reader: Reader) -> Result<Self, Unread> {
-        read_items(reader)
+impl<T: Value> Value for Box<T> {
+    fn read(reader: Reader) -> Self {
+        Box::new(T::read(reader))
     }
 }
 
-impl<T: FromNode, const N: usize> FromNode for [T; N] {
+impl<T: Value> FromNode for Vec<T> {
+    const FORM: Form = Form::List { item: &T::FORM, count: None };
+    fn from_node(reader: Reader) -> Result<Self, Unread> {
+        Ok(reader.items()?.into_iter().map(T::read).collect())
+    }
+}
+
+impl<T: Value, const N: usize> FromNode for [T; N] {
     const FORM: Form = Form::List { item: &T::FORM, count: Some(N) };
     fn from_node(reader: Reader) -> Result<Self, Unread> {
         reader.check_length(N)?;
-        read_items(reader)?.try_into().map_err(|_| Unread::Reported)
+        Vec::from_node(reader)?.try_into().map_err(|_| Unread::Reported)
     }
 }
 

@@ -15,7 +15,7 @@ mod tree;
 
 pub(crate) use crane_keys::FromNode;
 pub(crate) use form::{Definition, Form, Key, Variant};
-pub(crate) use from_node::{FromNode, read_items};
+pub(crate) use from_node::{FromNode, Value};
 pub(crate) use measure::{Limit, Measure};
 pub(crate) use reader::{Reader, Unread};
 pub(crate) use tree::{Content, Node, parse};

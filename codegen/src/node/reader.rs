@@ -99,14 +99,20 @@ impl<'a> Reader<'a> {
     }
 
     /// Readers of the items of a list.
-    pub fn items(self, items: &'a [Node]) -> impl Iterator<Item = Reader<'a>> {
-        items.iter().enumerate().map(move |(index, item)| Reader {
+    pub fn items(self) -> Result<Vec<Reader<'a>>, Unread> {
+        let Content::Sequence(items) = self.content()? else { return Err(Unread::Expected("a list".into())) };
+        Ok(items.iter().enumerate().map(|(index, item)| self.item(index, item)).collect())
+    }
+
+    /// The reader of an item of a list.
+    pub fn item(self, index: usize, item: &'a Node) -> Reader<'a> {
+        Reader {
             node: Some(item),
             measure: self.measure.of_item(index),
             span: shown_item(item),
             subject: Subject::Entry(self.subject.key(), name_of(item)),
             ..self
-        })
+        }
     }
 
     /// Checks that the value is a list of so many items.

@@ -6,6 +6,9 @@ use crate::node::{Content, Node};
 use crate::spec::CraneSpec;
 use crate::units::Quantity;
 
+/// A top-level key with what to lay over it, and the number that this replaces.
+type Replaced<'a> = (Option<(&'a str, Change)>, Change);
+
 impl CraneSpec {
     /// The change by which a live parameter of the same value, whose description is the place, replaces the number at a place.
     ///
@@ -55,11 +58,7 @@ impl CraneSpec {
     }
 
     /// The key with the change to lay over it so that a word stands in place of a number, and that number.
-    fn replaced_at<'a>(
-        &self,
-        place: &'a str,
-        word: &Change,
-    ) -> Result<(Option<(&'a str, Change)>, Change), WrongPlace> {
+    fn replaced_at<'a>(&self, place: &'a str, word: &Change) -> Result<Replaced<'a>, WrongPlace> {
         let (key, rest) = place.split_once('.').unwrap_or((place, ""));
         if key == "parameters" {
             let name = rest.split('.').next().unwrap_or_default();

@@ -1,7 +1,7 @@
 //! The context of a value in the file: its location and its form.
 
 use crate::diagnostic::Span;
-use crate::node::{Content, Form, FromNode, Reader, Unread, read_items};
+use crate::node::{Content, Form, FromNode, Reader, Unread, Value};
 
 /// A value and its location. Reading it never fails, so that its neighbours are read as well: a value that is missing or
 /// wrong is reported while reading, and is `None` here.
@@ -16,8 +16,14 @@ pub struct Spanned<T> {
 impl<T: FromNode> FromNode for Spanned<T> {
     const FORM: Form = T::FORM;
     fn from_node(reader: Reader) -> Result<Self, Unread> {
+        Ok(Self::read(reader))
+    }
+}
+
+impl<T: FromNode> Value for Spanned<T> {
+    fn read(reader: Reader) -> Self {
         let value = T::from_node(reader).map_err(|unread| reader.report_unread(unread)).ok();
-        Ok(Spanned { value, span: reader.span })
+        Spanned { value, span: reader.span }
     }
 }
 
@@ -28,11 +34,8 @@ pub struct Entries<T>(pub Vec<(Spanned<String>, Spanned<T>)>);
 impl<T: FromNode> FromNode for Entries<T> {
     const FORM: Form = Form::Entries { value: &T::FORM };
     fn from_node(reader: Reader) -> Result<Self, Unread> {
-        let entries = reader.entries()?;
-        entries
-            .map(|(name, value)| Ok((Spanned::from_node(name)?, Spanned::from_node(value)?)))
-            .collect::<Result<_, _>>()
-            .map(Entries)
+        let entries = reader.entries()?.into_iter();
+        Ok(Entries(entries.map(|(name, value)| (Spanned::read(name), Spanned::read(value))).collect()))
     }
 }
 
@@ -63,10 +66,8 @@ impl<T: FromNode> FromNode for Many<T> {
     const FORM: Form = Form::AnyOf { forms: &[T::FORM, Form::List { item: &T::FORM, count: None }] };
     fn from_node(reader: Reader) -> Result<Self, Unread> {
         match (reader.content()?, reader.node) {
-            (Content::Sequence(_), _) | (_, None) => read_items(reader).map(Many),
-            (_, Some(item)) => {
-                reader.items(std::slice::from_ref(item)).map(Spanned::from_node).collect::<Result<_, _>>().map(Many)
-            }
+            (Content::Sequence(_), _) | (_, None) => Vec::from_node(reader).map(Many),
+            (_, Some(item)) => Ok(Many(vec![Spanned::read(reader.item(0, item))])),
         }
     }
 }

@@ -73,9 +73,14 @@ impl Graph {
 
     /// The result of `derive`, and its sweeps.
     pub fn recorded<T>(&self, derive: impl FnOnce() -> T) -> (T, SweepTrace) {
-        *self.recorder.borrow_mut() = Recorder::default();
+        self.taken();
         let derived = derive();
-        (derived, std::mem::take(&mut *self.recorder.borrow_mut()).trace)
+        (derived, self.taken())
+    }
+
+    /// The sweeps so far, of which nothing is left.
+    fn taken(&self) -> SweepTrace {
+        std::mem::take(&mut *self.recorder.borrow_mut()).trace
     }
 }
 

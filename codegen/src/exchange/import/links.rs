@@ -249,7 +249,7 @@ pub(super) struct Names(BTreeSet<String>);
 impl Names {
     /// An identifier derived from a name, not in use yet.
     pub(super) fn unique(&mut self, name: &str) -> String {
-        self.free(&identifier(name), |_, _| true)
+        self.free(&identifier(name), &|_, _| true)
     }
 
     /// The same for a point, whose result columns, `<point>_x` …, must differ from those of the coordinates.
@@ -257,10 +257,10 @@ impl Names {
         let fits = |taken: &BTreeSet<String>, name: &str| {
             ["x", "y", "z"].iter().all(|letter| !taken.contains(&format!("{name}_{letter}")))
         };
-        self.free(&identifier(name), fits)
+        self.free(&identifier(name), &fits)
     }
 
-    fn free(&mut self, name: &str, fits: impl Fn(&BTreeSet<String>, &str) -> bool) -> String {
+    fn free(&mut self, name: &str, fits: &dyn Fn(&BTreeSet<String>, &str) -> bool) -> String {
         free_name(&mut self.0, name, fits)
     }
 }

@@ -75,7 +75,7 @@ pub(super) fn split_joints(robot: &mut Robot, fixed: &[String]) -> Vec<Mistake> 
             .map(|(index, (&SingleAxis { ending, turns, axis }, start))| {
                 let motion = if turns { Motion::Revolute } else { Motion::Prismatic };
                 let ends = [joint.parent.clone(), joint.child.clone()];
-                let name = free_name(&mut joint_names, &format!("{}_{ending}", joint.name), |_, _| true);
+                let name = free_name(&mut joint_names, &format!("{}_{ending}", joint.name), &|_, _| true);
                 let single = Joint::new(&name, joint.span, motion, ends);
                 let placement = if index == 0 { joint.placement } else { Frame::WORLD };
                 Joint { placement, axis, start: (*start != 0.0).then_some(*start), ..single }
@@ -93,7 +93,7 @@ pub(super) fn split_joints(robot: &mut Robot, fixed: &[String]) -> Vec<Mistake> 
             let child = if index == last {
                 joint.child.clone()
             } else {
-                let name = free_name(&mut names, &format!("{}_{}", joint.child.name, index + 1), |_, _| true);
+                let name = free_name(&mut names, &format!("{}_{}", joint.child.name, index + 1), &|_, _| true);
                 robot.links.push(Link {
                     name: name.clone(),
                     span: joint.span,

@@ -57,7 +57,7 @@ fn document(figure: &Figure, name: &str, program: Program) -> (Value, Vec<u8>) {
     let mut document = Document { nodes: vec![Value::Null], ..Document::default() };
     // Other programs find nodes by their names.
     let mut names = BTreeSet::new();
-    let mut free = |name: &str| free_name(&mut names, name, |_, _| true);
+    let mut free = |name: &str| free_name(&mut names, name, &|_, _| true);
     for (index, (body, frame)) in scene.bodies.iter().zip(frames).enumerate() {
         let carrier = body.parent.map_or_else(Matrix4::identity, |parent| frames[parent]);
         let mut node = place(&(carrier.try_inverse().unwrap_or_else(Matrix4::identity) * frame));

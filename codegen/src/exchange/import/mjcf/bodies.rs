@@ -171,7 +171,7 @@ impl<'a, 'i> File<'a, 'i> {
 
     /// A name for a link that no other link and no body has.
     fn free_name(&mut self, name: &str, ending: &str) -> String {
-        free_name(&mut self.names, &format!("{name}{ending}"), |_, _| true)
+        free_name(&mut self.names, &format!("{name}{ending}"), &|_, _| true)
     }
 
     /// A joint, and its anchor in the frame of its body. `here`: pose of the body, before this joint moves it, in the previous link.
