@@ -10,7 +10,7 @@ use crane_codegen::{Diagnostics, SourceFile, build, check, read};
 /// Warnings about a spec without mistakes.
 fn warnings(name: &str, text: &str) -> Diagnostics {
     let source = SourceFile::new(name, text);
-    let checked = read(&source).and_then(|spec| check(spec)).unwrap_or_else(|found| panic!("{found}"));
+    let checked = read(&source).and_then(check).unwrap_or_else(|found| panic!("{found}"));
     checked.warnings
 }
 

@@ -127,7 +127,7 @@ fn answer(name: &str, text: &str) -> Result<usize, String> {
         assert!(!failure.to_string().is_empty());
         failure.to_string()
     })?;
-    match read(&source).and_then(|spec| check(spec)) {
+    match read(&source).and_then(check) {
         Ok(checked) => {
             assert_eq!(checked.chain.guess.len(), checked.chain.coordinates.len());
             assert_eq!(checked.warnings.lines().count(), checked.warnings.mistakes().len());

@@ -11,8 +11,7 @@ use proptest::test_runner::RngSeed;
 
 /// Reads, validates and draws.
 fn answer(bytes: &[u8]) {
-    let answer =
-        SourceFile::from_bytes("any.yaml", bytes).and_then(|source| read(&source).and_then(|spec| check(spec)));
+    let answer = SourceFile::from_bytes("any.yaml", bytes).and_then(|source| read(&source).and_then(check));
     match answer {
         Ok(Checked { chain, warnings, .. }) => {
             assert_eq!(chain.guess.len(), chain.coordinates.len());
