@@ -65,13 +65,24 @@ fn parts(source: &SourceFile, noticed: &mut Noticed) -> Result<Node, Mistake> {
 pub(crate) fn base(source: &SourceFile) -> Option<(String, Span)> {
     // A file of several parts was already assembled.
     let [part] = source.parts()[..] else { return None };
+    if !may_have(part.text, "extends") {
+        return None;
+    }
     let tree = parse(part.text).ok()?.shifted(part.start);
     tree.base().map(|(name, span)| (name.to_owned(), span))
+}
+
+/// Whether a text may have a key, which is then looked for in its tree: of most specs only [`read`] makes one.
+fn may_have(text: &str, key: &str) -> bool {
+    text.contains(key) || text.contains('\\')
 }
 
 /// The data files that a spec refers to, with the locations of their names.
 #[must_use]
 pub(crate) fn data_files(source: &SourceFile) -> Vec<(String, Span)> {
+    if !may_have(&source.text, "file") {
+        return Vec::new();
+    }
     let tree = parse(&source.text);
     let files = tree.as_ref().map(data::files).unwrap_or_default();
     files.into_iter().map(|(name, span)| (name.to_owned(), span)).collect()
