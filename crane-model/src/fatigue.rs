@@ -294,6 +294,18 @@ mod tests {
         }
     }
 
+    /// N = 40 kN on 0.002 m²: 20 MPa; My = 3 kN m on 1e-4 m³: 30 MPa; Mz = 1 kN m on 5e-5 m³: 20 MPa, both in tension in one corner.
+    #[test]
+    fn corners_of_a_box_have_the_stresses_of_both_moments() {
+        let moduli =
+            SectionModuli { area: 2e-3, bending_y: 1e-4, bending_z: 5e-5, corners: 1.0, ..SectionModuli::ZERO };
+        let wrench = Wrench { force: [4e4, 0.0, 0.0].into(), moment: [0.0, 3e3, 1e3].into() };
+        let stresses = contour(&moduli, &wrench);
+        for (found, expected) in stresses.iter().zip([70e6, 30e6, -30e6, 10e6]) {
+            assert!((found - expected).abs() < 1e-6, "{stresses:?}");
+        }
+    }
+
     #[test]
     fn a_sine_is_one_cycle_per_period() {
         let history: Vec<f64> = (0..=400).map(|k| (std::f64::consts::TAU * f64::from(k) / 100.0).sin()).collect();

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use crane_codegen::{SourceFile, build};
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynModel;
-use crane_model::dynamics::Settings;
+use crane_model::dynamics::{Method, Settings};
 use crane_model::results::{Extremes, Peaks, cautions};
 use crane_model::runs::ensemble::{self, Execution};
 use crane_model::runs::{Start, record_checked};
@@ -114,4 +114,19 @@ drives: [{{coordinate: lift_z, stiffness: 1e5, max_effort: {limit}, motion: {{ho
     let start = Start::of(&crane).expect("it rests");
     let cautions = cautions::of_pose(&crane, &start.q, cautions::BEND);
     assert!(cautions[0].starts_with("the drive of lift_z is at its limit, 981.0 of 985.0 N"), "{cautions:?}");
+}
+
+/// However light a crane is: the energy of a gram that falls is compared with what it exchanges, with steps that are far too long.
+#[test]
+fn the_energy_balance_of_a_light_crane_is_looked_at() {
+    let pendulum = spec(
+        "format: 1\nname: light\nlinks: [{name: arm, joint: revolute, mass: 1 g, com: [0.1, 0, 0], placement: {transform: {rotation: {x: 90 deg}}}}]\n\
+         guess: {arm_psi: 0.5}\nrun: {duration: 4, step: 0.1, output: 0.1}\n",
+    );
+    let settings = Settings { method: Method::Rk4, ..Settings::of(pendulum.description()) };
+    let start = Start { v: vec![0.0], q: vec![0.5], x: Vec::new(), what: String::new(), rests: false };
+    let recorded =
+        record_checked(&pendulum, &start, &settings, (false, cautions::BEND), &mut |_| ControlFlow::Continue(()));
+    let cautions = recorded.unwrap_or_else(|failed| panic!("{failed}")).cautions;
+    assert!(cautions.iter().any(|caution| caution.contains("energy")), "{cautions:?}");
 }

@@ -481,7 +481,7 @@ fn surfaces_of_files_are_drawn() {
     assert!(unread.is_some_and(|told| told.contains("`gone.stl`")));
 }
 
-/// Of each colour of each crane: shapes, their corners, the mean of these in the world, m, and their standard deviations.
+/// Of each colour of each crane: shapes, their corners, the mean of these in the world, m, their standard deviations, and the volume within, m³.
 fn overview() -> String {
     let mut text = String::new();
     for (name, live) in cranes() {
@@ -497,7 +497,16 @@ fn overview() -> String {
             let spread = (corners.iter().map(|corner| (corner - mean).map(|x| x * x)).sum::<Vector3<f64>>() / count)
                 .map(f64::sqrt);
             text += &format!("{name} {paint} {} {}", shapes.len(), corners.len());
-            for number in mean.iter().chain(&spread) {
+            // A surface that is turned inside out, or twisted, has another volume.
+            let of_mesh = |mesh: &Mesh| -> f64 {
+                let triangle = |corners: &[usize; 3]| {
+                    let [a, b, c] = corners.map(|corner| mesh.corners[corner]);
+                    a.dot(&b.cross(&c)) / 6.0
+                };
+                mesh.triangles.iter().map(triangle).sum()
+            };
+            let volume: f64 = shapes.iter().map(|shape| of_mesh(&shape.mesh)).sum();
+            for number in mean.iter().chain(&spread).chain([&volume]) {
                 text += &format!(" {number:.5}");
             }
             text.push('\n');
