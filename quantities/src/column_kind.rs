@@ -85,6 +85,8 @@ pub enum ColumnKind {
     StopIndicator,
     /// Sign of a rope's tension.
     RopeIndicator,
+    /// Sign of the condition of an event.
+    EventIndicator,
     /// Stabilising and overturning moments about the line between two feet, whose names are its part.
     TippingMoment,
     /// Anything else.
@@ -194,6 +196,7 @@ impl ColumnKind {
             ColumnKind::FootIndicator => &["_contact_indicator"],
             ColumnKind::StopIndicator => &["_stop_indicator"],
             ColumnKind::RopeIndicator => &["_tension_indicator"],
+            ColumnKind::EventIndicator => &["_event_indicator"],
             ColumnKind::TippingMoment => &["_stabilising", "_overturning"],
         }
     }
@@ -258,6 +261,7 @@ impl ColumnKind {
             | ColumnKind::FootIndicator
             | ColumnKind::StopIndicator
             | ColumnKind::RopeIndicator
+            | ColumnKind::EventIndicator
             | ColumnKind::Other => "",
         }
     }
@@ -307,6 +311,7 @@ impl ColumnKind {
             ColumnKind::FootIndicator => "foot_indicator",
             ColumnKind::StopIndicator => "stop_indicator",
             ColumnKind::RopeIndicator => "rope_indicator",
+            ColumnKind::EventIndicator => "event_indicator",
             ColumnKind::TippingMoment => "tipping_moment",
             ColumnKind::Other => "other",
         }

@@ -51,7 +51,12 @@ impl Chain {
         names.add_variables(&description);
         names.add_lines(&description);
         for (event, _) in description.conditions() {
-            names.add_part("event", &self.events[event].name, false, &[ColumnKind::EventTime]);
+            names.add_part(
+                "event",
+                &self.events[event].name,
+                false,
+                &[ColumnKind::EventTime, ColumnKind::EventIndicator],
+            );
         }
         for parameter in &self.parameters {
             names.add_part("parameter", &parameter.name, false, &[ColumnKind::Other]);

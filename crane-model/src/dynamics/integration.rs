@@ -264,6 +264,11 @@ impl<'a, S: Stepper + ?Sized> Integration<'a, S> {
         &mut self.stepper
     }
 
+    /// The same, as it is.
+    pub(super) fn stepper_now(&self) -> &S {
+        &self.stepper
+    }
+
     /// Statistics up to the last result.
     pub fn run(&self) -> Run {
         let statistics = self.stepper.statistics();

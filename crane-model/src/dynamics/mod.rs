@@ -11,6 +11,8 @@ mod constant;
 #[cfg(feature = "std")]
 mod contacts;
 #[cfg(feature = "std")]
+mod course;
+#[cfg(feature = "std")]
 pub mod dormand_prince;
 #[cfg(feature = "std")]
 mod energy_integrals;
@@ -68,7 +70,9 @@ pub use constant::Rk4;
 #[cfg(feature = "std")]
 pub use contacts::Contacts;
 #[cfg(feature = "std")]
-pub use events::{Phases, Quantities, ResultsAt, event_times, simulate_events, without_events};
+pub use course::{Course, Happening, Progress, simulate_events};
+#[cfg(feature = "std")]
+pub use events::{Phases, Quantities, ResultsAt, after as crane_after, event_times, without_events};
 #[cfg(feature = "std")]
 pub use integration::Integration;
 #[cfg(feature = "std")]

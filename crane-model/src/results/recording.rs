@@ -118,6 +118,11 @@ impl<'a> Recording<'a> {
         });
     }
 
+    /// The row of the last sample; empty without one.
+    pub fn last(&self) -> &[f64] {
+        self.table.rows.last().map_or(&[], Vec::as_slice)
+    }
+
     /// The samples so far.
     pub fn into_table(self) -> Table {
         self.table

@@ -10,11 +10,9 @@ use crate::{
     dyn_crane::DynCrane,
     dynamics::{
         Sample, Settings, Watch,
-        gradients::{Around, Covector, PullBacks, Slopes, Trace, difference, size_of},
-        without_events,
+        gradients::{Covector, PullBacks, Slopes, Trace, Weights, columns_by},
     },
-    force_states::ForceStates,
-    results::{Recording, quantities_at},
+    results::{QUANTITIES, Recording, quantities_at},
 };
 
 /// What a run in adjoint mode needs of its crane.
@@ -43,9 +41,8 @@ pub fn record_adjoint(
     let begin = clock();
     let (mut states, mut trace) = (Vec::new(), None);
     let mut recorded = record_by(crane, start, settings, |recording| {
-        without_events(crane.description(), settings, "runs with derivatives")?;
         let mut recorder = Recorder { recording, states: &mut states, proceed: &mut *proceed };
-        let found = Trace::new(crane, &start.state(), probes, settings, &mut recorder)?;
+        let found = Trace::new(crane, &start.state(), probes, settings, &QUANTITIES, &mut recorder)?;
         Ok(trace.insert(found).run())
     })?;
     let rows = &recorded.table.rows;
@@ -54,7 +51,15 @@ pub fn record_adjoint(
         .iter()
         .map(|(column, measure)| measure.weights(&t, &rows.iter().map(|row| row[*column]).collect::<Vec<f64>>()))
         .collect();
+    let nothing = || vec![vec![f64::NAN; along.len()]; asked.len()];
+    let after = trace.as_ref().and_then(|trace: &Trace<'_>| trace.functions_after(&*functions));
+    let (Some(trace), Some(mut after)) = (trace, after) else { return Ok((recorded, nothing())) };
+    let first: &mut dyn PullBacks = functions;
+    let mut functions = vec![first];
+    functions.extend(after.iter_mut().map(|functions| &mut **functions as &mut dyn PullBacks));
     let mut by_samples: Vec<Vec<(usize, Covector)>> = vec![Vec::new(); asked.len()];
+    let mut by_times = vec![vec![0.0; crane.description().conditions().count()]; asked.len()];
+    let first_time = recorded.table.columns.len() - crane.description().conditions().count();
     let mut is_off = false;
     for (sample, state) in states.iter().enumerate() {
         is_off |= proceed(state.0).is_break();
@@ -66,17 +71,27 @@ pub fn record_adjoint(
             .enumerate()
             .filter_map(|(index, of)| of.iter().find(|(row, _)| *row == sample).map(|(_, weight)| (index, *weight)))
             .collect();
-        let columns: Vec<usize> = here.iter().map(|(index, _)| asked[*index].0).collect();
-        let found = derivatives(crane, &*functions, state, &columns);
-        for ((index, weight), mut covector) in here.into_iter().zip(found) {
+        let (of_times, of_states): (Vec<_>, Vec<_>) =
+            here.into_iter().partition(|(index, _)| asked[*index].0 >= first_time);
+        for (index, weight) in of_times {
+            let condition = asked[index].0 - first_time;
+            // Before, the time of an event is 0.
+            if rows[sample][asked[index].0] != 0.0 {
+                by_times[index][condition] += weight;
+            }
+        }
+        let columns: Vec<usize> = of_states.iter().map(|(index, _)| asked[*index].0).collect();
+        let (events, present) = trace.crane_at(sample);
+        let found = columns_by(present, &*functions[events], (state.0, &state.1), &columns, quantities_at);
+        for ((index, weight), mut covector) in of_states.into_iter().zip(found) {
             covector.motion.iter_mut().chain(&mut covector.numbers).for_each(|entry| *entry *= weight);
             by_samples[index].push((sample, covector));
         }
     }
     let mut gradients = Vec::new();
-    for own in &by_samples {
-        let found = trace.as_mut().filter(|_| !is_off);
-        let found = found.and_then(|trace| trace.pull_back(functions, own, proceed).ok());
+    for (samples, times) in by_samples.iter().zip(&by_times) {
+        let weights = Weights { samples, times };
+        let found = if is_off { None } else { trace.pull_back(&mut functions, weights, proceed).ok() };
         let by = |direction: usize| {
             found.as_ref().map_or(f64::NAN, |Covector { motion, numbers }| {
                 let of_start: f64 = along[direction].iter().zip(motion).map(|(along, by)| along * by).sum();
@@ -87,51 +102,6 @@ pub fn record_adjoint(
     }
     recorded.wall = begin.map(|begin| begin.elapsed());
     Ok((recorded, gradients))
-}
-
-/// Derivatives of columns at a state, each with respect to the motion and to the numbers of all directions.
-fn derivatives(
-    crane: &dyn DynCrane,
-    functions: &dyn PullBacks,
-    (t, motion): &(f64, Vec<f64>),
-    columns: &[usize],
-) -> Vec<Covector> {
-    let (n, len, directions) = (crane.size(), motion.len(), functions.count());
-    let mut all = vec![Covector::zero(len, directions); columns.len()];
-    // t, q and v come first.
-    let is_of_motion = |column: usize| (1..=2 * n).contains(&column);
-    for (covector, column) in all.iter_mut().zip(columns).filter(|(_, column)| is_of_motion(**column)) {
-        covector.motion[column - 1] = 1.0;
-    }
-    if columns.iter().all(|column| is_of_motion(*column)) {
-        return all;
-    }
-    let scales = ForceStates::new(crane.description()).scales();
-    let row = |around: Option<Around<'_>>, change: &[f64]| {
-        let size = size_of(change, n, &scales);
-        // To both sides: energies of stiff springs are squares of small numbers.
-        difference(crane, around, (motion, change, size), &mut |crane, motion| {
-            let ((q, v), x) = (motion[..2 * n].split_at(n), &motion[2 * n..]);
-            quantities_at(crane, *t, (q, v), x)
-        })
-    };
-    let nothing = vec![0.0; len];
-    let by_motion: Vec<Vec<f64>> = (0..len)
-        .map(|place| {
-            let mut change = nothing.clone();
-            change[place] = 1.0;
-            row(None, &change)
-        })
-        .collect();
-    let by_numbers: Vec<Vec<f64>> =
-        (0..directions).map(|direction| row(functions.around(direction), &nothing)).collect();
-    for (covector, column) in all.iter_mut().zip(columns).filter(|(_, column)| !is_of_motion(**column)) {
-        // What only the audit of a run has does not follow from a state.
-        let of_rows =
-            |rows: &[Vec<f64>]| rows.iter().map(|row| row.get(*column).copied().unwrap_or(f64::NAN)).collect();
-        (covector.motion, covector.numbers) = (of_rows(&by_motion), of_rows(&by_numbers));
-    }
-    all
 }
 
 /// Records every sample and keeps its motion, and asks after every step whether to continue.

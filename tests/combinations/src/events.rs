@@ -1,11 +1,12 @@
-//! A run with an event, and the same run in two parts, of two cranes; an event on a condition, and the same event at the time at which it happened.
+//! A run with an event, and the same run in two parts, of two cranes; an event on a condition, and the same event at the time at which it happened,
+//! and the same run step by step.
 
 use std::ops::ControlFlow;
 
-use crane_live::LiveCrane;
+use crane_live::{LiveCrane, Motion};
 use crane_model::ColumnKind;
 use crane_model::dyn_crane::{DynCrane, DynModel};
-use crane_model::dynamics::{Cause, InitialState, Sample, Settings, Watch, simulate_from, simulate_watched};
+use crane_model::dynamics::{Cause, InitialState, Sample, Settings, Stopped, Watch, simulate_from, simulate_watched};
 use crane_model::results::{Table, quantities_at};
 use crane_model::runs::{Failed, Reason, Start, imbalance, record};
 use fastrand::Rng;
@@ -121,7 +122,25 @@ fn on_condition(
     event.insert("at".to_owned(), json!(time));
     let expected = run(&live(&source(&crane)).ok()?)?.table;
     let told = |wrong| format!("once {} is {side} {value}, at {time} s: {wrong}", before.columns[column].name);
-    Some(differences(&found, &expected.rows).into_iter().map(told).collect())
+    let mut wrong = differences(&found, &expected.rows);
+    match in_steps(&on_condition, &found, start, settings) {
+        Ok(rows) => wrong.extend(differences(&found, &rows).into_iter().map(|wrong| format!("step by step {wrong}"))),
+        Err(stopped) => wrong.push(format!("step by step {stopped}")),
+    }
+    Some(wrong.into_iter().map(told).collect())
+}
+
+/// All quantities at the results of a run, of a motion step by step.
+fn in_steps(crane: &LiveCrane, table: &Table, start: &Start, settings: &Settings) -> Result<Vec<Vec<f64>>, Stopped> {
+    let settings = Settings { duration: f64::INFINITY, ..*settings };
+    let mut motion = Motion::new(Box::new(crane.clone()), 0.0, &start.state(), &settings, None)?;
+    let mut rows = Vec::new();
+    for row in &table.rows {
+        let _ = motion.advance(row[0], &mut |_| ControlFlow::Continue(()))?;
+        let Sample { t, q, v, x, .. } = motion.sample();
+        rows.push(quantities_at(motion.crane(), t, (q, v), x));
+    }
+    Ok(rows)
 }
 
 /// Whether an event would move the crane at once.

@@ -490,7 +490,7 @@ fn inputs_set_on_the_way(crane: &LiveCrane, q: &[f64], rng: &mut Rng) -> Option<
     let mut start = Start { v: vec![0.0; q.len()], q: q.to_vec(), x: Vec::new(), what: String::new(), rests: false };
     start.close(crane, 0.0, &Given::default()).ok()?;
     let begin = start.state();
-    let mut steered = SteeredMotion::new(crane, 0.0, &begin, &settings).ok()?;
+    let mut steered = SteeredMotion::new(crane, 0.0, &begin, &settings, None).ok()?;
     let state = |sample: &Sample<'_>| InitialState { q: sample.q.to_vec(), v: sample.v.to_vec(), x: sample.x.to_vec() };
     let mut end = begin;
     for (part, set) in [None, Some(value), None].into_iter().enumerate() {

@@ -1,4 +1,5 @@
-//! Derivatives of runs by live numbers and by the start: against differences of tighter runs, and by the adjoint mode against the forward mode.
+//! Derivatives of runs by live numbers and by the start: against differences of tighter runs, and by the adjoint mode against the forward mode; half
+//! of them with an event on a condition.
 
 use std::ops::ControlFlow;
 
@@ -10,10 +11,11 @@ use crane_model::dynamics::{Method, Settings};
 use crane_model::loop_joints::Given;
 use crane_model::runs::{Measure, Start, record};
 use fastrand::Rng;
+use serde_json::json;
 
-use crate::descriptions::numbers_as_parameters;
+use crate::descriptions::with_parameters;
 use crate::observe::{equilibrium, live};
-use crate::tree::Tree;
+use crate::tree::{Tree, source};
 
 /// The name of the check.
 pub const NAME: &str = "changes of runs with live numbers";
@@ -29,6 +31,8 @@ const MOST_STEPS: usize = 2_000;
 /// Steps relative to the number: with the longer ones differences have an error of their square, with the shorter one that of the steps of the
 /// runs. A foot may let go, or a valve open, within the longer ones; with stiff pads and oil the path of a run bends within 1e-6 rad of its start.
 const STEPS: [f64; 6] = [3e-3, 3e-4, 3e-5, 3e-6, 3e-7, 1e-7];
+/// A result on which an event waits moves by this much of its size between two results.
+const MOVES: f64 = 1e-3;
 /// Largest error, relative to the largest derivative of the column.
 const OF_COLUMN: f64 = 3e-3;
 /// The same relative to the largest derivative of its kind: positions or rates.
@@ -39,7 +43,8 @@ const OF_ONE: f64 = 1e-6;
 /// What does not change as its derivative says; `None` for a crane that does not stand, or whose runs end early.
 pub fn check_run_changes(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     let mut rng = Rng::with_seed(seed);
-    let crane = live(&numbers_as_parameters(tree, &mut rng)?.source).ok()?;
+    let (mut written, names) = with_parameters(tree)?;
+    let mut crane = live(&source(&written)).ok()?;
     let q = equilibrium(&crane).ok()?;
     // In motion: at rest, shut valves are where their laws have a kink.
     let v: Vec<f64> = q.iter().map(|_| RUN[2] * (2.0 * rng.f64() - 1.0)).collect();
@@ -63,6 +68,12 @@ pub fn check_run_changes(tree: &Tree, seed: u64) -> Option<Vec<String>> {
         most_steps: MOST_STEPS,
         ..own
     };
+    // Every second crane becomes another one on the way.
+    if seed % 2 == 1
+        && let Some(changing) = with_event(&mut written, &names, (&crane, &start, &settings), &mut rng)
+    {
+        crane = changing;
+    }
     let [first, last] = TOLERANCES.map(|tolerance| Settings { tolerance, ..settings });
     let mut wrong = Vec::new();
     for settings in [&first, &last] {
@@ -78,6 +89,28 @@ pub fn check_run_changes(tree: &Tree, seed: u64) -> Option<Vec<String>> {
         }
     }
     Some(wrong)
+}
+
+/// The crane with an event that sets a live number as soon as a result passes a value between two results of a run; `None` if the result hardly moves.
+fn with_event(
+    crane: &mut Tree,
+    names: &[String],
+    (before, start, settings): (&LiveCrane, &Start, &Settings),
+    rng: &mut Rng,
+) -> Option<LiveCrane> {
+    let table = record(before, start, settings, &mut |_| ControlFlow::Continue(())).ok()?.table;
+    let column = 1 + rng.usize(0..before.description().columns(before.loop_joints()).len());
+    let [from, to] = [1, 2].map(|row| table.rows[row][column]);
+    let name = names.get(rng.usize(0..names.len().max(1)))?;
+    let index = before.description().parameters.iter().position(|info| info.name == name.as_str())?;
+    let value = before.parameters()[index] * (0.7 + 0.6 * rng.f64());
+    if (to - from).abs() < MOVES * to.abs().max(from.abs()) {
+        return None;
+    }
+    let side = if to > from { "above" } else { "below" };
+    let when = json!({"result": table.columns[column].name, side: 0.5 * (from + to)});
+    crane["events"] = json!([{"name": "change", "when": when, "set": {name: value}}]);
+    live(&source(crane)).ok()
 }
 
 /// Positions and rates whose derivatives are not the differences of runs with these settings.

@@ -168,3 +168,18 @@ def test_the_page_contains_what_python_computes(specs, seed, loaded, command, tm
         for row, exact in zip(grid["rows"], grid["exact"]):
             for shown, whole in zip(row, map(number, exact)):
                 assert whole is None or shows(shown, whole), (grid["title"], row, exact)
+
+
+def test_cranes_buckle_in_python_as_the_command_prints(specs, seed, loaded, command):
+    crane, _ = loaded
+    printed, found = json.loads(command("strength", specs(seed), "--buckling", "--format", "json")), crane.buckling()
+    factors = printed["critical_factor"]
+    of_path = factors["followed"] or {"factor": np.inf, "status": ""}
+    assert found.followed == of_path["factor"] and found.status in (of_path["status"], "")
+    assert (factors["linearised"] or None) == (found.linearised if np.isfinite(found.linearised) else None)
+    orders = printed["second_order"]
+    moved = [[row["first_order"], row["second_order"]] for row in orders if row["quantity"].startswith("displacement")]
+    bent = [[row["first_order"], row["second_order"]] for row in orders if row["quantity"].startswith("bending")]
+    if moved:
+        np.testing.assert_allclose(np.linalg.norm(found.displacements, axis=-1), moved, rtol=1e-12)
+    np.testing.assert_array_equal(found.moments, np.reshape(bent, (-1, 2)))

@@ -61,12 +61,6 @@ pub fn write_unit(
     carried: &Carried,
     out: &mut dyn Write,
 ) -> Outcome<()> {
-    if let Some(event) = chain.events.first() {
-        return Err(Problem::usage(
-            format!("{} has event `{}`, and a unit has none", chain.name, event.name),
-            "export a spec that `extends` it with `events: ~`",
-        ));
-    }
     let (is_compiled, version) = (options.crane.compile, options.fmi.unwrap_or_default());
     let libraries = match options.libraries.as_slice() {
         [] if is_compiled => vec![read_library(&compiled::unit(&chain, spec)?)?],

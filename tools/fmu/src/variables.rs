@@ -26,8 +26,10 @@ pub enum Source {
     Parameter(usize),
     /// An input, by its index in the description.
     Input(usize),
-    /// What changes its sign where a contact begins or ends, by its index in the list of [`Contacts`].
+    /// What changes its sign where a contact begins or ends, by its index in the list of [`Contacts`]; then those of events on conditions.
     Indicator(usize),
+    /// When an event on a condition happened, by its index in the description.
+    EventTime(usize),
 }
 
 /// A variable. Its value reference is its index in the list.
@@ -46,7 +48,7 @@ pub struct Variable {
 }
 
 /// The variables of a crane: time, coordinates, rates, derived quantities and states of forces, accelerations,
-/// rates of the forces' states, parameters, inputs, event indicators.
+/// rates of the forces' states, parameters, inputs, times of events, event indicators.
 ///
 /// Poses and rates of joints and of the base are outputs, and so are points, drives, reactions and what loop joints transmit. Deformations of flexible links,
 /// their moments, energies and accelerations can be read as well, but are not outputs, because they are many.
@@ -113,11 +115,26 @@ pub fn list(description: &Description, loop_joints: &[LoopJointInfo]) -> Vec<Var
         is_output: false,
     }));
     all.extend(parameters.chain(inputs));
+    all.extend(description.conditions().map(|(event, condition)| Variable {
+        name: column_name(ColumnKind::EventTime, &description.events[event].name, false),
+        unit: ColumnKind::EventTime.unit(false).to_owned(),
+        about: format!("when {condition}; 0 before"),
+        source: Source::EventTime(event),
+        is_output: false,
+    }));
     all.extend(Contacts::names(description).into_iter().enumerate().map(|(index, name)| Variable {
         name,
         unit: String::new(),
         about: "event indicator: negative while the contact is closed".to_owned(),
         source: Source::Indicator(index),
+        is_output: false,
+    }));
+    let contacts = Contacts::names(description).len();
+    all.extend(description.conditions().enumerate().map(|(index, (event, condition))| Variable {
+        name: column_name(ColumnKind::EventIndicator, &description.events[event].name, false),
+        unit: String::new(),
+        about: format!("event indicator: positive when {condition}"),
+        source: Source::Indicator(contacts + index),
         is_output: false,
     }));
     all

@@ -158,3 +158,65 @@ def test_a_foot_that_lifts_is_an_event(version, export, simulate):
     for name in names[:-1]:
         # Both are set to 1e-9 a step.
         assert np.abs(result[name][rows] - own[name]).max() < 1e-6, name
+
+
+# A hook that is lowered on its spring and damper loses its load as it passes −0.5 m, and catches another that flies upward.
+LIFT = """
+format: 1
+name: lift
+parameters: {load: {value: 590, unit: kg}}
+links: [{name: hook, joint: {prismatic: {axis: z}}, mass: load, com: [0, 0, 0]}]
+drives: [{coordinate: hook_z, stiffness: 5e4, damping: 800, motion: {speed: {rate: -0.4}}}]
+points: [{name: hook_point, link: hook}]
+events:
+- {name: drop, when: {result: hook_z, below: -0.5}, set: {load: 90}}
+- {name: catch, at: 1.505, set: {load: 300}, joins: {velocity: [0, 0, 0.8], point: hook_point}}
+run: {duration: 2, output: 0.01}
+"""
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+def test_units_have_the_events_of_a_run(version, kind, unit_of, simulate):
+    spec, file = unit_of("lift", LIFT, version)
+    assert validate_fmu(file) == []
+    names = ["hook_z", "hook_z_rate", "load", "drop_time"]
+    result = simulate_fmu(file, fmi_type=kind, stop_time=2, output_interval=0.01, relative_tolerance=1e-9, step_size=0.01, output=names)
+    own = simulate(spec, "--tolerance", "1e-9")
+    # At an event there are rows before and after it: the last of a time is that after.
+    time, rows = np.unique(result["time"][::-1].round(9), return_index=True)
+    result = result[::-1][rows]
+    for t, q, v, drop in zip(own["t"], own["hook_z"], own["hook_z_rate"], own["drop_time"], strict=True):
+        if abs(t - own["drop_time"][-1]) < 0.006:
+            continue
+        (row,) = np.flatnonzero(np.abs(time - t) < 1e-9)[:1]
+        # The importer finds when the hook passes to its tolerance; its own solver is at 1e-9 of rates of 1 m/s.
+        assert abs(result["hook_z"][row] - q) < 2e-5 and abs(result["hook_z_rate"][row] - v) < 2e-4, (t, q, result["hook_z"][row])
+        assert abs(result["drop_time"][row] - drop) < 2e-5
+    assert result["load"][-1] == 300 and result["load"][0] == 590
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_events_happen_in_event_mode(version, unit_of, model):
+    unit = model(unit_of("lift", LIFT, version)[1], version)
+    assert unit.count == 1
+    assert next_event(unit, version) == 1.505
+    indicator = (ctypes.c_double * 1)()
+
+    def at(t, z, v):
+        unit.setTime(t)
+        unit.setContinuousStates((ctypes.c_double * 2)(z, v), 2)
+        unit.getEventIndicators(indicator, 1)
+        return indicator[0]
+
+    assert at(0.5, -0.4, -0.4) == pytest.approx(-0.1) and at(0.6, -0.6, -0.4) == pytest.approx(0.1)
+    assert next_event(unit, version) == 1.505
+    # It has happened, and does not happen again.
+    assert at(0.7, -0.4, -0.4) == 1
+    at(1.505, -0.6, -0.4)
+    unit.enterEventMode()
+    assert next_event(unit, version) is None
+    states = (ctypes.c_double * 2)()
+    unit.getContinuousStates(states, 2)
+    # Momentum: 90 kg at −0.4 m/s and 210 kg at 0.8 m/s.
+    assert states[1] == pytest.approx((-90 * 0.4 + 210 * 0.8) / 300, rel=1e-12)

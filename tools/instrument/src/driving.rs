@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use crane_live::{LiveCrane, Motion};
 use crane_model::{
     dyn_crane::{DynCrane, DynModel},
-    dynamics::{InitialState, Method, Settings},
+    dynamics::{InitialState, Method, Settings, without_events},
     force_states::ForceStates,
     results::{instants, quantities_at},
     statics,
@@ -90,7 +90,9 @@ impl Driving {
             Some(motion) => motion,
             none => {
                 let settings = Settings { tolerance, ..self.settings };
-                let begun = Motion::new(self.crane.boxed_clone(), self.t, &self.state, &settings);
+                // Levers begin new motions, and set parameters that an event may set, too.
+                let begun = without_events(self.crane.description(), &settings, "driving")
+                    .and_then(|()| Motion::new(self.crane.boxed_clone(), self.t, &self.state, &settings, None));
                 none.insert(begun.map_err(|stopped| stopped.to_string())?)
             }
         };

@@ -34,11 +34,17 @@ pub struct SteeredMotion {
 }
 
 impl SteeredMotion {
-    /// From a state at a time, s.
+    /// From a state at a time, s, with the [marks](Motion::marks) of an earlier motion if it goes on from one.
     ///
     /// # Errors
     /// As [`Motion::new`].
-    pub fn new(crane: &LiveCrane, begin: f64, start: &InitialState, settings: &Settings) -> Result<Self, Stopped> {
+    pub fn new(
+        crane: &LiveCrane,
+        begin: f64,
+        start: &InitialState,
+        settings: &Settings,
+        marks: Option<&[f64]>,
+    ) -> Result<Self, Stopped> {
         let crane = crane.clone();
         let infos = &crane.description().inputs;
         let defaults: Vec<f64> = (0..infos.len()).map(|index| crane.input_start(index)).collect();
@@ -49,7 +55,7 @@ impl SteeredMotion {
                 inputs.set(index, slots_of(info.default));
             }
         }
-        let motion = Motion::new(Box::new(crane) as Box<dyn DynCrane>, begin, start, settings)?;
+        let motion = Motion::steered(crane, begin, start, settings, marks)?;
         Ok(Self { motion, inputs, values, defaults, begin, start: start.clone() })
     }
 
@@ -96,6 +102,18 @@ impl SteeredMotion {
         self.motion.advance(begin + dt, step)
     }
 
+    /// What events have done so far: see [`Motion::marks`].
+    #[must_use]
+    pub fn marks(&self) -> Vec<f64> {
+        self.motion.marks()
+    }
+
+    /// The crane, after its events so far.
+    #[must_use]
+    pub fn crane(&self) -> &dyn DynCrane {
+        self.motion.crane()
+    }
+
     /// The state reached.
     #[must_use]
     pub fn sample(&self) -> Sample<'_> {
@@ -138,7 +156,7 @@ impl SteeredMotion {
         let of_begin = crane.clone();
         let each = slots.as_chunks().0.iter().enumerate();
         each.for_each(|(index, slots)| of_begin.inputs().set(index, *slots));
-        let mut made = Self::new(&of_begin, begin, &start, settings).ok()?;
+        let mut made = Self::new(&of_begin, begin, &start, settings, None).ok()?;
         slots.as_chunks().0.iter().enumerate().for_each(|(index, slots)| made.inputs.set(index, *slots));
         made.values.copy_from_slice(values);
         made.motion.recall(rest).then_some(made)

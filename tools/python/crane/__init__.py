@@ -32,6 +32,7 @@ from .frames import Frames
 from .joints import JointStates
 from .model import Crane, from_mjcf, from_urdf, load
 from .results import (
+    Buckling,
     CylinderDuty,
     DriveDuty,
     Duties,
@@ -57,6 +58,7 @@ __version__ = metadata.version("crane")
 __all__ = [
     "__version__",
     "Band",
+    "Buckling",
     "Crane",
     "Cycle",
     "CylinderDuty",

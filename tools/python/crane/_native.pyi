@@ -74,6 +74,11 @@ class Motions:
     def states(self) -> tuple[Array, Array, Array, Array, Array]:
         """States reached: times (rows), poses and rates (rows, n), states of forces (rows, states), and work of the drives, dissipated energy
         and work of the loads since the start, J, (rows, 3)."""
+    def parameters(self) -> Array:
+        """The live parameters, (rows, parameters), which events may have set."""
+    def marks(self, row: int) -> dict[str, float]:
+        """What events of a row have done, by name: the time of each, s; 0 if it is still to come, NaN if its condition has to cease before, -1 if its
+        time was before the start."""
     def failures(self) -> list[str | None]:
         """Why each row ended; None for those that go on."""
     def check(self) -> None:
@@ -255,8 +260,10 @@ class Crane:
         v: ArrayLike | None = None,
         x: ArrayLike = (),
         inputs: dict[str, Any] | None = None,
+        marks: Sequence[float] | None = None,
     ) -> Motions:
-        """Motions from a time, s, for every row of parameters, starts and inputs; from their equilibria at rest unless q and v are given."""
+        """Motions from a time, s, for every row of parameters, starts and inputs; from their equilibria at rest unless q and v are given. `marks`: what
+        events of earlier motions have done."""
     def _recalled(self, timing: dict[str, Any], audit: bool, memories: list[ArrayLike]) -> Motions:
         """The motions from which these memories are: they go on with the same numbers, to the last bit."""
     def _input_bounds(self) -> dict[str, tuple[float, float]]:
@@ -286,6 +293,8 @@ class Crane:
     ) -> Array:
         """(..., 5 sections + 5): stresses and utilisation of every section of beams, then margin, moments and supports of the governing
         tipping line; `Crane.strength` names them."""
+    def _buckling(self) -> dict[str, Any] | None:
+        """Critical factors of weight and loads, and displacements and bending moments by both orders; None if the crane does not rest."""
     def transform_second_derivatives(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., bodies, n, n, 4, 4): `∂²T/∂q_m∂q_n`."""
     def forward_dynamics_derivatives(

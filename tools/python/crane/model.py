@@ -20,6 +20,7 @@ from .joints import JointStates, coordinates_of, joint_states
 from .notebook import embed
 from .results import (
     Array,
+    Buckling,
     Energies,
     Ensemble,
     Envelope,
@@ -273,6 +274,15 @@ class Crane(Closed, _native.Crane):
             overturning,
             np.where(np.isnan(line), -1, line).astype(int),
         )
+
+    def buckling(self) -> Buckling:
+        """Critical factors of weight and loads at rest, and displacements and bending moments by the first and the second order."""
+        found = self._buckling()
+        if found is None:
+            # Says why.
+            self.statics()
+            raise NoEquilibrium(f"{self.name} does not rest with its drives at the beginning of their motions")
+        return Buckling(**found)
 
     def linearise(
         self,

@@ -307,6 +307,28 @@ class Strength:
 
 
 @dataclass(frozen=True)
+class Buckling:
+    """How many times its weight and loads a crane carries at rest, and what they do by the first and the second order of beam theory: the numbers of
+    `crane strength --buckling`.
+
+    linearised: critical factor of the weight of everything and of all loads, by the stiffness at rest; NaN for closed loops and rigid couplings.
+    followed: the factor up to which the crane rests, its pose followed. Both are inf above 1000.
+    status: how statics ends beyond that factor; empty where a stage is out of its beam, or for inf.
+    displacements: (points, 2, 3), m, by which weight and loads move the points of interest, by the first order and at rest; NaN if the crane does not
+    rest nearby without weight and loads, and no beams are then listed.
+    beams, places: names of the beams, and the place on each that is bent most. moments: (beams, 2), N m, the bending moments there by both orders.
+    """
+
+    linearised: float
+    followed: float
+    status: str
+    displacements: Array
+    beams: list[str]
+    places: list[str]
+    moments: Array
+
+
+@dataclass(frozen=True)
 class Run(Mapping[str, Array]):
     """A run: its columns by name, as in `run["boom_psi_drive_torque"]`, at the times `run.t`.
 

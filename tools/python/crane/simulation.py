@@ -24,7 +24,8 @@ class State:
     t: s. q, v: (n), m and rad, m/s and rad/s. work, dissipated, load_work: J since the start. parameters: live parameters.
     inputs: those that are set. x: states of the oil of cylinders with a valve (pressures on the sides of piston and rod, Pa, and opening of
     each, then the pump's pressure, Pa), then deflections of bristles in joints that stick (rad or m); empty before the first step,
-    which begins with those that hold the pose.
+    which begins with those that hold the pose. marks: what the events of the spec have done, by name: the time of each, s; 0 if it is still
+    to come, NaN if its condition has to cease before, -1 if its time was before the start; empty before the first step.
     """
 
     t: float
@@ -36,6 +37,7 @@ class State:
     load_work: float = 0.0
     inputs: dict[str, float] = field(default_factory=dict)
     x: Array = field(default_factory=lambda: np.zeros(0))
+    marks: dict[str, float] = field(default_factory=dict)
 
 
 class Simulation(Closed):
@@ -47,7 +49,8 @@ class Simulation(Closed):
     >>> simulation.step(0.01, payload=900.0)
     >>> simulation.restore(before)
 
-    Inputs of the spec are set by name, `simulation.step(0.01, inputs={"pull": 300.0})`.
+    Inputs of the spec are set by name, `simulation.step(0.01, inputs={"pull": 300.0})`. Events of the spec happen within steps, at their times and on their
+    conditions, and set live parameters; those before the start do not.
 
     The method keeps its step size and its history across calls, so that short calls cost no more than long ones; it keeps them when inputs
     change, too. A new value of a parameter, an input that no longer follows a motion of the spec, and `restore` begin a new history
@@ -159,7 +162,7 @@ class Simulation(Closed):
                 self._release(inputs, values, linear)
         if self._motion is None:
             state = self._state
-            self._motion = self.crane._motions(self._timing, True, state.t, state.q, state.v, state.x)
+            self._motion = self.crane._motions(self._timing, True, state.t, state.q, state.v, state.x, marks=list(state.marks.values()) or None)
             self._begin = state
         try:
             self._motion.advance(dt, 1, _as_set(inputs or {}, self._motion), linear)
@@ -169,19 +172,33 @@ class Simulation(Closed):
             raise
         t, q, v, x, energies = (numbers[0] for numbers in self._motion.states())
         work, dissipated, load_work = energies.tolist()
-        begin = self._begin
+        begin, marks = self._begin, self._motion.marks(0)
         self._state = State(
             float(t),
             q,
             v,
             work=begin.work + work,
             dissipated=begin.dissipated + dissipated,
-            parameters=self._state.parameters,
+            parameters=self._present_parameters(self._motion) if marks else self._state.parameters,
             load_work=begin.load_work + load_work,
             inputs={name: float(value) for name, value in values.items()} if inputs else values,
             x=x,
+            marks=marks,
         )
         return self._state
+
+    def _present_parameters(self, motion: "Motions") -> dict[str, float]:
+        """The live parameters, which events may have set; so has the crane."""
+        before = self._state.parameters
+        now = dict(zip(before, motion.parameters()[0].tolist(), strict=True))
+        if now != before:
+            self._crane = self._crane.replace(**now)
+        return now
+
+    @property
+    def events(self) -> dict[str, float]:
+        """Times of the events of the spec that have happened, s, by name."""
+        return {name: mark for name, mark in self._state.marks.items() if mark > 0.0}
 
     def _release(self, inputs: dict[str, float | None], values: dict[str, float], linear: bool) -> None:
         """Ends the history if an input begins or ceases to follow a motion of the spec."""

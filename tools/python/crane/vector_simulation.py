@@ -111,13 +111,20 @@ class VectorSimulation(Closed):
 
     @property
     def crane(self) -> "Crane":
-        """The cranes, with their parameters as arrays."""
-        return self._crane_of(np.arange(self._count))
+        """The cranes, with their present parameters as arrays."""
+        return self._base.replace(**self.parameters)
 
     @property
     def parameters(self) -> dict[str, Array]:
-        """Live parameters, (rows) each."""
-        return {name: value.copy() for name, value in self._parameters.items()}
+        """Live parameters, (rows) each, after the events so far. `reset` begins with those before them."""
+        return dict(zip(self._parameters, self._motions.parameters().T.copy(), strict=True))
+
+    @property
+    def events(self) -> dict[str, Array]:
+        """Times of the events of the spec, (rows) each, s; NaN in rows in which they have not happened."""
+        rows = [self._motions.marks(row) for row in range(self._count)]
+        marks = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+        return {name: np.where(own > 0.0, own, np.nan) for name, own in marks.items()}
 
     @property
     def inputs(self) -> dict[str, Array]:

@@ -9,6 +9,7 @@
 //! | `products` | products of vectors with their derivatives |
 //! | `equilibria`, `vibrations` | statics, modes and stability, row by row |
 //! | `linear` | linear models, and margins of loops around them |
+//! | `buckling` | critical factors of weight and loads, first and second order |
 //! | `sensitivity` | derivatives at rest by the numbers of a crane |
 //! | `motion` | runs: of one crane, of many |
 //! | `recorded` | what runs say afterwards: what drives must be able to do, fatigue |
@@ -19,6 +20,7 @@
 //! | `mistakes` | exceptions and warnings |
 
 mod arrays;
+mod buckling;
 mod crane;
 mod description;
 mod envelope;

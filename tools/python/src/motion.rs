@@ -5,7 +5,6 @@ use std::str::FromStr;
 
 use crane_live::LiveCrane;
 use crane_live::sensitivity::runs::{self, Along, run_with_adjoint, run_with_gradients};
-use crane_model::Description;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::{InitialState, Method, Settings, Statistics};
 use crane_model::results::{Column, Peaks, Recording, cautions, quantities};
@@ -14,6 +13,7 @@ use crane_model::runs::{
     Bound as StepBound, Failed, Measure, Reason, Recorded, SAFE, Start, check, large_effort, record_checked, step_limit,
 };
 use crane_model::stability::cause;
+use crane_model::{ColumnKind, Description};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -179,8 +179,9 @@ fn check_finite(name: &str, argument: &Argument, description: &Description) -> P
 /// Columns, by their indices, and their measures of names as `boom_psi_drive_torque.peak`.
 fn asked_of(crane: &LiveCrane, names: &[String]) -> PyResult<Vec<(usize, Measure)>> {
     let columns = Recording::new(crane).into_table().columns;
-    let with_derivatives = quantities(crane.description(), crane.loop_joints()).len();
-    let asked = |name: &String| runs::asked(&columns, name, &|column| column < with_derivatives);
+    let of_states = quantities(crane.description(), crane.loop_joints()).len();
+    let has_derivatives = |column: usize| column < of_states || columns[column].kind == ColumnKind::EventTime;
+    let asked = |name: &String| runs::asked(&columns, name, &has_derivatives);
     names.iter().map(|name| asked(name).map_err(|not| PyValueError::new_err(not.to_string()))).collect()
 }
 

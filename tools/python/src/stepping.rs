@@ -59,8 +59,9 @@ type Changes = Vec<(usize, Option<Vec<f64>>)>;
 
 #[pymethods]
 impl Crane {
-    /// Motions from a time, s, for every row of parameters, starts and inputs; from their equilibria at rest unless q and v are given.
-    #[pyo3(name = "_motions", signature = (timing, audit, t, q=None, v=None, x=Vec::new(), inputs=None))]
+    /// Motions from a time, s, for every row of parameters, starts and inputs; from their equilibria at rest unless q and v are given. `marks`: what events of
+    /// earlier motions have done.
+    #[pyo3(name = "_motions", signature = (timing, audit, t, q=None, v=None, x=Vec::new(), inputs=None, marks=None))]
     #[expect(clippy::too_many_arguments, reason = "named arguments in Python")]
     fn motions(
         &self,
@@ -72,6 +73,7 @@ impl Crane {
         v: Option<&Bound<'_, PyAny>>,
         x: Vec<f64>,
         inputs: Option<&Bound<'_, PyDict>>,
+        marks: Option<Vec<f64>>,
     ) -> PyResult<Motions> {
         let settings = self.settings_of_steps(&timing, audit)?;
         if !t.is_finite() {
@@ -97,7 +99,8 @@ impl Crane {
             let start =
                 Start::with(&crane, t, case.q.as_deref(), case.v.as_deref()).map_err(|failed| raised(&failed))?;
             let start = InitialState { q: start.q, v: start.v, x: if x.is_empty() { start.x } else { x.clone() } };
-            SteeredMotion::new(&crane, t, &start, &settings).map_err(|stopped| failed(stopped, &description.name))
+            SteeredMotion::new(&crane, t, &start, &settings, marks.as_deref())
+                .map_err(|stopped| failed(stopped, &description.name))
         };
         let begun = map_rows(py, cases.len(), |row, _| begin(&cases[row]))?;
         let with_place = |(row, begun): (usize, PyResult<SteeredMotion>)| {
@@ -222,6 +225,28 @@ impl Motions {
             array(py, numbers, &rows, &of_row).map(fixed)
         });
         PyTuple::new(py, arrays.collect::<PyResult<Vec<_>>>()?)
+    }
+
+    /// The live parameters, (rows, parameters), which events may have set.
+    fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let of_row = |row: usize| {
+            let now = self.row(row);
+            let crane = now.motion.crane();
+            (0..crane.description().parameters.len()).map(|index| crane.parameter(index)).collect::<Vec<f64>>()
+        };
+        let rows: Vec<Vec<f64>> = (0..self.rows.len()).map(of_row).collect();
+        let width = rows.first().map_or(0, Vec::len);
+        array(py, rows.concat(), &[self.rows.len()], &[width])
+    }
+
+    /// What events of a row have done, by name: the time of each, s; 0 if it is still to come, NaN if its condition has to cease before, −1 if its time was
+    /// before the start.
+    fn marks<'py>(&self, py: Python<'py>, row: usize) -> PyResult<Bound<'py, PyDict>> {
+        self.check_row(row)?;
+        let (now, all) = (self.row(row), PyDict::new(py));
+        let events = &now.motion.crane().description().events;
+        events.iter().zip(now.motion.marks()).try_for_each(|(event, mark)| all.set_item(&*event.name, mark))?;
+        Ok(all)
     }
 
     /// Why each row ended; None for those that go on.

@@ -156,3 +156,51 @@ def test_memory_of_another_crane_is_refused():
             simulation.crane._recalled(timing, True, [wrong])
     with pytest.raises(ValueError, match="not a saved motion of"):
         other._recalled(timing, True, [memory])
+
+
+# A hook that is lowered on its spring loses its load as it passes −0.5 m, and takes up another at a time.
+LIFT = """
+format: 1
+name: lift
+parameters: {load: {value: 590, unit: kg}}
+links: [{name: hook, joint: {prismatic: {axis: z}}, mass: load, com: [0, 0, 0]}]
+drives: [{coordinate: hook_z, stiffness: 5e4, motion: {speed: {rate: -0.4}}}]
+events: [{name: drop, when: {result: hook_z, below: -0.5}, set: {load: 90}}, {name: take, at: 1.505, set: {load: 300}}]
+"""
+
+
+@pytest.mark.parametrize("method", ["bdf", "rosw4", "dopri5", "rk4"])
+def test_steps_have_the_events_of_a_run(method):
+    c = crane.load("lift.yaml", text=LIFT)
+    settings = {"method": method} if method == "rk4" else {"method": method, "tolerance": 1e-8}
+    run = c.simulate(duration=2, output=0.01, verify=False, **settings)
+    simulation, cranes = c.simulation(**settings), c.vector_simulation(2, **settings)
+    for row in range(1, len(run.t)):
+        state = simulation.step(0.01)
+        rows = cranes.step(0.01)
+        # The steps are the same; a sum of times is not a product.
+        assert abs(state.q[0] - run["hook_z"][row]) < 1e-9 and abs(rows.q[1, 0] - state.q[0]) < 1e-12
+        if row in (60, 140, 160):
+            simulation = pickle.loads(pickle.dumps(simulation))
+            cranes = copy.deepcopy(cranes)
+            saved = simulation.save()
+    assert simulation.events["take"] == 1.505
+    assert abs(simulation.events["drop"] - run["drop_time"][-1]) < 1e-9 and np.ptp(cranes.events["drop"]) == 0
+    assert simulation.crane.parameters["load"] == state.parameters["load"] == 300
+    assert (cranes.parameters["load"] == 300).all()
+    # From a state, a new history begins, with what has happened.
+    simulation.restore(saved)
+    end = simulation.step(0.4)
+    assert simulation.events == state.marks and abs(end.q[0] - run["hook_z"][-1]) < 1e-5
+    cranes.reset([0])
+    assert np.isnan(cranes.events["drop"][0]) and cranes.parameters["load"].tolist() == [590, 300]
+
+
+def test_what_a_step_sets_makes_an_event_due():
+    simulation = crane.load("lift.yaml", text=LIFT.replace("hook_z, below: -0.5", "hook_z_drive_force, above: 7000")).simulation()
+    simulation.step(0.02)
+    assert simulation.events == {}
+    # What holds because a parameter is set has not held before.
+    simulation.step(0.02, load=900.0)
+    simulation.step(0.3)
+    assert list(simulation.events) == ["drop"] and simulation.crane.parameters["load"] == 90

@@ -289,3 +289,39 @@ def test_what_a_hoist_must_be_able_to_do():
     duty = duties.drives["load_z"]
     assert (duty.unit, duty.unit_of_rates, duty.braking_work, duties.cylinders, duties.pump) == ("N", "m/s", 0, {}, None)
     assert [duty.effort, duty.rate, duty.power, duty.work] == pytest.approx([1031, 0.5, 515.5, 1471.5], rel=1e-3)
+
+
+# A post of a slender tube without weight, 6 m high, with a tenth of Euler's load on its top and a push to the side.
+POST = """
+format: 1
+name: post
+analyses: [statics, dynamics]
+gravity: [0, 0, 0]
+links:
+  - name: post
+    placement: {transform: {rotation: {y: -90 deg}}}
+    beam: {length: 6, sections: 8, material: {E: 2.1e11, G: 8.1e10, density: 100}, section: {tube: {diameter: 0.06, thickness: 0.003}}}
+loads: [{name: top, link: post, at: [6, 0, 0], force: [1, 0, FORCE]}]
+points: [{name: top, link: post, at: [6, 0, 0]}]
+"""
+
+
+def test_a_column_buckles_and_bends_by_both_orders():
+    stiffness = 2.1e11 * np.pi * (0.06**4 - 0.054**4) / 64
+    euler = np.pi**2 * stiffness / (4 * 36)
+    found = crane.load("post.yaml", text=POST.replace("FORCE", str(-0.1 * euler))).buckling()
+    # 8 sections: the error of the factor is below 1 %.
+    assert abs(found.linearised / 10 - 1) < 0.01
+    assert found.beams == ["post"] and found.places[0].startswith("post")
+    first, second = np.linalg.norm(found.displacements[0], axis=-1)
+    # F L³/(3 E J); a column gives way as u = k L, 3 (tan u − u)/u³ times as far. At 8 sections the error of the first is 1/(2 · 8²).
+    u = 0.5 * np.pi * np.sqrt(0.1)
+    assert abs(first / (6**3 / (3 * stiffness)) - 1) < 0.01
+    assert abs(second / first / (3 * (np.tan(u) - u) / u**3) - 1) < 2e-3
+    # At the foot F L and F L tan(u)/u, half a section above it.
+    assert abs(found.moments[0, 1] / found.moments[0, 0] / (np.tan(u) / u) - 1) < 0.02
+
+
+def test_a_crane_that_does_not_rest_does_not_buckle():
+    with pytest.raises(crane.NoEquilibrium):
+        crane.load("post.yaml", text=POST.replace("FORCE", "-1e6")).buckling()

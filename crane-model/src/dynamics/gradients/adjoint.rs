@@ -7,18 +7,25 @@
 
 use std::ops::ControlFlow;
 
-use super::{Covector, Numbers, PullBacks, SAME, Slopes, follower::Follower, jump::of_functions_of_time, rates::Rates};
+use super::{
+    Covector, Numbers, PullBacks, SAME, Slopes,
+    follower::{Follower, motion_of},
+    jump::of_functions_of_time,
+    pass,
+    passage::Passage,
+    rates::Rates,
+};
 use crate::{
     dyn_crane::{DynCrane, DynImplicit},
     dynamics::{
-        Ahead, EffortAccuracy, InitialState, Integration, NotFinite, Run, Settings, Statistics, Stepper, Stopped,
-        Watch,
+        Ahead, Course, EffortAccuracy, InitialState, Integration, NotFinite, Quantities, Run, Settings, Statistics,
+        Stepper, Stopped, Watch,
         adaptive::{Adaptive, FIRST},
+        course::Observe,
         equations::Equations,
         motion::add,
         references::INSIDE,
         rosenbrock::{A, C, STAGES, Stages, WEIGHTS},
-        settings::divided,
         step::Step,
     },
 };
@@ -84,52 +91,113 @@ impl Stepper for Keeper<'_, '_> {
     }
 }
 
-/// A motion whose numbers can be differentiated.
-pub struct Trace<'a, 's> {
-    crane: &'a dyn DynCrane,
-    follower: Follower<'a, 's>,
+/// A phase of a motion, from one event to the next.
+struct Leg {
+    /// The crane after the events before it; none for the first.
+    crane: Option<Box<dyn DynCrane>>,
     kept: Vec<Kept>,
-    /// The motion at its end.
+    /// The motion at the end of its last step.
     end: Vec<f64>,
-    /// The step in which each sample is, and its time, s.
-    samples: Vec<(usize, f64)>,
+    /// The event that ends it.
+    passage: Option<Passage>,
+}
+
+/// A motion whose numbers can be differentiated.
+pub struct Trace<'a> {
+    crane: &'a dyn DynCrane,
+    tolerance: f64,
+    legs: Vec<Leg>,
+    /// The phase and the step in which each sample is, and its time, s.
+    samples: Vec<(usize, usize, f64)>,
     run: Run,
 }
 
-impl<'a, 's> Trace<'a, 's> {
+/// Notes where samples are, and passes them on.
+struct Noted<'w> {
+    watch: &'w mut dyn Watch,
+    leg: usize,
+    samples: &'w mut Vec<(usize, usize, f64)>,
+}
+
+impl Observe<Keeper<'_, '_>> for Noted<'_> {
+    fn sample(
+        &mut self,
+        _: &dyn DynCrane,
+        integration: &mut Integration<'_, Keeper<'_, '_>>,
+        course: &Course,
+    ) -> ControlFlow<()> {
+        let step = integration.stepper().kept.len() - 1;
+        let sample = course.sample(integration);
+        self.samples.push((self.leg, step, sample.t));
+        self.watch.sample(&sample)
+    }
+
+    fn step(&mut self, t: f64) -> ControlFlow<()> {
+        self.watch.step(t)
+    }
+}
+
+/// The derivatives of a number by what a motion has, from which those by the start follow.
+#[derive(Clone, Copy, Debug)]
+pub struct Weights<'a> {
+    /// By the motion at samples, given by their indices in increasing order, and by all numbers.
+    pub samples: &'a [(usize, Covector)],
+    /// By the times of events on conditions.
+    pub times: &'a [f64],
+}
+
+impl<'a> Trace<'a> {
     /// A motion from a start at t = 0, by the W-method; the method of the settings is not used. Its steps also allow the errors of a few derivatives,
     /// `probes`, whose start is `along`: what is differentiated may change faster than the motion itself.
     ///
     /// # Errors
-    /// As [`simulate`](crate::dynamics::simulate).
+    /// As [`simulate`](super::simulate).
     pub fn new(
         crane: &'a dyn DynCrane,
         start: &InitialState,
-        (probes, along): (&'s mut dyn Slopes, Vec<Vec<f64>>),
+        (probes, mut along): (&mut dyn Slopes, Vec<Vec<f64>>),
         settings: &Settings,
+        quantities: &Quantities,
         watch: &mut dyn Watch,
     ) -> Result<Self, Stopped> {
-        let any: &dyn DynImplicit = crane;
-        let keeper = Keeper { follower: Follower::new(crane, any, probes, along, settings), kept: Vec::new() };
-        let mut integration = Integration::by(Box::new(keeper), any, 0.0, start, settings)?;
-        let mut samples = Vec::new();
-        let intervals = divided(settings.duration, settings.output).0;
-        for interval in 0..=intervals {
-            let sample = integration.sample();
-            let (t, ended) = (sample.t, watch.sample(&sample).is_break());
-            samples.push((integration.stepper().kept.len() - 1, t));
-            if interval == intervals || ended {
-                break;
+        let mut course = Course::new(crane, 0.0, start, settings, quantities);
+        let (mut legs, mut samples): (Vec<Leg>, _) = (Vec::new(), Vec::new());
+        let mut changed = None::<(Box<dyn DynCrane>, Box<dyn Slopes>)>;
+        let mut times = vec![0.0; along.len()];
+        loop {
+            let (present, probes): (&dyn DynCrane, &mut dyn Slopes) = match &mut changed {
+                Some((crane, probes)) => (&**crane, &mut **probes),
+                None => (crane, &mut *probes),
+            };
+            let (begin, state, settings) = course.phase();
+            let any: &dyn DynImplicit = present;
+            let keeper = Keeper { follower: Follower::new(present, any, probes, along, &settings), kept: Vec::new() };
+            let mut integration = Integration::by(Box::new(keeper), any, begin, state, &settings)?;
+            let mut noted = Noted { watch: &mut *watch, leg: legs.len(), samples: &mut samples };
+            let happening = course.follow(present, &mut integration, &mut noted)?;
+            let mut event = None;
+            if let Some(happening) = happening {
+                let t = integration.sample().t;
+                let mut derivatives = integration.stepper().follower.at_event(t)?;
+                let (after, passage) = pass(&mut course, present, &integration, happening)?;
+                let probes = integration.stepper().follower.slopes();
+                passage.push(present, probes, &mut derivatives, &mut times);
+                let probes = probes.after(passage.event());
+                let probes = probes.map_err(|error| course.refuse(present, happening, &error.to_string()))?;
+                event = Some((derivatives, passage, (after, probes)));
             }
-            let result = (settings.output * (interval + 1) as f64).min(settings.duration);
-            if integration.advance(result, &mut |t| watch.step(t))?.is_break() {
-                break;
-            }
+            let run = course.run(&integration);
+            let Keeper { mut follower, kept } = integration.into_stepper();
+            let end = follower.motion.last().2.end.clone();
+            drop(follower);
+            let own = changed.take().map(|(crane, _)| crane);
+            let Some((derivatives, passage, next)) = event else {
+                legs.push(Leg { crane: own, kept, end, passage: None });
+                return Ok(Self { crane, tolerance: settings.tolerance, legs, samples, run });
+            };
+            legs.push(Leg { crane: own, kept, end, passage: Some(passage) });
+            (along, changed) = (derivatives, Some(next));
         }
-        let run = integration.run();
-        let Keeper { mut follower, kept } = integration.into_stepper();
-        let end = follower.motion.last().2.end.clone();
-        Ok(Self { crane, follower, kept, end, samples, run })
     }
 
     /// Statistics of the run.
@@ -138,28 +206,91 @@ impl<'a, 's> Trace<'a, 's> {
         self.run.clone()
     }
 
-    /// The derivative of a number with respect to the start and all numbers, from its derivatives with respect to the motion at samples, given by their
-    /// indices in increasing order. `proceed` receives the time of every step and may end the way back.
+    /// The functions of the crane after each of the events, from those before.
+    pub fn functions_after(&self, functions: &dyn PullBacks) -> Option<Vec<Box<dyn PullBacks>>> {
+        let mut all: Vec<Box<dyn PullBacks>> = Vec::new();
+        for passage in self.legs.iter().filter_map(|leg| leg.passage.as_ref()) {
+            all.push(all.last().map_or(functions, |last| &**last).after(passage.event())?);
+        }
+        Some(all)
+    }
+
+    /// The number of events before a sample, and the crane after them.
+    #[must_use]
+    pub fn crane_at(&self, sample: usize) -> (usize, &dyn DynCrane) {
+        let leg = self.samples[sample].0;
+        (leg, self.crane_of(leg))
+    }
+
+    fn crane_of(&self, leg: usize) -> &dyn DynCrane {
+        self.legs[leg].crane.as_deref().unwrap_or(self.crane)
+    }
+
+    /// The derivative of a number with respect to the start and all numbers, from its weights. `functions` are those of the crane from the beginning on
+    /// and [after each of the events](Self::functions_after). `proceed` receives the time of every step and may end the way back.
     ///
     /// # Errors
     /// A derivative is not finite, or not known because `proceed` has ended the way back.
     pub fn pull_back(
-        &mut self,
-        functions: &mut dyn PullBacks,
-        by_samples: &[(usize, Covector)],
+        &self,
+        functions: &mut [&mut dyn PullBacks],
+        weights: Weights<'_>,
         proceed: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Covector, NotFinite> {
-        let Self { crane, follower: Follower { motion, .. }, kept, end, samples, .. } = self;
-        let (len, directions) = (end.len(), functions.count());
-        let mut sum = Covector::zero(len, directions);
-        let mut sweep = Sweep::new(*crane, functions);
+        let Some(first) = functions.first() else { return Err(NotFinite) };
+        let mut sum = Covector::zero(self.legs[0].end.len(), first.count());
+        let own = |leg: usize| {
+            let samples = weights.samples;
+            let from = samples.partition_point(|(sample, _)| self.samples[*sample].0 < leg);
+            let to = samples.partition_point(|(sample, _)| self.samples[*sample].0 <= leg);
+            &samples[from..to]
+        };
+        let of_time = |leg: &Leg| {
+            let condition = leg.passage.as_ref().and_then(Passage::condition);
+            condition.map_or(0.0, |condition| weights.times[condition])
+        };
+        // The number does not depend on what comes later.
+        let is_last = |leg: usize| !own(leg).is_empty() || of_time(&self.legs[leg]) != 0.0;
+        let last = (0..self.legs.len()).rev().find(|leg| is_last(*leg)).unwrap_or_default();
+        let mut earlier = 0.0;
+        for leg in (0..=last).rev() {
+            let Leg { passage, .. } = &self.legs[leg];
+            let functions = &mut *functions[leg];
+            let mut ending = None;
+            if let Some(passage) = passage.as_ref().filter(|_| leg < last || of_time(&self.legs[leg]) != 0.0) {
+                let cranes = [self.crane_of(leg), self.crane_of(leg + 1)];
+                let time = earlier + of_time(&self.legs[leg]);
+                earlier = passage.pull(cranes, &*functions, &mut sum, time);
+                ending = Some((passage.time(), Covector { motion: sum.motion.clone(), numbers: sum.numbers.clone() }));
+                sum.motion.fill(0.0);
+            }
+            let samples =
+                own(leg).iter().map(|(sample, covector)| (self.samples[*sample].1, self.samples[*sample].2, covector));
+            let samples: Vec<_> = samples.collect();
+            self.pull_back_leg(leg, functions, (&samples, ending), &mut sum, proceed)?;
+        }
+        Ok(sum)
+    }
+
+    /// The same over a phase, from the weights of its samples and of the motion at the event that ends it: adds the derivatives by its beginning.
+    fn pull_back_leg(
+        &self,
+        leg: usize,
+        functions: &mut dyn PullBacks,
+        (samples, event): (&[(usize, f64, &Covector)], Option<(f64, Covector)>),
+        sum: &mut Covector,
+        proceed: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<(), NotFinite> {
+        let Leg { kept, end, .. } = &self.legs[leg];
+        let (crane, len) = (self.crane_of(leg), end.len());
+        let mut motion = motion_of(crane, self.tolerance);
+        let mut sweep = Sweep::new(crane, functions);
         // Weights of the slope at the end of a step.
         let mut of_slope = vec![0.0; len];
-        let mut ahead = by_samples.len();
-        // The number does not depend on what comes after the last of these samples.
-        let last = by_samples.last().map_or(0, |(sample, _)| samples[*sample].0);
+        let mut ahead = samples.len();
+        let last = if event.is_some() { kept.len() - 1 } else { samples.last().map_or(0, |(step, ..)| *step) };
         for index in (0..=last).rev() {
-            let end = kept.get(index + 1).map_or(&*end, |next| &next.start);
+            let end = kept.get(index + 1).map_or(end, |next| &next.start);
             let own = &kept[index];
             if index > 0 {
                 motion.repeat([own.t, own.length], [&own.start, &own.slope], end)?;
@@ -167,34 +298,40 @@ impl<'a, 's> Trace<'a, 's> {
                 motion.go_back(own.t, end)?;
             }
             let mut before = Before::zero(len);
-            while let Some((sample, covector)) = ahead.checked_sub(1).map(|last| &by_samples[last]) {
-                let (step, t) = samples[*sample];
-                if step != index {
+            if let Some((t, covector)) = event.as_ref().filter(|_| index == last) {
+                if own.at_stop {
+                    sweep.complete(motion.last().1, (*t, end));
+                    sweep.add_jump(*t, &covector.motion, &mut sum.numbers)?;
+                }
+                sweep.add_sample(&mut motion, *t, covector, sum, &mut of_slope, &mut before);
+            }
+            while let Some((step, t, covector)) = ahead.checked_sub(1).map(|last| &samples[last]) {
+                if *step != index {
                     break;
                 }
                 ahead -= 1;
                 add(&mut sum.numbers, 1.0, &covector.numbers);
-                sweep.add_sample(motion, t, covector, &mut sum, &mut of_slope, &mut before);
+                sweep.add_sample(&mut motion, *t, covector, sum, &mut of_slope, &mut before);
             }
             if index == 0 {
-                sweep.begin(motion, &of_slope, &mut sum)?;
+                sweep.begin(&mut motion, &of_slope, sum)?;
                 break;
             }
             let (stages, equations, step) = motion.last();
-            sweep.pull_back(equations, (step.reached(), &step.end), &of_slope, &mut sum)?;
-            sweep.project(equations, (step.reached(), &step.end), &mut sum);
-            sweep.through(stages, equations, step, &mut sum, &mut before)?;
+            sweep.pull_back(equations, (step.reached(), &step.end), &of_slope, sum)?;
+            sweep.project(equations, (step.reached(), &step.end), sum);
+            sweep.through(stages, equations, step, sum, &mut before)?;
             of_slope = before.slope;
             if kept[index - 1].at_stop {
                 let before = &kept[index - 1];
-                sweep.jump(equations, (own.t, &own.start), [before.t, before.length], &of_slope, &mut sum)?;
+                sweep.jump(equations, (own.t, &own.start), [before.t, before.length], &of_slope, sum)?;
                 of_slope.fill(0.0);
             }
             if proceed(own.t).is_break() {
                 return Err(NotFinite);
             }
         }
-        Ok(sum)
+        Ok(())
     }
 }
 
@@ -417,14 +554,21 @@ impl<'a, 'f> Sweep<'a, 'f> {
         self.make_absolute(equations, t, sum);
         equations.references.step_within(begin, t);
         self.complete(equations, (t, motion));
+        let Covector { motion: weights, numbers } = sum;
+        self.add_jump(t, weights, numbers)?;
+        self.make_relative(equations, t, sum);
+        Ok(())
+    }
+
+    /// Adds what a jump of functions of time at the motion in full contributes, from weights in full.
+    fn add_jump(&self, t: f64, weights: &[f64], sum: &mut [f64]) -> Result<(), NotFinite> {
         let here = self.stops.iter().filter(|(time, _)| (time - t).abs() <= SAME * (1.0 + t));
         let here: Vec<&[f64]> = here.map(|(_, times)| times.as_slice()).collect();
         let numbers: &dyn Numbers = &*self.functions;
         let jumps = of_functions_of_time(self.crane, numbers, &here, (t, &self.motion))?;
-        for (number, jump) in sum.numbers.iter_mut().zip(&jumps) {
-            *number += jump.iter().zip(&sum.motion).map(|(jump, weight)| jump * weight).sum::<f64>();
+        for (number, jump) in sum.iter_mut().zip(&jumps) {
+            *number += jump.iter().zip(weights).map(|(jump, weight)| jump * weight).sum::<f64>();
         }
-        self.make_relative(equations, t, sum);
         Ok(())
     }
 

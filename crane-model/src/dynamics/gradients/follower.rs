@@ -15,6 +15,13 @@ use crate::{
     },
 };
 
+/// A motion of a crane by the W-method, whose steps end where derivatives need it.
+pub(super) fn motion_of(crane: &dyn DynImplicit, tolerance: f64) -> Adaptive<'_, Stages<'_>> {
+    let equations = Equations::new(crane, References::of(crane));
+    let stages = Stages::new(crane, equations.len());
+    Adaptive::new(stages, equations, Norm::with_efforts(crane, tolerance)).watching_all()
+}
+
 /// A motion integrated by the W-method, and its derivatives along directions.
 pub(super) struct Follower<'a, 's> {
     crane: &'a dyn DynCrane,
@@ -57,9 +64,8 @@ impl<'a, 's> Follower<'a, 's> {
         start: Vec<Vec<f64>>,
         settings: &Settings,
     ) -> Self {
-        let equations = Equations::new(any, References::of(any));
-        let (n, len, count) = (equations.n, equations.len(), start.len());
-        let norm = Norm::with_efforts(any, settings.tolerance);
+        let motion = motion_of(any, settings.tolerance);
+        let (n, len, count) = (crane.size(), motion.motion().len(), start.len());
         let stops = slopes.stops();
         let zeros = || vec![vec![0.0; len]; count];
         let drives = crane.description().drives.len();
@@ -75,7 +81,7 @@ impl<'a, 's> Follower<'a, 's> {
         };
         Self {
             crane,
-            motion: Adaptive::new(Stages::new(any, len), equations, norm).watching_all(),
+            motion,
             variation,
             start,
             steps: (0..count).map(|_| Step::new(len)).collect(),
@@ -104,6 +110,19 @@ impl<'a, 's> Follower<'a, 's> {
         variation.project(equations, t, &motion, places);
         variation.complete(equations, t, &motion, places);
         variation.along.clone()
+    }
+
+    /// The same at the event that ends a phase, where functions of time may not be smooth, too.
+    pub fn at_event(&mut self, t: f64) -> Result<Vec<Vec<f64>>, Stopped> {
+        if t >= self.motion.last().2.reached() {
+            self.jump().map_err(|NotFinite| self.motion.stuck(t, FIRST))?;
+        }
+        Ok(self.derivatives(t))
+    }
+
+    /// The numbers by which it is differentiated.
+    pub fn slopes(&self) -> &dyn Slopes {
+        self.variation.slopes
     }
 
     /// Follows the last step of the motion.

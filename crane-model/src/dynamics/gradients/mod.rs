@@ -37,26 +37,37 @@
 //! | `rates` | F, and its derivative along directions |
 //! | `moment` | the same for a moment without a motion |
 //! | `jump` | where functions of time are not smooth |
+//! | `passage` | what happens to derivatives at an event |
+//! | `columns` | derivatives of columns of results |
 //! | `follower` | the derivatives, step by step |
 //! | `pull_back` | the transpose of `rates` |
 //! | `adjoint` | the derivatives of one number by any number of others, step by step from the end |
 
 mod adjoint;
+mod columns;
 mod follower;
 mod jump;
 mod moment;
+mod passage;
 mod pull_back;
 mod rates;
 
-use super::{InitialState, Integration, Run, Sample, Settings, Stopped, settings::divided};
+use std::ops::ControlFlow;
+
+use super::{
+    Course, Happening, InitialState, Integration, Quantities, Run, Sample, Settings, Stepper, Stopped, course::Observe,
+};
 pub use crate::feet::FeetSlopes;
 use crate::{
+    EventInfo, ParameterError,
     dyn_crane::{DynCrane, DynImplicit},
     force_states::ForceStates,
 };
-pub use adjoint::Trace;
+pub use adjoint::{Trace, Weights};
+pub use columns::{columns_along, columns_by};
 use follower::Follower;
 pub use moment::{pull_rates, push_rates};
+use passage::Passage;
 
 /// A state of a crane at which its functions are given with slopes.
 #[derive(Clone, Copy, Debug)]
@@ -110,6 +121,12 @@ pub trait Numbers: Send {
 /// Functions of a crane with their slopes in some directions, in which its parameters and inputs change. `along` has the change of the motion
 /// `[q, v, x]` in each direction; results are direction by direction.
 pub trait Slopes: Numbers {
+    /// The same of the crane after an event, which sets parameters to numbers.
+    ///
+    /// # Errors
+    /// They break a rule of the spec language.
+    fn after(&self, event: &EventInfo) -> Result<Box<dyn Slopes>, ParameterError>;
+
     /// By how much the number of a direction changes for an error of its derivative to count as an error of the motion.
     fn scale(&self, direction: usize) -> f64;
 
@@ -148,6 +165,9 @@ impl Covector {
 
 /// The transpose of [`Slopes`]: each function adds the derivative of the sum of its results, times weights, to a covector.
 pub trait PullBacks: Numbers {
+    /// The same of the crane after an event, which sets parameters to numbers; `None` if these break a rule of the spec language.
+    fn after(&self, event: &EventInfo) -> Option<Box<dyn PullBacks>>;
+
     /// Of `A a − e − f + Jᵀ λ`, N and N m.
     fn residuals(&mut self, at: &At<'_>, weights: &[f64], sum: &mut Covector);
 
@@ -214,33 +234,6 @@ pub fn difference(
     }
 }
 
-/// The same to one side, given the values at the motion: the error is the step instead of its square.
-pub fn forward_difference(
-    crane: &dyn DynCrane,
-    around: Option<Around<'_>>,
-    (motion, change, size): (&[f64], &[f64], f64),
-    here: &[f64],
-    of: OfMotion<'_>,
-) -> Vec<f64> {
-    let mut between = |crane: &dyn DynCrane, along: f64, width: f64| -> Vec<f64> {
-        let moved: Vec<f64> = motion.iter().zip(change).map(|(x, change)| x + along * change).collect();
-        of(crane, &moved).iter().zip(here).map(|(there, here)| (there - here) / width).collect()
-    };
-    let alone = DIFFERENCE / size;
-    let Some(Around { cranes: [less, more], steps: [down, up] }) = around else {
-        return if size == 0.0 { vec![0.0; here.len()] } else { between(crane, alone, alone) };
-    };
-    let (beside, step) = if up > 0.0 { (more, up) } else { (less, -down) };
-    if TOGETHER.contains(&(size * step.abs())) {
-        return between(beside, step, step);
-    }
-    let of_crane = between(beside, 0.0, step);
-    if size == 0.0 {
-        return of_crane;
-    }
-    of_crane.iter().zip(between(crane, alone, alone)).map(|(one, other)| one + other).collect()
-}
-
 /// Derivatives of the states of forces that hold a start at rest.
 #[must_use]
 pub fn holding(crane: &dyn DynCrane, numbers: &dyn Numbers, q: &[f64], along: &[Vec<f64>]) -> Vec<Vec<f64>> {
@@ -259,42 +252,117 @@ pub fn holding(crane: &dyn DynCrane, numbers: &dyn Numbers, q: &[f64], along: &[
 }
 
 /// A motion from a start at t = 0 with its derivatives along directions. `along`: those of the start `[q, v, x]`. Gives `observe` every sample
-/// with its derivatives, and `proceed` the time after every step, s. The method of the settings is not used.
+/// with its derivatives, and the time after every step, s. The method of the settings is not used. `quantities`: the results to which conditions of
+/// events refer.
 ///
 /// # Errors
-/// As [`simulate`](super::simulate).
+/// As [`simulate_events`](super::simulate_events); a result only touches the value of a condition, or jumps over it.
 pub fn simulate(
     crane: &dyn DynCrane,
     start: &InitialState,
     slopes: &mut dyn Slopes,
-    along: Vec<Vec<f64>>,
+    mut along: Vec<Vec<f64>>,
     settings: &Settings,
+    quantities: &Quantities,
     watch: &mut dyn WatchDerivatives,
 ) -> Result<Run, Stopped> {
-    let any: &dyn DynImplicit = crane;
-    let follower = Follower::new(crane, any, slopes, along, settings);
-    let mut integration = Integration::by(Box::new(follower), any, 0.0, start, settings)?;
-    let intervals = divided(settings.duration, settings.output).0;
-    for interval in 0..=intervals {
+    let mut course = Course::new(crane, 0.0, start, settings, quantities);
+    let mut changed = None::<(Box<dyn DynCrane>, Box<dyn Slopes>)>;
+    let mut times = vec![vec![0.0; crane.description().conditions().count()]; along.len()];
+    let mut last = vec![0.0; along.len()];
+    loop {
+        let (present, slopes): (&dyn DynCrane, &mut dyn Slopes) = match &mut changed {
+            Some((crane, slopes)) => (&**crane, &mut **slopes),
+            None => (crane, &mut *slopes),
+        };
+        let (begin, state, settings) = course.phase();
+        let any: &dyn DynImplicit = present;
+        let follower = Follower::new(present, any, slopes, along, &settings);
+        let mut integration = Integration::by(Box::new(follower), any, begin, state, &settings)?;
+        let mut observer = Derived { watch: &mut *watch, times: &times };
+        let Some(happening) = course.follow(present, &mut integration, &mut observer)? else {
+            return Ok(course.run(&integration));
+        };
+        let t = integration.sample().t;
+        let mut derivatives = integration.stepper().at_event(t)?;
+        let (after, passage) = pass(&mut course, present, &integration, happening)?;
+        let numbers = integration.stepper().slopes();
+        passage.push(present, numbers, &mut derivatives, &mut last);
+        if let Some(condition) = happening.trigger.condition() {
+            times.iter_mut().zip(&last).for_each(|(times, last)| times[condition] = *last);
+        }
+        let slopes_after =
+            numbers.after(passage.event()).map_err(|error| course.refuse(present, happening, &error.to_string()))?;
+        drop(integration);
+        (along, changed) = (derivatives, Some((after, slopes_after)));
+    }
+}
+
+/// Lets an event happen at a motion: the crane after it, and what it does to derivatives.
+fn pass<S: Stepper + ?Sized>(
+    course: &mut Course,
+    present: &dyn DynCrane,
+    integration: &Integration<'_, S>,
+    happening: Happening,
+) -> Result<(Box<dyn DynCrane>, Passage), Stopped> {
+    let Sample { t, q, v, x, .. } = integration.sample();
+    let after = course.after(present, happening)?;
+    let condition = course.quantities_and_value(happening);
+    course.pass([present, after.as_ref()], integration, happening)?;
+    let (_, InitialState { q: pose, v: rates, x: states }, _) = course.phase();
+    let motions = [[q, v, x].concat(), [&**pose, rates, states].concat()];
+    let passage = Passage::new([present, after.as_ref()], happening, t, motions, condition);
+    passage.map(|passage| (after, passage)).map_err(|why| course.refuse(present, happening, why))
+}
+
+/// Passes samples on with their derivatives.
+struct Derived<'w> {
+    watch: &'w mut dyn WatchDerivatives,
+    times: &'w [Vec<f64>],
+}
+
+impl Observe<Follower<'_, '_>> for Derived<'_> {
+    fn sample(
+        &mut self,
+        present: &dyn DynCrane,
+        integration: &mut Integration<'_, Follower<'_, '_>>,
+        course: &Course,
+    ) -> ControlFlow<()> {
         let t = integration.sample().t;
         let derivatives = integration.stepper().derivatives(t);
-        watch.sample(&integration.sample(), &derivatives);
-        if interval == intervals {
-            break;
-        }
-        let result = (settings.output * (interval + 1) as f64).min(settings.duration);
-        if integration.advance(result, &mut |t| watch.step(t))?.is_break() {
-            break;
-        }
+        let derivatives = Derivatives {
+            crane: present,
+            numbers: integration.stepper_now().slopes(),
+            motion: &derivatives,
+            times: self.times,
+        };
+        self.watch.sample(&course.sample(integration), &derivatives);
+        ControlFlow::Continue(())
     }
-    Ok(integration.run())
+
+    fn step(&mut self, t: f64) -> ControlFlow<()> {
+        self.watch.step(t)
+    }
+}
+
+/// The derivatives of a sample.
+#[derive(Clone, Copy)]
+pub struct Derivatives<'a> {
+    /// The crane, after the events so far, and its numbers.
+    pub crane: &'a dyn DynCrane,
+    /// By which they are.
+    pub numbers: &'a dyn Slopes,
+    /// Of `[q, v, x]`, direction by direction.
+    pub motion: &'a [Vec<f64>],
+    /// Of the times of events on conditions, direction by direction; 0 for those that have not happened.
+    pub times: &'a [Vec<f64>],
 }
 
 /// An observer of a motion with derivatives.
 pub trait WatchDerivatives {
-    /// Receives a sample with its derivatives `[q, v, x]`, direction by direction.
-    fn sample(&mut self, sample: &Sample<'_>, derivatives: &[Vec<f64>]);
+    /// Receives a sample with its derivatives.
+    fn sample(&mut self, sample: &Sample<'_>, derivatives: &Derivatives<'_>);
 
     /// Receives the time after every step, s, and may end the run.
-    fn step(&mut self, t: f64) -> std::ops::ControlFlow<()>;
+    fn step(&mut self, t: f64) -> ControlFlow<()>;
 }

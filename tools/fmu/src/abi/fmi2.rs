@@ -213,12 +213,13 @@ unsafe extern "C" fn fmi2NewDiscreteStates(component: Component, info: *mut Even
     // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
+            let changed = unit.instance.update()?;
             let next = unit.instance.next_event()?;
             let found = EventInfo {
                 new_discrete_states_needed: FALSE,
                 terminate_simulation: FALSE,
                 nominals_changed: FALSE,
-                values_changed: FALSE,
+                values_changed: if changed { TRUE } else { FALSE },
                 next_event_time_defined: if next.is_some() { TRUE } else { FALSE },
                 next_event_time: next.unwrap_or(0.0),
             };

@@ -326,10 +326,12 @@ unsafe extern "C" fn fmi3UpdateDiscreteStates(
     // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
+            let changed = unit.instance.update()?;
             let next = unit.instance.next_event()?;
-            for flag in [update_needed, terminate, nominals_changed, values_changed] {
+            for flag in [update_needed, terminate, nominals_changed] {
                 write(flag, FALSE);
             }
+            write(values_changed, if changed { TRUE } else { FALSE });
             write(next_event_time_defined, if next.is_some() { TRUE } else { FALSE });
             write(next_event_time, next.unwrap_or(0.0));
             Ok(())

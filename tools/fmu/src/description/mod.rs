@@ -91,6 +91,7 @@ impl<'a> Subject<'a> {
         match variable.source {
             Source::Time => ["independent", "continuous"],
             Source::Parameter(_) => ["parameter", "tunable"],
+            Source::EventTime(_) => ["local", "discrete"],
             Source::Input(_) => ["input", "continuous"],
             _ if variable.is_output => ["output", "continuous"],
             _ => ["local", "continuous"],

@@ -50,7 +50,7 @@ impl Instance {
         let mut rest = Vec::new();
         for (place, (&reference, slot)) in unknowns.iter().zip(&mut *out).enumerate() {
             *slot = match (self.variable(reference)?.source, &rates) {
-                (Source::Time | Source::Parameter(_), _) => 0.0,
+                (Source::Time | Source::Parameter(_) | Source::EventTime(_), _) => 0.0,
                 (Source::Position(index), _) => change.motion[index],
                 (Source::Rate(index), _) => change.motion[n + index],
                 (Source::Own(index), _) => change.motion[2 * n + index],
@@ -93,7 +93,7 @@ impl Instance {
                 return Err(Fault::Error(format!("the weight of {name} is {weight}: choose a finite number")));
             }
             match *source {
-                Source::Time | Source::Parameter(_) => {}
+                Source::Time | Source::Parameter(_) | Source::EventTime(_) => {}
                 Source::Position(index) => sum.motion[index] += weight,
                 Source::Rate(index) => sum.motion[n + index] += weight,
                 Source::Own(index) => sum.motion[2 * n + index] += weight,

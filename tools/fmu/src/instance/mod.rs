@@ -8,6 +8,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use crane_live::{LiveCrane, Motion};
+use crane_model::Moment as EventMoment;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::{Contacts, InitialState, Settings, next_stop};
 use crane_model::force_states::{self, ForceStates};
@@ -55,6 +56,10 @@ pub struct Instance {
     phase: Phase,
     moment: Option<Moment>,
     contacts: Contacts,
+    /// Event and column of results of each event on a condition.
+    conditions: Vec<(usize, usize)>,
+    /// What events have done so far, as a [`Motion`] says it; none before the first step.
+    marks: Option<Vec<f64>>,
     /// The run in progress by the crane's own method.
     motion: Option<Motion>,
     quantities: Option<Vec<f64>>,
@@ -65,6 +70,9 @@ pub struct Instance {
     messages: Vec<String>,
     cautions: Vec<&'static str>,
 }
+
+/// An importer finds the zero of an indicator to rounding, on either side: this far beyond the value, relative to it, a condition holds, or has ceased.
+const BEYOND: f64 = 1e-9;
 
 impl Instance {
     /// The crane of an unpacked unit. `token` is that of its description.
@@ -81,9 +89,16 @@ impl Instance {
             ));
         }
         let inputs = vec![None; crane.description().inputs.len()];
+        let columns = results::quantities(crane.description(), crane.loop_joints());
+        let column = |name: &str| columns.iter().position(|column| column.name == name);
+        let conditions = crane.description().conditions();
+        let conditions =
+            conditions.filter_map(|(event, condition)| Some((event, column(&condition.result)?))).collect();
         Ok(Self {
             token: expected,
             contacts: Contacts::new(crane.as_ref()),
+            conditions,
+            marks: None,
             inputs,
             settings: Settings { duration: f64::INFINITY, most_steps: usize::MAX, ..Settings::of(crane.description()) },
             crane,
@@ -175,14 +190,24 @@ impl Instance {
         self.settings.tolerance = Settings::of(self.crane.description()).tolerance;
         (self.begin, self.is_current) = (0.0, false);
         self.phase = Phase::Created;
-        (self.moment, self.motion) = (None, None);
+        (self.moment, self.motion, self.marks) = (None, None, None);
         self.cautions.clear();
         self.forget();
     }
 
-    /// Number of event indicators: contacts, which begin and end.
+    /// Number of event indicators: contacts, which begin and end, and conditions of events.
     pub fn indicators(&self) -> usize {
-        self.contacts.len()
+        self.contacts.len() + self.conditions.len()
+    }
+
+    /// Number of events of the spec.
+    fn events(&self) -> usize {
+        self.crane.description().events.len()
+    }
+
+    /// When an event happened, s; 0 if it has not.
+    fn event_time(&self, event: usize) -> f64 {
+        self.marks.as_ref().map_or(0.0, |marks| marks[event].max(0.0))
     }
 
     /// Number of continuous states: coordinates, rates and states of forces.
@@ -266,16 +291,18 @@ impl Instance {
                 Source::OwnRate(index) => self.accelerations()?.1[index],
                 Source::Quantity(index) => self.quantities()?[index],
                 Source::Indicator(index) => {
-                    let mut all = vec![0.0; self.contacts.len()];
+                    let mut all = vec![0.0; self.indicators()];
                     self.event_indicators(&mut all)?;
                     all[index]
                 }
+                Source::EventTime(event) => self.event_time(event),
             };
         }
         Ok(())
     }
 
-    /// Event indicators: each changes its sign where a contact begins or ends.
+    /// Event indicators: each changes its sign where a contact begins or ends, or where a result passes the value for which an event waits. That of an event
+    /// that has happened is 1.
     ///
     /// # Errors
     /// As [`Instance::get`]; the length of `out` is not their number.
@@ -292,6 +319,18 @@ impl Instance {
         contacts.indicators(crane.as_ref(), *t, (q, v), |indicator| {
             places.next().into_iter().for_each(|slot| *slot = indicator);
         });
+        if self.conditions.is_empty() {
+            return Ok(());
+        }
+        let row = self.quantities()?.to_vec();
+        let infos = self.crane.description().conditions();
+        let own = out[count - self.conditions.len()..].iter_mut();
+        for ((slot, (event, column)), (_, condition)) in own.zip(&self.conditions).zip(infos) {
+            let beyond = if condition.above { 1.0 } else { -1.0 } * (row[*column] - condition.value);
+            let mark = self.marks.as_ref().map_or(0.0, |marks| marks[*event]);
+            let held = if mark.is_nan() { 1.0 } else { -1.0 };
+            *slot = if mark > 0.0 { 1.0 } else { beyond + held * BEYOND * (1.0 + condition.value.abs()) };
+        }
         Ok(())
     }
 
@@ -398,13 +437,57 @@ impl Instance {
         Ok(())
     }
 
-    /// The next time at which the motion of a drive or a winch or the scale of a load is not smooth, s.
+    /// The next time at which the motion of a drive or a winch or the scale of a load is not smooth, or of an event, s.
     ///
     /// # Errors
     /// As [`Instance::get`].
     pub fn next_event(&mut self) -> Result<Option<f64>, Fault> {
         self.settle()?;
-        Ok(next_stop(self.crane.as_ref(), self.time()))
+        let now = self.time();
+        let times = self.crane.description().events.iter().filter_map(|event| match event.moment {
+            EventMoment::At(time) => Some(time),
+            EventMoment::When(_) => None,
+        });
+        let all = times.filter(|time| *time > now).chain(next_stop(self.crane.as_ref(), now));
+        Ok(all.min_by(f64::total_cmp))
+    }
+
+    /// Lets the events happen that are due at the present time and states; returns whether they changed states.
+    ///
+    /// # Errors
+    /// As [`Instance::get`]; an event cannot happen.
+    pub fn update(&mut self) -> Result<bool, Fault> {
+        let before = self.moment()?.clone();
+        if self.events() == 0 {
+            return Ok(false);
+        }
+        let Moment { t, q, v, x } = before.clone();
+        let mut motion = self.motion_from(t, InitialState { q, v, x })?;
+        let _ = motion.advance(t, &mut |_| ControlFlow::Continue(()))?;
+        self.reach(&motion)?;
+        Ok(self.moment.as_ref() != Some(&before))
+    }
+
+    /// A motion by the crane's own method that goes on with what events have done.
+    fn motion_from(&self, t: f64, state: InitialState) -> Result<Motion, Fault> {
+        Ok(Motion::new(self.crane.boxed_clone(), t, &state, &self.settings, self.marks.as_deref())?)
+    }
+
+    /// Takes over where a motion is, and what its events have done.
+    fn reach(&mut self, motion: &Motion) -> Result<(), Fault> {
+        let sample = motion.sample();
+        self.moment = Some(Moment { t: sample.t, q: sample.q.to_vec(), v: sample.v.to_vec(), x: sample.x.to_vec() });
+        if self.events() > 0 {
+            self.marks = Some(motion.marks());
+            let values = (0..self.parameters.len()).map(|index| motion.crane().parameter(index)).collect::<Vec<f64>>();
+            if values != self.parameters {
+                self.crane.set_parameters(&values).map_err(Fault::error)?;
+                self.live.set_parameters(&values).map_err(Fault::error)?;
+                self.parameters = values;
+            }
+        }
+        self.forget();
+        Ok(())
     }
 
     /// A step of the crane's own integrator, s. Its history continues from step to step; a change of a parameter or an input starts
@@ -438,19 +521,18 @@ impl Instance {
         }
         let mut motion = match self.motion.take() {
             Some(motion) => motion,
-            None => Motion::new(self.crane.boxed_clone(), t, &InitialState { q, v, x }, &self.settings)?,
+            None => self.motion_from(t, InitialState { q, v, x })?,
         };
         let _ = motion.advance(from + length, &mut |_| ControlFlow::Continue(()))?;
-        let sample = motion.sample();
-        let moment = Moment { t: sample.t, q: sample.q.to_vec(), v: sample.v.to_vec(), x: sample.x.to_vec() };
-        self.caution(&moment);
-        (self.moment, self.motion) = (Some(moment), Some(motion));
-        self.forget();
+        self.reach(&motion)?;
+        self.motion = Some(motion);
+        self.caution();
         Ok(())
     }
 
     /// Notes conditions for which the model is not valid, each kind once.
-    fn caution(&mut self, Moment { t, q, .. }: &Moment) {
+    fn caution(&mut self) {
+        let Some(Moment { t, q, .. }) = &self.moment else { return };
         let description = self.crane.description();
         let found = [("singular", description.near_singular(q)), ("tilt", description.large_tilt(q))];
         for (kind, words) in found.into_iter().filter_map(|(kind, words)| Some((kind, words?))) {

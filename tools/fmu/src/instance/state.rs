@@ -11,8 +11,12 @@ pub struct State {
     /// The token of the crane's variables: no other crane has states like it.
     pub(super) token: String,
     pub(super) parameters: Vec<f64>,
+    /// The number of events.
+    pub(super) events: usize,
     /// Values of the inputs that are set.
     pub(super) inputs: Vec<Option<f64>>,
+    /// What events have done so far; none before the first step.
+    pub(super) marks: Option<Vec<f64>>,
     /// None before the crane has come to rest.
     pub(super) moment: Option<Moment>,
 }
@@ -27,12 +31,15 @@ pub(super) struct Moment {
 }
 
 impl State {
-    /// The state as bytes: the token; then numbers, which are parameters; inputs, NaN if not set; and, if known, time, pose, rates and
+    /// The state as bytes: the token; then numbers, which are parameters; inputs, NaN if not set; marks of events, infinite before
+    /// the first step; and, if known, time, pose, rates and
     /// states of forces.
     pub fn bytes(&self) -> Vec<u8> {
         let moment = self.moment.iter().flat_map(|Moment { t, q, v, x }| std::iter::once(t).chain(q).chain(v).chain(x));
         let inputs = self.inputs.iter().map(|value| value.unwrap_or(f64::NAN));
-        let numbers = self.parameters.iter().copied().chain(inputs).chain(moment.copied());
+        let unmarked = vec![f64::INFINITY; self.events];
+        let marks = self.marks.as_ref().unwrap_or(&unmarked).iter();
+        let numbers = self.parameters.iter().copied().chain(inputs).chain(marks.chain(moment).copied());
         self.token.bytes().chain(numbers.flat_map(f64::to_le_bytes)).collect()
     }
 }
@@ -40,9 +47,9 @@ impl State {
 impl Instance {
     /// The state, to return to later.
     pub fn state(&self) -> State {
-        let Self { token, parameters, inputs, moment, .. } = self;
-        let (token, parameters) = (token.clone(), parameters.clone());
-        State { token, parameters, inputs: inputs.clone(), moment: moment.clone() }
+        let Self { token, parameters, inputs, marks, moment, .. } = self;
+        let (token, parameters, events) = (token.clone(), parameters.clone(), self.events());
+        State { token, parameters, events, inputs: inputs.clone(), marks: marks.clone(), moment: moment.clone() }
     }
 
     /// Returns to a state.
@@ -57,6 +64,7 @@ impl Instance {
         self.parameters.clone_from(&state.parameters);
         self.inputs.clone_from(&state.inputs);
         self.moment.clone_from(&state.moment);
+        self.marks.clone_from(&state.marks);
         (self.is_current, self.motion) = (false, None);
         self.forget();
         Ok(())
@@ -69,6 +77,9 @@ impl Instance {
         let (parameters, rest) = numbers.split_at_checked(self.parameters.len())?;
         let (inputs, rest) = rest.split_at_checked(self.inputs.len())?;
         let inputs = inputs.iter().map(|value| Some(*value).filter(|value| !value.is_nan())).collect();
+        let events = self.events();
+        let (marks, rest) = rest.split_at_checked(events)?;
+        let marks = Some(marks.to_vec()).filter(|marks| !marks.iter().any(|mark| mark.is_infinite()));
         let moment = match rest {
             [] => None,
             [t, motion @ ..] if motion.len() == self.states() => {
@@ -78,6 +89,6 @@ impl Instance {
             }
             _ => return None,
         };
-        Some(State { token: self.token.clone(), parameters: parameters.to_vec(), inputs, moment })
+        Some(State { token: self.token.clone(), parameters: parameters.to_vec(), events, inputs, marks, moment })
     }
 }

@@ -77,6 +77,11 @@ impl LiveCrane {
         Self { library, description, loop_joints, stages, parameters, inputs, rooms: no_rooms() }
     }
 
+    /// The same crane, whose inputs are those of this one also when they change.
+    pub(crate) fn sharing_inputs(&self) -> Self {
+        Self { inputs: Arc::clone(&self.inputs), ..self.clone() }
+    }
+
     /// The same crane, its parameters and inputs as they are, with a factor of its weight and of all loads as one more parameter, which is 1; and the
     /// index of this parameter.
     #[must_use]

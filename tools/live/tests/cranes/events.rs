@@ -3,9 +3,9 @@
 use std::ops::ControlFlow;
 
 use crane_codegen::SourceFile;
-use crane_live::LiveCrane;
+use crane_live::{Hold, LiveCrane, SteeredMotion};
 use crane_model::dyn_crane::{DynCrane, DynModel};
-use crane_model::dynamics::{Method, Settings};
+use crane_model::dynamics::{InitialState, Method, Settings};
 use crane_model::results::{Table, instants};
 use crane_model::runs::{Start, imbalance, record, record_checked};
 
@@ -299,7 +299,7 @@ fn conditions_hold_anew() {
     );
 }
 
-/// An event that breaks a rule says which; runs with derivatives and motions step by step say that they have none.
+/// An event that breaks a rule says which.
 #[test]
 fn events_that_cannot_happen_are_refused() {
     let mistakes = |events: &str| {
@@ -328,21 +328,66 @@ fn events_that_cannot_happen_are_refused() {
         let told = mistakes(events);
         assert!(told.contains(code), "{events}:\n{told}");
     }
-    let lift = crane(&format!("{LIFT}events: [{{name: drop, at: 0.5, set: {{load: 90}}}}]\n"));
-    let of_steps = settings(&lift, Method::DormandPrince, f64::INFINITY);
-    let start = Start::of(&lift as &dyn DynCrane).expect("a start").state();
-    let on_condition =
-        crane(&format!("{LIFT}events: [{{name: drop, when: {{result: hook_z, above: 9}}, set: {{load: 90}}}}]\n"));
-    let Err(stopped) = crane_live::Motion::new(Box::new(on_condition), 0.0, &start, &of_steps) else {
-        panic!("it goes on")
-    };
-    assert_eq!(
-        stopped.to_string(),
-        "event `drop` does not happen in motions that go on step by step, at t = 0.000000 s"
-    );
-    let Err(stopped) = crane_live::Motion::new(Box::new(lift), 0.0, &start, &of_steps) else { panic!("it goes on") };
-    assert_eq!(
-        stopped.to_string(),
-        "event `drop` does not happen in motions that go on step by step, at t = 0.500000 s"
-    );
+}
+
+/// Step by step a crane has the events of its run; from its memory, and from what it says of its events, it goes on as it would have.
+#[test]
+fn steps_have_the_events_of_a_run() {
+    let lift = LIFT.replace("{hold: 0}", "{speed: {rate: -0.4}}");
+    let events = "events: [{name: drop, when: {result: hook_z, below: -500 mm}, set: {load: 90}}, {name: lighter, at: 0.705, set: {load: 300}},\
+         {name: up, when: {result: hook_z_rate, above: 0.1}, set: {load: 200}, joins: {}}]";
+    let crane = crane(&format!("{lift}{events}\n"));
+    for method in Method::ALL {
+        let table = run(&crane, method, 2.0);
+        assert!(table.times_of_events(crane.description()).iter().all(Option::is_some), "{method:?}");
+        let of_steps = Settings { duration: f64::INFINITY, ..settings(&crane, method, 2.0) };
+        let start = Start::of(&crane as &dyn DynCrane).expect("a start").state();
+        let mut motion = SteeredMotion::new(&crane, 0.0, &start, &of_steps, None).expect("a motion");
+        let mut in_others =
+            crane_live::Motion::new(Box::new(crane.clone()), 0.0, &start, &of_steps, None).expect("a motion");
+        let proceed = &mut |_: f64| ControlFlow::Continue(());
+        let columns = ["hook_z", "hook_z_rate", "event_work", "drive_work"].map(|name| column(&table, name));
+        for (row, values) in table.rows.iter().enumerate().skip(1) {
+            // The same results: the same numbers, but that a sum of steps is not a product.
+            assert!(
+                motion
+                    .advance(values[0] - motion.sample().t, [], Hold::Constant, proceed)
+                    .expect("a step")
+                    .is_continue()
+            );
+            let sample = motion.sample();
+            let found = [sample.q[0], sample.v[0], sample.event_work, sample.work];
+            for (found, expected) in found.iter().zip(&columns) {
+                let off = (found - expected[row]).abs();
+                assert!(
+                    off < 1e-9 * (1.0 + expected[row].abs()),
+                    "{method:?}, {} s: {found}, {}",
+                    values[0],
+                    expected[row]
+                );
+            }
+            let times = sample.event_times.to_vec();
+            for (found, expected) in times.iter().zip(&values[values.len() - 2..]) {
+                assert!((found - expected).abs() < 1e-9, "{method:?}, {} s: {found}, {expected}", values[0]);
+            }
+            if row % 70 == 69 {
+                let memory = motion.memory();
+                // It goes on as the run does.
+                motion = SteeredMotion::recalled(&crane, &of_steps, &memory).expect("a memory");
+                assert!(SteeredMotion::recalled(&crane, &of_steps, &memory[..memory.len() - 1]).is_none());
+            }
+            if row % 37 == 36 {
+                let _ = in_others.advance(values[0], proceed).expect("a step");
+                // A new history begins, with what has happened.
+                let sample = in_others.sample();
+                let state = InitialState { q: sample.q.to_vec(), v: sample.v.to_vec(), x: sample.x.to_vec() };
+                // Of a way of 0.8 m, at tolerances of 1e-8 and 1e-10.
+                assert!((state.q[0] - columns[0][row]).abs() < 1e-6, "{method:?}, {} s", values[0]);
+                let after = in_others.crane().boxed_clone();
+                let marks = in_others.marks();
+                in_others =
+                    crane_live::Motion::new(after, sample.t, &state, &of_steps, Some(&marks)).expect("a motion");
+            }
+        }
+    }
 }

@@ -312,7 +312,8 @@ fn a_run_goes_on_from_the_states_of_its_oil() {
     let start = Start::of(&crane).expect("it rests").state();
     let go = |from: &InitialState, begin: f64, duration: f64| {
         let settings = Settings { output: duration, ..settings(Method::Rk4, 1e-8, duration) };
-        let mut motion = crane_live::Motion::new(Box::new(crane.clone()), begin, from, &settings).expect("a start");
+        let mut motion =
+            crane_live::Motion::new(Box::new(crane.clone()), begin, from, &settings, None).expect("a start");
         let _ = motion.advance(begin + duration, &mut |_| ControlFlow::Continue(())).expect("a run");
         let sample = motion.sample();
         InitialState { q: sample.q.to_vec(), v: sample.v.to_vec(), x: sample.x.to_vec() }

@@ -140,7 +140,7 @@ fn a_motion_goes_on_from_its_memory() {
     let crane = with_inputs();
     let start = InitialState { q: vec![0.1, -0.1], v: vec![0.0, 0.2], x: Vec::new() };
     let settings = Settings { method: Method::Bdf, ..Settings::of(crane.description()) };
-    let mut motion = SteeredMotion::new(&crane, 0.0, &start, &settings).expect("it begins");
+    let mut motion = SteeredMotion::new(&crane, 0.0, &start, &settings, None).expect("it begins");
     let on = |motion: &mut SteeredMotion, pull: f64| -> Vec<f64> {
         let changes = [(1, Some(0.2)), (2, Some(pull))];
         let _ = motion.advance(0.25, changes, Hold::Linear, &mut |_| ControlFlow::Continue(())).expect("it goes on");

@@ -2,11 +2,11 @@
 
 use crane_codegen::{SourceFile, build};
 use crane_live::LiveCrane;
-use crane_live::sensitivity::runs::{Along, run_with_gradients};
+use crane_live::sensitivity::runs::{Along, run_with_adjoint, run_with_gradients};
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::{Method, Settings};
 use crane_model::results::Table;
-use crane_model::runs::{Gradients, Start, record};
+use crane_model::runs::{Gradients, Measure, Start, record};
 use std::ops::ControlFlow;
 
 fn spec(text: &str) -> LiveCrane {
@@ -499,4 +499,123 @@ fn feet_that_slide_and_stick_change_as_their_runs_do() {
     let run = settings(&crane, 0.8, 0.05, 1e-12);
     let numbers = (&["m", "mu", "k", "d", "push"][..], &[1e-3, 1e-5, 2.0, 0.1, 0.01][..]);
     assert_differences("push", &crane, numbers, &None, &run, 3e-3);
+}
+
+/// A load that is lowered on its spring and comes off as its hook passes −0.5 m.
+const DROP: &str = "
+format: 1
+name: drop
+parameters: {load: {value: 590, unit: kg}, k: {value: 5e4, unit: N/m}, v: {value: -0.4, unit: m/s}}
+analyses: [statics, dynamics]
+links: [{name: hook, joint: {prismatic: {axis: z}}, mass: load, com: [0, 0, 0]}]
+drives: [{coordinate: hook_z, stiffness: k, motion: {speed: {rate: v}}}]
+events: [{name: drop, when: {result: hook_z, below: -0.5}, set: {load: 90}}]
+";
+
+/// When a load m on a spring k that is lowered at v passes −0.5 m, s, and where what is left of it then is at 1.2 s, by hand: the roots of
+/// `z = −m g/k + v t − (v/ω) sin ωt`, and a spring that swings on.
+fn dropped([m, k, v]: [f64; 3]) -> [f64; 2] {
+    let omega = (k / m).sqrt();
+    let before = |t: f64| -m * 9.81 / k + v * t - v / omega * (omega * t).sin();
+    let rate = |t: f64| v - v * (omega * t).cos();
+    let (mut early, mut late) = (0.5, 1.5);
+    for _ in 0..60 {
+        let middle = 0.5 * (early + late);
+        if before(middle) < -0.5 { late = middle } else { early = middle }
+    }
+    let own = (k / 90.0).sqrt();
+    let offset = before(late) + 90.0 * 9.81 / k - v * late;
+    let (sin, cos) = (own * (1.2 - late)).sin_cos();
+    [late, -90.0 * 9.81 / k + v * 1.2 + offset * cos + (rate(late) - v) / own * sin]
+}
+
+#[test]
+fn an_event_on_a_condition_moves_with_what_it_depends_on() {
+    let crane = spec(DROP);
+    let numbers = [590.0, 5e4, -0.4];
+    let settings = settings(&crane, 1.2, 0.1, 1e-10);
+    let (table, found) = gradients(&crane, &["load", "k", "v"], &None, &settings);
+    let along: Vec<Along> = (0..3).map(Along::Parameter).collect();
+    let column = |name: &str| table.columns.iter().position(|column| column.name == name).unwrap();
+    let asked = ["drop_time", "hook_z"].map(|name| (column(name), Measure::Final));
+    let proceed = &mut |_: f64| ControlFlow::Continue(());
+    let (_, backward) = run_with_adjoint(&crane, &start(&crane, &None), &settings, &along, &asked, proceed).unwrap();
+    for (number, value) in numbers.iter().enumerate() {
+        let at = |share: f64| {
+            let mut numbers = numbers;
+            numbers[number] += share * value;
+            dropped(numbers)
+        };
+        let step = 1e-5;
+        let ends = [at(-step), at(step)];
+        for (place, (asked, _)) in asked.iter().enumerate() {
+            let expected = (ends[1][place] - ends[0][place]) / (2.0 * step * value);
+            // Differences of closed forms are exact to 1e-10 of numbers over 1e-5; the run's tolerance is 1e-10 m in each of a thousand steps.
+            let size = expected.abs().max(1e-2 / value.abs());
+            for own in [found[number].last().unwrap()[*asked], backward[place][number]] {
+                assert!((own - expected).abs() < 1e-6 * size, "{place} by {number}: {own:e}, not {expected:e}");
+            }
+        }
+    }
+}
+
+/// A pendulum on a trolley catches what flies, is braked because it moves fast then, and loses it later: an event on a condition, one that this makes due at
+/// once, and one at a time.
+const CATCHES: &str = "
+format: 1
+name: catches
+parameters: {caught: {value: 2, unit: kg}, rod: {value: 10, unit: kg}, drag: {value: 5, unit: N m s/rad}, k: {value: 900, unit: N/m}}
+analyses: [statics, dynamics]
+links:
+- {name: trolley, joint: {prismatic: {axis: x}}, mass: 100, com: [0, 0, 0]}
+- {name: rod, joint: {revolute: {axis: y}}, mass: rod, com: [0, 0, -1], inertia: {Ixx: 10, Iyy: 10, Izz: 0.1}}
+- {name: basket, placement: {transform: {translation: [0, 0, -2]}}, joint: fixed, mass: caught, com: [0, 0, 0]}
+drives: [{coordinate: trolley_x, stiffness: k, damping: 40, motion: {quintic: {from: 0, to: 0.4, duration: 1}}}]
+damping: {rod_theta: drag}
+points: [{name: basket, link: basket}]
+events:
+- {name: catch, when: {result: basket_x, above: 0.3}, set: {caught: 7}, joins: {velocity: [3.5, 0, 1], point: basket}}
+- {name: brake, when: {result: basket_vx, above: 1.8}, set: {drag: 20}}
+- {name: lose, at: 1.13, set: {caught: 1}}
+";
+
+#[test]
+fn derivatives_pass_events() {
+    let crane = spec(CATCHES);
+    let from = Some((vec![0.0, 0.25], vec![0.3, 0.1]));
+    let run = settings(&crane, 1.6, 0.1, 1e-9);
+    let (table, _) = gradients(&crane, &["rod"], &from, &run);
+    let [Some(lose), Some(catch), Some(brake)] = table.times_of_events(crane.description())[..] else {
+        panic!("an event does not happen")
+    };
+    assert!(catch < lose && brake == catch.next_up(), "{catch} {brake} {lose}");
+    // Motions at events are interpolated, with errors of some 1e-8 that differ from run to run: steps are long enough for these.
+    let numbers = ["caught", "rod", "drag", "k", "q0.rod_theta", "v0.trolley_x"];
+    let steps = [2e-2, 1e-1, 5e-2, 5.0, 2e-3, 2e-3];
+    assert_differences("catches", &crane, (&numbers, &steps), &from, &run, 5e-5);
+}
+
+/// The force of a rigid drive jumps over the value when its motion begins: when it would is not the derivative of anything.
+#[test]
+fn an_event_whose_result_jumps_has_no_derivatives() {
+    let crane = spec(
+        "
+format: 1
+name: jumps
+parameters: {load: {value: 10, unit: kg}}
+gravity: [0, 0, 0]
+analyses: [dynamics]
+links: [{name: car, joint: {prismatic: {axis: x}}, mass: load, com: [0, 0, 0]}]
+drives: [{coordinate: car_x, rigid: true, motion: {trapezoid: {from: 0, to: 1, begin: 0.33, duration: 1}}}]
+events: [{name: late, when: {result: car_x_drive_force, above: 5}, set: {load: 5}}]
+",
+    );
+    let settings = settings(&crane, 1.0, 0.1, 1e-8);
+    let proceed = &mut |_: f64| ControlFlow::Continue(());
+    let told = run_with_gradients(&crane, &start(&crane, &None), &settings, &[Along::Parameter(0)], proceed);
+    let told = told.expect_err("it jumps").to_string();
+    assert!(
+        told.contains("event `late` has no derivatives: its result jumps over the value, or only touches it"),
+        "{told}"
+    );
 }

@@ -1,10 +1,12 @@
 //! Functions of a crane with their slopes in the directions of a run.
 
+use std::borrow::Cow;
+
 use crane_codegen::chain::Input;
 use crane_codegen::program::{Argument, FunctionId};
-use crane_model::Description;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::gradients::{Around, At, CylinderSlopes, FeetSlopes, Numbers, Slopes};
+use crane_model::{Description, EventInfo, ParameterError};
 
 use super::Along;
 use crate::LiveCrane;
@@ -32,6 +34,8 @@ struct Beside {
 pub(super) struct Chunk {
     /// How many.
     pub count: usize,
+    /// Whether a parameter or an input changes in any of them.
+    changes: bool,
     /// The parameters and inputs with their slopes.
     pub parameters: Vec<Dual8>,
     pub inputs: Vec<Dual8>,
@@ -61,7 +65,7 @@ struct Oil {
 
 /// The directions of a run.
 pub(super) struct Directions<'a> {
-    crane: &'a LiveCrane,
+    crane: Cow<'a, LiveCrane>,
     chunks: Vec<Chunk>,
     beside: Vec<Option<Beside>>,
     /// The changes of the numbers for which errors count.
@@ -99,7 +103,7 @@ impl<'a> Directions<'a> {
             if value == 0.0 { 1.0 } else { CHANGE * value.abs() }
         };
         Self {
-            crane,
+            crane: Cow::Borrowed(crane),
             chunks: along.chunks(DIRECTIONS).map(|along| Chunk::new(crane, along)).collect(),
             beside: along.iter().map(beside).collect(),
             scales: along.iter().map(scale).collect(),
@@ -117,7 +121,7 @@ impl<'a> Directions<'a> {
             })
         };
         Self {
-            crane,
+            crane: Cow::Borrowed(crane),
             chunks: changes.chunks(DIRECTIONS).map(chunk).collect(),
             beside: changes.iter().map(|_| None).collect(),
             scales: vec![1.0; changes.len()],
@@ -144,10 +148,44 @@ impl<'a> Directions<'a> {
             }
             slopes
         };
-        let chunk = Chunk::along(self.crane, PROBES, is_any_live(along), &slopes);
+        let chunk = Chunk::along(&self.crane, PROBES, is_any_live(along), &slopes);
         let beside = (0..PROBES).map(|_| None).collect();
-        let Self { crane, may_move_drives, .. } = *self;
+        let (crane, may_move_drives) = (self.crane.clone(), self.may_move_drives);
         (Self { crane, chunks: vec![chunk], beside, scales: vec![1.0; PROBES], may_move_drives }, starts)
+    }
+
+    /// The same directions after an event: the parameters that it sets are the same in all of them.
+    ///
+    /// # Errors
+    /// They break a rule of the spec language.
+    pub fn after(&self, event: &EventInfo) -> Result<Directions<'static>, ParameterError> {
+        let with = |crane: &LiveCrane| {
+            let (mut other, mut values) = (crane.clone(), crane.parameters().to_vec());
+            event.changes.iter().for_each(|(index, value)| values[*index] = *value);
+            other.set_parameters(&values).map(|()| other)
+        };
+        let crane = with(&self.crane)?;
+        let chunk = |Chunk { count, changes, parameters, inputs, .. }: &Chunk| {
+            let mut parameters = parameters.clone();
+            event.changes.iter().for_each(|(index, value)| parameters[*index] = Dual8::splat(*value));
+            Chunk::of(&crane, *count, *changes, (parameters, inputs.clone()))
+        };
+        let beside = |Beside { cranes, step }: &Beside| Beside {
+            cranes: cranes.each_ref().map(|crane| crane.as_ref().and_then(|crane| with(crane).ok())),
+            step: *step,
+        };
+        Ok(Directions {
+            chunks: self.chunks.iter().map(chunk).collect(),
+            beside: self.beside.iter().map(|own| own.as_ref().map(beside)).collect(),
+            scales: self.scales.clone(),
+            may_move_drives: self.may_move_drives,
+            crane: Cow::Owned(crane),
+        })
+    }
+
+    /// The crane.
+    pub fn crane(&self) -> &LiveCrane {
+        &self.crane
     }
 
     /// Whether motions of drives may change.
@@ -200,7 +238,11 @@ impl Chunk {
                 Dual8::splat(value)
             }
         });
-        let inputs: Vec<Dual8> = inputs.collect();
+        Self::of(crane, count, changes, (parameters, inputs.collect()))
+    }
+
+    /// Of numbers that have slopes.
+    fn of(crane: &LiveCrane, count: usize, changes: bool, (parameters, inputs): (Vec<Dual8>, Vec<Dual8>)) -> Self {
         let evaluation = |id: FunctionId| {
             let mut evaluation = Evaluation::new(crane, id);
             evaluation.set_parameters(&parameters);
@@ -226,6 +268,7 @@ impl Chunk {
         });
         Self {
             count,
+            changes,
             oil,
             feet: crane.description().has_feet().then(|| FEET.map(evaluation)),
             residual: evaluation(FunctionId::DynamicResidual),
@@ -292,7 +335,7 @@ impl Numbers for Directions<'_> {
     fn around(&self, direction: usize) -> Option<Around<'_>> {
         let Beside { cranes, step } = self.beside[direction].as_ref()?;
         let or_own = |crane: &'_ Option<LiveCrane>| crane.as_ref().map_or(0.0, |_| *step);
-        let [less, more] = cranes.each_ref().map(|crane| crane.as_ref().unwrap_or(self.crane) as &dyn DynCrane);
+        let [less, more] = cranes.each_ref().map(|crane| crane.as_ref().unwrap_or(&self.crane) as &dyn DynCrane);
         Some(Around { cranes: [less, more], steps: cranes.each_ref().map(or_own) })
     }
 
@@ -301,7 +344,7 @@ impl Numbers for Directions<'_> {
         for (number, chunk) in self.chunks.iter().enumerate() {
             let mut place = 0;
             for id in [FunctionId::DrivePieces, FunctionId::LoadPieces, FunctionId::WinchPieces] {
-                let mut evaluation = Evaluation::<Dual8>::new(self.crane, id);
+                let mut evaluation = Evaluation::<Dual8>::new(&self.crane, id);
                 evaluation.set_parameters(&chunk.parameters);
                 evaluation.set_inputs(&chunk.inputs);
                 for time in evaluation.at(Dual8::splat(0.0), &[], &[], &[]) {
@@ -318,6 +361,10 @@ impl Numbers for Directions<'_> {
 }
 
 impl Slopes for Directions<'_> {
+    fn after(&self, event: &EventInfo) -> Result<Box<dyn Slopes>, ParameterError> {
+        Ok(Box::new(self.after(event)?))
+    }
+
     fn scale(&self, direction: usize) -> f64 {
         self.scales[direction]
     }

@@ -3,13 +3,13 @@
 use std::ops::ControlFlow;
 
 use crane_codegen::{SourceFile, build};
-use crane_model::CoordinateRole;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::gradients::{Around, At, CylinderSlopes, FeetSlopes, Numbers, Slopes};
 use crane_model::dynamics::{Method, Settings};
 use crane_model::loop_joints::Given;
 use crane_model::results::quantities;
 use crane_model::runs::{self, Measure, Start, record_adjoint, record_gradients};
+use crane_model::{CoordinateRole, EventInfo, ParameterError};
 
 use super::directions::Directions;
 use super::transposed::Transposed;
@@ -34,6 +34,10 @@ impl Numbers for Unheeded<'_> {
 }
 
 impl Slopes for Unheeded<'_> {
+    fn after(&self, event: &EventInfo) -> Result<Box<dyn Slopes>, ParameterError> {
+        Ok(Box::new(Unheeded(self.0.after(event)?)))
+    }
+
     fn scale(&self, _: usize) -> f64 {
         0.0
     }
@@ -165,6 +169,10 @@ fn the_adjoint_mode_is_the_transpose_of_the_forward_mode() {
     let mut swinging = spec(SWINGING);
     swinging.set_input(0, Some(30.0));
     assert_transposed("swinging", &swinging, 1.6, true);
+    // It becomes lighter as it swings; at once it is braked, at the end of the drive's motion heavier.
+    let mut changing = spec(&format!("{SWINGING}{CHANGING}"));
+    changing.set_input(0, Some(30.0));
+    assert_transposed("changing", &changing, 1.6, true);
 }
 
 /// A drive whose prescribed acceleration jumps at times that depend on parameters, a joint that sticks, an input.
@@ -181,6 +189,14 @@ drives: [{coordinate: arm_psi, stiffness: 2e4, damping: 300, motion: {trapezoid:
 loads: [{name: wind, link: load, at: [0, -0.5, 0], force: [1, 0, 0], scale: {input: gust}}]
 friction:
   load_psi: {coulomb: 20, breakaway: 25, stribeck: 0.02, viscous: 3, bristle: {stiffness: 2e4, damping: 90}}
+";
+
+/// Events on conditions, one of which makes the other due, and one at a time at which the drive's acceleration jumps.
+const CHANGING: &str = "points: [{name: hook, link: load, at: [0, -0.5, 0]}]
+events:
+  - {name: fall, when: {result: hook_z, above: 0.05}, set: {mass: 7}}
+  - {name: follow, when: {result: hook_vz, below: 0.02}, set: {far: 0.8}}
+  - {name: grip, at: 1.2, set: {mass: 12}, joins: {velocity: [0.5, 0, 0.2], point: hook}}
 ";
 
 /// A block that slides sideways as it lands on feet that stick.

@@ -2,6 +2,7 @@
 
 use crane_codegen::chain::Input;
 use crane_codegen::program::FunctionId;
+use crane_model::EventInfo;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::gradients::{Around, At, Covector, CylinderSlopes, FeetSlopes, Numbers, PullBacks};
 
@@ -13,7 +14,6 @@ use crate::products::{PullBack, Pulled, State};
 
 /// The transposed functions of a crane.
 pub(super) struct Transposed<'a> {
-    crane: &'a LiveCrane,
     directions: Directions<'a>,
     places: Places,
     residual: Option<PullBack>,
@@ -33,17 +33,20 @@ impl<'a> Transposed<'a> {
     /// A function needs too many registers.
     pub fn new(crane: &'a LiveCrane, along: &[Along]) -> Result<Self, TooLarge> {
         let place = |own: Along| along.iter().position(|along| *along == own);
+        let places = Places {
+            parameters: (0..crane.parameters().len()).map(|index| place(Along::Parameter(index))).collect(),
+            inputs: (0..crane.description().inputs.len()).map(|index| place(Along::Input(index))).collect(),
+        };
+        Self::of(Directions::new(crane, along), places)
+    }
+
+    fn of(directions: Directions<'a>, places: Places) -> Result<Self, TooLarge> {
+        let crane = directions.crane();
         let with = |needed: bool, id: FunctionId| if needed { PullBack::new(crane, id) } else { Ok(None) };
         let description = crane.description();
         let has_loops = !crane.loop_joints().is_empty();
         let has_oil = description.cylinders.iter().any(|cylinder| cylinder.valve.is_some());
         Ok(Self {
-            crane,
-            directions: Directions::new(crane, along),
-            places: Places {
-                parameters: (0..crane.parameters().len()).map(|index| place(Along::Parameter(index))).collect(),
-                inputs: (0..description.inputs.len()).map(|index| place(Along::Input(index))).collect(),
-            },
             residual: with(true, FunctionId::DynamicResidual)?,
             motions: with(true, FunctionId::DriveMotions)?,
             loop_states: with(has_loops, FunctionId::LoopStates)?,
@@ -57,6 +60,8 @@ impl<'a> Transposed<'a> {
             } else {
                 None
             },
+            directions,
+            places,
         })
     }
 
@@ -67,6 +72,7 @@ impl<'a> Transposed<'a> {
 }
 
 /// The direction of every live parameter, and of every input.
+#[derive(Clone)]
 struct Places {
     parameters: Vec<Option<usize>>,
     inputs: Vec<Option<usize>>,
@@ -104,6 +110,13 @@ impl Numbers for Transposed<'_> {
 }
 
 impl PullBacks for Transposed<'_> {
+    fn after(&self, event: &EventInfo) -> Option<Box<dyn PullBacks>> {
+        let mut places = self.places.clone();
+        event.changes.iter().for_each(|(index, _)| places.parameters[*index] = None);
+        let after = Transposed::of(self.directions.after(event).ok()?, places).ok()?;
+        Some(Box::new(after))
+    }
+
     fn residuals(&mut self, at: &At<'_>, weights: &[f64], sum: &mut Covector) {
         let Self { places, residual, loop_jacobians, .. } = self;
         let state = State { t: at.t, q: at.q, v: at.v, a: at.a };
@@ -132,7 +145,8 @@ impl PullBacks for Transposed<'_> {
     }
 
     fn cylinders(&mut self, at: &At<'_>, weights: &[CylinderSlopes], sum: &mut Covector) {
-        let Self { crane, directions, places, .. } = self;
+        let Self { directions, places, .. } = self;
+        let crane = directions.crane();
         let (Some(states), Some(jacobians)) = (&mut self.cylinder_states, &mut self.cylinder_jacobians) else { return };
         let state = State { t: at.t, q: at.q, v: at.v, a: at.a };
         let of_states: Vec<f64> =
@@ -146,7 +160,7 @@ impl PullBacks for Transposed<'_> {
         let description = crane.description();
         let mut of_motions = vec![[0.0; 2]; description.drives.len()];
         let mut of_openings = of_motions.clone();
-        let motions = (*crane as &dyn DynCrane).drive_motions_at(at.t);
+        let motions = (crane as &dyn DynCrane).drive_motions_at(at.t);
         let mut wanted = [vec![0.0; at.q.len()], vec![0.0; at.q.len()]];
         let driven = || description.cylinders.iter().filter(|cylinder| cylinder.valve.is_some());
         for cylinder in driven() {
