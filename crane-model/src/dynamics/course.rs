@@ -369,10 +369,14 @@ impl Course {
         visit_count(&mut states, visit);
         let is_possible = states <= MOST_STATES;
         x.resize(states.min(MOST_STATES), 0.0);
-        [q, v, x].into_iter().for_each(|numbers| visit_numbers(numbers, visit));
+        for numbers in [q, v, x] {
+            visit_numbers(numbers, visit);
+        }
         visit_numbers(&mut self.done.energies, visit);
         let Statistics { steps, rejections, evaluations, factorisations } = &mut self.done.statistics;
-        [steps, rejections, evaluations, factorisations].into_iter().for_each(|count| visit_count(count, visit));
+        for count in [steps, rejections, evaluations, factorisations] {
+            visit_count(count, visit);
+        }
         is_possible
     }
 

@@ -267,7 +267,7 @@ impl<'a> Trace<'a> {
             let samples =
                 own(leg).iter().map(|(sample, covector)| (self.samples[*sample].1, self.samples[*sample].2, covector));
             let samples: Vec<_> = samples.collect();
-            self.pull_back_leg(leg, functions, (&samples, ending), &mut sum, proceed)?;
+            self.pull_back_leg(leg, functions, &samples, ending.as_ref(), &mut sum, proceed)?;
         }
         Ok(sum)
     }
@@ -277,7 +277,8 @@ impl<'a> Trace<'a> {
         &self,
         leg: usize,
         functions: &mut dyn PullBacks,
-        (samples, event): (&[(usize, f64, &Covector)], Option<(f64, Covector)>),
+        samples: &[(usize, f64, &Covector)],
+        event: Option<&(f64, Covector)>,
         sum: &mut Covector,
         proceed: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<(), NotFinite> {
@@ -298,7 +299,7 @@ impl<'a> Trace<'a> {
                 motion.go_back(own.t, end)?;
             }
             let mut before = Before::zero(len);
-            if let Some((t, covector)) = event.as_ref().filter(|_| index == last) {
+            if let Some((t, covector)) = event.filter(|_| index == last) {
                 if own.at_stop {
                     sweep.complete(motion.last().1, (*t, end));
                     sweep.add_jump(*t, &covector.motion, &mut sum.numbers)?;

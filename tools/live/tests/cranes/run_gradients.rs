@@ -589,10 +589,11 @@ fn derivatives_pass_events() {
         panic!("an event does not happen")
     };
     assert!(catch < lose && brake == catch.next_up(), "{catch} {brake} {lose}");
-    // Motions at events are interpolated, with errors of some 1e-8 that differ from run to run: steps are long enough for these.
+    // Motions at events are interpolated, with errors of some 1e-8 that differ from run to run: over steps of 1e-3 these leave 1e-5 of large changes, and
+    // 1e-4 of those by the drag, which are small.
     let numbers = ["caught", "rod", "drag", "k", "q0.rod_theta", "v0.trolley_x"];
     let steps = [2e-2, 1e-1, 5e-2, 5.0, 2e-3, 2e-3];
-    assert_differences("catches", &crane, (&numbers, &steps), &from, &run, 5e-5);
+    assert_differences("catches", &crane, (&numbers, &steps), &from, &run, 2e-4);
 }
 
 /// The force of a rigid drive jumps over the value when its motion begins: when it would is not the derivative of anything.
