@@ -462,15 +462,15 @@ impl Instance {
             return Ok(false);
         }
         let Moment { t, q, v, x } = before.clone();
-        let mut motion = self.motion_from(t, InitialState { q, v, x })?;
+        let mut motion = self.motion_from(t, &InitialState { q, v, x })?;
         let _ = motion.advance(t, &mut |_| ControlFlow::Continue(()))?;
         self.reach(&motion)?;
         Ok(self.moment.as_ref() != Some(&before))
     }
 
     /// A motion by the crane's own method that goes on with what events have done.
-    fn motion_from(&self, t: f64, state: InitialState) -> Result<Motion, Fault> {
-        Ok(Motion::new(self.crane.boxed_clone(), t, &state, &self.settings, self.marks.as_deref())?)
+    fn motion_from(&self, t: f64, state: &InitialState) -> Result<Motion, Fault> {
+        Ok(Motion::new(self.crane.boxed_clone(), t, state, &self.settings, self.marks.as_deref())?)
     }
 
     /// Takes over where a motion is, and what its events have done.
@@ -521,7 +521,7 @@ impl Instance {
         }
         let mut motion = match self.motion.take() {
             Some(motion) => motion,
-            None => self.motion_from(t, InitialState { q, v, x })?,
+            None => self.motion_from(t, &InitialState { q, v, x })?,
         };
         let _ = motion.advance(from + length, &mut |_| ControlFlow::Continue(()))?;
         self.reach(&motion)?;
