@@ -117,3 +117,16 @@ fn equal_numbers_are_allowed() {
         panic!("{mistakes}");
     }
 }
+
+/// What is not written of a cylinder has no pressure and no volume.
+#[test]
+fn what_is_not_written_of_a_cylinder_is_nothing() {
+    let text = "format: 1\nname: lift\nlinks: [{name: post, joint: fixed}, {name: arm, joint: revolute, mass: 5, com: [1, 0, 0]}]\n\
+                drives: [{coordinate: arm_psi, stiffness: 1e6, motion: {hold: 0}}]\n\
+                cylinders: [{name: lift, coordinate: arm_psi, bore: 0.1, rod: 0.05, retracted: 0.8, stroke: 0.7, foot: {link: post, at: [0.2, -0.6, 0]}, \
+                head: {link: arm, at: [1.3, 0, 0]}}]\n";
+    let checked = crane_codegen::compile::check(&SourceFile::new("lift.yaml", text))
+        .unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    let lift = &checked.chain.cylinders[0];
+    assert_eq!((lift.back_pressure, lift.hose_volumes), (0.0, [0.0; 2]));
+}

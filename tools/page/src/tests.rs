@@ -170,3 +170,14 @@ fn what_lies_beyond_a_joint_is_drawn() {
     let to_head = scene.bars.iter().any(|bar| Some(bar.body) == jib && bar.to.x > 4.0);
     assert!(to_head, "{:?}", scene.bars);
 }
+
+/// Of two masses of a link only the one that there is has a centre.
+#[test]
+fn a_mass_of_nothing_is_not_drawn() {
+    let text = "format: 1\nname: two\nparameters: {load: {value: 5, unit: kg}}\nlinks: [{name: arm, joint: revolute, bodies: [{name: a, mass: 5, com: [1, \
+                0, 0]}, {name: b, mass: load, com: [2, 0, 0]}]}]\n";
+    let mut live = example("two", text);
+    assert_eq!(crate::bars::masses(&live).len(), 2);
+    live.set_parameters(&[0.0]).expect("no load");
+    assert_eq!(crate::bars::masses(&live).len(), 1);
+}

@@ -101,6 +101,16 @@ fn the_order_of_coordinates_does_not_move_a_factor() {
     assert!((beside / alone - 1.0).abs() < 1e-9, "{alone} alone, {beside} beside a mast");
 }
 
+/// A force of 20 mN bends a post by its lever arm, in both orders.
+#[test]
+fn the_first_order_of_a_light_force_is_its_lever_arm() {
+    let crane = LiveCrane::from_spec(&SourceFile::new("post.yaml", post(4, [0.02, 0.0, 0.0]))).expect("a crane");
+    let (mut crane, parameter) = crane.with_load_factor();
+    let SecondOrder { beams, .. } = second_order(&mut crane, parameter).expect("a crane at rest");
+    // Extrapolated from parts of 1e-4, of which statics know ten digits.
+    assert!(beams[0].1.iter().all(|moment| (moment / 0.12 - 1.0).abs() < 1e-5), "{beams:?}");
+}
+
 /// A column with a force across its top: with `u = L √(P/EJ)`, the deflection is `3 (tan u − u)/u³` times that of the first order, `H L³/3EJ`, and the moment at its
 /// foot `tan u/u` times `H L`. Near Euler's load both become `1/(1 − P/P_cr)`. \[S. Timoshenko, J. M. Gere, Theory of Elastic Stability, 1961, section 1.3]
 #[test]

@@ -121,9 +121,9 @@ drives: [{{coordinate: lift_z, stiffness: 1e5, max_effort: {limit}, motion: {{ho
 fn the_energy_balance_of_a_light_crane_is_looked_at() {
     let pendulum = spec(
         "format: 1\nname: light\nlinks: [{name: arm, joint: revolute, mass: 1 g, com: [0.1, 0, 0], placement: {transform: {rotation: {x: 90 deg}}}}]\n\
-         guess: {arm_psi: 0.5}\nrun: {duration: 4, step: 0.1, output: 0.1}\n",
+         guess: {arm_psi: 0.5}\nrun: {duration: 4, step: 0.2, output: 0.2}\n",
     );
-    let settings = Settings { method: Method::Rk4, ..Settings::of(pendulum.description()) };
+    let settings = Settings { method: Method::Rk4, audit: true, ..Settings::of(pendulum.description()) };
     let start = Start { v: vec![0.0], q: vec![0.5], x: Vec::new(), what: String::new(), rests: false };
     let recorded =
         record_checked(&pendulum, &start, &settings, (false, cautions::BEND), &mut |_| ControlFlow::Continue(()));

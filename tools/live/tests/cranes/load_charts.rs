@@ -505,3 +505,16 @@ fn a_chart_is_empty_only_where_statics_finds_no_rest() {
         }
     }
 }
+
+/// A boom that its drive turns by half a turn: what hangs straight down at the beginning would stand on its head there, and rests only if it is followed on the way.
+#[test]
+fn what_stands_on_its_head_is_followed_from_the_beginning() {
+    let text = "format: 1\nname: turned\ngravity: [0, -9.81, 0]\nlinks: [{name: boom, joint: revolute, mass: 100, com: [1, 0, 0]}, {name: hook, joint: revolute, \
+                placement: {transform: {translation: [2, 0, 0]}}, mass: 50, com: [1, 0, 0]}]\ndrives: [{coordinate: boom_psi, rigid: true, motion: {hold: 0}}]\n\
+                guess: {hook_psi: -90 deg}\n";
+    let crane = LiveCrane::from_spec(&SourceFile::new("turned.yaml", text)).expect("a crane");
+    let search = statics::RestSearch { crane: &crane, positions: &[PI] };
+    assert!(!search.find_from_guess().is_stable());
+    let found = search.find(None);
+    assert!(found.is_stable() && ((found.q[0] + found.q[1]).sin() + 1.0).abs() < 1e-12, "{:?}", found.q);
+}

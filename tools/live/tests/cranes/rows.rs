@@ -3,7 +3,7 @@
 use crane_codegen::build;
 use crane_live::rows::{Evaluation, Rows};
 use crane_live::{FunctionId, LiveCrane};
-use crane_model::dyn_crane::{DynCrane, DynDynamics, DynModel};
+use crane_model::dyn_crane::{DynCrane, DynDynamics, DynModel, DynMotionDerivatives};
 use crane_model::nalgebra::{Matrix4, Vector3};
 use crane_model::rt::lanes::f64x8;
 
@@ -79,5 +79,25 @@ fn jacobians_turn_rates_into_velocities() {
         let velocity: f64 = row.iter().zip(&v).map(|(entry, rate)| entry * rate).sum();
         // Rounding of a sum of some numbers of size 10.
         assert!((velocity - expected).abs() < 1e-12, "{velocity} {expected}");
+    }
+}
+
+#[test]
+fn derivatives_of_accelerations_are_those_of_one_crane() {
+    let crane = crane();
+    let n = crane.size();
+    let q = poses(&crane);
+    let v: Vec<f64> = (0..COUNT * n).map(|k| 0.1 * (0.7 * k as f64).cos()).collect();
+    let mut out = vec![f64::NAN; COUNT * 3 * n * n];
+    let rows = Rows { q: &q, v: &v, ..Rows::default() };
+    Evaluation::<f64x8>::new(&crane, FunctionId::ForwardDynamicsDerivatives).run(&rows, 0..COUNT, &mut out);
+    let mut alone = vec![f64::NAN; 3 * n * n];
+    for (row, found) in out.chunks(3 * n * n).enumerate() {
+        let own = row * n..(row + 1) * n;
+        crane.forward_dynamics_derivatives(0.0, &q[own.clone()], &v[own], &mut alone);
+        let largest = alone.iter().fold(0.0_f64, |largest, number| largest.max(number.abs()));
+        for (k, (number, expected)) in found.iter().zip(&alone).enumerate() {
+            assert!((number - expected).abs() <= 1e-12 * largest, "row {row}, {k}: {number}, {expected}");
+        }
     }
 }
