@@ -13,21 +13,30 @@ use serde_json::Value;
 use crate::draw::Change;
 use crate::site::{SWITCH, Site};
 
-/// Packages whose tests run, beside random cranes.
-const PACKAGES: [&str; 4] = ["crane-codegen", "crane-model", "crane-live", "crane-page"];
+/// What is built: the tests of packages with random cranes, and the golden files.
+const BUILT: [&[&str]; 2] = [
+    &["-p", "crane-codegen", "-p", "crane-model", "-p", "crane-live", "-p", "crane-page", "-p", "crane-combinations"],
+    &["-p", "crane-tests", "--test", "golden"],
+];
 /// Random cranes: few, since they run for every change.
 const CRANES: [&str; 9] = ["--from", "100", "--count", "16", "--checks", "5", "--threads", "1", "--no-shrink"];
 /// Tests that are too long to run for every change: more random cranes, and runs of many cranes at once.
 const LONG: [&str; 2] = ["seeds", "fleets"];
+/// Tests that write files at a place of their own, which is one for all changes.
+const WRITING: [&str; 3] = ["extends", "build_script", "c"];
 /// A test that takes this many times as long as without a change hangs.
 const HANGS: u32 = 6;
 
 /// A program that tests.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Test {
     name: String,
     program: PathBuf,
+    /// The folder of its package, in the copy, and where it runs.
+    package: PathBuf,
     folder: PathBuf,
+    /// Held while it runs if it cannot run twice at once.
+    alone: Option<Mutex<()>>,
     arguments: Vec<String>,
     /// How long it takes without a change.
     takes: Duration,
@@ -52,31 +61,37 @@ pub fn build(site: &Site, changes: &mut Vec<Change>) -> Result<Vec<Test>, String
     }
 }
 
-/// Compiles the tests; returns the programs with their packages, or the numbers of changes that the compiler refuses.
-fn compile(tree: &Path, changes: &[Change]) -> Result<(Vec<(String, PathBuf)>, BTreeSet<usize>), String> {
-    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    command.current_dir(tree).args(["test", "--release", "--no-run", "--message-format=json"]);
-    command.args(["--config", "profile.release.lto=\"off\""]).env("CARGO_TARGET_DIR", tree.with_file_name("build"));
-    command.args(["--package", "crane-combinations"]);
-    for package in PACKAGES {
-        command.args(["--package", package]);
-    }
-    let output = command.stderr(Stdio::inherit()).output().map_err(|error| format!("cargo: {error}"))?;
+/// A program that was built: its name, itself, and the folder of its package.
+type Program = (String, PathBuf, PathBuf);
+
+/// Compiles the tests; returns the programs, or the numbers of changes that the compiler refuses.
+fn compile(tree: &Path, changes: &[Change]) -> Result<(Vec<Program>, BTreeSet<usize>), String> {
     let (mut programs, mut refused) = (Vec::new(), BTreeSet::new());
-    for message in
-        String::from_utf8_lossy(&output.stdout).lines().filter_map(|line| serde_json::from_str::<Value>(line).ok())
-    {
-        if let Some(program) = message["executable"].as_str() {
-            programs.push((message["target"]["name"].as_str().unwrap_or_default().to_owned(), PathBuf::from(program)));
-        }
-        if message["message"]["level"] == "error" {
-            for span in message["message"]["spans"].as_array().into_iter().flatten() {
-                refused.extend(numbers_at(tree, span, changes));
+    for built in BUILT {
+        let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+        command.current_dir(tree).args(["test", "--release", "--no-run", "--message-format=json"]);
+        command.args(["--config", "profile.release.lto=\"off\""]).env("CARGO_TARGET_DIR", tree.with_file_name("build"));
+        let output =
+            command.args(built).stderr(Stdio::inherit()).output().map_err(|error| format!("cargo: {error}"))?;
+        let texts = String::from_utf8_lossy(&output.stdout).into_owned();
+        for message in texts.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok()) {
+            if let Some(program) = message["executable"].as_str() {
+                let package = Path::new(message["manifest_path"].as_str().unwrap_or_default()).parent().unwrap_or(tree);
+                let name = message["target"]["name"].as_str().unwrap_or_default().to_owned();
+                programs.push((name, PathBuf::from(program), package.to_owned()));
+            }
+            if message["message"]["level"] == "error" {
+                for span in message["message"]["spans"].as_array().into_iter().flatten() {
+                    refused.extend(numbers_at(tree, span, changes));
+                }
             }
         }
-    }
-    if !output.status.success() && refused.is_empty() {
-        return Err("the copy does not compile, and no change is the cause: see above".to_owned());
+        if !refused.is_empty() {
+            break;
+        }
+        if !output.status.success() {
+            return Err("the copy does not compile, and no change is the cause: see above".to_owned());
+        }
     }
     Ok((programs, refused))
 }
@@ -94,22 +109,23 @@ fn numbers_at(tree: &Path, span: &Value, changes: &[Change]) -> Vec<usize> {
 }
 
 /// The tests that pass without a change, the fastest first.
-fn sound(tree: &Path, programs: Vec<(String, PathBuf)>) -> Vec<Test> {
+fn sound(tree: &Path, programs: Vec<Program>) -> Vec<Test> {
     let mut tests: Vec<Test> = Vec::new();
-    for (name, program) in programs.into_iter().filter(|(name, _)| !LONG.contains(&name.as_str())) {
-        let is_cranes = name == "combinations";
-        let arguments = if is_cranes { CRANES.map(str::to_owned).to_vec() } else { Vec::new() };
-        let folder = PACKAGES.iter().map(|package| folder_of(tree, package)).find(|folder| {
-            ["tests", "src"].iter().any(|part| {
-                folder.join(part).join(format!("{name}.rs")).exists() || folder.join(part).join(&name).exists()
-            })
-        });
+    for (name, program, package) in programs {
+        // Programs that are no tests, but for random cranes.
+        let is_test = program.parent().is_some_and(|folder| folder.ends_with("deps"));
+        let is_cranes = name == "combinations" && !is_test;
+        if LONG.contains(&name.as_str()) || !is_test && !is_cranes {
+            continue;
+        }
         let mut test = Test {
+            alone: WRITING.contains(&name.as_str()).then(Mutex::default),
+            folder: if is_cranes { tree.to_owned() } else { package.clone() },
+            arguments: if is_cranes { CRANES.map(str::to_owned).to_vec() } else { Vec::new() },
+            takes: Duration::from_secs(600),
+            package: package.strip_prefix(tree).unwrap_or(&package).to_owned(),
             name,
             program,
-            folder: folder.unwrap_or_else(|| tree.to_owned()),
-            arguments,
-            takes: Duration::from_secs(600),
         };
         let begin = Instant::now();
         let passes = test.passes(0);
@@ -128,17 +144,22 @@ fn sound(tree: &Path, programs: Vec<(String, PathBuf)>) -> Vec<Test> {
     tests
 }
 
-fn folder_of(tree: &Path, package: &str) -> PathBuf {
-    match package {
-        "crane-codegen" => tree.join("codegen"),
-        "crane-model" => tree.join("crane-model"),
-        other => tree.join("tools").join(other.trim_start_matches("crane-")),
-    }
-}
-
 impl Test {
+    /// Whether its program contains a change: each crate is linked into those above it alone.
+    fn contains(&self, change: &Change) -> bool {
+        let of = |folder: &str| self.package == Path::new(folder);
+        if change.file.starts_with("codegen") {
+            true
+        } else if change.file.starts_with("tools/page") {
+            of("tools/page") || of("tests/combinations")
+        } else {
+            !of("codegen") && !of("tests")
+        }
+    }
+
     /// Whether it passes with a change; one that hangs does not.
     fn passes(&self, number: usize) -> bool {
+        let _alone = self.alone.as_ref().map(Mutex::lock);
         let mut command = Command::new(&self.program);
         command.args(&self.arguments).current_dir(&self.folder).stdout(Stdio::null()).stderr(Stdio::null());
         command.env(SWITCH, number.to_string()).env("INSTA_UPDATE", "no").env("RUST_TEST_THREADS", "1");
@@ -164,7 +185,7 @@ pub fn run<'a>(tests: &[Test], changes: &'a [Change]) -> Result<Vec<&'a Change>,
     let work = || {
         while let Some(change) = changes.get(next.fetch_add(1, Ordering::Relaxed)) {
             let number = 1 + changes.iter().position(|other| std::ptr::eq(other, change)).unwrap_or(0);
-            let killer = tests.iter().find(|test| !test.passes(number));
+            let killer = tests.iter().find(|test| test.contains(change) && !test.passes(number));
             println!(
                 "{number}/{} {}: {}",
                 changes.len(),
