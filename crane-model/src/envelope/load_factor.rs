@@ -14,8 +14,10 @@ use crate::{
 
 /// Relative accuracy of a factor.
 const ACCURACY: f64 = 1e-6;
-/// The largest factor considered: EN 1993-1-1, 5.2.1 lets effects of the second order be left out from 10 on, 15 for plastic analysis.
-const MOST: f64 = 100.0;
+/// The largest factor by the stiffness that is told.
+const MOST: f64 = 1000.0;
+/// The largest factor to which a pose is followed: EN 1993-1-1, 5.2.1 lets effects of the second order be left out from 10 on, 15 for plastic analysis.
+const MOST_FOLLOWED: f64 = 100.0;
 /// Part of a factor by which another one is a little larger.
 const A_LITTLE: f64 = 1e-5;
 /// How often a path goes on beyond where it seemed to end.
@@ -41,8 +43,10 @@ pub struct Followed {
 }
 
 impl LoadFactor {
-    /// The largest factor considered.
+    /// The largest factor by the stiffness that is told.
     pub const MOST: f64 = MOST;
+    /// The largest factor to which a pose is followed.
+    pub const MOST_FOLLOWED: f64 = MOST_FOLLOWED;
 }
 
 /// The critical factors of a crane with its drives at the beginning of their motions. `parameter` is the factor of its weight and loads, which is left at
@@ -50,7 +54,7 @@ impl LoadFactor {
 pub fn load_factor(crane: &mut dyn DynCrane, parameter: usize) -> Option<LoadFactor> {
     let limits = Limits::none(crane.description());
     let positions = crane.drive_targets_at(0.0);
-    let range = Range { greatest: MOST, guess: 0.0, scale: 1.0, accuracy: ACCURACY, growth: ALONG };
+    let range = Range { greatest: MOST_FOLLOWED, guess: 0.0, scale: 1.0, accuracy: ACCURACY, growth: ALONG };
     let search = LoadSearch { limits: &limits, factor: 1.0, range, points: &[] };
     let mut posed = Posed { crane, load: parameter, positions: &positions };
     let begin = posed.find(1.0, None)?;

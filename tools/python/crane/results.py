@@ -311,8 +311,9 @@ class Buckling:
     """How many times its weight and loads a crane carries at rest, and what they do by the first and the second order of beam theory: the numbers of
     `crane strength --buckling`.
 
-    linearised: critical factor of the weight of everything and of all loads, by the stiffness at rest; NaN for closed loops and rigid couplings.
-    followed: the factor up to which the crane rests, its pose followed. Both are inf above 1000.
+    linearised: critical factor of the weight of everything and of all loads, by the stiffness at rest; inf above 1000, NaN for closed loops and rigid
+    couplings.
+    followed: the factor up to which the crane rests, its pose followed; inf above 100.
     status: how statics ends beyond that factor; empty where a stage is out of its beam, or for inf.
     displacements: (points, 2, 3), m, by which weight and loads move the points of interest, by the first order and at rest; NaN if the crane does not
     rest nearby without weight and loads, and no beams are then listed.

@@ -47,14 +47,14 @@ pub fn factor(report: &mut Report, crane: &LiveCrane) {
     let (mut crane, parameter) = crane.with_load_factor();
     let Some(LoadFactor { linearised, followed }) = load_factor(&mut crane, parameter) else { return };
     let name = "critical factor of weight and loads";
-    let beyond = format!("above {}", LoadFactor::MOST);
     let by_stiffness = match linearised {
         Some(factor) => Cell::from(factor),
-        None if (&crane as &dyn DynCrane).loop_joints().is_empty() => beyond.as_str().into(),
+        None if (&crane as &dyn DynCrane).loop_joints().is_empty() => format!("above {}", LoadFactor::MOST).into(),
         None => "not computed for closed loops and rigid couplings".into(),
     };
     report.line(format!("{name}, by the stiffness at rest"), by_stiffness, "");
-    let followed_to = followed.as_ref().map_or_else(|| beyond.as_str().into(), |followed| Cell::from(followed.factor));
+    let followed_to = followed.as_ref().map(|followed| followed.factor.into());
+    let followed_to = followed_to.unwrap_or_else(|| Cell::from(format!("above {}", LoadFactor::MOST_FOLLOWED)));
     report.line(format!("{name}, its pose followed"), followed_to, "");
     let without_hold = "a stage is out of its beam";
     if let Some(Followed { beyond, .. }) = &followed {
