@@ -294,7 +294,7 @@ mod tests {
         }
     }
 
-    /// N = 40 kN on 0.002 m²: 20 MPa; My = 3 kN m on 1e-4 m³: 30 MPa; Mz = 1 kN m on 5e-5 m³: 20 MPa, both in tension in one corner.
+    /// A force of 40 kN on 0.002 m² and moments of 3 kN m about y on 1e-4 m³ and of 1 kN m about z on 5e-5 m³ make 20, 30 and 20 megapascals.
     #[test]
     fn corners_of_a_box_have_the_stresses_of_both_moments() {
         let moduli =

@@ -235,7 +235,7 @@ mod tests {
         assert!((missed - (expected(nearest + 9.0) - expected(nearest))).abs() < 1e-14, "{missed}");
     }
 
-    /// What the steps miss is told in percent of the range of a position, and so is what lies between results; the largest of the two decides.
+    /// Cautions give what the steps miss in percent of the range of a position, and what lies between results; the largest of the two decides.
     #[test]
     fn errors_are_told_in_percent_of_the_range() {
         let positions = |count: i32, value: &dyn Fn(f64) -> f64| {

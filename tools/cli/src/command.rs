@@ -3,6 +3,8 @@
 use std::io::Write;
 
 use clap::CommandFactory;
+use crane_codegen::spec::Crane;
+use crane_model::Description;
 
 use crate::{
     arguments::{Action, Arguments, Choice, spec_file},
@@ -26,10 +28,11 @@ pub fn execute(mut arguments: Arguments, mut registry: Registry, out: &mut dyn W
         }
         let Choice { name, rigid, combination, strict, .. } = &choice.clone();
         let (held, ranges) = arguments.action.as_ref().map_or((&[][..], &[][..]), Action::held);
+        let hold = |description: &Description, spec: &Crane| poses::hold(held, ranges, description, spec);
         let edits = [
             rigid.then_some(Edit::Rigid("leave `--rigid` out")),
             combination.as_deref().map(Edit::Combination),
-            (!held.is_empty() || !ranges.is_empty()).then_some(Edit::Hold(held, ranges)),
+            (!held.is_empty() || !ranges.is_empty()).then_some(Edit::Hold(&hold)),
         ];
         let edits: Vec<Edit<'_>> = edits.into_iter().flatten().collect();
         let name = match spec_file(name) {

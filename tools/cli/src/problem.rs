@@ -21,6 +21,16 @@ pub const NOTICED: u8 = 3;
 /// A result or a problem for the user.
 pub type Outcome<T> = Result<T, Problem>;
 
+/// What to write in place of a word: the nearest of those that are known, and all of them.
+pub fn meant(word: &str, known: &[&str], what: &str) -> String {
+    hint(nearest(word, known.iter().copied()), &known.join(", "), what)
+}
+
+/// The nearest of the words that are known, if there is one, and all of them.
+pub fn hint(nearest: Option<&str>, known: &str, what: &str) -> String {
+    nearest.map_or_else(String::new, |nearest| format!("did you mean `{nearest}`? ")) + &format!("{what}: {known}")
+}
+
 /// What is wrong, and what to do about it.
 #[derive(Debug)]
 pub enum Problem {

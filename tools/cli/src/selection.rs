@@ -8,7 +8,7 @@ use crane_model::{Description, InputInfo, ParameterError, ParameterInfo, Refusal
 
 use crate::{
     arguments::{Choice, Parameters, STANDARD_INPUT},
-    problem::{Outcome, Problem, nearest},
+    problem::{Outcome, Problem, hint, meant, nearest},
     quantity::number,
     screen, spec_file,
     variants::{self, Edit, edited},
@@ -448,13 +448,4 @@ fn index_of_known(name: &str, crane: &str, known: &[(&str, &str)]) -> Result<usi
         let guess = nearest(name, known.iter().map(|(name, _)| *name));
         (title, hint(guess, &names.join(", "), "parameters"))
     })
-}
-
-/// What to write in place of a word: the nearest of those that are known, and all of them.
-pub fn meant(word: &str, known: &[&str], what: &str) -> String {
-    hint(nearest(word, known.iter().copied()), &known.join(", "), what)
-}
-
-fn hint(nearest: Option<&str>, known: &str, what: &str) -> String {
-    nearest.map_or_else(String::new, |nearest| format!("did you mean `{nearest}`? ")) + &format!("{what}: {known}")
 }

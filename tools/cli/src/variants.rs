@@ -7,11 +7,9 @@ use crane_codegen::{
     spec::{Beam, Crane, Sections, entries},
 };
 
-use crate::{
-    poses,
-    problem::{Outcome, Problem},
-    selection::meant,
-};
+use crane_model::Description;
+
+use crate::problem::{Outcome, Problem, meant};
 
 /// What an option changes in a crane.
 pub enum Edit<'a> {
@@ -19,8 +17,8 @@ pub enum Edit<'a> {
     Rigid(&'a str),
     /// One of its combinations is in force.
     Combination(&'a str),
-    /// Drives hold their positions, those of the ranges at the values of live parameters.
-    Hold(&'a [String], &'a [String]),
+    /// Drives hold positions: what makes a crane with this description and spec do so.
+    Hold(&'a dyn Fn(&Description, &Crane) -> Outcome<Change>),
     /// It has another name.
     Name(&'a str),
 }
@@ -96,10 +94,7 @@ impl Edit<'_> {
                 }
                 Change::keys([("combination", (*combination).into())])
             }
-            Self::Hold(held, ranges) => {
-                let description = outline(spec).map_err(Problem::mistakes)?.description();
-                poses::hold(held, ranges, &description, &spec.crane)?
-            }
+            Self::Hold(hold) => hold(&outline(spec).map_err(Problem::mistakes)?.description(), &spec.crane)?,
             Self::Name(name) => Change::keys([("name", (*name).into())]),
         };
         spec.changed(&change).map_err(Problem::mistakes)
@@ -184,7 +179,8 @@ fn guesses_of_elements<'a>(spec: &'a Crane, links: &'a [&str]) -> impl Iterator<
 
 #[cfg(test)]
 mod tests {
-    use crane_codegen::{Checked, SourceFile, check, compile, read};
+    use crane_codegen::{Change, Checked, SourceFile, check, compile, read, spec::Crane};
+    use crane_model::Description;
 
     use super::{Edit, edited_by};
     use crate::problem::Problem;
@@ -204,8 +200,10 @@ mod tests {
     /// One check where nothing is wrong, two where an edit leaves a parameter unused, and the mistakes of the file as without edits.
     #[test]
     fn a_spec_with_edits_is_checked_once() {
-        let held = ["boom=0.3".to_owned()];
-        let edits = [Edit::Rigid(""), Edit::Combination("lift"), Edit::Hold(&held, &[])];
+        let held = Change::keys([("coordinate", "boom_psi".into()), ("motion", Change::keys([("hold", 0.3.into())]))]);
+        let held = Change::keys([("drives", Change::list([held]))]);
+        let hold = |_: &Description, _: &Crane| Ok(held.clone());
+        let edits = [Edit::Rigid(""), Edit::Combination("lift"), Edit::Hold(&hold)];
         let checks = |more: &str| {
             let text = BOOM.replace("{hold: 0}", if more.contains("angle") { "{hold: angle}" } else { "{hold: 0}" });
             let text = format!("{text}combinations: [{{name: lift, weight: 1.5}}]\n{more}");

@@ -7,9 +7,14 @@ use std::{env, fs};
 use crane_codegen::chain::{Chain, CoordinateId};
 use crane_codegen::{SourceFile, build, compile};
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynModel;
+use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::nalgebra::Vector3;
-use crane_page::{diagram::diagram, scene::Scene};
+use crane_model::statics::Settings;
+use crane_page::{
+    diagram::diagram,
+    scene::Scene,
+    shapes::{Figure, Mesh, Shape},
+};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -203,4 +208,60 @@ fn a_cylinder_is_drawn_as_long_as_it_is() {
         drawn
     });
     assert!((lengths[0] - lengths[1]).abs() > 0.1, "the sides differ: {lengths:?}");
+}
+
+/// Of each colour of each crane at rest: shapes, their corners, the mean of these in the world, m, their standard deviations, and the volume within, m³.
+fn drawn() -> String {
+    let mut text = String::new();
+    for (name, chain) in cranes("specs").into_iter().chain(cranes("specs/examples")) {
+        let live = LiveCrane::new(chain);
+        let q = (&live as &dyn DynCrane).equilibrium(&Settings::default()).q;
+        let figure = Figure::new(&live, &q, &q);
+        let mut paints: Vec<&str> = figure.shapes.iter().map(|shape| shape.paint.name).collect();
+        paints.sort_unstable();
+        paints.dedup();
+        for paint in paints {
+            let shapes: Vec<&Shape> = figure.shapes.iter().filter(|shape| shape.paint.name == paint).collect();
+            let corners: Vec<Vector3<f64>> = shapes.iter().flat_map(|shape| figure.corners(shape)).collect();
+            let count = corners.len() as f64;
+            let mean = corners.iter().sum::<Vector3<f64>>() / count;
+            let squares = corners.iter().map(|corner| (corner - mean).map(|x| x * x)).sum::<Vector3<f64>>();
+            let spread = (squares / count).map(f64::sqrt);
+            // A surface that is turned inside out, or twisted, has another volume.
+            let of_mesh = |mesh: &Mesh| -> f64 {
+                let triangle = |corners: &[usize; 3]| {
+                    let [a, b, c] = corners.map(|corner| mesh.corners[corner]);
+                    a.dot(&b.cross(&c)) / 6.0
+                };
+                mesh.triangles.iter().map(triangle).sum()
+            };
+            let volume: f64 = shapes.iter().map(|shape| of_mesh(&shape.mesh)).sum();
+            let _ = write!(text, "{name} {paint} {} {}", shapes.len(), corners.len());
+            for number in mean.iter().chain(&spread).chain([&volume]) {
+                let _ = write!(text, " {number:.5}");
+            }
+            text.push('\n');
+        }
+    }
+    text
+}
+
+/// A picture changes on purpose alone: `UPDATE_GOLDEN=1` writes what is drawn.
+#[test]
+fn what_is_drawn_stays() {
+    let path = root().join("tools/page/tests/drawn.txt");
+    let found = drawn();
+    if env::var_os("UPDATE_GOLDEN").is_some() {
+        fs::write(&path, &found).expect("a file");
+    }
+    let known = fs::read_to_string(path).expect("a file");
+    assert_eq!(found.lines().count(), known.lines().count());
+    for (found, known) in found.lines().zip(known.lines()) {
+        // Half a digit of rounding, and as much of statics.
+        let near = |(one, other): (&str, &str)| match [one, other].map(str::parse::<f64>) {
+            [Ok(one), Ok(other)] => (one - other).abs() < 2e-5,
+            _ => one == other,
+        };
+        assert!(found.split(' ').zip(known.split(' ')).all(near), "{found}\nnot\n{known}");
+    }
 }

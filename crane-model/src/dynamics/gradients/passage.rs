@@ -96,7 +96,7 @@ impl Passage {
         rates_after(cranes, &self.event, &motion[..n], &motion[n..2 * n])
     }
 
-    /// The same of a crane beside the one before.
+    /// The same of a crane beside that before the event.
     fn rates_beside(&self, crane: &dyn DynCrane, motion: &[f64]) -> Vec<f64> {
         // What the rules refuse has no derivative.
         self.after(crane)
